@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The campaign: one nonlinear indentation, normal then lateral, at every site of a body.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "format/body.hpp"
+#include "format/curves.hpp"
+
+namespace palpate::fem {
+
+/// Nearly incompressible neo-Hookean solid by its small-strain constants.
+struct NeoHookeanConstants {
+  double young = 0;    ///< E, Pa, > 0
+  double poisson = 0;  ///< nu, 0 <= nu < 0.5
+};
+
+struct RegionMaterial {
+  std::string region;  ///< name of a region of the body
+  NeoHookeanConstants law;
+};
+
+struct IndentationSettings {
+  double tool_radius = 0.005;      ///< m, sphere
+  double depth = 0.006;            ///< m, end of the normal path
+  int increments = 12;             ///< of the normal path
+  double lateral_travel = 0.003;   ///< m, end of each lateral path
+  int lateral_increments = 6;
+  std::vector<double> held_depths{0.003};  ///< m, where lateral paths start; each at most `depth`
+  std::vector<double> azimuths{0.0};       ///< rad, from the first tangent direction of the site
+  double force_tolerance = 1e-4;           ///< relative error of the tool force allowed to the solver
+};
+
+/// State of a campaign, told after each finished site.
+struct CampaignProgress {
+  std::int64_t done = 0, failed = 0, total = 0;
+};
+
+struct CampaignSettings {
+  std::vector<RegionMaterial> materials;  ///< one for each region of the body
+  IndentationSettings indentation;
+  std::vector<std::int32_t> sites;  ///< response vertices; empty = every vertex with is_site
+  int threads = 1;
+  std::function<void(const CampaignProgress&)> progress;  ///< called from one thread at a time
+};
+
+/// What the campaign did, for the log and the provenance.
+struct CampaignReport {
+  double seconds = 0;
+  double cpu_seconds = 0;
+  std::int64_t unknowns = 0;
+  std::vector<std::pair<std::string, std::string>> facts;  ///< BLAS kernel, factor size, versions
+};
+
+/// The sites come back in ascending order of vertex whatever the number of threads. A site whose
+/// solve failed is data: its status, reason and partial curve are kept.
+/// @throws Error(Configuration) for constants out of range (named, with value and range), a region
+///   without a law, a law without a region, a held depth beyond the depth, a vertex that is no site.
+Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report);
+
+/// Displacement of the nodes of the body (corner nodes, same order as Body::nodes) for one site at
+/// the end of its normal path: for pictures and exports.
+struct DeformedState {
+  std::vector<Vec3> displacement;     ///< (N) m
+  std::vector<double> strain_energy_density;  ///< (T) J/m^3, element mean
+  std::vector<double> pressure;       ///< (T) Pa, element-constant, tension positive
+  CurveSample sample;
+};
+DeformedState deformed_state(const Body& body, const CampaignSettings& settings,
+                             std::int32_t vertex);
+
+}  // namespace palpate::fem

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// body.h5: the tetrahedralized body. Normative page: format/schema/body.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "format/provenance.hpp"
+#include "format/vec3.hpp"
+
+namespace palpate {
+
+inline constexpr int kBodySchema = 1;
+
+/// The coarse triangulation that carries the stored responses. Its vertices are nodes of the body.
+struct ResponseSurface {
+  std::vector<std::int32_t> node;     ///< (V) index into Body::nodes of each response vertex
+  std::vector<Vec3> inward;           ///< (V) unit direction u^z, into the body
+  std::vector<Triangle> triangles;    ///< (M) indices into `node`; counter-clockwise from outside
+  std::vector<std::uint8_t> is_site;  ///< (V) 1 where the tool may be pressed: not in a support
+};
+
+/// A body ready for indentation: straight-sided tetrahedra, their regions, the supports, and the
+/// response surface. Positions in metres. The boundary facets are refinements of the triangles of
+/// the response surface, so every response vertex is a boundary node.
+struct Body {
+  std::string name;
+  std::vector<Vec3> nodes;                        ///< (N) m
+  std::vector<Tetrahedron> tetrahedra;            ///< (T) positive volume
+  std::vector<std::int32_t> tetrahedron_region;   ///< (T) index into region_names
+  std::vector<std::string> region_names;          ///< region 0 is the matrix
+  std::vector<Triangle> boundary;                 ///< (B) boundary facets, outward orientation
+  std::vector<std::int32_t> fixed_nodes;          ///< nodes held by a support, ascending
+  ResponseSurface response;
+  Provenance provenance;
+};
+
+/// Write under a temporary name and rename, so that no half-written file ever bears `path`.
+/// @throws Error when the disk refuses.
+void write_body(const std::filesystem::path& path, const Body& body);
+
+/// Read and check everything: shapes, index ranges, finite numbers, unit directions, positive
+/// volumes, schema version. @throws Error naming the dataset and the first offending row.
+Body read_body(const std::filesystem::path& path);
+
+}  // namespace palpate

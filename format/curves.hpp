@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+// curves.h5: raw force-deflection curves, a status per site. Normative page: format/schema/curves.md.
+// A simulated and a measured curve are the same record.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "format/provenance.hpp"
+#include "format/vec3.hpp"
+
+namespace palpate {
+
+inline constexpr int kCurvesSchema = 1;
+
+enum class SiteStatus : std::uint8_t {
+  Complete = 0,  ///< every path reached its end
+  Partial = 1,   ///< a path stopped early; what was computed is kept, the reason is recorded
+  Failed = 2     ///< nothing usable
+};
+
+enum class PathKind : std::uint8_t {
+  Normal = 0,  ///< along the inward direction, from touch
+  Lateral = 1  ///< at a held depth, contact stuck, along `direction`
+};
+
+/// One converged state of the tool on a path. The first sample of a normal path is the touch
+/// (displacement 0, force 0); the first of a lateral path is the held state (displacement 0).
+struct CurveSample {
+  double displacement = 0;   ///< m, of the tool along the path
+  Vec3 force{};              ///< N, of the tool ON the body
+  double strain_energy = 0;  ///< J, stored in the body (without contact penalty)
+  double tool_work = 0;      ///< J, integral of force . d(displacement) since the touch, as solved
+  double min_jacobian = 1;   ///< smallest det F over the body
+  double penetration = 0;    ///< m, deepest violation of the contact constraint
+  double contact_area = 0;   ///< m^2, reference area in contact
+  std::int32_t iterations = 0;
+};
+
+struct CurvePath {
+  PathKind kind = PathKind::Normal;
+  double held_depth = 0;  ///< m, depth at which a lateral path was run; 0 for a normal path
+  Vec3 direction{};       ///< unit; inward for a normal path, tangential for a lateral one
+  std::vector<CurveSample> samples;
+};
+
+/// All paths run at one response vertex.
+struct SiteCurves {
+  std::int32_t vertex = -1;  ///< index into the response surface of the body
+  SiteStatus status = SiteStatus::Failed;
+  std::string reason;  ///< empty when complete
+  double cpu_seconds = 0;
+  std::vector<CurvePath> paths;
+};
+
+/// How the curves were obtained: what a reader needs to interpret them.
+struct ToolDescription {
+  std::string shape;     ///< "sphere"
+  double radius = 0;     ///< m
+  std::string friction;  ///< of the normal path: "frictionless" or "stuck"
+};
+
+struct Curves {
+  ToolDescription tool;
+  double depth = 0;           ///< m, requested end of the normal paths
+  double lateral_travel = 0;  ///< m, requested end of the lateral paths
+  std::string body_sha256;    ///< of the body.h5 the vertices refer to
+  std::vector<SiteCurves> sites;
+  Provenance provenance;
+};
+
+void write_curves(const std::filesystem::path& path, const Curves& curves);  ///< see write_body
+Curves read_curves(const std::filesystem::path& path);                       ///< see read_body
+
+}  // namespace palpate

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// library.h5: surface + responses + certificate + provenance, all that a user ships.
+// Normative page: format/schema/library.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "format/provenance.hpp"
+#include "format/vec3.hpp"
+
+namespace palpate {
+
+inline constexpr int kLibrarySchema = 1;
+
+/// A response f(d), d >= 0, with f(0) = 0: the force is piecewise quadratic and C1, its slope
+/// piecewise linear and continuous. Between knots k and k+1, with h = d_{k+1} - d_k:
+///   f'(d) = s_k + (s_{k+1} - s_k)(d - d_k)/h,   f_{k+1} = f_k + h (s_k + s_{k+1})/2.
+/// Beyond the last knot the curve goes on with the last slope. All s_k >= 0 makes it monotone and
+/// non-negative, hence passive; max s_k is its largest slope, exactly; the antiderivative is a
+/// cubic and the inverse a square root on each piece. Stored in single precision: what is stored
+/// is what is certified and rendered.
+struct ResponseCurve {
+  std::vector<float> knot;   ///< (K >= 2) m, knot[0] = 0, strictly increasing
+  std::vector<float> slope;  ///< (K) N/m, >= 0
+};
+
+enum class ResponseStatus : std::uint8_t {
+  Fitted = 0,  ///< from the curves of this node
+  Filled = 1,  ///< from its neighbours, on request
+  Hole = 2     ///< no response: triangles at this vertex are a border for the runtime
+};
+
+struct NodeResponse {
+  ResponseStatus status = ResponseStatus::Hole;
+  ResponseCurve normal;   ///< f^z(delta^z); slope[0] = 0 so that the slope is continuous at touch
+  ResponseCurve lateral;  ///< f^r(delta^r)
+  double normal_error = 0;   ///< largest |fit - sample|, N
+  double lateral_error = 0;  ///< same, N
+};
+
+/// Bounds of one triangle, `runtime` theory page, "certificate".
+struct TriangleCertificate {
+  double stick = 0;             ///< L_stick, N/m: largest Jacobian norm with the contact point fixed
+  double slip = 0;              ///< L_slip, N/m: Lipschitz bound along the path while sliding
+  double kappa = 0;             ///< 1/m, bound on the turning rate of n
+  double cos_theta = 1;         ///< of the worst angle between n and the facet normal
+  bool sliding_passive = false; ///< the paper's slide needs no energy correction here
+};
+
+/// What a device profile yields on this library.
+struct DeviceCertificate {
+  std::string device;         ///< profile name
+  double damping = 0;         ///< sigma_0(B), N s/m
+  double lowest_rate = 0;     ///< Hz, 2 max(L_stick, L_slip)/sigma_0(B)
+  double linear_limit = 0;    ///< N/m at 1 kHz, 2 b/(3 T): exact linear limit with one sample of delay
+  double no_delay_limit = 0;  ///< N/m at 1 kHz, 2 b/T
+};
+
+struct Certificate {
+  double friction = 0;    ///< mu the bounds were computed for
+  double depth = 0;       ///< m, D: deepest depth the bounds hold for
+  double stick = 0;       ///< N/m, over all triangles
+  double slip = 0;        ///< N/m, over all triangles
+  std::int32_t worst_triangle = -1;
+  std::string limited_by;  ///< one line: what sets the bound in the worst triangle
+  std::int32_t holes = 0;
+  std::int32_t filled = 0;
+  std::vector<TriangleCertificate> triangles;  ///< (M)
+  std::vector<DeviceCertificate> devices;
+};
+
+struct Library {
+  std::string name;
+  std::string tool_shape;
+  double tool_radius = 0;            ///< m
+  std::vector<Vec3> positions;       ///< (V) m
+  std::vector<Vec3> inward;          ///< (V) unit
+  std::vector<Triangle> triangles;   ///< (M) only those whose vertices may all be touched or bound a hole
+  std::vector<NodeResponse> responses;  ///< (V)
+  Certificate certificate;           ///< triangles empty until certified
+  Provenance provenance;
+};
+
+void write_library(const std::filesystem::path& path, const Library& library);  ///< see write_body
+
+/// Read and check: indices, finite numbers, unit directions, knots increasing from 0, slopes
+/// non-negative and finite, equal lengths, schema. @throws Error.
+Library read_library(const std::filesystem::path& path);
+
+}  // namespace palpate

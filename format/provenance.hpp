@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace palpate {
+
+/// One input file of a stage.
+struct InputDigest {
+  std::string name;    ///< file name without its folder
+  std::string sha256;  ///< of its bytes, 64 hexadecimal digits
+};
+
+/// One stage of the pipeline, as it was run.
+struct ProvenanceStep {
+  std::string stage;          ///< "mesh", "precompute", "fit", "certify"
+  std::string version;        ///< of palpate
+  std::string git_revision;   ///< of the build; "-dirty" appended when the tree had changes
+  std::string utc;            ///< when the stage ended, ISO 8601, "2026-01-31T12:00:00Z"
+  std::string resolved_case;  ///< the case as understood, defaults filled in, TOML
+  std::vector<InputDigest> inputs;
+  std::vector<std::pair<std::string, std::string>> facts;  ///< library versions, BLAS kernel, ...
+};
+
+/// Every stage an artifact has been through, oldest first. An artifact carries the provenance of
+/// all the artifacts it was made from.
+struct Provenance {
+  std::vector<ProvenanceStep> steps;
+};
+
+}  // namespace palpate

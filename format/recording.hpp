@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// recording.h5: every step of a haptic session. Normative page: format/schema/recording.md.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "format/provenance.hpp"
+#include "format/vec3.hpp"
+
+namespace palpate {
+
+inline constexpr int kRecordingSchema = 1;
+
+struct RecordedStep {
+  std::int64_t time_ns = 0;  ///< since the start of the session
+  Vec3 position{};           ///< m, tool tip
+  Vec3 velocity{};           ///< m/s
+  Vec3 force{};              ///< N, commanded to the device
+  Vec3 contact_point{};      ///< m
+  double depth = 0;          ///< m, delta^z
+  double lateral = 0;        ///< m, delta^r
+  double offset = 0;         ///< m, d0
+  double energy = 0;         ///< J, stored in the active local model
+  double tank = 0;           ///< J
+  double absorbed = 0;       ///< J, net work of the tool on the virtual body since the start
+  std::int32_t element = -1;
+  std::uint32_t status = 0;      ///< bits of palpate.h
+  std::int64_t latency_ns = 0;   ///< compute time of the step
+};
+
+struct Recording {
+  std::string device;
+  std::string library_sha256;
+  double rate = 0;      ///< Hz
+  double friction = 0;
+  std::vector<RecordedStep> steps;
+  Provenance provenance;
+};
+
+void write_recording(const std::filesystem::path& path, const Recording& recording);
+Recording read_recording(const std::filesystem::path& path);
+
+}  // namespace palpate

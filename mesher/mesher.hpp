@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Surface file(s) -> body. CGAL and TetGen stay inside the .cpp files of this folder.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "format/body.hpp"
+
+namespace palpate::mesher {
+
+/// A closed triangulated surface on disk (OFF, OBJ, PLY, STL) and the length of its unit.
+struct SurfaceFile {
+  std::filesystem::path path;
+  double unit = 1.0;        ///< m per unit of the file
+  std::string region_name;  ///< material region of its interior
+};
+
+/// Nodes on the side of the plane to which `normal` points are held.
+struct PlaneSupport {
+  Vec3 point{};   ///< m
+  Vec3 normal{};  ///< unit
+};
+struct BoxSupport {
+  Vec3 low{}, high{};  ///< m
+};
+struct SphereSupport {
+  Vec3 centre{};
+  double radius = 0;  ///< m
+};
+using Support = std::variant<PlaneSupport, BoxSupport, SphereSupport>;
+
+struct Settings {
+  std::string name;
+  SurfaceFile surface;                  ///< the outer skin
+  std::vector<SurfaceFile> inclusions;  ///< closed surfaces strictly inside it, disjoint
+  std::vector<Support> supports;        ///< surface nodes inside any of them are fixed
+  double patch_spacing = 0.010;         ///< m, edge length of the response surface
+  double element_size = 0.005;          ///< m, edge length of the boundary facets
+  double interior_growth = 1.5;         ///< largest interior edge over element_size
+  double feature_angle = 45;            ///< degrees; sharper edges of the input are kept
+  double tool_radius = 0.005;           ///< m, for the check of depth
+  double depth = 0;                     ///< m, of the planned indentation; 0 skips the check
+  std::function<void(std::string_view)> log;  ///< one line a step, may be empty
+};
+
+/// Check, remesh and fill. The response surface has edges near patch_spacing; the boundary facets
+/// are its triangles subdivided to near element_size with the new vertices put back on the input
+/// surface, so that the two surfaces are nested.
+/// @throws Error(Geometry) for a surface that is missing, empty, not closed, not orientable,
+///   self-intersecting, in several parts, has non-finite coordinates, an implausible size for its
+///   unit (the largest dimension must lie in 1 mm .. 10 m), an inclusion outside the skin, supports
+///   that hold nothing or everything, or a body thinner than `depth` under a site.
+Body mesh(const Settings& settings);
+
+}  // namespace palpate::mesher
