@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+// One stored response made ready for the force loop: force, slope, energy at a deflection.
+#pragma once
+
+#include <vector>
+
+#include "format/library.hpp"
+
+namespace palpate::runtime {
+
+/// Value of a response at one deflection.
+struct CurveValue {
+  double force = 0;   ///< f(d), N
+  double slope = 0;   ///< f'(d), N/m
+  double energy = 0;  ///< integral of f from 0 to d, J
+};
+
+/// A ResponseCurve with its cumulative force and energy at every knot, in double precision.
+/// With x = d - d_k on piece k and c_k = (s_{k+1} - s_k) / (2 (d_{k+1} - d_k)):
+///   f' = s_k + 2 c_k x,   f = f_k + s_k x + c_k x^2,   E = E_k + f_k x + s_k x^2/2 + c_k x^3/3.
+/// For d <= 0 there is no contact: force, slope and energy are 0. (A lateral response is evaluated
+/// at rho >= 0 only, so that this is its odd continuation as well; its slope at 0 is asked with
+/// slope_at_rest.) Beyond the last knot c = 0: linear, with the last slope, hence never steeper
+/// than max_slope(). Immutable after construction; evaluation is noexcept, allocation-free, and
+/// takes O(log K). Any thread may evaluate.
+class CompiledCurve {
+ public:
+  /// One polynomial piece, starting at `start`; the last one has no end.
+  struct Piece {
+    double start = 0;      ///< d_k, m
+    double force = 0;      ///< f_k, N
+    double slope = 0;      ///< s_k, N/m
+    double curvature = 0;  ///< c_k, N/m^2
+    double energy = 0;     ///< E_k, J
+  };
+
+  CompiledCurve() = default;  ///< the zero response
+
+  /// @throws Error(Configuration) for fewer than two knots, knots that do not increase from 0,
+  /// slopes
+  ///   negative or not finite, unequal lengths.
+  explicit CompiledCurve(const ResponseCurve& curve);
+
+  CurveValue evaluate(double d) const noexcept;
+  double force(double d) const noexcept { return evaluate(d).force; }
+  double slope(double d) const noexcept { return evaluate(d).slope; }
+  double energy(double d) const noexcept { return evaluate(d).energy; }
+
+  double slope_at_rest() const noexcept { return pieces_.empty() ? 0.0 : pieces_.front().slope; }
+  /// Largest slope over all d, exactly: the slope is piecewise linear. N/m
+  double max_slope() const noexcept { return max_slope_; }
+  /// Deepest knot, m: beyond it the response is a continuation.
+  double last_knot() const noexcept { return pieces_.empty() ? 0.0 : pieces_.back().start; }
+  /// Every piece in ascending order, the linear continuation last. Empty for the zero response.
+  const std::vector<Piece>& pieces() const noexcept { return pieces_; }
+
+ private:
+  std::vector<Piece> pieces_;
+  double max_slope_ = 0;
+};
+
+}  // namespace palpate::runtime
