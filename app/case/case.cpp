@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/case/case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <utility>
+
+#include "app/case/nearest.hpp"
+#include "app/case/reader.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+[[noreturn]] void fail(std::string where, std::string problem, std::string remedy) {
+  throw Error(ErrorKind::Configuration, std::move(where), std::move(problem), std::move(remedy));
+}
+
+toml::table parse_toml(std::string_view text, const std::string& file_name) {
+  try {
+    return toml::parse(text, file_name);
+  } catch (const toml::parse_error& error) {
+    std::string problem(error.description());
+    std::replace(problem.begin(), problem.end(), '\n', ' ');
+    fail(fmt::format("{}:{}", file_name, error.source().begin.line),
+         fmt::format("this is not TOML: {}", problem),
+         "correct the line; the format is described at toml.io");
+  }
+}
+
+std::string prefix(std::string_view section, std::size_t index) {
+  return fmt::format("{}[{}].", section, index);
+}
+
+void check_name(const Case& c, const SourceMap& sources) {
+  const bool usable = std::all_of(c.name.begin(), c.name.end(), [](char letter) {
+    return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '-' || letter == '_';
+  });
+  if (usable) return;
+  fail(sources.where("name"), fmt::format("name = \"{}\" cannot name a folder", c.name),
+       "use letters, digits, '-' and '_' only");
+}
+
+/// Every region of the body, in the order of the case. @throws Error when one is named twice.
+std::vector<std::string_view> regions_of(const Case& c, const SourceMap& sources) {
+  std::vector<std::string_view> regions{c.surface.region};
+  for (std::size_t i = 0; i < c.inclusions.size(); ++i) {
+    const std::string& region = c.inclusions[i].region;
+    if (std::find(regions.begin(), regions.end(), region) != regions.end()) {
+      fail(sources.where(prefix("inclusion", i) + "region"),
+           fmt::format("region '{}' is named twice", region),
+           "give each surface a region of its own");
+    }
+    regions.push_back(region);
+  }
+  return regions;
+}
+
+void check_materials(const Case& c, const SourceMap& sources) {
+  const std::vector<std::string_view> regions = regions_of(c, sources);
+  std::set<std::string_view> described;
+  for (std::size_t i = 0; i < c.materials.size(); ++i) {
+    const std::string& region = c.materials[i].region;
+    const std::string where = sources.where(prefix("material", i) + "region");
+    if (std::find(regions.begin(), regions.end(), region) == regions.end()) {
+      fail(where, fmt::format("material for region '{}', which no surface has", region),
+           fmt::format("the nearest region is '{}'", nearest(region, regions)));
+    }
+    if (!described.insert(region).second) {
+      fail(where, fmt::format("second material for region '{}'", region), "remove one of the two");
+    }
+  }
+  for (const std::string_view region : regions) {
+    if (described.contains(region)) continue;
+    fail(sources.where("material"), fmt::format("region '{}' has no material", region),
+         fmt::format("add [[material]] with region = \"{}\"", region));
+  }
+}
+
+void check_depths(const Case& c, const SourceMap& sources) {
+  for (const double held : c.indentation.held_depths) {
+    if (held <= c.indentation.depth) continue;
+    fail(sources.where("indentation.held_depths"),
+         fmt::format("indentation.held_depths holds {}, deeper than indentation.depth = {}",
+                     print_quantity(held, Dimension::Length),
+                     print_quantity(c.indentation.depth, Dimension::Length)),
+         "keep every held depth within the depth");
+  }
+}
+
+void check_supports(const Case& c, const SourceMap& sources) {
+  for (std::size_t i = 0; i < c.supports.size(); ++i) {
+    const SupportSection& support = c.supports[i];
+    if (support.shape != "box") continue;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (support.low[axis] < support.high[axis]) continue;
+      fail(sources.where(prefix("support", i) + "low"),
+           fmt::format("box support has low.{0} not below high.{0}", "xyz"[axis]),
+           "give the corner with the smallest coordinates as low");
+    }
+  }
+}
+
+void check_sizes(const Case& c, const SourceMap& sources) {
+  if (c.mesh.element_size <= c.mesh.patch_spacing) return;
+  fail(sources.where("mesh.element_size"),
+       fmt::format("mesh.element_size = {} is larger than mesh.patch_spacing = {}",
+                   print_quantity(c.mesh.element_size, Dimension::Length),
+                   print_quantity(c.mesh.patch_spacing, Dimension::Length)),
+       "the facets refine the response triangles: choose it at most as large");
+}
+
+}  // namespace
+
+Case parse_case(std::string_view text, const std::string& file_name) {
+  const toml::table table = parse_toml(text, file_name);
+  SourceMap sources(file_name);
+  Case c;
+  TableReader reader(table, "the case", "", sources);
+  describe(reader, c);
+  reader.finish();
+  check_name(c, sources);
+  check_materials(c, sources);
+  check_depths(c, sources);
+  check_supports(c, sources);
+  check_sizes(c, sources);
+  return c;
+}
+
+Case read_case(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf())) {
+    fail(path.string(), "the case file cannot be read", "check the path and the rights");
+  }
+  return parse_case(text.str(), path.string());
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The one description of the keys of a case file. The reader, the printer and the reference page
+// are visitors of it, so that they cannot disagree.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/case/case.hpp"
+#include "app/case/quantity.hpp"
+
+namespace palpate::app {
+
+/// Values a constant may take. An open end is excluded.
+struct Range {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;
+  bool high_open = false;
+
+  constexpr bool holds(double value) const {
+    return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+  }
+};
+
+inline constexpr Range kAny{};
+inline constexpr Range kPositive{.low = 0, .low_open = true};
+inline constexpr Range kNotNegative{.low = 0};
+
+enum class Presence { Optional, Required };
+
+struct Key {
+  std::string_view name;
+  std::string_view about;
+  Presence presence = Presence::Optional;
+  Range range = kAny;
+};
+
+using Choices = std::vector<std::string_view>;
+
+constexpr auto kRequired = Presence::Required;
+constexpr auto kOptional = Presence::Optional;
+
+template <class V>
+void describe(V& v, SurfaceSection& s) {
+  v.text(s.file,
+         {"file", "closed triangulated surface: OFF, OBJ, PLY or STL; relative to the case file",
+          kRequired});
+  v.text(s.unit, {"unit", "length unit of the coordinates in the file", kRequired},
+         {"mm", "cm", "um", "m"});
+  v.text(s.region, {"region", "name of the material region inside"});
+}
+
+template <class V>
+void describe(V& v, InclusionSection& s) {
+  v.text(s.file, {"file", "closed surface strictly inside the outer one", kRequired});
+  v.text(s.unit, {"unit", "length unit of the coordinates in the file", kRequired},
+         {"mm", "cm", "um", "m"});
+  v.text(s.region, {"region", "name of the material region inside", kRequired});
+}
+
+template <class V>
+void describe(V& v, MeshSection& s) {
+  v.quantity(s.patch_spacing, Dimension::Length,
+             {"patch_spacing", "edge length of the response surface", kOptional, kPositive});
+  v.quantity(s.element_size, Dimension::Length,
+             {"element_size", "edge length of the boundary facets", kOptional, kPositive});
+  v.number(s.interior_growth,
+           {"interior_growth", "largest interior edge over element_size", kOptional, {.low = 1}});
+  v.quantity(s.feature_angle, Dimension::Angle,
+             {"feature_angle",
+              "sharper edges of the surface are kept",
+              kOptional,
+              {.low = 0, .high = 3.141592653589793, .low_open = true}});
+}
+
+template <class V>
+void describe(V& v, SupportSection& s) {
+  v.text(s.shape, {"shape", "surface nodes inside this shape are held", kRequired},
+         {"plane", "box", "sphere"});
+  if (v.when("shape", s.shape, "plane")) {
+    v.point(s.point, Dimension::Length, {"point", "a point of the plane", kRequired});
+    v.direction(s.normal,
+                {"normal", "towards the held side; need not be of unit length", kRequired});
+  }
+  if (v.when("shape", s.shape, "box")) {
+    v.point(s.low, Dimension::Length, {"low", "corner with the smallest coordinates", kRequired});
+    v.point(s.high, Dimension::Length, {"high", "corner with the largest coordinates", kRequired});
+  }
+  if (v.when("shape", s.shape, "sphere")) {
+    v.point(s.centre, Dimension::Length, {"centre", "centre of the sphere", kRequired});
+    v.quantity(s.radius, Dimension::Length,
+               {"radius", "radius of the sphere", kRequired, kPositive});
+  }
+}
+
+template <class V>
+void describe(V& v, MaterialSection& s) {
+  v.text(s.region, {"region", "region of the surface or of an inclusion", kRequired});
+  v.text(s.law, {"law", "hyperelastic law"}, {"neo-hookean"});
+  v.quantity(s.young, Dimension::Pressure,
+             {"young", "Young's modulus at small strain", kRequired, kPositive});
+  v.number(s.poisson, {"poisson",
+                       "Poisson's ratio at small strain",
+                       kRequired,
+                       {.low = 0, .high = 0.5, .high_open = true}});
+}
+
+template <class V>
+void describe(V& v, ToolSection& s) {
+  v.text(s.shape, {"shape", "shape of the rigid tool"}, {"sphere"});
+  v.quantity(s.radius, Dimension::Length, {"radius", "radius of the tool", kOptional, kPositive});
+}
+
+template <class V>
+void describe(V& v, IndentationSection& s) {
+  v.quantity(s.depth, Dimension::Length, {"depth", "end of the normal path", kOptional, kPositive});
+  v.integer(s.increments,
+            {"increments", "steps of the normal path", kOptional, {.low = 2, .high = 1000}});
+  v.quantity(s.lateral_travel, Dimension::Length,
+             {"lateral_travel", "end of each lateral path", kOptional, kPositive});
+  v.integer(
+      s.lateral_increments,
+      {"lateral_increments", "steps of each lateral path", kOptional, {.low = 2, .high = 1000}});
+  v.quantities(s.held_depths, Dimension::Length,
+               {"held_depths", "depths where lateral paths start; each at most `depth`", kOptional,
+                kPositive});
+  v.quantities(
+      s.azimuths, Dimension::Angle,
+      {"azimuths", "directions of the lateral paths in the tangent plane", kOptional, kAny});
+  v.number(s.force_tolerance, {"force_tolerance",
+                               "relative error of the tool force allowed to the solver",
+                               kOptional,
+                               {.low = 0, .high = 0.1, .low_open = true}});
+}
+
+template <class V>
+void describe(V& v, FitSection& s) {
+  v.number(s.relative_tolerance, {"relative_tolerance",
+                                  "allowed error of a response over the local force",
+                                  kOptional,
+                                  {.low = 0, .high = 1}});
+  v.quantity(s.absolute_tolerance, Dimension::Force,
+             {"absolute_tolerance", "allowed error of a response; the larger of the two applies",
+              kOptional, kPositive});
+  v.integer(
+      s.max_knots,
+      {"max_knots", "largest number of knots of a response", kOptional, {.low = 2, .high = 1000}});
+  v.flag(
+      s.fill_holes,
+      {"fill_holes", "give failed sites the mean response of their neighbours, marked as filled"});
+}
+
+template <class V>
+void describe(V& v, CertifySection& s) {
+  v.number(s.friction,
+           {"friction", "friction coefficient mu between tool and body", kOptional, kNotNegative});
+  v.texts(s.devices, {"devices", "profiles of `data/devices` to certify for"});
+}
+
+template <class V>
+void describe(V& v, SimulateSection& s) {
+  v.quantity(s.rate, Dimension::Frequency,
+             {"rate", "of the force loop", kOptional, {.low = 100, .high = 100000}});
+  v.quantity(s.mass, Dimension::Mass, {"mass", "of the simulated device", kOptional, kPositive});
+  v.quantity(s.damping, Dimension::Damping,
+             {"damping", "viscous damping of the simulated device", kOptional, kNotNegative});
+  v.quantity(s.coulomb_friction, Dimension::Force,
+             {"coulomb_friction", "dry friction of the simulated device", kOptional, kNotNegative});
+  v.quantity(
+      s.hand_stiffness, Dimension::Stiffness,
+      {"hand_stiffness", "spring between the hand's path and the device", kOptional, kPositive});
+  v.quantity(s.hand_damping, Dimension::Damping,
+             {"hand_damping", "damper beside that spring", kOptional, kNotNegative});
+  v.quantity(s.press_depth, Dimension::Length,
+             {"press_depth", "depth of the hand's path below the surface", kOptional, kPositive});
+  v.quantity(s.press_speed, Dimension::Speed,
+             {"press_speed", "of the approach, the press and the release", kOptional, kPositive});
+  v.quantity(
+      s.slide_length, Dimension::Length,
+      {"slide_length", "along the surface; shorter where the surface ends", kOptional, kPositive});
+  v.quantity(s.slide_speed, Dimension::Speed,
+             {"slide_speed", "along the surface", kOptional, kPositive});
+}
+
+template <class V>
+void describe(V& v, OutputSection& s) {
+  v.text(
+      s.folder,
+      {"folder", "where artifacts go, relative to the current folder; empty means `out/<name>`"});
+}
+
+template <class V>
+void describe(V& v, Case& c) {
+  v.text(c.name, {"name", "of the body; names the output", kRequired});
+  v.section("surface", c.surface, kRequired, "The outer skin of the body.");
+  v.sections("inclusion", c.inclusions, kOptional,
+             "A region of another material inside the body. Repeat for each.");
+  v.section("mesh", c.mesh, kOptional, "Resolution.");
+  v.sections("support", c.supports, kRequired, "Where the body is held. Repeat for each.");
+  v.sections("material", c.materials, kRequired, "One for each region.");
+  v.section("tool", c.tool, kOptional, "What presses.");
+  v.section("indentation", c.indentation, kOptional, "What is computed at each site.");
+  v.section("fit", c.fit, kOptional, "From curves to responses.");
+  v.section("certify", c.certify, kOptional, "Passivity certificate.");
+  v.section("simulate", c.simulate, kOptional, "Scripted session of `palpate simulate`.");
+  v.section("output", c.output, kOptional, "Where results go.");
+}
+
+}  // namespace palpate::app

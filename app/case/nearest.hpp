@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate::app {
+
+/// Number of insertions, deletions and substitutions from one word to the other [Levenshtein 1966].
+std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// The word of `known` with the smallest edit distance; the first of equals; "" when none is known.
+std::string_view nearest(std::string_view word, const std::vector<std::string_view>& known);
+
+}  // namespace palpate::app

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The resolved case: every key with the value in force, as TOML.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/case/describe.hpp"
+
+namespace palpate::app {
+namespace {
+
+/// A TOML basic string.
+std::string toml_string(std::string_view text) {
+  constexpr std::string_view digits = "0123456789ABCDEF";
+  std::string out = "\"";
+  for (const char letter : text) {
+    const auto code = static_cast<unsigned char>(letter);
+    if (letter == '"' || letter == '\\') {
+      out += '\\';
+      out += letter;
+    } else if (code < 0x20 || code == 0x7f) {
+      out += "\\u00";
+      out += digits[code >> 4U];
+      out += digits[code & 0xfU];
+    } else {
+      out += letter;
+    }
+  }
+  out += '"';
+  return out;
+}
+
+template <class T, class Print>
+std::string list(const T& items, Print print) {
+  std::string out;
+  for (const auto& item : items) out += fmt::format("{}{}", out.empty() ? "" : ", ", print(item));
+  return fmt::format("[{}]", out);
+}
+
+class Printer {
+ public:
+  /// Print only these sections; null for all.
+  explicit Printer(const std::vector<std::string_view>* wanted)
+      : wanted_(wanted), printing_(is_wanted("")) {}
+
+  void text(const std::string& value, const Key& key, const Choices& = {}) {
+    line(key, toml_string(value));
+  }
+  void texts(const std::vector<std::string>& values, const Key& key) {
+    line(key, list(values, toml_string));
+  }
+  void flag(bool value, const Key& key) { line(key, value ? "true" : "false"); }
+  void integer(int value, const Key& key) { line(key, std::to_string(value)); }
+  void number(double value, const Key& key) { line(key, print_number(value)); }
+  void quantity(double value, Dimension dimension, const Key& key) {
+    line(key, toml_string(print_quantity(value, dimension)));
+  }
+  template <class T>
+  void quantities(const T& values, Dimension dimension, const Key& key) {
+    line(key,
+         list(values, [dimension](double v) { return toml_string(print_quantity(v, dimension)); }));
+  }
+  void point(const Vec3& value, Dimension dimension, const Key& key) {
+    quantities(value, dimension, key);
+  }
+  void direction(const Vec3& value, const Key& key) { line(key, list(value, print_number)); }
+
+  bool when(std::string_view, const std::string& value, std::string_view wanted) {
+    return value == wanted;
+  }
+
+  template <class S>
+  void section(std::string_view name, S& s, Presence, std::string_view) {
+    if (!is_wanted(name)) return;
+    printing_ = true;
+    out_ += fmt::format("\n[{}]\n", name);
+    describe(*this, s);
+  }
+
+  template <class S>
+  void sections(std::string_view name, std::vector<S>& items, Presence, std::string_view) {
+    if (!is_wanted(name)) return;
+    printing_ = true;
+    for (S& s : items) {
+      out_ += fmt::format("\n[[{}]]\n", name);
+      describe(*this, s);
+    }
+  }
+
+  const std::string& result() const { return out_; }
+
+ private:
+  bool is_wanted(std::string_view section) const {
+    return wanted_ == nullptr ||
+           std::find(wanted_->begin(), wanted_->end(), section) != wanted_->end();
+  }
+  void line(const Key& key, const std::string& value) {
+    if (printing_) out_ += fmt::format("{} = {}\n", key.name, value);
+  }
+
+  const std::vector<std::string_view>* wanted_;
+  bool printing_;
+  std::string out_;
+};
+
+std::string print(const Case& c, const std::vector<std::string_view>* wanted) {
+  Printer printer(wanted);
+  Case copy = c;  // describe() is shared with the reader and takes what it may write
+  describe(printer, copy);
+  return printer.result();
+}
+
+}  // namespace
+
+std::string resolved_toml(const Case& c) {
+  return print(c, nullptr);
+}
+
+std::string resolved_sections(const Case& c, const std::vector<std::string_view>& sections) {
+  return print(c, &sections);
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "app/case/describe.hpp"
+
+namespace palpate::app {
+
+/// "> 0 mm", "0 .. 0.5 (0.5 excluded)", "any": for messages and for the reference page.
+std::string range_text(const Range& range, std::optional<Dimension> dimension = std::nullopt);
+
+}  // namespace palpate::app

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/case/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <utility>
+
+#include "app/case/nearest.hpp"
+#include "app/case/range_text.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+/// The value as the user wrote it, on one line and not too long.
+std::string shown(const toml::node& node) {
+  std::ostringstream stream;
+  stream << toml::node_view<const toml::node>(node);
+  std::string text = stream.str();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return text;
+}
+
+std::string example_of(const Key& key, Dimension dimension) {
+  constexpr double typical = 10;
+  return fmt::format("{} = \"{}\"", key.name,
+                     print_quantity(typical * units_of(dimension).front().si, dimension));
+}
+
+[[noreturn]] void fail(std::string where, std::string problem, std::string remedy) {
+  throw Error(ErrorKind::Configuration, std::move(where), std::move(problem), std::move(remedy));
+}
+
+}  // namespace
+
+std::string SourceMap::where(const std::string& key) const {
+  const auto found = lines_.find(key);
+  return found == lines_.end() ? file_ : fmt::format("{}:{}", file_, found->second);
+}
+
+std::string SourceMap::where(const toml::node& node) const {
+  return fmt::format("{}:{}", file_, std::max<std::uint32_t>(1, node.source().begin.line));
+}
+
+TableReader::TableReader(const toml::table& table, std::string title, std::string prefix,
+                         SourceMap& sources)
+    : table_(table), title_(std::move(title)), prefix_(std::move(prefix)), sources_(sources) {}
+
+const toml::node* TableReader::find(const Key& key) {
+  known_.push_back(key.name);
+  const toml::node* node = table_.get(key.name);
+  if (node == nullptr) {
+    if (key.presence == kRequired) {
+      fail(sources_.where(table_), fmt::format("key '{}' is missing", dotted(key)),
+           fmt::format("add it ({})", key.about));
+    }
+    return nullptr;
+  }
+  sources_.remember(dotted(key), *node);
+  return node;
+}
+
+void TableReader::finish() const {
+  for (const auto& [name, node] : table_) {
+    if (std::find(known_.begin(), known_.end(), name.str()) != known_.end()) continue;
+    fail(sources_.where(node), fmt::format("unknown key '{}' in {}", name.str(), title_),
+         fmt::format("the nearest known key is '{}'", nearest(name.str(), known_)));
+  }
+}
+
+const toml::table& TableReader::as_table(const toml::node& node, const std::string& title) const {
+  if (const toml::table* table = node.as_table()) return *table;
+  fail(sources_.where(node), fmt::format("{} must be a table, found {}", title, shown(node)),
+       fmt::format("write {} on a line of its own, its keys below", title));
+}
+
+const toml::array& TableReader::as_array(const toml::node& node, const std::string& title) const {
+  if (const toml::array* array = node.as_array()) return *array;
+  fail(sources_.where(node), fmt::format("{} is a list of tables, found one value", title),
+       fmt::format("write {} with two brackets", title));
+}
+
+void TableReader::wrong_type(const toml::node& node, const Key& key, std::string_view wanted,
+                             const std::string& example) const {
+  fail(sources_.where(node),
+       fmt::format("key '{}' needs {}, found {}", dotted(key), wanted, shown(node)),
+       fmt::format("write for example {}", example));
+}
+
+void TableReader::check_range(double value, const std::string& value_text, const Key& key,
+                              const toml::node& node, const std::string& range) const {
+  if (std::isfinite(value) && key.range.holds(value)) return;
+  fail(sources_.where(node), fmt::format("{} = {} is out of range", dotted(key), value_text),
+       fmt::format("the range is {}", range));
+}
+
+void TableReader::text(std::string& value, const Key& key, const Choices& choices) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  const std::string example =
+      fmt::format("{} = \"{}\"", key.name, choices.empty() ? "..." : choices.front());
+  const auto found = node->value_exact<std::string>();
+  if (!found) wrong_type(*node, key, "a text", example);
+  value = *found;
+  if (value.empty() && key.presence == kRequired) {
+    wrong_type(*node, key, "a text that is not empty", example);
+  }
+  if (choices.empty() || std::find(choices.begin(), choices.end(), value) != choices.end()) return;
+  std::string list;
+  for (const std::string_view choice : choices) {
+    list += fmt::format("{}{}", list.empty() ? "" : ", ", choice);
+  }
+  fail(sources_.where(*node),
+       fmt::format("key '{}' is '{}', which is not one of {}", dotted(key), value, list),
+       fmt::format("the nearest is '{}'", nearest(value, choices)));
+}
+
+void TableReader::texts(std::vector<std::string>& values, const Key& key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  const std::string example = fmt::format("{} = [\"...\"]", key.name);
+  if (!node->is_array()) wrong_type(*node, key, "a list of texts", example);
+  values.clear();
+  for (const toml::node& item : *node->as_array()) {
+    const auto found = item.value_exact<std::string>();
+    if (!found) wrong_type(item, key, "a list of texts", example);
+    values.push_back(*found);
+  }
+}
+
+void TableReader::flag(bool& value, const Key& key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  const auto found = node->value_exact<bool>();
+  if (!found) wrong_type(*node, key, "true or false", fmt::format("{} = true", key.name));
+  value = *found;
+}
+
+void TableReader::integer(int& value, const Key& key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  const auto found = node->value_exact<std::int64_t>();
+  if (!found) wrong_type(*node, key, "a whole number", fmt::format("{} = 10", key.name));
+  check_range(static_cast<double>(*found), std::to_string(*found), key, *node,
+              range_text(key.range));
+  value = static_cast<int>(*found);
+}
+
+double TableReader::number_of(const toml::node& node, const Key& key) const {
+  const auto found = node.value<double>();
+  if (!node.is_number() || !found) {
+    wrong_type(node, key, "a bare number", fmt::format("{} = 0.5", key.name));
+  }
+  check_range(*found, shown(node), key, node, range_text(key.range));
+  return *found;
+}
+
+void TableReader::number(double& value, const Key& key) {
+  if (const toml::node* node = find(key)) value = number_of(*node, key);
+}
+
+double TableReader::quantity_of(const toml::node& node, Dimension dimension, const Key& key) const {
+  const std::string_view kind = dimension_name(dimension);
+  const std::string example =
+      fmt::format("{} (units: {})", example_of(key, dimension), unit_list(dimension));
+  const auto text = node.value_exact<std::string>();
+  if (!text) wrong_type(node, key, fmt::format("a {} with its unit", kind), example);
+  const ParsedQuantity parsed = parse_quantity(*text, dimension);
+  switch (parsed.fault) {
+    case QuantityFault::NoNumber:
+    case QuantityFault::NoUnit:
+      wrong_type(node, key, fmt::format("a {} with its unit", kind), example);
+    case QuantityFault::WrongUnit:
+      wrong_type(node, key, fmt::format("a {} in one of its units", kind), example);
+    case QuantityFault::None:
+      break;
+  }
+  check_range(parsed.value, *text, key, node, range_text(key.range, dimension));
+  return parsed.value;
+}
+
+void TableReader::quantity(double& value, Dimension dimension, const Key& key) {
+  if (const toml::node* node = find(key)) value = quantity_of(*node, dimension, key);
+}
+
+void TableReader::quantities(std::vector<double>& values, Dimension dimension, const Key& key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  const toml::array* array = node->as_array();
+  if (array == nullptr || array->empty()) {
+    const std::string item = print_quantity(10 * units_of(dimension).front().si, dimension);
+    wrong_type(*node, key, fmt::format("a list with at least one {}", dimension_name(dimension)),
+               fmt::format("{} = [\"{}\"]", key.name, item));
+  }
+  values.clear();
+  for (const toml::node& item : *array) values.push_back(quantity_of(item, dimension, key));
+}
+
+const toml::array& TableReader::three(const toml::node& node, const Key& key,
+                                      std::string_view example) const {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->size() != 3) {
+    wrong_type(node, key, "a list of three", fmt::format("{} = {}", key.name, example));
+  }
+  return *array;
+}
+
+void TableReader::point(Vec3& value, Dimension dimension, const Key& key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  const toml::array& array = three(*node, key, R"(["0 mm", "0 mm", "10 mm"])");
+  for (std::size_t i = 0; i < 3; ++i) value[i] = quantity_of(array[i], dimension, key);
+}
+
+void TableReader::direction(Vec3& value, const Key& key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  const toml::array& array = three(*node, key, "[0, 0, 1]");
+  for (std::size_t i = 0; i < 3; ++i) value[i] = number_of(array[i], key);
+  if (!(norm(value) > 0)) wrong_type(*node, key, "a direction that is not zero", "[0, 0, 1]");
+}
+
+}  // namespace palpate::app

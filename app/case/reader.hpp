@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The visitor that fills a case from TOML. Internal to this folder.
+#pragma once
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "app/case/describe.hpp"
+
+namespace palpate::app {
+
+/// Where each key was found, so that later checks can point at a line.
+class SourceMap {
+ public:
+  explicit SourceMap(std::string file) : file_(std::move(file)) {}
+
+  void remember(const std::string& key, const toml::node& node) {
+    lines_[key] = node.source().begin.line;
+  }
+  /// "file:line" of a dotted key, or of the file when the key was not written.
+  std::string where(const std::string& key) const;
+  std::string where(const toml::node& node) const;
+
+ private:
+  std::string file_;
+  std::map<std::string, std::uint32_t> lines_;
+};
+
+/// Reads one table; finish() rejects what was not asked for.
+class TableReader {
+ public:
+  /// title: how the user knows the table ("[mesh]"); prefix: of dotted keys ("mesh.").
+  TableReader(const toml::table& table, std::string title, std::string prefix, SourceMap& sources);
+
+  void text(std::string& value, const Key& key, const Choices& choices = {});
+  void texts(std::vector<std::string>& values, const Key& key);
+  void flag(bool& value, const Key& key);
+  void integer(int& value, const Key& key);
+  void number(double& value, const Key& key);
+  void quantity(double& value, Dimension dimension, const Key& key);
+  void quantities(std::vector<double>& values, Dimension dimension, const Key& key);
+  void point(Vec3& value, Dimension dimension, const Key& key);
+  void direction(Vec3& value, const Key& key);
+
+  bool when(std::string_view, const std::string& value, std::string_view wanted) {
+    return value == wanted;
+  }
+
+  template <class S>
+  void section(std::string_view name, S& s, Presence presence, std::string_view about) {
+    const toml::node* node = find({name, about, presence});
+    if (node == nullptr) return;
+    const std::string title = fmt::format("[{}]", name);
+    read(as_table(*node, title), title, fmt::format("{}.", name), s);
+  }
+
+  template <class S>
+  void sections(std::string_view name, std::vector<S>& list, Presence presence,
+                std::string_view about) {
+    const toml::node* node = find({name, about, presence});
+    if (node == nullptr) return;
+    const std::string title = fmt::format("[[{}]]", name);
+    for (const toml::node& item : as_array(*node, title)) {
+      const std::string prefix = fmt::format("{}[{}].", name, list.size());
+      sources_.remember(prefix, item);
+      read(as_table(item, title), title, prefix, list.emplace_back());
+    }
+  }
+
+  void finish() const;
+
+ private:
+  template <class S>
+  void read(const toml::table& table, const std::string& title, const std::string& prefix, S& s) {
+    TableReader inner(table, title, prefix, sources_);
+    describe(inner, s);
+    inner.finish();
+  }
+
+  const toml::node* find(const Key& key);
+  const toml::table& as_table(const toml::node& node, const std::string& title) const;
+  const toml::array& as_array(const toml::node& node, const std::string& title) const;
+  const toml::array& three(const toml::node& node, const Key& key, std::string_view example) const;
+  double quantity_of(const toml::node& node, Dimension dimension, const Key& key) const;
+  double number_of(const toml::node& node, const Key& key) const;
+  void check_range(double value, const std::string& shown, const Key& key, const toml::node& node,
+                   const std::string& range) const;
+  [[noreturn]] void wrong_type(const toml::node& node, const Key& key, std::string_view wanted,
+                               const std::string& example) const;
+  std::string dotted(const Key& key) const { return fmt::format("{}{}", prefix_, key.name); }
+
+  const toml::table& table_;
+  std::string title_;
+  std::string prefix_;
+  SourceMap& sources_;
+  std::vector<std::string_view> known_;
+};
+
+}  // namespace palpate::app

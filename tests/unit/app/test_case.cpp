@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "app/case/case.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kGood = R"(name = "ball"
+
+[surface]
+file = "ball.off"
+unit = "mm"
+region = "gel"
+
+[[inclusion]]
+file = "nodule.off"
+unit = "cm"
+region = "nodule"
+
+[mesh]
+patch_spacing = "8 mm"
+element_size = "4 mm"
+
+[[support]]
+shape = "plane"
+point = ["0 mm", "0 mm", "-15 mm"]
+normal = [0, 0, -1]
+
+[[support]]
+shape = "sphere"
+centre = ["1 mm", "2 cm", "0 m"]
+radius = "5 mm"
+
+[[support]]
+shape = "box"
+low = ["-1 mm", "-1 mm", "-1 mm"]
+high = ["1 mm", "1 mm", "1 mm"]
+
+[[material]]
+region = "gel"
+young = "10 kPa"
+poisson = 0.49
+
+[[material]]
+region = "nodule"
+young = "0.1 MPa"
+poisson = 0.45
+
+[indentation]
+depth = "4 mm"
+held_depths = ["1 mm", "3.3 mm"]
+azimuths = ["0 deg", "33.3 deg"]
+)";
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+/// The message of the error that reading `text` must raise.
+std::string message_of(const std::string& text) {
+  try {
+    parse_case(text, "ball.toml");
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Configuration);
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return error.what();
+  }
+  ADD_FAILURE() << "accepted:\n" << text;
+  return {};
+}
+
+std::string message_with(const std::string& from, const std::string& to) {
+  return message_of(replaced(kGood, from, to));
+}
+
+TEST(Case, ReadsQuantitiesInSiAndFillsDefaults) {
+  const Case c = parse_case(kGood, "ball.toml");
+  EXPECT_EQ(c.name, "ball");
+  EXPECT_EQ(c.surface.unit, "mm");
+  ASSERT_EQ(c.inclusions.size(), 1U);
+  EXPECT_DOUBLE_EQ(c.mesh.patch_spacing, 0.008);
+  ASSERT_EQ(c.supports.size(), 3U);
+  EXPECT_DOUBLE_EQ(c.supports[0].point[2], -0.015);
+  EXPECT_DOUBLE_EQ(c.supports[1].centre[1], 0.02);
+  EXPECT_DOUBLE_EQ(c.materials[1].young, 1e5);
+  EXPECT_DOUBLE_EQ(c.indentation.held_depths[1], 0.0033);
+  EXPECT_EQ(c.indentation.increments, IndentationSection{}.increments);
+  EXPECT_EQ(c.fit, FitSection{});
+}
+
+TEST(Case, ResolvedCaseReadsBackEqual) {
+  const Case c = parse_case(kGood, "ball.toml");
+  const std::string resolved = resolved_toml(c);
+  EXPECT_EQ(parse_case(resolved, "resolved"), c) << resolved;
+  EXPECT_THAT(resolved, HasSubstr("max_knots = 12"));  // a default, spelled out
+}
+
+TEST(Case, ResolvedCaseKeepsOddNumbersAndTexts) {
+  Case c = parse_case(kGood, "ball.toml");
+  c.surface.file = "a \"quoted\"\\ name\twith\x01.off";
+  c.mesh.patch_spacing = 0.1 / 3;
+  c.materials[0].poisson = 1.0 / 3;
+  c.indentation.azimuths = {1.0 / 7, -2.0};
+  c.supports[0].normal = {1.0 / 3, 0, -1e-20};
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c) << resolved_toml(c);
+}
+
+TEST(Case, SectionsOfAStageAreIndependentOfTheOthers) {
+  const Case c = parse_case(kGood, "ball.toml");
+  Case other = c;
+  other.fit.max_knots = 20;
+  EXPECT_EQ(resolved_sections(c, {"mesh", "support"}),
+            resolved_sections(other, {"mesh", "support"}));
+  EXPECT_NE(resolved_sections(c, {"fit"}), resolved_sections(other, {"fit"}));
+  EXPECT_THAT(resolved_sections(c, {"fit"}), Not(HasSubstr("ball")));
+  EXPECT_THAT(resolved_sections(c, {""}), HasSubstr("ball"));
+}
+
+TEST(Case, RejectsBareNumberForADimensionalKey) {
+  const std::string message = message_with("\"8 mm\"", "8");
+  EXPECT_THAT(message, HasSubstr("ball.toml:14: "));
+  EXPECT_THAT(message, HasSubstr("mesh.patch_spacing"));
+  EXPECT_THAT(message, HasSubstr("found 8"));
+  EXPECT_THAT(message, HasSubstr("patch_spacing = \"10 mm\""));
+}
+
+TEST(Case, RejectsWrongOrMissingUnit) {
+  EXPECT_THAT(message_with("\"8 mm\"", "\"8 kPa\""), HasSubstr("found '8 kPa'"));
+  EXPECT_THAT(message_with("\"8 mm\"", "'8'"), HasSubstr("mesh.patch_spacing"));
+  EXPECT_THAT(message_with("\"10 kPa\"", "\"10 mm\""), HasSubstr("units: kPa, MPa, Pa"));
+  EXPECT_THAT(message_with("\"-15 mm\"", "\"-15\""), HasSubstr("support[0].point"));
+  EXPECT_THAT(message_with("\"33.3 deg\"", "33.3"), HasSubstr("indentation.azimuths"));
+}
+
+TEST(Case, RejectsUnitWhereANumberIsBare) {
+  EXPECT_THAT(message_with("poisson = 0.49", "poisson = \"0.49\""),
+              HasSubstr("material[0].poisson"));
+}
+
+TEST(Case, NamesTheNearestKnownKey) {
+  const std::string message =
+      message_with("young = \"10 kPa\"", "yuong = \"10 kPa\"\nyoung = \"1 Pa\"");
+  EXPECT_THAT(message, HasSubstr("unknown key 'yuong' in [[material]]"));
+  EXPECT_THAT(message, HasSubstr("'young'"));
+  EXPECT_THAT(message, HasSubstr("ball.toml:34: "));
+  EXPECT_THAT(message_with("[mesh]", "[mehs]"), HasSubstr("nearest known key is 'mesh'"));
+}
+
+TEST(Case, RejectsAKeyOfAnotherShape) {
+  EXPECT_THAT(message_with("normal = [0, 0, -1]", "normal = [0, 0, -1]\nradius = \"5 mm\""),
+              HasSubstr("unknown key 'radius'"));
+}
+
+TEST(Case, RejectsConstantsThatAreNoNumbers) {
+  const std::string message = message_with("poisson = 0.49", "poisson = nan");
+  EXPECT_THAT(message, HasSubstr("material[0].poisson = nan is out of range"));
+  EXPECT_THAT(message, HasSubstr("0 .. 0.5, upper end excluded"));
+  EXPECT_THAT(message_with("poisson = 0.49", "poisson = inf"), HasSubstr("= inf is out of range"));
+  EXPECT_THAT(message_with("\"10 kPa\"", "\"nan kPa\""), HasSubstr("material[0].young = nan kPa"));
+  EXPECT_THAT(message_with("\"10 kPa\"", "\"inf kPa\""), HasSubstr("> 0 kPa"));
+  EXPECT_THAT(message_with("\"33.3 deg\"", "\"nan deg\""), HasSubstr("out of range"));
+  EXPECT_THAT(message_with("[0, 0, -1]", "[0, 0, nan]"), HasSubstr("support[0].normal"));
+}
+
+TEST(Case, RejectsConstantsOutOfRange) {
+  EXPECT_THAT(message_with("\"10 kPa\"", "\"-10 kPa\""), HasSubstr("material[0].young = -10 kPa"));
+  EXPECT_THAT(message_with("poisson = 0.49", "poisson = 0.5"), HasSubstr("out of range"));
+  EXPECT_THAT(message_with("poisson = 0.49", "poisson = -0.1"), HasSubstr("out of range"));
+  EXPECT_THAT(message_with("\"4 mm\"\n\n[[support]]", "\"0 mm\"\n\n[[support]]"),
+              HasSubstr("mesh.element_size = 0 mm"));
+  EXPECT_THAT(message_with("[0, 0, -1]", "[0, 0, 0]"), HasSubstr("not zero"));
+}
+
+TEST(Case, ChecksThatPartsFitTogether) {
+  EXPECT_THAT(message_with("\"3.3 mm\"", "\"4.1 mm\""), HasSubstr("4.1 mm, deeper than"));
+  EXPECT_THAT(message_with("region = \"nodule\"\nyoung", "region = \"noduel\"\nyoung"),
+              HasSubstr("the nearest region is 'nodule'"));
+  EXPECT_THAT(message_with("region = \"nodule\"\nyoung", "region = \"gel\"\nyoung"),
+              HasSubstr("second material for region 'gel'"));
+  EXPECT_THAT(message_with("region = \"nodule\"\n\n", "region = \"gel\"\n\n"),
+              HasSubstr("named twice"));
+  EXPECT_THAT(message_with("\"1 mm\", \"1 mm\", \"1 mm\"]", "\"1 mm\", \"-2 mm\", \"1 mm\"]"),
+              HasSubstr("low.y not below high.y"));
+  EXPECT_THAT(message_with("element_size = \"4 mm\"", "element_size = \"9 mm\""),
+              HasSubstr("larger than mesh.patch_spacing"));
+  EXPECT_THAT(message_with("name = \"ball\"", "name = \"../ball\""), HasSubstr("cannot name"));
+}
+
+TEST(Case, RejectsWhatIsMissing) {
+  EXPECT_THAT(message_with("unit = \"mm\"\n", ""), HasSubstr("key 'surface.unit' is missing"));
+  EXPECT_THAT(message_with("poisson = 0.49\n", ""), HasSubstr("material[0].poisson"));
+  EXPECT_THAT(message_of("name = \"x\"\n"), HasSubstr("key 'surface' is missing"));
+}
+
+TEST(Case, ReportsTheLineOfBadToml) {
+  EXPECT_THAT(message_with("[mesh]", "[mesh"), HasSubstr("ball.toml:13: this is not TOML"));
+  EXPECT_THAT(message_with("unit = \"cm\"", "unit = \"foot\""), HasSubstr("not one of mm, cm"));
+}
+
+TEST(Case, UnreadableFileIsAnError) {
+  try {
+    read_case("/nonexistent/case.toml");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Configuration);
+    EXPECT_EQ(error.where(), "/nonexistent/case.toml");
+  }
+}
+
+TEST(Case, ShippedCasesAreValid) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(PALPATE_SOURCE_DIR "/data/cases")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++count;
+    const Case c = read_case(entry.path());
+    EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
+  }
+  EXPECT_GE(count, 1);
+}
+
+/// Set PALPATE_UPDATE_DOCS=1 to rewrite the tables of the page from the parser.
+TEST(Case, ReferencePageListsWhatTheReaderAccepts) {
+  const std::string path = PALPATE_SOURCE_DIR "/docs/cases.md";
+  std::ostringstream page;
+  page << std::ifstream(path).rdbuf();
+  const std::string begin = "<!-- keys: begin -->\n";
+  const std::string end = "<!-- keys: end -->";
+  const std::string text = page.str();
+  const auto first = text.find(begin);
+  const auto last = text.find(end);
+  ASSERT_NE(first, std::string::npos);
+  ASSERT_NE(last, std::string::npos);
+  const std::string expected =
+      text.substr(0, first + begin.size()) + case_reference() + text.substr(last);
+  if (std::getenv("PALPATE_UPDATE_DOCS") != nullptr) std::ofstream(path) << expected;
+  EXPECT_EQ(text, expected) << "run this test once with PALPATE_UPDATE_DOCS=1";
+}
+
+}  // namespace
+}  // namespace palpate::app
