@@ -27,12 +27,12 @@ struct ResponseSurface {
 /// the response surface, so every response vertex is a boundary node.
 struct Body {
   std::string name;
-  std::vector<Vec3> nodes;                        ///< (N) m
-  std::vector<Tetrahedron> tetrahedra;            ///< (T) positive volume
-  std::vector<std::int32_t> tetrahedron_region;   ///< (T) index into region_names
-  std::vector<std::string> region_names;          ///< region 0 is the matrix
-  std::vector<Triangle> boundary;                 ///< (B) boundary facets, outward orientation
-  std::vector<std::int32_t> fixed_nodes;          ///< nodes held by a support, ascending
+  std::vector<Vec3> nodes;                       ///< (N) m
+  std::vector<Tetrahedron> tetrahedra;           ///< (T) positive volume
+  std::vector<std::int32_t> tetrahedron_region;  ///< (T) index into region_names
+  std::vector<std::string> region_names;         ///< region 0 is the matrix
+  std::vector<Triangle> boundary;                ///< (B) boundary facets, outward orientation
+  std::vector<std::int32_t> fixed_nodes;         ///< nodes held by a support, ascending
   ResponseSurface response;
   Provenance provenance;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// curves.h5: raw force-deflection curves, a status per site. Normative page: format/schema/curves.md.
-// A simulated and a measured curve are the same record.
+// curves.h5: raw force-deflection curves, a status per site. Normative page:
+// format/schema/curves.md. A simulated and a measured curve are the same record.
 #pragma once
 
 #include <cstdint>

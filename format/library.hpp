@@ -35,35 +35,36 @@ enum class ResponseStatus : std::uint8_t {
 
 struct NodeResponse {
   ResponseStatus status = ResponseStatus::Hole;
-  ResponseCurve normal;   ///< f^z(delta^z); slope[0] = 0 so that the slope is continuous at touch
-  ResponseCurve lateral;  ///< f^r(delta^r)
-  double normal_error = 0;   ///< largest |fit - sample|, N
+  ResponseCurve normal;     ///< f^z(delta^z); slope[0] = 0 so that the slope is continuous at touch
+  ResponseCurve lateral;    ///< f^r(delta^r)
+  double normal_error = 0;  ///< largest |fit - sample|, N
   double lateral_error = 0;  ///< same, N
 };
 
 /// Bounds of one triangle, `runtime` theory page, "certificate".
 struct TriangleCertificate {
-  double stick = 0;             ///< L_stick, N/m: largest Jacobian norm with the contact point fixed
-  double slip = 0;              ///< L_slip, N/m: Lipschitz bound along the path while sliding
-  double kappa = 0;             ///< 1/m, bound on the turning rate of n
-  double cos_theta = 1;         ///< of the worst angle between n and the facet normal
-  bool sliding_passive = false; ///< the paper's slide needs no energy correction here
+  double stick = 0;      ///< L_stick, N/m: largest Jacobian norm with the contact point fixed
+  double slip = 0;       ///< L_slip, N/m: Lipschitz bound along the path while sliding
+  double kappa = 0;      ///< 1/m, bound on the turning rate of n
+  double cos_theta = 1;  ///< of the worst angle between n and the facet normal
+  bool sliding_passive = false;  ///< the paper's slide needs no energy correction here
 };
 
 /// What a device profile yields on this library.
 struct DeviceCertificate {
-  std::string device;         ///< profile name
-  double damping = 0;         ///< sigma_0(B), N s/m
-  double lowest_rate = 0;     ///< Hz, 2 max(L_stick, L_slip)/sigma_0(B)
-  double linear_limit = 0;    ///< N/m at 1 kHz, 2 b/(3 T): exact linear limit with one sample of delay
+  std::string device;      ///< profile name
+  double damping = 0;      ///< sigma_0(B), N s/m
+  double lowest_rate = 0;  ///< Hz, 2 max(L_stick, L_slip)/sigma_0(B)
+  double linear_limit =
+      0;  ///< N/m at 1 kHz, 2 b/(3 T): exact linear limit with one sample of delay
   double no_delay_limit = 0;  ///< N/m at 1 kHz, 2 b/T
 };
 
 struct Certificate {
-  double friction = 0;    ///< mu the bounds were computed for
-  double depth = 0;       ///< m, D: deepest depth the bounds hold for
-  double stick = 0;       ///< N/m, over all triangles
-  double slip = 0;        ///< N/m, over all triangles
+  double friction = 0;  ///< mu the bounds were computed for
+  double depth = 0;     ///< m, D: deepest depth the bounds hold for
+  double stick = 0;     ///< N/m, over all triangles
+  double slip = 0;      ///< N/m, over all triangles
   std::int32_t worst_triangle = -1;
   std::string limited_by;  ///< one line: what sets the bound in the worst triangle
   std::int32_t holes = 0;
@@ -75,12 +76,13 @@ struct Certificate {
 struct Library {
   std::string name;
   std::string tool_shape;
-  double tool_radius = 0;            ///< m
-  std::vector<Vec3> positions;       ///< (V) m
-  std::vector<Vec3> inward;          ///< (V) unit
-  std::vector<Triangle> triangles;   ///< (M) only those whose vertices may all be touched or bound a hole
+  double tool_radius = 0;       ///< m
+  std::vector<Vec3> positions;  ///< (V) m
+  std::vector<Vec3> inward;     ///< (V) unit
+  std::vector<Triangle>
+      triangles;  ///< (M) only those whose vertices may all be touched or bound a hole
   std::vector<NodeResponse> responses;  ///< (V)
-  Certificate certificate;           ///< triangles empty until certified
+  Certificate certificate;              ///< triangles empty until certified
   Provenance provenance;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -29,5 +30,14 @@ struct ProvenanceStep {
 struct Provenance {
   std::vector<ProvenanceStep> steps;
 };
+
+/// A step of this build of palpate that ends now: fills in version, git revision, time and the
+/// digests of the input files. @throws Error when an input cannot be read.
+ProvenanceStep make_provenance_step(std::string stage, std::string resolved_case,
+                                    const std::vector<std::filesystem::path>& inputs,
+                                    std::vector<std::pair<std::string, std::string>> facts = {});
+
+/// "palpate <version> (<git revision>)" of this build.
+std::string creator_text();
 
 }  // namespace palpate

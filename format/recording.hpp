@@ -27,14 +27,14 @@ struct RecordedStep {
   double tank = 0;           ///< J
   double absorbed = 0;       ///< J, net work of the tool on the virtual body since the start
   std::int32_t element = -1;
-  std::uint32_t status = 0;      ///< bits of palpate.h
-  std::int64_t latency_ns = 0;   ///< compute time of the step
+  std::uint32_t status = 0;     ///< bits of palpate.h
+  std::int64_t latency_ns = 0;  ///< compute time of the step
 };
 
 struct Recording {
   std::string device;
   std::string library_sha256;
-  double rate = 0;      ///< Hz
+  double rate = 0;  ///< Hz
   double friction = 0;
   std::vector<RecordedStep> steps;
   Provenance provenance;

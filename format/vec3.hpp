@@ -9,7 +9,7 @@
 namespace palpate {
 
 using Vec3 = std::array<double, 3>;
-using Triangle = std::array<std::int32_t, 3>;     ///< vertex indices, counter-clockwise from outside
+using Triangle = std::array<std::int32_t, 3>;  ///< vertex indices, counter-clockwise from outside
 using Tetrahedron = std::array<std::int32_t, 4>;  ///< positively oriented vertex indices
 
 constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
@@ -18,14 +18,20 @@ constexpr Vec3 operator+(const Vec3& a, const Vec3& b) {
 constexpr Vec3 operator-(const Vec3& a, const Vec3& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-constexpr Vec3 operator-(const Vec3& a) { return {-a[0], -a[1], -a[2]}; }
-constexpr Vec3 operator*(double s, const Vec3& a) { return {s * a[0], s * a[1], s * a[2]}; }
+constexpr Vec3 operator-(const Vec3& a) {
+  return {-a[0], -a[1], -a[2]};
+}
+constexpr Vec3 operator*(double s, const Vec3& a) {
+  return {s * a[0], s * a[1], s * a[2]};
+}
 constexpr double dot(const Vec3& a, const Vec3& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 constexpr Vec3 cross(const Vec3& a, const Vec3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-inline double norm(const Vec3& a) { return std::sqrt(dot(a, a)); }
+inline double norm(const Vec3& a) {
+  return std::sqrt(dot(a, a));
+}
 
 }  // namespace palpate

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/body.hpp"
+
+#include "format/artifact.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr const char* kArtifact = "palpate.body";
+constexpr const char* kRemedy = "make it again with 'palpate mesh'";
+
+double volume_of(const std::vector<Vec3>& nodes, const Tetrahedron& corners) {
+  const auto at = [&](std::size_t i) { return nodes[static_cast<std::size_t>(corners[i])]; };
+  return dot(cross(at(1) - at(0), at(2) - at(0)), at(3) - at(0)) / 6;
+}
+
+void check_tetrahedra(const Checks& checks, const Body& body) {
+  checks.require(!body.tetrahedra.empty(), "/tetrahedra", "is empty");
+  checks.corners("/tetrahedra", body.tetrahedra, body.nodes.size());
+  for (std::size_t row = 0; row < body.tetrahedra.size(); ++row) {
+    const double volume = volume_of(body.nodes, body.tetrahedra[row]);
+    if (!(volume > 0)) {
+      checks.fail_geometry("/tetrahedra", row, "is inverted or flat: its volume is not positive");
+    }
+  }
+  checks.require(!body.region_names.empty(), "/region_names", "is empty");
+  checks.same_size("/tetrahedron_region", body.tetrahedron_region.size(), body.tetrahedra.size());
+  checks.indices("/tetrahedron_region", body.tetrahedron_region, body.region_names.size());
+}
+
+void check_fixed_nodes(const Checks& checks, const Body& body) {
+  checks.indices("/fixed_nodes", body.fixed_nodes, body.nodes.size());
+  for (std::size_t row = 1; row < body.fixed_nodes.size(); ++row) {
+    if (body.fixed_nodes[row] <= body.fixed_nodes[row - 1]) {
+      checks.fail_row("/fixed_nodes", row, "is not above the row before it");
+    }
+  }
+}
+
+void check_response(const Checks& checks, const Body& body) {
+  const ResponseSurface& surface = body.response;
+  checks.indices("/response/node", surface.node, body.nodes.size());
+  std::vector<std::uint8_t> on_boundary(body.nodes.size(), 0);
+  for (const Triangle& facet : body.boundary) {
+    for (const std::int32_t node : facet) on_boundary[static_cast<std::size_t>(node)] = 1;
+  }
+  for (std::size_t row = 0; row < surface.node.size(); ++row) {
+    std::uint8_t& mark = on_boundary[static_cast<std::size_t>(surface.node[row])];
+    if (mark == 0) checks.fail_row("/response/node", row, "is not a corner of a boundary facet");
+    if (mark == 2) checks.fail_row("/response/node", row, "names a node twice");
+    mark = 2;
+  }
+  checks.same_size("/response/inward", surface.inward.size(), surface.node.size());
+  checks.vectors("/response/inward", surface.inward, rules::kUnit);
+  checks.corners("/response/triangles", surface.triangles, surface.node.size());
+  checks.same_size("/response/is_site", surface.is_site.size(), surface.node.size());
+  checks.numbers("/response/is_site", surface.is_site, rules::kFlag);
+}
+
+void check_body(const Checks& checks, const Body& body) {
+  checks.vectors("/nodes", body.nodes, rules::kFinite);
+  check_tetrahedra(checks, body);
+  checks.corners("/boundary", body.boundary, body.nodes.size());
+  check_fixed_nodes(checks, body);
+  check_response(checks, body);
+  check_provenance(checks, body.provenance);
+}
+
+void write_response(hdf5::Writer& writer, const ResponseSurface& surface) {
+  writer.group("/response", "The coarse triangulation that carries the responses.");
+  writer.dataset("/response/node", surface.node,
+                 {"1", "Node of the body at each response vertex."});
+  writer.dataset("/response/inward", surface.inward,
+                 {"1", "Unit direction u^z at each response vertex, into the body."});
+  writer.dataset("/response/triangles", surface.triangles,
+                 {"1", "Response vertices of each triangle, counter-clockwise seen from outside."});
+  writer.dataset("/response/is_site", surface.is_site,
+                 {"1", "1 where the tool may be pressed, 0 in a support."});
+}
+
+}  // namespace
+
+void write_body(const std::filesystem::path& path, const Body& body) {
+  check_body(Checks(path), body);
+  hdf5::Writer writer(path);
+  write_root(writer, kArtifact, kBodySchema, "A tetrahedralized body, ready for indentation.");
+  writer.set_text("/", "name", body.name);
+  writer.dataset("/nodes", body.nodes, {"m", "Reference position X of each node."});
+  writer.dataset("/tetrahedra", body.tetrahedra,
+                 {"1", "Nodes of each tetrahedron, of positive volume."});
+  writer.dataset("/tetrahedron_region", body.tetrahedron_region,
+                 {"1", "Region of each tetrahedron, a row of /region_names."});
+  writer.texts("/region_names", body.region_names,
+               "Name of each material region; region 0 is the matrix.");
+  writer.dataset("/boundary", body.boundary,
+                 {"1", "Nodes of each boundary facet, counter-clockwise seen from outside."});
+  writer.dataset("/fixed_nodes", body.fixed_nodes, {"1", "Nodes held by a support, ascending."});
+  write_response(writer, body.response);
+  write_provenance(writer, body.provenance);
+  writer.commit();
+}
+
+Body read_body(const std::filesystem::path& path) {
+  hdf5::Reader reader(path, kRemedy);
+  reader.require_artifact(kArtifact, kBodySchema);
+  Body body;
+  body.name = reader.text("/", "name");
+  body.nodes = reader.dataset<Vec3>("/nodes");
+  body.tetrahedra = reader.dataset<Tetrahedron>("/tetrahedra");
+  body.tetrahedron_region = reader.dataset<std::int32_t>("/tetrahedron_region");
+  body.region_names = reader.texts("/region_names");
+  body.boundary = reader.dataset<Triangle>("/boundary");
+  body.fixed_nodes = reader.dataset<std::int32_t>("/fixed_nodes");
+  body.response.node = reader.dataset<std::int32_t>("/response/node");
+  body.response.inward = reader.dataset<Vec3>("/response/inward");
+  body.response.triangles = reader.dataset<Triangle>("/response/triangles");
+  body.response.is_site = reader.dataset<std::uint8_t>("/response/is_site");
+  body.provenance = read_provenance(reader);
+  check_body(Checks(reader), body);
+  return body;
+}
+
+}  // namespace palpate

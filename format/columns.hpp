@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// Records in memory <-> one dataset per member on disk. One table per record says it all: name,
+// member, units, meaning, rule; it is what writes, reads and checks.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tuple>
+#include <type_traits>
+#include <vector>
+
+#include "format/checks.hpp"
+#include "format/hdf5_file.hpp"
+
+namespace palpate {
+
+template <class Record, class Field>
+struct Column {
+  const char* name;
+  Field Record::*member;
+  const char* units;
+  const char* description;
+  Rule rule;
+};
+
+// A function because clang 14 cannot deduce the arguments of an aggregate.
+template <class Record, class Field>
+constexpr Column<Record, Field> column(const char* name, Field Record::*member, const char* units,
+                                       const char* description, Rule rule) {
+  return {name, member, units, description, rule};
+}
+
+/// What stands for a member on disk: flags and enumerations as 8-bit numbers.
+template <class Field>
+using Stored =
+    std::conditional_t<std::is_enum_v<Field> || std::is_same_v<Field, bool>, std::uint8_t, Field>;
+
+template <class Record, class... Fields>
+void write_columns(hdf5::Writer& writer, const std::string& group,
+                   const std::vector<Record>& records,
+                   const std::tuple<Column<Record, Fields>...>& columns,
+                   hdf5::Storage storage = hdf5::Storage::Contiguous) {
+  const auto write_one = [&]<class Field>(const Column<Record, Field>& column) {
+    std::vector<Stored<Field>> values;
+    values.reserve(records.size());
+    for (const Record& record : records) {
+      values.push_back(static_cast<Stored<Field>>(record.*column.member));
+    }
+    writer.dataset(group + "/" + column.name, values, {column.units, column.description}, storage);
+  };
+  std::apply([&](const auto&... column) { (write_one(column), ...); }, columns);
+}
+
+template <class Record, class Field>
+void check_column(const Checks& checks, const std::string& group,
+                  const std::vector<Stored<Field>>& values, const Column<Record, Field>& column) {
+  const std::string dataset = group + "/" + column.name;
+  if constexpr (std::is_same_v<Field, Vec3>) {
+    checks.vectors(dataset, values, column.rule);
+  } else {
+    checks.numbers(dataset, values, column.rule);
+  }
+}
+
+/// Checks each column before it enters a record: an enumeration never holds an unknown value.
+template <class Record, class... Fields>
+std::vector<Record> read_columns(const hdf5::Reader& reader, const std::string& group,
+                                 const std::tuple<Column<Record, Fields>...>& columns,
+                                 std::size_t rows = hdf5::kAnyRows) {
+  const Checks checks(reader);
+  std::vector<Record> records;
+  bool sized = false;
+  const auto read_one = [&]<class Field>(const Column<Record, Field>& column) {
+    const auto values =
+        reader.dataset<Stored<Field>>(group + "/" + column.name, sized ? records.size() : rows);
+    check_column(checks, group, values, column);
+    if (!sized) records.resize(values.size());
+    sized = true;
+    for (std::size_t row = 0; row < values.size(); ++row) {
+      records[row].*column.member = static_cast<Field>(values[row]);
+    }
+  };
+  std::apply([&](const auto&... column) { (read_one(column), ...); }, columns);
+  return records;
+}
+
+template <class Record, class... Fields>
+void check_columns(const Checks& checks, const std::string& group,
+                   const std::vector<Record>& records,
+                   const std::tuple<Column<Record, Fields>...>& columns) {
+  const auto check_one = [&]<class Field>(const Column<Record, Field>& column) {
+    const std::string dataset = group + "/" + column.name;
+    for (std::size_t row = 0; row < records.size(); ++row) {
+      const auto value = static_cast<Stored<Field>>(records[row].*column.member);
+      if constexpr (std::is_same_v<Field, Vec3>) {
+        checks.vector(dataset, row, value, column.rule);
+      } else {
+        checks.number(dataset, row, static_cast<double>(value), column.rule);
+      }
+    }
+  };
+  std::apply([&](const auto&... column) { (check_one(column), ...); }, columns);
+}
+
+}  // namespace palpate

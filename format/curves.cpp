@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/curves.hpp"
+
+#include "format/artifact.hpp"
+#include "format/columns.hpp"
+
+namespace palpate {
+namespace {
+
+constexpr const char* kArtifact = "palpate.curves";
+constexpr const char* kRemedy = "make it again with 'palpate precompute'";
+
+/// A site and a path as they lie on disk: their paths and samples are runs of rows elsewhere.
+struct SiteRow {
+  std::int32_t vertex = -1;
+  SiteStatus status = SiteStatus::Failed;
+  double cpu_seconds = 0;
+  std::int64_t first_path = 0;
+  std::int64_t path_count = 0;
+};
+struct PathRow {
+  PathKind kind = PathKind::Normal;
+  double held_depth = 0;
+  Vec3 direction{};
+  std::int64_t first_sample = 0;
+  std::int64_t sample_count = 0;
+};
+
+constexpr auto kSiteColumns =
+    std::make_tuple(column("vertex", &SiteRow::vertex, "1",
+                           "Vertex of the response surface, ascending.", rules::kNonNegative),
+                    column("status", &SiteRow::status, "1", "0 complete, 1 partial, 2 failed.",
+                           rules::up_to(2, "a status (0, 1 or 2)")),
+                    column("cpu_seconds", &SiteRow::cpu_seconds, "s",
+                           "Processor time spent on the site.", rules::kNonNegative),
+                    column("first_path", &SiteRow::first_path, "1",
+                           "Row of /path where the site begins.", rules::kNonNegative),
+                    column("path_count", &SiteRow::path_count, "1", "Number of paths of the site.",
+                           rules::kNonNegative));
+
+constexpr auto kPathColumns = std::make_tuple(
+    column("kind", &PathRow::kind, "1", "0 normal, 1 lateral.",
+           rules::up_to(1, "a kind of path (0 or 1)")),
+    column("held_depth", &PathRow::held_depth, "m",
+           "Depth at which a lateral path was run; 0 for a normal path.", rules::kNonNegative),
+    column("direction", &PathRow::direction, "1", "Unit direction of the travel of the tool.",
+           rules::kUnit),
+    column("first_sample", &PathRow::first_sample, "1", "Row of /sample where the path begins.",
+           rules::kNonNegative),
+    column("sample_count", &PathRow::sample_count, "1", "Number of samples of the path.",
+           rules::kNonNegative));
+
+constexpr auto kSampleColumns = std::make_tuple(
+    column("displacement", &CurveSample::displacement, "m", "Of the tool along the path.",
+           rules::kNonNegative),
+    column("force", &CurveSample::force, "N", "Of the tool on the body.", rules::kFinite),
+    column("strain_energy", &CurveSample::strain_energy, "J",
+           "Stored in the body, without contact penalty.", rules::kFinite),
+    column("tool_work", &CurveSample::tool_work, "J",
+           "Integral of force . d(displacement) since the touch.", rules::kFinite),
+    column("min_jacobian", &CurveSample::min_jacobian, "1", "Smallest det F over the body.",
+           rules::kFinite),
+    column("penetration", &CurveSample::penetration, "m",
+           "Deepest violation of the contact constraint.", rules::kFinite),
+    column("contact_area", &CurveSample::contact_area, "m^2", "Reference area in contact.",
+           rules::kNonNegative),
+    column("iterations", &CurveSample::iterations, "1", "Newton iterations of the sample.",
+           rules::kNonNegative));
+
+/// The curves as they lie on disk.
+struct Flat {
+  std::vector<SiteRow> sites;
+  std::vector<std::string> reasons;
+  std::vector<PathRow> paths;
+  std::vector<CurveSample> samples;
+};
+
+Flat flatten(const Curves& curves) {
+  Flat flat;
+  for (const SiteCurves& site : curves.sites) {
+    flat.sites.push_back({site.vertex, site.status, site.cpu_seconds,
+                          static_cast<std::int64_t>(flat.paths.size()),
+                          static_cast<std::int64_t>(site.paths.size())});
+    flat.reasons.push_back(site.reason);
+    for (const CurvePath& path : site.paths) {
+      flat.paths.push_back({path.kind, path.held_depth, path.direction,
+                            static_cast<std::int64_t>(flat.samples.size()),
+                            static_cast<std::int64_t>(path.samples.size())});
+      flat.samples.insert(flat.samples.end(), path.samples.begin(), path.samples.end());
+    }
+  }
+  return flat;
+}
+
+template <class Record>
+std::vector<std::int64_t> values_of(const std::vector<Record>& records,
+                                    std::int64_t Record::*member) {
+  std::vector<std::int64_t> values;
+  for (const Record& record : records) values.push_back(record.*member);
+  return values;
+}
+
+void check_order(const Checks& checks, const Flat& flat) {
+  for (std::size_t row = 1; row < flat.sites.size(); ++row) {
+    if (flat.sites[row].vertex <= flat.sites[row - 1].vertex) {
+      checks.fail_row("/site/vertex", row, "is not above the row before it");
+    }
+  }
+  for (const PathRow& path : flat.paths) {
+    const auto first = static_cast<std::size_t>(path.first_sample);
+    for (std::size_t i = 0; i < static_cast<std::size_t>(path.sample_count); ++i) {
+      const double here = flat.samples[first + i].displacement;
+      const double before = i == 0 ? 0 : flat.samples[first + i - 1].displacement;
+      if (i == 0 && here != 0) {
+        checks.fail_row("/sample/displacement", first, "a path does not begin at 0");
+      }
+      if (here < before) {
+        checks.fail_row("/sample/displacement", first + i, "goes backwards along its path");
+      }
+    }
+  }
+}
+
+void check_flat(const Checks& checks, const Flat& flat) {
+  check_columns(checks, "/site", flat.sites, kSiteColumns);
+  check_columns(checks, "/path", flat.paths, kPathColumns);
+  check_columns(checks, "/sample", flat.samples, kSampleColumns);
+  check_offsets(checks, "/site/first_path", "/site/path_count",
+                values_of(flat.sites, &SiteRow::first_path),
+                values_of(flat.sites, &SiteRow::path_count), flat.paths.size());
+  check_offsets(checks, "/path/first_sample", "/path/sample_count",
+                values_of(flat.paths, &PathRow::first_sample),
+                values_of(flat.paths, &PathRow::sample_count), flat.samples.size());
+  check_order(checks, flat);
+}
+
+void check_heading(const Checks& checks, const Curves& curves) {
+  const auto check = [&](const char* name, double value) {
+    if (!(std::isfinite(value) && value >= 0)) checks.fail(name, "is not finite and not negative");
+  };
+  check("/@tool_radius", curves.tool.radius);
+  check("/@depth", curves.depth);
+  check("/@lateral_travel", curves.lateral_travel);
+  checks.digest("/@body_sha256", curves.body_sha256, true);
+  check_provenance(checks, curves.provenance);
+}
+
+void unflatten(const Flat& flat, Curves& curves) {
+  for (std::size_t s = 0; s < flat.sites.size(); ++s) {
+    const SiteRow& row = flat.sites[s];
+    SiteCurves site{row.vertex, row.status, flat.reasons[s], row.cpu_seconds, {}};
+    for (std::int64_t p = row.first_path; p < row.first_path + row.path_count; ++p) {
+      const PathRow& path = flat.paths[static_cast<std::size_t>(p)];
+      const auto first = flat.samples.begin() + path.first_sample;
+      site.paths.push_back(
+          {path.kind, path.held_depth, path.direction, {first, first + path.sample_count}});
+    }
+    curves.sites.push_back(std::move(site));
+  }
+}
+
+}  // namespace
+
+void write_curves(const std::filesystem::path& path, const Curves& curves) {
+  const Checks checks(path);
+  const Flat flat = flatten(curves);
+  check_heading(checks, curves);
+  check_flat(checks, flat);
+  hdf5::Writer writer(path);
+  write_root(writer, kArtifact, kCurvesSchema, "Raw force-deflection curves, a status per site.");
+  writer.set_text("/", "tool_shape", curves.tool.shape);
+  writer.set_real("/", "tool_radius", curves.tool.radius);
+  writer.set_text("/", "tool_friction", curves.tool.friction);
+  writer.set_real("/", "depth", curves.depth);
+  writer.set_real("/", "lateral_travel", curves.lateral_travel);
+  writer.set_text("/", "body_sha256", curves.body_sha256);
+  writer.group("/site", "One row for each vertex of the response surface that was pressed.");
+  write_columns(writer, "/site", flat.sites, kSiteColumns);
+  writer.texts("/site/reason", flat.reasons, "Why the site is not complete; empty when it is.");
+  writer.group("/path", "One row for each path of the tool, site by site.");
+  write_columns(writer, "/path", flat.paths, kPathColumns);
+  writer.group("/sample", "One row for each converged state of the tool, path by path.");
+  write_columns(writer, "/sample", flat.samples, kSampleColumns);
+  write_provenance(writer, curves.provenance);
+  writer.commit();
+}
+
+Curves read_curves(const std::filesystem::path& path) {
+  hdf5::Reader reader(path, kRemedy);
+  reader.require_artifact(kArtifact, kCurvesSchema);
+  Curves curves;
+  curves.tool.shape = reader.text("/", "tool_shape");
+  curves.tool.radius = reader.real("/", "tool_radius");
+  curves.tool.friction = reader.text("/", "tool_friction");
+  curves.depth = reader.real("/", "depth");
+  curves.lateral_travel = reader.real("/", "lateral_travel");
+  curves.body_sha256 = reader.text("/", "body_sha256");
+  Flat flat;
+  flat.sites = read_columns(reader, "/site", kSiteColumns);
+  flat.reasons = reader.texts("/site/reason", flat.sites.size());
+  flat.paths = read_columns(reader, "/path", kPathColumns);
+  flat.samples = read_columns(reader, "/sample", kSampleColumns);
+  curves.provenance = read_provenance(reader);
+  const Checks checks(reader);
+  check_heading(checks, curves);
+  check_flat(checks, flat);
+  unflatten(flat, curves);
+  return curves;
+}
+
+}  // namespace palpate

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Artifacts with random but valid content, the same in every run, for the tests of the files.
+#pragma once
+
+#include "format/body.hpp"
+#include "format/curves.hpp"
+#include "format/library.hpp"
+#include "format/recording.hpp"
+
+namespace palpate::samples {
+
+Body body(unsigned seed);            ///< a jittered block of 3 x 3 x 3 cells, two regions
+Curves curves(unsigned seed);        ///< 20 sites: complete, partial, failed without paths
+Library library(unsigned seed);      ///< certified, with a filled node, a hole and two devices
+Recording recording(unsigned seed);  ///< 10 000 steps: more than one chunk; one reading is NaN
+
+/// Every member as text, floating point in hexadecimal: equal texts mean equal bits.
+std::string dump(const Body& body);
+std::string dump(const Curves& curves);
+std::string dump(const Library& library);
+std::string dump(const Recording& recording);
+
+}  // namespace palpate::samples
