@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <set>
-#include <sstream>
 #include <utility>
 
 #include "app/case/nearest.hpp"
@@ -18,18 +16,6 @@ namespace {
 
 [[noreturn]] void fail(std::string where, std::string problem, std::string remedy) {
   throw Error(ErrorKind::Configuration, std::move(where), std::move(problem), std::move(remedy));
-}
-
-toml::table parse_toml(std::string_view text, const std::string& file_name) {
-  try {
-    return toml::parse(text, file_name);
-  } catch (const toml::parse_error& error) {
-    std::string problem(error.description());
-    std::replace(problem.begin(), problem.end(), '\n', ' ');
-    fail(fmt::format("{}:{}", file_name, error.source().begin.line),
-         fmt::format("this is not TOML: {}", problem),
-         "correct the line; the format is described at toml.io");
-  }
 }
 
 std::string prefix(std::string_view section, std::size_t index) {
@@ -114,10 +100,7 @@ void check_sizes(const Case& c, const SourceMap& sources) {
        "the facets refine the response triangles: choose it at most as large");
 }
 
-}  // namespace
-
-Case parse_case(std::string_view text, const std::string& file_name) {
-  const toml::table table = parse_toml(text, file_name);
+Case parsed(const toml::table& table, const std::string& file_name) {
   SourceMap sources(file_name);
   Case c;
   TableReader reader(table, "the case", "", sources);
@@ -131,13 +114,14 @@ Case parse_case(std::string_view text, const std::string& file_name) {
   return c;
 }
 
+}  // namespace
+
+Case parse_case(std::string_view toml, const std::string& file_name) {
+  return parsed(parse_toml(toml, file_name), file_name);
+}
+
 Case read_case(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
-    fail(path.string(), "the case file cannot be read", "check the path and the rights");
-  }
-  return parse_case(text.str(), path.string());
+  return parsed(read_toml(path, "the case file"), path.string());
 }
 
 }  // namespace palpate::app

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <limits>
 #include <sstream>
 #include <utility>
@@ -37,6 +38,27 @@ std::string example_of(const Key& key, Dimension dimension) {
 }
 
 }  // namespace
+
+toml::table parse_toml(std::string_view text, const std::string& file_name) {
+  try {
+    return toml::parse(text, file_name);
+  } catch (const toml::parse_error& error) {
+    std::string problem(error.description());
+    std::replace(problem.begin(), problem.end(), '\n', ' ');
+    fail(fmt::format("{}:{}", file_name, error.source().begin.line),
+         fmt::format("this is not TOML: {}", problem),
+         "correct the line; the format is described at toml.io");
+  }
+}
+
+toml::table read_toml(const std::filesystem::path& path, std::string_view what) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf())) {
+    fail(path.string(), fmt::format("{} cannot be read", what), "check the path and the rights");
+  }
+  return parse_toml(text.str(), path.string());
+}
 
 std::string SourceMap::where(const std::string& key) const {
   const auto found = lines_.find(key);

@@ -6,6 +6,7 @@
 #include <toml++/toml.h>
 
 #include <cstdint>
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -14,6 +15,10 @@
 #include "app/case/describe.hpp"
 
 namespace palpate::app {
+
+/// Parse a TOML file. `what` names it in messages. @throws Error(Configuration) with the line.
+toml::table read_toml(const std::filesystem::path& path, std::string_view what);
+toml::table parse_toml(std::string_view text, const std::string& file_name);
 
 /// Where each key was found, so that later checks can point at a line.
 class SourceMap {

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/case_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <thread>
+
+namespace palpate::app {
+
+std::shared_ptr<CaseOptions> add_case_options(CLI::App& command, ThreadsOption threads) {
+  auto options = std::make_shared<CaseOptions>();
+  command.add_option("CASE", options->case_file, "Case file (TOML), see docs/cases.md")->required();
+  command.add_option("--out", options->out,
+                     "Folder of the artifacts (default: output.folder of the case, else out/NAME)");
+  if (threads == ThreadsOption::Present) {
+    command
+        .add_option("--threads", options->threads, "Sites computed at once (default: processors)")
+        ->check(CLI::Range(1, 4096));
+  }
+  return options;
+}
+
+Workspace open_workspace(const CaseOptions& options) {
+  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return make_workspace(options.case_file, options.out,
+                        options.threads > 0 ? options.threads : processors);
+}
+
+}  // namespace palpate::app

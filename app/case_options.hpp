@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "app/pipeline/workspace.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace palpate::app {
+
+/// The arguments shared by the subcommands that work on a case.
+struct CaseOptions {
+  std::string case_file;
+  std::string out;  ///< empty: as the case says
+  int threads = 0;  ///< 0: one per processor
+};
+
+enum class ThreadsOption { Absent, Present };
+
+/// Adds CASE, --out and, for stages that compute in parallel, --threads.
+std::shared_ptr<CaseOptions> add_case_options(CLI::App& command,
+                                              ThreadsOption threads = ThreadsOption::Absent);
+
+Workspace open_workspace(const CaseOptions& options);
+
+}  // namespace palpate::app

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The subcommands of `palpate`. Each registers itself with the parser; the one that was called
+// leaves what is to be done in `action`, whose result is the exit code.
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace palpate::app {
+
+/// Exit codes beside those of ErrorKind.
+inline constexpr int kExitDone = 0;
+inline constexpr int kExitUsage = 2;
+inline constexpr int kExitSomeSitesFailed = 4;
+
+using Action = std::function<int()>;
+
+void add_mesh_command(CLI::App& root, Action& action);
+void add_precompute_command(CLI::App& root, Action& action);
+void add_fit_command(CLI::App& root, Action& action);
+void add_certify_command(CLI::App& root, Action& action);
+void add_build_command(CLI::App& root, Action& action);
+void add_simulate_command(CLI::App& root, Action& action);
+void add_inspect_command(CLI::App& root, Action& action);
+void add_export_command(CLI::App& root, Action& action);
+void add_report_command(CLI::App& root, Action& action);
+
+}  // namespace palpate::app

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The `palpate` command.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+
+#include "app/blas_kernel.hpp"
+#include "app/command.hpp"
+#include "format/error.hpp"
+#include "format/provenance.hpp"
+
+namespace palpate::app {
+namespace {
+
+/// One line, whatever the text holds.
+int fail(std::string text, int exit_code) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  std::fflush(stdout);
+  std::fprintf(stderr, "palpate: %s\n", text.c_str());
+  return exit_code;
+}
+
+int run(const Action& action) {
+  try {
+    return action();
+  } catch (const Error& error) {
+    return fail(error.what(), static_cast<int>(error.kind()));
+  } catch (const std::bad_alloc&) {
+    return fail("out of memory; use a coarser mesh or fewer threads",
+                static_cast<int>(ErrorKind::Internal));
+  } catch (const std::exception& error) {
+    return fail(std::string("internal error: ") + error.what() + "; please report it",
+                static_cast<int>(ErrorKind::Internal));
+  }
+}
+
+void add_commands(CLI::App& root, Action& action) {
+  add_build_command(root, action);
+  add_mesh_command(root, action);
+  add_precompute_command(root, action);
+  add_fit_command(root, action);
+  add_certify_command(root, action);
+}
+
+int parse_and_run(int count, char** arguments) {
+  CLI::App root{
+      "palpate: press a soft body everywhere once, offline; feel it forever, in real time"};
+  root.footer(
+      "Exit codes: 0 done, 1 internal error, 2 usage or configuration, 3 unusable geometry,\n"
+      "4 finished but some sites did not complete.\n"
+      "Example: palpate build data/cases/cylinder-demo.toml");
+  root.set_version_flag("--version", creator_text());
+  root.require_subcommand(1);
+  Action action;
+  add_commands(root, action);
+  try {
+    root.parse(count, arguments);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return root.exit(error);
+    return fail(std::string("command line: ") + error.what() + "; see palpate --help", kExitUsage);
+  }
+  return run(action);
+}
+
+}  // namespace
+}  // namespace palpate::app
+
+int main(int count, char** arguments) {
+  palpate::app::ensure_blas_kernel(arguments);
+  return palpate::app::parse_and_run(count, arguments);
+}

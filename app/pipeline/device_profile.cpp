@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/pipeline/device_profile.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "app/case/reader.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fitting {
+
+/// The keys of a device profile (found by argument-dependent lookup, so in this namespace).
+template <class V>
+void describe(V& v, DeviceProfile& p) {
+  using app::Dimension;
+  v.text(p.name, {"name", "of the device", app::kRequired});
+  v.quantity(
+      p.damping, Dimension::Damping,
+      {"damping", "smallest viscous damping over all directions", app::kRequired, app::kPositive});
+  v.quantity(p.coulomb_friction, Dimension::Force,
+             {"coulomb_friction", "dry friction", app::kOptional, app::kNotNegative});
+  v.quantity(p.peak_force, Dimension::Force,
+             {"peak_force", "largest force", app::kOptional, app::kPositive});
+  v.text(p.source, {"source", "where the figures come from", app::kRequired});
+}
+
+}  // namespace palpate::fitting
+
+namespace palpate::app {
+
+fitting::DeviceProfile read_device_profile(const std::filesystem::path& path) {
+  const toml::table table = read_toml(path, "the device profile");
+  SourceMap sources(path.string());
+  fitting::DeviceProfile profile;
+  profile.coulomb_friction = std::numeric_limits<double>::quiet_NaN();
+  profile.peak_force = std::numeric_limits<double>::quiet_NaN();
+  TableReader reader(table, "the device profile", "", sources);
+  describe(reader, profile);
+  reader.finish();
+  return profile;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+
+#include "fitting/fitting.hpp"
+
+namespace palpate::app {
+
+/// Read the profile of a haptic device (TOML; see data/devices). Quantities carry their units;
+/// what the documentation of the device does not say is left out and becomes NaN, except the
+/// damping, without which nothing can be certified. @throws Error(Configuration).
+fitting::DeviceProfile read_device_profile(const std::filesystem::path& path);
+
+}  // namespace palpate::app

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/pipeline/settings.hpp"
+
+#include <numbers>
+#include <utility>
+
+#include "app/case/quantity.hpp"
+#include "app/pipeline/device_profile.hpp"
+
+namespace palpate::app {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+double unit_length(const std::string& symbol) {
+  return parse_quantity("1 " + symbol, Dimension::Length).value;
+}
+
+template <class Section>
+mesher::SurfaceFile surface_file(const Workspace& space, const Section& section) {
+  return {space.case_folder / section.file, unit_length(section.unit), section.region};
+}
+
+mesher::Support support_of(const SupportSection& section) {
+  if (section.shape == "plane") {
+    return mesher::PlaneSupport{section.point, (1 / norm(section.normal)) * section.normal};
+  }
+  if (section.shape == "box") return mesher::BoxSupport{section.low, section.high};
+  return mesher::SphereSupport{section.centre, section.radius};
+}
+
+}  // namespace
+
+std::string stage_name(Stage stage) {
+  switch (stage) {
+    case Stage::Mesh:
+      return "mesh";
+    case Stage::Precompute:
+      return "precompute";
+    case Stage::Fit:
+      return "fit";
+    case Stage::Certify:
+      return "certify";
+  }
+  return {};
+}
+
+mesher::Settings mesh_settings(const Workspace& space) {
+  const Case& c = space.c;
+  mesher::Settings settings;
+  settings.name = c.name;
+  settings.surface = surface_file(space, c.surface);
+  for (const auto& inclusion : c.inclusions) {
+    settings.inclusions.push_back(surface_file(space, inclusion));
+  }
+  for (const auto& support : c.supports) settings.supports.push_back(support_of(support));
+  settings.patch_spacing = c.mesh.patch_spacing;
+  settings.element_size = c.mesh.element_size;
+  settings.interior_growth = c.mesh.interior_growth;
+  settings.feature_angle = c.mesh.feature_angle * 180 / std::numbers::pi;
+  settings.tool_radius = c.tool.radius;
+  settings.depth = c.indentation.depth;
+  return settings;
+}
+
+fem::CampaignSettings campaign_settings(const Workspace& space) {
+  const Case& c = space.c;
+  fem::CampaignSettings settings;
+  for (const MaterialSection& material : c.materials) {
+    settings.materials.push_back({material.region, {material.young, material.poisson}});
+  }
+  fem::IndentationSettings& indentation = settings.indentation;
+  indentation.tool_radius = c.tool.radius;
+  indentation.depth = c.indentation.depth;
+  indentation.increments = c.indentation.increments;
+  indentation.lateral_travel = c.indentation.lateral_travel;
+  indentation.lateral_increments = c.indentation.lateral_increments;
+  indentation.held_depths = c.indentation.held_depths;
+  indentation.azimuths = c.indentation.azimuths;
+  indentation.force_tolerance = c.indentation.force_tolerance;
+  settings.threads = space.threads;
+  return settings;
+}
+
+fitting::FitSettings fit_settings(const Workspace& space) {
+  const FitSection& fit = space.c.fit;
+  fitting::FitSettings settings;
+  settings.relative_tolerance = fit.relative_tolerance;
+  settings.absolute_tolerance = fit.absolute_tolerance;
+  settings.max_knots = fit.max_knots;
+  settings.fill_holes = fit.fill_holes;
+  return settings;
+}
+
+fitting::CertifySettings certify_settings(const Workspace& space) {
+  fitting::CertifySettings settings;
+  settings.friction = space.c.certify.friction;
+  for (const fs::path& file : stage_inputs(space, Stage::Certify)) {
+    settings.devices.push_back(read_device_profile(file));
+  }
+  return settings;
+}
+
+std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
+  std::vector<fs::path> inputs;
+  switch (stage) {
+    case Stage::Mesh:
+      inputs.push_back(space.case_folder / space.c.surface.file);
+      for (const auto& inclusion : space.c.inclusions) {
+        inputs.push_back(space.case_folder / inclusion.file);
+      }
+      break;
+    case Stage::Precompute:
+      inputs = {space.body()};
+      break;
+    case Stage::Fit:
+      inputs = {space.body(), space.curves()};
+      break;
+    case Stage::Certify:
+      for (const std::string& device : space.c.certify.devices) {
+        inputs.push_back(space.case_folder / device);
+      }
+      break;
+  }
+  return inputs;
+}
+
+std::string stage_case(const Workspace& space, Stage stage) {
+  switch (stage) {
+    case Stage::Mesh:  // the tool and its depth: the mesher checks that the body is thick enough
+      return resolved_sections(
+          space.c, {"", "surface", "inclusion", "mesh", "support", "tool", "indentation"});
+    case Stage::Precompute:
+      return resolved_sections(space.c, {"material", "tool", "indentation"});
+    case Stage::Fit:
+      return resolved_sections(space.c, {"fit"});
+    case Stage::Certify:
+      return resolved_sections(space.c, {"certify"});
+  }
+  return {};
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// From the case to the settings of each stage, and to the text that identifies them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "app/pipeline/workspace.hpp"
+#include "fem/campaign.hpp"
+#include "fitting/fitting.hpp"
+#include "mesher/mesher.hpp"
+
+namespace palpate::app {
+
+enum class Stage { Mesh, Precompute, Fit, Certify };
+
+std::string stage_name(Stage stage);  ///< as in the provenance: "mesh", ...
+
+mesher::Settings mesh_settings(const Workspace& space);
+fem::CampaignSettings campaign_settings(const Workspace& space);
+fitting::FitSettings fit_settings(const Workspace& space);
+
+/// Reads the device profiles. @throws Error(Configuration).
+fitting::CertifySettings certify_settings(const Workspace& space);
+
+/// Files a stage reads, in the order of its provenance.
+std::vector<std::filesystem::path> stage_inputs(const Workspace& space, Stage stage);
+
+/// The part of the resolved case on which the result of a stage depends.
+std::string stage_case(const Workspace& space, Stage stage);
+
+}  // namespace palpate::app

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/pipeline/stages.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include "app/console.hpp"
+#include "app/pipeline/freshness.hpp"
+#include "app/pipeline/settings.hpp"
+#include "format/body.hpp"
+#include "format/error.hpp"
+#include "format/library.hpp"
+
+namespace palpate::app {
+namespace {
+
+/// An artifact of the stage before, with a remedy that names that stage.
+template <class Read>
+auto read_input(const std::filesystem::path& path, const char* made_by, Read read) {
+  if (!std::filesystem::exists(path)) {
+    throw Error(ErrorKind::Configuration, path.string(), "the file does not exist",
+                fmt::format("make it with `palpate {}`", made_by));
+  }
+  return read(path);
+}
+
+/// A failed site is data, but one that a user must see.
+void tell_failures(const Curves& curves) {
+  constexpr std::size_t kLargestShown = 5;
+  std::size_t shown = 0;
+  for (const SiteCurves& site : curves.sites) {
+    if (site.status == SiteStatus::Complete) continue;
+    if (++shown > kLargestShown) continue;
+    say("  site {} {}: {}", site.vertex,
+        site.status == SiteStatus::Failed ? "failed" : "stopped early", site.reason);
+  }
+  if (shown > kLargestShown) say("  and {} more: see `palpate inspect`", shown - kLargestShown);
+}
+
+void append(Provenance& provenance, const Provenance& before, ProvenanceStep step) {
+  provenance = before;
+  provenance.steps.push_back(std::move(step));
+}
+
+/// Why the artifact must be made (again); empty when it need not.
+template <class Read>
+std::string reason_to_make(const Workspace& space, Stage stage, const std::filesystem::path& path,
+                           Read read) {
+  if (!std::filesystem::exists(path)) return "it does not exist";
+  try {
+    return stale_reason(space, stage, read(path).provenance);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::Configuration) throw;
+    return "the present one cannot be used (" + error.problem() + ")";
+  }
+}
+
+/// Run the stage if needed; true when it ran.
+template <class Read, class Run>
+bool refresh(const Workspace& space, Stage stage, const std::filesystem::path& path, Read read,
+             Run run) {
+  const std::string reason = reason_to_make(space, stage, path, read);
+  if (reason.empty()) {
+    say("{}: {} is up to date", stage_name(stage), path.string());
+    return false;
+  }
+  say("{}: making {}, {}", stage_name(stage), path.string(), reason);
+  run(space);
+  return true;
+}
+
+}  // namespace
+
+SiteCounts count_sites(const Curves& curves) {
+  SiteCounts counts;
+  for (const SiteCurves& site : curves.sites) {
+    switch (site.status) {
+      case SiteStatus::Complete:
+        ++counts.complete;
+        break;
+      case SiteStatus::Partial:
+        ++counts.partial;
+        break;
+      case SiteStatus::Failed:
+        ++counts.failed;
+        break;
+    }
+  }
+  return counts;
+}
+
+void run_mesh(const Workspace& space) {
+  prepare_output(space.out);
+  mesher::Settings settings = mesh_settings(space);
+  settings.log = [](std::string_view line) { say("  {}", line); };
+  Body body = mesher::mesh(settings);
+  body.provenance = {};
+  body.provenance.steps.push_back(make_stage_step(space, Stage::Mesh, {}));
+  write_body(space.body(), body);
+  const auto sites = std::count(body.response.is_site.begin(), body.response.is_site.end(), 1);
+  say("mesh: {} nodes, {} tetrahedra, {} response triangles, {} sites -> {}", body.nodes.size(),
+      body.tetrahedra.size(), body.response.triangles.size(), sites, space.body().string());
+}
+
+SiteCounts run_precompute(const Workspace& space) {
+  const Body body = read_input(space.body(), "mesh", read_body);
+  prepare_output(space.out);
+  fem::CampaignSettings settings = campaign_settings(space);
+  ProgressDisplay display("precompute");
+  settings.progress = [&](const fem::CampaignProgress& p) {
+    display.show(p.done, p.failed, p.total);
+  };
+  fem::CampaignReport report;
+  Curves curves = fem::run_campaign(body, settings, report);
+  auto facts = report.facts;
+  facts.emplace_back("threads", std::to_string(space.threads));
+  facts.emplace_back("wall_seconds", fmt::format("{:.3f}", report.seconds));
+  facts.emplace_back("cpu_seconds", fmt::format("{:.3f}", report.cpu_seconds));
+  append(curves.provenance, body.provenance,
+         make_stage_step(space, Stage::Precompute, std::move(facts)));
+  write_curves(space.curves(), curves);
+  const SiteCounts counts = count_sites(curves);
+  say("precompute: {} sites complete, {} stopped early, {} failed, {} ({} on the processors) -> {}",
+      counts.complete, counts.partial, counts.failed, duration_text(report.seconds),
+      duration_text(report.cpu_seconds), space.curves().string());
+  tell_failures(curves);
+  return counts;
+}
+
+void run_fit(const Workspace& space) {
+  const Body body = read_input(space.body(), "mesh", read_body);
+  const Curves curves = read_input(space.curves(), "precompute", read_curves);
+  prepare_output(space.out);
+  Library library = fitting::fit(body, curves, fit_settings(space));
+  append(library.provenance, curves.provenance, make_stage_step(space, Stage::Fit, {}));
+  write_library(space.library(), library);
+  const auto with_status = [&](ResponseStatus status) {
+    return std::count_if(library.responses.begin(), library.responses.end(),
+                         [=](const NodeResponse& r) { return r.status == status; });
+  };
+  say("fit: {} responses fitted, {} filled, {} holes -> {}", with_status(ResponseStatus::Fitted),
+      with_status(ResponseStatus::Filled), with_status(ResponseStatus::Hole),
+      space.library().string());
+}
+
+void run_certify(const Workspace& space) {
+  Library library = read_input(space.library(), "fit", read_library);
+  const fitting::CertifySettings settings = certify_settings(space);
+  fitting::certify(library, settings);
+  // A new certificate replaces the old one, so does its step.
+  std::erase_if(library.provenance.steps, [](const ProvenanceStep& step) {
+    return step.stage == stage_name(Stage::Certify);
+  });
+  library.provenance.steps.push_back(make_stage_step(space, Stage::Certify, {}));
+  write_library(space.library(), library);
+  const Certificate& certificate = library.certificate;
+  say("certify: L_stick = {:.1f} N/m, L_slip = {:.1f} N/m at mu = {} ({}) -> {}", certificate.stick,
+      certificate.slip, certificate.friction, certificate.limited_by, space.library().string());
+  for (const DeviceCertificate& device : certificate.devices) {
+    say("  {}: certified passive from {:.0f} Hz", device.device, device.lowest_rate);
+  }
+}
+
+SiteCounts run_build(const Workspace& space) {
+  prepare_output(space.out);
+  refresh(space, Stage::Mesh, space.body(), read_body, run_mesh);
+  refresh(space, Stage::Precompute, space.curves(), read_curves, run_precompute);
+  refresh(space, Stage::Fit, space.library(), read_library, run_fit);
+  refresh(space, Stage::Certify, space.library(), read_library, run_certify);
+  return count_sites(read_curves(space.curves()));
+}
+
+}  // namespace palpate::app

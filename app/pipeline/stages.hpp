@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// One function a stage: read the artifacts before, compute, append to the provenance, write.
+#pragma once
+
+#include "app/pipeline/workspace.hpp"
+#include "format/curves.hpp"
+
+namespace palpate::app {
+
+/// Sites by status: what the exit code and the closing line depend on.
+struct SiteCounts {
+  std::size_t complete = 0, partial = 0, failed = 0;
+  bool all_complete() const { return partial == 0 && failed == 0; }
+};
+SiteCounts count_sites(const Curves& curves);
+
+void run_mesh(const Workspace& space);
+SiteCounts run_precompute(const Workspace& space);
+void run_fit(const Workspace& space);
+void run_certify(const Workspace& space);
+
+/// All four, each only when its artifact is not up to date.
+SiteCounts run_build(const Workspace& space);
+
+}  // namespace palpate::app

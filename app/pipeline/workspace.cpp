@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/pipeline/workspace.hpp"
+
+#include <unistd.h>
+
+#include <system_error>
+
+#include "format/error.hpp"
+
+namespace palpate::app {
+
+namespace fs = std::filesystem;
+
+Workspace make_workspace(const fs::path& case_file, const std::string& out, int threads) {
+  Workspace space;
+  space.c = read_case(case_file);
+  space.case_folder = case_file.parent_path();
+  space.threads = threads;
+  if (!out.empty()) {
+    space.out = out;
+  } else if (!space.c.output.folder.empty()) {
+    space.out = space.c.output.folder;
+  } else {
+    space.out = fs::path("out") / space.c.name;
+  }
+  return space;
+}
+
+void prepare_output(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder, failure);
+  if (failure) {
+    throw Error(ErrorKind::Configuration, folder.string(),
+                "the output folder cannot be made (" + failure.message() + ")",
+                "choose another with --out");
+  }
+  if (access(folder.c_str(), W_OK | X_OK) != 0) {
+    throw Error(ErrorKind::Configuration, folder.string(),
+                "no permission to write into the output folder", "choose another with --out");
+  }
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/case/case.hpp"
+
+namespace palpate::app {
+
+/// A case and where its artifacts are.
+struct Workspace {
+  Case c;
+  std::filesystem::path case_folder;  ///< surfaces and profiles are relative to it
+  std::filesystem::path out;
+  int threads = 1;
+
+  std::filesystem::path body() const { return out / "body.h5"; }
+  std::filesystem::path curves() const { return out / "curves.h5"; }
+  std::filesystem::path library() const { return out / "library.h5"; }
+  std::filesystem::path recording() const { return out / "recording.h5"; }
+  std::filesystem::path report() const { return out / "report.html"; }
+};
+
+/// Read the case and name the places; nothing is created. `out` empty: as the case says.
+Workspace make_workspace(const std::filesystem::path& case_file, const std::string& out,
+                         int threads);
+
+/// Make the output folder and check that files can be made in it, before any long work.
+/// @throws Error(Configuration).
+void prepare_output(const std::filesystem::path& folder);
+
+}  // namespace palpate::app
