@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "format/sha256.hpp"
+#include "palpate_version.hpp"
 
 namespace palpate::app {
 namespace {
@@ -40,7 +41,7 @@ std::string stale_reason(const Workspace& space, Stage stage, const Provenance& 
   const auto last = std::find_if(provenance.steps.rbegin(), provenance.steps.rend(),
                                  [&](const ProvenanceStep& step) { return step.stage == name; });
   if (last == provenance.steps.rend()) return "it has not been through this stage";
-  if (last->version != palpate_version()) return "it was made by version " + last->version;
+  if (last->version != PALPATE_VERSION) return "it was made by version " + last->version;
   if (fact(*last, kSettingsFact) != stage_case(space, stage)) return "the case has changed";
   if (!same_inputs(*last, stage_inputs(space, stage))) return "an input file has changed";
   return {};
