@@ -212,10 +212,11 @@ Reader::Reader(fs::path file, std::string remedy) : state_(std::make_unique<Stat
   state_->file = Handle(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!state_->file) {
     const std::string message = last_hdf5_message();
-    const bool locking = message.find("lock") != std::string::npos;
-    throw Error(
-        ErrorKind::Configuration, path.string(), "cannot be opened (" + message + ")",
-        locking ? "set HDF5_USE_FILE_LOCKING=FALSE if its disk has no file locks" : state_->remedy);
+    const bool locking = message.find("unable to lock file") != std::string::npos;
+    throw Error(ErrorKind::Configuration, path.string(), "cannot be opened (" + message + ")",
+                locking ? "wait for the program that writes it; if there is none, its disk has no "
+                          "file locks: set HDF5_USE_FILE_LOCKING=FALSE"
+                        : state_->remedy);
   }
   H5O_info_t info;
   if (H5Oget_info2(state_->file.get(), &info, H5O_INFO_BASIC) < 0) fail("/", "is not readable");

@@ -245,7 +245,7 @@ Library library(unsigned seed) {
 Recording recording(unsigned seed) {
   Random random(seed);
   Recording recording{"simulated", std::string(64, 'c'), 1000, 0.3, {}, {}};
-  for (int i = 0; i < 10000; ++i) {
+  for (int i = 0; i < 5000; ++i) {
     recording.steps.push_back(
         {std::int64_t{1000000} * i, random.vector(0.1), random.vector(1), random.vector(5),
          random.vector(0.1), random.between(0, 0.01), random.between(0, 0.01),
