@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/contact_state.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/palpate.h"
+#include "runtime/sliding.hpp"
+
+namespace palpate::runtime {
+namespace {
+
+constexpr double kRelaxed = 1e-11;  // m; a lateral deflection this small stores no energy (1e-19 J)
+constexpr int kActivationPasses = 24;  // each gains at least a digit where the surface is smooth
+constexpr int kRelaxedPasses = 8;
+constexpr double kRecoveryShare = 0.5;  // of the tip's travel: how fast the offset may return
+
+bool finite(const Vec3& v) noexcept {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+}  // namespace
+
+ContactState::ContactState(const Surface& surface, const CollisionTree& tree,
+                           const ContactSettings& settings) noexcept
+    : surface_(&surface), tree_(&tree), settings_(settings), tank_(settings.tank_cap) {}
+
+void ContactState::reset() noexcept {
+  model_.reset();
+  approaching_.reset();
+  last_.reset();
+  tank_.empty();
+  goal_ = 0;
+  seen_ = {};
+}
+
+std::uint32_t ContactState::refuse() noexcept {
+  seen_.status = PALPATE_BAD_INPUT;
+  drop();
+  return seen_.status;
+}
+
+std::uint32_t ContactState::step(const Vec3& x) noexcept {
+  if (!finite(x)) return refuse();
+  const Vec3 from = last_.value_or(x);
+  const double travelled = norm(x - from);
+  last_ = x;
+  if (!(travelled <= surface_->diagonal())) return refuse();
+  seen_.status = 0;
+  if (model_) touch(x, travelled);
+  if (!model_) detect(from, x);
+  if (model_) seen_.status |= PALPATE_CONTACT;
+  return seen_.status;
+}
+
+void ContactState::detect(const Vec3& from, const Vec3& x) noexcept {
+  if (approaching_) approach(x);
+  if (model_ || approaching_) return;
+  const SurfacePoint entry = tree_->first_entry(from, x);
+  if (entry.element == kNoElement) return;
+  approaching_ = entry;
+  approach(x);
+}
+
+void ContactState::approach(const Vec3& x) noexcept {
+  const Projection p = project(*surface_, *approaching_, x, kActivationPasses, kRelaxed);
+  approaching_ = p.point;
+  if (p.at_border) seen_.status |= PALPATE_AT_BORDER;
+  if (surface_->outside_distance(surface_->element(p.point.element), x) >= 0) {
+    approaching_.reset();
+    return;
+  }
+  if (p.lateral > kRelaxed) return;
+  LocalModel model(*surface_, p.point, 0);
+  goal_ = std::max(model.deflection(x).geometric, 0.0);
+  model.set_offset(goal_);
+  approaching_.reset();
+  seen_.status |= PALPATE_ACTIVATED;
+  commit(model, x, 0);
+}
+
+void ContactState::touch(const Vec3& x, double travelled) noexcept {
+  const Deflection before = model_->deflection(x);
+  const double energy_before = model_->energy(before);  // E_{i-1}(x_i)
+  seen_.absorbed += energy_before - seen_.energy;
+  LocalModel moved = slide(x, before);
+  if (release(moved, x, energy_before)) return;
+  rearm(moved, x);
+  if (settings_.budget == EnergyBudget::Kept) {
+    const EnergyVerdict verdict =
+        judge(moved, x, tank_.budget(energy_before), goal_, kRecoveryShare * travelled);
+    if (verdict.hold)
+      moved = *model_;
+    else
+      moved.set_offset(verdict.offset);
+    if (verdict.limited) seen_.status |= PALPATE_ENERGY_LIMITED;
+  }
+  if (norm(moved.contact_point() - model_->contact_point()) > 0) seen_.status |= PALPATE_SLIDING;
+  commit(moved, x, energy_before);
+}
+
+/// Where the lateral deflection exceeds the slip limit, c moves by the excess. Out of normal
+/// contact the limit is 0: c follows the tip until x - c is parallel to n.
+LocalModel ContactState::slide(const Vec3& x, const Deflection& before) noexcept {
+  if (!(before.depth > 0)) {
+    const Projection p = project(*surface_, model_->point(), x, kRelaxedPasses, kRelaxed);
+    if (p.at_border) seen_.status |= PALPATE_AT_BORDER;
+    return {*surface_, p.point, model_->offset()};
+  }
+  const double excess = before.lateral - model_->slip_limit(before, settings_.friction);
+  if (!(excess > 0)) return *model_;
+  const Walk moved = walk(*surface_, model_->point(), before.tangent, excess);
+  if (moved.at_border) seen_.status |= PALPATE_AT_BORDER;
+  return {*surface_, moved.point, model_->offset()};
+}
+
+/// The contact ends when the tip is out of normal contact and outside the body. What a border kept
+/// from relaxing is discarded and not credited to the tank.
+bool ContactState::release(const LocalModel& moved, const Vec3& x, double energy_before) noexcept {
+  const Deflection d = moved.deflection(x);
+  const Element& e = surface_->element(moved.point().element);
+  if (d.depth > 0 || surface_->outside_distance(e, x) < 0) return false;
+  if (d.lateral > kRelaxed)
+    seen_.status |= PALPATE_DROPPED;
+  else
+    tank_.settle(energy_before, 0);
+  seen_.status |= PALPATE_RELEASED;
+  free_contact();
+  return true;
+}
+
+/// Out of normal contact but inside the body: the offset follows the tip outwards, at zero energy,
+/// until the true surface is felt again.
+void ContactState::rearm(LocalModel& moved, const Vec3& x) noexcept {
+  const Deflection d = moved.deflection(x);
+  if (d.depth > 0) return;
+  goal_ = std::min(goal_, std::max(d.geometric, 0.0));
+  moved.set_offset(std::min(moved.offset(), std::max(d.geometric, 0.0)));
+}
+
+void ContactState::commit(const LocalModel& model, const Vec3& x, double energy_before) noexcept {
+  model_ = model;
+  const Deflection d = model.deflection(x);
+  const LocalResponse r = model.respond(d);
+  tank_.settle(energy_before, r.energy);
+  if (d.depth > model.deepest()) seen_.status |= PALPATE_BEYOND_DEPTH;
+  seen_.point = model.point();
+  seen_.contact_point = model.contact_point();
+  seen_.normal = model.normal();
+  seen_.deflection = d;
+  seen_.offset = model.offset();
+  seen_.energy = r.energy;
+  seen_.force = r.force;
+  seen_.tank = tank_.level();
+}
+
+void ContactState::free_contact() noexcept {
+  model_.reset();
+  const std::uint32_t status = seen_.status;
+  const double absorbed = seen_.absorbed;
+  seen_ = {};
+  seen_.status = status;
+  seen_.absorbed = absorbed;
+  seen_.tank = tank_.level();
+}
+
+void ContactState::drop() noexcept {
+  approaching_.reset();
+  if (!model_) return;
+  seen_.status |= PALPATE_DROPPED;
+  free_contact();
+}
+
+}  // namespace palpate::runtime

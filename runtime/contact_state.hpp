@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// One tool tip on one body: collision, sliding, energy account, release.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "format/vec3.hpp"
+#include "runtime/collision.hpp"
+#include "runtime/energy_rule.hpp"
+#include "runtime/local_model.hpp"
+#include "runtime/surface.hpp"
+
+namespace palpate::runtime {
+
+/// Whether a slide is held to the energy budget. `Ignored` is the rule of the paper, which can
+/// create energy; it exists so that tests can show what the budget prevents, and no interface
+/// offers it.
+enum class EnergyBudget : std::uint8_t { Kept, Ignored };
+
+struct ContactSettings {
+  double friction = 0;     ///< mu >= 0
+  double tank_cap = 5e-3;  ///< J; 0 = strict Theorem 2
+  EnergyBudget budget = EnergyBudget::Kept;
+};
+
+/// What a step left behind; the fields are those of palpate_observation.
+struct ContactObservation {
+  std::uint32_t status = 0;  ///< bits of palpate.h
+  SurfacePoint point;
+  Vec3 contact_point{};
+  Vec3 normal{};
+  Deflection deflection;
+  double offset = 0;    ///< d0, m
+  double energy = 0;    ///< E_i(x_i), J
+  double tank = 0;      ///< J
+  double absorbed = 0;  ///< J
+  Vec3 force{};         ///< f, of the tool ON the body, N
+};
+
+/// The contact of one tip with one surface, advanced one sample of the force loop at a time:
+///
+///   free --(outside -> inside crossing)--> approaching --(x - c parallel to n)--> touching
+///   touching --(z <= 0 and outside)--> free
+///
+/// While approaching, the contact point is tracked but no model is active and the force is zero; it
+/// normally lasts no step at all, and longer only where no point of the surface faces the tip
+/// (beyond a border). On activation d0 = n . (x - c), so that E = 0.
+///
+/// At every instant absorbed >= tank + E >= 0. step() is noexcept, allocation-free and bounded. One
+/// object belongs to one thread at a time; the surface and the tree may be shared.
+class ContactState {
+ public:
+  ContactState(const Surface& surface, const CollisionTree& tree,
+               const ContactSettings& settings) noexcept;
+
+  /// Advances to the tip position x (m) and returns the status bits. A position that is not finite,
+  /// or further from the last than the body is large, drops the contact: force zero, BAD_INPUT.
+  std::uint32_t step(const Vec3& x) noexcept;
+  /// A step whose input cannot be used: force zero, the contact dropped.
+  std::uint32_t refuse() noexcept;
+  /// Forgets the contact, the last position and the account.
+  void reset() noexcept;
+
+  const ContactObservation& observation() const noexcept { return seen_; }
+
+ private:
+  void detect(const Vec3& from, const Vec3& x) noexcept;
+  void approach(const Vec3& x) noexcept;
+  void touch(const Vec3& x, double travelled) noexcept;
+  LocalModel slide(const Vec3& x, const Deflection& before) noexcept;
+  bool release(const LocalModel& moved, const Vec3& x, double energy_before) noexcept;
+  void rearm(LocalModel& moved, const Vec3& x) noexcept;
+  void commit(const LocalModel& model, const Vec3& x, double energy_before) noexcept;
+  void free_contact() noexcept;
+  void drop() noexcept;
+
+  const Surface* surface_;
+  const CollisionTree* tree_;
+  ContactSettings settings_;
+  EnergyTank tank_;
+  std::optional<LocalModel> model_;          ///< touching
+  std::optional<SurfacePoint> approaching_;  ///< entered, not yet active
+  std::optional<Vec3> last_;                 ///< last usable tip position
+  double goal_ = 0;                          ///< offset the contact should return to, m
+  ContactObservation seen_;
+};
+
+}  // namespace palpate::runtime

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What keeps a slide from creating energy.
+#pragma once
+
+#include "format/vec3.hpp"
+#include "runtime/local_model.hpp"
+
+namespace palpate::runtime {
+
+/// Smallest offset in [low, high] at which the energy of the model at x does not exceed `budget`.
+/// The energy falls as the offset rises (dE/dd0 = -g <= 0), and must not exceed the budget at
+/// `high`. Newton steps inside a shrinking bracket, at most 64; the energy at the result never
+/// exceeds the budget, and equals it to 1e-9 unless `low` already satisfies it. noexcept,
+/// allocation-free.
+double least_offset(const LocalModel& model, const Vec3& x, double budget, double low,
+                    double high) noexcept;
+
+/// What may be stored and what is kept of it.
+class EnergyTank {
+ public:
+  explicit EnergyTank(double cap) noexcept : cap_(cap) {}
+  double level() const noexcept { return level_; }  ///< J
+  /// E_{i-1}(x_i) + tank: the most that the next model may hold.
+  double budget(double energy_before) const noexcept { return energy_before + level_; }
+  /// tank := clamp(tank + E_{i-1}(x_i) - E_i(x_i), 0, cap)
+  void settle(double energy_before, double energy_after) noexcept;
+  void empty() noexcept { level_ = 0; }
+
+ private:
+  double cap_;
+  double level_ = 0;
+};
+
+/// Outcome of the rule for a model moved by a slide.
+struct EnergyVerdict {
+  bool hold = false;     ///< no offset is enough: the contact point must stay where it was
+  bool limited = false;  ///< the offset was raised
+  double offset = 0;     ///< m
+};
+
+/// Rules 2 and 3. `moved` is the model after the slide, with the offset of the step before. When
+/// its energy exceeds the budget the offset is raised until they are equal; otherwise it is lowered
+/// towards `goal` (its value at the collision) by at most `recovery`, as far as the budget allows.
+EnergyVerdict judge(const LocalModel& moved, const Vec3& x, double budget, double goal,
+                    double recovery) noexcept;
+
+}  // namespace palpate::runtime

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// The static conservative force field f_i(x) that is active while the contact point is held.
+#pragma once
+
+#include "format/vec3.hpp"
+#include "runtime/interpolated_response.hpp"
+#include "runtime/surface.hpp"
+
+namespace palpate::runtime {
+
+/// The deflection of the tip in the response coordinates at a contact point.
+struct Deflection {
+  double geometric = 0;  ///< n . (x - c), m: depth of the tip below the surface at rest
+  double depth = 0;      ///< z = geometric - d0, m
+  double lateral = 0;    ///< rho >= 0, m
+  Vec3 tangent{};        ///< t, unit; zero when rho = 0
+};
+
+/// Force and energy of a local model at one tip position.
+struct LocalResponse {
+  double normal_force = 0;   ///< g(z), N
+  double lateral_force = 0;  ///< h(rho), N
+  double energy = 0;  ///< E = sum n_l (G_l(z) + H_l(rho)), J [Mahvash & Hayward 2005, eq. 32]
+  Vec3 force{};       ///< f = g n + h t, of the tool ON the body, N [eq. 28]
+};
+
+/// With c, n = n(c) and the offset d0 held:
+///   delta = x - c - d0 n,  z = n . delta,  lateral = delta - z n,  rho = |lateral|,  t =
+///   lateral/rho, f(x) = g(z) n + h(rho) t = grad E(x).                      [Mahvash & Hayward
+///   2005, eqs. 26-32]
+/// Its Jacobian is g' n n^T + h' t t^T + (h/rho) s s^T with s = n x t: no steeper than the steepest
+/// stored slope. noexcept, allocation-free.
+class LocalModel {
+ public:
+  LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept;
+
+  Deflection deflection(const Vec3& x) const noexcept;
+  LocalResponse respond(const Deflection& d) const noexcept;
+  double energy(const Deflection& d) const noexcept;
+  /// rho_s = h^{-1}(mu g(z)): the lateral deflection at which slip begins, m.
+  double slip_limit(const Deflection& d, double friction) const noexcept;
+
+  /// Rate of change of E when c moves by unit length along d in its element while x stays, J/m:
+  ///   n' = P (sum u_l grad n_l . d)/|sum n_l u_l|, P the projector normal to n,
+  ///   dE/ds = sum (grad n_l . d)(G_l + H_l) + (g rho - h z)(t . n') - g (n . d) - h (t . d)
+  ///           - d0 h (t . n').
+  double energy_slope(const Deflection& at, const Vec3& d) const noexcept;
+
+  const SurfacePoint& point() const noexcept { return point_; }
+  const Vec3& contact_point() const noexcept { return c_; }
+  const Vec3& normal() const noexcept { return n_; }
+  double offset() const noexcept { return offset_; }
+  void set_offset(double offset) noexcept { offset_ = offset; }
+  double deepest() const noexcept { return response_.deepest(); }
+
+ private:
+  const Surface* surface_;
+  SurfacePoint point_;
+  Vec3 c_;
+  Vec3 n_;
+  InterpolatedResponse response_;
+  double offset_;
+};
+
+}  // namespace palpate::runtime

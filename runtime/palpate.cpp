@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+// The C interface: arguments are checked, exceptions end here.
+#include "runtime/palpate.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <fstream>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "format/error.hpp"
+#include "palpate_version.hpp"
+#include "runtime/handles.hpp"
+
+using palpate::Vec3;
+using palpate::operator-;
+using palpate::runtime::ContactObservation;
+using palpate::runtime::ContactSettings;
+
+namespace {
+
+constexpr double kDefaultTankCap = 5e-3;  // J
+
+thread_local char last_error[512] = "";
+
+int fail(int status, const char* text) noexcept {
+  std::snprintf(last_error, sizeof last_error, "%s", text);
+  return status;
+}
+
+/// Runs what may throw and turns the exception into a status and a message.
+template <typename Action>
+int guarded(Action action) noexcept {
+  try {
+    return action();
+  } catch (const std::bad_alloc&) {
+    return fail(PALPATE_ERROR_MEMORY, "out of memory");
+  } catch (const std::exception& e) {
+    return fail(PALPATE_ERROR_FORMAT, e.what());
+  } catch (...) {
+    return fail(PALPATE_ERROR_FORMAT, "unknown failure while reading the library");
+  }
+}
+
+void copy(const Vec3& from, double to[3]) noexcept {
+  std::copy(from.begin(), from.end(), to);
+}
+
+palpate_observation translate(const ContactObservation& seen, std::uint32_t size) noexcept {
+  palpate_observation o{};
+  o.size = size;
+  o.status = seen.status;
+  o.element = seen.point.element;
+  copy(seen.contact_point, o.contact_point);
+  copy(seen.point.natural, o.natural);
+  copy(seen.normal, o.normal);
+  o.depth = seen.deflection.depth;
+  o.lateral = seen.deflection.lateral;
+  o.offset = seen.offset;
+  o.energy = seen.energy;
+  o.tank = seen.tank;
+  o.absorbed = seen.absorbed;
+  copy(seen.force, o.force_on_body);
+  return o;
+}
+
+}  // namespace
+
+palpate_library_info palpate_library::describe(const palpate::Library& library,
+                                               const palpate::runtime::Surface& surface) {
+  palpate_library_info info{};
+  info.vertices = static_cast<std::int32_t>(library.positions.size());
+  info.triangles = static_cast<std::int32_t>(library.triangles.size());
+  info.stick = library.certificate.stick;
+  info.slip = library.certificate.slip;
+  info.friction = library.certificate.friction;
+  for (const palpate::NodeResponse& r : library.responses) {
+    if (r.status == palpate::ResponseStatus::Hole || r.normal.knot.empty()) continue;
+    info.depth = std::max(info.depth, static_cast<double>(r.normal.knot.back()));
+  }
+  copy(surface.low(), info.low);
+  copy(surface.high(), info.high);
+  return info;
+}
+
+extern "C" {
+
+const char* palpate_version(void) {
+  return PALPATE_VERSION;
+}
+
+const char* palpate_last_error(void) {
+  return last_error;
+}
+
+const char* palpate_status_text(int status) {
+  switch (status) {
+    case PALPATE_OK:
+      return "done";
+    case PALPATE_ERROR_ARGUMENT:
+      return "a null pointer or a value out of range";
+    case PALPATE_ERROR_FILE:
+      return "the file cannot be read: check path and rights";
+    case PALPATE_ERROR_FORMAT:
+      return "not a valid response library: rebuild it with this version";
+    case PALPATE_ERROR_MEMORY:
+      return "out of memory";
+    default:
+      return "unknown status";
+  }
+}
+
+int palpate_library_load(const char* path, palpate_library** library) {
+  if (library == nullptr)
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: library is null");
+  *library = nullptr;
+  if (path == nullptr) return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: path is null");
+  return guarded([&] {
+    if (!std::ifstream(path, std::ios::binary)) {
+      const std::string text = std::string(path) + ": cannot be opened; check path and rights";
+      return fail(PALPATE_ERROR_FILE, text.c_str());
+    }
+    *library = new palpate_library(palpate::read_library(path));
+    return static_cast<int>(PALPATE_OK);
+  });
+}
+
+void palpate_library_destroy(palpate_library* library) {
+  delete library;
+}
+
+int palpate_library_describe(const palpate_library* library, palpate_library_info* info) {
+  if (library == nullptr || info == nullptr) {
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_describe: null pointer");
+  }
+  if (info->size != sizeof(palpate_library_info)) {
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_describe: set info->size to sizeof");
+  }
+  *info = library->info;
+  info->size = sizeof(palpate_library_info);
+  return PALPATE_OK;
+}
+
+void palpate_settings_default(palpate_settings* settings) {
+  if (settings == nullptr) return;
+  *settings = {sizeof(palpate_settings), -1.0, kDefaultTankCap};
+}
+
+int palpate_state_create(const palpate_library* library, const palpate_settings* settings,
+                         palpate_state** state) {
+  if (state == nullptr) return fail(PALPATE_ERROR_ARGUMENT, "palpate_state_create: state is null");
+  *state = nullptr;
+  if (library == nullptr)
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_state_create: library is null");
+  palpate_settings chosen;
+  palpate_settings_default(&chosen);
+  if (settings != nullptr) chosen = *settings;
+  if (chosen.size != sizeof(palpate_settings)) {
+    return fail(PALPATE_ERROR_ARGUMENT,
+                "palpate_state_create: fill the settings with palpate_settings_default first");
+  }
+  if (!std::isfinite(chosen.friction) || !std::isfinite(chosen.tank_cap) || chosen.tank_cap < 0) {
+    return fail(PALPATE_ERROR_ARGUMENT,
+                "palpate_state_create: friction must be finite, tank_cap finite and not negative");
+  }
+  if (chosen.friction < 0 && !library->certified) {
+    return fail(
+        PALPATE_ERROR_ARGUMENT,
+        "palpate_state_create: the library has no certificate and thus no friction of its own; "
+        "set settings.friction");
+  }
+  const double friction = chosen.friction < 0 ? library->info.friction : chosen.friction;
+  return guarded([&] {
+    *state = new palpate_state(*library, ContactSettings{friction, chosen.tank_cap});
+    return static_cast<int>(PALPATE_OK);
+  });
+}
+
+void palpate_state_destroy(palpate_state* state) {
+  delete state;
+}
+
+void palpate_state_reset(palpate_state* state) {
+  if (state != nullptr) state->contact.reset();
+}
+
+uint32_t palpate_step(palpate_state* state, const double position[3], const double velocity[3],
+                      double dt, double force[3]) {
+  if (force != nullptr) std::fill_n(force, 3, 0.0);
+  if (state == nullptr) return PALPATE_BAD_INPUT;
+  const bool usable = position != nullptr && velocity != nullptr && force != nullptr &&
+                      std::isfinite(dt) && dt > 0 && std::isfinite(velocity[0]) &&
+                      std::isfinite(velocity[1]) && std::isfinite(velocity[2]);
+  if (!usable) return state->contact.refuse();
+  const uint32_t status = state->contact.step({position[0], position[1], position[2]});
+  copy(-state->contact.observation().force, force);
+  return status;
+}
+
+int palpate_observe(const palpate_state* state, palpate_observation* observation) {
+  if (state == nullptr || observation == nullptr) {
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_observe: null pointer");
+  }
+  if (observation->size != sizeof(palpate_observation)) {
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_observe: set observation->size to sizeof");
+  }
+  *observation = translate(state->contact.observation(), sizeof(palpate_observation));
+  return PALPATE_OK;
+}
+
+}  // extern "C"

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Moving the contact point over the triangles.
+#pragma once
+
+#include "format/vec3.hpp"
+#include "runtime/surface.hpp"
+
+namespace palpate::runtime {
+
+struct Walk {
+  SurfacePoint point;
+  bool at_border = false;  ///< a border of the response surface stood in the way
+};
+
+/// Moves a point over the surface by `distance` (m, >= 0) along the projection of `direction` on
+/// the plane of its element. At an edge the direction is projected anew on the neighbour, and the
+/// rest of the distance is walked there. Where there is no neighbour, or the new direction does not
+/// point into it, the point follows the edge by the component of the motion along it, or stays.
+/// noexcept, allocation-free, at most 64 edges.
+Walk walk(const Surface& surface, const SurfacePoint& from, const Vec3& direction,
+          double distance) noexcept;
+
+}  // namespace palpate::runtime

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "format/error.hpp"
+
+namespace palpate::runtime {
+namespace {
+
+constexpr double kLeastDirection =
+    0.5;  // |sum n_l u_l| below this: directions contradict each other
+
+std::string triangle_name(std::size_t m) {
+  return "library triangle " + std::to_string(m);
+}
+
+/// Distance of the origin from the segment a b.
+double origin_to_segment(const Vec3& a, const Vec3& b) {
+  const Vec3 edge = b - a;
+  const double length2 = dot(edge, edge);
+  const double s = length2 > 0 ? std::clamp(-dot(a, edge) / length2, 0.0, 1.0) : 0.0;
+  return norm(a + s * edge);
+}
+
+/// Distance of the origin from the triangle a b c: the least |sum n_l u_l| over an element.
+double origin_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double to_edges =
+      std::min({origin_to_segment(a, b), origin_to_segment(b, c), origin_to_segment(c, a)});
+  const Vec3 n = cross(b - a, c - a);
+  const double length2 = dot(n, n);
+  if (length2 <= 0) return to_edges;
+  const Vec3 foot = (dot(a, n) / length2) * n;
+  const bool inside = dot(cross(b - a, foot - a), n) >= 0 && dot(cross(c - b, foot - b), n) >= 0 &&
+                      dot(cross(a - c, foot - c), n) >= 0;
+  return inside ? norm(foot) : to_edges;
+}
+
+NodeCurves compile(const NodeResponse& response) {
+  if (response.status == ResponseStatus::Hole) return {};
+  return {CompiledCurve(response.normal), CompiledCurve(response.lateral)};
+}
+
+}  // namespace
+
+Surface::Surface(const Library& library)
+    : positions_(library.positions), inward_(library.inward), elements_(library.triangles.size()) {
+  if (inward_.size() != positions_.size() || library.responses.size() != positions_.size()) {
+    throw Error(ErrorKind::Configuration, "library",
+                "positions, directions and responses differ in number", "build it again");
+  }
+  curves_.reserve(library.responses.size());
+  for (const NodeResponse& response : library.responses) curves_.push_back(compile(response));
+  for (std::size_t m = 0; m < elements_.size(); ++m) build_element(library, m);
+  if (std::none_of(elements_.begin(), elements_.end(), [](const Element& e) { return e.active; })) {
+    throw Error(ErrorKind::Configuration, "library",
+                "no triangle has responses at its three vertices", "fit more sites");
+  }
+  connect();
+  low_ = high_ = positions_[static_cast<std::size_t>(elements_[0].vertices[0])];
+  for (const Vec3& p : positions_) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low_[i] = std::min(low_[i], p[i]);
+      high_[i] = std::max(high_[i], p[i]);
+    }
+  }
+}
+
+void Surface::build_element(const Library& library, std::size_t m) {
+  Element& e = elements_[m];
+  e.vertices = library.triangles[m];
+  e.active = true;
+  for (const std::int32_t v : e.vertices) {
+    if (v < 0 || static_cast<std::size_t>(v) >= positions_.size()) {
+      throw Error(ErrorKind::Configuration, triangle_name(m), "vertex index out of range",
+                  "build it again");
+    }
+    e.active =
+        e.active && library.responses[static_cast<std::size_t>(v)].status != ResponseStatus::Hole;
+  }
+  const Vec3 outward = cross(vertex(e, 1) - vertex(e, 0), vertex(e, 2) - vertex(e, 0));
+  const double twice_area = norm(outward);
+  const double longest =
+      std::max({norm(vertex(e, 1) - vertex(e, 0)), norm(vertex(e, 2) - vertex(e, 1)),
+                norm(vertex(e, 0) - vertex(e, 2))});
+  if (!(twice_area > 1e-9 * longest * longest)) {
+    throw Error(ErrorKind::Geometry, triangle_name(m), "it has no area",
+                "remesh the response surface");
+  }
+  e.facet_normal = (-1.0 / twice_area) * outward;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const Vec3 edge = vertex(e, (l + 2) % 3) - vertex(e, (l + 1) % 3);
+    e.gradient[l] = (1.0 / twice_area) * cross(edge, e.facet_normal);
+  }
+  if (e.active) check_directions(m);
+}
+
+void Surface::check_directions(std::size_t m) const {
+  const Element& e = elements_[m];
+  const char* remedy = "refine the response surface there or smooth the inward directions";
+  for (std::size_t l = 0; l < 3; ++l) {
+    if (!(dot(inward(e, l), e.facet_normal) > 0)) {
+      throw Error(ErrorKind::Geometry, triangle_name(m),
+                  "the inward direction of vertex " + std::to_string(e.vertices[l]) +
+                      " does not point to its inner side",
+                  remedy);
+    }
+  }
+  if (origin_to_triangle(inward(e, 0), inward(e, 1), inward(e, 2)) < kLeastDirection) {
+    throw Error(ErrorKind::Geometry, triangle_name(m),
+                "its inward directions differ too much to be interpolated", remedy);
+  }
+}
+
+void Surface::connect() {
+  std::map<std::pair<std::int32_t, std::int32_t>, std::pair<std::int32_t, std::size_t>> owner;
+  for (std::size_t m = 0; m < elements_.size(); ++m) {
+    for (std::size_t l = 0; l < 3; ++l) {
+      const std::pair edge(elements_[m].vertices[(l + 1) % 3], elements_[m].vertices[(l + 2) % 3]);
+      if (!owner.emplace(edge, std::pair(static_cast<std::int32_t>(m), l)).second) {
+        throw Error(ErrorKind::Geometry, triangle_name(m),
+                    "an edge is shared by three triangles or the orientation flips across it",
+                    "repair the response surface");
+      }
+    }
+  }
+  for (const auto& [edge, here] : owner) {
+    const auto across = owner.find({edge.second, edge.first});
+    if (across == owner.end() || !element(across->second.first).active) continue;
+    elements_[static_cast<std::size_t>(here.first)].neighbour[here.second] = across->second.first;
+  }
+}
+
+Vec3 Surface::position(const SurfacePoint& p) const noexcept {
+  const Element& e = element(p.element);
+  return p.natural[0] * vertex(e, 0) + p.natural[1] * vertex(e, 1) + p.natural[2] * vertex(e, 2);
+}
+
+Vec3 Surface::direction_sum(const SurfacePoint& p) const noexcept {
+  const Element& e = element(p.element);
+  return p.natural[0] * inward(e, 0) + p.natural[1] * inward(e, 1) + p.natural[2] * inward(e, 2);
+}
+
+Vec3 Surface::normal(const SurfacePoint& p) const noexcept {
+  const Vec3 sum = direction_sum(p);
+  return (1.0 / norm(sum)) * sum;
+}
+
+InterpolatedResponse Surface::response(const SurfacePoint& p) const noexcept {
+  const Element& e = element(p.element);
+  const auto node = [&](std::size_t l) {
+    return &curves_[static_cast<std::size_t>(e.vertices[l])];
+  };
+  return {{node(0), node(1), node(2)}, p.natural};
+}
+
+}  // namespace palpate::runtime

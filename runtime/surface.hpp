@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// The response surface made ready for the force loop: triangles, who is next to whom, responses.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "format/library.hpp"
+#include "format/vec3.hpp"
+#include "runtime/interpolated_response.hpp"
+
+namespace palpate::runtime {
+
+inline constexpr std::int32_t kNoElement = -1;
+
+/// A triangle of the response surface. Everything about it is constant over the triangle.
+struct Element {
+  std::array<std::int32_t, 3> vertices{};
+  /// neighbour[l] is across the edge opposite to vertex l; kNoElement at a border.
+  std::array<std::int32_t, 3> neighbour{kNoElement, kNoElement, kNoElement};
+  std::array<Vec3, 3> gradient{};  ///< of the natural coordinates, 1/m, in the plane
+  Vec3 facet_normal{};             ///< unit, INTO the body
+  bool active = false;             ///< false next to a hole: never touched, a border for the others
+};
+
+/// A point of the surface: an element and natural coordinates n_l >= 0 that sum to 1.
+struct SurfacePoint {
+  std::int32_t element = kNoElement;
+  Vec3 natural{};
+};
+
+/// Immutable after construction; shared by any number of threads.
+class Surface {
+ public:
+  /// @throws Error(Configuration) when an edge belongs to more than two triangles or to two of
+  /// opposite
+  ///   orientation, Error(Geometry) when a triangle has no area, |sum n_l u_l| < 0.5 somewhere in
+  ///   it (the direction cannot be interpolated), or a direction does not point to its inner side.
+  explicit Surface(const Library& library);
+
+  const Element& element(std::int32_t m) const noexcept {
+    return elements_[static_cast<std::size_t>(m)];
+  }
+  std::int32_t element_count() const noexcept {
+    return static_cast<std::int32_t>(elements_.size());
+  }
+  const Vec3& vertex(const Element& e, std::size_t l) const noexcept {
+    return positions_[static_cast<std::size_t>(e.vertices[l])];
+  }
+  const Vec3& inward(const Element& e, std::size_t l) const noexcept {
+    return inward_[static_cast<std::size_t>(e.vertices[l])];
+  }
+
+  Vec3 position(const SurfacePoint& p) const noexcept;
+  /// sum n_l u_l, not normalised [Mahvash & Hayward 2005, eq. 26].
+  Vec3 direction_sum(const SurfacePoint& p) const noexcept;
+  /// n, the unit inward direction at p. Always normalised: the energy (32) needs |n| = 1.
+  Vec3 normal(const SurfacePoint& p) const noexcept;
+  InterpolatedResponse response(const SurfacePoint& p) const noexcept;
+
+  /// Signed distance of x to the plane of an element, positive OUTSIDE the body, m. Collision and
+  /// release use this one expression, so that they never disagree on which side a point is.
+  double outside_distance(const Element& e, const Vec3& x) const noexcept {
+    return dot(vertex(e, 0) - x, e.facet_normal);
+  }
+
+  const Vec3& low() const noexcept { return low_; }
+  const Vec3& high() const noexcept { return high_; }
+  double diagonal() const noexcept { return norm(high_ - low_); }  ///< of the bounding box, m
+
+ private:
+  void build_element(const Library& library, std::size_t m);
+  void connect();
+  void check_directions(std::size_t m) const;
+
+  std::vector<Vec3> positions_;
+  std::vector<Vec3> inward_;
+  std::vector<NodeCurves> curves_;
+  std::vector<Element> elements_;
+  Vec3 low_{}, high_{};
+};
+
+}  // namespace palpate::runtime
