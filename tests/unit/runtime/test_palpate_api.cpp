@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The C interface from a file to a force: load, collide, press, slide, account, and every refusal.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "bodies.hpp"
+#include "runtime/palpate.h"
+
+namespace palpate::test {
+namespace {
+
+constexpr double kStiffness = 170;
+constexpr double kDt = 5e-4;
+
+class PalpateApi : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::temp_directory_path() / ("palpate_api_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder_);
+    path_ = (folder_ / "library.h5").string();
+    write_library(path_,
+                  plate(8, 0.08, [](const Vec3&) { return wall_response(kStiffness, 120); }));
+    ASSERT_EQ(palpate_library_load(path_.c_str(), &library_), PALPATE_OK) << palpate_last_error();
+    palpate_settings_default(&settings_);
+    settings_.friction = 0.3;
+    ASSERT_EQ(palpate_state_create(library_, &settings_, &state_), PALPATE_OK);
+  }
+  void TearDown() override {
+    palpate_state_destroy(state_);
+    palpate_library_destroy(library_);
+    std::filesystem::remove_all(folder_);
+  }
+
+  std::uint32_t step(const Vec3& x) {
+    const double velocity[3] = {0, 0, 0};
+    return palpate_step(state_, x.data(), velocity, kDt, force_.data());
+  }
+  palpate_observation observe() const {
+    palpate_observation o{};
+    o.size = sizeof o;
+    EXPECT_EQ(palpate_observe(state_, &o), PALPATE_OK);
+    return o;
+  }
+
+  std::filesystem::path folder_;
+  std::string path_;
+  palpate_library* library_ = nullptr;
+  palpate_state* state_ = nullptr;
+  palpate_settings settings_{};
+  Vec3 force_{};
+};
+
+TEST_F(PalpateApi, DescribesTheLibrary) {
+  palpate_library_info info{};
+  info.size = sizeof info;
+  ASSERT_EQ(palpate_library_describe(library_, &info), PALPATE_OK);
+  EXPECT_EQ(info.vertices, 81);
+  EXPECT_EQ(info.triangles, 128);
+  EXPECT_NEAR(info.depth, 0.02, 1e-8);
+  EXPECT_NEAR(info.high[0], 0.08, 1e-12);
+  EXPECT_EQ(info.low[2], 0.0);
+  EXPECT_STRNE(palpate_version(), "");
+}
+
+TEST_F(PalpateApi, PressSlideReleaseOnAPlate) {
+  // Free, then inside by 0.1 mm in one step: activated without force.
+  EXPECT_EQ(step({0.030, 0.033, 0.0004}), 0U);
+  EXPECT_EQ(step({0.030, 0.033, -0.0001}), PALPATE_CONTACT | PALPATE_ACTIVATED);
+  EXPECT_EQ(norm(force_), 0.0);
+  EXPECT_NEAR(observe().offset, 0.0001, 1e-15);
+
+  // Press to 6 mm: the wall law of the node, shifted by the offset, pushing the tool out (+z).
+  for (int i = 1; i <= 60; ++i) step({0.030, 0.033, -0.0001 * i});
+  const double z = 0.006 - 0.0001;
+  const double g = kStiffness * (z - 0.0025);
+  EXPECT_NEAR(force_[2], g, 1e-6);
+  EXPECT_NEAR(force_[0], 0, 1e-12);
+  // Work of a frictionless press: the antiderivative of the wall law.
+  const double pressed =
+      kStiffness * (0.005 * 0.005 * 0.005 * 100 / 3 + (z * z - 2.5e-5) / 2 - 0.0025 * (z - 0.005));
+  EXPECT_NEAR(observe().absorbed, pressed, 1e-9);
+  EXPECT_NEAR(observe().energy, pressed, 1e-9);
+
+  // Slide 20 mm along x: sticks first (presliding), then the lateral force saturates at mu g.
+  std::uint32_t seen = 0;
+  for (int i = 1; i <= 400; ++i) seen = step({0.030 + 5e-5 * i, 0.033, -0.006});
+  EXPECT_TRUE(seen & PALPATE_SLIDING);
+  EXPECT_NEAR(force_[0], -0.3 * g, 1e-6);  // resists the motion
+  EXPECT_NEAR(force_[2], g, 1e-6);
+  EXPECT_NEAR(observe().contact_point[0], 0.050 - 0.3 * g / 120, 1e-7);
+
+  // Release: the energy that friction took stays absorbed.
+  for (int i = 1; i <= 70; ++i) seen = step({0.050, 0.033, -0.006 + 1e-4 * i});
+  EXPECT_EQ(seen, 0U);
+  EXPECT_EQ(norm(force_), 0.0);
+  EXPECT_EQ(observe().element, -1);
+  // Closed cycle: the normal work is returned, the lateral spring is loaded to mu g and then lost.
+  // While slipping, each step of 50 um first stretches that spring beyond mu g, then lets c follow.
+  const double friction_force = 0.3 * g;
+  const double stretch = friction_force / 120;
+  const double lost = friction_force * (0.020 - stretch / 2) + 120 * 5e-5 / 2 * (0.020 - stretch);
+  EXPECT_NEAR(observe().absorbed, lost, 1e-3 * lost);
+}
+
+TEST_F(PalpateApi, BadInputGivesAFiniteZeroForceAndDropsTheContact) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const Vec3 inside{0.03, 0.033, -0.004};
+  for (const Vec3& bad : {Vec3{nan, 0, 0}, Vec3{0, infinity, 0}, Vec3{1e300, -1e300, 1e300},
+                          Vec3{0.03, 0.033, -1.0}}) {
+    palpate_state_reset(state_);
+    step({0.03, 0.033, 0.001});
+    step({0.03, 0.033, -0.0001});
+    step(inside);
+    ASSERT_GT(force_[2], 0.1);
+    const std::uint32_t status = step(bad);
+    EXPECT_EQ(status, PALPATE_BAD_INPUT | PALPATE_DROPPED);
+    EXPECT_EQ(norm(force_), 0.0);
+    // The energy that was given up must not come back: no force until the surface is crossed anew.
+    step(inside);
+    step(inside);
+    EXPECT_EQ(norm(force_), 0.0);
+  }
+}
+
+TEST_F(PalpateApi, RefusesATimeStepThatIsNotPositive) {
+  const double x[3] = {0.03, 0.033, 0.001};
+  const double v[3] = {0, 0, 0};
+  double f[3] = {1, 1, 1};
+  for (const double dt : {0.0, -1e-3, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_EQ(palpate_step(state_, x, v, dt, f), PALPATE_BAD_INPUT);
+    EXPECT_EQ(f[0], 0.0);
+  }
+  EXPECT_EQ(palpate_step(nullptr, x, v, kDt, f), PALPATE_BAD_INPUT);
+  EXPECT_EQ(palpate_step(state_, nullptr, v, kDt, f), PALPATE_BAD_INPUT);
+  EXPECT_EQ(palpate_step(state_, x, v, kDt, nullptr), PALPATE_BAD_INPUT);
+}
+
+TEST_F(PalpateApi, SaysWhatIsWrongWithAFile) {
+  palpate_library* none = nullptr;
+  EXPECT_EQ(palpate_library_load((folder_ / "absent.h5").c_str(), &none), PALPATE_ERROR_FILE);
+  EXPECT_NE(std::strstr(palpate_last_error(), "absent.h5"), nullptr);
+  EXPECT_EQ(none, nullptr);
+
+  const auto text = folder_ / "text.h5";
+  std::ofstream(text) << "this is no library";
+  EXPECT_EQ(palpate_library_load(text.c_str(), &none), PALPATE_ERROR_FORMAT);
+  EXPECT_EQ(none, nullptr);
+  EXPECT_EQ(palpate_library_load(nullptr, &none), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_library_load(path_.c_str(), nullptr), PALPATE_ERROR_ARGUMENT);
+}
+
+TEST_F(PalpateApi, RefusesSettingsOutOfRange) {
+  palpate_state* none = nullptr;
+  palpate_settings bad = settings_;
+  bad.size = 4;
+  EXPECT_EQ(palpate_state_create(library_, &bad, &none), PALPATE_ERROR_ARGUMENT);
+  bad = settings_;
+  bad.tank_cap = -1;
+  EXPECT_EQ(palpate_state_create(library_, &bad, &none), PALPATE_ERROR_ARGUMENT);
+  bad = settings_;
+  bad.friction = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(palpate_state_create(library_, &bad, &none), PALPATE_ERROR_ARGUMENT);
+  // This library was never certified, so it has no friction of its own to fall back to.
+  EXPECT_EQ(palpate_state_create(library_, nullptr, &none), PALPATE_ERROR_ARGUMENT);
+  EXPECT_NE(std::strstr(palpate_last_error(), "friction"), nullptr);
+  EXPECT_EQ(none, nullptr);
+}
+
+}  // namespace
+}  // namespace palpate::test
