@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/fill.hpp"
+
+#define TETLIBRARY
+#include <tetgen.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "format/error.hpp"
+#include "mesher/text.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+// TetGen's size test is a plain function without a context.
+thread_local double longest_edge_squared = 0;
+
+bool too_large(REAL* a, REAL* b, REAL* c, REAL* d, REAL*, REAL) {
+  const REAL* corner[] = {a, b, c, d};
+  for (int i = 0; i < 4; ++i) {
+    for (int j = i + 1; j < 4; ++j) {
+      double squared = 0;
+      for (int k = 0; k < 3; ++k) {
+        const double difference = corner[i][k] - corner[j][k];
+        squared += difference * difference;
+      }
+      if (squared > longest_edge_squared) return true;
+    }
+  }
+  return false;
+}
+
+/// TetGen frees its arrays with delete[]; the facets own theirs.
+void give(tetgenio& in, const Surface& shells) {
+  in.firstnumber = 0;
+  in.numberofpoints = static_cast<int>(shells.points.size());
+  in.pointlist = new REAL[3 * shells.points.size()];
+  for (std::size_t i = 0; i < shells.points.size(); ++i) {
+    std::copy(shells.points[i].begin(), shells.points[i].end(), in.pointlist + 3 * i);
+  }
+  in.numberoffacets = static_cast<int>(shells.triangles.size());
+  in.facetlist = new tetgenio::facet[shells.triangles.size()];
+  for (std::size_t t = 0; t < shells.triangles.size(); ++t) {
+    tetgenio::facet& facet = in.facetlist[t];
+    tetgenio::init(&facet);
+    facet.numberofpolygons = 1;
+    facet.polygonlist = new tetgenio::polygon[1];
+    tetgenio::init(facet.polygonlist);
+    facet.polygonlist->numberofvertices = 3;
+    facet.polygonlist->vertexlist = new int[3];
+    std::copy(shells.triangles[t].begin(), shells.triangles[t].end(),
+              facet.polygonlist->vertexlist);
+  }
+}
+
+[[noreturn]] void refuse(int code, const std::string& where) {
+  const std::string change = "change element_size or patch_spacing a little and report the case";
+  if (code == 1) {
+    throw Error(ErrorKind::Internal, where, "out of memory while filling with tetrahedra",
+                "increase element_size");
+  }
+  const char* geometry = code == 3   ? "TetGen found that the facets cut one another"
+                         : code == 4 ? "TetGen found a feature too small to be represented"
+                         : code == 5 ? "TetGen found two facets that nearly coincide"
+                                     : nullptr;
+  if (geometry) {
+    throw Error(ErrorKind::Geometry, where, geometry,
+                "smooth or repair the surface there, or change patch_spacing and element_size");
+  }
+  throw Error(ErrorKind::Internal, where,
+              text("TetGen failed with its code ", code, " while filling with tetrahedra"), change);
+}
+
+double signed_volume6(const std::vector<Vec3>& x, const Tetrahedron& t) {
+  const auto at = [&](std::size_t k) { return x[static_cast<std::size_t>(t[k])]; };
+  return dot(cross(at(1) - at(0), at(2) - at(0)), at(3) - at(0));
+}
+
+Filling take(const tetgenio& out) {
+  Filling filling;
+  for (int i = 0; i < out.numberofpoints; ++i) {
+    const REAL* x = out.pointlist + 3 * i;
+    filling.nodes.push_back({x[0], x[1], x[2]});
+  }
+  for (int t = 0; t < out.numberoftetrahedra; ++t) {
+    const int* v = out.tetrahedronlist + t * out.numberofcorners;
+    Tetrahedron corners{v[0], v[1], v[2], v[3]};
+    if (signed_volume6(filling.nodes, corners) < 0) std::swap(corners[2], corners[3]);
+    filling.tetrahedra.push_back(corners);
+    const REAL* attributes = out.tetrahedronattributelist;
+    filling.part.push_back(
+        attributes ? static_cast<int>(attributes[t * out.numberoftetrahedronattributes]) : 0);
+  }
+  return filling;
+}
+
+Triangle sorted(Triangle t) {
+  std::sort(t.begin(), t.end());
+  return t;
+}
+
+/// The promise to the caller: given points first and every given triangle a face.
+void check_kept(const Filling& filling, const Surface& shells, const std::string& where) {
+  std::set<Triangle> faces;
+  for (const Tetrahedron& t : filling.tetrahedra) {
+    faces.insert({sorted({t[1], t[2], t[3]}), sorted({t[0], t[2], t[3]}),
+                  sorted({t[0], t[1], t[3]}), sorted({t[0], t[1], t[2]})});
+  }
+  const bool same_points =
+      filling.nodes.size() >= shells.points.size() &&
+      std::equal(shells.points.begin(), shells.points.end(), filling.nodes.begin());
+  const auto lost = std::count_if(shells.triangles.begin(), shells.triangles.end(),
+                                  [&](const Triangle& t) { return !faces.contains(sorted(t)); });
+  if (!same_points || lost > 0) {
+    throw Error(ErrorKind::Internal, where,
+                text("TetGen did not keep ", lost, " of ", shells.triangles.size(), " facets"),
+                "change element_size or patch_spacing a little and report the case");
+  }
+}
+
+}  // namespace
+
+Filling fill(const Surface& shells, double longest_edge, const std::string& where) {
+  tetgenio in, out;
+  give(in, shells);
+  longest_edge_squared = longest_edge * longest_edge;
+  in.tetunsuitable = too_large;
+  // p: from a surface; Y: keep its triangles; M: do not merge coplanar ones; q: radius-edge ratio
+  // and least dihedral angle; A: number the closed cells; Q: print nothing.
+  char switches[] = "pYMq1.3/12AQ";
+  try {
+    tetrahedralize(switches, &in, &out);
+  } catch (int code) {
+    refuse(code, where);
+  }
+  Filling filling = take(out);
+  check_kept(filling, shells, where);
+  return filling;
+}
+
+}  // namespace palpate::mesher

@@ -1,0 +1,304 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/mesher.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "format/error.hpp"
+#include "mesher/fill.hpp"
+#include "mesher/quality.hpp"
+#include "mesher/queries.hpp"
+#include "mesher/read_surface.hpp"
+#include "mesher/remesh.hpp"
+#include "mesher/response.hpp"
+#include "mesher/text.hpp"
+#include "mesher/thickness.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+// A tool pressed deeper than this part of the thickness squeezes the rest beyond what a strain
+// energy law, or a mesh of this kind, can follow (nominal strain -0.8).
+constexpr double kDeepestFraction = 0.8;
+
+// Nodes this part of element_size outside a support still lie on its border but for rounding.
+constexpr double kSupportTolerance = 1e-3;
+
+[[noreturn]] void refuse_setting(const std::string& problem, const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, "mesh", problem, remedy);
+}
+
+void check_settings(const Settings& s) {
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+  if (!positive(s.patch_spacing) || !positive(s.element_size)) {
+    refuse_setting("patch_spacing and element_size must be positive lengths", "correct the case");
+  }
+  if (!std::isfinite(s.interior_growth) || s.interior_growth < 1) {
+    refuse_setting(text("interior_growth is ", s.interior_growth, ", below 1"),
+                   "give 1 for a uniform mesh or more for a coarser interior");
+  }
+  if (!(s.feature_angle > 0 && s.feature_angle <= 180)) {
+    refuse_setting(text("feature_angle is ", s.feature_angle, " degrees"), "give 0 .. 180");
+  }
+  if (!positive(s.tool_radius) || !std::isfinite(s.depth) || s.depth < 0) {
+    refuse_setting("tool_radius must be positive and depth not negative", "correct the case");
+  }
+  const auto check_unit = [&](const SurfaceFile& file) {
+    if (!positive(file.unit)) {
+      refuse_setting(text("the unit of ", file.path.string(), " is ", file.unit, " m"),
+                     "give a positive length, 0.001 for millimetres");
+    }
+  };
+  check_unit(s.surface);
+  for (const SurfaceFile& inclusion : s.inclusions) check_unit(inclusion);
+}
+
+/// Inclusions that share no point with the skin or with one another, all inside the one and none
+/// inside the other.
+void check_inclusions(const Settings& settings, const Surface& skin,
+                      const std::vector<Surface>& inclusions) {
+  const auto refuse = [&](std::size_t i, const std::string& problem, const std::string& remedy) {
+    throw Error(ErrorKind::Geometry, settings.inclusions[i].path.string(), problem, remedy);
+  };
+  const SurfaceQuery inside_skin(skin);
+  for (std::size_t i = 0; i < inclusions.size(); ++i) {
+    if (surfaces_meet(skin, inclusions[i])) {
+      refuse(i, "the inclusion touches or cuts the skin", "move or shrink it");
+    }
+    if (!inside_skin.contains(inclusions[i].points.front())) {
+      refuse(i, "the inclusion lies outside the skin", "check its position and its unit");
+    }
+    const SurfaceQuery inside_this(inclusions[i]);
+    for (std::size_t j = 0; j < inclusions.size(); ++j) {
+      if (i == j) continue;
+      const std::string other = settings.inclusions[j].path.string();
+      if (surfaces_meet(inclusions[i], inclusions[j])) {
+        refuse(i, "the inclusion touches or cuts " + other, "keep inclusions apart");
+      }
+      if (inside_this.contains(inclusions[j].points.front())) {
+        refuse(i, "the inclusion contains " + other, "nested inclusions are not supported");
+      }
+    }
+  }
+}
+
+/// Region of each part of the filling: 0, or 1 + the inclusion that contains its largest element.
+std::map<std::int32_t, std::int32_t> regions_of_parts(const Filling& filling,
+                                                      const std::vector<Surface>& inclusions) {
+  std::map<std::int32_t, std::pair<double, std::size_t>> largest;
+  for (std::size_t t = 0; t < filling.tetrahedra.size(); ++t) {
+    const double v = volume(filling.nodes, filling.tetrahedra[t]);
+    auto& entry = largest[filling.part[t]];
+    if (v > entry.first) entry = {v, t};
+  }
+  std::vector<SurfaceQuery> queries;
+  for (const Surface& inclusion : inclusions) queries.emplace_back(inclusion);
+  std::map<std::int32_t, std::int32_t> region;
+  for (const auto& [part, entry] : largest) {
+    Vec3 centroid{};
+    for (const std::int32_t v : filling.tetrahedra[entry.second]) {
+      centroid = centroid + 0.25 * filling.nodes[static_cast<std::size_t>(v)];
+    }
+    region[part] = 0;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      if (queries[i].contains(centroid)) region[part] = static_cast<std::int32_t>(i) + 1;
+    }
+  }
+  return region;
+}
+
+std::string name_or(const std::string& name, std::string fallback) {
+  return name.empty() ? std::move(fallback) : name;
+}
+
+void set_regions(Body& body, const Settings& settings, const Filling& filling,
+                 const std::vector<Surface>& inclusions) {
+  body.region_names.push_back(name_or(settings.surface.region_name, "matrix"));
+  for (std::size_t i = 0; i < inclusions.size(); ++i) {
+    body.region_names.push_back(
+        name_or(settings.inclusions[i].region_name, text("inclusion_", i + 1)));
+  }
+  const auto region = regions_of_parts(filling, inclusions);
+  for (const std::int32_t part : filling.part) {
+    body.tetrahedron_region.push_back(region.at(part));
+  }
+}
+
+/// Held boundary points; every one of them a node of the same number.
+std::vector<std::uint8_t> set_supports(Body& body, const Settings& settings,
+                                       const Surface& boundary) {
+  std::vector<std::uint8_t> held(boundary.points.size(), 0);
+  for (std::size_t i = 0; i < held.size(); ++i) {
+    if (is_held(settings.supports, boundary.points[i], kSupportTolerance * settings.element_size)) {
+      held[i] = 1;
+      body.fixed_nodes.push_back(static_cast<std::int32_t>(i));
+    }
+  }
+  return held;
+}
+
+void check_supports(const Body& body, const Settings& settings, std::size_t boundary_nodes) {
+  const std::string where = settings.surface.path.string();
+  const Bounds box = bounds(body.nodes);
+  const std::string extent =
+      text("the body spans ", millimetres(box.low), " to ", millimetres(box.high));
+  if (body.fixed_nodes.size() < 3) {
+    throw Error(ErrorKind::Geometry, where,
+                text("the supports hold ", body.fixed_nodes.size(), " of ", boundary_nodes,
+                     " surface nodes, the body would float"),
+                "place a support on it: " + extent);
+  }
+  const auto& site = body.response.is_site;
+  if (std::find(site.begin(), site.end(), std::uint8_t{1}) == site.end()) {
+    throw Error(ErrorKind::Geometry, where,
+                "the supports hold every response vertex, nothing can be touched",
+                "make the supports smaller: " + extent);
+  }
+}
+
+void set_response(Body& body, const NestedSurface& nested, const std::vector<std::uint8_t>& held,
+                  const Log& log) {
+  ResponseSurface& response = body.response;
+  response.triangles = nested.response.triangles;
+  InwardDirections directions = inward_directions(nested.response, nested.boundary, held);
+  response.inward = std::move(directions.inward);
+  for (std::size_t v = 0; v < nested.response.points.size(); ++v) {
+    response.node.push_back(static_cast<std::int32_t>(v));
+    response.is_site.push_back(held[v] != 0 ? 0 : 1);
+  }
+  note(log, text("inward directions: ", directions.adjusted, " of ", response.inward.size(),
+                 " turned so that they can be interpolated"));
+  if (directions.unresolved.empty()) return;
+  for (const std::int32_t v : directions.unresolved) {
+    response.is_site[static_cast<std::size_t>(v)] = 0;
+  }
+  note(
+      log,
+      text("WARNING: ", counted(directions.unresolved.size(), "response point"),
+           " cannot be sites: no direction points into all triangles around them; the first is at ",
+           millimetres(
+               nested.response.points[static_cast<std::size_t>(directions.unresolved.front())])));
+}
+
+void check_depth(const Body& body, const Settings& settings, const Surface& boundary) {
+  if (settings.depth <= 0) return;
+  const auto thickness = thickness_under_tool(boundary, body.response.inward, settings.tool_radius);
+  std::size_t thin = 0, thinnest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < thickness.size(); ++v) {
+    if (body.response.is_site[v] == 0) continue;
+    if (settings.depth > kDeepestFraction * thickness[v]) ++thin;
+    if (thickness[v] < least) {
+      least = thickness[v];
+      thinnest = v;
+    }
+  }
+  if (thin > 0) {
+    throw Error(ErrorKind::Geometry, settings.surface.path.string(),
+                text("a depth of ", millimetres(settings.depth), " is more than ", kDeepestFraction,
+                     " of the thickness at ", counted(thin, "site"), ": only ", millimetres(least),
+                     " at ", millimetres(body.nodes[thinnest])),
+                text("reduce the depth below ", millimetres(kDeepestFraction * least),
+                     " or hold the thin part in a support"));
+  }
+  note(settings.log, text("depth: ", millimetres(settings.depth), " of at least ",
+                          millimetres(least), " under every site"));
+}
+
+void check_volumes(const Quality& quality, const Surface& boundary, const std::string& where) {
+  const double enclosed = signed_volume(boundary);
+  if (!(std::abs(quality.volume - enclosed) <= 1e-9 * enclosed)) {
+    throw Error(ErrorKind::Internal, where,
+                text("the tetrahedra fill ", quality.volume, " m^3 of the ", enclosed,
+                     " m^3 enclosed by the boundary"),
+                "change element_size or patch_spacing a little and report the case");
+  }
+}
+
+NestedSurface remesh_skin(const Settings& settings, const Surface& skin) {
+  const int subdivisions =
+      std::max(1, static_cast<int>(std::lround(settings.patch_spacing / settings.element_size)));
+  NestedSurface nested =
+      remesh(skin, {settings.patch_spacing, subdivisions, settings.feature_angle},
+             settings.surface.path.string(), settings.log);
+  note(settings.log, text("response surface: ", nested.response.points.size(), " vertices, ",
+                          nested.response.triangles.size(), " triangles; each divided into ",
+                          subdivisions, " x ", subdivisions, " facets"));
+  return nested;
+}
+
+/// Skin and inclusions in one list of triangles, the skin first.
+Surface join_shells(const Settings& settings, const Surface& boundary,
+                    const std::vector<Surface>& inclusions) {
+  Surface shells = boundary;
+  for (std::size_t i = 0; i < inclusions.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (surfaces_meet(inclusions[i], inclusions[j])) {
+        throw Error(ErrorKind::Geometry, settings.inclusions[i].path.string(),
+                    "remeshed to element_size, the inclusion touches another one",
+                    "reduce element_size or move them apart");
+      }
+    }
+    if (surfaces_meet(boundary, inclusions[i])) {
+      throw Error(ErrorKind::Geometry, settings.inclusions[i].path.string(),
+                  "remeshed to element_size, the inclusion touches the skin",
+                  "reduce element_size and patch_spacing or move it inward");
+    }
+    append(shells, inclusions[i]);
+  }
+  return shells;
+}
+
+std::vector<Surface> remesh_inclusions(const Settings& settings,
+                                       const std::vector<Surface>& inclusions) {
+  std::vector<Surface> remeshed;
+  for (std::size_t i = 0; i < inclusions.size(); ++i) {
+    remeshed.push_back(remesh(inclusions[i], {settings.element_size, 1, settings.feature_angle},
+                              settings.inclusions[i].path.string(), settings.log)
+                           .boundary);
+  }
+  return remeshed;
+}
+
+}  // namespace
+
+Body mesh(const Settings& settings) {
+  check_settings(settings);
+  const std::string where = settings.surface.path.string();
+  const Surface skin = read_surface(settings.surface, settings.log);
+  std::vector<Surface> inclusions;
+  for (const SurfaceFile& file : settings.inclusions) {
+    inclusions.push_back(read_surface(file, settings.log));
+  }
+  check_inclusions(settings, skin, inclusions);
+
+  const NestedSurface nested = remesh_skin(settings, skin);
+  inclusions = remesh_inclusions(settings, inclusions);
+  const Surface shells = join_shells(settings, nested.boundary, inclusions);
+  Filling filling = fill(shells, settings.interior_growth * settings.element_size, where);
+
+  Body body;
+  body.name = name_or(settings.name, settings.surface.path.stem().string());
+  set_regions(body, settings, filling, inclusions);
+  body.nodes = std::move(filling.nodes);
+  body.tetrahedra = std::move(filling.tetrahedra);
+  body.boundary = nested.boundary.triangles;
+  const auto held = set_supports(body, settings, nested.boundary);
+  set_response(body, nested, held, settings.log);
+  check_supports(body, settings, nested.boundary.points.size());
+  check_depth(body, settings, nested.boundary);
+
+  const Quality quality = measure_quality(body.nodes, body.tetrahedra);
+  check_volumes(quality, nested.boundary, where);
+  note(settings.log,
+       text("body: ", body.nodes.size(), " nodes, ", body.tetrahedra.size(), " tetrahedra, ",
+            body.fixed_nodes.size(), " nodes held, ",
+            std::count(body.response.is_site.begin(), body.response.is_site.end(), 1), " sites"));
+  note(settings.log, "quality: " + summary(quality));
+  return body;
+}
+
+}  // namespace palpate::mesher

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/read_surface.hpp"
+
+#include <CGAL/IO/polygon_soup_io.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_faces.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <utility>
+
+#include "format/error.hpp"
+#include "mesher/cgal_mesh.hpp"
+#include "mesher/queries.hpp"
+#include "mesher/soup.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+
+constexpr double kSmallestBody = 1e-3;  // m
+constexpr double kLargestBody = 10;     // m
+
+[[noreturn]] void refuse(const std::string& where, std::string problem, std::string remedy) {
+  throw Error(ErrorKind::Geometry, where, std::move(problem), std::move(remedy));
+}
+
+std::string lower(std::string word) {
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word;
+}
+
+/// Text readers stop at "nan" as at any other word; this tells which it was.
+std::size_t count_non_finite_words(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  std::size_t count = 0;
+  for (std::string word; in >> word;) {
+    word = lower(word);
+    if (word.front() == '-' || word.front() == '+') word.erase(0, 1);
+    if (word == "nan" || word == "inf" || word == "infinity") ++count;
+  }
+  return count;
+}
+
+void check_file(const std::filesystem::path& path) {
+  const std::string where = path.string();
+  std::error_code failure;
+  if (!std::filesystem::exists(path, failure)) {
+    refuse(where, "no such file", "correct the path of the surface in the case");
+  }
+  if (!std::filesystem::is_regular_file(path, failure) || !std::ifstream(path)) {
+    refuse(where, "not a readable file", "check its type and its permissions");
+  }
+  const std::string kind = lower(path.extension().string());
+  if (kind != ".off" && kind != ".obj" && kind != ".ply" && kind != ".stl") {
+    refuse(where, "unknown kind of surface file '" + kind + "'",
+           "convert it to OFF, OBJ, PLY or STL");
+  }
+}
+
+Soup read_soup(const std::filesystem::path& path) {
+  const std::string where = path.string();
+  check_file(path);
+  std::vector<Point> points;
+  std::vector<std::vector<std::size_t>> polygons;
+  if (!CGAL::IO::read_polygon_soup(where, points, polygons)) {
+    if (polygons.empty() && points.empty()) {
+      refuse(where, "the file is empty or cannot be read as its ending says",
+             "export the surface again");
+    }
+    if (const std::size_t words = count_non_finite_words(path); words > 0) {
+      refuse(where, counted(words, "number") + " that are not finite (NaN or Inf)",
+             "correct the coordinates or export the surface again");
+    }
+    refuse(where,
+           text("the file is malformed after ", counted(points.size(), "point"), " and ",
+                counted(polygons.size(), "face")),
+           "export the surface again");
+  }
+  Soup soup;
+  soup.polygons = std::move(polygons);
+  for (const Point& p : points) soup.points.push_back(to_vec3(p));
+  return soup;
+}
+
+/// The unit with which the largest dimension is nearest to that of an organ or a limb.
+std::string likely_unit(double file_dimension) {
+  const std::pair<const char*, double> units[] = {
+      {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}};
+  const auto oddness = [&](const auto& unit) {
+    return std::abs(std::log10(file_dimension * unit.second / 0.15));
+  };
+  return std::min_element(std::begin(units), std::end(units),
+                          [&](const auto& a, const auto& b) { return oddness(a) < oddness(b); })
+      ->first;
+}
+
+void scale_to_metres(Soup& soup, const SurfaceFile& file) {
+  const double raw = largest_dimension(soup.points);
+  const double size = raw * file.unit;
+  if (!(size >= kSmallestBody && size <= kLargestBody)) {
+    refuse(file.path.string(),
+           text("the largest dimension is ", millimetres(size), " with a unit of ", file.unit,
+                " m, outside 1 mm .. 10 m"),
+           raw > 0 ? "set the unit of the surface; '" + likely_unit(raw) + "' looks likely"
+                   : "the surface has no extent: export it again");
+  }
+  for (Vec3& x : soup.points) x = file.unit * x;
+}
+
+/// @pre the soup is manifold, closed and oriented.
+Surface triangulate(const Soup& soup, const std::string& where) {
+  std::vector<Point> points;
+  for (const Vec3& x : soup.points) points.push_back(to_point(x));
+  Mesh mesh;
+  pmp::polygon_soup_to_polygon_mesh(points, soup.polygons, mesh);
+  if (!pmp::triangulate_faces(mesh)) {
+    refuse(where, "a face with more than three corners cannot be split into triangles",
+           "triangulate the surface in a mesh editor");
+  }
+  mesh.collect_garbage();
+  return to_surface(mesh);
+}
+
+void check_geometry(const Surface& surface, const std::string& where) {
+  if (const std::size_t flat = count_degenerate_triangles(surface); flat > 0) {
+    refuse(where, counted(flat, "triangle") + " of zero area",
+           "remove degenerate faces in a mesh editor");
+  }
+  if (const std::size_t pairs = count_self_intersections(surface); pairs > 0) {
+    refuse(where,
+           text("the surface cuts itself: ", counted(pairs, "pair"), " of triangles intersect"),
+           "resolve the self-intersections in a mesh editor");
+  }
+}
+
+void turn_outward(Surface& surface, const std::string& where, const Log& log) {
+  if (signed_volume(surface) >= 0) return;
+  for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
+  note(log, where + ": the faces pointed inward; all were turned");
+}
+
+}  // namespace
+
+Surface read_surface(const SurfaceFile& file, const Log& log) {
+  const std::string where = file.path.string();
+  Soup soup = read_soup(file.path);
+  check_entries(soup, where);
+  scale_to_metres(soup, file);
+  tidy(soup, where, log);
+  check_entries(soup, where);
+  check_manifold(soup, where);
+  orient(soup, where, log);
+  Surface surface = triangulate(soup, where);
+  check_geometry(surface, where);
+  turn_outward(surface, where, log);
+  const Bounds box = bounds(surface.points);
+  note(log, text(where, ": ", surface.points.size(), " points, ", surface.triangles.size(),
+                 " triangles, closed, ", millimetres(box.low), " to ", millimetres(box.high)));
+  return surface;
+}
+
+}  // namespace palpate::mesher

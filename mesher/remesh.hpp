@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "mesher/surface.hpp"
+#include "mesher/text.hpp"
+
+namespace palpate::mesher {
+
+/// Two nested triangulations of one surface.
+struct NestedSurface {
+  Surface response;                  ///< coarse; its points lie on the input surface
+  Surface boundary;                  ///< fine; its points begin with those of `response`
+  std::vector<std::int32_t> parent;  ///< response triangle of each boundary facet
+};
+
+struct RemeshSettings {
+  double spacing = 0;        ///< m, edge length of the response surface
+  int subdivisions = 1;      ///< n: each response triangle becomes n x n boundary facets
+  double feature_angle = 0;  ///< degrees; sharper edges of the input are kept
+};
+
+/// Remesh `input` isotropically to the spacing, keep its sharp edges, and subdivide each triangle;
+/// the new vertices are put on the input surface, those of sharp edges on the sharp edges.
+/// @throws Error(Geometry) when the result folds over or cuts itself: the spacing is too coarse.
+NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const std::string& where,
+                     const Log& log);
+
+}  // namespace palpate::mesher

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/response.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace palpate::mesher {
+namespace {
+
+// Wanted with a margin over the runtime's 0 and 0.5, so that rounding cannot undo them.
+constexpr double kLeastCosine = 0.1;     // of u_l with the inward facet normal
+constexpr double kLeastMeanNorm = 0.55;  // |sum n_l u_l|
+constexpr int kMaxSweeps = 500;
+
+bool holds(const PlaneSupport& plane, const Vec3& x, double tolerance) {
+  return dot(x - plane.point, unit(plane.normal)) >= -tolerance;
+}
+
+bool holds(const BoxSupport& box, const Vec3& x, double tolerance) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (x[k] < box.low[k] - tolerance || x[k] > box.high[k] + tolerance) return false;
+  }
+  return true;
+}
+
+bool holds(const SphereSupport& sphere, const Vec3& x, double tolerance) {
+  return norm(x - sphere.centre) <= sphere.radius + tolerance;
+}
+
+double angle_at(const Vec3& apex, const Vec3& b, const Vec3& c) {
+  return std::atan2(norm(cross(b - apex, c - apex)), dot(b - apex, c - apex));
+}
+
+bool all_held(const Triangle& t, const std::vector<std::uint8_t>& held) {
+  return std::all_of(t.begin(), t.end(),
+                     [&](std::int32_t v) { return held[static_cast<std::size_t>(v)] != 0; });
+}
+
+/// Outward normals weighted by the angle of each facet at the vertex [Thuermer & Wuthrich 1998].
+std::vector<Vec3> mean_inward(const Surface& boundary, std::size_t vertices,
+                              const std::vector<std::uint8_t>& held) {
+  std::vector<Vec3> touchable(vertices), any(vertices);
+  for (const Triangle& t : boundary.triangles) {
+    const Vec3 normal = unit(area_vector(boundary.points, t));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(t[k]);
+      if (v >= vertices) continue;
+      const auto at = [&](std::size_t i) {
+        return boundary.points[static_cast<std::size_t>(t[i])];
+      };
+      const Vec3 share = angle_at(at(k), at((k + 1) % 3), at((k + 2) % 3)) * normal;
+      any[v] = any[v] - share;
+      if (!all_held(t, held)) touchable[v] = touchable[v] - share;
+    }
+  }
+  for (std::size_t v = 0; v < vertices; ++v) {
+    const Vec3 mean = norm(touchable[v]) > 1e-6 ? touchable[v] : any[v];
+    // A vertex whose normals cancel has no direction of its own; the sweeps below find one.
+    touchable[v] = norm(mean) > 1e-6 ? unit(mean) : Vec3{0, 0, 1};
+  }
+  return touchable;
+}
+
+/// Distance of the origin from the segment ab.
+double distance_to_segment(const Vec3& a, const Vec3& b) {
+  const Vec3 ab = b - a;
+  const double length2 = dot(ab, ab);
+  const double s = length2 > 0 ? std::clamp(-dot(a, ab) / length2, 0.0, 1.0) : 0.0;
+  return norm(a + s * ab);
+}
+
+/// min |sum n_l u_l| over natural coordinates: the distance of the origin from the triangle of the
+/// three directions.
+double least_mean_norm(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const double edges =
+      std::min({distance_to_segment(a, b), distance_to_segment(b, c), distance_to_segment(c, a)});
+  const Vec3 normal = cross(b - a, c - a);
+  const double size2 = dot(normal, normal);
+  if (size2 == 0) return edges;
+  const Vec3 foot = (dot(a, normal) / size2) * normal;
+  const bool inside = dot(cross(b - a, foot - a), normal) >= 0 &&
+                      dot(cross(c - b, foot - b), normal) >= 0 &&
+                      dot(cross(a - c, foot - c), normal) >= 0;
+  return inside ? norm(foot) : edges;
+}
+
+/// The triangles between which a tool may slide, with their unit inward normals.
+struct OpenTriangles {
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> inward_normal;
+};
+
+OpenTriangles open_triangles(const Surface& response, const std::vector<std::uint8_t>& held) {
+  OpenTriangles open;
+  for (const Triangle& t : response.triangles) {
+    if (all_held(t, held)) continue;
+    open.triangles.push_back(t);
+    open.inward_normal.push_back(-unit(area_vector(response.points, t)));
+  }
+  return open;
+}
+
+/// One pass over the conditions; each violated one turns its directions a little towards meeting
+/// it (the perceptron rule, which converges when a solution exists). Returns the vertices of the
+/// triangles found in violation.
+std::vector<std::int32_t> sweep(const OpenTriangles& open, std::vector<Vec3>& inward) {
+  std::vector<std::int32_t> violating;
+  for (std::size_t m = 0; m < open.triangles.size(); ++m) {
+    const Vec3& normal = open.inward_normal[m];
+    std::array<Vec3*, 3> u{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      u[k] = &inward[static_cast<std::size_t>(open.triangles[m][k])];
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double cosine = dot(*u[k], normal);
+      if (cosine >= kLeastCosine) continue;
+      violating.push_back(open.triangles[m][k]);
+      *u[k] = unit(*u[k] + (2 * kLeastCosine - cosine) * normal);
+    }
+    if (least_mean_norm(*u[0], *u[1], *u[2]) >= kLeastMeanNorm) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      violating.push_back(open.triangles[m][k]);
+      *u[k] = unit(*u[k] + 0.1 * normal);
+    }
+  }
+  std::sort(violating.begin(), violating.end());
+  violating.erase(std::unique(violating.begin(), violating.end()), violating.end());
+  return violating;
+}
+
+}  // namespace
+
+bool is_held(const std::vector<Support>& supports, const Vec3& point, double tolerance) {
+  return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
+    return std::visit([&](const auto& shape) { return holds(shape, point, tolerance); }, support);
+  });
+}
+
+InwardDirections inward_directions(const Surface& response, const Surface& boundary,
+                                   const std::vector<std::uint8_t>& held) {
+  InwardDirections result;
+  result.inward = mean_inward(boundary, response.points.size(), held);
+  const std::vector<Vec3> mean = result.inward;
+  const OpenTriangles open = open_triangles(response, held);
+  for (int i = 0; i < kMaxSweeps; ++i) {
+    result.unresolved = sweep(open, result.inward);
+    if (result.unresolved.empty()) break;
+  }
+  for (std::size_t v = 0; v < mean.size(); ++v) {
+    if (dot(mean[v], result.inward[v]) < 1 - 1e-12) ++result.adjusted;
+  }
+  return result;
+}
+
+}  // namespace palpate::mesher

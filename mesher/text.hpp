@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Text of messages: counts and lengths as a user reads them.
+#pragma once
+
+#include <functional>
+#include <sstream>
+#include <string>
+#include <string_view>
+
+#include "format/vec3.hpp"
+
+namespace palpate::mesher {
+
+using Log = std::function<void(std::string_view)>;
+
+/// The parts one after the other, numbers with up to six significant digits.
+template <typename... Part>
+std::string text(const Part&... parts) {
+  std::ostringstream out;
+  (out << ... << parts);
+  return out.str();
+}
+
+/// "12.5 mm"
+inline std::string millimetres(double metres) {
+  return text(1e3 * metres, " mm");
+}
+
+/// "(12.5, 0, -3) mm"
+inline std::string millimetres(const Vec3& x) {
+  return text("(", 1e3 * x[0], ", ", 1e3 * x[1], ", ", 1e3 * x[2], ") mm");
+}
+
+/// "1 edge", "2 edges"
+inline std::string counted(std::size_t count, std::string_view noun) {
+  return text(count, " ", noun, count == 1 ? "" : "s");
+}
+
+inline void note(const Log& log, const std::string& line) {
+  if (log) log(line);
+}
+
+}  // namespace palpate::mesher

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/thickness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "mesher/queries.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+constexpr int kRing = 6;
+constexpr double kFacesTool = 0.3;  // least cosine of the surface normal with the line of the tool
+
+Vec3 any_perpendicular(const Vec3& u) {
+  const Vec3 axis = std::abs(u[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  return unit(cross(u, axis));
+}
+
+double largest_on_ring(const Surface& boundary, const SurfaceQuery& query, const Vec3& centre,
+                       const Vec3& inward, double radius) {
+  const Vec3 e1 = any_perpendicular(inward);
+  const Vec3 e2 = cross(inward, e1);
+  double largest = 0;
+  for (int k = 0; k < kRing; ++k) {
+    const double angle = 2 * std::numbers::pi * k / kRing;
+    const Vec3 around = centre + radius * (std::cos(angle) * e1 + std::sin(angle) * e2);
+    const auto foot = query.closest(around);
+    const Vec3 outward = unit(
+        area_vector(boundary.points, boundary.triangles[static_cast<std::size_t>(foot.triangle)]));
+    if (-dot(outward, inward) < kFacesTool) continue;
+    // A step below the surface, so that the first triangle hit is the far side.
+    const double step = 1e-3 * radius;
+    if (const auto hit = query.first_hit(foot.point + step * inward, inward)) {
+      largest = std::max(largest, *hit + step);
+    }
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::vector<double> thickness_under_tool(const Surface& boundary, const std::vector<Vec3>& inward,
+                                         double tool_radius) {
+  const SurfaceQuery query(boundary);
+  std::vector<double> thickness(inward.size());
+  for (std::size_t v = 0; v < inward.size(); ++v) {
+    const Vec3& site = boundary.points[v];
+    const auto below = query.first_hit(site, inward[v], static_cast<std::int32_t>(v));
+    thickness[v] =
+        std::max(below.value_or(0), largest_on_ring(boundary, query, site, inward[v], tool_radius));
+  }
+  return thickness;
+}
+
+}  // namespace palpate::mesher
