@@ -1,0 +1,251 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""Artifacts as another program sees them: h5py against the schema pages and the known content.
+
+usage: file_format_test.py <write_sample_artifacts> <folder of the schema pages>
+"""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+import numpy as np
+
+PROGRAM, SCHEMA = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+KINDS = ("body", "curves", "library", "recording")
+
+
+def table_rows(page, columns):
+    """Rows of the tables of a page that have this many columns and begin with `code`."""
+    for line in (SCHEMA / page).read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
+        if line.startswith("| `/") and len(cells) == columns:
+            yield [cells[0].strip("`")] + cells[1:]
+
+
+def documented_datasets(kind):
+    return {row[0]: row[1:4] for row in table_rows(f"{kind}.md", 5)}
+
+
+def documented_attributes(kind):
+    pages = ("common.md", f"{kind}.md")
+    return {row[0]: row[1] for page in pages for row in table_rows(page, 3)}
+
+
+def datasets_of(file):
+    found = {}
+    file.visititems(lambda name, item: found.update({"/" + name: item})
+                    if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def groups_of(file):
+    found = {"/": file}
+    file.visititems(lambda name, item: found.update({"/" + name: item})
+                    if isinstance(item, h5py.Group) else None)
+    return found
+
+
+def type_name(dataset):
+    return "text" if h5py.check_string_dtype(dataset.dtype) else dataset.dtype.name
+
+
+def attribute_type(value):
+    if isinstance(value, str):
+        return "text"
+    if isinstance(value, np.ndarray) and value.dtype == object:
+        return "text list"
+    return np.asarray(value).dtype.name
+
+
+class Tokens:
+    """The known content: every value on its own, as written by the C++ side without HDF5."""
+
+    def __init__(self, path):
+        self.lines = iter(path.read_text().split("\n"))
+
+    def text(self):
+        return next(self.lines)
+
+    def numbers(self):
+        return [parse(token) for token in self.text().split()]
+
+    def number(self):
+        (value,) = self.numbers()
+        return value
+
+    def table(self):
+        count = int(self.text().rstrip(":"))
+        return [self.numbers() for _ in range(count)]
+
+
+def parse(token):
+    return float.fromhex(token) if re.search(r"[xn]", token) else int(token)
+
+
+class FileFormat(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        subprocess.run([PROGRAM, cls.folder], check=True)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def files(self):
+        for kind in KINDS:
+            with self.subTest(kind), h5py.File(self.folder / f"{kind}.h5", "r") as file:
+                yield kind, file
+
+    def test_every_dataset_has_units_and_description(self):
+        for _, file in self.files():
+            for name, dataset in datasets_of(file).items():
+                self.assertIsInstance(dataset.attrs["units"], str, name)
+                self.assertGreater(len(dataset.attrs["description"]), 8, name)
+
+    def test_datasets_are_those_of_the_page(self):
+        for kind, file in self.files():
+            self.assertEqual(set(datasets_of(file)), set(documented_datasets(kind)))
+
+    def test_types_shapes_and_units_are_those_of_the_page(self):
+        for kind, file in self.files():
+            sizes = {}
+            for name, (dtype, shape, units) in documented_datasets(kind).items():
+                dataset = file[name]
+                self.assertEqual(type_name(dataset), dtype, name)
+                self.assertEqual(dataset.attrs["units"], units, name)
+                letters = [size.strip() for size in shape.strip("()").split(",")]
+                self.assertEqual(len(letters), dataset.ndim, name)
+                for letter, size in zip(letters, dataset.shape):
+                    wanted = int(letter) if letter.isdigit() else sizes.setdefault(letter, size)
+                    self.assertEqual(size, wanted, f"{name}: {letter}")
+
+    def test_attributes_are_those_of_the_page(self):
+        for kind, file in self.files():
+            documented = documented_attributes(kind)
+            found = {}
+            for group, item in groups_of(file).items():
+                pattern = re.sub(r"^/provenance/\d\d_\w+$", "/provenance/*", group)
+                for name, value in item.attrs.items():
+                    found[f"{pattern}@{name}"] = attribute_type(value)
+            self.assertEqual(found, documented)
+
+    def test_root_says_what_the_file_is(self):
+        for kind, file in self.files():
+            self.assertEqual(file.attrs["artifact"], f"palpate.{kind}")
+            page = (SCHEMA / f"{kind}.md").read_text()
+            self.assertIn(f"`palpate.{kind}`", page)
+            self.assertIn(f"schema {file.attrs['schema']}\n", page)
+            self.assertRegex(file.attrs["creator"], r"^palpate \d+\.\d+\.\d+ \(.+\)$")
+
+    def test_provenance_is_in_order_and_readable(self):
+        with h5py.File(self.folder / "library.h5", "r") as file:
+            steps = list(file["provenance"])
+            self.assertEqual(steps, ["00_mesh", "01_precompute", "02_fit", "03_certify"])
+            step = file["provenance/00_mesh"].attrs
+            self.assertIn('name = "Blöckchen"', step["resolved_case"])
+            self.assertEqual(list(step["input_name"]), ["skin.off", "skin.off"])
+            self.assertEqual(list(step["input_sha256"]), ["a" * 64, "7" * 64])
+            self.assertEqual(dict(zip(step["fact_name"], step["fact_value"])),
+                             {"CGAL": "5.5", "BLAS kernel": "Haswell", "empty": ""})
+
+    def test_body_values(self):
+        known = Tokens(self.folder / "body.txt")
+        with h5py.File(self.folder / "body.h5", "r") as file:
+            self.assertEqual(file.attrs["name"], known.text())
+            for name in ("nodes", "tetrahedra"):
+                np.testing.assert_array_equal(file[name][()], known.table())
+            np.testing.assert_array_equal(file["tetrahedron_region"][()],
+                                          np.ravel(known.table()))
+            regions = [known.text() for _ in range(int(known.text().rstrip(":")))]
+            self.assertEqual(list(file["region_names"].asstr()[()]), regions)
+            np.testing.assert_array_equal(file["boundary"][()], known.table())
+            for name in ("fixed_nodes", "response/node"):
+                np.testing.assert_array_equal(file[name][()], np.ravel(known.table()))
+            for name in ("response/inward", "response/triangles"):
+                np.testing.assert_array_equal(file[name][()], known.table())
+            np.testing.assert_array_equal(file["response/is_site"][()], np.ravel(known.table()))
+
+    def test_curves_values(self):
+        known = Tokens(self.folder / "curves.txt")
+        with h5py.File(self.folder / "curves.h5", "r") as file:
+            self.assertEqual(file.attrs["tool_shape"], known.text())
+            self.assertEqual(file.attrs["tool_radius"], known.number())
+            self.assertEqual(file.attrs["tool_friction"], known.text())
+            self.assertEqual(file.attrs["depth"], known.number())
+            self.assertEqual(file.attrs["lateral_travel"], known.number())
+            self.assertEqual(file.attrs["body_sha256"], known.text())
+            site, path, sample = ({name: data[()] for name, data in file[group].items()}
+                                  for group in ("site", "path", "sample"))
+            for i in range(len(site["vertex"])):
+                self.assertEqual(site["vertex"][i], known.number())
+                self.assertEqual(site["status"][i], known.number())
+                self.assertEqual(site["reason"][i].decode(), known.text())
+                self.assertEqual(site["cpu_seconds"][i], known.number())
+                self.assertEqual(site["path_count"][i], known.number())
+                first = site["first_path"][i]
+                for j in range(first, first + site["path_count"][i]):
+                    self.check_path(known, path, sample, j)
+
+    def check_path(self, known, path, sample, j):
+        self.assertEqual(path["kind"][j], known.number())
+        self.assertEqual(path["held_depth"][j], known.number())
+        self.assertEqual(list(path["direction"][j]), known.numbers())
+        self.assertEqual(path["sample_count"][j], known.number())
+        first = path["first_sample"][j]
+        for k in range(first, first + path["sample_count"][j]):
+            for name in ("displacement", "force", "strain_energy", "tool_work", "min_jacobian",
+                         "penetration", "contact_area", "iterations"):
+                self.assertEqual(np.ravel(sample[name][k]).tolist(), known.numbers(), name)
+
+    def test_library_values(self):
+        known = Tokens(self.folder / "library.txt")
+        with h5py.File(self.folder / "library.h5", "r") as file:
+            self.assertEqual(file.attrs["name"], known.text())
+            self.assertEqual(file.attrs["tool_shape"], known.text())
+            self.assertEqual(file.attrs["tool_radius"], known.number())
+            for name in ("position", "inward", "triangles"):
+                np.testing.assert_array_equal(file["surface"][name][()], known.table())
+            response = {name: data[()] for name, data in file["response"].items()}
+            for i in range(len(response["status"])):
+                self.assertEqual(response["status"][i], known.number())
+                for which in ("normal", "lateral"):
+                    rows = slice(*response[f"{which}_offset"][i:i + 2])
+                    for what in ("knot", "slope"):
+                        self.assertEqual(response[f"{which}_{what}"][rows].tolist(),
+                                         [value for (value,) in known.table()])
+                self.assertEqual(response["normal_error"][i], known.number())
+                self.assertEqual(response["lateral_error"][i], known.number())
+            certificate = file["certificate"]
+            for name in ("friction", "depth", "stick", "slip", "worst_triangle"):
+                self.assertEqual(certificate.attrs[name], known.number())
+            self.assertEqual(certificate.attrs["limited_by"], known.text())
+            for name in ("holes", "filled"):
+                self.assertEqual(certificate.attrs[name], known.number())
+            triangle = {name: data[()] for name, data in certificate["triangle"].items()}
+            for i in range(len(triangle["stick"])):
+                for name in ("stick", "slip", "kappa", "cos_theta", "sliding_passive"):
+                    self.assertEqual(triangle[name][i], known.number())
+
+    def test_recording_values(self):
+        known = Tokens(self.folder / "recording.txt")
+        with h5py.File(self.folder / "recording.h5", "r") as file:
+            self.assertEqual(file.attrs["device"], known.text())
+            self.assertEqual(file.attrs["library_sha256"], known.text())
+            self.assertEqual(file.attrs["rate"], known.number())
+            self.assertEqual(file.attrs["friction"], known.number())
+            names = ("time", "position", "velocity", "force", "contact_point", "depth", "lateral",
+                     "offset", "energy", "tank", "absorbed", "element", "status", "latency")
+            columns = [file["step"][name][()] for name in names]
+            for i in range(len(columns[0])):
+                for name, column in zip(names, columns):
+                    np.testing.assert_array_equal(np.ravel(column[i]), known.numbers(), name)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Writes one artifact of each kind into a folder, with its content as text beside it, for
+// file_format_test.py to read with other software.
+#include <cstdio>
+#include <filesystem>
+
+#include "format/crash_safe_file.hpp"
+#include "tests/unit/format/sample_artifacts.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "usage: %s <folder>\n", argv[0]);
+    return 2;
+  }
+  namespace samples = palpate::samples;
+  const std::filesystem::path folder = argv[1];
+  try {
+    std::filesystem::create_directories(folder);
+    palpate::write_body(folder / "body.h5", samples::body(1));
+    palpate::write_curves(folder / "curves.h5", samples::curves(1));
+    palpate::write_library(folder / "library.h5", samples::library(1));
+    palpate::write_recording(folder / "recording.h5", samples::recording(1));
+    palpate::write_file_crash_safely(folder / "body.txt", samples::dump(samples::body(1)));
+    palpate::write_file_crash_safely(folder / "curves.txt", samples::dump(samples::curves(1)));
+    palpate::write_file_crash_safely(folder / "library.txt", samples::dump(samples::library(1)));
+    palpate::write_file_crash_safely(folder / "recording.txt",
+                                     samples::dump(samples::recording(1)));
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
