@@ -12,3 +12,15 @@ if(PALPATE_SANITIZE)
     -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(palpate_options INTERFACE -fsanitize=${PALPATE_SANITIZE})
 endif()
+
+# Eigen chooses alignment, and with it how memory is freed, by the instruction set: every target that
+# sees Eigen must be compiled for the same processor. The runtime and the format never do.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+add_library(palpate_eigen INTERFACE)
+target_link_libraries(palpate_eigen INTERFACE Eigen3::Eigen)
+if(PALPATE_NATIVE AND NOT PALPATE_SANITIZE)
+  target_compile_options(palpate_eigen INTERFACE -march=native)
+endif()
+# GCC 12 warns of an uninitialised value inside its own AVX-512 intrinsics.
+target_compile_options(palpate_eigen INTERFACE
+  "$<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-uninitialized>")

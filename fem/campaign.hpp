@@ -25,14 +25,14 @@ struct RegionMaterial {
 };
 
 struct IndentationSettings {
-  double tool_radius = 0.005;      ///< m, sphere
-  double depth = 0.006;            ///< m, end of the normal path
-  int increments = 12;             ///< of the normal path
-  double lateral_travel = 0.003;   ///< m, end of each lateral path
+  double tool_radius = 0.005;     ///< m, sphere
+  double depth = 0.006;           ///< m, end of the normal path
+  int increments = 12;            ///< of the normal path
+  double lateral_travel = 0.003;  ///< m, end of each lateral path
   int lateral_increments = 6;
   std::vector<double> held_depths{0.003};  ///< m, where lateral paths start; each at most `depth`
   std::vector<double> azimuths{0.0};       ///< rad, from the first tangent direction of the site
-  double force_tolerance = 1e-4;           ///< relative error of the tool force allowed to the solver
+  double force_tolerance = 1e-4;  ///< relative error of the tool force allowed to the solver
 };
 
 /// State of a campaign, told after each finished site.
@@ -59,15 +59,16 @@ struct CampaignReport {
 /// The sites come back in ascending order of vertex whatever the number of threads. A site whose
 /// solve failed is data: its status, reason and partial curve are kept.
 /// @throws Error(Configuration) for constants out of range (named, with value and range), a region
-///   without a law, a law without a region, a held depth beyond the depth, a vertex that is no site.
+///   without a law, a law without a region, a held depth beyond the depth, a vertex that is no
+///   site.
 Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report);
 
 /// Displacement of the nodes of the body (corner nodes, same order as Body::nodes) for one site at
 /// the end of its normal path: for pictures and exports.
 struct DeformedState {
-  std::vector<Vec3> displacement;     ///< (N) m
+  std::vector<Vec3> displacement;             ///< (N) m
   std::vector<double> strain_energy_density;  ///< (T) J/m^3, element mean
-  std::vector<double> pressure;       ///< (T) Pa, element-constant, tension positive
+  std::vector<double> pressure;               ///< (T) Pa, element-constant, tension positive
   CurveSample sample;
 };
 DeformedState deformed_state(const Body& body, const CampaignSettings& settings,

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "fem/indentation.hpp"
+#include "fem/region_laws.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+std::vector<std::int32_t> chosen_sites(const Body& body, std::vector<std::int32_t> sites) {
+  const auto& surface = body.response;
+  const auto count = static_cast<std::int32_t>(surface.node.size());
+  if (sites.empty())
+    for (std::int32_t v = 0; v < count; ++v)
+      if (surface.is_site[v]) sites.push_back(v);
+  std::sort(sites.begin(), sites.end());
+  sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
+  for (const auto v : sites)
+    if (v < 0 || v >= count || !surface.is_site[v])
+      throw Error(ErrorKind::Configuration, body.name,
+                  "response vertex " + std::to_string(v) + " is not a site",
+                  "choose vertices outside the supports, from 0 to " + std::to_string(count - 1));
+  if (sites.empty())
+    throw Error(ErrorKind::Configuration, body.name, "the body has no site to press",
+                "shrink the supports so that some response vertices stay free");
+  return sites;
+}
+
+/// Solves the sites on several threads, each site by one of them.
+class Crew {
+ public:
+  Crew(const CampaignContext& context, const CampaignSettings& settings, Curves& curves)
+      : context_(context), settings_(settings), curves_(curves) {
+    progress_.total = static_cast<std::int64_t>(curves.sites.size());
+  }
+
+  void run() {
+    std::vector<std::thread> threads;
+    for (int i = 1; i < settings_.threads; ++i) threads.emplace_back([this] { work(); });
+    work();
+    for (auto& thread : threads) thread.join();
+    if (failure_) std::rethrow_exception(failure_);
+  }
+
+ private:
+  void work() {
+    try {
+      use_one_thread_per_site();
+      SiteSolver solver(context_);
+      for (std::size_t i = next_++; i < curves_.sites.size(); i = next_++) {
+        SiteCurves site = solver.solve(curves_.sites[i].vertex);
+        const std::lock_guard lock(mutex_);
+        ++progress_.done;
+        if (site.status != SiteStatus::Complete) ++progress_.failed;
+        curves_.sites[i] = std::move(site);
+        if (settings_.progress) settings_.progress(progress_);
+      }
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      failure_ = std::current_exception();
+      next_ = curves_.sites.size();
+    }
+  }
+
+  const CampaignContext& context_;
+  const CampaignSettings& settings_;
+  Curves& curves_;
+  std::atomic<std::size_t> next_{0};
+  std::mutex mutex_;
+  CampaignProgress progress_;
+  std::exception_ptr failure_;
+};
+
+}  // namespace
+
+Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report) {
+  const auto start = std::chrono::steady_clock::now();
+  check_indentation(settings.indentation);
+  use_one_thread_per_site();
+  Curves curves;
+  curves.tool = {"sphere", settings.indentation.tool_radius, "frictionless"};
+  curves.depth = settings.indentation.depth;
+  curves.lateral_travel = settings.indentation.lateral_travel;
+  for (const auto vertex : chosen_sites(body, settings.sites)) {
+    curves.sites.emplace_back();
+    curves.sites.back().vertex = vertex;
+  }
+  const CampaignContext context(body, settings, Engine::TwoLevel);
+  Crew(context, settings, curves).run();
+
+  report.unknowns = context.model.pattern().n;
+  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  for (const auto& site : curves.sites) report.cpu_seconds += site.cpu_seconds;
+  report.facts = {{"element", "Tet10, element-constant pressure"},
+                  {"nodes", std::to_string(context.model.mesh().nodes())},
+                  {"unknowns", std::to_string(report.unknowns)},
+                  {"rest_factor_bytes",
+                   std::to_string(static_cast<long long>(context.rest_factor->factor_bytes()))},
+                  {"blas_kernel", blas_kernel()},
+                  {"solver", solver_versions()}};
+  return curves;
+}
+
+DeformedState deformed_state(const Body& body, const CampaignSettings& settings,
+                             std::int32_t vertex) {
+  check_indentation(settings.indentation);
+  use_one_thread_per_site();
+  chosen_sites(body, {vertex});
+  CampaignSettings normal_only = settings;
+  normal_only.indentation.held_depths.clear();
+  const CampaignContext context(body, normal_only, Engine::TwoLevel);
+  SiteSolver solver(context);
+  const SiteCurves curves = solver.solve(vertex);
+  DeformedState state;
+  const Displacement& u = solver.pressed_state();
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    state.displacement.push_back({u(0, column), u(1, column), u(2, column)});
+  }
+  context.model.element_fields(u, state.strain_energy_density, state.pressure);
+  state.sample = curves.paths.front().samples.back();
+  return state;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/contact.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+namespace palpate::fem {
+
+namespace {
+
+struct TrianglePoint {
+  double L0, L1, weight;
+};
+
+/// The 12-point rule of degree 6 with positive weights [Dunavant 1985].
+std::vector<TrianglePoint> triangle_rule() {
+  std::vector<TrianglePoint> rule;
+  const auto add_three = [&](double a, double b, double weight) {
+    rule.push_back({a, b, weight});
+    rule.push_back({b, a, weight});
+    rule.push_back({b, b, weight});
+  };
+  add_three(0.501426509658179, 0.249286745170910, 0.116786275726379);
+  add_three(0.873821971016996, 0.063089014491502, 0.050844906370207);
+  const double c[3] = {0.053145049844817, 0.310352451033784, 0.636502499121399};
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      if (i != j) rule.push_back({c[i], c[j], 0.082851075618374});
+  return rule;
+}
+
+std::array<double, 6> facet_shape(double L0, double L1) {
+  const double L2 = 1 - L0 - L1;
+  return {L0 * (2 * L0 - 1), L1 * (2 * L1 - 1), L2 * (2 * L2 - 1),
+          4 * L0 * L1,       4 * L1 * L2,       4 * L2 * L0};
+}
+
+}  // namespace
+
+SphereContact::SphereContact(const SolidModel& model, const Eigen::Vector3d& site, double reach,
+                             double stiffness)
+    : model_(&model), eps_(stiffness) {
+  const auto& X = model.mesh().X;
+  const auto rule = triangle_rule();
+  for (const Facet& facet : model.mesh().facets) {
+    const bool near = std::any_of(facet.begin(), facet.end(), [&](int node) {
+      return (X.col(node) - site).squaredNorm() <= reach * reach;
+    });
+    if (!near) continue;
+    const Eigen::Vector3d a = X.col(facet[1]) - X.col(facet[0]),
+                          b = X.col(facet[2]) - X.col(facet[0]);
+    const double area = 0.5 * a.cross(b).norm();
+    for (const auto& q : rule) {
+      Point point;
+      point.facet = static_cast<int>(facets_.size());
+      point.N = facet_shape(q.L0, q.L1);
+      point.area = q.weight * area;
+      point.traction.setZero();
+      point.arm.setZero();
+      points_.push_back(point);
+    }
+    facets_.push_back(facet);
+  }
+}
+
+void SphereContact::move_to(const Sphere& tool) {
+  tool_ = tool;
+}
+
+Eigen::Vector3d SphereContact::position(const Point& point, const Displacement& u) const {
+  const Facet& facet = facets_[point.facet];
+  const auto& X = model_->mesh().X;
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  for (int a = 0; a < 6; ++a) x += point.N[a] * (X.col(facet[a]) + u.col(facet[a]));
+  return x;
+}
+
+Eigen::Vector3d SphereContact::gradient(const Point& point, const Eigen::Vector3d& x) const {
+  const Eigen::Vector3d r = x - tool_.centre;
+  if (point.stuck) return point.traction + eps_ * (r - point.arm);
+  const double distance = r.norm();
+  const double p = std::max(0.0, point.lambda - eps_ * (distance - tool_.radius));
+  return (-p / distance) * r;
+}
+
+Eigen::Matrix3d SphereContact::hessian(const Point& point, const Eigen::Vector3d& x,
+                                       bool geometric) const {
+  if (point.stuck) return eps_ * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d r = x - tool_.centre;
+  const double distance = r.norm();
+  const double p = point.lambda - eps_ * (distance - tool_.radius);
+  if (p <= 0) return Eigen::Matrix3d::Zero();
+  const Eigen::Matrix3d nn = r * r.transpose() / (distance * distance);
+  Eigen::Matrix3d H = eps_ * nn;
+  if (geometric) H -= p / distance * (Eigen::Matrix3d::Identity() - nn);
+  return H;
+}
+
+double SphereContact::energy(const Displacement& u) const {
+  double sum = 0;
+  for (const Point& point : points_) {
+    const Eigen::Vector3d r = position(point, u) - tool_.centre;
+    if (point.stuck) {
+      const Eigen::Vector3d slip = r - point.arm;
+      sum += point.area * (point.traction.dot(slip) + 0.5 * eps_ * slip.squaredNorm());
+    } else {
+      const double p = std::max(0.0, point.lambda - eps_ * (r.norm() - tool_.radius));
+      sum += point.area * (p * p - point.lambda * point.lambda) / (2 * eps_);
+    }
+  }
+  return sum;
+}
+
+void SphereContact::add_forces(const Displacement& u, Eigen::VectorXd& f) const {
+  for (const Point& point : points_) {
+    const Eigen::Vector3d g = point.area * gradient(point, position(point, u));
+    if (g.isZero(0)) continue;
+    const Facet& facet = facets_[point.facet];
+    for (int a = 0; a < 6; ++a) {
+      const int first = model_->mesh().equation[facet[a]];
+      if (first >= 0) f.segment<3>(first) += point.N[a] * g;
+    }
+  }
+}
+
+void SphereContact::add_stiffness(const Displacement& u, bool geometric,
+                                  std::vector<double>& values) const {
+  const SparsePattern& pattern = model_->pattern();
+  for (const Point& point : points_) {
+    const Eigen::Matrix3d H = point.area * hessian(point, position(point, u), geometric);
+    if (H.isZero(0)) continue;
+    const Facet& facet = facets_[point.facet];
+    for (int a = 0; a < 6; ++a)
+      for (int b = 0; b < 6; ++b) {
+        const int row = model_->mesh().equation[facet[a]],
+                  column = model_->mesh().equation[facet[b]];
+        if (row < 0 || column < 0) continue;
+        for (int i = 0; i < 3; ++i)
+          for (int k = 0; k < 3; ++k)
+            if (row + i >= column + k)
+              values[pattern.position(row + i, column + k)] += point.N[a] * point.N[b] * H(i, k);
+      }
+  }
+}
+
+double SphereContact::augment(const Displacement& u) {
+  double worst = 0;
+  for (Point& point : points_) {
+    const Eigen::Vector3d r = position(point, u) - tool_.centre;
+    if (point.stuck) {
+      const Eigen::Vector3d slip = r - point.arm;
+      worst = std::max(worst, slip.norm());
+      point.traction += eps_ * slip;
+    } else {
+      const double gap = r.norm() - tool_.radius;
+      const double p = std::max(0.0, point.lambda - eps_ * gap);
+      if (p > 0) worst = std::max(worst, std::abs(gap));
+      point.lambda = p;
+    }
+  }
+  return worst;
+}
+
+void SphereContact::bond(const Displacement& u) {
+  for (Point& point : points_) {
+    const Eigen::Vector3d x = position(point, u);
+    const Eigen::Vector3d g = gradient(point, x);
+    if (point.stuck || g.isZero(0)) continue;
+    point.stuck = true;
+    point.traction = g;
+    point.arm = x - tool_.centre;
+  }
+}
+
+Eigen::Vector3d SphereContact::tool_force(const Displacement& u) const {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  for (const Point& point : points_) force -= point.area * gradient(point, position(point, u));
+  return force;
+}
+
+double SphereContact::contact_area(const Displacement& u) const {
+  double area = 0;
+  for (const Point& point : points_)
+    if (point.stuck || !gradient(point, position(point, u)).isZero(0)) area += point.area;
+  return area;
+}
+
+double SphereContact::penetration(const Displacement& u) const {
+  double deepest = 0;
+  for (const Point& point : points_)
+    deepest = std::max(deepest, tool_.radius - (position(point, u) - tool_.centre).norm());
+  return deepest;
+}
+
+double SphereContact::rest_penetration(const Sphere& tool) const {
+  double deepest = 0;
+  const Displacement rest = Displacement::Zero(3, model_->mesh().nodes());
+  for (const Point& point : points_)
+    deepest = std::max(deepest, tool.radius - (position(point, rest) - tool.centre).norm());
+  return deepest;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,387 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/indentation.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "fem/region_laws.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+/// Penalty of the augmented Lagrangian over E/R: high enough that a gap is micrometres before the
+/// first multiplier update, low enough to keep ten digits of the residual.
+constexpr double kContactStiffness = 3000;
+/// Largest gap left by the multiplier updates, relative to the depth of the path.
+constexpr double kGapTolerance = 5e-4;
+constexpr int kMaxAugmentations = 6;
+constexpr int kMaxHalvings = 5;
+
+Eigen::Vector3d to_eigen(const Vec3& v) {
+  return Eigen::Vector3d(v.data());
+}
+Vec3 to_vec3(const Eigen::Vector3d& v) {
+  return {v[0], v[1], v[2]};
+}
+
+double thread_cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+std::vector<int> unknowns_within(const QuadraticMesh& mesh, const Eigen::Vector3d& centre,
+                                 double radius) {
+  std::vector<int> unknowns;
+  for (int node = 0; node < mesh.nodes(); ++node) {
+    if (mesh.equation[node] < 0) continue;
+    if ((mesh.X.col(node) - centre).squaredNorm() > radius * radius) continue;
+    for (int i = 0; i < 3; ++i) unknowns.push_back(mesh.equation[node] + i);
+  }
+  return unknowns;
+}
+
+/// Depths of the increments: evenly spaced, with the held depths among them.
+std::vector<double> normal_increments(const IndentationSettings& settings) {
+  std::vector<double> depths(settings.held_depths);
+  for (int i = 1; i <= settings.increments; ++i)
+    depths.push_back(settings.depth * i / settings.increments);
+  std::sort(depths.begin(), depths.end());
+  const auto close = [&](double a, double b) { return b - a < 1e-9 * settings.depth; };
+  depths.erase(std::unique(depths.begin(), depths.end(), close), depths.end());
+  return depths;
+}
+
+/// Converged states of a path, for the predictor.
+class History {
+ public:
+  void add(double s, const Displacement& u) {
+    if (states_.size() == 4) states_.erase(states_.begin());
+    states_.push_back({s, u});
+  }
+
+  /// Polynomial extrapolation to `s` through the last `count` states.
+  Displacement extrapolate(double s, std::size_t count) const {
+    const auto first = states_.size() - count;
+    Displacement u = Displacement::Zero(3, states_.back().u.cols());
+    for (auto i = first; i < states_.size(); ++i) {
+      double weight = 1;
+      for (auto j = first; j < states_.size(); ++j)
+        if (j != i) weight *= (s - states_[j].s) / (states_[i].s - states_[j].s);
+      u += weight * states_[i].u;
+    }
+    return u;
+  }
+
+  std::size_t size() const { return states_.size(); }
+  const Displacement& last() const { return states_.back().u; }
+
+ private:
+  struct State {
+    double s;
+    Displacement u;
+  };
+  std::vector<State> states_;
+};
+
+/// Highest-order extrapolation that keeps every element well away from inversion.
+Displacement predict(const SolidModel& model, const History& history, double s) {
+  for (std::size_t count = history.size(); count > 1; --count) {
+    Displacement u = history.extrapolate(s, count);
+    if (model.energy(u).min_J > 0.3) return u;
+  }
+  return history.last();
+}
+
+std::string in_millimetres(double metres) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f mm", 1e3 * metres);
+  return text;
+}
+
+}  // namespace
+
+std::array<Eigen::Vector3d, 2> tangents(const Eigen::Vector3d& normal) {
+  Eigen::Index axis = 0;
+  normal.cwiseAbs().minCoeff(&axis);
+  const Eigen::Vector3d first = normal.cross(Eigen::Vector3d::Unit(axis)).normalized();
+  return {first, normal.cross(first)};
+}
+
+std::vector<double> running_integral(const std::vector<double>& x, const std::vector<double>& y) {
+  // Integral over [x1, x2] of the parabola through three samples that include x1 and x2.
+  const auto piece = [&](std::size_t a, std::size_t b, std::size_t other) {
+    const double h = x[b] - x[a];
+    const double curvature =
+        ((y[other] - y[a]) / (x[other] - x[a]) - (y[b] - y[a]) / h) / (x[other] - x[b]);
+    return 0.5 * h * (y[a] + y[b]) - curvature * h * h * h / 6;
+  };
+  std::vector<double> sum(x.size(), 0.0);
+  for (std::size_t i = 1; i < x.size(); ++i) {
+    double step = 0.5 * (x[i] - x[i - 1]) * (y[i] + y[i - 1]);
+    const bool before = i >= 2, after = i + 1 < x.size();
+    if (before && after)
+      step = 0.5 * (piece(i - 1, i, i - 2) + piece(i - 1, i, i + 1));
+    else if (before)
+      step = piece(i - 1, i, i - 2);
+    else if (after)
+      step = piece(i - 1, i, i + 1);
+    sum[i] = sum[i - 1] + step;
+  }
+  return sum;
+}
+
+CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e)
+    : body(b),
+      indentation(settings.indentation),
+      engine(e),
+      model(b, laws_of_regions(b, settings.materials)) {
+  double stiffest = 0;
+  for (const auto& material : settings.materials) stiffest = std::max(stiffest, material.law.young);
+  contact_stiffness = kContactStiffness * stiffest / indentation.tool_radius;
+  if (engine == Engine::Direct) return;
+  rest_factor = std::make_unique<Cholesky>(model.pattern());
+  std::vector<double> K;
+  model.stiffness(Displacement::Zero(3, model.mesh().nodes()), K);
+  if (!rest_factor->factorize(K))
+    throw Error(ErrorKind::Geometry, body.name, "the body at rest is not stiff in every direction",
+                "check the supports and that the mesh is in one piece");
+}
+
+struct SiteSolver::Site {
+  Site(const CampaignContext& context, std::int32_t vertex)
+      : X(to_eigen(context.body.nodes[context.body.response.node[vertex]])),
+        inward(to_eigen(context.body.response.inward[vertex])),
+        reach(2 * context.indentation.tool_radius + context.indentation.lateral_travel),
+        contact(context.model, X, reach, context.contact_stiffness) {
+    if (context.engine == Engine::Direct) {
+      solver = std::make_unique<DirectSolver>(context.model.pattern());
+    } else {
+      const double window = reach + 0.5 * context.indentation.tool_radius;
+      solver = std::make_unique<TwoLevelSolver>(context.model.pattern(), *context.rest_factor,
+                                                unknowns_within(context.model.mesh(), X, window));
+    }
+    // On a concave surface the sphere meets the body before its tip does: back off to first touch.
+    for (int i = 0; i < 60; ++i) {
+      const double depth =
+          contact.rest_penetration({tip_centre(context, 0), context.indentation.tool_radius});
+      if (depth <= 1e-7 * context.indentation.tool_radius) break;
+      back_off += depth;
+    }
+  }
+
+  /// Centre of the sphere at a depth below first touch.
+  Eigen::Vector3d tip_centre(const CampaignContext& context, double depth) const {
+    return X + (depth - back_off - context.indentation.tool_radius) * inward;
+  }
+
+  /// State at a held depth, before the multiplier update that follows it.
+  struct Held {
+    Displacement u;
+    SphereContact contact;
+    double work;
+  };
+
+  Eigen::Vector3d X, inward;
+  double reach;
+  double back_off = 0;
+  SphereContact contact;
+  std::unique_ptr<LinearSolver> solver;
+  std::unique_ptr<LinearSolver> fallback;
+  std::map<double, Held> held;
+};
+
+namespace {
+
+/// Drives one path: increments with predictor, multiplier updates and cut-back.
+class PathDriver {
+ public:
+  PathDriver(const CampaignContext& context, SphereContact& contact, NewtonSolver& newton,
+             std::function<Sphere(double)> tool_at)
+      : context_(context), contact_(contact), newton_(newton), tool_at_(std::move(tool_at)) {}
+
+  /// From the present end of `history` at `from` to `to`. On success u is the equilibrium, `before`
+  /// holds the contact as it was in equilibrium, and `sample` is filled but for the work.
+  bool advance(double from, double to, History& history, Displacement& u, CurveSample& sample,
+               std::string& reason) {
+    double at = from, step = to - from;
+    int halvings = 0;
+    sample.iterations = 0;
+    while (at < to) {
+      const double next = to - at <= 1.001 * step ? to : at + step;
+      const SphereContact safe = contact_;
+      Displacement trial = predict(context_.model, history, next);
+      if (equilibrate(next, trial, sample, reason)) {
+        u = trial;
+        history.add(next, u);
+        at = next;
+        continue;
+      }
+      contact_ = safe;
+      if (++halvings > kMaxHalvings) {
+        reason = "at " + in_millimetres(next) + ": " + reason;
+        return false;
+      }
+      step *= 0.5;
+    }
+    reason.clear();  // a cut-back that was overcome is no news
+    return true;
+  }
+
+  const SphereContact& equilibrium_contact() const { return *before_; }
+
+ private:
+  bool equilibrate(double s, Displacement& u, CurveSample& sample, std::string& reason) {
+    contact_.move_to(tool_at_(s));
+    NewtonOptions options;
+    options.tolerance = context_.indentation.force_tolerance;
+    for (int round = 0; round < kMaxAugmentations; ++round) {
+      const NewtonResult result = newton_.solve(options, u);
+      sample.iterations += result.iterations;
+      if (!result.converged) {
+        reason = result.reason;
+        return false;
+      }
+      record(s, u, sample);
+      before_.emplace(contact_);
+      if (contact_.augment(u) <= kGapTolerance * context_.indentation.depth) return true;
+    }
+    reason = "the contact gap does not close";
+    return false;
+  }
+
+  void record(double s, const Displacement& u, CurveSample& sample) const {
+    const SolidModel::State state = context_.model.energy(u);
+    sample.displacement = s;
+    sample.force = to_vec3(contact_.tool_force(u));
+    sample.strain_energy = state.energy;
+    sample.min_jacobian = state.min_J;
+    sample.penetration = contact_.penetration(u);
+    sample.contact_area = contact_.contact_area(u);
+  }
+
+  const CampaignContext& context_;
+  SphereContact& contact_;
+  NewtonSolver& newton_;
+  std::function<Sphere(double)> tool_at_;
+  std::optional<SphereContact> before_;
+};
+
+/// Fill tool_work: the running integral of force . direction, on top of `start`.
+void fill_work(CurvePath& path, double start) {
+  std::vector<double> s, f;
+  for (const auto& sample : path.samples) {
+    s.push_back(sample.displacement);
+    f.push_back(dot(sample.force, path.direction));
+  }
+  const auto work = running_integral(s, f);
+  for (std::size_t i = 0; i < work.size(); ++i) path.samples[i].tool_work = start + work[i];
+}
+
+}  // namespace
+
+void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
+  NewtonSolver newton(context_.model, site.contact, *site.solver, site.fallback.get());
+  const double radius = context_.indentation.tool_radius;
+  PathDriver driver(context_, site.contact, newton, [&](double depth) {
+    return Sphere{site.tip_centre(context_, depth), radius};
+  });
+  CurvePath path;
+  path.kind = PathKind::Normal;
+  path.direction = to_vec3(site.inward);
+  path.samples.emplace_back();
+
+  Displacement u = Displacement::Zero(3, context_.model.mesh().nodes());
+  History history;
+  history.add(0, u);
+  double from = 0;
+  for (const double depth : normal_increments(context_.indentation)) {
+    CurveSample sample;
+    if (!driver.advance(from, depth, history, u, sample, curves.reason)) {
+      curves.status = SiteStatus::Partial;
+      curves.reason = "normal path " + curves.reason;
+      break;
+    }
+    path.samples.push_back(sample);
+    for (const double held : context_.indentation.held_depths)
+      if (std::abs(held - depth) < 1e-9 * depth)
+        site.held.emplace(held, Site::Held{u, driver.equilibrium_contact(), 0.0});
+    from = depth;
+  }
+  pressed_ = u;
+  fill_work(path, 0);
+  for (auto& [depth, held] : site.held)
+    for (const auto& sample : path.samples)
+      if (std::abs(sample.displacement - depth) < 1e-9 * depth) held.work = sample.tool_work;
+  curves.paths.push_back(std::move(path));
+}
+
+void SiteSolver::run_lateral_path(Site& site, double held_depth, double azimuth,
+                                  SiteCurves& curves) {
+  const auto found = site.held.find(held_depth);
+  if (found == site.held.end()) return;  // the normal path ended before: already recorded
+  const Site::Held& held = found->second;
+  const auto [first, second] = tangents(site.inward);
+  const Eigen::Vector3d direction = std::cos(azimuth) * first + std::sin(azimuth) * second;
+  const Eigen::Vector3d centre = site.tip_centre(context_, held_depth);
+  const double radius = context_.indentation.tool_radius;
+
+  SphereContact contact = held.contact;
+  Displacement u = held.u;
+  contact.bond(u);
+  NewtonSolver newton(context_.model, contact, *site.solver, site.fallback.get());
+  PathDriver driver(context_, contact, newton, [&](double s) {
+    return Sphere{centre + s * direction, radius};
+  });
+  CurvePath path;
+  path.kind = PathKind::Lateral;
+  path.held_depth = held_depth;
+  path.direction = to_vec3(direction);
+  History history;
+  history.add(0, u);
+  double from = 0;
+  for (int i = 0; i <= context_.indentation.lateral_increments; ++i) {
+    CurveSample sample;
+    const double s =
+        context_.indentation.lateral_travel * i / context_.indentation.lateral_increments;
+    if (i == 0) {
+      sample = curves.paths.front().samples.front();
+      for (const auto& pressed : curves.paths.front().samples)
+        if (std::abs(pressed.displacement - held_depth) < 1e-9 * held_depth) sample = pressed;
+      sample.displacement = 0;
+    } else if (!driver.advance(from, s, history, u, sample, curves.reason)) {
+      curves.status = SiteStatus::Partial;
+      curves.reason = "lateral path at depth " + in_millimetres(held_depth) + " " + curves.reason;
+      break;
+    }
+    path.samples.push_back(sample);
+    from = s;
+  }
+  fill_work(path, held.work);
+  curves.paths.push_back(std::move(path));
+}
+
+SiteCurves SiteSolver::solve(std::int32_t vertex) {
+  const double start = thread_cpu_seconds();
+  SiteCurves curves;
+  curves.vertex = vertex;
+  curves.status = SiteStatus::Complete;
+  Site site(context_, vertex);
+  run_normal_path(site, curves);
+  for (const double held_depth : context_.indentation.held_depths)
+    for (const double azimuth : context_.indentation.azimuths)
+      run_lateral_path(site, held_depth, azimuth, curves);
+  if (curves.paths.front().samples.size() < 2) curves.status = SiteStatus::Failed;
+  curves.cpu_seconds = thread_cpu_seconds() - start;
+  return curves;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/quadratic_mesh.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+namespace palpate::fem {
+
+namespace {
+
+/// Numbers mid-edge nodes in the order in which their edges are first met.
+class EdgeNodes {
+ public:
+  explicit EdgeNodes(std::int32_t first) : next_(first) {}
+
+  std::int32_t of(std::int32_t a, std::int32_t b) {
+    const auto [low, high] = std::minmax(a, b);
+    const std::uint64_t key =
+        (static_cast<std::uint64_t>(low) << 32) | static_cast<std::uint32_t>(high);
+    const auto [entry, added] = node_.try_emplace(key, next_);
+    if (added) {
+      ++next_;
+      corners_.push_back({low, high});
+    }
+    return entry->second;
+  }
+
+  const std::vector<std::array<std::int32_t, 2>>& corners() const { return corners_; }
+
+ private:
+  std::int32_t next_;
+  std::unordered_map<std::uint64_t, std::int32_t> node_;
+  std::vector<std::array<std::int32_t, 2>> corners_;
+};
+
+void number_unknowns(const Body& body, const EdgeNodes& edges, QuadraticMesh& mesh) {
+  std::vector<bool> held(mesh.nodes(), false);
+  for (const auto node : body.fixed_nodes) held[node] = true;
+  const auto corner_count = body.nodes.size();
+  for (std::size_t e = 0; e < edges.corners().size(); ++e)
+    held[corner_count + e] = held[edges.corners()[e][0]] && held[edges.corners()[e][1]];
+  mesh.equation.assign(mesh.nodes(), -1);
+  for (int node = 0; node < mesh.nodes(); ++node) {
+    if (held[node]) continue;
+    mesh.equation[node] = mesh.unknowns;
+    mesh.unknowns += 3;
+  }
+}
+
+}  // namespace
+
+QuadraticMesh make_quadratic_mesh(const Body& body) {
+  QuadraticMesh mesh;
+  EdgeNodes edges(static_cast<std::int32_t>(body.nodes.size()));
+  mesh.region = body.tetrahedron_region;
+  mesh.tetrahedra.reserve(body.tetrahedra.size());
+  for (const auto& corners : body.tetrahedra) {
+    std::array<std::int32_t, kTetNodes> nodes{};
+    std::copy(corners.begin(), corners.end(), nodes.begin());
+    for (int e = 0; e < 6; ++e)
+      nodes[4 + e] = edges.of(corners[kTetEdges[e][0]], corners[kTetEdges[e][1]]);
+    mesh.tetrahedra.push_back(nodes);
+  }
+  for (const auto& t : body.boundary)
+    mesh.facets.push_back(
+        {t[0], t[1], t[2], edges.of(t[0], t[1]), edges.of(t[1], t[2]), edges.of(t[2], t[0])});
+
+  const auto corner_count = static_cast<Eigen::Index>(body.nodes.size());
+  mesh.X.resize(3, corner_count + static_cast<Eigen::Index>(edges.corners().size()));
+  for (Eigen::Index i = 0; i < corner_count; ++i)
+    mesh.X.col(i) = Eigen::Vector3d(body.nodes[i].data());
+  for (std::size_t e = 0; e < edges.corners().size(); ++e)
+    mesh.X.col(corner_count + static_cast<Eigen::Index>(e)) =
+        0.5 * (mesh.X.col(edges.corners()[e][0]) + mesh.X.col(edges.corners()[e][1]));
+  number_unknowns(body, edges, mesh);
+  return mesh;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The straight-sided quadratic tetrahedron in volume coordinates L_0..L_3.
+#pragma once
+
+#include <array>
+
+namespace palpate::fem {
+
+inline constexpr int kTetNodes = 10;
+inline constexpr int kTetPoints = 4;
+
+/// Corner nodes 0..3; mid-edge node 4 + e lies between the corners kTetEdges[e].
+inline constexpr std::array<std::array<int, 2>, 6> kTetEdges{
+    {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
+
+/// Volume coordinates of the four Gauss points, exact to degree 2, each of weight 1/4
+/// [Zienkiewicz & Taylor 2000, table 9.2].
+inline constexpr double kTetNear = 0.5854101966249685, kTetFar = 0.1381966011250105;
+
+/// dN_a/dL_c at Gauss point q: N_a = L_a (2 L_a - 1) at corners, 4 L_i L_j at mid-edges, the four
+/// L taken as independent (their gradients sum to zero).
+constexpr std::array<std::array<double, 4>, kTetNodes> shape_derivatives(int q) {
+  std::array<double, 4> L{};
+  for (int c = 0; c < 4; ++c) L[c] = c == q ? kTetNear : kTetFar;
+  std::array<std::array<double, 4>, kTetNodes> B{};
+  for (int c = 0; c < 4; ++c) B[c][c] = 4 * L[c] - 1;
+  for (int e = 0; e < 6; ++e) {
+    const auto [i, j] = kTetEdges[e];
+    B[4 + e][i] = 4 * L[j];
+    B[4 + e][j] = 4 * L[i];
+  }
+  return B;
+}
+
+inline constexpr std::array<std::array<std::array<double, 4>, kTetNodes>, kTetPoints> kTetShape{
+    shape_derivatives(0), shape_derivatives(1), shape_derivatives(2), shape_derivatives(3)};
+
+}  // namespace palpate::fem

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Bodies for tests, made without the mesher: blocks of tetrahedra on a (graded) grid.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "format/body.hpp"
+
+namespace palpate::test {
+
+/// A block spanned by three ascending lists of coordinates, six tetrahedra a cell (Kuhn). The base
+/// z = z.front() is held; the response surface is the top with every grid vertex a response node,
+/// rim vertices excluded from the sites. One region, "tissue".
+Body make_block(const std::vector<double>& x, const std::vector<double>& y,
+                const std::vector<double>& z);
+
+/// `count` intervals from `low` to `high`, evenly spaced.
+std::vector<double> even(double low, double high, int count);
+
+/// Coordinates from -half to half, symmetric, with cells of `fine` within |x| <= core that grow
+/// outwards by `growth`, fitted to end at `half`.
+std::vector<double> graded(double half, double core, double fine, double growth);
+
+/// Move every node by a map; the topology stays.
+void deform(Body& body, const std::function<Vec3(const Vec3&)>& map);
+
+}  // namespace palpate::test

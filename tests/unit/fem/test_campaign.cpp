@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "fem/campaign.hpp"
+#include "format/error.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+using testing::HasSubstr;
+
+Body small_block() {
+  return test::make_block(test::even(-0.015, 0.015, 4), test::even(-0.015, 0.015, 4),
+                          test::even(-0.015, 0, 2));
+}
+
+CampaignSettings quick() {
+  CampaignSettings s;
+  s.materials = {{"tissue", {10e3, 0.45}}};
+  s.indentation.depth = 0.002;
+  s.indentation.increments = 3;
+  s.indentation.held_depths = {0.002};
+  s.indentation.lateral_increments = 2;
+  s.indentation.lateral_travel = 0.001;
+  return s;
+}
+
+TEST(Campaign, GivesTheSameBitsWhateverTheNumberOfThreads) {
+  const Body body = small_block();
+  CampaignSettings settings = quick();
+  CampaignReport report;
+  const Curves one = run_campaign(body, settings, report);
+  settings.threads = 2;
+  const Curves two = run_campaign(body, settings, report);
+  ASSERT_EQ(one.sites.size(), 9u);
+  ASSERT_EQ(two.sites.size(), 9u);
+  for (std::size_t i = 0; i < one.sites.size(); ++i) {
+    EXPECT_EQ(one.sites[i].vertex, two.sites[i].vertex);
+    for (std::size_t p = 0; p < one.sites[i].paths.size(); ++p)
+      for (std::size_t s = 0; s < one.sites[i].paths[p].samples.size(); ++s) {
+        const auto &a = one.sites[i].paths[p].samples[s], &b = two.sites[i].paths[p].samples[s];
+        EXPECT_EQ(std::memcmp(&a.force, &b.force, sizeof a.force), 0);
+        EXPECT_EQ(a.strain_energy, b.strain_energy);
+      }
+  }
+}
+
+TEST(Campaign, SymmetricSitesRespondAlike) {
+  // Block and mesh (Kuhn cells) are symmetric under the exchange of x and y.
+  const Body body = small_block();
+  CampaignReport report;
+  const Curves curves = run_campaign(body, quick(), report);
+  const auto at = [&](double x, double y) -> const SiteCurves& {
+    for (const auto& site : curves.sites) {
+      const Vec3& p = body.nodes[body.response.node[site.vertex]];
+      if (std::abs(p[0] - x) + std::abs(p[1] - y) < 1e-9) return site;
+    }
+    throw std::logic_error("no such site");
+  };
+  const double a = norm(at(0.0075, -0.0075).paths[0].samples.back().force);
+  const double b = norm(at(-0.0075, 0.0075).paths[0].samples.back().force);
+  EXPECT_NEAR(a, b, 1e-3 * a);
+}
+
+TEST(Campaign, TellsItsProgress) {
+  CampaignSettings settings = quick();
+  settings.sites = {6, 8, 7};
+  const Body body = small_block();
+  std::vector<std::int32_t> sites;
+  for (std::int32_t v = 0; v < 25; ++v)
+    if (body.response.is_site[v]) sites.push_back(v);
+  settings.sites = {sites[2], sites[0]};
+  std::vector<std::int64_t> seen;
+  settings.progress = [&](const CampaignProgress& p) { seen.push_back(p.done * 100 + p.total); };
+  CampaignReport report;
+  const Curves curves = run_campaign(body, settings, report);
+  EXPECT_THAT(seen, testing::ElementsAre(102, 202));
+  EXPECT_EQ(curves.sites[0].vertex, sites[0]);  // ascending
+  EXPECT_GT(report.unknowns, 0);
+}
+
+std::string refusal(const CampaignSettings& settings) {
+  CampaignReport report;
+  try {
+    run_campaign(small_block(), settings, report);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Configuration);
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Campaign, RefusesWhatDoesNotFit) {
+  CampaignSettings s = quick();
+  s.materials[0].region = "bone";
+  EXPECT_THAT(refusal(s), HasSubstr("use one of: tissue"));
+  s = quick();
+  s.materials.clear();
+  EXPECT_THAT(refusal(s), HasSubstr("region 'tissue'"));
+  s = quick();
+  s.indentation.held_depths = {0.003};
+  EXPECT_THAT(refusal(s), HasSubstr("beyond the depth"));
+  s = quick();
+  s.indentation.tool_radius = std::nan("");
+  EXPECT_THAT(refusal(s), HasSubstr("tool_radius"));
+  s = quick();
+  s.sites = {100000};
+  EXPECT_THAT(refusal(s), HasSubstr("not a site"));
+  s = quick();
+  s.materials[0].law.poisson = 0.5;
+  EXPECT_THAT(refusal(s), HasSubstr("poisson"));
+}
+
+TEST(Campaign, AFailedSiteKeepsItsPartialCurveAndReason) {
+  CampaignSettings s = quick();
+  s.indentation.depth = 0.0149;  // nearly through the block, in three steps
+  s.indentation.held_depths.clear();
+  const Body body = small_block();
+  for (std::int32_t v = 0; v < 25 && s.sites.empty(); ++v)
+    if (body.response.is_site[v]) s.sites = {v};
+  CampaignReport report;
+  const Curves curves = run_campaign(body, s, report);
+  EXPECT_NE(curves.sites[0].status, SiteStatus::Complete);
+  EXPECT_THAT(curves.sites[0].reason, HasSubstr("normal path at "));
+  EXPECT_GE(curves.sites[0].paths.at(0).samples.size(), 1u);
+}
+
+}  // namespace
+}  // namespace palpate::fem

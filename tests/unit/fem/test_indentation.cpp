@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fem/indentation.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+Body soft_block() {
+  return test::make_block(test::graded(0.03, 0.005, 0.0025, 1.5),
+                          test::graded(0.03, 0.005, 0.0025, 1.5),
+                          {-0.03, -0.02, -0.012, -0.006, -0.003, 0});
+}
+
+std::int32_t centre_vertex(const Body& body) {
+  std::int32_t best = 0;
+  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
+    const auto r = [&](std::size_t i) {
+      const Vec3& x = body.nodes[body.response.node[i]];
+      return std::hypot(x[0], x[1]);
+    };
+    if (r(v) < r(static_cast<std::size_t>(best))) best = static_cast<std::int32_t>(v);
+  }
+  return best;
+}
+
+CampaignSettings settings() {
+  CampaignSettings s;
+  s.materials = {{"tissue", {10e3, 0.49}}};
+  s.indentation.depth = 0.004;
+  s.indentation.increments = 8;
+  s.indentation.held_depths = {0.002};
+  s.indentation.lateral_travel = 0.002;
+  s.indentation.lateral_increments = 4;
+  return s;
+}
+
+class Indentation : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    body_ = new Body(soft_block());
+    const CampaignContext context(*body_, settings(), Engine::TwoLevel);
+    SiteSolver solver(context);
+    curves_ = new SiteCurves(solver.solve(centre_vertex(*body_)));
+  }
+  static void TearDownTestSuite() {
+    delete body_;
+    delete curves_;
+  }
+  static Body* body_;
+  static SiteCurves* curves_;
+};
+Body* Indentation::body_ = nullptr;
+SiteCurves* Indentation::curves_ = nullptr;
+
+TEST_F(Indentation, CompletesBothPaths) {
+  ASSERT_EQ(curves_->status, SiteStatus::Complete) << curves_->reason;
+  ASSERT_EQ(curves_->paths.size(), 2u);
+  EXPECT_DOUBLE_EQ(curves_->paths[0].samples.back().displacement, 0.004);
+  EXPECT_DOUBLE_EQ(curves_->paths[1].samples.back().displacement, 0.002);
+  EXPECT_EQ(curves_->paths[0].samples.front().force, (Vec3{0, 0, 0}));
+}
+
+TEST_F(Indentation, WorkOfTheToolEqualsTheStoredEnergy) {
+  for (const auto& path : curves_->paths) {
+    const CurveSample& end = path.samples.back();
+    EXPECT_NEAR(end.tool_work, end.strain_energy, 5e-3 * end.strain_energy);
+  }
+}
+
+TEST_F(Indentation, ForceIsTheDerivativeOfTheStrainEnergy) {
+  // Independent of the running integral: the middle of three energies.
+  const auto& s = curves_->paths[0].samples;
+  for (std::size_t i = 3; i + 1 < s.size(); ++i) {
+    const double slope = (s[i + 1].strain_energy - s[i - 1].strain_energy) /
+                         (s[i + 1].displacement - s[i - 1].displacement);
+    EXPECT_NEAR(-s[i].force[2], slope, 0.03 * slope);
+  }
+}
+
+TEST_F(Indentation, ContactIsClosedAndComplementary) {
+  for (const auto& path : curves_->paths)
+    for (const auto& sample : path.samples) EXPECT_LT(sample.penetration, 5e-6);
+}
+
+TEST_F(Indentation, LateralForceOpposesAndLeavesTheHeldForceNearly) {
+  const auto& lateral = curves_->paths[1];
+  const double end = dot(lateral.samples.back().force, lateral.direction);
+  EXPECT_GT(end, 0);
+  double last = -1e-9;
+  for (const auto& sample : lateral.samples) {
+    const double f = dot(sample.force - lateral.samples.front().force, lateral.direction);
+    EXPECT_GE(f, last);
+    last = f;
+  }
+}
+
+TEST_F(Indentation, TheTwoLevelEngineAgreesWithTheDirectOne) {
+  const CampaignContext context(*body_, settings(), Engine::Direct);
+  SiteSolver solver(context);
+  const SiteCurves direct = solver.solve(centre_vertex(*body_));
+  ASSERT_EQ(direct.paths.size(), 2u);
+  for (std::size_t p = 0; p < 2; ++p)
+    for (std::size_t i = 1; i < direct.paths[p].samples.size(); ++i) {
+      const Vec3& expected = direct.paths[p].samples[i].force;
+      EXPECT_LT(norm(curves_->paths[p].samples[i].force - expected), 3e-4 * norm(expected));
+    }
+}
+
+}  // namespace
+}  // namespace palpate::fem

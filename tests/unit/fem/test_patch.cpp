@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Patch test: with the boundary of a distorted mesh moved affinely, the solved interior is affine
+// and the energy is that of the homogeneous state.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "fem/newton.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+Body held_all_around() {
+  Body body =
+      test::make_block(test::even(0, 0.03, 3), test::even(0, 0.03, 3), test::even(0, 0.03, 3));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-2e-3, 2e-3);
+  std::vector<bool> outside(body.nodes.size(), false);
+  for (const auto& t : body.boundary)
+    for (const auto node : t) outside[node] = true;
+  body.fixed_nodes.clear();
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    if (outside[i])
+      body.fixed_nodes.push_back(static_cast<std::int32_t>(i));
+    else
+      body.nodes[i] = body.nodes[i] + Vec3{shift(random), shift(random), shift(random)};
+  }
+  return body;
+}
+
+TEST(PatchTest, AnAffineBoundaryGivesAnAffineInterior) {
+  const Body body = held_all_around();
+  const auto law = NeoHookean::from_young_poisson(10e3, 0.49, "t");
+  const SolidModel model(body, {law});
+  Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F;
+  F << 1.10, 0.20, -0.05, 0.00, 0.92, 0.10, 0.04, -0.03, 1.02;
+  const Displacement affine = F * model.mesh().X - model.mesh().X;
+  Displacement u = affine;
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> shift(-2e-4, 2e-4);
+  for (int node = 0; node < model.mesh().nodes(); ++node)
+    if (model.mesh().equation[node] >= 0)
+      u.col(node) += Eigen::Vector3d(shift(random), shift(random), shift(random));
+
+  SphereContact far_away(model, Eigen::Vector3d(1, 1, 1), 1e-6, 1);
+  DirectSolver solver(model.pattern());
+  NewtonSolver newton(model, far_away, solver, nullptr);
+  NewtonOptions options;
+  options.tolerance = 1.0;  // over a tool force of 1e-12 N: the residual is round-off
+  const NewtonResult result = newton.solve(options, u);
+  EXPECT_TRUE(result.converged) << result.reason;
+  EXPECT_LT((u - affine).lpNorm<Eigen::Infinity>(), 1e-11);
+
+  Tensor2<double> t;
+  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(t.data()) = F;
+  const double J = F.determinant();
+  const double volume = std::pow(0.03, 3);
+  EXPECT_NEAR(model.energy(u).energy, volume * (law.psi(t, J) + law.volumetric_energy(J)), 1e-12);
+}
+
+}  // namespace
+}  // namespace palpate::fem
