@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <string>
+
+#include "fitting/fitting.hpp"
+#include "fitting/slide_bound.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fitting {
+namespace {
+
+constexpr double kReferencePeriod = 1e-3;  // s: the limits of a device are stated at 1 kHz
+
+/// Bounds of one triangle with what they are made of, for the line that names the limit.
+struct TriangleBounds {
+  TriangleCertificate certificate;
+  SlideBound slide;
+};
+
+const NodeResponse& response(const Library& library, std::int32_t vertex) {
+  return library.responses[static_cast<std::size_t>(vertex)];
+}
+
+bool has_hole(const Library& library, const Triangle& triangle) {
+  return std::any_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
+    return response(library, v).status == ResponseStatus::Hole;
+  });
+}
+
+CurveTriple curves_of(const Library& library, const Triangle& triangle, const TriangleFrame& frame,
+                      ResponseCurve NodeResponse::*kind) {
+  return {{runtime::CompiledCurve(response(library, triangle[0]).*kind),
+           runtime::CompiledCurve(response(library, triangle[1]).*kind),
+           runtime::CompiledCurve(response(library, triangle[2]).*kind)},
+          frame.gradient};
+}
+
+TriangleBounds bound_triangle(const Library& library, std::size_t index, double depth,
+                              double friction) {
+  const Triangle& triangle = library.triangles[index];
+  const TriangleFrame frame = triangle_frame(library, index);
+  TriangleBounds bounds;
+  bounds.certificate.kappa = frame.kappa;
+  bounds.certificate.cos_theta = frame.cos_theta;
+  // Without a response at a vertex there is no local model: a border, nothing to bound.
+  if (has_hole(library, triangle)) return bounds;
+  const ContactElement element{frame, curves_of(library, triangle, frame, &NodeResponse::normal),
+                               curves_of(library, triangle, frame, &NodeResponse::lateral),
+                               friction, depth};
+  // The Jacobian at a fixed contact point is g' n n^T + h' t t^T + (h/rho) s s^T, its norm the
+  // largest of the three; h/rho <= max h', and no interpolated slope exceeds those at the vertices.
+  bounds.certificate.stick = std::max(element.normal.max_slope(), element.lateral.max_slope());
+  bounds.slide = slide_bound(element);
+  bounds.certificate.slip = bounds.slide.total;
+  bounds.certificate.sliding_passive = slide_lowers_energy(element);
+  return bounds;
+}
+
+double deepest_knot(const Library& library) {
+  double depth = 0;
+  for (const NodeResponse& node : library.responses) {
+    if (node.status != ResponseStatus::Hole) {
+      depth = std::max(depth, static_cast<double>(node.normal.knot.back()));
+    }
+  }
+  return depth;
+}
+
+void count_vertices(const Library& library, Certificate& certificate) {
+  std::set<std::int32_t> used;
+  for (const Triangle& triangle : library.triangles) used.insert(triangle.begin(), triangle.end());
+  for (const std::int32_t v : used) {
+    const ResponseStatus status = response(library, v).status;
+    if (status == ResponseStatus::Hole) ++certificate.holes;
+    if (status == ResponseStatus::Filled) ++certificate.filled;
+  }
+}
+
+std::string cause(const TriangleBounds& bounds) {
+  if (bounds.certificate.stick >= bounds.certificate.slip) {
+    return "the stiffest response, with the contact point held";
+  }
+  if (std::isinf(bounds.certificate.slip)) {
+    return "the slide of the contact point is not bounded there: too deep for the curvature of the "
+           "normals, or a lateral response that is flat";
+  }
+  const SlideBound& slide = bounds.slide;
+  if (slide.stiffness >= std::max({slide.variation, slide.slant, slide.curvature})) {
+    return "the stiffest response, while sliding";
+  }
+  if (slide.variation >= std::max(slide.slant, slide.curvature)) {
+    return "the change of the responses over the surface, while sliding";
+  }
+  return slide.slant >= slide.curvature
+             ? "inward directions that lean against the facet, while sliding"
+             : "the curvature of the normals, while sliding";
+}
+
+std::string limit_line(const Library& library, std::size_t index, const TriangleBounds& bounds) {
+  const Triangle& triangle = library.triangles[index];
+  Vec3 centre{};
+  for (const std::int32_t v : triangle) {
+    centre = centre + (1.0 / 3) * library.positions[static_cast<std::size_t>(v)];
+  }
+  std::array<char, 160> place{};
+  std::snprintf(place.data(), place.size(), "%.4g N/m in triangle %zu near (%.4g, %.4g, %.4g) m: ",
+                std::max(bounds.certificate.stick, bounds.certificate.slip), index, centre[0],
+                centre[1], centre[2]);
+  return place.data() + cause(bounds);
+}
+
+void add_devices(Certificate& certificate, const CertifySettings& settings) {
+  const double steepest = std::max(certificate.stick, certificate.slip);
+  for (const DeviceProfile& device : settings.devices) {
+    if (std::isnan(device.damping)) continue;  // not known: nothing can be certified
+    if (!std::isfinite(device.damping) || device.damping <= 0) {
+      throw Error(ErrorKind::Configuration, "device profile '" + device.name + "'",
+                  "damping is not above zero",
+                  "give the smallest damping in N s/m or leave it out");
+    }
+    certificate.devices.push_back({device.name, device.damping, 2 * steepest / device.damping,
+                                   2 * device.damping / (3 * kReferencePeriod),
+                                   2 * device.damping / kReferencePeriod});
+  }
+}
+
+}  // namespace
+
+void certify(Library& library, const CertifySettings& settings) {
+  if (!std::isfinite(settings.friction) || settings.friction < 0) {
+    throw Error(ErrorKind::Configuration, "certify settings", "friction is not a number >= 0",
+                "give a friction coefficient, for example 0.3");
+  }
+  Certificate certificate;
+  certificate.friction = settings.friction;
+  certificate.depth = deepest_knot(library);
+  if (!(certificate.depth > 0)) {
+    throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
+                "no vertex has a response", "fit the curves first");
+  }
+  double steepest = 0;
+  for (std::size_t m = 0; m < library.triangles.size(); ++m) {
+    const TriangleBounds bounds = bound_triangle(library, m, certificate.depth, settings.friction);
+    certificate.triangles.push_back(bounds.certificate);
+    certificate.stick = std::max(certificate.stick, bounds.certificate.stick);
+    certificate.slip = std::max(certificate.slip, bounds.certificate.slip);
+    const double both = std::max(bounds.certificate.stick, bounds.certificate.slip);
+    if (both > steepest) {
+      steepest = both;
+      certificate.worst_triangle = static_cast<std::int32_t>(m);
+      certificate.limited_by = limit_line(library, m, bounds);
+    }
+  }
+  if (certificate.worst_triangle < 0) {
+    throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
+                "every triangle touches a hole", "fill the holes or compute more sites");
+  }
+  count_vertices(library, certificate);
+  add_devices(certificate, settings);
+  library.certificate = certificate;
+}
+
+}  // namespace palpate::fitting

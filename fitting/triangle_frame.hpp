@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Geometry of one response triangle as the certificate needs it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "format/library.hpp"
+
+namespace palpate::fitting {
+
+/// All bounds hold over the whole triangle. N is the inward facet normal, U(c) = sum n_l u_l, n =
+/// U/|U|.
+struct TriangleFrame {
+  std::array<Vec3, 3> gradient{};  ///< grad n_l, 1/m; constant, in the plane, their sum is zero
+  double least_length = 1;  ///< min |U(c)|, exact: distance of the origin from the triangle u_l
+  double kappa = 0;         ///< 1/m, |dn/ds| <= kappa along any direction in the plane
+  double twist = 0;         ///< 1/m, bound on the part of dn/ds across the slide, <= kappa
+  double cos_theta = 1;     ///< min n . N, exact: it is reached at a vertex
+  double sin_theta = 0;
+};
+
+/// @throws Error(Geometry), naming triangle and position, where normals cannot be interpolated:
+///   no area, u_l . N <= 0 at a vertex, or |U| < 0.5 somewhere.
+TriangleFrame triangle_frame(const Library& library, std::size_t index);
+
+/// |sum_l value_l grad n_l|: how fast a quantity given at the vertices changes over the triangle.
+inline double gradient_norm(const std::array<Vec3, 3>& gradient, double v0, double v1, double v2) {
+  // Differences, not values: the gradients cancel, and so must the common part.
+  return norm((v1 - v0) * gradient[1] + (v2 - v0) * gradient[2]);
+}
+
+}  // namespace palpate::fitting

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "fitting/fitting.hpp"
+#include "fitting/triangle_frame.hpp"
+#include "format/error.hpp"
+#include "tests/unit/fitting/surfaces.hpp"
+
+namespace palpate::fitting {
+namespace {
+
+CertifySettings with_friction(double mu) {
+  CertifySettings settings;
+  settings.friction = mu;
+  return settings;
+}
+
+TEST(Certificate, FlatPlateOfEqualSpringsHasTheClosedForm) {
+  // Nothing changes along the surface and nothing turns: L_stick = k, and at limiting friction the
+  // force grows along n + mu t, whose length is sqrt(1 + mu^2).
+  for (const double mu : {0.0, 0.3, 1.0}) {
+    Library library = flat_triangle();
+    set_equal_responses(library, node_response(linear_curve(200), linear_curve(200)));
+    certify(library, with_friction(mu));
+    const TriangleCertificate& bound = library.certificate.triangles.at(0);
+    EXPECT_DOUBLE_EQ(bound.stick, 200);
+    EXPECT_NEAR(bound.slip, 200 * std::sqrt(1 + mu * mu), 1e-9);
+    EXPECT_NEAR(bound.kappa, 0, 1e-12);
+    EXPECT_NEAR(bound.cos_theta, 1, 1e-12);
+    EXPECT_NE(library.certificate.limited_by.find("stiffest response"), std::string::npos);
+    if (mu == 0) continue;
+    EXPECT_TRUE(bound.sliding_passive);
+    EXPECT_NE(library.certificate.limited_by.find("while sliding"), std::string::npos);
+  }
+}
+
+TEST(Certificate, SphereTurnsByOneOverItsRadius) {
+  constexpr double kRadius = 0.04;
+  double last_excess = 1;
+  for (const int level : {1, 2, 3}) {
+    const Library library = sphere(kRadius, level);
+    double largest = 0;
+    double smallest = std::numeric_limits<double>::infinity();
+    for (std::size_t m = 0; m < library.triangles.size(); ++m) {
+      const TriangleFrame frame = triangle_frame(library, m);
+      largest = std::max(largest, frame.kappa);
+      smallest = std::min(smallest, frame.kappa);
+      // u is radial, so n turns by 1/|U| over R, and |U| is the cosine of the opening at least.
+      EXPECT_NEAR(frame.kappa, 1 / (kRadius * frame.least_length), 1e-6 / kRadius);
+      EXPECT_NEAR(frame.least_length, frame.cos_theta, 1e-9);
+      EXPECT_LT(frame.twist, 0.5 * frame.kappa);  // a sphere turns along the slide only
+    }
+    EXPECT_GE(smallest, 1 / kRadius * (1 - 1e-12));
+    const double excess = largest * kRadius - 1;
+    EXPECT_LT(excess, 0.4 * last_excess);  // second order in the edge length
+    last_excess = excess;
+  }
+  EXPECT_LT(last_excess, 0.02);
+}
+
+TEST(Certificate, GradientsReproduceALinearField) {
+  const Library library = sphere(0.04, 1);
+  const Vec3 slope{3, -2, 5};
+  for (std::size_t m = 0; m < library.triangles.size(); ++m) {
+    const TriangleFrame frame = triangle_frame(library, m);
+    Vec3 gradient{};
+    for (std::size_t l = 0; l < 3; ++l) {
+      const Vec3& x = library.positions[static_cast<std::size_t>(library.triangles[m][l])];
+      gradient = gradient + dot(slope, x) * frame.gradient[l];
+    }
+    for (const std::int32_t v : library.triangles[m]) {
+      const Vec3 edge = library.positions[static_cast<std::size_t>(v)] -
+                        library.positions[static_cast<std::size_t>(library.triangles[m][0])];
+      EXPECT_NEAR(dot(gradient, edge), dot(slope, edge), 1e-12);
+    }
+  }
+}
+
+TEST(Certificate, StickIsTheSteepestStoredSlopeOfTheTriangle) {
+  Library library = sphere(0.04, 1);
+  set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
+  library.responses[5].normal = {{0.0f, 0.004f, 0.008f}, {0.0f, 300.0f, 50.0f}};
+  certify(library, with_friction(0.2));
+  for (std::size_t m = 0; m < library.triangles.size(); ++m) {
+    const Triangle& t = library.triangles[m];
+    const bool touches = t[0] == 5 || t[1] == 5 || t[2] == 5;
+    EXPECT_DOUBLE_EQ(library.certificate.triangles[m].stick, touches ? 300 : 100);
+  }
+  EXPECT_DOUBLE_EQ(library.certificate.stick, 300);
+  const Triangle& worst =
+      library.triangles[static_cast<std::size_t>(library.certificate.worst_triangle)];
+  EXPECT_TRUE(worst[0] == 5 || worst[1] == 5 || worst[2] == 5);
+}
+
+TEST(Certificate, RateOfADeviceFollowsTheWorstBound) {
+  Library library = flat_triangle();
+  set_equal_responses(library, node_response(linear_curve(162), linear_curve(162)));
+  CertifySettings settings = with_friction(0);
+  settings.devices = {{"viscous", 0.081, 0.01, 10, ""},
+                      {"unknown", std::numeric_limits<double>::quiet_NaN(), 0, 5, ""}};
+  certify(library, settings);
+  ASSERT_EQ(library.certificate.devices.size(), 1u);  // no damping known: nothing certified
+  const DeviceCertificate& device = library.certificate.devices[0];
+  EXPECT_NEAR(device.lowest_rate, 2 * 162 / 0.081, 1e-9);  // 4 kHz
+  EXPECT_NEAR(device.linear_limit, 54, 1e-9);
+  EXPECT_NEAR(device.no_delay_limit, 162, 1e-9);
+  settings.devices[0].damping = 0;
+  EXPECT_THROW(certify(library, settings), Error);
+}
+
+TEST(Certificate, AHoleIsABorder) {
+  Library library = sphere(0.04, 1);
+  set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
+  library.responses[7] = NodeResponse{};
+  library.responses[9].status = ResponseStatus::Filled;
+  certify(library, with_friction(0.3));
+  EXPECT_EQ(library.certificate.holes, 1);
+  EXPECT_EQ(library.certificate.filled, 1);
+  for (std::size_t m = 0; m < library.triangles.size(); ++m) {
+    const Triangle& t = library.triangles[m];
+    const bool touches = t[0] == 7 || t[1] == 7 || t[2] == 7;
+    EXPECT_EQ(library.certificate.triangles[m].stick == 0, touches);
+  }
+}
+
+TEST(Certificate, TooDeepForTheCurvatureIsUnboundedAndSaid) {
+  // Slides outrun the tool where D kappa reaches cos theta: R = 5 mm pressed by 10 mm.
+  Library library = sphere(0.005, 2);
+  set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
+  certify(library, with_friction(0.3));
+  EXPECT_TRUE(std::isinf(library.certificate.slip));
+  EXPECT_NE(library.certificate.limited_by.find("not bounded"), std::string::npos);
+}
+
+TEST(Certificate, RefusesNormalsThatCannotBeInterpolated) {
+  Library library = flat_triangle();
+  set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
+  library.inward[1] = unit({1, 0, 0.05});  // out of the body
+  try {
+    certify(library, {});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Geometry);
+    EXPECT_NE(error.where().find("triangle 0"), std::string::npos);
+    EXPECT_NE(error.problem().find("vertex 1"), std::string::npos);
+    EXPECT_FALSE(error.remedy().empty());
+  }
+  // All point in, yet their mean is shorter than a half.
+  library.inward = {unit({1, 0, -0.1}), unit({-0.5, 0.866, -0.1}), unit({-0.5, -0.866, -0.1})};
+  EXPECT_THROW(certify(library, {}), Error);
+  EXPECT_TRUE(library.certificate.triangles.empty());  // nothing half-done
+  library = flat_triangle();
+  set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
+  library.positions[2] = {0.02, 0, 0};
+  EXPECT_THROW(certify(library, {}), Error);
+}
+
+TEST(Certificate, LeastLengthIsTheDistanceToTheTriangleOfDirections) {
+  // Against a search over a fine grid of natural coordinates.
+  std::mt19937 engine(23);
+  std::normal_distribution<double> lean(0, 0.5);
+  for (int trial = 0; trial < 30; ++trial) {
+    Library library = flat_triangle();
+    for (Vec3& u : library.inward) u = unit({lean(engine), lean(engine), -1});
+    double least = 1;
+    for (int i = 0; i <= 200; ++i) {
+      for (int j = 0; j <= 200 - i; ++j) {
+        const double a = i / 200.0;
+        const double b = j / 200.0;
+        least = std::min(least, norm(a * library.inward[0] + b * library.inward[1] +
+                                     (1 - a - b) * library.inward[2]));
+      }
+    }
+    if (least < 0.51) continue;
+    const double exact = triangle_frame(library, 0).least_length;
+    EXPECT_LE(exact, least + 1e-12);
+    EXPECT_NEAR(exact, least, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::fitting

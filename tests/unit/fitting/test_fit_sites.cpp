@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "fitting/fitting.hpp"
+#include "fitting/site_samples.hpp"
+#include "format/error.hpp"
+#include "runtime/response_curve.hpp"
+
+namespace palpate::fitting {
+namespace {
+
+constexpr double kDepth = 0.006;
+constexpr double kTravel = 0.003;
+const Vec3 kInward{0, 0, -1};
+
+/// A flat fan: vertex 0 in the middle of a hexagon, all in the plane z = 0.
+Body hexagon() {
+  Body body;
+  body.name = "plate";
+  body.nodes.push_back({0, 0, -0.03});  // response vertices are not the first nodes
+  body.nodes.push_back({0, 0, 0});
+  for (int i = 0; i < 6; ++i) {
+    const double angle = i * 1.0471975511965976;
+    body.nodes.push_back({0.01 * std::cos(angle), 0.01 * std::sin(angle), 0});
+  }
+  for (std::int32_t v = 0; v < 7; ++v) {
+    body.response.node.push_back(v + 1);
+    body.response.inward.push_back(kInward);
+    body.response.is_site.push_back(1);
+  }
+  for (std::int32_t i = 0; i < 6; ++i) {
+    body.response.triangles.push_back({0, 1 + i, 1 + (i + 1) % 6});
+  }
+  return body;
+}
+
+double normal_law(double d) {
+  return 1200 * std::pow(d, 1.5);
+}
+
+CurvePath normal_path(double reach, double scale) {
+  CurvePath path{PathKind::Normal, 0, kInward, {}};
+  for (int i = 0; i <= 12; ++i) {
+    CurveSample sample;
+    sample.displacement = reach * i / 12;
+    // Some force across the path, as on an uneven body: only the part along it is the response.
+    sample.force = {0.01, 0.02, -scale * normal_law(sample.displacement)};
+    path.samples.push_back(sample);
+  }
+  return path;
+}
+
+/// A stuck contact held at some depth: the normal force of the held state is no lateral response.
+CurvePath lateral_path(const Vec3& direction, double held_depth, double stiffness,
+                       double reach = kTravel) {
+  CurvePath path{PathKind::Lateral, held_depth, direction, {}};
+  const Vec3 held{0.004, -0.003, -normal_law(held_depth)};
+  for (int i = 0; i <= 6; ++i) {
+    CurveSample sample;
+    sample.displacement = reach * i / 6;
+    sample.force = held + (stiffness * sample.displacement) * direction;
+    path.samples.push_back(sample);
+  }
+  return path;
+}
+
+SiteCurves complete_site(std::int32_t vertex, double scale = 1) {
+  SiteCurves site;
+  site.vertex = vertex;
+  site.status = SiteStatus::Complete;
+  site.paths = {normal_path(kDepth, scale), lateral_path({1, 0, 0}, 0.003, 60 * scale)};
+  return site;
+}
+
+Curves complete_curves(const Body& body) {
+  Curves curves;
+  curves.tool = {"sphere", 0.005, "frictionless"};
+  curves.depth = kDepth;
+  curves.lateral_travel = kTravel;
+  curves.provenance.steps.push_back({"precompute", "0", "0", "0", "", {}, {}});
+  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
+    curves.sites.push_back(complete_site(static_cast<std::int32_t>(v)));
+  }
+  return curves;
+}
+
+std::string problem_of(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Configuration);
+    return error.where() + ": " + error.problem();
+  }
+  return "no error";
+}
+
+TEST(Fit, EveryCompleteSiteCarriesItsResponses) {
+  const Body body = hexagon();
+  const Library library = fit(body, complete_curves(body), {});
+  EXPECT_EQ(library.name, "plate");
+  EXPECT_EQ(library.tool_shape, "sphere");
+  EXPECT_EQ(library.tool_radius, 0.005);
+  EXPECT_EQ(library.triangles, body.response.triangles);
+  EXPECT_EQ(library.positions[2], body.nodes[3]);
+  ASSERT_EQ(library.provenance.steps.size(), 1u);
+  ASSERT_EQ(library.responses.size(), 7u);
+  std::size_t floats = 0;
+  for (const NodeResponse& node : library.responses) {
+    EXPECT_EQ(node.status, ResponseStatus::Fitted);
+    const runtime::CompiledCurve normal(node.normal);
+    const runtime::CompiledCurve lateral(node.lateral);
+    for (int i = 1; i <= 12; ++i) {
+      const double d = kDepth * i / 12;
+      EXPECT_NEAR(normal.force(d), normal_law(d), std::max(0.01 * normal_law(d), 0.005));
+    }
+    EXPECT_NEAR(lateral.force(0.002), 0.12, 0.005);
+    EXPECT_LE(node.lateral_error, 0.005);
+    floats += 2 * (node.normal.knot.size() + node.lateral.knot.size());
+  }
+  std::printf("bytes of the two curves of a node: %zu\n", 4 * floats / 7);
+  EXPECT_LE(4 * floats / 7, 64u);
+}
+
+TEST(Fit, TheLateralResponseIsTheMeanOverAzimuthsAndDepths) {
+  const Body body = hexagon();
+  Curves curves = complete_curves(body);
+  curves.sites[0].paths = {normal_path(kDepth, 1), lateral_path({1, 0, 0}, 0.002, 40),
+                           lateral_path({0, 1, 0}, 0.002, 60), lateral_path({1, 0, 0}, 0.004, 80)};
+  const Library library = fit(body, curves, {});
+  const NodeResponse& node = library.responses[0];
+  EXPECT_NEAR(runtime::CompiledCurve(node.lateral).force(kTravel), 60 * kTravel, 1e-6);
+  // What the mean loses is stated: 20 N/m over 3 mm.
+  EXPECT_NEAR(node.lateral_error, 20 * kTravel, 1e-6);
+}
+
+TEST(Fit, AShortLateralPathBendsTheMeanWithoutAJump) {
+  const auto samples =
+      mean_lateral({{{0.001, 0.04}, {0.002, 0.08}}, {{0.001, 0.08}, {0.002, 0.16}, {0.003, 0.24}}});
+  ASSERT_EQ(samples.size(), 3u);
+  EXPECT_NEAR(samples[1].force, 0.12, 1e-12);
+  EXPECT_NEAR(samples[2].force, 0.12 + 0.08, 1e-12);  // goes on with the slope of the longer one
+}
+
+TEST(Fit, AFailedSiteIsAHole) {
+  const Body body = hexagon();
+  Curves curves = complete_curves(body);
+  curves.sites[3].status = SiteStatus::Failed;
+  curves.sites[5].paths.pop_back();  // no lateral response
+  curves.sites.pop_back();           // never run
+  const Library library = fit(body, curves, {});
+  EXPECT_EQ(library.responses[3].status, ResponseStatus::Hole);
+  EXPECT_EQ(library.responses[5].status, ResponseStatus::Hole);
+  EXPECT_EQ(library.responses[6].status, ResponseStatus::Hole);
+  EXPECT_TRUE(library.responses[3].normal.knot.empty());
+  EXPECT_EQ(library.responses[2].status, ResponseStatus::Fitted);
+  EXPECT_EQ(library.triangles.size(), 6u);  // a hole is a border, its triangles stay
+}
+
+TEST(Fit, APartialSiteCountsFromHalfOfTheDepth) {
+  const Body body = hexagon();
+  Curves curves = complete_curves(body);
+  for (const std::size_t v : {1u, 2u}) curves.sites[v].status = SiteStatus::Partial;
+  curves.sites[1].paths[0] = normal_path(0.5 * kDepth, 1);
+  curves.sites[2].paths[0] = normal_path(0.4 * kDepth, 1);
+  const Library library = fit(body, curves, {});
+  EXPECT_EQ(library.responses[1].status, ResponseStatus::Fitted);
+  EXPECT_FLOAT_EQ(library.responses[1].normal.knot.back(), 0.003f);
+  EXPECT_EQ(library.responses[2].status, ResponseStatus::Hole);
+}
+
+TEST(Fit, FillingAHoleTakesTheMeanOfItsNeighbours) {
+  const Body body = hexagon();
+  Curves curves = complete_curves(body);
+  curves.sites[0].status = SiteStatus::Failed;
+  // Neighbours of the middle: three with half, three with one and a half of the law.
+  for (std::size_t v = 1; v < 7; ++v) {
+    curves.sites[v] = complete_site(static_cast<std::int32_t>(v), v % 2 == 0 ? 0.5 : 1.5);
+  }
+  FitSettings settings;
+  settings.fill_holes = true;
+  const Library library = fit(body, curves, settings);
+  const NodeResponse& node = library.responses[0];
+  EXPECT_EQ(node.status, ResponseStatus::Filled);
+  const runtime::CompiledCurve normal(node.normal);
+  EXPECT_NEAR(normal.force(kDepth), normal_law(kDepth), 0.02 * normal_law(kDepth));
+  EXPECT_NEAR(runtime::CompiledCurve(node.lateral).force(kTravel), 60 * kTravel, 0.005);
+  // The doubt is the distance to a neighbour: half of the law.
+  EXPECT_NEAR(node.normal_error, 0.5 * normal_law(kDepth), 0.03 * normal_law(kDepth));
+}
+
+TEST(Fit, TrianglesAtASupportAreLeftOut) {
+  Body body = hexagon();
+  body.response.is_site[4] = 0;
+  Curves curves = complete_curves(body);
+  curves.sites.erase(curves.sites.begin() + 4);
+  const Library library = fit(body, curves, {});
+  EXPECT_EQ(library.triangles.size(), 4u);
+  for (const Triangle& triangle : library.triangles) {
+    for (const std::int32_t v : triangle) EXPECT_NE(v, 4);
+  }
+}
+
+TEST(Fit, RefusesCurvesOfAnotherBody) {
+  const Body body = hexagon();
+  Curves beyond = complete_curves(body);
+  beyond.sites[2].vertex = 7;
+  EXPECT_NE(problem_of([&] { fit(body, beyond, {}); }).find("only 7 response vertices"),
+            std::string::npos);
+  Curves turned = complete_curves(body);
+  turned.sites[2].paths[0].direction = {0, 0.1, -0.995};
+  EXPECT_NE(problem_of([&] { fit(body, turned, {}); }).find("inward direction"), std::string::npos);
+  Curves twice = complete_curves(body);
+  twice.sites[2].vertex = 1;
+  EXPECT_NE(problem_of([&] { fit(body, twice, {}); }).find("twice"), std::string::npos);
+  Body held = body;
+  held.response.is_site[6] = 0;
+  EXPECT_NE(problem_of([&] { fit(held, complete_curves(body), {}); }).find("vertex 6"),
+            std::string::npos);
+}
+
+TEST(Fit, RefusesWhenNothingIsUsable) {
+  const Body body = hexagon();
+  Curves curves = complete_curves(body);
+  for (SiteCurves& site : curves.sites) site.status = SiteStatus::Failed;
+  EXPECT_NE(problem_of([&] { fit(body, curves, {}); }).find("no site"), std::string::npos);
+}
+
+TEST(Fit, RefusesSettingsOutOfRange) {
+  const Body body = hexagon();
+  const Curves curves = complete_curves(body);
+  FitSettings settings;
+  settings.max_knots = 1;
+  EXPECT_NE(problem_of([&] { fit(body, curves, settings); }).find("max_knots"), std::string::npos);
+  settings = {};
+  settings.absolute_tolerance = 0;
+  EXPECT_NE(problem_of([&] { fit(body, curves, settings); }).find("tolerance"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace palpate::fitting

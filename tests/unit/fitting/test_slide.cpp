@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The bounds against the force itself: a plain evaluation of the local model, written here from the
+// equations (26)-(32), differentiated and slid numerically.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <random>
+
+#include "fitting/fitting.hpp"
+#include "fitting/triangle_frame.hpp"
+#include "runtime/response_curve.hpp"
+#include "tests/unit/fitting/surfaces.hpp"
+
+namespace palpate::fitting {
+namespace {
+
+struct Contact {
+  Vec3 force{};
+  double z = 0, rho = 0, g = 0, h = 0, energy = 0;
+  Vec3 n{}, t{};
+};
+
+/// One triangle with contact points anywhere in its plane, by natural coordinates.
+class PlainModel {
+ public:
+  PlainModel(const Library& library, std::size_t index) {
+    for (std::size_t l = 0; l < 3; ++l) {
+      const auto v = static_cast<std::size_t>(library.triangles[index][l]);
+      x_[l] = library.positions[v];
+      u_[l] = library.inward[v];
+      normal_[l] = runtime::CompiledCurve(library.responses[v].normal);
+      lateral_[l] = runtime::CompiledCurve(library.responses[v].lateral);
+    }
+    facet_ = unit(cross(x_[1] - x_[0], x_[2] - x_[0]));
+  }
+
+  std::array<double, 3> natural(const Vec3& c) const {
+    const double area = dot(cross(x_[1] - x_[0], x_[2] - x_[0]), facet_);
+    const double a = dot(cross(x_[2] - x_[1], c - x_[1]), facet_) / area;
+    const double b = dot(cross(x_[0] - x_[2], c - x_[2]), facet_) / area;
+    return {a, b, 1 - a - b};
+  }
+  bool inside(const Vec3& c) const {
+    const auto n = natural(c);
+    return n[0] >= 0 && n[1] >= 0 && n[2] >= 0;
+  }
+  Vec3 point(double a, double b) const { return a * x_[0] + b * x_[1] + (1 - a - b) * x_[2]; }
+
+  Vec3 direction(const Vec3& c) const {
+    const auto w = natural(c);
+    return unit(w[0] * u_[0] + w[1] * u_[1] + w[2] * u_[2]);
+  }
+
+  Contact at(const Vec3& x, const Vec3& c, double d0) const {
+    const auto w = natural(c);
+    Contact state;
+    state.n = direction(c);
+    const Vec3 delta = x - c - d0 * state.n;
+    state.z = dot(state.n, delta);
+    const Vec3 lateral = delta - state.z * state.n;
+    state.rho = norm(lateral);
+    if (state.rho > 0) state.t = (1 / state.rho) * lateral;
+    for (std::size_t l = 0; l < 3; ++l) {
+      state.g += w[l] * normal_[l].force(state.z);
+      state.h += w[l] * lateral_[l].force(state.rho);
+      state.energy += w[l] * (normal_[l].energy(state.z) + lateral_[l].energy(state.rho));
+    }
+    state.force = state.g * state.n + state.h * state.t;
+    return state;
+  }
+
+  /// rho_s by bisection.
+  double slip_limit(const Vec3& c, double limit) const {
+    const auto w = natural(c);
+    double low = 0;
+    double high = 1;
+    for (int i = 0; i < 100; ++i) {
+      const double middle = 0.5 * (low + high);
+      double h = 0;
+      for (std::size_t l = 0; l < 3; ++l) h += w[l] * lateral_[l].force(middle);
+      (h < limit ? low : high) = middle;
+    }
+    return high;
+  }
+
+  Vec3 in_plane(const Vec3& t) const { return unit(t - dot(t, facet_) * facet_); }
+
+  /// The contact point after the slide has come to rest: moved until rho = rho_s.
+  std::optional<Vec3> slid(const Vec3& x, Vec3 c, double d0, double mu) const {
+    for (int i = 0; i < 400; ++i) {
+      const Contact state = at(x, c, d0);
+      const double excess = state.rho - slip_limit(c, mu * state.g);
+      if (excess < 1e-16) return c;
+      c = c + excess * in_plane(state.t);
+    }
+    return std::nullopt;
+  }
+
+ private:
+  std::array<Vec3, 3> x_{}, u_{};
+  std::array<runtime::CompiledCurve, 3> normal_, lateral_;
+  Vec3 facet_{};
+};
+
+Library random_triangle(std::mt19937& engine, double lean, double spread) {
+  std::normal_distribution<double> tilt(0, lean);
+  Library library = flat_triangle();
+  for (Vec3& u : library.inward) u = unit({tilt(engine), tilt(engine), -1});
+  for (int l = 0; l < 3; ++l) library.responses.push_back(random_response(engine, spread));
+  return library;
+}
+
+/// A tool in contact: c inside, z + d0 <= depth, lateral deflection rho in a random direction.
+struct Start {
+  Vec3 c{}, x{};
+  double d0 = 0;
+};
+
+Start random_start(std::mt19937& engine, const PlainModel& model, double depth,
+                   const std::function<double(const Vec3&, double)>& lateral) {
+  std::uniform_real_distribution<double> u(0, 1);
+  double a = u(engine);
+  double b = u(engine);
+  if (a + b > 1) {
+    a = 1 - a;
+    b = 1 - b;
+  }
+  Start start;
+  start.c = model.point(0.02 + 0.94 * a, 0.02 + 0.94 * b);
+  const double z = depth * (0.02 + 0.98 * u(engine));
+  start.d0 = u(engine) < 0.5 ? 0 : (depth - z) * u(engine);
+  const Vec3 n = model.direction(start.c);
+  const Vec3 any = unit({u(engine) - 0.5, u(engine) - 0.5, u(engine) - 0.5});
+  const Vec3 t = unit(any - dot(any, n) * n);
+  start.x = start.c + (z + start.d0) * n + lateral(start.c, z) * t;
+  return start;
+}
+
+Eigen::Matrix3d jacobian(const PlainModel& model, const Start& start) {
+  Eigen::Matrix3d J;
+  constexpr double kStep = 1e-7;
+  for (int j = 0; j < 3; ++j) {
+    Vec3 e{};
+    e[static_cast<std::size_t>(j)] = kStep;
+    const Vec3 difference = model.at(start.x + e, start.c, start.d0).force -
+                            model.at(start.x - e, start.c, start.d0).force;
+    for (int i = 0; i < 3; ++i) J(i, j) = difference[static_cast<std::size_t>(i)] / (2 * kStep);
+  }
+  return J;
+}
+
+TEST(StickBound, NoJacobianIsSteeper) {
+  std::mt19937 engine(31);
+  std::uniform_real_distribution<double> u(0, 1);
+  double closest = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    Library library = random_triangle(engine, 0.2, 0.5);
+    certify(library, {});
+    const PlainModel model(library, 0);
+    for (int i = 0; i < 250; ++i) {
+      const Start start = random_start(engine, model, 0.012,
+                                       [&](const Vec3&, double) { return 0.006 * u(engine); });
+      const Eigen::Matrix3d J = jacobian(model, start);
+      const double steepness = Eigen::JacobiSVD<Eigen::Matrix3d>(J).singularValues()[0];
+      EXPECT_LE(steepness, library.certificate.stick * (1 + 1e-5));
+      closest = std::max(closest, steepness / library.certificate.stick);
+    }
+  }
+  std::printf("steepest Jacobian seen: %.3f of L_stick\n", closest);
+  EXPECT_GT(closest, 0.95);  // reached at a vertex, where the stiffest curve stands alone
+}
+
+struct SlideCensus {
+  double closest = 0;  ///< largest quotient / L_slip
+  int slides = 0;
+};
+
+/// Quotients |df|/|dx| of small steps that slide, in random directions.
+void try_slides(std::mt19937& engine, const Library& library, double mu, SlideCensus& census) {
+  const PlainModel model(library, 0);
+  const double bound = std::max(library.certificate.slip, library.certificate.stick);
+  std::normal_distribution<double> normal;
+  for (int i = 0; i < 60; ++i) {
+    const Start start =
+        random_start(engine, model, library.certificate.depth, [&](const Vec3& c, double z) {
+          const Vec3 n = model.direction(c);
+          return model.slip_limit(c, mu * model.at(c + z * n, c, 0).g);
+        });
+    const Contact before = model.at(start.x, start.c, start.d0);
+    for (int k = 0; k < 12; ++k) {
+      const Vec3 step = 1e-7 * unit({normal(engine), normal(engine), normal(engine)});
+      const auto c = model.slid(start.x + step, start.c, start.d0, mu);
+      ASSERT_TRUE(c);
+      if (!model.inside(*c) || norm(*c - start.c) < 1e-10) continue;
+      const Contact after = model.at(start.x + step, *c, start.d0);
+      const double quotient = norm(after.force - before.force) / norm(step);
+      EXPECT_LE(quotient, bound * (1 + 1e-4));
+      census.closest = std::max(census.closest, quotient / bound);
+      ++census.slides;
+    }
+  }
+}
+
+TEST(SlipBound, NoSlidingPathIsSteeper) {
+  std::mt19937 engine(37);
+  SlideCensus census;
+  for (const double mu : {0.1, 0.3, 0.6}) {
+    for (int trial = 0; trial < 40; ++trial) {
+      Library library = random_triangle(engine, 0.03, 0.1 + 0.2 * (trial % 3));
+      CertifySettings settings;
+      settings.friction = mu;
+      certify(library, settings);
+      if (std::isinf(library.certificate.slip)) continue;
+      try_slides(engine, library, mu, census);
+    }
+  }
+  std::printf("steepest slide seen: %.3f of the bound, %d slides\n", census.closest, census.slides);
+  EXPECT_GT(census.slides, 10000);
+  EXPECT_GT(census.closest, 0.5);  // and the bound is not idle
+}
+
+TEST(SlipBound, HoldsOnTheTrianglesOfASphere) {
+  std::mt19937 engine(41);
+  Library library = sphere(0.04, 2);
+  for (std::size_t v = 0; v < library.positions.size(); ++v) {
+    library.responses.push_back(random_response(engine, 0.1));
+  }
+  CertifySettings settings;
+  settings.friction = 0.3;
+  certify(library, settings);
+  SlideCensus census;
+  for (std::size_t m = 0; m < library.triangles.size(); m += 7) {
+    Library one = library;
+    one.triangles = {library.triangles[m]};
+    one.certificate.stick = library.certificate.triangles[m].stick;
+    one.certificate.slip = library.certificate.triangles[m].slip;
+    if (std::isinf(one.certificate.slip)) continue;
+    try_slides(engine, one, settings.friction, census);
+  }
+  std::printf(
+      "sphere: steepest slide seen: %.3f of the bound, %d slides; L_stick %.0f, L_slip %.0f\n",
+      census.closest, census.slides, library.certificate.stick, library.certificate.slip);
+  EXPECT_GT(census.slides, 1000);
+}
+
+/// Energy before and after a slide of the paper's rule, the tool held: c moves by rho - rho_s.
+struct EnergyStep {
+  double before = 0, after = 0;
+};
+
+std::optional<EnergyStep> slide_once(std::mt19937& engine, const PlainModel& model, double depth,
+                                     double mu) {
+  constexpr double kExcess = 1e-6;
+  const Start start = random_start(engine, model, depth, [&](const Vec3& c, double z) {
+    const Vec3 n = model.direction(c);
+    return model.slip_limit(c, mu * model.at(c + z * n, c, 0).g) + kExcess;
+  });
+  const Contact before = model.at(start.x, start.c, start.d0);
+  const Vec3 c = start.c + kExcess * model.in_plane(before.t);
+  if (!model.inside(c)) return std::nullopt;
+  return EnergyStep{before.energy, model.at(start.x, c, start.d0).energy};
+}
+
+TEST(SlidingPassive, NoSlideRaisesTheEnergyWhereItIsCertified) {
+  std::mt19937 engine(43);
+  int certified = 0;
+  int slides = 0;
+  int rises_elsewhere = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    const double mu = 0.2 + 0.2 * (trial % 3);
+    Library library = random_triangle(engine, 0.02, 0.05 + 0.15 * (trial % 4));
+    CertifySettings settings;
+    settings.friction = mu;
+    certify(library, settings);
+    const PlainModel model(library, 0);
+    const bool passive = library.certificate.triangles[0].sliding_passive;
+    certified += passive ? 1 : 0;
+    for (int i = 0; i < 200; ++i) {
+      const auto step = slide_once(engine, model, library.certificate.depth, mu);
+      if (!step) continue;
+      if (passive) {
+        EXPECT_LE(step->after, step->before + 1e-16);
+        ++slides;
+      } else if (step->after > step->before) {
+        ++rises_elsewhere;
+      }
+    }
+  }
+  std::printf("certified %d of 300 triangles, %d slides; %d slides elsewhere raise the energy\n",
+              certified, slides, rises_elsewhere);
+  EXPECT_GT(certified, 30);
+  EXPECT_GT(slides, 5000);
+  EXPECT_GT(rises_elsewhere, 0);  // the condition tells triangles apart
+}
+
+}  // namespace
+}  // namespace palpate::fitting
