@@ -4,6 +4,7 @@
 
 usage: file_format_test.py <write_sample_artifacts> <folder of the schema pages>
 """
+import functools
 import pathlib
 import re
 import subprocess
@@ -86,6 +87,16 @@ def parse(token):
     return float.fromhex(token) if re.search(r"[xn]", token) else int(token)
 
 
+def for_each_kind(test):
+    """Runs test(self, kind, file) as a subtest for each kind of artifact."""
+    @functools.wraps(test)
+    def run(self):
+        for kind in KINDS:
+            with self.subTest(kind), h5py.File(self.folder / f"{kind}.h5", "r") as file:
+                test(self, kind, file)
+    return run
+
+
 class FileFormat(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
@@ -97,51 +108,46 @@ class FileFormat(unittest.TestCase):
     def tearDownClass(cls):
         cls.temporary.cleanup()
 
-    def files(self):
-        for kind in KINDS:
-            with self.subTest(kind), h5py.File(self.folder / f"{kind}.h5", "r") as file:
-                yield kind, file
+    @for_each_kind
+    def test_every_dataset_has_units_and_description(self, _, file):
+        for name, dataset in datasets_of(file).items():
+            self.assertIsInstance(dataset.attrs["units"], str, name)
+            self.assertGreater(len(dataset.attrs["description"]), 8, name)
 
-    def test_every_dataset_has_units_and_description(self):
-        for _, file in self.files():
-            for name, dataset in datasets_of(file).items():
-                self.assertIsInstance(dataset.attrs["units"], str, name)
-                self.assertGreater(len(dataset.attrs["description"]), 8, name)
+    @for_each_kind
+    def test_datasets_are_those_of_the_page(self, kind, file):
+        self.assertEqual(set(datasets_of(file)), set(documented_datasets(kind)))
 
-    def test_datasets_are_those_of_the_page(self):
-        for kind, file in self.files():
-            self.assertEqual(set(datasets_of(file)), set(documented_datasets(kind)))
+    @for_each_kind
+    def test_types_shapes_and_units_are_those_of_the_page(self, kind, file):
+        sizes = {}
+        for name, (dtype, shape, units) in documented_datasets(kind).items():
+            dataset = file[name]
+            self.assertEqual(type_name(dataset), dtype, name)
+            self.assertEqual(dataset.attrs["units"], units, name)
+            letters = [size.strip() for size in shape.strip("()").split(",")]
+            self.assertEqual(len(letters), dataset.ndim, name)
+            for letter, size in zip(letters, dataset.shape):
+                wanted = int(letter) if letter.isdigit() else sizes.setdefault(letter, size)
+                self.assertEqual(size, wanted, f"{name}: {letter}")
 
-    def test_types_shapes_and_units_are_those_of_the_page(self):
-        for kind, file in self.files():
-            sizes = {}
-            for name, (dtype, shape, units) in documented_datasets(kind).items():
-                dataset = file[name]
-                self.assertEqual(type_name(dataset), dtype, name)
-                self.assertEqual(dataset.attrs["units"], units, name)
-                letters = [size.strip() for size in shape.strip("()").split(",")]
-                self.assertEqual(len(letters), dataset.ndim, name)
-                for letter, size in zip(letters, dataset.shape):
-                    wanted = int(letter) if letter.isdigit() else sizes.setdefault(letter, size)
-                    self.assertEqual(size, wanted, f"{name}: {letter}")
+    @for_each_kind
+    def test_attributes_are_those_of_the_page(self, kind, file):
+        documented = documented_attributes(kind)
+        found = {}
+        for group, item in groups_of(file).items():
+            pattern = re.sub(r"^/provenance/\d\d_\w+$", "/provenance/*", group)
+            for name, value in item.attrs.items():
+                found[f"{pattern}@{name}"] = attribute_type(value)
+        self.assertEqual(found, documented)
 
-    def test_attributes_are_those_of_the_page(self):
-        for kind, file in self.files():
-            documented = documented_attributes(kind)
-            found = {}
-            for group, item in groups_of(file).items():
-                pattern = re.sub(r"^/provenance/\d\d_\w+$", "/provenance/*", group)
-                for name, value in item.attrs.items():
-                    found[f"{pattern}@{name}"] = attribute_type(value)
-            self.assertEqual(found, documented)
-
-    def test_root_says_what_the_file_is(self):
-        for kind, file in self.files():
-            self.assertEqual(file.attrs["artifact"], f"palpate.{kind}")
-            page = (SCHEMA / f"{kind}.md").read_text()
-            self.assertIn(f"`palpate.{kind}`", page)
-            self.assertIn(f"schema {file.attrs['schema']}\n", page)
-            self.assertRegex(file.attrs["creator"], r"^palpate \d+\.\d+\.\d+ \(.+\)$")
+    @for_each_kind
+    def test_root_says_what_the_file_is(self, kind, file):
+        self.assertEqual(file.attrs["artifact"], f"palpate.{kind}")
+        page = (SCHEMA / f"{kind}.md").read_text()
+        self.assertIn(f"`palpate.{kind}`", page)
+        self.assertIn(f"schema {file.attrs['schema']}\n", page)
+        self.assertRegex(file.attrs["creator"], r"^palpate \d+\.\d+\.\d+ \(.+\)$")
 
     def test_provenance_is_in_order_and_readable(self):
         with h5py.File(self.folder / "library.h5", "r") as file:
