@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/report/embed.hpp"
+
+#include <bit>
+
+namespace palpate::report {
+
+namespace {
+
+template <class Number>
+nlohmann::json typed_column(const char* type, const std::vector<Number>& values) {
+  static_assert(std::endian::native == std::endian::little, "columns are little-endian");
+  const auto* bytes = reinterpret_cast<const char*>(values.data());
+  return {{type, base64(std::string_view(bytes, values.size() * sizeof(Number)))}};
+}
+
+}  // namespace
+
+std::string escape_html(std::string_view text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string script_json(const nlohmann::json& value) {
+  const std::string text = value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  std::string out;
+  out.reserve(text.size());
+  for (const char c : text) {
+    // These three occur only inside JSON strings, where the escapes mean the same character.
+    switch (c) {
+      case '<':
+        out += "\\u003c";
+        break;
+      case '>':
+        out += "\\u003e";
+        break;
+      case '&':
+        out += "\\u0026";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string base64(std::string_view bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string out;
+  out.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t left = bytes.size() - i;
+    std::uint32_t word = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      word = word << 8 | (k < left ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      out += k <= left ? kDigits[word >> (18 - 6 * k) & 63U] : '=';
+  }
+  return out;
+}
+
+nlohmann::json column(const std::vector<float>& values) {
+  return typed_column("f4", values);
+}
+nlohmann::json column(const std::vector<std::int32_t>& values) {
+  return typed_column("i4", values);
+}
+nlohmann::json column(const std::vector<std::uint32_t>& values) {
+  return typed_column("u4", values);
+}
+nlohmann::json column(const std::vector<std::uint8_t>& values) {
+  return typed_column("u1", values);
+}
+
+}  // namespace palpate::report

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Text and numbers that are safe to place inside an HTML file.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace palpate::report {
+
+/// Text for an HTML element or a quoted attribute: & < > " ' become entities.
+std::string escape_html(std::string_view text);
+
+/// JSON for a <script type="application/json"> element: no '<', '>' or '&' survives, so nothing in
+/// the data can end the element; bytes that are not UTF-8 become U+FFFD; NaN and infinity null.
+std::string script_json(const nlohmann::json& value);
+
+std::string base64(std::string_view bytes);  ///< RFC 4648, padded
+
+/// A column of numbers as {"<type>": base64 of little-endian bytes}; the page decodes it into a
+/// typed array. The type is one of f4 (float), i4, u4, u1.
+nlohmann::json column(const std::vector<float>& values);
+nlohmann::json column(const std::vector<std::int32_t>& values);
+nlohmann::json column(const std::vector<std::uint32_t>& values);
+nlohmann::json column(const std::vector<std::uint8_t>& values);
+
+}  // namespace palpate::report

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/report/figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+#include "runtime/response_curve.hpp"
+
+namespace palpate::report {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+double along(const CurveSample& sample, const CurvePath& path, const Vec3& inward) {
+  return dot(sample.force, path.kind == PathKind::Normal ? inward : path.direction);
+}
+
+double force_of(const RecordedStep& step) {
+  return norm(step.force);
+}
+
+}  // namespace
+
+double secant_stiffness(const NodeResponse& response, double d) {
+  if (response.status == ResponseStatus::Hole || response.normal.knot.size() < 2) return kNaN;
+  return runtime::CompiledCurve(response.normal).force(d) / d;
+}
+
+double relative_error(double error, double peak) {
+  return peak > 0 ? error / peak : kNaN;
+}
+
+PeakForce peak_force(const SiteCurves& site, const Vec3& inward) {
+  PeakForce peak;
+  for (const CurvePath& path : site.paths) {
+    double& target = path.kind == PathKind::Normal ? peak.normal : peak.lateral;
+    for (const CurveSample& sample : path.samples)
+      target = std::max(target, std::abs(along(sample, path, inward)));
+  }
+  return peak;
+}
+
+ChosenVertices choose_vertices(const Library& library, const std::vector<PeakForce>& peaks,
+                               double d) {
+  ChosenVertices chosen;
+  std::vector<std::pair<double, std::int32_t>> order;
+  double worst = -1;
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const NodeResponse& response = library.responses[v];
+    const double stiffness = secant_stiffness(response, d);
+    if (!std::isfinite(stiffness)) continue;
+    order.emplace_back(stiffness, static_cast<std::int32_t>(v));
+    if (response.status != ResponseStatus::Fitted) continue;
+    for (const double error : {relative_error(response.normal_error, peaks[v].normal),
+                               relative_error(response.lateral_error, peaks[v].lateral)}) {
+      if (!(error > worst)) continue;  // also false for NaN
+      worst = error;
+      chosen.worst_fit = static_cast<std::int32_t>(v);
+    }
+  }
+  if (order.empty()) return chosen;
+  std::sort(order.begin(), order.end());
+  chosen.softest = order.front().second;
+  chosen.median = order[(order.size() - 1) / 2].second;
+  chosen.stiffest = order.back().second;
+  return chosen;
+}
+
+std::vector<PathBalance> path_balances(const Curves& curves) {
+  std::vector<PathBalance> balances;
+  for (const SiteCurves& site : curves.sites) {
+    for (const CurvePath& path : site.paths) {
+      if (path.samples.empty()) continue;
+      const CurveSample& end = path.samples.back();
+      const double scale = std::max(std::abs(end.tool_work), std::abs(end.strain_energy));
+      if (!(scale > 0)) continue;
+      balances.push_back({site.vertex, path.kind, end.tool_work, end.strain_energy,
+                          (end.tool_work - end.strain_energy) / scale});
+    }
+  }
+  return balances;
+}
+
+CampaignFigures campaign_figures(const Curves& curves) {
+  CampaignFigures figures;
+  for (const SiteCurves& site : curves.sites) {
+    if (site.status == SiteStatus::Complete) ++figures.complete;
+    if (site.status == SiteStatus::Partial) ++figures.partial;
+    if (site.status == SiteStatus::Failed) ++figures.failed;
+    figures.cpu_seconds += site.cpu_seconds;
+    for (const CurvePath& path : site.paths) {
+      for (const CurveSample& sample : path.samples) {
+        if (path.kind == PathKind::Normal)
+          figures.deepest = std::max(figures.deepest, sample.displacement);
+        figures.max_force = std::max(figures.max_force, norm(sample.force));
+      }
+    }
+  }
+  return figures;
+}
+
+double percentile(std::vector<double>& values, double fraction) {
+  if (values.empty()) return 0;
+  const auto size = static_cast<double>(values.size());
+  const auto rank = static_cast<std::ptrdiff_t>(std::max(1.0, std::ceil(fraction * size))) - 1;
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[static_cast<std::size_t>(rank)];
+}
+
+double median_edge(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
+  for (const Triangle& t : triangles) {
+    for (std::size_t i = 0; i < 3; ++i) edges.emplace_back(std::minmax(t[i], t[(i + 1) % 3]));
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  std::vector<double> lengths;
+  for (const auto& [a, b] : edges)
+    lengths.push_back(
+        norm(points[static_cast<std::size_t>(a)] - points[static_cast<std::size_t>(b)]));
+  return percentile(lengths, 0.5);
+}
+
+std::vector<std::size_t> thin_session(const Recording& recording, std::size_t buckets) {
+  const auto& steps = recording.steps;
+  std::vector<std::size_t> kept;
+  const std::size_t length = std::max<std::size_t>(1, (steps.size() + buckets - 1) / buckets);
+  const std::function<double(const RecordedStep&)> keys[] = {
+      force_of, [](const RecordedStep& s) { return s.depth; },
+      [](const RecordedStep& s) { return s.energy; },
+      [](const RecordedStep& s) { return static_cast<double>(s.latency_ns); }};
+  for (std::size_t begin = 0; begin < steps.size(); begin += length) {
+    const std::size_t end = std::min(steps.size(), begin + length);
+    kept.push_back(begin);
+    kept.push_back(end - 1);
+    for (const auto& key : keys) {
+      const auto less = [&](const RecordedStep& a, const RecordedStep& b) {
+        return key(a) < key(b);
+      };
+      const auto first = steps.begin() + static_cast<std::ptrdiff_t>(begin);
+      const auto last = steps.begin() + static_cast<std::ptrdiff_t>(end);
+      const auto [low, high] = std::minmax_element(first, last, less);
+      kept.push_back(static_cast<std::size_t>(low - steps.begin()));
+      kept.push_back(static_cast<std::size_t>(high - steps.begin()));
+    }
+  }
+  for (std::size_t i = 1, changes = 0; i < steps.size() && changes < buckets; ++i) {
+    if ((steps[i].element >= 0) == (steps[i - 1].element >= 0)) continue;
+    kept.push_back(i - 1);
+    kept.push_back(i);
+    ++changes;
+  }
+  std::sort(kept.begin(), kept.end());
+  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+  return kept;
+}
+
+}  // namespace palpate::report

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The turning picture of the body: colours, nodes, contact path, hovering and clicking.
+import { Camera } from './camera.js';
+import { FIXED, TOUCHABLE } from './data.js';
+import { el } from './dom.js';
+import { Raster } from './raster.js';
+import { colour, onThemeChange, rgb } from './theme.js';
+
+const MAX_PIXELS = 3.2e6;
+
+export class BodyView {
+  /** field: {ofVertex | ofTriangle, low, high}; describe(vertex, triangle): lines of the tip. */
+  constructor(model, { facing, onPick, describe }) {
+    this.model = model;
+    this.home = facing;
+    this.camera = new Camera(facing);
+    this.onPick = onPick;
+    this.describe = describe;
+    this.raster = new Raster();
+    this.marked = [];
+    this.path = null;
+    this.show = { nodes: true, borders: true, path: true };
+    this.canvas = el('canvas', { tabindex: '0', role: 'img', 'aria-label': 'The body in three dimensions. Arrow keys turn it.' });
+    this.tip = el('div', { class: 'tip' });
+    this.element = el('div', { class: 'stage' }, this.canvas, this.tip);
+    this.buffer = document.createElement('canvas');
+    this.listen();
+    onThemeChange(() => this.draw());
+    new ResizeObserver(() => requestAnimationFrame(() => this.draw())).observe(this.canvas);
+  }
+
+  setField(field) {
+    this.field = field;
+    this.pointValue = field.ofVertex ? this.model.interpolate(field.ofVertex) : null;
+    this.draw();
+  }
+
+  reset() {
+    this.camera = new Camera(this.home);
+    this.draw();
+  }
+
+  /** Pixels per metre and offset of the projection at this raster size. */
+  project(width, height) {
+    const scale = (0.5 * Math.min(width, height) * this.camera.zoom) / this.model.radius;
+    const { rows } = this.camera;
+    const { centre } = this.model;
+    return (points, i, out, o) => {
+      const x = points[i] - centre[0], y = points[i + 1] - centre[1], z = points[i + 2] - centre[2];
+      out[o] = width / 2 + scale * (rows[0][0] * x + rows[0][1] * y + rows[0][2] * z);
+      out[o + 1] = height / 2 - scale * (rows[1][0] * x + rows[1][1] * y + rows[1][2] * z);
+      out[o + 2] = scale * (rows[2][0] * x + rows[2][1] * y + rows[2][2] * z);
+    };
+  }
+
+  draw(fast = false) {
+    const box = this.canvas.getBoundingClientRect();
+    if (!this.field || box.width === 0) return;
+    const ratio = devicePixelRatio || 1;
+    const width = Math.round(box.width * ratio), height = Math.round(box.height * ratio);
+    // Twice the pixels in each direction smooth the edges; while the body turns once is enough.
+    const finer = fast || width * height * 4 > MAX_PIXELS ? 1 : 2;
+    this.scale = ratio * finer;
+    this.rasterize(width * finer, height * finer);
+    this.canvas.width = width;
+    this.canvas.height = height;
+    this.buffer.width = width * finer;
+    this.buffer.height = height * finer;
+    this.buffer.getContext('2d').putImageData(this.raster.image, 0, 0);
+    const context = this.canvas.getContext('2d');
+    context.imageSmoothingQuality = 'high';
+    context.drawImage(this.buffer, 0, 0, width, height);
+    context.setTransform(1 / finer, 0, 0, 1 / finer, 0, 0);
+    this.overlay(context);
+  }
+
+  rasterize(width, height) {
+    const { model, raster } = this;
+    raster.resize(width, height);
+    raster.clear();
+    const size = model.points.length / 3;
+    const at = new Float32Array(3 * size), light = new Float32Array(size);
+    const project = this.project(width, height);
+    const [right, up, toward] = this.camera.rows;
+    // A lamp at the upper left shoulder of the viewer; never so dark that the colour misleads.
+    const lamp = toward.map((t, k) => 0.88 * t + 0.36 * up[k] - 0.3 * right[k]);
+    for (let p = 0; p < size; ++p) {
+      project(model.points, 3 * p, at, 3 * p);
+      const n = 3 * p;
+      const cosine = lamp[0] * model.light[n] + lamp[1] * model.light[n + 1] + lamp[2] * model.light[n + 2];
+      light[p] = 0.66 + 0.34 * Math.max(0, cosine);
+    }
+    this.fill(at, light);
+    if (!this.show.borders) return;
+    const bias = 0.004 * width;
+    for (let e = 0; e < model.borders.length; e += 2) {
+      const [a, b] = [3 * model.borders[e], 3 * model.borders[e + 1]];
+      raster.line(at[a], at[a + 1], at[a + 2], at[b], at[b + 1], at[b + 2], bias, 0.86);
+    }
+  }
+
+  fill(at, light) {
+    const { model, raster, field } = this;
+    const { facets } = model;
+    const kinds = model.surface.facet_kind;
+    const grey = { hole: rgb('body-hole'), fixed: rgb('body-fixed') };
+    const span = field.high - field.low || 1;
+    const p = new Float32Array(9), shade = new Float32Array(3), t = new Float32Array(3);
+    for (let f = 0; f < kinds.length; ++f) {
+      let known = kinds[f] === TOUCHABLE;
+      for (let i = 0; i < 3; ++i) {
+        const v = facets[3 * f + i];
+        for (let k = 0; k < 3; ++k) p[3 * i + k] = at[3 * v + k];
+        shade[i] = light[v];
+        const value = field.ofTriangle ? field.ofTriangle[model.triangleOf(f)] : this.pointValue[v];
+        known &&= Number.isFinite(value);
+        t[i] = (value - field.low) / span;
+      }
+      raster.triangle(f, p, shade, t, known ? null : kinds[f] === FIXED ? grey.fixed : grey.hole);
+    }
+  }
+
+  overlay(context) {
+    const project = this.project(this.raster.width, this.raster.height);
+    const bias = 0.012 * this.raster.width;
+    const spot = new Float32Array(3);
+    const place = (points, i) => {
+      project(points, i, spot, 0);
+      return { x: spot[0], y: spot[1], seen: this.raster.sees(spot[0], spot[1], spot[2], bias) };
+    };
+    if (this.show.nodes) this.drawNodes(context, place);
+    if (this.show.path && this.path) this.drawPath(context, place);
+    for (const mark of this.marked) this.drawMark(context, place, mark);
+  }
+
+  drawNodes(context, place) {
+    const { position, response_status: status } = this.model.vertices;
+    context.fillStyle = 'rgb(0 0 0 / 45%)';
+    for (let v = 0; v < status.length; ++v) {
+      if (status[v] === 2) continue;
+      const { x, y, seen } = place(position, 3 * v);
+      if (!seen) continue;
+      context.beginPath();
+      context.arc(x, y, 1.4 * this.scale, 0, 7);
+      context.fill();
+    }
+  }
+
+  /** The contact path: pieces on the far side are drawn faint. */
+  drawPath(context, place) {
+    const { contact, element } = this.path;
+    for (const [style, width] of [['#000', 4.5], ['#fff', 2.2]]) {
+      for (const front of [false, true]) {
+        context.strokeStyle = style;
+        context.globalAlpha = front ? 0.95 : 0.12;
+        context.lineWidth = width * this.scale;
+        context.lineJoin = context.lineCap = 'round';
+        context.beginPath();
+        let pen = null;
+        for (let i = 0; i < element.length; ++i) {
+          const here = element[i] < 0 ? null : place(contact, 3 * i);
+          if (pen && here && here.seen === front) {
+            context.moveTo(pen.x, pen.y);
+            context.lineTo(here.x, here.y);
+          }
+          pen = here;
+        }
+        context.stroke();
+      }
+    }
+    context.globalAlpha = 1;
+  }
+
+  drawMark(context, place, { vertex, style }) {
+    if (vertex < 0) return;
+    const { x, y, seen } = place(this.model.vertices.position, 3 * vertex);
+    context.globalAlpha = seen ? 1 : 0.25;
+    for (const [stroke, width, radius] of [['#fff', 4.5, 7], [style ?? colour('ink'), 2.6, 7]]) {
+      context.strokeStyle = stroke;
+      context.lineWidth = width * this.scale;
+      context.beginPath();
+      context.arc(x, y, radius * this.scale, 0, 7);
+      context.stroke();
+    }
+    context.globalAlpha = 1;
+  }
+
+  /** Node and triangle under a pointer, or null. */
+  pick(event) {
+    const box = this.canvas.getBoundingClientRect();
+    const x = (event.clientX - box.left) * this.scale, y = (event.clientY - box.top) * this.scale;
+    const facet = this.raster.facetAt(x, y);
+    if (facet < 0) return null;
+    const triangle = this.model.triangleOf(facet);
+    if (triangle < 0) return null;
+    const project = this.project(this.raster.width, this.raster.height);
+    const spot = new Float32Array(3);
+    let vertex = -1, nearest = Infinity;
+    for (const v of this.model.surface.triangles.subarray(3 * triangle, 3 * triangle + 3)) {
+      project(this.model.vertices.position, 3 * v, spot, 0);
+      const distance = Math.hypot(spot[0] - x, spot[1] - y);
+      if (distance < nearest) [nearest, vertex] = [distance, v];
+    }
+    return { vertex, triangle, facet };
+  }
+
+  listen() {
+    let last = null, travelled = 0, pending = 0;
+    const moving = (on) => this.canvas.classList.toggle('moving', on);
+    this.canvas.addEventListener('pointerdown', (e) => {
+      last = [e.clientX, e.clientY];
+      travelled = 0;
+      this.canvas.setPointerCapture(e.pointerId);
+    });
+    this.canvas.addEventListener('pointermove', (e) => {
+      if (!last) return this.hover(e);
+      const [dx, dy] = [e.clientX - last[0], e.clientY - last[1]];
+      travelled += Math.abs(dx) + Math.abs(dy);
+      if (travelled < 4) return undefined;
+      last = [e.clientX, e.clientY];
+      this.hideTip();
+      moving(true);
+      this.camera.turn(0.008 * dx, 0.008 * dy);
+      cancelAnimationFrame(pending);
+      pending = requestAnimationFrame(() => this.draw(true));
+      return undefined;
+    });
+    const end = (e) => {
+      if (!last) return;
+      last = null;
+      moving(false);
+      cancelAnimationFrame(pending);
+      this.draw();
+      const found = e.type === 'pointerup' && travelled < 4 ? this.pick(e) : null;
+      if (found) this.onPick(found.vertex);
+    };
+    this.canvas.addEventListener('pointerup', end);
+    this.canvas.addEventListener('pointercancel', end);
+    this.canvas.addEventListener('pointerleave', () => this.hideTip());
+    this.canvas.addEventListener('wheel', (e) => {
+      if (!e.ctrlKey && document.activeElement !== this.canvas) return;  // let the page scroll
+      e.preventDefault();
+      this.zoomBy(Math.exp(-0.0015 * e.deltaY));
+    }, { passive: false });
+    this.canvas.addEventListener('keydown', (e) => this.key(e));
+  }
+
+  zoomBy(factor) {
+    this.camera.zoom = Math.min(12, Math.max(0.5, this.camera.zoom * factor));
+    this.draw();
+  }
+
+  key(event) {
+    const turns = { ArrowLeft: [-0.1, 0], ArrowRight: [0.1, 0], ArrowUp: [0, -0.1], ArrowDown: [0, 0.1] };
+    if (turns[event.key]) this.camera.turn(...turns[event.key]);
+    else if (event.key === '+' || event.key === '=') this.camera.zoom *= 1.15;
+    else if (event.key === '-') this.camera.zoom /= 1.15;
+    else return;
+    event.preventDefault();
+    this.draw();
+  }
+
+  hover(event) {
+    const found = this.pick(event);
+    if (!found) return this.hideTip();
+    this.tip.replaceChildren(...this.describe(found).map((line) => el('div', {}, line)));
+    const box = this.element.getBoundingClientRect();
+    const [x, y] = [event.clientX - box.left, event.clientY - box.top];
+    const left = x + 16 + this.tip.offsetWidth > box.width ? x - 16 - this.tip.offsetWidth : x + 16;
+    this.tip.style.left = `${Math.max(0, left)}px`;
+    this.tip.style.top = `${y + 16}px`;
+    this.tip.style.visibility = 'visible';
+    return undefined;
+  }
+
+  hideTip() {
+    this.tip.style.visibility = 'hidden';
+  }
+}

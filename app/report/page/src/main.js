@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+import 'uplot/dist/uPlot.min.css';
+import './style.css';
+import { readData } from './data.js';
+import { el } from './dom.js';
+import { Nodes } from './nodes.js';
+import { bodySection } from './sections/body.js';
+import { certificateSection } from './sections/certificate.js';
+import { Curves } from './sections/curves.js';
+import { fitSection } from './sections/fit.js';
+import { headerSection } from './sections/header.js';
+import { recordSection } from './sections/record.js';
+import { sessionSection } from './sections/session.js';
+import { watchTheme } from './theme.js';
+
+// The state of the page is told on its root element: data-ready "ok" or "failed", data-errors the
+// number of failures. A section that cannot be drawn says so in its place.
+const root = document.documentElement;
+const count = () => { root.dataset.errors = String(Number(root.dataset.errors) + 1); };
+addEventListener('error', count);
+addEventListener('unhandledrejection', count);
+
+const report = document.getElementById('report');
+
+function place(name, make) {
+  try {
+    report.append(make());
+  } catch (error) {
+    count();
+    report.append(el('p', { class: 'failure' }, `The section \u201c${name}\u201d could not be drawn: ${error.message}`));
+  }
+}
+
+try {
+  watchTheme();
+  const data = readData();
+  const nodes = new Nodes(data);
+  place('header', () => headerSection(data, nodes));
+  place('body', () => bodySection(data, nodes, new Curves(data, nodes)));
+  place('fit', () => fitSection(data));
+  place('session', () => sessionSection(data));
+  place('certificate', () => certificateSection(data));
+  place('record', () => recordSection(data));
+} catch (error) {
+  count();
+  report.append(el('p', { class: 'failure' }, `The report cannot be shown: ${error.message}`));
+}
+// After the first layout, when the figures have found their width.
+requestAnimationFrame(() => requestAnimationFrame(() => {
+  root.dataset.ready = root.dataset.errors === '0' ? 'ok' : 'failed';
+}));

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The body as the view draws it: boundary facets, each on a triangle of the response surface.
+import { TOUCHABLE } from './data.js';
+
+export class Model {
+  constructor(data) {
+    this.surface = data.surface;
+    this.vertices = data.vertices;
+    this.points = data.surface.points;
+    this.facets = data.surface.facets;
+    this.frame();
+    this.light = this.normals();
+    this.borders = this.patchBorders();
+  }
+
+  frame() {
+    const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
+    for (let i = 0; i < this.points.length; ++i) {
+      low[i % 3] = Math.min(low[i % 3], this.points[i]);
+      high[i % 3] = Math.max(high[i % 3], this.points[i]);
+    }
+    this.centre = low.map((x, k) => (x + high[k]) / 2);
+    let radius = 0;
+    for (let i = 0; i < this.points.length; i += 3) {
+      radius = Math.max(radius, Math.hypot(...this.centre.map((c, k) => this.points[i + k] - c)));
+    }
+    this.radius = radius || 1;
+  }
+
+  /** Unit normal of each point, the mean of its facets by area. */
+  normals() {
+    const { points, facets } = this;
+    const out = new Float32Array(points.length);
+    for (let f = 0; f < facets.length; f += 3) {
+      const [a, b, c] = [facets[f] * 3, facets[f + 1] * 3, facets[f + 2] * 3];
+      const u = [0, 1, 2].map((k) => points[b + k] - points[a + k]);
+      const v = [0, 1, 2].map((k) => points[c + k] - points[a + k]);
+      const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
+      for (const p of [a, b, c]) for (let k = 0; k < 3; ++k) out[p + k] += n[k];
+    }
+    for (let p = 0; p < out.length; p += 3) {
+      const size = Math.hypot(out[p], out[p + 1], out[p + 2]) || 1;
+      for (let k = 0; k < 3; ++k) out[p + k] /= size;
+    }
+    return out;
+  }
+
+  /** Edges of the boundary between two response triangles: pairs of points. */
+  patchBorders() {
+    const { facets } = this;
+    const size = this.points.length / 3;
+    const open = new Map();
+    const borders = [];
+    for (let f = 0; f < facets.length / 3; ++f) {
+      for (let i = 0; i < 3; ++i) {
+        const a = facets[3 * f + i], b = facets[3 * f + (i + 1) % 3];
+        const key = Math.min(a, b) * size + Math.max(a, b);
+        const other = open.get(key);
+        if (other === undefined) open.set(key, f);
+        else if (this.surface.facet_triangle[f] !== this.surface.facet_triangle[other]) borders.push(a, b);
+      }
+    }
+    return Uint32Array.from(borders);
+  }
+
+  /** Value of each boundary point from a value of each response vertex; vertices without one (NaN)
+   *  lend nothing. */
+  interpolate(ofVertex) {
+    const { point_triangle: triangle, point_natural: natural, triangles } = this.surface;
+    const out = new Float32Array(triangle.length);
+    for (let p = 0; p < out.length; ++p) {
+      let sum = 0, weight = 0;
+      for (let l = 0; l < 3; ++l) {
+        const value = triangle[p] < 0 ? NaN : ofVertex[triangles[3 * triangle[p] + l]];
+        if (!Number.isFinite(value)) continue;
+        sum += natural[3 * p + l] * value;
+        weight += natural[3 * p + l];
+      }
+      out[p] = weight > 1e-6 ? sum / weight : NaN;
+    }
+    return out;
+  }
+
+  /** Response vertex with the largest natural coordinate, the node that a click on a facet means. */
+  touchable(facet) {
+    return this.surface.facet_kind[facet] === TOUCHABLE;
+  }
+
+  triangleOf(facet) {
+    return this.surface.facet_triangle[facet];
+  }
+}

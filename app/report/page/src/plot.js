@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The three kinds of plot of the report on uPlot: curves with markers, histograms, time series.
+import uPlot from 'uplot';
+import { el } from './dom.js';
+import { colour, onThemeChange } from './theme.js';
+
+const FONT = '12px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
+
+function axis(label, side) {
+  return {
+    side,
+    label,
+    labelSize: side === 2 ? 22 : 20,
+    size: side === 2 ? 30 : 52,
+    gap: 4,
+    font: FONT,
+    labelFont: FONT,
+    stroke: () => colour('muted'),
+    grid: { stroke: () => colour('grid'), width: 1 },
+    ticks: { stroke: () => colour('rule'), width: 1, size: 4 },
+    values: (_, splits) => splits.map((v) => (v === null ? '' : tickText(v))),
+  };
+}
+
+const tickText = (v) => String(Number(v.toPrecision(6))).replace('-', '\u2212');
+
+/** A figure that follows the width of its place and the colour scheme. */
+function figure(title, options, data, height = 240) {
+  const place = el('div', {});
+  const element = el('div', { class: 'plot' }, title ? el('h3', {}, title) : null, place);
+  let chart = null;
+  const build = (spec, columns) => {
+    chart?.destroy();
+    const width = Math.max(240, Math.floor(place.getBoundingClientRect().width) || 480);
+    chart = new uPlot({ width, height, pxAlign: 0, ...spec }, columns, place);
+  };
+  const update = (spec, columns) => {
+    [options, data] = [spec, columns];
+    if (place.isConnected) build(options, data);
+  };
+  // Not inside the observer: a new size there would be observed in turn.
+  new ResizeObserver(() => requestAnimationFrame(() => {
+    const width = Math.floor(place.getBoundingClientRect().width);
+    if (width < 40) return;
+    if (!chart) build(options, data);
+    else if (chart.width !== width) chart.setSize({ width, height });
+  })).observe(place);
+  onThemeChange(() => chart?.redraw(false, true));
+  return { element, update };
+}
+
+const named = (name) => () => (name.startsWith('#') ? name : colour(name));
+
+/** Range from zero to a little above the largest value. */
+const fromZero = (_, low, high) => [Math.min(0, low ?? 0), high > 0 ? high * 1.05 : 1];
+
+/**
+ * Several curves and markers, each with its own abscissae.
+ * sets: [{label, colour, x, y, markers: bool}]; every x ascending. mark: abscissa of a dashed line.
+ */
+export function curvePlot(title, xLabel, yLabel, height) {
+  const spec = (sets, mark) => ({
+    legend: { show: false },
+    cursor: { drag: { x: false, y: false }, points: { show: false } },
+    scales: { x: { time: false, range: fromZero }, y: { range: fromZero } },
+    axes: [axis(xLabel, 2), axis(yLabel, 3)],
+    series: [{}, ...sets.map((s) => ({
+      label: s.label,
+      stroke: named(s.colour),
+      width: s.markers ? 0 : 2,
+      pxAlign: 0,
+      spanGaps: true,
+      paths: s.markers ? () => null : uPlot.paths.linear(),
+      points: s.markers
+        ? { show: true, size: 7, width: 1.5, stroke: named(s.colour), fill: named('paper') }
+        : { show: false },
+    }))],
+    hooks: { draw: [(u) => dashed(u, mark)] },
+  });
+  const align = (sets) => {
+    const x = Float64Array.from(new Set(sets.flatMap((s) => Array.from(s.x)))).sort();
+    const row = new Map(Array.from(x, (value, i) => [value, i]));
+    return [x, ...sets.map((s) => {
+      const column = new Array(x.length).fill(null);
+      s.x.forEach((value, i) => { column[row.get(value)] = s.y[i]; });
+      return column;
+    })];
+  };
+  const shown = figure(title, spec([]), [[0, 1]], height);
+  return {
+    element: shown.element,
+    set: (sets, mark) => shown.update(spec(sets, mark), align(sets)),
+  };
+}
+
+function dashed(u, mark) {
+  if (mark === undefined) return;
+  const { ctx: context, bbox } = u;
+  const x = Math.round(u.valToPos(mark, 'x', true));
+  context.save();
+  context.strokeStyle = colour('muted');
+  context.setLineDash([4, 4]);
+  context.beginPath();
+  context.moveTo(x, bbox.top);
+  context.lineTo(x, bbox.top + bbox.height);
+  context.stroke();
+  context.restore();
+}
+
+/** Counts of several samples in common bins. sets: [{label, colour, values}] */
+export function histogram(title, xLabel, yLabel, sets, { bins = 30, zero = true, height = 200 } = {}) {
+  const all = sets.flatMap((s) => Array.from(s.values)).filter(Number.isFinite);
+  let [low, high] = [Math.min(...all), Math.max(...all)];
+  if (zero) [low, high] = [Math.min(0, low), Math.max(0, high)];
+  if (!(high > low)) high = low + (Math.abs(low) * 0.01 || 1);
+  const width = (high - low) / bins;
+  const edges = Array.from({ length: bins + 1 }, (_, i) => low + i * width);
+  const counts = sets.map((s) => {
+    const column = new Array(bins + 1).fill(0);
+    for (const v of s.values) {
+      if (Number.isFinite(v)) column[Math.min(bins - 1, Math.floor((v - low) / width))] += 1;
+    }
+    column[bins] = column[bins - 1];
+    return column;
+  });
+  const options = {
+    legend: { show: sets.length > 1, live: false },
+    cursor: { show: false },
+    scales: { x: { time: false, range: () => [low, high] }, y: { range: fromZero } },
+    axes: [axis(xLabel, 2), axis(yLabel, 3)],
+    series: [{}, ...sets.map((s) => ({
+      label: s.label,
+      stroke: named(s.colour),
+      fill: () => `color-mix(in srgb, ${colour(s.colour)} 28%, transparent)`,
+      width: 1.5,
+      paths: uPlot.paths.stepped({ align: 1 }),
+      points: { show: false },
+    }))],
+  };
+  return figure(title, options, [edges, ...counts], height).element;
+}
+
+/** Columns over time, cursor shared with the other plots of the session. */
+export function timePlot(title, yLabel, time, sets, height = 190) {
+  const options = {
+    legend: { show: true, live: true },
+    cursor: { sync: { key: 'session' }, drag: { x: true, y: false }, points: { size: 6 } },
+    scales: { x: { time: false }, y: {} },
+    axes: [axis('Time (s)', 2), axis(yLabel, 3)],
+    series: [
+      { label: 'Time (s)', value: (_, v) => (v === null ? '\u2013' : v.toFixed(3)) },
+      ...sets.map((s) => ({
+        label: s.label,
+        stroke: named(s.colour),
+        width: s.width ?? 1.5,
+        pxAlign: 0,
+        dash: s.dash,
+        points: { show: false },
+        value: (_, v) => (v === null || v === undefined ? '\u2013' : String(Number(v.toPrecision(3))).replace('-', '\u2212')),
+      })),
+    ],
+  };
+  return figure(title, options, [time, ...sets.map((s) => s.values)], height).element;
+}

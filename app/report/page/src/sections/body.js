@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The body in three dimensions beside the curves of the chosen nodes.
+import { BodyView } from '../body-view.js';
+import { cssGradient, roundTicks } from '../colormap.js';
+import { FIXED, RESPONSE, SITE } from '../data.js';
+import { el, paragraph } from '../dom.js';
+import { Model } from '../model.js';
+import { secantStiffness, responseForce } from '../response.js';
+import { colour } from '../theme.js';
+import * as units from '../units.js';
+
+/** The fields the picture can be coloured with: {label, unit, values(depth)}. */
+function fields(data) {
+  const { vertices, certificate, surface } = data;
+  const all = (f) => Float32Array.from({ length: vertices.response_status.length }, (_, v) => f(v));
+  const perTriangle = (column) =>
+    Float32Array.from(surface.library_triangle, (m) => (m < 0 ? NaN : column[m]));
+  const list = {
+    stiffness: { label: 'Secant stiffness f(d)/d', unit: 'N/m', deep: true,
+      ofVertex: (d) => all((v) => secantStiffness(data.normal, v, d)) },
+    lateral: { label: 'Lateral secant stiffness', unit: 'N/m', deep: true,
+      ofVertex: (d) => all((v) => secantStiffness(data.lateral, v, d)) },
+    fit: { label: 'Fit error, normal', unit: '% of peak force',
+      ofVertex: () => all((v) => (100 * vertices.normal_error[v]) / vertices.normal_peak[v]) },
+  };
+  if (certificate) {
+    list.slip = { label: 'L_slip of each triangle', unit: 'N/m', ofTriangle: () => perTriangle(certificate.triangle_slip) };
+    list.stick = { label: 'L_stick of each triangle', unit: 'N/m', ofTriangle: () => perTriangle(certificate.triangle_stick) };
+  }
+  return list;
+}
+
+function extent(values) {
+  let [low, high] = [Infinity, -Infinity];
+  for (const v of values) {
+    if (!Number.isFinite(v)) continue;
+    low = Math.min(low, v);
+    high = Math.max(high, v);
+  }
+  return low > high ? [0, 1] : [low, high];
+}
+
+class ColourBar {
+  constructor() {
+    this.unit = el('div', { class: 'unit' });
+    this.scale = el('div', { class: 'scale' });
+    this.scale.style.background = cssGradient();
+    this.element = el('div', { class: 'bar', 'aria-hidden': 'true' }, this.unit, this.scale);
+  }
+
+  set(label, unit, low, high) {
+    this.unit.replaceChildren(label, el('br'), `(${unit})`);
+    this.scale.replaceChildren(...roundTicks(low, high).map((value) => {
+      const tick = el('span', { class: 'tick' }, units.significant(value, 4).replace(/\.0+$/, ''));
+      tick.style.bottom = `${high > low ? (100 * (value - low)) / (high - low) : 0}%`;
+      return tick;
+    }));
+  }
+}
+
+/** Stand where the stiffest node faces the viewer. */
+function facing(data, model) {
+  const v = data.chosen.stiffest;
+  if (v < 0) return [1, -1, 0.4];
+  const inward = data.vertices.inward.subarray(3 * v, 3 * v + 3);
+  return Array.from(inward, (x) => -x);
+}
+
+const slider = (top, value, oninput) =>
+  el('input', { type: 'range', min: 0.02, max: 1, step: 0.005, value: value / top, oninput, 'aria-label': 'Depth' });
+
+export function bodySection(data, nodes, curves) {
+  const model = new Model(data);
+  const options = fields(data);
+  const top = data.key.depth || 1e-3;
+  let depth = top, name = 'stiffness';
+  const view = new BodyView(model, {
+    facing: facing(data, model),
+    onPick: (v) => nodes.pick(v),
+    describe: (found) => describe(data, found, depth),
+  });
+  view.path = data.session?.drawn ?? null;
+  const bar = new ColourBar();
+  const depthText = el('output', {}), range = el('p', { class: 'note', id: 'field-range' });
+  const depthControl = el('label', {}, 'Depth d', slider(top, depth, (e) => { depth = top * e.target.value; refresh(); }), depthText);
+
+  const refresh = () => {
+    const field = options[name];
+    const ofVertex = field.ofVertex?.(depth), ofTriangle = field.ofTriangle?.();
+    const [low, high] = extent(ofVertex ?? ofTriangle);
+    view.setField({ ofVertex, ofTriangle, low, high });
+    bar.set(field.label, field.unit, low, high);
+    depthText.textContent = units.length(depth);
+    depthControl.style.display = field.deep ? '' : 'none';
+    range.textContent = `${field.label}${field.deep ? ` at d = ${units.length(depth)}` : ''}: ` +
+      `${units.significant(low)} to ${units.significant(high)} ${field.unit}.`;
+    curves.setDepth(depth);
+  };
+  nodes.onChange(() => {
+    view.marked = nodes.shown().map((n) => ({ vertex: n.vertex, style: colour(n.colour) }));
+    view.draw();
+  });
+  view.marked = nodes.shown().map((n) => ({ vertex: n.vertex, style: colour(n.colour) }));
+  refresh();
+
+  return el('section', { id: 'body' },
+    el('h2', {}, 'The body under the fingertip'),
+    paragraph('Colour is what the tool feels at each node of the response surface, drawn on the boundary of the body. Drag to turn, click a node to see its curves.', 'lead'),
+    el('div', { class: 'split' },
+      el('div', {}, controls(options, view, depthControl, (n) => { name = n; refresh(); }),
+        el('div', { class: 'view' }, view.element, bar.element), range, keys(data)),
+      curves.element));
+}
+
+function controls(options, view, depthControl, choose) {
+  const check = (label, key) => el('label', { class: 'screen' },
+    el('input', { type: 'checkbox', checked: view.show[key], onchange: (e) => { view.show[key] = e.target.checked; view.draw(); } }), label);
+  return el('div', { class: 'controls' },
+    el('label', {}, 'Colour', el('select', { id: 'field', onchange: (e) => choose(e.target.value) },
+      Object.entries(options).map(([key, f]) => el('option', { value: key }, f.label)))),
+    depthControl,
+    check('nodes', 'nodes'), check('patches', 'borders'),
+    view.path ? check('contact path', 'path') : null,
+    el('span', {},
+      el('button', { type: 'button', 'aria-label': 'Zoom in', onclick: () => view.zoomBy(1.25) }, '+'), ' ',
+      el('button', { type: 'button', 'aria-label': 'Zoom out', onclick: () => view.zoomBy(0.8) }, '\u2212'), ' ',
+      el('button', { type: 'button', onclick: () => view.reset() }, 'Reset')));
+}
+
+function keys(data) {
+  const key = (name, text) => {
+    const chip = el('i');
+    chip.style.background = `var(--${name})`;
+    return el('span', {}, chip, text);
+  };
+  const kinds = new Set(data.surface.facet_kind);
+  return el('div', { class: 'keys' },
+    kinds.has(FIXED) ? key('body-fixed', 'held by a support') : null,
+    kinds.has(1) ? key('body-hole', 'no response (hole, or beside one)') : null,
+    data.session?.drawn ? el('span', {}, 'white line: path of the contact point') : null);
+}
+
+/** Lines of the tip over the picture. */
+function describe(data, { vertex, triangle, facet }, depth) {
+  const { vertices, certificate, surface } = data;
+  const lines = [`node ${vertex}`];
+  const k = secantStiffness(data.normal, vertex, depth);
+  if (Number.isFinite(k)) {
+    lines.push(`f(d)/d = ${units.stiffness(k)}`, `f(${units.length(depth)}) = ${units.force(responseForce(data.normal, vertex, depth))}`);
+  } else if (surface.facet_kind[facet] === FIXED) lines.push('held by a support');
+  lines.push(`site ${SITE[vertices.site_status[vertex]]}; response ${RESPONSE[vertices.response_status[vertex]]}`);
+  const m = surface.library_triangle[triangle];
+  if (certificate && m >= 0) lines.push(`triangle ${m}: L_slip ${units.stiffness(certificate.triangle_slip[m])}`);
+  const reason = vertices.reasons[vertex];
+  if (reason) lines.push(reason);
+  return lines;
+}

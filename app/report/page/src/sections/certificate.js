@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+import { definitions, el, paragraph, table } from '../dom.js';
+import * as units from '../units.js';
+
+const nodes = (n) => `${units.count(n)} ${n === 1 ? 'node' : 'nodes'}`;
+
+/** What the certificate does not say; the general limits first, then those of this library. */
+function notCovered(data) {
+  const { certificate: c, session, key } = data;
+  const list = [
+    `Depths beyond ${units.length(c.depth)}: there the curves continue in a straight line, outside the bounds.`,
+    'Several contacts at once: their bounds add up and must be compared as a sum.',
+    'What the device adds beside its damping: flexible links, backlash, amplifier limits, quantized positions, filtered velocities, missed samples.',
+    'The truth of the curves: it bounds what is rendered, not how well that follows the real body.',
+  ];
+  if (c.holes > 0) list.push(`${nodes(c.holes)} without a response: their triangles are a border, and are not bounded.`);
+  if (c.filled > 0) list.push(`${nodes(c.filled)} filled from neighbours: bounded like the others, but never computed.`);
+  if (key.deepest > c.depth * (1 + 1e-6)) list.push(`Presses between ${units.length(c.depth)} and ${units.length(key.deepest)}, which were computed but lie deeper than the bounds.`);
+  if (session && Math.abs(session.friction - c.friction) > 1e-9) list.push(`The friction of the session, \u03bc = ${units.significant(session.friction)}: the bounds were computed for ${units.significant(c.friction)}.`);
+  return list;
+}
+
+function devices(c) {
+  if (c.devices.length === 0) return paragraph('No device profile was given: the bounds hold, but no rate is certified for a device.');
+  return table(['Device', 'Damping, N\u00b7s/m', 'Lowest certified rate', 'Linear limit at 1 kHz, N/m', 'Without delay, N/m'],
+    c.devices.map((d) => [d.device, units.significant(d.damping), units.frequency(d.lowest_rate), units.significant(d.linear_limit), units.significant(d.no_delay_limit)]), [1, 2, 3, 4]);
+}
+
+export function certificateSection(data) {
+  const c = data.certificate;
+  const head = el('h2', {}, 'Passivity certificate');
+  if (!c) return el('section', { id: 'certificate' }, head, paragraph('This library has not been certified: nothing is promised about the rate at which a device renders it passively. Run palpate certify.'));
+  const free = c.triangle_sliding_passive.reduce((n, x) => n + x, 0);
+  return el('section', { id: 'certificate' }, head,
+    paragraph('The rendered body never returns more energy than it was given as long as max(L_stick, L_slip) \u2264 \u03c3\u2080(B) / 2T, with \u03c3\u2080(B) the smallest damping of the device and 1/T the rate of its loop.', 'lead'),
+    definitions([
+      ['L_stick', `${units.stiffness(c.stick)}: contact point held`],
+      ['L_slip', `${units.stiffness(c.slip)}: while sliding, \u03bc = ${units.significant(c.friction)}`],
+      ['Holds to', `${units.length(c.depth)} of depth`],
+      ['Worst triangle', c.worst_triangle < 0 ? 'none' : `${c.worst_triangle}: ${c.limited_by || 'cause not recorded'}`],
+      ['Sliding', `${units.count(free)} of ${units.count(c.triangle_slip.length)} triangles need no energy correction while sliding`],
+    ], 'facts'),
+    el('h3', {}, 'Devices'), devices(c),
+    el('h3', {}, 'Not covered'), el('ul', {}, notCovered(data).map((text) => el('li', {}, text))),
+    paragraph('Both bounds can be chosen as the colour of the body above.', 'note'));
+}

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Curves of the shown nodes: what was computed as markers, what will be rendered as a line.
+import { HOLE, RESPONSE } from '../data.js';
+import { el, paragraph, table } from '../dom.js';
+import { curvePlot } from '../plot.js';
+import { lastKnot, responseForce, secantStiffness } from '../response.js';
+import * as units from '../units.js';
+
+const NORMAL = 0, LATERAL = 1;
+const STEPS = 96;
+
+/** Sampled paths of a node: [{held, x (mm), y (N)}] */
+function samples(data, vertex, kind) {
+  const { samples: s } = data;
+  const paths = [];
+  for (let p = 0; p < s.vertex.length; ++p) {
+    if (s.vertex[p] !== vertex || s.kind[p] !== kind) continue;
+    const [from, to] = [s.offset[p], s.offset[p + 1]];
+    paths.push({ x: Array.from(s.displacement.subarray(from, to), (d) => d * 1e3), y: Array.from(s.force.subarray(from, to)) });
+  }
+  return paths;
+}
+
+function sets(data, shown, kind) {
+  const columns = kind === NORMAL ? data.normal : data.lateral;
+  const out = [];
+  for (const { vertex, colour } of shown) {
+    const end = lastKnot(columns, vertex);
+    if (end > 0) {
+      const x = Array.from({ length: STEPS + 1 }, (_, i) => (end * i) / STEPS);
+      out.push({ label: `node ${vertex}, fitted`, colour, x: x.map((d) => d * 1e3), y: x.map((d) => responseForce(columns, vertex, d)) });
+    }
+    for (const path of samples(data, vertex, kind)) out.push({ label: `node ${vertex}, computed`, colour, markers: true, ...path });
+  }
+  return out;
+}
+
+export class Curves {
+  constructor(data, nodes) {
+    this.data = data;
+    this.nodes = nodes;
+    this.depth = data.key.depth;
+    this.normal = curvePlot('Normal response: along the inward direction', 'Depth (mm)', 'Force (N)', 230);
+    this.lateral = curvePlot('Lateral response: along the travel, at a held depth', 'Lateral deflection (mm)', 'Force (N)', 210);
+    this.legend = el('div', {});
+    this.element = el('div', { id: 'curves' }, this.normal.element, this.lateral.element, this.legend,
+      paragraph('Markers: states computed by the finite element method. Lines: the fitted response that will be rendered. Dashed: the depth of the picture.', 'note'),
+      this.chooser());
+    nodes.onChange(() => this.refresh());
+    this.refresh();
+  }
+
+  setDepth(depth) {
+    this.depth = depth;
+    this.refresh();
+  }
+
+  refresh() {
+    const shown = this.nodes.shown();
+    this.normal.set(sets(this.data, shown, NORMAL), this.depth * 1e3);
+    this.lateral.set(sets(this.data, shown, LATERAL));
+    this.legend.replaceChildren(this.table(shown));
+  }
+
+  table(shown) {
+    const { vertices: v } = this.data;
+    const error = (e, peak) => (Number.isFinite(e) && peak > 0 ? units.percent(e / peak) : '\u2013');
+    const rows = shown.map((n) => {
+      const swatch = el('span', { class: 'swatch' });
+      swatch.style.background = `var(--${n.colour})`;
+      const close = n.role === 'chosen'
+        ? el('button', { class: 'plain', type: 'button', 'aria-label': `Remove node ${n.vertex}`, onclick: () => this.nodes.drop(n.vertex) }, '\u00d7') : null;
+      const status = v.response_status[n.vertex];
+      return [[swatch, n.role, close], el('span', { id: n.role.split(',').map((r) => r.trim().replace(' ', '-'))[0] + '-node' }, String(n.vertex)),
+        status === HOLE ? RESPONSE[status] : units.significant(secantStiffness(this.data.normal, n.vertex, this.depth)),
+        error(v.normal_error[n.vertex], v.normal_peak[n.vertex]), error(v.lateral_error[n.vertex], v.lateral_peak[n.vertex])];
+    });
+    return table(['', 'Node', 'f(d)/d, N/m', 'Fit error normal', 'lateral'], rows, [1, 2, 3, 4]);
+  }
+
+  chooser() {
+    const input = el('input', { type: 'number', min: 0, max: this.nodes.size - 1, step: 1, 'aria-label': 'Node number' });
+    const show = () => { if (input.value !== '') this.nodes.pick(Number(input.value)); };
+    input.addEventListener('keydown', (e) => { if (e.key === 'Enter') show(); });
+    return el('div', { class: 'controls' }, el('label', { class: 'screen' }, 'Show node', input, el('button', { type: 'button', onclick: show }, 'Show')));
+  }
+}

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+import { el, paragraph } from '../dom.js';
+import { histogram } from '../plot.js';
+import * as units from '../units.js';
+
+const relative = (error, peak) =>
+  Array.from(error, (e, v) => (peak[v] > 0 ? (100 * e) / peak[v] : NaN)).filter(Number.isFinite);
+const quantile = (values, q) => {
+  const sorted = [...values].sort((a, b) => a - b);
+  return sorted[Math.max(0, Math.ceil(q * sorted.length) - 1)];
+};
+
+function fitPanel(v) {
+  const normal = relative(v.normal_error, v.normal_peak), lateral = relative(v.lateral_error, v.lateral_peak);
+  if (normal.length + lateral.length === 0) return el('div', {}, el('h3', {}, 'Fit error'), paragraph('No node was fitted from curves of its own.'));
+  const summary = (name, x) => (x.length ? `${name}: median ${units.percent(quantile(x, 0.5) / 100)}, worst ${units.percent(quantile(x, 1) / 100)}` : `${name}: none`);
+  return el('div', {},
+    histogram('Fit error', 'Largest deviation (% of the largest force of the node)', 'Nodes',
+      [{ label: 'normal', colour: 'series-1', values: normal }, { label: 'lateral', colour: 'series-3', values: lateral }]),
+    paragraph(`${summary('Normal', normal)}. ${summary('Lateral', lateral)}.`, 'note'));
+}
+
+function balancePanel(balance) {
+  if (!balance.worst) return el('div', {}, el('h3', {}, 'Energy balance'), paragraph('No curve stores energy: there is nothing to balance.'));
+  const of = (kind) => Array.from(balance.difference).filter((_, i) => balance.kind[i] === kind).map((x) => 100 * x);
+  const w = balance.worst;
+  return el('div', {},
+    histogram('Energy balance of the curves', '(work of the tool \u2212 strain energy) / larger of the two (%)', 'Paths',
+      [{ label: 'normal', colour: 'series-1', values: of(0) }, { label: 'lateral', colour: 'series-3', values: of(1) }], { zero: true }),
+    el('p', { class: 'note', id: 'worst-balance' },
+      `Worst: node ${w.vertex}, ${w.kind === 0 ? 'normal' : 'lateral'} path, ${units.percent(w.difference)} (work ${units.energy(w.work)}, stored ${units.energy(w.energy)}).`));
+}
+
+export function fitSection(data) {
+  return el('section', { id: 'fit' },
+    el('h2', {}, 'Can the curves be trusted?'),
+    paragraph('The fit must follow the computed states, and the work of the tool at the end of each path must be the energy stored in the body.', 'lead'),
+    el('div', { class: 'pair' }, fitPanel(data.vertices), balancePanel(data.balance)));
+}

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+import { definitions, el, paragraph } from '../dom.js';
+import * as units from '../units.js';
+
+const small = (text) => el('small', {}, text);
+
+function sites(key) {
+  const total = key.complete + key.partial + key.failed;
+  return [units.count(key.complete), small(` of ${units.count(total)} sites complete`)];
+}
+
+function tile(term, value, note, id, kind) {
+  return el('div', {}, el('dt', {}, term), el('dd', { id, class: kind }, value),
+    note ? el('p', { class: 'note' }, note) : null);
+}
+
+function certified(certificate) {
+  if (!certificate) return tile('Certified stiffness', '\u2013', 'The library has not been certified.', 'certified');
+  const worst = Math.max(certificate.stick, certificate.slip);
+  return tile('Certified stiffness', units.stiffness(worst),
+    `largest bound: L_stick ${units.stiffness(certificate.stick)}, L_slip ${units.stiffness(certificate.slip)}`, 'certified');
+}
+
+function keyFigures(data, nodes) {
+  const { key } = data;
+  const bad = key.partial + key.failed;
+  const range = nodes.stiffest < 0 ? '\u2013'
+    : [units.significant(nodes.softestValue), '\u2009\u2013\u2009', units.significant(nodes.stiffestValue), small('\u00a0N/m')];
+  return el('dl', { class: 'figures' },
+    tile('Campaign', sites(key), `${units.count(key.partial)} partial, ${units.count(key.failed)} failed`, 'sites', bad ? 'warn' : undefined),
+    tile('Deepest press', units.length(key.deepest), `requested ${units.length(key.depth)}`, 'deepest'),
+    tile('Largest force', units.force(key.max_force), 'of any computed state', 'max-force'),
+    tile('Stiffness', range, `secant, over ${units.length(key.depth)}; softest to stiffest node`, 'stiffness-range'),
+    certified(data.certificate),
+    tile('Library', key.library_bytes ? units.bytes(key.library_bytes) : '\u2013',
+      `${units.count(data.body.vertices)} nodes, ${units.count(data.body.triangles)} triangles`, 'library-bytes'));
+}
+
+/** [[material]] tables of the stage that solved, one line each. */
+function materialLines(data) {
+  const steps = data.provenance.filter((s) => s.materials.length > 0);
+  const step = steps.find((s) => s.stage === 'precompute') ?? steps[steps.length - 1];
+  if (!step) return ['not recorded in the provenance'];
+  return step.materials.map((pairs) => {
+    const get = Object.fromEntries(pairs);
+    const rest = pairs.filter(([k]) => k !== 'region' && k !== 'law').map(([k, v]) => `${k} ${v}`);
+    return `${get.region ?? 'body'}: ${[get.law, ...rest].filter(Boolean).join(', ')}`;
+  });
+}
+
+export function headerSection(data, nodes) {
+  const { body, key } = data;
+  const last = data.provenance[data.provenance.length - 1];
+  const lines = (texts) => texts.flatMap((t, i) => (i ? [el('br'), t] : [t]));
+  return el('header', {},
+    el('h1', {}, data.title),
+    paragraph(last ? `Response library of \u201c${body.name}\u201d \u00b7 palpate ${last.version} (${last.git_revision}) \u00b7 ${last.utc}`
+      : `Response library of \u201c${body.name}\u201d \u00b7 provenance not recorded`, 'lead'),
+    keyFigures(data, nodes),
+    definitions([
+      ['Tool', `${key.tool_shape}, radius ${units.length(key.tool_radius)}, normal path ${key.tool_friction}; lateral travel ${units.length(key.lateral_travel)}`],
+      ['Mesh', `${units.count(body.tetrahedra)} tetrahedra, ${units.count(body.nodes)} nodes; boundary edge ${units.length(body.facet_edge)}, patch edge ${units.length(body.patch_edge)} (medians)`],
+      ['Held', `${units.count(body.fixed_nodes)} fixed nodes; ${units.count(body.sites)} of ${units.count(body.vertices)} response nodes may be pressed`],
+      ['Regions', body.regions.map((r) => `${r.name} (${units.count(r.tetrahedra)} tetrahedra)`).join(', ')],
+      ['Materials', lines(materialLines(data))],
+    ], 'facts'));
+}

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Numbers as a reader wants them. The data is SI; a non-breaking space binds number and unit.
+const NBSP = '\u00a0';
+
+/** Three significant digits, without an exponent in the everyday range. */
+export function significant(value, digits = 3) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return '\u2013';
+  if (value === 0) return '0';
+  const size = Math.abs(value);
+  if (size >= 1e6 || size < 1e-4) return value.toExponential(digits - 1).replace('-', '\u2212');
+  const decimals = Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return group(value.toFixed(Math.min(decimals, 8)));
+}
+
+function group(text) {
+  const [whole, fraction] = text.replace('-', '\u2212').split('.');
+  const grouped = whole.replace(/\B(?=(\d{3})+$)/g, '\u202f');
+  return fraction === undefined ? grouped : `${grouped}.${fraction}`;
+}
+
+export const count = (n) => group(String(n));
+
+const scaled = (steps) => (value) => {
+  if (value === null || value === undefined || !Number.isFinite(value)) return '\u2013';
+  const [factor, unit] = steps.find(([f]) => Math.abs(value) >= f) ?? steps[steps.length - 1];
+  return significant(value / factor) + NBSP + unit;
+};
+export const length = (m) => significant(m * 1e3) + NBSP + 'mm';
+export const force = scaled([[1, 'N'], [1e-3, 'mN']]);
+export const stiffness = (k) => significant(k) + NBSP + 'N/m';
+export const energy = (j) => (j === 0 ? `0${NBSP}J` : scaled([[1, 'J'], [1e-3, 'mJ'], [1e-6, '\u00b5J'], [1e-9, 'nJ'], [1e-12, 'pJ']])(j));
+export const time = scaled([[1, 's'], [1e-3, 'ms'], [1e-6, '\u00b5s'], [1e-9, 'ns']]);
+export const frequency = scaled([[1e6, 'MHz'], [1e3, 'kHz'], [1, 'Hz']]);
+/** A tenth of a per mille is as fine as a share is ever read. */
+export const percent = (x) => (Number.isFinite(x) && x !== 0 && Math.abs(x) < 1e-4
+  ? `< 0.01${NBSP}%` : significant(x * 100, 2) + NBSP + '%');
+export const bytes = scaled([[1e9, 'GB'], [1e6, 'MB'], [1e3, 'kB'], [1, 'B']]);
+
+export function duration(seconds) {
+  if (seconds < 120) return time(seconds);
+  const minutes = seconds / 60;
+  return minutes < 120 ? significant(minutes) + NBSP + 'min' : significant(minutes / 60) + NBSP + 'h';
+}

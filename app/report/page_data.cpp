@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/report/page_data.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "app/report/embed.hpp"
+#include "app/report/figures.hpp"
+#include "app/report/surface_map.hpp"
+#include "format/error.hpp"
+
+namespace palpate::report {
+
+namespace {
+
+using nlohmann::json;
+
+std::size_t at(std::int32_t index) {
+  return static_cast<std::size_t>(index);
+}
+
+void append(std::vector<float>& out, const Vec3& v) {
+  for (const double x : v) out.push_back(static_cast<float>(x));
+}
+
+void append(std::vector<std::uint32_t>& out, const Triangle& t) {
+  for (const std::int32_t v : t) out.push_back(static_cast<std::uint32_t>(v));
+}
+
+void require(bool fits, const char* problem) {
+  if (fits) return;
+  throw Error(ErrorKind::Configuration, "report", problem,
+              "give body, curves and library of the same pipeline run");
+}
+
+void check_together(const ReportInput& input) {
+  require(input.body != nullptr && input.curves != nullptr && input.library != nullptr,
+          "body, curves or library missing");
+  const Body& body = *input.body;
+  const Library& library = *input.library;
+  const std::size_t vertices = body.response.node.size();
+  require(library.responses.size() == vertices && library.positions.size() == vertices,
+          "the library has another number of vertices than the response surface of the body");
+  require(body.response.inward.size() == vertices && body.response.is_site.size() == vertices,
+          "the response surface of the body is incomplete");
+  for (const SiteCurves& site : input.curves->sites)
+    require(site.vertex >= 0 && at(site.vertex) < vertices,
+            "the curves name a vertex that the body does not have");
+  const auto& certificates = library.certificate.triangles;
+  require(certificates.empty() || certificates.size() == library.triangles.size(),
+          "the certificate has another number of triangles than the library");
+}
+
+json body_data(const Body& body) {
+  std::vector<std::int64_t> count(body.region_names.size(), 0);
+  for (const std::int32_t region : body.tetrahedron_region) ++count.at(at(region));
+  json regions = json::array();
+  for (std::size_t r = 0; r < count.size(); ++r)
+    regions.push_back({{"name", body.region_names[r]}, {"tetrahedra", count[r]}});
+  std::vector<Vec3> vertices;
+  for (const std::int32_t n : body.response.node) vertices.push_back(body.nodes[at(n)]);
+  return {{"name", body.name},
+          {"nodes", body.nodes.size()},
+          {"tetrahedra", body.tetrahedra.size()},
+          {"facets", body.boundary.size()},
+          {"fixed_nodes", body.fixed_nodes.size()},
+          {"vertices", body.response.node.size()},
+          {"triangles", body.response.triangles.size()},
+          {"sites", std::count(body.response.is_site.begin(), body.response.is_site.end(), 1)},
+          {"facet_edge", median_edge(body.nodes, body.boundary)},
+          {"patch_edge", median_edge(vertices, body.response.triangles)},
+          {"regions", regions}};
+}
+
+/// Facet kinds of the picture.
+enum : std::uint8_t { kTouchable = 0, kNoResponse = 1, kFixed = 2 };
+
+/// Index of each response triangle of the body in the library, -1 where the library lacks it.
+std::vector<std::int32_t> library_triangles(const Body& body, const Library& library) {
+  const auto key = [](Triangle t) {
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  std::map<Triangle, std::int32_t> index;
+  for (std::size_t m = 0; m < library.triangles.size(); ++m)
+    index[key(library.triangles[m])] = static_cast<std::int32_t>(m);
+  std::vector<std::int32_t> result;
+  for (const Triangle& t : body.response.triangles) {
+    const auto found = index.find(key(t));
+    result.push_back(found == index.end() ? -1 : found->second);
+  }
+  return result;
+}
+
+std::vector<std::uint8_t> facet_kinds(const Body& body, const Library& library,
+                                      const SurfaceMap& map,
+                                      const std::vector<std::int32_t>& in_library) {
+  std::vector<std::uint8_t> fixed(body.nodes.size(), 0);
+  for (const std::int32_t n : body.fixed_nodes) fixed.at(at(n)) = 1;
+  std::vector<std::uint8_t> kinds;
+  for (std::size_t f = 0; f < map.facets.size(); ++f) {
+    const std::int32_t m = map.facet_triangle[f];
+    bool touchable = m >= 0 && in_library[at(m)] >= 0;
+    if (touchable) {
+      for (const std::int32_t v : body.response.triangles[at(m)])
+        touchable = touchable && library.responses[at(v)].status != ResponseStatus::Hole;
+    }
+    const auto is_fixed = [&](std::int32_t p) { return fixed[at(map.node[at(p)])] != 0; };
+    const bool held = std::all_of(map.facets[f].begin(), map.facets[f].end(), is_fixed);
+    kinds.push_back(touchable ? kTouchable : held ? kFixed : kNoResponse);
+  }
+  return kinds;
+}
+
+json surface_data(const Body& body, const Library& library) {
+  const SurfaceMap map = map_boundary(body);
+  const std::vector<std::int32_t> in_library = library_triangles(body, library);
+  std::vector<float> points, natural;
+  std::vector<std::uint32_t> facets, triangles;
+  for (const std::int32_t n : map.node) append(points, body.nodes[at(n)]);
+  for (const Vec3& n : map.natural) append(natural, n);
+  for (const Triangle& f : map.facets) append(facets, f);
+  for (const Triangle& t : body.response.triangles) append(triangles, t);
+  return {{"points", column(points)},
+          {"facets", column(facets)},
+          {"facet_triangle", column(map.facet_triangle)},
+          {"facet_kind", column(facet_kinds(body, library, map, in_library))},
+          {"point_triangle", column(map.triangle)},
+          {"point_natural", column(natural)},
+          {"triangles", column(triangles)},
+          {"library_triangle", column(in_library)}};
+}
+
+/// Curves of all vertices back to back; the offsets delimit them.
+json response_columns(const Library& library, bool normal) {
+  std::vector<std::uint32_t> offset{0};
+  std::vector<float> knot, slope;
+  for (const NodeResponse& response : library.responses) {
+    const ResponseCurve& curve = normal ? response.normal : response.lateral;
+    if (response.status != ResponseStatus::Hole) {
+      knot.insert(knot.end(), curve.knot.begin(), curve.knot.end());
+      slope.insert(slope.end(), curve.slope.begin(), curve.slope.end());
+    }
+    offset.push_back(static_cast<std::uint32_t>(knot.size()));
+  }
+  return {{"offset", column(offset)}, {"knot", column(knot)}, {"slope", column(slope)}};
+}
+
+constexpr std::uint8_t kNotRun = 255;
+
+json vertex_data(const ReportInput& input, const std::vector<PeakForce>& peaks) {
+  const Library& library = *input.library;
+  const std::size_t size = library.responses.size();
+  std::vector<float> position, inward, normal_error, lateral_error;
+  std::vector<std::uint8_t> response_status, site_status(size, kNotRun);
+  std::vector<float> cpu(size, 0);
+  json reasons = json::object();
+  for (const SiteCurves& site : input.curves->sites) {
+    site_status[at(site.vertex)] = static_cast<std::uint8_t>(site.status);
+    cpu[at(site.vertex)] = static_cast<float>(site.cpu_seconds);
+    if (!site.reason.empty()) reasons[std::to_string(site.vertex)] = site.reason;
+  }
+  for (std::size_t v = 0; v < size; ++v) {
+    const NodeResponse& response = library.responses[v];
+    append(position, library.positions[v]);
+    append(inward, library.inward[v]);
+    response_status.push_back(static_cast<std::uint8_t>(response.status));
+    const bool fitted = response.status == ResponseStatus::Fitted;
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    normal_error.push_back(static_cast<float>(fitted ? response.normal_error : nan));
+    lateral_error.push_back(static_cast<float>(fitted ? response.lateral_error : nan));
+  }
+  std::vector<float> normal_peak, lateral_peak;
+  for (const PeakForce& peak : peaks) {
+    normal_peak.push_back(static_cast<float>(peak.normal));
+    lateral_peak.push_back(static_cast<float>(peak.lateral));
+  }
+  return {{"position", column(position)},
+          {"inward", column(inward)},
+          {"is_site", column(input.body->response.is_site)},
+          {"response_status", column(response_status)},
+          {"site_status", column(site_status)},
+          {"cpu_seconds", column(cpu)},
+          {"reasons", reasons},
+          {"normal_error", column(normal_error)},
+          {"lateral_error", column(lateral_error)},
+          {"normal_peak", column(normal_peak)},
+          {"lateral_peak", column(lateral_peak)}};
+}
+
+json sample_data(const Curves& curves, const Library& library) {
+  std::vector<std::int32_t> vertex;
+  std::vector<std::uint8_t> kind;
+  std::vector<std::uint32_t> offset{0};
+  std::vector<float> held, displacement, force;
+  for (const SiteCurves& site : curves.sites) {
+    for (const CurvePath& path : site.paths) {
+      vertex.push_back(site.vertex);
+      kind.push_back(static_cast<std::uint8_t>(path.kind));
+      held.push_back(static_cast<float>(path.held_depth));
+      const Vec3& axis =
+          path.kind == PathKind::Normal ? library.inward[at(site.vertex)] : path.direction;
+      for (const CurveSample& sample : path.samples) {
+        displacement.push_back(static_cast<float>(sample.displacement));
+        force.push_back(static_cast<float>(dot(sample.force, axis)));
+      }
+      offset.push_back(static_cast<std::uint32_t>(displacement.size()));
+    }
+  }
+  return {{"vertex", column(vertex)},
+          {"kind", column(kind)},
+          {"held_depth", column(held)},
+          {"offset", column(offset)},
+          {"displacement", column(displacement)},
+          {"force", column(force)}};
+}
+
+json balance_data(const Curves& curves) {
+  std::vector<float> difference;
+  std::vector<std::uint8_t> kind;
+  const std::vector<PathBalance> balances = path_balances(curves);
+  const PathBalance* worst = nullptr;
+  for (const PathBalance& balance : balances) {
+    difference.push_back(static_cast<float>(balance.difference));
+    kind.push_back(static_cast<std::uint8_t>(balance.kind));
+    if (worst == nullptr || std::abs(balance.difference) > std::abs(worst->difference))
+      worst = &balance;
+  }
+  json result = {{"difference", column(difference)}, {"kind", column(kind)}, {"worst", nullptr}};
+  if (worst != nullptr) {
+    result["worst"] = {{"vertex", worst->vertex},
+                       {"kind", static_cast<int>(worst->kind)},
+                       {"work", worst->work},
+                       {"energy", worst->energy},
+                       {"difference", worst->difference}};
+  }
+  return result;
+}
+
+json key_figures(const ReportInput& input) {
+  const CampaignFigures figures = campaign_figures(*input.curves);
+  const Curves& curves = *input.curves;
+  return {{"complete", figures.complete},
+          {"partial", figures.partial},
+          {"failed", figures.failed},
+          {"deepest", figures.deepest},
+          {"max_force", figures.max_force},
+          {"cpu_seconds", figures.cpu_seconds},
+          {"library_bytes", input.library_bytes},
+          {"depth", curves.depth},
+          {"lateral_travel", curves.lateral_travel},
+          {"tool_shape", curves.tool.shape},
+          {"tool_radius", curves.tool.radius},
+          {"tool_friction", curves.tool.friction}};
+}
+
+}  // namespace
+
+json page_data(const ReportInput& input) {
+  check_together(input);
+  const Library& library = *input.library;
+  std::vector<PeakForce> peaks(library.responses.size());
+  for (const SiteCurves& site : input.curves->sites)
+    peaks[at(site.vertex)] = peak_force(site, library.inward[at(site.vertex)]);
+  const ChosenVertices chosen = choose_vertices(library, peaks, input.curves->depth);
+  return {{"title", input.title.empty() ? library.name : input.title},
+          {"body", body_data(*input.body)},
+          {"key", key_figures(input)},
+          {"surface", surface_data(*input.body, library)},
+          {"vertices", vertex_data(input, peaks)},
+          {"normal", response_columns(library, true)},
+          {"lateral", response_columns(library, false)},
+          {"samples", sample_data(*input.curves, library)},
+          {"chosen",
+           {{"softest", chosen.softest},
+            {"median", chosen.median},
+            {"stiffest", chosen.stiffest},
+            {"worst_fit", chosen.worst_fit}}},
+          {"balance", balance_data(*input.curves)},
+          {"certificate", certificate_data(library)},
+          {"session", input.recording == nullptr ? json() : session_data(*input.recording)},
+          {"provenance", provenance_data(input)}};
+}
+
+}  // namespace palpate::report

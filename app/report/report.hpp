@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The report: one HTML file that shows a body, its responses, certificate, session and provenance.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "format/body.hpp"
+#include "format/curves.hpp"
+#include "format/library.hpp"
+#include "format/recording.hpp"
+
+namespace palpate {
+
+/// The artifacts to show. Body, curves and library must belong together: the vertices of the
+/// library are those of the response surface, and the sites of the curves index them.
+struct ReportInput {
+  const Body* body = nullptr;
+  const Curves* curves = nullptr;
+  const Library* library = nullptr;
+  const Recording* recording = nullptr;  ///< may be null: the section then says so
+  std::string title;                     ///< any text; empty = the name of the library
+  std::uintmax_t library_bytes = 0;      ///< size of library.h5 on disk; 0 = not told
+};
+
+/// Write one self-contained HTML file: no network, no WebGL, opens from disk in any browser with
+/// JavaScript. Text from the artifacts is data for the page, never markup. Written crash-safe.
+/// @throws Error(Configuration) when the artifacts do not fit together, Error(Internal) when the
+///   disk refuses. Not for the real-time thread.
+void write_report(const ReportInput& input, const std::filesystem::path& path);
+
+}  // namespace palpate

@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""test_report_page.py <write_sample_report> <chromium>
+
+Write the sample reports, open them in a browser without a network or a GPU, and hold what the page
+shows against the same figures computed here from the embedded data.
+"""
+import base64
+import html.parser
+import json
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+WRITER, BROWSER = sys.argv[1:3]
+FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
+         "--disable-background-networking", "--disable-component-update", "--disable-sync",
+         "--hide-scrollbars", "--virtual-time-budget=5000"]
+
+
+class Page(html.parser.HTMLParser):
+    """Attributes of the root, text by id, and the tags that were seen."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.root, self.by_id, self.tags, self.open, self.title = {}, {}, [], [], ""
+        self.text = ""
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        attributes = dict(attributes)
+        self.tags.append((tag, attributes))
+        if tag == "html":
+            self.root = attributes
+        if tag not in ("meta", "br", "input", "img"):
+            self.open.append((tag, attributes.get("id")))
+
+    def handle_endtag(self, tag):
+        while self.open and self.open.pop()[0] != tag:
+            pass
+
+    def handle_data(self, data):
+        tags = [tag for tag, _ in self.open]
+        if "title" in tags:
+            self.title += data
+        if "script" in tags or "style" in tags:
+            if self.open[-1][1] == "data":
+                self.by_id["data"] = data
+            return
+        self.text += data
+        for _, name in self.open:
+            if name:
+                self.by_id[name] = self.by_id.get(name, "") + data
+
+
+def browse(path, *options):
+    with tempfile.TemporaryDirectory() as profile:
+        done = subprocess.run([BROWSER, *FLAGS, f"--user-data-dir={profile}", *options, path.as_uri()],
+                              capture_output=True, timeout=120, check=True)
+    return done.stdout.decode()
+
+
+def column(value):
+    (kind, text), = value.items()
+    raw = base64.b64decode(text)
+    code = {"f4": "f", "u4": "I", "i4": "i", "u1": "B"}[kind]
+    return struct.unpack(f"<{len(raw) // struct.calcsize(code)}{code}", raw)
+
+
+def secant_stiffness(data, d):
+    """f(d)/d of each node by the trapezoid of its slopes; None without a response."""
+    offset, knot, slope = (column(data["normal"][k]) for k in ("offset", "knot", "slope"))
+    result = []
+    for a, b in zip(offset, offset[1:]):
+        x, s = list(knot[a:b]), list(slope[a:b])
+        if not x:
+            result.append(None)
+            continue
+        i = max(k for k in range(len(x)) if x[k] < d)
+        end = s[-1] if i == len(x) - 1 else s[i] + (s[i + 1] - s[i]) * (d - x[i]) / (x[i + 1] - x[i])
+        x, s = x[:i + 1] + [d], s[:i + 1] + [end]
+        result.append(sum((q - p) * (u + v) / 2 for p, q, u, v in zip(x, x[1:], s, s[1:])) / d)
+    return result
+
+
+class ReportPage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        path = pathlib.Path(cls.folder.name)
+        subprocess.run([WRITER, path], check=True)
+        cls.path = path
+        cls.full = Page(browse(path / "full.html", "--dump-dom"))
+        cls.bare = Page(browse(path / "bare.html", "--dump-dom"))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_both_pages_are_drawn_without_an_error(self):
+        for page in (self.full, self.bare):
+            self.assertEqual(page.root.get("data-errors"), "0", page.text[-500:])
+            self.assertEqual(page.root.get("data-ready"), "ok")
+
+    def test_stiffest_and_softest_node_are_those_of_the_data(self):
+        data = json.loads(self.full.by_id["data"])
+        stiffness = secant_stiffness(data, data["key"]["depth"])
+        known = [(k, v) for v, k in enumerate(stiffness) if k is not None]
+        self.assertEqual(self.full.by_id["stiffest-node"], str(max(known)[1]))
+        self.assertEqual(self.full.by_id["softest-node"], str(min(known)[1]))
+        shown = self.full.by_id["stiffness-range"].replace("\u2009", "").split("\u2013")
+        self.assertAlmostEqual(float(shown[0]) / min(known)[0], 1, delta=0.005)
+        self.assertAlmostEqual(float(shown[1].split("\u00a0")[0]) / max(known)[0], 1, delta=0.005)
+
+    def test_every_figure_is_on_the_page(self):
+        canvases = [a for t, a in self.full.tags if t == "canvas"]
+        # the body, two curve panels, two fit histograms, three of the session, one of timings
+        self.assertEqual(len(canvases), 9)
+        for name in ("body", "curves", "fit", "session", "certificate", "record"):
+            self.assertIn(name, self.full.by_id)
+        self.assertIn("The session was passive", self.full.by_id["account"])
+        self.assertIn("omega.3", self.full.by_id["certificate"])
+        self.assertIn("young 60 kPa", self.full.text)
+
+    def test_what_is_missing_is_said(self):
+        self.assertIn("No recording was given", self.bare.by_id["session"])
+        self.assertIn("has not been certified", self.bare.by_id["certificate"])
+        self.assertIn("carry no computing time", self.bare.by_id["record"])
+
+    def test_hostile_names_are_shown_as_text(self):
+        hostile = "</script><script>document.title='owned'</script><img src=x onerror=boom()> & \"'"
+        self.assertEqual(self.bare.title, hostile)
+        self.assertIn(hostile, self.bare.text)
+        self.assertNotIn("img", [tag for tag, _ in self.bare.tags])
+
+    def test_the_hot_spot_is_seen(self):
+        """The top of the colour map must cover some of the body, its bottom much more."""
+        picture = self.path / "view.png"
+        browse(self.path / "full.html", "--window-size=900,1000", f"--screenshot={picture}")
+        pixels = list(png_pixels(picture.read_bytes()))
+        hot = sum(r > 90 and g > 170 and b < 110 for r, g, b in pixels)
+        cold = sum(45 < r < 80 and g < 75 and 60 < b < 140 for r, g, b in pixels)
+        self.assertGreater(hot, 100)
+        self.assertGreater(cold, 4 * hot)
+
+
+def png_pixels(raw):
+    """Every third pixel of an 8-bit RGB or RGBA file."""
+    import zlib
+    width, height, depth, kind = struct.unpack(">IIBB", raw[16:26])
+    assert depth == 8 and kind in (2, 6)
+    channels = 3 if kind == 2 else 4
+    packed, i = b"", 8
+    while i < len(raw):
+        size, name = struct.unpack(">I4s", raw[i:i + 8])
+        if name == b"IDAT":
+            packed += raw[i + 8:i + 8 + size]
+        i += 12 + size
+    stream, stride = zlib.decompress(packed), width * channels
+    above = bytearray(stride)
+    for y in range(height):
+        start = y * (stride + 1)
+        row = unfiltered(stream[start], bytearray(stream[start + 1:start + 1 + stride]), above, channels)
+        above = row
+        if y % 3 == 0:
+            for x in range(0, stride, 3 * channels):
+                yield tuple(row[x:x + 3])
+
+
+def unfiltered(kind, row, above, channels):
+    for i in range(len(row)) if kind else ():
+        left = row[i - channels] if i >= channels else 0
+        corner = above[i - channels] if i >= channels else 0
+        guess = left + above[i] - corner
+        paeth = min((left, above[i], corner), key=lambda v: abs(guess - v))
+        row[i] = (row[i] + (0, left, above[i], (left + above[i]) // 2, paeth)[kind]) & 255
+    return row
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
