@@ -32,10 +32,15 @@ class Walker {
 
   Walk run() noexcept {
     for (int i = 0; i < kMostEdges && remaining_ > 0; ++i) {
+      const std::size_t corner = vertex_here();
+      if (corner != kNone && !face_direction(corner)) {
+        if (!leave_along_edge()) break;
+        continue;
+      }
       if (!project()) break;
       const std::size_t exit = advance();
-      if (exit == kNone || remaining_ <= 0) break;
-      if (!cross(exit) && !follow(exit)) break;
+      if (exit == kNone) break;
+      if (vertex_here() == kNone && !cross(exit) && !follow(exit)) break;
     }
     point_.natural = tidy(point_.natural);
     return {point_, at_border_};
@@ -112,52 +117,109 @@ class Walker {
     return p;
   }
 
-  /// Follows the edge opposite to `exit` by the component of the motion along it. At its end the
-  /// walk goes on in the next triangle around that vertex.
+  /// Follows the edge opposite to `exit` by the component of the motion along it.
   bool follow(std::size_t exit) noexcept {
     const Element& e = element();
-    std::size_t from = (exit + 1) % 3;
-    std::size_t to = (exit + 2) % 3;
-    Vec3 edge = surface_.vertex(e, to) - surface_.vertex(e, from);
-    double along = dot(direction_, edge);
-    if (along < 0) {
-      std::swap(from, to);
-      edge = -edge;
-      along = -along;
-    }
-    const double length = norm(edge);
-    const double share = along / length;
-    if (!(share > kLeastProjection)) return false;
-    const double free_length = point_.natural[from] * length;
-    const double reach = std::min(remaining_ * share, free_length);
-    move((1.0 / length) * edge, reach);
-    point_.natural[exit] = 0;
-    remaining_ -= reach / share;
-    if (reach < free_length) {
-      remaining_ = 0;
-      return false;
-    }
-    point_.natural = {0, 0, 0};
-    point_.natural[to] = 1;
-    return pivot(from);
+    const std::size_t a = (exit + 1) % 3;
+    const std::size_t b = (exit + 2) % 3;
+    const bool towards_b = dot(direction_, surface_.vertex(e, b) - surface_.vertex(e, a)) > 0;
+    return towards_b ? go_along(a, b) : go_along(b, a);
   }
 
-  /// At a vertex: on into the triangle across the edge opposite to vertex `from`.
-  bool pivot(std::size_t from) noexcept {
-    const std::int32_t next = element().neighbour[from];
-    if (next == kNoElement) {
-      at_border_ = true;
-      return false;
+  bool go_along(std::size_t from, std::size_t to) noexcept {
+    const Element& e = element();
+    const Vec3 edge = surface_.vertex(e, to) - surface_.vertex(e, from);
+    const double length = norm(edge);
+    const double share = dot(direction_, edge) / length;
+    if (!(share > kLeastProjection)) return false;
+    const double to_end = point_.natural[from] * length;
+    if (remaining_ * share < to_end) {
+      move((1.0 / length) * edge, remaining_ * share);
+      point_.natural[3 - from - to] = 0;
+      remaining_ = 0;
+      return true;
     }
-    point_ = seen_from(next);
+    remaining_ -= to_end / share;
+    point_.natural = {0, 0, 0};
+    point_.natural[to] = 1;
     return true;
   }
+
+  /// The vertex on which the point lies, kNone elsewhere.
+  std::size_t vertex_here() const noexcept {
+    for (std::size_t l = 0; l < 3; ++l) {
+      if (point_.natural[(l + 1) % 3] == 0 && point_.natural[(l + 2) % 3] == 0) return l;
+    }
+    return kNone;
+  }
+
+  /// At a vertex: turns around it to the triangle into which the direction points. When there is
+  /// none, remembers the edge that leaves the vertex most nearly in the direction.
+  bool face_direction(std::size_t corner) noexcept {
+    spoke_ = {};
+    const std::int32_t vertex = element().vertices[corner];
+    const std::int32_t first = point_.element;
+    bool open = false;
+    for (const std::size_t side : {std::size_t{1}, std::size_t{2}}) {
+      std::int32_t m = first;
+      for (int i = 0; i < kMostEdges; ++i) {
+        const std::size_t v = local_index(m, vertex);
+        if (examine(m, v)) return true;
+        m = surface_.element(m).neighbour[(v + side) % 3];
+        if (m == kNoElement || m == first) break;
+      }
+      open = open || m == kNoElement;
+    }
+    at_border_ = at_border_ || open;
+    return false;
+  }
+
+  bool examine(std::int32_t m, std::size_t v) noexcept {
+    const Element& e = surface_.element(m);
+    const std::size_t a = (v + 1) % 3;
+    const std::size_t b = (v + 2) % 3;
+    Vec3 d;
+    if (project_on(e, d) && dot(e.gradient[a], d) >= 0 && dot(e.gradient[b], d) >= 0) {
+      stand_on(m, v);
+      return true;
+    }
+    for (const std::size_t to : {a, b}) {
+      const Vec3 edge = surface_.vertex(e, to) - surface_.vertex(e, v);
+      const double share = dot(direction_, edge) / norm(edge);
+      if (share > spoke_.share) spoke_ = {m, v, to, share};
+    }
+    return false;
+  }
+
+  bool leave_along_edge() noexcept {
+    if (!(spoke_.share > kLeastProjection)) return false;
+    stand_on(spoke_.element, spoke_.from);
+    return go_along(spoke_.from, spoke_.to);
+  }
+
+  void stand_on(std::int32_t m, std::size_t v) noexcept {
+    point_ = {m, {0, 0, 0}};
+    point_.natural[v] = 1;
+  }
+
+  std::size_t local_index(std::int32_t m, std::int32_t vertex) const noexcept {
+    const auto& v = surface_.element(m).vertices;
+    return v[0] == vertex ? 0 : v[1] == vertex ? 1 : 2;
+  }
+
+  /// An edge that leaves a vertex.
+  struct Spoke {
+    std::int32_t element = kNoElement;
+    std::size_t from = 0, to = 0;
+    double share = 0;  ///< of the motion that goes along it
+  };
 
   const Surface& surface_;
   Vec3 direction_;
   double remaining_;
   SurfacePoint point_;
   Vec3 in_plane_{};
+  Spoke spoke_;
   bool at_border_ = false;
 };
 

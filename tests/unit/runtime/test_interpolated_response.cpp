@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Interpolated responses against the identities of interpolation, and the closed-form inverse
+// against bisection.
+#include "runtime/interpolated_response.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+namespace palpate::runtime {
+namespace {
+
+ResponseCurve random_curve(std::mt19937& random, bool with_plateaus) {
+  std::uniform_real_distribution<float> step(0.0001F, 0.002F);
+  std::uniform_real_distribution<float> slope(0.0F, 900.0F);
+  ResponseCurve curve;
+  float d = 0;
+  const int knots = 2 + static_cast<int>(random() % 9);
+  for (int k = 0; k < knots; ++k) {
+    curve.knot.push_back(d);
+    curve.slope.push_back(with_plateaus && random() % 3 == 0 ? 0.0F : slope(random));
+    d += step(random);
+  }
+  return curve;
+}
+
+struct Nodes {
+  explicit Nodes(std::mt19937& random, bool with_plateaus = false) {
+    for (NodeCurves& node : curves) {
+      node.normal = CompiledCurve(random_curve(random, with_plateaus));
+      node.lateral = CompiledCurve(random_curve(random, with_plateaus));
+    }
+  }
+  InterpolatedResponse at(const Vec3& natural) const {
+    return {{&curves[0], &curves[1], &curves[2]}, natural};
+  }
+  std::array<NodeCurves, 3> curves;
+};
+
+Vec3 random_natural(std::mt19937& random) {
+  std::uniform_real_distribution<double> any(0, 1);
+  Vec3 n{any(random), any(random), any(random)};
+  if (random() % 4 == 0) n[random() % 3] = 0;  // on an edge
+  return (1.0 / (n[0] + n[1] + n[2])) * n;
+}
+
+TEST(InterpolatedResponse, ReproducesTheNodesAtTheVertices) {
+  std::mt19937 random(1);
+  const Nodes nodes(random);
+  for (std::size_t l = 0; l < 3; ++l) {
+    Vec3 natural{};
+    natural[l] = 1;
+    for (const double d : {-0.001, 0.0, 0.0004, 0.003, 0.05}) {
+      EXPECT_EQ(nodes.at(natural).normal(d).force, nodes.curves[l].normal.force(d));
+      EXPECT_EQ(nodes.at(natural).normal(d).energy, nodes.curves[l].normal.energy(d));
+      EXPECT_EQ(nodes.at(natural).lateral(d).force, nodes.curves[l].lateral.force(d));
+    }
+  }
+}
+
+TEST(InterpolatedResponse, ThreeEqualNodesGiveThatNodeEverywhere) {
+  std::mt19937 random(2);
+  Nodes nodes(random);
+  nodes.curves[1] = nodes.curves[2] = nodes.curves[0];
+  for (int trial = 0; trial < 100; ++trial) {
+    const InterpolatedResponse r = nodes.at(random_natural(random));
+    const double d = 1e-4 * trial;
+    EXPECT_NEAR(r.normal(d).force, nodes.curves[0].normal.force(d), 1e-13);
+    EXPECT_NEAR(r.lateral(d).slope, nodes.curves[0].lateral.slope(d), 1e-11);
+  }
+}
+
+TEST(InterpolatedResponse, IsLinearInTheNaturalCoordinates) {
+  std::mt19937 random(3);
+  const Nodes nodes(random);
+  for (int trial = 0; trial < 100; ++trial) {
+    const Vec3 a = random_natural(random);
+    const Vec3 b = random_natural(random);
+    const Vec3 middle = 0.5 * (a + b);
+    const double d = 1e-4 * trial;
+    EXPECT_NEAR(nodes.at(middle).normal(d).energy,
+                (nodes.at(a).normal(d).energy + nodes.at(b).normal(d).energy) / 2, 1e-15);
+    EXPECT_NEAR(nodes.at(middle).lateral(d).force,
+                (nodes.at(a).lateral(d).force + nodes.at(b).lateral(d).force) / 2, 1e-12);
+  }
+}
+
+/// Smallest rho with h(rho) >= force by bisection; the curve is not decreasing.
+double bisect(const InterpolatedResponse& r, double force, double high) {
+  double low = 0;
+  for (int i = 0; i < 200; ++i) {
+    const double middle = (low + high) / 2;
+    (r.lateral(middle).force < force ? low : high) = middle;
+  }
+  return high;
+}
+
+TEST(InterpolatedResponse, LateralInverseAgreesWithBisection) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (int trial = 0; trial < 5000; ++trial) {
+    const Nodes nodes(random, trial % 2 == 0);
+    const InterpolatedResponse r = nodes.at(random_natural(random));
+    const double reach = 0.03 * any(random);
+    const double force = r.lateral(reach).force * any(random);
+    const double rho = r.lateral_inverse(force);
+    ASSERT_TRUE(std::isfinite(rho));
+    EXPECT_NEAR(r.lateral(rho).force, force, 1e-12 * (1 + force));
+    // A plateau makes the location ill-conditioned, so the force decides; where it rises, both
+    // agree.
+    if (force > 0 && r.lateral(rho).slope > 1) {
+      EXPECT_NEAR(rho, bisect(r, force, reach + 1e-9), 1e-12);
+    }
+  }
+}
+
+TEST(InterpolatedResponse, NothingSlipsWhereTheLateralForceStaysBelowTheLimit) {
+  NodeCurves flat;
+  flat.lateral = CompiledCurve(ResponseCurve{{0.0F, 0.001F, 0.002F}, {100.0F, 0.0F, 0.0F}});
+  const InterpolatedResponse r({&flat, &flat, &flat}, {0.2, 0.3, 0.5});
+  EXPECT_NEAR(r.lateral(1.0).force, 0.05, 1e-8);  // knots are single precision
+  EXPECT_TRUE(std::isinf(r.lateral_inverse(0.06)));
+  EXPECT_TRUE(std::isfinite(r.lateral_inverse(0.04)));
+  EXPECT_EQ(r.lateral_inverse(0.0), 0.0);
+  EXPECT_EQ(r.lateral_inverse(-1.0), 0.0);
+}
+
+}  // namespace
+}  // namespace palpate::runtime
