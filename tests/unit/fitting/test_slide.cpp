@@ -205,6 +205,46 @@ void try_slides(std::mt19937& engine, const Library& library, double mu, SlideCe
   }
 }
 
+TEST(SlipBound, SlantedPlateHasAClosedForm) {
+  // Equal springs k (normal) and r (lateral), all directions leaning by theta against the facet:
+  // nothing changes along the surface, yet the contact point runs down the slope. With t along the
+  // slope, q = n . tau = sin(theta) (tau downhill), p = cos(theta):
+  //   f' = k (n + mu t)(n - q w) . x',  w = (r t - mu k n)/(r p - mu k q).
+  constexpr double kTheta = 0.15;
+  constexpr double k = 200;
+  constexpr double r = 120;
+  constexpr double mu = 0.4;
+  Library library = flat_triangle();
+  library.inward.assign(3, {std::sin(kTheta), 0, -std::cos(kTheta)});
+  set_equal_responses(library, node_response(linear_curve(k), linear_curve(r)));
+  CertifySettings settings;
+  settings.friction = mu;
+  certify(library, settings);
+
+  const double q = std::sin(kTheta);
+  const double scale = 1 / (r * std::cos(kTheta) - mu * k * q);
+  const double along_n = 1 + q * mu * k * scale;
+  const double along_t = -q * r * scale;
+  const double steepest = k * std::hypot(1.0, mu) * std::hypot(along_n, along_t);
+
+  const PlainModel model(library, 0);
+  const Vec3 n = model.direction({0.003, 0.003, 0});
+  const Vec3 t{std::cos(kTheta), 0, std::sin(kTheta)};
+  const Start start{
+      {0.003, 0.003, 0}, Vec3{0.003, 0.003, 0} + 0.004 * n + (mu * k * 0.004 / r) * t, 0};
+  // The steepest direction, or its opposite, makes the contact point slide forward.
+  const Vec3 step = -1e-7 * unit(along_n * n + along_t * t);
+  const auto c = model.slid(start.x + step, start.c, 0, mu);
+  ASSERT_TRUE(c);
+  ASSERT_GT(norm(*c - start.c), 1e-9);
+  const Vec3 difference =
+      model.at(start.x + step, *c, 0).force - model.at(start.x, start.c, 0).force;
+  EXPECT_NEAR(norm(difference) / norm(step), steepest, 1e-3 * steepest);
+  EXPECT_GT(steepest, 1.05 * k * std::hypot(1.0, mu));  // steeper than the level plate
+  EXPECT_GE(library.certificate.slip, steepest);
+  EXPECT_LE(library.certificate.slip, 1.4 * steepest);
+}
+
 TEST(SlipBound, NoSlidingPathIsSteeper) {
   std::mt19937 engine(37);
   SlideCensus census;
