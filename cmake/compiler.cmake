@@ -6,7 +6,8 @@ target_compile_options(palpate_options INTERFACE -Wall -Wextra -Wconversion -Wsh
   $<$<BOOL:${PALPATE_WARNINGS_AS_ERRORS}>:-Werror>)
 # GCC 12 sees overlapping copies in "text" + std::string that are not there (GCC bug 105651).
 target_compile_options(palpate_options INTERFACE
-  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>)
+  $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-unknown-warning-option>)  # for clang-tidy on the commands of GCC
 if(PALPATE_SANITIZE)
   target_compile_options(palpate_options INTERFACE -fsanitize=${PALPATE_SANITIZE}
     -fno-omit-frame-pointer -fno-sanitize-recover=all)

@@ -82,7 +82,7 @@ int sync_folder(const fs::path& folder) {
 
 }  // namespace
 
-CrashSafeFile::CrashSafeFile(fs::path target) : target_(without_links(target)) {
+CrashSafeFile::CrashSafeFile(const fs::path& target) : target_(without_links(target)) {
   require_file_name(target_);
   std::string name = ".";
   name.append(target_.filename().string()).append(".partial-").append(std::to_string(::getpid()));

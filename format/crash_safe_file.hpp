@@ -17,7 +17,7 @@ namespace palpate {
 /// Not thread-safe; two objects of one process must not write the same target at a time.
 class CrashSafeFile {
  public:
-  explicit CrashSafeFile(std::filesystem::path target);
+  explicit CrashSafeFile(const std::filesystem::path& target);
   ~CrashSafeFile();
   CrashSafeFile(const CrashSafeFile&) = delete;
   CrashSafeFile& operator=(const CrashSafeFile&) = delete;

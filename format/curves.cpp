@@ -96,6 +96,7 @@ template <class Record>
 std::vector<std::int64_t> values_of(const std::vector<Record>& records,
                                     std::int64_t Record::*member) {
   std::vector<std::int64_t> values;
+  values.reserve(records.size());
   for (const Record& record : records) values.push_back(record.*member);
   return values;
 }

@@ -57,7 +57,8 @@ enum class Storage {
 
 /// Builds a file in memory and puts it on the disk in one crash-safe move, so that a full disk is
 /// met by plain file calls and never by an HDF5 file that can no longer be closed. Needs memory for
-/// twice the file. The bytes depend on the content alone (no time stamps).
+/// twice the file. The bytes depend on the content alone (no time stamps) and end with a seal
+/// (format/seal.hpp).
 /// @throws Error(Internal) when HDF5 fails, else as CrashSafeFile.
 class Writer {
  public:
@@ -102,10 +103,11 @@ class Writer {
 /// Accept whatever number of rows a dataset has.
 inline constexpr std::size_t kAnyRows = static_cast<std::size_t>(-1);
 
-/// Reads a file and believes nothing: a dataset must have exactly the asked type, rank and shape,
-/// lie in this very file (no external or virtual storage) and be wholly present: HDF5 itself reads
-/// a part that was never written as zeros, with success. Memory is only taken for data that the
-/// file really holds. @throws Error(Configuration): "<file>:<object>: <problem>; <remedy>".
+/// Reads a file and believes nothing: the seal must be unbroken, a dataset must have exactly the
+/// asked type, rank and shape, lie in this very file (no external or virtual storage) and be wholly
+/// present: HDF5 itself reads a part that was never written as zeros, with success. Memory is only
+/// taken for data that the file really holds. @throws Error(Configuration): "<file>:<object>:
+/// <problem>; <remedy>".
 class Reader {
  public:
   /// `remedy`: what the user should do when the file is no good, e.g. how to make it again.

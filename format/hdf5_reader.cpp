@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "format/hdf5_handle.hpp"
+#include "format/seal.hpp"
 
 namespace palpate::hdf5 {
 namespace {
@@ -206,6 +207,7 @@ Reader::Reader(fs::path file, std::string remedy) : state_(std::make_unique<Stat
   state_->remedy = std::move(remedy);
   const fs::path& path = state_->path;
   require_readable_file(path, state_->remedy);
+  require_unbroken_seal(path, state_->remedy);
   if (H5Fis_hdf5(path.c_str()) == 0) {
     throw Error(ErrorKind::Configuration, path.string(), "is not an HDF5 file", state_->remedy);
   }

@@ -4,6 +4,7 @@
 
 #include "format/crash_safe_file.hpp"
 #include "format/hdf5_handle.hpp"
+#include "format/seal.hpp"
 
 namespace palpate::hdf5 {
 namespace {
@@ -111,6 +112,7 @@ void Writer::put(const std::string& path, Scalar scalar, std::size_t rows, std::
 void Writer::texts(const std::string& path, const std::vector<std::string>& rows,
                    const std::string& description) {
   std::vector<const char*> pointers;
+  pointers.reserve(rows.size());
   for (const std::string& row : rows) pointers.push_back(state_->c_text(row, path));
   const Handle space = state_->list_space(rows.size(), path);
   const Handle type = variable_text_type();
@@ -142,10 +144,10 @@ void Writer::set_text(const std::string& object, const std::string& name,
 
 void Writer::set_texts(const std::string& object, const std::string& name,
                        const std::vector<std::string>& values) {
+  const std::string where = object + "@" + name;
   std::vector<const char*> pointers;
-  for (const std::string& value : values) {
-    pointers.push_back(state_->c_text(value, object + "@" + name));
-  }
+  pointers.reserve(values.size());
+  for (const std::string& value : values) pointers.push_back(state_->c_text(value, where));
   const Handle type = variable_text_type();
   const Handle space = state_->list_space(values.size(), object);
   state_->attribute(object, name, type.get(), space.get(), type.get(),
@@ -185,7 +187,10 @@ void Writer::commit() {
   std::string image(static_cast<std::size_t>(size), '\0');
   if (H5Fget_file_image(state_->file.get(), image.data(), image.size()) != size) state_->fail("/");
   state_->file.reset();
-  write_file_crash_safely(state_->target, image);
+  CrashSafeFile file(state_->target);
+  file.write(image);
+  file.write(seal_of(image));
+  file.commit();
 }
 
 }  // namespace palpate::hdf5

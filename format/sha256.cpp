@@ -112,7 +112,7 @@ std::string sha256(std::string_view bytes) {
   return hasher.finish();
 }
 
-std::string sha256_of_file(const std::filesystem::path& path) {
+std::string sha256_of_file(const std::filesystem::path& path, std::uint64_t first_bytes) {
   const auto fail = [&path](int error_number) {
     throw Error(ErrorKind::Configuration, path.string(),
                 "cannot be read (" + std::generic_category().message(error_number) + ")",
@@ -124,8 +124,13 @@ std::string sha256_of_file(const std::filesystem::path& path) {
   if (!file) fail(errno);
   Hasher hasher;
   std::vector<char> buffer(std::size_t{1} << 20);
-  while (file.read(buffer.data(), static_cast<std::streamsize>(buffer.size())), file.gcount() > 0) {
-    hasher.add(std::string_view(buffer.data(), static_cast<std::size_t>(file.gcount())));
+  while (first_bytes > 0) {
+    const std::uint64_t wanted = std::min<std::uint64_t>(buffer.size(), first_bytes);
+    file.read(buffer.data(), static_cast<std::streamsize>(wanted));
+    const auto found = static_cast<std::uint64_t>(file.gcount());
+    hasher.add(std::string_view(buffer.data(), found));
+    first_bytes -= found;
+    if (found < wanted) break;
   }
   if (file.bad()) fail(EIO);
   return hasher.finish();

@@ -43,6 +43,7 @@ template <class Record, class Field>
 auto column_of(const std::vector<Record>& records, Field Record::*member) {
   using Value = std::conditional_t<std::is_same_v<Field, double>, double, std::int32_t>;
   std::vector<Value> values;
+  values.reserve(records.size());
   for (const Record& record : records) values.push_back(static_cast<Value>(record.*member));
   return values;
 }

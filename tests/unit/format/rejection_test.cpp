@@ -468,6 +468,36 @@ TEST(Truncation, AtAnyLength) {
   }
 }
 
+// One wrong byte anywhere: refused, or of no consequence (a letter of the seal's own mark). HDF5 on
+// its own would read other numbers, loop, or crash.
+TEST(Damage, OneByteNeverChangesWhatIsRead) {
+  const TemporaryFolder folder;
+  const Path path = folder / "library.h5";
+  const std::string known = samples::dump(samples::library(1));
+  copy_sample(Kind::Library, path);
+  const auto size = static_cast<std::streamoff>(std::filesystem::file_size(path));
+  int refused = 0, harmless = 0;
+  constexpr std::streamoff kSeal = 81;
+  for (std::streamoff position = 0; position < size;
+       position += position < size - kSeal - 97 ? 97 : 1) {
+    copy_sample(Kind::Library, path);
+    {
+      std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
+      const int good = file.seekg(position).get();
+      file.seekp(position).put(static_cast<char>(good ^ 0x55));
+    }
+    try {
+      EXPECT_EQ(samples::dump(read_library(path)), known) << "byte " << position;
+      ++harmless;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("is damaged")) << "byte " << position;
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 400);
+  EXPECT_EQ(harmless, 17) << "letters of the mark and the last line end";
+}
+
 // HDF5 cannot lock a file on some network disks, nor one that another program holds.
 TEST(Locking, RefusedLockNamesTheSwitch) {
   const TemporaryFolder folder;
