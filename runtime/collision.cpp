@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "runtime/local_model.hpp"
 #include "runtime/sliding.hpp"
@@ -13,7 +14,9 @@ namespace palpate::runtime {
 namespace {
 
 constexpr std::int32_t kLeafSize = 4;
-constexpr std::size_t kDeepest = 64;        // halving 2^31 triangles needs 31 levels
+constexpr std::size_t kDeepest = 64;  // halving 2^31 triangles needs 31 levels
+constexpr double kLeastGain = 0.7;  // a pass that leaves more of the lateral deflection overshoots
+constexpr double kLeastShare = 1.0 / 16;
 constexpr double kNaturalTolerance = 1e-9;  // neighbours overlap by this much: no gap between them
 
 /// Does the segment meet the box? Slab by slab; a direction component of zero is a containment
@@ -32,6 +35,41 @@ bool meets(const Vec3& low, const Vec3& high, const Vec3& from, const Vec3& step
     leave = std::min(leave, std::max(a, b));
   }
   return enter <= leave;
+}
+
+/// Squared distance of x to a box.
+double box_distance2(const Vec3& low, const Vec3& high, const Vec3& x) noexcept {
+  double sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double d = std::max({low[i] - x[i], x[i] - high[i], 0.0});
+    sum += d * d;
+  }
+  return sum;
+}
+
+/// Natural coordinates of the point of an element that is closest to x: the foot of x where that
+/// lies inside, else the best of the three edges.
+Vec3 closest_natural(const Surface& surface, const Element& e, const Vec3& x) noexcept {
+  Vec3 natural;
+  for (std::size_t l = 0; l < 3; ++l) {
+    natural[l] = 1.0 + dot(e.gradient[l], x - surface.vertex(e, l));
+  }
+  if (std::min({natural[0], natural[1], natural[2]}) >= 0) return natural;
+  double best = std::numeric_limits<double>::infinity();
+  for (std::size_t l = 0; l < 3; ++l) {
+    const std::size_t a = (l + 1) % 3;
+    const std::size_t b = (l + 2) % 3;
+    const Vec3 edge = surface.vertex(e, b) - surface.vertex(e, a);
+    const Vec3 r = x - surface.vertex(e, a);
+    const double s = std::clamp(dot(r, edge) / dot(edge, edge), 0.0, 1.0);
+    const Vec3 away = r - s * edge;
+    if (dot(away, away) >= best) continue;
+    best = dot(away, away);
+    natural = {0, 0, 0};
+    natural[a] = 1 - s;
+    natural[b] = s;
+  }
+  return natural;
 }
 
 }  // namespace
@@ -123,14 +161,48 @@ void CollisionTree::test_triangle(std::int32_t m, const Vec3& from, const Vec3& 
   best.point = {m, (1.0 / (natural[0] + natural[1] + natural[2])) * natural};
 }
 
+SurfacePoint CollisionTree::nearest(const Vec3& x, double within) const noexcept {
+  SurfacePoint best;
+  double best2 = within * within;
+  std::array<std::int32_t, kDeepest> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  const auto distance2 = [&](std::int32_t index) {
+    const Box& box = nodes_[static_cast<std::size_t>(index)].box;
+    return box_distance2(box.low, box.high, x);
+  };
+  while (size > 0) {
+    const std::int32_t index = stack[--size];
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (distance2(index) > best2) continue;
+    if (node.count == 0) {
+      const bool second_nearer = distance2(node.first) < distance2(index + 1);
+      stack[size++] = second_nearer ? index + 1 : node.first;
+      stack[size++] = second_nearer ? node.first : index + 1;
+      continue;
+    }
+    for (std::int32_t k = node.first; k < node.first + node.count; ++k) {
+      const std::int32_t m = order_[static_cast<std::size_t>(k)];
+      const SurfacePoint p{m, closest_natural(*surface_, surface_->element(m), x)};
+      const Vec3 r = x - surface_->position(p);
+      if (dot(r, r) > best2) continue;
+      best2 = dot(r, r);
+      best = p;
+    }
+  }
+  return best;
+}
+
 Projection project(const Surface& surface, const SurfacePoint& from, const Vec3& x, int passes,
                    double tolerance) noexcept {
-  Projection p{from, 0, false};
+  Projection p{from, std::numeric_limits<double>::infinity(), false};
+  double share = 1;  // of the lateral deflection walked in a pass; less where full passes overshoot
   for (int pass = 0;; ++pass) {
     const Deflection d = LocalModel(surface, p.point, 0).deflection(x);
+    if (d.lateral > kLeastGain * p.lateral) share = std::max(share / 2, kLeastShare);
     p.lateral = d.lateral;
     if (d.lateral <= tolerance || pass == passes) return p;
-    const Walk moved = walk(surface, p.point, d.tangent, d.lateral);
+    const Walk moved = walk(surface, p.point, d.tangent, share * d.lateral);
     p.point = moved.point;
     p.at_border = moved.at_border;
   }

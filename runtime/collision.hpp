@@ -20,6 +20,10 @@ class CollisionTree {
   /// logarithmic for the short steps of a force loop.
   SurfacePoint first_entry(const Vec3& from, const Vec3& to) const noexcept;
 
+  /// Closest point of the surface to x, no further than `within` (m); its element is kNoElement
+  /// when there is none. noexcept, allocation-free, bounded by the number of triangles.
+  SurfacePoint nearest(const Vec3& x, double within) const noexcept;
+
  private:
   struct Box {
     Vec3 low{}, high{};

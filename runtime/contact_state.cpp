@@ -54,29 +54,44 @@ std::uint32_t ContactState::step(const Vec3& x) noexcept {
 }
 
 void ContactState::detect(const Vec3& from, const Vec3& x) noexcept {
-  if (approaching_) approach(x);
-  if (model_ || approaching_) return;
   const SurfacePoint entry = tree_->first_entry(from, x);
-  if (entry.element == kNoElement) return;
-  approaching_ = entry;
-  approach(x);
+  if (entry.element != kNoElement) approaching_ = entry;
+  if (!approaching_) return;
+  const Projection facing = project(*surface_, *approaching_, x, kActivationPasses, kRelaxed);
+  if (begin_at(facing, x)) return;
+  // No point near the entry faces the tip, or it takes more passes to find. The closest point says
+  // whether to go on, and may be a better start.
+  approaching_.reset();
+  const SurfacePoint closest = closest_if_inside(x);
+  if (closest.element == kNoElement) return;
+  const Projection again = project(*surface_, closest, x, kActivationPasses, kRelaxed);
+  if (begin_at(again, x)) return;
+  approaching_ = again.lateral < facing.lateral ? again.point : facing.point;
 }
 
-void ContactState::approach(const Vec3& x) noexcept {
-  const Projection p = project(*surface_, *approaching_, x, kActivationPasses, kRelaxed);
-  approaching_ = p.point;
-  if (p.at_border) seen_.status |= PALPATE_AT_BORDER;
-  if (surface_->outside_distance(surface_->element(p.point.element), x) >= 0) {
-    approaching_.reset();
-    return;
-  }
-  if (p.lateral > kRelaxed) return;
-  LocalModel model(*surface_, p.point, 0);
-  goal_ = std::max(model.deflection(x).geometric, 0.0);
-  model.set_offset(goal_);
+/// The closest point of the surface when the tip is on its inner side and not deeper than the
+/// deepest sample; else none. Sure of the side even at edges, as u_l . facet normal > 0 in every
+/// triangle.
+SurfacePoint ContactState::closest_if_inside(const Vec3& x) const noexcept {
+  const SurfacePoint p = tree_->nearest(x, surface_->deepest());
+  if (p.element == kNoElement) return p;
+  const bool inside = dot(x - surface_->position(p), surface_->normal(p)) > 0;
+  return inside ? p : SurfacePoint{};
+}
+
+/// Begins the contact at a point that faces the tip: x - c parallel to n(c), the tip on the inner
+/// side.
+bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
+  if (facing.lateral > kRelaxed) return false;
+  LocalModel model(*surface_, facing.point, 0);
+  const double depth = model.deflection(x).geometric;
+  if (!(depth >= 0 && depth <= surface_->deepest())) return false;
+  goal_ = depth;
+  model.set_offset(depth);
   approaching_.reset();
   seen_.status |= PALPATE_ACTIVATED;
   commit(model, x, 0);
+  return true;
 }
 
 void ContactState::touch(const Vec3& x, double travelled) noexcept {
@@ -115,15 +130,18 @@ LocalModel ContactState::slide(const Vec3& x, const Deflection& before) noexcept
 }
 
 /// The contact ends when the tip is out of normal contact and outside the body. What a border kept
-/// from relaxing is discarded and not credited to the tank.
+/// from relaxing is discarded, not credited to the tank.
 bool ContactState::release(const LocalModel& moved, const Vec3& x, double energy_before) noexcept {
   const Deflection d = moved.deflection(x);
   const Element& e = surface_->element(moved.point().element);
   if (d.depth > 0 || surface_->outside_distance(e, x) < 0) return false;
-  if (d.lateral > kRelaxed)
+  if (d.lateral > kRelaxed) {
+    // c is not opposite to the tip, so its plane does not decide on which side the tip is.
+    if (closest_if_inside(x).element != kNoElement) return false;
     seen_.status |= PALPATE_DROPPED;
-  else
+  } else {
     tank_.settle(energy_before, 0);
+  }
   seen_.status |= PALPATE_RELEASED;
   free_contact();
   return true;

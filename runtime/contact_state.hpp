@@ -66,7 +66,8 @@ class ContactState {
 
  private:
   void detect(const Vec3& from, const Vec3& x) noexcept;
-  void approach(const Vec3& x) noexcept;
+  bool begin_at(const Projection& facing, const Vec3& x) noexcept;
+  SurfacePoint closest_if_inside(const Vec3& x) const noexcept;
   void touch(const Vec3& x, double travelled) noexcept;
   LocalModel slide(const Vec3& x, const Deflection& before) noexcept;
   bool release(const LocalModel& moved, const Vec3& x, double energy_before) noexcept;

@@ -79,10 +79,7 @@ palpate_library_info palpate_library::describe(const palpate::Library& library,
   info.stick = library.certificate.stick;
   info.slip = library.certificate.slip;
   info.friction = library.certificate.friction;
-  for (const palpate::NodeResponse& r : library.responses) {
-    if (r.status == palpate::ResponseStatus::Hole || r.normal.knot.empty()) continue;
-    info.depth = std::max(info.depth, static_cast<double>(r.normal.knot.back()));
-  }
+  info.depth = surface.deepest();
   copy(surface.low(), info.low);
   copy(surface.high(), info.high);
   return info;

@@ -56,6 +56,7 @@ Surface::Surface(const Library& library)
   }
   curves_.reserve(library.responses.size());
   for (const NodeResponse& response : library.responses) curves_.push_back(compile(response));
+  for (const NodeCurves& c : curves_) deepest_ = std::max(deepest_, c.normal.last_knot());
   for (std::size_t m = 0; m < elements_.size(); ++m) build_element(library, m);
   if (std::none_of(elements_.begin(), elements_.end(), [](const Element& e) { return e.active; })) {
     throw Error(ErrorKind::Configuration, "library",

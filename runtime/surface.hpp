@@ -68,6 +68,7 @@ class Surface {
   const Vec3& low() const noexcept { return low_; }
   const Vec3& high() const noexcept { return high_; }
   double diagonal() const noexcept { return norm(high_ - low_); }  ///< of the bounding box, m
+  double deepest() const noexcept { return deepest_; }  ///< deepest sample of any node, m
 
  private:
   void build_element(const Library& library, std::size_t m);
@@ -79,6 +80,7 @@ class Surface {
   std::vector<NodeCurves> curves_;
   std::vector<Element> elements_;
   Vec3 low_{}, high_{};
+  double deepest_ = 0;
 };
 
 }  // namespace palpate::runtime

@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A contact from the first touch to the release, on bodies whose geometry is known.
+#include "runtime/contact_state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+
+#include "bodies.hpp"
+#include "runtime/handles.hpp"
+#include "runtime/palpate.h"
+
+namespace palpate::test {
+namespace {
+
+using runtime::ContactSettings;
+using runtime::ContactState;
+
+NodeResponse uniform(const Vec3&) {
+  return wall_response(170, 100);
+}
+
+/// The stored knots are single precision, so this agrees to 1e-7 N.
+double wall_force(double z) {
+  return z <= 0 ? 0 : z <= 0.005 ? 100 * 170 * z * z : 170 * (z - 0.0025);
+}
+
+/// A body and a tip on it.
+struct Rig {
+  explicit Rig(const Library& library, const ContactSettings& settings = {0.3, 5e-3})
+      : body(library), contact(body.surface, body.tree, settings) {}
+  std::uint32_t step(const Vec3& x) { return contact.step(x); }
+  const runtime::ContactObservation& seen() const { return contact.observation(); }
+  palpate_library body;
+  ContactState contact;
+};
+
+Vec3 random_unit(std::mt19937& random) {
+  std::normal_distribution<double> any;
+  const Vec3 v{any(random), any(random), any(random)};
+  return (1.0 / norm(v)) * v;
+}
+
+TEST(Contact, BeginsWithoutForceOrEnergyAndWithAnOffsetOfAtMostOneStep) {
+  Rig rig(bumpy_sphere(3, 0.03, 0.2, uniform));
+  std::mt19937 random(1);
+  for (int trial = 0; trial < 2000; ++trial) {
+    const Vec3 out = random_unit(random);
+    const double travel = 1e-3 * (1 + trial % 10) / 10;  // v T
+    rig.contact.reset();
+    std::uint32_t status = 0;
+    for (double r = 0.04 + 1e-6 * trial; !(status & PALPATE_ACTIVATED); r -= travel) {
+      ASSERT_GT(r, 0.015) << "fell through";
+      status = rig.step(r * out);
+      EXPECT_TRUE(status == 0 || status & PALPATE_ACTIVATED);
+    }
+    EXPECT_EQ(status, PALPATE_CONTACT | PALPATE_ACTIVATED);
+    EXPECT_LE(norm(rig.seen().force), 1e-8);
+    EXPECT_LE(rig.seen().energy, 1e-18);
+    EXPECT_GE(rig.seen().offset, 0);
+    EXPECT_LE(rig.seen().offset, travel);
+  }
+}
+
+TEST(Contact, PressingAtANodeGivesTheCurveOfTheNode) {
+  // Every node has its own stiffness; press radially on each.
+  const Responses own = [](const Vec3& x) {
+    return wall_response(170 * (1 + 0.5 * std::sin(200 * x[0] + 150 * x[1])), 100);
+  };
+  const Library library = sphere(2, 0.03, own);
+  Rig rig(library);
+  for (std::size_t v = 0; v < library.positions.size(); ++v) {
+    const Vec3 x0 = library.positions[v];
+    const Vec3 n = library.inward[v];
+    rig.contact.reset();
+    rig.step(x0 - 1e-4 * n);
+    rig.step(x0 + 1e-9 * n);
+    const runtime::CompiledCurve curve(own(x0).normal);
+    for (int i = 1; i <= 80; ++i) {
+      rig.step(x0 + 1e-4 * i * n);
+      const Vec3 expected = curve.force(1e-4 * i - rig.seen().offset) * n;
+      ASSERT_NEAR(norm(rig.seen().force - expected), 0, 1e-9);
+    }
+  }
+}
+
+TEST(Contact, SlidingAtConstantDepthObeysAmontons) {
+  for (const double mu : {0.05, 0.1, 0.3, 0.6}) {
+    Rig rig(plate(10, 0.1, uniform), {mu, 5e-3});
+    rig.step({0.02, 0.031, 0.0001});
+    for (int i = 1; i <= 40; ++i) rig.step({0.02, 0.031, -1e-4 * i});
+    int sliding = 0;
+    for (int i = 1; i <= 5000; ++i) {  // a slow spiral over many triangles
+      const double a = 0.002 * i;
+      rig.step({0.02 + 1e-5 * i, 0.031 + 0.01 * std::sin(a), -0.004});
+      if (!(rig.seen().status & PALPATE_SLIDING)) continue;
+      ++sliding;
+      const auto f = rig.seen().force;
+      ASSERT_NEAR(std::hypot(f[0], f[1]), mu * -f[2], 1e-9);
+    }
+    EXPECT_GT(sliding, 4000);
+  }
+}
+
+TEST(Contact, ForceIsContinuousWhileSlidingOverEdges) {
+  // On curved bodies with responses that differ from node to node, ten times smaller steps must
+  // give about ten times smaller changes of force: no jump hides at an edge.
+  const Responses varied = [](const Vec3& x) {
+    return wall_response(170 * (1 + 0.6 * std::sin(150 * x[2])),
+                         100 * (1 + 0.4 * std::sin(90 * x[0])));
+  };
+  const auto largest_change = [&](int steps) {
+    Rig rig(sphere(3, 0.03, varied), {0.2, 5e-3});
+    rig.step({0.031, 0, 0});
+    double largest = 0;
+    for (int i = 1; i <= steps; ++i) rig.step({0.031 - 0.005 * i / steps, 0, 0});
+    Vec3 before = rig.seen().force;
+    for (int i = 1; i <= 10 * steps; ++i) {
+      const double a = 2.0 * i / (10 * steps);
+      rig.step(0.026 * Vec3{std::cos(a), std::sin(a) * 0.8, std::sin(a) * 0.6});
+      largest = std::max(largest, norm(rig.seen().force - before));
+      before = rig.seen().force;
+    }
+    EXPECT_GT(norm(before), 0.1);
+    return largest;
+  };
+  const double coarse = largest_change(200);
+  const double fine = largest_change(2000);
+  EXPECT_LT(fine, 0.15 * coarse);
+  EXPECT_LT(coarse, 0.01);
+}
+
+TEST(Contact, ABorderHoldsTheContactPoint) {
+  Rig rig(plate(10, 0.1, uniform));
+  rig.step({0.09, 0.05, 0.0001});
+  for (int i = 1; i <= 40; ++i) rig.step({0.09, 0.05, -1e-4 * i});
+  bool at_border = false;
+  for (int i = 1; i <= 400; ++i) {
+    at_border |= (rig.step({0.09 + 5e-5 * i, 0.05, -0.004}) & PALPATE_AT_BORDER) != 0;
+    EXPECT_LE(rig.seen().contact_point[0], 0.1 + 1e-15);
+  }
+  EXPECT_TRUE(at_border);
+  // The tip is 10 mm beyond the rim: the body is deformed further instead of letting go.
+  EXPECT_NEAR(rig.seen().force[0], 100 * 0.010, 1e-6);
+  EXPECT_NEAR(rig.seen().force[2], -wall_force(rig.seen().deflection.depth), 1e-7);
+  // Lifted off there, the lateral spring is cut: reported, force zero, nothing credited.
+  std::uint32_t status = 0;
+  const double absorbed = rig.seen().absorbed;
+  for (int i = 1; i <= 45; ++i) status |= rig.step({0.11, 0.05, -0.004 + 1e-4 * i});
+  EXPECT_TRUE(status & PALPATE_DROPPED);
+  EXPECT_TRUE(status & PALPATE_RELEASED);
+  EXPECT_EQ(norm(rig.seen().force), 0);
+  EXPECT_GT(absorbed, 0);
+}
+
+TEST(Contact, AThinBodyKeepsTheSideOfEntry) {
+  Rig rig(thin_body(10, 0.1, 0.002, uniform));
+  rig.step({0.05, 0.05, 0.001});
+  for (int i = 0; i <= 60; ++i) {  // through the far side and 4 mm beyond
+    rig.step({0.05, 0.05, 0.0005 - 1e-4 * i});
+    EXPECT_LE(rig.seen().force[2], 0) << "pushed out on the far side";
+  }
+  EXPECT_GT(rig.seen().deflection.depth, 0.005);
+  EXPECT_NEAR(-rig.seen().force[2], wall_force(rig.seen().deflection.depth), 1e-7);
+  for (int i = 0; i <= 70; ++i) rig.step({0.05, 0.05, -0.0055 + 1e-4 * i});
+  EXPECT_EQ(rig.seen().status & PALPATE_CONTACT, 0U);
+  // From below, the other side answers.
+  Rig below(thin_body(10, 0.1, 0.002, uniform));
+  for (int i = 0; i <= 40; ++i) below.step({0.05, 0.05, -0.003 + 1e-4 * i});
+  EXPECT_GT(below.seen().force[2], 0.01);
+}
+
+TEST(Contact, TheOffsetIsGivenBackWhenTheTipReturnsTowardsTheSurface) {
+  Rig rig(plate(10, 0.1, uniform));
+  rig.step({0.05, 0.05, 0.0005});
+  rig.step({0.05, 0.05, -0.0005});
+  EXPECT_NEAR(rig.seen().offset, 0.0005, 1e-15);
+  rig.step({0.05, 0.05, -0.0002});  // still inside: the true surface is nearer again
+  EXPECT_NEAR(rig.seen().offset, 0.0002, 1e-15);
+  EXPECT_EQ(rig.seen().energy, 0);
+  rig.step({0.05, 0.05, -0.003});
+  EXPECT_NEAR(-rig.seen().force[2], wall_force(0.0028), 1e-7);
+}
+
+TEST(Contact, AContactIsFollowedWithoutForceUntilItCanBegin) {
+  // Entering by a slanted step close to the rim: no point of the plate faces the tip, which ends up
+  // beyond it. No force, no contact; back over the plate it begins, at zero energy.
+  Rig rig(plate(10, 0.1, uniform));
+  rig.step({0.0995, 0.05, 0.0002});
+  EXPECT_EQ(rig.step({0.1005, 0.05, -0.0003}) & ~std::uint32_t{PALPATE_AT_BORDER}, 0U);
+  EXPECT_EQ(norm(rig.seen().force), 0);
+  const std::uint32_t status = rig.step({0.099, 0.05, -0.0003});
+  EXPECT_TRUE(status & PALPATE_ACTIVATED);
+  EXPECT_LE(rig.seen().energy, 1e-18);
+}
+
+TEST(Contact, BeyondTheDeepestSampleIsReported) {
+  Rig rig(plate(10, 0.1, uniform));
+  rig.step({0.05, 0.05, 0.0001});
+  for (int i = 1; i <= 190; ++i)
+    EXPECT_FALSE(rig.step({0.05, 0.05, -1e-4 * i}) & PALPATE_BEYOND_DEPTH);
+  for (int i = 210; i <= 300; ++i)
+    EXPECT_TRUE(rig.step({0.05, 0.05, -1e-4 * i}) & PALPATE_BEYOND_DEPTH);
+  EXPECT_NEAR(-rig.seen().force[2], wall_force(rig.seen().deflection.depth), 1e-6);
+}
+
+TEST(Contact, AHoleLetsTheTipThrough) {
+  Library library = plate(10, 0.1, uniform);
+  library.responses[5 * 11 + 5] = {};
+  Rig rig(library);
+  rig.step({0.051, 0.052, 0.0005});
+  for (int i = 0; i < 40; ++i) {
+    EXPECT_EQ(rig.step({0.051, 0.052, -1e-4 * i}), 0U);
+    EXPECT_EQ(norm(rig.seen().force), 0);
+  }
+}
+
+/// Solid angle of the closed surface seen from x, over 4 pi: 1 inside, 0 outside.
+double winding(const Library& body, const Vec3& x) {
+  double sum = 0;
+  for (const Triangle& t : body.triangles) {
+    const Vec3 a = body.positions[static_cast<std::size_t>(t[0])] - x;
+    const Vec3 b = body.positions[static_cast<std::size_t>(t[1])] - x;
+    const Vec3 c = body.positions[static_cast<std::size_t>(t[2])] - x;
+    const double la = norm(a);
+    const double lb = norm(b);
+    const double lc = norm(c);
+    sum += 2 * std::atan2(dot(a, cross(b, c)),
+                          la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb);
+  }
+  return sum / (4 * std::acos(-1.0));
+}
+
+TEST(Contact, NeverLosesATipThatIsInsideTheBody) {
+  // Random flights in and out over hills and valleys; inside by the winding number means contact.
+  const Library library = bumpy_sphere(2, 0.03, 0.35, uniform);
+  for (const double mu : {0.0, 0.3}) {
+    Rig rig(library, {mu, 5e-3});
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> any(-1, 1);
+    Vec3 x = 0.045 * random_unit(random);
+    Vec3 towards = x;
+    int inside = 0;
+    int lost = 0;
+    for (int i = 0; i < 40000; ++i) {
+      if (i % 60 == 0) towards = (0.034 + 0.012 * any(random)) * random_unit(random);
+      x = x + 0.03 * (towards - x);
+      rig.step(x);
+      if (i % 3 != 0 || winding(library, x) < 0.5) continue;
+      ++inside;
+      lost += rig.seen().status & PALPATE_CONTACT ? 0 : 1;
+    }
+    EXPECT_GT(inside, 2000);
+    EXPECT_EQ(lost, 0) << "mu = " << mu;
+  }
+}
+
+}  // namespace
+}  // namespace palpate::test
