@@ -353,7 +353,8 @@ TEST(EnergyRule, LeavesAlmostNoTraceInTheForce) {
     const std::string tag = "_mu_" + std::to_string(static_cast<int>(100 * mu));
     RecordProperty("rms_deviation" + tag, std::to_string(std::sqrt(difference / size)));
     RecordProperty("largest_jump_N" + tag, std::to_string(jump));
-    EXPECT_LT(std::sqrt(difference / size), 1e-3) << "mu = " << mu;
+    // Friction pays for the way from soft to stiff; without it the offset has to.
+    EXPECT_LT(std::sqrt(difference / size), mu > 0 ? 1e-6 : 5e-2) << "mu = " << mu;
     EXPECT_LT(jump, 0.03) << "mu = " << mu;
     kept.expect_passive();
   }
