@@ -5,6 +5,7 @@
 #include <tetgen.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -120,6 +121,13 @@ void check_kept(const Filling& filling, const Surface& shells, const std::string
   }
 }
 
+/// Uniform filling with edges h takes about 1.5 V/h^3 points; twenty times that is no longer
+/// refinement towards a size but a geometry on which it does not end.
+std::size_t most_interior_points(const Surface& shells, double longest_edge) {
+  const double uniform = 1.5 * std::abs(signed_volume(shells)) / std::pow(longest_edge, 3);
+  return shells.points.size() * 20 + static_cast<std::size_t>(std::min(20 * uniform, 5e7));
+}
+
 }  // namespace
 
 Filling fill(const Surface& shells, double longest_edge, const std::string& where) {
@@ -128,15 +136,18 @@ Filling fill(const Surface& shells, double longest_edge, const std::string& wher
   longest_edge_squared = longest_edge * longest_edge;
   in.tetunsuitable = too_large;
   // p: from a surface; Y: keep its triangles; M: do not merge coplanar ones; q: radius-edge ratio
-  // and least dihedral angle; A: number the closed cells; Q: print nothing.
-  char switches[] = "pYMq1.3/12AQ";
+  // and least dihedral angle; o: improve dihedral angles above 150 degrees; A: number the closed
+  // cells; S: at most so many points of its own, a bound on the time; Q: print nothing.
+  const std::size_t most = most_interior_points(shells, longest_edge);
+  std::string switches = text("pYMq1.3/12o/150AQS", most);
   try {
-    tetrahedralize(switches, &in, &out);
+    tetrahedralize(switches.data(), &in, &out);
   } catch (int code) {
     refuse(code, where);
   }
   Filling filling = take(out);
   check_kept(filling, shells, where);
+  filling.cut_short = filling.nodes.size() >= shells.points.size() + most;
   return filling;
 }
 

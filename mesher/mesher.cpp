@@ -140,14 +140,14 @@ std::vector<std::uint8_t> set_supports(Body& body, const Settings& settings,
   return held;
 }
 
-void check_supports(const Body& body, const Settings& settings, std::size_t boundary_nodes) {
+void check_supports(const Body& body, const Settings& settings, const Surface& boundary) {
   const std::string where = settings.surface.path.string();
-  const Bounds box = bounds(body.nodes);
+  const Bounds box = bounds(boundary.points);
   const std::string extent =
       text("the body spans ", millimetres(box.low), " to ", millimetres(box.high));
   if (body.fixed_nodes.size() < 3) {
     throw Error(ErrorKind::Geometry, where,
-                text("the supports hold ", body.fixed_nodes.size(), " of ", boundary_nodes,
+                text("the supports hold ", body.fixed_nodes.size(), " of ", boundary.points.size(),
                      " surface nodes, the body would float"),
                 "place a support on it: " + extent);
   }
@@ -200,7 +200,7 @@ void check_depth(const Body& body, const Settings& settings, const Surface& boun
     throw Error(ErrorKind::Geometry, settings.surface.path.string(),
                 text("a depth of ", millimetres(settings.depth), " is more than ", kDeepestFraction,
                      " of the thickness at ", counted(thin, "site"), ": only ", millimetres(least),
-                     " at ", millimetres(body.nodes[thinnest])),
+                     " at ", millimetres(boundary.points[thinnest])),
                 text("reduce the depth below ", millimetres(kDeepestFraction * least),
                      " or hold the thin part in a support"));
   }
@@ -215,6 +215,19 @@ void check_volumes(const Quality& quality, const Surface& boundary, const std::s
                 text("the tetrahedra fill ", quality.volume, " m^3 of the ", enclosed,
                      " m^3 enclosed by the boundary"),
                 "change element_size or patch_spacing a little and report the case");
+  }
+}
+
+/// Refuse sizes that would fill the memory before anything is computed.
+void check_counts(const Settings& settings, const Surface& skin) {
+  const double h = settings.element_size, largest = 2e6;
+  const double facets = area(skin) / (0.43 * h * h);  // equilateral triangles of edge h
+  const double interior = 1.5 * signed_volume(skin) / std::pow(settings.interior_growth * h, 3);
+  if (facets > largest || interior > largest) {
+    throw Error(ErrorKind::Configuration, settings.surface.path.string(),
+                text("an element_size of ", millimetres(h), " needs about ", facets,
+                     " boundary facets and ", interior, " interior nodes, more than ", largest),
+                "increase element_size or interior_growth, or check the unit of the surface");
   }
 }
 
@@ -274,22 +287,26 @@ Body mesh(const Settings& settings) {
     inclusions.push_back(read_surface(file, settings.log));
   }
   check_inclusions(settings, skin, inclusions);
+  check_counts(settings, skin);
 
   const NestedSurface nested = remesh_skin(settings, skin);
-  inclusions = remesh_inclusions(settings, inclusions);
-  const Surface shells = join_shells(settings, nested.boundary, inclusions);
-  Filling filling = fill(shells, settings.interior_growth * settings.element_size, where);
-
   Body body;
   body.name = name_or(settings.name, settings.surface.path.stem().string());
-  set_regions(body, settings, filling, inclusions);
-  body.nodes = std::move(filling.nodes);
-  body.tetrahedra = std::move(filling.tetrahedra);
   body.boundary = nested.boundary.triangles;
   const auto held = set_supports(body, settings, nested.boundary);
   set_response(body, nested, held, settings.log);
-  check_supports(body, settings, nested.boundary.points.size());
+  check_supports(body, settings, nested.boundary);
   check_depth(body, settings, nested.boundary);
+
+  inclusions = remesh_inclusions(settings, inclusions);
+  const Surface shells = join_shells(settings, nested.boundary, inclusions);
+  Filling filling = fill(shells, settings.interior_growth * settings.element_size, where);
+  if (filling.cut_short) {
+    note(settings.log, "WARNING: the refinement did not end and was cut short; see the quality");
+  }
+  set_regions(body, settings, filling, inclusions);
+  body.nodes = std::move(filling.nodes);
+  body.tetrahedra = std::move(filling.tetrahedra);
 
   const Quality quality = measure_quality(body.nodes, body.tetrahedra);
   check_volumes(quality, nested.boundary, where);

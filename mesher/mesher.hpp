@@ -41,7 +41,7 @@ struct Settings {
   std::vector<Support> supports;        ///< surface nodes inside any of them are fixed
   double patch_spacing = 0.010;         ///< m, edge length of the response surface
   double element_size = 0.005;          ///< m, edge length of the boundary facets
-  double interior_growth = 1.5;         ///< largest interior edge over element_size
+  double interior_growth = 1.5;         ///< largest interior edge over element_size (aimed at)
   double feature_angle = 45;            ///< degrees; sharper edges of the input are kept
   double tool_radius = 0.005;           ///< m, for the check of depth
   double depth = 0;                     ///< m, of the planned indentation; 0 skips the check
@@ -49,12 +49,18 @@ struct Settings {
 };
 
 /// Check, remesh and fill. The response surface has edges near patch_spacing; the boundary facets
-/// are its triangles subdivided to near element_size with the new vertices put back on the input
-/// surface, so that the two surfaces are nested.
+/// are its triangles, each divided into n x n with n = round(patch_spacing / element_size), the new
+/// vertices put back on the input surface, so that the two surfaces are nested: the facets of
+/// response triangle m are Body::boundary[m n^2 .. (m+1) n^2), and response vertex v is node v.
+/// Equal settings and files give equal bodies. Nodes within element_size/1000 of a support are held.
+/// Response vertices where no direction can be interpolated (sharper than the patches resolve) are
+/// no sites; the log counts them. Provenance is left to the caller.
 /// @throws Error(Geometry) for a surface that is missing, empty, not closed, not orientable,
 ///   self-intersecting, in several parts, has non-finite coordinates, an implausible size for its
 ///   unit (the largest dimension must lie in 1 mm .. 10 m), an inclusion outside the skin, supports
-///   that hold nothing or everything, or a body thinner than `depth` under a site.
+///   that hold nothing or everything, detail finer than the patches, or a depth of more than 0.8 of
+///   the thickness under a site.
+/// @throws Error(Configuration) for settings out of range.
 Body mesh(const Settings& settings);
 
 }  // namespace palpate::mesher

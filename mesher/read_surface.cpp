@@ -13,6 +13,7 @@
 #include "format/error.hpp"
 #include "mesher/cgal_mesh.hpp"
 #include "mesher/queries.hpp"
+#include "mesher/read_obj.hpp"
 #include "mesher/soup.hpp"
 
 namespace palpate::mesher {
@@ -64,6 +65,7 @@ void check_file(const std::filesystem::path& path) {
 Soup read_soup(const std::filesystem::path& path) {
   const std::string where = path.string();
   check_file(path);
+  if (lower(path.extension().string()) == ".obj") return read_obj(path);
   std::vector<Point> points;
   std::vector<std::vector<std::size_t>> polygons;
   if (!CGAL::IO::read_polygon_soup(where, points, polygons)) {

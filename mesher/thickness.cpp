@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kRing = 6;
 constexpr double kFacesTool = 0.3;  // least cosine of the surface normal with the line of the tool
+constexpr double kSmooth = 0.8;     // the same, of all facets around a vertex that is no edge
 
 Vec3 any_perpendicular(const Vec3& u) {
   const Vec3 axis = std::abs(u[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
@@ -39,17 +40,32 @@ double largest_on_ring(const Surface& boundary, const SurfaceQuery& query, const
   return largest;
 }
 
+/// Least cosine between the inward direction and the inward normals of the facets around a vertex.
+std::vector<double> least_cosines(const Surface& boundary, const std::vector<Vec3>& inward) {
+  std::vector<double> least(inward.size(), 1);
+  for (const Triangle& t : boundary.triangles) {
+    const Vec3 outward = unit(area_vector(boundary.points, t));
+    for (const std::int32_t corner : t) {
+      const auto v = static_cast<std::size_t>(corner);
+      if (v < inward.size()) least[v] = std::min(least[v], -dot(outward, inward[v]));
+    }
+  }
+  return least;
+}
+
 }  // namespace
 
 std::vector<double> thickness_under_tool(const Surface& boundary, const std::vector<Vec3>& inward,
                                          double tool_radius) {
   const SurfaceQuery query(boundary);
+  const std::vector<double> cosine = least_cosines(boundary, inward);
   std::vector<double> thickness(inward.size());
   for (std::size_t v = 0; v < inward.size(); ++v) {
     const Vec3& site = boundary.points[v];
-    const auto below = query.first_hit(site, inward[v], static_cast<std::int32_t>(v));
+    thickness[v] = query.first_hit(site, inward[v], static_cast<std::int32_t>(v)).value_or(0);
+    if (cosine[v] >= kSmooth) continue;
     thickness[v] =
-        std::max(below.value_or(0), largest_on_ring(boundary, query, site, inward[v], tool_radius));
+        std::max(thickness[v], largest_on_ring(boundary, query, site, inward[v], tool_radius));
   }
   return thickness;
 }

@@ -128,6 +128,17 @@ double boundary_area(const Body& body) {
   return sum;
 }
 
+int euler_characteristic(const Body& body) {
+  std::set<std::int32_t> nodes;
+  std::set<std::pair<std::int32_t, std::int32_t>> edges;
+  for (const Triangle& t : body.boundary) {
+    nodes.insert(t.begin(), t.end());
+    for (std::size_t k = 0; k < 3; ++k) edges.insert(std::minmax({t[k], t[(k + 1) % 3]}));
+  }
+  return static_cast<int>(nodes.size()) - static_cast<int>(edges.size()) +
+         static_cast<int>(body.boundary.size());
+}
+
 void expect_sound(const Body& body) {
   ASSERT_FALSE(body.tetrahedra.empty());
   ASSERT_EQ(body.tetrahedron_region.size(), body.tetrahedra.size());
