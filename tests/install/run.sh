@@ -1,0 +1,35 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: AGPL-3.0-or-later
+# run.sh BUILD_FOLDER SOURCE_FOLDER WRITE_PLATE CMAKE CC: install the runtime, move the installed tree, build an
+# outside consumer against it with CMake and with pkg-config, and run both.
+set -euo pipefail
+build=$1 source=$2 write_plate=$3 cmake=$4 cc=$5
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+
+"$cmake" --install "$build" --component runtime --prefix "$work/first" > /dev/null
+mv "$work/first" "$work/moved"
+prefix=$work/moved
+"$write_plate" "$work/plate.h5"
+
+"$cmake" -S "$source/consumer" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$prefix" \
+  -DCMAKE_C_COMPILER="$cc" > "$work/log" || { cat "$work/log"; exit 1; }
+"$cmake" --build "$work/by_cmake" > "$work/log" || { cat "$work/log"; exit 1; }
+"$work/by_cmake/consumer" "$work/plate.h5"
+
+pc=$(find "$prefix" -name palpate.pc)
+export PKG_CONFIG_PATH=$(dirname "$pc")
+"$cc" -std=c99 -Wall -Wextra -Wpedantic -Werror "$source/consumer/consumer.c" -o "$work/by_pkg_config" \
+  $(pkg-config --cflags --libs palpate) -lm -Wl,-rpath,"$(pkg-config --variable=libdir palpate)"
+"$work/by_pkg_config" "$work/plate.h5"
+
+# Nothing but the C interface is exported, under the promised name.
+library=$(find "$prefix" -name 'libpalpate.so.*.*')
+readelf -d "$library" | grep -q 'SONAME.*libpalpate\.so\.[0-9]*\]' || { echo "no SONAME"; exit 1; }
+strays=$(nm -D --defined-only "$library" | awk '{print $3}' | grep -v '^palpate_' || true)
+[ -z "$strays" ] || { echo "exported besides the C interface: $strays"; exit 1; }
+# The declarations of the header and the exported symbols are the same set.
+header=$(find "$prefix" -name palpate.h)
+diff <(grep -ozP 'PALPATE_API[^;(]*\bpalpate_\w+(?=\()' "$header" | tr '\0' '\n' | grep -oP 'palpate_\w+$' | sort -u) \
+     <(nm -D --defined-only "$library" | awk '{print $3}' | sort -u)
+echo "install: both consumers run, the interface is what the header says"
