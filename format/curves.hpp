@@ -39,6 +39,7 @@ struct CurveSample {
   std::int32_t iterations = 0;
 };
 
+/// The displacement of its samples begins at 0 and never decreases.
 struct CurvePath {
   PathKind kind = PathKind::Normal;
   double held_depth = 0;  ///< m, depth at which a lateral path was run; 0 for a normal path
@@ -64,10 +65,10 @@ struct ToolDescription {
 
 struct Curves {
   ToolDescription tool;
-  double depth = 0;           ///< m, requested end of the normal paths
-  double lateral_travel = 0;  ///< m, requested end of the lateral paths
-  std::string body_sha256;    ///< of the body.h5 the vertices refer to
-  std::vector<SiteCurves> sites;
+  double depth = 0;               ///< m, requested end of the normal paths
+  double lateral_travel = 0;      ///< m, requested end of the lateral paths
+  std::string body_sha256;        ///< of the body.h5 the vertices refer to
+  std::vector<SiteCurves> sites;  ///< in strictly ascending order of vertex
   Provenance provenance;
 };
 
