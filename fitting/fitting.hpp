@@ -19,16 +19,21 @@ struct FitSettings {
   bool fill_holes = false;            ///< responses of failed sites from their neighbours, marked
 };
 
-/// Fit every site; monotone, passive and C1 by construction (see ResponseCurve).
-/// @throws Error(Configuration) when the curves belong to another body or no site is usable.
+/// Fit every site; monotone, passive and C1 by construction (see ResponseCurve and
+/// docs/theory-fitting.md). A site counts when a normal path reaches half of the requested depth
+/// and a lateral path has a sample; the others are holes, or filled on request. f^r is the mean
+/// over azimuths and held depths; lateral_error is the distance to every single path, so what the
+/// mean loses is part of it. Vertices keep their numbers; triangles with a held vertex are left
+/// out. Deterministic. @throws Error(Configuration) when the curves belong to another body or no
+/// site is usable.
 Library fit(const Body& body, const Curves& curves, const FitSettings& settings);
 
 /// A haptic device as its documentation describes it; unknown values are absent (NaN).
 struct DeviceProfile {
   std::string name;
-  double damping = 0;          ///< smallest viscous damping over directions, N s/m
-  double coulomb_friction = 0; ///< N
-  double peak_force = 0;       ///< N
+  double damping = 0;           ///< smallest viscous damping over directions, N s/m
+  double coulomb_friction = 0;  ///< N
+  double peak_force = 0;        ///< N
   std::string source;
 };
 
@@ -37,8 +42,13 @@ struct CertifySettings {
   std::vector<DeviceProfile> devices;
 };
 
-/// Fill library.certificate. @throws Error(Geometry) where normals cannot be interpolated
-/// (|sum n_l u_l| < 0.5 in a triangle, or u_l . facet normal >= 0 with the outward normal).
+/// Fill library.certificate: for each triangle the bounds of docs/theory-fitting.md, valid while
+/// z + d0 <= D, the deepest knot of the library. A slip bound is infinite where the slide of the
+/// contact point itself is not bounded. Triangles at a hole have zeros. A device without damping
+/// (NaN) gets no row. @throws Error(Geometry) where normals cannot be interpolated
+/// (|sum n_l u_l| < 0.5 in a triangle, or u_l . facet normal >= 0 with the outward normal);
+/// Error(Configuration) for friction < 0, damping <= 0, or a library without a usable triangle. The
+/// library is unchanged then.
 void certify(Library& library, const CertifySettings& settings);
 
 }  // namespace palpate::fitting

@@ -6,12 +6,17 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <queue>
+#include <vector>
 
 namespace palpate::fitting {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kPartsPerPiece = 4;
+// Cells of depth are halved until the bound over the worst one is this near to the bound at a
+// single depth inside it, or until so many halvings were spent. The bound holds at every stage.
+constexpr double kNearEnough = 1.02;
+constexpr int kMostHalvings = 300;
 
 /// What holds for all contact points of the triangle, depths in a cell, at limiting friction.
 struct SlideState {
@@ -106,33 +111,69 @@ SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   return bound;
 }
 
+struct Cell {
+  Range z;
+  SlideBound bound;
+};
+
+/// The bound over a cell of depths; no slide, no bound to keep.
+Cell make_cell(const ContactElement& element, const Range& z) {
+  const auto state = slide_state(element, z);
+  return {z, state ? cell_bound(element, *state) : SlideBound{}};
+}
+
+double middle(const Range& range) {
+  return 0.5 * (range.low + range.high);
+}
+
+bool energy_falls(const ContactElement& element, const SlideState& state) {
+  const TriangleFrame& frame = element.frame;
+  const double mu = element.friction;
+  if (state.rho.high == kInfinity) return false;
+  const double ratio = element.normal.energy_ratio(state.z) +
+                       (mu > 0 ? mu * element.lateral.energy_ratio(state.rho) : 0.0);
+  const double arm = std::max(std::abs(state.rho.high - mu * state.z.low),
+                              std::abs(state.rho.low - mu * element.depth));
+  return mu * frame.cos_theta - frame.sin_theta >= ratio + frame.kappa * arm;
+}
+
+/// Over a cell, halved while the condition holds at its middle but not over all of it.
+bool energy_falls_in(const ContactElement& element, const Range& z, int halvings_left) {
+  const auto state = slide_state(element, z);
+  if (!state || energy_falls(element, *state)) return true;
+  if (halvings_left == 0) return false;
+  const double half = middle(z);
+  const auto point = slide_state(element, {half, half});
+  if (point && !energy_falls(element, *point)) return false;
+  return energy_falls_in(element, {z.low, half}, halvings_left - 1) &&
+         energy_falls_in(element, {half, z.high}, halvings_left - 1);
+}
+
 }  // namespace
 
 SlideBound slide_bound(const ContactElement& element) {
-  const std::vector<double> ends = element.normal.cells({0, element.depth}, kPartsPerPiece);
-  SlideBound worst;
+  const auto less = [](const Cell& a, const Cell& b) { return a.bound.total < b.bound.total; };
+  std::priority_queue<Cell, std::vector<Cell>, decltype(less)> cells(less);
+  const std::vector<double> ends = element.normal.cells({0, element.depth}, 1);
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
-    const auto state = slide_state(element, {ends[k], ends[k + 1]});
-    if (!state) continue;
-    const SlideBound bound = cell_bound(element, *state);
-    if (bound.total > worst.total) worst = bound;
+    cells.push(make_cell(element, {ends[k], ends[k + 1]}));
   }
-  return worst;
+  for (int i = 0; i < kMostHalvings; ++i) {
+    const Cell worst = cells.top();
+    const double half = middle(worst.z);
+    const double reached = make_cell(element, {half, half}).bound.total;
+    if (worst.bound.total <= kNearEnough * reached) break;
+    cells.pop();
+    cells.push(make_cell(element, {worst.z.low, half}));
+    cells.push(make_cell(element, {half, worst.z.high}));
+  }
+  return cells.top().bound;
 }
 
 bool slide_lowers_energy(const ContactElement& element) {
-  const TriangleFrame& frame = element.frame;
-  const double mu = element.friction;
-  const std::vector<double> ends = element.normal.cells({0, element.depth}, kPartsPerPiece);
+  const std::vector<double> ends = element.normal.cells({0, element.depth}, 1);
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
-    const auto state = slide_state(element, {ends[k], ends[k + 1]});
-    if (!state) continue;
-    if (state->rho.high == kInfinity) return false;
-    const double ratio = element.normal.energy_ratio(state->z) +
-                         (mu > 0 ? mu * element.lateral.energy_ratio(state->rho) : 0.0);
-    const double arm = std::max(std::abs(state->rho.high - mu * state->z.low),
-                                std::abs(state->rho.low - mu * element.depth));
-    if (!(mu * frame.cos_theta - frame.sin_theta >= ratio + frame.kappa * arm)) return false;
+    if (!energy_falls_in(element, {ends[k], ends[k + 1]}, 6)) return false;
   }
   return true;
 }
