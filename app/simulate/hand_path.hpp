@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "app/case/case.hpp"
+#include "app/simulate/surface_path.hpp"
+
+namespace palpate::app {
+
+/// Where the hand is, and how fast it moves.
+struct HandState {
+  Vec3 position{};  ///< m
+  Vec3 velocity{};  ///< m/s
+};
+
+/// The scripted path of the hand: from above the surface down to the press depth, along the surface
+/// at that depth, up again. Each part starts and ends at rest; the speed of the script is its peak.
+class HandPath {
+ public:
+  HandPath(const SimulateSection& script, std::vector<PathPoint> path);
+
+  double duration() const { return press_end_ + slide_time_ + press_end_; }  ///< s
+  HandState at(double time) const;
+
+ private:
+  Vec3 position(double time) const;
+
+  SimulateSection script_;
+  std::vector<PathPoint> path_;
+  double press_end_;   ///< s, time of the press, and of the release
+  double slide_time_;  ///< s
+};
+
+}  // namespace palpate::app

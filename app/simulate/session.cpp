@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/simulate/session.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "app/simulate/hand_path.hpp"
+#include "app/simulate/surface_path.hpp"
+#include "format/error.hpp"
+#include "format/sha256.hpp"
+#include "runtime/device_simulated.hpp"
+#include "runtime/palpate.h"
+
+namespace palpate::app {
+namespace {
+
+using LibraryHandle = std::unique_ptr<palpate_library, decltype(&palpate_library_destroy)>;
+using StateHandle = std::unique_ptr<palpate_state, decltype(&palpate_state_destroy)>;
+
+void check(int status, const std::filesystem::path& file) {
+  if (status == PALPATE_OK) return;
+  throw Error(ErrorKind::Configuration, file.string(), palpate_last_error(),
+              palpate_status_text(status));
+}
+
+LibraryHandle load(const std::filesystem::path& file) {
+  palpate_library* library = nullptr;
+  check(palpate_library_load(file.c_str(), &library), file);
+  return {library, &palpate_library_destroy};
+}
+
+StateHandle create(const palpate_library* library, const std::filesystem::path& file) {
+  palpate_state* state = nullptr;
+  check(palpate_state_create(library, nullptr, &state), file);
+  return {state, &palpate_state_destroy};
+}
+
+runtime::SimulatedDevice device_of(const SimulateSection& script) {
+  runtime::SimulatedDeviceSettings settings;
+  settings.mass = script.mass;
+  settings.damping = script.damping;
+  settings.coulomb_friction = script.coulomb_friction;
+  settings.hand_stiffness = script.hand_stiffness;
+  settings.hand_damping = script.hand_damping;
+  return runtime::SimulatedDevice(settings);
+}
+
+void observe(const palpate_state* state, RecordedStep& step) {
+  palpate_observation seen{};
+  seen.size = sizeof(seen);
+  palpate_observe(state, &seen);
+  step.contact_point = {seen.contact_point[0], seen.contact_point[1], seen.contact_point[2]};
+  step.depth = seen.depth;
+  step.lateral = seen.lateral;
+  step.offset = seen.offset;
+  step.energy = seen.energy;
+  step.tank = seen.tank;
+  step.absorbed = seen.absorbed;
+  step.element = seen.element;
+}
+
+/// One step of the force loop, timed.
+RecordedStep force_step(palpate_state* state, const runtime::SimulatedDevice& device, double dt) {
+  using Clock = std::chrono::steady_clock;
+  RecordedStep step;
+  step.position = device.position();
+  step.velocity = device.velocity();
+  const auto start = Clock::now();
+  step.status =
+      palpate_step(state, step.position.data(), step.velocity.data(), dt, step.force.data());
+  const auto spent = Clock::now() - start;
+  step.latency_ns = std::chrono::duration_cast<std::chrono::nanoseconds>(spent).count();
+  observe(state, step);
+  return step;
+}
+
+HandPath hand_path_of(const Library& library, const SimulateSection& script) {
+  constexpr double kPointSpacing = 0.0005;  // m
+  const std::size_t start = middle_triangle(library);
+  return {script, straight_path(library, start, script.slide_length, kPointSpacing)};
+}
+
+}  // namespace
+
+Recording play_session(const std::filesystem::path& library_file, const Library& library,
+                       const SimulateSection& script) {
+  const LibraryHandle handle = load(library_file);
+  const StateHandle state = create(handle.get(), library_file);
+  const HandPath hand = hand_path_of(library, script);
+  runtime::SimulatedDevice device = device_of(script);
+  const double dt = 1 / script.rate;
+  constexpr double kRestAfterwards = 0.2;  // s, for the device to come to rest
+
+  Recording recording;
+  recording.device = "simulated";
+  recording.library_sha256 = sha256_of_file(library_file);
+  recording.rate = script.rate;
+  recording.friction = library.certificate.friction;
+  const auto count = static_cast<std::int64_t>((hand.duration() + kRestAfterwards) * script.rate);
+  recording.steps.reserve(static_cast<std::size_t>(count));
+  device.place(hand.at(0).position, {});
+  for (std::int64_t k = 0; k < count; ++k) {
+    const double time = static_cast<double>(k) * dt;
+    const HandState target = hand.at(time);
+    device.set_target(target.position, target.velocity);
+    RecordedStep step = force_step(state.get(), device, dt);
+    step.time_ns = std::llround(time * 1e9);
+    device.step(dt, step.force);
+    recording.steps.push_back(step);
+  }
+  return recording;
+}
+
+}  // namespace palpate::app
