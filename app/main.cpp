@@ -43,6 +43,8 @@ void add_commands(CLI::App& root, Action& action) {
   add_precompute_command(root, action);
   add_fit_command(root, action);
   add_certify_command(root, action);
+  add_simulate_command(root, action);
+  add_inspect_command(root, action);
 }
 
 int parse_and_run(int count, char** arguments) {

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "app/inspect/summary.hpp"
+
+namespace palpate::app {
+
+void add_inspect_command(CLI::App& root, Action& action) {
+  struct Options {
+    std::string file;
+    bool json = false;
+  };
+  CLI::App* command = root.add_subcommand("inspect", "Check an artifact and say what it holds");
+  command->footer("Example: palpate inspect out/cylinder/library.h5 --json");
+  const auto options = std::make_shared<Options>();
+  command->add_option("FILE", options->file, "body.h5, curves.h5, library.h5 or recording.h5")
+      ->required();
+  command->add_flag("--json", options->json, "Print JSON, with the resolved case of each stage");
+  command->callback([options, &action] {
+    action = [options] {
+      const nlohmann::ordered_json summary = summarize_artifact(options->file);
+      std::string text = options->json ? summary.dump(2) : summary_text(summary);
+      if (text.ends_with('\n')) text.pop_back();
+      print_line(text);
+      return kExitDone;
+    };
+  });
+}
+
+}  // namespace palpate::app

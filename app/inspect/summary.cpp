@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/inspect/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "format/body.hpp"
+#include "format/curves.hpp"
+#include "format/hdf5_file.hpp"
+#include "format/library.hpp"
+#include "format/recording.hpp"
+
+namespace palpate::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json with_unit(double value, const char* unit) {
+  return {{"value", value}, {"unit", unit}};
+}
+
+Json box_of(const std::vector<Vec3>& points) {
+  if (points.empty()) return nullptr;
+  Vec3 low = points.front(), high = points.front();
+  for (const Vec3& p : points) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], p[i]);
+      high[i] = std::max(high[i], p[i]);
+    }
+  }
+  return {{"low", low}, {"high", high}, {"unit", "m"}};
+}
+
+double volume(const Body& body, std::size_t t) {
+  const auto corner = [&](std::size_t i) {
+    return body.nodes[static_cast<std::size_t>(body.tetrahedra[t][i])];
+  };
+  return dot(corner(1) - corner(0), cross(corner(2) - corner(0), corner(3) - corner(0))) / 6;
+}
+
+Json regions_of(const Body& body) {
+  std::vector<double> volumes(body.region_names.size(), 0);
+  std::vector<std::int64_t> counts(body.region_names.size(), 0);
+  for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
+    const auto region = static_cast<std::size_t>(body.tetrahedron_region[t]);
+    volumes[region] += volume(body, t);
+    ++counts[region];
+  }
+  Json regions = Json::object();
+  for (std::size_t r = 0; r < volumes.size(); ++r) {
+    regions[body.region_names[r]] = {{"tetrahedra", counts[r]},
+                                     {"volume", with_unit(volumes[r], "m^3")}};
+  }
+  return regions;
+}
+
+Json summary_of(const Body& body) {
+  const auto& is_site = body.response.is_site;
+  return {{"name", body.name},
+          {"nodes", body.nodes.size()},
+          {"tetrahedra", body.tetrahedra.size()},
+          {"boundary_facets", body.boundary.size()},
+          {"held_nodes", body.fixed_nodes.size()},
+          {"response_vertices", body.response.node.size()},
+          {"response_triangles", body.response.triangles.size()},
+          {"sites", std::count(is_site.begin(), is_site.end(), 1)},
+          {"regions", regions_of(body)},
+          {"bounding_box", box_of(body.nodes)}};
+}
+
+Json failures_of(const Curves& curves) {
+  Json failures = Json::array();
+  for (const SiteCurves& site : curves.sites) {
+    if (site.status == SiteStatus::Complete) continue;
+    failures.push_back({{"vertex", site.vertex},
+                        {"status", site.status == SiteStatus::Failed ? "failed" : "partial"},
+                        {"reason", site.reason}});
+  }
+  return failures;
+}
+
+Json summary_of(const Curves& curves) {
+  double cpu = 0, force = 0, jacobian = 1;
+  std::size_t samples = 0;
+  for (const SiteCurves& site : curves.sites) {
+    cpu += site.cpu_seconds;
+    for (const CurvePath& path : site.paths) {
+      samples += path.samples.size();
+      for (const CurveSample& sample : path.samples) {
+        force = std::max(force, norm(sample.force));
+        jacobian = std::min(jacobian, sample.min_jacobian);
+      }
+    }
+  }
+  const Json failures = failures_of(curves);
+  return {{"tool", curves.tool.shape},
+          {"tool_radius", with_unit(curves.tool.radius, "m")},
+          {"friction_of_normal_path", curves.tool.friction},
+          {"depth", with_unit(curves.depth, "m")},
+          {"lateral_travel", with_unit(curves.lateral_travel, "m")},
+          {"sites", curves.sites.size()},
+          {"sites_not_complete", failures.size()},
+          {"samples", samples},
+          {"largest_force", with_unit(force, "N")},
+          {"smallest_jacobian", jacobian},
+          {"cpu_time", with_unit(cpu, "s")},
+          {"failures", failures}};
+}
+
+Json summary_of(const Certificate& certificate) {
+  if (certificate.triangles.empty()) return "none: run `palpate certify`";
+  Json devices = Json::array();
+  for (const DeviceCertificate& d : certificate.devices) {
+    devices.push_back({{"device", d.device},
+                       {"damping", with_unit(d.damping, "N s/m")},
+                       {"lowest_certified_rate", with_unit(d.lowest_rate, "Hz")},
+                       {"linear_limit_at_1_kHz", with_unit(d.linear_limit, "N/m")},
+                       {"no_delay_limit_at_1_kHz", with_unit(d.no_delay_limit, "N/m")}});
+  }
+  const auto passive = std::count_if(certificate.triangles.begin(), certificate.triangles.end(),
+                                     [](const auto& t) { return t.sliding_passive; });
+  return {{"friction", certificate.friction},
+          {"depth", with_unit(certificate.depth, "m")},
+          {"L_stick", with_unit(certificate.stick, "N/m")},
+          {"L_slip", with_unit(certificate.slip, "N/m")},
+          {"worst_triangle", certificate.worst_triangle},
+          {"limited_by", certificate.limited_by},
+          {"triangles_where_sliding_needs_no_correction", passive},
+          {"devices", devices}};
+}
+
+Json summary_of(const Library& library) {
+  std::size_t fitted = 0, filled = 0, holes = 0, knots = 0;
+  double normal_error = 0, lateral_error = 0;
+  for (const NodeResponse& response : library.responses) {
+    fitted += response.status == ResponseStatus::Fitted ? 1 : 0;
+    filled += response.status == ResponseStatus::Filled ? 1 : 0;
+    holes += response.status == ResponseStatus::Hole ? 1 : 0;
+    knots += response.normal.knot.size() + response.lateral.knot.size();
+    normal_error = std::max(normal_error, response.normal_error);
+    lateral_error = std::max(lateral_error, response.lateral_error);
+  }
+  return {{"name", library.name},
+          {"tool", library.tool_shape},
+          {"tool_radius", with_unit(library.tool_radius, "m")},
+          {"vertices", library.positions.size()},
+          {"triangles", library.triangles.size()},
+          {"responses_fitted", fitted},
+          {"responses_filled", filled},
+          {"holes", holes},
+          {"knots", knots},
+          {"largest_normal_error", with_unit(normal_error, "N")},
+          {"largest_lateral_error", with_unit(lateral_error, "N")},
+          {"bounding_box", box_of(library.positions)},
+          {"certificate", summary_of(library.certificate)}};
+}
+
+Json summary_of(const Recording& recording) {
+  double depth = 0, force = 0;
+  std::int64_t slowest = 0;
+  for (const RecordedStep& step : recording.steps) {
+    depth = std::max(depth, step.depth);
+    force = std::max(force, norm(step.force));
+    slowest = std::max(slowest, step.latency_ns);
+  }
+  const bool any = !recording.steps.empty();
+  const auto last = any ? recording.steps.back() : RecordedStep{};
+  return {{"device", recording.device},
+          {"library_sha256", recording.library_sha256},
+          {"rate", with_unit(recording.rate, "Hz")},
+          {"friction", recording.friction},
+          {"steps", recording.steps.size()},
+          {"duration", with_unit(static_cast<double>(last.time_ns) * 1e-9, "s")},
+          {"deepest", with_unit(depth, "m")},
+          {"largest_force", with_unit(force, "N")},
+          {"absorbed_energy", with_unit(last.absorbed, "J")},
+          {"slowest_force_step", with_unit(static_cast<double>(slowest) * 1e-9, "s")}};
+}
+
+Json provenance_of(const Provenance& provenance) {
+  Json steps = Json::array();
+  for (const ProvenanceStep& step : provenance.steps) {
+    Json inputs = Json::object(), facts = Json::object();
+    for (const InputDigest& input : step.inputs) inputs[input.name] = input.sha256;
+    for (const auto& [name, value] : step.facts) facts[name] = value;
+    steps.push_back({{"stage", step.stage},
+                     {"version", step.version},
+                     {"git_revision", step.git_revision},
+                     {"utc", step.utc},
+                     {"inputs", inputs},
+                     {"facts", facts},
+                     {"resolved_case", step.resolved_case}});
+  }
+  return steps;
+}
+
+template <class Artifact>
+Json complete(Json head, const Artifact& artifact) {
+  head.update(summary_of(artifact));
+  head["provenance"] = provenance_of(artifact.provenance);
+  return head;
+}
+
+std::string artifact_kind(const std::filesystem::path& file) {
+  const hdf5::Reader reader(file, "give an artifact made by palpate");
+  return reader.text("/", "artifact");
+}
+
+bool is_quantity(const Json& value) {
+  return value.is_object() && value.size() == 2 && value.contains("value") &&
+         value.contains("unit");
+}
+
+std::string number_text(const Json& number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", number.get<double>());
+  return text;
+}
+
+std::string scalar_text(const Json& value) {
+  if (is_quantity(value)) {
+    return number_text(value["value"]) + " " + value["unit"].get<std::string>();
+  }
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) return number_text(value);
+  if (value.is_array()) {
+    std::string list;
+    for (const Json& item : value) list += (list.empty() ? "" : ", ") + scalar_text(item);
+    return list.empty() ? "none" : list;
+  }
+  return value.dump();
+}
+
+bool holds_objects(const Json& value) {
+  return value.is_array() && !value.empty() && value.front().is_object();
+}
+
+void print(const Json& object, const std::string& indent, std::string& out) {
+  for (const auto& [name, value] : object.items()) {
+    std::string label = name;
+    std::replace(label.begin(), label.end(), '_', ' ');
+    const bool is_tree = value.is_object() && !is_quantity(value);
+    if (!is_tree && !holds_objects(value)) {
+      const std::string text = scalar_text(value);
+      if (text.find('\n') != std::string::npos) continue;  // a whole case: see --json
+      out.append(indent).append(label).append(": ").append(text).append("\n");
+      continue;
+    }
+    out.append(indent).append(label).append(":").append(value.empty() ? " none\n" : "\n");
+    if (is_tree) {
+      print(value, indent + "  ", out);
+      continue;
+    }
+    for (const Json& item : value) {
+      out.append(indent).append("  -\n");
+      print(item, indent + "    ", out);
+    }
+  }
+}
+
+}  // namespace
+
+Json summarize_artifact(const std::filesystem::path& file) {
+  const std::string kind = artifact_kind(file);
+  const auto head = [&](int schema) {
+    return Json{{"file", file.string()}, {"artifact", kind}, {"schema", schema}};
+  };
+  if (kind == "palpate.body") return complete(head(kBodySchema), read_body(file));
+  if (kind == "palpate.curves") return complete(head(kCurvesSchema), read_curves(file));
+  if (kind == "palpate.library") return complete(head(kLibrarySchema), read_library(file));
+  if (kind == "palpate.recording") return complete(head(kRecordingSchema), read_recording(file));
+  throw Error(ErrorKind::Configuration, file.string(), "unknown kind of artifact '" + kind + "'",
+              "use the version of palpate that made it");
+}
+
+std::string summary_text(const Json& summary) {
+  std::string out;
+  print(summary, "", out);
+  return out;
+}
+
+}  // namespace palpate::app
