@@ -6,8 +6,10 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
 #include "app/blas_kernel.hpp"
+#include "app/case/nearest.hpp"
 #include "app/command.hpp"
 #include "format/error.hpp"
 #include "format/provenance.hpp"
@@ -47,6 +49,17 @@ void add_commands(CLI::App& root, Action& action) {
   add_inspect_command(root, action);
 }
 
+/// A first argument that is no subcommand: CLI11 would only say that one is missing.
+std::string unknown_subcommand(const CLI::App& root, int count, char** arguments) {
+  if (count < 2 || arguments[1][0] == '-') return {};
+  std::vector<std::string> names;
+  for (const CLI::App* command : root.get_subcommands({})) names.push_back(command->get_name());
+  const std::string given = arguments[1];
+  if (std::find(names.begin(), names.end(), given) != names.end()) return {};
+  return "unknown subcommand '" + given + "'; the nearest is '" +
+         std::string(nearest(given, {names.begin(), names.end()})) + "'";
+}
+
 int parse_and_run(int count, char** arguments) {
   CLI::App root{
       "palpate: press a soft body everywhere once, offline; feel it forever, in real time"};
@@ -58,6 +71,8 @@ int parse_and_run(int count, char** arguments) {
   root.require_subcommand(1);
   Action action;
   add_commands(root, action);
+  const std::string unknown = unknown_subcommand(root, count, arguments);
+  if (!unknown.empty()) return fail("command line: " + unknown, kExitUsage);
   try {
     root.parse(count, arguments);
   } catch (const CLI::ParseError& error) {

@@ -78,7 +78,7 @@ struct FitSection {
 
 struct CertifySection {
   double friction = 0.3;
-  std::vector<std::string> devices;
+  std::vector<std::string> devices;  ///< files, relative to the folder of the case file
   bool operator==(const CertifySection&) const = default;
 };
 
