@@ -80,14 +80,26 @@ void count_vertices(const Library& library, Certificate& certificate) {
   }
 }
 
-std::string cause(const TriangleBounds& bounds) {
+/// Why the slide itself has no bound.
+std::string cause_unbounded(const TriangleCertificate& triangle, double depth) {
+  if (depth * triangle.kappa < triangle.cos_theta) {
+    return "no bound of the slide: the lateral response is too flat at the slip limit for the "
+           "change of the responses and the lean of the directions there";
+  }
+  std::array<char, 160> text{};
+  std::snprintf(
+      text.data(), text.size(),
+      "no bound of the slide: pressed %.3g mm deep where the directions turn with a radius "
+      "of %.3g mm and lean by %.0f degrees",
+      1e3 * depth, 1e3 / triangle.kappa, std::acos(triangle.cos_theta) * 57.29577951308232);
+  return text.data();
+}
+
+std::string cause(const TriangleBounds& bounds, double depth) {
   if (bounds.certificate.stick >= bounds.certificate.slip) {
     return "the stiffest response, with the contact point held";
   }
-  if (std::isinf(bounds.certificate.slip)) {
-    return "the slide of the contact point is not bounded there: too deep for the curvature of the "
-           "normals, or a lateral response that is flat";
-  }
+  if (std::isinf(bounds.certificate.slip)) return cause_unbounded(bounds.certificate, depth);
   const SlideBound& slide = bounds.slide;
   if (slide.stiffness >= std::max({slide.variation, slide.slant, slide.curvature})) {
     return "the stiffest response, while sliding";
@@ -100,7 +112,8 @@ std::string cause(const TriangleBounds& bounds) {
              : "the curvature of the normals, while sliding";
 }
 
-std::string limit_line(const Library& library, std::size_t index, const TriangleBounds& bounds) {
+std::string limit_line(const Library& library, std::size_t index, const TriangleBounds& bounds,
+                       double depth) {
   const Triangle& triangle = library.triangles[index];
   Vec3 centre{};
   for (const std::int32_t v : triangle) {
@@ -110,7 +123,7 @@ std::string limit_line(const Library& library, std::size_t index, const Triangle
   std::snprintf(place.data(), place.size(), "%.4g N/m in triangle %zu near (%.4g, %.4g, %.4g) m: ",
                 std::max(bounds.certificate.stick, bounds.certificate.slip), index, centre[0],
                 centre[1], centre[2]);
-  return place.data() + cause(bounds);
+  return place.data() + cause(bounds, depth);
 }
 
 void add_devices(Certificate& certificate, const CertifySettings& settings) {
@@ -152,12 +165,18 @@ void certify(Library& library, const CertifySettings& settings) {
     if (both > steepest) {
       steepest = both;
       certificate.worst_triangle = static_cast<std::int32_t>(m);
-      certificate.limited_by = limit_line(library, m, bounds);
+      certificate.limited_by = limit_line(library, m, bounds, certificate.depth);
     }
   }
   if (certificate.worst_triangle < 0) {
     throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
                 "every triangle touches a hole", "fill the holes or compute more sites");
+  }
+  const auto unbounded =
+      std::count_if(certificate.triangles.begin(), certificate.triangles.end(),
+                    [](const TriangleCertificate& t) { return std::isinf(t.slip); });
+  if (unbounded > 1) {
+    certificate.limited_by += "; " + std::to_string(unbounded) + " triangles are unbounded";
   }
   count_vertices(library, certificate);
   add_devices(certificate, settings);

@@ -48,6 +48,7 @@ std::vector<ForceSample> mean_samples(const CurveList& curves) {
     }
   }
   std::vector<ForceSample> samples;
+  samples.reserve(displacements.size());
   for (const double d : displacements) samples.push_back({d, mean_force(curves, d)});
   return samples;
 }

@@ -132,7 +132,23 @@ TEST(Certificate, TooDeepForTheCurvatureIsUnboundedAndSaid) {
   set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
   certify(library, with_friction(0.3));
   EXPECT_TRUE(std::isinf(library.certificate.slip));
-  EXPECT_NE(library.certificate.limited_by.find("not bounded"), std::string::npos);
+  const std::string& line = library.certificate.limited_by;
+  EXPECT_NE(line.find("no bound of the slide: pressed 10 mm deep"), std::string::npos) << line;
+  EXPECT_NE(line.find("320 triangles are unbounded"), std::string::npos) << line;
+}
+
+TEST(Certificate, AFlatLateralResponseIsUnboundedWhereTheSurfaceVaries) {
+  // Where the lateral force does not grow, the contact point jumps: harmless where all points are
+  // alike, without bound where they are not.
+  Library library = flat_triangle();
+  const ResponseCurve plateau{{0.0f, 0.001f, 0.002f, 0.003f, 0.004f}, {90, 0, 0, 90, 90}};
+  set_equal_responses(library, node_response(linear_curve(100), plateau));
+  certify(library, with_friction(0.3));
+  EXPECT_NEAR(library.certificate.slip, 100 * std::hypot(1, 0.3), 1e-9);
+  library.responses[1].normal = linear_curve(101);
+  certify(library, with_friction(0.3));
+  EXPECT_TRUE(std::isinf(library.certificate.slip));
+  EXPECT_NE(library.certificate.limited_by.find("too flat"), std::string::npos);
 }
 
 TEST(Certificate, RefusesNormalsThatCannotBeInterpolated) {

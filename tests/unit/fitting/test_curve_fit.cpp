@@ -116,7 +116,7 @@ double objective(const Samples& samples, const std::vector<double>& knots,
   double sum = 0;
   double largest_tolerance = 0;
   for (const ForceSample& sample : samples) {
-    const int steps = 20000;
+    const int steps = 4000;
     double force = 0;
     for (int i = 0; i < steps; ++i) {
       force += slope_at(sample.displacement * (i + 0.5) / steps) * sample.displacement / steps;
