@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/report/embed.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <cmath>
 
 namespace palpate::report {
 
@@ -92,6 +94,27 @@ nlohmann::json column(const std::vector<std::uint32_t>& values) {
 }
 nlohmann::json column(const std::vector<std::uint8_t>& values) {
   return typed_column("u1", values);
+}
+
+nlohmann::json column(const std::vector<std::uint16_t>& values) {
+  return typed_column("u2", values);
+}
+
+nlohmann::json index_column(const std::vector<std::int32_t>& values) {
+  if (values.empty()) return column(values);
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  if (*low < 0) return column(values);
+  if (*high > 0xffff) return column(std::vector<std::uint32_t>(values.begin(), values.end()));
+  std::vector<std::uint16_t> narrow;
+  for (const std::int32_t value : values) narrow.push_back(static_cast<std::uint16_t>(value));
+  return column(narrow);
+}
+
+nlohmann::json share_column(const std::vector<double>& values) {
+  std::vector<std::uint16_t> steps;
+  for (const double value : values)
+    steps.push_back(static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0, 1.0) * 65535)));
+  return column(steps);
 }
 
 }  // namespace palpate::report

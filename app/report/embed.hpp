@@ -20,10 +20,16 @@ std::string script_json(const nlohmann::json& value);
 std::string base64(std::string_view bytes);  ///< RFC 4648, padded
 
 /// A column of numbers as {"<type>": base64 of little-endian bytes}; the page decodes it into a
-/// typed array. The type is one of f4 (float), i4, u4, u1.
+/// typed array. The type is one of f4 (float), i4, u4, u2, u1.
 nlohmann::json column(const std::vector<float>& values);
 nlohmann::json column(const std::vector<std::int32_t>& values);
 nlohmann::json column(const std::vector<std::uint32_t>& values);
+nlohmann::json column(const std::vector<std::uint16_t>& values);
 nlohmann::json column(const std::vector<std::uint8_t>& values);
+
+/// The same in the narrowest type that holds every value: u2, u4, or i4 when one is negative.
+nlohmann::json index_column(const std::vector<std::int32_t>& values);
+/// Numbers in 0..1 in steps of 1/65535, for pictures.
+nlohmann::json share_column(const std::vector<double>& values);
 
 }  // namespace palpate::report

@@ -24,8 +24,10 @@ void append(std::vector<float>& out, const Vec3& v) {
   for (const double x : v) out.push_back(static_cast<float>(x));
 }
 
-void append(std::vector<std::uint32_t>& out, const Triangle& t) {
-  for (const std::int32_t v : t) out.push_back(static_cast<std::uint32_t>(v));
+std::vector<std::int32_t> flat(const std::vector<Triangle>& triangles) {
+  std::vector<std::int32_t> out;
+  for (const Triangle& t : triangles) out.insert(out.end(), t.begin(), t.end());
+  return out;
 }
 
 void require(bool fits, const char* problem) {
@@ -116,19 +118,17 @@ std::vector<std::uint8_t> facet_kinds(const Body& body, const Library& library,
 json surface_data(const Body& body, const Library& library) {
   const SurfaceMap map = map_boundary(body);
   const std::vector<std::int32_t> in_library = library_triangles(body, library);
-  std::vector<float> points, natural;
-  std::vector<std::uint32_t> facets, triangles;
+  std::vector<float> points;
+  std::vector<double> natural;  // the first two of each point; the third is what is left to 1
   for (const std::int32_t n : map.node) append(points, body.nodes[at(n)]);
-  for (const Vec3& n : map.natural) append(natural, n);
-  for (const Triangle& f : map.facets) append(facets, f);
-  for (const Triangle& t : body.response.triangles) append(triangles, t);
+  for (const Vec3& n : map.natural) natural.insert(natural.end(), {n[0], n[1]});
   return {{"points", column(points)},
-          {"facets", column(facets)},
-          {"facet_triangle", column(map.facet_triangle)},
+          {"facets", index_column(flat(map.facets))},
+          {"facet_triangle", index_column(map.facet_triangle)},
           {"facet_kind", column(facet_kinds(body, library, map, in_library))},
-          {"point_triangle", column(map.triangle)},
-          {"point_natural", column(natural)},
-          {"triangles", column(triangles)},
+          {"point_triangle", index_column(map.triangle)},
+          {"point_natural", share_column(natural)},
+          {"triangles", index_column(flat(body.response.triangles))},
           {"library_triangle", column(in_library)}};
 }
 

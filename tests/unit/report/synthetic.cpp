@@ -260,7 +260,7 @@ void make_certificate(Library& library) {
       t.stick = std::max(t.stick, static_cast<double>(r.normal.slope.back()));
       soft = std::min(soft, static_cast<double>(r.normal.slope.back()));
     }
-    t.slip = std::sqrt(1 + 0.09) * (t.stick + 0.8 * (t.stick - soft));
+    if (t.stick > 0) t.slip = std::sqrt(1 + 0.09) * (t.stick + 0.8 * (t.stick - soft));
     t.kappa = 30;
     t.sliding_passive = t.slip < 300;
     if (t.slip > c.slip) c.worst_triangle = static_cast<std::int32_t>(m);

@@ -103,6 +103,14 @@ TEST(Base64, IsThatOfRfc4648) {
   EXPECT_EQ(report::base64("\xff\xfe\xfd"), "//79");
 }
 
+TEST(Columns, TakeTheNarrowestTypeThatHoldsTheValues) {
+  EXPECT_EQ(numbers<std::uint16_t>(report::index_column({0, 65535}), "u2").at(1), 65535);
+  EXPECT_EQ(numbers<std::uint32_t>(report::index_column({0, 65536}), "u4").at(1), 65536U);
+  EXPECT_EQ(numbers<std::int32_t>(report::index_column({-1, 70000}), "i4").at(0), -1);
+  EXPECT_EQ(numbers<std::uint16_t>(report::share_column({0, 0.5, 1, 1 + 1e-9}), "u2"),
+            (std::vector<std::uint16_t>{0, 32768, 65535, 65535}));
+}
+
 TEST_F(Report, EmbedsTheStoredCurvesBitForBit) {
   const json data = embedded(input());
   const auto offset = numbers<std::uint32_t>(data["normal"]["offset"], "u4");

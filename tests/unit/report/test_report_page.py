@@ -125,6 +125,48 @@ class ReportPage(unittest.TestCase):
         self.assertIn("omega.3", self.full.by_id["certificate"])
         self.assertIn("young 60 kPa", self.full.text)
 
+    def test_the_page_answers_the_reader(self):
+        """Turn, colour by L_slip, click the middle of the body, drag the depth to 3 mm, as a reader would."""
+        act = """addEventListener('load', () => setTimeout(() => {
+          const canvas = document.querySelector('.stage canvas'), box = canvas.getBoundingClientRect();
+          const at = {clientX: box.left + box.width / 2, clientY: box.top + box.height / 2, pointerId: 1, bubbles: true};
+          canvas.setPointerCapture = () => {};
+          const pointer = (type, more) => canvas.dispatchEvent(new PointerEvent(type, {...at, ...more}));
+          const choose = (name) => {
+            const field = document.getElementById('field');
+            field.value = name;
+            field.dispatchEvent(new Event('change'));
+            return document.getElementById('field-range').textContent;
+          };
+          const said = {slip: choose('slip'), fit: choose('fit'), stiffness: choose('stiffness')};
+          pointer('pointerdown'); pointer('pointermove', {clientX: at.clientX + 60}); pointer('pointerup');
+          canvas.dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowUp'}));
+          pointer('pointermove');
+          said.tip = document.querySelector('.tip').innerText;
+          pointer('pointerdown'); pointer('pointerup');
+          const depth = document.querySelector('input[type=range]');
+          depth.value = 0.5;
+          depth.dispatchEvent(new Event('input'));
+          said.half = document.getElementById('field-range').textContent;
+          document.body.append(Object.assign(document.createElement('p'), {id: 'said', textContent: JSON.stringify(said)}));
+        }, 300));"""
+        text = (self.path / "full.html").read_text()
+        cut = text.rindex("</body>")
+        acted = self.path / "acted.html"
+        acted.write_text(f"{text[:cut]}<script>{act}</script>{text[cut:]}")
+        page = Page(browse(acted, "--dump-dom", "--window-size=1300,1200"))
+        self.assertEqual(page.root.get("data-errors"), "0")
+        said = json.loads(page.by_id["said"])
+        data = json.loads(page.by_id["data"])
+        slip = max(column(data["certificate"]["triangle_slip"]))
+        self.assertIn(f"to {slip:.0f} N/m", said["slip"])
+        self.assertIn("% of peak force", said["fit"])
+        # The click adds the node that the tip named.
+        self.assertEqual(page.by_id["chosen-node"], said["tip"].split()[1])
+        half = [k for k in secant_stiffness(data, data["key"]["depth"] / 2) if k is not None]
+        self.assertIn("at d = 3.00\u00a0mm", said["half"])
+        self.assertIn(f"{min(half):.1f} to {max(half):.0f} N/m", said["half"])
+
     def test_what_is_missing_is_said(self):
         self.assertIn("No recording was given", self.bare.by_id["session"])
         self.assertIn("has not been certified", self.bare.by_id["certificate"])

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The turning picture of the body: colours, nodes, contact path, hovering and clicking.
 import { Camera } from './camera.js';
-import { FIXED, TOUCHABLE } from './data.js';
+import { FIXED, HOLE, TOUCHABLE } from './data.js';
 import { el } from './dom.js';
 import { Raster } from './raster.js';
 import { colour, onThemeChange, rgb } from './theme.js';
@@ -137,7 +137,7 @@ export class BodyView {
     const { position, response_status: status } = this.model.vertices;
     context.fillStyle = 'rgb(0 0 0 / 45%)';
     for (let v = 0; v < status.length; ++v) {
-      if (status[v] === 2) continue;
+      if (status[v] === HOLE) continue;
       const { x, y, seen } = place(position, 3 * v);
       if (!seen) continue;
       context.beginPath();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The embedded data: plain JSON whose columns are {"f4" | "i4" | "u4" | "u1": base64}.
-const ARRAYS = { f4: Float32Array, i4: Int32Array, u4: Uint32Array, u1: Uint8Array };
+// The embedded data: plain JSON whose columns are {"f4" | "i4" | "u4" | "u2" | "u1": base64}.
+const ARRAYS = { f4: Float32Array, i4: Int32Array, u4: Uint32Array, u2: Uint16Array, u1: Uint8Array };
 
 export function decode(value) {
   if (Array.isArray(value)) return value.map(decode);

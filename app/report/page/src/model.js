@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The body as the view draws it: boundary facets, each on a triangle of the response surface.
-import { TOUCHABLE } from './data.js';
 
 export class Model {
   constructor(data) {
@@ -69,21 +68,18 @@ export class Model {
     const { point_triangle: triangle, point_natural: natural, triangles } = this.surface;
     const out = new Float32Array(triangle.length);
     for (let p = 0; p < out.length; ++p) {
+      const first = natural[2 * p] / 65535, second = natural[2 * p + 1] / 65535;
+      const share = [first, second, Math.max(0, 1 - first - second)];
       let sum = 0, weight = 0;
       for (let l = 0; l < 3; ++l) {
         const value = triangle[p] < 0 ? NaN : ofVertex[triangles[3 * triangle[p] + l]];
         if (!Number.isFinite(value)) continue;
-        sum += natural[3 * p + l] * value;
-        weight += natural[3 * p + l];
+        sum += share[l] * value;
+        weight += share[l];
       }
-      out[p] = weight > 1e-6 ? sum / weight : NaN;
+      out[p] = weight > 1e-4 ? sum / weight : NaN;
     }
     return out;
-  }
-
-  /** Response vertex with the largest natural coordinate, the node that a click on a facet means. */
-  touchable(facet) {
-    return this.surface.facet_kind[facet] === TOUCHABLE;
   }
 
   triangleOf(facet) {

@@ -2,7 +2,7 @@
 // The body in three dimensions beside the curves of the chosen nodes.
 import { BodyView } from '../body-view.js';
 import { cssGradient, roundTicks } from '../colormap.js';
-import { FIXED, RESPONSE, SITE } from '../data.js';
+import { FIXED, HOLE, RESPONSE, SITE } from '../data.js';
 import { el, paragraph } from '../dom.js';
 import { Model } from '../model.js';
 import { secantStiffness, responseForce } from '../response.js';
@@ -13,8 +13,10 @@ import * as units from '../units.js';
 function fields(data) {
   const { vertices, certificate, surface } = data;
   const all = (f) => Float32Array.from({ length: vertices.response_status.length }, (_, v) => f(v));
+  // A triangle beside a hole is a border for the force loop: it has no bound of its own.
+  const open = (t) => surface.triangles.subarray(3 * t, 3 * t + 3).some((v) => vertices.response_status[v] === HOLE);
   const perTriangle = (column) =>
-    Float32Array.from(surface.library_triangle, (m) => (m < 0 ? NaN : column[m]));
+    Float32Array.from(surface.library_triangle, (m, t) => (m < 0 || open(t) ? NaN : column[m]));
   const list = {
     stiffness: { label: 'Secant stiffness f(d)/d', unit: 'N/m', deep: true,
       ofVertex: (d) => all((v) => secantStiffness(data.normal, v, d)) },
