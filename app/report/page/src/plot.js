@@ -110,7 +110,7 @@ function dashed(u, mark) {
 /** Counts of several samples in common bins. sets: [{label, colour, values}] */
 export function histogram(title, xLabel, yLabel, sets, { bins = 30, zero = true, height = 200 } = {}) {
   const all = sets.flatMap((s) => Array.from(s.values)).filter(Number.isFinite);
-  let [low, high] = [Math.min(...all), Math.max(...all)];
+  let [low, high] = all.reduce(([a, b], v) => [Math.min(a, v), Math.max(b, v)], [Infinity, -Infinity]);
   if (zero) [low, high] = [Math.min(0, low), Math.max(0, high)];
   if (!(high > low)) high = low + (Math.abs(low) * 0.01 || 1);
   const width = (high - low) / bins;
