@@ -124,6 +124,10 @@ class ReportPage(unittest.TestCase):
         self.assertIn("The session was passive", self.full.by_id["account"])
         self.assertIn("omega.3", self.full.by_id["certificate"])
         self.assertIn("young 60 kPa", self.full.text)
+        self.assertIn('file = "lump.off"', self.full.by_id["record"])
+        for slip in ("[object", "undefined", "NaN", "Infinity"):
+            self.assertNotIn(slip, self.full.text)
+            self.assertNotIn(slip, self.bare.text)
 
     def test_the_page_answers_the_reader(self):
         """Turn, colour by L_slip, click the middle of the body, drag the depth to 3 mm, as a reader would."""

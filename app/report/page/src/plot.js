@@ -45,7 +45,7 @@ function figure(title, options, data, height = 240) {
     if (!chart) build(options, data);
     else if (chart.width !== width) chart.setSize({ width, height });
   })).observe(place);
-  onThemeChange(() => chart?.redraw(false, true));
+  onThemeChange(() => chart && build(options, data));  // the keys of the legend too
   return { element, update };
 }
 
