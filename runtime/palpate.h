@@ -42,7 +42,8 @@ enum {
   PALPATE_AT_BORDER = 1u << 4,      /* the slide stopped at a border of the response surface */
   PALPATE_ENERGY_LIMITED = 1u << 5, /* the energy rule changed d0 or held the contact point */
   PALPATE_BEYOND_DEPTH = 1u << 6,   /* deeper than the deepest sample: linear continuation */
-  PALPATE_BAD_INPUT = 1u << 7,      /* NaN, infinity or dt <= 0: the force is zero */
+  PALPATE_BAD_INPUT = 1u << 7,      /* NaN, infinity, dt <= 0, or a step longer than the diagonal of
+                                       the body: zero force, the contact is dropped */
   PALPATE_DROPPED = 1u << 8         /* the contact was dropped with stored energy discarded */
 };
 

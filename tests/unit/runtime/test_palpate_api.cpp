@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "bodies.hpp"
 #include "runtime/palpate.h"
@@ -173,6 +176,32 @@ TEST_F(PalpateApi, RefusesSettingsOutOfRange) {
   EXPECT_EQ(palpate_state_create(library_, nullptr, &none), PALPATE_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(palpate_last_error(), "friction"), nullptr);
   EXPECT_EQ(none, nullptr);
+}
+
+TEST_F(PalpateApi, ThreadsMayShareALibrary) {
+  // Four tools on one library at once feel what one tool alone feels, bit for bit.
+  const auto press_and_slide = [&](Vec3& sum) {
+    palpate_state* own = nullptr;
+    ASSERT_EQ(palpate_state_create(library_, &settings_, &own), PALPATE_OK);
+    const double velocity[3] = {0, 0, 0};
+    sum = {0, 0, 0};
+    for (int i = 0; i < 4000; ++i) {
+      const double x[3] = {0.03 + 0.02 * std::sin(1e-3 * i), 0.033,
+                           0.0005 - 0.005 * std::sin(3e-3 * i)};
+      Vec3 f;
+      palpate_step(own, x, velocity, kDt, f.data());
+      sum = sum + f;
+    }
+    palpate_state_destroy(own);
+  };
+  Vec3 alone;
+  press_and_slide(alone);
+  ASSERT_GT(norm(alone), 1);
+  std::array<Vec3, 4> together;
+  std::vector<std::thread> threads;
+  for (Vec3& sum : together) threads.emplace_back([&] { press_and_slide(sum); });
+  for (std::thread& t : threads) t.join();
+  for (const Vec3& sum : together) EXPECT_EQ(sum, alone);
 }
 
 }  // namespace

@@ -312,8 +312,8 @@ TEST(UncorrectedSliding, CreatesEnergyOnTheSameCycles) {
 }
 
 TEST(EnergyRule, LeavesAlmostNoTraceInTheForce) {
-  // With the budget kept, the force on random paths differs little from the uncorrected one, and
-  // never jumps: what the design promises, as RMS over the contact.
+  // With the budget kept, the force on random paths hardly differs (RMS) from the uncorrected one,
+  // and never jumps.
   const Library library = varying_cylinder();
   const palpate_library body(library);
   for (const double mu : {0.0, 0.05, 0.3}) {
