@@ -188,16 +188,16 @@ TEST_F(PalpateApi, ThreadsMayShareALibrary) {
     for (int i = 0; i < 4000; ++i) {
       const double x[3] = {0.03 + 0.02 * std::sin(1e-3 * i), 0.033,
                            0.0005 - 0.005 * std::sin(3e-3 * i)};
-      Vec3 f;
+      Vec3 f{};
       palpate_step(own, x, velocity, kDt, f.data());
       sum = sum + f;
     }
     palpate_state_destroy(own);
   };
-  Vec3 alone;
+  Vec3 alone{};
   press_and_slide(alone);
   ASSERT_GT(norm(alone), 1);
-  std::array<Vec3, 4> together;
+  std::array<Vec3, 4> together{};
   std::vector<std::thread> threads;
   for (Vec3& sum : together) threads.emplace_back([&] { press_and_slide(sum); });
   for (std::thread& t : threads) t.join();
