@@ -106,12 +106,14 @@ nlohmann::json index_column(const std::vector<std::int32_t>& values) {
   if (*low < 0) return column(values);
   if (*high > 0xffff) return column(std::vector<std::uint32_t>(values.begin(), values.end()));
   std::vector<std::uint16_t> narrow;
+  narrow.reserve(values.size());
   for (const std::int32_t value : values) narrow.push_back(static_cast<std::uint16_t>(value));
   return column(narrow);
 }
 
 nlohmann::json share_column(const std::vector<double>& values) {
   std::vector<std::uint16_t> steps;
+  steps.reserve(values.size());
   for (const double value : values)
     steps.push_back(static_cast<std::uint16_t>(std::lround(std::clamp(value, 0.0, 1.0) * 65535)));
   return column(steps);

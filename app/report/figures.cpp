@@ -119,6 +119,7 @@ double median_edge(const std::vector<Vec3>& points, const std::vector<Triangle>&
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   std::vector<double> lengths;
+  lengths.reserve(edges.size());
   for (const auto& [a, b] : edges)
     lengths.push_back(
         norm(points[static_cast<std::size_t>(a)] - points[static_cast<std::size_t>(b)]));

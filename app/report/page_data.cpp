@@ -76,7 +76,7 @@ json body_data(const Body& body) {
 }
 
 /// Facet kinds of the picture.
-enum : std::uint8_t { kTouchable = 0, kNoResponse = 1, kFixed = 2 };
+enum FacetKind : std::uint8_t { Touchable = 0, NoResponse = 1, Fixed = 2 };
 
 /// Index of each response triangle of the body in the library, -1 where the library lacks it.
 std::vector<std::int32_t> library_triangles(const Body& body, const Library& library) {
@@ -110,7 +110,7 @@ std::vector<std::uint8_t> facet_kinds(const Body& body, const Library& library,
     }
     const auto is_fixed = [&](std::int32_t p) { return fixed[at(map.node[at(p)])] != 0; };
     const bool held = std::all_of(map.facets[f].begin(), map.facets[f].end(), is_fixed);
-    kinds.push_back(touchable ? kTouchable : held ? kFixed : kNoResponse);
+    kinds.push_back(touchable ? Touchable : held ? Fixed : NoResponse);
   }
   return kinds;
 }

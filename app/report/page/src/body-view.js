@@ -13,7 +13,7 @@ export class BodyView {
   constructor(model, { facing, onPick, describe }) {
     this.model = model;
     this.home = facing;
-    this.camera = new Camera(facing);
+    this.camera = this.homeCamera();
     this.onPick = onPick;
     this.describe = describe;
     this.raster = new Raster();
@@ -36,8 +36,22 @@ export class BodyView {
   }
 
   reset() {
-    this.camera = new Camera(this.home);
+    this.camera = this.homeCamera();
     this.draw();
+  }
+
+  /** Enlarge what is seen from its short side, but leave room to turn it. */
+  homeCamera() {
+    const camera = new Camera(this.home);
+    const { points, centre, radius } = this.model;
+    let reach = 0;
+    for (let i = 0; i < points.length; i += 3) {
+      for (const row of camera.rows.slice(0, 2)) {
+        reach = Math.max(reach, Math.abs(row.reduce((sum, r, k) => sum + r * (points[i + k] - centre[k]), 0)));
+      }
+    }
+    camera.zoom = Math.min(1.4, (0.97 * radius) / (reach || radius));
+    return camera;
   }
 
   /** Pixels per metre and offset of the projection at this raster size. */
@@ -88,7 +102,7 @@ export class BodyView {
       project(model.points, 3 * p, at, 3 * p);
       const n = 3 * p;
       const cosine = lamp[0] * model.light[n] + lamp[1] * model.light[n + 1] + lamp[2] * model.light[n + 2];
-      light[p] = 0.66 + 0.34 * Math.max(0, cosine);
+      light[p] = 0.72 + 0.28 * Math.max(0, cosine);
     }
     this.fill(at, light);
     if (!this.show.borders) return;

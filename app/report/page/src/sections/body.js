@@ -138,7 +138,7 @@ function keys(data) {
   const kinds = new Set(data.surface.facet_kind);
   return el('div', { class: 'keys' },
     kinds.has(FIXED) ? key('body-fixed', 'held by a support') : null,
-    kinds.has(1) ? key('body-hole', 'no response (hole, or beside one)') : null,
+    kinds.has(1) ? key('body-hole', 'no response (a hole, or beside a hole or a support)') : null,
     data.session?.drawn ? el('span', {}, 'white line: path of the contact point') : null);
 }
 

@@ -6,7 +6,7 @@ const small = (text) => el('small', {}, text);
 
 function sites(key) {
   const total = key.complete + key.partial + key.failed;
-  return [units.count(key.complete), small(` of ${units.count(total)} sites complete`)];
+  return [units.count(key.complete), small(` of ${units.count(total)} complete`)];
 }
 
 function tile(term, value, note, id, kind) {
@@ -27,7 +27,7 @@ function keyFigures(data, nodes) {
   const range = nodes.stiffest < 0 ? '\u2013'
     : [units.significant(nodes.softestValue), '\u2009\u2013\u2009', units.significant(nodes.stiffestValue), small('\u00a0N/m')];
   return el('dl', { class: 'figures' },
-    tile('Campaign', sites(key), `${units.count(key.partial)} partial, ${units.count(key.failed)} failed`, 'sites', bad ? 'warn' : undefined),
+    tile('Sites', sites(key), `${units.count(key.partial)} partial, ${units.count(key.failed)} failed`, 'sites', bad ? 'warn' : undefined),
     tile('Deepest press', units.length(key.deepest), `requested ${units.length(key.depth)}`, 'deepest'),
     tile('Largest force', units.force(key.max_force), 'of any computed state', 'max-force'),
     tile('Stiffness', range, `secant, over ${units.length(key.depth)}; softest to stiffest node`, 'stiffness-range'),

@@ -33,7 +33,7 @@ function failures(data) {
 function stage(step) {
   const inputs = el('ul', { class: 'list' }, step.inputs.map((i) => el('li', {}, i.name, el('code', { class: 'hash', title: i.sha256 }, i.sha256.slice(0, 16) + '\u2026'))));
   const facts = el('ul', { class: 'list' }, step.facts.map(([k, v]) => el('li', {}, `${k}: ${v}`)));
-  return [step.stage, step.version, el('code', {}, step.git_revision), step.utc, inputs, facts];
+  return [step.stage, step.version, el('code', {}, step.git_revision), el('span', { class: 'hash' }, step.utc), inputs, facts];
 }
 
 function resolvedCases(chain) {

@@ -24,7 +24,7 @@ function countsSentence(counts, steps) {
 export function sessionSection(data) {
   const { session } = data;
   const head = [el('h2', {}, 'The session')];
-  if (!session) return el('section', { id: 'session' }, head, paragraph('No recording was given to this report. Run palpate simulate or palpate run with a recorder, and give its file.'));
+  if (!session) return el('section', { id: 'session' }, head, paragraph('No recording was given to this report: make one with palpate simulate.'));
   if (!session.drawn) return el('section', { id: 'session' }, head, paragraph('The recording holds no step.'));
   const d = session.drawn;
   const magnitude = Float64Array.from(d.fx, (x, i) => Math.hypot(x, d.fy[i], d.fz[i]));
