@@ -52,6 +52,12 @@ void check_settings(const Settings& s) {
                      "give a positive length, 0.001 for millimetres");
     }
   };
+  for (const Support& support : s.supports) {
+    const auto* plane = std::get_if<PlaneSupport>(&support);
+    if (plane && !positive(norm(plane->normal))) {
+      refuse_setting("the normal of a plane support has no direction", "correct the case");
+    }
+  }
   check_unit(s.surface);
   for (const SurfaceFile& inclusion : s.inclusions) check_unit(inclusion);
 }
@@ -140,12 +146,27 @@ std::vector<std::uint8_t> set_supports(Body& body, const Settings& settings,
   return held;
 }
 
+/// Three points off one line stop every rigid motion.
+bool stops_rigid_motion(const std::vector<Vec3>& points, const std::vector<std::int32_t>& held) {
+  if (held.empty()) return false;
+  const auto at = [&](std::int32_t i) { return points[static_cast<std::size_t>(i)]; };
+  const Vec3 first = at(held.front());
+  Vec3 axis{};
+  for (const std::int32_t i : held) {
+    if (norm(at(i) - first) > norm(axis)) axis = at(i) - first;
+  }
+  const double length2 = dot(axis, axis);
+  return std::any_of(held.begin(), held.end(), [&](std::int32_t i) {
+    return norm(cross(axis, at(i) - first)) > 1e-3 * length2;
+  });
+}
+
 void check_supports(const Body& body, const Settings& settings, const Surface& boundary) {
   const std::string where = settings.surface.path.string();
   const Bounds box = bounds(boundary.points);
   const std::string extent =
       text("the body spans ", millimetres(box.low), " to ", millimetres(box.high));
-  if (body.fixed_nodes.size() < 3) {
+  if (!stops_rigid_motion(boundary.points, body.fixed_nodes)) {
     throw Error(ErrorKind::Geometry, where,
                 text("the supports hold ", body.fixed_nodes.size(), " of ", boundary.points.size(),
                      " surface nodes, the body would float"),

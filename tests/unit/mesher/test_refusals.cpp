@@ -167,6 +167,8 @@ TEST(Refusals, SupportsThatHoldNothingOrEverything) {
   expect_refused(s, "held.off", "the body would float", "(0, 0, 0) mm to (50, 50, 50) mm");
   s.supports = {SphereSupport{{1, 1, 1}, 0.01}};
   expect_refused(s, "held.off", "hold 0 of", "place a support");
+  s.supports = {BoxSupport{{-1, -1, -1}, {1, 0, 0}}};  // one edge: the body could still turn
+  expect_refused(s, "held.off", "the body would float", "place a support");
   s.supports = {BoxSupport{{-1, -1, -1}, {1, 1, 1}}};
   expect_refused(s, "held.off", "nothing can be touched", "smaller");
 }
@@ -214,6 +216,7 @@ TEST(Refusals, SettingsThatMakeNoSense) {
   expect(with([](Settings& s) { s.depth = -0.001; }), "depth");
   expect(with([](Settings& s) { s.tool_radius = 0; }), "tool_radius");
   expect(with([](Settings& s) { s.surface.unit = 0; }), "unit");
+  expect(with([](Settings& s) { s.supports = {PlaneSupport{}}; }), "normal");
   const Settings tiny = with([](Settings& s) { s.element_size = 1e-5; });
   expect_refused(tiny, "sense.off", "0.01 mm needs about", "increase element_size",
                  ErrorKind::Configuration);
