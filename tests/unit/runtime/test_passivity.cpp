@@ -14,6 +14,7 @@
 
 #include "bodies.hpp"
 #include "runtime/contact_state.hpp"
+#include "runtime/device_simulated.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/palpate.h"
 
@@ -358,6 +359,35 @@ TEST(EnergyRule, LeavesAlmostNoTraceInTheForce) {
     EXPECT_LT(jump, 0.03) << "mu = " << mu;
     kept.expect_passive();
   }
+}
+
+/// The published experiment on the deformable cylinder [Mahvash & Hayward 2005, VI-B]: a device
+/// held to a radial line is slung into it at 2 kHz with one sample of delay. Half peak-to-peak
+/// velocity over the last half second, m/s.
+double swing_on_cylinder(double k, double seconds) {
+  const palpate_library body(
+      cylinder(25, 20, kRadius, kLength, [&](const Vec3&) { return wall_response(k, k); }));
+  ContactState contact(body.surface, body.tree, {0.3, 5e-3});
+  runtime::SimulatedDevice device({0.0845, 0.081, 0.01, 20, 0, 1});
+  device.place({-0.03, 0, 0}, {});  // x: depth below the surface at rest
+  device.set_target({0.0584, 0, 0}, {});
+  const double T = 0.0005;
+  double low = 0;
+  double high = 0;
+  for (int i = 0; i < static_cast<int>(seconds / T); ++i) {
+    contact.step(on_cylinder(0, kRadius - device.position()[0], 0.1));
+    const double outwards = -contact.observation().force[0];
+    device.step(T, {-outwards, 0, 0});
+    if (i * T < seconds - 0.5) continue;
+    low = std::min(low, device.velocity()[0]);
+    high = std::max(high, device.velocity()[0]);
+  }
+  return (high - low) / 2;
+}
+
+TEST(PublishedMargin, TheCylinderDecaysAt168AndOscillatesAt179) {
+  EXPECT_LT(swing_on_cylinder(168, 200), 0.002);
+  EXPECT_NEAR(swing_on_cylinder(179, 200), 0.459, 0.02);
 }
 
 }  // namespace
