@@ -2,11 +2,17 @@
 #include "mesher/fill.hpp"
 
 #define TETLIBRARY
+#include <sys/wait.h>
 #include <tetgen.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "format/error.hpp"
@@ -56,22 +62,12 @@ void give(tetgenio& in, const Surface& shells) {
   }
 }
 
-[[noreturn]] void refuse(int code, const std::string& where) {
-  const std::string change = "change element_size or patch_spacing a little and report the case";
-  if (code == 1) {
-    throw Error(ErrorKind::Internal, where, "out of memory while filling with tetrahedra",
-                "increase element_size");
-  }
-  const char* geometry = code == 3   ? "TetGen found that the facets cut one another"
-                         : code == 4 ? "TetGen found a feature too small to be represented"
-                         : code == 5 ? "TetGen found two facets that nearly coincide"
-                                     : nullptr;
-  if (geometry) {
-    throw Error(ErrorKind::Geometry, where, geometry,
-                "smooth or repair the surface there, or change patch_spacing and element_size");
-  }
-  throw Error(ErrorKind::Internal, where,
-              text("TetGen failed with its code ", code, " while filling with tetrahedra"), change);
+[[noreturn]] void refuse(int status, const std::string& where) {
+  throw Error(ErrorKind::Geometry, where,
+              text("TetGen cannot fill the facets with tetrahedra (",
+                   WIFSIGNALED(status) ? "it crashed with signal " : "its code ",
+                   WIFSIGNALED(status) ? WTERMSIG(status) : WEXITSTATUS(status), ")"),
+              "smooth the surface or change patch_spacing and element_size a little");
 }
 
 double signed_volume6(const std::vector<Vec3>& x, const Tetrahedron& t) {
@@ -94,6 +90,63 @@ Filling take(const tetgenio& out) {
     filling.part.push_back(
         attributes ? static_cast<int>(attributes[t * out.numberoftetrahedronattributes]) : 0);
   }
+  return filling;
+}
+
+template <typename Record>
+void send(std::FILE* pipe, const std::vector<Record>& records) {
+  const std::size_t count = records.size();
+  if (std::fwrite(&count, sizeof count, 1, pipe) != 1 ||
+      std::fwrite(records.data(), sizeof(Record), count, pipe) != count) {
+    _exit(EXIT_FAILURE);
+  }
+}
+
+template <typename Record>
+bool receive(std::FILE* pipe, std::vector<Record>& records) {
+  std::size_t count = 0;
+  if (std::fread(&count, sizeof count, 1, pipe) != 1) return false;
+  records.resize(count);
+  return std::fread(records.data(), sizeof(Record), count, pipe) == count;
+}
+
+[[noreturn]] void fill_as_child(const Surface& shells, std::string switches, int pipe_end) {
+  tetgenio in, out;
+  give(in, shells);
+  in.tetunsuitable = too_large;
+  try {
+    tetrahedralize(switches.data(), &in, &out);
+  } catch (int code) {
+    _exit(code);
+  }
+  const Filling filling = take(out);
+  std::FILE* pipe = fdopen(pipe_end, "wb");
+  send(pipe, filling.nodes);
+  send(pipe, filling.tetrahedra);
+  send(pipe, filling.part);
+  _exit(std::fclose(pipe) == 0 ? EXIT_SUCCESS : EXIT_FAILURE);
+}
+
+/// TetGen 1.5.0 frees its memory twice when it throws and thereby crashes: a process of its own
+/// turns that into an error of this one.
+Filling fill_in_child(const Surface& shells, const std::string& switches,
+                      const std::string& where) {
+  int ends[2];
+  if (pipe(ends) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  std::fflush(nullptr);
+  const pid_t child = fork();
+  if (child < 0) throw std::system_error(errno, std::generic_category(), "fork");
+  if (child == 0) fill_as_child(shells, switches, ends[1]);
+  close(ends[1]);
+  std::FILE* pipe = fdopen(ends[0], "rb");
+  Filling filling;
+  const bool complete = receive(pipe, filling.nodes) && receive(pipe, filling.tetrahedra) &&
+                        receive(pipe, filling.part);
+  std::fclose(pipe);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!complete || status != 0) refuse(status, where);
   return filling;
 }
 
@@ -131,21 +184,12 @@ std::size_t most_interior_points(const Surface& shells, double longest_edge) {
 }  // namespace
 
 Filling fill(const Surface& shells, double longest_edge, const std::string& where) {
-  tetgenio in, out;
-  give(in, shells);
   longest_edge_squared = longest_edge * longest_edge;
-  in.tetunsuitable = too_large;
   // p: from a surface; Y: keep its triangles; M: do not merge coplanar ones; q: radius-edge ratio
   // and least dihedral angle; o: improve dihedral angles above 150 degrees; A: number the closed
   // cells; S: at most so many points of its own, a bound on the time; Q: print nothing.
   const std::size_t most = most_interior_points(shells, longest_edge);
-  std::string switches = text("pYMq1.3/12o/150AQS", most);
-  try {
-    tetrahedralize(switches.data(), &in, &out);
-  } catch (int code) {
-    refuse(code, where);
-  }
-  Filling filling = take(out);
+  Filling filling = fill_in_child(shells, text("pYMq1.3/12o/150AQS", most), where);
   check_kept(filling, shells, where);
   filling.cut_short = filling.nodes.size() >= shells.points.size() + most;
   return filling;

@@ -20,8 +20,9 @@ struct Filling {
 /// unchanged. Radius-edge ratio at most 1.3 away from the given triangles; tetrahedra with an edge
 /// longer than `longest_edge` (m) are refined, except where a point would come too close to a given
 /// triangle: edges next to the surfaces may exceed it by a fifth.
-/// @throws Error(Geometry) when TetGen refuses the shells, Error(Internal) when it fails or does
-///   not keep them.
+/// TetGen runs in a child process.
+/// @throws Error(Geometry) when TetGen refuses the shells or breaks down, Error(Internal) when it
+///   does not keep them.
 Filling fill(const Surface& shells, double longest_edge, const std::string& where);
 
 }  // namespace palpate::mesher

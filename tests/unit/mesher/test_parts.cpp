@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "format/error.hpp"
 #include "mesher/fill.hpp"
 #include "mesher/quality.hpp"
 #include "mesher/queries.hpp"
@@ -135,6 +136,20 @@ TEST(Fill, RefinesToTheRequestedEdgeAndKeepsEveryTriangle) {
     EXPECT_GT(quality.smallest_dihedral, 5);
     EXPECT_GT(filling.nodes.size(), coarser);
     coarser = filling.nodes.size();
+  }
+}
+
+TEST(Fill, ShellsThatCutOneAnotherAreAnErrorNotACrash) {
+  Surface crossed = test::sphere({0, 0, 0}, 0.03, 32);
+  append(crossed, test::sphere({0.02, 0, 0}, 0.03, 32));
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    try {
+      fill(crossed, 0.01, "crossed");
+      FAIL() << "filled";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::Geometry);
+      EXPECT_THAT(error.what(), testing::HasSubstr("TetGen cannot fill"));
+    }
   }
 }
 
