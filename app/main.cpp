@@ -47,6 +47,8 @@ void add_commands(CLI::App& root, Action& action) {
   add_certify_command(root, action);
   add_simulate_command(root, action);
   add_inspect_command(root, action);
+  add_export_command(root, action);
+  add_report_command(root, action);
 }
 
 /// A first argument that is no subcommand: CLI11 would only say that one is missing.

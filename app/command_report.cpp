@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+#include <optional>
+
+#include "app/case_options.hpp"
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "app/report/report.hpp"
+
+namespace palpate::app {
+namespace {
+
+int report(const CaseOptions& options) {
+  const Workspace space = open_workspace(options);
+  const Body body = read_body(space.body());
+  const Curves curves = read_curves(space.curves());
+  const Library library = read_library(space.library());
+  std::optional<Recording> recording;
+  if (std::filesystem::exists(space.recording())) recording = read_recording(space.recording());
+  ReportInput input;
+  input.body = &body;
+  input.curves = &curves;
+  input.library = &library;
+  input.recording = recording ? &*recording : nullptr;
+  input.library_bytes = std::filesystem::file_size(space.library());
+  write_report(input, space.report());
+  say("report: {}{}", space.report().string(),
+      recording ? "" : " (without a session: run `palpate simulate` first to see one)");
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& root, Action& action) {
+  CLI::App* command =
+      root.add_subcommand("report", "The artifacts of a case -> report.html, one file");
+  command->footer("Example: palpate report data/cases/cylinder.toml --out out/cylinder");
+  const auto options = add_case_options(*command);
+  command->callback([options, &action] { action = [options] { return report(*options); }; });
+}
+
+}  // namespace palpate::app

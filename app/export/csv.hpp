@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "format/curves.hpp"
+
+namespace palpate::app {
+
+/// All samples of all paths, one row each, with a title row that carries the SI units:
+/// vertex, status, path, held depth, direction, displacement, force, energies and checks.
+/// Numbers read back exactly.
+std::string curves_csv(const Curves& curves);
+
+/// Written crash-safe.
+void write_curves_csv(const Curves& curves, const std::filesystem::path& file);
+
+}  // namespace palpate::app

@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""What a user does wrong, through the real command: the right exit code, exactly one line that says
+what, where and what to do, and nothing left behind. Usage: bad_input_test.py PALPATE
+"""
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from bodies import CASE, block, write_case, write_off  # noqa: E402
+
+PALPATE = None
+USAGE, GEOMETRY = 2, 3
+
+
+def open_block():
+    vertices, triangles = block((40, 40, 20), 4)
+    return vertices, triangles[:-1]
+
+
+def crossing_block():
+    """Two boxes as one surface, one through the other."""
+    vertices, triangles = block((40, 40, 20), 4)
+    moved = [(x + 10, y + 10, z + 10) for x, y, z in vertices]
+    shifted = [tuple(i + len(vertices) for i in triangle) for triangle in triangles]
+    return vertices + moved, triangles + shifted
+
+
+def dented_block():
+    """One surface that runs through itself: a top vertex pushed out through the base."""
+    vertices, triangles = block((40, 40, 20), 4)
+    top = vertices.index((20.0, 20.0, 20.0))
+    vertices[top] = (20.0, 20.0, -15.0)
+    return vertices, triangles
+
+
+class BadInput(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = Path(self.folder.name)
+        self.out = self.root / "out"
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def refuse(self, code, words, *arguments):
+        result = subprocess.run([PALPATE, *map(str, arguments)], capture_output=True, text=True, check=False)
+        message = result.stderr
+        self.assertEqual(result.returncode, code, message)
+        self.assertEqual(message.count("\n"), 1, message)
+        self.assertTrue(message.startswith("palpate: "), message)
+        self.assertIn("; ", message)  # the remedy comes after it
+        for word in words:
+            self.assertIn(word, message)
+        left = [p.name for p in self.out.rglob("*")] if self.out.is_dir() else []
+        self.assertEqual(left, [])
+
+    def refuse_case(self, code, words, case=CASE, surface=None):
+        path = write_case(self.root, case, surface)
+        self.refuse(code, words, "build", path, "--out", self.out)
+
+    def test_case_file_is_missing(self):
+        self.refuse(USAGE, ["none.toml", "cannot be read"], "build", self.root / "none.toml", "--out", self.out)
+
+    def test_surface_is_missing(self):
+        path = write_case(self.root)
+        (self.root / "block.off").unlink()
+        self.refuse(GEOMETRY, ["block.off"], "build", path, "--out", self.out)
+
+    def test_surface_is_not_closed(self):
+        self.refuse_case(GEOMETRY, ["block.off"], surface=open_block())
+
+    def test_surface_is_in_parts(self):
+        self.refuse_case(GEOMETRY, ["block.off"], surface=crossing_block())
+
+    def test_surface_runs_through_itself(self):
+        self.refuse_case(GEOMETRY, ["block.off", "intersect"], surface=dented_block())
+
+    def test_surface_has_a_wrong_unit(self):
+        self.refuse_case(GEOMETRY, ["block.off"], CASE.replace('unit = "mm"', 'unit = "um"'))
+
+    def test_unit_is_of_another_kind(self):
+        self.refuse_case(USAGE, ["block.toml:10", "patch_spacing", "15 kPa", "mm"],
+                         CASE.replace('"15 mm"', '"15 kPa"'))
+
+    def test_unit_is_missing(self):
+        self.refuse_case(USAGE, ["material[0].young", "found 10", '"10 kPa"'], CASE.replace('"10 kPa"', "10"))
+
+    def test_key_is_unknown(self):
+        self.refuse_case(USAGE, ["'yuong'", "'young'"], CASE.replace("young =", "yuong ="))
+
+    def test_constant_is_nan(self):
+        self.refuse_case(USAGE, ["material[0].poisson", "nan", "0.5"],
+                         CASE.replace("poisson = 0.45", "poisson = nan"))
+
+    def test_constant_is_negative(self):
+        self.refuse_case(USAGE, ["material[0].young", "-10 kPa"], CASE.replace('"10 kPa"', '"-10 kPa"'))
+
+    def test_tool_goes_deeper_than_the_body(self):
+        self.refuse_case(GEOMETRY, ["depth", "25 mm"], CASE.replace('depth = "2 mm"', 'depth = "25 mm"'))
+
+    def test_supports_hold_nothing(self):
+        self.refuse_case(GEOMETRY, ["support"], CASE.replace('"0.1 mm"]', '"-5 mm"]'))
+
+    def test_output_folder_cannot_be_made(self):
+        path = write_case(self.root)
+        (self.root / "file").write_text("in the way", encoding="ascii")
+        self.refuse(USAGE, [str(self.root / "file")], "build", path, "--out", self.root / "file" / "out")
+
+    def test_artifact_of_the_stage_before_is_missing(self):
+        path = write_case(self.root)
+        self.refuse(USAGE, ["body.h5", "palpate mesh"], "precompute", path, "--out", self.out)
+        self.refuse(USAGE, ["library.h5", "palpate"], "simulate", path, "--out", self.out)
+
+    def test_file_is_not_an_artifact(self):
+        text = self.root / "text.h5"
+        text.write_text("not HDF5", encoding="ascii")
+        self.refuse(USAGE, ["text.h5"], "inspect", text)
+        path = write_case(self.root)
+        self.refuse(USAGE, ["text.h5"], "simulate", path, "--out", self.out, "--library", text)
+
+    def test_command_line_is_wrong(self):
+        self.refuse(USAGE, ["'bulid'", "'build'"], "bulid")
+        self.refuse(USAGE, ["CASE"], "build")
+        path = write_case(self.root)
+        self.refuse(USAGE, ["--thread"], "build", path, "--thread", "many")
+
+    def test_device_profile_is_wrong(self):
+        path = write_case(self.root)
+        (self.root / "device.toml").write_text('name = "x"\ndamping = 1\nsource = "y"\n', encoding="ascii")
+        out = self.root / "elsewhere"
+        result = subprocess.run([PALPATE, "certify", path, "--out", out], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, USAGE)
+        self.assertEqual(result.stderr.count("\n"), 1)
+
+
+if __name__ == "__main__":
+    PALPATE = sys.argv.pop(1)
+    unittest.main(verbosity=2)

@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""Small closed surfaces for the pipeline tests, made on the spot."""
+
+
+def block(size, divisions):
+    """A box from the origin: vertices (mm) and outward triangles, `divisions` cells an edge."""
+    index, vertices, triangles = {}, [], []
+
+    def vertex(i, j, k):
+        key = (i, j, k)
+        if key not in index:
+            index[key] = len(vertices)
+            vertices.append(tuple(size[a] * key[a] / divisions for a in range(3)))
+        return index[key]
+
+    def face(axis, side):
+        u, v = [(1, 2), (2, 0), (0, 1)][axis]
+        for p in range(divisions):
+            for q in range(divisions):
+                corner = []
+                for dp, dq in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                    at = [0, 0, 0]
+                    at[axis], at[u], at[v] = side * divisions, p + dp, q + dq
+                    corner.append(vertex(*at))
+                if side == 0:
+                    corner.reverse()
+                triangles.append((corner[0], corner[1], corner[2]))
+                triangles.append((corner[0], corner[2], corner[3]))
+
+    for axis in range(3):
+        for side in (0, 1):
+            face(axis, side)
+    return vertices, triangles
+
+
+def write_off(path, surface):
+    vertices, triangles = surface
+    with open(path, "w", encoding="ascii") as file:
+        file.write(f"OFF\n{len(vertices)} {len(triangles)} 0\n")
+        for x, y, z in vertices:
+            file.write(f"{x} {y} {z}\n")
+        for a, b, c in triangles:
+            file.write(f"3 {a} {b} {c}\n")
+
+
+CASE = """name = "block"
+
+[surface]
+file = "block.off"
+unit = "mm"
+region = "gel"
+
+[mesh]
+patch_spacing = "15 mm"
+element_size = "4 mm"
+interior_growth = 3.0
+
+[[support]]
+shape = "plane"
+point = ["0 mm", "0 mm", "0.1 mm"]
+normal = [0, 0, -1]
+
+[[material]]
+region = "gel"
+young = "10 kPa"
+poisson = 0.45
+
+[tool]
+radius = "6 mm"
+
+[indentation]
+depth = "2 mm"
+increments = 4
+held_depths = ["1 mm"]
+lateral_travel = "1 mm"
+lateral_increments = 2
+
+[fit]
+absolute_tolerance = "2 mN"
+
+[certify]
+friction = 0.3
+devices = ["device.toml"]
+
+[simulate]
+press_depth = "1.5 mm"
+press_speed = "40 mm/s"
+slide_length = "20 mm"
+slide_speed = "80 mm/s"
+"""
+
+DEVICE = """name = "bench"
+damping = "0.5 N s/m"
+source = "made up for a test"
+"""
+
+
+def write_case(folder, case=CASE, surface=None):
+    """block.toml, block.off and device.toml in `folder`; the path of the case."""
+    write_off(folder / "block.off", surface or block((40, 40, 20), 4))
+    (folder / "device.toml").write_text(DEVICE, encoding="utf-8")
+    path = folder / "block.toml"
+    path.write_text(case, encoding="utf-8")
+    return path
