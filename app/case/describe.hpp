@@ -157,7 +157,8 @@ template <class V>
 void describe(V& v, CertifySection& s) {
   v.number(s.friction,
            {"friction", "friction coefficient mu between tool and body", kOptional, kNotNegative});
-  v.texts(s.devices, {"devices", "device profiles to certify for: TOML files, relative to the case file"});
+  v.texts(s.devices,
+          {"devices", "device profiles to certify for: TOML files, relative to the case file"});
 }
 
 template <class V>

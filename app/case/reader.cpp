@@ -76,23 +76,28 @@ TableReader::TableReader(const toml::table& table, std::string title, std::strin
 const toml::node* TableReader::find(const Key& key) {
   known_.push_back(key.name);
   const toml::node* node = table_.get(key.name);
-  if (node == nullptr) {
-    if (key.presence == kRequired) {
-      fail(sources_.where(table_), fmt::format("key '{}' is missing", dotted(key)),
-           fmt::format("add it ({})", key.about));
-    }
-    return nullptr;
+  if (node != nullptr) {
+    sources_.remember(dotted(key), *node);
+  } else if (key.presence == kRequired) {
+    missing_.push_back(key);
   }
-  sources_.remember(dotted(key), *node);
   return node;
 }
 
+/// A missing key is reported before an unknown one, unless it was meant by the unknown one.
 void TableReader::finish() const {
   for (const auto& [name, node] : table_) {
     if (std::find(known_.begin(), known_.end(), name.str()) != known_.end()) continue;
+    const std::string_view meant = nearest(name.str(), known_);
+    const bool is_misspelt = 2 * edit_distance(name.str(), meant) <= meant.size();
+    if (!missing_.empty() && !is_misspelt) continue;
     fail(sources_.where(node), fmt::format("unknown key '{}' in {}", name.str(), title_),
-         fmt::format("the nearest known key is '{}'", nearest(name.str(), known_)));
+         fmt::format("the nearest known key is '{}'", meant));
   }
+  if (missing_.empty()) return;
+  const Key& key = missing_.front();
+  fail(sources_.where(table_), fmt::format("key '{}' is missing", dotted(key)),
+       fmt::format("add it ({})", key.about));
 }
 
 const toml::table& TableReader::as_table(const toml::node& node, const std::string& title) const {

@@ -37,7 +37,7 @@ class SourceMap {
   std::map<std::string, std::uint32_t> lines_;
 };
 
-/// Reads one table; finish() rejects what was not asked for.
+/// Reads one table; finish() rejects what was not asked for and what is missing.
 class TableReader {
  public:
   /// title: how the user knows the table ("[mesh]"); prefix: of dotted keys ("mesh.").
@@ -105,6 +105,7 @@ class TableReader {
   std::string prefix_;
   SourceMap& sources_;
   std::vector<std::string_view> known_;
+  std::vector<Key> missing_;
 };
 
 }  // namespace palpate::app

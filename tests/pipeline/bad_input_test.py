@@ -83,7 +83,7 @@ class BadInput(unittest.TestCase):
         self.refuse_case(GEOMETRY, ["block.off"], CASE.replace('unit = "mm"', 'unit = "um"'))
 
     def test_unit_is_of_another_kind(self):
-        self.refuse_case(USAGE, ["block.toml:10", "patch_spacing", "15 kPa", "mm"],
+        self.refuse_case(USAGE, ["block.toml:9", "patch_spacing", "15 kPa", "mm"],
                          CASE.replace('"15 mm"', '"15 kPa"'))
 
     def test_unit_is_missing(self):

@@ -200,6 +200,9 @@ TEST(Case, ChecksThatPartsFitTogether) {
 TEST(Case, RejectsWhatIsMissing) {
   EXPECT_THAT(message_with("unit = \"mm\"\n", ""), HasSubstr("key 'surface.unit' is missing"));
   EXPECT_THAT(message_with("poisson = 0.49\n", ""), HasSubstr("material[0].poisson"));
+  EXPECT_THAT(message_with("poisson = 0.49\n", "posson = 0.49\n"),
+              HasSubstr("unknown key 'posson'"));
+  EXPECT_THAT(message_with("shape = \"box\"\n", ""), HasSubstr("support[2].shape"));
   EXPECT_THAT(message_of("name = \"x\"\n"), HasSubstr("key 'surface' is missing"));
 }
 
