@@ -17,7 +17,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// JSON has no infinity: a bound that does not exist is null.
 Json with_unit(double value, const char* unit) {
+  if (!std::isfinite(value)) return {{"value", nullptr}, {"unit", unit}};
   return {{"value", value}, {"unit", unit}};
 }
 
@@ -221,6 +223,7 @@ std::string number_text(const Json& number) {
 
 std::string scalar_text(const Json& value) {
   if (is_quantity(value)) {
+    if (value["value"].is_null()) return "none (unbounded)";
     return number_text(value["value"]) + " " + value["unit"].get<std::string>();
   }
   if (value.is_string()) return value.get<std::string>();

@@ -2,6 +2,7 @@
 #include "app/pipeline/stages.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <utility>
@@ -37,6 +38,23 @@ void tell_failures(const Curves& curves) {
         site.status == SiteStatus::Failed ? "failed" : "stopped early", site.reason);
   }
   if (shown > kLargestShown) say("  and {} more: see `palpate inspect`", shown - kLargestShown);
+}
+
+std::string bound_text(double value, const char* unit) {
+  return std::isfinite(value) ? fmt::format("{:.1f} {}", value, unit) : "no bound";
+}
+
+void tell_certificate(const Certificate& certificate) {
+  say("  L_stick: {}, L_slip: {} at mu = {}", bound_text(certificate.stick, "N/m"),
+      bound_text(certificate.slip, "N/m"), certificate.friction);
+  say("  limited by: {}", certificate.limited_by);
+  for (const DeviceCertificate& device : certificate.devices) {
+    if (std::isfinite(device.lowest_rate)) {
+      say("  {}: certified passive from {:.0f} Hz", device.device, device.lowest_rate);
+    } else {
+      say("  {}: not certified at any rate, for the slide has no bound", device.device);
+    }
+  }
 }
 
 void append(Provenance& provenance, const Provenance& before, ProvenanceStep step) {
@@ -155,12 +173,8 @@ void run_certify(const Workspace& space) {
   });
   library.provenance.steps.push_back(make_stage_step(space, Stage::Certify, {}));
   write_library(space.library(), library);
-  const Certificate& certificate = library.certificate;
-  say("certify: L_stick = {:.1f} N/m, L_slip = {:.1f} N/m at mu = {} ({}) -> {}", certificate.stick,
-      certificate.slip, certificate.friction, certificate.limited_by, space.library().string());
-  for (const DeviceCertificate& device : certificate.devices) {
-    say("  {}: certified passive from {:.0f} Hz", device.device, device.lowest_rate);
-  }
+  tell_certificate(library.certificate);
+  say("certify: {}", space.library().string());
 }
 
 SiteCounts run_build(const Workspace& space) {

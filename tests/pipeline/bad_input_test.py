@@ -15,6 +15,14 @@ from bodies import CASE, block, write_case, write_off  # noqa: E402
 PALPATE = None
 USAGE, GEOMETRY = 2, 3
 
+# One support, below the body.
+NOTHING_HELD = CASE[: CASE.index("[[support]]")] + """[[support]]
+shape = "plane"
+point = ["0 mm", "0 mm", "-5 mm"]
+normal = [0, 0, -1]
+
+""" + CASE[CASE.index("[[material]]") :]
+
 
 def open_block():
     vertices, triangles = block((40, 40, 20), 4)
@@ -83,8 +91,8 @@ class BadInput(unittest.TestCase):
         self.refuse_case(GEOMETRY, ["block.off"], CASE.replace('unit = "mm"', 'unit = "um"'))
 
     def test_unit_is_of_another_kind(self):
-        self.refuse_case(USAGE, ["block.toml:9", "patch_spacing", "15 kPa", "mm"],
-                         CASE.replace('"15 mm"', '"15 kPa"'))
+        self.refuse_case(USAGE, ["block.toml:9", "patch_spacing", "10 kPa", "mm"],
+                         CASE.replace('"10 mm"', '"10 kPa"'))
 
     def test_unit_is_missing(self):
         self.refuse_case(USAGE, ["material[0].young", "found 10", '"10 kPa"'], CASE.replace('"10 kPa"', "10"))
@@ -103,7 +111,7 @@ class BadInput(unittest.TestCase):
         self.refuse_case(GEOMETRY, ["depth", "25 mm"], CASE.replace('depth = "2 mm"', 'depth = "25 mm"'))
 
     def test_supports_hold_nothing(self):
-        self.refuse_case(GEOMETRY, ["support"], CASE.replace('"0.1 mm"]', '"-5 mm"]'))
+        self.refuse_case(GEOMETRY, ["support"], NOTHING_HELD)
 
     def test_output_folder_cannot_be_made(self):
         path = write_case(self.root)

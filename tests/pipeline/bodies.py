@@ -43,6 +43,7 @@ def write_off(path, surface):
             file.write(f"3 {a} {b} {c}\n")
 
 
+# A block in a tray: its base and sides are held, its top is touched.
 CASE = """name = "block"
 
 [surface]
@@ -51,8 +52,8 @@ unit = "mm"
 region = "gel"
 
 [mesh]
-patch_spacing = "15 mm"
-element_size = "4 mm"
+patch_spacing = "10 mm"
+element_size = "5 mm"
 interior_growth = 3.0
 
 [[support]]
@@ -60,13 +61,33 @@ shape = "plane"
 point = ["0 mm", "0 mm", "0.1 mm"]
 normal = [0, 0, -1]
 
+[[support]]
+shape = "plane"
+point = ["0.1 mm", "0 mm", "0 mm"]
+normal = [-1, 0, 0]
+
+[[support]]
+shape = "plane"
+point = ["39.9 mm", "0 mm", "0 mm"]
+normal = [1, 0, 0]
+
+[[support]]
+shape = "plane"
+point = ["0 mm", "0.1 mm", "0 mm"]
+normal = [0, -1, 0]
+
+[[support]]
+shape = "plane"
+point = ["0 mm", "39.9 mm", "0 mm"]
+normal = [0, 1, 0]
+
 [[material]]
 region = "gel"
 young = "10 kPa"
 poisson = 0.45
 
 [tool]
-radius = "6 mm"
+radius = "8 mm"
 
 [indentation]
 depth = "2 mm"

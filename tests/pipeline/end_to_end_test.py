@@ -20,6 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from bodies import CASE, write_case  # noqa: E402
 
 PALPATE = None
+SOME_SITES_FAILED = 4
 
 
 def palpate(*arguments):
@@ -58,11 +59,14 @@ class Pipeline(unittest.TestCase):
         cls.folder.cleanup()
 
     def setUp(self):
-        self.assertEqual(self.built.returncode, 0, self.built.stdout + self.built.stderr)
+        self.assertIn(self.built.returncode, (0, SOME_SITES_FAILED), self.built.stdout + self.built.stderr)
+        self.assertEqual(self.built.stderr, "")
 
     def run_ok(self, *arguments):
+        """Standard output. `build` and `precompute` tell again when sites did not complete."""
         result = palpate(*arguments)
-        self.assertEqual(result.returncode, 0, result.stderr)
+        expected = self.built.returncode if arguments[0] in ("build", "precompute") else 0
+        self.assertEqual(result.returncode, expected, result.stderr)
         self.assertEqual(result.stderr, "")
         return result.stdout
 
@@ -73,6 +77,13 @@ class Pipeline(unittest.TestCase):
         names = {path.name for path in self.out.iterdir()}
         self.assertLessEqual({"body.h5", "curves.h5", "library.h5"}, names)
         self.assertFalse([name for name in names if name.startswith(".")])
+
+    def test_exit_code_tells_whether_all_sites_completed(self):
+        curves = self.summary("curves.h5")
+        self.assertEqual(curves["sites"], 17)  # the vertices inside the top face
+        expected = SOME_SITES_FAILED if curves["sites_not_complete"] else 0
+        self.assertEqual(self.built.returncode, expected)
+        self.assertLess(curves["sites_not_complete"], 5, curves["failures"])
 
     def test_volume_of_the_block_is_kept(self):
         gel = self.summary("body.h5")["regions"]["gel"]["volume"]
@@ -114,24 +125,25 @@ class Pipeline(unittest.TestCase):
             with self.subTest(path=key):
                 self.assertTrue(np.all(np.diff(along) > 0), along)
 
-    def test_middle_of_the_top_is_between_hertz_and_a_bonded_layer(self):
-        """A sphere on a half-space gives F = 4/3 E* sqrt(R) d^1.5 [Hertz 1882]; the block on its
-        rigid base can only be stiffer there, and not by more than half for a/h = 0.17."""
-        self.run_ok("export", "curves", self.case, "--out", self.out)
+    def test_a_block_in_a_tray_is_stiffer_than_a_half_space(self):
+        """A sphere on a half-space gives F = 4/3 E* sqrt(R) d^1.5 [Hertz 1882]. A rigid tray can only
+        make the same block stiffer, and near the middle, where walls and base are 5 contact radii
+        away, by less than a factor of 2 (coarse elements included)."""
         with h5py.File(self.out / "library.h5") as file:
-            positions = self.find(file, "positions")
-        middle = int(np.argmin(np.linalg.norm(positions - [0.02, 0.02, 0.02], axis=1)))
-        if np.linalg.norm(positions[middle] - [0.02, 0.02, 0.02]) > 0.006:
-            self.fail("no site near the middle of the top")
-        hertz = 4 / 3 * 10e3 / (1 - 0.45**2) * 0.006**0.5 * 0.002**1.5
-        force = [
-            np.sum(c["force"] * c["direction"], axis=1)[-1]
-            for (vertex, _), kind, c in paths_of(rows_of(self.out / "curves.csv"))
-            if kind == "normal" and int(vertex) == middle
-        ]
-        self.assertEqual(len(force), 1)
-        self.assertGreater(force[0], 0.95 * hertz)
-        self.assertLess(force[0], 1.5 * hertz)
+            positions = file["surface/position"][...]
+        hertz = 4 / 3 * 10e3 / (1 - 0.45**2) * 0.008**0.5 * 0.002**1.5
+        checked = 0
+        for (vertex, _), kind, c in paths_of(rows_of_export(self)):
+            if kind != "normal" or c["displacement_m"][-1] < 0.00199:
+                continue
+            if np.linalg.norm(positions[int(vertex)] - [0.02, 0.02, 0.02]) > 0.011:
+                continue
+            force = np.sum(c["force"][-1] * c["direction"][-1])
+            checked += 1
+            with self.subTest(vertex=vertex):
+                self.assertGreater(force, 0.97 * hertz)
+                self.assertLess(force, 2 * hertz)
+        self.assertGreater(checked, 2)
 
     @staticmethod
     def find(file, name):
