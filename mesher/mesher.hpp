@@ -52,9 +52,9 @@ struct Settings {
 /// are its triangles, each divided into n x n with n = round(patch_spacing / element_size), the new
 /// vertices put back on the input surface, so that the two surfaces are nested: the facets of
 /// response triangle m are Body::boundary[m n^2 .. (m+1) n^2), and response vertex v is node v.
-/// Equal settings and files give equal bodies. Nodes within element_size/1000 of a support are held.
-/// Response vertices where no direction can be interpolated (sharper than the patches resolve) are
-/// no sites; the log counts them. Provenance is left to the caller.
+/// Equal settings and files give equal bodies. Nodes within element_size/1000 of a support are
+/// held. Response vertices where no direction can be interpolated (sharper than the patches
+/// resolve) are no sites; the log counts them. Provenance is left to the caller.
 /// @throws Error(Geometry) for a surface that is missing, empty, not closed, not orientable,
 ///   self-intersecting, in several parts, has non-finite coordinates, an implausible size for its
 ///   unit (the largest dimension must lie in 1 mm .. 10 m), an inclusion outside the skin, supports

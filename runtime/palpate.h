@@ -4,8 +4,8 @@
  * Units are SI (m, m/s, s, N, J). Functions return PALPATE_OK or a negative status; the text of the
  * last failure of the calling thread is palpate_last_error(). No exception, signal, thread, output
  * or locale change crosses this interface. Loading, creating and destroying belong outside the
- * real-time thread; palpate_step never allocates, locks, or calls the system. A library is immutable
- * and may be shared by threads; a state belongs to one thread at a time. */
+ * real-time thread; palpate_step never allocates, locks, or calls the system. A library is
+ * immutable and may be shared by threads; a state belongs to one thread at a time. */
 #ifndef PALPATE_H
 #define PALPATE_H
 
@@ -27,10 +27,10 @@ typedef struct palpate_state palpate_state;
 /* Status of calls. */
 enum {
   PALPATE_OK = 0,
-  PALPATE_ERROR_ARGUMENT = -1,  /* a null pointer or a value out of range: see the message */
-  PALPATE_ERROR_FILE = -2,      /* the file cannot be read: check path and rights */
-  PALPATE_ERROR_FORMAT = -3,    /* not a valid response library: rebuild it with this version */
-  PALPATE_ERROR_MEMORY = -4     /* out of memory */
+  PALPATE_ERROR_ARGUMENT = -1, /* a null pointer or a value out of range: see the message */
+  PALPATE_ERROR_FILE = -2,     /* the file cannot be read: check path and rights */
+  PALPATE_ERROR_FORMAT = -3,   /* not a valid response library: rebuild it with this version */
+  PALPATE_ERROR_MEMORY = -4    /* out of memory */
 };
 
 /* Bits of the status of a step. */
@@ -48,36 +48,36 @@ enum {
 };
 
 typedef struct palpate_settings {
-  uint32_t size;       /* sizeof(palpate_settings), set by palpate_settings_default */
-  double friction;     /* mu; negative = the value the library was certified for */
-  double tank_cap;     /* J, cap of the energy tank; 0 = strict Theorem 2 */
+  uint32_t size;   /* sizeof(palpate_settings), set by palpate_settings_default */
+  double friction; /* mu; negative = the value the library was certified for */
+  double tank_cap; /* J, cap of the energy tank; 0 = strict Theorem 2 */
 } palpate_settings;
 
 /* Everything a recorder or a picture wants to know of the last step. */
 typedef struct palpate_observation {
-  uint32_t size;            /* sizeof(palpate_observation), set by the caller */
-  uint32_t status;          /* bits of the last step */
-  int32_t element;          /* active triangle, -1 without contact */
-  double contact_point[3];  /* c, m */
-  double natural[3];        /* natural coordinates of c in the element */
-  double normal[3];         /* n, unit, into the body */
-  double depth;             /* z = delta^z, m */
-  double lateral;           /* rho = |delta^r|, m */
-  double offset;            /* d0, m */
-  double energy;            /* E_i(x), J */
-  double tank;              /* J */
-  double absorbed;          /* net work done by the tool on the body since creation, J: the exact
-                               sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}) */
-  double force_on_body[3];  /* f, N; the device is commanded -f */
+  uint32_t size;           /* sizeof(palpate_observation), set by the caller */
+  uint32_t status;         /* bits of the last step */
+  int32_t element;         /* active triangle, -1 without contact */
+  double contact_point[3]; /* c, m */
+  double natural[3];       /* natural coordinates of c in the element */
+  double normal[3];        /* n, unit, into the body */
+  double depth;            /* z = delta^z, m */
+  double lateral;          /* rho = |delta^r|, m */
+  double offset;           /* d0, m */
+  double energy;           /* E_i(x), J */
+  double tank;             /* J */
+  double absorbed;         /* net work done by the tool on the body since creation, J: the exact
+                              sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}) */
+  double force_on_body[3]; /* f, N; the device is commanded -f */
 } palpate_observation;
 
 typedef struct palpate_library_info {
-  uint32_t size;            /* sizeof(palpate_library_info), set by the caller */
+  uint32_t size; /* sizeof(palpate_library_info), set by the caller */
   int32_t vertices, triangles;
-  double stick, slip;       /* certified bounds, N/m; 0 when the library has no certificate */
-  double friction;          /* mu of the certificate */
-  double depth;             /* deepest sample, m */
-  double low[3], high[3];   /* bounding box, m */
+  double stick, slip;     /* certified bounds, N/m; 0 when the library has no certificate */
+  double friction;        /* mu of the certificate */
+  double depth;           /* deepest sample, m */
+  double low[3], high[3]; /* bounding box, m */
 } palpate_library_info;
 
 PALPATE_API const char* palpate_version(void);
@@ -86,12 +86,13 @@ PALPATE_API const char* palpate_status_text(int status);
 
 PALPATE_API int palpate_library_load(const char* path, palpate_library** library);
 PALPATE_API void palpate_library_destroy(palpate_library* library);
-PALPATE_API int palpate_library_describe(const palpate_library* library, palpate_library_info* info);
+PALPATE_API int palpate_library_describe(const palpate_library* library,
+                                         palpate_library_info* info);
 
 PALPATE_API void palpate_settings_default(palpate_settings* settings);
 /* The library must outlive the state. settings may be NULL for the defaults. */
-PALPATE_API int palpate_state_create(const palpate_library* library, const palpate_settings* settings,
-                                     palpate_state** state);
+PALPATE_API int palpate_state_create(const palpate_library* library,
+                                     const palpate_settings* settings, palpate_state** state);
 PALPATE_API void palpate_state_destroy(palpate_state* state);
 PALPATE_API void palpate_state_reset(palpate_state* state);
 
