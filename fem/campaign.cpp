@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <deque>
 #include <exception>
 #include <mutex>
 #include <thread>
@@ -35,7 +36,8 @@ std::vector<std::int32_t> chosen_sites(const Body& body, std::vector<std::int32_
   return sites;
 }
 
-/// Solves the sites on several threads, each site by one of them.
+/// Solves the sites on several cores. Each core serves a batch of up to kBatch sites, a thread for
+/// each, of which one runs at a time; they share the block solves.
 class Crew {
  public:
   Crew(const CampaignContext& context, const CampaignSettings& settings, Curves& curves)
@@ -44,18 +46,25 @@ class Crew {
   }
 
   void run() {
+    const int cores = std::max(1, settings_.threads);
+    const auto share = (curves_.sites.size() + cores - 1) / cores;
+    const int lanes = static_cast<int>(std::min<std::size_t>(kBatch, share));
+    std::deque<SolveBatch> batches;
     std::vector<std::thread> threads;
-    for (int i = 1; i < settings_.threads; ++i) threads.emplace_back([this] { work(); });
-    work();
+    for (int core = 0; core < cores; ++core) {
+      SolveBatch& batch = batches.emplace_back(*context_.rest_factor, lanes);
+      for (int lane = 0; lane < lanes; ++lane)
+        threads.emplace_back([this, &batch, lane] { work(batch, lane); });
+    }
     for (auto& thread : threads) thread.join();
     if (failure_) std::rethrow_exception(failure_);
   }
 
  private:
-  void work() {
+  void work(SolveBatch& batch, int lane) {
+    SolveBatch::Member member(batch, lane);
     try {
-      use_one_thread_per_site();
-      SiteSolver solver(context_);
+      SiteSolver solver(context_, &member);
       for (std::size_t i = next_++; i < curves_.sites.size(); i = next_++) {
         SiteCurves site = solver.solve(curves_.sites[i].vertex);
         const std::lock_guard lock(mutex_);
@@ -85,7 +94,6 @@ class Crew {
 Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report) {
   const auto start = std::chrono::steady_clock::now();
   check_indentation(settings.indentation);
-  use_one_thread_per_site();
   Curves curves;
   curves.tool = {"sphere", settings.indentation.tool_radius, "frictionless"};
   curves.depth = settings.indentation.depth;
@@ -94,34 +102,32 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
     curves.sites.emplace_back();
     curves.sites.back().vertex = vertex;
   }
-  const CampaignContext context(body, settings, Engine::TwoLevel);
+  const CampaignContext context(body, settings, Engine::SharedFactor);
   Crew(context, settings, curves).run();
 
   report.unknowns = context.model.pattern().n;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (const auto& site : curves.sites) report.cpu_seconds += site.cpu_seconds;
-  report.facts = {{"element", "Tet10, element-constant pressure"},
-                  {"nodes", std::to_string(context.model.mesh().nodes())},
-                  {"unknowns", std::to_string(report.unknowns)},
-                  {"rest_factor_bytes",
-                   std::to_string(static_cast<long long>(context.rest_factor->factor_bytes()))},
-                  {"blas_kernel", blas_kernel()},
-                  {"solver", solver_versions()}};
+  report.facts = {
+      {"element", "Tet10, element-constant pressure"},
+      {"nodes", std::to_string(context.model.mesh().nodes())},
+      {"unknowns", std::to_string(report.unknowns)},
+      {"rest_factor_bytes", std::to_string(static_cast<long long>(context.rest_factor->bytes()))},
+      {"blas_kernel", blas_kernel()},
+      {"solver", solver_versions()}};
   return curves;
 }
 
 DeformedState deformed_state(const Body& body, const CampaignSettings& settings,
                              std::int32_t vertex) {
   check_indentation(settings.indentation);
-  use_one_thread_per_site();
   chosen_sites(body, {vertex});
   CampaignSettings normal_only = settings;
   normal_only.indentation.held_depths.clear();
-  const CampaignContext context(body, normal_only, Engine::TwoLevel);
-  SiteSolver solver(context);
-  const SiteCurves curves = solver.solve(vertex);
+  const CampaignContext context(body, normal_only, Engine::SharedFactor);
+  Displacement u;
+  const SiteCurves curves = solve_site(context, vertex, &u);
   DeformedState state;
-  const Displacement& u = solver.pressed_state();
   for (std::size_t i = 0; i < body.nodes.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
     state.displacement.push_back({u(0, column), u(1, column), u(2, column)});

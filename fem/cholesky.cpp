@@ -2,6 +2,7 @@
 #include "fem/cholesky.hpp"
 
 #include <cblas.h>
+#include <malloc.h>
 #include <omp.h>
 #include <suitesparse/cholmod.h>
 
@@ -19,7 +20,7 @@ cholmod_common started_common() {
   common.supernodal = CHOLMOD_SUPERNODAL;
   common.final_ll = 1;
   common.nmethods = 1;
-  common.method[0].ordering = CHOLMOD_METIS;
+  common.method[0].ordering = CHOLMOD_AMD;
   common.postorder = 1;
   common.print = 0;
   common.quick_return_if_not_posdef = 1;
@@ -81,10 +82,36 @@ struct Cholesky::Impl {
   cholmod_factor* factor = nullptr;
 };
 
-Cholesky::Cholesky(const SparsePattern& pattern) : impl_(std::make_unique<Impl>(pattern)) {
+Cholesky::Cholesky(const SparsePattern& pattern, const std::vector<int>* permutation)
+    : impl_(std::make_unique<Impl>(pattern)) {
   cholmod_sparse A = impl_->view(nullptr);
-  impl_->factor = cholmod_analyze(&A, &impl_->common);
+  if (permutation) {
+    impl_->common.method[0].ordering = CHOLMOD_GIVEN;
+    impl_->factor =
+        cholmod_analyze_p(&A, const_cast<int*>(permutation->data()), nullptr, 0, &impl_->common);
+  } else {
+    impl_->factor = cholmod_analyze(&A, &impl_->common);
+  }
   if (!impl_->factor) out_of_memory(pattern.n);
+}
+
+std::vector<int> nested_dissection(const SparsePattern& pattern) {
+  cholmod_common common = started_common();
+  cholmod_sparse A{};
+  A.nrow = A.ncol = static_cast<std::size_t>(pattern.n);
+  A.nzmax = static_cast<std::size_t>(pattern.nonzeros());
+  A.p = const_cast<int*>(pattern.start.data());
+  A.i = const_cast<int*>(pattern.row.data());
+  A.stype = -1;
+  A.itype = CHOLMOD_INT;
+  A.xtype = CHOLMOD_PATTERN;
+  A.dtype = CHOLMOD_DOUBLE;
+  A.sorted = A.packed = 1;
+  std::vector<int> permutation(static_cast<std::size_t>(pattern.n));
+  const int done = cholmod_metis(&A, nullptr, 0, 1, permutation.data(), &common);
+  cholmod_finish(&common);
+  if (!done) out_of_memory(pattern.n);
+  return permutation;
 }
 
 Cholesky::~Cholesky() = default;
@@ -112,8 +139,17 @@ void Cholesky::solve(const double* b, double* x, SolveWorkspace& workspace) cons
   std::copy(result, result + n, x);
 }
 
-double Cholesky::factor_bytes() const {
-  return static_cast<double>(impl_->factor->xsize) * sizeof(double);
+SupernodalView Cholesky::view() const {
+  const cholmod_factor& L = *impl_->factor;
+  SupernodalView view;
+  view.supernodes = static_cast<int>(L.nsuper);
+  view.permutation = static_cast<const int*>(L.Perm);
+  view.first_column = static_cast<const int*>(L.super);
+  view.row_start = static_cast<const int*>(L.pi);
+  view.value_start = static_cast<const int*>(L.px);
+  view.rows = static_cast<const int*>(L.s);
+  view.values = static_cast<const double*>(L.x);
+  return view;
 }
 
 std::string blas_kernel() {
@@ -129,7 +165,11 @@ std::string solver_versions() {
 
 void use_one_thread_per_site() {
   openblas_set_num_threads(1);
-  omp_set_num_threads(1);  // CHOLMOD's own loops; the setting belongs to the calling thread
+  // CHOLMOD asks for four threads in its own loops, whatever omp_set_num_threads says.
+  omp_set_max_active_levels(0);
+  // Work arrays of megabytes come and go with every factorization: keep them in the process.
+  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
 }
 
 }  // namespace palpate::fem

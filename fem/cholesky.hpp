@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Sparse Cholesky factorization by CHOLMOD, supernodal, with METIS ordering.
+// Sparse Cholesky factorization by CHOLMOD, supernodal.
 #pragma once
 
 #include <memory>
@@ -24,11 +24,25 @@ class SolveWorkspace {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The numbers of a factor L of P A P^T: supernode k spans the columns first_column[k] .. [k+1],
+/// has the rows `rows[row_start[k] .. row_start[k+1]]` (its own columns first), stored by columns.
+struct SupernodalView {
+  int supernodes = 0;
+  const int* permutation = nullptr;
+  const int* first_column = nullptr;
+  const int* row_start = nullptr;
+  const int* value_start = nullptr;
+  const int* rows = nullptr;
+  const double* values = nullptr;
+};
+
 /// One symbolic analysis, any number of numerical factorizations of the same pattern. A factor is
 /// read-only in solve(): threads may share it, each with its own workspace.
 class Cholesky {
  public:
-  explicit Cholesky(const SparsePattern& pattern);
+  /// Ordered by minimum degree, or by a permutation made for the same pattern. METIS is not called
+  /// here: it draws from the random numbers of the process, which threads would share.
+  explicit Cholesky(const SparsePattern& pattern, const std::vector<int>* permutation = nullptr);
   ~Cholesky();
   Cholesky(const Cholesky&) = delete;
   Cholesky& operator=(const Cholesky&) = delete;
@@ -39,12 +53,15 @@ class Cholesky {
   /// x = A^-1 b; b and x hold n values and may be the same array.
   void solve(const double* b, double* x, SolveWorkspace& workspace) const;
 
-  double factor_bytes() const;  ///< memory of the numerical factor
+  SupernodalView view() const;  ///< valid until the next factorization
 
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// Fill-reducing order of a large pattern by METIS nested dissection. To be called on one thread.
+std::vector<int> nested_dissection(const SparsePattern& pattern);
 
 /// Kernel set that OpenBLAS chose for this processor, e.g. "SkylakeX"; and one line of versions.
 std::string blas_kernel();

@@ -37,12 +37,12 @@ std::array<double, 6> facet_shape(double L0, double L1) {
 
 }  // namespace
 
-SphereContact::SphereContact(const SolidModel& model, const Eigen::Vector3d& site, double reach,
+SphereContact::SphereContact(const QuadraticMesh& mesh, const Eigen::Vector3d& site, double reach,
                              double stiffness)
-    : model_(&model), eps_(stiffness) {
-  const auto& X = model.mesh().X;
+    : mesh_(&mesh), eps_(stiffness), stuck_eps_(30 * stiffness) {
+  const auto& X = mesh.X;
   const auto rule = triangle_rule();
-  for (const Facet& facet : model.mesh().facets) {
+  for (const Facet& facet : mesh.facets) {
     const bool near = std::any_of(facet.begin(), facet.end(), [&](int node) {
       return (X.col(node) - site).squaredNorm() <= reach * reach;
     });
@@ -69,7 +69,7 @@ void SphereContact::move_to(const Sphere& tool) {
 
 Eigen::Vector3d SphereContact::position(const Point& point, const Displacement& u) const {
   const Facet& facet = facets_[point.facet];
-  const auto& X = model_->mesh().X;
+  const auto& X = mesh_->X;
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   for (int a = 0; a < 6; ++a) x += point.N[a] * (X.col(facet[a]) + u.col(facet[a]));
   return x;
@@ -77,18 +77,18 @@ Eigen::Vector3d SphereContact::position(const Point& point, const Displacement& 
 
 Eigen::Vector3d SphereContact::gradient(const Point& point, const Eigen::Vector3d& x) const {
   const Eigen::Vector3d r = x - tool_.centre;
-  if (point.stuck) return point.traction + eps_ * (r - point.arm);
+  if (point.stuck) return point.traction + stuck_eps_ * (r - point.arm);
   const double distance = r.norm();
-  const double p = std::max(0.0, point.lambda - eps_ * (distance - tool_.radius));
+  const double p = eps_ * std::max(0.0, tool_.radius - distance);
   return (-p / distance) * r;
 }
 
 Eigen::Matrix3d SphereContact::hessian(const Point& point, const Eigen::Vector3d& x,
                                        bool geometric) const {
-  if (point.stuck) return eps_ * Eigen::Matrix3d::Identity();
+  if (point.stuck) return stuck_eps_ * Eigen::Matrix3d::Identity();
   const Eigen::Vector3d r = x - tool_.centre;
   const double distance = r.norm();
-  const double p = point.lambda - eps_ * (distance - tool_.radius);
+  const double p = eps_ * (tool_.radius - distance);
   if (p <= 0) return Eigen::Matrix3d::Zero();
   const Eigen::Matrix3d nn = r * r.transpose() / (distance * distance);
   Eigen::Matrix3d H = eps_ * nn;
@@ -102,38 +102,38 @@ double SphereContact::energy(const Displacement& u) const {
     const Eigen::Vector3d r = position(point, u) - tool_.centre;
     if (point.stuck) {
       const Eigen::Vector3d slip = r - point.arm;
-      sum += point.area * (point.traction.dot(slip) + 0.5 * eps_ * slip.squaredNorm());
+      sum += point.area * (point.traction.dot(slip) + 0.5 * stuck_eps_ * slip.squaredNorm());
     } else {
-      const double p = std::max(0.0, point.lambda - eps_ * (r.norm() - tool_.radius));
-      sum += point.area * (p * p - point.lambda * point.lambda) / (2 * eps_);
+      const double overlap = std::max(0.0, tool_.radius - r.norm());
+      sum += 0.5 * eps_ * point.area * overlap * overlap;
     }
   }
   return sum;
 }
 
-void SphereContact::add_forces(const Displacement& u, Eigen::VectorXd& f) const {
+void SphereContact::add_forces(const SolidModel& model, const Displacement& u,
+                               Eigen::VectorXd& f) const {
   for (const Point& point : points_) {
     const Eigen::Vector3d g = point.area * gradient(point, position(point, u));
     if (g.isZero(0)) continue;
     const Facet& facet = facets_[point.facet];
     for (int a = 0; a < 6; ++a) {
-      const int first = model_->mesh().equation[facet[a]];
+      const int first = model.equation(facet[a]);
       if (first >= 0) f.segment<3>(first) += point.N[a] * g;
     }
   }
 }
 
-void SphereContact::add_stiffness(const Displacement& u, bool geometric,
+void SphereContact::add_stiffness(const SolidModel& model, const Displacement& u, bool geometric,
                                   std::vector<double>& values) const {
-  const SparsePattern& pattern = model_->pattern();
+  const SparsePattern& pattern = model.pattern();
   for (const Point& point : points_) {
     const Eigen::Matrix3d H = point.area * hessian(point, position(point, u), geometric);
     if (H.isZero(0)) continue;
     const Facet& facet = facets_[point.facet];
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b < 6; ++b) {
-        const int row = model_->mesh().equation[facet[a]],
-                  column = model_->mesh().equation[facet[b]];
+        const int row = model.equation(facet[a]), column = model.equation(facet[b]);
         if (row < 0 || column < 0) continue;
         for (int i = 0; i < 3; ++i)
           for (int k = 0; k < 3; ++k)
@@ -141,24 +141,6 @@ void SphereContact::add_stiffness(const Displacement& u, bool geometric,
               values[pattern.position(row + i, column + k)] += point.N[a] * point.N[b] * H(i, k);
       }
   }
-}
-
-double SphereContact::augment(const Displacement& u) {
-  double worst = 0;
-  for (Point& point : points_) {
-    const Eigen::Vector3d r = position(point, u) - tool_.centre;
-    if (point.stuck) {
-      const Eigen::Vector3d slip = r - point.arm;
-      worst = std::max(worst, slip.norm());
-      point.traction += eps_ * slip;
-    } else {
-      const double gap = r.norm() - tool_.radius;
-      const double p = std::max(0.0, point.lambda - eps_ * gap);
-      if (p > 0) worst = std::max(worst, std::abs(gap));
-      point.lambda = p;
-    }
-  }
-  return worst;
 }
 
 void SphereContact::bond(const Displacement& u) {
@@ -194,7 +176,7 @@ double SphereContact::penetration(const Displacement& u) const {
 
 double SphereContact::rest_penetration(const Sphere& tool) const {
   double deepest = 0;
-  const Displacement rest = Displacement::Zero(3, model_->mesh().nodes());
+  const Displacement rest = Displacement::Zero(3, mesh_->nodes());
   for (const Point& point : points_)
     deepest = std::max(deepest, tool.radius - (position(point, rest) - tool.centre).norm());
   return deepest;

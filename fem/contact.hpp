@@ -17,28 +17,27 @@ struct Sphere {
 
 /// Frictionless unilateral contact before bond(), then stuck: the points that were in contact
 /// follow the tool in all directions, the others stay unilateral.
-///   unilateral: p = max(0, lambda - eps g), g = |x - centre| - radius, force on the body p n
-///   stuck:      t = lambda + eps (x - x_tool), force on the body -t
+///   unilateral: p = max(0, -eps g), g = |x - centre| - radius, force on the body p n
+///   stuck:      t = t0 + eps_s (x - x_tool), force on the body -t, t0 = -p n where it was bonded
 /// Each point carries the reference area w of its share of the facet; the energy is
-///   sum w (p^2 - lambda^2)/(2 eps)   and   sum w (lambda . s + eps/2 s^2), s = x - x_tool.
+///   sum w p^2/(2 eps)   and   sum w (t0 . s + eps_s/2 s^2), s = x - x_tool.
+/// Stuck facets can follow the tool exactly, so eps_s = 30 eps constrains nothing too much.
 class SphereContact {
  public:
   /// Candidates: the boundary facets with a node within `reach` of `site` in the rest state.
   /// `stiffness`: eps, N/m^3.
-  SphereContact(const SolidModel& model, const Eigen::Vector3d& site, double reach,
+  SphereContact(const QuadraticMesh& mesh, const Eigen::Vector3d& site, double reach,
                 double stiffness);
 
   void move_to(const Sphere& tool);
 
   double energy(const Displacement& u) const;
-  void add_forces(const Displacement& u, Eigen::VectorXd& f) const;  ///< adds d(energy)/du
-  /// Adds d2(energy)/du2 to the values of the stiffness pattern. The geometric term -p/|x-c| (I -
+  /// Adds d(energy)/du to the unknowns of `model`, any model of the same mesh.
+  void add_forces(const SolidModel& model, const Displacement& u, Eigen::VectorXd& f) const;
+  /// Adds d2(energy)/du2 to the values of the pattern of `model`. The geometric term -p/|x-c| (I -
   /// nn^T) is negative: it is left out when `geometric` is false.
-  void add_stiffness(const Displacement& u, bool geometric, std::vector<double>& values) const;
-
-  /// Multiplier update lambda <- p at the present state. Returns the largest gap error, m:
-  /// penetration of active points, and the distance between stuck points and the tool.
-  double augment(const Displacement& u);
+  void add_stiffness(const SolidModel& model, const Displacement& u, bool geometric,
+                     std::vector<double>& values) const;
 
   /// Hold the points now in contact to the tool, with their present tractions.
   void bond(const Displacement& u);
@@ -55,8 +54,7 @@ class SphereContact {
     std::array<double, 6> N;  ///< shape functions of the facet at the point
     double area;              ///< weight times reference area
     bool stuck = false;
-    double lambda = 0;         ///< Pa, unilateral multiplier
-    Eigen::Vector3d traction;  ///< Pa, stuck multiplier
+    Eigen::Vector3d traction;  ///< Pa, stuck: t0
     Eigen::Vector3d arm;       ///< stuck: position relative to the centre of the tool
   };
 
@@ -65,8 +63,8 @@ class SphereContact {
   Eigen::Vector3d gradient(const Point& point, const Eigen::Vector3d& x) const;
   Eigen::Matrix3d hessian(const Point& point, const Eigen::Vector3d& x, bool geometric) const;
 
-  const SolidModel* model_;
-  double eps_;
+  const QuadraticMesh* mesh_;
+  double eps_, stuck_eps_;
   Sphere tool_{Eigen::Vector3d::Zero(), 0};
   std::vector<Facet> facets_;
   std::vector<Point> points_;

@@ -11,19 +11,21 @@
 #include <optional>
 
 #include "fem/region_laws.hpp"
+#include "fem/shared_factor_solver.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fem {
 
 namespace {
 
-/// Penalty of the augmented Lagrangian over E/R: high enough that a gap is micrometres before the
-/// first multiplier update, low enough to keep ten digits of the residual.
-constexpr double kContactStiffness = 3000;
-/// Largest gap left by the multiplier updates, relative to the depth of the path.
-constexpr double kGapTolerance = 5e-4;
-constexpr int kMaxAugmentations = 6;
+/// Penalty over E/R: the gap it leaves is micrometres for a tool of millimetres, a change of the
+/// force of about 0.1 %.
+constexpr double kContactStiffness = 5000;
 constexpr int kMaxHalvings = 5;
+constexpr double kLargestStep = 0.25;  ///< of one increment, over the tool radius
+/// Residual at which the shared-factor solver stops, over the wanted error of the force: the force
+/// is less sensitive to a residual far from the tool than to one at it.
+constexpr double kSharedTolerance = 3;
 
 Eigen::Vector3d to_eigen(const Vec3& v) {
   return Eigen::Vector3d(v.data());
@@ -36,17 +38,6 @@ double thread_cpu_seconds() {
   timespec now{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
-
-std::vector<int> unknowns_within(const QuadraticMesh& mesh, const Eigen::Vector3d& centre,
-                                 double radius) {
-  std::vector<int> unknowns;
-  for (int node = 0; node < mesh.nodes(); ++node) {
-    if (mesh.equation[node] < 0) continue;
-    if ((mesh.X.col(node) - centre).squaredNorm() > radius * radius) continue;
-    for (int i = 0; i < 3; ++i) unknowns.push_back(mesh.equation[node] + i);
-  }
-  return unknowns;
 }
 
 /// Depths of the increments: evenly spaced, with the held depths among them.
@@ -143,32 +134,75 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
     : body(b),
       indentation(settings.indentation),
       engine(e),
-      model(b, laws_of_regions(b, settings.materials)) {
+      model(b, laws_of_regions(b, settings.materials)),
+      permutation(nested_dissection(model.pattern())) {
+  use_one_thread_per_site();
   double stiffest = 0;
   for (const auto& material : settings.materials) stiffest = std::max(stiffest, material.law.young);
   contact_stiffness = kContactStiffness * stiffest / indentation.tool_radius;
   if (engine == Engine::Direct) return;
-  rest_factor = std::make_unique<Cholesky>(model.pattern());
   std::vector<double> K;
   model.stiffness(Displacement::Zero(3, model.mesh().nodes()), K);
-  if (!rest_factor->factorize(K))
-    throw Error(ErrorKind::Geometry, body.name, "the body at rest is not stiff in every direction",
-                "check the supports and that the mesh is in one piece");
+  rest_factor = std::make_unique<RestFactor>(model.pattern(), permutation, K, body.name);
 }
 
+namespace {
+
+/// The solvers of one site: the shared factor first, the whole body by Newton where that fails.
+class SiteEquilibrium {
+ public:
+  SiteEquilibrium(const CampaignContext& context, const Eigen::Vector3d& site, double reach,
+                  SolveBatch::Member* batch)
+      : context_(context) {
+    if (context.engine == Engine::Direct) return;
+    const double radius = reach + 0.5 * context.indentation.tool_radius;
+    window_ = std::make_unique<SolidModel>(context.model, site, radius);
+    shared_ = std::make_unique<SharedFactorSolver>(
+        context.model, *window_,
+        [batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch->solve(b, x); });
+  }
+
+  NewtonResult solve(const SphereContact& contact, Displacement& u) {
+    NewtonOptions options;
+    NewtonResult result;
+    if (shared_) {
+      options.tolerance = kSharedTolerance * context_.indentation.force_tolerance;
+      Displacement trial = u;
+      result = shared_->solve(contact, options, trial);
+      if (result.converged) {
+        u.swap(trial);
+        return result;
+      }
+      shared_->restart();
+    }
+    options.tolerance = context_.indentation.force_tolerance;
+    if (!direct_) direct_ = std::make_unique<NewtonSolver>(context_.model, &context_.permutation);
+    const int before = result.iterations;
+    result = direct_->solve(contact, options, u);
+    result.iterations += before;
+    return result;
+  }
+
+  void restart() {
+    if (shared_) shared_->restart();
+  }
+
+ private:
+  const CampaignContext& context_;
+  std::unique_ptr<SolidModel> window_;
+  std::unique_ptr<SharedFactorSolver> shared_;
+  std::unique_ptr<NewtonSolver> direct_;
+};
+
+}  // namespace
+
 struct SiteSolver::Site {
-  Site(const CampaignContext& context, std::int32_t vertex)
+  Site(const CampaignContext& context, std::int32_t vertex, SolveBatch::Member* batch)
       : X(to_eigen(context.body.nodes[context.body.response.node[vertex]])),
         inward(to_eigen(context.body.response.inward[vertex])),
         reach(2 * context.indentation.tool_radius + context.indentation.lateral_travel),
-        contact(context.model, X, reach, context.contact_stiffness) {
-    if (context.engine == Engine::Direct) {
-      solver = std::make_unique<DirectSolver>(context.model.pattern());
-    } else {
-      const double window = reach + 0.5 * context.indentation.tool_radius;
-      solver = std::make_unique<TwoLevelSolver>(context.model.pattern(), *context.rest_factor,
-                                                unknowns_within(context.model.mesh(), X, window));
-    }
+        contact(context.model.mesh(), X, reach, context.contact_stiffness),
+        equilibrium(context, X, reach, batch) {
     // On a concave surface the sphere meets the body before its tip does: back off to first touch.
     for (int i = 0; i < 60; ++i) {
       const double depth =
@@ -183,7 +217,7 @@ struct SiteSolver::Site {
     return X + (depth - back_off - context.indentation.tool_radius) * inward;
   }
 
-  /// State at a held depth, before the multiplier update that follows it.
+  /// State at a held depth.
   struct Held {
     Displacement u;
     SphereContact contact;
@@ -194,30 +228,34 @@ struct SiteSolver::Site {
   double reach;
   double back_off = 0;
   SphereContact contact;
-  std::unique_ptr<LinearSolver> solver;
-  std::unique_ptr<LinearSolver> fallback;
+  SiteEquilibrium equilibrium;
   std::map<double, Held> held;
 };
 
 namespace {
 
-/// Drives one path: increments with predictor, multiplier updates and cut-back.
+/// Drives one path: increments with predictor and cut-back.
 class PathDriver {
  public:
-  PathDriver(const CampaignContext& context, SphereContact& contact, NewtonSolver& newton,
+  PathDriver(const CampaignContext& context, SphereContact& contact, SiteEquilibrium& equilibrium,
              std::function<Sphere(double)> tool_at)
-      : context_(context), contact_(contact), newton_(newton), tool_at_(std::move(tool_at)) {}
+      : context_(context),
+        contact_(contact),
+        equilibrium_(equilibrium),
+        tool_at_(std::move(tool_at)) {
+    equilibrium_.restart();
+  }
 
-  /// From the present end of `history` at `from` to `to`. On success u is the equilibrium, `before`
-  /// holds the contact as it was in equilibrium, and `sample` is filled but for the work.
+  /// From the present end of `history` at `from` to `to`. On success u is the equilibrium and
+  /// `sample` is filled but for the work.
   bool advance(double from, double to, History& history, Displacement& u, CurveSample& sample,
                std::string& reason) {
-    double at = from, step = to - from;
+    // A sphere that is moved by a large part of its size at once could pass the surface unnoticed.
+    double at = from, step = std::min(to - from, kLargestStep * context_.indentation.tool_radius);
     int halvings = 0;
     sample.iterations = 0;
     while (at < to) {
       const double next = to - at <= 1.001 * step ? to : at + step;
-      const SphereContact safe = contact_;
       Displacement trial = predict(context_.model, history, next);
       if (equilibrate(next, trial, sample, reason)) {
         u = trial;
@@ -225,7 +263,6 @@ class PathDriver {
         at = next;
         continue;
       }
-      contact_ = safe;
       if (++halvings > kMaxHalvings) {
         reason = "at " + in_millimetres(next) + ": " + reason;
         return false;
@@ -236,26 +273,19 @@ class PathDriver {
     return true;
   }
 
-  const SphereContact& equilibrium_contact() const { return *before_; }
-
  private:
   bool equilibrate(double s, Displacement& u, CurveSample& sample, std::string& reason) {
     contact_.move_to(tool_at_(s));
-    NewtonOptions options;
-    options.tolerance = context_.indentation.force_tolerance;
-    for (int round = 0; round < kMaxAugmentations; ++round) {
-      const NewtonResult result = newton_.solve(options, u);
-      sample.iterations += result.iterations;
-      if (!result.converged) {
-        reason = result.reason;
-        return false;
-      }
-      record(s, u, sample);
-      before_.emplace(contact_);
-      if (contact_.augment(u) <= kGapTolerance * context_.indentation.depth) return true;
+    const NewtonResult result = equilibrium_.solve(contact_, u);
+    sample.iterations += result.iterations;
+    reason = result.reason;
+    if (!result.converged) return false;
+    record(s, u, sample);
+    if (s > kLargestStep * context_.indentation.tool_radius && sample.contact_area == 0) {
+      reason = "the tool has lost the surface";
+      return false;
     }
-    reason = "the contact gap does not close";
-    return false;
+    return true;
   }
 
   void record(double s, const Displacement& u, CurveSample& sample) const {
@@ -270,9 +300,8 @@ class PathDriver {
 
   const CampaignContext& context_;
   SphereContact& contact_;
-  NewtonSolver& newton_;
+  SiteEquilibrium& equilibrium_;
   std::function<Sphere(double)> tool_at_;
-  std::optional<SphereContact> before_;
 };
 
 /// Fill tool_work: the running integral of force . direction, on top of `start`.
@@ -289,9 +318,8 @@ void fill_work(CurvePath& path, double start) {
 }  // namespace
 
 void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
-  NewtonSolver newton(context_.model, site.contact, *site.solver, site.fallback.get());
   const double radius = context_.indentation.tool_radius;
-  PathDriver driver(context_, site.contact, newton, [&](double depth) {
+  PathDriver driver(context_, site.contact, site.equilibrium, [&](double depth) {
     return Sphere{site.tip_centre(context_, depth), radius};
   });
   CurvePath path;
@@ -313,7 +341,7 @@ void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
     path.samples.push_back(sample);
     for (const double held : context_.indentation.held_depths)
       if (std::abs(held - depth) < 1e-9 * depth)
-        site.held.emplace(held, Site::Held{u, driver.equilibrium_contact(), 0.0});
+        site.held.emplace(held, Site::Held{u, site.contact, 0.0});
     from = depth;
   }
   pressed_ = u;
@@ -337,8 +365,7 @@ void SiteSolver::run_lateral_path(Site& site, double held_depth, double azimuth,
   SphereContact contact = held.contact;
   Displacement u = held.u;
   contact.bond(u);
-  NewtonSolver newton(context_.model, contact, *site.solver, site.fallback.get());
-  PathDriver driver(context_, contact, newton, [&](double s) {
+  PathDriver driver(context_, contact, site.equilibrium, [&](double s) {
     return Sphere{centre + s * direction, radius};
   });
   CurvePath path;
@@ -374,13 +401,26 @@ SiteCurves SiteSolver::solve(std::int32_t vertex) {
   SiteCurves curves;
   curves.vertex = vertex;
   curves.status = SiteStatus::Complete;
-  Site site(context_, vertex);
+  Site site(context_, vertex, batch_);
   run_normal_path(site, curves);
   for (const double held_depth : context_.indentation.held_depths)
     for (const double azimuth : context_.indentation.azimuths)
       run_lateral_path(site, held_depth, azimuth, curves);
   if (curves.paths.front().samples.size() < 2) curves.status = SiteStatus::Failed;
   curves.cpu_seconds = thread_cpu_seconds() - start;
+  return curves;
+}
+
+SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displacement* pressed) {
+  std::optional<SolveBatch> batch;
+  std::optional<SolveBatch::Member> member;
+  if (context.rest_factor) {
+    batch.emplace(*context.rest_factor, 1);
+    member.emplace(*batch, 0);
+  }
+  SiteSolver solver(context, member ? &*member : nullptr);
+  SiteCurves curves = solver.solve(vertex);
+  if (pressed) *pressed = solver.pressed_state();
   return curves;
 }
 

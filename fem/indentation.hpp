@@ -8,16 +8,17 @@
 
 #include "fem/campaign.hpp"
 #include "fem/newton.hpp"
+#include "fem/rest_factor.hpp"
 
 namespace palpate::fem {
 
-/// Which solver serves the Newton steps.
+/// Which solver finds the equilibria.
 enum class Engine {
-  Direct,   ///< a factorization per iteration: the reference
-  TwoLevel  ///< shared rest factor and a window, direct as fall-back
+  Direct,       ///< Newton with a factorization of the whole body per iteration: the reference
+  SharedFactor  ///< one factor for all sites and a window around the tool; Direct where that fails
 };
 
-/// What all sites share: the model, the rest factor (TwoLevel), the settings.
+/// What all sites share: the model, the factor of the rest stiffness, the settings.
 struct CampaignContext {
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine);
 
@@ -25,14 +26,17 @@ struct CampaignContext {
   IndentationSettings indentation;
   Engine engine;
   SolidModel model;
-  double contact_stiffness;  ///< eps, N/m^3
-  std::unique_ptr<Cholesky> rest_factor;
+  std::vector<int> permutation;             ///< elimination order of the whole body
+  double contact_stiffness;                 ///< eps, N/m^3
+  std::unique_ptr<RestFactor> rest_factor;  ///< SharedFactor only
 };
 
 /// Solves sites one after another on one thread.
 class SiteSolver {
  public:
-  explicit SiteSolver(const CampaignContext& context) : context_(context) {}
+  /// `batch`: this thread's place among those that share block solves; may be null for Direct.
+  SiteSolver(const CampaignContext& context, SolveBatch::Member* batch)
+      : context_(context), batch_(batch) {}
 
   /// All paths of a site. A failure is recorded in the result, never thrown.
   SiteCurves solve(std::int32_t vertex);
@@ -47,8 +51,12 @@ class SiteSolver {
   void run_lateral_path(Site& site, double held_depth, double azimuth, SiteCurves& curves);
 
   const CampaignContext& context_;
+  SolveBatch::Member* batch_;
   Displacement pressed_;
 };
+
+/// Solve one site alone.
+SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displacement* pressed);
 
 /// Two unit vectors that complete `normal` to a right-handed orthonormal frame; azimuth 0 points
 /// along the first. The frame is a function of the normal alone.

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "fem/cholesky.hpp"
 #include "fem/contact.hpp"
-#include "fem/linear_solver.hpp"
 #include "fem/solid_model.hpp"
 
 namespace palpate::fem {
@@ -12,6 +13,7 @@ namespace palpate::fem {
 struct NewtonOptions {
   double tolerance = 1e-4;  ///< |residual| over |tool force|
   int max_iterations = 40;
+  bool reuse_factor = false;  ///< keep the last factor while it contracts well (modified Newton)
 };
 
 struct NewtonResult {
@@ -20,40 +22,39 @@ struct NewtonResult {
   std::string reason;  ///< of a failure, one clause
 };
 
-/// Minimise the energy of body and contact from the displacement `u`, which is updated in place.
-/// Newton steps by `solver`, by `fallback` where that fails; steps are shortened until det F > 0
-/// everywhere and the energy or the residual decreases. A failure is a return value: u is then the
-/// last admissible iterate.
+/// Energy of body and contact at a displacement, with its gradient on the unknowns of the model.
+struct Equilibrium {
+  double energy = 0;
+  double min_J = 1;  ///< the rest is void when not positive
+  Eigen::VectorXd residual;
+};
+Equilibrium evaluate(const SolidModel& model, const SphereContact& contact, const Displacement& u);
+
+/// Minimises the energy of body and contact over the unknowns of a model, by Newton's method with a
+/// Cholesky factorization. Steps are shortened until det F > 0 everywhere and the energy or the
+/// residual decreases. A failure is a return value: u is then the last admissible iterate.
 class NewtonSolver {
  public:
-  NewtonSolver(const SolidModel& model, SphereContact& contact, LinearSolver& solver,
-               LinearSolver* fallback)
-      : model_(model), contact_(contact), solver_(solver), fallback_(fallback) {}
+  /// `permutation`: elimination order for the pattern of the model, see Cholesky.
+  explicit NewtonSolver(const SolidModel& model, const std::vector<int>* permutation = nullptr)
+      : model_(model), factor_(model.pattern(), permutation) {}
 
-  NewtonResult solve(const NewtonOptions& options, Displacement& u);
+  NewtonResult solve(const SphereContact& contact, const NewtonOptions& options, Displacement& u);
 
  private:
-  struct Evaluation {
-    double energy;
-    double min_J;
-    Eigen::VectorXd residual;  ///< d(energy)/du on the unknowns
-  };
-
-  Evaluation evaluate(const Displacement& u) const;
-  bool direction(const Displacement& u, const Eigen::VectorXd& residual, double tolerance,
-                 Eigen::VectorXd& d);
+  bool factorize(const SphereContact& contact, const Displacement& u);
   /// Moves u along d; false when no admissible step is found.
-  bool line_search(const Eigen::VectorXd& d, Evaluation& now, Displacement& u) const;
+  bool line_search(const SphereContact& contact, const Eigen::VectorXd& d, Equilibrium& now,
+                   Displacement& u) const;
 
   const SolidModel& model_;
-  SphereContact& contact_;
-  LinearSolver& solver_;
-  LinearSolver* fallback_;
+  Cholesky factor_;
+  SolveWorkspace workspace_;
   std::vector<double> K_;
+  bool factorized_ = false;
 };
 
-/// u + s d on the unknowns.
-Displacement moved(const QuadraticMesh& mesh, const Displacement& u, double s,
-                   const Eigen::VectorXd& d);
+/// u += s d on the unknowns of the model.
+void move(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacement& u);
 
 }  // namespace palpate::fem

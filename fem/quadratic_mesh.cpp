@@ -33,18 +33,13 @@ class EdgeNodes {
   std::vector<std::array<std::int32_t, 2>> corners_;
 };
 
-void number_unknowns(const Body& body, const EdgeNodes& edges, QuadraticMesh& mesh) {
-  std::vector<bool> held(mesh.nodes(), false);
-  for (const auto node : body.fixed_nodes) held[node] = true;
+void mark_held_nodes(const Body& body, const EdgeNodes& edges, QuadraticMesh& mesh) {
+  mesh.held.assign(mesh.nodes(), false);
+  for (const auto node : body.fixed_nodes) mesh.held[node] = true;
   const auto corner_count = body.nodes.size();
   for (std::size_t e = 0; e < edges.corners().size(); ++e)
-    held[corner_count + e] = held[edges.corners()[e][0]] && held[edges.corners()[e][1]];
-  mesh.equation.assign(mesh.nodes(), -1);
-  for (int node = 0; node < mesh.nodes(); ++node) {
-    if (held[node]) continue;
-    mesh.equation[node] = mesh.unknowns;
-    mesh.unknowns += 3;
-  }
+    mesh.held[corner_count + e] =
+        mesh.held[edges.corners()[e][0]] && mesh.held[edges.corners()[e][1]];
 }
 
 }  // namespace
@@ -72,7 +67,7 @@ QuadraticMesh make_quadratic_mesh(const Body& body) {
   for (std::size_t e = 0; e < edges.corners().size(); ++e)
     mesh.X.col(corner_count + static_cast<Eigen::Index>(e)) =
         0.5 * (mesh.X.col(edges.corners()[e][0]) + mesh.X.col(edges.corners()[e][1]));
-  number_unknowns(body, edges, mesh);
+  mark_held_nodes(body, edges, mesh);
   return mesh;
 }
 

@@ -19,10 +19,9 @@ using Facet = std::array<std::int32_t, 6>;
 struct QuadraticMesh {
   Eigen::Matrix3Xd X;  ///< (3, nodes) reference positions, m
   std::vector<std::array<std::int32_t, kTetNodes>> tetrahedra;
-  std::vector<std::int32_t> region;    ///< of each tetrahedron
-  std::vector<Facet> facets;           ///< boundary, outward
-  std::vector<std::int32_t> equation;  ///< (nodes) first unknown of the node, -1 where held
-  int unknowns = 0;
+  std::vector<std::int32_t> region;  ///< of each tetrahedron
+  std::vector<Facet> facets;         ///< boundary, outward
+  std::vector<bool> held;            ///< (nodes) by a support
 
   int nodes() const { return static_cast<int>(X.cols()); }
 };

@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <numeric>
 
 namespace palpate::fem {
 
@@ -28,18 +29,51 @@ ElementGeometry<double> geometry_of(const QuadraticMesh& mesh, int element) {
 }  // namespace
 
 SolidModel::SolidModel(const Body& body, std::vector<NeoHookean> laws)
-    : mesh_(make_quadratic_mesh(body)), laws_(std::move(laws)), pattern_(stiffness_pattern(mesh_)) {
-  make_blocks();
+    : solid_(std::make_shared<Solid>(Solid{make_quadratic_mesh(body), std::move(laws)})) {
+  std::vector<bool> free = mesh().held;
+  free.flip();
+  number_unknowns(free);
+  std::vector<int> elements(mesh().tetrahedra.size());
+  std::iota(elements.begin(), elements.end(), 0);
+  take_elements(elements);
+}
+
+SolidModel::SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, double radius)
+    : solid_(whole.solid_) {
+  std::vector<bool> free(mesh().nodes());
+  for (int node = 0; node < mesh().nodes(); ++node)
+    free[node] =
+        !mesh().held[node] && (mesh().X.col(node) - centre).squaredNorm() <= radius * radius;
+  number_unknowns(free);
+  std::vector<int> elements;
+  for (int e = 0; e < static_cast<int>(mesh().tetrahedra.size()); ++e)
+    if (std::ranges::any_of(mesh().tetrahedra[e], [&](int node) { return equation_[node] >= 0; }))
+      elements.push_back(e);
+  take_elements(elements);
+}
+
+void SolidModel::number_unknowns(const std::vector<bool>& free) {
+  equation_.assign(mesh().nodes(), -1);
+  for (int node = 0; node < mesh().nodes(); ++node) {
+    if (!free[node]) continue;
+    equation_[node] = unknowns_;
+    unknowns_ += 3;
+  }
+}
+
+void SolidModel::take_elements(const std::vector<int>& elements) {
+  pattern_ = stiffness_pattern(mesh(), elements, equation_, unknowns_);
+  make_blocks(elements);
   make_scatter();
 }
 
-void SolidModel::make_blocks() {
-  for (int region = 0; region < static_cast<int>(laws_.size()); ++region) {
-    std::vector<int> elements;
-    for (int e = 0; e < static_cast<int>(mesh_.tetrahedra.size()); ++e)
-      if (mesh_.region[e] == region) elements.push_back(e);
-    for (std::size_t first = 0; first < elements.size(); first += kLanes) {
-      blocks_.push_back(make_block(elements, first));
+void SolidModel::make_blocks(const std::vector<int>& elements) {
+  for (int region = 0; region < static_cast<int>(solid_->laws.size()); ++region) {
+    std::vector<int> members;
+    for (const int e : elements)
+      if (mesh().region[e] == region) members.push_back(e);
+    for (std::size_t first = 0; first < members.size(); first += kLanes) {
+      blocks_.push_back(make_block(members, first));
       blocks_.back().region = region;
     }
   }
@@ -51,7 +85,7 @@ SolidModel::Block SolidModel::make_block(const std::vector<int>& elements,
   block.count = static_cast<int>(std::min<std::size_t>(kLanes, elements.size() - first));
   for (int lane = 0; lane < kLanes; ++lane) {
     block.element[lane] = elements[std::min(first + lane, elements.size() - 1)];
-    const ElementGeometry<double> one = geometry_of(mesh_, block.element[lane]);
+    const ElementGeometry<double> one = geometry_of(mesh(), block.element[lane]);
     block.geometry.volume[lane] = one.volume;
     for (int c = 0; c < 4; ++c)
       for (int j = 0; j < 3; ++j) block.geometry.gradient[c][j][lane] = one.gradient[c][j];
@@ -60,22 +94,22 @@ SolidModel::Block SolidModel::make_block(const std::vector<int>& elements,
 }
 
 void SolidModel::make_scatter() {
-  scatter_.assign(mesh_.tetrahedra.size() * kElementEntries, -1);
-  for (std::size_t e = 0; e < mesh_.tetrahedra.size(); ++e)
+  scatter_.assign(blocks_.size() * kElementEntries * kLanes, -1);
+  int* place = scatter_.data();
+  for (const Block& block : blocks_)
     for (int row = 0; row < 3 * kTetNodes; ++row)
-      for (int column = 0; column <= row; ++column) {
-        const int i = mesh_.equation[mesh_.tetrahedra[e][row / 3]];
-        const int j = mesh_.equation[mesh_.tetrahedra[e][column / 3]];
-        if (i < 0 || j < 0) continue;
-        scatter_[e * kElementEntries + lower_index(row, column)] =
-            pattern_.position(i + row % 3, j + column % 3);
-      }
+      for (int column = 0; column <= row; ++column, place += kLanes)
+        for (int lane = 0; lane < block.count; ++lane) {
+          const auto& node = mesh().tetrahedra[block.element[lane]];
+          const int i = equation_[node[row / 3]], j = equation_[node[column / 3]];
+          if (i >= 0 && j >= 0) place[lane] = pattern_.position(i + row % 3, j + column % 3);
+        }
 }
 
 ElementVector<Lanes> SolidModel::gather(const Block& block, const Displacement& u) const {
   ElementVector<Lanes> local;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const auto& node = mesh_.tetrahedra[block.element[lane]];
+    const auto& node = mesh().tetrahedra[block.element[lane]];
     for (int a = 0; a < kTetNodes; ++a)
       for (int i = 0; i < 3; ++i) local[a][i][lane] = u(i, node[a]);
   }
@@ -85,9 +119,9 @@ ElementVector<Lanes> SolidModel::gather(const Block& block, const Displacement& 
 void SolidModel::scatter(const Block& block, const ElementVector<Lanes>& forces,
                          Eigen::VectorXd& f) const {
   for (int lane = 0; lane < block.count; ++lane) {
-    const auto& node = mesh_.tetrahedra[block.element[lane]];
+    const auto& node = mesh().tetrahedra[block.element[lane]];
     for (int a = 0; a < kTetNodes; ++a) {
-      const int first = mesh_.equation[node[a]];
+      const int first = equation_[node[a]];
       if (first < 0) continue;
       for (int i = 0; i < 3; ++i) f[first + i] += forces[a][i][lane];
     }
@@ -108,7 +142,7 @@ SolidModel::State SolidModel::energy(const Displacement& u) const {
     const auto k = kinematics(block.geometry, gather(block, u));
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
-    const Lanes energy = element_energy(laws_[block.region], block.geometry, k);
+    const Lanes energy = element_energy(solid_->laws[block.region], block.geometry, k);
     state.energy += energy.head(block.count).sum();
   }
   return state;
@@ -121,7 +155,7 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) 
     const auto k = kinematics(block.geometry, gather(block, u));
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
-    const NeoHookean& law = laws_[block.region];
+    const NeoHookean& law = solid_->laws[block.region];
     state.energy += element_energy(law, block.geometry, k).head(block.count).sum();
     scatter(block, element_forces(law, block.geometry, k), f);
   }
@@ -131,24 +165,22 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) 
 void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) const {
   values.assign(pattern_.nonzeros(), 0.0);
   ElementMatrix<Lanes> K;
+  const int* place = scatter_.data();
   for (const Block& block : blocks_) {
     const auto k = kinematics(block.geometry, gather(block, u));
-    element_stiffness(laws_[block.region], block.geometry, k, K);
-    for (int lane = 0; lane < block.count; ++lane) {
-      const int* place =
-          scatter_.data() + static_cast<std::size_t>(block.element[lane]) * kElementEntries;
-      for (int entry = 0; entry < kElementEntries; ++entry)
-        if (place[entry] >= 0) values[place[entry]] += K[entry][lane];
-    }
+    element_stiffness(solid_->laws[block.region], block.geometry, k, K);
+    for (int entry = 0; entry < kElementEntries; ++entry, place += kLanes)
+      for (int lane = 0; lane < block.count; ++lane)
+        if (place[lane] >= 0) values[place[lane]] += K[entry][lane];
   }
 }
 
 void SolidModel::element_fields(const Displacement& u, std::vector<double>& energy_density,
                                 std::vector<double>& pressure) const {
-  energy_density.resize(mesh_.tetrahedra.size());
-  pressure.resize(mesh_.tetrahedra.size());
+  energy_density.resize(mesh().tetrahedra.size());
+  pressure.resize(mesh().tetrahedra.size());
   for (const Block& block : blocks_) {
-    const NeoHookean& law = laws_[block.region];
+    const NeoHookean& law = solid_->laws[block.region];
     const auto k = kinematics(block.geometry, gather(block, u));
     const Lanes density = element_energy(law, block.geometry, k) / block.geometry.volume;
     const Lanes p = law.pressure(k.mean_J);

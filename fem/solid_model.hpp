@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "fem/element.hpp"
@@ -14,12 +15,23 @@ namespace palpate::fem {
 /// Displacement of every node, (3, nodes), m; zero at held nodes.
 using Displacement = Eigen::Matrix3Xd;
 
-/// The body without the tool: strain energy, internal forces and stiffness as functions of the
-/// displacement. Immutable after construction; every method may be called from several threads.
+/// A mesh and the law of each of its regions, shared by the models made of it.
+struct Solid {
+  QuadraticMesh mesh;
+  std::vector<NeoHookean> laws;
+};
+
+/// The body without the tool, or a part of it: strain energy, internal forces and stiffness as
+/// functions of the displacement, on a chosen set of free nodes. Immutable after construction;
+/// every method may be called from several threads.
 class SolidModel {
  public:
-  /// One law for each region of the body, in the order of Body::region_names.
+  /// The whole body. One law for each region, in the order of Body::region_names.
   SolidModel(const Body& body, std::vector<NeoHookean> laws);
+
+  /// The part of `whole` that feels its nodes within `radius` of `centre` move: those nodes are
+  /// free, the elements at them are kept, all other nodes stay where the displacement puts them.
+  SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, double radius);
 
   struct State {
     double energy = 0;  ///< J
@@ -36,7 +48,9 @@ class SolidModel {
   void element_fields(const Displacement& u, std::vector<double>& energy_density,
                       std::vector<double>& pressure) const;
 
-  const QuadraticMesh& mesh() const { return mesh_; }
+  const QuadraticMesh& mesh() const { return solid_->mesh; }
+  /// First of the three unknowns of a node, -1 where it is not free.
+  int equation(int node) const { return equation_[node]; }
   const SparsePattern& pattern() const { return pattern_; }
 
  private:
@@ -47,17 +61,21 @@ class SolidModel {
     ElementGeometry<Lanes> geometry;
   };
 
-  void make_blocks();
+  void number_unknowns(const std::vector<bool>& free);
+  void take_elements(const std::vector<int>& elements);
+  void make_blocks(const std::vector<int>& elements);
   Block make_block(const std::vector<int>& elements, std::size_t first) const;
   void make_scatter();
   ElementVector<Lanes> gather(const Block& block, const Displacement& u) const;
   void scatter(const Block& block, const ElementVector<Lanes>& forces, Eigen::VectorXd& f) const;
 
-  QuadraticMesh mesh_;
-  std::vector<NeoHookean> laws_;
+  std::shared_ptr<const Solid> solid_;
+  std::vector<int> equation_;  ///< (nodes)
+  int unknowns_ = 0;
   SparsePattern pattern_;
   std::vector<Block> blocks_;
-  std::vector<int> scatter_;  ///< place in the values of each entry of each element, -1 if held
+  std::vector<int>
+      scatter_;  ///< place in the values of each entry, by block, entry and lane; -1: none
 };
 
 }  // namespace palpate::fem

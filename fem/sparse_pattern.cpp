@@ -9,13 +9,15 @@ namespace palpate::fem {
 namespace {
 
 /// For each node with unknowns, the neighbours of equal or higher number, ascending.
-std::vector<std::vector<std::int32_t>> upper_neighbours(const QuadraticMesh& mesh) {
+std::vector<std::vector<std::int32_t>> upper_neighbours(const QuadraticMesh& mesh,
+                                                        const std::vector<int>& elements,
+                                                        const std::vector<int>& equation) {
   std::vector<std::vector<std::int32_t>> neighbours(mesh.nodes());
-  for (const auto& element : mesh.tetrahedra)
-    for (const auto a : element) {
-      if (mesh.equation[a] < 0) continue;
-      for (const auto b : element)
-        if (b >= a && mesh.equation[b] >= 0) neighbours[a].push_back(b);
+  for (const int e : elements)
+    for (const auto a : mesh.tetrahedra[e]) {
+      if (equation[a] < 0) continue;
+      for (const auto b : mesh.tetrahedra[e])
+        if (b >= a && equation[b] >= 0) neighbours[a].push_back(b);
     }
   for (auto& list : neighbours) {
     std::sort(list.begin(), list.end());
@@ -34,41 +36,23 @@ int SparsePattern::position(int i, int j) const {
   return static_cast<int>(found - row.begin());
 }
 
-SparsePattern stiffness_pattern(const QuadraticMesh& mesh) {
+SparsePattern stiffness_pattern(const QuadraticMesh& mesh, const std::vector<int>& elements,
+                                const std::vector<int>& equation, int unknowns) {
   SparsePattern pattern;
-  pattern.n = mesh.unknowns;
+  pattern.n = unknowns;
   pattern.start.assign(1, 0);
-  const auto neighbours = upper_neighbours(mesh);
+  const auto neighbours = upper_neighbours(mesh, elements, equation);
   for (int node = 0; node < mesh.nodes(); ++node) {
-    const int first = mesh.equation[node];
+    const int first = equation[node];
     if (first < 0) continue;
     for (int i = 0; i < 3; ++i) {
       for (const auto other : neighbours[node])
         for (int k = 0; k < 3; ++k)
-          if (mesh.equation[other] + k >= first + i)
-            pattern.row.push_back(mesh.equation[other] + k);
+          if (equation[other] + k >= first + i) pattern.row.push_back(equation[other] + k);
       pattern.start.push_back(static_cast<int>(pattern.row.size()));
     }
   }
   return pattern;
-}
-
-Submatrix principal_submatrix(const SparsePattern& full, const std::vector<int>& unknowns) {
-  Submatrix sub;
-  sub.unknown = unknowns;
-  sub.pattern.n = static_cast<int>(unknowns.size());
-  sub.pattern.start.assign(1, 0);
-  std::vector<int> local(full.n, -1);
-  for (int i = 0; i < sub.pattern.n; ++i) local[unknowns[i]] = i;
-  for (const int column : unknowns) {
-    for (int at = full.start[column]; at < full.start[column + 1]; ++at) {
-      if (local[full.row[at]] < 0) continue;
-      sub.pattern.row.push_back(local[full.row[at]]);
-      sub.source.push_back(at);
-    }
-    sub.pattern.start.push_back(static_cast<int>(sub.pattern.row.size()));
-  }
-  return sub;
 }
 
 void symmetric_multiply(const SparsePattern& pattern, const std::vector<double>& values,

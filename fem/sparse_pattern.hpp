@@ -21,17 +21,10 @@ struct SparsePattern {
   int position(int i, int j) const;
 };
 
-/// Pattern of the stiffness of a mesh: all unknowns of an element are coupled.
-SparsePattern stiffness_pattern(const QuadraticMesh& mesh);
-
-/// Principal submatrix: the unknowns kept (ascending), its pattern, and for each of its entries the
-/// place of the same entry in the full matrix.
-struct Submatrix {
-  std::vector<int> unknown;
-  SparsePattern pattern;
-  std::vector<int> source;
-};
-Submatrix principal_submatrix(const SparsePattern& full, const std::vector<int>& unknowns);
+/// Pattern of the stiffness of some elements of a mesh: all unknowns of an element are coupled.
+/// `equation`: first of the three unknowns of each node, or -1; `unknowns`: their number.
+SparsePattern stiffness_pattern(const QuadraticMesh& mesh, const std::vector<int>& elements,
+                                const std::vector<int>& equation, int unknowns);
 
 /// y = A x for a symmetric matrix stored by its lower triangle.
 void symmetric_multiply(const SparsePattern& pattern, const std::vector<double>& values,

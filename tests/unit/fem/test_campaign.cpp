@@ -117,7 +117,7 @@ TEST(Campaign, RefusesWhatDoesNotFit) {
 
 TEST(Campaign, AFailedSiteKeepsItsPartialCurveAndReason) {
   CampaignSettings s = quick();
-  s.indentation.depth = 0.0149;  // nearly through the block, in three steps
+  s.indentation.depth = 0.03;  // the block is 15 mm thick
   s.indentation.held_depths.clear();
   const Body body = small_block();
   for (std::int32_t v = 0; v < 25 && s.sites.empty(); ++v)

@@ -13,7 +13,7 @@ struct Pressed {
   Body body = test::make_block(test::even(-0.01, 0.01, 4), test::even(-0.01, 0.01, 4),
                                test::even(-0.02, 0, 3));
   SolidModel model{body, {NeoHookean::from_young_poisson(10e3, 0.49, "t")}};
-  SphereContact contact{model, Eigen::Vector3d::Zero(), 0.01, 1e8};
+  SphereContact contact{model.mesh(), Eigen::Vector3d::Zero(), 0.01, 1e8};
   Displacement u = Displacement::Zero(3, model.mesh().nodes());
 
   Pressed() { contact.move_to({Eigen::Vector3d(2e-4, 1e-4, 0.004), 0.005}); }
@@ -23,23 +23,23 @@ struct Pressed {
 void expect_derivatives(const SolidModel& model, const SphereContact& contact, Displacement u) {
   const int n = model.pattern().n;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
-  contact.add_forces(u, f);
+  contact.add_forces(model, u, f);
   std::vector<double> K(model.pattern().nonzeros(), 0.0);
-  contact.add_stiffness(u, true, K);
+  contact.add_stiffness(model, u, true, K);
   const double h = 1e-8;
   int compared = 0;
   for (int node = 0; node < model.mesh().nodes(); ++node) {
-    const int first = model.mesh().equation[node];
+    const int first = model.equation(node);
     if (first < 0 || model.mesh().X.col(node).norm() > 0.008) continue;
     for (int i = 0; i < 3; ++i) {
       const double at = u(i, node);
       Eigen::VectorXd high = Eigen::VectorXd::Zero(n), low = high, unit = high, product(n);
       u(i, node) = at + h;
       const double energy_high = contact.energy(u);
-      contact.add_forces(u, high);
+      contact.add_forces(model, u, high);
       u(i, node) = at - h;
       const double energy_low = contact.energy(u);
-      contact.add_forces(u, low);
+      contact.add_forces(model, u, low);
       u(i, node) = at;
       EXPECT_NEAR(f[first + i], (energy_high - energy_low) / (2 * h), 1e-6 * f.norm());
       unit[first + i] = 1;
@@ -74,7 +74,7 @@ TEST(SphereContact, BondingLeavesTheForceAsItWas) {
 TEST(SphereContact, ToolForceBalancesTheForcesOnTheNodes) {
   const Pressed p;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(p.model.pattern().n);
-  p.contact.add_forces(p.u, f);
+  p.contact.add_forces(p.model, p.u, f);
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int i = 0; i < f.size(); i += 3) sum -= f.segment<3>(i);
   EXPECT_LT((sum - p.contact.tool_force(p.u)).norm(), 1e-12);

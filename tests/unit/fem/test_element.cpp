@@ -55,7 +55,7 @@ TEST(SolidModel, ForcesAreTheDerivativeOfTheEnergy) {
   Eigen::VectorXd f;
   model.forces(u, f);
   for (int node = 0; node < model.mesh().nodes(); node += 3) {
-    const int first = model.mesh().equation[node];
+    const int first = model.equation(node);
     if (first < 0) continue;
     for (int i = 0; i < 3; ++i) {
       const double h = 1e-7, at = u(i, node);
@@ -83,8 +83,7 @@ TEST(SolidModel, StiffnessIsTheDerivativeOfTheForces) {
     symmetric_multiply(model.pattern(), K, d.data(), product.data());
     Displacement direction = Displacement::Zero(3, model.mesh().nodes());
     for (int node = 0; node < model.mesh().nodes(); ++node)
-      if (model.mesh().equation[node] >= 0)
-        direction.col(node) = d.segment<3>(model.mesh().equation[node]);
+      if (model.equation(node) >= 0) direction.col(node) = d.segment<3>(model.equation(node));
     const double h = 1e-8;
     model.forces(u + h * direction, high);
     model.forces(u - h * direction, low);

@@ -41,15 +41,14 @@ TEST(PatchTest, AnAffineBoundaryGivesAnAffineInterior) {
   std::mt19937 random(6);
   std::uniform_real_distribution<double> shift(-4e-5, 4e-5);
   for (int node = 0; node < model.mesh().nodes(); ++node)
-    if (model.mesh().equation[node] >= 0)
+    if (model.equation(node) >= 0)
       u.col(node) += Eigen::Vector3d(shift(random), shift(random), shift(random));
 
-  SphereContact far_away(model, Eigen::Vector3d(1, 1, 1), 1e-6, 1);
-  DirectSolver solver(model.pattern());
-  NewtonSolver newton(model, far_away, solver, nullptr);
+  const SphereContact far_away(model.mesh(), Eigen::Vector3d(1, 1, 1), 1e-6, 1);
+  NewtonSolver newton(model);
   NewtonOptions options;
   options.tolerance = 10;  // over a tool force of 1e-12 N: the residual is round-off
-  const NewtonResult result = newton.solve(options, u);
+  const NewtonResult result = newton.solve(far_away, options, u);
   EXPECT_TRUE(result.converged) << result.reason;
   EXPECT_LT((u - affine).lpNorm<Eigen::Infinity>(), 1e-11);
 

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <numeric>
+#include <thread>
 
-#include "fem/linear_solver.hpp"
+#include "fem/rest_factor.hpp"
 #include "fem/solid_model.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -37,15 +37,6 @@ TEST(SparsePattern, ProductEqualsTheDenseOne) {
   EXPECT_LT((y - a.dense * a.b).norm(), 1e-12 * y.norm());
 }
 
-TEST(SparsePattern, SubmatrixKeepsTheEntries) {
-  const Assembled a;
-  const std::vector<int> kept{0, 1, 2, 9, 10, 11, 30, 31, 32};
-  const Submatrix sub = principal_submatrix(a.model.pattern(), kept);
-  for (int c = 0; c < sub.pattern.n; ++c)
-    for (int at = sub.pattern.start[c]; at < sub.pattern.start[c + 1]; ++at)
-      EXPECT_EQ(a.K[sub.source[at]], a.dense(kept[sub.pattern.row[at]], kept[c]));
-}
-
 TEST(Cholesky, SolvesAsADenseFactorizationDoes) {
   const Assembled a;
   Cholesky factor(a.model.pattern());
@@ -64,23 +55,52 @@ TEST(Cholesky, SaysWhenTheMatrixIsIndefinite) {
   EXPECT_FALSE(factor.factorize(a.K));
 }
 
-TEST(TwoLevelSolver, SolvesAMatrixThatDiffersFromTheRestStiffness) {
+TEST(RestFactor, SolvesEveryLaneInSinglePrecision) {
   const Assembled a;
-  Cholesky rest(a.model.pattern());
-  ASSERT_TRUE(rest.factorize(a.K));
-  // A flattened state of unchanged volume; the window is a third of the body.
-  Displacement u = Displacement::Zero(3, a.model.mesh().nodes());
-  u.row(2) = -0.15 * a.model.mesh().X.row(2);
-  u.topRows(2) = (1 / std::sqrt(0.85) - 1) * a.model.mesh().X.topRows(2);
-  std::vector<double> K;
-  a.model.stiffness(u, K);
-  std::vector<int> window(a.model.pattern().n / 9 * 3);
-  std::iota(window.begin(), window.end(), a.model.pattern().n - static_cast<int>(window.size()));
-  TwoLevelSolver solver(a.model.pattern(), rest, window);
-  Eigen::VectorXd d, product(a.b.size());
-  ASSERT_TRUE(solver.solve(K, a.b, 1e-8, d));
-  symmetric_multiply(a.model.pattern(), K, d.data(), product.data());
-  EXPECT_LT((product - a.b).norm(), 1e-7 * a.b.norm());
+  const RestFactor factor(a.model.pattern(), nested_dissection(a.model.pattern()), a.K, "block");
+  const auto n = a.model.pattern().n;
+  const Eigen::MatrixXd B = Eigen::MatrixXd::Random(n, kBatch);
+  std::vector<float> block(static_cast<std::size_t>(n) * kBatch), scratch;
+  for (int i = 0; i < n; ++i)
+    for (int lane = 0; lane < kBatch; ++lane)
+      block[i * kBatch + lane] = static_cast<float>(B(i, lane));
+  factor.solve(block, scratch);
+  const Eigen::MatrixXd X = a.dense.ldlt().solve(B);
+  for (int i = 0; i < n; ++i)
+    for (int lane = 0; lane < kBatch; ++lane)
+      EXPECT_NEAR(block[i * kBatch + lane], X(i, lane), 1e-4 * X.col(lane).norm());
+}
+
+TEST(RestFactor, ALaneHasTheSameBitsWhateverStandsBesideIt) {
+  const Assembled a;
+  const RestFactor factor(a.model.pattern(), nested_dissection(a.model.pattern()), a.K, "block");
+  const auto n = a.model.pattern().n;
+  std::vector<float> alone(static_cast<std::size_t>(n) * kBatch, 0.0f), crowd = alone, scratch;
+  for (int i = 0; i < n; ++i)
+    for (int lane = 0; lane < kBatch; ++lane)
+      crowd[i * kBatch + lane] = static_cast<float>(a.b[(i * (lane + 1)) % n]);
+  for (int i = 0; i < n; ++i) alone[i * kBatch + 5] = crowd[i * kBatch + 5];
+  factor.solve(alone, scratch);
+  factor.solve(crowd, scratch);
+  for (int i = 0; i < n; ++i) ASSERT_EQ(alone[i * kBatch + 5], crowd[i * kBatch + 5]);
+}
+
+TEST(SolveBatch, ServesAllMembersAndLetsThemLeave) {
+  const Assembled a;
+  const RestFactor factor(a.model.pattern(), nested_dissection(a.model.pattern()), a.K, "block");
+  const Eigen::VectorXd expected = a.dense.ldlt().solve(a.b);
+  SolveBatch batch(factor, 3);
+  std::vector<double> error(3, 1.0);
+  std::vector<std::thread> threads;
+  for (int lane = 0; lane < 3; ++lane)
+    threads.emplace_back([&, lane] {
+      SolveBatch::Member member(batch, lane);
+      Eigen::VectorXd x;
+      for (int turn = 0; turn <= 2 * lane; ++turn) member.solve((lane + 1.0) * a.b, x);
+      error[lane] = (x - (lane + 1.0) * expected).norm() / expected.norm();
+    });
+  for (auto& thread : threads) thread.join();
+  for (const double e : error) EXPECT_LT(e, 1e-3);
 }
 
 }  // namespace

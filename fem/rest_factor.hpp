@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The factor of the rest stiffness, shared by all sites, and solves with many right-hand sides.
+#pragma once
+
+#include <Eigen/Core>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <vector>
+
+#include "fem/cholesky.hpp"
+
+namespace palpate::fem {
+
+/// Right-hand sides solved at once. Sixteen floats fill one AVX-512 register.
+inline constexpr int kBatch = 16;
+
+/// A supernodal Cholesky factor in single precision, laid out for solves with kBatch right-hand
+/// sides. The solve is a preconditioner: single precision costs no accuracy and halves the traffic,
+/// which is what a solve consists of. Each right-hand side is one lane of every operation: its
+/// solution has the same bits whatever stands in the other lanes.
+class RestFactor {
+ public:
+  /// @throws Error(Geometry) when the matrix is not positive definite; `owner` names the body.
+  RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
+             const std::vector<double>& values, const std::string& owner);
+
+  int size() const { return n_; }
+  double bytes() const { return static_cast<double>(values_.size()) * sizeof(float); }
+
+  /// In place: block[unknown * kBatch + lane]. `scratch` is resized as needed.
+  void solve(std::vector<float>& block, std::vector<float>& scratch) const;
+
+ private:
+  struct Supernode {
+    int first_column, columns, rows_below;
+    std::size_t row_list;  ///< into rows_
+    std::size_t values;    ///< into values_: columns x columns lower block, then the rows below,
+                           ///< both by rows
+  };
+
+  void forward(float* y) const;
+  void backward(float* y) const;
+
+  int n_ = 0;
+  std::vector<Supernode> supernodes_;
+  std::vector<int> rows_, permutation_;
+  std::vector<float> values_;
+};
+
+/// Gathers the requests of up to kBatch sites that run side by side, each on its own thread, and
+/// serves them by one block solve when every running site waits for it. Only one of the threads
+/// runs at a time (they hold the lock of the batch), so that a batch occupies one core.
+class SolveBatch {
+ public:
+  /// `members`: how many threads will take part; each leaves when its Member ends.
+  SolveBatch(const RestFactor& factor, int members);
+
+  /// A site thread holds one of these while it runs.
+  class Member {
+   public:
+    Member(SolveBatch& batch, int lane);
+    ~Member();
+    Member(const Member&) = delete;
+    Member& operator=(const Member&) = delete;
+
+    /// x = K0^-1 b. Waits for the other members.
+    void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
+
+   private:
+    SolveBatch& batch_;
+    int lane_;
+    std::unique_lock<std::mutex> lock_;
+  };
+
+ private:
+  void serve_if_all_wait();
+
+  const RestFactor& factor_;
+  std::mutex mutex_;
+  std::condition_variable served_;
+  int members_, waiting_ = 0;
+  std::uint64_t generation_ = 0;
+  std::vector<float> block_, scratch_;
+};
+
+}  // namespace palpate::fem

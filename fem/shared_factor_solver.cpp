@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/shared_factor_solver.hpp"
+
+#include <algorithm>
+
+namespace palpate::fem {
+
+namespace {
+
+constexpr std::size_t kPairs = 6;
+
+Eigen::VectorXd difference(const SolidModel& model, const Displacement& a, const Displacement& b) {
+  Eigen::VectorXd d(model.pattern().n);
+  for (int node = 0; node < model.mesh().nodes(); ++node)
+    if (model.equation(node) >= 0) d.segment<3>(model.equation(node)) = a.col(node) - b.col(node);
+  return d;
+}
+
+}  // namespace
+
+bool SharedFactorSolver::relax_window(const SphereContact& contact, const NewtonOptions& options,
+                                      Displacement& u, NewtonResult& result) {
+  NewtonOptions inner = options;
+  // What is left inside must not be seen from outside; far from the end that is little to ask.
+  inner.tolerance = std::max(0.2 * options.tolerance, 0.03 * error_);
+  inner.reuse_factor = true;
+  const NewtonResult relaxed = newton_.solve(contact, inner, u);
+  if (!relaxed.converged) result.reason = relaxed.reason;
+  return relaxed.converged;
+}
+
+Eigen::VectorXd SharedFactorSolver::direction(const Eigen::VectorXd& residual) {
+  Eigen::VectorXd q = residual, d;
+  std::vector<double> alpha(pairs_.size());
+  for (std::size_t i = pairs_.size(); i-- > 0;) {
+    alpha[i] = pairs_[i].s.dot(q) / pairs_[i].sy;
+    q -= alpha[i] * pairs_[i].y;
+  }
+  rest_solve_(q, d);
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    d += (alpha[i] - pairs_[i].y.dot(d) / pairs_[i].sy) * pairs_[i].s;
+  return -d;
+}
+
+bool SharedFactorSolver::step(const SphereContact& contact, const NewtonOptions& options,
+                              const Eigen::VectorXd& d, Equilibrium& now, Displacement& u,
+                              NewtonResult& result) {
+  const double slope = now.residual.dot(d);
+  double length = 1;
+  for (int halvings = 0; halvings < 6; ++halvings, length *= 0.5) {
+    Displacement trial = u;
+    move(whole_, length, d, trial);
+    if (!relax_window(contact, options, trial, result)) continue;
+    Equilibrium next = evaluate(whole_, contact, trial);
+    if (!(next.min_J > 0)) continue;
+    const bool lower = next.energy <= now.energy + 1e-4 * length * slope;
+    if (!lower && next.residual.norm() > (1 - 0.1 * length) * now.residual.norm()) continue;
+    Pair pair{difference(whole_, trial, u), next.residual - now.residual, 0};
+    pair.sy = pair.s.dot(pair.y);
+    if (pair.sy > 1e-10 * pair.s.norm() * pair.y.norm()) pairs_.push_back(std::move(pair));
+    if (pairs_.size() > kPairs) pairs_.pop_front();
+    u.swap(trial);
+    now = std::move(next);
+    return true;
+  }
+  return false;
+}
+
+NewtonResult SharedFactorSolver::solve(const SphereContact& contact, const NewtonOptions& options,
+                                       Displacement& u) {
+  NewtonResult result;
+  error_ = 0.1;
+  if (!relax_window(contact, options, u, result)) return result;
+  Equilibrium now = evaluate(whole_, contact, u);
+  for (; result.iterations < options.max_iterations; ++result.iterations) {
+    const double scale = std::max(contact.tool_force(u).norm(), 1e-12);
+    error_ = now.residual.norm() / scale;
+    if (error_ <= options.tolerance) {
+      result.converged = true;
+      result.reason.clear();
+      return result;
+    }
+    Eigen::VectorXd d = direction(now.residual);
+    if (now.residual.dot(d) >= 0) {
+      restart();
+      d = direction(now.residual);
+    }
+    if (step(contact, options, d, now, u, result)) continue;
+    if (pairs_.empty()) {
+      result.reason = "no admissible step: " + result.reason;
+      return result;
+    }
+    restart();
+  }
+  result.reason = "no convergence in " + std::to_string(options.max_iterations) + " iterations";
+  return result;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <deque>
+#include <functional>
+
+#include "fem/newton.hpp"
+
+namespace palpate::fem {
+
+/// Equilibrium without factorizing the stiffness of the body. A window around the tool, which holds
+/// the contact and the large strains, is solved by Newton's method at every step: what remains is
+/// the energy as a function of the displacement outside,
+///   phi(u_o) = min over u_w of Pi(u_o, u_w),   grad phi = the residual outside.
+/// It is nearly quadratic, and its Hessian at rest is the Schur complement S0 of the window; the
+/// outer block of K0^-1 is S0^-1. So phi is minimised by L-BFGS [Nocedal & Wright 2006, alg. 7.5]
+/// that starts from K0^-1, a solve with the one factor that all sites share.
+class SharedFactorSolver {
+ public:
+  /// x = K0^-1 b on the unknowns of the whole body.
+  using RestSolve = std::function<void(const Eigen::VectorXd& b, Eigen::VectorXd& x)>;
+
+  SharedFactorSolver(const SolidModel& whole, const SolidModel& window, RestSolve rest_solve)
+      : whole_(whole), window_(window), newton_(window), rest_solve_(std::move(rest_solve)) {}
+
+  /// The factor and curvature pairs of the last call are kept: successive calls should be
+  /// neighbours on a path.
+  NewtonResult solve(const SphereContact& contact, const NewtonOptions& options, Displacement& u);
+
+  /// Forget the curvature pairs, as at the start of a path.
+  void restart() { pairs_.clear(); }
+
+ private:
+  struct Pair {
+    Eigen::VectorXd s, y;
+    double sy;
+  };
+
+  bool relax_window(const SphereContact& contact, const NewtonOptions& options, Displacement& u,
+                    NewtonResult& result);
+  Eigen::VectorXd direction(const Eigen::VectorXd& residual);
+  bool step(const SphereContact& contact, const NewtonOptions& options, const Eigen::VectorXd& d,
+            Equilibrium& now, Displacement& u, NewtonResult& result);
+
+  const SolidModel& whole_;
+  const SolidModel& window_;
+  NewtonSolver newton_;
+  RestSolve rest_solve_;
+  std::deque<Pair> pairs_;
+  double error_ = 0;  ///< |residual| over |tool force| at the present iterate
+};
+
+}  // namespace palpate::fem
