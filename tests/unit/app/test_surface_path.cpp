@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The scripted session's way over the surface, on surfaces whose geodesics are known.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "app/simulate/hand_path.hpp"
+#include "app/simulate/surface_path.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr double kTile = 0.01;  // m
+
+/// A sheet of n x m square tiles, each of two triangles; `place` maps sheet coordinates to space.
+template <class Place, class Inward>
+Library sheet(int n, int m, Place place, Inward inward) {
+  Library library;
+  library.name = "sheet";
+  for (int j = 0; j <= m; ++j) {
+    for (int i = 0; i <= n; ++i) {
+      library.positions.push_back(place(i * kTile, j * kTile));
+      library.inward.push_back(inward(i * kTile, j * kTile));
+      NodeResponse response;
+      response.status = ResponseStatus::Fitted;
+      library.responses.push_back(response);
+    }
+  }
+  for (int j = 0; j < m; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i, b = a + 1, c = b + n + 1, d = c - 1;
+      library.triangles.push_back({a, b, c});
+      library.triangles.push_back({a, c, d});
+    }
+  }
+  return library;
+}
+
+Library flat(int n, int m) {
+  return sheet(
+      n, m,
+      [](double x, double y) {
+        return Vec3{x, y, 0};
+      },
+      [](double, double) {
+        return Vec3{0, 0, -1};
+      });
+}
+
+constexpr double kRadius = 0.04;  // m
+
+/// A sheet bent to a cylinder about the y axis: straight lines become helices of the same length.
+Library bent(int n, int m) {
+  return sheet(
+      n, m,
+      [](double x, double y) {
+        return Vec3{kRadius * std::sin(x / kRadius), y, kRadius * std::cos(x / kRadius)};
+      },
+      [](double x, double) {
+        return Vec3{-std::sin(x / kRadius), 0, -std::cos(x / kRadius)};
+      });
+}
+
+TEST(SurfacePath, StartsFarFromTheBorder) {
+  const Library library = flat(9, 9);
+  const std::size_t middle = middle_triangle(library);
+  const auto& t = library.triangles[middle];
+  for (const std::int32_t vertex : t) {
+    const Vec3& p = library.positions[static_cast<std::size_t>(vertex)];
+    EXPECT_NEAR(p[0], 0.045, 0.011);
+    EXPECT_NEAR(p[1], 0.045, 0.011);
+  }
+}
+
+TEST(SurfacePath, KeepsOffHoles) {
+  Library library = flat(9, 9);
+  for (std::size_t v = 0; v < library.positions.size(); ++v) {
+    if (library.positions[v][0] < 0.051) library.responses[v].status = ResponseStatus::Hole;
+  }
+  const std::size_t start = middle_triangle(library);
+  for (const PathPoint& point : straight_path(library, start, 1, 0.001)) {
+    EXPECT_GE(point.position[0], 0.06 - 1e-12);
+  }
+}
+
+TEST(SurfacePath, NothingToTouchIsAnError) {
+  Library library = flat(2, 2);
+  for (NodeResponse& response : library.responses) response.status = ResponseStatus::Hole;
+  EXPECT_THROW(middle_triangle(library), Error);
+}
+
+TEST(SurfacePath, IsAStraightLineOnAPlane) {
+  const Library library = flat(9, 9);
+  const auto path = straight_path(library, middle_triangle(library), 0.03, 0.001);
+  EXPECT_NEAR(path.back().distance, 0.03, 1e-12);
+  const Vec3 chord = path.back().position - path.front().position;
+  EXPECT_NEAR(norm(chord), 0.03, 1e-12);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Vec3 step = path[i].position - path[i - 1].position;
+    EXPECT_LE(norm(step), 0.001 + 1e-12);
+    EXPECT_NEAR(norm(cross(path[i].position - path.front().position, chord)), 0, 1e-12);
+    EXPECT_NEAR(path[i].inward[2], -1, 1e-12);
+  }
+}
+
+TEST(SurfacePath, EndsAtTheBorder) {
+  const Library library = flat(9, 3);
+  const auto path = straight_path(library, middle_triangle(library), 1, 0.001);
+  EXPECT_GT(path.back().distance, 0.03);
+  EXPECT_LT(path.back().distance, 0.1);
+  const Vec3& end = path.back().position;
+  const double border = std::min({end[0], end[1], 0.09 - end[0], 0.03 - end[1]});
+  EXPECT_NEAR(border, 0, 1e-9);
+}
+
+TEST(SurfacePath, FollowsACurvedSurface) {
+  const Library library = bent(20, 20);
+  const auto path = straight_path(library, middle_triangle(library), 0.06, 0.001);
+  EXPECT_NEAR(path.back().distance, 0.06, 1e-9);
+  const double sagitta = kRadius * (1 - std::cos(kTile / 2 / kRadius));
+  for (const PathPoint& point : path) {
+    const double r = std::hypot(point.position[0], point.position[2]);
+    EXPECT_LE(r, kRadius + 1e-12);
+    EXPECT_GE(r, kRadius - sagitta - 1e-12);
+    const Vec3 radial{-point.position[0] / r, 0, -point.position[2] / r};
+    EXPECT_GT(dot(point.inward, radial), std::cos(0.02));
+    EXPECT_NEAR(norm(point.inward), 1, 1e-12);
+  }
+}
+
+TEST(HandPath, PressesSlidesAndReleases) {
+  const Library library = flat(9, 9);
+  SimulateSection script;
+  script.press_depth = 0.003;
+  script.press_speed = 0.01;
+  script.slide_length = 0.03;
+  script.slide_speed = 0.03;
+  const HandPath hand(script, straight_path(library, middle_triangle(library), 0.03, 0.0005));
+  double deepest = 0, fastest = 0;
+  for (double t = 0; t < hand.duration(); t += 1e-3) {
+    const HandState state = hand.at(t);
+    deepest = std::max(deepest, -state.position[2]);
+    fastest = std::max(fastest, norm(state.velocity));
+  }
+  EXPECT_NEAR(deepest, script.press_depth, 1e-9);
+  EXPECT_NEAR(fastest, script.slide_speed, 1e-4);
+  EXPECT_GT(hand.at(0).position[2], 0);
+  EXPECT_GT(hand.at(hand.duration()).position[2], 0);
+  EXPECT_NEAR(norm(hand.at(0).velocity), 0, 1e-6);
+  const double slid = norm(hand.at(hand.duration()).position - hand.at(0).position);
+  EXPECT_NEAR(slid, 0.03, 1e-9);
+}
+
+}  // namespace
+}  // namespace palpate::app
