@@ -6,7 +6,7 @@
 
 #include "app/pipeline/workspace.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): a name of the library
 class App;
 }
 

@@ -10,7 +10,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from bodies import CASE, block, write_case, write_off  # noqa: E402
+from bodies import CASE, SIZE, block, write_case  # noqa: E402
 
 PALPATE = None
 USAGE, GEOMETRY = 2, 3
@@ -25,13 +25,13 @@ normal = [0, 0, -1]
 
 
 def open_block():
-    vertices, triangles = block((40, 40, 20), 4)
+    vertices, triangles = block(SIZE, 5)
     return vertices, triangles[:-1]
 
 
 def crossing_block():
     """Two boxes as one surface, one through the other."""
-    vertices, triangles = block((40, 40, 20), 4)
+    vertices, triangles = block(SIZE, 5)
     moved = [(x + 10, y + 10, z + 10) for x, y, z in vertices]
     shifted = [tuple(i + len(vertices) for i in triangle) for triangle in triangles]
     return vertices + moved, triangles + shifted
@@ -39,7 +39,7 @@ def crossing_block():
 
 def dented_block():
     """One surface that runs through itself: a top vertex pushed out through the base."""
-    vertices, triangles = block((40, 40, 20), 4)
+    vertices, triangles = block(SIZE, 5)
     top = vertices.index((20.0, 20.0, 20.0))
     vertices[top] = (20.0, 20.0, -15.0)
     return vertices, triangles
@@ -92,7 +92,7 @@ class BadInput(unittest.TestCase):
 
     def test_unit_is_of_another_kind(self):
         self.refuse_case(USAGE, ["block.toml:9", "patch_spacing", "10 kPa", "mm"],
-                         CASE.replace('"10 mm"', '"10 kPa"'))
+                         CASE.replace('"12.5 mm"', '"10 kPa"'))
 
     def test_unit_is_missing(self):
         self.refuse_case(USAGE, ["material[0].young", "found 10", '"10 kPa"'], CASE.replace('"10 kPa"', "10"))
@@ -108,7 +108,7 @@ class BadInput(unittest.TestCase):
         self.refuse_case(USAGE, ["material[0].young", "-10 kPa"], CASE.replace('"10 kPa"', '"-10 kPa"'))
 
     def test_tool_goes_deeper_than_the_body(self):
-        self.refuse_case(GEOMETRY, ["depth", "25 mm"], CASE.replace('depth = "2 mm"', 'depth = "25 mm"'))
+        self.refuse_case(GEOMETRY, ["depth", "25 mm"], CASE.replace('depth = "1.2 mm"', 'depth = "25 mm"'))
 
     def test_supports_hold_nothing(self):
         self.refuse_case(GEOMETRY, ["support"], NOTHING_HELD)

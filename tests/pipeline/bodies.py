@@ -43,7 +43,9 @@ def write_off(path, surface):
             file.write(f"3 {a} {b} {c}\n")
 
 
-# A block in a tray: its base and sides are held, its top is touched.
+# A block in a tray: its base and sides are held, its top is touched, but not so near the rim that
+# the tool would rest on it.
+SIZE = (50, 50, 20)  # mm
 CASE = """name = "block"
 
 [surface]
@@ -52,8 +54,8 @@ unit = "mm"
 region = "gel"
 
 [mesh]
-patch_spacing = "10 mm"
-element_size = "5 mm"
+patch_spacing = "12.5 mm"
+element_size = "4.2 mm"
 interior_growth = 3.0
 
 [[support]]
@@ -68,7 +70,7 @@ normal = [-1, 0, 0]
 
 [[support]]
 shape = "plane"
-point = ["39.9 mm", "0 mm", "0 mm"]
+point = ["49.9 mm", "0 mm", "0 mm"]
 normal = [1, 0, 0]
 
 [[support]]
@@ -78,7 +80,7 @@ normal = [0, -1, 0]
 
 [[support]]
 shape = "plane"
-point = ["0 mm", "39.9 mm", "0 mm"]
+point = ["0 mm", "49.9 mm", "0 mm"]
 normal = [0, 1, 0]
 
 [[material]]
@@ -87,13 +89,13 @@ young = "10 kPa"
 poisson = 0.45
 
 [tool]
-radius = "8 mm"
+radius = "6 mm"
 
 [indentation]
-depth = "2 mm"
+depth = "1.2 mm"
 increments = 4
-held_depths = ["1 mm"]
-lateral_travel = "1 mm"
+held_depths = ["0.6 mm"]
+lateral_travel = "0.6 mm"
 lateral_increments = 2
 
 [fit]
@@ -104,10 +106,10 @@ friction = 0.3
 devices = ["device.toml"]
 
 [simulate]
-press_depth = "1.5 mm"
+press_depth = "1 mm"
 press_speed = "40 mm/s"
 slide_length = "20 mm"
-slide_speed = "80 mm/s"
+slide_speed = "25 mm/s"
 """
 
 DEVICE = """name = "bench"
@@ -118,7 +120,7 @@ source = "made up for a test"
 
 def write_case(folder, case=CASE, surface=None):
     """block.toml, block.off and device.toml in `folder`; the path of the case."""
-    write_off(folder / "block.off", surface or block((40, 40, 20), 4))
+    write_off(folder / "block.off", surface or block(SIZE, 5))
     (folder / "device.toml").write_text(DEVICE, encoding="utf-8")
     path = folder / "block.toml"
     path.write_text(case, encoding="utf-8")

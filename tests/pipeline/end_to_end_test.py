@@ -80,7 +80,8 @@ class Pipeline(unittest.TestCase):
 
     def test_exit_code_tells_whether_all_sites_completed(self):
         curves = self.summary("curves.h5")
-        self.assertEqual(curves["sites"], 17)  # the vertices inside the top face
+        self.assertEqual(curves["sites"], self.summary("body.h5")["sites"])
+        self.assertGreater(curves["sites"], 8)
         expected = SOME_SITES_FAILED if curves["sites_not_complete"] else 0
         self.assertEqual(self.built.returncode, expected)
         self.assertLess(curves["sites_not_complete"], 5, curves["failures"])
@@ -88,7 +89,7 @@ class Pipeline(unittest.TestCase):
     def test_volume_of_the_block_is_kept(self):
         gel = self.summary("body.h5")["regions"]["gel"]["volume"]
         self.assertEqual(gel["unit"], "m^3")
-        self.assertAlmostEqual(gel["value"], 0.04 * 0.04 * 0.02, delta=1e-9)
+        self.assertAlmostEqual(gel["value"], 0.05 * 0.05 * 0.02, delta=1e-9)
 
     def test_energy_is_balanced_on_every_curve(self):
         """Work of the tool = stored energy (quasi-static, hyperelastic, no friction): the
@@ -131,12 +132,12 @@ class Pipeline(unittest.TestCase):
         away, by less than a factor of 2 (coarse elements included)."""
         with h5py.File(self.out / "library.h5") as file:
             positions = file["surface/position"][...]
-        hertz = 4 / 3 * 10e3 / (1 - 0.45**2) * 0.008**0.5 * 0.002**1.5
+        hertz = 4 / 3 * 10e3 / (1 - 0.45**2) * 0.006**0.5 * 0.0012**1.5
         checked = 0
         for (vertex, _), kind, c in paths_of(rows_of_export(self)):
-            if kind != "normal" or c["displacement_m"][-1] < 0.00199:
+            if kind != "normal" or c["displacement_m"][-1] < 0.00119:
                 continue
-            if np.linalg.norm(positions[int(vertex)] - [0.02, 0.02, 0.02]) > 0.011:
+            if np.linalg.norm(positions[int(vertex)] - [0.025, 0.025, 0.02]) > 0.013:
                 continue
             force = np.sum(c["force"][-1] * c["direction"][-1])
             checked += 1
@@ -165,7 +166,8 @@ class Pipeline(unittest.TestCase):
         self.assertTrue(np.any(status & 8))  # sliding
         self.assertFalse(status[-1] & 1)  # released
         # Independent of the account of the runtime: the work of the tool on the body, from the
-        # recorded positions and forces alone.
+        # recorded positions and forces alone. While sliding, the force is recorded after the contact
+        # point has moved, so this is low by about h' dx^2 / 2 a step.
         work = -np.sum((force[1:] + force[:-1]) / 2 * np.diff(position, axis=0))
         self.assertAlmostEqual(work, absorbed[-1], delta=0.05 * absorbed.max())
 
