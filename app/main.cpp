@@ -88,6 +88,11 @@ int parse_and_run(int count, char** arguments) {
 }  // namespace palpate::app
 
 int main(int count, char** arguments) {
-  palpate::app::ensure_blas_kernel(arguments);
-  return palpate::app::parse_and_run(count, arguments);
+  try {
+    palpate::app::ensure_blas_kernel(arguments);
+    return palpate::app::parse_and_run(count, arguments);
+  } catch (...) {  // not even a message could be made
+    std::fputs("palpate: internal error: out of memory\n", stderr);
+    return static_cast<int>(palpate::ErrorKind::Internal);
+  }
 }
