@@ -168,7 +168,7 @@ void use_one_thread_per_site() {
   // CHOLMOD asks for four threads in its own loops, whatever omp_set_num_threads says.
   omp_set_max_active_levels(0);
   // Work arrays of megabytes come and go with every factorization: keep them in the process.
-  mallopt(M_MMAP_THRESHOLD, 1 << 30);
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the largest that is heeded
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
 }
 

@@ -21,7 +21,7 @@ struct Sphere {
 ///   stuck:      t = t0 + eps_s (x - x_tool), force on the body -t, t0 = -p n where it was bonded
 /// Each point carries the reference area w of its share of the facet; the energy is
 ///   sum w p^2/(2 eps)   and   sum w (t0 . s + eps_s/2 s^2), s = x - x_tool.
-/// Stuck facets can follow the tool exactly, so eps_s = 30 eps constrains nothing too much.
+/// Stuck facets can follow the tool exactly, so a far larger eps_s constrains nothing too much.
 class SphereContact {
  public:
   /// Candidates: the boundary facets with a node within `reach` of `site` in the rest state.

@@ -22,6 +22,8 @@ namespace {
 /// force of about 0.1 %.
 constexpr double kContactStiffness = 5000;
 constexpr int kMaxHalvings = 5;
+constexpr double kLargestPenetration =
+    0.01;                              ///< over the tool radius; a free surface stays far below
 constexpr double kLargestStep = 0.25;  ///< of one increment, over the tool radius
 /// Residual at which the shared-factor solver stops, over the wanted error of the force: the force
 /// is less sensitive to a residual far from the tool than to one at it.
@@ -254,22 +256,22 @@ class PathDriver {
     double at = from, step = std::min(to - from, kLargestStep * context_.indentation.tool_radius);
     int halvings = 0;
     sample.iterations = 0;
+    std::string failure;  // of the last attempt: no news when a cut-back overcomes it
     while (at < to) {
       const double next = to - at <= 1.001 * step ? to : at + step;
       Displacement trial = predict(context_.model, history, next);
-      if (equilibrate(next, trial, sample, reason)) {
+      if (equilibrate(next, trial, sample, failure)) {
         u = trial;
         history.add(next, u);
         at = next;
         continue;
       }
       if (++halvings > kMaxHalvings) {
-        reason = "at " + in_millimetres(next) + ": " + reason;
+        reason = "at " + in_millimetres(next) + ": " + failure;
         return false;
       }
       step *= 0.5;
     }
-    reason.clear();  // a cut-back that was overcome is no news
     return true;
   }
 
@@ -281,6 +283,10 @@ class PathDriver {
     reason = result.reason;
     if (!result.converged) return false;
     record(s, u, sample);
+    if (sample.penetration > kLargestPenetration * context_.indentation.tool_radius) {
+      reason = "the tool cuts into a part of the surface that cannot yield (is it held there?)";
+      return false;
+    }
     if (s > kLargestStep * context_.indentation.tool_radius && sample.contact_area == 0) {
       reason = "the tool has lost the surface";
       return false;
