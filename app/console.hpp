@@ -26,7 +26,8 @@ std::string duration_text(double seconds);  ///< "42 s", "3 min 07 s", "2 h 15 m
 class ProgressDisplay {
  public:
   explicit ProgressDisplay(std::string label);
-  void show(std::int64_t done, std::int64_t failed, std::int64_t total);
+  /// `running` sites count half: the estimate of the time left would else wait for the first wave.
+  void show(std::int64_t done, std::int64_t failed, std::int64_t running, std::int64_t total);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -66,8 +66,13 @@ class Crew {
     try {
       SiteSolver solver(context_, &member);
       for (std::size_t i = next_++; i < curves_.sites.size(); i = next_++) {
+        {
+          const std::lock_guard lock(mutex_);
+          ++progress_.running;
+        }
         SiteCurves site = solver.solve(curves_.sites[i].vertex);
         const std::lock_guard lock(mutex_);
+        --progress_.running;
         ++progress_.done;
         if (site.status != SiteStatus::Complete) ++progress_.failed;
         curves_.sites[i] = std::move(site);

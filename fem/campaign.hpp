@@ -38,6 +38,7 @@ struct IndentationSettings {
 /// State of a campaign, told after each finished site.
 struct CampaignProgress {
   std::int64_t done = 0, failed = 0, total = 0;
+  std::int64_t running = 0;  ///< sites under way: they run abreast, so that they end in waves
 };
 
 struct CampaignSettings {

@@ -128,7 +128,7 @@ SiteCounts run_precompute(const Workspace& space) {
   fem::CampaignSettings settings = campaign_settings(space);
   ProgressDisplay display("precompute");
   settings.progress = [&](const fem::CampaignProgress& p) {
-    display.show(p.done, p.failed, p.total);
+    display.show(p.done, p.failed, p.running, p.total);
   };
   fem::CampaignReport report;
   Curves curves = fem::run_campaign(body, settings, report);
