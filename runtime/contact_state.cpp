@@ -14,6 +14,8 @@ constexpr double kRelaxed = 1e-11;  // m; a lateral deflection this small stores
 constexpr int kActivationPasses = 24;  // each gains at least a digit where the surface is smooth
 constexpr int kRelaxedPasses = 8;
 constexpr double kRecoveryShare = 0.5;  // of the tip's travel: how fast the offset may return
+constexpr double kRounding = 1e-12;     // N; what the limit on the change of force overlooks
+constexpr int kShorterSlides = 4;       // tries, before the contact point is held
 
 bool finite(const Vec3& v) noexcept {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
@@ -86,57 +88,112 @@ bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
   LocalModel model(*surface_, facing.point, 0);
   const double depth = model.deflection(x).geometric;
   if (!(depth >= 0 && depth <= surface_->deepest())) return false;
-  goal_ = depth;
   model.set_offset(depth);
   approaching_.reset();
   seen_.status |= PALPATE_ACTIVATED;
-  commit(model, x, 0);
+  const Deflection d = model.deflection(x);
+  commit({model, d, model.respond(d), depth, 0}, 0);
   return true;
 }
 
 void ContactState::touch(const Vec3& x, double travelled) noexcept {
-  const Deflection before = model_->deflection(x);
-  const double energy_before = model_->energy(before);  // E_{i-1}(x_i)
+  const Deflection held = model_->deflection(x);
+  const double energy_before = model_->energy(held);  // E_{i-1}(x_i)
   seen_.absorbed += energy_before - seen_.energy;
-  LocalModel moved = slide(x, before);
-  if (release(moved, x, energy_before)) return;
-  rearm(moved, x);
-  if (settings_.budget == EnergyBudget::Kept) {
-    const EnergyVerdict verdict =
-        judge(moved, x, tank_.budget(energy_before), goal_, kRecoveryShare * travelled);
-    if (verdict.hold)
-      moved = *model_;
-    else
-      moved.set_offset(verdict.offset);
-    if (verdict.limited) seen_.status |= PALPATE_ENERGY_LIMITED;
+  const Candidate next = choose(x, held, energy_before, travelled);
+  seen_.status |= next.status;
+  if (release(next, x, energy_before)) return;
+  if (norm(next.model.contact_point() - model_->contact_point()) > 0) {
+    seen_.status |= PALPATE_SLIDING;
   }
-  if (norm(moved.contact_point() - model_->contact_point()) > 0) seen_.status |= PALPATE_SLIDING;
-  commit(moved, x, energy_before);
+  commit(next, energy_before);
 }
 
-/// Where the lateral deflection exceeds the slip limit, c moves by the excess. Out of normal
-/// contact the limit is 0: c follows the tip until x - c is parallel to n.
-LocalModel ContactState::slide(const Vec3& x, const Deflection& before) noexcept {
-  if (!(before.depth > 0)) {
+/// The slide and the return of the offset as far as the force may change in this step. To hold the
+/// contact point is always within the limit.
+ContactState::Candidate ContactState::choose(const Vec3& x, const Deflection& held,
+                                             double energy_before,
+                                             double travelled) const noexcept {
+  const double allowed = settings_.steepness * travelled + kRounding;
+  const auto within = [&](const Candidate& c) {
+    return norm(c.response.force - seen_.force) <= allowed;
+  };
+  Candidate next = move(x, held, energy_before, 1, kRecoveryShare * travelled);
+  if (within(next)) return next;
+  next = move(x, held, energy_before, 1, 0);
+  double share = 1;
+  for (int i = 0; i < kShorterSlides && !within(next); ++i) {
+    const double excess = norm(next.response.force - seen_.force) / allowed;
+    share *= std::clamp(0.9 / excess, 0.02, 0.7);
+    next = move(x, held, energy_before, share, 0);
+  }
+  if (!within(next)) next = {*model_, held, model_->respond(held), goal_, 0};
+  next.status |= PALPATE_FORCE_LIMITED;
+  return next;
+}
+
+/// The model after a share of the slide, with an offset that keeps the energy in the budget.
+ContactState::Candidate ContactState::move(const Vec3& x, const Deflection& held,
+                                           double energy_before, double share,
+                                           double recovery) const noexcept {
+  Candidate next{*model_, held, {}, goal_, 0};
+  next.model = slide(x, held, share, next.status);
+  next.deflection = next.model.deflection(x);
+  if (next.deflection.depth > 0) {
+    if (settings_.budget == EnergyBudget::Kept) keep_budget(next, x, energy_before, recovery);
+  } else {
+    // Out of normal contact but perhaps inside the body: the offset follows the tip outwards, at no
+    // energy, until the true surface is felt again.
+    const double rearmed = std::min(next.model.offset(), std::max(next.deflection.geometric, 0.0));
+    next.goal = std::min(goal_, rearmed);
+    next.model.set_offset(rearmed);
+    next.deflection = next.model.deflection(x);
+    if (settings_.budget == EnergyBudget::Kept) keep_budget(next, x, energy_before, 0);
+  }
+  next.response = next.model.respond(next.deflection);
+  return next;
+}
+
+void ContactState::keep_budget(Candidate& moved, const Vec3& x, double energy_before,
+                               double recovery) const noexcept {
+  const EnergyVerdict verdict =
+      judge(moved.model, x, tank_.budget(energy_before), moved.goal, recovery);
+  if (verdict.hold) {
+    moved.model = *model_;
+    moved.goal = goal_;
+  } else {
+    moved.model.set_offset(verdict.offset);
+  }
+  if (verdict.limited) moved.status |= PALPATE_ENERGY_LIMITED;
+  moved.deflection = moved.model.deflection(x);
+}
+
+/// Where the lateral deflection exceeds the slip limit, c moves by the excess, or a share of it.
+/// Out of normal contact the limit is 0: c follows the tip until x - c is parallel to n.
+LocalModel ContactState::slide(const Vec3& x, const Deflection& held, double share,
+                               std::uint32_t& status) const noexcept {
+  if (!(held.depth > 0) && share == 1) {
     const Projection p = project(*surface_, model_->point(), x, kRelaxedPasses, kRelaxed);
-    if (p.at_border) seen_.status |= PALPATE_AT_BORDER;
+    if (p.at_border) status |= PALPATE_AT_BORDER;
     return {*surface_, p.point, model_->offset()};
   }
-  const double excess = before.lateral - model_->slip_limit(before, settings_.friction);
+  const double excess = held.lateral - model_->slip_limit(held, settings_.friction);
   if (!(excess > 0)) return *model_;
-  const Walk moved = walk(*surface_, model_->point(), before.tangent, excess);
-  if (moved.at_border) seen_.status |= PALPATE_AT_BORDER;
+  const Walk moved = walk(*surface_, model_->point(), held.tangent, share * excess);
+  if (moved.at_border) status |= PALPATE_AT_BORDER;
   return {*surface_, moved.point, model_->offset()};
 }
 
 /// The contact ends when the tip is out of normal contact and outside the body. What a border kept
 /// from relaxing is discarded, not credited to the tank.
-bool ContactState::release(const LocalModel& moved, const Vec3& x, double energy_before) noexcept {
-  const Deflection d = moved.deflection(x);
-  const Element& e = surface_->element(moved.point().element);
+bool ContactState::release(const Candidate& moved, const Vec3& x, double energy_before) noexcept {
+  const Deflection& d = moved.deflection;
+  const Element& e = surface_->element(moved.model.point().element);
   if (d.depth > 0 || surface_->outside_distance(e, x) < 0) return false;
   if (d.lateral > kRelaxed) {
-    // c is not opposite to the tip, so its plane does not decide on which side the tip is.
+    // The lateral force still has to fall as the tip goes on; or c is not opposite to the tip, so
+    // that its plane does not decide on which side the tip is.
+    if (moved.status & PALPATE_FORCE_LIMITED) return false;
     if (closest_if_inside(x).element != kNoElement) return false;
     seen_.status |= PALPATE_DROPPED;
   } else {
@@ -147,28 +204,18 @@ bool ContactState::release(const LocalModel& moved, const Vec3& x, double energy
   return true;
 }
 
-/// Out of normal contact but inside the body: the offset follows the tip outwards, at zero energy,
-/// until the true surface is felt again.
-void ContactState::rearm(LocalModel& moved, const Vec3& x) noexcept {
-  const Deflection d = moved.deflection(x);
-  if (d.depth > 0) return;
-  goal_ = std::min(goal_, std::max(d.geometric, 0.0));
-  moved.set_offset(std::min(moved.offset(), std::max(d.geometric, 0.0)));
-}
-
-void ContactState::commit(const LocalModel& model, const Vec3& x, double energy_before) noexcept {
-  model_ = model;
-  const Deflection d = model.deflection(x);
-  const LocalResponse r = model.respond(d);
-  tank_.settle(energy_before, r.energy);
-  if (d.depth > model.deepest()) seen_.status |= PALPATE_BEYOND_DEPTH;
-  seen_.point = model.point();
-  seen_.contact_point = model.contact_point();
-  seen_.normal = model.normal();
-  seen_.deflection = d;
-  seen_.offset = model.offset();
-  seen_.energy = r.energy;
-  seen_.force = r.force;
+void ContactState::commit(const Candidate& next, double energy_before) noexcept {
+  model_ = next.model;
+  goal_ = next.goal;
+  tank_.settle(energy_before, next.response.energy);
+  if (next.deflection.depth > next.model.deepest()) seen_.status |= PALPATE_BEYOND_DEPTH;
+  seen_.point = next.model.point();
+  seen_.contact_point = next.model.contact_point();
+  seen_.normal = next.model.normal();
+  seen_.deflection = next.deflection;
+  seen_.offset = next.model.offset();
+  seen_.energy = next.response.energy;
+  seen_.force = next.response.force;
   seen_.tank = tank_.level();
 }
 

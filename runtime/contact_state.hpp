@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "format/vec3.hpp"
@@ -22,6 +23,9 @@ struct ContactSettings {
   double friction = 0;     ///< mu >= 0
   double tank_cap = 5e-3;  ///< J; 0 = strict Theorem 2
   EnergyBudget budget = EnergyBudget::Kept;
+  /// N/m, >= L_stick: between two steps the force changes by no more than this times the travel of
+  /// the tip, whatever slides or offsets change (see ContactState).
+  double steepness = std::numeric_limits<double>::infinity();
 };
 
 /// What a step left behind; the fields are those of palpate_observation.
@@ -47,7 +51,15 @@ struct ContactObservation {
 /// normally lasts no step at all, and longer only where no point of the surface faces the tip
 /// (beyond a border). On activation d0 = n . (x - c), so that E = 0.
 ///
-/// At every instant absorbed >= tank + E >= 0. step() is noexcept, allocation-free and bounded. One
+/// At every instant absorbed >= tank + E >= 0.
+///
+/// Between two steps |f_i(x_i) - f_{i-1}(x_{i-1})| <= steepness |x_i - x_{i-1}|, unless DROPPED
+/// says otherwise. With the contact point held this is so for any steepness >= L_stick; a slide, or
+/// a change of the offset, that would exceed it is made in part, and the rest in later steps. So
+/// the condition of Theorem 1 [Mahvash & Hayward 2005, eq. 33] is met in every sample, also at
+/// edges, at borders and by the energy rule.
+///
+/// step() is noexcept, allocation-free and bounded. One
 /// object belongs to one thread at a time; the surface and the tree may be shared.
 class ContactState {
  public:
@@ -68,11 +80,26 @@ class ContactState {
   void detect(const Vec3& from, const Vec3& x) noexcept;
   bool begin_at(const Projection& facing, const Vec3& x) noexcept;
   SurfacePoint closest_if_inside(const Vec3& x) const noexcept;
+  /// A model for the next step and what led to it.
+  struct Candidate {
+    LocalModel model;
+    Deflection deflection;
+    LocalResponse response;
+    double goal = 0;
+    std::uint32_t status = 0;
+  };
+
   void touch(const Vec3& x, double travelled) noexcept;
-  LocalModel slide(const Vec3& x, const Deflection& before) noexcept;
-  bool release(const LocalModel& moved, const Vec3& x, double energy_before) noexcept;
-  void rearm(LocalModel& moved, const Vec3& x) noexcept;
-  void commit(const LocalModel& model, const Vec3& x, double energy_before) noexcept;
+  Candidate choose(const Vec3& x, const Deflection& held, double energy_before,
+                   double travelled) const noexcept;
+  Candidate move(const Vec3& x, const Deflection& held, double energy_before, double share,
+                 double recovery) const noexcept;
+  LocalModel slide(const Vec3& x, const Deflection& held, double share,
+                   std::uint32_t& status) const noexcept;
+  void keep_budget(Candidate& moved, const Vec3& x, double energy_before,
+                   double recovery) const noexcept;
+  bool release(const Candidate& moved, const Vec3& x, double energy_before) noexcept;
+  void commit(const Candidate& next, double energy_before) noexcept;
   void free_contact() noexcept;
   void drop() noexcept;
 

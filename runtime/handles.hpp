@@ -14,6 +14,7 @@ struct palpate_library {
       : surface(library),
         tree(surface),
         info(describe(library, surface)),
+        steepness(limit_of(library)),
         certified(!library.certificate.triangles.empty()) {}
   palpate_library(const palpate_library&) = delete;  // the tree points into the surface
   palpate_library& operator=(const palpate_library&) = delete;
@@ -21,9 +22,14 @@ struct palpate_library {
   static palpate_library_info describe(const palpate::Library& library,
                                        const palpate::runtime::Surface& surface);
 
+  /// What the change of force is held to, N/m: the certified bound, at most 4 L_stick (a slide can
+  /// be unbounded, and follows well enough below that); none without a certificate.
+  static double limit_of(const palpate::Library& library);
+
   palpate::runtime::Surface surface;
   palpate::runtime::CollisionTree tree;
   palpate_library_info info;
+  double steepness;
   bool certified;
 };
 

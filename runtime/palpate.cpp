@@ -9,6 +9,7 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <new>
 #include <string>
@@ -85,6 +86,12 @@ palpate_library_info palpate_library::describe(const palpate::Library& library,
   return info;
 }
 
+double palpate_library::limit_of(const palpate::Library& library) {
+  const palpate::Certificate& c = library.certificate;
+  if (c.triangles.empty()) return std::numeric_limits<double>::infinity();
+  return std::min(std::max(c.stick, c.slip), 4 * c.stick);
+}
+
 extern "C" {
 
 const char* palpate_version(void) {
@@ -145,7 +152,7 @@ int palpate_library_describe(const palpate_library* library, palpate_library_inf
 
 void palpate_settings_default(palpate_settings* settings) {
   if (settings == nullptr) return;
-  *settings = {sizeof(palpate_settings), -1.0, kDefaultTankCap};
+  *settings = {sizeof(palpate_settings), -1.0, kDefaultTankCap, 0};
 }
 
 int palpate_state_create(const palpate_library* library, const palpate_settings* settings,
@@ -171,9 +178,17 @@ int palpate_state_create(const palpate_library* library, const palpate_settings*
         "palpate_state_create: the library has no certificate and thus no friction of its own; "
         "set settings.friction");
   }
-  const double friction = chosen.friction < 0 ? library->info.friction : chosen.friction;
+  if (!(chosen.steepness >= 0) ||
+      (chosen.steepness > 0 && chosen.steepness < library->info.stick)) {
+    return fail(PALPATE_ERROR_ARGUMENT,
+                "palpate_state_create: steepness must be 0 or at least the L_stick of the library");
+  }
+  ContactSettings contact;
+  contact.friction = chosen.friction < 0 ? library->info.friction : chosen.friction;
+  contact.tank_cap = chosen.tank_cap;
+  contact.steepness = chosen.steepness > 0 ? chosen.steepness : library->steepness;
   return guarded([&] {
-    *state = new palpate_state(*library, ContactSettings{friction, chosen.tank_cap});
+    *state = new palpate_state(*library, contact);
     return static_cast<int>(PALPATE_OK);
   });
 }

@@ -44,13 +44,18 @@ enum {
   PALPATE_BEYOND_DEPTH = 1u << 6,   /* deeper than the deepest sample: linear continuation */
   PALPATE_BAD_INPUT = 1u << 7,      /* NaN, infinity, dt <= 0, or a step longer than the diagonal of
                                        the body: zero force, the contact is dropped */
-  PALPATE_DROPPED = 1u << 8         /* the contact was dropped with stored energy discarded */
+  PALPATE_DROPPED = 1u << 8,        /* the contact was dropped with stored energy discarded */
+  PALPATE_FORCE_LIMITED = 1u << 9   /* a slide or a return of d0 was made in part only, so that the
+                                       force changes by no more than steepness times the travel */
 };
 
 typedef struct palpate_settings {
-  uint32_t size;   /* sizeof(palpate_settings), set by palpate_settings_default */
-  double friction; /* mu; negative = the value the library was certified for */
-  double tank_cap; /* J, cap of the energy tank; 0 = strict Theorem 2 */
+  uint32_t size;    /* sizeof(palpate_settings), set by palpate_settings_default */
+  double friction;  /* mu; negative = the value the library was certified for */
+  double tank_cap;  /* J, cap of the energy tank; 0 = strict Theorem 2 */
+  double steepness; /* N/m: the force changes by at most this times the travel of the tip; 0 = the
+                       certified bound, or 4 L_stick when that is less; else at least L_stick.
+                       Without a certificate there is no limit but the one given here. */
 } palpate_settings;
 
 /* Everything a recorder or a picture wants to know of the last step. */

@@ -196,4 +196,44 @@ Library thin_body(int n, double side, double thickness, const Responses& respons
   return top;
 }
 
+Library cube(int n, double side, const Responses& responses) {
+  std::map<std::array<int, 3>, std::int32_t> number;  // one vertex for the faces that share it
+  std::vector<Vec3> positions;
+  const auto vertex = [&](const std::array<int, 3>& at) {
+    const auto [it, is_new] = number.emplace(at, static_cast<std::int32_t>(positions.size()));
+    if (is_new) positions.push_back({side * at[0] / n, side * at[1] / n, side * at[2] / n});
+    return it->second;
+  };
+  std::vector<Triangle> triangles;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const int level : {0, n}) {
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) {
+          const auto corner = [&](int a, int b) {
+            std::array<int, 3> at{};
+            at[axis] = level;
+            at[(axis + 1) % 3] = a;
+            at[(axis + 2) % 3] = b;
+            return vertex(at);
+          };
+          std::array<std::int32_t, 4> q{corner(i, j), corner(i + 1, j), corner(i + 1, j + 1),
+                                        corner(i, j + 1)};
+          if (level == 0) std::swap(q[1], q[3]);
+          triangles.push_back({q[0], q[1], q[2]});
+          triangles.push_back({q[0], q[2], q[3]});
+        }
+      }
+    }
+  }
+  std::vector<Vec3> inward(positions.size(), Vec3{});
+  for (const auto& [at, v] : number) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (at[axis] == 0) inward[static_cast<std::size_t>(v)][axis] += 1;
+      if (at[axis] == n) inward[static_cast<std::size_t>(v)][axis] -= 1;
+    }
+  }
+  for (Vec3& u : inward) u = unit(u);
+  return finish(std::move(positions), std::move(inward), std::move(triangles), responses);
+}
+
 }  // namespace palpate::test

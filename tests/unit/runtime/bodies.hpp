@@ -39,4 +39,8 @@ Library plate(int n, double side, const Responses& responses);
 /// the rim.
 Library thin_body(int n, double side, double thickness, const Responses& responses);
 
+/// Cube from the origin with n x n squares of two triangles on each face; the directions of edges
+/// and corners are the mean of their faces.
+Library cube(int n, double side, const Responses& responses);
+
 }  // namespace palpate::test

@@ -218,6 +218,34 @@ TEST(Contact, AHoleLetsTheTipThrough) {
   }
 }
 
+TEST(Contact, TheForceChangesNoFasterThanTheSteepnessUntilItHasGone) {
+  // Lifted while slipping, the force of a plate of springs k falls by sqrt(1 + mu^2) k for each
+  // metre. Held to k, the lateral part lags behind, follows, and still ends in a proper release.
+  const double k = 170;
+  const double mu = 0.6;
+  const double unlimited = std::sqrt(1 + mu * mu) * k;
+  for (const double steepness : {k, 1.001 * unlimited}) {
+    Rig rig(plate(10, 0.1, [&](const Vec3&) { return wall_response(k, k); }),
+            {mu, 5e-3, runtime::EnergyBudget::Kept, steepness});
+    rig.step({0.02, 0.03, 0.0001});
+    for (int i = 0; i <= 140; ++i) rig.step({0.02, 0.03, -5e-5 * i});
+    for (int i = 0; i <= 500; ++i) rig.step({0.02 + 2e-5 * i, 0.03, -0.007});
+    std::uint32_t status = 0;
+    double steepest = 0;
+    for (int i = 1; i <= 1200; ++i) {
+      const Vec3 before = rig.seen().force;
+      status |= rig.step({0.03, 0.03, -0.007 + 1e-5 * i});
+      steepest = std::max(steepest, norm(rig.seen().force - before) / 1e-5);
+    }
+    EXPECT_LE(steepest, steepness * (1 + 1e-6));
+    EXPECT_GT(steepest, 0.98 * std::min(steepness, unlimited));
+    EXPECT_EQ((status & PALPATE_FORCE_LIMITED) != 0, steepness < unlimited);
+    EXPECT_EQ(norm(rig.seen().force), 0);
+    EXPECT_TRUE(status & PALPATE_RELEASED);
+    EXPECT_FALSE(status & PALPATE_DROPPED);
+  }
+}
+
 /// Solid angle of the closed surface seen from x, over 4 pi: 1 inside, 0 outside.
 double winding(const Library& body, const Vec3& x) {
   double sum = 0;

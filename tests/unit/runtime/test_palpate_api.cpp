@@ -172,6 +172,11 @@ TEST_F(PalpateApi, RefusesSettingsOutOfRange) {
   bad = settings_;
   bad.friction = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(palpate_state_create(library_, &bad, &none), PALPATE_ERROR_ARGUMENT);
+  bad = settings_;
+  bad.steepness = -1;
+  EXPECT_EQ(palpate_state_create(library_, &bad, &none), PALPATE_ERROR_ARGUMENT);
+  bad.steepness = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(palpate_state_create(library_, &bad, &none), PALPATE_ERROR_ARGUMENT);
   // This library was never certified, so it has no friction of its own to fall back to.
   EXPECT_EQ(palpate_state_create(library_, nullptr, &none), PALPATE_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(palpate_last_error(), "friction"), nullptr);

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "watched_contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/palpate.h"
+
+namespace palpate::test {
+namespace {
+
+constexpr double kForceTolerance =
+    1e-9;  // N; at a release 1e-11 m of lateral deflection may be left
+
+/// Force and energy of a stored curve at d, from its slopes: f' is linear between knots.
+double curve_energy(const ResponseCurve& curve, double d) {
+  double force = 0;
+  double energy = 0;
+  for (std::size_t k = 0; k < curve.knot.size() && d > static_cast<double>(curve.knot[k]); ++k) {
+    const bool last = k + 1 == curve.knot.size();
+    const double start = static_cast<double>(curve.knot[k]);
+    const double s0 = static_cast<double>(curve.slope[k]);
+    const double piece = last ? 1 : static_cast<double>(curve.knot[k + 1]) - start;
+    const double rate = last ? 0 : (static_cast<double>(curve.slope[k + 1]) - s0) / piece;
+    const double x = last ? d - start : std::min(d - start, piece);
+    energy += x * (force + x * (s0 / 2 + x * rate / 6));
+    force += x * (s0 + x * rate / 2);
+  }
+  return energy;
+}
+
+bool finite(const Vec3& v) {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+}  // namespace
+
+double model_energy(const Library& library, const runtime::ContactObservation& model,
+                    const Vec3& x) {
+  if (model.point.element < 0) return 0;
+  const Triangle& t = library.triangles[static_cast<std::size_t>(model.point.element)];
+  const Vec3 r = x - model.contact_point;
+  const double depth = dot(r, model.normal);
+  const double rho = norm(r - depth * model.normal);
+  double energy = 0;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
+    energy += model.point.natural[l] *
+              (curve_energy(node.normal, depth - model.offset) + curve_energy(node.lateral, rho));
+  }
+  return energy;
+}
+
+WatchedContact::WatchedContact(const Library& library, const palpate_library& body,
+                               const runtime::ContactSettings& settings)
+    : library_(library),
+      contact_(body.surface, body.tree, settings),
+      bound_(std::min(settings.steepness, palpate_library::limit_of(library))) {}
+
+std::uint32_t WatchedContact::step(const Vec3& x) {
+  const runtime::ContactObservation before = seen();
+  const std::uint32_t status = contact_.step(x);
+  ++steps;
+  contacts += status & PALPATE_ACTIVATED ? 1 : 0;
+  slides += status & PALPATE_SLIDING ? 1 : 0;
+  limited += status & PALPATE_ENERGY_LIMITED ? 1 : 0;
+  force_limited += status & PALPATE_FORCE_LIMITED ? 1 : 0;
+  drops += status & PALPATE_DROPPED ? 1 : 0;
+  always_finite = always_finite && finite(seen().force) && std::isfinite(seen().energy) &&
+                  std::isfinite(seen().absorbed) && std::isfinite(seen().tank);
+  if (status & PALPATE_BAD_INPUT) {
+    // The tip did not move as far as the body knows: what was stored is given up.
+    if (finite(x)) last_ = x;
+    return status;
+  }
+  account(x, before);
+  compare(x, before);
+  last_ = x;
+  return status;
+}
+
+void WatchedContact::account(const Vec3& x, const runtime::ContactObservation& before) {
+  const double energy_before = model_energy(library_, before, x);
+  const double energy_after = model_energy(library_, seen(), x);
+  work_ += energy_before - model_energy(library_, before, last_);
+  lowest = std::min(lowest, work_);
+  largest_gain = std::max(largest_gain, energy_after + seen().tank - energy_before - before.tank);
+  largest_disagreement = std::max(largest_disagreement, std::abs(work_ - seen().absorbed));
+}
+
+void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& before) {
+  if (seen().status & PALPATE_DROPPED) return;  // reported
+  const double allowed = bound_ * norm(x - last_) + kForceTolerance;
+  steepest_step = std::max(steepest_step, norm(seen().force - before.force) / allowed);
+}
+
+}  // namespace palpate::test
