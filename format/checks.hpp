@@ -30,6 +30,9 @@ inline constexpr double kLargest = std::numeric_limits<double>::max();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr Rule kAnything{-kInfinity, kInfinity, false, true, "anything"};
 inline constexpr Rule kFinite{};
+inline constexpr Rule kKnownFinite{-kLargest, kLargest, false, true, "finite (NaN: unknown)"};
+inline constexpr Rule kKnownNonNegative{0, kLargest, false, true,
+                                        "finite and not negative (NaN: unknown)"};
 inline constexpr Rule kNonNegative{0, kLargest, false, false, "finite and not negative"};
 inline constexpr Rule kBound{0, kInfinity, false, false, "not negative (infinite: no bound)"};
 inline constexpr Rule kKnownBound{0, kInfinity, false, true, "not negative (NaN: unknown)"};

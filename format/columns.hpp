@@ -21,13 +21,15 @@ struct Column {
   const char* units;
   const char* description;
   Rule rule;
+  bool optional = false;  ///< a file may lack it: the member keeps its initial value
 };
 
 // A function because clang 14 cannot deduce the arguments of an aggregate.
 template <class Record, class Field>
 constexpr Column<Record, Field> column(const char* name, Field Record::*member, const char* units,
-                                       const char* description, Rule rule) {
-  return {name, member, units, description, rule};
+                                       const char* description, Rule rule,
+                                       bool optional = false) {
+  return {name, member, units, description, rule, optional};
 }
 
 /// What stands for a member on disk: flags and enumerations as 8-bit numbers.
@@ -71,6 +73,7 @@ std::vector<Record> read_columns(const hdf5::Reader& reader, const std::string& 
   std::vector<Record> records;
   bool sized = false;
   const auto read_one = [&]<class Field>(const Column<Record, Field>& column) {
+    if (column.optional && !reader.has(group + "/" + column.name)) return;
     const auto values =
         reader.dataset<Stored<Field>>(group + "/" + column.name, sized ? records.size() : rows);
     check_column(checks, group, values, column);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/curves.hpp"
 
+#include <limits>
+
 #include "format/artifact.hpp"
 #include "format/columns.hpp"
 
@@ -8,7 +10,7 @@ namespace palpate {
 namespace {
 
 constexpr const char* kArtifact = "palpate.curves";
-constexpr const char* kRemedy = "make it again with 'palpate precompute'";
+constexpr const char* kRemedy = "make it again with 'palpate precompute' or 'palpate import'";
 
 /// A site and a path as they lie on disk: their paths and samples are runs of rows elsewhere.
 struct SiteRow {
@@ -24,6 +26,8 @@ struct PathRow {
   Vec3 direction{};
   std::int64_t first_sample = 0;
   std::int64_t sample_count = 0;
+  std::int32_t repeats = 0;
+  double contact_uncertainty = std::numeric_limits<double>::quiet_NaN();
 };
 
 constexpr auto kSiteColumns =
@@ -48,24 +52,35 @@ constexpr auto kPathColumns = std::make_tuple(
     column("first_sample", &PathRow::first_sample, "1", "Row of /sample where the path begins.",
            rules::kNonNegative),
     column("sample_count", &PathRow::sample_count, "1", "Number of samples of the path.",
-           rules::kNonNegative));
+           rules::kNonNegative),
+    column("repeats", &PathRow::repeats, "1", "Presses that were averaged; 0 when simulated.",
+           rules::kNonNegative, true),
+    column("contact_uncertainty", &PathRow::contact_uncertainty, "m",
+           "Standard uncertainty of where the displacement begins; NaN when exact.",
+           rules::kKnownNonNegative, true));
 
 constexpr auto kSampleColumns = std::make_tuple(
     column("displacement", &CurveSample::displacement, "m", "Of the tool along the path.",
            rules::kNonNegative),
     column("force", &CurveSample::force, "N", "Of the tool on the body.", rules::kFinite),
     column("strain_energy", &CurveSample::strain_energy, "J",
-           "Stored in the body, without contact penalty.", rules::kFinite),
+           "Stored in the body, without contact penalty; NaN when measured.", rules::kKnownFinite),
     column("tool_work", &CurveSample::tool_work, "J",
            "Integral of force . d(displacement) since the touch.", rules::kFinite),
-    column("min_jacobian", &CurveSample::min_jacobian, "1", "Smallest det F over the body.",
-           rules::kFinite),
+    column("min_jacobian", &CurveSample::min_jacobian, "1",
+           "Smallest det F over the body; NaN when measured.", rules::kKnownFinite),
     column("penetration", &CurveSample::penetration, "m",
-           "Deepest violation of the contact constraint.", rules::kFinite),
-    column("contact_area", &CurveSample::contact_area, "m^2", "Reference area in contact.",
-           rules::kNonNegative),
+           "Deepest violation of the contact constraint; NaN when measured.", rules::kKnownFinite),
+    column("contact_area", &CurveSample::contact_area, "m^2",
+           "Reference area in contact; NaN when measured.", rules::kKnownNonNegative),
     column("iterations", &CurveSample::iterations, "1", "Newton iterations of the sample.",
-           rules::kNonNegative));
+           rules::kNonNegative),
+    column("force_scatter", &CurveSample::force_scatter, "N",
+           "Standard deviation of the force along the path between repeats; NaN when unknown.",
+           rules::kKnownNonNegative, true),
+    column("force_uncertainty", &CurveSample::force_uncertainty, "N",
+           "Standard uncertainty of the force along the path; NaN when unknown.",
+           rules::kKnownNonNegative, true));
 
 /// The curves as they lie on disk.
 struct Flat {
@@ -85,7 +100,8 @@ Flat flatten(const Curves& curves) {
     for (const CurvePath& path : site.paths) {
       flat.paths.push_back({path.kind, path.held_depth, path.direction,
                             static_cast<std::int64_t>(flat.samples.size()),
-                            static_cast<std::int64_t>(path.samples.size())});
+                            static_cast<std::int64_t>(path.samples.size()), path.repeats,
+                            path.contact_uncertainty});
       flat.samples.insert(flat.samples.end(), path.samples.begin(), path.samples.end());
     }
   }
@@ -153,8 +169,12 @@ void unflatten(const Flat& flat, Curves& curves) {
     for (std::int64_t p = row.first_path; p < row.first_path + row.path_count; ++p) {
       const PathRow& path = flat.paths[static_cast<std::size_t>(p)];
       const auto first = flat.samples.begin() + path.first_sample;
-      site.paths.push_back(
-          {path.kind, path.held_depth, path.direction, {first, first + path.sample_count}});
+      site.paths.push_back({path.kind,
+                            path.held_depth,
+                            path.direction,
+                            {first, first + path.sample_count},
+                            path.repeats,
+                            path.contact_uncertainty});
     }
     curves.sites.push_back(std::move(site));
   }

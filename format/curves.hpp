@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -27,7 +28,9 @@ enum class PathKind : std::uint8_t {
 };
 
 /// One converged state of the tool on a path. The first sample of a normal path is the touch
-/// (displacement 0, force 0); the first of a lateral path is the held state (displacement 0).
+/// (displacement 0, force 0); the first of a lateral path is the held state (displacement 0). What
+/// only a solver knows (strain energy, Jacobian, penetration, area) is NaN in a measured sample,
+/// what only a measurement has (the last two) in a simulated one.
 struct CurveSample {
   double displacement = 0;   ///< m, of the tool along the path
   Vec3 force{};              ///< N, of the tool ON the body
@@ -37,6 +40,10 @@ struct CurveSample {
   double penetration = 0;    ///< m, deepest violation of the contact constraint
   double contact_area = 0;   ///< m^2, reference area in contact
   std::int32_t iterations = 0;
+  /// N, sample standard deviation of the force along the path between repeats; NaN when unknown.
+  double force_scatter = std::numeric_limits<double>::quiet_NaN();
+  /// N, standard uncertainty of the force along the path; NaN when unknown.
+  double force_uncertainty = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The displacement of its samples begins at 0 and never decreases.
@@ -45,6 +52,9 @@ struct CurvePath {
   double held_depth = 0;  ///< m, depth at which a lateral path was run; 0 for a normal path
   Vec3 direction{};       ///< unit; inward for a normal path, tangential for a lateral one
   std::vector<CurveSample> samples;
+  std::int32_t repeats = 0;  ///< presses that were averaged; 0 for a simulated path
+  /// m, standard uncertainty of where the displacement begins; NaN when it is exact.
+  double contact_uncertainty = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// All paths run at one response vertex.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -84,7 +85,8 @@ Json failures_of(const Curves& curves) {
 }
 
 Json summary_of(const Curves& curves) {
-  double cpu = 0, force = 0, jacobian = 1;
+  double cpu = 0, force = 0;
+  double jacobian = std::numeric_limits<double>::quiet_NaN();  // unknown where all is measured
   std::size_t samples = 0;
   for (const SiteCurves& site : curves.sites) {
     cpu += site.cpu_seconds;
@@ -92,7 +94,7 @@ Json summary_of(const Curves& curves) {
       samples += path.samples.size();
       for (const CurveSample& sample : path.samples) {
         force = std::max(force, norm(sample.force));
-        jacobian = std::min(jacobian, sample.min_jacobian);
+        jacobian = std::fmin(jacobian, sample.min_jacobian);
       }
     }
   }

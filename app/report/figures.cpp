@@ -77,7 +77,8 @@ std::vector<PathBalance> path_balances(const Curves& curves) {
       if (path.samples.empty()) continue;
       const CurveSample& end = path.samples.back();
       const double scale = std::max(std::abs(end.tool_work), std::abs(end.strain_energy));
-      if (!(scale > 0)) continue;
+      // A measured path has no stored energy to compare with.
+      if (!(scale > 0) || !std::isfinite(end.strain_energy)) continue;
       balances.push_back({site.vertex, path.kind, end.tool_work, end.strain_energy,
                           (end.tool_work - end.strain_energy) / scale});
     }

@@ -203,11 +203,14 @@ class FileFormat(unittest.TestCase):
         self.assertEqual(path["held_depth"][j], known.number())
         self.assertEqual(list(path["direction"][j]), known.numbers())
         self.assertEqual(path["sample_count"][j], known.number())
+        self.assertEqual(path["repeats"][j], known.number())
+        np.testing.assert_equal(path["contact_uncertainty"][j], known.number())
         first = path["first_sample"][j]
         for k in range(first, first + path["sample_count"][j]):
             for name in ("displacement", "force", "strain_energy", "tool_work", "min_jacobian",
-                         "penetration", "contact_area", "iterations"):
-                self.assertEqual(np.ravel(sample[name][k]).tolist(), known.numbers(), name)
+                         "penetration", "contact_area", "iterations", "force_scatter",
+                         "force_uncertainty"):
+                np.testing.assert_equal(np.ravel(sample[name][k]), known.numbers(), name)
 
     def test_library_values(self):
         known = Tokens(self.folder / "library.txt")

@@ -114,6 +114,19 @@ ResponseCurve response_curve(Random& random) {
   return curve;
 }
 
+/// What only a solver knows becomes unknown, what only a measurement has becomes known.
+void make_measured(CurvePath& path, Random& random) {
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  path.repeats = random.integer(1, 9);
+  path.contact_uncertainty = random.between(0, 1e-4);
+  for (CurveSample& sample : path.samples) {
+    sample.strain_energy = sample.min_jacobian = unknown;
+    sample.penetration = sample.contact_area = unknown;
+    sample.force_uncertainty = random.between(0, 0.1);
+    if (path.repeats > 1) sample.force_scatter = random.between(0, 0.1);
+  }
+}
+
 CurvePath curve_path(Random& random, PathKind kind) {
   CurvePath path{kind, kind == PathKind::Lateral ? 0.003 : 0, random.direction(), {}};
   double travel = 0;
@@ -123,6 +136,7 @@ CurvePath curve_path(Random& random, PathKind kind) {
                             random.between(0, 1e-4), random.integer(1, 20)});
     travel += random.between(1e-5, 1e-3);
   }
+  if (path.samples.size() % 2 == 0) make_measured(path, random);
   return path;
 }
 
@@ -276,10 +290,11 @@ std::string dump(const Curves& curves) {
         << site.paths.size();
     for (const CurvePath& path : site.paths) {
       out << static_cast<int>(path.kind) << path.held_depth << path.direction
-          << path.samples.size();
+          << path.samples.size() << path.repeats << path.contact_uncertainty;
       for (const CurveSample& s : path.samples) {
         out << s.displacement << s.force << s.strain_energy << s.tool_work << s.min_jacobian
-            << s.penetration << s.contact_area << s.iterations;
+            << s.penetration << s.contact_area << s.iterations << s.force_scatter
+            << s.force_uncertainty;
       }
     }
   }

@@ -1,0 +1,319 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/measured/csv_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "format/error.hpp"
+
+namespace palpate::measured {
+namespace {
+
+/// Fewer rows of numbers than this are a table of results, not a record.
+constexpr std::size_t kFewestRows = 3;
+constexpr char kBlanks = ' ';
+
+[[noreturn]] void refuse(const std::string& where, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, where, problem, remedy);
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r";
+  const auto first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+struct Line {
+  std::size_t number = 0;  ///< counted from 1
+  std::string_view text;
+};
+
+/// The lines that hold something.
+std::vector<Line> lines_of(std::string_view text) {
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  std::vector<Line> lines;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const auto end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    if (!trimmed(line).empty()) lines.push_back({number, line});
+    if (end == std::string_view::npos) break;
+    text.remove_prefix(end + 1);
+  }
+  return lines;
+}
+
+std::vector<std::string> split_at_blanks(std::string_view line) {
+  std::vector<std::string> fields;
+  std::istringstream stream{std::string(line)};
+  for (std::string field; stream >> field;) fields.push_back(field);
+  return fields;
+}
+
+/// Fields of a line; a quoted field may hold the separator.
+std::vector<std::string> split(std::string_view line, char separator) {
+  if (separator == kBlanks) return split_at_blanks(line);
+  std::vector<std::string> fields{""};
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == separator && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  for (std::string& field : fields) field = std::string(trimmed(field));
+  // Many programs end every line with a separator.
+  if (fields.size() > 1 && fields.back().empty()) fields.pop_back();
+  return fields;
+}
+
+std::optional<double> number_of(std::string field, char decimal) {
+  if (decimal == ',') {
+    if (field.find('.') != std::string::npos) return std::nullopt;
+    std::replace(field.begin(), field.end(), ',', '.');
+  }
+  std::string_view text = field;
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+struct Dialect {
+  char separator;
+  char decimal;
+};
+constexpr Dialect kDialects[] = {{'\t', '.'}, {';', '.'}, {',', '.'},    {'\t', ','},
+                                 {';', ','},  {',', ','}, {kBlanks, '.'}};
+
+/// A run of lines that are all numbers, equally many on each.
+struct Run {
+  std::size_t begin = 0, end = 0;
+  std::size_t width = 0;
+  std::size_t rows() const { return end - begin; }
+};
+
+std::size_t width_if_numbers(const Line& line, const Dialect& dialect) {
+  const auto fields = split(line.text, dialect.separator);
+  for (const std::string& field : fields) {
+    if (!number_of(field, dialect.decimal)) return 0;
+  }
+  return fields.size();
+}
+
+Run longest_run(const std::vector<Line>& lines, const Dialect& dialect) {
+  Run longest, run;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::size_t width = width_if_numbers(lines[i], dialect);
+    if (width < 2 || width != run.width) run = {i, i, width};
+    run.end = i + 1;
+    if (width >= 2 && run.rows() > longest.rows()) longest = run;
+  }
+  return longest;
+}
+
+std::string at_line(const std::string& file, const Line& line) {
+  return file + ":" + std::to_string(line.number);
+}
+
+/// A row that breaks off the numbers, told by its first field that is none.
+[[noreturn]] void refuse_row(const std::string& file, const Line& line, const Dialect& dialect,
+                             std::size_t width) {
+  const auto fields = split(line.text, dialect.separator);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (number_of(fields[i], dialect.decimal)) continue;
+    refuse(at_line(file, line),
+           "field " + std::to_string(i + 1) + " ('" + fields[i] + "') is not a number",
+           "mend or remove the row; a file holds one table, split one that holds more");
+  }
+  refuse(at_line(file, line),
+         "the row has " + std::to_string(fields.size()) + " fields, " + std::to_string(width) +
+             " expected",
+         "mend or remove the row; a file holds one table, split one that holds more");
+}
+
+std::string without_brackets(std::string_view text) {
+  text = trimmed(text);
+  const bool round = text.starts_with('(') && text.ends_with(')');
+  const bool square = text.starts_with('[') && text.ends_with(']');
+  if (text.size() >= 2 && (round || square)) text = trimmed(text.substr(1, text.size() - 2));
+  return std::string(text);
+}
+
+bool is_bracketed(std::string_view text) {
+  return without_brackets(text) != trimmed(text);
+}
+
+/// A row of units: every field that is not empty is one, or stands in brackets.
+bool is_unit_row(const std::vector<std::string>& fields) {
+  bool any = false;
+  for (const std::string& field : fields) {
+    if (field.empty()) continue;
+    if (!is_bracketed(field) && !is_lab_unit(field)) return false;
+    any = true;
+  }
+  return any;
+}
+
+/// "Load (N)", "Load [N]", "Load / N", "Load in N", "Load_N" -> name and unit. What follows must be
+/// a known unit, except in brackets at the end.
+CsvColumn name_and_unit(const std::string& field) {
+  for (const auto& [open, close] : {std::pair{'(', ')'}, std::pair{'[', ']'}}) {
+    const auto at = field.rfind(open);
+    if (at == std::string::npos || at == 0 || !field.ends_with(close)) continue;
+    return {std::string(trimmed(std::string_view(field).substr(0, at))),
+            without_brackets(field.substr(at)),
+            {}};
+  }
+  for (const std::string_view mark : {" / ", "/", " in ", ", ", "_"}) {
+    const auto at = field.rfind(mark);
+    if (at == std::string::npos || at == 0) continue;
+    const std::string unit(trimmed(std::string_view(field).substr(at + mark.size())));
+    if (!is_lab_unit(unit)) continue;
+    return {std::string(trimmed(std::string_view(field).substr(0, at))), unit, {}};
+  }
+  return {field, "", {}};
+}
+
+std::vector<CsvColumn> header_columns(const std::string& file, const std::vector<Line>& lines,
+                                      const Run& run, const Dialect& dialect,
+                                      std::size_t& header_begin) {
+  const std::string remedy = "declare the columns with [[column]] in the sidecar";
+  if (run.begin == 0) refuse(file, "the table has no header", remedy);
+  std::size_t names_at = run.begin - 1;
+  auto names = split(lines[names_at].text, dialect.separator);
+  std::vector<std::string> units;
+  if (is_unit_row(names) && names_at > 0) {
+    units = std::exchange(names, split(lines[--names_at].text, dialect.separator));
+    units.resize(run.width);
+  }
+  if (names.size() != run.width) {
+    refuse(at_line(file, lines[names_at]),
+           "the header has " + std::to_string(names.size()) + " names for " +
+               std::to_string(run.width) + " columns of numbers",
+           remedy);
+  }
+  std::vector<CsvColumn> columns;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (number_of(names[i], dialect.decimal)) refuse_row(file, lines[names_at], dialect, run.width);
+    columns.push_back(units.empty() ? name_and_unit(names[i])
+                                    : CsvColumn{names[i], without_brackets(units[i]), {}});
+  }
+  header_begin = names_at;
+  return columns;
+}
+
+std::vector<CsvColumn> declared_columns(const std::string& file, const Run& run,
+                                        const std::vector<DeclaredColumn>& declared) {
+  if (declared.size() != run.width) {
+    refuse(file,
+           std::to_string(declared.size()) + " columns are declared, the table has " +
+               std::to_string(run.width),
+           "declare each column of the file, in order");
+  }
+  std::vector<CsvColumn> columns;
+  for (const DeclaredColumn& column : declared) columns.push_back({column.name, column.unit, {}});
+  return columns;
+}
+
+void read_rows(const std::vector<Line>& lines, const Run& run, const Dialect& dialect,
+               std::vector<CsvColumn>& columns) {
+  for (std::size_t row = run.begin; row < run.end; ++row) {
+    const auto fields = split(lines[row].text, dialect.separator);
+    for (std::size_t i = 0; i < run.width; ++i) {
+      columns[i].values.push_back(*number_of(fields[i], dialect.decimal));
+    }
+  }
+}
+
+}  // namespace
+
+CsvTable parse_csv(std::string_view text, const std::string& file,
+                   const std::vector<DeclaredColumn>& declared) {
+  const std::vector<Line> lines = lines_of(text);
+  Run run;
+  Dialect dialect = kDialects[0];
+  for (const Dialect& candidate : kDialects) {
+    const Run found = longest_run(lines, candidate);
+    if (found.rows() <= run.rows()) continue;
+    run = found;
+    dialect = candidate;
+  }
+  if (run.rows() < kFewestRows) {
+    refuse(file, "no table of numbers in it",
+           "give a text file with columns separated by tabs, semicolons, commas or blanks");
+  }
+  if (run.end < lines.size()) refuse_row(file, lines[run.end], dialect, run.width);
+  CsvTable table;
+  table.file = file;
+  table.first_data_line = lines[run.begin].number;
+  std::size_t header_begin = run.begin;
+  table.columns = declared.empty() ? header_columns(file, lines, run, dialect, header_begin)
+                                   : declared_columns(file, run, declared);
+  for (std::size_t i = 0; i < header_begin; ++i) {
+    table.preamble.emplace_back(trimmed(lines[i].text));
+  }
+  read_rows(lines, run, dialect, table.columns);
+  return table;
+}
+
+CsvTable read_csv(const std::filesystem::path& path, const std::vector<DeclaredColumn>& declared) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  if (!stream || !(text << stream.rdbuf())) {
+    refuse(path.string(), "the record cannot be read", "check the path and the rights");
+  }
+  return parse_csv(text.str(), path.string(), declared);
+}
+
+std::vector<double> column_in_si(const CsvTable& table, const std::string& name, Quantity quantity,
+                                 const std::string& declared_unit) {
+  const auto is_it = [&](const CsvColumn& column) { return column.name == name; };
+  const auto count = std::count_if(table.columns.begin(), table.columns.end(), is_it);
+  if (count != 1) {
+    std::string names;
+    for (const CsvColumn& column : table.columns) {
+      names += (names.empty() ? "'" : ", '") + column.name + "'";
+    }
+    refuse(table.file,
+           count == 0 ? "no column is named '" + name + "'"
+                      : "several columns are named '" + name + "'",
+           "the columns are " + names);
+  }
+  const CsvColumn& column = *std::find_if(table.columns.begin(), table.columns.end(), is_it);
+  const std::string where = table.file + ", column '" + name + "'";
+  const std::string units =
+      "units of " + std::string(quantity_name(quantity)) + " are " + lab_unit_list(quantity);
+  if (column.unit.empty() && declared_unit.empty()) {
+    refuse(where, "its unit is not given, neither in the file nor in the sidecar",
+           "declare it in the sidecar; " + units);
+  }
+  const std::string& symbol = column.unit.empty() ? declared_unit : column.unit;
+  const auto si = unit_in_si(symbol, quantity);
+  if (!si) {
+    refuse(where, "'" + symbol + "' is not a unit of " + std::string(quantity_name(quantity)),
+           units);
+  }
+  if (!column.unit.empty() && !declared_unit.empty() && unit_in_si(declared_unit, quantity) != si) {
+    refuse(where, "the file says '" + column.unit + "', the sidecar says '" + declared_unit + "'",
+           "correct the one that is wrong");
+  }
+  std::vector<double> values = column.values;
+  for (double& value : values) value *= *si;
+  return values;
+}
+
+}  // namespace palpate::measured

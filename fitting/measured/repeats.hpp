@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Several presses of one site become one path of curves.h5: the mean, its scatter between the
+// presses, and the standard uncertainty of the mean.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fitting/measured/press.hpp"
+#include "format/curves.hpp"
+
+namespace palpate::measured {
+
+struct RepeatSettings {
+  int samples = 24;                   ///< of the path, evenly spaced in depth
+  double force_calibration = 0;       ///< relative standard uncertainty of the load cell
+  double compliance_uncertainty = 0;  ///< m/N, standard
+};
+
+/// A press on a common grid of depths.
+struct GriddedPress {
+  std::vector<double> force;        ///< N, local mean line at each depth
+  std::vector<double> uncertainty;  ///< N, standard, of that mean: noise alone
+};
+
+/// The loading branch at the given depths: at each the value of a straight line through the samples
+/// within half a step. @throws Error(Configuration) where a step holds no sample.
+GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<double>& depths,
+                     const std::string& where);
+
+/// The loading branches as one normal path along `inward`, from the touch to the depth that all
+/// presses reach. With u_c the standard uncertainty of the contact points, k the slope, n presses:
+///   force_scatter      sample standard deviation between the presses, unknown for one
+///   force_uncertainty  u^2 = max(scatter^2/n, (noise^2 + k^2 u_c^2)/n) + (r f)^2 + (k f u_C)^2,
+/// where the last two, calibration r and compliance u_C, are common to all presses.
+/// `contact_uncertainty` is the one of the mean contact point.
+CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
+                    const RepeatSettings& settings, const std::string& where);
+
+}  // namespace palpate::measured
