@@ -19,6 +19,7 @@ constexpr std::array kDamping{Unit{"N s/m", 1}};
 constexpr std::array kStiffness{Unit{"N/m", 1}};
 constexpr std::array kSpeed{Unit{"mm/s", 1e-3}, Unit{"cm/s", 1e-2}, Unit{"m/s", 1}};
 constexpr std::array kTime{Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"s", 1}};
+constexpr std::array kCompliance{Unit{"mm/N", 1e-3}, Unit{"um/N", 1e-6}, Unit{"m/N", 1}};
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t";
@@ -57,6 +58,8 @@ std::string_view dimension_name(Dimension dimension) {
       return "speed";
     case Dimension::Time:
       return "time";
+    case Dimension::Compliance:
+      return "compliance";
   }
   return "";
 }
@@ -83,6 +86,8 @@ std::span<const Unit> units_of(Dimension dimension) {
       return kSpeed;
     case Dimension::Time:
       return kTime;
+    case Dimension::Compliance:
+      return kCompliance;
   }
   return {};
 }

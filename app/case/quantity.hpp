@@ -19,7 +19,8 @@ enum class Dimension {
   Damping,
   Stiffness,
   Speed,
-  Time
+  Time,
+  Compliance
 };
 
 struct Unit {

@@ -16,14 +16,6 @@ double deepest(const PressCurve& press) {
   return depth;
 }
 
-/// A sample that knows nothing of what only a solver knows.
-CurveSample measured_sample() {
-  CurveSample sample;
-  sample.strain_energy = sample.min_jacobian = kUnknown;
-  sample.penetration = sample.contact_area = kUnknown;
-  return sample;
-}
-
 /// Slope of the force over the grid, by differences of neighbours.
 std::vector<double> slopes(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> slope(x.size(), 0.0);
@@ -55,6 +47,13 @@ void join(const std::vector<GriddedPress>& presses, const std::vector<PressCurve
 }
 
 }  // namespace
+
+CurveSample measured_sample() {
+  CurveSample sample;
+  sample.strain_energy = sample.min_jacobian = kUnknown;
+  sample.penetration = sample.contact_area = kUnknown;
+  return sample;
+}
 
 GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<double>& depths,
                      const std::string& where) {

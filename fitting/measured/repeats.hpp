@@ -17,6 +17,9 @@ struct RepeatSettings {
   double compliance_uncertainty = 0;  ///< m/N, standard
 };
 
+/// A sample that knows nothing of what only a solver knows.
+CurveSample measured_sample();
+
 /// A press on a common grid of depths.
 struct GriddedPress {
   std::vector<double> force;        ///< N, local mean line at each depth

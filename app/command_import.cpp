@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "app/measured/import.hpp"
+#include "app/pipeline/workspace.hpp"
+#include "format/crash_safe_file.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string sidecar, body, out;
+};
+
+int import_records(const Options& options) {
+  const Import result = import_measurement(options.sidecar, options.body);
+  const fs::path out = options.out;
+  prepare_output(out);
+  write_curves(out / "curves.h5", result.curves);
+  write_file_crash_safely(out / "import.json", result.account.dump(2) + "\n");
+  for (const auto& site : result.account["sites"]) {
+    say("  site {}: {} repeats to {:.2f} mm, {:.4f} N +- {:.4f} N, contact point +- {:.0f} um",
+        site["vertex"].get<int>(), site["repeats"].get<int>(), 1e3 * site["depth_m"].get<double>(),
+        site["force_N"].get<double>(), site["force_uncertainty_N"].get<double>(),
+        1e6 * site["contact_uncertainty_m"].get<double>());
+  }
+  say("import: {} records at {} sites -> {} (account in import.json)",
+      result.account["records"].size(), result.curves.sites.size(), (out / "curves.h5").string());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_import_command(CLI::App& root, Action& action) {
+  CLI::App* command = root.add_subcommand(
+      "import", "Records of a testing machine or robot -> curves.h5, like those of a campaign");
+  command->footer(
+      "Example: palpate import data/measured/bench/bench.toml --body out/bench/body.h5 "
+      "--out out/bench-measured");
+  const auto options = std::make_shared<Options>();
+  command->add_option("SIDECAR", options->sidecar, "Sidecar (TOML), see docs/measured.md")
+      ->required();
+  command->add_option("--body", options->body, "body.h5 on which the sites lie");
+  command->add_option("--out", options->out, "Folder of the artifacts")->required();
+  command->callback(
+      [options, &action] { action = [options] { return import_records(*options); }; });
+}
+
+}  // namespace palpate::app

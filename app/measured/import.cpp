@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/measured/import.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <sstream>
+
+#include "fitting/measured/csv_table.hpp"
+#include "fitting/measured/placement.hpp"
+#include "fitting/measured/repeats.hpp"
+#include "fitting/measured/robot.hpp"
+#include "format/error.hpp"
+#include "format/sha256.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+namespace m = palpate::measured;
+using Json = nlohmann::ordered_json;
+
+constexpr Vec3 kDown{0, 0, -1};
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+/// Everything found at one site.
+struct SiteRecords {
+  std::vector<m::PressCurve> presses;
+  std::vector<CurvePath> lateral;
+};
+
+class Importer {
+ public:
+  Importer(const fs::path& sidecar_file, const fs::path& body_file)
+      : sidecar_file_(sidecar_file), body_file_(body_file), s_(read_sidecar(sidecar_file)) {
+    if (!body_file.empty()) body_ = read_body(body_file);
+    for (const auto& column : s_.declared) declared_.push_back({column.name, column.unit});
+    place_frame();
+  }
+
+  Import run() {
+    for (const PressFileSection& press : s_.presses) read_press(press);
+    for (const RobotFileSection& robot : s_.robot_logs) read_robot(robot);
+    Import result;
+    result.curves = curves();
+    account_["sites"] = sites_account(result.curves);
+    account_["records"] = records_;
+    result.account = account_;
+    return result;
+  }
+
+ private:
+  fs::path path_of(const std::string& file) const { return sidecar_file_.parent_path() / file; }
+
+  std::vector<double> column(const m::CsvTable& table, const std::string& name,
+                             m::Quantity quantity) const {
+    const ColumnsSection& c = s_.columns;
+    const std::string& unit = quantity == m::Quantity::Time     ? c.time_unit
+                              : quantity == m::Quantity::Length ? c.length_unit
+                                                                : c.force_unit;
+    if (name.empty()) return {};
+    return m::column_in_si(table, name, quantity, unit);
+  }
+
+  m::PressSettings press_settings(int cycle) const {
+    m::PressSettings settings;
+    settings.compliance = s_.machine.compliance;
+    settings.compliance_uncertainty = s_.machine.compliance_uncertainty;
+    settings.cycle = cycle;
+    settings.exponent = s_.contact.exponent;
+    settings.method =
+        s_.contact.method == "fit" ? m::ContactMethod::Fit : m::ContactMethod::Threshold;
+    settings.threshold = s_.contact.threshold;
+    return settings;
+  }
+
+  void place_frame() {
+    if (s_.robot_logs.empty()) return;
+    if (!body_) {
+      throw Error(ErrorKind::Configuration, sidecar_file_.string(),
+                  "robot logs are placed on a body, and none is given",
+                  "add --body body.h5 (made by `palpate mesh`)");
+    }
+    if (s_.placement.frame == "body") return;
+    std::vector<m::Fiducial> fiducials;
+    for (const FiducialSection& f : s_.fiducials) fiducials.push_back({f.robot, f.body});
+    registration_ = m::register_fiducials(fiducials, sidecar_file_.string());
+    account_["registration_rms_m"] = registration_.rms;
+  }
+
+  int vertex_of(const PressFileSection& press, double& distance) const {
+    distance = 0;
+    const std::string where = path_of(press.file).string();
+    if (press.vertex < 0) {
+      if (!body_) {
+        throw Error(ErrorKind::Configuration, where, "a site given by its point needs a body",
+                    "add --body body.h5 (made by `palpate mesh`), or give a vertex");
+      }
+      const m::NearestSite site =
+          m::nearest_site(*body_, press.site, s_.placement.tolerance, where);
+      distance = site.distance;
+      return site.vertex;
+    }
+    if (!body_) return press.vertex;
+    const auto vertex = static_cast<std::size_t>(press.vertex);
+    if (vertex >= body_->response.node.size() || body_->response.is_site[vertex] == 0) {
+      throw Error(ErrorKind::Configuration, where,
+                  fmt::format("vertex {} is not a site of the body", press.vertex),
+                  "choose a vertex outside the supports");
+    }
+    return press.vertex;
+  }
+
+  void read_press(const PressFileSection& press) {
+    const fs::path file = path_of(press.file);
+    const m::CsvTable table = m::read_csv(file, declared_);
+    m::PressRecord record{file.string(), column(table, s_.columns.time, m::Quantity::Time),
+                          column(table, s_.columns.displacement, m::Quantity::Length),
+                          column(table, s_.columns.force, m::Quantity::Force)};
+    m::orient(record);
+    double distance = 0;
+    const int vertex = vertex_of(press, distance);
+    const m::PressCurve curve = m::analyse_press(record, press_settings(press.cycle));
+    add_account(press.file, table, vertex, distance, curve);
+    sites_[vertex].presses.push_back(curve);
+    files_.push_back(file);
+  }
+
+  m::RobotLog robot_log(const fs::path& file, const m::CsvTable& table) const {
+    const ColumnsSection& c = s_.columns;
+    m::RobotLog log;
+    log.name = file.string();
+    log.time = column(table, c.time, m::Quantity::Time);
+    const auto x = column(table, c.x, m::Quantity::Length);
+    const auto y = column(table, c.y, m::Quantity::Length);
+    const auto z = column(table, c.z, m::Quantity::Length);
+    const auto fx = column(table, c.fx, m::Quantity::Force);
+    const auto fy = column(table, c.fy, m::Quantity::Force);
+    const auto fz = column(table, c.fz, m::Quantity::Force);
+    const double sign = s_.placement.force_is == "on body" ? 1 : -1;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      log.tip.push_back(registration_.motion({x[i], y[i], z[i]}));
+      log.force.push_back(registration_.motion.rotate(sign * Vec3{fx[i], fy[i], fz[i]}));
+    }
+    return log;
+  }
+
+  void read_robot(const RobotFileSection& robot) {
+    const fs::path file = path_of(robot.file);
+    const m::CsvTable table = m::read_csv(file, declared_);
+    m::RobotSettings settings;
+    settings.press = press_settings(robot.cycle);
+    settings.placement_tolerance = s_.placement.tolerance;
+    settings.lateral_samples = s_.path.lateral_samples;
+    settings.force_calibration = s_.machine.force_calibration;
+    settings.centre_to_tip = s_.tool.reference == "centre" ? s_.tool.radius : 0;
+    const m::RobotCurves curves = m::analyse_robot_log(robot_log(file, table), *body_, settings);
+    add_account(robot.file, table, curves.site.vertex, curves.site.distance, curves.press);
+    records_.back()["tilt_rad"] = curves.tilt;
+    records_.back()["touch_m"] = curves.touch;
+    if (curves.lateral) {
+      records_.back()["lateral"] = {{"held_depth_m", curves.lateral->held_depth},
+                                    {"travel_m", curves.lateral->samples.back().displacement},
+                                    {"slip_at_m", number(curves.slip)}};
+      sites_[curves.site.vertex].lateral.push_back(*curves.lateral);
+    }
+    sites_[curves.site.vertex].presses.push_back(curves.press);
+    files_.push_back(file);
+  }
+
+  void add_account(const std::string& file, const m::CsvTable& table, int vertex, double distance,
+                   const m::PressCurve& curve) {
+    const m::Baseline& b = curve.baseline;
+    const double returned =
+        curve.work_loading > 0 ? curve.work_returned / curve.work_loading : m::kUnknown;
+    records_.push_back({{"file", file},
+                        {"vertex", vertex},
+                        {"distance_to_vertex_m", distance},
+                        {"preamble", table.preamble},
+                        {"cycles", curve.cycles},
+                        {"contact_m", curve.contact.displacement},
+                        {"contact_uncertainty_m", curve.contact.uncertainty},
+                        {"force_offset_N", b.offset},
+                        {"drift_N_per_s", b.drift},
+                        {"drift_uncertainty_N_per_s", number(b.drift_uncertainty)},
+                        {"noise_N", b.noise},
+                        {"rate_m_per_s", number(curve.rate)},
+                        {"deepest_m", curve.loading.back().depth},
+                        {"largest_force_N", curve.loading.back().force},
+                        {"work_loading_J", curve.work_loading},
+                        {"returned_share", number(returned)}});
+  }
+
+  Vec3 inward_of(int vertex) const {
+    return body_ ? body_->response.inward[static_cast<std::size_t>(vertex)] : kDown;
+  }
+
+  Curves curves() {
+    Curves curves;
+    curves.tool = {s_.tool.shape, s_.tool.radius, s_.tool.friction};
+    if (body_) curves.body_sha256 = sha256_of_file(body_file_);
+    const m::RepeatSettings settings{s_.path.samples, s_.machine.force_calibration,
+                                     s_.machine.compliance_uncertainty};
+    for (const auto& [vertex, records] : sites_) {
+      SiteCurves site;
+      site.vertex = vertex;
+      site.status = SiteStatus::Complete;
+      site.paths.push_back(m::mean_path(records.presses, inward_of(vertex), settings,
+                                        fmt::format("site at vertex {}", vertex)));
+      curves.depth = std::max(curves.depth, site.paths.back().samples.back().displacement);
+      for (const CurvePath& path : records.lateral) {
+        curves.lateral_travel = std::max(curves.lateral_travel, path.samples.back().displacement);
+        site.paths.push_back(path);
+      }
+      curves.sites.push_back(std::move(site));
+    }
+    curves.provenance = provenance();
+    return curves;
+  }
+
+  Provenance provenance() const {
+    Provenance provenance;
+    if (body_) provenance = body_->provenance;
+    std::ifstream stream(sidecar_file_, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    std::vector<fs::path> inputs{sidecar_file_};
+    if (body_) inputs.push_back(body_file_);
+    inputs.insert(inputs.end(), files_.begin(), files_.end());
+    provenance.steps.push_back(make_provenance_step("import", text.str(), inputs,
+                                                    {{"origin", "measured"},
+                                                     {"measurement", s_.name},
+                                                     {"specimen", s_.specimen},
+                                                     {"source", s_.source},
+                                                     {"licence", s_.licence},
+                                                     {"instrument", s_.instrument},
+                                                     {"date", s_.date},
+                                                     {"records", std::to_string(files_.size())}}));
+    return provenance;
+  }
+
+  static Json sites_account(const Curves& curves) {
+    Json sites = Json::array();
+    for (const SiteCurves& site : curves.sites) {
+      const CurvePath& path = site.paths.front();
+      const CurveSample& end = path.samples.back();
+      sites.push_back({{"vertex", site.vertex},
+                       {"repeats", path.repeats},
+                       {"lateral_paths", site.paths.size() - 1},
+                       {"contact_uncertainty_m", path.contact_uncertainty},
+                       {"depth_m", end.displacement},
+                       {"force_N", dot(end.force, path.direction)},
+                       {"force_scatter_N", number(end.force_scatter)},
+                       {"force_uncertainty_N", number(end.force_uncertainty)}});
+    }
+    return sites;
+  }
+
+  fs::path sidecar_file_, body_file_;
+  Sidecar s_;
+  std::optional<Body> body_;
+  std::vector<m::DeclaredColumn> declared_;
+  m::Registration registration_;
+  std::map<int, SiteRecords> sites_;
+  std::vector<fs::path> files_;
+  Json account_ = Json::object(), records_ = Json::array();
+};
+
+}  // namespace
+
+Import import_measurement(const fs::path& sidecar_file, const fs::path& body_file) {
+  return Importer(sidecar_file, body_file).run();
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "app/measured/sidecar.hpp"
+#include "format/body.hpp"
+#include "format/curves.hpp"
+
+namespace palpate::app {
+
+/// What `palpate import` makes: curves like those of a campaign, and an account of each record.
+struct Import {
+  Curves curves;
+  nlohmann::ordered_json account;
+};
+
+/// Read all records of a sidecar and place them on the body. Presses of one site are repeats: they
+/// become one path with their scatter; so do drags of one site, depth and direction stay apart.
+/// @param body_file  body.h5, or empty: the vertices of the sidecar are taken as they are, the
+///   presses run along -z, and the curves refer to no body.
+/// @throws Error(Configuration) naming record and line.
+Import import_measurement(const std::filesystem::path& sidecar_file,
+                          const std::filesystem::path& body_file);
+
+}  // namespace palpate::app

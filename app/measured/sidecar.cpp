@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/measured/sidecar.hpp"
+
+#include <cmath>
+
+#include "app/case/reader.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr Range kShare{.low = 0, .high = 1};
+constexpr Range kCount{.low = 2, .high = 1000};
+
+}  // namespace
+
+template <class V>
+void describe(V& v, MeasuredToolSection& s) {
+  v.text(s.shape, {"shape", "shape of the rigid tool"}, {"sphere"});
+  v.quantity(s.radius, Dimension::Length, {"radius", "radius of the tool", kRequired, kPositive});
+  v.text(s.friction, {"friction", "of the press", kRequired}, {"frictionless", "stuck"});
+  v.text(s.reference, {"reference", "point of the tool that a robot logs"}, {"tip", "centre"});
+}
+
+template <class V>
+void describe(V& v, MachineSection& s) {
+  v.quantity(s.compliance, Dimension::Compliance,
+             {"compliance", "of machine and load cell together", kOptional, kNotNegative});
+  v.quantity(s.compliance_uncertainty, Dimension::Compliance,
+             {"compliance_uncertainty", "standard", kOptional, kNotNegative});
+  v.number(
+      s.force_calibration,
+      {"force_calibration", "relative standard uncertainty of the load cell", kOptional, kShare});
+}
+
+template <class V>
+void describe(V& v, ColumnsSection& s) {
+  v.text(s.time, {"time", "name of the column"});
+  v.text(s.displacement, {"displacement", "name of the column"});
+  v.text(s.force, {"force", "name of the column"});
+  v.text(s.x, {"x", "name of the column"});
+  v.text(s.y, {"y", "name of the column"});
+  v.text(s.z, {"z", "name of the column"});
+  v.text(s.fx, {"fx", "name of the column"});
+  v.text(s.fy, {"fy", "name of the column"});
+  v.text(s.fz, {"fz", "name of the column"});
+  v.text(s.time_unit, {"time_unit", "where the file gives none"});
+  v.text(s.length_unit, {"length_unit", "where the file gives none"});
+  v.text(s.force_unit, {"force_unit", "where the file gives none"});
+}
+
+template <class V>
+void describe(V& v, DeclaredColumnSection& s) {
+  v.text(s.name, {"name", "of the column", kRequired});
+  v.text(s.unit, {"unit", "of its values"});
+}
+
+template <class V>
+void describe(V& v, ContactSection& s) {
+  v.text(s.method, {"method", "how the contact point is found"}, {"fit", "threshold"});
+  v.number(s.exponent, {"exponent",
+                        "of the onset of force: 1.5 sphere, 1 flat punch, 2 cone",
+                        kOptional,
+                        {.low = 1, .high = 3}});
+  v.quantity(s.threshold, Dimension::Force,
+             {"threshold", "force taken for contact", kOptional, kPositive});
+}
+
+template <class V>
+void describe(V& v, PathSection& s) {
+  v.integer(s.samples, {"samples", "of the normal path", kOptional, kCount});
+  v.integer(s.lateral_samples, {"lateral_samples", "of a lateral path", kOptional, kCount});
+}
+
+template <class V>
+void describe(V& v, PlacementSection& s) {
+  v.quantity(
+      s.tolerance, Dimension::Length,
+      {"tolerance", "largest distance from a measured point to its site", kOptional, kPositive});
+  v.text(s.frame, {"frame", "in which points are given: of the robot, or of the body"},
+         {"fiducials", "body"});
+  v.text(s.force_is, {"force_is", "which force a robot logs"}, {"on body", "on tool"});
+}
+
+template <class V>
+void describe(V& v, FiducialSection& s) {
+  v.point(s.robot, Dimension::Length, {"robot", "where the robot saw it", kRequired});
+  v.point(s.body, Dimension::Length, {"body", "where it is on the body", kRequired});
+}
+
+template <class V>
+void describe(V& v, PressFileSection& s) {
+  v.text(s.file, {"file", "record, relative to the sidecar", kRequired});
+  v.integer(s.vertex, {"vertex", "response vertex of the body", kOptional, kNotNegative});
+  v.point(s.site, Dimension::Length, {"site", "point that was pressed, in the frame of the body"});
+  v.integer(s.cycle, {"cycle", "which press of the record; -1 is the last"});
+}
+
+template <class V>
+void describe(V& v, RobotFileSection& s) {
+  v.text(s.file, {"file", "log, relative to the sidecar", kRequired});
+  v.integer(s.cycle, {"cycle", "which press of the log; -1 is the last"});
+}
+
+template <class V>
+void describe(V& v, Sidecar& s) {
+  v.text(s.name, {"name", "of the measurement", kRequired});
+  v.text(s.specimen, {"specimen", "what was pressed", kRequired});
+  v.text(s.source, {"source", "who measured it, or where it was published", kRequired});
+  v.text(s.licence, {"licence", "of the data", kRequired});
+  v.text(s.instrument, {"instrument", "machine and load cell"});
+  v.text(s.date, {"date", "of the measurement"});
+  v.text(s.description, {"description", "anything else"});
+  v.section("tool", s.tool, kRequired, "");
+  v.section("machine", s.machine, kOptional, "");
+  v.section("columns", s.columns, kRequired, "");
+  v.sections("column", s.declared, kOptional, "");
+  v.section("contact", s.contact, kOptional, "");
+  v.section("path", s.path, kOptional, "");
+  v.section("placement", s.placement, kOptional, "");
+  v.sections("fiducial", s.fiducials, kOptional, "");
+  v.sections("press", s.presses, kOptional, "");
+  v.sections("robot", s.robot_logs, kOptional, "");
+}
+
+namespace {
+
+[[noreturn]] void refuse(const std::string& where, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, where, problem, remedy);
+}
+
+void check_columns(const Sidecar& s, const SourceMap& sources) {
+  const ColumnsSection& c = s.columns;
+  const auto need = [&](const std::string& value, const char* key, const char* what) {
+    if (!value.empty()) return;
+    refuse(sources.where("columns"), fmt::format("key 'columns.{}' is missing", key),
+           fmt::format("name the column of the {}", what));
+  };
+  if (!s.presses.empty()) {
+    need(c.displacement, "displacement", "displacement");
+    need(c.force, "force", "force");
+  }
+  if (s.robot_logs.empty()) return;
+  for (const auto& [value, key] : {std::pair{&c.x, "x"}, {&c.y, "y"}, {&c.z, "z"}}) {
+    need(*value, key, "position");
+  }
+  for (const auto& [value, key] : {std::pair{&c.fx, "fx"}, {&c.fy, "fy"}, {&c.fz, "fz"}}) {
+    need(*value, key, "force");
+  }
+}
+
+void check_sites(const Sidecar& s, const SourceMap& sources) {
+  for (std::size_t i = 0; i < s.presses.size(); ++i) {
+    const PressFileSection& press = s.presses[i];
+    const bool by_point = std::isfinite(press.site[0]);
+    if (by_point != (press.vertex >= 0)) continue;
+    refuse(sources.where(fmt::format("press[{}].", i)),
+           by_point ? "both vertex and site are given" : "neither vertex nor site is given",
+           "say once where the tool was pressed");
+  }
+}
+
+}  // namespace
+
+Sidecar read_sidecar(const std::filesystem::path& path) {
+  const toml::table table = read_toml(path, "the sidecar");
+  SourceMap sources(path.string());
+  Sidecar sidecar;
+  TableReader reader(table, "the sidecar", "", sources);
+  describe(reader, sidecar);
+  reader.finish();
+  if (sidecar.presses.empty() && sidecar.robot_logs.empty()) {
+    refuse(path.string(), "it names no record", "add [[press]] or [[robot]] with a file");
+  }
+  if (sidecar.contact.method == "threshold" && !std::isfinite(sidecar.contact.threshold)) {
+    refuse(sources.where("contact.method"), "key 'contact.threshold' is missing",
+           "give the force that is taken for contact");
+  }
+  check_columns(sidecar, sources);
+  check_sites(sidecar, sources);
+  return sidecar;
+}
+
+}  // namespace palpate::app

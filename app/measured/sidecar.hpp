@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The sidecar of a measurement: what the records of a laboratory do not say about themselves.
+// Reference: docs/measured.md.
+#pragma once
+
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "format/vec3.hpp"
+
+namespace palpate::app {
+
+inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
+
+struct MeasuredToolSection {
+  std::string shape = "sphere";
+  double radius = 0;              ///< m
+  std::string friction;           ///< "frictionless" or "stuck"
+  std::string reference = "tip";  ///< what a robot logs: "tip" or "centre"
+};
+
+struct MachineSection {
+  double compliance = 0;              ///< m/N
+  double compliance_uncertainty = 0;  ///< m/N
+  double force_calibration = 0;       ///< relative
+};
+
+struct ColumnsSection {
+  std::string time, displacement, force;  ///< names; time may be empty
+  std::string x, y, z, fx, fy, fz;        ///< of a robot log
+  std::string time_unit, length_unit, force_unit;
+};
+
+struct DeclaredColumnSection {
+  std::string name, unit;
+};
+
+struct ContactSection {
+  std::string method = "fit";
+  double exponent = 1.5;
+  double threshold = kNotGiven;  ///< N
+};
+
+struct PathSection {
+  int samples = 24;
+  int lateral_samples = 12;
+};
+
+struct PlacementSection {
+  double tolerance = 0.005;          ///< m
+  std::string frame = "fiducials";   ///< "fiducials" or "body"
+  std::string force_is = "on body";  ///< "on body" or "on tool"
+};
+
+struct FiducialSection {
+  Vec3 robot{}, body{};  ///< m
+};
+
+struct PressFileSection {
+  std::string file;  ///< relative to the sidecar
+  int vertex = -1;
+  Vec3 site{kNotGiven, kNotGiven, kNotGiven};  ///< m, in the frame of the body
+  int cycle = 1;
+};
+
+struct RobotFileSection {
+  std::string file;
+  int cycle = 1;
+};
+
+struct Sidecar {
+  std::string name, specimen, source, licence, instrument, date, description;
+  MeasuredToolSection tool;
+  MachineSection machine;
+  ColumnsSection columns;
+  std::vector<DeclaredColumnSection> declared;
+  ContactSection contact;
+  PathSection path;
+  PlacementSection placement;
+  std::vector<FiducialSection> fiducials;
+  std::vector<PressFileSection> presses;
+  std::vector<RobotFileSection> robot_logs;
+};
+
+/// @throws Error(Configuration) with file and line, as read_case.
+Sidecar read_sidecar(const std::filesystem::path& path);
+
+}  // namespace palpate::app
