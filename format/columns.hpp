@@ -27,8 +27,7 @@ struct Column {
 // A function because clang 14 cannot deduce the arguments of an aggregate.
 template <class Record, class Field>
 constexpr Column<Record, Field> column(const char* name, Field Record::*member, const char* units,
-                                       const char* description, Rule rule,
-                                       bool optional = false) {
+                                       const char* description, Rule rule, bool optional = false) {
   return {name, member, units, description, rule, optional};
 }
 

@@ -289,8 +289,8 @@ std::string dump(const Curves& curves) {
     out << site.vertex << static_cast<int>(site.status) << site.reason << site.cpu_seconds
         << site.paths.size();
     for (const CurvePath& path : site.paths) {
-      out << static_cast<int>(path.kind) << path.held_depth << path.direction
-          << path.samples.size() << path.repeats << path.contact_uncertainty;
+      out << static_cast<int>(path.kind) << path.held_depth << path.direction << path.samples.size()
+          << path.repeats << path.contact_uncertainty;
       for (const CurveSample& s : path.samples) {
         out << s.displacement << s.force << s.strain_energy << s.tool_work << s.min_jacobian
             << s.penetration << s.contact_area << s.iterations << s.force_scatter
