@@ -97,10 +97,11 @@ bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
 }
 
 void ContactState::touch(const Vec3& x, double travelled) noexcept {
-  const Deflection held = model_->deflection(x);
-  const double energy_before = model_->energy(held);  // E_{i-1}(x_i)
+  Candidate held{*model_, model_->deflection(x), {}, goal_, 0};
+  held.response = model_->respond(held.deflection);
+  const double energy_before = held.response.energy;  // E_{i-1}(x_i)
   seen_.absorbed += energy_before - seen_.energy;
-  const Candidate next = choose(x, held, energy_before, travelled);
+  const Candidate next = choose(x, held, travelled);
   seen_.status |= next.status;
   if (release(next, x, energy_before)) return;
   if (norm(next.model.contact_point() - model_->contact_point()) > 0) {
@@ -111,75 +112,77 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
 
 /// The slide and the return of the offset as far as the force may change in this step. To hold the
 /// contact point is always within the limit.
-ContactState::Candidate ContactState::choose(const Vec3& x, const Deflection& held,
-                                             double energy_before,
+ContactState::Candidate ContactState::choose(const Vec3& x, const Candidate& held,
                                              double travelled) const noexcept {
   const double allowed = settings_.steepness * travelled + kRounding;
   const auto within = [&](const Candidate& c) {
     return norm(c.response.force - seen_.force) <= allowed;
   };
-  Candidate next = move(x, held, energy_before, 1, kRecoveryShare * travelled);
+  Candidate next = move(x, held, 1, kRecoveryShare * travelled);
   if (within(next)) return next;
-  next = move(x, held, energy_before, 1, 0);
+  next = move(x, held, 1, 0);
   double share = 1;
   for (int i = 0; i < kShorterSlides && !within(next); ++i) {
     const double excess = norm(next.response.force - seen_.force) / allowed;
     share *= std::clamp(0.9 / excess, 0.02, 0.7);
-    next = move(x, held, energy_before, share, 0);
+    next = move(x, held, share, 0);
   }
-  if (!within(next)) next = {*model_, held, model_->respond(held), goal_, 0};
+  if (!within(next)) next = held;
   next.status |= PALPATE_FORCE_LIMITED;
   return next;
 }
 
 /// The model after a share of the slide, with an offset that keeps the energy in the budget.
-ContactState::Candidate ContactState::move(const Vec3& x, const Deflection& held,
-                                           double energy_before, double share,
+ContactState::Candidate ContactState::move(const Vec3& x, const Candidate& held, double share,
                                            double recovery) const noexcept {
-  Candidate next{*model_, held, {}, goal_, 0};
+  Candidate next = held;
   next.model = slide(x, held, share, next.status);
   next.deflection = next.model.deflection(x);
-  if (next.deflection.depth > 0) {
-    if (settings_.budget == EnergyBudget::Kept) keep_budget(next, x, energy_before, recovery);
-  } else {
+  if (!(next.deflection.depth > 0)) {
     // Out of normal contact but perhaps inside the body: the offset follows the tip outwards, at no
     // energy, until the true surface is felt again.
     const double rearmed = std::min(next.model.offset(), std::max(next.deflection.geometric, 0.0));
     next.goal = std::min(goal_, rearmed);
     next.model.set_offset(rearmed);
     next.deflection = next.model.deflection(x);
-    if (settings_.budget == EnergyBudget::Kept) keep_budget(next, x, energy_before, 0);
+    recovery = 0;
   }
   next.response = next.model.respond(next.deflection);
+  if (settings_.budget == EnergyBudget::Kept) keep_budget(next, x, held, recovery);
   return next;
 }
 
-void ContactState::keep_budget(Candidate& moved, const Vec3& x, double energy_before,
+void ContactState::keep_budget(Candidate& moved, const Vec3& x, const Candidate& held,
                                double recovery) const noexcept {
-  const EnergyVerdict verdict =
-      judge(moved.model, x, tank_.budget(energy_before), moved.goal, recovery);
+  const EnergyVerdict verdict = judge(moved.model, x, moved.response,
+                                      tank_.budget(held.response.energy), moved.goal, recovery);
+  const std::uint32_t status =
+      moved.status | (verdict.limited ? std::uint32_t{PALPATE_ENERGY_LIMITED} : 0);
   if (verdict.hold) {
-    moved.model = *model_;
-    moved.goal = goal_;
-  } else {
+    moved = held;
+  } else if (verdict.offset != moved.model.offset()) {
     moved.model.set_offset(verdict.offset);
+    moved.deflection = moved.model.deflection(x);
+    moved.response = moved.model.respond(moved.deflection);
   }
-  if (verdict.limited) moved.status |= PALPATE_ENERGY_LIMITED;
-  moved.deflection = moved.model.deflection(x);
+  moved.status = status;
 }
 
 /// Where the lateral deflection exceeds the slip limit, c moves by the excess, or a share of it.
 /// Out of normal contact the limit is 0: c follows the tip until x - c is parallel to n.
-LocalModel ContactState::slide(const Vec3& x, const Deflection& held, double share,
+LocalModel ContactState::slide(const Vec3& x, const Candidate& held, double share,
                                std::uint32_t& status) const noexcept {
-  if (!(held.depth > 0) && share == 1) {
+  const Deflection& d = held.deflection;
+  if (!(d.depth > 0) && share == 1) {
     const Projection p = project(*surface_, model_->point(), x, kRelaxedPasses, kRelaxed);
     if (p.at_border) status |= PALPATE_AT_BORDER;
     return {*surface_, p.point, model_->offset()};
   }
-  const double excess = held.lateral - model_->slip_limit(held, settings_.friction);
+  const LocalResponse& at = held.response;
+  if (!(at.lateral_force > settings_.friction * at.normal_force)) return *model_;
+  const double excess = d.lateral - model_->slip_limit_below(d, at, settings_.friction);
   if (!(excess > 0)) return *model_;
-  const Walk moved = walk(*surface_, model_->point(), held.tangent, share * excess);
+  const Walk moved = walk(*surface_, model_->point(), d.tangent, share * excess);
   if (moved.at_border) status |= PALPATE_AT_BORDER;
   return {*surface_, moved.point, model_->offset()};
 }
@@ -205,7 +208,9 @@ bool ContactState::release(const Candidate& moved, const Vec3& x, double energy_
 }
 
 void ContactState::commit(const Candidate& next, double energy_before) noexcept {
+  const bool same_element = model_ && model_->point().element == next.model.point().element;
   model_ = next.model;
+  if (ahead_ != kNoElement || !same_element) look_ahead();
   goal_ = next.goal;
   tank_.settle(energy_before, next.response.energy);
   if (next.deflection.depth > next.model.deepest()) seen_.status |= PALPATE_BEYOND_DEPTH;
@@ -217,6 +222,14 @@ void ContactState::commit(const Candidate& next, double energy_before) noexcept 
   seen_.energy = next.response.energy;
   seen_.force = next.response.force;
   seen_.tank = tank_.level();
+}
+
+/// What the contact point may reach in the next steps is fetched from memory in this one.
+void ContactState::look_ahead() noexcept {
+  const std::int32_t now = model_->point().element;
+  if (ahead_ != kNoElement) surface_->prefetch_curves_around(ahead_);
+  if (ahead_ != now) surface_->prefetch_around(now);
+  ahead_ = ahead_ == now ? kNoElement : now;
 }
 
 void ContactState::free_contact() noexcept {

@@ -90,16 +90,16 @@ class ContactState {
   };
 
   void touch(const Vec3& x, double travelled) noexcept;
-  Candidate choose(const Vec3& x, const Deflection& held, double energy_before,
-                   double travelled) const noexcept;
-  Candidate move(const Vec3& x, const Deflection& held, double energy_before, double share,
+  Candidate choose(const Vec3& x, const Candidate& held, double travelled) const noexcept;
+  Candidate move(const Vec3& x, const Candidate& held, double share,
                  double recovery) const noexcept;
-  LocalModel slide(const Vec3& x, const Deflection& held, double share,
+  LocalModel slide(const Vec3& x, const Candidate& held, double share,
                    std::uint32_t& status) const noexcept;
-  void keep_budget(Candidate& moved, const Vec3& x, double energy_before,
+  void keep_budget(Candidate& moved, const Vec3& x, const Candidate& held,
                    double recovery) const noexcept;
   bool release(const Candidate& moved, const Vec3& x, double energy_before) noexcept;
   void commit(const Candidate& next, double energy_before) noexcept;
+  void look_ahead() noexcept;
   void free_contact() noexcept;
   void drop() noexcept;
 
@@ -111,6 +111,7 @@ class ContactState {
   std::optional<SurfacePoint> approaching_;  ///< entered, not yet active
   std::optional<Vec3> last_;                 ///< last usable tip position
   double goal_ = 0;                          ///< offset the contact should return to, m
+  std::int32_t ahead_ = kNoElement;  ///< element whose surroundings were asked for in the last step
   ContactObservation seen_;
 };
 

@@ -50,13 +50,12 @@ void EnergyTank::settle(double energy_before, double energy_after) noexcept {
   level_ = std::clamp(level_ + energy_before - energy_after, 0.0, cap_);
 }
 
-EnergyVerdict judge(const LocalModel& moved, const Vec3& x, double budget, double goal,
-                    double recovery) noexcept {
-  LocalModel trial = moved;
+EnergyVerdict judge(const LocalModel& moved, const Vec3& x, const LocalResponse& at, double budget,
+                    double goal, double recovery) noexcept {
   const double offset = moved.offset();
-  const Deflection d = moved.deflection(x);
-  if (moved.energy(d) > budget) {
-    const double relaxed = std::max(offset, d.geometric);
+  if (at.energy > budget) {
+    LocalModel trial = moved;
+    const double relaxed = std::max(offset, moved.deflection(x).geometric);
     if (energy_at(trial, x, relaxed).energy > budget) return {true, true, offset};
     return {false, true, least_offset(moved, x, budget, offset, relaxed)};
   }

@@ -38,10 +38,11 @@ struct EnergyVerdict {
   double offset = 0;     ///< m
 };
 
-/// Rules 2 and 3. `moved` is the model after the slide, with the offset of the step before. When
-/// its energy exceeds the budget the offset is raised until they are equal; otherwise it is lowered
-/// towards `goal` (its value at the collision) by at most `recovery`, as far as the budget allows.
-EnergyVerdict judge(const LocalModel& moved, const Vec3& x, double budget, double goal,
-                    double recovery) noexcept;
+/// Rules 2 and 3. `moved` is the model after the slide, with the offset of the step before, and
+/// `at` its response at x. When its energy exceeds the budget the offset is raised until they are
+/// equal; otherwise it is lowered towards `goal` (its value at the collision) by at most
+/// `recovery`, as far as the budget allows.
+EnergyVerdict judge(const LocalModel& moved, const Vec3& x, const LocalResponse& at, double budget,
+                    double goal, double recovery) noexcept;
 
 }  // namespace palpate::runtime

@@ -11,12 +11,6 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-void add(CurveValue& sum, double weight, const CurveValue& value) noexcept {
-  sum.force += weight * value.force;
-  sum.slope += weight * value.slope;
-  sum.energy += weight * value.energy;
-}
-
 /// h on one interval between consecutive knots of the merged sequence.
 struct MergedPiece {
   double force = 0, slope = 0, curvature = 0;
@@ -36,18 +30,24 @@ double solve_rising_quadratic(const MergedPiece& p, double target) noexcept {
 class KnotMerge {
  public:
   explicit KnotMerge(const InterpolatedResponse& response) noexcept : response_(response) {}
+  /// On the piece that holds `at`.
+  KnotMerge(const InterpolatedResponse& response, double at) noexcept : response_(response) {
+    for (std::size_t l = 0; l < 3; ++l) index_[l] = response_.node(l).lateral().piece_at(at);
+    start_ = last_start();
+  }
 
   /// h from `start()` on, valid up to `end()`.
   MergedPiece piece() const noexcept {
     MergedPiece merged;
     for (std::size_t l = 0; l < 3; ++l) {
-      const auto& pieces = response_.node(l).lateral.pieces();
-      if (pieces.empty()) continue;
-      const CompiledCurve::Piece& p = pieces[index_[l]];
-      const double x = start_ - p.start;
+      const CurveView curve = response_.node(l).lateral();
+      if (curve.size() == 0) continue;
+      const PackedPiece& p = curve.piece(index_[l]);
+      const double slope = static_cast<double>(p.slope);
+      const double x = start_ - static_cast<double>(p.start);
       const double weight = response_.natural()[l];
-      merged.force += weight * (p.force + x * (p.slope + x * p.curvature));
-      merged.slope += weight * (p.slope + 2.0 * x * p.curvature);
+      merged.force += weight * (p.force + x * (slope + x * p.curvature));
+      merged.slope += weight * (slope + 2.0 * x * p.curvature);
       merged.curvature += weight * p.curvature;
     }
     return merged;
@@ -59,8 +59,8 @@ class KnotMerge {
   double end() const noexcept {
     double next = kInfinity;
     for (std::size_t l = 0; l < 3; ++l) {
-      const auto& pieces = response_.node(l).lateral.pieces();
-      if (index_[l] + 1 < pieces.size()) next = std::min(next, pieces[index_[l] + 1].start);
+      const CurveView curve = response_.node(l).lateral();
+      if (index_[l] + 1 < curve.size()) next = std::min(next, curve.start(index_[l] + 1));
     }
     return next;
   }
@@ -68,30 +68,39 @@ class KnotMerge {
   void advance() noexcept {
     start_ = end();
     for (std::size_t l = 0; l < 3; ++l) {
-      const auto& pieces = response_.node(l).lateral.pieces();
-      if (index_[l] + 1 < pieces.size() && pieces[index_[l] + 1].start <= start_) ++index_[l];
+      const CurveView curve = response_.node(l).lateral();
+      if (index_[l] + 1 < curve.size() && curve.start(index_[l] + 1) <= start_) ++index_[l];
     }
   }
 
+  bool at_first() const noexcept { return !(start_ > 0); }
+
+  /// To the piece before; not from the first.
+  void retreat() noexcept {
+    for (std::size_t l = 0; l < 3; ++l) {
+      const CurveView curve = response_.node(l).lateral();
+      if (index_[l] > 0 && curve.start(index_[l]) >= start_) --index_[l];
+    }
+    start_ = last_start();
+  }
+
  private:
+  /// Where the merged piece begins: the last of the starts of the three.
+  double last_start() const noexcept {
+    double start = 0;
+    for (std::size_t l = 0; l < 3; ++l) {
+      const CurveView curve = response_.node(l).lateral();
+      if (curve.size() > 0) start = std::max(start, curve.start(index_[l]));
+    }
+    return start;
+  }
+
   const InterpolatedResponse& response_;
   std::array<std::size_t, 3> index_{};
   double start_ = 0;
 };
 
 }  // namespace
-
-CurveValue InterpolatedResponse::normal(double z) const noexcept {
-  CurveValue sum;
-  for (std::size_t l = 0; l < 3; ++l) add(sum, natural_[l], nodes_[l]->normal.evaluate(z));
-  return sum;
-}
-
-CurveValue InterpolatedResponse::lateral(double rho) const noexcept {
-  CurveValue sum;
-  for (std::size_t l = 0; l < 3; ++l) add(sum, natural_[l], nodes_[l]->lateral.evaluate(rho));
-  return sum;
-}
 
 double InterpolatedResponse::lateral_inverse(double force) const noexcept {
   if (!(force > 0.0)) return 0.0;
@@ -109,9 +118,23 @@ double InterpolatedResponse::lateral_inverse(double force) const noexcept {
   }
 }
 
+double InterpolatedResponse::lateral_inverse_below(double force, double from) const noexcept {
+  if (!(force > 0.0)) return 0.0;
+  KnotMerge merge(*this, from);
+  double end = from;
+  while (true) {
+    const MergedPiece p = merge.piece();
+    if (p.force < force || merge.at_first()) {
+      return std::min(merge.start() + solve_rising_quadratic(p, force), end);
+    }
+    end = merge.start();
+    merge.retreat();
+  }
+}
+
 double InterpolatedResponse::deepest() const noexcept {
-  return std::min({nodes_[0]->normal.last_knot(), nodes_[1]->normal.last_knot(),
-                   nodes_[2]->normal.last_knot()});
+  return std::min({nodes_[0]->normal().last_knot(), nodes_[1]->normal().last_knot(),
+                   nodes_[2]->normal().last_knot()});
 }
 
 }  // namespace palpate::runtime

@@ -5,31 +5,6 @@
 
 namespace palpate::runtime {
 
-LocalModel::LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept
-    : surface_(&surface),
-      point_(point),
-      c_(surface.position(point)),
-      n_(surface.normal(point)),
-      response_(surface.response(point)),
-      offset_(offset) {}
-
-Deflection LocalModel::deflection(const Vec3& x) const noexcept {
-  Deflection d;
-  const Vec3 r = x - c_;
-  d.geometric = dot(n_, r);
-  d.depth = d.geometric - offset_;
-  const Vec3 lateral = r - d.geometric * n_;
-  d.lateral = norm(lateral);
-  if (d.lateral > 0) d.tangent = (1.0 / d.lateral) * lateral;
-  return d;
-}
-
-LocalResponse LocalModel::respond(const Deflection& d) const noexcept {
-  const CurveValue g = response_.normal(d.depth);
-  const CurveValue h = response_.lateral(d.lateral);
-  return {g.force, h.force, g.energy + h.energy, g.force * n_ + h.force * d.tangent};
-}
-
 double LocalModel::energy(const Deflection& d) const noexcept {
   return response_.normal(d.depth).energy + response_.lateral(d.lateral).energy;
 }
@@ -46,7 +21,8 @@ double LocalModel::energy_slope(const Deflection& at, const Vec3& d) const noexc
     const double rate = dot(e.gradient[l], d);
     const NodeCurves& node = response_.node(l);
     turn = turn + rate * surface_->inward(e, l);
-    change_of_curves += rate * (node.normal.energy(at.depth) + node.lateral.energy(at.lateral));
+    change_of_curves += rate * (node.normal().evaluate(at.depth).energy +
+                                node.lateral().evaluate(at.lateral).energy);
   }
   turn = (1.0 / norm(surface_->direction_sum(point_))) * (turn - dot(turn, n_) * n_);
   const double g = response_.normal(at.depth).force;

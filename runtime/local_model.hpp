@@ -32,13 +32,38 @@ struct LocalResponse {
 /// stored slope. noexcept, allocation-free.
 class LocalModel {
  public:
-  LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept;
+  LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept
+      : surface_(&surface),
+        point_(point),
+        c_(surface.position(point)),
+        n_(surface.normal(point)),
+        response_(surface.response(point)),
+        offset_(offset) {}
 
-  Deflection deflection(const Vec3& x) const noexcept;
-  LocalResponse respond(const Deflection& d) const noexcept;
+  Deflection deflection(const Vec3& x) const noexcept {
+    Deflection d;
+    const Vec3 r = x - c_;
+    d.geometric = dot(n_, r);
+    d.depth = d.geometric - offset_;
+    const Vec3 lateral = r - d.geometric * n_;
+    d.lateral = norm(lateral);
+    if (d.lateral > 0) d.tangent = (1.0 / d.lateral) * lateral;
+    return d;
+  }
+  LocalResponse respond(const Deflection& d) const noexcept {
+    const CurveValue g = response_.normal(d.depth);
+    const CurveValue h = response_.lateral(d.lateral);
+    return {g.force, h.force, g.energy + h.energy, g.force * n_ + h.force * d.tangent};
+  }
   double energy(const Deflection& d) const noexcept;
   /// rho_s = h^{-1}(mu g(z)): the lateral deflection at which slip begins, m.
   double slip_limit(const Deflection& d, double friction) const noexcept;
+
+  /// The same where the response is known and exceeds the limit: rho_s < rho.
+  double slip_limit_below(const Deflection& d, const LocalResponse& at,
+                          double friction) const noexcept {
+    return response_.lateral_inverse_below(friction * at.normal_force, d.lateral);
+  }
 
   /// Rate of change of E when c moves by unit length along d in its element while x stays, J/m:
   ///   n' = P (sum u_l grad n_l . d)/|sum n_l u_l|, P the projector normal to n,

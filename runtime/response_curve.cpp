@@ -64,4 +64,15 @@ CurveValue CompiledCurve::evaluate(double d) const noexcept {
   return on_piece(*(after - 1), d);
 }
 
+void NodeCurves::prefetch() const noexcept {
+  constexpr std::size_t kLine = 64;  // bytes fetched at once
+  const auto* at = reinterpret_cast<const char*>(pieces_);
+  const std::size_t bytes = (std::size_t{normal_} + lateral_) * sizeof(PackedPiece);
+  for (std::size_t i = 0; i < bytes && i < 16 * kLine; i += kLine) __builtin_prefetch(at + i);
+}
+
+PackedPiece pack(const CompiledCurve::Piece& p) noexcept {
+  return {static_cast<float>(p.start), static_cast<float>(p.slope), p.curvature, p.force, p.energy};
+}
+
 }  // namespace palpate::runtime

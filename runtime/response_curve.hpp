@@ -2,6 +2,8 @@
 // One stored response made ready for the force loop: force, slope, energy at a deflection.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "format/library.hpp"
@@ -58,5 +60,73 @@ class CompiledCurve {
   std::vector<Piece> pieces_;
   double max_slope_ = 0;
 };
+
+/// A piece as the force loop reads it, two to a cache line. Start and slope are the stored numbers.
+struct alignas(32) PackedPiece {
+  float start = 0;       ///< d_k, m
+  float slope = 0;       ///< s_k, N/m
+  double curvature = 0;  ///< c_k, N/m^2
+  double force = 0;      ///< f_k, N
+  double energy = 0;     ///< E_k, J
+};
+
+/// View of a curve in a row of packed pieces: the same response as the CompiledCurve that was
+/// packed, to the last bit. Valid while the row lives; cheap to copy; evaluation as there. Inline:
+/// a step evaluates a dozen of them.
+class CurveView {
+ public:
+  CurveView() = default;  ///< the zero response
+  CurveView(const PackedPiece* pieces, std::size_t count) noexcept
+      : pieces_(pieces), count_(count) {}
+
+  CurveValue evaluate(double d) const noexcept {
+    if (count_ == 0 || !(d > 0.0)) return {};
+    const PackedPiece& p = pieces_[piece_at(d)];
+    const double x = d - static_cast<double>(p.start);
+    const double slope = static_cast<double>(p.slope);
+    return {p.force + x * (slope + x * p.curvature), slope + 2.0 * x * p.curvature,
+            p.energy + x * (p.force + x * (slope / 2.0 + x * p.curvature / 3.0))};
+  }
+
+  const PackedPiece& piece(std::size_t k) const noexcept { return pieces_[k]; }
+  std::size_t size() const noexcept { return count_; }
+  double start(std::size_t k) const noexcept { return static_cast<double>(pieces_[k].start); }
+  double last_knot() const noexcept { return count_ == 0 ? 0.0 : start(count_ - 1); }
+
+  /// Index of the piece that holds d; 0 for d <= 0 and for the zero response.
+  std::size_t piece_at(double d) const noexcept {
+    std::size_t k = 0;
+    for (std::size_t left = count_; left > 1;) {  // a search without branches to mispredict
+      const std::size_t half = left / 2;
+      k += start(k + half) <= d ? half : 0;
+      left -= half;
+    }
+    return k;
+  }
+
+ private:
+  const PackedPiece* pieces_ = nullptr;
+  std::size_t count_ = 0;
+};
+
+/// Both responses of a node, side by side in memory: f^z, then f^r.
+class NodeCurves {
+ public:
+  NodeCurves() = default;
+  NodeCurves(const PackedPiece* pieces, std::uint16_t normal, std::uint16_t lateral) noexcept
+      : pieces_(pieces), normal_(normal), lateral_(lateral) {}
+
+  CurveView normal() const noexcept { return {pieces_, normal_}; }              ///< f^z
+  CurveView lateral() const noexcept { return {pieces_ + normal_, lateral_}; }  ///< f^r
+  /// Asks the processor to have the curves at hand soon.
+  void prefetch() const noexcept;
+
+ private:
+  const PackedPiece* pieces_ = nullptr;
+  std::uint16_t normal_ = 0, lateral_ = 0;
+};
+
+/// A piece of a CompiledCurve, packed.
+PackedPiece pack(const CompiledCurve::Piece& piece) noexcept;
 
 }  // namespace palpate::runtime

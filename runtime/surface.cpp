@@ -13,11 +13,20 @@
 namespace palpate::runtime {
 namespace {
 
+constexpr std::size_t kMostKnots = 65535;
 constexpr double kLeastDirection =
     0.5;  // |sum n_l u_l| below this: directions contradict each other
 
 std::string triangle_name(std::size_t m) {
   return "library triangle " + std::to_string(m);
+}
+
+constexpr std::size_t kLine = 64;  // bytes that the processor fetches at once
+
+void prefetch(const void* what, std::size_t bytes) noexcept {
+  for (std::size_t i = 0; i < bytes; i += kLine) {
+    __builtin_prefetch(static_cast<const char*>(what) + i);
+  }
 }
 
 /// Distance of the origin from the segment a b.
@@ -41,34 +50,59 @@ double origin_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return inside ? norm(foot) : to_edges;
 }
 
-NodeCurves compile(const NodeResponse& response) {
-  if (response.status == ResponseStatus::Hole) return {};
-  return {CompiledCurve(response.normal), CompiledCurve(response.lateral)};
-}
-
 }  // namespace
 
-Surface::Surface(const Library& library)
-    : positions_(library.positions), inward_(library.inward), elements_(library.triangles.size()) {
-  if (inward_.size() != positions_.size() || library.responses.size() != positions_.size()) {
+Surface::Surface(const Library& library) : elements_(library.triangles.size()) {
+  const std::size_t count = library.positions.size();
+  if (library.inward.size() != count || library.responses.size() != count) {
     throw Error(ErrorKind::Configuration, "library",
                 "positions, directions and responses differ in number", "build it again");
   }
-  curves_.reserve(library.responses.size());
-  for (const NodeResponse& response : library.responses) curves_.push_back(compile(response));
-  for (const NodeCurves& c : curves_) deepest_ = std::max(deepest_, c.normal.last_knot());
+  build_nodes(library);
   for (std::size_t m = 0; m < elements_.size(); ++m) build_element(library, m);
   if (std::none_of(elements_.begin(), elements_.end(), [](const Element& e) { return e.active; })) {
     throw Error(ErrorKind::Configuration, "library",
                 "no triangle has responses at its three vertices", "fit more sites");
   }
   connect();
-  low_ = high_ = positions_[static_cast<std::size_t>(elements_[0].vertices[0])];
-  for (const Vec3& p : positions_) {
+  low_ = high_ = nodes_.front().position;
+  for (const Vec3& p : library.positions) {
     for (std::size_t i = 0; i < 3; ++i) {
       low_[i] = std::min(low_[i], p[i]);
       high_[i] = std::max(high_[i], p[i]);
     }
+  }
+}
+
+void Surface::build_nodes(const Library& library) {
+  struct Count {
+    std::size_t normal = 0, lateral = 0;
+  };
+  std::vector<Count> counts(library.responses.size());
+  for (std::size_t v = 0; v < counts.size(); ++v) {
+    const NodeResponse& response = library.responses[v];
+    if (response.status == ResponseStatus::Hole) continue;
+    const CompiledCurve normal(response.normal);
+    const CompiledCurve lateral(response.lateral);
+    counts[v] = {normal.pieces().size(), lateral.pieces().size()};
+    if (std::max(counts[v].normal, counts[v].lateral) > kMostKnots) {
+      throw Error(ErrorKind::Configuration, "library vertex " + std::to_string(v),
+                  "a response has more than " + std::to_string(kMostKnots) + " knots",
+                  "fit with fewer");
+    }
+    deepest_ = std::max(deepest_, normal.last_knot());
+    for (const CompiledCurve* curve : {&normal, &lateral}) {
+      for (const CompiledCurve::Piece& piece : curve->pieces()) pieces_.push_back(pack(piece));
+    }
+  }
+  nodes_.resize(counts.size());
+  const PackedPiece* next = pieces_.data();
+  for (std::size_t v = 0; v < counts.size(); ++v) {
+    const auto [normal, lateral] = counts[v];
+    nodes_[v] = {
+        library.positions[v], library.inward[v],
+        NodeCurves(next, static_cast<std::uint16_t>(normal), static_cast<std::uint16_t>(lateral))};
+    next += normal + lateral;
   }
 }
 
@@ -77,7 +111,7 @@ void Surface::build_element(const Library& library, std::size_t m) {
   e.vertices = library.triangles[m];
   e.active = true;
   for (const std::int32_t v : e.vertices) {
-    if (v < 0 || static_cast<std::size_t>(v) >= positions_.size()) {
+    if (v < 0 || static_cast<std::size_t>(v) >= nodes_.size()) {
       throw Error(ErrorKind::Configuration, triangle_name(m), "vertex index out of range",
                   "build it again");
     }
@@ -137,27 +171,34 @@ void Surface::connect() {
   }
 }
 
-Vec3 Surface::position(const SurfacePoint& p) const noexcept {
-  const Element& e = element(p.element);
-  return p.natural[0] * vertex(e, 0) + p.natural[1] * vertex(e, 1) + p.natural[2] * vertex(e, 2);
+void Surface::prefetch_around(std::int32_t m) const noexcept {
+  const Element& e = element(m);
+  for (std::size_t l = 0; l < 3; ++l) {
+    if (e.neighbour[l] == kNoElement) continue;
+    const Element& next = element(e.neighbour[l]);
+    for (const std::int32_t beyond : next.neighbour) {
+      if (beyond == kNoElement || beyond == m) continue;
+      prefetch(&element(beyond), sizeof(Element));
+    }
+    const std::int32_t v = opposite_vertex(e, l);
+    if (v >= 0) prefetch(&nodes_[static_cast<std::size_t>(v)], sizeof(SurfaceNode));
+  }
 }
 
-Vec3 Surface::direction_sum(const SurfacePoint& p) const noexcept {
-  const Element& e = element(p.element);
-  return p.natural[0] * inward(e, 0) + p.natural[1] * inward(e, 1) + p.natural[2] * inward(e, 2);
+void Surface::prefetch_curves_around(std::int32_t m) const noexcept {
+  const Element& e = element(m);
+  for (std::size_t l = 0; l < 3; ++l) {
+    const std::int32_t v = opposite_vertex(e, l);
+    if (v >= 0) nodes_[static_cast<std::size_t>(v)].curves.prefetch();
+  }
 }
 
-Vec3 Surface::normal(const SurfacePoint& p) const noexcept {
-  const Vec3 sum = direction_sum(p);
-  return (1.0 / norm(sum)) * sum;
-}
-
-InterpolatedResponse Surface::response(const SurfacePoint& p) const noexcept {
-  const Element& e = element(p.element);
-  const auto node = [&](std::size_t l) {
-    return &curves_[static_cast<std::size_t>(e.vertices[l])];
-  };
-  return {{node(0), node(1), node(2)}, p.natural};
+/// The vertex of the neighbour across edge l that the element does not have; -1 at a border.
+std::int32_t Surface::opposite_vertex(const Element& e, std::size_t l) const noexcept {
+  if (e.neighbour[l] == kNoElement) return -1;
+  const auto& theirs = element(e.neighbour[l]).vertices;
+  // The sum of the three less the shared two.
+  return theirs[0] + theirs[1] + theirs[2] - e.vertices[(l + 1) % 3] - e.vertices[(l + 2) % 3];
 }
 
 }  // namespace palpate::runtime

@@ -9,19 +9,27 @@
 #include "format/library.hpp"
 #include "format/vec3.hpp"
 #include "runtime/interpolated_response.hpp"
+#include "runtime/large_memory.hpp"
 
 namespace palpate::runtime {
 
 inline constexpr std::int32_t kNoElement = -1;
 
 /// A triangle of the response surface. Everything about it is constant over the triangle.
-struct Element {
+struct alignas(64) Element {
   std::array<std::int32_t, 3> vertices{};
   /// neighbour[l] is across the edge opposite to vertex l; kNoElement at a border.
   std::array<std::int32_t, 3> neighbour{kNoElement, kNoElement, kNoElement};
   std::array<Vec3, 3> gradient{};  ///< of the natural coordinates, 1/m, in the plane
   Vec3 facet_normal{};             ///< unit, INTO the body
   bool active = false;             ///< false next to a hole: never touched, a border for the others
+};
+
+/// All that belongs to a vertex, in one cache line.
+struct alignas(64) SurfaceNode {
+  Vec3 position{};  ///< m
+  Vec3 inward{};    ///< unit
+  NodeCurves curves;
 };
 
 /// A point of the surface: an element and natural coordinates n_l >= 0 that sum to 1.
@@ -45,19 +53,33 @@ class Surface {
   std::int32_t element_count() const noexcept {
     return static_cast<std::int32_t>(elements_.size());
   }
-  const Vec3& vertex(const Element& e, std::size_t l) const noexcept {
-    return positions_[static_cast<std::size_t>(e.vertices[l])];
+  const Vec3& vertex(const Element& e, std::size_t l) const noexcept { return node(e, l).position; }
+  const Vec3& inward(const Element& e, std::size_t l) const noexcept { return node(e, l).inward; }
+
+  Vec3 position(const SurfacePoint& p) const noexcept {
+    const Element& e = element(p.element);
+    return p.natural[0] * vertex(e, 0) + p.natural[1] * vertex(e, 1) + p.natural[2] * vertex(e, 2);
   }
-  const Vec3& inward(const Element& e, std::size_t l) const noexcept {
-    return inward_[static_cast<std::size_t>(e.vertices[l])];
+  /// sum n_l u_l, not normalised [Mahvash & Hayward 2005, eq. 26].
+  Vec3 direction_sum(const SurfacePoint& p) const noexcept {
+    const Element& e = element(p.element);
+    return p.natural[0] * inward(e, 0) + p.natural[1] * inward(e, 1) + p.natural[2] * inward(e, 2);
+  }
+  /// n, the unit inward direction at p. Always normalised: the energy (32) needs |n| = 1.
+  Vec3 normal(const SurfacePoint& p) const noexcept {
+    const Vec3 sum = direction_sum(p);
+    return (1.0 / norm(sum)) * sum;
+  }
+  InterpolatedResponse response(const SurfacePoint& p) const noexcept {
+    const Element& e = element(p.element);
+    return {{&node(e, 0).curves, &node(e, 1).curves, &node(e, 2).curves}, p.natural};
   }
 
-  Vec3 position(const SurfacePoint& p) const noexcept;
-  /// sum n_l u_l, not normalised [Mahvash & Hayward 2005, eq. 26].
-  Vec3 direction_sum(const SurfacePoint& p) const noexcept;
-  /// n, the unit inward direction at p. Always normalised: the energy (32) needs |n| = 1.
-  Vec3 normal(const SurfacePoint& p) const noexcept;
-  InterpolatedResponse response(const SurfacePoint& p) const noexcept;
+  /// Asks the processor for what lies around an element, in two calls that should be a step apart:
+  /// first the elements beyond its neighbours and the vertices opposite to its edges, then the
+  /// curves of those vertices. The contact point then moves on without waiting for the memory.
+  void prefetch_around(std::int32_t m) const noexcept;
+  void prefetch_curves_around(std::int32_t m) const noexcept;
 
   /// Signed distance of x to the plane of an element, positive OUTSIDE the body, m. Collision and
   /// release use this one expression, so that they never disagree on which side a point is.
@@ -71,14 +93,21 @@ class Surface {
   double deepest() const noexcept { return deepest_; }  ///< deepest sample of any node, m
 
  private:
+  void build_nodes(const Library& library);
   void build_element(const Library& library, std::size_t m);
   void connect();
   void check_directions(std::size_t m) const;
 
-  std::vector<Vec3> positions_;
-  std::vector<Vec3> inward_;
-  std::vector<NodeCurves> curves_;
-  std::vector<Element> elements_;
+  std::int32_t opposite_vertex(const Element& e, std::size_t l) const noexcept;
+  const SurfaceNode& node(const Element& e, std::size_t l) const noexcept {
+    return nodes_[static_cast<std::size_t>(e.vertices[l])];
+  }
+
+  template <class T>
+  using Table = std::vector<T, LargeMemory<T>>;
+  Table<SurfaceNode> nodes_;
+  Table<PackedPiece> pieces_;  ///< of all nodes, one after the other
+  Table<Element> elements_;
   Vec3 low_{}, high_{};
   double deepest_ = 0;
 };

@@ -82,7 +82,8 @@ TEST_F(EnergyRuleTest, AnExcessRaisesTheOffset) {
   const LocalModel moved = random_model(0.0002);
   const Vec3 x = tip(moved, 0.004, 0);
   const double budget = 0.5 * energy(moved, x, 0.0002);
-  const EnergyVerdict verdict = judge(moved, x, budget, 0.0002, 1e-4);
+  const EnergyVerdict verdict =
+      judge(moved, x, moved.respond(moved.deflection(x)), budget, 0.0002, 1e-4);
   EXPECT_TRUE(verdict.limited);
   EXPECT_FALSE(verdict.hold);
   EXPECT_GT(verdict.offset, 0.0002);
@@ -94,8 +95,10 @@ TEST_F(EnergyRuleTest, WhatNoOffsetCanLowerHoldsTheContactPoint) {
   const Vec3 x = tip(moved, 0.004, 0.003);
   const double lateral_alone = energy(moved, x, 0.004);
   ASSERT_GT(lateral_alone, 0);
-  EXPECT_TRUE(judge(moved, x, 0.9 * lateral_alone, 0, 1e-4).hold);
-  EXPECT_FALSE(judge(moved, x, 1.1 * lateral_alone, 0, 1e-4).hold);
+  EXPECT_TRUE(
+      judge(moved, x, moved.respond(moved.deflection(x)), 0.9 * lateral_alone, 0, 1e-4).hold);
+  EXPECT_FALSE(
+      judge(moved, x, moved.respond(moved.deflection(x)), 1.1 * lateral_alone, 0, 1e-4).hold);
 }
 
 TEST_F(EnergyRuleTest, ASurplusGivesTheOffsetBackWithinItsMeans) {
@@ -103,14 +106,18 @@ TEST_F(EnergyRuleTest, ASurplusGivesTheOffsetBackWithinItsMeans) {
   const Vec3 x = tip(moved, 0.004, 0.0005);
   const double now = energy(moved, x, 0.0010);
   // Plenty: limited by the distance travelled, then by the value at the collision.
-  EXPECT_NEAR(judge(moved, x, 10 * now, 0.0001, 2e-4).offset, 0.0008, 1e-15);
-  EXPECT_NEAR(judge(moved, x, 10 * now, 0.0009, 2e-4).offset, 0.0009, 1e-15);
+  EXPECT_NEAR(judge(moved, x, moved.respond(moved.deflection(x)), 10 * now, 0.0001, 2e-4).offset,
+              0.0008, 1e-15);
+  EXPECT_NEAR(judge(moved, x, moved.respond(moved.deflection(x)), 10 * now, 0.0009, 2e-4).offset,
+              0.0009, 1e-15);
   // Scarce: limited by the budget. None: stays.
   const double budget = now + 0.3 * (energy(moved, x, 0.0008) - now);
-  const double offset = judge(moved, x, budget, 0.0001, 2e-4).offset;
+  const double offset =
+      judge(moved, x, moved.respond(moved.deflection(x)), budget, 0.0001, 2e-4).offset;
   EXPECT_LT(offset, 0.0010);
   EXPECT_NEAR(energy(moved, x, offset), budget, 1e-8 * budget);
-  EXPECT_NEAR(judge(moved, x, now, 0.0001, 2e-4).offset, 0.0010, 1e-15);
+  EXPECT_NEAR(judge(moved, x, moved.respond(moved.deflection(x)), now, 0.0001, 2e-4).offset, 0.0010,
+              1e-15);
 }
 
 TEST(EnergyTank, KeepsBetweenZeroAndItsCap) {

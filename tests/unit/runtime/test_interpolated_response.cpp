@@ -28,17 +28,28 @@ ResponseCurve random_curve(std::mt19937& random, bool with_plateaus) {
   return curve;
 }
 
+void append(const CompiledCurve& curve, std::vector<PackedPiece>& row) {
+  for (const CompiledCurve::Piece& piece : curve.pieces()) row.push_back(pack(piece));
+}
+
 struct Nodes {
   explicit Nodes(std::mt19937& random, bool with_plateaus = false) {
-    for (NodeCurves& node : curves) {
-      node.normal = CompiledCurve(random_curve(random, with_plateaus));
-      node.lateral = CompiledCurve(random_curve(random, with_plateaus));
+    for (std::size_t l = 0; l < 3; ++l) {
+      for (const std::size_t kind : {0U, 1U}) {
+        curves[l][kind] = CompiledCurve(random_curve(random, with_plateaus));
+        append(curves[l][kind], knots[l]);
+      }
+      packed[l] =
+          NodeCurves(knots[l].data(), static_cast<std::uint16_t>(curves[l][0].pieces().size()),
+                     static_cast<std::uint16_t>(curves[l][1].pieces().size()));
     }
   }
   InterpolatedResponse at(const Vec3& natural) const {
-    return {{&curves[0], &curves[1], &curves[2]}, natural};
+    return {{&packed[0], &packed[1], &packed[2]}, natural};
   }
-  std::array<NodeCurves, 3> curves;
+  std::array<std::array<CompiledCurve, 2>, 3> curves;  // normal, lateral
+  std::array<std::vector<PackedPiece>, 3> knots;
+  std::array<NodeCurves, 3> packed;
 };
 
 Vec3 random_natural(std::mt19937& random) {
@@ -55,9 +66,9 @@ TEST(InterpolatedResponse, ReproducesTheNodesAtTheVertices) {
     Vec3 natural{};
     natural[l] = 1;
     for (const double d : {-0.001, 0.0, 0.0004, 0.003, 0.05}) {
-      EXPECT_EQ(nodes.at(natural).normal(d).force, nodes.curves[l].normal.force(d));
-      EXPECT_EQ(nodes.at(natural).normal(d).energy, nodes.curves[l].normal.energy(d));
-      EXPECT_EQ(nodes.at(natural).lateral(d).force, nodes.curves[l].lateral.force(d));
+      EXPECT_EQ(nodes.at(natural).normal(d).force, nodes.curves[l][0].force(d));
+      EXPECT_EQ(nodes.at(natural).normal(d).energy, nodes.curves[l][0].energy(d));
+      EXPECT_EQ(nodes.at(natural).lateral(d).force, nodes.curves[l][1].force(d));
     }
   }
 }
@@ -65,12 +76,12 @@ TEST(InterpolatedResponse, ReproducesTheNodesAtTheVertices) {
 TEST(InterpolatedResponse, ThreeEqualNodesGiveThatNodeEverywhere) {
   std::mt19937 random(2);
   Nodes nodes(random);
-  nodes.curves[1] = nodes.curves[2] = nodes.curves[0];
+  nodes.packed[1] = nodes.packed[2] = nodes.packed[0];
   for (int trial = 0; trial < 100; ++trial) {
     const InterpolatedResponse r = nodes.at(random_natural(random));
     const double d = 1e-4 * trial;
-    EXPECT_NEAR(r.normal(d).force, nodes.curves[0].normal.force(d), 1e-13);
-    EXPECT_NEAR(r.lateral(d).slope, nodes.curves[0].lateral.slope(d), 1e-11);
+    EXPECT_NEAR(r.normal(d).force, nodes.curves[0][0].force(d), 1e-13);
+    EXPECT_NEAR(r.lateral(d).slope, nodes.curves[0][1].slope(d), 1e-11);
   }
 }
 
@@ -110,6 +121,7 @@ TEST(InterpolatedResponse, LateralInverseAgreesWithBisection) {
     const double rho = r.lateral_inverse(force);
     ASSERT_TRUE(std::isfinite(rho));
     EXPECT_NEAR(r.lateral(rho).force, force, 1e-12 * (1 + force));
+    EXPECT_EQ(r.lateral_inverse_below(force, reach), rho);
     // A plateau makes the location ill-conditioned, so the force decides; where it rises, both
     // agree.
     if (force > 0 && r.lateral(rho).slope > 1) {
@@ -119,8 +131,9 @@ TEST(InterpolatedResponse, LateralInverseAgreesWithBisection) {
 }
 
 TEST(InterpolatedResponse, NothingSlipsWhereTheLateralForceStaysBelowTheLimit) {
-  NodeCurves flat;
-  flat.lateral = CompiledCurve(ResponseCurve{{0.0F, 0.001F, 0.002F}, {100.0F, 0.0F, 0.0F}});
+  std::vector<PackedPiece> knots;
+  append(CompiledCurve(ResponseCurve{{0.0F, 0.001F, 0.002F}, {100.0F, 0.0F, 0.0F}}), knots);
+  const NodeCurves flat(knots.data(), 0, 3);
   const InterpolatedResponse r({&flat, &flat, &flat}, {0.2, 0.3, 0.5});
   EXPECT_NEAR(r.lateral(1.0).force, 0.05, 1e-8);  // knots are single precision
   EXPECT_TRUE(std::isinf(r.lateral_inverse(0.06)));

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "format/library.hpp"
+
+namespace palpate::bench {
+
+/// Octahedron of radius 50 mm with each face divided into n x n triangles, vertices on the sphere:
+/// 8 n^2 triangles. Every vertex has responses of 8 knots of its own, stiffness 100 to 300 N/m.
+Library octasphere(int n);
+
+}  // namespace palpate::bench

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Memory for large tables that are read at random places.
+#pragma once
+
+#include <sys/mman.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <limits>
+#include <new>
+
+namespace palpate::runtime {
+
+/// Allocator for std::vector that asks the system for large pages where the table is large. Finding
+/// a small page of a table of 100 MB costs more than the read itself; a system that has no large
+/// pages ignores the request.
+template <class T>
+struct LargeMemory {
+  using value_type = T;
+  LargeMemory() = default;
+  template <class U>
+  LargeMemory(const LargeMemory<U>&) noexcept {}  // NOLINT: allocators convert
+
+  T* allocate(std::size_t count) {
+    if (count > std::numeric_limits<std::size_t>::max() / sizeof(T) - kPage) throw std::bad_alloc();
+    const std::size_t bytes = count * sizeof(T);
+    const std::size_t alignment = bytes < 2 * kPage ? kLine : kPage;
+    const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
+    void* memory = std::aligned_alloc(alignment, whole);
+    if (memory == nullptr) throw std::bad_alloc();
+    if (alignment == kPage) madvise(memory, whole, MADV_HUGEPAGE);  // a wish, not a need
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, std::size_t) noexcept { std::free(memory); }
+  bool operator==(const LargeMemory&) const = default;
+
+ private:
+  static constexpr std::size_t kPage = std::size_t{1} << 21;  // bytes
+  static constexpr std::size_t kLine = 64;                    // bytes
+};
+
+}  // namespace palpate::runtime
