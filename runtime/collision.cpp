@@ -72,7 +72,66 @@ Vec3 closest_natural(const Surface& surface, const Element& e, const Vec3& x) no
   return natural;
 }
 
+struct Entry {
+  double at = 2;  ///< position on the segment, 0 .. 1
+  SurfacePoint point;
+};
+
+void test_entry(const Surface& surface, std::int32_t m, const Vec3& from, const Vec3& to,
+                Entry& best) noexcept {
+  const Element& e = surface.element(m);
+  const double before = surface.outside_distance(e, from);
+  const double after = surface.outside_distance(e, to);
+  if (!(before >= 0 && after < 0)) return;
+  const double at = before / (before - after);
+  if (at >= best.at) return;
+  const Vec3 p = from + at * (to - from);
+  Vec3 natural;
+  for (std::size_t l = 0; l < 3; ++l) {
+    natural[l] = 1.0 + dot(e.gradient[l], p - surface.vertex(e, l));
+    if (!(natural[l] >= -kNaturalTolerance)) return;
+    natural[l] = std::max(natural[l], 0.0);
+  }
+  best.at = at;
+  best.point = {m, (1.0 / (natural[0] + natural[1] + natural[2])) * natural};
+}
+
+struct Closest {
+  double distance2 = 0;  ///< m^2; nothing further is taken
+  SurfacePoint point;
+};
+
+void test_distance(const Surface& surface, std::int32_t m, const Vec3& x, Closest& best) noexcept {
+  const SurfacePoint p{m, closest_natural(surface, surface.element(m), x)};
+  const Vec3 r = x - surface.position(p);
+  if (dot(r, r) > best.distance2) return;
+  best = {dot(r, r), p};
+}
+
+/// Is every point of the element further than the best? Cheap, and wrong only on the safe side.
+bool surely_further(const Surface& surface, const Element& e, const Vec3& x,
+                    const Closest& best) noexcept {
+  const double off_plane = surface.outside_distance(e, x);
+  return off_plane * off_plane > best.distance2;
+}
+
 }  // namespace
+
+SurfacePoint first_entry(const Surface& surface, std::span<const std::int32_t> elements,
+                         const Vec3& from, const Vec3& to) noexcept {
+  Entry best;
+  for (const std::int32_t m : elements) test_entry(surface, m, from, to, best);
+  return best.point;
+}
+
+SurfacePoint nearest(const Surface& surface, std::span<const std::int32_t> elements, const Vec3& x,
+                     double within) noexcept {
+  Closest best{within * within, {}};
+  for (const std::int32_t m : elements) {
+    if (!surely_further(surface, surface.element(m), x, best)) test_distance(surface, m, x, best);
+  }
+  return best.point;
+}
 
 CollisionTree::CollisionTree(const Surface& surface)
     : surface_(&surface), margin_(1e-9 * surface.diagonal()) {
@@ -136,34 +195,14 @@ SurfacePoint CollisionTree::first_entry(const Vec3& from, const Vec3& to) const 
       continue;
     }
     for (std::int32_t k = node.first; k < node.first + node.count; ++k) {
-      test_triangle(order_[static_cast<std::size_t>(k)], from, to, best);
+      test_entry(*surface_, order_[static_cast<std::size_t>(k)], from, to, best);
     }
   }
   return best.point;
 }
 
-void CollisionTree::test_triangle(std::int32_t m, const Vec3& from, const Vec3& to,
-                                  Entry& best) const noexcept {
-  const Element& e = surface_->element(m);
-  const double before = surface_->outside_distance(e, from);
-  const double after = surface_->outside_distance(e, to);
-  if (!(before >= 0 && after < 0)) return;
-  const double at = before / (before - after);
-  if (at >= best.at) return;
-  const Vec3 p = from + at * (to - from);
-  Vec3 natural;
-  for (std::size_t l = 0; l < 3; ++l) {
-    natural[l] = 1.0 + dot(e.gradient[l], p - surface_->vertex(e, l));
-    if (!(natural[l] >= -kNaturalTolerance)) return;
-    natural[l] = std::max(natural[l], 0.0);
-  }
-  best.at = at;
-  best.point = {m, (1.0 / (natural[0] + natural[1] + natural[2])) * natural};
-}
-
 SurfacePoint CollisionTree::nearest(const Vec3& x, double within) const noexcept {
-  SurfacePoint best;
-  double best2 = within * within;
+  Closest best{within * within, {}};
   std::array<std::int32_t, kDeepest> stack;
   std::size_t size = 0;
   stack[size++] = 0;
@@ -174,7 +213,7 @@ SurfacePoint CollisionTree::nearest(const Vec3& x, double within) const noexcept
   while (size > 0) {
     const std::int32_t index = stack[--size];
     const Node& node = nodes_[static_cast<std::size_t>(index)];
-    if (distance2(index) > best2) continue;
+    if (distance2(index) > best.distance2) continue;
     if (node.count == 0) {
       const bool second_nearer = distance2(node.first) < distance2(index + 1);
       stack[size++] = second_nearer ? index + 1 : node.first;
@@ -182,29 +221,46 @@ SurfacePoint CollisionTree::nearest(const Vec3& x, double within) const noexcept
       continue;
     }
     for (std::int32_t k = node.first; k < node.first + node.count; ++k) {
-      const std::int32_t m = order_[static_cast<std::size_t>(k)];
-      const SurfacePoint p{m, closest_natural(*surface_, surface_->element(m), x)};
-      const Vec3 r = x - surface_->position(p);
-      if (dot(r, r) > best2) continue;
-      best2 = dot(r, r);
-      best = p;
+      test_distance(*surface_, order_[static_cast<std::size_t>(k)], x, best);
     }
   }
-  return best;
+  return best.point;
+}
+
+void CollisionTree::gather(const Vec3& from, const Vec3& to, double radius, std::size_t most,
+                           std::vector<std::int32_t>& elements) const {
+  const Vec3 wide{radius, radius, radius};
+  std::array<std::int32_t, kDeepest> stack;
+  std::size_t size = 0;
+  stack[size++] = 0;
+  while (size > 0 && elements.size() < most) {
+    const std::int32_t index = stack[--size];
+    const Node& node = nodes_[static_cast<std::size_t>(index)];
+    if (!meets(node.box.low - wide, node.box.high + wide, from, to - from)) continue;
+    if (node.count == 0) {
+      stack[size++] = node.first;
+      stack[size++] = index + 1;
+      continue;
+    }
+    for (std::int32_t k = node.first; k < node.first + node.count; ++k) {
+      elements.push_back(order_[static_cast<std::size_t>(k)]);
+    }
+  }
 }
 
 Projection project(const Surface& surface, const SurfacePoint& from, const Vec3& x, int passes,
-                   double tolerance) noexcept {
-  Projection p{from, std::numeric_limits<double>::infinity(), false};
+                   double tolerance, const Delivery* delivered) noexcept {
+  Projection p{from, std::numeric_limits<double>::infinity(), false, false};
   double share = 1;  // of the lateral deflection walked in a pass; less where full passes overshoot
   for (int pass = 0;; ++pass) {
     const Deflection d = LocalModel(surface, p.point, 0).deflection(x);
     if (d.lateral > kLeastGain * p.lateral) share = std::max(share / 2, kLeastShare);
     p.lateral = d.lateral;
     if (d.lateral <= tolerance || pass == passes) return p;
-    const Walk moved = walk(surface, p.point, d.tangent, share * d.lateral);
+    const Walk moved = walk(surface, p.point, d.tangent, share * d.lateral, delivered);
     p.point = moved.point;
     p.at_border = moved.at_border;
+    p.awaiting = moved.awaiting;
   }
 }
 

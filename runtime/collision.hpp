@@ -3,12 +3,24 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "format/vec3.hpp"
+#include "runtime/delivery.hpp"
 #include "runtime/surface.hpp"
 
 namespace palpate::runtime {
+
+/// First crossing of the segment from `from` to `to` from outside to inside, among some triangles;
+/// its element is kNoElement when there is none. noexcept, allocation-free, linear.
+SurfacePoint first_entry(const Surface& surface, std::span<const std::int32_t> elements,
+                         const Vec3& from, const Vec3& to) noexcept;
+
+/// Closest point to x on some triangles, no further than `within` (m). noexcept, allocation-free,
+/// linear.
+SurfacePoint nearest(const Surface& surface, std::span<const std::int32_t> elements, const Vec3& x,
+                     double within) noexcept;
 
 /// Axis-aligned bounding box tree over the active triangles. Immutable after construction.
 class CollisionTree {
@@ -24,6 +36,10 @@ class CollisionTree {
   /// when there is none. noexcept, allocation-free, bounded by the number of triangles.
   SurfacePoint nearest(const Vec3& x, double within) const noexcept;
 
+  /// Appends the triangles whose boxes come within `radius` (m) of the segment, at most `most`.
+  void gather(const Vec3& from, const Vec3& to, double radius, std::size_t most,
+              std::vector<std::int32_t>& elements) const;
+
  private:
   struct Box {
     Vec3 low{}, high{};
@@ -33,14 +49,8 @@ class CollisionTree {
     std::int32_t first = 0;  ///< leaf: first entry of order_; inner node: index of the second child
     std::int32_t count = 0;  ///< leaf: number of triangles; 0 for an inner node
   };
-  struct Entry {
-    double at = 2;  ///< position on the segment, 0 .. 1
-    SurfacePoint point;
-  };
-
   Box box_of(std::int32_t begin, std::int32_t end) const;
   void build(std::int32_t begin, std::int32_t end);
-  void test_triangle(std::int32_t m, const Vec3& from, const Vec3& to, Entry& best) const noexcept;
 
   const Surface* surface_;
   std::vector<std::int32_t> order_;
@@ -54,8 +64,9 @@ struct Projection {
   SurfacePoint point;
   double lateral = 0;      ///< m, what is left of it
   bool at_border = false;  ///< a border stood in the way
+  bool awaiting = false;   ///< a triangle that has not been delivered stood in the way
 };
 Projection project(const Surface& surface, const SurfacePoint& from, const Vec3& x, int passes,
-                   double tolerance) noexcept;
+                   double tolerance, const Delivery* delivered = nullptr) noexcept;
 
 }  // namespace palpate::runtime

@@ -36,6 +36,12 @@ void ContactState::reset() noexcept {
   seen_ = {};
 }
 
+void ContactState::set_delivery(const Delivery* delivered) noexcept {
+  delivered_ = delivered;
+  const bool late = delivered != nullptr && delivered->entry.element != kNoElement;
+  if (late && !model_ && !approaching_) approaching_ = delivered->entry;
+}
+
 std::uint32_t ContactState::refuse() noexcept {
   seen_.status = PALPATE_BAD_INPUT;
   drop();
@@ -56,26 +62,36 @@ std::uint32_t ContactState::step(const Vec3& x) noexcept {
 }
 
 void ContactState::detect(const Vec3& from, const Vec3& x) noexcept {
-  const SurfacePoint entry = tree_->first_entry(from, x);
-  if (entry.element != kNoElement) approaching_ = entry;
+  const SurfacePoint crossed = entry(from, x);
+  if (crossed.element != kNoElement) approaching_ = crossed;
   if (!approaching_) return;
-  const Projection facing = project(*surface_, *approaching_, x, kActivationPasses, kRelaxed);
+  const auto facing_from = [&](const SurfacePoint& point) {
+    return project(*surface_, point, x, kActivationPasses, kRelaxed, delivered_);
+  };
+  const Projection facing = facing_from(*approaching_);
   if (begin_at(facing, x)) return;
   // No point near the entry faces the tip, or it takes more passes to find. The closest point says
   // whether to go on, and may be a better start.
   approaching_.reset();
   const SurfacePoint closest = closest_if_inside(x);
   if (closest.element == kNoElement) return;
-  const Projection again = project(*surface_, closest, x, kActivationPasses, kRelaxed);
+  const Projection again = facing_from(closest);
   if (begin_at(again, x)) return;
   approaching_ = again.lateral < facing.lateral ? again.point : facing.point;
+}
+
+SurfacePoint ContactState::entry(const Vec3& from, const Vec3& to) const noexcept {
+  if (delivered_ == nullptr) return tree_->first_entry(from, to);
+  return first_entry(*surface_, delivered_->elements(), from, to);
 }
 
 /// The closest point of the surface when the tip is on its inner side and not deeper than the
 /// deepest sample; else none. Sure of the side even at edges, as u_l . facet normal > 0 in every
 /// triangle.
 SurfacePoint ContactState::closest_if_inside(const Vec3& x) const noexcept {
-  const SurfacePoint p = tree_->nearest(x, surface_->deepest());
+  const SurfacePoint p = delivered_ == nullptr
+                             ? tree_->nearest(x, surface_->deepest())
+                             : nearest(*surface_, delivered_->elements(), x, surface_->deepest());
   if (p.element == kNoElement) return p;
   const bool inside = dot(x - surface_->position(p), surface_->normal(p)) > 0;
   return inside ? p : SurfacePoint{};
@@ -114,7 +130,9 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
 /// contact point is always within the limit.
 ContactState::Candidate ContactState::choose(const Vec3& x, const Candidate& held,
                                              double travelled) const noexcept {
-  const double allowed = settings_.steepness * travelled + kRounding;
+  const double allowed = std::isinf(settings_.steepness)
+                             ? settings_.steepness
+                             : settings_.steepness * travelled + kRounding;
   const auto within = [&](const Candidate& c) {
     return norm(c.response.force - seen_.force) <= allowed;
   };
@@ -174,16 +192,19 @@ LocalModel ContactState::slide(const Vec3& x, const Candidate& held, double shar
                                std::uint32_t& status) const noexcept {
   const Deflection& d = held.deflection;
   if (!(d.depth > 0) && share == 1) {
-    const Projection p = project(*surface_, model_->point(), x, kRelaxedPasses, kRelaxed);
+    const Projection p =
+        project(*surface_, model_->point(), x, kRelaxedPasses, kRelaxed, delivered_);
     if (p.at_border) status |= PALPATE_AT_BORDER;
+    if (p.awaiting) status |= PALPATE_AWAITING;
     return {*surface_, p.point, model_->offset()};
   }
   const LocalResponse& at = held.response;
   if (!(at.lateral_force > settings_.friction * at.normal_force)) return *model_;
   const double excess = d.lateral - model_->slip_limit_below(d, at, settings_.friction);
   if (!(excess > 0)) return *model_;
-  const Walk moved = walk(*surface_, model_->point(), d.tangent, share * excess);
+  const Walk moved = walk(*surface_, model_->point(), d.tangent, share * excess, delivered_);
   if (moved.at_border) status |= PALPATE_AT_BORDER;
+  if (moved.awaiting) status |= PALPATE_AWAITING;
   return {*surface_, moved.point, model_->offset()};
 }
 
@@ -194,9 +215,9 @@ bool ContactState::release(const Candidate& moved, const Vec3& x, double energy_
   const Element& e = surface_->element(moved.model.point().element);
   if (d.depth > 0 || surface_->outside_distance(e, x) < 0) return false;
   if (d.lateral > kRelaxed) {
-    // The lateral force still has to fall as the tip goes on; or c is not opposite to the tip, so
-    // that its plane does not decide on which side the tip is.
-    if (moved.status & PALPATE_FORCE_LIMITED) return false;
+    // The lateral force still has to fall as the tip goes on, or the way for c is not there yet; or
+    // c is not opposite to the tip, so that its plane does not decide on which side the tip is.
+    if (moved.status & (PALPATE_FORCE_LIMITED | PALPATE_AWAITING)) return false;
     if (closest_if_inside(x).element != kNoElement) return false;
     seen_.status |= PALPATE_DROPPED;
   } else {

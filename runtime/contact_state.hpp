@@ -71,6 +71,9 @@ class ContactState {
   std::uint32_t step(const Vec3& x) noexcept;
   /// A step whose input cannot be used: force zero, the contact dropped.
   std::uint32_t refuse() noexcept;
+  /// From the next step on only these triangles are there to be met or slid onto, until the next
+  /// call; null: all. The delivery must live as long as it is used.
+  void set_delivery(const Delivery* delivered) noexcept;
   /// Forgets the contact, the last position and the account.
   void reset() noexcept;
 
@@ -79,6 +82,7 @@ class ContactState {
  private:
   void detect(const Vec3& from, const Vec3& x) noexcept;
   bool begin_at(const Projection& facing, const Vec3& x) noexcept;
+  SurfacePoint entry(const Vec3& from, const Vec3& to) const noexcept;
   SurfacePoint closest_if_inside(const Vec3& x) const noexcept;
   /// A model for the next step and what led to it.
   struct Candidate {
@@ -105,6 +109,7 @@ class ContactState {
 
   const Surface* surface_;
   const CollisionTree* tree_;
+  const Delivery* delivered_ = nullptr;  ///< null: every triangle
   ContactSettings settings_;
   EnergyTank tank_;
   std::optional<LocalModel> model_;          ///< touching

@@ -3,10 +3,14 @@
 // library in memory; not installed.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "format/library.hpp"
 #include "runtime/collision.hpp"
 #include "runtime/contact_state.hpp"
 #include "runtime/palpate.h"
+#include "runtime/search_thread.hpp"
 #include "runtime/surface.hpp"
 
 struct palpate_library {
@@ -34,8 +38,26 @@ struct palpate_library {
 };
 
 struct palpate_state {
-  palpate_state(const palpate_library& library, const palpate::runtime::ContactSettings& settings)
-      : contact(library.surface, library.tree, settings) {}
+  /// search_rate: Hz of the search thread; 0 = the step searches the body itself.
+  palpate_state(const palpate_library& library, const palpate::runtime::ContactSettings& settings,
+                double search_rate = 0)
+      : contact(library.surface, library.tree, settings) {
+    if (search_rate <= 0) return;
+    search.emplace(library.surface, library.tree, search_rate);
+    contact.set_delivery(&delivery);  // nothing yet
+  }
+  palpate_state(const palpate_state&) = delete;
+  palpate_state& operator=(const palpate_state&) = delete;
+
+  std::uint32_t step(const palpate::Vec3& x) noexcept {
+    if (!search) return contact.step(x);
+    if (search->receive(delivery)) contact.set_delivery(&delivery);
+    const std::uint32_t status = contact.step(x);
+    if (!(status & PALPATE_BAD_INPUT)) search->report({x, contact.observation().point.element});
+    return status;
+  }
 
   palpate::runtime::ContactState contact;
+  palpate::runtime::Delivery delivery;
+  std::optional<palpate::runtime::SearchThread> search;
 };

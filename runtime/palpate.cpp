@@ -25,7 +25,8 @@ using palpate::runtime::ContactSettings;
 
 namespace {
 
-constexpr double kDefaultTankCap = 5e-3;  // J
+constexpr double kDefaultTankCap = 5e-3;   // J
+constexpr double kMostSearchRate = 10000;  // Hz
 
 thread_local char last_error[512] = "";
 
@@ -152,7 +153,7 @@ int palpate_library_describe(const palpate_library* library, palpate_library_inf
 
 void palpate_settings_default(palpate_settings* settings) {
   if (settings == nullptr) return;
-  *settings = {sizeof(palpate_settings), -1.0, kDefaultTankCap, 0};
+  *settings = {sizeof(palpate_settings), -1.0, kDefaultTankCap, 0, 0};
 }
 
 int palpate_state_create(const palpate_library* library, const palpate_settings* settings,
@@ -183,12 +184,16 @@ int palpate_state_create(const palpate_library* library, const palpate_settings*
     return fail(PALPATE_ERROR_ARGUMENT,
                 "palpate_state_create: steepness must be 0 or at least the L_stick of the library");
   }
+  if (!(chosen.search_rate >= 0 && chosen.search_rate <= kMostSearchRate)) {
+    return fail(PALPATE_ERROR_ARGUMENT,
+                "palpate_state_create: search_rate must be 0 (no thread) to 10000 Hz");
+  }
   ContactSettings contact;
   contact.friction = chosen.friction < 0 ? library->info.friction : chosen.friction;
   contact.tank_cap = chosen.tank_cap;
   contact.steepness = chosen.steepness > 0 ? chosen.steepness : library->steepness;
   return guarded([&] {
-    *state = new palpate_state(*library, contact);
+    *state = new palpate_state(*library, contact, chosen.search_rate);
     return static_cast<int>(PALPATE_OK);
   });
 }
@@ -209,7 +214,7 @@ uint32_t palpate_step(palpate_state* state, const double position[3], const doub
                       std::isfinite(dt) && dt > 0 && std::isfinite(velocity[0]) &&
                       std::isfinite(velocity[1]) && std::isfinite(velocity[2]);
   if (!usable) return state->contact.refuse();
-  const uint32_t status = state->contact.step({position[0], position[1], position[2]});
+  const uint32_t status = state->step({position[0], position[1], position[2]});
   copy(-state->contact.observation().force, force);
   return status;
 }

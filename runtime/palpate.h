@@ -45,17 +45,22 @@ enum {
   PALPATE_BAD_INPUT = 1u << 7,      /* NaN, infinity, dt <= 0, or a step longer than the diagonal of
                                        the body: zero force, the contact is dropped */
   PALPATE_DROPPED = 1u << 8,        /* the contact was dropped with stored energy discarded */
-  PALPATE_FORCE_LIMITED = 1u << 9   /* a slide or a return of d0 was made in part only, so that the
+  PALPATE_FORCE_LIMITED = 1u << 9,  /* a slide or a return of d0 was made in part only, so that the
                                        force changes by no more than steepness times the travel */
+  PALPATE_AWAITING = 1u << 10       /* the contact point waits at an edge for triangles that the
+                                       search thread has not delivered yet */
 };
 
 typedef struct palpate_settings {
-  uint32_t size;    /* sizeof(palpate_settings), set by palpate_settings_default */
-  double friction;  /* mu; negative = the value the library was certified for */
-  double tank_cap;  /* J, cap of the energy tank; 0 = strict Theorem 2 */
-  double steepness; /* N/m: the force changes by at most this times the travel of the tip; 0 = the
-                       certified bound, or 4 L_stick when that is less; else at least L_stick.
-                       Without a certificate there is no limit but the one given here. */
+  uint32_t size;      /* sizeof(palpate_settings), set by palpate_settings_default */
+  double friction;    /* mu; negative = the value the library was certified for */
+  double tank_cap;    /* J, cap of the energy tank; 0 = strict Theorem 2 */
+  double steepness;   /* N/m: the force changes by at most this times the travel of the tip; 0 = the
+                         certified bound, or 4 L_stick when that is less; else at least L_stick.
+                         Without a certificate there is no limit but the one given here. */
+  double search_rate; /* Hz: a thread of its own looks for the triangles near the tool at this rate
+                         (100 is plenty) and hands them to the step; 0 = no thread, the step
+                         searches the whole body */
 } palpate_settings;
 
 /* Everything a recorder or a picture wants to know of the last step. */

@@ -26,9 +26,13 @@ Vec3 tidy(Vec3 natural) noexcept {
 /// One walk in progress.
 class Walker {
  public:
-  Walker(const Surface& surface, const SurfacePoint& from, const Vec3& direction,
-         double distance) noexcept
-      : surface_(surface), direction_(direction), remaining_(distance), point_(from) {}
+  Walker(const Surface& surface, const SurfacePoint& from, const Vec3& direction, double distance,
+         const Delivery* delivered) noexcept
+      : surface_(surface),
+        delivered_(delivered),
+        direction_(direction),
+        remaining_(distance),
+        point_(from) {}
 
   Walk run() noexcept {
     for (int i = 0; i < kMostEdges && remaining_ > 0; ++i) {
@@ -43,10 +47,31 @@ class Walker {
       if (vertex_here() == kNone && !cross(exit) && !follow(exit)) break;
     }
     point_.natural = tidy(point_.natural);
-    return {point_, at_border_};
+    return {point_, stopped_by_.border, stopped_by_.undelivered};
   }
 
  private:
+  /// Why there is no way on.
+  struct Obstacle {
+    bool border = false, undelivered = false;
+    void add(const Obstacle& other) noexcept {
+      border = border || other.border;
+      undelivered = undelivered || other.undelivered;
+    }
+  };
+
+  /// The triangle across edge l of m, or kNoElement and the reason.
+  std::int32_t across(std::int32_t m, std::size_t l, Obstacle& obstacle) const noexcept {
+    const std::int32_t next = surface_.element(m).neighbour[l];
+    if (next == kNoElement) {
+      obstacle.border = true;
+      return next;
+    }
+    if (delivered_ == nullptr || delivered_->holds(next)) return next;
+    obstacle.undelivered = true;
+    return kNoElement;
+  }
+
   const Element& element() const noexcept { return surface_.element(point_.element); }
 
   /// Unit direction of the walk in the plane of an element; false when it is the normal of the
@@ -86,11 +111,8 @@ class Walker {
 
   /// Steps over the edge opposite to vertex `exit` when the direction points into the neighbour.
   bool cross(std::size_t exit) noexcept {
-    const std::int32_t next = element().neighbour[exit];
-    if (next == kNoElement) {
-      at_border_ = true;
-      return false;
-    }
+    const std::int32_t next = across(point_.element, exit, stopped_by_);
+    if (next == kNoElement) return false;
     const Element& n = surface_.element(next);
     Vec3 d;
     if (!project_on(n, d)) return false;
@@ -159,18 +181,17 @@ class Walker {
     spoke_ = {};
     const std::int32_t vertex = element().vertices[corner];
     const std::int32_t first = point_.element;
-    bool open = false;
+    Obstacle obstacle;
     for (const std::size_t side : {std::size_t{1}, std::size_t{2}}) {
       std::int32_t m = first;
       for (int i = 0; i < kMostEdges; ++i) {
         const std::size_t v = local_index(m, vertex);
         if (examine(m, v)) return true;
-        m = surface_.element(m).neighbour[(v + side) % 3];
+        m = across(m, (v + side) % 3, obstacle);
         if (m == kNoElement || m == first) break;
       }
-      open = open || m == kNoElement;
     }
-    at_border_ = at_border_ || open;
+    stopped_by_.add(obstacle);
     return false;
   }
 
@@ -215,19 +236,20 @@ class Walker {
   };
 
   const Surface& surface_;
+  const Delivery* delivered_;
   Vec3 direction_;
   double remaining_;
   SurfacePoint point_;
   Vec3 in_plane_{};
   Spoke spoke_;
-  bool at_border_ = false;
+  Obstacle stopped_by_;
 };
 
 }  // namespace
 
-Walk walk(const Surface& surface, const SurfacePoint& from, const Vec3& direction,
-          double distance) noexcept {
-  return Walker(surface, from, direction, distance).run();
+Walk walk(const Surface& surface, const SurfacePoint& from, const Vec3& direction, double distance,
+          const Delivery* delivered) noexcept {
+  return Walker(surface, from, direction, distance, delivered).run();
 }
 
 }  // namespace palpate::runtime

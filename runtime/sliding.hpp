@@ -3,6 +3,7 @@
 #pragma once
 
 #include "format/vec3.hpp"
+#include "runtime/delivery.hpp"
 #include "runtime/surface.hpp"
 
 namespace palpate::runtime {
@@ -10,14 +11,16 @@ namespace palpate::runtime {
 struct Walk {
   SurfacePoint point;
   bool at_border = false;  ///< a border of the response surface stood in the way
+  bool awaiting = false;   ///< a triangle that has not been delivered stood in the way
 };
 
 /// Moves a point over the surface by `distance` (m, >= 0) along the projection of `direction` on
 /// the plane of its element. At an edge the direction is projected anew on the neighbour, and the
 /// rest of the distance is walked there. Where there is no neighbour, or the new direction does not
 /// point into it, the point follows the edge by the component of the motion along it, or stays.
+/// A neighbour that is not among `delivered` (null: all are there) is none for now.
 /// noexcept, allocation-free, at most 64 edges.
-Walk walk(const Surface& surface, const SurfacePoint& from, const Vec3& direction,
-          double distance) noexcept;
+Walk walk(const Surface& surface, const SurfacePoint& from, const Vec3& direction, double distance,
+          const Delivery* delivered = nullptr) noexcept;
 
 }  // namespace palpate::runtime

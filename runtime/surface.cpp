@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <string>
 #include <utility>
 
@@ -153,21 +152,38 @@ void Surface::check_directions(std::size_t m) const {
 }
 
 void Surface::connect() {
-  std::map<std::pair<std::int32_t, std::int32_t>, std::pair<std::int32_t, std::size_t>> owner;
+  struct Side {
+    std::int32_t from, to;  // the edge as this triangle goes along it
+    std::int32_t element;
+    std::uint8_t opposite;  // local vertex
+    auto edge() const { return std::pair(from, to); }
+  };
+  std::vector<Side> sides;
+  sides.reserve(3 * elements_.size());
   for (std::size_t m = 0; m < elements_.size(); ++m) {
     for (std::size_t l = 0; l < 3; ++l) {
-      const std::pair edge(elements_[m].vertices[(l + 1) % 3], elements_[m].vertices[(l + 2) % 3]);
-      if (!owner.emplace(edge, std::pair(static_cast<std::int32_t>(m), l)).second) {
-        throw Error(ErrorKind::Geometry, triangle_name(m),
-                    "an edge is shared by three triangles or the orientation flips across it",
-                    "repair the response surface");
-      }
+      const auto& v = elements_[m].vertices;
+      sides.push_back({v[(l + 1) % 3], v[(l + 2) % 3], static_cast<std::int32_t>(m),
+                       static_cast<std::uint8_t>(l)});
     }
   }
-  for (const auto& [edge, here] : owner) {
-    const auto across = owner.find({edge.second, edge.first});
-    if (across == owner.end() || !element(across->second.first).active) continue;
-    elements_[static_cast<std::size_t>(here.first)].neighbour[here.second] = across->second.first;
+  const auto before = [](const Side& a, const Side& b) {
+    return std::pair(a.edge(), a.element) < std::pair(b.edge(), b.element);
+  };
+  std::sort(sides.begin(), sides.end(), before);
+  const auto same = [](const Side& a, const Side& b) { return a.edge() == b.edge(); };
+  const auto twice = std::adjacent_find(sides.begin(), sides.end(), same);
+  if (twice != sides.end()) {
+    throw Error(ErrorKind::Geometry, triangle_name(static_cast<std::size_t>((twice + 1)->element)),
+                "an edge is shared by three triangles or the orientation flips across it",
+                "repair the response surface");
+  }
+  for (const Side& side : sides) {
+    const Side wanted{side.to, side.from, -1, 0};
+    const auto across = std::lower_bound(sides.begin(), sides.end(), wanted, before);
+    if (across == sides.end() || across->edge() != wanted.edge()) continue;
+    if (!element(across->element).active) continue;
+    elements_[static_cast<std::size_t>(side.element)].neighbour[side.opposite] = across->element;
   }
 }
 

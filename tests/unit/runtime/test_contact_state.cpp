@@ -246,6 +246,18 @@ TEST(Contact, TheForceChangesNoFasterThanTheSteepnessUntilItHasGone) {
   }
 }
 
+TEST(Contact, WithoutALimitTheSlideGoesOnUnderATipAtRest) {
+  // No travel and no limit: infinity times zero must not pass for a limit of nothing.
+  Rig rig(sphere(2, 0.03, uniform), {0.1, 5e-3});
+  rig.step({0.031, 0, 0});
+  for (int i = 0; i <= 40; ++i) rig.step({0.03 - 1e-4 * i, 0, 0});
+  rig.step({0.025, 0.004, 0});  // a slide that one step does not finish on a curved surface
+  for (int i = 0; i < 50; ++i) rig.step({0.025, 0.004, 0});
+  const runtime::LocalModel model(rig.body.surface, rig.seen().point, rig.seen().offset);
+  EXPECT_NEAR(rig.seen().deflection.lateral, model.slip_limit(rig.seen().deflection, 0.1), 1e-9);
+  EXPECT_FALSE(rig.seen().status & PALPATE_FORCE_LIMITED);
+}
+
 /// Solid angle of the closed surface seen from x, over 4 pi: 1 inside, 0 outside.
 double winding(const Library& body, const Vec3& x) {
   double sum = 0;

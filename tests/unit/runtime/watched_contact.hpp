@@ -22,6 +22,7 @@ class WatchedContact {
                  const runtime::ContactSettings& settings);
 
   std::uint32_t step(const Vec3& x);
+  void set_delivery(const runtime::Delivery* delivered) { contact_.set_delivery(delivered); }
 
   const runtime::ContactObservation& seen() const { return contact_.observation(); }
   double work() const { return work_; }  ///< net work of the tool on the body since the start, J

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The search in a thread of its own, at a low rate, beside the force loop.
+#pragma once
+
+#include <readerwriterqueue/readerwritercircularbuffer.h>
+
+#include <array>
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <thread>
+
+#include "runtime/delivery.hpp"
+#include "runtime/search.hpp"
+
+namespace palpate::runtime {
+
+/// The latest report of one writer for one reader. Neither ever waits for the other: a reader that
+/// meets a write in progress gets nothing this time.
+class LatestReport {
+ public:
+  void write(const TipReport& report) noexcept;
+  /// False when there is nothing newer than the last report read, or it is being written.
+  bool read(TipReport& report) noexcept;
+
+ private:
+  std::atomic<std::uint64_t> sequence_{0};  ///< odd while a report is being written
+  std::array<std::atomic<double>, 3> position_{};
+  std::atomic<std::int32_t> element_{kNoElement};
+  std::uint64_t read_ = 0;  ///< sequence of the last report read
+};
+
+/// The force loop reports where it is and receives triangles; the thread looks around. Deliveries
+/// pass through a bounded queue without locks [Mahvash & Hayward 2005, VI-A].
+class SearchThread {
+ public:
+  /// Starts the thread. rate: looks per second, Hz, > 0. @throws std::system_error.
+  SearchThread(const Surface& surface, const CollisionTree& tree, double rate);
+  ~SearchThread();  ///< stops the thread and waits for it
+  SearchThread(const SearchThread&) = delete;
+  SearchThread& operator=(const SearchThread&) = delete;
+
+  /// Force loop only. Wait-free, no system call.
+  void report(const TipReport& tip) noexcept { latest_.write(tip); }
+  /// Force loop only: the newest delivery, if there is one. Wait-free, no system call.
+  bool receive(Delivery& delivery) noexcept;
+
+ private:
+  void run(double rate);
+
+  Search search_;
+  LatestReport latest_;
+  moodycamel::BlockingReaderWriterCircularBuffer<Delivery> queue_{4};
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  bool stop_ = false;
+  std::thread thread_;  ///< last: it uses all the others
+};
+
+}  // namespace palpate::runtime
