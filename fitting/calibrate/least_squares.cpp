@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/calibrate/least_squares.hpp"
+
+#include <ceres/ceres.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+
+#include "fitting/measured/statistics.hpp"
+#include "format/error.hpp"
+
+namespace palpate::calibrate {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kStrongCorrelation = 0.95;
+/// Costs closer than this, relatively, are the same.
+constexpr double kSameCost = 1e-6;
+/// Distance to a bound, relative to its size, that counts as being there.
+constexpr double kAtBound = 1e-8;
+
+[[noreturn]] void refuse(const std::string& where, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, where, problem, remedy);
+}
+
+class Cost : public ceres::CostFunction {
+ public:
+  explicit Cost(const LeastSquares& problem) : problem_(problem) {
+    set_num_residuals(static_cast<int>(problem.residuals));
+    mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.constants.size()));
+  }
+  bool Evaluate(const double* const* constants, double* r, double** J) const override {
+    return problem_.model(constants[0], r, J != nullptr ? J[0] : nullptr);
+  }
+
+ private:
+  const LeastSquares& problem_;
+};
+
+/// Dense symmetric matrices of a few rows.
+using Matrix = std::vector<std::vector<double>>;
+
+/// Eigenvalues and vectors (columns) by Jacobi rotations [Golub & Van Loan 1996, sec. 8.4].
+void eigen_system(Matrix a, std::vector<double>& values, Matrix& vectors) {
+  const std::size_t n = a.size();
+  vectors.assign(n, std::vector<double>(n, 0.0));
+  for (std::size_t i = 0; i < n; ++i) vectors[i][i] = 1;
+  for (int sweep = 0; sweep < 60; ++sweep) {
+    double off = 0;
+    for (std::size_t p = 0; p < n; ++p) {
+      for (std::size_t q = p + 1; q < n; ++q) {
+        off = std::max(off, std::abs(a[p][q]));
+        if (a[p][q] == 0) continue;
+        const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+        const double t = (theta >= 0 ? 1 : -1) / (std::abs(theta) + std::hypot(theta, 1.0));
+        const double c = 1 / std::hypot(t, 1.0), s = t * c;
+        for (std::size_t k = 0; k < n; ++k) {
+          const double kp = a[k][p], kq = a[k][q];
+          a[k][p] = c * kp - s * kq;
+          a[k][q] = s * kp + c * kq;
+        }
+        for (std::size_t k = 0; k < n; ++k) {
+          const double pk = a[p][k], qk = a[q][k];
+          a[p][k] = c * pk - s * qk;
+          a[q][k] = s * pk + c * qk;
+          const double vp = vectors[k][p], vq = vectors[k][q];
+          vectors[k][p] = c * vp - s * vq;
+          vectors[k][q] = s * vp + c * vq;
+        }
+      }
+    }
+    if (off < 1e-16) break;
+  }
+  values.resize(n);
+  for (std::size_t i = 0; i < n; ++i) values[i] = a[i][i];
+}
+
+bool is_at(double value, double bound) {
+  return std::isfinite(bound) &&
+         std::abs(value - bound) <= kAtBound * std::max(1e-12, std::abs(bound));
+}
+
+std::string text_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// Covariance of the free constants from the Jacobian, scaled to a unit diagonal for the condition.
+void add_intervals(const LeastSquares& problem, const std::vector<double>& J,
+                   const std::vector<double>& r, Calibration& result) {
+  const std::size_t columns = problem.constants.size();
+  std::vector<std::size_t> free;
+  for (std::size_t i = 0; i < columns; ++i) {
+    if (!result.estimates[i].at_bound) free.push_back(i);
+  }
+  const std::size_t n = free.size();
+  result.freedom = static_cast<int>(problem.residuals) - static_cast<int>(n);
+  double squares = 0;
+  for (const double value : r) squares += value * value;
+  result.scatter = std::sqrt(squares / std::max(1, result.freedom));
+  Matrix normal(n, std::vector<double>(n, 0.0));
+  for (std::size_t row = 0; row < problem.residuals; ++row) {
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        normal[i][j] += J[row * columns + free[i]] * J[row * columns + free[j]];
+      }
+    }
+  }
+  std::vector<double> scale(n);
+  for (std::size_t i = 0; i < n; ++i) scale[i] = std::sqrt(normal[i][i]);
+  Matrix unit = normal, vectors;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      unit[i][j] = scale[i] > 0 && scale[j] > 0 ? normal[i][j] / (scale[i] * scale[j]) : 0;
+    }
+  }
+  std::vector<double> values;
+  eigen_system(unit, values, vectors);
+  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+  result.condition = n == 0       ? 1
+                     : *least > 0 ? std::sqrt(*largest / *least)
+                                  : std::numeric_limits<double>::infinity();
+  Matrix covariance(n, std::vector<double>(n, 0.0));
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) {
+      for (std::size_t k = 0; k < n; ++k) {
+        const double value = std::max(values[k], 1e-16 * *largest);
+        covariance[i][j] += vectors[i][k] * vectors[j][k] / (value * scale[i] * scale[j]);
+      }
+    }
+  }
+  const double s = problem.known_scatter ? 1 : result.scatter;
+  const double t = result.freedom > 0
+                       ? measured::student_quantile(problem.confidence,
+                                                    problem.known_scatter ? 1e6 : result.freedom)
+                       : std::numeric_limits<double>::infinity();
+  result.correlation.assign(columns, std::vector<double>(columns, kUnknown));
+  for (std::size_t i = 0; i < n; ++i) {
+    Estimate& e = result.estimates[free[i]];
+    e.standard_error = s * std::sqrt(covariance[i][i]);
+    e.low = e.value - t * e.standard_error;
+    e.high = e.value + t * e.standard_error;
+    for (std::size_t j = 0; j < n; ++j) {
+      result.correlation[free[i]][free[j]] =
+          covariance[i][j] / std::sqrt(covariance[i][i] * covariance[j][j]);
+    }
+  }
+}
+
+void add_warnings(const LeastSquares& problem, Calibration& result) {
+  const auto warn = [&](const std::string& text) { result.warnings.push_back(text); };
+  for (std::size_t i = 0; i < result.estimates.size(); ++i) {
+    const Estimate& e = result.estimates[i];
+    if (e.at_bound) {
+      warn(e.name + " is at its bound " + text_of(e.value) +
+           ": the interval says nothing there; widen the bound or choose another law");
+      continue;
+    }
+    if (!(0.5 * (e.high - e.low) < std::abs(e.value))) {
+      warn(e.name + " is not determined: its interval is wider than its value");
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const double c = result.correlation[i][j];
+      if (!(std::abs(c) > kStrongCorrelation)) continue;
+      warn(result.estimates[j].name + " and " + e.name + " are correlated by " + text_of(c) +
+           ": the data hardly tell them apart");
+    }
+  }
+  if (problem.known_scatter && result.scatter > 2) {
+    warn("the residuals are " + text_of(result.scatter) +
+         " times the stated uncertainty: the model does not describe the data within it, and the "
+         "intervals are too narrow");
+  }
+  if (!result.converged) warn("the iteration did not converge");
+}
+
+void check_problem(const LeastSquares& problem, const std::string& where) {
+  if (problem.residuals < problem.constants.size()) {
+    refuse(where,
+           std::to_string(problem.residuals) + " values cannot determine " +
+               std::to_string(problem.constants.size()) + " constants",
+           "give more data or a law with fewer constants");
+  }
+  for (const Constant& c : problem.constants) {
+    if (c.start >= c.low && c.start <= c.high) continue;
+    refuse(where,
+           "the start " + text_of(c.start) + " of " + c.name + " is not within " + text_of(c.low) +
+               " .. " + text_of(c.high),
+           "choose a start within the bounds");
+  }
+}
+
+std::optional<Calibration> try_minimise(const LeastSquares& problem) {
+  const std::size_t n = problem.constants.size();
+  std::vector<double> p(n), r(problem.residuals), J(problem.residuals * n);
+  for (std::size_t i = 0; i < n; ++i) p[i] = problem.constants[i].start;
+  if (!problem.model(p.data(), r.data(), nullptr)) return std::nullopt;
+  ceres::Problem solver;
+  solver.AddResidualBlock(new Cost(problem), nullptr, p.data());
+  for (std::size_t i = 0; i < n; ++i) {
+    const Constant& c = problem.constants[i];
+    if (std::isfinite(c.low)) solver.SetParameterLowerBound(p.data(), static_cast<int>(i), c.low);
+    if (std::isfinite(c.high)) solver.SetParameterUpperBound(p.data(), static_cast<int>(i), c.high);
+  }
+  ceres::Solver::Options options;
+  options.linear_solver_type = ceres::DENSE_QR;
+  options.max_num_iterations = problem.max_iterations;
+  options.function_tolerance = problem.tolerance;
+  options.parameter_tolerance = 1e-10;
+  options.gradient_tolerance = 1e-14;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &solver, &summary);
+  if (!summary.IsSolutionUsable()) return std::nullopt;
+  if (!problem.model(p.data(), r.data(), J.data())) return std::nullopt;
+  Calibration result;
+  result.converged = summary.termination_type == ceres::CONVERGENCE;
+  result.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  for (const double value : r) result.cost += 0.5 * value * value;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Constant& c = problem.constants[i];
+    const bool at_bound = is_at(p[i], c.low) || is_at(p[i], c.high);
+    result.estimates.push_back({c.name, c.unit, p[i], kUnknown, kUnknown, kUnknown, at_bound});
+  }
+  add_intervals(problem, J, r, result);
+  add_warnings(problem, result);
+  return result;
+}
+
+/// Two sets of constants that fit alike but are not alike.
+void warn_of_other_minimum(const std::vector<Calibration>& found, Calibration& best) {
+  for (const Calibration& other : found) {
+    if (!other.converged || other.cost > best.cost * (1 + kSameCost)) continue;
+    bool apart = false;
+    std::string text;
+    for (std::size_t i = 0; i < other.estimates.size(); ++i) {
+      const double a = best.estimates[i].value, b = other.estimates[i].value;
+      apart = apart || std::abs(a - b) > 0.01 * (std::abs(a) + std::abs(b));
+      text += (text.empty() ? "" : ", ") + other.estimates[i].name + " = " + text_of(b);
+    }
+    if (!apart) continue;
+    best.warnings.push_back("another set of constants fits as well: " + text);
+    return;
+  }
+}
+
+}  // namespace
+
+Calibration minimise(const LeastSquares& problem, const std::string& where) {
+  check_problem(problem, where);
+  const auto result = try_minimise(problem);
+  if (result) return *result;
+  refuse(where, "the model has no value near the start", "choose another start");
+}
+
+Calibration minimise(LeastSquares problem, const std::vector<std::vector<double>>& starts,
+                     const std::string& where) {
+  std::optional<Calibration> best;
+  std::vector<Calibration> found;
+  for (const std::vector<double>& start : starts) {
+    for (std::size_t i = 0; i < start.size(); ++i) problem.constants[i].start = start[i];
+    check_problem(problem, where);
+    const auto result = try_minimise(problem);
+    if (!result) continue;
+    found.push_back(*result);
+    if (!best || result->cost < best->cost * (1 - kSameCost)) best = result;
+  }
+  if (best) {
+    warn_of_other_minimum(found, *best);
+    return *best;
+  }
+  refuse(where, "the model has no value near any start", "give starts of the constants");
+}
+
+}  // namespace palpate::calibrate

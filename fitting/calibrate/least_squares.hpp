@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Bounded least squares with what can be said about the result: intervals, correlations, warnings.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace palpate::calibrate {
+
+struct Constant {
+  std::string name;
+  std::string unit;  ///< "Pa" or "1"
+  double start = 0;
+  double low = 0, high = 0;  ///< may be infinite
+};
+
+struct LeastSquares {
+  std::vector<Constant> constants;
+  std::size_t residuals = 0;
+  /// Residuals r, and the Jacobian J[row * constants + column] when it is not null. False where the
+  /// model has no value. One thread at a time.
+  std::function<bool(const double* constants, double* r, double* J)> model;
+  /// True when each residual is divided by its known standard uncertainty; otherwise the scatter is
+  /// estimated from the residuals.
+  bool known_scatter = false;
+  double confidence = 0.95;
+  int max_iterations = 200;
+  double tolerance = 1e-12;  ///< relative, of the cost
+};
+
+struct Estimate {
+  std::string name, unit;
+  double value = 0;
+  double standard_error = 0;  ///< NaN at a bound
+  double low = 0, high = 0;   ///< of the confidence interval, by Student's t
+  bool at_bound = false;
+};
+
+struct Calibration {
+  bool converged = false;
+  std::vector<Estimate> estimates;
+  std::vector<std::vector<double>> correlation;  ///< NaN for a constant at a bound
+  double cost = 0;                               ///< half the sum of squares
+  double scatter = 0;                            ///< standard deviation of the residuals, n - p
+  int freedom = 0;                               ///< n - p
+  int iterations = 0;
+  double condition = 1;  ///< of the scaled normal matrix: square root of the ratio of eigenvalues
+  std::vector<std::string> warnings;  ///< identifiability, bounds, disagreement with the scatter
+};
+
+/// Minimise 1/2 |r|^2 within the bounds by Levenberg-Marquardt (Ceres). The intervals are those of
+/// the linearised model, t sqrt(s^2 (J^T J)^-1), s = 1 when the scatter is known; constants at a
+/// bound are left out of the matrix and have none.
+/// Warned of: correlations beyond 0.95 (two constants that the data cannot tell apart), an interval
+/// wider than the value, a constant at its bound, residuals that a known scatter does not explain.
+/// @throws Error(Configuration) naming `where` when there are fewer residuals than constants, a
+///   start outside its bounds, or no value at the start.
+Calibration minimise(const LeastSquares& problem, const std::string& where);
+
+/// The best of several starts, each a full set of constants; of equally good ends the earliest, and
+/// a warning that names another one.
+Calibration minimise(LeastSquares problem, const std::vector<std::vector<double>>& starts,
+                     const std::string& where);
+
+}  // namespace palpate::calibrate
