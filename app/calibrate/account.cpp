@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/calibrate/account.hpp"
+
+#include <cmath>
+
+#include "app/console.hpp"
+
+namespace palpate::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+const char* mode_name(calibrate::Mode mode) {
+  switch (mode) {
+    case calibrate::Mode::Uniaxial:
+      return "uniaxial";
+    case calibrate::Mode::Equibiaxial:
+      return "equibiaxial";
+    case calibrate::Mode::PureShear:
+      return "pure shear";
+    case calibrate::Mode::SimpleShear:
+      return "simple shear";
+  }
+  return "";
+}
+
+}  // namespace
+
+Json calibration_account(const calibrate::Calibration& calibration, double confidence) {
+  Json constants = Json::array(), correlation = Json::array();
+  for (const calibrate::Estimate& e : calibration.estimates) {
+    constants.push_back({{"name", e.name},
+                         {"unit", e.unit},
+                         {"value", e.value},
+                         {"standard_error", number(e.standard_error)},
+                         {"low", number(e.low)},
+                         {"high", number(e.high)},
+                         {"at_bound", e.at_bound}});
+  }
+  for (const auto& row : calibration.correlation) {
+    Json numbers = Json::array();
+    for (const double value : row) numbers.push_back(number(value));
+    correlation.push_back(numbers);
+  }
+  return {{"converged", calibration.converged},
+          {"confidence", confidence},
+          {"constants", constants},
+          {"correlation", correlation},
+          {"condition", number(calibration.condition)},
+          {"degrees_of_freedom", calibration.freedom},
+          {"residual_scatter", calibration.scatter},
+          {"iterations", calibration.iterations},
+          {"warnings", calibration.warnings}};
+}
+
+Json homogeneous_account(const calibrate::HomogeneousFit& fit,
+                         const calibrate::HomogeneousSettings& settings,
+                         const std::vector<calibrate::HomogeneousTest>& tests) {
+  Json account = {{"law", settings.law}, {"shear_modulus_Pa", fit.shear_modulus}};
+  account.update(calibration_account(fit.calibration, settings.confidence));
+  Json errors = Json::array();
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const calibrate::TestError& e = fit.errors[i];
+    const calibrate::StabilityLimit& limit = fit.stability[i];
+    errors.push_back({{"test", e.name},
+                      {"mode", mode_name(tests[i].mode)},
+                      {"rms_Pa", e.rms},
+                      {"relative_rms", e.relative},
+                      {"r2", number(e.r2)},
+                      {"worst_Pa", e.worst},
+                      {"worst_at", e.worst_at},
+                      {"stable_from", limit.low},
+                      {"stable_to", limit.high},
+                      {"unstable_at", number(limit.unstable_at)},
+                      {"deformation", tests[i].deformation},
+                      {"measured_nominal_Pa", tests[i].nominal},
+                      {"fitted_nominal_Pa", fit.predicted[i]}});
+  }
+  account["tests"] = errors;
+  return account;
+}
+
+void say_calibration(const calibrate::Calibration& calibration, double confidence) {
+  for (const calibrate::Estimate& e : calibration.estimates) {
+    const std::string unit = e.unit == "1" ? "" : " " + e.unit;
+    if (e.at_bound) {
+      say("  {} = {:.6g}{}, at its bound", e.name, e.value, unit);
+    } else {
+      say("  {} = {:.6g}{}, {:.4g} % interval {:.6g} to {:.6g}", e.name, e.value, unit,
+          100 * confidence, e.low, e.high);
+    }
+  }
+  for (const std::string& warning : calibration.warnings) say("  warning: {}", warning);
+}
+
+void say_homogeneous(const calibrate::HomogeneousFit& fit) {
+  say("  shear modulus at rest: {:.4g} Pa", fit.shear_modulus);
+  for (const calibrate::TestError& e : fit.errors) {
+    say("  {}: rms {:.4g} Pa ({:.2g} %), R2 {:.5f}, worst {:.4g} Pa at {:.4g}", e.name, e.rms,
+        100 * e.relative, e.r2, e.worst, e.worst_at);
+  }
+}
+
+}  // namespace palpate::app
