@@ -129,12 +129,12 @@ std::string limit_line(const Library& library, std::size_t index, const Triangle
 void add_devices(Certificate& certificate, const CertifySettings& settings) {
   const double steepest = std::max(certificate.stick, certificate.slip);
   for (const DeviceProfile& device : settings.devices) {
-    if (std::isnan(device.damping)) continue;  // not known: nothing can be certified
-    if (!std::isfinite(device.damping) || device.damping <= 0) {
+    if (std::isinf(device.damping) || device.damping <= 0) {
       throw Error(ErrorKind::Configuration, "device profile '" + device.name + "'",
                   "damping is not above zero",
                   "give the smallest damping in N s/m or leave it out");
     }
+    // An unknown damping (NaN) makes the whole row unknown.
     certificate.devices.push_back({device.name, device.damping, 2 * steepest / device.damping,
                                    2 * device.damping / (3 * kReferencePeriod),
                                    2 * device.damping / kReferencePeriod});

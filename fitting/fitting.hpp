@@ -3,6 +3,7 @@
 // measured curve are the same record.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -28,12 +29,15 @@ struct FitSettings {
 /// site is usable.
 Library fit(const Body& body, const Curves& curves, const FitSettings& settings);
 
-/// A haptic device as its documentation describes it; unknown values are absent (NaN).
+/// What a device profile does not state.
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// A haptic device as its documentation describes it.
 struct DeviceProfile {
   std::string name;
-  double damping = 0;           ///< smallest viscous damping over directions, N s/m
-  double coulomb_friction = 0;  ///< N
-  double peak_force = 0;        ///< N
+  double damping = kUnknown;           ///< smallest viscous damping over directions, N s/m
+  double coulomb_friction = kUnknown;  ///< N
+  double peak_force = kUnknown;        ///< N
   std::string source;
 };
 
@@ -44,8 +48,9 @@ struct CertifySettings {
 
 /// Fill library.certificate: for each triangle the bounds of docs/theory-fitting.md, valid while
 /// z + d0 <= D, the deepest knot of the library. A slip bound is infinite where the slide of the
-/// contact point itself is not bounded. Triangles at a hole have zeros. A device without damping
-/// (NaN) gets no row. @throws Error(Geometry) where normals cannot be interpolated
+/// contact point itself is not bounded. Triangles at a hole have zeros. Every device gets a row;
+/// all of it is NaN where the damping is unknown. @throws Error(Geometry) where normals cannot be
+/// interpolated
 /// (|sum n_l u_l| < 0.5 in a triangle, or u_l . facet normal >= 0 with the outward normal);
 /// Error(Configuration) for friction < 0, damping <= 0, or a library without a usable triangle. The
 /// library is unchanged then.

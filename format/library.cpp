@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/library.hpp"
 
+#include <array>
+#include <cmath>
+#include <cstdio>
+
 #include "format/artifact.hpp"
 #include "format/columns.hpp"
 
@@ -246,6 +250,14 @@ Certificate read_certificate(const hdf5::Reader& reader) {
 }
 
 }  // namespace
+
+std::string verdict(const DeviceCertificate& device) {
+  if (std::isnan(device.lowest_rate)) return "damping unknown: not certified for this device";
+  if (std::isinf(device.lowest_rate)) return "not certified: the slide has no bound";
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), "certified passive from %.0f Hz", device.lowest_rate);
+  return text.data();
+}
 
 void write_library(const std::filesystem::path& path, const Library& library) {
   check_for_writing(Checks(path), library);

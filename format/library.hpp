@@ -50,15 +50,18 @@ struct TriangleCertificate {
   bool sliding_passive = false;  ///< the paper's slide needs no energy correction here
 };
 
-/// What a device profile yields on this library.
+/// What a device profile yields on this library. NaN where the damping is unknown.
 struct DeviceCertificate {
   std::string device;      ///< profile name
   double damping = 0;      ///< sigma_0(B), N s/m
-  double lowest_rate = 0;  ///< Hz, 2 max(L_stick, L_slip)/sigma_0(B)
+  double lowest_rate = 0;  ///< Hz, 2 max(L_stick, L_slip)/sigma_0(B); infinite: no rate will do
   double linear_limit =
       0;  ///< N/m at 1 kHz, 2 b/(3 T): exact linear limit with one sample of delay
   double no_delay_limit = 0;  ///< N/m at 1 kHz, 2 b/T
 };
+
+/// In words, for people: the lowest certified rate, or that the device is not certified, and why.
+std::string verdict(const DeviceCertificate& device);
 
 struct Certificate {
   double friction = 0;  ///< mu the bounds were computed for

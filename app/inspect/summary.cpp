@@ -18,9 +18,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has no infinity: a bound that does not exist is null.
+/// JSON has neither infinity nor NaN: such a value is null and says why.
 Json with_unit(double value, const char* unit) {
-  if (!std::isfinite(value)) return {{"value", nullptr}, {"unit", unit}};
+  if (std::isnan(value)) return {{"value", nullptr}, {"unit", unit}, {"why", "unknown"}};
+  if (std::isinf(value)) {
+    return {{"value", nullptr}, {"unit", unit}, {"why", "not certified: no bound"}};
+  }
   return {{"value", value}, {"unit", unit}};
 }
 
@@ -118,6 +121,7 @@ Json summary_of(const Certificate& certificate) {
   Json devices = Json::array();
   for (const DeviceCertificate& d : certificate.devices) {
     devices.push_back({{"device", d.device},
+                       {"verdict", verdict(d)},
                        {"damping", with_unit(d.damping, "N s/m")},
                        {"lowest_certified_rate", with_unit(d.lowest_rate, "Hz")},
                        {"linear_limit_at_1_kHz", with_unit(d.linear_limit, "N/m")},
@@ -213,8 +217,7 @@ std::string artifact_kind(const std::filesystem::path& file) {
 }
 
 bool is_quantity(const Json& value) {
-  return value.is_object() && value.size() == 2 && value.contains("value") &&
-         value.contains("unit");
+  return value.is_object() && value.contains("value") && value.contains("unit");
 }
 
 std::string number_text(const Json& number) {
@@ -225,7 +228,7 @@ std::string number_text(const Json& number) {
 
 std::string scalar_text(const Json& value) {
   if (is_quantity(value)) {
-    if (value["value"].is_null()) return "none (unbounded)";
+    if (value["value"].is_null()) return value["why"].get<std::string>();
     return number_text(value["value"]) + " " + value["unit"].get<std::string>();
   }
   if (value.is_string()) return value.get<std::string>();

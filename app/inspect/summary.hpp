@@ -8,7 +8,8 @@
 namespace palpate::app {
 
 /// What an artifact holds, whatever its kind, as a tree: numbers with a unit are
-/// {"value": number, "unit": text}; the provenance is complete. The whole file is read and checked.
+/// {"value": number, "unit": text}, or {"value": null, "unit": text, "why": text} where there is no
+/// such number; the provenance is complete. The whole file is read and checked.
 /// @throws Error(Configuration) when the file is no artifact of palpate or is damaged.
 nlohmann::ordered_json summarize_artifact(const std::filesystem::path& file);
 

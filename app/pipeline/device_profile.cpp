@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/pipeline/device_profile.hpp"
 
-#include <fmt/format.h>
-
-#include <limits>
-
 #include "app/case/reader.hpp"
 #include "format/error.hpp"
 
@@ -17,7 +13,7 @@ void describe(V& v, DeviceProfile& p) {
   v.text(p.name, {"name", "of the device", app::kRequired});
   v.quantity(
       p.damping, Dimension::Damping,
-      {"damping", "smallest viscous damping over all directions", app::kRequired, app::kPositive});
+      {"damping", "smallest viscous damping over all directions", app::kOptional, app::kPositive});
   v.quantity(p.coulomb_friction, Dimension::Force,
              {"coulomb_friction", "dry friction", app::kOptional, app::kNotNegative});
   v.quantity(p.peak_force, Dimension::Force,
@@ -33,8 +29,6 @@ fitting::DeviceProfile read_device_profile(const std::filesystem::path& path) {
   const toml::table table = read_toml(path, "the device profile");
   SourceMap sources(path.string());
   fitting::DeviceProfile profile;
-  profile.coulomb_friction = std::numeric_limits<double>::quiet_NaN();
-  profile.peak_force = std::numeric_limits<double>::quiet_NaN();
   TableReader reader(table, "the device profile", "", sources);
   describe(reader, profile);
   reader.finish();

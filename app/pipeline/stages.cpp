@@ -41,7 +41,7 @@ void tell_failures(const Curves& curves) {
 }
 
 std::string bound_text(double value, const char* unit) {
-  return std::isfinite(value) ? fmt::format("{:.1f} {}", value, unit) : "no bound";
+  return std::isfinite(value) ? fmt::format("{:.1f} {}", value, unit) : "not certified: no bound";
 }
 
 void tell_certificate(const Certificate& certificate) {
@@ -49,11 +49,7 @@ void tell_certificate(const Certificate& certificate) {
       bound_text(certificate.slip, "N/m"), certificate.friction);
   say("  limited by: {}", certificate.limited_by);
   for (const DeviceCertificate& device : certificate.devices) {
-    if (std::isfinite(device.lowest_rate)) {
-      say("  {}: certified passive from {:.0f} Hz", device.device, device.lowest_rate);
-    } else {
-      say("  {}: not certified at any rate, for the slide has no bound", device.device);
-    }
+    say("  {}: {}", device.device, verdict(device));
   }
 }
 

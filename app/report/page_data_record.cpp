@@ -49,6 +49,7 @@ json certificate_data(const Library& library) {
   json devices = json::array();
   for (const DeviceCertificate& d : c.devices) {
     devices.push_back({{"device", d.device},
+                       {"verdict", verdict(d)},
                        {"damping", d.damping},
                        {"lowest_rate", d.lowest_rate},
                        {"linear_limit", d.linear_limit},

@@ -99,16 +99,35 @@ TEST(Certificate, RateOfADeviceFollowsTheWorstBound) {
   Library library = flat_triangle();
   set_equal_responses(library, node_response(linear_curve(162), linear_curve(162)));
   CertifySettings settings = with_friction(0);
-  settings.devices = {{"viscous", 0.081, 0.01, 10, ""},
-                      {"unknown", std::numeric_limits<double>::quiet_NaN(), 0, 5, ""}};
+  settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
   certify(library, settings);
-  ASSERT_EQ(library.certificate.devices.size(), 1u);  // no damping known: nothing certified
+  ASSERT_EQ(library.certificate.devices.size(), 1u);
   const DeviceCertificate& device = library.certificate.devices[0];
   EXPECT_NEAR(device.lowest_rate, 2 * 162 / 0.081, 1e-9);  // 4 kHz
   EXPECT_NEAR(device.linear_limit, 54, 1e-9);
   EXPECT_NEAR(device.no_delay_limit, 162, 1e-9);
-  settings.devices[0].damping = 0;
-  EXPECT_THROW(certify(library, settings), Error);
+  EXPECT_EQ(verdict(device), "certified passive from 4000 Hz");
+  for (const double refused : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
+    settings.devices[0].damping = refused;
+    EXPECT_THROW(certify(library, settings), Error);
+  }
+}
+
+TEST(Certificate, ADeviceOfUnknownDampingIsNotCertifiedAndSaid) {
+  Library library = flat_triangle();
+  set_equal_responses(library, node_response(linear_curve(162), linear_curve(162)));
+  CertifySettings settings = with_friction(0);
+  settings.devices.emplace_back();  // of which nothing is known
+  settings.devices.back().name = "unknown";
+  certify(library, settings);
+  ASSERT_EQ(library.certificate.devices.size(), 1u);
+  const DeviceCertificate& device = library.certificate.devices[0];
+  EXPECT_EQ(device.device, "unknown");
+  for (const double value :
+       {device.damping, device.lowest_rate, device.linear_limit, device.no_delay_limit}) {
+    EXPECT_TRUE(std::isnan(value)) << value;
+  }
+  EXPECT_EQ(verdict(device), "damping unknown: not certified for this device");
 }
 
 TEST(Certificate, AHoleIsABorder) {
@@ -130,7 +149,10 @@ TEST(Certificate, TooDeepForTheCurvatureIsUnboundedAndSaid) {
   // Slides outrun the tool where D kappa reaches cos theta: R = 5 mm pressed by 10 mm.
   Library library = sphere(0.005, 2);
   set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
-  certify(library, with_friction(0.3));
+  CertifySettings settings = with_friction(0.3);
+  settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
+  certify(library, settings);
+  EXPECT_EQ(verdict(library.certificate.devices.at(0)), "not certified: the slide has no bound");
   EXPECT_TRUE(std::isinf(library.certificate.slip));
   const std::string& line = library.certificate.limited_by;
   EXPECT_NE(line.find("no bound of the slide: pressed 10 mm deep"), std::string::npos) << line;

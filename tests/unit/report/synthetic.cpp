@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -269,7 +270,9 @@ void make_certificate(Library& library) {
     c.triangles.push_back(t);
   }
   c.limited_by = "sup g' at the deepest depth, and the stiffness changing along the surface";
-  for (const auto& [name, damping] : {std::pair{"omega.3", 1.9}, std::pair{"Touch X", 0.6}}) {
+  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  for (const auto& [name, damping] :
+       {std::pair{"omega.3", 1.9}, std::pair{"Touch X", 0.6}, std::pair{"unmeasured", kUnknown}}) {
     c.devices.push_back({name, damping, 2 * std::max(c.stick, c.slip) / damping, 2000 * damping / 3,
                          2000 * damping});
   }

@@ -94,6 +94,7 @@ class ReportPage(unittest.TestCase):
         subprocess.run([WRITER, path], check=True)
         cls.path = path
         cls.full = Page(browse(path / "full.html", "--dump-dom"))
+        cls.unbounded = Page(browse(path / "unbounded.html", "--dump-dom"))
         cls.bare = Page(browse(path / "bare.html", "--dump-dom"))
 
     @classmethod
@@ -101,7 +102,7 @@ class ReportPage(unittest.TestCase):
         cls.folder.cleanup()
 
     def test_both_pages_are_drawn_without_an_error(self):
-        for page in (self.full, self.bare):
+        for page in (self.full, self.unbounded, self.bare):
             self.assertEqual(page.root.get("data-errors"), "0", page.text[-500:])
             self.assertEqual(page.root.get("data-ready"), "ok")
 
@@ -125,9 +126,26 @@ class ReportPage(unittest.TestCase):
         self.assertIn("omega.3", self.full.by_id["certificate"])
         self.assertIn("young 60 kPa", self.full.text)
         self.assertIn('file = "lump.off"', self.full.by_id["record"])
-        for slip in ("[object", "undefined", "NaN", "Infinity"):
-            self.assertNotIn(slip, self.full.text)
-            self.assertNotIn(slip, self.bare.text)
+        for slip in ("[object", "undefined", "NaN", "Infinity", "null"):
+            for page in (self.full, self.unbounded, self.bare):
+                self.assertNotIn(slip, page.text)
+
+    def test_each_device_gets_a_verdict(self):
+        data = json.loads(self.full.by_id["data"])
+        worst = max(data["certificate"][name] for name in ("stick", "slip"))
+        said = self.full.by_id["certificate"]
+        self.assertIn(f"certified passive from {2 * worst / 1.9:.0f} Hz", said)  # omega.3
+        self.assertIn(f"certified passive from {2 * worst / 0.6:.0f} Hz", said)  # Touch X
+        self.assertEqual(said.count("damping unknown: not certified for this device"), 1)
+        self.assertEqual(self.full.by_id["certified"].split("\u00a0")[0], f"{worst:.0f}")
+
+    def test_a_slide_without_bound_is_not_certified(self):
+        said = self.unbounded.by_id["certificate"]
+        self.assertIn("not certified: no bound; while sliding", said)
+        self.assertEqual(said.count("not certified: the slide has no bound"), 2)
+        self.assertEqual(said.count("damping unknown: not certified for this device"), 1)
+        self.assertNotIn("certified passive from", said)
+        self.assertEqual(self.unbounded.by_id["certified"], "none")
 
     def test_the_page_answers_the_reader(self):
         """Turn, colour by L_slip, click the middle of the body, drag the depth to 3 mm, as a reader would."""

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // write_sample_report <folder>: the reports that test_report_page.py opens in a browser.
+#include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <limits>
 
 #include "app/report/report.hpp"
 #include "synthetic.hpp"
@@ -17,6 +19,16 @@ int main(int argc, char** argv) {
   palpate::ReportInput input{&all.body,      &all.curves,          &all.library,
                              &all.recording, "Lump with a nodule", 356129};
   palpate::write_report(input, folder / "full.html");
+
+  // A rim too sharp for the slide to be bounded: on one triangle, and so for the body.
+  auto& certificate = all.library.certificate;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  certificate.slip = certificate.triangles[0].slip = kInfinity;
+  certificate.worst_triangle = 0;
+  for (auto& device : certificate.devices) {
+    if (!std::isnan(device.damping)) device.lowest_rate = kInfinity;
+  }
+  palpate::write_report(input, folder / "unbounded.html");
 
   // Everything that may be missing is missing, and every name is hostile.
   const std::string hostile =

@@ -28,6 +28,8 @@ const scaled = (steps) => (value) => {
 export const length = (m) => significant(m * 1e3) + NBSP + 'mm';
 export const force = scaled([[1, 'N'], [1e-3, 'mN']]);
 export const stiffness = (k) => significant(k) + NBSP + 'N/m';
+/** A bound of the certificate: where there is none it reads null or infinite. */
+export const bound = (k) => (Number.isFinite(k) ? stiffness(k) : 'not certified: no bound');
 export const energy = (j) => (j === 0 ? `0${NBSP}J` : scaled([[1, 'J'], [1e-3, 'mJ'], [1e-6, '\u00b5J'], [1e-9, 'nJ'], [1e-12, 'pJ']])(j));
 export const time = scaled([[1, 's'], [1e-3, 'ms'], [1e-6, '\u00b5s'], [1e-9, 'ns']]);
 export const frequency = scaled([[1e6, 'MHz'], [1e3, 'kHz'], [1, 'Hz']]);

@@ -39,7 +39,15 @@ function extent(values) {
     low = Math.min(low, v);
     high = Math.max(high, v);
   }
-  return low > high ? [0, 1] : [low, high];
+  return low > high ? null : [low, high];
+}
+
+/** What the colours span, in words; grey is told apart from a hole where a bound does not exist. */
+function rangeText(field, depth, span, unbounded) {
+  const at = field.deep ? ` at d = ${units.length(depth)}` : '';
+  const values = span ? `${units.significant(span[0])} to ${units.significant(span[1])} ${field.unit}` : 'no value';
+  const grey = unbounded ? ` ${units.count(unbounded)} ${unbounded === 1 ? 'triangle is' : 'triangles are'} not certified: no bound, in grey.` : '';
+  return `${field.label}${at}: ${values}.${grey}`;
 }
 
 class ColourBar {
@@ -89,13 +97,14 @@ export function bodySection(data, nodes, curves) {
   const refresh = () => {
     const field = options[name];
     const ofVertex = field.ofVertex?.(depth), ofTriangle = field.ofTriangle?.();
-    const [low, high] = extent(ofVertex ?? ofTriangle);
+    const span = extent(ofVertex ?? ofTriangle);
+    const [low, high] = span ?? [0, 1];
     view.setField({ ofVertex, ofTriangle, low, high });
     bar.set(field.label, field.unit, low, high);
     depthText.textContent = units.length(depth);
     depthControl.style.display = field.deep ? '' : 'none';
-    range.textContent = `${field.label}${field.deep ? ` at d = ${units.length(depth)}` : ''}: ` +
-      `${units.significant(low)} to ${units.significant(high)} ${field.unit}.`;
+    const unbounded = (ofTriangle ?? []).filter((bound) => bound === Infinity).length;
+    range.textContent = rangeText(field, depth, span, unbounded);
     curves.setDepth(depth);
   };
   nodes.onChange(() => {
@@ -152,7 +161,7 @@ function describe(data, { vertex, triangle, facet }, depth) {
   } else if (surface.facet_kind[facet] === FIXED) lines.push('held by a support');
   lines.push(`site ${SITE[vertices.site_status[vertex]]}; response ${RESPONSE[vertices.response_status[vertex]]}`);
   const m = surface.library_triangle[triangle];
-  if (certificate && m >= 0) lines.push(`triangle ${m}: L_slip ${units.stiffness(certificate.triangle_slip[m])}`);
+  if (certificate && m >= 0) lines.push(`triangle ${m}: L_slip ${units.bound(certificate.triangle_slip[m])}`);
   const reason = vertices.reasons[vertex];
   if (reason) lines.push(reason);
   return lines;

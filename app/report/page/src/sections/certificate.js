@@ -22,8 +22,8 @@ function notCovered(data) {
 
 function devices(c) {
   if (c.devices.length === 0) return paragraph('No device profile was given: the bounds hold, but no rate is certified for a device.');
-  return table(['Device', 'Damping, N\u00b7s/m', 'Lowest certified rate', 'Linear limit at 1 kHz, N/m', 'Without delay, N/m'],
-    c.devices.map((d) => [d.device, units.significant(d.damping), units.frequency(d.lowest_rate), units.significant(d.linear_limit), units.significant(d.no_delay_limit)]), [1, 2, 3, 4]);
+  return table(['Device', 'Damping, N\u00b7s/m', 'Verdict', 'Linear limit at 1 kHz, N/m', 'Without delay, N/m'],
+    c.devices.map((d) => [d.device, units.significant(d.damping), d.verdict, units.significant(d.linear_limit), units.significant(d.no_delay_limit)]), [1, 3, 4]);
 }
 
 export function certificateSection(data) {
@@ -34,8 +34,8 @@ export function certificateSection(data) {
   return el('section', { id: 'certificate' }, head,
     paragraph('The rendered body never returns more energy than it was given as long as max(L_stick, L_slip) \u2264 \u03c3\u2080(B) / 2T, with \u03c3\u2080(B) the smallest damping of the device and 1/T the rate of its loop.', 'lead'),
     definitions([
-      ['L_stick', `${units.stiffness(c.stick)}: contact point held`],
-      ['L_slip', `${units.stiffness(c.slip)}: while sliding, \u03bc = ${units.significant(c.friction)}`],
+      ['L_stick', `${units.bound(c.stick)}; contact point held`],
+      ['L_slip', `${units.bound(c.slip)}; while sliding, \u03bc = ${units.significant(c.friction)}`],
       ['Holds to', `${units.length(c.depth)} of depth`],
       ['Worst triangle', c.worst_triangle < 0 ? 'none' : `${c.worst_triangle}: ${c.limited_by || 'cause not recorded'}`],
       ['Sliding', `${units.count(free)} of ${units.count(c.triangle_slip.length)} triangles need no energy correction while sliding`],
