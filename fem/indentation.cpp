@@ -310,6 +310,12 @@ class PathDriver {
   std::function<Sphere(double)> tool_at_;
 };
 
+/// A path of the site stopped early; every path that did leaves its reason.
+void stop_early(SiteCurves& curves, const std::string& reason) {
+  curves.status = SiteStatus::Partial;
+  curves.reason += (curves.reason.empty() ? "" : "; ") + reason;
+}
+
 /// Fill tool_work: the running integral of force . direction, on top of `start`.
 void fill_work(CurvePath& path, double start) {
   std::vector<double> s, f;
@@ -339,9 +345,9 @@ void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
   double from = 0;
   for (const double depth : normal_increments(context_.indentation)) {
     CurveSample sample;
-    if (!driver.advance(from, depth, history, u, sample, curves.reason)) {
-      curves.status = SiteStatus::Partial;
-      curves.reason = "normal path " + curves.reason;
+    std::string reason;
+    if (!driver.advance(from, depth, history, u, sample, reason)) {
+      stop_early(curves, "normal path " + reason);
       break;
     }
     path.samples.push_back(sample);
@@ -383,6 +389,7 @@ void SiteSolver::run_lateral_path(Site& site, double held_depth, double azimuth,
   double from = 0;
   for (int i = 0; i <= context_.indentation.lateral_increments; ++i) {
     CurveSample sample;
+    std::string reason;
     const double s =
         context_.indentation.lateral_travel * i / context_.indentation.lateral_increments;
     if (i == 0) {
@@ -390,9 +397,8 @@ void SiteSolver::run_lateral_path(Site& site, double held_depth, double azimuth,
       for (const auto& pressed : curves.paths.front().samples)
         if (std::abs(pressed.displacement - held_depth) < 1e-9 * held_depth) sample = pressed;
       sample.displacement = 0;
-    } else if (!driver.advance(from, s, history, u, sample, curves.reason)) {
-      curves.status = SiteStatus::Partial;
-      curves.reason = "lateral path at depth " + in_millimetres(held_depth) + " " + curves.reason;
+    } else if (!driver.advance(from, s, history, u, sample, reason)) {
+      stop_early(curves, "lateral path at depth " + in_millimetres(held_depth) + " " + reason);
       break;
     }
     path.samples.push_back(sample);

@@ -117,6 +117,16 @@ std::vector<std::int64_t> values_of(const std::vector<Record>& records,
   return values;
 }
 
+void check_reasons(const Checks& checks, const Flat& flat) {
+  for (std::size_t row = 0; row < flat.sites.size(); ++row) {
+    const bool complete = flat.sites[row].status == SiteStatus::Complete;
+    if (complete == flat.reasons[row].empty()) continue;
+    checks.fail_row("/site/reason", row,
+                    complete ? "gives a reason, yet the site is complete"
+                             : "is empty, yet the site is not complete");
+  }
+}
+
 void check_order(const Checks& checks, const Flat& flat) {
   for (std::size_t row = 1; row < flat.sites.size(); ++row) {
     if (flat.sites[row].vertex <= flat.sites[row - 1].vertex) {
@@ -148,6 +158,7 @@ void check_flat(const Checks& checks, const Flat& flat) {
   check_offsets(checks, "/path/first_sample", "/path/sample_count",
                 values_of(flat.paths, &PathRow::first_sample),
                 values_of(flat.paths, &PathRow::sample_count), flat.samples.size());
+  check_reasons(checks, flat);
   check_order(checks, flat);
 }
 

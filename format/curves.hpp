@@ -61,7 +61,7 @@ struct CurvePath {
 struct SiteCurves {
   std::int32_t vertex = -1;  ///< index into the response surface of the body
   SiteStatus status = SiteStatus::Failed;
-  std::string reason;  ///< empty when complete
+  std::string reason;  ///< empty when complete; otherwise those of all its paths, joined by "; "
   double cpu_seconds = 0;
   std::vector<CurvePath> paths;
 };

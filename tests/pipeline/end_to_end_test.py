@@ -85,6 +85,9 @@ class Pipeline(unittest.TestCase):
         expected = SOME_SITES_FAILED if curves["sites_not_complete"] else 0
         self.assertEqual(self.built.returncode, expected)
         self.assertLess(curves["sites_not_complete"], 5, curves["failures"])
+        self.assertEqual(len(curves["failures"]), curves["sites_not_complete"])
+        for failure in curves["failures"]:
+            self.assertRegex(failure["reason"], r"^(normal|lateral) path .+", failure)
 
     def test_volume_of_the_block_is_kept(self):
         gel = self.summary("body.h5")["regions"]["gel"]["volume"]

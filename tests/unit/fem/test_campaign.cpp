@@ -129,5 +129,21 @@ TEST(Campaign, AFailedSiteKeepsItsPartialCurveAndReason) {
   EXPECT_GE(curves.sites[0].paths.at(0).samples.size(), 1u);
 }
 
+TEST(Campaign, EveryFailedPathOfASiteLeavesItsReason) {
+  // Dragged both ways into the rim, which is held.
+  CampaignSettings s = quick();
+  s.indentation.lateral_travel = 0.03;
+  s.indentation.lateral_increments = 1;
+  s.indentation.azimuths = {3.0, 3.3};
+  const Body body = small_block();
+  for (std::int32_t v = 0; v < 25 && s.sites.empty(); ++v)
+    if (body.response.is_site[static_cast<std::size_t>(v)]) s.sites = {v};
+  CampaignReport report;
+  const SiteCurves site = run_campaign(body, s, report).sites.at(0);
+  EXPECT_EQ(site.status, SiteStatus::Partial);
+  const std::string each = "lateral path at depth 2\\.000 mm at [0-9.]+ mm: [^;]+";
+  EXPECT_THAT(site.reason, testing::MatchesRegex(each + "; " + each));
+}
+
 }  // namespace
 }  // namespace palpate::fem
