@@ -9,6 +9,7 @@
 #include <mutex>
 #include <thread>
 
+#include "fem/at.hpp"
 #include "fem/indentation.hpp"
 #include "fem/region_laws.hpp"
 #include "format/error.hpp"
@@ -22,11 +23,11 @@ std::vector<std::int32_t> chosen_sites(const Body& body, std::vector<std::int32_
   const auto count = static_cast<std::int32_t>(surface.node.size());
   if (sites.empty())
     for (std::int32_t v = 0; v < count; ++v)
-      if (surface.is_site[v]) sites.push_back(v);
+      if (surface.is_site[at(v)]) sites.push_back(v);
   std::sort(sites.begin(), sites.end());
   sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
   for (const auto v : sites)
-    if (v < 0 || v >= count || !surface.is_site[v])
+    if (v < 0 || v >= count || !surface.is_site[at(v)])
       throw Error(ErrorKind::Configuration, body.name,
                   "response vertex " + std::to_string(v) + " is not a site",
                   "choose vertices outside the supports, from 0 to " + std::to_string(count - 1));
@@ -46,12 +47,12 @@ class Crew {
   }
 
   void run() {
-    const int cores = std::max(1, settings_.threads);
-    const auto share = (curves_.sites.size() + cores - 1) / cores;
+    const std::size_t cores = at(std::max(1, settings_.threads));
+    const std::size_t share = (curves_.sites.size() + cores - 1) / cores;
     const int lanes = static_cast<int>(std::min<std::size_t>(kBatch, share));
     std::deque<SolveBatch> batches;
     std::vector<std::thread> threads;
-    for (int core = 0; core < cores; ++core) {
+    for (std::size_t core = 0; core < cores; ++core) {
       SolveBatch& batch = batches.emplace_back(*context_.rest_factor, lanes);
       for (int lane = 0; lane < lanes; ++lane)
         threads.emplace_back([this, &batch, lane] { work(batch, lane); });

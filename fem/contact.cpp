@@ -76,10 +76,10 @@ void SphereContact::move_to(const Sphere& tool) {
 }
 
 Eigen::Vector3d SphereContact::position(const Point& point, const Displacement& u) const {
-  const Facet& facet = facets_[point.facet];
+  const Facet& facet = facets_[at(point.facet)];
   const auto& X = mesh_->X;
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
-  for (int a = 0; a < 6; ++a) x += point.N[a] * (X.col(facet[a]) + u.col(facet[a]));
+  for (std::size_t a = 0; a < 6; ++a) x += point.N[a] * (X.col(facet[a]) + u.col(facet[a]));
   return x;
 }
 
@@ -124,8 +124,8 @@ void SphereContact::add_forces(const SolidModel& model, const Displacement& u,
   for (const Point& point : points_) {
     const Eigen::Vector3d g = point.area * gradient(point, position(point, u));
     if (g.isZero(0)) continue;
-    const Facet& facet = facets_[point.facet];
-    for (int a = 0; a < 6; ++a) {
+    const Facet& facet = facets_[at(point.facet)];
+    for (std::size_t a = 0; a < 6; ++a) {
       const int first = model.equation(facet[a]);
       if (first >= 0) f.segment<3>(first) += point.N[a] * g;
     }
@@ -138,15 +138,16 @@ void SphereContact::add_stiffness(const SolidModel& model, const Displacement& u
   for (const Point& point : points_) {
     const Eigen::Matrix3d H = point.area * hessian(point, position(point, u), geometric);
     if (H.isZero(0)) continue;
-    const Facet& facet = facets_[point.facet];
-    for (int a = 0; a < 6; ++a)
-      for (int b = 0; b < 6; ++b) {
+    const Facet& facet = facets_[at(point.facet)];
+    for (std::size_t a = 0; a < 6; ++a)
+      for (std::size_t b = 0; b < 6; ++b) {
         const int row = model.equation(facet[a]), column = model.equation(facet[b]);
         if (row < 0 || column < 0) continue;
         for (int i = 0; i < 3; ++i)
           for (int k = 0; k < 3; ++k)
             if (row + i >= column + k)
-              values[pattern.position(row + i, column + k)] += point.N[a] * point.N[b] * H(i, k);
+              values[at(pattern.position(row + i, column + k))] +=
+                  point.N[a] * point.N[b] * H(i, k);
       }
   }
 }

@@ -24,7 +24,7 @@ using ElementVector = std::array<std::array<T, 3>, kTetNodes>;
 template <class T>
 using ElementMatrix = std::array<T, (3 * kTetNodes) * (3 * kTetNodes + 1) / 2>;
 
-constexpr int lower_index(int row, int column) {
+constexpr std::size_t lower_index(std::size_t row, std::size_t column) {
   return row * (row + 1) / 2 + column;
 }
 
@@ -39,17 +39,17 @@ struct ElementKinematics {
 template <class T>
 ElementKinematics<T> kinematics(const ElementGeometry<T>& geometry, const ElementVector<T>& u) {
   ElementKinematics<T> k;
-  for (int q = 0; q < kTetPoints; ++q) {
+  for (std::size_t q = 0; q < kTetPoints; ++q) {
     Tensor2<T>& F = k.F[q];
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       std::array<T, 4> D;  // du_i/dL_c
-      for (int c = 0; c < 4; ++c) {
+      for (std::size_t c = 0; c < 4; ++c) {
         D[c] = kTetShape[q][c][c] * u[c][i];
-        for (int e = 0; e < 6; ++e)
+        for (std::size_t e = 0; e < 6; ++e)
           if (kTetEdges[e][0] == c || kTetEdges[e][1] == c)
             D[c] += kTetShape[q][4 + e][c] * u[4 + e][i];
       }
-      for (int j = 0; j < 3; ++j) {
+      for (std::size_t j = 0; j < 3; ++j) {
         F[3 * i + j] = D[0] * geometry.gradient[0][j] + D[1] * geometry.gradient[1][j] +
                        D[2] * geometry.gradient[2][j] + D[3] * geometry.gradient[3][j];
         if (i == j) F[3 * i + j] += 1.0;
@@ -67,7 +67,7 @@ template <class T, class Law>
 T element_energy(const Law& law, const ElementGeometry<T>& geometry,
                  const ElementKinematics<T>& k) {
   T density = law.volumetric_energy(k.mean_J);
-  for (int q = 0; q < kTetPoints; ++q) density += 0.25 * law.psi(k.F[q], k.J[q]);
+  for (std::size_t q = 0; q < kTetPoints; ++q) density += 0.25 * law.psi(k.F[q], k.J[q]);
   return geometry.volume * density;
 }
 
@@ -77,15 +77,15 @@ template <class T, class Stress>
 ElementVector<T> nodal_forces(const ElementGeometry<T>& geometry, Stress&& stress) {
   ElementVector<T> f;
   const T weight = 0.25 * geometry.volume;
-  for (int q = 0; q < kTetPoints; ++q) {
+  for (std::size_t q = 0; q < kTetPoints; ++q) {
     const Tensor2<T> P = stress(q);
-    for (int i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3; ++i) {
       std::array<T, 4> t;
-      for (int c = 0; c < 4; ++c)
+      for (std::size_t c = 0; c < 4; ++c)
         t[c] =
             weight * (P[3 * i] * geometry.gradient[c][0] + P[3 * i + 1] * geometry.gradient[c][1] +
                       P[3 * i + 2] * geometry.gradient[c][2]);
-      for (int a = 0; a < kTetNodes; ++a) {
+      for (std::size_t a = 0; a < kTetNodes; ++a) {
         T value = a < 4 ? T(kTetShape[q][a][a] * t[a])
                         : T(kTetShape[q][a][kTetEdges[a - 4][0]] * t[kTetEdges[a - 4][0]] +
                             kTetShape[q][a][kTetEdges[a - 4][1]] * t[kTetEdges[a - 4][1]]);
@@ -104,9 +104,9 @@ template <class T, class Law>
 ElementVector<T> element_forces(const Law& law, const ElementGeometry<T>& geometry,
                                 const ElementKinematics<T>& k) {
   const T p = law.pressure(k.mean_J);
-  return nodal_forces(geometry, [&](int q) {
+  return nodal_forces(geometry, [&](std::size_t q) {
     Tensor2<T> P = law.piola(k.F[q], k.cof[q], k.J[q]);
-    for (int i = 0; i < 9; ++i) P[i] += p * k.cof[q][i];
+    for (std::size_t i = 0; i < 9; ++i) P[i] += p * k.cof[q][i];
     return P;
   });
 }
@@ -115,16 +115,16 @@ ElementVector<T> element_forces(const Law& law, const ElementGeometry<T>& geomet
 /// d cof_iJ / dF_kL = e_ikm e_JLN F_mN.
 template <class T>
 void add_cofactor_tangent(const Tensor2<T>& F, const T& p, Tensor4<T>& A) {
-  for (int i = 0; i < 3; ++i)
-    for (int k = 0; k < 3; ++k) {
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
       if (i == k) continue;
-      const int m = 3 - i - k;
-      const double sign_rows = (k - i + 3) % 3 == 1 ? 1.0 : -1.0;
-      for (int j = 0; j < 3; ++j)
-        for (int l = 0; l < 3; ++l) {
+      const std::size_t m = 3 - i - k;
+      const double sign_rows = (k + 3 - i) % 3 == 1 ? 1.0 : -1.0;
+      for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t l = 0; l < 3; ++l) {
           if (j == l) continue;
-          const int n = 3 - j - l;
-          const double sign = sign_rows * ((l - j + 3) % 3 == 1 ? 1.0 : -1.0);
+          const std::size_t n = 3 - j - l;
+          const double sign = sign_rows * ((l + 3 - j) % 3 == 1 ? 1.0 : -1.0);
           A[3 * i + j][3 * k + l] += sign * (p * F[3 * m + n]);
         }
     }
@@ -133,35 +133,35 @@ void add_cofactor_tangent(const Tensor2<T>& F, const T& p, Tensor4<T>& A) {
 /// Add the stiffness of one Gauss point: M_cd = dL_c/dX . A . dL_d/dX for the volume coordinates,
 /// then K_ab = sum_cd dN_a/dL_c M_cd dN_b/dL_d.
 template <class T>
-void add_point_stiffness(int q, const T& weight, const ElementGeometry<T>& geometry,
+void add_point_stiffness(std::size_t q, const T& weight, const ElementGeometry<T>& geometry,
                          const Tensor4<T>& A, ElementMatrix<T>& K) {
   std::array<std::array<std::array<T, 9>, 4>, 4> M;  // M[c][d][3 i + k]
-  for (int d = 0; d < 4; ++d) {
+  for (std::size_t d = 0; d < 4; ++d) {
     const auto& g = geometry.gradient[d];
     std::array<std::array<T, 3>, 9> Ag;
-    for (int iJ = 0; iJ < 9; ++iJ)
-      for (int k = 0; k < 3; ++k)
+    for (std::size_t iJ = 0; iJ < 9; ++iJ)
+      for (std::size_t k = 0; k < 3; ++k)
         Ag[iJ][k] =
             weight * (A[iJ][3 * k] * g[0] + A[iJ][3 * k + 1] * g[1] + A[iJ][3 * k + 2] * g[2]);
-    for (int c = 0; c < 4; ++c) {
+    for (std::size_t c = 0; c < 4; ++c) {
       const auto& h = geometry.gradient[c];
-      for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k)
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < 3; ++k)
           M[c][d][3 * i + k] =
               h[0] * Ag[3 * i][k] + h[1] * Ag[3 * i + 1][k] + h[2] * Ag[3 * i + 2][k];
     }
   }
   const auto& B = kTetShape[q];
-  for (int a = 0; a < kTetNodes; ++a)
-    for (int b = 0; b <= a; ++b) {
+  for (std::size_t a = 0; a < kTetNodes; ++a)
+    for (std::size_t b = 0; b <= a; ++b) {
       std::array<T, 9> block;
       bool first = true;
-      for (int c = 0; c < 4; ++c) {
+      for (std::size_t c = 0; c < 4; ++c) {
         if (B[a][c] == 0) continue;
-        for (int d = 0; d < 4; ++d) {
+        for (std::size_t d = 0; d < 4; ++d) {
           if (B[b][d] == 0) continue;
           const double scale = B[a][c] * B[b][d];
-          for (int ik = 0; ik < 9; ++ik) {
+          for (std::size_t ik = 0; ik < 9; ++ik) {
             if (first)
               block[ik] = scale * M[c][d][ik];
             else
@@ -170,8 +170,8 @@ void add_point_stiffness(int q, const T& weight, const ElementGeometry<T>& geome
           first = false;
         }
       }
-      for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < (a == b ? i + 1 : 3); ++k)
+      for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t k = 0; k < (a == b ? i + 1 : 3); ++k)
           K[lower_index(3 * a + i, 3 * b + k)] += block[3 * i + k];
     }
 }
@@ -182,15 +182,15 @@ template <class T, class Law>
 void element_stiffness(const Law& law, const ElementGeometry<T>& geometry,
                        const ElementKinematics<T>& k, ElementMatrix<T>& K) {
   const T p = law.pressure(k.mean_J);
-  const ElementVector<T> g = nodal_forces(geometry, [&](int q) { return k.cof[q]; });
+  const ElementVector<T> g = nodal_forces(geometry, [&](std::size_t q) { return k.cof[q]; });
   const T rank_one = law.pressure_slope(k.mean_J) / geometry.volume;
-  for (int row = 0; row < 3 * kTetNodes; ++row) {
+  for (std::size_t row = 0; row < 3 * kTetNodes; ++row) {
     const T scaled = rank_one * g[row / 3][row % 3];
-    for (int column = 0; column <= row; ++column)
+    for (std::size_t column = 0; column <= row; ++column)
       K[lower_index(row, column)] = scaled * g[column / 3][column % 3];
   }
   const T weight = 0.25 * geometry.volume;
-  for (int q = 0; q < kTetPoints; ++q) {
+  for (std::size_t q = 0; q < kTetPoints; ++q) {
     Tensor4<T> A;
     for (auto& row : A) row.fill(zero_of<T>());
     law.add_tangent(k.F[q], k.cof[q], k.J[q], A);

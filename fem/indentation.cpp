@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 
+#include "fem/at.hpp"
 #include "fem/region_laws.hpp"
 #include "fem/shared_factor_solver.hpp"
 #include "format/error.hpp"
@@ -200,8 +201,8 @@ class SiteEquilibrium {
 
 struct SiteSolver::Site {
   Site(const CampaignContext& context, std::int32_t vertex, SolveBatch::Member* batch)
-      : X(to_eigen(context.body.nodes[context.body.response.node[vertex]])),
-        inward(to_eigen(context.body.response.inward[vertex])),
+      : X(to_eigen(context.body.nodes[at(context.body.response.node[at(vertex)])])),
+        inward(to_eigen(context.body.response.inward[at(vertex)])),
         reach(2 * context.indentation.tool_radius + context.indentation.lateral_travel),
         contact(context.model.mesh(), X, reach, context.contact_stiffness),
         equilibrium(context, X, reach, batch) {

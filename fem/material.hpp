@@ -35,7 +35,7 @@ T determinant(const Tensor2<T>& F, const Tensor2<T>& cof) {
 template <class T>
 T double_contraction(const Tensor2<T>& a, const Tensor2<T>& b) {
   T sum = a[0] * b[0];
-  for (int i = 1; i < 9; ++i) sum += a[i] * b[i];
+  for (std::size_t i = 1; i < 9; ++i) sum += a[i] * b[i];
   return sum;
 }
 
@@ -76,7 +76,7 @@ class NeoHookean {
     const T scale = mu_ * power_of(J, -2.0 / 3.0);
     const T third = double_contraction(F, F) / (3.0 * J);
     Tensor2<T> P;
-    for (int i = 0; i < 9; ++i) P[i] = scale * (F[i] - third * cof[i]);
+    for (std::size_t i = 0; i < 9; ++i) P[i] = scale * (F[i] - third * cof[i]);
     return P;
   }
 
@@ -87,11 +87,11 @@ class NeoHookean {
     const T scale = mu_ * power_of(J, -2.0 / 3.0);
     const T I1 = double_contraction(F, F);
     Tensor2<T> G;
-    for (int i = 0; i < 9; ++i) G[i] = cof[i] / J;
+    for (std::size_t i = 0; i < 9; ++i) G[i] = cof[i] / J;
     const T two_thirds = (2.0 / 3.0) * scale, two_ninths = (2.0 / 9.0) * scale * I1;
     const T third = scale * I1 / 3.0;
-    for (int iJ = 0; iJ < 9; ++iJ)
-      for (int kL = 0; kL < 9; ++kL) {
+    for (std::size_t iJ = 0; iJ < 9; ++iJ)
+      for (std::size_t kL = 0; kL < 9; ++kL) {
         A[iJ][kL] += two_ninths * G[iJ] * G[kL] - two_thirds * (F[iJ] * G[kL] + G[iJ] * F[kL]) +
                      third * G[3 * (iJ / 3) + kL % 3] * G[3 * (kL / 3) + iJ % 3];
         if (iJ == kL) A[iJ][kL] += scale;

@@ -34,8 +34,8 @@ bool NewtonSolver::factorize(const SphereContact& contact, const Displacement& u
   for (std::size_t attempt = 0; attempt < kShifts.size(); ++attempt) {
     model_.stiffness(u, K_);
     contact.add_stiffness(model_, u, attempt == 0, K_);
-    for (int i = 0; i < model_.pattern().n; ++i)
-      K_[model_.pattern().start[i]] *= 1 + kShifts[attempt];
+    const auto& start = model_.pattern().start;
+    for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[at(start[i])] *= 1 + kShifts[attempt];
     factorized_ = factor_.factorize(K_);
     if (factorized_) return true;
   }

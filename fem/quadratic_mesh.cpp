@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <unordered_map>
 
+#include "fem/at.hpp"
+
 namespace palpate::fem {
 
 namespace {
@@ -34,12 +36,12 @@ class EdgeNodes {
 };
 
 void mark_held_nodes(const Body& body, const EdgeNodes& edges, QuadraticMesh& mesh) {
-  mesh.held.assign(mesh.nodes(), false);
-  for (const auto node : body.fixed_nodes) mesh.held[node] = true;
+  mesh.held.assign(at(mesh.nodes()), false);
+  for (const auto node : body.fixed_nodes) mesh.held[at(node)] = true;
   const auto corner_count = body.nodes.size();
   for (std::size_t e = 0; e < edges.corners().size(); ++e)
     mesh.held[corner_count + e] =
-        mesh.held[edges.corners()[e][0]] && mesh.held[edges.corners()[e][1]];
+        mesh.held[at(edges.corners()[e][0])] && mesh.held[at(edges.corners()[e][1])];
 }
 
 }  // namespace
@@ -50,9 +52,9 @@ QuadraticMesh make_quadratic_mesh(const Body& body) {
   mesh.region = body.tetrahedron_region;
   mesh.tetrahedra.reserve(body.tetrahedra.size());
   for (const auto& corners : body.tetrahedra) {
-    std::array<std::int32_t, kTetNodes> nodes{};
+    Tetrahedron10 nodes{};
     std::copy(corners.begin(), corners.end(), nodes.begin());
-    for (int e = 0; e < 6; ++e)
+    for (std::size_t e = 0; e < kTetEdges.size(); ++e)
       nodes[4 + e] = edges.of(corners[kTetEdges[e][0]], corners[kTetEdges[e][1]]);
     mesh.tetrahedra.push_back(nodes);
   }
@@ -63,7 +65,7 @@ QuadraticMesh make_quadratic_mesh(const Body& body) {
   const auto corner_count = static_cast<Eigen::Index>(body.nodes.size());
   mesh.X.resize(3, corner_count + static_cast<Eigen::Index>(edges.corners().size()));
   for (Eigen::Index i = 0; i < corner_count; ++i)
-    mesh.X.col(i) = Eigen::Vector3d(body.nodes[i].data());
+    mesh.X.col(i) = Eigen::Vector3d(body.nodes[static_cast<std::size_t>(i)].data());
   for (std::size_t e = 0; e < edges.corners().size(); ++e)
     mesh.X.col(corner_count + static_cast<Eigen::Index>(e)) =
         0.5 * (mesh.X.col(edges.corners()[e][0]) + mesh.X.col(edges.corners()[e][1]));

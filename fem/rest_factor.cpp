@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "fem/at.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fem {
@@ -13,27 +14,32 @@ namespace {
 /// One right-hand side in each lane; the compiler splits it where registers are narrower.
 typedef float Pack __attribute__((vector_size(kBatch * sizeof(float)), aligned(4), may_alias));
 
-inline Pack& at(float* y, int row) {
-  return *reinterpret_cast<Pack*>(y + static_cast<std::size_t>(row) * kBatch);
+inline Pack& pack(float* y, int row) {
+  return *reinterpret_cast<Pack*>(y + at(row) * kBatch);
+}
+
+/// A row of a dense block stored by rows.
+inline const float* row_of(const float* block, int row, int columns) {
+  return block + at(row) * at(columns);
 }
 
 /// Dense lower triangle L (by rows) times its unknowns = y, in place.
 void solve_lower(const float* L, int n, float* y) {
   for (int i = 0; i < n; ++i) {
-    const float* row = L + static_cast<std::size_t>(i) * n;
-    Pack sum = at(y, i);
-    for (int j = 0; j < i; ++j) sum -= row[j] * at(y, j);
-    at(y, i) = sum * (1.0f / row[i]);
+    const float* row = row_of(L, i, n);
+    Pack sum = pack(y, i);
+    for (int j = 0; j < i; ++j) sum -= row[j] * pack(y, j);
+    pack(y, i) = sum * (1.0f / row[i]);
   }
 }
 
 /// Transposed: L^T x = y, in place.
 void solve_lower_transposed(const float* L, int n, float* y) {
   for (int i = n - 1; i >= 0; --i) {
-    const float* row = L + static_cast<std::size_t>(i) * n;
-    const Pack x = at(y, i) * (1.0f / row[i]);
-    at(y, i) = x;
-    for (int j = 0; j < i; ++j) at(y, j) -= row[j] * x;
+    const float* row = row_of(L, i, n);
+    const Pack x = pack(y, i) * (1.0f / row[i]);
+    pack(y, i) = x;
+    for (int j = 0; j < i; ++j) pack(y, j) -= row[j] * x;
   }
 }
 
@@ -43,27 +49,27 @@ void subtract_below(const float* B, int columns, const int* rows, int count, con
   int r = 0;
   auto* xp = const_cast<float*>(x);
   for (; r + 4 <= count; r += 4) {
-    const float* b0 = B + static_cast<std::size_t>(r) * columns;
+    const float* b0 = row_of(B, r, columns);
     const float *b1 = b0 + columns, *b2 = b1 + columns, *b3 = b2 + columns;
-    Pack s0 = at(y, rows[r]), s1 = at(y, rows[r + 1]), s2 = at(y, rows[r + 2]),
-         s3 = at(y, rows[r + 3]);
+    Pack s0 = pack(y, rows[r]), s1 = pack(y, rows[r + 1]), s2 = pack(y, rows[r + 2]),
+         s3 = pack(y, rows[r + 3]);
     for (int j = 0; j < columns; ++j) {
-      const Pack v = at(xp, j);
+      const Pack v = pack(xp, j);
       s0 -= b0[j] * v;
       s1 -= b1[j] * v;
       s2 -= b2[j] * v;
       s3 -= b3[j] * v;
     }
-    at(y, rows[r]) = s0;
-    at(y, rows[r + 1]) = s1;
-    at(y, rows[r + 2]) = s2;
-    at(y, rows[r + 3]) = s3;
+    pack(y, rows[r]) = s0;
+    pack(y, rows[r + 1]) = s1;
+    pack(y, rows[r + 2]) = s2;
+    pack(y, rows[r + 3]) = s3;
   }
   for (; r < count; ++r) {
-    const float* b = B + static_cast<std::size_t>(r) * columns;
-    Pack s = at(y, rows[r]);
-    for (int j = 0; j < columns; ++j) s -= b[j] * at(xp, j);
-    at(y, rows[r]) = s;
+    const float* b = row_of(B, r, columns);
+    Pack s = pack(y, rows[r]);
+    for (int j = 0; j < columns; ++j) s -= b[j] * pack(xp, j);
+    pack(y, rows[r]) = s;
   }
 }
 
@@ -71,25 +77,24 @@ void subtract_below(const float* B, int columns, const int* rows, int count, con
 void subtract_above(const float* B, int columns, const int* rows, int count, float* y, float* x) {
   int j = 0;
   for (; j + 4 <= columns; j += 4) {
-    Pack s0 = at(x, j), s1 = at(x, j + 1), s2 = at(x, j + 2), s3 = at(x, j + 3);
+    Pack s0 = pack(x, j), s1 = pack(x, j + 1), s2 = pack(x, j + 2), s3 = pack(x, j + 3);
     for (int r = 0; r < count; ++r) {
-      const float* b = B + static_cast<std::size_t>(r) * columns + j;
-      const Pack v = at(y, rows[r]);
+      const float* b = row_of(B, r, columns) + j;
+      const Pack v = pack(y, rows[r]);
       s0 -= b[0] * v;
       s1 -= b[1] * v;
       s2 -= b[2] * v;
       s3 -= b[3] * v;
     }
-    at(x, j) = s0;
-    at(x, j + 1) = s1;
-    at(x, j + 2) = s2;
-    at(x, j + 3) = s3;
+    pack(x, j) = s0;
+    pack(x, j + 1) = s1;
+    pack(x, j + 2) = s2;
+    pack(x, j + 3) = s3;
   }
   for (; j < columns; ++j) {
-    Pack s = at(x, j);
-    for (int r = 0; r < count; ++r)
-      s -= B[static_cast<std::size_t>(r) * columns + j] * at(y, rows[r]);
-    at(x, j) = s;
+    Pack s = pack(x, j);
+    for (int r = 0; r < count; ++r) s -= row_of(B, r, columns)[j] * pack(y, rows[r]);
+    pack(x, j) = s;
   }
 }
 
@@ -111,8 +116,7 @@ RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& per
     const double* x = view.values + view.value_start[k];
     for (int i = 0; i < rows; ++i)
       for (int j = 0; j < columns; ++j)
-        values_.push_back(
-            static_cast<float>(i >= j ? x[static_cast<std::size_t>(j) * rows + i] : 0));
+        values_.push_back(static_cast<float>(i >= j ? x[at(j) * at(rows) + at(i)] : 0));
     rows_.insert(rows_.end(), view.rows + view.row_start[k] + columns,
                  view.rows + view.row_start[k + 1]);
     supernodes_.push_back(node);
@@ -121,19 +125,19 @@ RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& per
 
 void RestFactor::forward(float* y) const {
   for (const Supernode& node : supernodes_) {
-    float* x = y + static_cast<std::size_t>(node.first_column) * kBatch;
+    float* x = y + at(node.first_column) * kBatch;
     const float* L = values_.data() + node.values;
     solve_lower(L, node.columns, x);
-    subtract_below(L + static_cast<std::size_t>(node.columns) * node.columns, node.columns,
+    subtract_below(row_of(L, node.columns, node.columns), node.columns,
                    rows_.data() + node.row_list, node.rows_below, x, y);
   }
 }
 
 void RestFactor::backward(float* y) const {
   for (auto node = supernodes_.rbegin(); node != supernodes_.rend(); ++node) {
-    float* x = y + static_cast<std::size_t>(node->first_column) * kBatch;
+    float* x = y + at(node->first_column) * kBatch;
     const float* L = values_.data() + node->values;
-    subtract_above(L + static_cast<std::size_t>(node->columns) * node->columns, node->columns,
+    subtract_above(row_of(L, node->columns, node->columns), node->columns,
                    rows_.data() + node->row_list, node->rows_below, y, x);
     solve_lower_transposed(L, node->columns, x);
   }
@@ -143,19 +147,15 @@ void RestFactor::solve(std::vector<float>& block, std::vector<float>& scratch) c
   scratch.resize(block.size());
   constexpr std::size_t kRow = kBatch * sizeof(float);
   for (int i = 0; i < n_; ++i)
-    std::memcpy(&scratch[static_cast<std::size_t>(i) * kBatch],
-                &block[static_cast<std::size_t>(permutation_[i]) * kBatch], kRow);
+    std::memcpy(&scratch[at(i) * kBatch], &block[at(permutation_[at(i)]) * kBatch], kRow);
   forward(scratch.data());
   backward(scratch.data());
   for (int i = 0; i < n_; ++i)
-    std::memcpy(&block[static_cast<std::size_t>(permutation_[i]) * kBatch],
-                &scratch[static_cast<std::size_t>(i) * kBatch], kRow);
+    std::memcpy(&block[at(permutation_[at(i)]) * kBatch], &scratch[at(i) * kBatch], kRow);
 }
 
 SolveBatch::SolveBatch(const RestFactor& factor, int members)
-    : factor_(factor),
-      members_(members),
-      block_(static_cast<std::size_t>(factor.size()) * kBatch, 0.0f) {}
+    : factor_(factor), members_(members), block_(at(factor.size()) * kBatch, 0.0f) {}
 
 void SolveBatch::serve_if_all_wait() {
   if (waiting_ == 0 || waiting_ < members_) return;

@@ -21,7 +21,7 @@ class SharedFactorSolver {
   using RestSolve = std::function<void(const Eigen::VectorXd& b, Eigen::VectorXd& x)>;
 
   SharedFactorSolver(const SolidModel& whole, const SolidModel& window, RestSolve rest_solve)
-      : whole_(whole), window_(window), newton_(window), rest_solve_(std::move(rest_solve)) {}
+      : whole_(whole), newton_(window), rest_solve_(std::move(rest_solve)) {}
 
   /// The factor and curvature pairs of the last call are kept: successive calls should be
   /// neighbours on a path.
@@ -43,7 +43,6 @@ class SharedFactorSolver {
             Equilibrium& now, Displacement& u, NewtonResult& result);
 
   const SolidModel& whole_;
-  const SolidModel& window_;
   NewtonSolver newton_;
   RestSolve rest_solve_;
   std::deque<Pair> pairs_;

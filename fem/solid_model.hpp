@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "fem/at.hpp"
 #include "fem/element.hpp"
 #include "fem/material.hpp"
 #include "fem/quadratic_mesh.hpp"
@@ -50,7 +51,7 @@ class SolidModel {
 
   const QuadraticMesh& mesh() const { return solid_->mesh; }
   /// First of the three unknowns of a node, -1 where it is not free.
-  int equation(int node) const { return equation_[node]; }
+  int equation(int node) const { return equation_[at(node)]; }
   const SparsePattern& pattern() const { return pattern_; }
 
  private:
@@ -65,6 +66,8 @@ class SolidModel {
   void take_elements(const std::vector<int>& elements);
   void make_blocks(const std::vector<int>& elements);
   Block make_block(const std::vector<int>& elements, std::size_t first) const;
+  /// The unknown of a row of an element, -1 where it is not free.
+  int unknown(const Tetrahedron10& node, std::size_t row) const;
   void make_scatter();
   ElementVector<Lanes> gather(const Block& block, const Displacement& u) const;
   void scatter(const Block& block, const ElementVector<Lanes>& forces, Eigen::VectorXd& f) const;

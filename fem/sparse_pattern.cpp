@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "fem/at.hpp"
+
 namespace palpate::fem {
 
 namespace {
@@ -12,12 +14,12 @@ namespace {
 std::vector<std::vector<std::int32_t>> upper_neighbours(const QuadraticMesh& mesh,
                                                         const std::vector<int>& elements,
                                                         const std::vector<int>& equation) {
-  std::vector<std::vector<std::int32_t>> neighbours(mesh.nodes());
+  std::vector<std::vector<std::int32_t>> neighbours(at(mesh.nodes()));
   for (const int e : elements)
-    for (const auto a : mesh.tetrahedra[e]) {
-      if (equation[a] < 0) continue;
-      for (const auto b : mesh.tetrahedra[e])
-        if (b >= a && equation[b] >= 0) neighbours[a].push_back(b);
+    for (const auto a : mesh.tetrahedra[at(e)]) {
+      if (equation[at(a)] < 0) continue;
+      for (const auto b : mesh.tetrahedra[at(e)])
+        if (b >= a && equation[at(b)] >= 0) neighbours[at(a)].push_back(b);
     }
   for (auto& list : neighbours) {
     std::sort(list.begin(), list.end());
@@ -30,7 +32,7 @@ std::vector<std::vector<std::int32_t>> upper_neighbours(const QuadraticMesh& mes
 
 int SparsePattern::position(int i, int j) const {
   const auto [column, target] = std::minmax(i, j);
-  const auto first = row.begin() + start[column], last = row.begin() + start[column + 1];
+  const auto first = row.begin() + start[at(column)], last = row.begin() + start[at(column) + 1];
   const auto found = std::lower_bound(first, last, target);
   assert(found != last && *found == target);
   return static_cast<int>(found - row.begin());
@@ -43,12 +45,12 @@ SparsePattern stiffness_pattern(const QuadraticMesh& mesh, const std::vector<int
   pattern.start.assign(1, 0);
   const auto neighbours = upper_neighbours(mesh, elements, equation);
   for (int node = 0; node < mesh.nodes(); ++node) {
-    const int first = equation[node];
+    const int first = equation[at(node)];
     if (first < 0) continue;
     for (int i = 0; i < 3; ++i) {
-      for (const auto other : neighbours[node])
+      for (const auto other : neighbours[at(node)])
         for (int k = 0; k < 3; ++k)
-          if (equation[other] + k >= first + i) pattern.row.push_back(equation[other] + k);
+          if (equation[at(other)] + k >= first + i) pattern.row.push_back(equation[at(other)] + k);
       pattern.start.push_back(static_cast<int>(pattern.row.size()));
     }
   }
@@ -59,13 +61,14 @@ void symmetric_multiply(const SparsePattern& pattern, const std::vector<double>&
                         const double* x, double* y) {
   std::fill(y, y + pattern.n, 0.0);
   for (int column = 0; column < pattern.n; ++column) {
-    int at = pattern.start[column];
+    std::size_t k = at(pattern.start[at(column)]);
+    const std::size_t end = at(pattern.start[at(column) + 1]);
     const double xc = x[column];
-    double sum = values[at] * xc;
-    for (++at; at < pattern.start[column + 1]; ++at) {
-      const int r = pattern.row[at];
-      sum += values[at] * x[r];
-      y[r] += values[at] * xc;
+    double sum = values[k] * xc;
+    for (++k; k < end; ++k) {
+      const int r = pattern.row[k];
+      sum += values[k] * x[r];
+      y[r] += values[k] * xc;
     }
     y[column] += sum;
   }

@@ -3,14 +3,15 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 namespace palpate::fem {
 
-inline constexpr int kTetNodes = 10;
-inline constexpr int kTetPoints = 4;
+inline constexpr std::size_t kTetNodes = 10;
+inline constexpr std::size_t kTetPoints = 4;
 
 /// Corner nodes 0..3; mid-edge node 4 + e lies between the corners kTetEdges[e].
-inline constexpr std::array<std::array<int, 2>, 6> kTetEdges{
+inline constexpr std::array<std::array<std::size_t, 2>, 6> kTetEdges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
 /// Volume coordinates of the four Gauss points, exact to degree 2, each of weight 1/4
@@ -19,12 +20,12 @@ inline constexpr double kTetNear = 0.5854101966249685, kTetFar = 0.1381966011250
 
 /// dN_a/dL_c at Gauss point q: N_a = L_a (2 L_a - 1) at corners, 4 L_i L_j at mid-edges, the four
 /// L taken as independent (their gradients sum to zero).
-constexpr std::array<std::array<double, 4>, kTetNodes> shape_derivatives(int q) {
+constexpr std::array<std::array<double, 4>, kTetNodes> shape_derivatives(std::size_t q) {
   std::array<double, 4> L{};
-  for (int c = 0; c < 4; ++c) L[c] = c == q ? kTetNear : kTetFar;
+  for (std::size_t c = 0; c < 4; ++c) L[c] = c == q ? kTetNear : kTetFar;
   std::array<std::array<double, 4>, kTetNodes> B{};
-  for (int c = 0; c < 4; ++c) B[c][c] = 4 * L[c] - 1;
-  for (int e = 0; e < 6; ++e) {
+  for (std::size_t c = 0; c < 4; ++c) B[c][c] = 4 * L[c] - 1;
+  for (std::size_t e = 0; e < 6; ++e) {
     const auto [i, j] = kTetEdges[e];
     B[4 + e][i] = 4 * L[j];
     B[4 + e][j] = 4 * L[i];

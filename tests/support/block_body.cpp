@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include "fem/at.hpp"
+
 namespace palpate::test {
 
 namespace {
@@ -32,15 +34,15 @@ std::vector<Triangle> boundary_of(const std::vector<Tetrahedron>& tetrahedra) {
 }
 
 /// The six tetrahedra of a cell: one for each order of the steps along the axes.
-void add_cell(const std::function<std::int32_t(int, int, int)>& at, int i, int j, int k,
+void add_cell(const std::function<std::int32_t(int, int, int)>& node, int i, int j, int k,
               std::vector<Tetrahedron>& tetrahedra) {
   const int orders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   for (int o = 0; o < 6; ++o) {
     int step[3] = {i, j, k};
-    Tetrahedron t{at(i, j, k)};
-    for (int s = 0; s < 3; ++s) {
+    Tetrahedron t{node(i, j, k)};
+    for (std::size_t s = 0; s < 3; ++s) {
       ++step[orders[o][s]];
-      t[s + 1] = at(step[0], step[1], step[2]);
+      t[s + 1] = node(step[0], step[1], step[2]);
     }
     if (o >= 3) std::swap(t[1], t[2]);  // odd orders are mirror images
     tetrahedra.push_back(t);
@@ -49,7 +51,9 @@ void add_cell(const std::function<std::int32_t(int, int, int)>& at, int i, int j
 
 void add_response_surface(Body& body, double top) {
   std::vector<std::int32_t> response(body.nodes.size(), -1);
-  const auto on_top = [&](std::int32_t node) { return body.nodes[node][2] >= top - 1e-12; };
+  const auto on_top = [&](std::int32_t node) {
+    return body.nodes[fem::at(node)][2] >= top - 1e-12;
+  };
   std::array<double, 4> extent{1e300, -1e300, 1e300, -1e300};
   for (const auto& node : body.nodes)
     extent = {std::min(extent[0], node[0]), std::max(extent[1], node[0]),
@@ -57,11 +61,11 @@ void add_response_surface(Body& body, double top) {
   for (const auto& t : body.boundary) {
     if (!on_top(t[0]) || !on_top(t[1]) || !on_top(t[2])) continue;
     Triangle local{};
-    for (int c = 0; c < 3; ++c) {
-      auto& index = response[t[c]];
+    for (std::size_t c = 0; c < 3; ++c) {
+      auto& index = response[fem::at(t[c])];
       if (index < 0) {
         index = static_cast<std::int32_t>(body.response.node.size());
-        const Vec3& x = body.nodes[t[c]];
+        const Vec3& x = body.nodes[fem::at(t[c])];
         const bool rim =
             x[0] == extent[0] || x[0] == extent[1] || x[1] == extent[2] || x[1] == extent[3];
         body.response.node.push_back(t[c]);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "fem/at.hpp"
 #include "fem/indentation.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -30,7 +31,7 @@ Press press(double fine, double poisson) {
   const Body body = test::make_block(across, across, down);
   std::int32_t centre = 0;
   for (std::size_t v = 0; v < body.response.node.size(); ++v) {
-    const Vec3& x = body.nodes[body.response.node[v]];
+    const Vec3& x = body.nodes[at(body.response.node[v])];
     if (x[0] == 0 && x[1] == 0) centre = static_cast<std::int32_t>(v);
   }
   CampaignSettings settings;

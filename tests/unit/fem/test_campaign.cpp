@@ -4,6 +4,7 @@
 
 #include <cstring>
 
+#include "fem/at.hpp"
 #include "fem/campaign.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
@@ -54,15 +55,15 @@ TEST(Campaign, SymmetricSitesRespondAlike) {
   const Body body = small_block();
   CampaignReport report;
   const Curves curves = run_campaign(body, quick(), report);
-  const auto at = [&](double x, double y) -> const SiteCurves& {
+  const auto site_at = [&](double x, double y) -> const SiteCurves& {
     for (const auto& site : curves.sites) {
-      const Vec3& p = body.nodes[body.response.node[site.vertex]];
+      const Vec3& p = body.nodes[at(body.response.node[at(site.vertex)])];
       if (std::abs(p[0] - x) + std::abs(p[1] - y) < 1e-9) return site;
     }
     throw std::logic_error("no such site");
   };
-  const double a = norm(at(0.0075, -0.0075).paths[0].samples.back().force);
-  const double b = norm(at(-0.0075, 0.0075).paths[0].samples.back().force);
+  const double a = norm(site_at(0.0075, -0.0075).paths[0].samples.back().force);
+  const double b = norm(site_at(-0.0075, 0.0075).paths[0].samples.back().force);
   EXPECT_NEAR(a, b, 1e-3 * a);
 }
 
@@ -72,7 +73,7 @@ TEST(Campaign, TellsItsProgress) {
   const Body body = small_block();
   std::vector<std::int32_t> sites;
   for (std::int32_t v = 0; v < 25; ++v)
-    if (body.response.is_site[v]) sites.push_back(v);
+    if (body.response.is_site[at(v)]) sites.push_back(v);
   settings.sites = {sites[2], sites[0]};
   std::vector<std::int64_t> seen;
   settings.progress = [&](const CampaignProgress& p) { seen.push_back(p.done * 100 + p.total); };
@@ -121,7 +122,7 @@ TEST(Campaign, AFailedSiteKeepsItsPartialCurveAndReason) {
   s.indentation.held_depths.clear();
   const Body body = small_block();
   for (std::int32_t v = 0; v < 25 && s.sites.empty(); ++v)
-    if (body.response.is_site[v]) s.sites = {v};
+    if (body.response.is_site[at(v)]) s.sites = {v};
   CampaignReport report;
   const Curves curves = run_campaign(body, s, report);
   EXPECT_NE(curves.sites[0].status, SiteStatus::Complete);
@@ -137,7 +138,7 @@ TEST(Campaign, EveryFailedPathOfASiteLeavesItsReason) {
   s.indentation.azimuths = {3.0, 3.3};
   const Body body = small_block();
   for (std::int32_t v = 0; v < 25 && s.sites.empty(); ++v)
-    if (body.response.is_site[static_cast<std::size_t>(v)]) s.sites = {v};
+    if (body.response.is_site[at(v)]) s.sites = {v};
   CampaignReport report;
   const SiteCurves site = run_campaign(body, s, report).sites.at(0);
   EXPECT_EQ(site.status, SiteStatus::Partial);

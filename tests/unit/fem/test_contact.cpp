@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include "fem/at.hpp"
 #include "fem/contact.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -24,7 +25,7 @@ void expect_derivatives(const SolidModel& model, const SphereContact& contact, D
   const int n = model.pattern().n;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
   contact.add_forces(model, u, f);
-  std::vector<double> K(model.pattern().nonzeros(), 0.0);
+  std::vector<double> K(at(model.pattern().nonzeros()), 0.0);
   contact.add_stiffness(model, u, true, K);
   const double h = 1e-8;
   int compared = 0;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fem/at.hpp"
 #include "fem/indentation.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -19,7 +20,7 @@ std::int32_t centre_vertex(const Body& body) {
   std::int32_t best = 0;
   for (std::size_t v = 0; v < body.response.node.size(); ++v) {
     const auto r = [&](std::size_t i) {
-      const Vec3& x = body.nodes[body.response.node[i]];
+      const Vec3& x = body.nodes[at(body.response.node[i])];
       return std::hypot(x[0], x[1]);
     };
     if (r(v) < r(static_cast<std::size_t>(best))) best = static_cast<std::int32_t>(v);

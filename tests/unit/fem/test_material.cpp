@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <random>
 
+#include "fem/at.hpp"
 #include "fem/material.hpp"
 #include "format/error.hpp"
 
@@ -41,7 +42,7 @@ Tensor2<double> stress(const NeoHookean& law, const Matrix& F) {
   const auto cof = cofactor(t);
   const double J = determinant(t, cof);
   auto P = law.piola(t, cof, J);
-  for (int i = 0; i < 9; ++i) P[i] += law.pressure(J) * cof[i];
+  for (std::size_t i = 0; i < 9; ++i) P[i] += law.pressure(J) * cof[i];
   return P;
 }
 
@@ -68,7 +69,7 @@ TEST(NeoHookean, StressIsTheDerivativeOfTheEnergy) {
       const double h = 1e-5;
       plus(i / 3, i % 3) += h;
       minus(i / 3, i % 3) -= h;
-      EXPECT_NEAR(P[i], (energy(tissue(), plus) - energy(tissue(), minus)) / (2 * h),
+      EXPECT_NEAR(P[at(i)], (energy(tissue(), plus) - energy(tissue(), minus)) / (2 * h),
                   1e-6 * tissue().kappa());
     }
   }
@@ -90,8 +91,8 @@ TEST(NeoHookean, TangentIsTheDerivativeOfTheIsochoricStress) {
       plus(i / 3, i % 3) += h;
       minus(i / 3, i % 3) -= h;
       const auto high = isochoric(plus), low = isochoric(minus);
-      for (int j = 0; j < 9; ++j)
-        EXPECT_NEAR(A[j][i], (high[j] - low[j]) / (2 * h), 1e-5 * tissue().mu());
+      for (std::size_t j = 0; j < 9; ++j)
+        EXPECT_NEAR(A[j][at(i)], (high[j] - low[j]) / (2 * h), 1e-5 * tissue().mu());
     }
   }
 }
@@ -135,16 +136,16 @@ TEST(NeoHookean, LanesEqualScalars) {
   Tensor2<Lanes> F;
   std::array<Matrix, kLanes> single;
   for (int lane = 0; lane < kLanes; ++lane) {
-    single[lane] = random_gradient(random);
-    for (int i = 0; i < 9; ++i) F[i][lane] = single[lane](i / 3, i % 3);
+    single[at(lane)] = random_gradient(random);
+    for (int i = 0; i < 9; ++i) F[at(i)][lane] = single[at(lane)](i / 3, i % 3);
   }
   const auto cof = cofactor(F);
   const Lanes J = determinant(F, cof);
   const auto P = tissue().piola(F, cof, J);
   for (int lane = 0; lane < kLanes; ++lane) {
-    const auto t = to_tensor(single[lane]);
-    const auto expected = tissue().piola(t, cofactor(t), single[lane].determinant());
-    for (int i = 0; i < 9; ++i) EXPECT_NEAR(P[i][lane], expected[i], 1e-9 * tissue().mu());
+    const auto t = to_tensor(single[at(lane)]);
+    const auto expected = tissue().piola(t, cofactor(t), single[at(lane)].determinant());
+    for (std::size_t i = 0; i < 9; ++i) EXPECT_NEAR(P[i][lane], expected[i], 1e-9 * tissue().mu());
   }
 }
 

@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "fem/at.hpp"
 #include "fem/newton.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -19,7 +20,7 @@ Body held_all_around() {
   std::uniform_real_distribution<double> shift(-2e-3, 2e-3);
   std::vector<bool> outside(body.nodes.size(), false);
   for (const auto& t : body.boundary)
-    for (const auto node : t) outside[node] = true;
+    for (const auto node : t) outside[at(node)] = true;
   body.fixed_nodes.clear();
   for (std::size_t i = 0; i < body.nodes.size(); ++i) {
     if (outside[i])
