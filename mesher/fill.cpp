@@ -77,11 +77,11 @@ double signed_volume6(const std::vector<Vec3>& x, const Tetrahedron& t) {
 
 Filling take(const tetgenio& out) {
   Filling filling;
-  for (int i = 0; i < out.numberofpoints; ++i) {
+  for (std::ptrdiff_t i = 0; i < out.numberofpoints; ++i) {
     const REAL* x = out.pointlist + 3 * i;
     filling.nodes.push_back({x[0], x[1], x[2]});
   }
-  for (int t = 0; t < out.numberoftetrahedra; ++t) {
+  for (std::ptrdiff_t t = 0; t < out.numberoftetrahedra; ++t) {
     const int* v = out.tetrahedronlist + t * out.numberofcorners;
     Tetrahedron corners{v[0], v[1], v[2], v[3]};
     if (signed_volume6(filling.nodes, corners) < 0) std::swap(corners[2], corners[3]);

@@ -100,8 +100,7 @@ std::map<std::int32_t, std::int32_t> regions_of_parts(const Filling& filling,
     auto& entry = largest[filling.part[t]];
     if (v > entry.first) entry = {v, t};
   }
-  std::vector<SurfaceQuery> queries;
-  for (const Surface& inclusion : inclusions) queries.emplace_back(inclusion);
+  const std::vector<SurfaceQuery> queries(inclusions.begin(), inclusions.end());
   std::map<std::int32_t, std::int32_t> region;
   for (const auto& [part, entry] : largest) {
     Vec3 centroid{};
@@ -116,8 +115,8 @@ std::map<std::int32_t, std::int32_t> regions_of_parts(const Filling& filling,
   return region;
 }
 
-std::string name_or(const std::string& name, std::string fallback) {
-  return name.empty() ? std::move(fallback) : name;
+std::string name_or(const std::string& name, const std::string& fallback) {
+  return name.empty() ? fallback : name;
 }
 
 void set_regions(Body& body, const Settings& settings, const Filling& filling,

@@ -109,7 +109,7 @@ void put_back(Mesh& mesh, EdgeFlags sharp, const Target& target) {
 class Subdivision {
  public:
   Subdivision(const Mesh& mesh, EdgeFlags sharp, const Target& target, int n)
-      : mesh_(mesh), sharp_(sharp), target_(target), n_(n) {
+      : mesh_(mesh), sharp_(std::move(sharp)), target_(target), n_(n) {
     result_.response = to_surface(mesh);
     result_.boundary.points = result_.response.points;
   }
