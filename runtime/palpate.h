@@ -33,7 +33,7 @@ enum {
   PALPATE_ERROR_MEMORY = -4    /* out of memory */
 };
 
-/* Bits of the status of a step. */
+/* Bits of the status of a step. From 1 << 16 on: of a step of the force loop (recordings). */
 enum {
   PALPATE_CONTACT = 1u << 0,        /* a local model is active */
   PALPATE_ACTIVATED = 1u << 1,      /* a collision was accepted in this step */
@@ -47,8 +47,16 @@ enum {
   PALPATE_DROPPED = 1u << 8,        /* the contact was dropped with stored energy discarded */
   PALPATE_FORCE_LIMITED = 1u << 9,  /* a slide or a return of d0 was made in part only, so that the
                                        force changes by no more than steepness times the travel */
-  PALPATE_AWAITING = 1u << 10       /* the contact point waits at an edge for triangles that the
+  PALPATE_AWAITING = 1u << 10,      /* the contact point waits at an edge for triangles that the
                                        search thread has not delivered yet */
+  PALPATE_LOOP_RAMPING = 1u << 16,  /* the force is scaled while it is let in */
+  PALPATE_LOOP_CLAMPED = 1u << 17,  /* shortened to the largest allowed force */
+  PALPATE_LOOP_TOO_FAST = 1u << 18, /* cut off: faster than allowed */
+  PALPATE_LOOP_LATE = 1u << 19,     /* cut off: too long since the step before */
+  PALPATE_LOOP_NOT_FINITE = 1u << 20, /* the force was no number: zero */
+  PALPATE_LOOP_SATURATED = 1u << 21,  /* the device gave less than it was asked for */
+  PALPATE_LOOP_STALE = 1u << 22,      /* the device had no new sample */
+  PALPATE_LOOP_DEVICE_LOST = 1u << 23 /* the device went away: the loop ended */
 };
 
 typedef struct palpate_settings {

@@ -3,10 +3,14 @@
 // C++ allocation functions escapes either.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <memory>
 
 #include "ride.hpp"
+#include "runtime/device_virtual.hpp"
+#include "runtime/force_loop.hpp"
+#include "runtime/realtime.hpp"
 
 namespace {
 thread_local bool counting = false;
@@ -52,6 +56,26 @@ TEST(Step, NeverAllocatesOrFrees) {
   counting = false;
   EXPECT_EQ(allocations, 0);
   EXPECT_EQ(seen & ride_bits(), ride_bits());
+}
+
+TEST(ForceLoop, NeverAllocatesOrFreesInATick) {
+  runtime::SimulatedDeviceSettings settings;
+  settings.hand_stiffness = 400;
+  settings.hand_damping = 4;
+  runtime::VirtualDevice device(settings, 1000, [](double t) {
+    return runtime::HandTarget{{0.03 * std::cos(t), 0.03 * std::sin(t), 0.01 * t}, {}};
+  });
+  device.open();
+  palpate_state state(ride_body(), {0.2, 5e-3, runtime::EnergyBudget::Kept, 400}, 200);
+  runtime::StepQueue queue(1000);
+  runtime::ForceLoop loop(device, state, {}, &queue);
+  allocations = 0;
+  counting = true;
+  for (int i = 0; i < 5000; ++i) loop.tick(runtime::monotonic_ns());
+  counting = false;
+  EXPECT_EQ(allocations, 0);
+  EXPECT_EQ(loop.counts().steps, 5000U);
+  EXPECT_EQ(loop.counts().unrecorded, 4000U);
 }
 
 TEST(Step, TheCounterCounts) {

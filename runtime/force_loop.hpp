@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// One device, one tool on one body, step after step.
+#pragma once
+
+#include <readerwriterqueue/readerwritercircularbuffer.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+
+#include "format/recording.hpp"
+#include "runtime/device.hpp"
+#include "runtime/handles.hpp"
+#include "runtime/latency_histogram.hpp"
+#include "runtime/safety.hpp"
+
+namespace palpate::runtime {
+
+/// Steps on their way from the force loop to whoever writes them down.
+using StepQueue = moodycamel::BlockingReaderWriterCircularBuffer<RecordedStep>;
+
+/// What the loop did, to be read when it has stopped.
+struct LoopCounts {
+  std::uint64_t steps = 0;
+  std::uint64_t late = 0;       ///< gaps longer than the watchdog allows
+  std::uint64_t overruns = 0;   ///< steps that were not done when the next was due
+  std::uint64_t saturated = 0;  ///< the device gave less than it was asked for
+  std::uint64_t stale = 0;      ///< the device had no new sample
+  std::uint64_t clamped = 0;
+  std::uint64_t cut_off = 0;  ///< steps without force for speed or lateness
+  std::uint64_t not_finite = 0;
+  std::uint64_t unrecorded = 0;  ///< steps the queue had no room for
+  bool lost = false;             ///< the device went away
+  LatencyHistogram wake;         ///< from the time a step was due to its beginning
+  LatencyHistogram compute;      ///< reading, stepping and commanding
+};
+
+/// The force loop, driven from outside: by LoopThread, or by the thread of a vendor's driver. Reads
+/// the device, steps the contact, passes the force through Safety, commands it, records. tick() is
+/// noexcept, allocation-free and lock-free besides what the driver of the device does.
+class ForceLoop {
+ public:
+  /// All must outlive the loop; queue may be null.
+  ForceLoop(Device& device, palpate_state& state, const SafetySettings& safety, StepQueue* queue);
+
+  /// One step. due: when it should have begun, on the monotonic clock, ns. False when the device is
+  /// lost: the loop is over.
+  bool tick(std::int64_t due) noexcept;
+  void count_overrun() noexcept { ++counts_.overruns; }
+
+  /// When the last step began, monotonic ns; 0 before the first. From any thread.
+  std::int64_t heartbeat() const noexcept { return heartbeat_.load(std::memory_order_relaxed); }
+  const LoopCounts& counts() const noexcept { return counts_; }
+
+ private:
+  std::uint32_t note(DeviceStatus status) noexcept;
+  void count(std::uint32_t status) noexcept;
+  void record(const DeviceReading& reading, const Vec3& force, std::uint32_t status,
+              std::int64_t began) noexcept;
+
+  Device& device_;
+  palpate_state& state_;
+  Safety safety_;
+  StepQueue* queue_;
+  LoopCounts counts_;
+  std::int64_t start_ = 0, last_ = 0;  ///< monotonic, ns
+  std::atomic<std::int64_t> heartbeat_{0};
+};
+
+}  // namespace palpate::runtime

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/loop_thread.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "format/error.hpp"
+
+namespace palpate::runtime {
+namespace {
+
+constexpr double kMostRate = 100000;  // Hz
+
+void require(bool good, const char* what, double value, const char* range) {
+  if (good) return;
+  throw Error(ErrorKind::Configuration, "force loop",
+              std::string(what) + " is " + std::to_string(value), std::string("give ") + range);
+}
+
+}  // namespace
+
+LoopThread::LoopThread(ForceLoop& loop, Device& device, const LoopThreadSettings& settings)
+    : loop_(loop), device_(device), settings_(settings) {
+  require(settings.rate > 0 && settings.rate <= kMostRate, "rate (Hz)", settings.rate,
+          "1 to 100000");
+  require(std::isfinite(settings.watchdog) && settings.watchdog > 0, "watchdog (s)",
+          settings.watchdog, "a finite value above 0");
+  period_ = std::llround(1e9 / settings.rate);
+  started_ = monotonic_ns();
+  if (device.has_own_thread()) {
+    device.start_calls([this] { return foreign_step(); });
+  } else {
+    thread_ = std::thread([this] { run(); });
+  }
+  watchdog_ = std::thread([this] { watch(); });
+}
+
+LoopThread::~LoopThread() {
+  stop();
+}
+
+void LoopThread::stop() noexcept {
+  {
+    const std::scoped_lock lock(mutex_);
+    stop_ = true;
+  }
+  wake_.notify_all();
+  if (thread_.joinable()) thread_.join();
+  if (device_.has_own_thread()) device_.stop_calls();
+  if (watchdog_.joinable()) watchdog_.join();
+  if (running_.exchange(false)) finish();
+}
+
+std::string LoopThread::missing_rights() const {
+  const std::scoped_lock lock(mutex_);
+  return missing_;
+}
+
+void LoopThread::run() {
+  std::string missing = become_realtime(settings_.realtime);
+  {
+    const std::scoped_lock lock(mutex_);
+    missing_ = std::move(missing);
+  }
+  due_ = monotonic_ns() + period_;
+  while (!stop_) {
+    sleep_until(due_);
+    if (!loop_.tick(due_)) break;
+    due_ += period_;
+    const std::int64_t now = monotonic_ns();
+    if (now <= due_) continue;
+    loop_.count_overrun();
+    due_ += (now - due_ + period_ - 1) / period_ * period_;
+  }
+  finish();
+  running_ = false;
+}
+
+/// A step from the thread of the driver, which keeps its own time: due one period after the last.
+bool LoopThread::foreign_step() noexcept {
+  const std::int64_t now = monotonic_ns();
+  due_ = std::min(due_ == 0 ? now : due_ + period_, now);
+  if (!stop_ && loop_.tick(due_)) return true;
+  finish();
+  running_ = false;
+  return false;
+}
+
+void LoopThread::finish() noexcept {
+  device_.command({});
+}
+
+void LoopThread::watch() {
+  const auto limit = std::llround(1e9 * settings_.watchdog);
+  const auto nap = std::chrono::nanoseconds(std::max<std::int64_t>(limit / 4, 100'000));
+  std::unique_lock lock(mutex_);
+  while (!stop_ && running_) {
+    wake_.wait_for(lock, nap, [this] { return stop_.load(); });
+    const std::int64_t beat = std::max(loop_.heartbeat(), started_);
+    if (stop_ || !running_ || monotonic_ns() - beat <= limit) continue;
+    device_.halt();
+    halted_ = true;
+  }
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// The force loop in a real-time thread, or in that of the driver, with a watchdog beside it.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "runtime/force_loop.hpp"
+#include "runtime/realtime.hpp"
+
+namespace palpate::runtime {
+
+struct LoopThreadSettings {
+  double rate = 1000;      ///< Hz; of a driver with its own thread, what it is expected to keep
+  double watchdog = 0.02;  ///< s without a step after which the device is halted
+  RealtimeSettings realtime;
+};
+
+/// Runs a ForceLoop until it is stopped or the device is lost. Steps are due at absolute times, so
+/// that they do not drift. A step that is not done when the next is due is an overrun: the steps it
+/// missed are left out, not made up for in a burst. When no step begins for longer than the
+/// watchdog allows, the device is halted for good, whatever the loop does later.
+class LoopThread {
+ public:
+  /// Starts at once. The device is open. @throws Error(Configuration) for settings out of range.
+  LoopThread(ForceLoop& loop, Device& device, const LoopThreadSettings& settings);
+  ~LoopThread();  ///< stops
+  LoopThread(const LoopThread&) = delete;
+  LoopThread& operator=(const LoopThread&) = delete;
+
+  /// Ends the loop after the step under way, commands no force, and waits. The device stays open.
+  void stop() noexcept;
+  bool running() const noexcept { return running_.load(); }
+  bool halted() const noexcept { return halted_.load(); }  ///< by the watchdog
+  /// One line on what the system refused (see become_realtime); empty when all was granted. After
+  /// the first step.
+  std::string missing_rights() const;
+
+ private:
+  void run();
+  bool foreign_step() noexcept;
+  void watch();
+  void finish() noexcept;
+
+  ForceLoop& loop_;
+  Device& device_;
+  LoopThreadSettings settings_;
+  std::int64_t period_ = 0;  ///< ns
+  std::int64_t started_ = 0, due_ = 0;
+  std::atomic<bool> stop_{false}, running_{true}, halted_{false};
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  std::string missing_;
+  std::thread thread_, watchdog_;
+};
+
+}  // namespace palpate::runtime

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/safety.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "format/error.hpp"
+#include "runtime/palpate.h"
+
+namespace palpate::runtime {
+namespace {
+
+void require(bool good, const char* what, double value, const char* range) {
+  if (good) return;
+  throw Error(ErrorKind::Configuration, "safety of the force loop",
+              std::string(what) + " is " + std::to_string(value), std::string("give ") + range);
+}
+
+bool finite(const Vec3& v) noexcept {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+}  // namespace
+
+Safety::Safety(const SafetySettings& settings) : settings_(settings) {
+  require(std::isfinite(settings.ramp) && settings.ramp >= 0, "ramp (s)", settings.ramp,
+          "0 or more, finite");
+  require(settings.max_force > 0, "max_force (N)", settings.max_force, "a value above 0");
+  require(settings.max_speed > 0, "max_speed (m/s)", settings.max_speed, "a value above 0");
+  require(settings.watchdog > 0, "watchdog (s)", settings.watchdog, "a value above 0");
+}
+
+bool Safety::cut_off(const Vec3& velocity, double dt, std::uint32_t& status) noexcept {
+  const double speed = norm(velocity);
+  too_fast_ = !(speed <= (too_fast_ ? settings_.max_speed / 2 : settings_.max_speed));
+  const bool late = !(dt <= settings_.watchdog);
+  if (too_fast_) status |= PALPATE_LOOP_TOO_FAST;
+  if (late) status |= PALPATE_LOOP_LATE;
+  return too_fast_ || late;
+}
+
+Safety::Verdict Safety::judge(const Vec3& force, const Vec3& velocity, double dt) noexcept {
+  Verdict verdict;
+  if (cut_off(velocity, dt, verdict.status)) {
+    since_cut_ = 0;
+    return verdict;
+  }
+  since_cut_ = std::min(since_cut_ + dt, settings_.ramp);
+  if (!finite(force)) {
+    verdict.status |= PALPATE_LOOP_NOT_FINITE;
+    return verdict;
+  }
+  double scale = 1;
+  if (since_cut_ < settings_.ramp) {
+    scale = since_cut_ / settings_.ramp;
+    verdict.status |= PALPATE_LOOP_RAMPING;
+  }
+  const double size = scale * norm(force);
+  if (size > settings_.max_force) {
+    scale *= settings_.max_force / size;
+    verdict.status |= PALPATE_LOOP_CLAMPED;
+  }
+  verdict.force = scale * force;
+  return verdict;
+}
+
+}  // namespace palpate::runtime
