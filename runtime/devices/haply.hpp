@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// Haply Inverse3, through the Haply Inverse Service: JSON over a WebSocket on this machine.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "runtime/device.hpp"
+#include "runtime/devices/websocket.hpp"
+
+namespace palpate::runtime {
+
+struct HaplySettings {
+  std::string host = "localhost";
+  std::uint16_t port = 10001;
+  std::string device_id;  ///< empty: the first Inverse3 of the inventory
+  int timeout_ms = 5;     ///< how long a step waits for a state before it is late
+};
+
+/// The service sends an inventory first, then exactly one state for each message it gets: command()
+/// sends a force, the next read() waits for the state that answers it, up to the timeout. A late
+/// state leaves the last one in place (Late); no further force is sent until it has come. Sockets
+/// are system calls: this loop is not free of them.
+class HaplyDevice : public Device {
+ public:
+  explicit HaplyDevice(HaplySettings settings);
+  ~HaplyDevice() override;
+
+  std::string name() const override { return "Haply Inverse3"; }
+  void open() override;
+  void close() noexcept override;
+  DeviceStatus read(DeviceReading& reading) noexcept override;
+  DeviceStatus command(const Vec3& force) noexcept override;
+  void halt() noexcept override;
+
+ private:
+  void find_device();
+  bool send_force(const Vec3& force) noexcept;
+  bool take_state(std::string_view text) noexcept;
+
+  HaplySettings settings_;
+  WebSocket socket_;
+  DeviceReading last_;
+  bool open_ = false;
+  bool awaiting_ = false;  ///< a force was sent whose state has not come
+  std::atomic<bool> halted_{false};
+};
+
+}  // namespace palpate::runtime

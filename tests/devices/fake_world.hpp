@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What stands behind the fake vendor libraries: a simulated device, and the faults a test injects.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+
+#include "format/vec3.hpp"
+#include "runtime/device_simulated.hpp"
+
+namespace palpate::test {
+
+/// SI throughout; each fake translates to the units of its vendor. The simulated device moves on by
+/// one millisecond with each force that it is sent.
+struct FakeWorld {
+  static runtime::SimulatedDeviceSettings settings() {
+    runtime::SimulatedDeviceSettings s;
+    s.mass = 0.1;
+    s.damping = 2;
+    s.hand_stiffness = 200;
+    s.delay_samples = 0;
+    return s;
+  }
+
+  void reset() {
+    const std::scoped_lock lock(mutex);
+    device = runtime::SimulatedDevice(settings());
+    force = {};
+    buttons = 0;
+    present = true;
+    unplugged = saturated = late = forces_enabled = false;
+    forces = opened = closed = 0;
+  }
+  void send_force(const Vec3& f) {
+    const std::scoped_lock lock(mutex);
+    force = f;
+    device.step(1e-3, f);
+    ++forces;
+  }
+  Vec3 position() {
+    const std::scoped_lock lock(mutex);
+    return device.position();
+  }
+  Vec3 velocity() {
+    const std::scoped_lock lock(mutex);
+    return device.velocity();
+  }
+  Vec3 last_force() {
+    const std::scoped_lock lock(mutex);
+    return force;
+  }
+  void place(const Vec3& x, const Vec3& v) {
+    const std::scoped_lock lock(mutex);
+    device.place(x, v);
+  }
+
+  /// The hand that holds the device wants to be here.
+  void pull_to(const Vec3& x) {
+    const std::scoped_lock lock(mutex);
+    device.set_target(x, {});
+  }
+  Vec3 hand_force() {
+    const std::scoped_lock lock(mutex);
+    return device.hand_force();
+  }
+
+  std::mutex mutex;
+  runtime::SimulatedDevice device{settings()};
+  Vec3 force{};  ///< N, the last one sent
+  std::atomic<int> buttons{0};
+  std::atomic<bool> present{true}, unplugged{false}, saturated{false}, late{false};
+  std::atomic<bool> forces_enabled{false};
+  std::atomic<int> forces{0}, opened{0}, closed{0};
+};
+
+}  // namespace palpate::test
+
+/// The world of a fake library: the one that the binding under test talks to.
+extern "C" palpate::test::FakeWorld* fake_world();
