@@ -26,7 +26,7 @@ bool ForceLoop::tick(std::int64_t due) noexcept {
     return false;
   }
   status |= state_.step(reading.position);
-  const auto verdict = safety_.judge(-state_.contact.observation().force, reading.velocity, dt);
+  const auto verdict = safety_.judge(state_.command(), reading.velocity, dt);
   status |= verdict.status | note(device_.command(verdict.force));
   count(status);
   record(reading, verdict.force, status, began);
@@ -64,7 +64,7 @@ void ForceLoop::record(const DeviceReading& reading, const Vec3& force, std::uin
   counts_.compute.add(spent);
   ++counts_.steps;
   if (queue_ == nullptr) return;
-  const ContactObservation& seen = state_.contact.observation();
+  const ContactObservation seen = state_.observe();
   RecordedStep step;
   step.time_ns = began - start_;
   step.position = reading.position;

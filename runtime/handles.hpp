@@ -10,6 +10,7 @@
 #include "runtime/collision.hpp"
 #include "runtime/contact_state.hpp"
 #include "runtime/palpate.h"
+#include "runtime/pose.hpp"
 #include "runtime/search_thread.hpp"
 #include "runtime/surface.hpp"
 
@@ -49,15 +50,33 @@ struct palpate_state {
   palpate_state(const palpate_state&) = delete;
   palpate_state& operator=(const palpate_state&) = delete;
 
+  /// One step with the tip at x in the world.
   std::uint32_t step(const palpate::Vec3& x) noexcept {
-    if (!search) return contact.step(x);
+    const palpate::Vec3 in_body = pose.to_body(x);
+    if (!search) return contact.step(in_body);
     if (search->receive(delivery)) contact.set_delivery(&delivery);
-    const std::uint32_t status = contact.step(x);
-    if (!(status & PALPATE_BAD_INPUT)) search->report({x, contact.observation().point.element});
+    const std::uint32_t status = contact.step(in_body);
+    if (!(status & PALPATE_BAD_INPUT)) {
+      search->report({in_body, contact.observation().point.element});
+    }
     return status;
+  }
+  /// What to command to the device: the force of the body on the tool, in the world, N.
+  palpate::Vec3 command() const noexcept {
+    const palpate::Vec3& f = contact.observation().force;
+    return pose.turn({-f[0], -f[1], -f[2]});
+  }
+  /// The observation with points and directions in the world.
+  palpate::runtime::ContactObservation observe() const noexcept {
+    palpate::runtime::ContactObservation seen = contact.observation();
+    seen.force = pose.turn(seen.force);
+    seen.normal = pose.turn(seen.normal);
+    if (seen.point.element >= 0) seen.contact_point = pose.to_world(seen.contact_point);
+    return seen;
   }
 
   palpate::runtime::ContactState contact;
+  palpate::runtime::Pose pose;
   palpate::runtime::Delivery delivery;
   std::optional<palpate::runtime::SearchThread> search;
 };

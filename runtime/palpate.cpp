@@ -2,12 +2,17 @@
 // The C interface: arguments are checked, exceptions end here.
 #include "runtime/palpate.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
@@ -49,13 +54,65 @@ int guarded(Action action) noexcept {
   }
 }
 
+// Sizes of the structs in the first header that was published: a smaller one is a mistake, one in
+// between is an older header, a larger one a newer.
+constexpr std::uint32_t kFirstSettings = 40;
+constexpr std::uint32_t kFirstObservation = sizeof(palpate_observation);
+constexpr std::uint32_t kFirstInfo = sizeof(palpate_library_info);
+static_assert(sizeof(palpate_settings) >= kFirstSettings);
+
+constexpr double kRigid = 1e-9;  // what rounding may leave of the rotation's orthonormality
+
+/// Gives the caller the fields that both headers know; what only a newer one knows is left alone.
+template <class Struct>
+void give(const Struct& whole, Struct* to, std::uint32_t size) noexcept {
+  const std::uint32_t known = std::min<std::uint32_t>(size, sizeof(Struct));
+  std::memcpy(to, &whole, known);
+  to->size = size;
+}
+
+/// The bytes as a file that lasts as long as the object, for the reader of files; HDF5 asks for a
+/// path that exists. In the folder for temporary files.
+class MemoryFile {
+ public:
+  MemoryFile(const void* bytes, std::size_t size)
+      : path_((std::filesystem::temp_directory_path() / "palpate-XXXXXX").string()) {
+    const int file = mkostemp(path_.data(), O_CLOEXEC);
+    if (file < 0) fail_to("create", path_);
+    const char* from = static_cast<const char*>(bytes);
+    bool good = true;
+    while (good && size > 0) {
+      const ssize_t count = write(file, from, size);
+      good = count > 0;
+      from += count;
+      size -= static_cast<std::size_t>(std::max<ssize_t>(count, 0));
+    }
+    close(file);
+    if (good) return;
+    unlink(path_.c_str());
+    fail_to("write", path_);
+  }
+  ~MemoryFile() { unlink(path_.c_str()); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  const std::string& path() const { return path_; }
+
+ private:
+  [[noreturn]] static void fail_to(const char* what, const std::string& path) {
+    throw palpate::Error(palpate::ErrorKind::Internal, path,
+                         std::string("cannot ") + what + " the temporary file",
+                         "set TMPDIR to a folder with room");
+  }
+
+  std::string path_;
+};
+
 void copy(const Vec3& from, double to[3]) noexcept {
   std::copy(from.begin(), from.end(), to);
 }
 
-palpate_observation translate(const ContactObservation& seen, std::uint32_t size) noexcept {
+palpate_observation translate(const ContactObservation& seen) noexcept {
   palpate_observation o{};
-  o.size = size;
   o.status = seen.status;
   o.element = seen.point.element;
   copy(seen.contact_point, o.contact_point);
@@ -135,6 +192,19 @@ int palpate_library_load(const char* path, palpate_library** library) {
   });
 }
 
+int palpate_library_load_memory(const void* bytes, size_t size, palpate_library** library) {
+  if (library == nullptr)
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load_memory: library is null");
+  *library = nullptr;
+  if (bytes == nullptr || size == 0)
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load_memory: there are no bytes");
+  return guarded([&] {
+    const MemoryFile file(bytes, size);
+    *library = new palpate_library(palpate::read_library(file.path()));
+    return static_cast<int>(PALPATE_OK);
+  });
+}
+
 void palpate_library_destroy(palpate_library* library) {
   delete library;
 }
@@ -143,11 +213,10 @@ int palpate_library_describe(const palpate_library* library, palpate_library_inf
   if (library == nullptr || info == nullptr) {
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_describe: null pointer");
   }
-  if (info->size != sizeof(palpate_library_info)) {
+  if (info->size < kFirstInfo) {
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_describe: set info->size to sizeof");
   }
-  *info = library->info;
-  info->size = sizeof(palpate_library_info);
+  give(library->info, info, info->size);
   return PALPATE_OK;
 }
 
@@ -164,8 +233,9 @@ int palpate_state_create(const palpate_library* library, const palpate_settings*
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_state_create: library is null");
   palpate_settings chosen;
   palpate_settings_default(&chosen);
-  if (settings != nullptr) chosen = *settings;
-  if (chosen.size != sizeof(palpate_settings)) {
+  const bool sized = settings == nullptr || settings->size >= kFirstSettings;
+  if (settings != nullptr && sized) give(*settings, &chosen, settings->size);
+  if (!sized) {
     return fail(PALPATE_ERROR_ARGUMENT,
                 "palpate_state_create: fill the settings with palpate_settings_default first");
   }
@@ -206,6 +276,22 @@ void palpate_state_reset(palpate_state* state) {
   if (state != nullptr) state->contact.reset();
 }
 
+int palpate_state_set_pose(palpate_state* state, const double position[3],
+                           const double rotation[9]) {
+  if (state == nullptr || position == nullptr || rotation == nullptr)
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_state_set_pose: null pointer");
+  palpate::runtime::Pose pose;
+  std::copy_n(position, 3, pose.position.begin());
+  for (std::size_t i = 0; i < 3; ++i) std::copy_n(rotation + 3 * i, 3, pose.rotation[i].begin());
+  if (!pose.is_rigid(kRigid)) {
+    return fail(
+        PALPATE_ERROR_ARGUMENT,
+        "palpate_state_set_pose: rotation must be orthonormal and right-handed, all finite");
+  }
+  state->pose = pose;
+  return PALPATE_OK;
+}
+
 uint32_t palpate_step(palpate_state* state, const double position[3], const double velocity[3],
                       double dt, double force[3]) {
   if (force != nullptr) std::fill_n(force, 3, 0.0);
@@ -215,7 +301,7 @@ uint32_t palpate_step(palpate_state* state, const double position[3], const doub
                       std::isfinite(velocity[1]) && std::isfinite(velocity[2]);
   if (!usable) return state->contact.refuse();
   const uint32_t status = state->step({position[0], position[1], position[2]});
-  copy(-state->contact.observation().force, force);
+  copy(state->command(), force);
   return status;
 }
 
@@ -223,10 +309,10 @@ int palpate_observe(const palpate_state* state, palpate_observation* observation
   if (state == nullptr || observation == nullptr) {
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_observe: null pointer");
   }
-  if (observation->size != sizeof(palpate_observation)) {
+  if (observation->size < kFirstObservation) {
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_observe: set observation->size to sizeof");
   }
-  *observation = translate(state->contact.observation(), sizeof(palpate_observation));
+  give(translate(state->observe()), observation, observation->size);
   return PALPATE_OK;
 }
 

@@ -5,10 +5,13 @@
  * last failure of the calling thread is palpate_last_error(). No exception, signal, thread, output
  * or locale change crosses this interface. Loading, creating and destroying belong outside the
  * real-time thread; palpate_step never allocates, locks, or calls the system. A library is
- * immutable and may be shared by threads; a state belongs to one thread at a time. */
+ * immutable and may be shared by threads, each with states of its own, one for each tool; a state
+ * belongs to one thread at a time. Structs begin with their size: fields are only ever added at the
+ * end, and a program built with an older header gets and gives the fields that it knows. */
 #ifndef PALPATE_H
 #define PALPATE_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #if defined(_WIN32)
@@ -103,6 +106,10 @@ PALPATE_API const char* palpate_last_error(void);
 PALPATE_API const char* palpate_status_text(int status);
 
 PALPATE_API int palpate_library_load(const char* path, palpate_library** library);
+/* The same from a library file in memory, by way of a temporary file; the bytes may go away
+ * afterwards. */
+PALPATE_API int palpate_library_load_memory(const void* bytes, size_t size,
+                                            palpate_library** library);
 PALPATE_API void palpate_library_destroy(palpate_library* library);
 PALPATE_API int palpate_library_describe(const palpate_library* library,
                                          palpate_library_info* info);
@@ -113,6 +120,13 @@ PALPATE_API int palpate_state_create(const palpate_library* library,
                                      const palpate_settings* settings, palpate_state** state);
 PALPATE_API void palpate_state_destroy(palpate_state* state);
 PALPATE_API void palpate_state_reset(palpate_state* state);
+
+/* Where the body is: x_world = rotation x_body + position, rotation by rows and rigid. Positions,
+ * forces and observations are in the world; at first the two are the same. May be called between
+ * steps, also in contact: the body then moves against the tool, and `absorbed` counts their
+ * relative motion, so that who moves the body takes part in the work. Real-time safe. */
+PALPATE_API int palpate_state_set_pose(palpate_state* state, const double position[3],
+                                       const double rotation[9]);
 
 /* One step of the force loop. position, velocity: of the tool tip; dt: since the last step, > 0.
  * force: what to command to the device, the force of the body on the tool (-f). Always finite.

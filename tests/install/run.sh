@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: AGPL-3.0-or-later
-# run.sh BUILD_FOLDER SOURCE_FOLDER WRITE_PLATE CMAKE CC: install the runtime, move the installed tree, build an
+# run.sh BUILD_FOLDER SOURCE_FOLDER WRITE_PLATE CMAKE CC CXX PYTHON: install the runtime, move the installed tree, build an
 # outside consumer against it with CMake and with pkg-config, and run both.
 set -euo pipefail
-build=$1 source=$2 write_plate=$3 cmake=$4 cc=$5
+build=$1 source=$2 write_plate=$3 cmake=$4 cc=$5 cxx=$6 python=$7
+examples=$source/../../examples
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -13,9 +14,17 @@ prefix=$work/moved
 "$write_plate" "$work/plate.h5"
 
 "$cmake" -S "$source/consumer" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$prefix" \
-  -DCMAKE_C_COMPILER="$cc" > "$work/log" || { cat "$work/log"; exit 1; }
+  -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DEXAMPLES="$examples" > "$work/log" || { cat "$work/log"; exit 1; }
 "$cmake" --build "$work/by_cmake" > "$work/log" || { cat "$work/log"; exit 1; }
 "$work/by_cmake/consumer" "$work/plate.h5"
+"$work/by_cmake/consumer_cpp" "$work/plate.h5"
+
+# The examples in C, C++ and Python say the same, and it is the law of the plate at 3.4 mm.
+library=$(find "$prefix" -name 'libpalpate.so')
+said=$("$work/by_cmake/feel_c" "$work/plate.h5")
+[ "$said" = "0.1965 N at 3.4 mm" ] || { echo "the example in C says: $said"; exit 1; }
+[ "$("$work/by_cmake/feel_cpp" "$work/plate.h5")" = "$said" ] || { echo "the example in C++ differs"; exit 1; }
+[ "$("$python" "$examples/feel.py" "$library" "$work/plate.h5")" = "$said" ] || { echo "the example in Python differs"; exit 1; }
 
 pc=$(find "$prefix" -name palpate.pc)
 export PKG_CONFIG_PATH=$(dirname "$pc")
@@ -32,4 +41,4 @@ strays=$(nm -D --defined-only "$library" | awk '{print $3}' | grep -v '^palpate_
 header=$(find "$prefix" -name palpate.h)
 diff <(grep -ozP 'PALPATE_API[^;(]*\bpalpate_\w+(?=\()' "$header" | tr '\0' '\n' | grep -oP 'palpate_\w+$' | sort -u) \
      <(nm -D --defined-only "$library" | awk '{print $3}' | sort -u)
-echo "install: both consumers run, the interface is what the header says"
+echo "install: the consumers and the examples run, the interface is what the header says"

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <string>
 #include <thread>
@@ -181,6 +182,83 @@ TEST_F(PalpateApi, RefusesSettingsOutOfRange) {
   EXPECT_EQ(palpate_state_create(library_, nullptr, &none), PALPATE_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(palpate_last_error(), "friction"), nullptr);
   EXPECT_EQ(none, nullptr);
+}
+
+TEST_F(PalpateApi, LoadsFromMemory) {
+  std::ifstream file(path_, std::ios::binary);
+  const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
+  palpate_library* copy = nullptr;
+  ASSERT_EQ(palpate_library_load_memory(bytes.data(), bytes.size(), &copy), PALPATE_OK)
+      << palpate_last_error();
+  palpate_library_info info{};
+  info.size = sizeof info;
+  EXPECT_EQ(palpate_library_describe(copy, &info), PALPATE_OK);
+  EXPECT_EQ(info.triangles, 128);
+  palpate_library_destroy(copy);
+  EXPECT_EQ(palpate_library_load_memory(bytes.data(), bytes.size() / 2, &copy),
+            PALPATE_ERROR_FORMAT);
+  EXPECT_EQ(palpate_library_load_memory("no library", 10, &copy), PALPATE_ERROR_FORMAT);
+  EXPECT_EQ(palpate_library_load_memory(bytes.data(), 0, &copy), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_library_load_memory(nullptr, 10, &copy), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(copy, nullptr);
+}
+
+TEST_F(PalpateApi, ABodyThatLiesElsewhereFeelsTheSameThere) {
+  // The plate turned by 120 degrees about (1, 1, 1) and shifted: x -> y -> z -> x.
+  const double rotation[9] = {0, 0, 1, 1, 0, 0, 0, 1, 0};
+  const double shift[3] = {0.5, -0.2, 0.1};
+  const auto in_world = [&](const Vec3& v, double w) {
+    return Vec3{v[2] + w * shift[0], v[0] + w * shift[1], v[1] + w * shift[2]};
+  };
+  palpate_state* turned = nullptr;
+  ASSERT_EQ(palpate_state_create(library_, &settings_, &turned), PALPATE_OK);
+  ASSERT_EQ(palpate_state_set_pose(turned, shift, rotation), PALPATE_OK);
+  const double velocity[3] = {0, 0, 0};
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 x{0.03 + 5e-5 * i, 0.033, 0.0005 - 2e-5 * std::min(i, 200)};
+    step(x);
+    Vec3 force{};
+    palpate_step(turned, in_world(x, 1).data(), velocity, kDt, force.data());
+    ASSERT_NEAR(norm(force - in_world(force_, 0)), 0, 1e-9);
+  }
+  ASSERT_GT(norm(force_), 0.05);
+  palpate_observation there{};
+  there.size = sizeof there;
+  ASSERT_EQ(palpate_observe(turned, &there), PALPATE_OK);
+  const palpate_observation here = observe();
+  const auto vec = [](const double* v) { return Vec3{v[0], v[1], v[2]}; };
+  EXPECT_NEAR(norm(vec(there.contact_point) - in_world(vec(here.contact_point), 1)), 0, 1e-12);
+  EXPECT_NEAR(norm(vec(there.normal) - in_world(vec(here.normal), 0)), 0, 1e-12);
+  EXPECT_NEAR(norm(vec(there.force_on_body) - in_world(vec(here.force_on_body), 0)), 0, 1e-9);
+  palpate_state_destroy(turned);
+}
+
+TEST_F(PalpateApi, RefusesAPoseThatIsNotRigid) {
+  const double origin[3] = {0, 0, 0};
+  const double good[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const double mirror[9] = {1, 0, 0, 0, 1, 0, 0, 0, -1};
+  const double stretched[9] = {1.001, 0, 0, 0, 1, 0, 0, 0, 1};
+  const double nowhere[3] = {0, std::numeric_limits<double>::quiet_NaN(), 0};
+  EXPECT_EQ(palpate_state_set_pose(state_, origin, mirror), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_state_set_pose(state_, origin, stretched), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_state_set_pose(state_, nowhere, good), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_state_set_pose(nullptr, origin, good), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_state_set_pose(state_, origin, good), PALPATE_OK);
+}
+
+TEST_F(PalpateApi, AProgramWithANewerHeaderGetsWhatThisLibraryKnows) {
+  struct Newer {
+    palpate_observation known;
+    double added;
+  } newer{};
+  newer.added = 42;
+  newer.known.size = sizeof newer;
+  step({0.03, 0.033, 0.001});
+  EXPECT_EQ(palpate_observe(state_, &newer.known), PALPATE_OK);
+  EXPECT_EQ(newer.added, 42);  // left alone
+  EXPECT_EQ(newer.known.element, -1);
+  newer.known.size = 8;
+  EXPECT_EQ(palpate_observe(state_, &newer.known), PALPATE_ERROR_ARGUMENT);
 }
 
 TEST_F(PalpateApi, ThreadsMayShareALibrary) {
