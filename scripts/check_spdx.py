@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Each source file states its licence: Apache-2.0 in format/ and runtime/, AGPL elsewhere.
+"""Each source file states its licence: Apache-2.0 in format/, runtime/ and examples/, AGPL elsewhere.
 
 Usage: check_spdx.py [ROOT] | --self-test
 """
@@ -9,7 +9,7 @@ import sys
 import tempfile
 from pathlib import Path
 
-APACHE_ROOMS = ("format", "runtime")
+APACHE_ROOMS = ("format", "runtime", "examples")
 SUFFIXES = {".hpp", ".h", ".cpp", ".c", ".cmake", ".py", ".js", ".mjs", ".css", ".html", ".sh", ".in"}
 SKIPPED = {"build", "out", "node_modules", "install", ".git"}
 TAG = "SPDX-License-Identifier: "
