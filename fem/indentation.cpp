@@ -23,6 +23,7 @@ namespace {
 /// force of about 0.1 %.
 constexpr double kContactStiffness = 5000;
 constexpr int kMaxHalvings = 5;
+constexpr int kHalvingsBeforeDirect = 2;
 constexpr double kLargestPenetration =
     0.01;                              ///< over the tool radius; a free surface stays far below
 constexpr double kLargestStep = 0.25;  ///< of one increment, over the tool radius
@@ -133,6 +134,21 @@ std::vector<double> running_integral(const std::vector<double>& x, const std::ve
   return sum;
 }
 
+namespace {
+
+/// Largest Young's modulus behind the boundary: what lies deeper must not stiffen the contact.
+double stiffest_at_surface(const Body& body, const CampaignSettings& settings,
+                           const SolidModel& model) {
+  double stiffest = 0;
+  for (const auto region : model.mesh().facet_region)
+    for (const auto& material : settings.materials)
+      if (material.region == body.region_names[region])
+        stiffest = std::max(stiffest, material.law.young);
+  return stiffest;
+}
+
+}  // namespace
+
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e)
     : body(b),
       indentation(settings.indentation),
@@ -140,9 +156,8 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
       model(b, laws_of_regions(b, settings.materials)),
       permutation(nested_dissection(model.pattern())) {
   use_one_thread_per_site();
-  double stiffest = 0;
-  for (const auto& material : settings.materials) stiffest = std::max(stiffest, material.law.young);
-  contact_stiffness = kContactStiffness * stiffest / indentation.tool_radius;
+  contact_stiffness =
+      kContactStiffness * stiffest_at_surface(b, settings, model) / indentation.tool_radius;
   if (engine == Engine::Direct) return;
   std::vector<double> K;
   model.stiffness(Displacement::Zero(3, model.mesh().nodes()), K);
@@ -165,19 +180,14 @@ class SiteEquilibrium {
         [batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch->solve(b, x); });
   }
 
-  NewtonResult solve(const SphereContact& contact, Displacement& u) {
-    NewtonOptions options;
+  /// The whole body is factorized only where `direct_allowed`, for it costs a hundred times more.
+  NewtonResult solve(const SphereContact& contact, bool direct_allowed, Displacement& u) {
     NewtonResult result;
     if (shared_) {
-      options.tolerance = kSharedTolerance * context_.indentation.force_tolerance;
-      Displacement trial = u;
-      result = shared_->solve(contact, options, trial);
-      if (result.converged) {
-        u.swap(trial);
-        return result;
-      }
-      shared_->restart();
+      result = solve_shared(contact, u);
+      if (result.converged || !direct_allowed) return result;
     }
+    NewtonOptions options;
     options.tolerance = context_.indentation.force_tolerance;
     if (!direct_) direct_ = std::make_unique<NewtonSolver>(context_.model, &context_.permutation);
     const int before = result.iterations;
@@ -191,6 +201,18 @@ class SiteEquilibrium {
   }
 
  private:
+  NewtonResult solve_shared(const SphereContact& contact, Displacement& u) {
+    NewtonOptions options;
+    options.tolerance = kSharedTolerance * context_.indentation.force_tolerance;
+    Displacement trial = u;
+    const NewtonResult result = shared_->solve(contact, options, trial);
+    if (result.converged)
+      u.swap(trial);
+    else
+      shared_->restart();
+    return result;
+  }
+
   const CampaignContext& context_;
   std::unique_ptr<SolidModel> window_;
   std::unique_ptr<SharedFactorSolver> shared_;
@@ -261,13 +283,14 @@ class PathDriver {
     while (at < to) {
       const double next = to - at <= 1.001 * step ? to : at + step;
       Displacement trial = predict(context_.model, history, next);
-      if (equilibrate(next, trial, sample, failure)) {
+      const Outcome outcome = equilibrate(next, halvings, trial, sample, failure);
+      if (outcome == Outcome::Found) {
         u = trial;
         history.add(next, u);
         at = next;
         continue;
       }
-      if (++halvings > kMaxHalvings) {
+      if (outcome == Outcome::Meaningless || ++halvings > kMaxHalvings) {
         reason = "at " + in_millimetres(next) + ": " + failure;
         return false;
       }
@@ -277,22 +300,29 @@ class PathDriver {
   }
 
  private:
-  bool equilibrate(double s, Displacement& u, CurveSample& sample, std::string& reason) {
+  enum class Outcome {
+    Found,
+    NotFound,    ///< a smaller step may help
+    Meaningless  ///< found, but no indentation: smaller steps lead to the same
+  };
+
+  Outcome equilibrate(double s, int halvings, Displacement& u, CurveSample& sample,
+                      std::string& reason) {
     contact_.move_to(tool_at_(s));
-    const NewtonResult result = equilibrium_.solve(contact_, u);
+    const NewtonResult result = equilibrium_.solve(contact_, halvings >= kHalvingsBeforeDirect, u);
     sample.iterations += result.iterations;
     reason = result.reason;
-    if (!result.converged) return false;
+    if (!result.converged) return Outcome::NotFound;
     record(s, u, sample);
     if (sample.penetration > kLargestPenetration * context_.indentation.tool_radius) {
       reason = "the tool cuts into a part of the surface that cannot yield (is it held there?)";
-      return false;
+      return Outcome::Meaningless;
     }
     if (s > kLargestStep * context_.indentation.tool_radius && sample.contact_area == 0) {
       reason = "the tool has lost the surface";
-      return false;
+      return Outcome::Meaningless;
     }
-    return true;
+    return Outcome::Found;
   }
 
   void record(double s, const Displacement& u, CurveSample& sample) const {
@@ -317,6 +347,15 @@ void stop_early(SiteCurves& curves, const std::string& reason) {
   curves.reason += (curves.reason.empty() ? "" : "; ") + reason;
 }
 
+/// Integral from 0 to s1 of the power law through (s1, f1) and (s2, f2): a contact that grows from
+/// a point starts like one (Hertz: 3/2), and no parabola follows it there. The parabolas'
+/// `otherwise` where the samples suggest no such law.
+double first_work(const std::vector<double>& s, const std::vector<double>& f, double otherwise) {
+  if (s.size() < 3 || !(f[1] > 0 && f[2] > f[1])) return otherwise;
+  const double exponent = std::log(f[2] / f[1]) / std::log(s[2] / s[1]);
+  return exponent < 1 || exponent > 2.5 ? otherwise : f[1] * s[1] / (1 + exponent);
+}
+
 /// Fill tool_work: the running integral of force . direction, on top of `start`.
 void fill_work(CurvePath& path, double start) {
   std::vector<double> s, f;
@@ -325,7 +364,10 @@ void fill_work(CurvePath& path, double start) {
     f.push_back(dot(sample.force, path.direction));
   }
   const auto work = running_integral(s, f);
-  for (std::size_t i = 0; i < work.size(); ++i) path.samples[i].tool_work = start + work[i];
+  const bool from_touch = path.kind == PathKind::Normal && work.size() > 1;
+  const double correction = from_touch ? first_work(s, f, work[1]) - work[1] : 0;
+  for (std::size_t i = 0; i < work.size(); ++i)
+    path.samples[i].tool_work = start + work[i] + (i > 0 ? correction : 0);
 }
 
 }  // namespace

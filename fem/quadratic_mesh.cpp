@@ -2,6 +2,7 @@
 #include "fem/quadratic_mesh.hpp"
 
 #include <algorithm>
+#include <map>
 #include <unordered_map>
 
 #include "fem/at.hpp"
@@ -44,6 +45,29 @@ void mark_held_nodes(const Body& body, const EdgeNodes& edges, QuadraticMesh& me
         mesh.held[at(edges.corners()[e][0])] && mesh.held[at(edges.corners()[e][1])];
 }
 
+using Corners = std::array<std::int32_t, 3>;
+
+Corners sorted(Corners corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+std::vector<std::int32_t> regions_behind(const Body& body) {
+  std::map<Corners, std::size_t> facet_of;
+  for (std::size_t f = 0; f < body.boundary.size(); ++f)
+    facet_of.emplace(sorted(body.boundary[f]), f);
+  std::vector<std::int32_t> region(body.boundary.size(), 0);
+  for (std::size_t t = 0; t < body.tetrahedra.size(); ++t)
+    for (int opposite = 0; opposite < 4; ++opposite) {
+      Corners face{};
+      for (int i = 0, c = 0; c < 4; ++c)
+        if (c != opposite) face[i++] = body.tetrahedra[t][c];
+      const auto found = facet_of.find(sorted(face));
+      if (found != facet_of.end()) region[found->second] = body.tetrahedron_region[t];
+    }
+  return region;
+}
+
 }  // namespace
 
 QuadraticMesh make_quadratic_mesh(const Body& body) {
@@ -61,6 +85,8 @@ QuadraticMesh make_quadratic_mesh(const Body& body) {
   for (const auto& t : body.boundary)
     mesh.facets.push_back(
         {t[0], t[1], t[2], edges.of(t[0], t[1]), edges.of(t[1], t[2]), edges.of(t[2], t[0])});
+
+  mesh.facet_region = regions_behind(body);
 
   const auto corner_count = static_cast<Eigen::Index>(body.nodes.size());
   mesh.X.resize(3, corner_count + static_cast<Eigen::Index>(edges.corners().size()));

@@ -22,9 +22,10 @@ using Tetrahedron10 = std::array<std::int32_t, kTetNodes>;
 struct QuadraticMesh {
   Eigen::Matrix3Xd X;  ///< (3, nodes) reference positions, m
   std::vector<Tetrahedron10> tetrahedra;
-  std::vector<std::int32_t> region;  ///< of each tetrahedron
-  std::vector<Facet> facets;         ///< boundary, outward
-  std::vector<bool> held;            ///< (nodes) by a support
+  std::vector<std::int32_t> region;        ///< of each tetrahedron
+  std::vector<Facet> facets;               ///< boundary, outward
+  std::vector<std::int32_t> facet_region;  ///< region of the tetrahedron behind each facet
+  std::vector<bool> held;                  ///< (nodes) by a support
 
   int nodes() const { return static_cast<int>(X.cols()); }
 };

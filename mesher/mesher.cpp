@@ -179,8 +179,26 @@ void check_supports(const Body& body, const Settings& settings, const Surface& b
   }
 }
 
+/// A tool pressed closer to a support than its radius would feel the support instead of the body.
+/// @return how many response vertices that are not held themselves lie so close.
+std::size_t exclude_sites_at_supports(ResponseSurface& response, const Surface& boundary,
+                                      const std::vector<std::uint8_t>& held, double tool_radius) {
+  std::size_t excluded = 0;
+  for (std::size_t v = 0; v < response.is_site.size(); ++v) {
+    if (response.is_site[v] == 0) continue;
+    for (std::size_t i = 0; i < boundary.points.size(); ++i) {
+      if (held[i] == 0 || norm(boundary.points[i] - boundary.points[v]) > tool_radius) continue;
+      response.is_site[v] = 0;
+      ++excluded;
+      break;
+    }
+  }
+  return excluded;
+}
+
 void set_response(Body& body, const NestedSurface& nested, const std::vector<std::uint8_t>& held,
-                  const Log& log) {
+                  const Settings& settings) {
+  const Log& log = settings.log;
   ResponseSurface& response = body.response;
   response.triangles = nested.response.triangles;
   InwardDirections directions = inward_directions(nested.response, nested.boundary, held);
@@ -188,6 +206,13 @@ void set_response(Body& body, const NestedSurface& nested, const std::vector<std
   for (std::size_t v = 0; v < nested.response.points.size(); ++v) {
     response.node.push_back(static_cast<std::int32_t>(v));
     response.is_site.push_back(held[v] != 0 ? 0 : 1);
+  }
+  const std::size_t close =
+      exclude_sites_at_supports(response, nested.boundary, held, settings.tool_radius);
+  if (close > 0) {
+    note(log, text("supports: ", counted(close, "response point"), " within a tool radius (",
+                   millimetres(settings.tool_radius), ") of them ", close == 1 ? "is" : "are",
+                   " no site"));
   }
   note(log, text("inward directions: ", directions.adjusted, " of ", response.inward.size(),
                  " turned so that they can be interpolated"));
@@ -314,7 +339,7 @@ Body mesh(const Settings& settings) {
   body.name = name_or(settings.name, settings.surface.path.stem().string());
   body.boundary = nested.boundary.triangles;
   const auto held = set_supports(body, settings, nested.boundary);
-  set_response(body, nested, held, settings.log);
+  set_response(body, nested, held, settings);
   check_supports(body, settings, nested.boundary);
   check_depth(body, settings, nested.boundary);
 

@@ -43,7 +43,7 @@ struct Settings {
   double element_size = 0.005;          ///< m, edge length of the boundary facets
   double interior_growth = 1.5;         ///< largest interior edge over element_size (aimed at)
   double feature_angle = 45;            ///< degrees; sharper edges of the input are kept
-  double tool_radius = 0.005;           ///< m, for the check of depth
+  double tool_radius = 0.005;           ///< m, keeps sites clear of supports; depth check
   double depth = 0;                     ///< m, of the planned indentation; 0 skips the check
   std::function<void(std::string_view)> log;  ///< one line a step, may be empty
 };
@@ -53,8 +53,9 @@ struct Settings {
 /// vertices put back on the input surface, so that the two surfaces are nested: the facets of
 /// response triangle m are Body::boundary[m n^2 .. (m+1) n^2), and response vertex v is node v.
 /// Equal settings and files give equal bodies. Nodes within element_size/1000 of a support are
-/// held. Response vertices where no direction can be interpolated (sharper than the patches
-/// resolve) are no sites; the log counts them. Provenance is left to the caller.
+/// held. Response vertices within tool_radius of a held node are no sites. Response vertices where
+/// no direction can be interpolated (sharper than the patches resolve) are no sites; the log counts
+/// them. Provenance is left to the caller.
 /// @throws Error(Geometry) for a surface that is missing, empty, not closed, not orientable,
 ///   self-intersecting, in several parts, has non-finite coordinates, an implausible size for its
 ///   unit (the largest dimension must lie in 1 mm .. 10 m), an inclusion outside the skin, supports
