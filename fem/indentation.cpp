@@ -24,6 +24,9 @@ namespace {
 constexpr double kContactStiffness = 5000;
 constexpr int kMaxHalvings = 5;
 constexpr int kHalvingsBeforeDirect = 2;
+/// Of the window, over the tool radius. A wider one costs factorizations, a narrower one solves:
+/// the total is flat between 1.6 and 2.4.
+constexpr double kWindowRadius = 2;
 constexpr double kLargestPenetration =
     0.01;                              ///< over the tool radius; a free surface stays far below
 constexpr double kLargestStep = 0.25;  ///< of one increment, over the tool radius
@@ -169,11 +172,11 @@ namespace {
 /// The solvers of one site: the shared factor first, the whole body by Newton where that fails.
 class SiteEquilibrium {
  public:
-  SiteEquilibrium(const CampaignContext& context, const Eigen::Vector3d& site, double reach,
+  SiteEquilibrium(const CampaignContext& context, const Eigen::Vector3d& site,
                   SolveBatch::Member* batch)
       : context_(context) {
     if (context.engine == Engine::Direct) return;
-    const double radius = reach + 0.5 * context.indentation.tool_radius;
+    const double radius = kWindowRadius * context.indentation.tool_radius;
     window_ = std::make_unique<SolidModel>(context.model, site, radius);
     shared_ = std::make_unique<SharedFactorSolver>(
         context.model, *window_,
@@ -227,7 +230,7 @@ struct SiteSolver::Site {
         inward(to_eigen(context.body.response.inward[at(vertex)])),
         reach(2 * context.indentation.tool_radius + context.indentation.lateral_travel),
         contact(context.model.mesh(), X, reach, context.contact_stiffness),
-        equilibrium(context, X, reach, batch) {
+        equilibrium(context, X, batch) {
     // On a concave surface the sphere meets the body before its tip does: back off to first touch.
     for (int i = 0; i < 60; ++i) {
       const double depth =

@@ -42,8 +42,10 @@ T double_contraction(const Tensor2<T>& a, const Tensor2<T>& b) {
 inline double power_of(double x, double exponent) {
   return std::pow(x, exponent);
 }
+/// By exp and log, which are vector code as pow is not; exact to round-off for x near 1, as a
+/// volume ratio is.
 inline Lanes power_of(const Lanes& x, double exponent) {
-  return x.pow(exponent);
+  return (exponent * x.log()).exp();
 }
 inline double logarithm(double x) {
   return std::log(x);

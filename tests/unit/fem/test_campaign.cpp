@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
+#include <filesystem>
+#include <iterator>
 
 #include "fem/at.hpp"
 #include "fem/campaign.hpp"
@@ -65,6 +68,25 @@ TEST(Campaign, SymmetricSitesRespondAlike) {
   const double a = norm(site_at(0.0075, -0.0075).paths[0].samples.back().force);
   const double b = norm(site_at(-0.0075, 0.0075).paths[0].samples.back().force);
   EXPECT_NEAR(a, b, 1e-3 * a);
+}
+
+std::ptrdiff_t threads_of_this_process() {
+  return std::distance(std::filesystem::directory_iterator("/proc/self/task"), {});
+}
+
+TEST(Campaign, LibrariesStartNoThreadsOfTheirOwn) {
+  // CHOLMOD and OpenBLAS would each bring threads to every site and the cores would thrash.
+  const Body body = small_block();
+  CampaignSettings settings = quick();
+  const std::ptrdiff_t before = threads_of_this_process();
+  std::ptrdiff_t most = 0;
+  settings.progress = [&](const CampaignProgress&) {
+    most = std::max(most, threads_of_this_process());
+  };
+  CampaignReport report;
+  const Curves curves = run_campaign(body, settings, report);
+  const auto site_threads = static_cast<std::ptrdiff_t>(curves.sites.size());
+  EXPECT_LE(most, before + site_threads);
 }
 
 TEST(Campaign, TellsItsProgress) {
