@@ -16,7 +16,9 @@ void add_inspect_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand("inspect", "Check an artifact and say what it holds");
   command->footer("Example: palpate inspect out/cylinder/library.h5 --json");
   const auto options = std::make_shared<Options>();
-  command->add_option("FILE", options->file, "body.h5, curves.h5, library.h5 or recording.h5")
+  command
+      ->add_option("FILE", options->file,
+                   "body.h5, curves.h5, library.h5, recording.h5 or curves.journal")
       ->required();
   command->add_flag("--json", options->json, "Print JSON, with the resolved case of each stage");
   command->callback([options, &action] {

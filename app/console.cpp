@@ -38,7 +38,7 @@ ProgressDisplay::ProgressDisplay(std::string label)
     : label_(std::move(label)), terminal_(isatty(STDOUT_FILENO) != 0) {}
 
 void ProgressDisplay::show(std::int64_t done, std::int64_t failed, std::int64_t running,
-                           std::int64_t total) {
+                           std::int64_t total, std::int64_t known) {
   const Clock::time_point now = Clock::now();
   const double since_last = std::chrono::duration<double>(now - last_).count();
   const bool finished = done >= total;
@@ -46,10 +46,11 @@ void ProgressDisplay::show(std::int64_t done, std::int64_t failed, std::int64_t 
   last_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1;
-  const double work = share + 0.5 * static_cast<double>(running) / static_cast<double>(total);
-  const std::string time = finished   ? duration_text(elapsed)
-                           : done > 0 ? duration_text(elapsed * (1 - work) / work) + " left"
-                                      : std::string("time left unknown");
+  const double work = (static_cast<double>(done - known) + 0.5 * static_cast<double>(running)) /
+                      std::fmax(1, static_cast<double>(total - known));
+  const std::string time = finished       ? duration_text(elapsed)
+                           : done > known ? duration_text(elapsed * (1 - work) / work) + " left"
+                                          : std::string("time left unknown");
   const std::string text =
       fmt::format("{}: {} of {} sites, {} failed, {}", label_, done, total, failed, time);
   if (!terminal_) return print_line(text);

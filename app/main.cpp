@@ -43,6 +43,7 @@ void add_commands(CLI::App& root, Action& action) {
   add_build_command(root, action);
   add_mesh_command(root, action);
   add_precompute_command(root, action);
+  add_merge_command(root, action);
   add_fit_command(root, action);
   add_certify_command(root, action);
   add_simulate_command(root, action);

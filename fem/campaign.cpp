@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "fem/at.hpp"
+#include "fem/cholesky.hpp"
 #include "fem/indentation.hpp"
 #include "fem/region_laws.hpp"
 #include "format/error.hpp"
@@ -37,18 +38,38 @@ std::vector<std::int32_t> chosen_sites(const Body& body, std::vector<std::int32_
   return sites;
 }
 
+/// Puts known sites into their places. @return the places of the others.
+std::vector<std::size_t> take_over(const std::vector<SiteCurves>& known, Curves& curves) {
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < curves.sites.size(); ++i) {
+    const auto same = [&](const SiteCurves& site) { return site.vertex == curves.sites[i].vertex; };
+    const auto found = std::find_if(known.begin(), known.end(), same);
+    if (found == known.end())
+      open.push_back(i);
+    else
+      curves.sites[i] = *found;
+  }
+  return open;
+}
+
 /// Solves the sites on several cores. Each core serves a batch of up to kBatch sites, a thread for
 /// each, of which one runs at a time; they share the block solves.
 class Crew {
  public:
-  Crew(const CampaignContext& context, const CampaignSettings& settings, Curves& curves)
-      : context_(context), settings_(settings), curves_(curves) {
+  /// `open`: the places of `curves` that are to be solved.
+  Crew(const CampaignContext& context, const CampaignSettings& settings,
+       std::vector<std::size_t> open, Curves& curves)
+      : context_(context), settings_(settings), open_(std::move(open)), curves_(curves) {
     progress_.total = static_cast<std::int64_t>(curves.sites.size());
+    progress_.done = progress_.total - static_cast<std::int64_t>(open_.size());
+    progress_.known = progress_.done;
+    for (const SiteCurves& site : settings.known)
+      if (site.status != SiteStatus::Complete) ++progress_.failed;
   }
 
   void run() {
     const std::size_t cores = at(std::max(1, settings_.threads));
-    const std::size_t share = (curves_.sites.size() + cores - 1) / cores;
+    const std::size_t share = (open_.size() + cores - 1) / cores;
     const int lanes = static_cast<int>(std::min<std::size_t>(kBatch, share));
     std::deque<SolveBatch> batches;
     std::vector<std::thread> threads;
@@ -63,31 +84,35 @@ class Crew {
 
  private:
   void work(SolveBatch& batch, int lane) {
+    use_one_thread_per_site();
     SolveBatch::Member member(batch, lane);
     try {
       SiteSolver solver(context_, &member);
-      for (std::size_t i = next_++; i < curves_.sites.size(); i = next_++) {
+      for (std::size_t next = next_++; next < open_.size(); next = next_++) {
+        SiteCurves& place = curves_.sites[open_[next]];
         {
           const std::lock_guard lock(mutex_);
           ++progress_.running;
         }
-        SiteCurves site = solver.solve(curves_.sites[i].vertex);
+        SiteCurves site = solver.solve(place.vertex);
         const std::lock_guard lock(mutex_);
         --progress_.running;
         ++progress_.done;
         if (site.status != SiteStatus::Complete) ++progress_.failed;
-        curves_.sites[i] = std::move(site);
+        place = std::move(site);
+        if (settings_.finished) settings_.finished(place);
         if (settings_.progress) settings_.progress(progress_);
       }
     } catch (...) {
       const std::lock_guard lock(mutex_);
       failure_ = std::current_exception();
-      next_ = curves_.sites.size();
+      next_ = open_.size();
     }
   }
 
   const CampaignContext& context_;
   const CampaignSettings& settings_;
+  std::vector<std::size_t> open_;
   Curves& curves_;
   std::atomic<std::size_t> next_{0};
   std::mutex mutex_;
@@ -108,8 +133,9 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
     curves.sites.emplace_back();
     curves.sites.back().vertex = vertex;
   }
+  const std::vector<std::size_t> open = take_over(settings.known, curves);
   const CampaignContext context(body, settings, Engine::SharedFactor);
-  Crew(context, settings, curves).run();
+  if (!open.empty()) Crew(context, settings, open, curves).run();
 
   report.unknowns = context.model.pattern().n;
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -38,6 +38,7 @@ struct IndentationSettings {
 /// State of a campaign, told after each finished site.
 struct CampaignProgress {
   std::int64_t done = 0, failed = 0, total = 0;
+  std::int64_t known = 0;    ///< of `done`: taken over, not computed now
   std::int64_t running = 0;  ///< sites under way: they run abreast, so that they end in waves
 };
 
@@ -46,7 +47,11 @@ struct CampaignSettings {
   IndentationSettings indentation;
   std::vector<std::int32_t> sites;  ///< response vertices; empty = every vertex with is_site
   int threads = 1;
-  std::function<void(const CampaignProgress&)> progress;  ///< called from one thread at a time
+  std::vector<SiteCurves> known;  ///< results of an earlier run of the same campaign: not repeated
+  /// Called for each site as it finishes, and then with the progress; from one thread at a time.
+  /// An exception ends the campaign once the sites under way are done, and is passed on.
+  std::function<void(const SiteCurves&)> finished;
+  std::function<void(const CampaignProgress&)> progress;
 };
 
 /// What the campaign did, for the log and the provenance.

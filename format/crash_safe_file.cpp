@@ -11,40 +11,13 @@
 #include <system_error>
 #include <utility>
 
+#include "format/disk_error.hpp"
 #include "format/error.hpp"
 
 namespace palpate {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct Refusal {
-  ErrorKind kind;
-  const char* remedy;
-};
-
-Refusal refusal_of(int error_number) {
-  switch (error_number) {
-    case ENOSPC:
-    case EDQUOT:
-      return {ErrorKind::Internal, "free some space or name a folder on another disk"};
-    case EFBIG:
-      return {ErrorKind::Internal, "raise the file size limit (ulimit -f) or name another disk"};
-    case EIO:
-      return {ErrorKind::Internal, "check the disk, then run again"};
-    case EACCES:
-    case EPERM:
-    case EROFS:
-      return {ErrorKind::Configuration, "name a folder you may write to"};
-    case ENOENT:
-    case ENOTDIR:
-      return {ErrorKind::Configuration, "create the folder or name an existing one"};
-    case ENAMETOOLONG:
-      return {ErrorKind::Configuration, "choose a shorter file name"};
-    default:
-      return {ErrorKind::Internal, "remove the cause, then run again"};
-  }
-}
 
 /// The file a symbolic link leads to: renaming over the link itself would cut it off.
 fs::path without_links(const fs::path& target) {
@@ -69,15 +42,6 @@ void require_file_name(const fs::path& target) {
     throw Error(ErrorKind::Configuration, target.string(), "exists and is not a regular file",
                 remedy);
   }
-}
-
-int sync_folder(const fs::path& folder) {
-  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (descriptor < 0) return errno;
-  const int result = ::fsync(descriptor) == 0 ? 0 : errno;
-  ::close(descriptor);
-  // Some file systems cannot sync a folder; the rename itself is still atomic there.
-  return result == EINVAL ? 0 : result;
 }
 
 }  // namespace
@@ -114,17 +78,14 @@ void CrashSafeFile::commit() {
   if (::close(std::exchange(descriptor_, -1)) != 0) fail("cannot be closed", errno);
   if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail("cannot get its final name", errno);
   temporary_.clear();
-  if (const int problem = sync_folder(folder_of(target_)); problem != 0) {
+  if (const int problem = sync_folder_of(target_); problem != 0) {
     fail("is written, but its folder cannot be put on the disk", problem);
   }
 }
 
 void CrashSafeFile::fail(const char* action, int error_number) {
   discard();
-  const Refusal refusal = refusal_of(error_number);
-  throw Error(refusal.kind, target_.string(),
-              std::string(action) + " (" + std::generic_category().message(error_number) + ")",
-              refusal.remedy);
+  throw_disk_error(target_, action, error_number);
 }
 
 void CrashSafeFile::discard() noexcept {

@@ -12,6 +12,8 @@
 #include "format/hdf5_file.hpp"
 #include "format/library.hpp"
 #include "format/recording.hpp"
+#include "format/site_journal.hpp"
+#include "format/site_record.hpp"
 
 namespace palpate::app {
 namespace {
@@ -113,6 +115,7 @@ Json summary_of(const Curves& curves) {
           {"largest_force", with_unit(force, "N")},
           {"smallest_jacobian", jacobian},
           {"cpu_time", with_unit(cpu, "s")},
+          {"content_sha256", content_sha256(curves)},
           {"failures", failures}};
 }
 
@@ -211,6 +214,22 @@ Json complete(Json head, const Artifact& artifact) {
   return head;
 }
 
+/// A campaign under way, or one that was interrupted.
+Json summary_of(const JournalContents& journal) {
+  std::int64_t not_complete = 0;
+  double cpu = 0;
+  for (const SiteCurves& site : journal.sites) {
+    not_complete += site.status == SiteStatus::Complete ? 0 : 1;
+    cpu += site.cpu_seconds;
+  }
+  return {{"sites_planned", journal.heading.planned_sites},
+          {"sites_done", journal.sites.size()},
+          {"sites_not_complete", not_complete},
+          {"cpu_time", with_unit(cpu, "s")},
+          {"broken_bytes_at_the_end", journal.broken_bytes},
+          {"key", journal.heading.key}};
+}
+
 std::string artifact_kind(const std::filesystem::path& file) {
   const hdf5::Reader reader(file, "give an artifact made by palpate");
   return reader.text("/", "artifact");
@@ -271,6 +290,11 @@ void print(const Json& object, const std::string& indent, std::string& out) {
 }  // namespace
 
 Json summarize_artifact(const std::filesystem::path& file) {
+  if (file.extension() == ".journal") {
+    Json summary{{"file", file.string()}, {"artifact", "palpate.journal"}};
+    summary.update(summary_of(read_site_journal(file)));
+    return summary;
+  }
   const std::string kind = artifact_kind(file);
   const auto head = [&](int schema) {
     return Json{{"file", file.string()}, {"artifact", kind}, {"schema", schema}};

@@ -10,35 +10,13 @@
 #include "app/console.hpp"
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/settings.hpp"
+#include "app/pipeline/stage_input.hpp"
 #include "format/body.hpp"
 #include "format/error.hpp"
 #include "format/library.hpp"
 
 namespace palpate::app {
 namespace {
-
-/// An artifact of the stage before, with a remedy that names that stage.
-template <class Read>
-auto read_input(const std::filesystem::path& path, const char* made_by, Read read) {
-  if (!std::filesystem::exists(path)) {
-    throw Error(ErrorKind::Configuration, path.string(), "the file does not exist",
-                fmt::format("make it with `palpate {}`", made_by));
-  }
-  return read(path);
-}
-
-/// A failed site is data, but one that a user must see.
-void tell_failures(const Curves& curves) {
-  constexpr std::size_t kLargestShown = 5;
-  std::size_t shown = 0;
-  for (const SiteCurves& site : curves.sites) {
-    if (site.status == SiteStatus::Complete) continue;
-    if (++shown > kLargestShown) continue;
-    say("  site {} {}: {}", site.vertex,
-        site.status == SiteStatus::Failed ? "failed" : "stopped early", site.reason);
-  }
-  if (shown > kLargestShown) say("  and {} more: see `palpate inspect`", shown - kLargestShown);
-}
 
 std::string bound_text(double value, const char* unit) {
   return std::isfinite(value) ? fmt::format("{:.1f} {}", value, unit) : "not certified: no bound";
@@ -51,11 +29,6 @@ void tell_certificate(const Certificate& certificate) {
   for (const DeviceCertificate& device : certificate.devices) {
     say("  {}: {}", device.device, verdict(device));
   }
-}
-
-void append(Provenance& provenance, const Provenance& before, ProvenanceStep step) {
-  provenance = before;
-  provenance.steps.push_back(std::move(step));
 }
 
 /// Why the artifact must be made (again); empty when it need not.
@@ -118,31 +91,6 @@ void run_mesh(const Workspace& space) {
       body.tetrahedra.size(), body.response.triangles.size(), sites, space.body().string());
 }
 
-SiteCounts run_precompute(const Workspace& space) {
-  const Body body = read_input(space.body(), "mesh", read_body);
-  prepare_output(space.out);
-  fem::CampaignSettings settings = campaign_settings(space);
-  ProgressDisplay display("precompute");
-  settings.progress = [&](const fem::CampaignProgress& p) {
-    display.show(p.done, p.failed, p.running, p.total);
-  };
-  fem::CampaignReport report;
-  Curves curves = fem::run_campaign(body, settings, report);
-  auto facts = report.facts;
-  facts.emplace_back("threads", std::to_string(space.threads));
-  facts.emplace_back("wall_seconds", fmt::format("{:.3f}", report.seconds));
-  facts.emplace_back("cpu_seconds", fmt::format("{:.3f}", report.cpu_seconds));
-  append(curves.provenance, body.provenance,
-         make_stage_step(space, Stage::Precompute, std::move(facts)));
-  write_curves(space.curves(), curves);
-  const SiteCounts counts = count_sites(curves);
-  say("precompute: {} sites complete, {} stopped early, {} failed, {} ({} on the processors) -> {}",
-      counts.complete, counts.partial, counts.failed, duration_text(report.seconds),
-      duration_text(report.cpu_seconds), space.curves().string());
-  tell_failures(curves);
-  return counts;
-}
-
 void run_fit(const Workspace& space) {
   const Body body = read_input(space.body(), "mesh", read_body);
   const Curves curves = read_input(space.curves(), "precompute", read_curves);
@@ -176,7 +124,8 @@ void run_certify(const Workspace& space) {
 SiteCounts run_build(const Workspace& space) {
   prepare_output(space.out);
   refresh(space, Stage::Mesh, space.body(), read_body, run_mesh);
-  refresh(space, Stage::Precompute, space.curves(), read_curves, run_precompute);
+  refresh(space, Stage::Precompute, space.curves(), read_curves,
+          [](const Workspace& w) { run_precompute(w); });
   refresh(space, Stage::Fit, space.library(), read_library, run_fit);
   refresh(space, Stage::Certify, space.library(), read_library, run_certify);
   return count_sites(read_curves(space.curves()));

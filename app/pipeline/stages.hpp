@@ -2,6 +2,9 @@
 // One function a stage: read the artifacts before, compute, append to the provenance, write.
 #pragma once
 
+#include <filesystem>
+#include <vector>
+
 #include "app/pipeline/workspace.hpp"
 #include "format/curves.hpp"
 
@@ -15,7 +18,14 @@ struct SiteCounts {
 SiteCounts count_sites(const Curves& curves);
 
 void run_mesh(const Workspace& space);
-SiteCounts run_precompute(const Workspace& space);
+
+/// How precompute tells what it does: a bar and lines for people, or a JSON object a line.
+enum class Telling { Text, Json };
+/// Every site computed is in the journal at once; a run that was interrupted is continued.
+SiteCounts run_precompute(const Workspace& space, Telling telling = Telling::Text);
+/// The parts that several machines computed -> curves.h5. `parts` empty: all in the folder.
+SiteCounts run_merge(const Workspace& space, std::vector<std::filesystem::path> parts);
+
 void run_fit(const Workspace& space);
 void run_certify(const Workspace& space);
 

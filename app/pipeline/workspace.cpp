@@ -11,6 +11,16 @@ namespace palpate::app {
 
 namespace fs = std::filesystem;
 
+fs::path Workspace::precomputed() const {
+  if (shard.count == 1) return curves();
+  return out /
+         ("curves." + std::to_string(shard.index) + "-of-" + std::to_string(shard.count) + ".h5");
+}
+
+fs::path Workspace::journal() const {
+  return precomputed().replace_extension(".journal");
+}
+
 Workspace make_workspace(const fs::path& case_file, const std::string& out, int threads) {
   Workspace space;
   space.c = read_case(case_file);

@@ -8,15 +8,26 @@
 
 namespace palpate::app {
 
+/// The part of the sites that one of several machines computes: every `count`-th, from `index`.
+struct Shard {
+  int index = 1;  ///< 1..count
+  int count = 1;
+};
+
 /// A case and where its artifacts are.
 struct Workspace {
   Case c;
   std::filesystem::path case_folder;  ///< surfaces and profiles are relative to it
   std::filesystem::path out;
   int threads = 1;
+  Shard shard;
 
   std::filesystem::path body() const { return out / "body.h5"; }
   std::filesystem::path curves() const { return out / "curves.h5"; }
+  /// What precompute writes: curves(), or the part of the shard.
+  std::filesystem::path precomputed() const;
+  /// The finished sites of precompute, while it is not done.
+  std::filesystem::path journal() const;
   std::filesystem::path library() const { return out / "library.h5"; }
   std::filesystem::path recording() const { return out / "recording.h5"; }
   std::filesystem::path report() const { return out / "report.html"; }

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
+#include "app/case_options.hpp"
+#include "app/command.hpp"
+#include "app/pipeline/stages.hpp"
+
+namespace palpate::app {
+
+void add_merge_command(CLI::App& root, Action& action) {
+  CLI::App* command = root.add_subcommand(
+      "merge", "curves.I-of-N.h5 of several machines -> curves.h5, every site checked");
+  command->footer("Example: palpate merge data/cases/cylinder.toml --out out/cylinder");
+  const auto options = add_case_options(*command);
+  const auto parts = std::make_shared<std::vector<std::string>>();
+  command->add_option("PARTS", *parts, "The parts (default: all curves.I-of-N.h5 of the folder)");
+  command->callback([options, parts, &action] {
+    action = [options, parts] {
+      const SiteCounts counts = run_merge(open_workspace(*options), {parts->begin(), parts->end()});
+      return counts.all_complete() ? kExitDone : kExitSomeSitesFailed;
+    };
+  });
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/console.hpp"
+#include "app/pipeline/campaign_sites.hpp"
+#include "app/pipeline/freshness.hpp"
+#include "app/pipeline/settings.hpp"
+#include "app/pipeline/stage_input.hpp"
+#include "app/pipeline/stages.hpp"
+#include "fem/cholesky.hpp"
+#include "format/body.hpp"
+#include "format/sha256.hpp"
+#include "format/site_journal.hpp"
+#include "palpate_version.hpp"
+
+namespace palpate::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// All that decides the bits of the results.
+std::string campaign_key(const Workspace& space, const std::string& body_sha256) {
+  return sha256(fmt::format("{}\n{}\n{}\n{}\n{}\n{}/{}\n", body_sha256,
+                            stage_case(space, Stage::Precompute), PALPATE_VERSION,
+                            fem::blas_kernel(), fem::solver_versions(), space.shard.index,
+                            space.shard.count));
+}
+
+/// What the user, or a program that watches, is told while the sites are computed.
+class Teller {
+ public:
+  explicit Teller(Telling telling) : telling_(telling) {}
+
+  void journal(const SiteJournal& journal, const std::filesystem::path& path) {
+    if (telling_ == Telling::Json) {
+      return event({{"event", "start"},
+                    {"kept_sites", journal.found().size()},
+                    {"dropped_bytes", journal.dropped_bytes()},
+                    {"moved_aside", journal.moved_aside()}});
+    }
+    if (journal.moved_aside())
+      say("  the sites in {} are of another campaign: moved to {}.old", path.string(),
+          path.filename().string());
+    if (!journal.found().empty())
+      say("  {} finished sites found in {}: they are not computed again", journal.found().size(),
+          path.string());
+    if (journal.dropped_bytes() > 0)
+      say("  a site that was being written when the last run stopped ({} bytes) is computed again",
+          journal.dropped_bytes());
+  }
+
+  void site(const SiteCurves& site) {
+    if (telling_ == Telling::Text) return;
+    constexpr const char* kStatus[] = {"complete", "partial", "failed"};
+    event({{"event", "site"},
+           {"vertex", site.vertex},
+           {"status", kStatus[static_cast<int>(site.status)]},
+           {"reason", site.reason},
+           {"cpu_seconds", site.cpu_seconds}});
+  }
+
+  void progress(const fem::CampaignProgress& p) {
+    if (telling_ == Telling::Text)
+      return display_.show(p.done, p.failed, p.running, p.total, p.known);
+    event({{"event", "progress"},
+           {"done", p.done},
+           {"failed", p.failed},
+           {"running", p.running},
+           {"total", p.total}});
+  }
+
+  void end(const std::filesystem::path& file, const SiteCounts& counts, double seconds,
+           double cpu_seconds) {
+    if (telling_ == Telling::Text) {
+      return say(
+          "precompute: {} sites complete, {} stopped early, {} failed, {} ({} on the processors) "
+          "-> {}",
+          counts.complete, counts.partial, counts.failed, duration_text(seconds),
+          duration_text(cpu_seconds), file.string());
+    }
+    event({{"event", "end"},
+           {"complete", counts.complete},
+           {"partial", counts.partial},
+           {"failed", counts.failed},
+           {"seconds", seconds},
+           {"cpu_seconds", cpu_seconds},
+           {"file", file.string()}});
+  }
+
+  bool tells_text() const { return telling_ == Telling::Text; }
+
+ private:
+  static void event(const Json& what) { print_line(what.dump()); }
+
+  Telling telling_;
+  ProgressDisplay display_{"precompute"};
+};
+
+/// A failed site is data, but one that a user must see.
+void tell_failures(const Curves& curves) {
+  constexpr std::size_t kLargestShown = 5;
+  std::size_t shown = 0;
+  for (const SiteCurves& site : curves.sites) {
+    if (site.status == SiteStatus::Complete) continue;
+    if (++shown > kLargestShown) continue;
+    say("  site {} {}: {}", site.vertex,
+        site.status == SiteStatus::Failed ? "failed" : "stopped early", site.reason);
+  }
+  if (shown > kLargestShown) say("  and {} more: see `palpate inspect`", shown - kLargestShown);
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const Workspace& space,
+                                                          const fem::CampaignReport& report,
+                                                          std::size_t known) {
+  auto facts = report.facts;
+  facts.emplace_back("threads", std::to_string(space.threads));
+  facts.emplace_back("wall_seconds", fmt::format("{:.3f}", report.seconds));
+  facts.emplace_back("cpu_seconds", fmt::format("{:.3f}", report.cpu_seconds));
+  if (known > 0) facts.emplace_back("sites_of_interrupted_runs", std::to_string(known));
+  if (space.shard.count > 1)
+    facts.emplace_back("shard", fmt::format("{}/{}", space.shard.index, space.shard.count));
+  return facts;
+}
+
+}  // namespace
+
+SiteCounts run_precompute(const Workspace& space, Telling telling) {
+  const Body body = read_input(space.body(), "mesh", read_body);
+  prepare_output(space.out);
+  const std::string body_sha256 = sha256_of_file(space.body());
+  fem::CampaignSettings settings = campaign_settings(space);
+  settings.sites = sites_of_shard(body, space.shard);
+
+  Teller teller(telling);
+  SiteJournal journal(space.journal(), {campaign_key(space, body_sha256),
+                                        static_cast<std::int64_t>(settings.sites.size())});
+  teller.journal(journal, space.journal());
+  settings.known = journal.found();
+  settings.finished = [&](const SiteCurves& site) {
+    journal.append(site);
+    teller.site(site);
+  };
+  settings.progress = [&](const fem::CampaignProgress& p) { teller.progress(p); };
+
+  fem::CampaignReport report;
+  Curves curves = fem::run_campaign(body, settings, report);
+  curves.body_sha256 = body_sha256;
+  append(curves.provenance, body.provenance,
+         make_stage_step(space, Stage::Precompute, facts_of(space, report, settings.known.size())));
+  write_curves(space.precomputed(), curves);
+  journal.remove();
+  const SiteCounts counts = count_sites(curves);
+  teller.end(space.precomputed(), counts, report.seconds, report.cpu_seconds);
+  if (teller.tells_text()) tell_failures(curves);
+  return counts;
+}
+
+}  // namespace palpate::app
