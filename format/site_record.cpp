@@ -84,8 +84,9 @@ class ByteReader {
   const std::string& where_;
 };
 
-constexpr std::size_t kSampleBytes = 9 * sizeof(double) + sizeof(std::int32_t);
-constexpr std::size_t kSmallestPathBytes = 1 + 4 * sizeof(double) + sizeof(std::uint32_t);
+constexpr std::size_t kSampleBytes = 11 * sizeof(double) + sizeof(std::int32_t);
+constexpr std::size_t kSmallestPathBytes =
+    1 + 5 * sizeof(double) + sizeof(std::int32_t) + sizeof(std::uint32_t);
 
 void put(ByteWriter& out, const CurveSample& s) {
   out.put(s.displacement);
@@ -94,6 +95,8 @@ void put(ByteWriter& out, const CurveSample& s) {
        {s.strain_energy, s.tool_work, s.min_jacobian, s.penetration, s.contact_area})
     out.put(value);
   out.put(s.iterations);
+  out.put(s.force_scatter);
+  out.put(s.force_uncertainty);
 }
 
 CurveSample sample_of(ByteReader& in) {
@@ -104,6 +107,8 @@ CurveSample sample_of(ByteReader& in) {
        {&s.strain_energy, &s.tool_work, &s.min_jacobian, &s.penetration, &s.contact_area})
     *value = in.get<double>();
   s.iterations = in.get<std::int32_t>();
+  s.force_scatter = in.get<double>();
+  s.force_uncertainty = in.get<double>();
   return s;
 }
 
@@ -111,6 +116,8 @@ void put(ByteWriter& out, const CurvePath& path) {
   out.put(static_cast<std::uint8_t>(path.kind));
   out.put(path.held_depth);
   out.put(path.direction);
+  out.put(path.repeats);
+  out.put(path.contact_uncertainty);
   out.put(static_cast<std::uint32_t>(path.samples.size()));
   for (const CurveSample& sample : path.samples) put(out, sample);
 }
@@ -120,6 +127,8 @@ CurvePath path_of(ByteReader& in) {
   path.kind = in.one_of(PathKind::Lateral);
   path.held_depth = in.get<double>();
   path.direction = in.vector();
+  path.repeats = in.get<std::int32_t>();
+  path.contact_uncertainty = in.get<double>();
   path.samples.resize(in.count(kSampleBytes));
   for (CurveSample& sample : path.samples) sample = sample_of(in);
   return path;
