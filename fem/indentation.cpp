@@ -145,7 +145,7 @@ double stiffest_at_surface(const Body& body, const CampaignSettings& settings,
   double stiffest = 0;
   for (const auto region : model.mesh().facet_region)
     for (const auto& material : settings.materials)
-      if (material.region == body.region_names[region])
+      if (material.region == body.region_names[at(region)])
         stiffest = std::max(stiffest, material.law.young);
   return stiffest;
 }

@@ -58,9 +58,9 @@ std::vector<std::int32_t> regions_behind(const Body& body) {
     facet_of.emplace(sorted(body.boundary[f]), f);
   std::vector<std::int32_t> region(body.boundary.size(), 0);
   for (std::size_t t = 0; t < body.tetrahedra.size(); ++t)
-    for (int opposite = 0; opposite < 4; ++opposite) {
+    for (std::size_t opposite = 0; opposite < 4; ++opposite) {
       Corners face{};
-      for (int i = 0, c = 0; c < 4; ++c)
+      for (std::size_t i = 0, c = 0; c < 4; ++c)
         if (c != opposite) face[i++] = body.tetrahedra[t][c];
       const auto found = facet_of.find(sorted(face));
       if (found != facet_of.end()) region[found->second] = body.tetrahedron_region[t];
