@@ -23,6 +23,7 @@ void add_merge_command(CLI::App& root, Action& action);
 void add_precompute_command(CLI::App& root, Action& action);
 void add_fit_command(CLI::App& root, Action& action);
 void add_calibrate_command(CLI::App& root, Action& action);
+void add_compare_command(CLI::App& root, Action& action);
 void add_certify_command(CLI::App& root, Action& action);
 void add_build_command(CLI::App& root, Action& action);
 void add_simulate_command(CLI::App& root, Action& action);

@@ -50,6 +50,7 @@ void add_commands(CLI::App& root, Action& action) {
   add_inspect_command(root, action);
   add_export_command(root, action);
   add_import_command(root, action);
+  add_compare_command(root, action);
   add_calibrate_command(root, action);
   add_report_command(root, action);
 }

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <optional>
+
+#include "app/command.hpp"
+#include "app/compare/tables.hpp"
+#include "app/console.hpp"
+#include "app/pipeline/workspace.hpp"
+#include "format/body.hpp"
+#include "format/crash_safe_file.hpp"
+#include "format/error.hpp"
+#include "format/hdf5_file.hpp"
+#include "format/sha256.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string reference, model, reference_body, model_body, out;
+  compare::CompareSettings settings;
+  double jnd_floor_mn = 5, site_tolerance_mm = 2;
+  std::vector<double> depths_mm;
+};
+
+void place(compare::ComparedSet& set, const fs::path& file) {
+  const Body body = read_body(file);
+  if (!set.body_sha256.empty() && set.body_sha256 != sha256_of_file(file)) {
+    throw Error(ErrorKind::Configuration, file.string(),
+                "it is not the body of " + set.name + " (another digest)",
+                "give the body.h5 that the curves were made with");
+  }
+  for (compare::ComparedSite& site : set.sites) {
+    if (static_cast<std::size_t>(site.vertex) >= body.response.node.size()) {
+      throw Error(ErrorKind::Configuration, file.string(),
+                  fmt::format("it has no vertex {}", site.vertex),
+                  "give the body.h5 that the curves were made with");
+    }
+    const std::int32_t node = body.response.node[static_cast<std::size_t>(site.vertex)];
+    site.position = body.nodes[static_cast<std::size_t>(node)];
+  }
+}
+
+/// curves.h5 or library.h5, whichever it is.
+compare::ComparedSet read_set(const fs::path& file, const std::string& body) {
+  const std::string kind = hdf5::Reader(file, "give curves.h5 or library.h5").text("/", "artifact");
+  if (kind == "palpate.curves") {
+    compare::ComparedSet set = compare::set_of(read_curves(file), file.string());
+    if (!body.empty()) place(set, body);
+    return set;
+  }
+  if (kind == "palpate.library") return compare::set_of(read_library(file), file.string());
+  throw Error(ErrorKind::Configuration, file.string(), "it is a " + kind + ", which has no curves",
+              "give curves.h5 or library.h5");
+}
+
+std::string share(double value) {
+  return std::isfinite(value) ? fmt::format("{:.0f} %", 100 * value) : std::string("unknown");
+}
+
+void tell(const compare::Comparison& comparison) {
+  for (const compare::Summary& s : comparison.summaries) {
+    say("  {}: {} curves, {} points", s.kind == PathKind::Normal ? "normal" : "lateral", s.curves,
+        s.points);
+    say("    RMSE {:.4g} N ({:.2g} % of the largest force), bias {:.3g} N, limits of agreement "
+        "{:.3g} to {:.3g} N",
+        s.rmse, 100 * s.normalised_rmse, s.bias, s.agreement_low, s.agreement_high);
+    say("    {:.2g} just noticeable differences (root mean square), noticeable at {} of the points",
+        s.jnd_rms, share(s.noticeable));
+    say("    scatter of the reference: {}; within the uncertainty: {} of the points",
+        std::isfinite(s.mean_scatter) ? fmt::format("{:.3g} N", s.mean_scatter) : "unknown",
+        share(s.within_uncertainty));
+    say("    worst: site {} at {:.2f} mm, {:.4g} N for {:.4g} N", s.worst_vertex,
+        1e3 * s.worst.displacement, s.worst.model, s.worst.reference);
+  }
+  if (!comparison.unmatched.empty()) {
+    say("  without a partner: {} (listed in comparison.json)", comparison.unmatched.size());
+  }
+}
+
+int compare_sets(Options options) {
+  options.settings.jnd_floor = 1e-3 * options.jnd_floor_mn;
+  options.settings.site_tolerance = 1e-3 * options.site_tolerance_mm;
+  for (const double depth : options.depths_mm) options.settings.depths.push_back(1e-3 * depth);
+  const auto reference = read_set(options.reference, options.reference_body);
+  const auto model = read_set(options.model, options.model_body);
+  const compare::Comparison comparison = compare::compare(reference, model, options.settings);
+  say("compare: {} against {}", options.model, options.reference);
+  tell(comparison);
+  const fs::path out = options.out;
+  prepare_output(out);
+  auto json = comparison_json(comparison, options.settings);
+  json["input_sha256"] = {{"reference", sha256_of_file(options.reference)},
+                          {"model", sha256_of_file(options.model)}};
+  write_file_crash_safely(out / "comparison.json", json.dump(1) + "\n");
+  write_file_crash_safely(out / "comparison.csv", comparison_csv(comparison));
+  write_file_crash_safely(out / "comparison-points.csv", comparison_points_csv(comparison));
+  say("compare: {}, comparison.csv, comparison-points.csv", (out / "comparison.json").string());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& root, Action& action) {
+  CLI::App* command = root.add_subcommand(
+      "compare", "Simulated against measured, a library against either, or two libraries");
+  command->footer(
+      "Example: palpate compare out/bench-measured/curves.h5 out/bench/curves.h5 --out out/bench");
+  const auto options = std::make_shared<Options>();
+  command->add_option("REFERENCE", options->reference, "curves.h5 or library.h5: the measured side")
+      ->required();
+  command->add_option("MODEL", options->model, "curves.h5 or library.h5: what is judged")
+      ->required();
+  command->add_option("--reference-body", options->reference_body,
+                      "body.h5 of the reference, to match sites by position");
+  command->add_option("--model-body", options->model_body, "body.h5 of the model, likewise");
+  command->add_option("--out", options->out, "Folder of the tables")->required();
+  command
+      ->add_option("--jnd", options->settings.jnd, "Just noticeable relative difference of force")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-3, 1.0));
+  command->add_option("--jnd-floor-mN", options->jnd_floor_mn, "Least noticeable difference")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-6, 1e6));
+  command
+      ->add_option("--site-tolerance-mm", options->site_tolerance_mm,
+                   "Sites of two bodies are one within this distance")
+      ->capture_default_str()
+      ->check(CLI::Range(1e-6, 1e6));
+  command->add_option("--depths-mm", options->depths_mm,
+                      "Depths at which stiffness is told (default: thirds of the range)");
+  command->callback([options, &action] { action = [options] { return compare_sets(*options); }; });
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A comparison as tables.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "fitting/compare/compare.hpp"
+
+namespace palpate::app {
+
+/// One row per curve: the figures.
+std::string comparison_csv(const compare::Comparison& comparison);
+/// One row per point: the aligned curves.
+std::string comparison_points_csv(const compare::Comparison& comparison);
+/// All of it; unknown values are null.
+nlohmann::ordered_json comparison_json(const compare::Comparison& comparison,
+                                       const compare::CompareSettings& settings);
+
+}  // namespace palpate::app

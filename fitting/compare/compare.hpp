@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Two sets of responses at the same sites, curve by curve: simulated against measured, a library
+// against either, or two libraries. Figures and their definitions: docs/measured.md.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "format/curves.hpp"
+#include "format/library.hpp"
+
+namespace palpate::compare {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// One curve: force along its path over displacement, with what is known of its doubt.
+struct ComparedCurve {
+  PathKind kind = PathKind::Normal;
+  double held_depth = 0;                  ///< m, lateral only
+  Vec3 direction{};                       ///< lateral only
+  std::vector<double> displacement;       ///< m, ascending
+  std::vector<double> force;              ///< N
+  std::vector<double> uncertainty;        ///< N, standard; NaN where unknown
+  std::vector<double> scatter;            ///< N, between repeats; NaN where unknown
+  double contact_uncertainty = kUnknown;  ///< m
+};
+
+/// One site of a set.
+struct ComparedSite {
+  std::int32_t vertex = -1;
+  Vec3 position{kUnknown, kUnknown, kUnknown};  ///< m, where known
+  std::vector<ComparedCurve> curves;
+};
+
+struct ComparedSet {
+  std::string name;
+  std::string body_sha256;  ///< empty when unknown
+  std::vector<ComparedSite> sites;
+};
+
+/// The curves of a campaign or of a measurement; of a lateral path the force less that held.
+ComparedSet set_of(const Curves& curves, std::string name);
+/// The responses of a library on `steps` even steps up to their last knot. Holes are left out.
+ComparedSet set_of(const Library& library, std::string name, int steps = 48);
+
+struct CompareSettings {
+  double jnd = 0.07;         ///< just noticeable relative difference of force [Pang et al. 1991]
+  double jnd_floor = 0.005;  ///< N, least noticeable difference near zero force
+  double confidence = 0.95;  ///< of the limits of agreement and of "within the uncertainty"
+  double site_tolerance = 0.002;      ///< m, sites of different bodies are one within it
+  double depth_tolerance = 0.1;       ///< relative, of held depths
+  double direction_tolerance = 0.26;  ///< rad, of lateral directions
+  std::vector<double> depths;         ///< m, where stiffness is told; empty: thirds of the range
+};
+
+/// Force and difference at one displacement of the reference.
+struct ComparedPoint {
+  double displacement = 0;          ///< m
+  double reference = 0, model = 0;  ///< N
+  double uncertainty = kUnknown,
+         scatter = kUnknown;  ///< N, standard, joint of both; of the reference
+  double jnd = 0;             ///< difference in just noticeable differences
+};
+
+struct StiffnessAt {
+  double displacement = 0;          ///< m
+  double reference = 0, model = 0;  ///< N/m, slope of the force
+};
+
+/// One curve against another.
+struct CurveComparison {
+  std::int32_t vertex = -1;  ///< of the reference
+  std::int32_t model_vertex = -1;
+  double distance = 0;  ///< m, between the two sites
+  Vec3 position{kUnknown, kUnknown, kUnknown};
+  PathKind kind = PathKind::Normal;
+  double held_depth = 0;
+  double range = 0;  ///< m, common to both
+  std::vector<ComparedPoint> points;
+  double rmse = 0;             ///< N
+  double normalised_rmse = 0;  ///< over the largest reference force
+  double r2 = 0;               ///< 1 - residual over total sum of squares of the reference
+  double bias = 0;             ///< N, mean of model less reference
+  ComparedPoint worst;
+  double jnd_rms = 0;                    ///< root mean square, in just noticeable differences
+  double noticeable = 0;                 ///< share of points beyond one of them
+  double within_uncertainty = kUnknown;  ///< share of points within the confidence interval
+  double mean_scatter = kUnknown;        ///< N, root mean square scatter of the reference
+  double mean_uncertainty = kUnknown;    ///< N
+  double energy_reference = 0, energy_model = 0;  ///< J, integral over the range
+  std::vector<StiffnessAt> stiffness;
+};
+
+/// Over all points of one kind of path.
+struct Summary {
+  PathKind kind = PathKind::Normal;
+  std::size_t curves = 0, points = 0;
+  double rmse = 0, normalised_rmse = 0, bias = 0;
+  double agreement_low = 0, agreement_high = 0;  ///< N, bias -+ 1.96 standard deviations
+                                                 ///< [Bland & Altman 1986]
+  double jnd_rms = 0, noticeable = 0;
+  double within_uncertainty = kUnknown;
+  double mean_scatter = kUnknown;
+  std::int32_t worst_vertex = -1;
+  ComparedPoint worst;
+};
+
+struct Comparison {
+  std::string reference, model;
+  std::vector<CurveComparison> curves;
+  std::vector<Summary> summaries;      ///< normal, then lateral, where there are curves
+  std::vector<std::string> unmatched;  ///< what has no partner, one line each
+};
+
+/// Model against reference at the displacements of the reference, up to the range both have; the
+/// model is interpolated by a monotone cubic between its samples [Fritsch & Carlson 1980].
+/// Sites are matched by vertex when both refer to one body, by position otherwise.
+/// The uncertainty of a difference joins those of both curves where known, and the uncertainty of
+/// the contact point times the stiffness of the other.
+/// @throws Error(Configuration) when no curve has a partner.
+Comparison compare(const ComparedSet& reference, const ComparedSet& model,
+                   const CompareSettings& settings);
+
+/// Monotone cubic through samples, the first at the origin; constant slope beyond. Exposed for its
+/// tests.
+class MonotoneCubic {
+ public:
+  MonotoneCubic(std::vector<double> x, std::vector<double> y);
+  double value(double x) const;
+  double slope(double x) const;
+  double integral(double end) const;  ///< from the first sample
+
+ private:
+  std::size_t piece(double x) const;
+  std::vector<double> x_, y_, m_;
+};
+
+}  // namespace palpate::compare
