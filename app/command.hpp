@@ -30,6 +30,7 @@ void add_simulate_command(CLI::App& root, Action& action);
 void add_inspect_command(CLI::App& root, Action& action);
 void add_export_command(CLI::App& root, Action& action);
 void add_import_command(CLI::App& root, Action& action);
+void add_rescale_command(CLI::App& root, Action& action);
 void add_report_command(CLI::App& root, Action& action);
 
 }  // namespace palpate::app

@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <cmath>
 
 #include "app/calibrate/account.hpp"
 #include "app/calibrate/fit_file.hpp"
+#include "app/calibrate/inverse.hpp"
+#include "app/case_options.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/pipeline/settings.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "format/crash_safe_file.hpp"
+#include "format/error.hpp"
 #include "format/provenance.hpp"
 #include "format/sha256.hpp"
 
@@ -48,6 +53,111 @@ int calibrate_tests(const Options& options) {
   return kExitDone;
 }
 
+/// How far a Young's modulus may move from its start, and what a Poisson's ratio may be.
+constexpr double kModulusFactor = 100;
+constexpr double kLargestPoisson = 0.4995;
+
+struct BodyOptions {
+  std::shared_ptr<CaseOptions> common;
+  std::string measured;
+  std::vector<std::string> young, poisson;
+  int depths = 6;
+  double confidence = 0.95;
+};
+
+InverseSettings inverse_settings(const BodyOptions& options, const Workspace& space) {
+  InverseSettings settings;
+  settings.campaign = campaign_settings(space);
+  settings.depths = options.depths;
+  settings.confidence = options.confidence;
+  settings.log = [](const std::string& line) { say("  {}", line); };
+  const auto start_of = [&](const std::string& region) {
+    for (const fem::RegionMaterial& material : settings.campaign.materials) {
+      if (material.region == region) return material.law;
+    }
+    throw Error(ErrorKind::Configuration, "region '" + region + "'", "the case has no such region",
+                "name a region of its [[material]] tables");
+  };
+  for (const std::string& region : options.young) {
+    const double start = start_of(region).young;
+    settings.sought.push_back(
+        {{region, fem::ConstantKind::Young}, start / kModulusFactor, start * kModulusFactor});
+  }
+  for (const std::string& region : options.poisson) {
+    start_of(region);
+    settings.sought.push_back({{region, fem::ConstantKind::Poisson}, 0, kLargestPoisson});
+  }
+  return settings;
+}
+
+Json inverse_account(const InverseFit& fit, double confidence) {
+  Json account = calibration_account(fit.calibration, confidence);
+  account["rms_N"] = fit.rms;
+  account["relative_rms"] = fit.relative_rms;
+  account["evaluations"] = fit.evaluations;
+  Json sites = Json::array();
+  for (const InverseSite& site : fit.sites) {
+    Json uncertainty = Json::array();
+    for (const double u : site.uncertainty) {
+      uncertainty.push_back(std::isfinite(u) ? Json(u) : Json(nullptr));
+    }
+    sites.push_back({{"vertex", site.vertex},
+                     {"contact_shift_m", site.contact_shift},
+                     {"depth_m", site.depth},
+                     {"measured_N", site.measured},
+                     {"fitted_N", site.fitted},
+                     {"uncertainty_N", uncertainty}});
+  }
+  account["sites"] = sites;
+  return account;
+}
+
+int calibrate_body(const BodyOptions& options) {
+  const Workspace space = open_workspace(*options.common);
+  const Body body = read_body(space.body());
+  const Curves measured = read_curves(options.measured);
+  if (!measured.body_sha256.empty() && measured.body_sha256 != sha256_of_file(space.body())) {
+    throw Error(ErrorKind::Configuration, options.measured,
+                "its sites are of another body than " + space.body().string(),
+                "import the measurement again with --body " + space.body().string());
+  }
+  const InverseFit fit = calibrate_inverse(body, measured, inverse_settings(options, space));
+  say("calibrate: {} sites, rms {:.4g} N ({:.2g} % of the largest force), {} evaluations",
+      fit.sites.size(), fit.rms, 100 * fit.relative_rms, fit.evaluations);
+  say_calibration(fit.calibration, options.confidence);
+  Json account = {{"name", space.c.name},
+                  {"creator", creator_text()},
+                  {"input_sha256", inputs_of({space.body(), options.measured})},
+                  {"resolved_case", resolved_toml(space.c)}};
+  account.update(inverse_account(fit, options.confidence));
+  prepare_output(space.out);
+  const fs::path target = space.out / "calibration.json";
+  write_file_crash_safely(target, account.dump(2) + "\n");
+  say("calibrate: {}", target.string());
+  return kExitDone;
+}
+
+void add_body_part(CLI::App& command, Action& action) {
+  CLI::App* part = command.add_subcommand(
+      "body", "From indentation curves measured on a body, by the finite element model");
+  part->footer(
+      "Example: palpate calibrate body data/cases/bench.toml --measured "
+      "out/bench-measured/curves.h5 "
+      "--young gel --out out/bench");
+  const auto options = std::make_shared<BodyOptions>();
+  options->common = add_case_options(*part, ThreadsOption::Present);
+  part->add_option("--measured", options->measured, "curves.h5 of `palpate import`")->required();
+  part->add_option("--young", options->young, "Region whose Young's modulus is sought; repeat");
+  part->add_option("--poisson", options->poisson, "Region whose Poisson's ratio is sought; repeat");
+  part->add_option("--depths", options->depths, "Depths of each curve that are compared")
+      ->capture_default_str()
+      ->check(CLI::Range(2, 200));
+  part->add_option("--confidence", options->confidence, "Of the intervals")
+      ->capture_default_str()
+      ->check(CLI::Range(0.5, 0.9999));
+  part->callback([options, &action] { action = [options] { return calibrate_body(*options); }; });
+}
+
 }  // namespace
 
 void add_calibrate_command(CLI::App& root, Action& action) {
@@ -60,6 +170,7 @@ void add_calibrate_command(CLI::App& root, Action& action) {
   const auto options = std::make_shared<Options>();
   tests->add_option("FIT", options->fit_file, "Fit file (TOML), see docs/measured.md")->required();
   tests->add_option("--out", options->out, "Folder for calibration.json (default: print only)");
+  add_body_part(*command, action);
   tests->callback([options, &action] { action = [options] { return calibrate_tests(*options); }; });
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <fstream>
 #include <optional>
+#include <sstream>
 
 #include "app/case_options.hpp"
 #include "app/command.hpp"
@@ -23,6 +25,13 @@ int report(const CaseOptions& options) {
   input.library = &library;
   input.recording = recording ? &*recording : nullptr;
   input.library_bytes = std::filesystem::file_size(space.library());
+  const std::filesystem::path comparison = space.out / "comparison.json";
+  if (std::filesystem::exists(comparison)) {
+    std::ifstream stream(comparison, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    input.comparison = text.str();
+  }
   write_report(input, space.report());
   say("report: {}{}", space.report().string(),
       recording ? "" : " (without a session: run `palpate simulate` first to see one)");

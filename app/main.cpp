@@ -51,6 +51,7 @@ void add_commands(CLI::App& root, Action& action) {
   add_export_command(root, action);
   add_import_command(root, action);
   add_compare_command(root, action);
+  add_rescale_command(root, action);
   add_calibrate_command(root, action);
   add_report_command(root, action);
 }

@@ -169,6 +169,18 @@ Eigen::Vector3d SphereContact::tool_force(const Displacement& u) const {
   return force;
 }
 
+Eigen::Vector3d SphereContact::tool_force_slope(const Displacement& u,
+                                                const Displacement& du) const {
+  Eigen::Vector3d slope = Eigen::Vector3d::Zero();
+  for (const Point& point : points_) {
+    const Eigen::Matrix3d H = hessian(point, position(point, u), true);
+    if (H.isZero(0)) continue;
+    const Facet& facet = facets_[at(point.facet)];
+    for (std::size_t a = 0; a < 6; ++a) slope -= point.area * point.N[a] * H * du.col(facet[a]);
+  }
+  return slope;
+}
+
 double SphereContact::contact_area(const Displacement& u) const {
   double area = 0;
   for (const Point& point : points_)

@@ -43,8 +43,10 @@ class SphereContact {
   void bond(const Displacement& u);
 
   Eigen::Vector3d tool_force(const Displacement& u) const;  ///< of the tool ON the body, N
-  double contact_area(const Displacement& u) const;         ///< m^2, reference
-  double penetration(const Displacement& u) const;          ///< m, deepest
+  /// d(tool_force)/du applied to `du`.
+  Eigen::Vector3d tool_force_slope(const Displacement& u, const Displacement& du) const;
+  double contact_area(const Displacement& u) const;  ///< m^2, reference
+  double penetration(const Displacement& u) const;   ///< m, deepest
   /// Largest depth of a candidate point of the rest surface inside `tool`.
   double rest_penetration(const Sphere& tool) const;
 

@@ -397,6 +397,7 @@ void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
       break;
     }
     path.samples.push_back(sample);
+    if (observer_) observer_(site.contact, u, sample);
     for (const double held : context_.indentation.held_depths)
       if (std::abs(held - depth) < 1e-9 * depth)
         site.held.emplace(held, Site::Held{u, site.contact, 0.0});

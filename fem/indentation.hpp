@@ -3,6 +3,7 @@
 // sideways with the contact stuck.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -41,6 +42,11 @@ class SiteSolver {
   /// All paths of a site. A failure is recorded in the result, never thrown.
   SiteCurves solve(std::int32_t vertex);
 
+  /// Called with every equilibrium of the normal path, the tool in its place.
+  using Observer =
+      std::function<void(const SphereContact&, const Displacement&, const CurveSample&)>;
+  void observe(Observer observer) { observer_ = std::move(observer); }
+
   /// The end of the normal path of the site last solved.
   const Displacement& pressed_state() const { return pressed_; }
 
@@ -53,6 +59,7 @@ class SiteSolver {
   const CampaignContext& context_;
   SolveBatch::Member* batch_;
   Displacement pressed_;
+  Observer observer_;
 };
 
 /// Solve one site alone.

@@ -63,6 +63,9 @@ class NeoHookean {
   /// owner of the constants in the message.
   static NeoHookean from_young_poisson(double young, double poisson, const std::string& where);
 
+  /// Any moduli, Pa, zero included: a derivative of the law by a constant is such a law.
+  static NeoHookean from_moduli(double mu, double kappa) { return {mu, kappa}; }
+
   double mu() const { return mu_; }        ///< shear modulus, Pa
   double kappa() const { return kappa_; }  ///< bulk modulus, Pa
 

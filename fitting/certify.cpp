@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "fitting/fitting.hpp"
 #include "fitting/slide_bound.hpp"
@@ -143,6 +144,15 @@ void add_devices(Certificate& certificate, const CertifySettings& settings) {
 
 }  // namespace
 
+std::string basis_of(const Provenance& provenance) {
+  const auto has = [&](std::string_view stage) {
+    return std::any_of(provenance.steps.begin(), provenance.steps.end(),
+                       [&](const ProvenanceStep& step) { return step.stage == stage; });
+  };
+  if (has("rescale")) return "simulated shape, measured scale";
+  return has("import") ? "measured" : "simulated";
+}
+
 void certify(Library& library, const CertifySettings& settings) {
   if (!std::isfinite(settings.friction) || settings.friction < 0) {
     throw Error(ErrorKind::Configuration, "certify settings", "friction is not a number >= 0",
@@ -178,6 +188,7 @@ void certify(Library& library, const CertifySettings& settings) {
   if (unbounded > 1) {
     certificate.limited_by += "; " + std::to_string(unbounded) + " triangles are unbounded";
   }
+  certificate.basis = basis_of(library.provenance);
   count_vertices(library, certificate);
   add_devices(certificate, settings);
   library.certificate = certificate;

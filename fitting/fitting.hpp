@@ -46,6 +46,9 @@ struct CertifySettings {
   std::vector<DeviceProfile> devices;
 };
 
+/// What responses with this history are made of: Certificate::basis.
+std::string basis_of(const Provenance& provenance);
+
 /// Fill library.certificate: for each triangle the bounds of docs/theory-fitting.md, valid while
 /// z + d0 <= D, the deepest knot of the library. A slip bound is infinite where the slide of the
 /// contact point itself is not bounded. Triangles at a hole have zeros. Every device gets a row;

@@ -120,6 +120,7 @@ class Reader {
   void require_artifact(const std::string& artifact, std::int64_t schema);
 
   bool has(const std::string& path) const;
+  bool has_attribute(const std::string& object, const std::string& name) const;
   std::vector<std::string> children(const std::string& group) const;  ///< ascending by name
 
   template <class T>

@@ -325,6 +325,11 @@ std::int64_t Reader::integer(const std::string& object, const std::string& name)
   return state_->attribute_number<std::int64_t>(object, name, H5T_NATIVE_INT64, {H5T_INTEGER});
 }
 
+bool Reader::has_attribute(const std::string& object, const std::string& name) const {
+  return has(object) &&
+         H5Aexists_by_name(state_->file.get(), object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
 double Reader::real(const std::string& object, const std::string& name) const {
   return state_->attribute_number<double>(object, name, H5T_NATIVE_DOUBLE,
                                           {H5T_INTEGER, H5T_FLOAT});

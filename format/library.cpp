@@ -206,6 +206,7 @@ void write_certificate(hdf5::Writer& writer, const Certificate& certificate) {
   writer.set_real(group, "slip", certificate.slip);
   writer.set_integer(group, "worst_triangle", certificate.worst_triangle);
   writer.set_text(group, "limited_by", certificate.limited_by);
+  writer.set_text(group, "basis", certificate.basis);
   writer.set_integer(group, "holes", certificate.holes);
   writer.set_integer(group, "filled", certificate.filled);
   writer.group("/certificate/triangle", "Bounds of each triangle, in the order of the surface.");
@@ -237,6 +238,7 @@ Certificate read_certificate(const hdf5::Reader& reader) {
   certificate.slip = reader.real(group, "slip");
   certificate.worst_triangle = read_int32(reader, group, "worst_triangle");
   certificate.limited_by = reader.text(group, "limited_by");
+  if (reader.has_attribute(group, "basis")) certificate.basis = reader.text(group, "basis");
   certificate.holes = read_int32(reader, group, "holes");
   certificate.filled = read_int32(reader, group, "filled");
   certificate.triangles =

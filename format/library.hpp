@@ -70,6 +70,8 @@ struct Certificate {
   double slip = 0;      ///< N/m, over all triangles
   std::int32_t worst_triangle = -1;
   std::string limited_by;  ///< one line: what sets the bound in the worst triangle
+  /// What the responses are made of: "simulated", "measured", "simulated shape, measured scale".
+  std::string basis = "simulated";
   std::int32_t holes = 0;
   std::int32_t filled = 0;
   std::vector<TriangleCertificate> triangles;  ///< (M)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Make the surfaces in data/bodies: cylinder.off, organ.off, nodule.off (millimetres).
+"""Make the surfaces in data/bodies: cylinder.off, organ.off, nodule.off, pad.off (millimetres).
 
 Only the Python standard library; the same files come out on every machine up to the last printed
 digit. Run from anywhere: scripts/make_bodies.py [folder]
@@ -173,6 +173,33 @@ def nodule(radius, cover, frequency):
     return [tuple(centre[k] + radius * p[k] for k in range(3)) for p in sphere], triangles, top
 
 
+def box(size, divisions):
+    """Box with a corner at the origin; outward triangles, `divisions` cells an edge."""
+    index, points, triangles = {}, [], []
+
+    def vertex(key):
+        if key not in index:
+            index[key] = len(points)
+            points.append(tuple(size[a] * key[a] / divisions for a in range(3)))
+        return index[key]
+
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for side in (0, 1):
+            for p in range(divisions):
+                for q in range(divisions):
+                    corner = []
+                    for dp, dq in ((0, 0), (1, 0), (1, 1), (0, 1)):
+                        at = [0, 0, 0]
+                        at[axis], at[u], at[v] = side * divisions, p + dp, q + dq
+                        corner.append(vertex(tuple(at)))
+                    if side == 0:
+                        corner.reverse()
+                    triangles.append((corner[0], corner[1], corner[2]))
+                    triangles.append((corner[0], corner[2], corner[3]))
+    return points, triangles
+
+
 def main():
     home = pathlib.Path(__file__).resolve().parent.parent / "data" / "bodies"
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else home
@@ -185,6 +212,8 @@ def main():
     write_off(folder / "organ.off", note, points, triangles)
     points, triangles, top = nodule(radius=11, cover=6, frequency=8)
     write_off(folder / "nodule.off", note, points, triangles, digits=4)
+    points, triangles = box(size=(50, 50, 20), divisions=5)
+    write_off(folder / "pad.off", note, points, triangles, digits=1)
     print("nodule lies under", ", ".join(f"{x:.1f}" for x in top), "mm")
 
 

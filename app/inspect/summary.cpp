@@ -138,6 +138,7 @@ Json summary_of(const Certificate& certificate) {
           {"L_slip", with_unit(certificate.slip, "N/m")},
           {"worst_triangle", certificate.worst_triangle},
           {"limited_by", certificate.limited_by},
+          {"basis", certificate.basis},
           {"triangles_where_sliding_needs_no_correction", passive},
           {"devices", devices}};
 }

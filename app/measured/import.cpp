@@ -215,6 +215,11 @@ class Importer {
       site.paths.push_back(m::mean_path(records.presses, inward_of(vertex), settings,
                                         fmt::format("site at vertex {}", vertex)));
       curves.depth = std::max(curves.depth, site.paths.back().samples.back().displacement);
+      if (records.lateral.empty() && s_.path.lateral_ratio > 0) {
+        site.paths.push_back(m::lateral_from_normal(site.paths.front(), s_.path.lateral_ratio));
+        curves.lateral_travel =
+            std::max(curves.lateral_travel, site.paths.back().samples.back().displacement);
+      }
       for (const CurvePath& path : records.lateral) {
         curves.lateral_travel = std::max(curves.lateral_travel, path.samples.back().displacement);
         site.paths.push_back(path);
@@ -242,8 +247,15 @@ class Importer {
                                                      {"licence", s_.licence},
                                                      {"instrument", s_.instrument},
                                                      {"date", s_.date},
-                                                     {"records", std::to_string(files_.size())}}));
+                                                     {"records", std::to_string(files_.size())},
+                                                     {"lateral", lateral_fact()}}));
     return provenance;
+  }
+
+  std::string lateral_fact() const {
+    if (s_.path.lateral_ratio == 0) return "measured where a drag was recorded, else none";
+    return fmt::format("measured where a drag was recorded, else {} of the normal stiffness",
+                       s_.path.lateral_ratio);
   }
 
   static Json sites_account(const Curves& curves) {

@@ -70,6 +70,11 @@ template <class V>
 void describe(V& v, PathSection& s) {
   v.integer(s.samples, {"samples", "of the normal path", kOptional, kCount});
   v.integer(s.lateral_samples, {"lateral_samples", "of a lateral path", kOptional, kCount});
+  v.number(s.lateral_ratio,
+           {"lateral_ratio",
+            "lateral over normal stiffness where no drag was measured; 0 makes no lateral path",
+            kOptional,
+            {.low = 0, .high = 1}});
 }
 
 template <class V>

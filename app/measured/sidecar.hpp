@@ -46,6 +46,7 @@ struct ContactSection {
 struct PathSection {
   int samples = 24;
   int lateral_samples = 12;
+  double lateral_ratio = 0;  ///< of a lateral response made from the normal one; 0: none
 };
 
 struct PlacementSection {

@@ -279,6 +279,7 @@ json page_data(const ReportInput& input) {
             {"worst_fit", chosen.worst_fit}}},
           {"balance", balance_data(*input.curves)},
           {"certificate", certificate_data(library)},
+          {"comparison", comparison_data(input.comparison, library.responses.size())},
           {"session", input.recording == nullptr ? json() : session_data(*input.recording)},
           {"provenance", provenance_data(input)}};
 }

@@ -14,6 +14,8 @@ nlohmann::json page_data(const ReportInput& input);
 /// Parts of it, one for each section of the page.
 nlohmann::json session_data(const Recording& recording);
 nlohmann::json certificate_data(const Library& library);
+/// @throws Error(Configuration) when the text is no comparison of these vertices.
+nlohmann::json comparison_data(const std::string& text, std::size_t vertices);
 nlohmann::json provenance_data(const ReportInput& input);
 /// The [[material]] tables of a resolved case, each a list of [key, value], as written there.
 nlohmann::json materials(const std::string& resolved_case);

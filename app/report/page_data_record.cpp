@@ -61,6 +61,7 @@ json certificate_data(const Library& library) {
           {"slip", c.slip},
           {"worst_triangle", c.worst_triangle},
           {"limited_by", c.limited_by},
+          {"basis", c.basis},
           {"holes", c.holes},
           {"filled", c.filled},
           {"devices", devices},

@@ -22,6 +22,9 @@ struct ReportInput {
   const Recording* recording = nullptr;  ///< may be null: the section then says so
   std::string title;                     ///< any text; empty = the name of the library
   std::uintmax_t library_bytes = 0;      ///< size of library.h5 on disk; 0 = not told
+  /// Text of comparison.json (`palpate compare`); empty: there is none. Its vertices are those of
+  /// the library.
+  std::string comparison;
 };
 
 /// Write one self-contained HTML file: no network, no WebGL, opens from disk in any browser with

@@ -127,4 +127,30 @@ CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
   return path;
 }
 
+CurvePath lateral_from_normal(const CurvePath& normal, double ratio) {
+  const std::size_t middle = std::max<std::size_t>(1, normal.samples.size() / 2);
+  const CurveSample& held = normal.samples[middle];
+  const CurveSample &before = normal.samples[middle - 1],
+                    &after = normal.samples[std::min(middle + 1, normal.samples.size() - 1)];
+  const double stiffness = dot(after.force - before.force, normal.direction) /
+                           (after.displacement - before.displacement);
+  CurvePath path;
+  path.kind = PathKind::Lateral;
+  path.held_depth = held.displacement;
+  const Vec3& n = normal.direction;
+  const Vec3 axis = std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 across = cross(n, axis);
+  path.direction = (1 / norm(across)) * across;
+  constexpr int steps = 4;
+  for (int i = 0; i <= steps; ++i) {
+    CurveSample sample = measured_sample();
+    sample.displacement = 0.5 * held.displacement * i / steps;
+    const double f = ratio * stiffness * sample.displacement;
+    sample.force = held.force + f * path.direction;
+    sample.tool_work = held.tool_work + 0.5 * f * sample.displacement;
+    path.samples.push_back(sample);
+  }
+  return path;
+}
+
 }  // namespace palpate::measured

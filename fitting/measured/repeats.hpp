@@ -40,4 +40,10 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
 CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
                     const RepeatSettings& settings, const std::string& where);
 
+/// A lateral path that nobody measured: the stiffness of the normal path at half its depth times
+/// `ratio`, over half of that depth, in a direction across inward. For a stuck contact of an
+/// elastic body the ratio is 2 (1 - nu)/(2 - nu) [Mindlin 1949]: 2/3 for an incompressible one.
+/// `repeats` is 0, for it is computed.
+CurvePath lateral_from_normal(const CurvePath& normal, double ratio);
+
 }  // namespace palpate::measured

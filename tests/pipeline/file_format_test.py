@@ -234,6 +234,7 @@ class FileFormat(unittest.TestCase):
             for name in ("friction", "depth", "stick", "slip", "worst_triangle"):
                 self.assertEqual(certificate.attrs[name], known.number())
             self.assertEqual(certificate.attrs["limited_by"], known.text())
+            self.assertEqual(certificate.attrs["basis"], known.text())
             for name in ("holes", "filled"):
                 self.assertEqual(certificate.attrs[name], known.number())
             triangle = {name: data[()] for name, data in certificate["triangle"].items()}

@@ -242,12 +242,13 @@ Library library(unsigned seed) {
   library.responses[3].status = ResponseStatus::Filled;
   library.responses[5] = NodeResponse{};
   Certificate& certificate = library.certificate;
-  certificate = {0.3, 0.006, 912.5, 1530.25, 7, "slope of vertex 12", 1, 1, {}, {}};
+  certificate = {0.3, 0.006, 912.5, 1530.25, 7, "slope of vertex 12", "", 1, 1, {}, {}};
   for (std::size_t i = 0; i < library.triangles.size(); ++i) {
     certificate.triangles.push_back({random.between(0, 900), random.between(0, 1500),
                                      random.between(0, 30), random.between(0.5, 1),
                                      random.integer(0, 1) == 1});
   }
+  certificate.basis = "simulated shape, measured scale";
   certificate.triangles[2].slip = std::numeric_limits<double>::infinity();
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   certificate.devices = {{"Phantom Premium", 0.0048, 637.5, 3.2, 9.6},
@@ -309,8 +310,8 @@ std::string dump(const Library& library) {
     out << static_cast<int>(r.status) << r.normal << r.lateral << r.normal_error << r.lateral_error;
   }
   const Certificate& c = library.certificate;
-  out << c.friction << c.depth << c.stick << c.slip << c.worst_triangle << c.limited_by << c.holes
-      << c.filled;
+  out << c.friction << c.depth << c.stick << c.slip << c.worst_triangle << c.limited_by << c.basis
+      << c.holes << c.filled;
   for (const TriangleCertificate& t : c.triangles) {
     out << t.stick << t.slip << t.kappa << t.cos_theta << t.sliding_passive;
   }

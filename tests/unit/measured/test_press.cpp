@@ -239,6 +239,23 @@ TEST(Repeats, UncertaintyCoversTheTruth) {
   EXPECT_GE(inside, 0.88 * total);
 }
 
+/// Mindlin's ratio of the tangential to the normal stiffness of a stuck contact, nu = 1/2.
+TEST(Repeats, ALateralPathIsMadeFromTheNormalStiffness) {
+  const CurvePath normal = mean_path(presses_of_site(3, 0, 71), kInward, {}, "site");
+  const CurvePath lateral = lateral_from_normal(normal, 2.0 / 3);
+  EXPECT_EQ(lateral.kind, PathKind::Lateral);
+  EXPECT_EQ(lateral.repeats, 0);
+  EXPECT_NEAR(dot(lateral.direction, kInward), 0, 1e-12);
+  const double h = lateral.held_depth, e = 1e-5;
+  const Bench bench;
+  const double k = (sneddon_force(h + e, bench.radius, bench.modulus) -
+                    sneddon_force(h - e, bench.radius, bench.modulus)) /
+                   (2 * e);
+  const CurveSample& end = lateral.samples.back();
+  EXPECT_NEAR(dot(end.force, lateral.direction), 2.0 / 3 * k * end.displacement,
+              0.05 * k * end.displacement);
+}
+
 TEST(Statistics, StudentQuantilesAreThoseOfTheTables) {
   // Abramowitz & Stegun 1964, table 26.10, two-sided 95 %.
   EXPECT_NEAR(student_quantile(0.95, 1), 12.706, 1e-3);

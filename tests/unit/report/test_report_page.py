@@ -96,13 +96,14 @@ class ReportPage(unittest.TestCase):
         cls.full = Page(browse(path / "full.html", "--dump-dom"))
         cls.unbounded = Page(browse(path / "unbounded.html", "--dump-dom"))
         cls.bare = Page(browse(path / "bare.html", "--dump-dom"))
+        cls.compared = Page(browse(path / "compared.html", "--dump-dom"))
 
     @classmethod
     def tearDownClass(cls):
         cls.folder.cleanup()
 
     def test_both_pages_are_drawn_without_an_error(self):
-        for page in (self.full, self.unbounded, self.bare):
+        for page in (self.full, self.unbounded, self.bare, self.compared):
             self.assertEqual(page.root.get("data-errors"), "0", page.text[-500:])
             self.assertEqual(page.root.get("data-ready"), "ok")
 
@@ -129,6 +130,20 @@ class ReportPage(unittest.TestCase):
         for slip in ("[object", "undefined", "NaN", "Infinity", "null"):
             for page in (self.full, self.unbounded, self.bare):
                 self.assertNotIn(slip, page.text)
+
+    def test_a_comparison_is_shown_where_there_is_one(self):
+        self.assertNotIn("comparison", self.full.by_id)
+        said = self.compared.by_id["comparison"]
+        # an overlay and two Bland-Altman plots more
+        canvases = [sum(t == "canvas" for t, _ in page.tags) for page in (self.compared, self.full)]
+        self.assertEqual(canvases[0] - canvases[1], 3)
+        for words in ("62.0\u00a0mN", "55.0\u00a0mN", "1.43", "40\u00a0%", "scatter of the reference: 30.0\u00a0mN",
+                      "scatter of the reference: unknown", "site 3 of measured has no partner", "<b>curves</b>.h5"):
+            self.assertIn(words, said)
+        for slip in ("[object", "undefined", "NaN", "Infinity", "null"):
+            self.assertNotIn(slip, self.compared.text)
+        self.assertIn("Error against the reference", self.compared.text)
+        self.assertNotIn("Error against the reference", self.full.text)
 
     def test_each_device_gets_a_verdict(self):
         data = json.loads(self.full.by_id["data"])

@@ -4,9 +4,66 @@
 #include <filesystem>
 #include <iostream>
 #include <limits>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "app/report/report.hpp"
 #include "synthetic.hpp"
+
+namespace {
+
+/// What `palpate compare` writes, of one node: a normal curve 10 % too stiff with known
+/// uncertainty, a lateral one about which nothing is known.
+std::string comparison_of(std::int32_t vertex, const std::string& model) {
+  using nlohmann::json;
+  json curves = json::array(), summaries = json::array();
+  for (const char* kind : {"normal", "lateral"}) {
+    const bool known = std::string(kind) == "normal";
+    json points = json::array();
+    for (int i = 1; i <= 10; ++i) {
+      points.push_back({{"displacement_m", 4e-4 * i},
+                        {"reference_N", 0.1 * i},
+                        {"model_N", 0.11 * i},
+                        {"uncertainty_N", known ? json(0.02) : json(nullptr)},
+                        {"scatter_N", known ? json(0.03) : json(nullptr)},
+                        {"jnd", 0.1 / 0.07}});
+    }
+    json common = {{"kind", kind},
+                   {"rmse_N", 0.062},
+                   {"normalised_rmse", 0.062},
+                   {"bias_N", 0.055},
+                   {"rms_jnd", 1.43},
+                   {"noticeable_share", 1.0},
+                   {"within_uncertainty_share", known ? json(0.4) : json(nullptr)},
+                   {"scatter_N", known ? json(0.03) : json(nullptr)},
+                   {"worst", points.back()}};
+    json curve = common, summary = common;
+    curve.update({{"vertex", vertex},
+                  {"held_depth_m", known ? 0.0 : 0.003},
+                  {"r2", 0.95},
+                  {"uncertainty_N", known ? json(0.02) : json(nullptr)},
+                  {"points", points}});
+    summary.update({{"curves", 1},
+                    {"points", 10},
+                    {"agreement_low_N", 0.0},
+                    {"agreement_high_N", 0.11},
+                    {"worst_vertex", vertex}});
+    curves.push_back(curve);
+    summaries.push_back(summary);
+  }
+  return json({{"artifact", "palpate.comparison"},
+               {"schema", 1},
+               {"reference", "measured/curves.h5"},
+               {"model", model},
+               {"jnd", 0.07},
+               {"jnd_floor_N", 0.005},
+               {"summaries", summaries},
+               {"unmatched", {"site 3 of measured has no partner"}},
+               {"curves", curves}})
+      .dump();
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   if (argc != 2) {
@@ -19,6 +76,10 @@ int main(int argc, char** argv) {
   palpate::ReportInput input{&all.body,      &all.curves,          &all.library,
                              &all.recording, "Lump with a nodule", 356129};
   palpate::write_report(input, folder / "full.html");
+
+  input.comparison = comparison_of(all.curves.sites.front().vertex, "<b>curves</b>.h5");
+  palpate::write_report(input, folder / "compared.html");
+  input.comparison.clear();
 
   // A rim too sharp for the slide to be bounded: on one triangle, and so for the body.
   auto& certificate = all.library.certificate;

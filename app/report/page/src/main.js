@@ -6,6 +6,7 @@ import { el } from './dom.js';
 import { Nodes } from './nodes.js';
 import { bodySection } from './sections/body.js';
 import { certificateSection } from './sections/certificate.js';
+import { comparisonSection } from './sections/comparison.js';
 import { Curves } from './sections/curves.js';
 import { fitSection } from './sections/fit.js';
 import { headerSection } from './sections/header.js';
@@ -38,6 +39,7 @@ try {
   place('header', () => headerSection(data, nodes));
   place('body', () => bodySection(data, nodes, new Curves(data, nodes)));
   place('fit', () => fitSection(data));
+  if (data.comparison) place('comparison', () => comparisonSection(data));
   place('session', () => sessionSection(data));
   place('certificate', () => certificateSection(data));
   place('record', () => recordSection(data));

@@ -7,6 +7,7 @@ import { el, paragraph } from '../dom.js';
 import { Model } from '../model.js';
 import { secantStiffness, responseForce } from '../response.js';
 import { colour } from '../theme.js';
+import { errorOfVertices } from './comparison.js';
 import * as units from '../units.js';
 
 /** The fields the picture can be coloured with: {label, unit, values(depth)}. */
@@ -25,6 +26,9 @@ function fields(data) {
     fit: { label: 'Fit error, normal', unit: '% of peak force',
       ofVertex: () => all((v) => (100 * vertices.normal_error[v]) / vertices.normal_peak[v]) },
   };
+  if (data.comparison) {
+    list.comparison = { label: 'Error against the reference', unit: 'JND', ofVertex: () => errorOfVertices(data) };
+  }
   if (certificate) {
     list.slip = { label: 'L_slip of each triangle', unit: 'N/m', ofTriangle: () => perTriangle(certificate.triangle_slip) };
     list.stick = { label: 'L_stick of each triangle', unit: 'N/m', ofTriangle: () => perTriangle(certificate.triangle_stick) };

@@ -36,6 +36,7 @@ export function certificateSection(data) {
     definitions([
       ['L_stick', `${units.bound(c.stick)}; contact point held`],
       ['L_slip', `${units.bound(c.slip)}; while sliding, \u03bc = ${units.significant(c.friction)}`],
+      ['Responses', c.basis],
       ['Holds to', `${units.length(c.depth)} of depth`],
       ['Worst triangle', c.worst_triangle < 0 ? 'none' : `${c.worst_triangle}: ${c.limited_by || 'cause not recorded'}`],
       ['Sliding', `${units.count(free)} of ${units.count(c.triangle_slip.length)} triangles need no energy correction while sliding`],

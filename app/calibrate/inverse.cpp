@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/calibrate/inverse.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "fitting/compare/compare.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+/// What is left of the uncertainty of a force beside the contact point, at least.
+constexpr double kLeastOwnShare = 0.1;
+
+[[noreturn]] void refuse(const std::string& where, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, where, problem, remedy);
+}
+
+std::string constant_name(const fem::RegionConstant& constant) {
+  return (constant.kind == fem::ConstantKind::Young ? "young of " : "poisson of ") +
+         constant.region;
+}
+
+double& value_of(fem::CampaignSettings& campaign, const fem::RegionConstant& constant) {
+  for (fem::RegionMaterial& material : campaign.materials) {
+    if (material.region != constant.region) continue;
+    return constant.kind == fem::ConstantKind::Young ? material.law.young : material.law.poisson;
+  }
+  refuse("region '" + constant.region + "'", "the case has no material for it",
+         "seek constants of regions of the case");
+}
+
+/// One measured curve at the depths that are compared.
+struct Target {
+  std::int32_t vertex = -1;
+  std::vector<double> depth, force, uncertainty, slope;
+  double contact_uncertainty = kUnknown;
+  int shift = -1;  ///< index of its contact shift among the constants
+};
+
+Target target_of(const SiteCurves& site, const CurvePath& path, const std::vector<double>& depths) {
+  std::vector<double> x, f, u;
+  for (const CurveSample& sample : path.samples) {
+    x.push_back(sample.displacement);
+    f.push_back(dot(sample.force, path.direction));
+    u.push_back(sample.force_uncertainty);
+  }
+  const compare::MonotoneCubic force(x, f);
+  const compare::MonotoneCubic doubt(x, u);
+  const bool known = std::all_of(u.begin() + 1, u.end(), [](double v) { return std::isfinite(v); });
+  Target target;
+  target.vertex = site.vertex;
+  target.contact_uncertainty = path.contact_uncertainty;
+  for (const double depth : depths) {
+    if (depth > x.back() * (1 + 1e-9)) break;
+    target.depth.push_back(depth);
+    target.force.push_back(force.value(depth));
+    target.slope.push_back(force.slope(depth));
+    target.uncertainty.push_back(known ? doubt.value(depth) : kUnknown);
+  }
+  return target;
+}
+
+class Inverse {
+ public:
+  Inverse(const Body& body, const Curves& measured, const InverseSettings& settings)
+      : body_(body), settings_(settings) {
+    take_targets(measured);
+    known_ = std::all_of(targets_.begin(), targets_.end(), [](const Target& t) {
+      return std::all_of(t.uncertainty.begin(), t.uncertainty.end(),
+                         [](double u) { return std::isfinite(u) && u > 0; });
+    });
+  }
+
+  InverseFit run() {
+    calibrate::LeastSquares problem;
+    fem::CampaignSettings start = settings_.campaign;
+    for (const SoughtConstant& s : settings_.sought) {
+      problem.constants.push_back({constant_name(s.constant),
+                                   s.constant.kind == fem::ConstantKind::Young ? "Pa" : "1",
+                                   value_of(start, s.constant), s.low, s.high});
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (Target& target : targets_) {
+      if (!known_ || !(target.contact_uncertainty > 0)) continue;
+      target.shift = static_cast<int>(problem.constants.size());
+      problem.constants.push_back(
+          {fmt::format("contact shift of site {}", target.vertex), "m", 0, -infinity, infinity});
+      ++problem.residuals;
+    }
+    for (const Target& target : targets_) problem.residuals += target.depth.size();
+    problem.known_scatter = known_;
+    problem.confidence = settings_.confidence;
+    problem.max_iterations = 40;
+    problem.tolerance = 1e-7;
+    problem.model = [&](const double* c, double* r, double* J) {
+      return evaluate(c, problem.constants.size(), r, J);
+    };
+    InverseFit fit;
+    fit.calibration = calibrate::minimise(problem, "calibration of body '" + body_.name + "'");
+    finish(fit);
+    return fit;
+  }
+
+ private:
+  void take_targets(const Curves& measured) {
+    const double radius = settings_.campaign.indentation.tool_radius;
+    if (std::abs(measured.tool.radius - radius) > 1e-6 * radius) {
+      refuse("measured curves",
+             fmt::format("they were made with a tool of {:.4g} mm radius, the case has {:.4g} mm",
+                         1e3 * measured.tool.radius, 1e3 * radius),
+             "set tool.radius of the case to that of the measurement");
+    }
+    double deepest = 0;
+    for (const SiteCurves& site : measured.sites) {
+      for (const CurvePath& path : site.paths) {
+        if (path.kind == PathKind::Normal && path.samples.size() >= 3) {
+          deepest = std::max(deepest, path.samples.back().displacement);
+        }
+      }
+    }
+    for (int i = 1; i <= settings_.depths; ++i) depths_.push_back(deepest * i / settings_.depths);
+    for (const SiteCurves& site : measured.sites) {
+      const auto vertex = static_cast<std::size_t>(site.vertex);
+      if (vertex >= body_.response.node.size() || body_.response.is_site[vertex] == 0) {
+        refuse(fmt::format("site at vertex {}", site.vertex), "it is no site of the body",
+               "import the measurement on this body");
+      }
+      for (const CurvePath& path : site.paths) {
+        if (path.kind != PathKind::Normal || path.samples.size() < 3) continue;
+        Target target = target_of(site, path, depths_);
+        if (!target.depth.empty()) targets_.push_back(std::move(target));
+        break;
+      }
+    }
+    if (targets_.empty()) {
+      refuse("measured curves", "they hold no normal path",
+             "import presses along the inward "
+             "direction");
+    }
+  }
+
+  /// The model at these constants, remembered: the solver asks for values and slopes separately.
+  bool solve(const std::vector<double>& sought) {
+    if (sought == at_) return usable_;
+    at_ = sought;
+    ++evaluations_;
+    fem::CampaignSettings campaign = settings_.campaign;
+    std::vector<fem::RegionConstant> constants;
+    std::string line = fmt::format("evaluation {}:", evaluations_);
+    for (std::size_t i = 0; i < sought.size(); ++i) {
+      const fem::RegionConstant& constant = settings_.sought[i].constant;
+      value_of(campaign, constant) = sought[i];
+      constants.push_back(constant);
+      line += fmt::format(" {} = {:.6g}", constant_name(constant), sought[i]);
+    }
+    campaign.sites.clear();
+    for (const Target& target : targets_) campaign.sites.push_back(target.vertex);
+    model_ = fem::run_sensitivity(body_, campaign, depths_, constants);
+    usable_ = true;
+    for (std::size_t t = 0; t < targets_.size(); ++t) {
+      if (model_[t].samples.size() >= targets_[t].depth.size()) continue;
+      usable_ = false;
+      failure_ = fmt::format("site {}: {}", targets_[t].vertex, model_[t].reason);
+      line += ", failed at " + failure_;
+    }
+    if (settings_.log) settings_.log(line);
+    return usable_;
+  }
+
+  /// Standard uncertainty of a sample beside that of its contact point.
+  double own_uncertainty(const Target& target, std::size_t i) const {
+    if (!known_) return 1;
+    const double u = target.uncertainty[i];
+    if (target.shift < 0) return u;
+    const double of_contact = target.slope[i] * target.contact_uncertainty;
+    return std::sqrt(
+        std::max(u * u - of_contact * of_contact, kLeastOwnShare * kLeastOwnShare * u * u));
+  }
+
+  bool evaluate(const double* c, std::size_t columns, double* r, double* J) {
+    const std::vector<double> sought(c, c + settings_.sought.size());
+    if (!solve(sought)) return false;
+    std::size_t row = 0;
+    for (std::size_t t = 0; t < targets_.size(); ++t) {
+      const Target& target = targets_[t];
+      const double shift = target.shift < 0 ? 0 : c[target.shift];
+      for (std::size_t i = 0; i < target.depth.size(); ++i, ++row) {
+        const fem::ForceSensitivity& model = model_[t].samples[i];
+        const double u = own_uncertainty(target, i);
+        r[row] = (model.force + target.slope[i] * shift - target.force[i]) / u;
+        if (J == nullptr) continue;
+        std::fill(J + row * columns, J + (row + 1) * columns, 0.0);
+        for (std::size_t k = 0; k < sought.size(); ++k) J[row * columns + k] = model.slope[k] / u;
+        if (target.shift >= 0) {
+          J[row * columns + static_cast<std::size_t>(target.shift)] = target.slope[i] / u;
+        }
+      }
+    }
+    for (const Target& target : targets_) {
+      if (target.shift < 0) continue;
+      r[row] = c[target.shift] / target.contact_uncertainty;
+      if (J != nullptr) {
+        std::fill(J + row * columns, J + (row + 1) * columns, 0.0);
+        J[row * columns + static_cast<std::size_t>(target.shift)] = 1 / target.contact_uncertainty;
+      }
+      ++row;
+    }
+    return true;
+  }
+
+  void finish(InverseFit& fit) {
+    std::vector<double> found;
+    for (std::size_t i = 0; i < settings_.sought.size(); ++i) {
+      found.push_back(fit.calibration.estimates[i].value);
+    }
+    solve(found);
+    double squares = 0, largest = 0;
+    std::size_t count = 0;
+    for (std::size_t t = 0; t < targets_.size(); ++t) {
+      const Target& target = targets_[t];
+      InverseSite site;
+      site.vertex = target.vertex;
+      site.depth = target.depth;
+      site.measured = target.force;
+      site.uncertainty = target.uncertainty;
+      if (target.shift >= 0) {
+        site.contact_shift =
+            fit.calibration.estimates[static_cast<std::size_t>(target.shift)].value;
+      }
+      for (std::size_t i = 0; i < target.depth.size(); ++i) {
+        site.fitted.push_back(model_[t].samples[i].force + target.slope[i] * site.contact_shift);
+        const double e = site.fitted.back() - target.force[i];
+        squares += e * e;
+        largest = std::max(largest, std::abs(target.force[i]));
+        ++count;
+      }
+      fit.sites.push_back(std::move(site));
+    }
+    fit.rms = std::sqrt(squares / static_cast<double>(count));
+    fit.relative_rms = fit.rms / largest;
+    fit.evaluations = evaluations_;
+    // A prior holds a shift, so that its interval may well be wider than its value.
+    std::erase_if(fit.calibration.warnings, [](const std::string& warning) {
+      return warning.starts_with("contact shift") &&
+             warning.find("determined") != std::string::npos;
+    });
+  }
+
+  const Body& body_;
+  const InverseSettings& settings_;
+  std::vector<double> depths_;
+  std::vector<Target> targets_;
+  bool known_ = false;
+  std::vector<double> at_;
+  bool usable_ = false;
+  std::string failure_;
+  std::vector<fem::SiteSensitivity> model_;
+  int evaluations_ = 0;
+};
+
+}  // namespace
+
+InverseFit calibrate_inverse(const Body& body, const Curves& measured,
+                             const InverseSettings& settings) {
+  if (settings.sought.empty()) {
+    refuse("calibration of body '" + body.name + "'", "no constant is sought",
+           "name at least one with --young or --poisson");
+  }
+  return Inverse(body, measured, settings).run();
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Constants of the regions of a body from indentation curves measured on it: least squares over the
+// finite element model, with the gradients of fem/sensitivity.hpp.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fem/sensitivity.hpp"
+#include "fitting/calibrate/least_squares.hpp"
+#include "format/body.hpp"
+#include "format/curves.hpp"
+
+namespace palpate::app {
+
+/// A constant to find; its start is the value in the settings of the campaign.
+struct SoughtConstant {
+  fem::RegionConstant constant;
+  double low = 0, high = 0;  ///< Pa, or pure
+};
+
+struct InverseSettings {
+  fem::CampaignSettings campaign;  ///< materials (starts), tool, tolerance, threads
+  std::vector<SoughtConstant> sought;
+  int depths = 6;  ///< of each measured curve that are compared, evenly spaced
+  double confidence = 0.95;
+  std::function<void(const std::string& line)> log;  ///< one line an evaluation; may be empty
+};
+
+/// One site as it was fitted.
+struct InverseSite {
+  std::int32_t vertex = -1;
+  std::vector<double> depth, measured, fitted, uncertainty;  ///< m, N, N, N (NaN unknown)
+  double contact_shift = 0;                                  ///< m, found with the constants
+};
+
+struct InverseFit {
+  calibrate::Calibration calibration;  ///< the sought constants; then the contact shifts
+  std::vector<InverseSite> sites;
+  double rms = 0;           ///< N
+  double relative_rms = 0;  ///< over the largest measured force
+  int evaluations = 0;      ///< of the finite element model
+};
+
+/// Where a measured path states the uncertainty of its contact point, the shift of that point is
+/// sought as well, held by the stated uncertainty: an error of the contact point acts on all
+/// samples of a curve alike and must not be averaged away. Where every sample states its
+/// uncertainty the residuals are divided by what the shift leaves of it, and the intervals follow
+/// from that; otherwise the scatter is estimated from the residuals.
+/// @throws Error(Configuration) for curves of another tool, sites that are not of the body, no
+///   measured normal path, constants of unknown regions; when the model fails at the start.
+InverseFit calibrate_inverse(const Body& body, const Curves& measured,
+                             const InverseSettings& settings);
+
+}  // namespace palpate::app

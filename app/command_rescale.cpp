@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "app/pipeline/workspace.hpp"
+#include "fitting/compare/rescale.hpp"
+#include "format/provenance.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string simulated, measured, out;
+};
+
+int rescale_curves(const Options& options) {
+  const Curves simulated = read_curves(options.simulated);
+  compare::Rescaling result = compare::rescale(simulated, read_curves(options.measured), {});
+  say("rescale: measured = {:.4f} +- {:.4f} of simulated, from {} sites", result.factor,
+      result.uncertainty, result.sites.size());
+  for (const compare::SiteScale& site : result.sites) {
+    say("  site {}: {:.4f} +- {:.4f}, misfit of the shape {:.2g} % of its largest force",
+        site.vertex, site.factor, site.uncertainty, 100 * site.misfit);
+  }
+  result.curves.provenance.steps.push_back(
+      make_provenance_step("rescale", "", {options.simulated, options.measured},
+                           {{"origin", "simulated shape, measured scale"},
+                            {"factor", fmt::format("{}", result.factor)},
+                            {"standard_uncertainty", fmt::format("{}", result.uncertainty)},
+                            {"measured_sites", std::to_string(result.sites.size())}}));
+  prepare_output(options.out);
+  const fs::path target = fs::path(options.out) / "curves.h5";
+  write_curves(target, result.curves);
+  say("rescale: {}", target.string());
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_rescale_command(CLI::App& root, Action& action) {
+  CLI::App* command = root.add_subcommand(
+      "rescale", "Simulated curves with the scale of measured ones -> curves.h5");
+  command->footer(
+      "Example: palpate rescale out/bench/curves.h5 out/bench-measured/curves.h5 --out out/scaled");
+  const auto options = std::make_shared<Options>();
+  command->add_option("SIMULATED", options->simulated, "curves.h5 of `palpate precompute`")
+      ->required();
+  command->add_option("MEASURED", options->measured, "curves.h5 of `palpate import`")->required();
+  command->add_option("--out", options->out, "Folder of the new curves.h5")->required();
+  command->callback(
+      [options, &action] { action = [options] { return rescale_curves(*options); }; });
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// One set of curves against another: overlay of a site, Bland-Altman of all, figures per curve.
+import { definitions, el, paragraph, table } from '../dom.js';
+import { curvePlot } from '../plot.js';
+import * as units from '../units.js';
+
+const difference = (p) => p.model_N - p.reference_N;
+const sorted = (sets) => sets.map((s) => {
+  const order = Array.from(s.x.keys()).sort((a, b) => s.x[a] - s.x[b]);
+  return { ...s, x: order.map((i) => s.x[i]), y: order.map((i) => s.y[i]) };
+});
+
+/** Root mean square error of the normal curve of each vertex, in just noticeable differences. */
+export function errorOfVertices(data) {
+  const values = new Float32Array(data.vertices.response_status.length).fill(NaN);
+  for (const c of data.comparison.curves) if (c.kind === 'normal') values[c.vertex] = c.rms_jnd;
+  return values;
+}
+
+function overlay(curve) {
+  const x = curve.points.map((p) => p.displacement_m * 1e3);
+  const band = (sign) => curve.points.map((p) => p.reference_N + sign * 2 * (p.uncertainty_N ?? 0));
+  const known = curve.points.some((p) => p.uncertainty_N !== null);
+  return [
+    { label: 'reference', colour: 'series-1', markers: true, x, y: curve.points.map((p) => p.reference_N) },
+    { label: 'model', colour: 'series-2', x, y: curve.points.map((p) => p.model_N) },
+    ...(known ? [-1, 1].map((sign) => ({ label: 'two standard uncertainties', colour: 'grid', x, y: band(sign) })) : []),
+  ];
+}
+
+/** Several points may share an abscissa: each becomes its own by a shift that nobody sees. */
+function distinct(points) {
+  const seen = new Set();
+  return points.map(([x, y]) => {
+    while (seen.has(x)) x += 1e-9 * (1 + Math.abs(x));
+    seen.add(x);
+    return [x, y];
+  });
+}
+
+function blandAltman(data, kind, summary) {
+  const curves = data.comparison.curves.filter((c) => c.kind === kind);
+  const points = distinct(curves.flatMap((c) => c.points.map((p) => [(p.model_N + p.reference_N) / 2, difference(p)])));
+  const all = points.map(([x]) => x);
+  const ends = [Math.min(...all), Math.max(...all)];
+  const line = (label, y) => ({ label, colour: 'muted', x: ends, y: [y, y] });
+  return sorted([
+    { label: 'points', colour: 'series-1', markers: true, x: all, y: points.map(([, y]) => y) },
+    line('bias', summary.bias_N), line('limit', summary.agreement_low_N), line('limit', summary.agreement_high_N),
+  ]);
+}
+
+const percentOf = (share) => (share === null ? 'unknown' : units.percent(share));
+const forceOf = (f) => (f === null ? 'unknown' : units.force(f));
+
+function summaryOf(s) {
+  return definitions([
+    ['Compared', `${units.count(s.curves)} ${s.kind} curves, ${units.count(s.points)} points`],
+    ['RMSE', `${units.force(s.rmse_N)}, ${percentOf(s.normalised_rmse)} of the largest force; scatter of the reference: ${forceOf(s.scatter_N)}`],
+    ['Bias', `${units.force(s.bias_N)}; limits of agreement ${units.force(s.agreement_low_N)} to ${units.force(s.agreement_high_N)}`],
+    ['Felt', `${units.significant(s.rms_jnd)} just noticeable differences (root mean square); noticeable at ${percentOf(s.noticeable_share)} of the points`],
+    ['Within the uncertainty', `${percentOf(s.within_uncertainty_share)} of the points`],
+    ['Worst', `node ${s.worst_vertex} at ${units.length(s.worst.displacement_m)}: ${units.force(s.worst.model_N)} for ${units.force(s.worst.reference_N)}`],
+  ], 'facts');
+}
+
+function curveRows(curves) {
+  return curves.map((c) => [String(c.vertex), c.kind, units.force(c.rmse_N), percentOf(c.normalised_rmse),
+    c.r2 === null ? '\u2013' : units.significant(c.r2, 4), units.force(c.bias_N), units.significant(c.rms_jnd),
+    forceOf(c.uncertainty_N), forceOf(c.scatter_N)]);
+}
+
+export function comparisonSection(data) {
+  const c = data.comparison;
+  const plot = curvePlot('One curve: reference and model', 'Displacement (mm)', 'Force (N)', 240);
+  const name = (curve) => `node ${curve.vertex}, ${curve.kind}${curve.kind === 'lateral' ? ` at ${units.length(curve.held_depth_m)}` : ''}`;
+  const show = (i) => plot.set(overlay(c.curves[i]));
+  const select = el('select', { id: 'compared-curve', onchange: (e) => show(Number(e.target.value)) },
+    c.curves.map((curve, i) => el('option', { value: i }, name(curve))));
+  show(0);
+  const agreement = c.summaries.map((s) => {
+    const figure = curvePlot(`Difference over mean, ${s.kind} curves (Bland\u2013Altman)`, 'Mean force (N)', 'Model less reference (N)', 240);
+    figure.set(blandAltman(data, s.kind, s));
+    return el('div', {}, figure.element, summaryOf(s));
+  });
+  return el('section', { id: 'comparison' },
+    el('h2', {}, 'Against the reference'),
+    paragraph(`Model: ${c.model}. Reference: ${c.reference}. A difference of ${percentOf(c.jnd)} of the force, or of ${units.force(c.jnd_floor_N)} where that is more, counts as just noticeable.`, 'lead'),
+    el('div', { class: 'controls' }, el('label', {}, 'Curve', select)), plot.element,
+    paragraph('Markers: the reference, with two of its standard uncertainties as thin lines where they are known. Line: the model. The map of the error is a colour of the body above.', 'note'),
+    agreement,
+    table(['Node', 'Path', 'RMSE', 'of largest', 'R\u00b2', 'Bias', 'JND', 'Uncertainty', 'Scatter'], curveRows(c.curves), [0, 2, 3, 4, 5, 6, 7, 8]),
+    c.unmatched.length ? paragraph(`Without a partner: ${c.unmatched.join('; ')}.`, 'note') : null);
+}

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/report/page_data.hpp"
+#include "format/error.hpp"
+
+namespace palpate::report {
+namespace {
+
+[[noreturn]] void refuse(const char* problem) {
+  throw Error(ErrorKind::Configuration, "comparison.json", problem,
+              "make it again with `palpate compare`, or remove it from the folder");
+}
+
+}  // namespace
+
+nlohmann::json comparison_data(const std::string& text, std::size_t vertices) {
+  if (text.empty()) return nullptr;
+  nlohmann::json data = nlohmann::json::parse(text, nullptr, false);
+  if (data.is_discarded() || !data.is_object() ||
+      data.value("artifact", "") != "palpate.comparison" || data.value("schema", 0) != 1) {
+    refuse("it is not a comparison that this version reads");
+  }
+  if (!data.contains("curves") || !data["curves"].is_array()) refuse("it has no curves");
+  for (const auto& curve : data["curves"]) {
+    const auto vertex = curve.value("vertex", -1);
+    if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertices) {
+      refuse("it names a vertex that the library does not have");
+    }
+  }
+  return data;
+}
+
+}  // namespace palpate::report

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// How the force of a normal path depends on the constants of the regions: the tangent-linear model
+// of the indentation, solved at the equilibria that the campaign finds.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "fem/campaign.hpp"
+
+namespace palpate::fem {
+
+enum class ConstantKind { Young, Poisson };
+
+/// A constant of one region.
+struct RegionConstant {
+  std::string region;
+  ConstantKind kind = ConstantKind::Young;
+};
+
+/// Force along the inward direction at one depth, N, and its derivative by each constant, N/Pa for
+/// a Young's modulus, N for a Poisson's ratio.
+struct ForceSensitivity {
+  double depth = 0;
+  double force = 0;
+  std::vector<double> slope;
+};
+
+struct SiteSensitivity {
+  std::int32_t vertex = -1;
+  std::string reason;                     ///< why the path ended early; empty when it did not
+  std::vector<ForceSensitivity> samples;  ///< of the depths that were reached
+};
+
+/// Press the sites to the given depths (settings.indentation.depth is the last of them) and
+/// differentiate. With R(u, c) = 0 the equilibrium and F(u, c) the force of the tool,
+///   K du/dc = -dR/dc,   dF/dc = dF/du . du/dc + dF/dc|_u,
+/// exact for the discrete model at the equilibrium: the contact penalty follows the stiffest
+/// Young's modulus and is differentiated with it. One factorization a sample, in double precision.
+/// @throws Error(Configuration) as run_campaign; for a region that the body has not.
+std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSettings& settings,
+                                             const std::vector<double>& depths,
+                                             const std::vector<RegionConstant>& constants);
+
+}  // namespace palpate::fem

@@ -1,0 +1,194 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""From a test bench to a felt body, through the real command, with the shipped records of the pad:
+import, a library of measurements alone, comparison, calibration by the finite element model, and a
+library with simulated shape and measured scale. Usage: measured_test.py PALPATE SOURCE_DIR
+"""
+import csv
+import json
+import math
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+PALPATE, SOURCE = None, None
+MIDDLE = (0.025, 0.025, 0.020)
+
+# As in scripts/make_pad_records.py, in SI.
+RADIUS, MODULUS = 0.006, 16.7e3
+
+
+def law(depth):
+    return 4 / 3 * MODULUS * np.sqrt(RADIUS) * depth**1.5 * (1 + 0.1 * depth / RADIUS)
+
+
+def palpate(*arguments):
+    return subprocess.run([PALPATE, *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+class Measured(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.out = Path(cls.folder.name) / "pad"
+        cls.measured = Path(cls.folder.name) / "measured"
+        cls.case = SOURCE / "data/cases/pad.toml"
+        cls.presses = SOURCE / "data/measured/pad/presses.toml"
+        cls.ok("mesh", cls.case, "--out", cls.out)
+        cls.ok("import", cls.presses, "--body", cls.out / "body.h5", "--out", cls.measured)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    @classmethod
+    def ok(cls, *arguments):
+        result = palpate(*arguments)
+        if result.returncode != 0 or result.stderr:
+            raise AssertionError(f"{arguments}: {result.stdout}{result.stderr}")
+        return result.stdout
+
+    def middle_vertex(self):
+        with h5py.File(self.out / "body.h5", "r") as file:
+            points = file["nodes"][()][file["response/node"][()]]
+        return int(np.argmin(np.linalg.norm(points - MIDDLE, axis=1)))
+
+    def test_the_curves_are_those_of_the_pad(self):
+        with h5py.File(self.measured / "curves.h5", "r") as file:
+            self.assertEqual(len(file["site/vertex"]), 9)
+            site = list(file["site/vertex"][()]).index(self.middle_vertex())
+            path = file["site/first_path"][site]
+            self.assertEqual(file["path/repeats"][path], 3)
+            first, count = file["path/first_sample"][path], file["path/sample_count"][path]
+            rows = slice(first, first + count)
+            depth, force = file["sample/displacement"][rows], -file["sample/force"][rows][:, 2]
+            uncertainty = file["sample/force_uncertainty"][rows]
+            self.assertTrue(np.all(np.isnan(file["sample/strain_energy"][rows])))
+            # The pad differs over its top: 4 % times the sine of the number of the site.
+            truth = law(depth) * (1 + 0.04 * math.sin(4))
+            self.assertTrue(np.all(np.abs(force - truth) <= 3.5 * uncertainty + 1e-9), (force - truth) / uncertainty)
+            self.assertLess(uncertainty[-1], 0.06 * force[-1])
+
+    def test_the_account_says_what_was_found(self):
+        account = json.loads((self.measured / "import.json").read_text())
+        self.assertEqual(len(account["records"]), 11)
+        for record in account["records"]:
+            self.assertAlmostEqual(record["force_offset_N"], 0.05, delta=2e-4)
+            self.assertAlmostEqual(record["rate_m_per_s"], 0.5e-3, delta=2e-5)
+            self.assertAlmostEqual(record["returned_share"], 0.85, delta=0.02)
+            self.assertTrue(0.8e-3 - 3e-4 < record["contact_m"] < 0.85e-3 + 3e-4)
+            self.assertLess(abs(record["drift_N_per_s"] - 2e-4), 6 * record["drift_uncertainty_N_per_s"] + 2e-5)
+
+    def test_a_library_from_measurements_alone(self):
+        out = Path(self.folder.name) / "alone"
+        out.mkdir()
+        for name, source in (("body.h5", self.out), ("curves.h5", self.measured)):
+            (out / name).write_bytes((source / name).read_bytes())
+        self.ok("fit", self.case, "--out", out)
+        self.ok("certify", self.case, "--out", out)
+        summary = json.loads(self.ok("inspect", out / "library.h5", "--json"))
+        self.assertEqual(summary["responses_fitted"], 9)
+        self.assertEqual(summary["certificate"]["basis"], "measured")
+        self.assertEqual([s["stage"] for s in summary["provenance"]], ["mesh", "import", "fit", "certify"])
+        self.assertEqual(summary["provenance"][1]["facts"]["licence"], "CC0-1.0")
+        # What will be rendered, against what was measured.
+        text = self.ok("compare", self.measured / "curves.h5", out / "library.h5", "--out", out / "compared")
+        self.assertIn("within the uncertainty", text)
+        compared = json.loads((out / "compared/comparison.json").read_text())
+        normal = compared["summaries"][0]
+        self.assertEqual(normal["curves"], 9)
+        self.assertLess(normal["normalised_rmse"], 0.03)
+        with open(out / "compared/comparison.csv", encoding="ascii", newline="") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), len(compared["curves"]))
+        self.assertAlmostEqual(float(rows[0]["rmse_N"]), compared["curves"][0]["rmse_N"])
+
+    def test_robot_logs_find_the_same_site(self):
+        out = Path(self.folder.name) / "robot"
+        self.ok("import", SOURCE / "data/measured/pad/robot.toml", "--body", self.out / "body.h5", "--out", out)
+        record = json.loads((out / "import.json").read_text())["records"][0]
+        self.assertEqual(record["vertex"], self.middle_vertex())
+        self.assertAlmostEqual(record["lateral"]["held_depth_m"], 1.4e-3, delta=5e-5)
+        with h5py.File(out / "curves.h5", "r") as file:
+            self.assertEqual(list(file["path/kind"][()]), [0, 1])
+            rows = slice(file["path/first_sample"][1], None)
+            along = file["sample/force"][rows] @ file["path/direction"][1]
+            travel = file["sample/displacement"][rows]
+            slope = np.polyfit(travel, along, 1)[0]
+        held = 1.4e-3
+        stiffness = (law(held + 1e-6) - law(held - 1e-6)) / 2e-6
+        self.assertAlmostEqual(slope, 2 / 3 * stiffness, delta=0.03 * stiffness)
+
+    def test_calibration_and_rescaling_agree(self):
+        """Neo-Hookean forces are proportional to the modulus: the calibrated Young's modulus over the
+        one of the case is the factor between measured and simulated curves."""
+        self.ok("precompute", self.case, "--out", self.out, "--threads", 2)
+        scaled = Path(self.folder.name) / "scaled"
+        text = self.ok("rescale", self.out / "curves.h5", self.measured / "curves.h5", "--out", scaled)
+        factor = float(text.split("measured = ")[1].split()[0])
+        self.ok("calibrate", "body", self.case, "--measured", self.measured / "curves.h5", "--young", "gel",
+                "--depths", 3, "--out", self.out, "--threads", 2)
+        found = json.loads((self.out / "calibration.json").read_text())
+        young = found["constants"][0]
+        self.assertEqual(young["name"], "young of gel")
+        self.assertAlmostEqual(young["value"] / 10e3, factor, delta=0.1 * factor)
+        self.assertLess(young["low"], young["value"])
+        self.assertEqual(len(found["sites"]), 9)
+        (scaled / "body.h5").write_bytes((self.out / "body.h5").read_bytes())
+        self.ok("fit", self.case, "--out", scaled)
+        self.ok("certify", self.case, "--out", scaled)
+        summary = json.loads(self.ok("inspect", scaled / "library.h5", "--json"))
+        self.assertEqual(summary["certificate"]["basis"], "simulated shape, measured scale")
+        with h5py.File(scaled / "curves.h5", "r") as a, h5py.File(self.out / "curves.h5", "r") as b:
+            ratio = a["sample/force"][()][1:] @ np.ones(3) / (b["sample/force"][()][1:] @ np.ones(3))
+            self.assertAlmostEqual(np.nanmedian(ratio), factor, delta=1e-3)
+
+    def refuse(self, words, text, name="bad.toml", body=True):
+        sidecar = Path(self.folder.name) / name
+        sidecar.write_text(text.replace('file = "', f'file = "{self.presses.parent}/'), encoding="utf-8")
+        out = Path(self.folder.name) / "none"
+        arguments = ["import", sidecar, "--out", out] + (["--body", self.out / "body.h5"] if body else [])
+        result = palpate(*arguments)
+        self.assertEqual(result.returncode, 2, result.stdout)
+        self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+        self.assertIn("; ", result.stderr)
+        for word in words:
+            self.assertIn(word, result.stderr)
+        self.assertFalse(out.exists())
+
+    def test_bad_sidecars_are_refused(self):
+        text = self.presses.read_text(encoding="utf-8")
+        self.refuse(["'licence' is missing"], text.replace('licence = "CC0-1.0"\n', ""))
+        self.refuse(["no column is named 'Load'", "'Compressive load'"], text.replace('"Compressive load"', '"Load"'))
+        self.refuse(["neither vertex nor site"], text.replace('site = ["25 mm", "25 mm", "20 mm"]\n', ""))
+        self.refuse(["mm away"], text.replace('"20 mm"]', '"40 mm"]'))
+        self.refuse(["the file says 'N', the sidecar says 'kN'"],
+                    text.replace("[path]", 'force_unit = "kN"\n\n[path]'))
+        self.refuse(["needs a body"], text, body=False)
+        self.refuse(["unknown key 'complience'"], text.replace("compliance =", "complience ="))
+        self.refuse(["cannot be read"], text.replace("press-25-25-1.csv", "press-none.csv"))
+
+    def test_fit_files_of_the_shipped_tables(self):
+        for fit in sorted((SOURCE / "data/measured").glob("*/*.toml")):
+            if fit.parent.name == "pad":
+                continue
+            with self.subTest(fit):
+                out = Path(self.folder.name) / "fits" / fit.parent.name / fit.stem
+                self.ok("calibrate", "tests", fit, "--out", out)
+                found = json.loads((out / "calibration.json").read_text())
+                for test in found["tests"]:
+                    self.assertGreater(test["r2"], 0.9)
+                if fit.parent.name == "clot-2021":
+                    self.assertAlmostEqual(found["constants"][0]["value"], 2378.17, delta=0.05)
+                    self.assertAlmostEqual(found["constants"][1]["value"], 4.28007, delta=5e-5)
+
+
+if __name__ == "__main__":
+    SOURCE = Path(sys.argv.pop(2))
+    PALPATE = sys.argv.pop(1)
+    unittest.main(verbosity=2)

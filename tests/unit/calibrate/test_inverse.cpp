@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "app/calibrate/inverse.hpp"
+#include "format/error.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::app {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr double kTop = 9e3, kBase = 25e3;  // Pa, the truth
+
+/// A soft half beside a stiff one, with a response vertex well inside each.
+Body two_halves() {
+  Body body = test::make_block(test::even(-0.02, 0.02, 4), test::even(-0.01, 0.01, 2),
+                               test::even(-0.01, 0, 2));
+  body.region_names = {"soft", "stiff"};
+  for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
+    double x = 0;
+    for (const std::int32_t n : body.tetrahedra[t]) {
+      x += 0.25 * body.nodes[static_cast<std::size_t>(n)][0];
+    }
+    body.tetrahedron_region[t] = x > 0 ? 1 : 0;
+  }
+  return body;
+}
+
+std::vector<std::int32_t> sites_of(const Body& body) {
+  std::vector<std::int32_t> sites;
+  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
+    const Vec3& x = body.nodes[static_cast<std::size_t>(body.response.node[v])];
+    if (body.response.is_site[v] != 0 && std::abs(std::abs(x[0]) - 0.01) < 1e-9 &&
+        std::abs(x[1]) < 1e-9) {
+      sites.push_back(static_cast<std::int32_t>(v));
+    }
+  }
+  return sites;
+}
+
+fem::CampaignSettings campaign(double soft, double stiff) {
+  fem::CampaignSettings settings;
+  settings.materials = {{"soft", {soft, 0.45}}, {"stiff", {stiff, 0.45}}};
+  settings.indentation.tool_radius = 0.008;
+  settings.indentation.depth = 0.002;
+  settings.indentation.increments = 2;
+  settings.indentation.force_tolerance = 1e-5;
+  return settings;
+}
+
+/// What a bench would have measured on the body: the model at the truth, on a fine grid.
+Curves truth_curves(const Body& body) {
+  fem::CampaignSettings settings = campaign(kTop, kBase);
+  settings.sites = sites_of(body);
+  std::vector<double> depths;
+  for (int i = 1; i <= 8; ++i) depths.push_back(0.002 * i / 8);
+  Curves curves;
+  curves.tool = {"sphere", 0.008, "frictionless"};
+  for (const auto& site : fem::run_sensitivity(body, settings, depths, {})) {
+    CurvePath path;
+    path.direction = body.response.inward[static_cast<std::size_t>(site.vertex)];
+    path.samples.emplace_back();
+    for (const auto& s : site.samples) {
+      CurveSample sample;
+      sample.displacement = s.depth;
+      sample.force = s.force * path.direction;
+      path.samples.push_back(sample);
+    }
+    curves.sites.push_back({site.vertex, SiteStatus::Complete, "", 0, {path}});
+  }
+  return curves;
+}
+
+InverseSettings settings_from(double soft, double stiff) {
+  InverseSettings settings;
+  settings.campaign = campaign(soft, stiff);
+  settings.sought = {{{"soft", fem::ConstantKind::Young}, 100, 1e6},
+                     {{"stiff", fem::ConstantKind::Young}, 100, 1e6}};
+  settings.depths = 4;
+  return settings;
+}
+
+TEST(Inverse, FindsTheModuliThatMadeTheCurves) {
+  const Body body = two_halves();
+  const Curves truth = truth_curves(body);
+  ASSERT_EQ(truth.sites.size(), 2U);
+  const InverseFit fit = calibrate_inverse(body, truth, settings_from(15e3, 15e3));
+  EXPECT_TRUE(fit.calibration.converged);
+  EXPECT_NEAR(fit.calibration.estimates[0].value, kTop, 2e-3 * kTop);
+  EXPECT_NEAR(fit.calibration.estimates[1].value, kBase, 2e-3 * kBase);
+  EXPECT_LT(fit.relative_rms, 1e-3);
+  EXPECT_LT(fit.evaluations, 15);
+}
+
+/// Noise on every sample and a shift of the contact point of every curve, both as stated: the 95 %
+/// intervals must hold the truth in about 95 % of many measurements.
+TEST(Inverse, IntervalsCoverTheTruth) {
+  constexpr int kTrials = 60;
+  const Body body = two_halves();
+  const Curves truth = truth_curves(body);
+  std::mt19937 engine(5);
+  std::normal_distribution<double> normal(0, 1);
+  std::array<int, 2> inside{};
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Curves measured = truth;
+    for (SiteCurves& site : measured.sites) {
+      CurvePath& path = site.paths.front();
+      path.contact_uncertainty = 40e-6;
+      const double shift = path.contact_uncertainty * normal(engine);
+      const double largest = norm(path.samples.back().force);
+      for (std::size_t i = 1; i < path.samples.size(); ++i) {
+        CurveSample& s = path.samples[i];
+        const CurveSample& before = truth.sites[0].paths[0].samples[i - 1];
+        const double slope = (norm(truth.sites[0].paths[0].samples[i].force) - norm(before.force)) /
+                             (s.displacement - before.displacement) * largest /
+                             norm(truth.sites[0].paths[0].samples.back().force);
+        const double noise = 0.01 * largest;
+        s.force = (norm(s.force) + slope * shift + noise * normal(engine)) * path.direction;
+        s.force_uncertainty = std::hypot(noise, slope * path.contact_uncertainty);
+      }
+    }
+    InverseSettings settings = settings_from(kTop, kBase);
+    settings.depths = 8;
+    const InverseFit fit = calibrate_inverse(body, measured, settings);
+    const std::array truth_values{kTop, kBase};
+    for (std::size_t i = 0; i < 2; ++i) {
+      const calibrate::Estimate& e = fit.calibration.estimates[i];
+      if (e.low <= truth_values[i] && truth_values[i] <= e.high) ++inside[i];
+    }
+  }
+  RecordProperty("soft", inside[0]);
+  RecordProperty("stiff", inside[1]);
+  // 57 expected, standard deviation 1.7.
+  for (const int count : inside) EXPECT_GE(count, 52);
+}
+
+/// One site cannot tell the two constants of its region apart: the fit must say so.
+TEST(Inverse, WarnsOfConstantsThatTheCurvesCannotTellApart) {
+  const Body body = two_halves();
+  Curves truth = truth_curves(body);
+  InverseSettings settings = settings_from(kTop, kBase);
+  settings.sought = {{{"soft", fem::ConstantKind::Young}, 100, 1e6},
+                     {{"soft", fem::ConstantKind::Poisson}, 0.1, 0.499}};
+  truth.sites.resize(1);
+  const InverseFit fit = calibrate_inverse(body, truth, settings);
+  EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("hardly tell them apart")));
+}
+
+TEST(Inverse, RefusesWhatDoesNotFitTogether) {
+  const Body body = two_halves();
+  Curves curves = truth_curves(body);
+  const auto refusal = [&](const Curves& measured, const InverseSettings& settings) {
+    try {
+      calibrate_inverse(body, measured, settings);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  InverseSettings settings = settings_from(kTop, kBase);
+  settings.campaign.indentation.tool_radius = 0.004;
+  EXPECT_THAT(refusal(curves, settings), HasSubstr("a tool of 8 mm radius, the case has 4 mm"));
+  settings = settings_from(kTop, kBase);
+  settings.sought.clear();
+  EXPECT_THAT(refusal(curves, settings), HasSubstr("no constant is sought"));
+  Curves none = curves;
+  for (SiteCurves& site : none.sites) site.paths.clear();
+  EXPECT_THAT(refusal(none, settings_from(kTop, kBase)), HasSubstr("no normal path"));
+  curves.sites.back().vertex = 9999;
+  EXPECT_THAT(refusal(curves, settings_from(kTop, kBase)), HasSubstr("no site of the body"));
+}
+
+}  // namespace
+}  // namespace palpate::app

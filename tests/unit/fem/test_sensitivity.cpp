@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fem/sensitivity.hpp"
+#include "format/error.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+/// A soft block on a stiffer base layer.
+Body layered() {
+  Body body = test::make_block(test::even(-0.02, 0.02, 6), test::even(-0.02, 0.02, 6),
+                               test::even(-0.018, 0, 4));
+  body.region_names = {"top", "base"};
+  for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
+    double z = 0;
+    for (const std::int32_t n : body.tetrahedra[t]) {
+      z += 0.25 * body.nodes[static_cast<std::size_t>(n)][2];
+    }
+    body.tetrahedron_region[t] = z < -0.009 ? 1 : 0;
+  }
+  return body;
+}
+
+std::int32_t middle(const Body& body) {
+  std::int32_t best = -1;
+  double least = 1;
+  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
+    const Vec3& x = body.nodes[static_cast<std::size_t>(body.response.node[v])];
+    const double distance = std::hypot(x[0], x[1]);
+    if (body.response.is_site[v] == 0 || distance >= least) continue;
+    least = distance;
+    best = static_cast<std::int32_t>(v);
+  }
+  return best;
+}
+
+CampaignSettings settings_of(const Body& body, double top, double base, double poisson) {
+  CampaignSettings settings;
+  settings.materials = {{"top", {top, poisson}}, {"base", {base, 0.45}}};
+  settings.indentation.tool_radius = 0.008;
+  settings.indentation.depth = 0.003;
+  settings.indentation.increments = 3;
+  settings.indentation.force_tolerance = 1e-8;
+  settings.sites = {middle(body)};
+  return settings;
+}
+
+const std::vector<double> kDepths{0.001, 0.003};
+
+TEST(Sensitivity, IsTheDerivativeByDifferences) {
+  const Body body = layered();
+  const std::vector<RegionConstant> constants{
+      {"top", ConstantKind::Young}, {"base", ConstantKind::Young}, {"top", ConstantKind::Poisson}};
+  const double top = 8e3, base = 20e3, nu = 0.45;
+  const auto exact =
+      run_sensitivity(body, settings_of(body, top, base, nu), kDepths, constants).front();
+  ASSERT_EQ(exact.samples.size(), 2U);
+  const auto force = [&](double a, double b, double c, std::size_t sample) {
+    return run_sensitivity(body, settings_of(body, a, b, c), kDepths, {})
+        .front()
+        .samples[sample]
+        .force;
+  };
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double h = 1e-3;
+    const double by_top =
+        (force(top * (1 + h), base, nu, i) - force(top * (1 - h), base, nu, i)) / (2 * h * top);
+    const double by_base =
+        (force(top, base * (1 + h), nu, i) - force(top, base * (1 - h), nu, i)) / (2 * h * base);
+    const double by_nu = (force(top, base, nu + 1e-4, i) - force(top, base, nu - 1e-4, i)) / 2e-4;
+    EXPECT_NEAR(exact.samples[i].slope[0], by_top, 1e-4 * std::abs(by_top));
+    EXPECT_NEAR(exact.samples[i].slope[1], by_base, 1e-4 * std::abs(by_base));
+    EXPECT_NEAR(exact.samples[i].slope[2], by_nu, 1e-3 * std::abs(by_nu));
+  }
+}
+
+/// Scale all moduli and the force scales: Euler's theorem for a homogeneous function of degree one.
+TEST(Sensitivity, ModuliObeyEulersTheorem) {
+  const Body body = layered();
+  const double top = 8e3, base = 20e3;
+  const auto site = run_sensitivity(body, settings_of(body, top, base, 0.45), kDepths,
+                                    {{"top", ConstantKind::Young}, {"base", ConstantKind::Young}})
+                        .front();
+  for (const ForceSensitivity& s : site.samples) {
+    EXPECT_GT(s.force, 0);
+    EXPECT_NEAR(top * s.slope[0] + base * s.slope[1], s.force, 1e-6 * s.force);
+    EXPECT_GT(s.slope[0], 0);
+    EXPECT_GT(s.slope[1], 0);
+  }
+}
+
+TEST(Sensitivity, RefusesARegionWithoutMaterial) {
+  const Body body = layered();
+  EXPECT_THROW(run_sensitivity(body, settings_of(body, 1e4, 1e4, 0.4), kDepths,
+                               {{"skin", ConstantKind::Young}}),
+               Error);
+}
+
+}  // namespace
+}  // namespace palpate::fem
