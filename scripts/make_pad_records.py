@@ -18,7 +18,8 @@ MODULUS = 16.7e-3  # MPa, E/(1 - nu^2) of the pad at its middle
 DEPTH = 1.4  # mm
 COMPLIANCE = 0.05  # mm/N, of the machine
 TOP = 20.0  # mm, height of the pad
-SITES = [(x, y) for x in (12.5, 25.0, 37.5) for y in (12.5, 25.0, 37.5)]
+SITES = [(x, y) for x in (10, 20, 30, 40) for y in (10, 20, 30, 40)]
+REPEATED = (20, 20)  # pressed three times, and dragged by the robot
 
 
 def force(depth, stiffness=1.0):
@@ -32,13 +33,15 @@ def force(depth, stiffness=1.0):
 def press(rng, stiffness, contact):
     """Rows of time s, displacement mm, force N: approach, press, release."""
     rows = []
-    speed, rate = 0.5, 100
+    speed, rate = 0.5, 60
     leg = (contact + DEPTH) / speed
     for i in range(int(2 * leg * rate)):
         t = i / rate
         back = t > leg
         x = speed * (2 * leg - t if back else t)
-        f = force(x - contact, stiffness) * (0.85 if back else 1.0)
+        # The release is softer, the more the farther it has come.
+        loss = 0.5 * (1 - (x - contact) / DEPTH) if back and x > contact else 0.0
+        f = force(x - contact, stiffness) * (1 - loss)
         rows.append((t, x + COMPLIANCE * f, f + 0.05 + 2e-4 * t + rng.gauss(0, 3e-4)))
     return rows
 
@@ -48,7 +51,7 @@ def bluehill(path, label, rows):
         out.write(f'"Specimen label","{label}"\r\n"Method","indentation, synthetic record"\r\n"Rate","0.5","mm/s"\r\n\r\n')
         out.write('"Time","Compressive extension","Compressive load"\r\n"(s)","(mm)","(N)"\r\n')
         for t, x, f in rows:
-            out.write(f'"{t:.2f}","{x:.4f}","{f:.5f}"\r\n')
+            out.write(f'"{t:.3f}","{x:.4f}","{f:.5f}"\r\n')
 
 
 def robot(path, rng, x, y):
@@ -71,14 +74,14 @@ def main(folder):
     rng = random.Random(1)
     folder.mkdir(parents=True, exist_ok=True)
     for number, (x, y) in enumerate(SITES):
-        # The middle is pressed three times, as repeats; the pad differs by a few percent over its top.
-        repeats = 3 if (x, y) == (25.0, 25.0) else 1
+        # The pad differs by a few percent over its top.
+        repeats = 3 if (x, y) == REPEATED else 1
         local = 1 + 0.04 * math.sin(number)
         for repeat in range(repeats):
             stiffness = local * (1 + rng.gauss(0, 0.01))
             rows = press(rng, stiffness, 0.8 + 0.05 * rng.random())
             bluehill(folder / f"press-{x:g}-{y:g}-{repeat + 1}.csv", f"pad, site {x:g} {y:g}", rows)
-    robot(folder / "drag-25-25.csv", rng, 25.0, 25.0)
+    robot(folder / "drag-20-20.csv", rng, *REPEATED)
 
 
 if __name__ == "__main__":

@@ -99,7 +99,9 @@ class Inverse {
     problem.known_scatter = known_;
     problem.confidence = settings_.confidence;
     problem.max_iterations = 40;
-    problem.tolerance = 1e-7;
+    // Each evaluation is a campaign: stop well within any interval.
+    problem.tolerance = 1e-6;
+    problem.step_tolerance = 1e-4;
     problem.model = [&](const double* c, double* r, double* J) {
       return evaluate(c, problem.constants.size(), r, J);
     };

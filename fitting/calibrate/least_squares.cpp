@@ -211,7 +211,7 @@ std::optional<Calibration> try_minimise(const LeastSquares& problem) {
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = problem.max_iterations;
   options.function_tolerance = problem.tolerance;
-  options.parameter_tolerance = 1e-10;
+  options.parameter_tolerance = problem.step_tolerance;
   options.gradient_tolerance = 1e-14;
   options.logging_type = ceres::SILENT;
   ceres::Solver::Summary summary;

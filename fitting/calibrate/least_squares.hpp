@@ -26,7 +26,8 @@ struct LeastSquares {
   bool known_scatter = false;
   double confidence = 0.95;
   int max_iterations = 200;
-  double tolerance = 1e-12;  ///< relative, of the cost
+  double tolerance = 1e-12;       ///< relative, of the cost
+  double step_tolerance = 1e-10;  ///< relative, of the constants
 };
 
 struct Estimate {
