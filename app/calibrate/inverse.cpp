@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// What is left of the uncertainty of a force beside the contact point, at least.
-constexpr double kLeastOwnShare = 0.1;
+constexpr double kLeastOwnShare = 0.25;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& problem,
                          const std::string& remedy) {
@@ -40,7 +40,8 @@ double& value_of(fem::CampaignSettings& campaign, const fem::RegionConstant& con
 /// One measured curve at the depths that are compared.
 struct Target {
   std::int32_t vertex = -1;
-  std::vector<double> depth, force, uncertainty, slope;
+  std::vector<double> depth, force, uncertainty;
+  std::vector<double> slope;  ///< N/m, of the force; from the model, for a measured one is noisy
   double contact_uncertainty = kUnknown;
   int shift = -1;  ///< index of its contact shift among the constants
 };
@@ -62,7 +63,6 @@ Target target_of(const SiteCurves& site, const CurvePath& path, const std::vecto
     if (depth > x.back() * (1 + 1e-9)) break;
     target.depth.push_back(depth);
     target.force.push_back(force.value(depth));
-    target.slope.push_back(force.slope(depth));
     target.uncertainty.push_back(known ? doubt.value(depth) : kUnknown);
   }
   return target;
@@ -149,6 +149,26 @@ class Inverse {
     }
   }
 
+  /// The slopes of the first evaluation, scaled to the measured forces, serve throughout: weights
+  /// that moved with the constants would bias them.
+  void freeze_slopes() {
+    for (std::size_t t = 0; t < targets_.size(); ++t) {
+      Target& target = targets_[t];
+      std::vector<double> x{0}, f{0};
+      double product = 0, square = 0;
+      for (std::size_t i = 0; i < target.depth.size(); ++i) {
+        x.push_back(model_[t].samples[i].depth);
+        f.push_back(model_[t].samples[i].force);
+        product += target.force[i] * f.back();
+        square += f.back() * f.back();
+      }
+      const compare::MonotoneCubic curve(x, f);
+      for (const double depth : target.depth) {
+        target.slope.push_back(product / square * curve.slope(depth));
+      }
+    }
+  }
+
   /// The model at these constants, remembered: the solver asks for values and slopes separately.
   bool solve(const std::vector<double>& sought) {
     if (sought == at_) return usable_;
@@ -174,6 +194,7 @@ class Inverse {
       line += ", failed at " + failure_;
     }
     if (settings_.log) settings_.log(line);
+    if (usable_ && targets_.front().slope.empty()) freeze_slopes();
     return usable_;
   }
 

@@ -71,7 +71,7 @@ class Measured(unittest.TestCase):
             self.assertTrue(np.all(np.isnan(file["sample/strain_energy"][rows])))
             # The pad differs over its top: 4 % times the sine of the number of the site.
             truth = law(depth) * (1 + 0.04 * math.sin(5))
-            self.assertTrue(np.all(np.abs(force - truth) <= 3.5 * uncertainty + 1e-9), (force - truth) / uncertainty)
+            self.assertTrue(np.all(np.abs(force - truth) <= 3.5 * uncertainty + 1e-9), (force - truth, uncertainty))
             self.assertLess(uncertainty[-1], 0.06 * force[-1])
 
     def test_the_account_says_what_was_found(self):
@@ -148,8 +148,8 @@ class Measured(unittest.TestCase):
         summary = json.loads(self.ok("inspect", scaled / "library.h5", "--json"))
         self.assertEqual(summary["certificate"]["basis"], "simulated shape, measured scale")
         with h5py.File(scaled / "curves.h5", "r") as a, h5py.File(self.out / "curves.h5", "r") as b:
-            ratio = a["sample/force"][()][1:] @ np.ones(3) / (b["sample/force"][()][1:] @ np.ones(3))
-            self.assertAlmostEqual(np.nanmedian(ratio), factor, delta=1e-3)
+            ratio = np.abs(a["sample/force"][()]).sum() / np.abs(b["sample/force"][()]).sum()
+            self.assertAlmostEqual(ratio, factor, delta=1e-3)
 
     def refuse(self, words, text, name="bad.toml", body=True):
         sidecar = Path(self.folder.name) / name

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "app/calibrate/inverse.hpp"
+#include "fitting/compare/compare.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -113,16 +114,17 @@ TEST(Inverse, IntervalsCoverTheTruth) {
       CurvePath& path = site.paths.front();
       path.contact_uncertainty = 40e-6;
       const double shift = path.contact_uncertainty * normal(engine);
-      const double largest = norm(path.samples.back().force);
+      std::vector<double> x, f;
+      for (const CurveSample& s : path.samples) {
+        x.push_back(s.displacement);
+        f.push_back(norm(s.force));
+      }
+      const compare::MonotoneCubic curve(x, f);
+      const double noise = 0.01 * f.back();
       for (std::size_t i = 1; i < path.samples.size(); ++i) {
         CurveSample& s = path.samples[i];
-        const CurveSample& before = truth.sites[0].paths[0].samples[i - 1];
-        const double slope = (norm(truth.sites[0].paths[0].samples[i].force) - norm(before.force)) /
-                             (s.displacement - before.displacement) * largest /
-                             norm(truth.sites[0].paths[0].samples.back().force);
-        const double noise = 0.01 * largest;
-        s.force = (norm(s.force) + slope * shift + noise * normal(engine)) * path.direction;
-        s.force_uncertainty = std::hypot(noise, slope * path.contact_uncertainty);
+        s.force = (curve.value(x[i] + shift) + noise * normal(engine)) * path.direction;
+        s.force_uncertainty = std::hypot(noise, curve.slope(x[i]) * path.contact_uncertainty);
       }
     }
     InverseSettings settings = settings_from(kTop, kBase);
