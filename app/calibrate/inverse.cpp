@@ -15,8 +15,9 @@ namespace palpate::app {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-/// What is left of the uncertainty of a force beside the contact point, at least.
-constexpr double kLeastOwnShare = 0.25;
+/// What is left of the uncertainty of a force beside the contact point, at least: the difference of
+/// two uncertainties is itself uncertain, and one that is too small makes intervals too narrow.
+constexpr double kLeastOwnShare = 0.5;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& problem,
                          const std::string& remedy) {
