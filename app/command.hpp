@@ -31,6 +31,8 @@ void add_inspect_command(CLI::App& root, Action& action);
 void add_export_command(CLI::App& root, Action& action);
 void add_import_command(CLI::App& root, Action& action);
 void add_rescale_command(CLI::App& root, Action& action);
+void add_run_command(CLI::App& root, Action& action);
+void add_experiment_command(CLI::App& root, Action& action);
 void add_report_command(CLI::App& root, Action& action);
 
 }  // namespace palpate::app

@@ -54,6 +54,8 @@ void add_commands(CLI::App& root, Action& action) {
   add_rescale_command(root, action);
   add_calibrate_command(root, action);
   add_report_command(root, action);
+  add_run_command(root, action);
+  add_experiment_command(root, action);
 }
 
 /// A first argument that is no subcommand: CLI11 would only say that one is missing.

@@ -10,23 +10,24 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
-#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
-#include <new>
 #include <string>
 
 #include "format/error.hpp"
 #include "palpate_version.hpp"
+#include "runtime/c_boundary.hpp"
 #include "runtime/handles.hpp"
 
 using palpate::Vec3;
 using palpate::operator-;
 using palpate::runtime::ContactObservation;
 using palpate::runtime::ContactSettings;
+using palpate::runtime::fail;
+using palpate::runtime::give;
+using palpate::runtime::guarded;
 
 namespace {
 
@@ -34,25 +35,6 @@ constexpr double kDefaultTankCap = 5e-3;   // J
 constexpr double kMostSearchRate = 10000;  // Hz
 
 thread_local char last_error[512] = "";
-
-int fail(int status, const char* text) noexcept {
-  std::snprintf(last_error, sizeof last_error, "%s", text);
-  return status;
-}
-
-/// Runs what may throw and turns the exception into a status and a message.
-template <typename Action>
-int guarded(Action action) noexcept {
-  try {
-    return action();
-  } catch (const std::bad_alloc&) {
-    return fail(PALPATE_ERROR_MEMORY, "out of memory");
-  } catch (const std::exception& e) {
-    return fail(PALPATE_ERROR_FORMAT, e.what());
-  } catch (...) {
-    return fail(PALPATE_ERROR_FORMAT, "unknown failure while reading the library");
-  }
-}
 
 // Sizes of the structs in the first header that was published: a smaller one is a mistake, one in
 // between is an older header, a larger one a newer.
@@ -62,14 +44,6 @@ constexpr std::uint32_t kFirstInfo = sizeof(palpate_library_info);
 static_assert(sizeof(palpate_settings) >= kFirstSettings);
 
 constexpr double kRigid = 1e-9;  // what rounding may leave of the rotation's orthonormality
-
-/// Gives the caller the fields that both headers know; what only a newer one knows is left alone.
-template <class Struct>
-void give(const Struct& whole, Struct* to, std::uint32_t size) noexcept {
-  const std::uint32_t known = std::min<std::uint32_t>(size, sizeof(Struct));
-  std::memcpy(to, &whole, known);
-  to->size = size;
-}
 
 /// The bytes as a file that lasts as long as the object, for the reader of files; HDF5 asks for a
 /// path that exists. In the folder for temporary files.
@@ -130,6 +104,11 @@ palpate_observation translate(const ContactObservation& seen) noexcept {
 
 }  // namespace
 
+int palpate::runtime::fail(int status, const char* text) noexcept {
+  std::snprintf(last_error, sizeof last_error, "%s", text);
+  return status;
+}
+
 palpate_library_info palpate_library::describe(const palpate::Library& library,
                                                const palpate::runtime::Surface& surface) {
   palpate_library_info info{};
@@ -182,7 +161,7 @@ int palpate_library_load(const char* path, palpate_library** library) {
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: library is null");
   *library = nullptr;
   if (path == nullptr) return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: path is null");
-  return guarded([&] {
+  return guarded(PALPATE_ERROR_FORMAT, [&] {
     if (!std::ifstream(path, std::ios::binary)) {
       const std::string text = std::string(path) + ": cannot be opened; check path and rights";
       return fail(PALPATE_ERROR_FILE, text.c_str());
@@ -198,7 +177,7 @@ int palpate_library_load_memory(const void* bytes, size_t size, palpate_library*
   *library = nullptr;
   if (bytes == nullptr || size == 0)
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load_memory: there are no bytes");
-  return guarded([&] {
+  return guarded(PALPATE_ERROR_FORMAT, [&] {
     const MemoryFile file(bytes, size);
     *library = new palpate_library(palpate::read_library(file.path()));
     return static_cast<int>(PALPATE_OK);
@@ -262,7 +241,7 @@ int palpate_state_create(const palpate_library* library, const palpate_settings*
   contact.friction = chosen.friction < 0 ? library->info.friction : chosen.friction;
   contact.tank_cap = chosen.tank_cap;
   contact.steepness = chosen.steepness > 0 ? chosen.steepness : library->steepness;
-  return guarded([&] {
+  return guarded(PALPATE_ERROR_FORMAT, [&] {
     *state = new palpate_state(*library, contact, chosen.search_rate);
     return static_cast<int>(PALPATE_OK);
   });

@@ -135,6 +135,53 @@ PALPATE_API uint32_t palpate_step(palpate_state* state, const double position[3]
                                   const double velocity[3], double dt, double force[3]);
 PALPATE_API int palpate_observe(const palpate_state* state, palpate_observation* observation);
 
+/* A force loop in a real-time thread of its own, for programs that have none. While it runs the
+ * state belongs to it. Everything in docs/devices.md under "Safety" holds for it. */
+
+/* How to reach a device. Called from the loop; must not block for long. */
+typedef struct palpate_device {
+  uint32_t size; /* sizeof(palpate_device) */
+  void* context; /* handed to the functions */
+  /* 0: done; 1: no new sample, the last one again; negative: the device is lost. */
+  int (*read)(void* context, double position[3], double velocity[3]);
+  /* 0: done; 1: saturated; negative: the device is lost. force: on the tool, N. */
+  int (*command)(void* context, const double force[3]);
+  void (*halt)(void* context); /* no force from now on; from any thread; may be NULL */
+} palpate_device;
+
+typedef struct palpate_loop_settings {
+  uint32_t size;    /* sizeof(palpate_loop_settings), set by palpate_loop_settings_default */
+  int32_t priority; /* of SCHED_FIFO, 1 to 99; 0 = the ordinary scheduler; default 80 */
+  int32_t core;     /* processor to stay on; -1 = any */
+  double rate;      /* Hz; default 1000 */
+  double ramp;      /* s, from no force to full force; default 0.5 */
+  double max_force; /* N; default: no clamp */
+  double max_speed; /* m/s, beyond it the force is cut off; default 3 */
+  double watchdog;  /* s without a step after which the device is halted; default 0.02 */
+} palpate_loop_settings;
+
+typedef struct palpate_loop_report {
+  uint32_t size;         /* sizeof(palpate_loop_report), set by the caller */
+  uint32_t lost, halted; /* 1: the device went away; the watchdog halted it */
+  uint64_t steps, overruns, late, cut_off, clamped, saturated, stale, not_finite;
+  double wake_median, wake_p999, wake_longest;          /* s late for a step */
+  double compute_median, compute_p999, compute_longest; /* s for a step with the device's calls */
+  char missing_rights[256]; /* one line on what the system refused; empty: nothing */
+} palpate_loop_report;
+
+typedef struct palpate_loop palpate_loop;
+
+PALPATE_API void palpate_loop_settings_default(palpate_loop_settings* settings);
+/* Starts at once. The state and what the device needs must outlive the loop. settings may be NULL.
+ */
+PALPATE_API int palpate_loop_start(palpate_state* state, const palpate_device* device,
+                                   const palpate_loop_settings* settings, palpate_loop** loop);
+/* 1 until it has been stopped or the device is lost. */
+PALPATE_API int palpate_loop_running(const palpate_loop* loop);
+/* Ends the loop after the step under way, commands no force, waits, reports (report may be NULL)
+ * and frees the loop. */
+PALPATE_API int palpate_loop_stop(palpate_loop* loop, palpate_loop_report* report);
+
 #ifdef __cplusplus
 }
 #endif

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -259,6 +261,72 @@ TEST_F(PalpateApi, AProgramWithANewerHeaderGetsWhatThisLibraryKnows) {
   EXPECT_EQ(newer.known.element, -1);
   newer.known.size = 8;
   EXPECT_EQ(palpate_observe(state_, &newer.known), PALPATE_ERROR_ARGUMENT);
+}
+
+/// A device of the embedding program: presses slowly, counts, and may vanish.
+struct OwnDevice {
+  static int read(void* self, double position[3], double velocity[3]) {
+    auto& d = *static_cast<OwnDevice*>(self);
+    position[0] = 0.03, position[1] = 0.033, position[2] = 0.0005 - 2e-5 * d.reads;
+    velocity[0] = velocity[1] = 0, velocity[2] = -0.02;
+    return ++d.reads > d.lasts ? -1 : 0;
+  }
+  static int command(void* self, const double force[3]) {
+    auto& d = *static_cast<OwnDevice*>(self);
+    d.largest = std::max(d.largest, std::abs(force[2]));
+    d.last = std::abs(force[2]);
+    return 0;
+  }
+  palpate_device functions() { return {sizeof(palpate_device), this, read, command, nullptr}; }
+  int reads = 0, lasts = 150;
+  double largest = 0, last = 1;
+};
+
+TEST_F(PalpateApi, RunsALoopOfItsOwnUntilTheDeviceIsLost) {
+  OwnDevice own;
+  const palpate_device device = own.functions();
+  palpate_loop_settings settings;
+  palpate_loop_settings_default(&settings);
+  settings.priority = 0;
+  settings.rate = 2000;
+  settings.ramp = 0;
+  settings.watchdog = 10;
+  palpate_loop* loop = nullptr;
+  ASSERT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_OK)
+      << palpate_last_error();
+  for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  palpate_loop_report report{};
+  report.size = sizeof report;
+  EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
+  EXPECT_EQ(report.lost, 1U);
+  EXPECT_EQ(report.halted, 0U);
+  EXPECT_EQ(report.steps, 151U);
+  EXPECT_GT(report.compute_median, 0);
+  EXPECT_GE(report.compute_longest, report.compute_median);
+  // 100 k z^2 at the last position before it was lost, less the offset of one step.
+  EXPECT_NEAR(own.largest, 100 * kStiffness * std::pow(0.0005 - 2e-5 * 149 + 2e-5, 2), 2e-3);
+  EXPECT_EQ(own.last, 0);
+}
+
+TEST_F(PalpateApi, RefusesALoopThatCannotRun) {
+  OwnDevice own;
+  palpate_device device = own.functions();
+  palpate_loop* loop = nullptr;
+  palpate_loop_settings settings;
+  palpate_loop_settings_default(&settings);
+  settings.rate = 0;
+  EXPECT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_ERROR_ARGUMENT);
+  EXPECT_NE(std::strstr(palpate_last_error(), "rate"), nullptr);
+  settings.size = 3;
+  EXPECT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_ERROR_ARGUMENT);
+  device.read = nullptr;
+  EXPECT_EQ(palpate_loop_start(state_, &device, nullptr, &loop), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_loop_start(nullptr, &device, nullptr, &loop), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(loop, nullptr);
+  EXPECT_EQ(palpate_loop_running(nullptr), 0);
+  EXPECT_EQ(palpate_loop_stop(nullptr, nullptr), PALPATE_ERROR_ARGUMENT);
 }
 
 TEST_F(PalpateApi, ThreadsMayShareALibrary) {

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <csignal>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "app/pipeline/device_profile.hpp"
+#include "app/pipeline/workspace.hpp"
+#include "app/run/certified.hpp"
+#include "app/run/device_choice.hpp"
+#include "app/run/live_session.hpp"
+#include "app/simulate/hand_path.hpp"
+#include "format/error.hpp"
+#include "format/sha256.hpp"
+
+namespace palpate::app {
+namespace {
+
+struct RunOptions {
+  std::string library, profile, recording = "recording.h5";
+  DeviceChoice device;
+  LiveSettings live;
+  std::vector<double> at_mm{0, 0, 0};
+  bool list = false, uncertified = false;
+};
+
+std::atomic<bool> interrupted{false};
+
+/// Ctrl-C ends the session, not the process, while this lives.
+class StopOnInterrupt {
+ public:
+  StopOnInterrupt() {
+    interrupted = false;
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = true; };
+    sigaction(SIGINT, &action, &before_);
+  }
+  ~StopOnInterrupt() { sigaction(SIGINT, &before_, nullptr); }
+  StopOnInterrupt(const StopOnInterrupt&) = delete;
+  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
+
+ private:
+  struct sigaction before_ {};
+};
+
+int list_devices() {
+  say("devices, for --device:");
+  for (const DeviceName& device : device_names()) say("  {:<16} {}", device.name, device.about);
+  return kExitDone;
+}
+
+/// A hand that presses and slides in the middle of the body, for the simulated device.
+std::function<runtime::HandTarget(double)> scripted_hand(const Library& library,
+                                                         const runtime::Pose& pose) {
+  constexpr double kSpacing = 0.0005;  // m
+  const SimulateSection script;
+  const auto path = std::make_shared<HandPath>(
+      script, straight_path(library, middle_triangle(library), script.slide_length, kSpacing));
+  return [path, pose](double time) {
+    const HandState hand = path->at(time);
+    return runtime::HandTarget{pose.to_world(hand.position), pose.turn(hand.velocity)};
+  };
+}
+
+fitting::DeviceProfile profile_of(const RunOptions& options) {
+  if (!options.profile.empty()) return read_device_profile(options.profile);
+  fitting::DeviceProfile unknown;
+  unknown.name = options.device.name;
+  unknown.damping = unknown.peak_force = std::nan("");
+  return unknown;
+}
+
+void say_quantiles(const char* what, const runtime::LatencyHistogram& h) {
+  say("  {}: median {:.1f} us, 99 % {:.1f}, 99.9 % {:.1f}, longest {:.1f}", what,
+      1e-3 * h.quantile(0.5), 1e-3 * h.quantile(0.99), 1e-3 * h.quantile(0.999),
+      1e-3 * static_cast<double>(h.largest()));
+}
+
+void summarize(const LiveOutcome& outcome, const std::string& file) {
+  const runtime::LoopCounts& c = outcome.counts;
+  if (!outcome.missing_rights.empty()) say("  without: {}", outcome.missing_rights);
+  say("run: {} steps -> {}", c.steps, file);
+  say_quantiles("woken late by", c.wake);
+  say_quantiles("step took", c.compute);
+  say("  overruns {}, cut off {}, clamped {}, saturated {}, stale {}, not recorded {}", c.overruns,
+      c.cut_off, c.clamped, c.saturated, c.stale, c.unrecorded);
+}
+
+void write(const RunOptions& options, const Library& library, const std::string& device,
+           const LiveOutcome& outcome) {
+  Recording recording;
+  recording.device = device;
+  recording.library_sha256 = sha256_of_file(options.library);
+  recording.rate = options.live.loop.rate;
+  recording.friction = options.live.contact.friction;
+  recording.steps = outcome.steps;
+  recording.provenance = library.provenance;
+  recording.provenance.steps.push_back(
+      make_provenance_step("run",
+                           fmt::format("device = \"{}\"\nrate = {:g}\nuncertified = {}\n", device,
+                                       options.live.loop.rate, options.uncertified),
+                           {options.library}));
+  write_recording(options.recording, recording);
+}
+
+void settle(RunOptions& options, const Library& library, const palpate_library& body) {
+  const fitting::DeviceProfile profile = profile_of(options);
+  if (!options.uncertified) {
+    require_certified(library, options.library, profile, options.live.loop.rate);
+  }
+  LiveSettings& live = options.live;
+  if (live.contact.friction < 0) live.contact.friction = library.certificate.friction;
+  live.contact.steepness = body.steepness;
+  if (profile.peak_force > 0) {
+    live.safety.max_force = std::min(live.safety.max_force, profile.peak_force);
+  }
+  for (std::size_t i = 0; i < 3; ++i) live.pose.position[i] = 1e-3 * options.at_mm[i];
+  live.loop.watchdog = live.safety.watchdog;
+  options.device.rate = live.loop.rate;
+}
+
+int run(RunOptions options) {
+  if (options.list) return list_devices();
+  if (options.library.empty()) {
+    throw Error(ErrorKind::Configuration, "run", "no library was given",
+                "name a library.h5, or --list the devices");
+  }
+  const Library library = read_library(options.library);
+  const palpate_library body(library);
+  settle(options, library, body);
+  const auto device = make_device(options.device, scripted_hand(library, options.live.pose));
+  const StopOnInterrupt stop_on_interrupt;
+  say("run: {} at {:g} Hz; Ctrl-C ends it", options.device.name, options.live.loop.rate);
+  const LiveOutcome outcome = run_live(*device, body, options.live, interrupted);
+  write(options, library, device->name(), outcome);
+  summarize(outcome, options.recording);
+  if (outcome.counts.lost) {
+    throw Error(ErrorKind::Configuration, device->name(), "the device was lost",
+                "check cable and power; what was recorded is in " + options.recording);
+  }
+  if (outcome.halted) {
+    throw Error(
+        ErrorKind::Internal, device->name(), "the watchdog halted the device",
+        "lower --rate or the load of the machine; what was recorded is in " + options.recording);
+  }
+  return kExitDone;
+}
+
+void add_device_options(CLI::App& command, RunOptions& o) {
+  command.add_option("--device", o.device.name, "Which device; see --list")
+      ->default_val("simulated");
+  command.add_flag("--list", o.list, "List the devices and end");
+  command.add_option("--driver", o.device.driver, "Library of the vendor, if not where usual");
+  command.add_option("--unit", o.device.unit, "Which one of several: number, name or identity");
+  command.add_option("--lab", o.device.lab_file, "Configuration of a lab-built device (TOML)");
+  command.add_option("--host", o.device.host, "Of the Haply Inverse Service");
+  command.add_option("--port", o.device.port, "Of the Haply Inverse Service");
+  command.add_option("--profile", o.profile, "Profile of the device (TOML), see data/devices");
+  command.add_flag("--uncertified", o.uncertified,
+                   "Render although nothing certifies that the device stays at rest");
+}
+
+void add_loop_options(CLI::App& command, RunOptions& o) {
+  command.add_option("--rate", o.live.loop.rate, "Force steps a second, Hz (default: 1000)");
+  command.add_option("--duration", o.live.duration, "s; 0 until Ctrl-C")
+      ->check(CLI::NonNegativeNumber);
+  command.add_option("--friction", o.live.contact.friction,
+                     "mu (default: that of the certificate)");
+  command.add_option("--max-force", o.live.safety.max_force, "N, clamp of the commanded force");
+  command.add_option("--max-speed", o.live.safety.max_speed, "m/s, beyond it the force is cut off");
+  command.add_option("--ramp", o.live.safety.ramp, "s, from no force to full force");
+  command.add_option("--watchdog", o.live.safety.watchdog, "s without a step until the force ends");
+  command
+      .add_option("--priority", o.live.loop.realtime.priority,
+                  "Of SCHED_FIFO; 0 for the ordinary scheduler")
+      ->check(CLI::Range(0, 99));
+  command.add_option("--core", o.live.loop.realtime.core, "Processor for the force loop");
+  command.add_option("--search-rate", o.live.search_rate, "Hz, of the search for triangles");
+  command.add_option("--at-mm", o.at_mm, "Where the origin of the body lies for the device: X Y Z")
+      ->expected(3);
+  command.add_option("--out", o.recording, "Recording (default: recording.h5)");
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& root, Action& action) {
+  CLI::App* command = root.add_subcommand("run", "Render library.h5 on a device in real time");
+  command->footer(
+      "Example: palpate run out/cylinder/library.h5 --device force-dimension --profile my.toml");
+  const auto options = std::make_shared<RunOptions>();
+  options->live.contact.friction = -1;
+  command->add_option("LIBRARY", options->library, "Response library (library.h5)");
+  add_device_options(*command, *options);
+  add_loop_options(*command, *options);
+  command->callback([options, &action] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// From the name of a device to its binding.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "runtime/device.hpp"
+#include "runtime/device_virtual.hpp"
+
+namespace palpate::app {
+
+struct DeviceChoice {
+  std::string name;      ///< one of device_names()
+  std::string driver;    ///< path of the vendor's library; empty: where the system finds it
+  std::string unit;      ///< which one of several: number, name or identity; empty: the default
+  std::string lab_file;  ///< configuration of a lab-built device
+  std::string host = "localhost";  ///< of the Haply service
+  std::uint16_t port = 10001;
+  double rate = 1000;  ///< Hz, of the simulated device
+};
+
+struct DeviceName {
+  std::string name, about;
+};
+const std::vector<DeviceName>& device_names();
+
+/// Not opened yet. `hand`: of the simulated device. @throws Error(Configuration) for an unknown
+/// name, with the nearest, or a configuration that is no good.
+std::unique_ptr<runtime::Device> make_device(
+    const DeviceChoice& choice, const std::function<runtime::HandTarget(double)>& hand);
+
+/// The lab-built device of a TOML file; see docs/devices.md. @throws Error(Configuration).
+std::unique_ptr<runtime::Device> read_lab_device(const std::string& file,
+                                                 const std::string& driver);
+
+}  // namespace palpate::app

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every function of the C interface needs: messages, and an end to exceptions.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include "runtime/palpate.h"
+
+namespace palpate::runtime {
+
+/// Remembers the message for palpate_last_error of this thread and returns the status.
+int fail(int status, const char* text) noexcept;
+
+/// Runs what may throw and turns the exception into a status and a message; `status` is that of an
+/// exception with a message of its own.
+template <typename Action>
+int guarded(int status, Action action) noexcept {
+  try {
+    return action();
+  } catch (const std::bad_alloc&) {
+    return fail(PALPATE_ERROR_MEMORY, "out of memory");
+  } catch (const std::exception& e) {
+    return fail(status, e.what());
+  } catch (...) {
+    return fail(status, "unknown failure");
+  }
+}
+
+/// Gives the caller the fields that both headers know; what only a newer one knows is left alone.
+template <class Struct>
+void give(const Struct& whole, Struct* to, std::uint32_t size) noexcept {
+  const std::uint32_t known = std::min<std::uint32_t>(size, sizeof(Struct));
+  std::memcpy(to, &whole, known);
+  to->size = size;
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// The force loop of the C interface.
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <string>
+
+#include "runtime/c_boundary.hpp"
+#include "runtime/loop_thread.hpp"
+#include "runtime/palpate.h"
+
+namespace {
+
+using palpate::Vec3;
+using palpate::runtime::DeviceReading;
+using palpate::runtime::DeviceStatus;
+
+/// The functions of the caller behind the interface of the devices.
+class CallerDevice : public palpate::runtime::Device {
+ public:
+  explicit CallerDevice(const palpate_device& functions) : functions_(functions) {}
+
+  std::string name() const override { return "device of the embedding program"; }
+  void open() override {}
+  void close() noexcept override {}
+  DeviceStatus read(DeviceReading& reading) noexcept override {
+    const int result =
+        functions_.read(functions_.context, reading.position.data(), reading.velocity.data());
+    if (result < 0) return DeviceStatus::Lost;
+    return result == 0 ? DeviceStatus::Good : DeviceStatus::Late;
+  }
+  DeviceStatus command(const Vec3& force) noexcept override {
+    const Vec3 given = halted_ ? Vec3{} : force;
+    const int result = functions_.command(functions_.context, given.data());
+    if (result < 0) return DeviceStatus::Lost;
+    return result == 0 ? DeviceStatus::Good : DeviceStatus::Saturated;
+  }
+  void halt() noexcept override {
+    halted_ = true;
+    if (functions_.halt != nullptr) functions_.halt(functions_.context);
+  }
+
+ private:
+  palpate_device functions_;
+  std::atomic<bool> halted_{false};
+};
+
+palpate::runtime::SafetySettings safety_of(const palpate_loop_settings& s) {
+  return {s.ramp, s.max_force, s.max_speed, s.watchdog};
+}
+
+palpate::runtime::LoopThreadSettings thread_of(const palpate_loop_settings& s) {
+  return {s.rate, s.watchdog, {s.priority, s.core}};
+}
+
+}  // namespace
+
+struct palpate_loop {
+  palpate_loop(palpate_state& state, const palpate_device& functions,
+               const palpate_loop_settings& settings)
+      : device(functions),
+        loop(device, state, safety_of(settings), nullptr),
+        thread(loop, device, thread_of(settings)) {}
+
+  CallerDevice device;
+  palpate::runtime::ForceLoop loop;
+  palpate::runtime::LoopThread thread;
+};
+
+namespace {
+
+palpate_loop_report report_on(const palpate_loop& loop) {
+  constexpr double kNanosecond = 1e-9;
+  const palpate::runtime::LoopCounts& c = loop.loop.counts();
+  palpate_loop_report report{};
+  report.lost = c.lost ? 1 : 0;
+  report.halted = loop.thread.halted() ? 1 : 0;
+  report.steps = c.steps;
+  report.overruns = c.overruns;
+  report.late = c.late;
+  report.cut_off = c.cut_off;
+  report.clamped = c.clamped;
+  report.saturated = c.saturated;
+  report.stale = c.stale;
+  report.not_finite = c.not_finite;
+  report.wake_median = kNanosecond * c.wake.quantile(0.5);
+  report.wake_p999 = kNanosecond * c.wake.quantile(0.999);
+  report.wake_longest = kNanosecond * static_cast<double>(c.wake.largest());
+  report.compute_median = kNanosecond * c.compute.quantile(0.5);
+  report.compute_p999 = kNanosecond * c.compute.quantile(0.999);
+  report.compute_longest = kNanosecond * static_cast<double>(c.compute.largest());
+  const std::string missing = loop.thread.missing_rights();
+  std::strncpy(report.missing_rights, missing.c_str(), sizeof report.missing_rights - 1);
+  return report;
+}
+
+}  // namespace
+
+extern "C" {
+
+void palpate_loop_settings_default(palpate_loop_settings* settings) {
+  if (settings == nullptr) return;
+  const palpate::runtime::SafetySettings safety;
+  const palpate::runtime::LoopThreadSettings thread;
+  *settings = {sizeof(palpate_loop_settings),
+               thread.realtime.priority,
+               thread.realtime.core,
+               thread.rate,
+               safety.ramp,
+               safety.max_force,
+               safety.max_speed,
+               safety.watchdog};
+}
+
+int palpate_loop_start(palpate_state* state, const palpate_device* device,
+                       const palpate_loop_settings* settings, palpate_loop** loop) {
+  using palpate::runtime::fail;
+  if (loop == nullptr) return fail(PALPATE_ERROR_ARGUMENT, "palpate_loop_start: loop is null");
+  *loop = nullptr;
+  if (state == nullptr || device == nullptr)
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_loop_start: null pointer");
+  if (device->size < sizeof(palpate_device) || device->read == nullptr ||
+      device->command == nullptr) {
+    return fail(PALPATE_ERROR_ARGUMENT,
+                "palpate_loop_start: the device needs its size, read and command");
+  }
+  palpate_loop_settings chosen;
+  palpate_loop_settings_default(&chosen);
+  if (settings != nullptr) {
+    if (settings->size < sizeof(palpate_loop_settings)) {
+      return fail(PALPATE_ERROR_ARGUMENT,
+                  "palpate_loop_start: fill the settings with palpate_loop_settings_default first");
+    }
+    chosen = *settings;
+  }
+  return palpate::runtime::guarded(PALPATE_ERROR_ARGUMENT, [&] {
+    *loop = new palpate_loop(*state, *device, chosen);
+    return static_cast<int>(PALPATE_OK);
+  });
+}
+
+int palpate_loop_running(const palpate_loop* loop) {
+  return loop != nullptr && loop->thread.running() ? 1 : 0;
+}
+
+int palpate_loop_stop(palpate_loop* loop, palpate_loop_report* report) {
+  using palpate::runtime::fail;
+  if (loop == nullptr) return fail(PALPATE_ERROR_ARGUMENT, "palpate_loop_stop: loop is null");
+  if (report != nullptr && report->size < sizeof(palpate_loop_report))
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_loop_stop: set report->size to sizeof");
+  loop->thread.stop();
+  const int status = palpate::runtime::guarded(PALPATE_ERROR_MEMORY, [&] {
+    if (report != nullptr) palpate::runtime::give(report_on(*loop), report, report->size);
+    return static_cast<int>(PALPATE_OK);
+  });
+  delete loop;
+  return status;
+}
+
+}  // extern "C"

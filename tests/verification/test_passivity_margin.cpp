@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The published experiment [Mahvash & Hayward 2005, VI-B] against its publication, against a
+// balance of energy that simulates nothing, and between one rate and two.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "app/experiment/slingshot.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr double kTolerance = 1;  // N/m, of the margins
+
+TEST(PassivityMargin, TheWallDecaysAt168AndSwingsAt179AsPublished) {
+  const SlingshotOutcome below = sling({}, 168);
+  const SlingshotOutcome above = sling({}, 179);
+  EXPECT_TRUE(below.decayed);
+  EXPECT_NEAR(below.seconds, 59, 2);
+  EXPECT_FALSE(above.decayed);
+  EXPECT_NEAR(above.amplitude, 0.459, 0.002);
+  EXPECT_NEAR(below.impact, 1, 0.01);  // "hit it with v = 1 m/s"
+}
+
+TEST(PassivityMargin, TheWallIsThatOfTheEnergyBalanceAtEveryRate) {
+  for (const double rate : {1000.0, 2000.0, 4000.0}) {
+    SlingshotSetup setup;
+    setup.rate = rate;
+    const double simulated = passivity_margin(setup, 20, 800, 0.2);
+    EXPECT_NEAR(simulated, margin_by_energy_balance(rate), kTolerance) << rate << " Hz";
+  }
+  EXPECT_NEAR(passivity_margin({}, 100, 300, 0.2), 170, kTolerance);  // published
+}
+
+TEST(PassivityMargin, TheCylinderIsAsStableAsTheWall) {
+  const SlingshotSetup one{VirtualBody::Cylinder, 0, 0.3, 2000, 0};
+  EXPECT_NEAR(passivity_margin(one, 160, 180, 0.2), 170, kTolerance);
+}
+
+class TwoRates : public ::testing::TestWithParam<SlingshotSetup> {};
+
+TEST_P(TwoRates, HaveTheMarginOfOne) {
+  SlingshotSetup one = GetParam();
+  one.search_rate = 0;
+  const double margin = passivity_margin(one, 100, 600, 0.5);
+  // The margin with two rates lies within the tolerance of that with one.
+  EXPECT_TRUE(sling(GetParam(), margin - kTolerance).decayed) << margin;
+  EXPECT_FALSE(sling(GetParam(), margin + kTolerance).decayed) << margin;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cylinder, TwoRates,
+    ::testing::Values(SlingshotSetup{VirtualBody::Cylinder, 0, 0.3, 2000, 100},
+                      SlingshotSetup{VirtualBody::Cylinder, 0, 0.3, 2000, 50},
+                      SlingshotSetup{VirtualBody::Cylinder, 0.01, 0.3, 2000, 100},
+                      SlingshotSetup{VirtualBody::Cylinder, 0.01, 0, 2000, 100}));
+
+}  // namespace
+}  // namespace palpate::app
