@@ -28,7 +28,6 @@ LoopThread::LoopThread(ForceLoop& loop, Device& device, const LoopThreadSettings
   require(std::isfinite(settings.watchdog) && settings.watchdog > 0, "watchdog (s)",
           settings.watchdog, "a finite value above 0");
   period_ = std::llround(1e9 / settings.rate);
-  started_ = monotonic_ns();
   if (device.has_own_thread()) {
     device.start_calls([this] { return foreign_step(); });
   } else {
@@ -98,8 +97,9 @@ void LoopThread::watch() {
   std::unique_lock lock(mutex_);
   while (!stop_ && running_) {
     wake_.wait_for(lock, nap, [this] { return stop_.load(); });
-    const std::int64_t beat = std::max(loop_.heartbeat(), started_);
-    if (stop_ || !running_ || monotonic_ns() - beat <= limit) continue;
+    // Before the first step nothing has been commanded; locking memory for it may take a while.
+    const std::int64_t beat = loop_.heartbeat();
+    if (stop_ || !running_ || beat == 0 || monotonic_ns() - beat <= limit) continue;
     device_.halt();
     halted_ = true;
   }

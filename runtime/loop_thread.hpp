@@ -50,7 +50,7 @@ class LoopThread {
   Device& device_;
   LoopThreadSettings settings_;
   std::int64_t period_ = 0;  ///< ns
-  std::int64_t started_ = 0, due_ = 0;
+  std::int64_t due_ = 0;     ///< monotonic, ns
   std::atomic<bool> stop_{false}, running_{true}, halted_{false};
   mutable std::mutex mutex_;
   std::condition_variable wake_;

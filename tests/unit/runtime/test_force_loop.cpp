@@ -213,6 +213,40 @@ TEST(LoopThread, TheWatchdogHaltsADeviceWhoseLoopHangs) {
   EXPECT_TRUE(thread.halted());
 }
 
+/// A driver whose thread takes its time before the first call.
+class LateStarter : public ScriptedDevice {
+ public:
+  ~LateStarter() override { stop_calls(); }
+  bool has_own_thread() const noexcept override { return true; }
+  void start_calls(std::function<bool()> step) override {
+    thread_ = std::thread([this, step] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(250));
+      for (int i = 0; i < 20 && step(); ++i) ++called_;
+    });
+  }
+  void stop_calls() noexcept override {
+    if (thread_.joinable()) thread_.join();
+  }
+  std::atomic<int> called_{0};
+
+ private:
+  std::thread thread_;
+};
+
+TEST(LoopThread, TheWatchdogWaitsForTheFirstStep) {
+  LateStarter device;
+  device.place = pressing;
+  palpate_state state(plate_body(), {0.3, 5e-3});
+  ForceLoop loop(device, state, kPatient, nullptr);
+  LoopThread thread(loop, device, ordinary(1000, 0.1));
+  for (int i = 0; i < 2000 && device.called_ == 0; ++i) {
+    EXPECT_FALSE(thread.halted());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_GT(device.called_, 0);
+  thread.stop();
+}
+
 TEST(LoopThread, EndsByItselfWhenTheDeviceIsLost) {
   Rig rig;
   rig.device.status_of_read = [](int step) {
