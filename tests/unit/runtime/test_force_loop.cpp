@@ -183,11 +183,15 @@ TEST(LoopThread, StepsAndStopsWithoutForce) {
 TEST(LoopThread, MissedStepsAreLeftOutNotMadeUpFor) {
   // Every read takes three periods: at most one step in three, and each an overrun.
   Rig rig;
-  rig.device.before_read = [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(3)); };
+  std::atomic<int> reads{0};
+  rig.device.before_read = [&](int) {
+    ++reads;
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+  };
   const std::int64_t start = runtime::monotonic_ns();
   {
     LoopThread thread(rig.loop, rig.device, ordinary(1000, 10));
-    std::this_thread::sleep_for(std::chrono::milliseconds(120));
+    while (reads < 10) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     thread.stop();
   }
   const double periods = 1e-6 * static_cast<double>(runtime::monotonic_ns() - start);
