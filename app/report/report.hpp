@@ -24,7 +24,7 @@ struct ReportInput {
   std::uintmax_t library_bytes = 0;      ///< size of library.h5 on disk; 0 = not told
   /// Text of comparison.json (`palpate compare`); empty: there is none. Its vertices are those of
   /// the library.
-  std::string comparison;
+  std::string comparison{};
 };
 
 /// Write one self-contained HTML file: no network, no WebGL, opens from disk in any browser with
