@@ -14,11 +14,13 @@ if(PALPATE_SANITIZE)
   target_link_options(palpate_options INTERFACE -fsanitize=${PALPATE_SANITIZE})
 endif()
 
-# Eigen chooses alignment, and with it how memory is freed, by the instruction set: every target that
-# sees Eigen must be compiled for the same processor. The runtime and the format never do.
+# Eigen chooses alignment, and with it how memory is freed, by the instruction set. Sixteen bytes are what
+# libraries built for any processor (Ceres) take; every target that sees Eigen links this one. The runtime
+# and the format never do.
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 add_library(palpate_eigen INTERFACE)
 target_link_libraries(palpate_eigen INTERFACE Eigen3::Eigen)
+target_compile_definitions(palpate_eigen INTERFACE EIGEN_MAX_ALIGN_BYTES=16)
 if(PALPATE_NATIVE AND NOT PALPATE_SANITIZE)
   target_compile_options(palpate_eigen INTERFACE -march=native)
 endif()

@@ -263,6 +263,20 @@ void check_volumes(const Quality& quality, const Surface& boundary, const std::s
   }
 }
 
+/// Refuse patches that leave nothing of the shape; usually the unit of the surface is wrong.
+void check_spacing(const Settings& settings, const Surface& skin) {
+  constexpr double fewest = 3;  // patches along the largest extent
+  const Bounds box = bounds(skin.points);
+  const Vec3 span = box.high - box.low;
+  const double largest = std::max({span[0], span[1], span[2]});
+  if (fewest * settings.patch_spacing <= largest) return;
+  throw Error(ErrorKind::Configuration, settings.surface.path.string(),
+              text("the largest extent of the body is ", millimetres(largest),
+                   ", too little for patches of ", millimetres(settings.patch_spacing)),
+              text("check the unit of the surface, or reduce patch_spacing below ",
+                   millimetres(largest / fewest)));
+}
+
 /// Refuse sizes that would fill the memory before anything is computed.
 void check_counts(const Settings& settings, const Surface& skin) {
   const double h = settings.element_size, largest = 2e6;
@@ -332,6 +346,7 @@ Body mesh(const Settings& settings) {
     inclusions.push_back(read_surface(file, settings.log));
   }
   check_inclusions(settings, skin, inclusions);
+  check_spacing(settings, skin);
   check_counts(settings, skin);
 
   const NestedSurface nested = remesh_skin(settings, skin);

@@ -22,13 +22,21 @@ std::string prefix(std::string_view section, std::size_t index) {
   return fmt::format("{}[{}].", section, index);
 }
 
+/// What the author left to the rest of the case: the name, the region of the only material.
+void fill_defaults(Case& c, const std::string& file_name) {
+  if (c.name.empty()) c.name = std::filesystem::path(file_name).stem().string();
+  for (MaterialSection& material : c.materials) {
+    if (material.region.empty()) material.region = c.surface.region;
+  }
+}
+
 void check_name(const Case& c, const SourceMap& sources) {
   const bool usable = std::all_of(c.name.begin(), c.name.end(), [](char letter) {
     return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '-' || letter == '_';
   });
   if (usable) return;
   fail(sources.where("name"), fmt::format("name = \"{}\" cannot name a folder", c.name),
-       "use letters, digits, '-' and '_' only");
+       "give the case a name of letters, digits, '-' and '_'");
 }
 
 /// Every region of the body, in the order of the case. @throws Error when one is named twice.
@@ -106,6 +114,7 @@ Case parsed(const toml::table& table, const std::string& file_name) {
   TableReader reader(table, "the case", "", sources);
   describe(reader, c);
   reader.finish();
+  fill_defaults(c, file_name);
   check_name(c, sources);
   check_materials(c, sources);
   check_depths(c, sources);

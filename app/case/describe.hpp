@@ -49,7 +49,7 @@ void describe(V& v, SurfaceSection& s) {
          {"file", "closed triangulated surface: OFF, OBJ, PLY or STL; relative to the case file",
           kRequired});
   v.text(s.unit, {"unit", "length unit of the coordinates in the file", kRequired},
-         {"mm", "cm", "um", "m"});
+         unit_symbols(Dimension::Length));
   v.text(s.region, {"region", "name of the material region inside"});
 }
 
@@ -57,7 +57,7 @@ template <class V>
 void describe(V& v, InclusionSection& s) {
   v.text(s.file, {"file", "closed surface strictly inside the outer one", kRequired});
   v.text(s.unit, {"unit", "length unit of the coordinates in the file", kRequired},
-         {"mm", "cm", "um", "m"});
+         unit_symbols(Dimension::Length));
   v.text(s.region, {"region", "name of the material region inside", kRequired});
 }
 
@@ -98,7 +98,7 @@ void describe(V& v, SupportSection& s) {
 
 template <class V>
 void describe(V& v, MaterialSection& s) {
-  v.text(s.region, {"region", "region of the surface or of an inclusion", kRequired});
+  v.text(s.region, {"region", "region of an inclusion; empty means that of the surface"});
   v.text(s.law, {"law", "hyperelastic law"}, {"neo-hookean"});
   v.quantity(s.young, Dimension::Pressure,
              {"young", "Young's modulus at small strain", kRequired, kPositive});
@@ -195,7 +195,7 @@ void describe(V& v, OutputSection& s) {
 
 template <class V>
 void describe(V& v, Case& c) {
-  v.text(c.name, {"name", "of the body; names the output", kRequired});
+  v.text(c.name, {"name", "of the body; names the output; empty means the name of the case file"});
   v.section("surface", c.surface, kRequired, "The outer skin of the body.");
   v.sections("inclusion", c.inclusions, kOptional,
              "A region of another material inside the body. Repeat for each.");

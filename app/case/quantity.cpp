@@ -9,7 +9,8 @@
 namespace palpate::app {
 namespace {
 
-constexpr std::array kLength{Unit{"mm", 1e-3}, Unit{"cm", 1e-2}, Unit{"um", 1e-6}, Unit{"m", 1}};
+constexpr std::array kLength{Unit{"mm", 1e-3}, Unit{"cm", 1e-2},   Unit{"dm", 1e-1},
+                             Unit{"um", 1e-6}, Unit{"in", 0.0254}, Unit{"m", 1}};
 constexpr std::array kPressure{Unit{"kPa", 1e3}, Unit{"MPa", 1e6}, Unit{"Pa", 1}};
 constexpr std::array kAngle{Unit{"deg", std::numbers::pi / 180}, Unit{"rad", 1}};
 constexpr std::array kForce{Unit{"mN", 1e-3}, Unit{"N", 1}};
@@ -92,11 +93,17 @@ std::span<const Unit> units_of(Dimension dimension) {
   return {};
 }
 
+std::vector<std::string_view> unit_symbols(Dimension dimension) {
+  std::vector<std::string_view> symbols;
+  for (const Unit& unit : units_of(dimension)) symbols.push_back(unit.symbol);
+  return symbols;
+}
+
 std::string unit_list(Dimension dimension) {
   std::string list;
-  for (const Unit& unit : units_of(dimension)) {
+  for (const std::string_view symbol : unit_symbols(dimension)) {
     if (!list.empty()) list += ", ";
-    list += unit.symbol;
+    list += symbol;
   }
   return list;
 }

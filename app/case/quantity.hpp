@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace palpate::app {
 
@@ -31,7 +32,8 @@ struct Unit {
 std::string_view dimension_name(Dimension dimension);  ///< "length", ...
 /// Accepted units. The first is the one used to print, the last is the SI unit.
 std::span<const Unit> units_of(Dimension dimension);
-std::string unit_list(Dimension dimension);  ///< "mm, cm, um, m", for messages
+std::vector<std::string_view> unit_symbols(Dimension dimension);
+std::string unit_list(Dimension dimension);  ///< "N/m, ...", for messages
 
 /// Outcome of parse_quantity: why a text is not a quantity is told to the user by the caller, who
 /// knows the key and the line.

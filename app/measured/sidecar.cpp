@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/measured/sidecar.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "app/case/reader.hpp"
@@ -166,9 +168,18 @@ void check_sites(const Sidecar& s, const SourceMap& sources) {
   }
 }
 
+/// The first thing that newcomers give is the record itself.
+void check_is_no_record(const std::filesystem::path& path) {
+  constexpr std::array<std::string_view, 5> records{".csv", ".tsv", ".txt", ".dat", ".raw"};
+  if (std::find(records.begin(), records.end(), path.extension().string()) == records.end()) return;
+  refuse(path.string(), "this is a record, not its sidecar",
+         "describe it in a TOML file beside it (docs/measured.md) and give that file");
+}
+
 }  // namespace
 
 Sidecar read_sidecar(const std::filesystem::path& path) {
+  check_is_no_record(path);
   const toml::table table = read_toml(path, "the sidecar");
   SourceMap sources(path.string());
   Sidecar sidecar;

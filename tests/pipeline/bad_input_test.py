@@ -73,6 +73,10 @@ class BadInput(unittest.TestCase):
     def test_case_file_is_missing(self):
         self.refuse(USAGE, ["none.toml", "cannot be read"], "build", self.root / "none.toml", "--out", self.out)
 
+    def test_patches_as_large_as_the_body(self):
+        case = CASE.replace('patch_spacing = "12.5 mm"', 'patch_spacing = "40 mm"')
+        self.refuse_case(USAGE, ["50 mm", "patches of 40 mm", "check the unit"], case)
+
     def test_surface_is_missing(self):
         path = write_case(self.root)
         (self.root / "block.off").unlink()

@@ -174,6 +174,7 @@ class Measured(unittest.TestCase):
                     text.replace("[path]", 'force_unit = "kN"\n\n[path]'))
         self.refuse(["needs a body"], text, body=False)
         self.refuse(["unknown key 'complience'"], text.replace("compliance =", "complience ="))
+        self.refuse(["this is a record", "TOML"], "Time,Load\n0,0\n", name="press.csv")
         self.refuse(["cannot be read"], text.replace("press-20-20-1.csv", "press-none.csv"))
 
     def test_fit_files_of_the_shipped_tables(self):

@@ -206,6 +206,23 @@ TEST(Case, RejectsWhatIsMissing) {
   EXPECT_THAT(message_of("name = \"x\"\n"), HasSubstr("key 'surface' is missing"));
 }
 
+TEST(Case, NamesItselfAfterItsFileAndItsMaterialAfterTheSurface) {
+  const Case c = parse_case(R"([surface]
+file = "x.off"
+unit = "in"
+[[support]]
+shape = "plane"
+point = ["0 mm", "0 mm", "0 mm"]
+normal = [0, 0, -1]
+[[material]]
+young = "10 kPa"
+poisson = 0.45
+)",
+                            "some/folder/kidney-3.toml");
+  EXPECT_EQ(c.name, "kidney-3");
+  EXPECT_EQ(c.materials.at(0).region, c.surface.region);
+}
+
 TEST(Case, ReportsTheLineOfBadToml) {
   EXPECT_THAT(message_with("[mesh]", "[mesh"), HasSubstr("ball.toml:13: this is not TOML"));
   EXPECT_THAT(message_with("unit = \"cm\"", "unit = \"foot\""), HasSubstr("not one of mm, cm"));
