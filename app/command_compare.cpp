@@ -3,7 +3,9 @@
 #include <cmath>
 #include <optional>
 
+#include "app/case_options.hpp"
 #include "app/command.hpp"
+#include "app/compare/fidelity_run.hpp"
 #include "app/compare/tables.hpp"
 #include "app/console.hpp"
 #include "app/pipeline/workspace.hpp"
@@ -23,6 +25,10 @@ struct Options {
   compare::CompareSettings settings;
   double jnd_floor_mn = 5, site_tolerance_mm = 2;
   std::vector<double> depths_mm;
+  CaseOptions fem;  ///< judged by direct solutions when its case is given
+  FidelityOptions fidelity;
+  double floor_mn = 20;
+  std::vector<std::string> libraries;
 };
 
 void place(compare::ComparedSet& set, const fs::path& file) {
@@ -101,22 +107,65 @@ int compare_sets(Options options) {
   return kExitDone;
 }
 
+int compare_with_fem(Options options) {
+  options.fem.out = options.out;
+  options.fidelity.floor = 1e-3 * options.floor_mn;
+  for (const std::string& file : options.libraries) options.fidelity.libraries.emplace_back(file);
+  const bool complete = run_fidelity(open_workspace(options.fem), options.fidelity);
+  return complete ? kExitDone : kExitSomeSitesFailed;
+}
+
+void add_fem_options(CLI::App& command, Options& options, CLI::Option* sets) {
+  CLI::Option* fem = command.add_option(
+      "--fem", options.fem.case_file,
+      "Case whose library is judged by direct solutions at points that are no sites");
+  fem->excludes(sets);
+  const auto only_with_fem = [&](CLI::Option* option) {
+    option->needs(fem);
+    return option;
+  };
+  only_with_fem(command.add_option("--points", options.fidelity.off_node, "Points off the nodes"))
+      ->capture_default_str()
+      ->check(CLI::Range(1, 100000));
+  only_with_fem(command.add_option("--nodes", options.fidelity.at_node, "Nodes pressed again"))
+      ->capture_default_str()
+      ->check(CLI::Range(0, 100000));
+  only_with_fem(command.add_option("--seed", options.fidelity.seed, "Of the drawn points"))
+      ->capture_default_str();
+  only_with_fem(command.add_option("--floor-mN", options.floor_mn,
+                                   "Errors are relative to the direct force, or to this if larger"))
+      ->capture_default_str()
+      ->check(CLI::Range(1e-6, 1e6));
+  only_with_fem(command.add_option("--library", options.libraries,
+                                   "Libraries to judge (default: that of the case)"));
+  only_with_fem(
+      command.add_option("--threads", options.fem.threads, "Presses at once (default: processors)"))
+      ->check(CLI::Range(1, 4096));
+}
+
 }  // namespace
 
 void add_compare_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
-      "compare", "Simulated against measured, a library against either, or two libraries");
+      "compare",
+      "Simulated against measured, a library against either, two libraries, or one against direct "
+      "solutions");
   command->footer(
-      "Example: palpate compare out/bench-measured/curves.h5 out/bench/curves.h5 --out out/bench");
+      "Examples:\n"
+      "  palpate compare out/bench-measured/curves.h5 out/bench/curves.h5 --out out/bench\n"
+      "  palpate compare --fem data/cases/cylinder-demo.toml --out out/cylinder-demo");
   const auto options = std::make_shared<Options>();
-  command->add_option("REFERENCE", options->reference, "curves.h5 or library.h5: the measured side")
-      ->required();
-  command->add_option("MODEL", options->model, "curves.h5 or library.h5: what is judged")
-      ->required();
+  CLI::Option* reference = command->add_option("REFERENCE", options->reference,
+                                               "curves.h5 or library.h5: the measured side");
+  CLI::Option* model =
+      command->add_option("MODEL", options->model, "curves.h5 or library.h5: what is judged");
+  reference->needs(model);
+  add_fem_options(*command, *options, reference);
   command->add_option("--reference-body", options->reference_body,
                       "body.h5 of the reference, to match sites by position");
   command->add_option("--model-body", options->model_body, "body.h5 of the model, likewise");
-  command->add_option("--out", options->out, "Folder of the tables")->required();
+  command->add_option("--out", options->out, "Folder of the tables; with --fem, of the artifacts")
+      ->required();
   command
       ->add_option("--jnd", options->settings.jnd, "Just noticeable relative difference of force")
       ->capture_default_str()
@@ -131,7 +180,13 @@ void add_compare_command(CLI::App& root, Action& action) {
       ->check(CLI::Range(1e-6, 1e6));
   command->add_option("--depths-mm", options->depths_mm,
                       "Depths at which stiffness is told (default: thirds of the range)");
-  command->callback([options, &action] { action = [options] { return compare_sets(*options); }; });
+  command->callback([options, &action] {
+    if (options->reference.empty() && options->fem.case_file.empty())
+      throw CLI::RequiredError("REFERENCE and MODEL, or --fem CASE");
+    action = [options] {
+      return options->fem.case_file.empty() ? compare_sets(*options) : compare_with_fem(*options);
+    };
+  });
 }
 
 }  // namespace palpate::app

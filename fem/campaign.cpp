@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <deque>
 #include <exception>
 #include <mutex>
+#include <numeric>
 #include <thread>
 
 #include "fem/at.hpp"
@@ -36,6 +38,19 @@ std::vector<std::int32_t> chosen_sites(const Body& body, std::vector<std::int32_
     throw Error(ErrorKind::Configuration, body.name, "the body has no site to press",
                 "shrink the supports so that some response vertices stay free");
   return sites;
+}
+
+/// What the results are numbered by: the chosen response vertices, or the points by their index.
+std::vector<std::int32_t> chosen_places(const Body& body, const CampaignSettings& settings) {
+  if (settings.points.empty()) return chosen_sites(body, settings.sites);
+  std::vector<std::int32_t> index(settings.points.size());
+  std::iota(index.begin(), index.end(), 0);
+  for (const PressPoint& point : settings.points)
+    if (!(std::abs(norm(point.inward) - 1) < 1e-6))
+      throw Error(ErrorKind::Configuration, body.name,
+                  "a point to press has a direction that is not of unit length",
+                  "give unit directions into the body");
+  return index;
 }
 
 /// Puts known sites into their places. @return the places of the others.
@@ -129,7 +144,7 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
   curves.tool = {"sphere", settings.indentation.tool_radius, "frictionless"};
   curves.depth = settings.indentation.depth;
   curves.lateral_travel = settings.indentation.lateral_travel;
-  for (const auto vertex : chosen_sites(body, settings.sites)) {
+  for (const auto vertex : chosen_places(body, settings)) {
     curves.sites.emplace_back();
     curves.sites.back().vertex = vertex;
   }

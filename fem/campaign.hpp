@@ -35,6 +35,12 @@ struct IndentationSettings {
   double force_tolerance = 1e-4;  ///< relative error of the tool force allowed to the solver
 };
 
+/// Where the tool is pressed: any point of the boundary, and the direction of its normal path.
+struct PressPoint {
+  Vec3 position{};  ///< m
+  Vec3 inward{};    ///< unit, into the body
+};
+
 /// State of a campaign, told after each finished site.
 struct CampaignProgress {
   std::int64_t done = 0, failed = 0, total = 0;
@@ -46,6 +52,9 @@ struct CampaignSettings {
   std::vector<RegionMaterial> materials;  ///< one for each region of the body
   IndentationSettings indentation;
   std::vector<std::int32_t> sites;  ///< response vertices; empty = every vertex with is_site
+  /// Pressed instead of response vertices when not empty; the `vertex` of a result is then the
+  /// index of its point. Such curves are of no use to a fit.
+  std::vector<PressPoint> points;
   int threads = 1;
   std::vector<SiteCurves> known;  ///< results of an earlier run of the same campaign: not repeated
   /// Called for each site as it finishes, and then with the progress; from one thread at a time.

@@ -154,6 +154,7 @@ double stiffest_at_surface(const Body& body, const CampaignSettings& settings,
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e)
     : body(b),
+      points(settings.points),
       indentation(settings.indentation),
       engine(e),
       model(b, laws_of_regions(b, settings.materials)),
@@ -165,6 +166,11 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
   std::vector<double> K;
   model.stiffness(Displacement::Zero(3, model.mesh().nodes()), K);
   rest_factor = std::make_unique<RestFactor>(model.pattern(), permutation, K, body.name);
+}
+
+PressPoint CampaignContext::place(std::int32_t vertex) const {
+  if (!points.empty()) return points[at(vertex)];
+  return {body.nodes[at(body.response.node[at(vertex)])], body.response.inward[at(vertex)]};
 }
 
 namespace {
@@ -225,9 +231,9 @@ class SiteEquilibrium {
 }  // namespace
 
 struct SiteSolver::Site {
-  Site(const CampaignContext& context, std::int32_t vertex, SolveBatch::Member* batch)
-      : X(to_eigen(context.body.nodes[at(context.body.response.node[at(vertex)])])),
-        inward(to_eigen(context.body.response.inward[at(vertex)])),
+  Site(const CampaignContext& context, const PressPoint& place, SolveBatch::Member* batch)
+      : X(to_eigen(place.position)),
+        inward(to_eigen(place.inward)),
         reach(2 * context.indentation.tool_radius + context.indentation.lateral_travel),
         contact(context.model.mesh(), X, reach, context.contact_stiffness),
         equilibrium(context, X, batch) {
@@ -460,7 +466,7 @@ SiteCurves SiteSolver::solve(std::int32_t vertex) {
   SiteCurves curves;
   curves.vertex = vertex;
   curves.status = SiteStatus::Complete;
-  Site site(context_, vertex, batch_);
+  Site site(context_, context_.place(vertex), batch_);
   run_normal_path(site, curves);
   for (const double held_depth : context_.indentation.held_depths)
     for (const double azimuth : context_.indentation.azimuths)

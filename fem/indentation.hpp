@@ -23,7 +23,11 @@ enum class Engine {
 struct CampaignContext {
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine);
 
+  /// Of a response vertex, or of a point of the settings by its index when there are any.
+  PressPoint place(std::int32_t vertex) const;
+
   const Body& body;
+  std::vector<PressPoint> points;
   IndentationSettings indentation;
   Engine engine;
   SolidModel model;

@@ -64,6 +64,30 @@ TEST_F(Indentation, CompletesBothPaths) {
   EXPECT_EQ(curves_->paths[0].samples.front().force, (Vec3{0, 0, 0}));
 }
 
+TEST_F(Indentation, PressesAnyPointOfTheSurface) {
+  const std::int32_t centre = centre_vertex(*body_);
+  const Vec3 at_centre = body_->nodes[at(body_->response.node[at(centre)])];
+  CampaignSettings s = settings();
+  s.indentation.held_depths.clear();
+  s.indentation.depth = 0.002;  // in the same steps
+  s.indentation.increments = 4;
+  // A third of an element off the node, on a block that is the same there but for its far sides.
+  s.points = {{at_centre, body_->response.inward[at(centre)]},
+              {at_centre + Vec3{0.0008, 0.0005, 0}, body_->response.inward[at(centre)]}};
+  CampaignReport report;
+  const Curves curves = run_campaign(*body_, s, report);
+  ASSERT_EQ(curves.sites.size(), 2u);
+  const auto& node = curves_->paths[0].samples;
+  for (std::size_t i = 1; i < curves.sites[0].paths[0].samples.size(); ++i) {
+    EXPECT_EQ(curves.sites[0].paths[0].samples[i].force, node[i].force);
+    EXPECT_NE(curves.sites[1].paths[0].samples[i].force, node[i].force);
+    EXPECT_NEAR(curves.sites[1].paths[0].samples[i].force[2], node[i].force[2],
+                0.05 * std::abs(node[4].force[2]));
+  }
+  s.points[1].inward = {0, 0, -2};
+  EXPECT_ANY_THROW(run_campaign(*body_, s, report));
+}
+
 TEST_F(Indentation, WorkOfTheToolEqualsTheStoredEnergy) {
   for (const auto& path : curves_->paths) {
     const CurveSample& end = path.samples.back();

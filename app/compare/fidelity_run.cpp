@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/compare/fidelity_run.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <system_error>
+
+#include "app/compare/fidelity_tables.hpp"
+#include "app/console.hpp"
+#include "app/pipeline/settings.hpp"
+#include "app/pipeline/stage_input.hpp"
+#include "format/crash_safe_file.hpp"
+#include "format/error.hpp"
+#include "format/sha256.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Of the depth of the case: between the depths at which lateral paths are usually sampled.
+constexpr double kHeldShares[] = {0.2, 0.6, 0.9};
+constexpr double kAzimuths[] = {50, 185};  // degrees; no campaign samples these
+constexpr int kLeastIncrements = 6;
+
+/// The direct solutions: along the paths of the case, at depths and directions of their own.
+fem::CampaignSettings direct_settings(const Workspace& space,
+                                      const std::vector<fidelity::HeldOutPoint>& points) {
+  fem::CampaignSettings settings = campaign_settings(space);
+  for (const fidelity::HeldOutPoint& p : points) settings.points.push_back({p.position, p.inward});
+  fem::IndentationSettings& indentation = settings.indentation;
+  for (const double share : kHeldShares)
+    indentation.held_depths.push_back(share * indentation.depth);
+  std::sort(indentation.held_depths.begin(), indentation.held_depths.end());
+  const auto close = [](double a, double b) { return b - a < 1e-9; };
+  auto& held = indentation.held_depths;
+  held.erase(std::unique(held.begin(), held.end(), close), held.end());
+  indentation.azimuths.clear();
+  for (const double degrees : kAzimuths)
+    indentation.azimuths.push_back(degrees * std::numbers::pi / 180);
+  indentation.lateral_increments = std::max(indentation.lateral_increments, kLeastIncrements);
+  return settings;
+}
+
+void require_same_body(const Curves& curves, const fs::path& body_file) {
+  if (curves.body_sha256.empty() || curves.body_sha256 == sha256_of_file(body_file)) return;
+  throw Error(ErrorKind::Configuration, body_file.string(),
+              "it is not the body that the curves were made with (another digest)",
+              "run 'palpate build' again");
+}
+
+double bytes_per_node(const Library& library) {
+  std::size_t numbers = 0, nodes = 0;
+  for (const NodeResponse& node : library.responses) {
+    if (node.status == ResponseStatus::Hole) continue;
+    ++nodes;
+    for (const ResponseCurve* curve : {&node.normal, &node.lateral})
+      numbers += curve->knot.size() + curve->slope.size();
+  }
+  return nodes == 0 ? 0 : static_cast<double>(numbers * sizeof(float)) / static_cast<double>(nodes);
+}
+
+}  // namespace
+
+bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
+  const Body body = read_input(space.body(), "mesh", read_body);
+  const Curves sampled = read_input(space.curves(), "precompute", read_curves);
+  require_same_body(sampled, space.body());
+  std::vector<fs::path> files = options.libraries;
+  if (files.empty()) files.push_back(space.library());
+  const Library first = read_input(files.front(), "fit", read_library);
+  prepare_output(space.out);
+  const auto points = fidelity::draw_points(first, options.off_node, options.at_node, options.seed);
+
+  fem::CampaignSettings settings = direct_settings(space, points);
+  ProgressDisplay display("direct");
+  settings.progress = [&](const fem::CampaignProgress& p) {
+    display.show(p.done, p.failed, p.running, p.total, p.known);
+  };
+  fem::CampaignReport report;
+  const Curves direct = fem::run_campaign(body, settings, report);
+  say("compare: {} direct presses in {} ({} on the processors)", points.size(),
+      duration_text(report.seconds), duration_text(report.cpu_seconds));
+
+  std::string text, states;
+  nlohmann::ordered_json json = fidelity_heading(options, space.c.certify.friction, points);
+  bool complete = true;
+  for (const fs::path& file : files) {
+    const Library library = read_input(file, "fit", read_library);
+    const fidelity::Fidelity result =
+        fidelity::measure(library, fidelity::RenderedBody(file), points, direct, sampled,
+                          {options.floor, space.c.certify.friction});
+    complete = complete && result.left_out.empty();
+    std::error_code none;
+    const LibrarySize size{bytes_per_node(library), fs::file_size(file, none)};
+    text += fidelity_text(file.string(), result, size);
+    states += fidelity_states_csv(file.filename().string(), result, states.empty());
+    json["libraries"].push_back(fidelity_json(file, result, size));
+  }
+  print_line(text);
+  write_file_crash_safely(space.out / "fidelity.txt", text);
+  write_file_crash_safely(space.out / "fidelity.json", json.dump(1) + "\n");
+  write_file_crash_safely(space.out / "fidelity-states.csv", states);
+  say("compare: {}, fidelity.txt, fidelity-states.csv", (space.out / "fidelity.json").string());
+  return complete;
+}
+
+}  // namespace palpate::app

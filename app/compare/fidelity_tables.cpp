@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/compare/fidelity_tables.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+#include "format/sha256.hpp"
+
+namespace palpate::app {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* kind_name(PathKind kind) {
+  return kind == PathKind::Normal ? "normal" : "oblique";
+}
+
+}  // namespace
+
+std::string fidelity_text(const std::string& file, const fidelity::Fidelity& fidelity,
+                          const LibrarySize& size) {
+  std::string text = fmt::format("{}: {} bytes, {:.0f} bytes of curves a node\n", file, size.file,
+                                 size.curves_per_node);
+  text += fmt::format("  {:<40} {:<10} {:>6} {:>8} {:>8} {:>8}\n", "relative force error", "part",
+                      "states", "median", "95 %", "worst");
+  for (const fidelity::ErrorRow& row : fidelity.rows) {
+    text += fmt::format("  {:<40} {:<10} {:>6} {:>6.2f} % {:>6.2f} % {:>6.2f} %\n", row.what,
+                        row.part, row.states, 100 * row.median, 100 * row.p95, 100 * row.worst);
+  }
+  for (const std::string& line : fidelity.left_out) text += "  not complete: " + line + "\n";
+  return text;
+}
+
+std::string fidelity_states_csv(const std::string& file, const fidelity::Fidelity& fidelity,
+                                bool heading) {
+  std::string csv;
+  if (heading) {
+    csv =
+        "library,point,kind,depth_m,lateral_m,direct_x_N,direct_y_N,direct_z_N,rendered_x_N,"
+        "rendered_y_N,rendered_z_N,scale_N,relative_error,within_friction\n";
+  }
+  for (const fidelity::ComparedState& s : fidelity.states) {
+    fmt::format_to(std::back_inserter(csv), "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", file,
+                   s.point, kind_name(s.kind), s.depth, s.lateral, s.direct[0], s.direct[1],
+                   s.direct[2], s.rendered[0], s.rendered[1], s.rendered[2], s.scale, s.total(),
+                   s.within_friction ? 1 : 0);
+  }
+  return csv;
+}
+
+Json fidelity_heading(const FidelityOptions& options, double friction,
+                      const std::vector<fidelity::HeldOutPoint>& points) {
+  Json list = Json::array();
+  for (const fidelity::HeldOutPoint& p : points) {
+    list.push_back({{"triangle", p.triangle},
+                    {"natural", p.natural},
+                    {"position_m", p.position},
+                    {"inward", p.inward},
+                    {"at_node", p.node}});
+  }
+  return {{"kind", "palpate.fidelity"}, {"relative_to", "max(|direct force|, floor)"},
+          {"floor_N", options.floor},   {"friction", friction},
+          {"seed", options.seed},       {"points", list},
+          {"libraries", Json::array()}};
+}
+
+Json fidelity_json(const std::filesystem::path& file, const fidelity::Fidelity& fidelity,
+                   const LibrarySize& size) {
+  Json rows = Json::array();
+  for (const fidelity::ErrorRow& row : fidelity.rows) {
+    rows.push_back({{"what", row.what},
+                    {"part", row.part},
+                    {"states", row.states},
+                    {"median", row.median},
+                    {"p95", row.p95},
+                    {"worst", row.worst},
+                    {"worst_N", row.worst_newton},
+                    {"worst_point", row.worst_point}});
+  }
+  return {{"file", file.filename().string()},
+          {"sha256", sha256_of_file(file)},
+          {"bytes", size.file},
+          {"curve_bytes_per_node", size.curves_per_node},
+          {"rows", rows},
+          {"left_out", fidelity.left_out}};
+}
+
+}  // namespace palpate::app

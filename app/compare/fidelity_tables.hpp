@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The fidelity of a library as tables.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "app/compare/fidelity_run.hpp"
+#include "fitting/fidelity/fidelity.hpp"
+
+namespace palpate::app {
+
+struct LibrarySize {
+  double curves_per_node = 0;  ///< bytes of knots and slopes
+  std::uintmax_t file = 0;     ///< bytes
+};
+
+/// For people: one line a row.
+std::string fidelity_text(const std::string& file, const fidelity::Fidelity& fidelity,
+                          const LibrarySize& size);
+/// One line a state; the column names first when `heading`.
+std::string fidelity_states_csv(const std::string& file, const fidelity::Fidelity& fidelity,
+                                bool heading);
+/// What all libraries share: settings and points.
+nlohmann::ordered_json fidelity_heading(const FidelityOptions& options, double friction,
+                                        const std::vector<fidelity::HeldOutPoint>& points);
+nlohmann::ordered_json fidelity_json(const std::filesystem::path& file,
+                                     const fidelity::Fidelity& fidelity, const LibrarySize& size);
+
+}  // namespace palpate::app

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/fidelity/fidelity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "fitting/compare/compare.hpp"
+#include "fitting/site_samples.hpp"
+
+namespace palpate::fidelity {
+namespace {
+
+constexpr double kSameDepth = 1e-6;  // relative
+
+bool same(double a, double b) {
+  return std::abs(a - b) <= kSameDepth * std::max(std::abs(a), std::abs(b));
+}
+
+/// Where an error was made and how large it is.
+struct Sampled {
+  double relative = 0;  ///< over the scale of its state
+  double newton = 0;
+  std::size_t point = 0;
+};
+
+ErrorRow row_of(std::string what, std::string part, std::vector<Sampled> errors) {
+  ErrorRow row{std::move(what), std::move(part), errors.size(), 0, 0, 0, 0, 0};
+  if (errors.empty()) return row;
+  std::sort(errors.begin(), errors.end(),
+            [](const Sampled& a, const Sampled& b) { return a.relative < b.relative; });
+  const auto n = static_cast<double>(errors.size());
+  const auto rank = [&](double share) {
+    return errors[static_cast<std::size_t>(std::max(1.0, std::ceil(share * n))) - 1].relative;
+  };
+  row.median = rank(0.5);
+  row.p95 = rank(0.95);
+  row.worst = errors.back().relative;
+  row.worst_newton = errors.back().newton;
+  row.worst_point = errors.back().point;
+  return row;
+}
+
+/// Compares state by state.
+class Presses {
+ public:
+  Presses(const RenderedBody& body, const std::vector<HeldOutPoint>& points,
+          const FidelitySettings& settings, Fidelity& result)
+      : body_(body), points_(points), settings_(settings), result_(result) {}
+
+  void compare(const SiteCurves& site) {
+    const HeldOutPoint& point = points_[static_cast<std::size_t>(site.vertex)];
+    for (const CurvePath& path : site.paths) compare(site, point, path);
+  }
+
+ private:
+  void compare(const SiteCurves& site, const HeldOutPoint& point, const CurvePath& path) {
+    std::vector<ComparedState> states;
+    std::vector<RenderedBody::Deflection> deflections;
+    for (const CurveSample& sample : path.samples) {
+      if (!(sample.displacement > 0)) continue;
+      const bool normal = path.kind == PathKind::Normal;
+      ComparedState state;
+      state.point = static_cast<std::size_t>(site.vertex);
+      state.kind = path.kind;
+      state.depth = normal ? sample.displacement : path.held_depth;
+      state.lateral = normal ? 0 : sample.displacement;
+      if (!normal) state.tangent = path.direction;
+      state.direct = sample.force;
+      state.scale = std::max(norm(sample.force), settings_.floor);
+      const double push = dot(sample.force, point.inward);
+      const double drag = norm(sample.force - push * point.inward);
+      state.within_friction = drag <= settings_.friction * push;
+      states.push_back(state);
+      deflections.push_back({state.depth, state.lateral, state.tangent});
+    }
+    const std::vector<Vec3> rendered = body_.press(point.position, point.inward, deflections);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      states[i].rendered = rendered[i];
+      result_.states.push_back(states[i]);
+    }
+  }
+
+  const RenderedBody& body_;
+  const std::vector<HeldOutPoint>& points_;
+  FidelitySettings settings_;
+  Fidelity& result_;
+};
+
+using Chosen = std::function<bool(const ComparedState&)>;
+using Error = std::function<double(const ComparedState&, const Vec3& normal)>;
+
+double along_normal(const ComparedState& s, const Vec3& n) {
+  return dot(s.rendered - s.direct, n);
+}
+double along_tangent(const ComparedState& s, const Vec3&) {
+  return dot(s.rendered - s.direct, s.tangent);
+}
+/// What is left: no model of this kind has a force there.
+double off_plane(const ComparedState& s, const Vec3& n) {
+  const Vec3 error = s.rendered - s.direct;
+  return norm(error - dot(error, n) * n - dot(error, s.tangent) * s.tangent);
+}
+double whole(const ComparedState& s, const Vec3&) {
+  return norm(s.rendered - s.direct);
+}
+
+/// Fills the rows made of rendered states.
+class Rows {
+ public:
+  Rows(const std::vector<HeldOutPoint>& points, Fidelity& result)
+      : points_(points), result_(result) {}
+
+  void add(const std::string& what, const std::string& part, const Chosen& chosen,
+           const Error& error) {
+    std::vector<Sampled> errors;
+    for (const ComparedState& s : result_.states) {
+      if (!chosen(s)) continue;
+      const double newton = std::abs(error(s, points_[s.point].inward));
+      errors.push_back({newton / s.scale, newton, s.point});
+    }
+    if (!errors.empty()) result_.rows.push_back(row_of(what, part, std::move(errors)));
+  }
+
+  void add_parts(const std::string& what, const Chosen& chosen, bool oblique) {
+    add(what, "total", chosen, whole);
+    add(what, "normal", chosen, along_normal);
+    if (oblique) add(what, "lateral", chosen, along_tangent);
+    add(what, "direction", chosen, off_plane);
+  }
+
+ private:
+  const std::vector<HeldOutPoint>& points_;
+  Fidelity& result_;
+};
+
+/// Normal force of a vertex as sampled, at a depth; absent beyond the samples.
+std::optional<double> sampled_force(const SiteCurves& site, double depth) {
+  std::vector<double> x{0}, y{0};
+  for (const fitting::ForceSample& sample : fitting::normal_samples(site)) {
+    x.push_back(sample.displacement);
+    y.push_back(sample.force);
+  }
+  if (x.size() < 2 || depth > x.back() * (1 + kSameDepth)) return std::nullopt;
+  return compare::MonotoneCubic(x, y).value(depth);
+}
+
+/// The samples of the three vertices, interpolated, against the direct normal force: no fit.
+void add_interpolation_row(const Library& library, const std::vector<HeldOutPoint>& points,
+                           const Curves& sampled, Fidelity& result) {
+  std::map<std::int32_t, const SiteCurves*> at;
+  for (const SiteCurves& site : sampled.sites) at[site.vertex] = &site;
+  std::vector<Sampled> errors;
+  for (const ComparedState& s : result.states) {
+    const HeldOutPoint& point = points[s.point];
+    if (s.kind != PathKind::Normal || point.node) continue;
+    const Triangle& triangle = library.triangles[static_cast<std::size_t>(point.triangle)];
+    std::optional<double> force = 0;
+    for (std::size_t l = 0; l < 3 && force; ++l) {
+      const auto found = at.find(triangle[l]);
+      const auto part = found == at.end() ? std::nullopt : sampled_force(*found->second, s.depth);
+      force = part ? std::optional(*force + point.natural[l] * *part) : std::nullopt;
+    }
+    if (!force) continue;
+    const double newton = std::abs(*force - dot(s.direct, point.inward));
+    errors.push_back({newton / s.scale, newton, s.point});
+  }
+  if (errors.empty()) return;
+  result.rows.push_back(row_of("interpolation of the samples, off node", "normal", errors));
+}
+
+std::vector<double> held_depths(const Curves& curves) {
+  std::vector<double> depths;
+  for (const SiteCurves& site : curves.sites) {
+    for (const CurvePath& path : site.paths) {
+      const auto known = [&](double d) { return same(d, path.held_depth); };
+      if (path.kind != PathKind::Lateral || std::any_of(depths.begin(), depths.end(), known))
+        continue;
+      depths.push_back(path.held_depth);
+    }
+  }
+  return depths;
+}
+
+/// Direct solutions alone: how the force of a lateral deflection depends on the depth, and the
+/// normal force on the lateral deflection, neither of which the decoupled model (28) has.
+class Decoupling {
+ public:
+  Decoupling(const std::vector<HeldOutPoint>& points, const FidelitySettings& settings,
+             std::vector<double> references)
+      : points_(points), settings_(settings), references_(std::move(references)) {}
+
+  void add(const SiteCurves& site) {
+    const Vec3& n = points_[static_cast<std::size_t>(site.vertex)].inward;
+    for (const CurvePath& path : site.paths) {
+      if (path.kind != PathKind::Lateral) continue;
+      for (std::size_t i = 1; i < path.samples.size(); ++i) {
+        const Vec3 rise = path.samples[i].force - path.samples.front().force;
+        const double scale = std::max(norm(path.samples[i].force), settings_.floor);
+        const auto sampled = [&](double newton) {
+          return Sampled{std::abs(newton) / scale, std::abs(newton),
+                         static_cast<std::size_t>(site.vertex)};
+        };
+        normal_.push_back(sampled(dot(rise, n)));
+        const auto mean = mean_rise(site, path, path.samples[i].displacement);
+        if (mean) lateral_.push_back(sampled(dot(rise, path.direction) - *mean));
+      }
+    }
+  }
+
+  void write(Fidelity& result) const {
+    if (!lateral_.empty())
+      result.rows.push_back(row_of("decoupling of f^r from depth", "lateral", lateral_));
+    if (!normal_.empty())
+      result.rows.push_back(row_of("decoupling of f^z from lateral", "normal", normal_));
+  }
+
+ private:
+  /// Mean lateral force over the reference depths, same place, direction and displacement: the best
+  /// that one f^r for all depths can be.
+  std::optional<double> mean_rise(const SiteCurves& site, const CurvePath& of,
+                                  double displacement) const {
+    double sum = 0;
+    std::size_t count = 0;
+    for (const CurvePath& path : site.paths) {
+      if (path.kind != PathKind::Lateral || norm(path.direction - of.direction) > 1e-6) continue;
+      const auto is_held = [&](double d) { return same(d, path.held_depth); };
+      if (std::none_of(references_.begin(), references_.end(), is_held)) continue;
+      for (const CurveSample& sample : path.samples) {
+        if (!same(sample.displacement, displacement)) continue;
+        sum += dot(sample.force - path.samples.front().force, path.direction);
+        ++count;
+      }
+    }
+    if (count == 0 || count != references_.size()) return std::nullopt;
+    return sum / static_cast<double>(count);
+  }
+
+  const std::vector<HeldOutPoint>& points_;
+  FidelitySettings settings_;
+  std::vector<double> references_;
+  std::vector<Sampled> lateral_, normal_;
+};
+
+}  // namespace
+
+Fidelity measure(const Library& library, const RenderedBody& body,
+                 const std::vector<HeldOutPoint>& points, const Curves& direct,
+                 const Curves& sampled, const FidelitySettings& settings) {
+  Fidelity result;
+  Presses presses(body, points, settings, result);
+  Decoupling decoupling(points, settings, held_depths(sampled));
+  for (const SiteCurves& site : direct.sites) {
+    if (site.status != SiteStatus::Complete)
+      result.left_out.push_back("point " + std::to_string(site.vertex) + ": " + site.reason);
+    if (site.status == SiteStatus::Failed) continue;
+    presses.compare(site);
+    decoupling.add(site);
+  }
+
+  const auto is = [&](PathKind kind, bool node) {
+    return [&points, kind, node](const ComparedState& s) {
+      return s.kind == kind && points[s.point].node == node;
+    };
+  };
+  Rows rows(points, result);
+  rows.add(
+      "anywhere within friction, off node", "total",
+      [&](const ComparedState& s) { return s.within_friction && !points[s.point].node; }, whole);
+  rows.add(
+      "anywhere, off node", "total", [&](const ComparedState& s) { return !points[s.point].node; },
+      whole);
+  rows.add_parts("normal press, off node", is(PathKind::Normal, false), false);
+  rows.add_parts("normal press, at node", is(PathKind::Normal, true), false);
+  rows.add_parts("oblique press, off node", is(PathKind::Lateral, false), true);
+  rows.add_parts("oblique press, at node", is(PathKind::Lateral, true), true);
+  rows.add_parts(
+      "oblique within friction, off node",
+      [&](const ComparedState& s) {
+        return s.kind == PathKind::Lateral && s.within_friction && !points[s.point].node;
+      },
+      true);
+  add_interpolation_row(library, points, sampled, result);
+  decoupling.write(result);
+  return result;
+}
+
+}  // namespace palpate::fidelity

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Places at which a library is judged: anywhere on its surface, none of them a site but on request.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "format/library.hpp"
+
+namespace palpate::fidelity {
+
+/// A point of the response surface and the direction in which the runtime presses it.
+struct HeldOutPoint {
+  std::int32_t triangle = -1;
+  Vec3 natural{};     ///< natural coordinates in the triangle
+  Vec3 position{};    ///< m
+  Vec3 inward{};      ///< unit, n(c) of the interpolation
+  bool node = false;  ///< at a vertex: what the fit alone costs, without interpolation
+};
+
+/// `off_node` points drawn evenly over the area of the triangles that have responses at all three
+/// vertices, then up to `at_node` different vertices of such triangles. The same seed draws the
+/// same points. @throws Error(Configuration) when no triangle has responses.
+std::vector<HeldOutPoint> draw_points(const Library& library, int off_node, int at_node,
+                                      std::uint32_t seed);
+
+}  // namespace palpate::fidelity

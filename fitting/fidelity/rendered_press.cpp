@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/fidelity/rendered_press.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "format/error.hpp"
+#include "runtime/palpate.h"
+
+namespace palpate::fidelity {
+namespace {
+
+constexpr double kApproach = 1e-6;  // m outside and inside of the surface: the offset at touch
+constexpr double kNear = 1e-5;      // m and rad, that the contact may be off
+constexpr double kExact = 1e-9;     // m, that a deflection may be off
+constexpr double kNoSlip = 1e9;     // a friction coefficient that nothing exceeds
+constexpr double kPeriod = 1e-3;    // s
+
+void check(int status, const std::string& where) {
+  if (status == PALPATE_OK) return;
+  throw Error(ErrorKind::Configuration, where, palpate_last_error(), palpate_status_text(status));
+}
+
+[[noreturn]] void disagree(const Vec3& contact, const std::string& problem) {
+  char where[96];
+  std::snprintf(where, sizeof where, "contact at (%.6g, %.6g, %.6g) m", contact[0], contact[1],
+                contact[2]);
+  throw Error(ErrorKind::Internal, where, problem, "report this as a bug, with the library");
+}
+
+struct DestroyState {
+  void operator()(palpate_state* state) const { palpate_state_destroy(state); }
+};
+
+/// One tip.
+class Tip {
+ public:
+  explicit Tip(const palpate_library* library) {
+    palpate_settings settings;
+    palpate_settings_default(&settings);
+    settings.friction = kNoSlip;
+    palpate_state* state = nullptr;
+    check(palpate_state_create(library, &settings, &state), "rendered press");
+    state_.reset(state);
+  }
+
+  /// Force on the body.
+  Vec3 move_to(const Vec3& x) {
+    const Vec3 still{};
+    Vec3 on_tool{};
+    palpate_step(state_.get(), x.data(), still.data(), kPeriod, on_tool.data());
+    return -1.0 * on_tool;
+  }
+
+  palpate_observation observe() const {
+    palpate_observation seen{};
+    seen.size = sizeof seen;
+    check(palpate_observe(state_.get(), &seen), "rendered press");
+    return seen;
+  }
+
+ private:
+  std::unique_ptr<palpate_state, DestroyState> state_;
+};
+
+Vec3 vector_of(const double v[3]) {
+  return {v[0], v[1], v[2]};
+}
+
+}  // namespace
+
+void RenderedBody::Unload::operator()(palpate_library* library) const {
+  palpate_library_destroy(library);
+}
+
+RenderedBody::RenderedBody(const std::filesystem::path& file) {
+  palpate_library* library = nullptr;
+  check(palpate_library_load(file.c_str(), &library), file.string());
+  library_.reset(library);
+}
+
+std::vector<Vec3> RenderedBody::press(const Vec3& contact, const Vec3& inward,
+                                      const std::vector<Deflection>& deflections) const {
+  Tip tip(library_.get());
+  tip.move_to(contact - kApproach * inward);
+  tip.move_to(contact + kApproach * inward);
+  const palpate_observation touch = tip.observe();
+  if ((touch.status & PALPATE_CONTACT) == 0) disagree(contact, "the runtime finds no contact");
+  const Vec3 c = vector_of(touch.contact_point);
+  const Vec3 n = vector_of(touch.normal);
+  if (norm(c - contact) > kNear || norm(n - inward) > kNear)
+    disagree(contact, "the runtime takes another contact point or direction");
+  std::vector<Vec3> forces;
+  for (const Deflection& d : deflections) {
+    forces.push_back(tip.move_to(c + (d.depth + touch.offset) * n + d.lateral * d.tangent));
+    const palpate_observation seen = tip.observe();
+    if (std::abs(seen.depth - d.depth) > kExact || std::abs(seen.lateral - d.lateral) > kExact)
+      disagree(contact, "the contact point did not stick");
+  }
+  return forces;
+}
+
+}  // namespace palpate::fidelity
