@@ -214,7 +214,7 @@ class SiteEquilibrium {
     NewtonOptions options;
     options.tolerance = kSharedTolerance * context_.indentation.force_tolerance;
     Displacement trial = u;
-    const NewtonResult result = shared_->solve(contact, options, trial);
+    NewtonResult result = shared_->solve(contact, options, trial);
     if (result.converged)
       u.swap(trial);
     else

@@ -5,7 +5,7 @@
 
 namespace palpate::runtime {
 
-void Device::start_calls(std::function<bool()>) {
+void Device::start_calls(std::function<bool()> /*call*/) {  // NOLINT: others keep it
   throw Error(ErrorKind::Internal, name(), "its driver has no thread of its own",
               "run the loop in a LoopThread");
 }

@@ -17,7 +17,7 @@ constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 
 /// The pages of the stack that the loop may use, taken now instead of by a fault later.
 void touch_stack() noexcept {
-  constexpr std::size_t kDepth = 256 * 1024;
+  constexpr std::size_t kDepth = std::size_t{256} * 1024;
   constexpr std::size_t kPage = 4096;
   char stack[kDepth];
   volatile char* at = stack;

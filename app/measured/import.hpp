@@ -12,6 +12,7 @@
 namespace palpate::app {
 
 /// What `palpate import` makes: curves like those of a campaign, and an account of each record.
+// NOLINTNEXTLINE(bugprone-exception-escape): moving the JSON value is not seen to be safe
 struct Import {
   Curves curves;
   nlohmann::ordered_json account;

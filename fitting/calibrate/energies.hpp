@@ -73,8 +73,8 @@ struct OgdenEnergy {
   template <class T>
   T operator()(const T* c, const Stretches<T>& l) const {
     T sum(0.0);
-    for (int i = 0; i < N; ++i) {
-      const T &mu = c[2 * i], &alpha = c[2 * i + 1];
+    for (const T* term = c; term != c + kConstants; term += 2) {
+      const T &mu = term[0], &alpha = term[1];
       const T powers = power(l[0], alpha) + power(l[1], alpha) + power(l[2], alpha) - T(3.0);
       sum = sum + T(2.0) * mu / (alpha * alpha) * powers;
     }
