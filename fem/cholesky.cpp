@@ -40,6 +40,7 @@ struct SolveWorkspace::Impl {
   cholmod_dense* X = nullptr;
   cholmod_dense* Y = nullptr;
   cholmod_dense* E = nullptr;
+  std::vector<double> ordered;
 
   ~Impl() {
     cholmod_free_dense(&X, &common);
@@ -53,7 +54,7 @@ SolveWorkspace::SolveWorkspace() : impl_(std::make_unique<Impl>()) {}
 SolveWorkspace::~SolveWorkspace() = default;
 
 struct Cholesky::Impl {
-  explicit Impl(const SparsePattern& p) : pattern(p) {}
+  Impl(const SparsePattern& p, std::size_t count) : pattern(p), last(count) {}
 
   ~Impl() {
     cholmod_free_factor(&factor, &common);
@@ -77,22 +78,67 @@ struct Cholesky::Impl {
     return A;
   }
 
+  /// Minimum degree, the marked unknowns after all others.
+  std::vector<int> minimum_degree(cholmod_sparse& A, std::vector<int> marks) {
+    std::vector<int> order(A.nrow);
+    if (!cholmod_camd(&A, nullptr, 0, marks.data(), order.data(), &common))
+      out_of_memory(pattern.n);
+    return order;
+  }
+
+  void analyze(cholmod_sparse& A, std::vector<int>* order) {
+    cholmod_free_factor(&factor, &common);
+    common.method[0].ordering = order ? CHOLMOD_GIVEN : CHOLMOD_AMD;
+    factor = cholmod_analyze_p(&A, order ? order->data() : nullptr, nullptr, 0, &common);
+    if (!factor) out_of_memory(pattern.n);
+  }
+
+  const int* permutation() const { return static_cast<const int*>(factor->Perm); }
+
+  bool ends_with(const std::vector<int>& marks) const {
+    const int* end = permutation() + pattern.n;
+    return std::all_of(end - static_cast<std::ptrdiff_t>(last), end,
+                       [&](int unknown) { return marks[static_cast<std::size_t>(unknown)] == 1; });
+  }
+
+  /// @return the result, which belongs to the workspace.
+  const double* solve(int system, const double* b, SolveWorkspace::Impl& work) const {
+    cholmod_dense B{};
+    B.nrow = B.d = B.nzmax = static_cast<std::size_t>(pattern.n);
+    B.ncol = 1;
+    B.x = const_cast<double*>(b);
+    B.xtype = CHOLMOD_REAL;
+    B.dtype = CHOLMOD_DOUBLE;
+    if (!cholmod_solve2(system, factor, &B, nullptr, &work.X, nullptr, &work.Y, &work.E,
+                        &work.common))
+      out_of_memory(pattern.n);
+    return static_cast<const double*>(work.X->x);
+  }
+
   SparsePattern pattern;
+  std::size_t last;  ///< how many unknowns are kept for the end
   cholmod_common common = started_common();
   cholmod_factor* factor = nullptr;
 };
 
-Cholesky::Cholesky(const SparsePattern& pattern, const std::vector<int>* permutation)
-    : impl_(std::make_unique<Impl>(pattern)) {
+Cholesky::Cholesky(const SparsePattern& pattern, const std::vector<int>* permutation,
+                   const std::vector<int>& last)
+    : impl_(std::make_unique<Impl>(pattern, last.size())) {
   cholmod_sparse A = impl_->view(nullptr);
-  if (permutation) {
-    impl_->common.method[0].ordering = CHOLMOD_GIVEN;
-    impl_->factor =
-        cholmod_analyze_p(&A, const_cast<int*>(permutation->data()), nullptr, 0, &impl_->common);
-  } else {
-    impl_->factor = cholmod_analyze(&A, &impl_->common);
-  }
-  if (!impl_->factor) out_of_memory(pattern.n);
+  std::vector<int> marks(static_cast<std::size_t>(pattern.n), 0);
+  for (const int unknown : last) marks[static_cast<std::size_t>(unknown)] = 1;
+  std::vector<int> order;
+  if (permutation)
+    order = *permutation;
+  else if (!last.empty())
+    order = impl_->minimum_degree(A, marks);
+  std::stable_partition(order.begin(), order.end(),
+                        [&](int unknown) { return marks[static_cast<std::size_t>(unknown)] == 0; });
+  impl_->analyze(A, order.empty() ? nullptr : &order);
+  if (impl_->ends_with(marks)) return;
+  // A body in parts: postordering the elimination tree has put one part after the marked unknowns.
+  impl_->common.postorder = 0;
+  impl_->analyze(A, &order);
 }
 
 std::vector<int> nested_dissection(const SparsePattern& pattern) {
@@ -124,26 +170,50 @@ bool Cholesky::factorize(const std::vector<double>& values) {
 }
 
 void Cholesky::solve(const double* b, double* x, SolveWorkspace& workspace) const {
-  SolveWorkspace::Impl& work = *workspace.impl_;
-  const auto n = static_cast<std::size_t>(impl_->pattern.n);
-  cholmod_dense B{};
-  B.nrow = B.d = B.nzmax = n;
-  B.ncol = 1;
-  B.x = const_cast<double*>(b);
-  B.xtype = CHOLMOD_REAL;
-  B.dtype = CHOLMOD_DOUBLE;
-  if (!cholmod_solve2(CHOLMOD_A, impl_->factor, &B, nullptr, &work.X, nullptr, &work.Y, &work.E,
-                      &work.common))
-    out_of_memory(impl_->pattern.n);
-  const auto* result = static_cast<const double*>(work.X->x);
-  std::copy(result, result + n, x);
+  const double* result = impl_->solve(CHOLMOD_A, b, *workspace.impl_);
+  std::copy(result, result + impl_->pattern.n, x);
+}
+
+void Cholesky::solve_forward(const double* b, double* y, SolveWorkspace& workspace) const {
+  const int* unknown = impl_->permutation();
+  std::vector<double>& ordered = workspace.impl_->ordered;
+  ordered.resize(static_cast<std::size_t>(impl_->pattern.n));
+  for (double& value : ordered) value = b[*unknown++];
+  const double* result = impl_->solve(CHOLMOD_L, ordered.data(), *workspace.impl_);
+  std::copy(result, result + impl_->pattern.n, y);
+}
+
+void Cholesky::solve_backward(const double* y, double* x, SolveWorkspace& workspace) const {
+  const double* result = impl_->solve(CHOLMOD_Lt, y, *workspace.impl_);
+  const int* unknown = impl_->permutation();
+  for (int i = 0; i < impl_->pattern.n; ++i) x[unknown[i]] = result[i];
+}
+
+std::vector<int> Cholesky::last_unknowns() const {
+  const int* end = impl_->permutation() + impl_->pattern.n;
+  return {end - static_cast<std::ptrdiff_t>(impl_->last), end};
+}
+
+Eigen::MatrixXd Cholesky::last_block() const {
+  const int first = impl_->pattern.n - static_cast<int>(impl_->last);
+  Eigen::MatrixXd L = Eigen::MatrixXd::Zero(impl_->pattern.n - first, impl_->pattern.n - first);
+  const SupernodalView v = view();
+  for (int k = v.supernodes - 1; k >= 0 && v.first_column[k + 1] > first; --k) {
+    const int rows = v.row_start[k + 1] - v.row_start[k];
+    const int* row = v.rows + v.row_start[k];
+    for (int j = std::max(first, v.first_column[k]); j < v.first_column[k + 1]; ++j) {
+      const double* column = v.values + v.value_start[k] + (j - v.first_column[k]) * rows;
+      for (int i = j - v.first_column[k]; i < rows; ++i) L(row[i] - first, j - first) = column[i];
+    }
+  }
+  return L;
 }
 
 SupernodalView Cholesky::view() const {
   const cholmod_factor& L = *impl_->factor;
   SupernodalView view;
   view.supernodes = static_cast<int>(L.nsuper);
-  view.permutation = static_cast<const int*>(L.Perm);
+  view.permutation = impl_->permutation();
   view.first_column = static_cast<const int*>(L.super);
   view.row_start = static_cast<const int*>(L.pi);
   view.value_start = static_cast<const int*>(L.px);

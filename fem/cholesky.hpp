@@ -2,6 +2,7 @@
 // Sparse Cholesky factorization by CHOLMOD, supernodal.
 #pragma once
 
+#include <Eigen/Core>
 #include <memory>
 #include <string>
 #include <vector>
@@ -42,7 +43,9 @@ class Cholesky {
  public:
   /// Ordered by minimum degree, or by a permutation made for the same pattern. METIS is not called
   /// here: it draws from the random numbers of the process, which threads would share.
-  explicit Cholesky(const SparsePattern& pattern, const std::vector<int>* permutation = nullptr);
+  /// The unknowns `last` are eliminated after all others, whatever fill that costs.
+  explicit Cholesky(const SparsePattern& pattern, const std::vector<int>* permutation = nullptr,
+                    const std::vector<int>& last = {});
   ~Cholesky();
   Cholesky(const Cholesky&) = delete;
   Cholesky& operator=(const Cholesky&) = delete;
@@ -52,6 +55,15 @@ class Cholesky {
 
   /// x = A^-1 b; b and x hold n values and may be the same array.
   void solve(const double* b, double* x, SolveWorkspace& workspace) const;
+
+  /// The two halves of solve(): y = L^-1 P b and x = P^T L^-T y. The unknowns `last` come last in
+  /// y, in the order of last_unknowns().
+  void solve_forward(const double* b, double* y, SolveWorkspace& workspace) const;
+  void solve_backward(const double* y, double* x, SolveWorkspace& workspace) const;
+
+  std::vector<int> last_unknowns() const;
+  /// L of the Schur complement of the unknowns `last`: A_ll - A_lr A_rr^-1 A_rl = L L^T.
+  Eigen::MatrixXd last_block() const;
 
   SupernodalView view() const;  ///< valid until the next factorization
 

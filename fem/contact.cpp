@@ -104,18 +104,18 @@ Eigen::Matrix3d SphereContact::hessian(const Point& point, const Eigen::Vector3d
   return H;
 }
 
+double SphereContact::energy(const Point& point, const Eigen::Vector3d& x) const {
+  if (!point.stuck) {
+    const double overlap = std::min(0.0, gap(x));
+    return 0.5 * eps_ * point.area * overlap * overlap;
+  }
+  const Eigen::Vector3d slip = x - tool_.centre - point.arm;
+  return point.area * (point.traction.dot(slip) + 0.5 * stuck_eps_ * slip.squaredNorm());
+}
+
 double SphereContact::energy(const Displacement& u) const {
   double sum = 0;
-  for (const Point& point : points_) {
-    const Eigen::Vector3d r = position(point, u) - tool_.centre;
-    if (point.stuck) {
-      const Eigen::Vector3d slip = r - point.arm;
-      sum += point.area * (point.traction.dot(slip) + 0.5 * stuck_eps_ * slip.squaredNorm());
-    } else {
-      const double overlap = std::max(0.0, tool_.radius - r.norm());
-      sum += 0.5 * eps_ * point.area * overlap * overlap;
-    }
-  }
+  for (const Point& point : points_) sum += energy(point, position(point, u));
   return sum;
 }
 

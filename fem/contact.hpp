@@ -51,6 +51,8 @@ class SphereContact {
   double rest_penetration(const Sphere& tool) const;
 
  private:
+  friend class ContactPatch;
+
   struct Point {
     int facet;                ///< index into facets_
     std::array<double, 6> N;  ///< shape functions of the facet at the point
@@ -61,6 +63,8 @@ class SphereContact {
   };
 
   Eigen::Vector3d position(const Point& point, const Displacement& u) const;
+  double gap(const Eigen::Vector3d& x) const { return (x - tool_.centre).norm() - tool_.radius; }
+  double energy(const Point& point, const Eigen::Vector3d& x) const;
   /// Derivative of the energy of a point by its position, per unit area.
   Eigen::Vector3d gradient(const Point& point, const Eigen::Vector3d& x) const;
   Eigen::Matrix3d hessian(const Point& point, const Eigen::Vector3d& x, bool geometric) const;

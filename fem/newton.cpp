@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/newton.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace palpate::fem {
 
@@ -10,6 +12,12 @@ namespace {
 
 /// Round-off of an energy summed over the elements, relative.
 constexpr double kEnergyNoise = 1e-14;
+
+/// Of the contact on the patch. A facet that flips costs one iteration.
+constexpr int kPatchIterations = 50;
+constexpr int kPatchHalvings = 10;
+/// The residual that the patch may leave, over that allowed to the increment.
+constexpr double kPatchTolerance = 0.1;
 
 }  // namespace
 
@@ -27,19 +35,85 @@ Equilibrium evaluate(const SolidModel& model, const SphereContact& contact, cons
   return now;
 }
 
-bool NewtonSolver::factorize(const SphereContact& contact, const Displacement& u) {
-  // Away from equilibrium a large pressure can make the stiffness indefinite. Leaving out the
-  // negative term of the contact, then raising the diagonal, still gives a direction of descent.
-  constexpr std::array<double, 7> kShifts{0, 0, 0.02, 0.1, 0.5, 2, 10};
-  for (std::size_t attempt = 0; attempt < kShifts.size(); ++attempt) {
+void NewtonSolver::choose_patch(const SphereContact& contact, const Displacement& u) {
+  if (patch_ && patch_->covers(contact, u)) return;
+  patch_.emplace(contact, model_, u);
+  factor_.emplace(model_.pattern(), permutation_, patch_->unknowns());
+  const std::vector<int>& ours = patch_->unknowns();
+  last_place_.clear();
+  for (const int unknown : factor_->last_unknowns())
+    last_place_.push_back(
+        static_cast<int>(std::lower_bound(ours.begin(), ours.end(), unknown) - ours.begin()));
+  factorized_ = false;
+}
+
+bool NewtonSolver::factorize(const Displacement& u) {
+  // Away from equilibrium a large pressure can make the stiffness indefinite. Raising its diagonal
+  // still gives a direction of descent.
+  constexpr std::array<double, 6> kShifts{0, 0.02, 0.1, 0.5, 2, 10};
+  factorized_ = false;
+  for (const double shift : kShifts) {
     model_.stiffness(u, K_);
-    contact.add_stiffness(model_, u, attempt == 0, K_);
     const auto& start = model_.pattern().start;
-    for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[at(start[i])] *= 1 + kShifts[attempt];
-    factorized_ = factor_.factorize(K_);
-    if (factorized_) return true;
+    for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[at(start[i])] *= 1 + shift;
+    factorized_ = factor_->factorize(K_);
+    if (factorized_) break;
   }
-  return false;
+  if (!factorized_) return false;
+  root_ = factor_->last_block();
+  Eigen::MatrixXd numbered(root_.rows(), root_.cols());
+  for (Eigen::Index i = 0; i < root_.rows(); ++i) numbered.row(place(i)) = root_.row(i);
+  schur_.noalias() = numbered * numbered.transpose();
+  return true;
+}
+
+Eigen::VectorXd NewtonSolver::patch_minimum(const SphereContact& contact, const Eigen::VectorXd& x,
+                                            double tolerance) const {
+  Eigen::VectorXd d = Eigen::VectorXd::Zero(x.size()), contact_force, g;
+  Eigen::MatrixXd H;
+  for (int iteration = 0; iteration < kPatchIterations; ++iteration) {
+    const Eigen::VectorXd pull = schur_ * (d - x);
+    const double energy =
+        0.5 * pull.dot(d - x) + patch_->derivatives(contact, d, true, contact_force, &H);
+    g = pull + contact_force;
+    if (g.norm() <= tolerance) break;
+    Eigen::LLT<Eigen::MatrixXd> llt(H + schur_);
+    if (llt.info() != Eigen::Success) {
+      // Without the negative term of the contact the model is convex.
+      patch_->derivatives(contact, d, false, contact_force, &H);
+      llt.compute(H + schur_);
+    }
+    const Eigen::VectorXd step = -llt.solve(g);
+    const double slope = g.dot(step);
+    double length = 1;
+    Eigen::VectorXd trial;
+    for (int halvings = 0; halvings < kPatchHalvings; ++halvings, length *= 0.5) {
+      trial = d + length * step;
+      const double next =
+          0.5 * (trial - x).dot(schur_ * (trial - x)) + patch_->energy(contact, trial);
+      if (next <= energy + 1e-4 * length * slope + kEnergyNoise * std::abs(energy)) break;
+    }
+    d = trial;
+  }
+  return d;
+}
+
+Eigen::VectorXd NewtonSolver::direction(const SphereContact& contact, const Displacement& u,
+                                        const Eigen::VectorXd& residual, double tolerance) {
+  Eigen::VectorXd load = -residual, y(load.size()), d(load.size());
+  contact.add_forces(model_, u, load);  // what is left are the internal forces
+  factor_->solve_forward(load.data(), y.data(), workspace_);
+  if (const Eigen::Index count = root_.rows(); count > 0) {
+    patch_->start_from(contact, u);
+    Eigen::VectorXd x(count), ordered = y.tail(count);
+    root_.transpose().triangularView<Eigen::Upper>().solveInPlace(ordered);
+    for (Eigen::Index i = 0; i < count; ++i) x[place(i)] = ordered[i];
+    x = patch_minimum(contact, x, tolerance);
+    for (Eigen::Index i = 0; i < count; ++i) ordered[i] = x[place(i)];
+    y.tail(count) = root_.transpose().triangularView<Eigen::Upper>() * ordered;
+  }
+  factor_->solve_backward(y.data(), d.data(), workspace_);
+  return d;
 }
 
 bool NewtonSolver::line_search(const SphereContact& contact, const Eigen::VectorXd& d,
@@ -71,20 +145,21 @@ NewtonResult NewtonSolver::solve(const SphereContact& contact, const NewtonOptio
     result.reason = "an element is inverted at the start of the increment";
     return result;
   }
-  bool stale = options.reuse_factor && factorized_;
-  Eigen::VectorXd d(model_.pattern().n);
+  bool stale = options.reuse_factor;
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     const double before = now.residual.norm();
-    if (before <= options.tolerance * std::max(contact.tool_force(u).norm(), 1e-12)) {
+    const double allowed = options.tolerance * std::max(contact.tool_force(u).norm(), 1e-12);
+    if (before <= allowed) {
       result.converged = true;
       return result;
     }
-    if (!stale && !factorize(contact, u)) {
+    choose_patch(contact, u);
+    stale = stale && factorized_;
+    if (!stale && !factorize(u)) {
       result.reason = "the stiffness is not positive definite (loss of stability or ellipticity)";
       return result;
     }
-    const Eigen::VectorXd load = -now.residual;
-    factor_.solve(load.data(), d.data(), workspace_);
+    const Eigen::VectorXd d = direction(contact, u, now.residual, kPatchTolerance * allowed);
     const bool moved = line_search(contact, d, now, u);
     if (!moved && !stale) {
       result.reason = "no step along the Newton direction keeps det F > 0 and lowers the energy";

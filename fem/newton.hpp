@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fem/cholesky.hpp"
 #include "fem/contact.hpp"
+#include "fem/contact_patch.hpp"
 #include "fem/solid_model.hpp"
 
 namespace palpate::fem {
@@ -30,27 +33,48 @@ struct Equilibrium {
 };
 Equilibrium evaluate(const SolidModel& model, const SphereContact& contact, const Displacement& u);
 
-/// Minimises the energy of body and contact over the unknowns of a model, by Newton's method with a
-/// Cholesky factorization. Steps are shortened until det F > 0 everywhere and the energy or the
-/// residual decreases. A failure is a return value: u is then the last admissible iterate.
+/// Minimises the energy of body and contact over the unknowns of a model. Each iteration replaces
+/// the solid by its quadratic model, with a Cholesky factorization of its tangent A alone, and
+/// keeps the contact as it is:
+///   min over d of r . d + d A d / 2 + E_c(u + d),   r the internal forces.
+/// E_c sees the unknowns of the contact patch only. They are eliminated last, so that their Schur
+/// complement S stands at the end of the factor and the minimum is found by Newton's method on
+/// them, dense and small:  min (d_P - x_P) S (d_P - x_P) / 2 + E_c(d_P),  x = -A^-1 r. Facets that
+/// come into contact or leave it thus cost no factorization. Steps are shortened until det F > 0
+/// everywhere and the energy or the residual decreases. A failure is a return value: u is then the
+/// last admissible iterate.
 class NewtonSolver {
  public:
   /// `permutation`: elimination order for the pattern of the model, see Cholesky.
   explicit NewtonSolver(const SolidModel& model, const std::vector<int>* permutation = nullptr)
-      : model_(model), factor_(model.pattern(), permutation) {}
+      : model_(model), permutation_(permutation) {}
 
   NewtonResult solve(const SphereContact& contact, const NewtonOptions& options, Displacement& u);
 
  private:
-  bool factorize(const SphereContact& contact, const Displacement& u);
+  void choose_patch(const SphereContact& contact, const Displacement& u);
+  bool factorize(const Displacement& u);
+  /// The minimum of the model above, contact residual left: `tolerance`, N.
+  Eigen::VectorXd direction(const SphereContact& contact, const Displacement& u,
+                            const Eigen::VectorXd& residual, double tolerance);
+  Eigen::VectorXd patch_minimum(const SphereContact& contact, const Eigen::VectorXd& x,
+                                double tolerance) const;
   /// Moves u along d; false when no admissible step is found.
   bool line_search(const SphereContact& contact, const Eigen::VectorXd& d, Equilibrium& now,
                    Displacement& u) const;
 
+  /// In the patch, of the i-th of the last unknowns of the factor.
+  Eigen::Index place(Eigen::Index i) const { return last_place_[static_cast<std::size_t>(i)]; }
+
   const SolidModel& model_;
-  Cholesky factor_;
+  const std::vector<int>* permutation_;
+  std::optional<ContactPatch> patch_;
+  std::optional<Cholesky> factor_;
   SolveWorkspace workspace_;
   std::vector<double> K_;
+  std::vector<int> last_place_;  ///< in the patch, of the last unknowns of the factor
+  Eigen::MatrixXd root_;         ///< lower triangular, of S in the order of the factor
+  Eigen::MatrixXd schur_;        ///< S, numbered as the patch
   bool factorized_ = false;
 };
 

@@ -18,83 +18,87 @@ inline Pack& pack(float* y, int row) {
   return *reinterpret_cast<Pack*>(y + at(row) * kBatch);
 }
 
-/// A row of a dense block stored by rows.
-inline const float* row_of(const float* block, int row, int columns) {
-  return block + at(row) * at(columns);
+/// The unknowns of a panel, in registers.
+template <int W>
+struct Packs {
+  Pack of[at(W)];
+  Pack& operator[](int k) { return of[k]; }
+};
+
+/// A supernode is stored as panels of up to kWidth columns, one after the other, each by rows: its
+/// own triangle as a square, then every row of the supernode below that. Both sweeps thus read the
+/// factor from end to end, and a row of the right-hand sides once for all columns of a panel.
+constexpr int kWidth = 16;
+
+/// Calls work.operator()<W>(first column) for the panels of a supernode, widest first; backwards
+/// when asked.
+template <class Work>
+void for_panels(int columns, Work&& work) {
+  int first = 0;
+  for (; first + 16 <= columns; first += 16) work.template operator()<16>(first);
+  const int rest = columns - first;
+  if (rest & 8) work.template operator()<8>(first), first += 8;
+  if (rest & 4) work.template operator()<4>(first), first += 4;
+  if (rest & 2) work.template operator()<2>(first), first += 2;
+  if (rest & 1) work.template operator()<1>(first);
 }
 
-/// Dense lower triangle L (by rows) times its unknowns = y, in place.
-void solve_lower(const float* L, int n, float* y) {
-  for (int i = 0; i < n; ++i) {
-    const float* row = row_of(L, i, n);
-    Pack sum = pack(y, i);
-    for (int j = 0; j < i; ++j) sum -= row[j] * pack(y, j);
-    pack(y, i) = sum * (1.0f / row[i]);
+template <class Work>
+void for_panels_backward(int columns, Work&& work) {
+  int end = columns;
+  if (columns & 1) work.template operator()<1>(end -= 1);
+  if (columns & 2) work.template operator()<2>(end -= 2);
+  if (columns & 4) work.template operator()<4>(end -= 4);
+  if (columns & 8) work.template operator()<8>(end -= 8);
+  while (end > 0) work.template operator()<16>(end -= 16);
+}
+
+/// What the panels of a supernode with `rows` rows below hold, in numbers.
+std::size_t panel_numbers(int columns, int rows) {
+  std::size_t total = 0;
+  for_panels(columns, [&]<int W>(int first) { total += at(W) * at(columns - first + rows); });
+  return total;
+}
+
+/// L x = y for the columns of a panel, whose unknowns start at `own`; `inside` more unknowns of the
+/// supernode follow them, then those listed in `rows`.
+template <int W>
+void forward_panel(const float* panel, float* own, int inside, const int* rows, int below,
+                   float* y) {
+  Packs<W> x;
+  for (int k = 0; k < W; ++k, panel += W) {
+    x[k] = pack(own, k);
+    for (int j = 0; j < k; ++j) x[k] -= panel[j] * x[j];
+    x[k] *= 1.0f / panel[k];
+    pack(own, k) = x[k];
   }
+  const auto subtract_from = [&](Pack& target) {
+    Pack sum = target;
+    for (int k = 0; k < W; ++k) sum -= panel[k] * x[k];
+    target = sum;
+    panel += W;
+  };
+  for (int r = 0; r < inside; ++r) subtract_from(pack(own, W + r));
+  for (int r = 0; r < below; ++r) subtract_from(pack(y, rows[r]));
 }
 
-/// Transposed: L^T x = y, in place.
-void solve_lower_transposed(const float* L, int n, float* y) {
-  for (int i = n - 1; i >= 0; --i) {
-    const float* row = row_of(L, i, n);
-    const Pack x = pack(y, i) * (1.0f / row[i]);
-    pack(y, i) = x;
-    for (int j = 0; j < i; ++j) pack(y, j) -= row[j] * x;
-  }
-}
-
-/// y[rows] -= B x for the rows below a supernode, four at a time so that x is read once for them.
-void subtract_below(const float* B, int columns, const int* rows, int count, const float* x,
+/// The same for L^T x = y.
+template <int W>
+void backward_panel(const float* panel, float* own, int inside, const int* rows, int below,
                     float* y) {
-  int r = 0;
-  auto* xp = const_cast<float*>(x);
-  for (; r + 4 <= count; r += 4) {
-    const float* b0 = row_of(B, r, columns);
-    const float *b1 = b0 + columns, *b2 = b1 + columns, *b3 = b2 + columns;
-    Pack s0 = pack(y, rows[r]), s1 = pack(y, rows[r + 1]), s2 = pack(y, rows[r + 2]),
-         s3 = pack(y, rows[r + 3]);
-    for (int j = 0; j < columns; ++j) {
-      const Pack v = pack(xp, j);
-      s0 -= b0[j] * v;
-      s1 -= b1[j] * v;
-      s2 -= b2[j] * v;
-      s3 -= b3[j] * v;
-    }
-    pack(y, rows[r]) = s0;
-    pack(y, rows[r + 1]) = s1;
-    pack(y, rows[r + 2]) = s2;
-    pack(y, rows[r + 3]) = s3;
-  }
-  for (; r < count; ++r) {
-    const float* b = row_of(B, r, columns);
-    Pack s = pack(y, rows[r]);
-    for (int j = 0; j < columns; ++j) s -= b[j] * pack(xp, j);
-    pack(y, rows[r]) = s;
-  }
-}
-
-/// x -= B^T y[rows], four columns at a time.
-void subtract_above(const float* B, int columns, const int* rows, int count, float* y, float* x) {
-  int j = 0;
-  for (; j + 4 <= columns; j += 4) {
-    Pack s0 = pack(x, j), s1 = pack(x, j + 1), s2 = pack(x, j + 2), s3 = pack(x, j + 3);
-    for (int r = 0; r < count; ++r) {
-      const float* b = row_of(B, r, columns) + j;
-      const Pack v = pack(y, rows[r]);
-      s0 -= b[0] * v;
-      s1 -= b[1] * v;
-      s2 -= b[2] * v;
-      s3 -= b[3] * v;
-    }
-    pack(x, j) = s0;
-    pack(x, j + 1) = s1;
-    pack(x, j + 2) = s2;
-    pack(x, j + 3) = s3;
-  }
-  for (; j < columns; ++j) {
-    Pack s = pack(x, j);
-    for (int r = 0; r < count; ++r) s -= row_of(B, r, columns)[j] * pack(y, rows[r]);
-    pack(x, j) = s;
+  Packs<W> x;
+  for (int k = 0; k < W; ++k) x[k] = pack(own, k);
+  const float* row = panel + W * W;
+  const auto subtract = [&](const Pack& value) {
+    for (int k = 0; k < W; ++k) x[k] -= row[k] * value;
+    row += W;
+  };
+  for (int r = 0; r < inside; ++r) subtract(pack(own, W + r));
+  for (int r = 0; r < below; ++r) subtract(pack(y, rows[r]));
+  for (int k = W; k-- > 0;) {
+    for (int j = k + 1; j < W; ++j) x[k] -= panel[j * W + k] * x[j];
+    x[k] *= 1.0f / panel[k * W + k];
+    pack(own, k) = x[k];
   }
 }
 
@@ -109,37 +113,51 @@ RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& per
                 "check the supports and that the mesh is in one piece");
   const SupernodalView view = factor.view();
   permutation_.assign(view.permutation, view.permutation + n_);
+  std::size_t total = 0;
   for (int k = 0; k < view.supernodes; ++k) {
     const int columns = view.first_column[k + 1] - view.first_column[k];
     const int rows = view.row_start[k + 1] - view.row_start[k];
-    Supernode node{view.first_column[k], columns, rows - columns, rows_.size(), values_.size()};
-    const double* x = view.values + view.value_start[k];
-    for (int i = 0; i < rows; ++i)
-      for (int j = 0; j < columns; ++j)
-        values_.push_back(static_cast<float>(i >= j ? x[at(j) * at(rows) + at(i)] : 0));
+    supernodes_.push_back({view.first_column[k], columns, rows - columns, rows_.size(), total});
     rows_.insert(rows_.end(), view.rows + view.row_start[k] + columns,
                  view.rows + view.row_start[k + 1]);
-    supernodes_.push_back(node);
+    total += panel_numbers(columns, rows - columns);
+  }
+  values_.reserve(total);
+  for (int k = 0; k < view.supernodes; ++k) {
+    const int rows = view.row_start[k + 1] - view.row_start[k];
+    const double* x = view.values + view.value_start[k];
+    for_panels(supernodes_[at(k)].columns, [&]<int W>(int first) {
+      for (int i = first; i < rows; ++i)
+        for (int j = first; j < first + W; ++j)
+          values_.push_back(static_cast<float>(i >= j ? x[at(j) * at(rows) + at(i)] : 0));
+    });
   }
 }
 
 void RestFactor::forward(float* y) const {
   for (const Supernode& node : supernodes_) {
     float* x = y + at(node.first_column) * kBatch;
-    const float* L = values_.data() + node.values;
-    solve_lower(L, node.columns, x);
-    subtract_below(row_of(L, node.columns, node.columns), node.columns,
-                   rows_.data() + node.row_list, node.rows_below, x, y);
+    const float* panel = values_.data() + node.values;
+    for_panels(node.columns, [&]<int W>(int first) {
+      const int inside = node.columns - first - W;
+      forward_panel<W>(panel, x + at(first) * kBatch, inside, rows_.data() + node.row_list,
+                       node.rows_below, y);
+      panel += at(W) * at(W + inside + node.rows_below);
+    });
   }
 }
 
 void RestFactor::backward(float* y) const {
   for (auto node = supernodes_.rbegin(); node != supernodes_.rend(); ++node) {
     float* x = y + at(node->first_column) * kBatch;
-    const float* L = values_.data() + node->values;
-    subtract_above(row_of(L, node->columns, node->columns), node->columns,
-                   rows_.data() + node->row_list, node->rows_below, y, x);
-    solve_lower_transposed(L, node->columns, x);
+    const float* panel =
+        values_.data() + node->values + panel_numbers(node->columns, node->rows_below);
+    for_panels_backward(node->columns, [&]<int W>(int first) {
+      const int inside = node->columns - first - W;
+      panel -= at(W) * at(W + inside + node->rows_below);
+      backward_panel<W>(panel, x + at(first) * kBatch, inside, rows_.data() + node->row_list,
+                        node->rows_below, y);
+    });
   }
 }
 

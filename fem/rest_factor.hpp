@@ -35,8 +35,7 @@ class RestFactor {
   struct Supernode {
     int first_column, columns, rows_below;
     std::size_t row_list;  ///< into rows_
-    std::size_t values;    ///< into values_: columns x columns lower block, then the rows below,
-                           ///< both by rows
+    std::size_t values;    ///< into values_, where its panels start
   };
 
   void forward(float* y) const;

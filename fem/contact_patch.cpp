@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/contact_patch.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <unordered_map>
+
+namespace palpate::fem {
+
+ContactPatch::ContactPatch(const SphereContact& contact, const SolidModel& model,
+                           const Displacement& u)
+    : near_(contact.facets_.size(), 0) {
+  std::set<int> touched;  // nodes of the facets in contact
+  double nearest = std::numeric_limits<double>::infinity();
+  int nearest_facet = -1;
+  for (const auto& point : contact.points_) {
+    const Eigen::Vector3d x = contact.position(point, u);
+    const double gap = contact.gap(x);
+    if (gap < nearest) {
+      nearest = gap;
+      nearest_facet = point.facet;
+    }
+    if (point.stuck || gap < 0)
+      touched.insert(contact.facets_[at(point.facet)].begin(),
+                     contact.facets_[at(point.facet)].end());
+  }
+  if (touched.empty() && nearest_facet >= 0)
+    touched.insert(contact.facets_[at(nearest_facet)].begin(),
+                   contact.facets_[at(nearest_facet)].end());
+  std::set<int> free;
+  for (std::size_t f = 0; f < near_.size(); ++f) {
+    const Facet& facet = contact.facets_[f];
+    if (std::none_of(facet.begin(), facet.end(), [&](int n) { return touched.contains(n); }))
+      continue;
+    near_[f] = 1;
+    for (const int node : facet)
+      if (model.equation(node) >= 0) free.insert(model.equation(node));
+  }
+  std::unordered_map<int, int> place{{-1, -1}};
+  for (const int first : free) {
+    place[first] = static_cast<int>(unknowns_.size());
+    for (int i = 0; i < 3; ++i) unknowns_.push_back(first + i);
+  }
+  for (std::size_t i = 0; i < contact.points_.size(); ++i) {
+    const auto& point = contact.points_[i];
+    if (near_[at(point.facet)] == 0) continue;
+    Point mine{i, {}, Eigen::Vector3d::Zero()};
+    for (std::size_t a = 0; a < 6; ++a)
+      mine.place[a] = place.at(model.equation(contact.facets_[at(point.facet)][a]));
+    points_.push_back(mine);
+  }
+}
+
+bool ContactPatch::covers(const SphereContact& contact, const Displacement& u) const {
+  return std::all_of(contact.points_.begin(), contact.points_.end(), [&](const auto& point) {
+    return near_[at(point.facet)] != 0 ||
+           !(point.stuck || contact.gap(contact.position(point, u)) < 0);
+  });
+}
+
+void ContactPatch::start_from(const SphereContact& contact, const Displacement& u) {
+  for (Point& point : points_) point.x = contact.position(contact.points_[point.index], u);
+}
+
+Eigen::Vector3d ContactPatch::position(const SphereContact& contact, const Point& point,
+                                       const Eigen::VectorXd& d) const {
+  const auto& N = contact.points_[point.index].N;
+  Eigen::Vector3d x = point.x;
+  for (std::size_t a = 0; a < 6; ++a)
+    if (point.place[a] >= 0) x += N[a] * d.segment<3>(point.place[a]);
+  return x;
+}
+
+double ContactPatch::energy(const SphereContact& contact, const Eigen::VectorXd& d) const {
+  double sum = 0;
+  for (const Point& point : points_)
+    sum += contact.energy(contact.points_[point.index], position(contact, point, d));
+  return sum;
+}
+
+double ContactPatch::derivatives(const SphereContact& contact, const Eigen::VectorXd& d,
+                                 bool geometric, Eigen::VectorXd& g, Eigen::MatrixXd* H) const {
+  double sum = 0;
+  g.setZero(d.size());
+  if (H) H->setZero(d.size(), d.size());
+  for (const Point& point : points_) {
+    const auto& source = contact.points_[point.index];
+    const Eigen::Vector3d x = position(contact, point, d);
+    const Eigen::Vector3d force = source.area * contact.gradient(source, x);
+    if (force.isZero(0)) continue;
+    sum += contact.energy(source, x);
+    for (std::size_t a = 0; a < 6; ++a)
+      if (point.place[a] >= 0) g.segment<3>(point.place[a]) += source.N[a] * force;
+    if (!H) continue;
+    const Eigen::Matrix3d h = source.area * contact.hessian(source, x, geometric);
+    for (std::size_t a = 0; a < 6; ++a)
+      for (std::size_t b = 0; b < 6; ++b) {
+        if (point.place[b] < 0 || point.place[a] < point.place[b]) continue;
+        H->block<3, 3>(point.place[a], point.place[b]) += source.N[a] * source.N[b] * h;
+      }
+  }
+  return sum;
+}
+
+}  // namespace palpate::fem

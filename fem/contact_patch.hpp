@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The contact as a function of the few unknowns that feel it.
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "fem/contact.hpp"
+
+namespace palpate::fem {
+
+/// The facets in contact and those that share a node with them. Their free nodes are the unknowns
+/// of a small dense problem; d below is a change of these unknowns. Made for one contact, it serves
+/// its copies too, moved or bonded.
+class ContactPatch {
+ public:
+  /// The patch at displacement u; without contact, around the facet nearest to the tool.
+  ContactPatch(const SphereContact& contact, const SolidModel& model, const Displacement& u);
+
+  /// False when a facet outside the patch is in contact.
+  bool covers(const SphereContact& contact, const Displacement& u) const;
+
+  /// The unknowns of the model that belong to the patch, ascending; empty when it has none there.
+  const std::vector<int>& unknowns() const { return unknowns_; }
+
+  /// The displacement that d is a change of.
+  void start_from(const SphereContact& contact, const Displacement& u);
+  double energy(const SphereContact& contact, const Eigen::VectorXd& d) const;
+  /// Energy; g = dE/dd, and unless null H = d2E/dd2, its lower triangle. `geometric` as in
+  /// SphereContact::add_stiffness.
+  double derivatives(const SphereContact& contact, const Eigen::VectorXd& d, bool geometric,
+                     Eigen::VectorXd& g, Eigen::MatrixXd* H) const;
+
+ private:
+  struct Point {
+    std::size_t index;         ///< in the contact
+    std::array<int, 6> place;  ///< in d of the first unknown of each node, -1: none
+    Eigen::Vector3d x;         ///< at the start
+  };
+
+  Eigen::Vector3d position(const SphereContact& contact, const Point& point,
+                           const Eigen::VectorXd& d) const;
+
+  std::vector<char> near_;  ///< (facets of the contact)
+  std::vector<int> unknowns_;
+  std::vector<Point> points_;
+};
+
+}  // namespace palpate::fem
