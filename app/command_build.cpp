@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <map>
+#include <memory>
+#include <string>
 
 #include "app/case_options.hpp"
 #include "app/command.hpp"
+#include "app/pipeline/settings.hpp"
 #include "app/pipeline/stages.hpp"
 
 namespace palpate::app {
@@ -12,9 +16,16 @@ void add_build_command(CLI::App& root, Action& action) {
       "build", "The whole way from the case to library.h5, skipping what is up to date");
   command->footer("Example: palpate build data/cases/cylinder.toml --out out/cylinder");
   const auto options = add_case_options(*command, ThreadsOption::Present);
-  command->callback([options, &action] {
-    action = [options] {
-      const SiteCounts counts = run_build(open_workspace(*options));
+  const auto last = std::make_shared<std::string>(stage_name(Stage::Certify));
+  std::map<std::string, Stage> stages;
+  for (const Stage stage : {Stage::Mesh, Stage::Precompute, Stage::Fit, Stage::Certify})
+    stages.emplace(stage_name(stage), stage);
+  command->add_option("--until", *last, "The last stage: mesh, precompute, fit or certify")
+      ->check(CLI::IsMember(stages))
+      ->option_text("STAGE");
+  command->callback([options, last, stages, &action] {
+    action = [options, last, stages] {
+      const SiteCounts counts = run_build(open_workspace(*options), stages.at(*last));
       return counts.all_complete() ? kExitDone : kExitSomeSitesFailed;
     };
   });

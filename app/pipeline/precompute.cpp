@@ -125,16 +125,32 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Workspace& space
   return facts;
 }
 
+/// A part of a campaign that is done already: whoever starts all parts again, because some were
+/// killed, does not compute the others twice. (A whole campaign is started again by those who mean
+/// it.)
+std::optional<SiteCounts> finished_part(const Workspace& space, Teller& teller) {
+  if (space.shard.count == 1 || !std::filesystem::exists(space.precomputed())) return {};
+  const Curves curves = read_curves(space.precomputed());
+  if (!stale_reason(space, Stage::Precompute, curves.provenance).empty()) return {};
+  const SiteCounts counts = count_sites(curves);
+  if (teller.tells_text())
+    say("precompute: {} is up to date", space.precomputed().string());
+  else
+    teller.end(space.precomputed(), counts, 0, 0);
+  return counts;
+}
+
 }  // namespace
 
 SiteCounts run_precompute(const Workspace& space, Telling telling) {
   const Body body = read_input(space.body(), "mesh", read_body);
   prepare_output(space.out);
+  Teller teller(telling);
+  if (const auto counts = finished_part(space, teller)) return *counts;
   const std::string body_sha256 = sha256_of_file(space.body());
   fem::CampaignSettings settings = campaign_settings(space);
   settings.sites = sites_of_shard(body, space.shard);
 
-  Teller teller(telling);
   SiteJournal journal(space.journal(), {campaign_key(space, body_sha256),
                                         static_cast<std::int64_t>(settings.sites.size())});
   teller.journal(journal, space.journal());

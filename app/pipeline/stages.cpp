@@ -121,13 +121,15 @@ void run_certify(const Workspace& space) {
   say("certify: {}", space.library().string());
 }
 
-SiteCounts run_build(const Workspace& space) {
+SiteCounts run_build(const Workspace& space, Stage last) {
   prepare_output(space.out);
   refresh(space, Stage::Mesh, space.body(), read_body, run_mesh);
+  if (last == Stage::Mesh) return {};
   refresh(space, Stage::Precompute, space.curves(), read_curves,
           [](const Workspace& w) { run_precompute(w); });
-  refresh(space, Stage::Fit, space.library(), read_library, run_fit);
-  refresh(space, Stage::Certify, space.library(), read_library, run_certify);
+  if (last >= Stage::Fit) refresh(space, Stage::Fit, space.library(), read_library, run_fit);
+  if (last >= Stage::Certify)
+    refresh(space, Stage::Certify, space.library(), read_library, run_certify);
   return count_sites(read_curves(space.curves()));
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "app/pipeline/settings.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "format/curves.hpp"
 
@@ -29,7 +30,8 @@ SiteCounts run_merge(const Workspace& space, std::vector<std::filesystem::path> 
 void run_fit(const Workspace& space);
 void run_certify(const Workspace& space);
 
-/// All four, each only when its artifact is not up to date.
-SiteCounts run_build(const Workspace& space);
+/// The stages up to `last`, each only when its artifact is not up to date. @return the sites, none
+/// when the curves were not asked for.
+SiteCounts run_build(const Workspace& space, Stage last = Stage::Certify);
 
 }  // namespace palpate::app
