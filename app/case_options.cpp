@@ -16,14 +16,21 @@ std::shared_ptr<CaseOptions> add_case_options(CLI::App& command, ThreadsOption t
     command
         .add_option("--threads", options->threads, "Sites computed at once (default: processors)")
         ->check(CLI::Range(1, 4096));
+    command
+        .add_option("--memory", options->memory,
+                    "What the process may use, e.g. 8GB: fewer sites are then under way at once")
+        ->transform(CLI::AsSizeValue(true))
+        ->option_text("SIZE");
   }
   return options;
 }
 
 Workspace open_workspace(const CaseOptions& options) {
   const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  return make_workspace(options.case_file, options.out,
-                        options.threads > 0 ? options.threads : processors);
+  Workspace space = make_workspace(options.case_file, options.out,
+                                   options.threads > 0 ? options.threads : processors);
+  space.memory = static_cast<double>(options.memory);
+  return space;
 }
 
 }  // namespace palpate::app

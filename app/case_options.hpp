@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -15,13 +16,14 @@ namespace palpate::app {
 /// The arguments shared by the subcommands that work on a case.
 struct CaseOptions {
   std::string case_file;
-  std::string out;  ///< empty: as the case says
-  int threads = 0;  ///< 0: one per processor
+  std::string out;           ///< empty: as the case says
+  int threads = 0;           ///< 0: one per processor
+  std::uint64_t memory = 0;  ///< bytes; 0: no bound
 };
 
 enum class ThreadsOption { Absent, Present };
 
-/// Adds CASE, --out and, for stages that compute in parallel, --threads.
+/// Adds CASE, --out and, for stages that compute in parallel, --threads and --memory.
 std::shared_ptr<CaseOptions> add_case_options(CLI::App& command,
                                               ThreadsOption threads = ThreadsOption::Absent);
 

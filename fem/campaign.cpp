@@ -14,6 +14,7 @@
 #include "fem/at.hpp"
 #include "fem/cholesky.hpp"
 #include "fem/indentation.hpp"
+#include "fem/memory.hpp"
 #include "fem/region_laws.hpp"
 #include "format/error.hpp"
 
@@ -85,7 +86,15 @@ class Crew {
   void run() {
     const std::size_t cores = at(std::max(1, settings_.threads));
     const std::size_t share = (open_.size() + cores - 1) / cores;
-    const int lanes = static_cast<int>(std::min<std::size_t>(kBatch, share));
+    // One site at a time may need a factor of its own, in double precision.
+    const double fallback = 2 * context_.rest_factor->bytes();
+    const double bound = settings_.memory > 0 ? std::max(1.0, settings_.memory - fallback) : 0;
+    const int lanes = fitting_times(
+        bound,
+        static_cast<double>(cores) * bytes_of_site(context_, curves_.sites[open_.front()].vertex),
+        static_cast<int>(std::min<std::size_t>(kBatch, share)),
+        "beside a factor for the site that needs its own, a site on each of " +
+            std::to_string(cores) + " cores");
     std::deque<SolveBatch> batches;
     std::vector<std::thread> threads;
     for (std::size_t core = 0; core < cores; ++core) {

@@ -56,6 +56,7 @@ struct CampaignSettings {
   /// index of its point. Such curves are of no use to a fit.
   std::vector<PressPoint> points;
   int threads = 1;
+  double memory = 0;  ///< bytes the process may use; 0: no bound. Fewer sites then run abreast
   std::vector<SiteCurves> known;  ///< results of an earlier run of the same campaign: not repeated
   /// Called for each site as it finishes, and then with the progress; from one thread at a time.
   /// An exception ends the campaign once the sites under way are done, and is passed on.

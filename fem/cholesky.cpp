@@ -209,6 +209,10 @@ Eigen::MatrixXd Cholesky::last_block() const {
   return L;
 }
 
+double Cholesky::bytes() const {
+  return static_cast<double>(impl_->factor->xsize) * sizeof(double);
+}
+
 SupernodalView Cholesky::view() const {
   const cholmod_factor& L = *impl_->factor;
   SupernodalView view;

@@ -65,6 +65,8 @@ class Cholesky {
   /// L of the Schur complement of the unknowns `last`: A_ll - A_lr A_rr^-1 A_rl = L L^T.
   Eigen::MatrixXd last_block() const;
 
+  double bytes() const;  ///< of the numbers of the factor, known before they are
+
   SupernodalView view() const;  ///< valid until the next factorization
 
  private:

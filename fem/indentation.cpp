@@ -165,7 +165,20 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
   if (engine == Engine::Direct) return;
   std::vector<double> K;
   model.stiffness(Displacement::Zero(3, model.mesh().nodes()), K);
-  rest_factor = std::make_unique<RestFactor>(model.pattern(), permutation, K, body.name);
+  rest_factor =
+      std::make_unique<RestFactor>(model.pattern(), permutation, K, body.name, settings.memory);
+}
+
+double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
+  // Counted here and in the solvers: history, trials and line searches of a path; curvature pairs,
+  // residuals and directions; the factor of a window over its stiffness.
+  constexpr double kDisplacements = 12, kVectors = 20, kWindowFill = 8;
+  const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
+  const double held = static_cast<double>(context.indentation.held_depths.size());
+  const double numbers = 3 * nodes * (kDisplacements + held) + unknowns * kVectors;
+  const SolidModel window(context.model, to_eigen(context.place(vertex).position),
+                          kWindowRadius * context.indentation.tool_radius);
+  return sizeof(double) * (numbers + kWindowFill * window.pattern().nonzeros()) + window.bytes();
 }
 
 PressPoint CampaignContext::place(std::int32_t vertex) const {
@@ -196,11 +209,8 @@ class SiteEquilibrium {
       result = solve_shared(contact, u);
       if (result.converged || !direct_allowed) return result;
     }
-    NewtonOptions options;
-    options.tolerance = context_.indentation.force_tolerance;
-    if (!direct_) direct_ = std::make_unique<NewtonSolver>(context_.model, &context_.permutation);
     const int before = result.iterations;
-    result = direct_->solve(contact, options, u);
+    result = shared_ ? solve_direct_alone(contact, u) : solve_direct(contact, u);
     result.iterations += before;
     return result;
   }
@@ -219,6 +229,22 @@ class SiteEquilibrium {
       u.swap(trial);
     else
       shared_->restart();
+    return result;
+  }
+
+  NewtonResult solve_direct(const SphereContact& contact, Displacement& u) {
+    NewtonOptions options;
+    options.tolerance = context_.indentation.force_tolerance;
+    if (!direct_) direct_ = std::make_unique<NewtonSolver>(context_.model, &context_.permutation);
+    return direct_->solve(contact, options, u);
+  }
+
+  /// One site at a time, and nothing is kept: factors of the body by the dozen would fill the
+  /// memory.
+  NewtonResult solve_direct_alone(const SphereContact& contact, Displacement& u) {
+    const std::lock_guard lock(context_.direct_solve);
+    const NewtonResult result = solve_direct(contact, u);
+    direct_.reset();
     return result;
   }
 

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "fem/campaign.hpp"
@@ -34,7 +35,11 @@ struct CampaignContext {
   std::vector<int> permutation;             ///< elimination order of the whole body
   double contact_stiffness;                 ///< eps, N/m^3
   std::unique_ptr<RestFactor> rest_factor;  ///< SharedFactor only
+  mutable std::mutex direct_solve;          ///< held while a site factorizes the whole body
 };
+
+/// Memory of a site under way, at most.
+double bytes_of_site(const CampaignContext& context, std::int32_t vertex);
 
 /// Solves sites one after another on one thread.
 class SiteSolver {

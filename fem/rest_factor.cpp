@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "fem/at.hpp"
+#include "fem/memory.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fem {
@@ -105,9 +106,12 @@ void backward_panel(const float* panel, float* own, int inside, const int* rows,
 }  // namespace
 
 RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
-                       const std::vector<double>& values, const std::string& owner)
+                       const std::vector<double>& values, const std::string& owner, double memory)
     : n_(pattern.n) {
   Cholesky factor(pattern, &permutation);
+  // In double precision as it is computed, and its copy.
+  fitting_times(memory, factor.bytes() * (1 + sizeof(float) / double{sizeof(double)}), 1,
+                "the factor of the stiffness");
   if (!factor.factorize(values))
     throw Error(ErrorKind::Geometry, owner, "the body at rest is not stiff in every direction",
                 "check the supports and that the mesh is in one piece");

@@ -22,8 +22,9 @@ inline constexpr int kBatch = 16;
 class RestFactor {
  public:
   /// @throws Error(Geometry) when the matrix is not positive definite; `owner` names the body.
+  /// @throws Error(Configuration) when its making would pass `memory`, bytes; 0: no bound.
   RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
-             const std::vector<double>& values, const std::string& owner);
+             const std::vector<double>& values, const std::string& owner, double memory = 0);
 
   int size() const { return n_; }
   double bytes() const { return static_cast<double>(values_.size()) * sizeof(float); }

@@ -53,6 +53,12 @@ SolidModel::SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, d
   take_elements(elements);
 }
 
+double SolidModel::bytes() const {
+  return static_cast<double>(blocks_.size() * sizeof(Block) +
+                             sizeof(int) * (scatter_.size() + equation_.size() +
+                                            pattern_.row.size() + pattern_.start.size()));
+}
+
 void SolidModel::number_unknowns(const std::vector<bool>& free) {
   equation_.assign(at(mesh().nodes()), -1);
   for (int node = 0; node < mesh().nodes(); ++node) {

@@ -53,6 +53,7 @@ class SolidModel {
   /// First of the three unknowns of a node, -1 where it is not free.
   int equation(int node) const { return equation_[at(node)]; }
   const SparsePattern& pattern() const { return pattern_; }
+  double bytes() const;  ///< of its own tables, without the mesh that it shares
 
  private:
   struct Block {

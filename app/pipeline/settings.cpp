@@ -80,6 +80,7 @@ fem::CampaignSettings campaign_settings(const Workspace& space) {
   indentation.azimuths = c.indentation.azimuths;
   indentation.force_tolerance = c.indentation.force_tolerance;
   settings.threads = space.threads;
+  settings.memory = space.memory;
   return settings;
 }
 

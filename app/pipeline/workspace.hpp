@@ -20,6 +20,7 @@ struct Workspace {
   std::filesystem::path case_folder;  ///< surfaces and profiles are relative to it
   std::filesystem::path out;
   int threads = 1;
+  double memory = 0;  ///< bytes that precompute may use; 0: no bound
   Shard shard;
 
   std::filesystem::path body() const { return out / "body.h5"; }

@@ -186,6 +186,27 @@ class Campaign(unittest.TestCase):
         self.assertEqual(len(vertices), self.expected["sites"])
         self.assertEqual(len(set(vertices)), len(vertices))
 
+    def peak(self, out, *options):
+        """Exit code and largest resident memory, bytes."""
+        pid = os.posix_spawn(PALPATE, [PALPATE, "precompute", str(self.case), "--out", str(out), *options],
+                             os.environ, file_actions=[(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)])
+        _, status, usage = os.wait4(pid, 0)
+        return os.waitstatus_to_exitcode(status), 1024 * usage.ru_maxrss
+
+    def test_a_bound_on_the_memory_is_kept_and_changes_no_bits(self):
+        out = self.fresh("memory")
+        _, free = self.peak(out, "--threads", "2")
+        (out / "curves.h5").unlink()
+        bound = int(0.9 * free)
+        code, used = self.peak(out, "--threads", "2", "--memory", str(bound))
+        self.assertEqual(code, self.code)
+        self.assertLess(used, bound)
+        self.assert_same_bits(out)
+        (out / "curves.h5").unlink()
+        refused = self.precompute(out, "--memory", "1MB")
+        self.assertEqual(refused.returncode, CONFIGURATION)
+        self.assertIn("memory of 1 MB", refused.stderr)
+
     def test_wrong_shards_are_refused(self):
         out = self.fresh("wrong")
         for text in ("0/3", "4/3", "2", "a/b", "1/3x"):
