@@ -13,7 +13,7 @@ mv "$work/first" "$work/moved"
 prefix=$work/moved
 "$write_plate" "$work/plate.h5"
 
-"$cmake" -S "$source/consumer" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$prefix" \
+"$cmake" -G Ninja -S "$source/consumer" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$prefix" \
   -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DEXAMPLES="$examples" > "$work/log" || { cat "$work/log"; exit 1; }
 "$cmake" --build "$work/by_cmake" > "$work/log" || { cat "$work/log"; exit 1; }
 "$work/by_cmake/consumer" "$work/plate.h5"
