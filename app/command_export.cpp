@@ -7,6 +7,7 @@
 #include "app/export/csv.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/vtkhdf/grids.hpp"
+#include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 
 namespace palpate::app {
@@ -50,6 +51,22 @@ int export_site(const Workspace& space, std::int32_t vertex) {
   return kExitDone;
 }
 
+int export_recording(const std::filesystem::path& recording) {
+  const std::filesystem::path file = std::filesystem::path(recording).replace_extension(".csv");
+  write_file_crash_safely(file, recording_csv(read_recording(recording)));
+  say("export: {}", file.string());
+  return kExitDone;
+}
+
+/// Sessions on a device have no case.
+void add_recording_part(CLI::App& parent, Action& action) {
+  CLI::App* part = parent.add_subcommand("recording", "recording.h5 -> recording.csv beside it");
+  part->footer("Example: palpate export recording out/cylinder/recording.h5");
+  const auto file = std::make_shared<std::string>();
+  part->add_option("RECORDING", *file, "Of a session (recording.h5)")->required();
+  part->callback([file, &action] { action = [file] { return export_recording(*file); }; });
+}
+
 template <class Run>
 CLI::App* add_part(CLI::App& parent, Action& action, const char* name, const char* about, Run run) {
   CLI::App* part = parent.add_subcommand(name, about);
@@ -77,6 +94,7 @@ void add_export_command(CLI::App& root, Action& action) {
   add_part(*command, action, "library",
            "library.h5 -> library.vtkhdf, with the forces at the depth of the case",
            export_library);
+  add_recording_part(*command, action);
   const auto vertex = std::make_shared<std::int32_t>(-1);
   CLI::App* site =
       add_part(*command, action, "site", "The body deformed at one site -> site-N.vtkhdf",

@@ -100,6 +100,7 @@ void write(const RunOptions& options, const Library& library, const std::string&
   recording.library_sha256 = sha256_of_file(options.library);
   recording.rate = options.live.loop.rate;
   recording.friction = options.live.contact.friction;
+  recording.settings = session_settings(options.live);
   recording.steps = outcome.steps;
   recording.provenance = library.provenance;
   recording.provenance.steps.push_back(

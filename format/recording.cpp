@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/recording.hpp"
 
+#include <array>
+#include <cmath>
+#include <string>
+
 #include "format/artifact.hpp"
 #include "format/columns.hpp"
 
@@ -37,6 +41,48 @@ constexpr auto kStepColumns = std::make_tuple(
     column("latency", &RecordedStep::latency_ns, "ns", "Compute time of the step.",
            rules::kNonNegative));
 
+constexpr std::array<const char*, 3> kAxes{"body_x", "body_y", "body_z"};
+
+/// The settings that are numbers, with their names in the file.
+template <class Settings, class Visit>
+void visit_numbers(Settings& s, Visit&& visit) {
+  visit("tank_cap", s.tank_cap);
+  visit("steepness", s.steepness);
+  visit("search_rate", s.search_rate);
+  visit("ramp", s.ramp);
+  visit("watchdog", s.watchdog);
+  visit("max_force", s.max_force);
+  visit("max_speed", s.max_speed);
+}
+
+void write_settings(hdf5::Writer& writer, const SessionSettings& settings) {
+  writer.group("/settings", "What the forces depend on besides the library and the motion.");
+  visit_numbers(settings,
+                [&](const char* name, double value) { writer.set_real("/settings", name, value); });
+  for (std::size_t i = 0; i < 3; ++i)
+    writer.set_real("/settings", kAxes[i], settings.body_position[i]);
+  writer.set_integer("/settings", "guarded", settings.guarded ? 1 : 0);
+}
+
+SessionSettings read_settings(const hdf5::Reader& reader) {
+  SessionSettings settings;
+  visit_numbers(settings,
+                [&](const char* name, double& value) { value = reader.real("/settings", name); });
+  for (std::size_t i = 0; i < 3; ++i)
+    settings.body_position[i] = reader.real("/settings", kAxes[i]);
+  settings.guarded = reader.integer("/settings", "guarded") != 0;
+  return settings;
+}
+
+void check_settings(const Checks& checks, const SessionSettings& settings) {
+  visit_numbers(settings, [&](const char* name, double value) {
+    if (!(value >= 0)) checks.fail(std::string("/settings@") + name, "is negative or no number");
+  });
+  for (std::size_t i = 0; i < 3; ++i)
+    if (!std::isfinite(settings.body_position[i]))
+      checks.fail(std::string("/settings@") + kAxes[i], "is not finite");
+}
+
 void check_recording(const Checks& checks, const Recording& recording) {
   const auto check = [&](const char* name, double value) {
     if (!(std::isfinite(value) && value >= 0)) checks.fail(name, "is not finite and not negative");
@@ -44,6 +90,7 @@ void check_recording(const Checks& checks, const Recording& recording) {
   check("/@rate", recording.rate);
   check("/@friction", recording.friction);
   checks.digest("/@library_sha256", recording.library_sha256, true);
+  check_settings(checks, recording.settings);
   check_columns(checks, "/step", recording.steps, kStepColumns);
   for (std::size_t row = 1; row < recording.steps.size(); ++row) {
     if (recording.steps[row].time_ns < recording.steps[row - 1].time_ns) {
@@ -63,6 +110,7 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
   writer.set_text("/", "library_sha256", recording.library_sha256);
   writer.set_real("/", "rate", recording.rate);
   writer.set_real("/", "friction", recording.friction);
+  write_settings(writer, recording.settings);
   writer.group("/step", "One row for each step of the force loop.");
   write_columns(writer, "/step", recording.steps, kStepColumns, hdf5::Storage::Deflated);
   write_provenance(writer, recording.provenance);
@@ -77,6 +125,7 @@ Recording read_recording(const std::filesystem::path& path) {
   recording.library_sha256 = reader.text("/", "library_sha256");
   recording.rate = reader.real("/", "rate");
   recording.friction = reader.real("/", "friction");
+  recording.settings = read_settings(reader);
   recording.steps = read_columns(reader, "/step", kStepColumns);
   recording.provenance = read_provenance(reader);
   check_recording(Checks(reader), recording);

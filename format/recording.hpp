@@ -31,6 +31,17 @@ struct RecordedStep {
   std::int64_t latency_ns = 0;  ///< compute time of the step
 };
 
+/// What the forces of a session depend on besides the library and the motion.
+struct SessionSettings {
+  double tank_cap = 0;                  ///< J
+  double steepness = 0;                 ///< N/m, may be infinite
+  double search_rate = 0;               ///< Hz; 0 = each step searched the body itself
+  Vec3 body_position{};                 ///< m, of the origin of the body in the frame of the device
+  bool guarded = false;                 ///< the forces passed through the safety of a force loop:
+  double ramp = 0, watchdog = 0;        ///< s
+  double max_force = 0, max_speed = 0;  ///< N, may be infinite; m/s
+};
+
 struct Recording {
   std::string device;
   std::string library_sha256;
@@ -38,6 +49,7 @@ struct Recording {
   double friction = 0;
   std::vector<RecordedStep> steps;
   Provenance provenance;
+  SessionSettings settings;
 };
 
 void write_recording(const std::filesystem::path& path, const Recording& recording);

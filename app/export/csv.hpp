@@ -5,6 +5,7 @@
 #include <string>
 
 #include "format/curves.hpp"
+#include "format/recording.hpp"
 
 namespace palpate::app {
 
@@ -12,6 +13,9 @@ namespace palpate::app {
 /// vertex, status, path, held depth, direction, displacement, force, energies and checks.
 /// Numbers read back exactly.
 std::string curves_csv(const Curves& curves);
+
+/// Every step of a session, one row each, with a title row that carries the SI units.
+std::string recording_csv(const Recording& recording);
 
 /// Written crash-safe.
 void write_curves_csv(const Curves& curves, const std::filesystem::path& file);

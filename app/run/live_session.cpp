@@ -57,6 +57,20 @@ void wait_for_the_end(const runtime::LoopThread& loop, double duration,
 
 }  // namespace
 
+SessionSettings session_settings(const LiveSettings& live) {
+  SessionSettings settings;
+  settings.tank_cap = live.contact.tank_cap;
+  settings.steepness = live.contact.steepness;
+  settings.search_rate = live.search_rate;
+  settings.body_position = live.pose.position;
+  settings.guarded = true;
+  settings.ramp = live.safety.ramp;
+  settings.watchdog = live.safety.watchdog;
+  settings.max_force = live.safety.max_force;
+  settings.max_speed = live.safety.max_speed;
+  return settings;
+}
+
 LiveOutcome run_live(runtime::Device& device, const palpate_library& body,
                      const LiveSettings& settings, const std::atomic<bool>& stop) {
   palpate_state state(body, settings.contact, settings.search_rate);

@@ -23,6 +23,9 @@ struct LiveSettings {
   double duration = 0;       ///< s; 0 = until stopped
 };
 
+/// As they are recorded.
+SessionSettings session_settings(const LiveSettings& live);
+
 struct LiveOutcome {
   std::vector<RecordedStep> steps;
   runtime::LoopCounts counts;

@@ -11,6 +11,7 @@
 #include "format/error.hpp"
 #include "format/sha256.hpp"
 #include "runtime/device_simulated.hpp"
+#include "runtime/handles.hpp"
 #include "runtime/palpate.h"
 
 namespace palpate::app {
@@ -35,6 +36,16 @@ StateHandle create(const palpate_library* library, const std::filesystem::path& 
   palpate_state* state = nullptr;
   check(palpate_state_create(library, nullptr, &state), file);
   return {state, &palpate_state_destroy};
+}
+
+/// What palpate_state_create takes where no settings are given.
+SessionSettings settings_of(const palpate_library* library) {
+  palpate_settings defaults{};
+  palpate_settings_default(&defaults);
+  SessionSettings settings;
+  settings.tank_cap = defaults.tank_cap;
+  settings.steepness = library->steepness;
+  return settings;
 }
 
 runtime::SimulatedDevice device_of(const SimulateSection& script) {
@@ -98,6 +109,7 @@ Recording play_session(const std::filesystem::path& library_file, const Library&
   recording.library_sha256 = sha256_of_file(library_file);
   recording.rate = script.rate;
   recording.friction = library.certificate.friction;
+  recording.settings = settings_of(handle.get());
   const auto count = static_cast<std::int64_t>((hand.duration() + kRestAfterwards) * script.rate);
   recording.steps.reserve(static_cast<std::size_t>(count));
   device.place(hand.at(0).position, {});

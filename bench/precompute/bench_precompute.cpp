@@ -1,9 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The campaign against one site after another by Newton's method with a Cholesky factorization of
-// the whole body: same body, sites, increments, predictor, tolerance and BLAS kernel, one run, one
-// thread.
+// What a site costs, on blocks of tissue pressed by a sphere. Each part is one run on one machine;
+// only ratios within a part mean anything.
 //
-// Usage: bench_precompute [NODES...] with NODES among 8 and 26 (thousand); both without.
+// Usage: bench_precompute newton [8|26]   against one site after another by Newton's method with a
+// Cholesky
+//                                         factorization of the whole body: same body, sites,
+//                                         increments, predictor, tolerance and BLAS kernel, one
+//                                         thread
+//        bench_precompute growth [CELLS...]  time and memory against the size of the mesh, cells an
+//        edge bench_precompute sites           time against the number of sites bench_precompute
+//        threads         one thread against two
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -66,6 +74,12 @@ SiteCurves direct(const Body& body, CampaignSettings s, double tolerance, std::i
   return solve_site(context, vertex, nullptr);
 }
 
+std::string fact(const CampaignReport& report, const std::string& name) {
+  for (const auto& [key, value] : report.facts)
+    if (key == name) return value;
+  return {};
+}
+
 void compare(int cells, double poisson) {
   const Body body = block(cells);
   CampaignSettings s = settings(poisson);
@@ -85,23 +99,105 @@ void compare(int cells, double poisson) {
   std::fflush(stdout);
 }
 
-void run(const std::vector<int>& divisions) {
+void against_newton(const std::vector<int>& cells) {
   std::printf(
       "sphere of 5 mm radius to 4 mm, 10 increments, frictionless; 16 sites; BLAS kernel %s\n"
       "| free nodes | nu | Newton, a site | its error | campaign, a site | its error | ratio | "
       "force "
       "|\n|---|---|---|---|---|---|---|---|\n",
       blas_kernel().c_str());
-  for (const int cells : divisions)
-    for (const double poisson : {0.45, 0.49}) compare(cells, poisson);
+  for (const int each : cells)
+    for (const double poisson : {0.45, 0.49}) compare(each, poisson);
+}
+
+double peak_megabytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1e-3 * static_cast<double>(usage.ru_maxrss);
+}
+
+/// Normal and lateral path of each site. @return seconds on the clock.
+double campaign_seconds(const Body& body, std::size_t sites, int threads, CampaignReport& report) {
+  CampaignSettings s = settings(0.49);
+  s.indentation.held_depths = {0.002};
+  s.threads = threads;
+  s.sites = inner_sites(body, sites);
+  run_campaign(body, s, report);
+  return report.seconds;
+}
+
+/// Peaks of memory are those of the process: from the smallest mesh to the largest.
+void growth(const std::vector<int>& cells) {
+  std::printf(
+      "normal path to 4 mm and lateral path of 3 mm, nu = 0.49, 16 sites, one thread\n"
+      "| nodes | processor time, a site | set-up | float factor | peak memory "
+      "|\n|---|---|---|---|---|\n");
+  for (const int each : cells) {
+    const Body body = block(each);
+    CampaignReport report;
+    const double seconds = campaign_seconds(body, 16, 1, report);
+    const int per_edge = 2 * each + 1;
+    std::printf("| %d | %.3f s | %.2f s | %.0f MB | %.0f MB |\n", per_edge * per_edge * (each + 1),
+                report.cpu_seconds / 16, seconds - report.cpu_seconds,
+                1e-6 * std::stod(fact(report, "rest_factor_bytes")), peak_megabytes());
+    std::fflush(stdout);
+  }
+}
+
+void against_sites() {
+  const Body body = block(18);
+  std::printf(
+      "26 011 nodes, nu = 0.49, normal and lateral path, one thread\n"
+      "| sites | wall time | a site, set-up included |\n|---|---|---|\n");
+  for (const std::size_t sites : {1u, 4u, 16u, 64u}) {
+    CampaignReport report;
+    const double seconds = campaign_seconds(body, sites, 1, report);
+    std::printf("| %zu | %.2f s | %.3f s |\n", sites, seconds,
+                seconds / static_cast<double>(sites));
+    std::fflush(stdout);
+  }
+}
+
+void against_threads() {
+  const Body body = block(18);
+  CampaignReport report;
+  const double one = campaign_seconds(body, 64, 1, report), set_up = one - report.cpu_seconds;
+  const double two = campaign_seconds(body, 64, 2, report);
+  std::printf(
+      "26 011 nodes, 64 sites: 1 thread %.1f s, 2 threads %.1f s, ratio %.2f (without the set-up "
+      "of "
+      "%.1f s: %.2f)\n",
+      one, two, one / two, set_up, (one - set_up) / (two - set_up));
+}
+
+int usage() {
+  std::fputs("usage: bench_precompute newton [8|26] | growth [CELLS...] | sites | threads\n",
+             stderr);
+  return 2;
+}
+
+int run(const std::string& part, const std::vector<int>& numbers) {
+  if (part == "newton") {
+    std::vector<int> cells;
+    for (const int thousands : numbers) cells.push_back(thousands == 8 ? 12 : 18);
+    against_newton(cells.empty() ? std::vector<int>{12, 18} : cells);
+  } else if (part == "growth") {
+    growth(numbers.empty() ? std::vector<int>{8, 12, 18, 24, 28} : numbers);
+  } else if (part == "sites") {
+    against_sites();
+  } else if (part == "threads") {
+    against_threads();
+  } else {
+    return usage();
+  }
+  return 0;
 }
 
 }  // namespace
 }  // namespace palpate::fem
 
 int main(int count, char** arguments) {
-  std::vector<int> divisions;
-  for (int i = 1; i < count; ++i) divisions.push_back(std::string(arguments[i]) == "8" ? 12 : 18);
-  if (divisions.empty()) divisions = {12, 18};
-  palpate::fem::run(divisions);
+  std::vector<int> numbers;
+  for (int i = 2; i < count; ++i) numbers.push_back(std::atoi(arguments[i]));
+  return palpate::fem::run(count > 1 ? arguments[1] : "", numbers);
 }

@@ -174,6 +174,26 @@ class Pipeline(unittest.TestCase):
         work = -np.sum((force[1:] + force[:-1]) / 2 * np.diff(position, axis=0))
         self.assertAlmostEqual(work, absorbed[-1], delta=0.05 * absorbed.max())
 
+    def test_session_is_replayed_to_the_bit(self):
+        self.run_ok("simulate", self.case, "--out", self.out)
+        recording, library = self.out / "recording.h5", self.out / "library.h5"
+        self.run_ok("replay", recording, "--library", library)
+        other = self.root / "other.h5"
+        other.write_bytes(library.read_bytes() + b"x")
+        refused = palpate("replay", recording, "--library", other)
+        self.assertEqual(refused.returncode, 2)
+        self.assertEqual(refused.stderr.count("\n"), 1)
+
+    def test_session_exported_as_csv_reads_back_exactly(self):
+        self.run_ok("simulate", self.case, "--out", self.out)
+        self.run_ok("export", "recording", self.out / "recording.h5")
+        with open(self.out / "recording.csv", encoding="ascii") as file:
+            rows = list(csv.DictReader(file))
+        with h5py.File(self.out / "recording.h5") as file:
+            self.assertEqual([float(r["force_z_N"]) for r in rows], file["step/force"][:, 2].tolist())
+            self.assertEqual([float(r["absorbed_J"]) for r in rows], file["step/absorbed"][()].tolist())
+            self.assertEqual([int(r["status"]) for r in rows], file["step/status"][()].tolist())
+
     def test_report_is_one_file(self):
         self.run_ok("report", self.case, "--out", self.out)
         page = (self.out / "report.html").read_text(encoding="utf-8")

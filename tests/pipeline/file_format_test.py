@@ -249,6 +249,12 @@ class FileFormat(unittest.TestCase):
             self.assertEqual(file.attrs["library_sha256"], known.text())
             self.assertEqual(file.attrs["rate"], known.number())
             self.assertEqual(file.attrs["friction"], known.number())
+            settings = file["settings"].attrs
+            for name in ("tank_cap", "steepness", "search_rate"):
+                self.assertEqual(settings[name], known.number())
+            self.assertEqual([settings[f"body_{axis}"] for axis in "xyz"], known.numbers())
+            for name in ("guarded", "ramp", "watchdog", "max_force", "max_speed"):
+                self.assertEqual(settings[name], known.number())
             names = ("time", "position", "velocity", "force", "contact_point", "depth", "lateral",
                      "offset", "energy", "tank", "absorbed", "element", "status", "latency")
             columns = [file["step"][name][()] for name in names]

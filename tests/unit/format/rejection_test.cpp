@@ -404,6 +404,8 @@ std::vector<Case> recording_cases() {
        "has shape (3), (5000) expected", remedy},
       {"RecordingChunkLost", kind, lose_a_chunk, "/step/depth", "was never written completely",
        remedy},
+      {"RecordingClampNaN", kind, real("/settings", "max_force", kNaN), "/settings@max_force",
+       "no number", remedy},
       {"RecordingRateNegative", kind, real("/", "rate", -1), "/@rate", "negative", remedy},
   };
 }

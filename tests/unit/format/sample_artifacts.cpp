@@ -259,7 +259,7 @@ Library library(unsigned seed) {
 
 Recording recording(unsigned seed) {
   Random random(seed);
-  Recording recording{"simulated", std::string(64, 'c'), 1000, 0.3, {}, {}};
+  Recording recording{"simulated", std::string(64, 'c'), 1000, 0.3, {}, {}, {}};
   for (int i = 0; i < 5000; ++i) {
     recording.steps.push_back(
         {std::int64_t{1000000} * i, random.vector(0.1), random.vector(1), random.vector(5),
@@ -268,6 +268,8 @@ Recording recording(unsigned seed) {
          random.between(-1e-9, 1), random.integer(-1, 500),
          static_cast<std::uint32_t>(random.integer(0, 511)), random.integer(1000, 90000)});
   }
+  recording.settings = {
+      5e-3, 300, 100, {0.1, 0, -0.2}, true, 0.5, 0.02, std::numeric_limits<double>::infinity(), 3};
   recording.steps[17].position[1] = std::numeric_limits<double>::quiet_NaN();
   recording.steps[17].velocity[2] = std::numeric_limits<double>::infinity();
   recording.provenance.steps = {step("mesh"), step("precompute"), step("fit"), step("run")};
@@ -324,6 +326,9 @@ std::string dump(const Library& library) {
 std::string dump(const Recording& recording) {
   Dump out;
   out << recording.device << recording.library_sha256 << recording.rate << recording.friction;
+  const SessionSettings& set = recording.settings;
+  out << set.tank_cap << set.steepness << set.search_rate << set.body_position << int{set.guarded}
+      << set.ramp << set.watchdog << set.max_force << set.max_speed;
   for (const RecordedStep& s : recording.steps) {
     out << s.time_ns << s.position << s.velocity << s.force << s.contact_point << s.depth
         << s.lateral << s.offset << s.energy << s.tank << s.absorbed << s.element << s.status
