@@ -14,6 +14,13 @@ if(PALPATE_SANITIZE)
   target_link_options(palpate_options INTERFACE -fsanitize=${PALPATE_SANITIZE})
 endif()
 
+# palpate_fuzzed(TARGET): counted by libFuzzer where that is to be had.
+function(palpate_fuzzed target)
+  if(PALPATE_SANITIZE MATCHES "address" AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
+  endif()
+endfunction()
+
 # Eigen chooses alignment, and with it how memory is freed, by the instruction set. Sixteen bytes are what
 # libraries built for any processor (Ceres) take; every target that sees Eigen links this one. The runtime
 # and the format never do.
