@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "app/calibrate/account.hpp"
 #include "app/calibrate/fit_file.hpp"
@@ -53,17 +55,37 @@ int calibrate_tests(const Options& options) {
   return kExitDone;
 }
 
-/// How far a Young's modulus may move from its start, and what a Poisson's ratio may be.
-constexpr double kModulusFactor = 100;
+/// How far a constant may move from its start, and what a Poisson's ratio may be.
+constexpr double kConstantFactor = 100;
 constexpr double kLargestPoisson = 0.4995;
 
 struct BodyOptions {
   std::shared_ptr<CaseOptions> common;
   std::string measured;
-  std::vector<std::string> young, poisson;
+  std::vector<std::string> young, poisson, constant;
   int depths = 6;
   double confidence = 0.95;
 };
+
+/// The constant with its bounds: a factor to either side of its start, within the range of the law.
+SoughtConstant sought_constant(const fem::CampaignSettings& campaign, const std::string& region,
+                               const std::string& name) {
+  const auto material =
+      std::find_if(campaign.materials.begin(), campaign.materials.end(),
+                   [&](const fem::RegionMaterial& m) { return m.region == region; });
+  if (material == campaign.materials.end()) {
+    throw Error(ErrorKind::Configuration, "region '" + region + "'", "the case has no such region",
+                "name a region of its [[material]] tables");
+  }
+  const fem::LawConstant& constant = fem::law_constant(material->law.law, name);
+  if (name == "poisson") return {{region, name}, 0, kLargestPoisson};
+  const double start = material->law.at(name), far = kConstantFactor * std::abs(start);
+  const bool may_change_sign = constant.is_stress && constant.low < 0;
+  const double near = may_change_sign ? -far : std::abs(start) / kConstantFactor;
+  const auto [low, high] =
+      start < 0 && !may_change_sign ? std::pair(-far, -near) : std::pair(near, far);
+  return {{region, name}, std::max(low, constant.low), std::min(high, constant.high)};
+}
 
 InverseSettings inverse_settings(const BodyOptions& options, const Workspace& space) {
   InverseSettings settings;
@@ -71,21 +93,20 @@ InverseSettings inverse_settings(const BodyOptions& options, const Workspace& sp
   settings.depths = options.depths;
   settings.confidence = options.confidence;
   settings.log = [](const std::string& line) { say("  {}", line); };
-  const auto start_of = [&](const std::string& region) {
-    for (const fem::RegionMaterial& material : settings.campaign.materials) {
-      if (material.region == region) return material.law;
-    }
-    throw Error(ErrorKind::Configuration, "region '" + region + "'", "the case has no such region",
-                "name a region of its [[material]] tables");
-  };
   for (const std::string& region : options.young) {
-    const double start = start_of(region).young;
-    settings.sought.push_back(
-        {{region, fem::ConstantKind::Young}, start / kModulusFactor, start * kModulusFactor});
+    settings.sought.push_back(sought_constant(settings.campaign, region, "young"));
   }
   for (const std::string& region : options.poisson) {
-    start_of(region);
-    settings.sought.push_back({{region, fem::ConstantKind::Poisson}, 0, kLargestPoisson});
+    settings.sought.push_back(sought_constant(settings.campaign, region, "poisson"));
+  }
+  for (const std::string& text : options.constant) {
+    const std::size_t colon = text.rfind(':');
+    if (colon == std::string::npos) {
+      throw Error(ErrorKind::Configuration, "--constant " + text, "it names no constant",
+                  "write REGION:NAME, for example liver:C10");
+    }
+    settings.sought.push_back(
+        sought_constant(settings.campaign, text.substr(0, colon), text.substr(colon + 1)));
   }
   return settings;
 }
@@ -149,6 +170,8 @@ void add_body_part(CLI::App& command, Action& action) {
   part->add_option("--measured", options->measured, "curves.h5 of `palpate import`")->required();
   part->add_option("--young", options->young, "Region whose Young's modulus is sought; repeat");
   part->add_option("--poisson", options->poisson, "Region whose Poisson's ratio is sought; repeat");
+  part->add_option("--constant", options->constant,
+                   "Any constant of the law of a region, as REGION:NAME (liver:C10); repeat");
   part->add_option("--depths", options->depths, "Depths of each curve that are compared")
       ->capture_default_str()
       ->check(CLI::Range(2, 200));

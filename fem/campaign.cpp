@@ -165,7 +165,8 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (const auto& site : curves.sites) report.cpu_seconds += site.cpu_seconds;
   report.facts = {
-      {"element", "Tet10, element-constant pressure"},
+      {"element", settings.dilatation == Dilatation::Mean ? "Tet10, element-constant pressure"
+                                                          : "Tet10, pure displacement"},
       {"nodes", std::to_string(context.model.mesh().nodes())},
       {"unknowns", std::to_string(report.unknowns)},
       {"rest_factor_bytes", std::to_string(static_cast<long long>(context.rest_factor->bytes()))},

@@ -8,20 +8,16 @@
 #include <utility>
 #include <vector>
 
+#include "fem/dilatation.hpp"
+#include "fem/laws/law_table.hpp"
 #include "format/body.hpp"
 #include "format/curves.hpp"
 
 namespace palpate::fem {
 
-/// Nearly incompressible neo-Hookean solid by its small-strain constants.
-struct NeoHookeanConstants {
-  double young = 0;    ///< E, Pa, > 0
-  double poisson = 0;  ///< nu, 0 <= nu < 0.5
-};
-
 struct RegionMaterial {
   std::string region;  ///< name of a region of the body
-  NeoHookeanConstants law;
+  LawConstants law;
 };
 
 struct IndentationSettings {
@@ -50,6 +46,7 @@ struct CampaignProgress {
 
 struct CampaignSettings {
   std::vector<RegionMaterial> materials;  ///< one for each region of the body
+  Dilatation dilatation = Dilatation::Mean;
   IndentationSettings indentation;
   std::vector<std::int32_t> sites;  ///< response vertices; empty = every vertex with is_site
   /// Pressed instead of response vertices when not empty; the `vertex` of a result is then the

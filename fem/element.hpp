@@ -2,9 +2,13 @@
 // Tet10 with an element-constant pressure (mean dilatation [Simo, Taylor & Pister 1985],
 // condensed):
 //   Pi_e = sum_q w_q psi(F_q) + V U(Jbar),   Jbar = (1/V) sum_q w_q J_q,
-// so that the stiffness stays symmetric and positive definite near nu = 1/2 without locking.
+// so that the stiffness stays symmetric and positive definite near nu = 1/2 without locking. For
+// comparison with other programs the pure displacement element is here as well:
+//   Pi_e = sum_q w_q (psi(F_q) + U(J_q)).
 #pragma once
 
+#include "fem/dilatation.hpp"
+#include "fem/laws/holzapfel_gasser_ogden.hpp"
 #include "fem/material.hpp"
 #include "fem/tet10.hpp"
 
@@ -15,6 +19,7 @@ template <class T>
 struct ElementGeometry {
   std::array<std::array<T, 3>, 4> gradient;  ///< dL_c/dX, 1/m
   T volume;                                  ///< m^3
+  Fibres<T> fibres;                          ///< unit vectors, or zero
 };
 
 template <class T>
@@ -64,10 +69,14 @@ ElementKinematics<T> kinematics(const ElementGeometry<T>& geometry, const Elemen
 
 /// Strain energy of the element, J.
 template <class T, class Law>
-T element_energy(const Law& law, const ElementGeometry<T>& geometry,
+T element_energy(const Law& law, Dilatation dilatation, const ElementGeometry<T>& geometry,
                  const ElementKinematics<T>& k) {
-  T density = law.volumetric_energy(k.mean_J);
-  for (std::size_t q = 0; q < kTetPoints; ++q) density += 0.25 * law.psi(k.F[q], k.J[q]);
+  const bool mean = dilatation == Dilatation::Mean;
+  T density = mean ? law.volumetric_energy(k.mean_J) : zero_of<T>();
+  for (std::size_t q = 0; q < kTetPoints; ++q) {
+    density += 0.25 * law.psi(k.F[q], k.J[q], geometry.fibres);
+    if (!mean) density += 0.25 * law.volumetric_energy(k.J[q]);
+  }
   return geometry.volume * density;
 }
 
@@ -101,11 +110,12 @@ ElementVector<T> nodal_forces(const ElementGeometry<T>& geometry, Stress&& stres
 
 /// Internal forces of the element, N: the derivative of element_energy.
 template <class T, class Law>
-ElementVector<T> element_forces(const Law& law, const ElementGeometry<T>& geometry,
-                                const ElementKinematics<T>& k) {
-  const T p = law.pressure(k.mean_J);
+ElementVector<T> element_forces(const Law& law, Dilatation dilatation,
+                                const ElementGeometry<T>& geometry, const ElementKinematics<T>& k) {
+  const T mean = law.pressure(k.mean_J);
   return nodal_forces(geometry, [&](std::size_t q) {
-    Tensor2<T> P = law.piola(k.F[q], k.cof[q], k.J[q]);
+    Tensor2<T> P = law.piola(k.F[q], k.cof[q], k.J[q], geometry.fibres);
+    const T p = dilatation == Dilatation::Mean ? mean : law.pressure(k.J[q]);
     for (std::size_t i = 0; i < 9; ++i) P[i] += p * k.cof[q][i];
     return P;
   });
@@ -176,12 +186,19 @@ void add_point_stiffness(std::size_t q, const T& weight, const ElementGeometry<T
     }
 }
 
-/// Stiffness of the element, N/m: the derivative of element_forces. The condensed pressure adds
-/// (U''/V) g g^T with g = d(V Jbar)/du.
+/// Add U''(J) cof F x cof F, the pure displacement element's resistance to dilatation.
+template <class T>
+void add_dilatation_tangent(const Tensor2<T>& cof, const T& slope, Tensor4<T>& A) {
+  for (std::size_t i = 0; i < 9; ++i) {
+    const T scaled = slope * cof[i];
+    for (std::size_t k = 0; k < 9; ++k) A[i][k] += scaled * cof[k];
+  }
+}
+
+/// K = (U''/V) g g^T with g = d(V Jbar)/du: what the condensed pressure adds to the stiffness.
 template <class T, class Law>
-void element_stiffness(const Law& law, const ElementGeometry<T>& geometry,
-                       const ElementKinematics<T>& k, ElementMatrix<T>& K) {
-  const T p = law.pressure(k.mean_J);
+void set_pressure_stiffness(const Law& law, const ElementGeometry<T>& geometry,
+                            const ElementKinematics<T>& k, ElementMatrix<T>& K) {
   const ElementVector<T> g = nodal_forces(geometry, [&](std::size_t q) { return k.cof[q]; });
   const T rank_one = law.pressure_slope(k.mean_J) / geometry.volume;
   for (std::size_t row = 0; row < 3 * kTetNodes; ++row) {
@@ -189,12 +206,24 @@ void element_stiffness(const Law& law, const ElementGeometry<T>& geometry,
     for (std::size_t column = 0; column <= row; ++column)
       K[lower_index(row, column)] = scaled * g[column / 3][column % 3];
   }
-  const T weight = 0.25 * geometry.volume;
+}
+
+/// Stiffness of the element, N/m: the derivative of element_forces.
+template <class T, class Law>
+void element_stiffness(const Law& law, Dilatation dilatation, const ElementGeometry<T>& geometry,
+                       const ElementKinematics<T>& k, ElementMatrix<T>& K) {
+  const bool by_mean = dilatation == Dilatation::Mean;
+  if (by_mean)
+    set_pressure_stiffness(law, geometry, k, K);
+  else
+    K.fill(zero_of<T>());
+  const T mean = law.pressure(k.mean_J), weight = 0.25 * geometry.volume;
   for (std::size_t q = 0; q < kTetPoints; ++q) {
     Tensor4<T> A;
     for (auto& row : A) row.fill(zero_of<T>());
-    law.add_tangent(k.F[q], k.cof[q], k.J[q], A);
-    add_cofactor_tangent(k.F[q], p, A);
+    law.add_tangent(k.F[q], k.cof[q], k.J[q], geometry.fibres, A);
+    add_cofactor_tangent(k.F[q], by_mean ? mean : T(law.pressure(k.J[q])), A);
+    if (!by_mean) add_dilatation_tangent(k.cof[q], T(law.pressure_slope(k.J[q])), A);
     add_point_stiffness(q, weight, geometry, A, K);
   }
 }

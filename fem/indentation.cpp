@@ -137,31 +137,25 @@ std::vector<double> running_integral(const std::vector<double>& x, const std::ve
   return sum;
 }
 
-namespace {
-
-/// Largest Young's modulus behind the boundary: what lies deeper must not stiffen the contact.
-double stiffest_at_surface(const Body& body, const CampaignSettings& settings,
-                           const SolidModel& model) {
+double contact_stiffness(const Body& body, const CampaignSettings& settings,
+                         const SolidModel& model) {
   double stiffest = 0;
   for (const auto region : model.mesh().facet_region)
     for (const auto& material : settings.materials)
       if (material.region == body.region_names[at(region)])
-        stiffest = std::max(stiffest, material.law.young);
-  return stiffest;
+        stiffest = std::max(stiffest, rest_moduli(material.law).young);
+  return kContactStiffness * stiffest / settings.indentation.tool_radius;
 }
-
-}  // namespace
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e)
     : body(b),
       points(settings.points),
       indentation(settings.indentation),
       engine(e),
-      model(b, laws_of_regions(b, settings.materials)),
+      model(b, laws_of_regions(b, settings.materials), settings.dilatation),
       permutation(nested_dissection(model.pattern())) {
   use_one_thread_per_site();
-  contact_stiffness =
-      kContactStiffness * stiffest_at_surface(b, settings, model) / indentation.tool_radius;
+  contact_stiffness = fem::contact_stiffness(b, settings, model);
   if (engine == Engine::Direct) return;
   std::vector<double> K;
   model.stiffness(Displacement::Zero(3, model.mesh().nodes()), K);

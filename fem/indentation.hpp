@@ -71,6 +71,11 @@ class SiteSolver {
   Observer observer_;
 };
 
+/// Penalty eps of the contact, N/m^3: a multiple of the largest Young's modulus at rest behind the
+/// boundary, over the radius of the tool. What lies deeper must not stiffen the contact.
+double contact_stiffness(const Body& body, const CampaignSettings& settings,
+                         const SolidModel& model);
+
 /// Solve one site alone.
 SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displacement* pressed);
 

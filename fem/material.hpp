@@ -11,6 +11,8 @@
 #include <string>
 
 #include "fem/lanes.hpp"
+#include "fem/laws/scalar.hpp"
+#include "fem/laws/volumetric.hpp"
 
 namespace palpate::fem {
 
@@ -39,25 +41,10 @@ T double_contraction(const Tensor2<T>& a, const Tensor2<T>& b) {
   return sum;
 }
 
-inline double power_of(double x, double exponent) {
-  return std::pow(x, exponent);
-}
-/// By exp and log, which are vector code as pow is not; exact to round-off for x near 1, as a
-/// volume ratio is.
-inline Lanes power_of(const Lanes& x, double exponent) {
-  return (exponent * x.log()).exp();
-}
-inline double logarithm(double x) {
-  return std::log(x);
-}
-inline Lanes logarithm(const Lanes& x) {
-  return x.log();
-}
-
 /// Nearly incompressible neo-Hookean solid [Bonet & Wood 2008, sec. 6.5]:
 ///   Psi = mu/2 (J^{-2/3} I1 - 3) + U(J),   U(J) = kappa/4 (J^2 - 1 - 2 ln J),
 /// with the small-strain constants mu = E/(2(1+nu)), kappa = E/(3(1-2nu)).
-class NeoHookean {
+class NeoHookean : public LogQuadraticVolume {
  public:
   /// @throws Error(Configuration) unless E > 0 and 0 <= nu < 0.5, both finite; `where` names the
   /// owner of the constants in the message.
@@ -66,8 +53,7 @@ class NeoHookean {
   /// Any moduli, Pa, zero included: a derivative of the law by a constant is such a law.
   static NeoHookean from_moduli(double mu, double kappa) { return {mu, kappa}; }
 
-  double mu() const { return mu_; }        ///< shear modulus, Pa
-  double kappa() const { return kappa_; }  ///< bulk modulus, Pa
+  double mu() const { return mu_; }  ///< shear modulus, Pa
 
   /// Isochoric energy density, J/m^3.
   template <class T>
@@ -103,23 +89,9 @@ class NeoHookean {
       }
   }
 
-  /// U, dU/dJ and d2U/dJ2 of the volumetric penalty.
-  template <class T>
-  T volumetric_energy(const T& J) const {
-    return (0.25 * kappa_) * (J * J - 1.0 - 2.0 * logarithm(J));
-  }
-  template <class T>
-  T pressure(const T& J) const {
-    return (0.5 * kappa_) * (J - 1.0 / J);
-  }
-  template <class T>
-  T pressure_slope(const T& J) const {
-    return (0.5 * kappa_) * (1.0 + 1.0 / (J * J));
-  }
-
  private:
-  NeoHookean(double mu, double kappa) : mu_(mu), kappa_(kappa) {}
-  double mu_, kappa_;
+  NeoHookean(double mu, double kappa) : LogQuadraticVolume(kappa), mu_(mu) {}
+  double mu_;
 };
 
 }  // namespace palpate::fem

@@ -29,14 +29,13 @@ void require_positive(const char* name, double value) {
 
 }  // namespace
 
-std::vector<NeoHookean> laws_of_regions(const Body& body,
-                                        const std::vector<RegionMaterial>& materials) {
+std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMaterial>& materials) {
   for (const auto& material : materials)
     if (std::find(body.region_names.begin(), body.region_names.end(), material.region) ==
         body.region_names.end())
       refuse("material of region '" + material.region + "'", "the body has no such region",
              "use one of: " + joined(body.region_names));
-  std::vector<NeoHookean> laws;
+  std::vector<Law> laws;
   for (const auto& region : body.region_names) {
     const auto is_it = [&](const RegionMaterial& m) { return m.region == region; };
     const auto count = std::count_if(materials.begin(), materials.end(), is_it);
@@ -44,8 +43,7 @@ std::vector<NeoHookean> laws_of_regions(const Body& body,
       refuse("region '" + region + "'", std::to_string(count) + " materials are given for it",
              "give exactly one");
     const auto& law = std::find_if(materials.begin(), materials.end(), is_it)->law;
-    laws.push_back(NeoHookean::from_young_poisson(law.young, law.poisson,
-                                                  "material of region '" + region + "'"));
+    laws.push_back(make_law(law, "material of region '" + region + "'"));
   }
   return laws;
 }

@@ -4,15 +4,14 @@
 #include <vector>
 
 #include "fem/campaign.hpp"
-#include "fem/material.hpp"
+#include "fem/laws/law.hpp"
 
 namespace palpate::fem {
 
 /// The law of each region of the body, in its order.
 /// @throws Error(Configuration) for a region without a law, a law without a region, a region named
 /// twice, or constants out of range.
-std::vector<NeoHookean> laws_of_regions(const Body& body,
-                                        const std::vector<RegionMaterial>& materials);
+std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMaterial>& materials);
 
 /// @throws Error(Configuration) when a length is not positive and finite, a held depth lies beyond
 /// the depth, or a count is below one.

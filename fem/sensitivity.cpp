@@ -11,48 +11,61 @@
 
 #include "fem/at.hpp"
 #include "fem/indentation.hpp"
+#include "fem/laws/law.hpp"
 #include "fem/region_laws.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fem {
 namespace {
 
-/// The derivative of a law by one of its constants is a law of the same kind.
-NeoHookean derivative_of(const NeoHookeanConstants& c, ConstantKind kind) {
-  const double E = c.young, nu = c.poisson;
-  if (kind == ConstantKind::Young) {
-    return NeoHookean::from_moduli(1 / (2 * (1 + nu)), 1 / (3 * (1 - 2 * nu)));
-  }
-  return NeoHookean::from_moduli(-E / (2 * (1 + nu) * (1 + nu)),
-                                 2 * E / (3 * (1 - 2 * nu) * (1 - 2 * nu)));
-}
-
-/// A constant as the tangent-linear model needs it.
+/// A constant as the tangent-linear model needs it: the body with a little more and a little less
+/// of it. The laws are smooth in their constants, so that central differences over 1e-5 are exact
+/// to about 1e-9.
 struct Varied {
-  SolidModel model;  ///< whose forces are d(internal forces)/d(constant)
-  double penalty;    ///< d(ln eps)/d(constant)
+  SolidModel more, less;
+  double width;    ///< between the two values
+  double penalty;  ///< d(ln eps)/d(constant)
+
+  /// d(internal forces)/d(constant).
+  Eigen::VectorXd slope(const Displacement& u) const {
+    Eigen::VectorXd high, low;
+    more.forces(u, high);
+    less.forces(u, low);
+    return (high - low) / width;
+  }
 };
 
-const NeoHookeanConstants& constants_of(const CampaignSettings& settings,
-                                        const std::string& region) {
-  for (const RegionMaterial& material : settings.materials) {
-    if (material.region == region) return material.law;
-  }
-  throw Error(ErrorKind::Configuration, "region '" + region + "'", "it has no material",
+double& value_of(CampaignSettings& settings, const RegionConstant& constant) {
+  for (RegionMaterial& material : settings.materials)
+    if (material.region == constant.region) return material.law.at(constant.name);
+  throw Error(ErrorKind::Configuration, "region '" + constant.region + "'", "it has no material",
               "vary a constant of a region that the case describes");
 }
 
+std::vector<Law> unchecked_laws(const Body& body, const CampaignSettings& settings) {
+  std::vector<Law> laws;
+  for (const std::string& region : body.region_names)
+    for (const RegionMaterial& material : settings.materials)
+      if (material.region == region) laws.push_back(unchecked_law(material.law));
+  return laws;
+}
+
 Varied varied(const Body& body, const CampaignSettings& settings, const RegionConstant& constant) {
-  const NeoHookeanConstants& law = constants_of(settings, constant.region);
-  std::vector<NeoHookean> laws;
-  for (const std::string& region : body.region_names) {
-    laws.push_back(region == constant.region ? derivative_of(law, constant.kind)
-                                             : NeoHookean::from_moduli(0, 0));
-  }
-  double stiffest = 0;
-  for (const RegionMaterial& m : settings.materials) stiffest = std::max(stiffest, m.law.young);
-  const bool drives = constant.kind == ConstantKind::Young && law.young == stiffest;
-  return {SolidModel(body, std::move(laws)), drives ? 1 / law.young : 0};
+  constexpr double kStep = 1e-5;
+  CampaignSettings more = settings, less = settings;
+  const double value = value_of(more, constant);
+  // The bulk modulus goes as 1/(1 - 2 nu).
+  const double step = constant.name == "poisson" ? kStep * (0.5 - value)
+                      : value != 0               ? kStep * std::abs(value)
+                                                 : kStep;
+  value_of(more, constant) = value + step;
+  value_of(less, constant) = value - step;
+  Varied v{SolidModel(body, unchecked_laws(body, more), settings.dilatation),
+           SolidModel(body, unchecked_laws(body, less), settings.dilatation), 2 * step, 0};
+  v.penalty =
+      std::log(contact_stiffness(body, more, v.more) / contact_stiffness(body, less, v.less)) /
+      v.width;
+  return v;
 }
 
 /// Differentiates at the equilibria of one site.
@@ -75,9 +88,8 @@ class Differentiator {
     contact.add_forces(model, u, contact_forces);
     slope.clear();
     for (const Varied& constant : constants_) {
-      Eigen::VectorXd load, d(model.pattern().n);
-      constant.model.forces(u, load);
-      load = -(load + constant.penalty * contact_forces);
+      Eigen::VectorXd d(model.pattern().n);
+      const Eigen::VectorXd load = -(constant.slope(u) + constant.penalty * contact_forces);
       factor_.solve(load.data(), d.data(), workspace_);
       Displacement du = Displacement::Zero(3, u.cols());
       move(model, 1, d, du);

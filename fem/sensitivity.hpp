@@ -10,16 +10,14 @@
 
 namespace palpate::fem {
 
-enum class ConstantKind { Young, Poisson };
-
-/// A constant of one region.
+/// A constant of the law of one region, by its name in the table of laws.
 struct RegionConstant {
   std::string region;
-  ConstantKind kind = ConstantKind::Young;
+  std::string name = "young";
 };
 
 /// Force along the inward direction at one depth, N, and its derivative by each constant, N/Pa for
-/// a Young's modulus, N for a Poisson's ratio.
+/// a stress, N for a pure number.
 struct ForceSensitivity {
   double depth = 0;
   double force = 0;
@@ -36,7 +34,8 @@ struct SiteSensitivity {
 /// differentiate. With R(u, c) = 0 the equilibrium and F(u, c) the force of the tool,
 ///   K du/dc = -dR/dc,   dF/dc = dF/du . du/dc + dF/dc|_u,
 /// exact for the discrete model at the equilibrium: the contact penalty follows the stiffest
-/// Young's modulus and is differentiated with it. One factorization a sample, in double precision.
+/// modulus at the surface and is differentiated with it. One factorization a sample, in double
+/// precision.
 /// @throws Error(Configuration) as run_campaign; for a region that the body has not.
 std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSettings& settings,
                                              const std::vector<double>& depths,

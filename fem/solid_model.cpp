@@ -3,6 +3,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace palpate::fem {
@@ -26,10 +27,17 @@ ElementGeometry<double> geometry_of(const QuadraticMesh& mesh, int element) {
   return geometry;
 }
 
+Vec3 centroid(const QuadraticMesh& mesh, int element) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t c = 0; c < 4; ++c) sum += mesh.X.col(mesh.tetrahedra[at(element)][c]);
+  return {sum[0] / 4, sum[1] / 4, sum[2] / 4};
+}
+
 }  // namespace
 
-SolidModel::SolidModel(const Body& body, std::vector<NeoHookean> laws)
-    : solid_(std::make_shared<Solid>(Solid{make_quadratic_mesh(body), std::move(laws)})) {
+SolidModel::SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation)
+    : solid_(
+          std::make_shared<Solid>(Solid{make_quadratic_mesh(body), std::move(laws), dilatation})) {
   std::vector<bool> free = mesh().held;
   free.flip();
   number_unknowns(free);
@@ -80,21 +88,25 @@ void SolidModel::make_blocks(const std::vector<int>& elements) {
     for (const int e : elements)
       if (mesh().region[at(e)] == region) members.push_back(e);
     for (std::size_t first = 0; first < members.size(); first += kLanes) {
-      blocks_.push_back(make_block(members, first));
-      blocks_.back().region = region;
+      blocks_.push_back(make_block(members, first, region));
     }
   }
 }
 
-SolidModel::Block SolidModel::make_block(const std::vector<int>& elements,
-                                         std::size_t first) const {
+SolidModel::Block SolidModel::make_block(const std::vector<int>& elements, std::size_t first,
+                                         int region) const {
   Block block;
+  block.region = region;
   block.count = static_cast<int>(std::min<std::size_t>(kLanes, elements.size() - first));
   for (int lane = 0; lane < kLanes; ++lane) {
     const int element = elements[std::min(first + at(lane), elements.size() - 1)];
     const ElementGeometry<double> one = geometry_of(mesh(), element);
     block.element[at(lane)] = element;
     block.geometry.volume[lane] = one.volume;
+    const auto fibres = solid_->laws[at(region)].fibres_at(centroid(mesh(), element));
+    for (std::size_t family = 0; family < fibres.size(); ++family)
+      for (std::size_t j = 0; j < 3; ++j)
+        block.geometry.fibres[family][j][lane] = fibres[family][j];
     for (std::size_t c = 0; c < 4; ++c)
       for (std::size_t j = 0; j < 3; ++j) block.geometry.gradient[c][j][lane] = one.gradient[c][j];
   }
@@ -147,6 +159,24 @@ double smallest(const ElementKinematics<Lanes>& k) {
   return std::min({k.J[0].minCoeff(), k.J[1].minCoeff(), k.J[2].minCoeff(), k.J[3].minCoeff()});
 }
 
+/// Exponential laws overflow long before an element inverts: such a state is as inadmissible.
+SolidModel::State checked(SolidModel::State state) {
+  if (!std::isfinite(state.energy)) state.min_J = 0;
+  return state;
+}
+
+/// Mean over the element of tr(sigma)/3 = p + P:F/(3 J).
+Lanes mean_stress(const Law& law, Dilatation dilatation, const ElementGeometry<Lanes>& geometry,
+                  const ElementKinematics<Lanes>& k) {
+  Lanes mean = Lanes::Zero();
+  for (std::size_t q = 0; q < kTetPoints; ++q) {
+    const Tensor2<Lanes> P = law.piola(k.F[q], k.cof[q], k.J[q], geometry.fibres);
+    mean += 0.25 * (law.pressure(dilatation == Dilatation::Mean ? k.mean_J : k.J[q]) +
+                    double_contraction(P, k.F[q]) / (3.0 * k.J[q]));
+  }
+  return mean;
+}
+
 }  // namespace
 
 SolidModel::State SolidModel::energy(const Displacement& u) const {
@@ -155,10 +185,11 @@ SolidModel::State SolidModel::energy(const Displacement& u) const {
     const auto k = kinematics(block.geometry, gather(block, u));
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
-    const Lanes energy = element_energy(solid_->laws[at(block.region)], block.geometry, k);
+    const Lanes energy =
+        element_energy(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k);
     state.energy += energy.head(block.count).sum();
   }
-  return state;
+  return checked(state);
 }
 
 SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) const {
@@ -168,11 +199,13 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) 
     const auto k = kinematics(block.geometry, gather(block, u));
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
-    const NeoHookean& law = solid_->laws[at(block.region)];
-    state.energy += element_energy(law, block.geometry, k).head(block.count).sum();
-    scatter(block, element_forces(law, block.geometry, k), f);
+    const Law& law = solid_->laws[at(block.region)];
+    const Dilatation dilatation = solid_->dilatation;
+    const Lanes energy = element_energy(law, dilatation, block.geometry, k);
+    state.energy += energy.head(block.count).sum();
+    scatter(block, element_forces(law, dilatation, block.geometry, k), f);
   }
-  return state;
+  return checked(state);
 }
 
 void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) const {
@@ -181,7 +214,7 @@ void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) c
   const int* place = scatter_.data();
   for (const Block& block : blocks_) {
     const auto k = kinematics(block.geometry, gather(block, u));
-    element_stiffness(solid_->laws[at(block.region)], block.geometry, k, K);
+    element_stiffness(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k, K);
     for (std::size_t entry = 0; entry < kElementEntries; ++entry, place += kLanes)
       for (int lane = 0; lane < block.count; ++lane)
         if (place[lane] >= 0) values[at(place[lane])] += K[entry][lane];
@@ -193,10 +226,11 @@ void SolidModel::element_fields(const Displacement& u, std::vector<double>& ener
   energy_density.resize(mesh().tetrahedra.size());
   pressure.resize(mesh().tetrahedra.size());
   for (const Block& block : blocks_) {
-    const NeoHookean& law = solid_->laws[at(block.region)];
+    const Law& law = solid_->laws[at(block.region)];
     const auto k = kinematics(block.geometry, gather(block, u));
-    const Lanes density = element_energy(law, block.geometry, k) / block.geometry.volume;
-    const Lanes p = law.pressure(k.mean_J);
+    const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
+    const Lanes density = energy / block.geometry.volume;
+    const Lanes p = mean_stress(law, solid_->dilatation, block.geometry, k);
     for (int lane = 0; lane < block.count; ++lane) {
       energy_density[at(block.element[at(lane)])] = density[lane];
       pressure[at(block.element[at(lane)])] = p[lane];

@@ -7,6 +7,7 @@
 
 #include "fem/at.hpp"
 #include "fem/element.hpp"
+#include "fem/laws/law.hpp"
 #include "fem/material.hpp"
 #include "fem/quadratic_mesh.hpp"
 #include "fem/sparse_pattern.hpp"
@@ -19,7 +20,8 @@ using Displacement = Eigen::Matrix3Xd;
 /// A mesh and the law of each of its regions, shared by the models made of it.
 struct Solid {
   QuadraticMesh mesh;
-  std::vector<NeoHookean> laws;
+  std::vector<Law> laws;
+  Dilatation dilatation;
 };
 
 /// The body without the tool, or a part of it: strain energy, internal forces and stiffness as
@@ -28,7 +30,7 @@ struct Solid {
 class SolidModel {
  public:
   /// The whole body. One law for each region, in the order of Body::region_names.
-  SolidModel(const Body& body, std::vector<NeoHookean> laws);
+  SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation = Dilatation::Mean);
 
   /// The part of `whole` that feels its nodes within `radius` of `centre` move: those nodes are
   /// free, the elements at them are kept, all other nodes stay where the displacement puts them.
@@ -36,7 +38,9 @@ class SolidModel {
 
   struct State {
     double energy = 0;  ///< J
-    double min_J = 1;   ///< smallest det F at the Gauss points; the rest is void when <= 0
+    /// Smallest det F at the Gauss points; 0 where the energy has no finite value. The rest is
+    /// void when it is not positive.
+    double min_J = 1;
   };
 
   State energy(const Displacement& u) const;
@@ -45,7 +49,8 @@ class SolidModel {
   /// Values of pattern(), N/m.
   void stiffness(const Displacement& u, std::vector<double>& values) const;
 
-  /// Element means: strain energy density, J/m^3, and pressure dU/dJ, Pa (tension positive).
+  /// Element means: strain energy density, J/m^3, and the mean of the Cauchy stress, Pa (tension
+  /// positive), which for a law with a volumetric part is its dU/dJ.
   void element_fields(const Displacement& u, std::vector<double>& energy_density,
                       std::vector<double>& pressure) const;
 
@@ -66,7 +71,7 @@ class SolidModel {
   void number_unknowns(const std::vector<bool>& free);
   void take_elements(const std::vector<int>& elements);
   void make_blocks(const std::vector<int>& elements);
-  Block make_block(const std::vector<int>& elements, std::size_t first) const;
+  Block make_block(const std::vector<int>& elements, std::size_t first, int region) const;
   /// The unknown of a row of an element, -1 where it is not free.
   int unknown(const Tetrahedron10& node, std::size_t row) const;
   void make_scatter();

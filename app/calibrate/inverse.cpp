@@ -25,17 +25,36 @@ constexpr double kLeastOwnShare = 0.5;
 }
 
 std::string constant_name(const fem::RegionConstant& constant) {
-  return (constant.kind == fem::ConstantKind::Young ? "young of " : "poisson of ") +
-         constant.region;
+  return constant.name + " of " + constant.region;
 }
 
 double& value_of(fem::CampaignSettings& campaign, const fem::RegionConstant& constant) {
   for (fem::RegionMaterial& material : campaign.materials) {
     if (material.region != constant.region) continue;
-    return constant.kind == fem::ConstantKind::Young ? material.law.young : material.law.poisson;
+    return material.law.at(constant.name);
   }
   refuse("region '" + constant.region + "'", "the case has no material for it",
          "seek constants of regions of the case");
+}
+
+std::string unit_of(const fem::CampaignSettings& campaign, const fem::RegionConstant& constant) {
+  for (const fem::RegionMaterial& material : campaign.materials) {
+    if (material.region != constant.region) continue;
+    return fem::law_constant(material.law.law, constant.name).is_stress ? "Pa" : "1";
+  }
+  return {};
+}
+
+/// Whether constants that are each within their bounds make laws together.
+bool admissible(const fem::CampaignSettings& campaign) {
+  try {
+    for (const fem::RegionMaterial& material : campaign.materials) {
+      fem::check_law(material.law, "region '" + material.region + "'");
+    }
+  } catch (const Error&) {
+    return false;
+  }
+  return true;
 }
 
 /// One measured curve at the depths that are compared.
@@ -84,8 +103,7 @@ class Inverse {
     calibrate::LeastSquares problem;
     fem::CampaignSettings start = settings_.campaign;
     for (const SoughtConstant& s : settings_.sought) {
-      problem.constants.push_back({constant_name(s.constant),
-                                   s.constant.kind == fem::ConstantKind::Young ? "Pa" : "1",
+      problem.constants.push_back({constant_name(s.constant), unit_of(start, s.constant),
                                    value_of(start, s.constant), s.low, s.high});
     }
     constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -186,8 +204,13 @@ class Inverse {
     }
     campaign.sites.clear();
     for (const Target& target : targets_) campaign.sites.push_back(target.vertex);
+    // At the start the refusal itself is the best message.
+    usable_ = evaluations_ == 1 || admissible(campaign);
+    if (!usable_) {
+      if (settings_.log) settings_.log(line + ", refused by the law");
+      return false;
+    }
     model_ = fem::run_sensitivity(body_, campaign, depths_, constants);
-    usable_ = true;
     for (std::size_t t = 0; t < targets_.size(); ++t) {
       if (model_[t].samples.size() >= targets_[t].depth.size()) continue;
       usable_ = false;

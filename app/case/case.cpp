@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "app/case/material.hpp"
 #include "app/case/nearest.hpp"
 #include "app/case/reader.hpp"
 #include "format/error.hpp"
@@ -67,6 +68,7 @@ void check_materials(const Case& c, const SourceMap& sources) {
     if (!described.insert(region).second) {
       fail(where, fmt::format("second material for region '{}'", region), "remove one of the two");
     }
+    fem::check_law(law_of(c.materials[i]), where);
   }
   for (const std::string_view region : regions) {
     if (described.contains(region)) continue;
@@ -124,6 +126,13 @@ Case parsed(const toml::table& table, const std::string& file_name) {
 }
 
 }  // namespace
+
+double& MaterialSection::constant(std::string_view name) {
+  for (auto& [known, value] : constants) {
+    if (known == name) return value;
+  }
+  return constants.emplace_back(name, 0.0).second;
+}
 
 Case parse_case(std::string_view toml, const std::string& file_name) {
   return parsed(parse_toml(toml, file_name), file_name);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "format/vec3.hpp"
@@ -43,12 +44,20 @@ struct SupportSection {
   bool operator==(const SupportSection&) const = default;
 };
 
+/// Only the members that belong to the law, and to its field of fibres, are read and printed.
 struct MaterialSection {
   std::string region;
   std::string law = "neo-hookean";
-  double young = 0;  ///< Pa
-  double poisson = 0;
+  std::vector<std::pair<std::string, double>> constants;  ///< by name in the table of laws, SI
+  std::string fibre_field = "constant";
+  Vec3 fibre_direction{}, fibre_plane{};  ///< constant field
+  Vec3 fibre_axis{}, fibre_axis_point{};  ///< cylindrical field; point in m
+  double fibre_angle = 0;                 ///< rad
+  int fibre_families = 1;
   bool operator==(const MaterialSection&) const = default;
+
+  /// Place of a constant; it is added where it is new.
+  double& constant(std::string_view name);
 };
 
 struct ToolSection {
@@ -97,6 +106,11 @@ struct SimulateSection {
   bool operator==(const SimulateSection&) const = default;
 };
 
+struct SolverSection {
+  std::string element = "tet10-pressure";
+  bool operator==(const SolverSection&) const = default;
+};
+
 struct OutputSection {
   std::string folder;  ///< relative to the current folder; empty means "out/<name>"
   bool operator==(const OutputSection&) const = default;
@@ -111,6 +125,7 @@ struct Case {
   std::vector<MaterialSection> materials;
   ToolSection tool;
   IndentationSection indentation;
+  SolverSection solver;
   FitSection fit;
   CertifySection certify;
   SimulateSection simulate;

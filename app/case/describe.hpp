@@ -10,6 +10,7 @@
 
 #include "app/case/case.hpp"
 #include "app/case/quantity.hpp"
+#include "fem/laws/law_table.hpp"
 
 namespace palpate::app {
 
@@ -97,15 +98,56 @@ void describe(V& v, SupportSection& s) {
 }
 
 template <class V>
+void describe_fibres(V& v, MaterialSection& s) {
+  v.integer(s.fibre_families, {"fibre_families",
+                               "1: fibres at +fibre_angle; 2: at both signs of it",
+                               kOptional,
+                               {.low = 1, .high = 2}});
+  v.quantity(s.fibre_angle, Dimension::Angle,
+             {"fibre_angle",
+              "of the fibres from the mean direction, in their plane",
+              kOptional,
+              {.low = 0, .high = 1.5707963267948966}});
+  v.text(s.fibre_field, {"fibre_field", "how the directions vary in the region"},
+         {"constant", "cylindrical"});
+  if (v.when("fibre_field", s.fibre_field, "constant")) {
+    v.direction(s.fibre_direction, {"fibre_direction", "mean direction", kRequired});
+    v.direction(s.fibre_plane,
+                {"fibre_plane", "second direction of the plane of the fibres", kRequired});
+  }
+  if (v.when("fibre_field", s.fibre_field, "cylindrical")) {
+    v.direction(s.fibre_axis,
+                {"fibre_axis", "the mean direction runs around it, the plane along it", kRequired});
+    v.point(s.fibre_axis_point, Dimension::Length,
+            {"fibre_axis_point", "a point of the axis", kRequired});
+  }
+}
+
+template <class V>
 void describe(V& v, MaterialSection& s) {
   v.text(s.region, {"region", "region of an inclusion; empty means that of the surface"});
-  v.text(s.law, {"law", "hyperelastic law"}, {"neo-hookean"});
-  v.quantity(s.young, Dimension::Pressure,
-             {"young", "Young's modulus at small strain", kRequired, kPositive});
-  v.number(s.poisson, {"poisson",
-                       "Poisson's ratio at small strain",
-                       kRequired,
-                       {.low = 0, .high = 0.5, .high_open = true}});
+  Choices laws;
+  for (const fem::LawEntry& law : fem::law_table()) laws.push_back(law.name);
+  v.text(s.law, {"law", "hyperelastic law, see below"}, laws);
+  for (const fem::LawEntry& law : fem::law_table()) {
+    if (!v.when("law", s.law, law.name)) continue;
+    for (const fem::LawConstant& constant : law.constants) {
+      const Key key{constant.name,
+                    constant.about,
+                    kRequired,
+                    {.low = constant.low,
+                     .high = constant.high,
+                     .low_open = constant.low_open,
+                     .high_open = constant.high_open}};
+      double& value = s.constant(constant.name);
+      if (constant.is_stress) {
+        v.quantity(value, Dimension::Pressure, key);
+      } else {
+        v.number(value, key);
+      }
+    }
+    if (law.has_fibres) describe_fibres(v, s);
+  }
 }
 
 template <class V>
@@ -187,6 +229,15 @@ void describe(V& v, SimulateSection& s) {
 }
 
 template <class V>
+void describe(V& v, SolverSection& s) {
+  v.text(s.element,
+         {"element",
+          "tetrahedra of ten nodes with an element-constant pressure, or, to compare with other "
+          "programs, of displacements alone (too stiff near poisson = 0.5)"},
+         {"tet10-pressure", "tet10-displacement"});
+}
+
+template <class V>
 void describe(V& v, OutputSection& s) {
   v.text(
       s.folder,
@@ -204,6 +255,7 @@ void describe(V& v, Case& c) {
   v.sections("material", c.materials, kRequired, "One for each region.");
   v.section("tool", c.tool, kOptional, "What presses.");
   v.section("indentation", c.indentation, kOptional, "What is computed at each site.");
+  v.section("solver", c.solver, kOptional, "How the equilibria are computed.");
   v.section("fit", c.fit, kOptional, "From curves to responses.");
   v.section("certify", c.certify, kOptional, "Passivity certificate.");
   v.section("simulate", c.simulate, kOptional, "Scripted session of `palpate simulate`.");

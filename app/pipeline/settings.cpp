@@ -4,6 +4,7 @@
 #include <numbers>
 #include <utility>
 
+#include "app/case/material.hpp"
 #include "app/case/quantity.hpp"
 #include "app/pipeline/device_profile.hpp"
 
@@ -68,8 +69,10 @@ fem::CampaignSettings campaign_settings(const Workspace& space) {
   const Case& c = space.c;
   fem::CampaignSettings settings;
   for (const MaterialSection& material : c.materials) {
-    settings.materials.push_back({material.region, {material.young, material.poisson}});
+    settings.materials.push_back({material.region, law_of(material)});
   }
+  settings.dilatation =
+      c.solver.element == "tet10-displacement" ? fem::Dilatation::Pointwise : fem::Dilatation::Mean;
   fem::IndentationSettings& indentation = settings.indentation;
   indentation.tool_radius = c.tool.radius;
   indentation.depth = c.indentation.depth;
@@ -133,7 +136,7 @@ std::string stage_case(const Workspace& space, Stage stage) {
       return resolved_sections(
           space.c, {"", "surface", "inclusion", "mesh", "support", "tool", "indentation"});
     case Stage::Precompute:
-      return resolved_sections(space.c, {"material", "tool", "indentation"});
+      return resolved_sections(space.c, {"material", "tool", "indentation", "solver"});
     case Stage::Fit:
       return resolved_sections(space.c, {"fit"});
     case Stage::Certify:

@@ -96,5 +96,17 @@ template <class T, int N>
 Dual<T, N> logarithm(const Dual<T, N>& x) {
   return log_of(x);
 }
+template <class T, int N>
+Dual<T, N> exponential(const Dual<T, N>& x) {
+  return exp_of(x);
+}
+template <class T, int N>
+Dual<T, N> square_root(const Dual<T, N>& x) {
+  return sqrt_of(x);
+}
+template <class T, int N>
+double exceeds(const Dual<T, N>& x, double bound) {
+  return number_of(x) > bound ? 1 : 0;
+}
 
 }  // namespace palpate::calibrate

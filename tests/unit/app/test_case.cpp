@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "app/case/case.hpp"
+#include "app/case/material.hpp"
 #include "format/error.hpp"
 
 namespace palpate::app {
@@ -93,7 +94,7 @@ TEST(Case, ReadsQuantitiesInSiAndFillsDefaults) {
   ASSERT_EQ(c.supports.size(), 3U);
   EXPECT_DOUBLE_EQ(c.supports[0].point[2], -0.015);
   EXPECT_DOUBLE_EQ(c.supports[1].centre[1], 0.02);
-  EXPECT_DOUBLE_EQ(c.materials[1].young, 1e5);
+  EXPECT_DOUBLE_EQ(law_of(c.materials[1]).at("young"), 1e5);
   EXPECT_DOUBLE_EQ(c.indentation.held_depths[1], 0.0033);
   EXPECT_EQ(c.indentation.increments, IndentationSection{}.increments);
   EXPECT_EQ(c.fit, FitSection{});
@@ -110,7 +111,7 @@ TEST(Case, ResolvedCaseKeepsOddNumbersAndTexts) {
   Case c = parse_case(kGood, "ball.toml");
   c.surface.file = "a \"quoted\"\\ name\twith\x01.off";
   c.mesh.patch_spacing = 0.1 / 3;
-  c.materials[0].poisson = 1.0 / 3;
+  c.materials[0].constant("poisson") = 1.0 / 3;
   c.indentation.azimuths = {1.0 / 7, -2.0};
   c.supports[0].normal = {1.0 / 3, 0, -1e-20};
   EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c) << resolved_toml(c);
@@ -180,6 +181,57 @@ TEST(Case, RejectsConstantsOutOfRange) {
   EXPECT_THAT(message_with("\"4 mm\"\n\n[[support]]", "\"0 mm\"\n\n[[support]]"),
               HasSubstr("mesh.element_size = 0 mm"));
   EXPECT_THAT(message_with("[0, 0, -1]", "[0, 0, 0]"), HasSubstr("not zero"));
+}
+
+/// The good case with the material of its first region replaced.
+std::string with_material(const std::string& keys) {
+  return replaced(kGood, "young = \"10 kPa\"\npoisson = 0.49\n", keys);
+}
+
+TEST(Case, ReadsEveryLawByItsConstants) {
+  const Case c = parse_case(
+      with_material("law = \"ogden-2\"\nmu_1 = \"2 kPa\"\nalpha_1 = 1.3\nmu_2 = \"-100 Pa\"\n"
+                    "alpha_2 = -6\npoisson = 0.48\n"),
+      "ball.toml");
+  const fem::LawConstants law = law_of(c.materials[0]);
+  EXPECT_EQ(law.law, "ogden-2");
+  EXPECT_DOUBLE_EQ(law.at("mu_2"), -100);
+  EXPECT_DOUBLE_EQ(law.at("alpha_2"), -6);
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c) << resolved_toml(c);
+  EXPECT_EQ(law_of(c.materials[1]).law, "neo-hookean");
+}
+
+TEST(Case, ReadsFieldsOfFibres) {
+  const std::string hgo =
+      "law = \"holzapfel-gasser-ogden\"\nc = \"3 kPa\"\nk1 = \"2.4 kPa\"\nk2 = 0.84\nkappa = 0\n"
+      "poisson = 0.49\nfibre_families = 2\nfibre_angle = \"29 deg\"\n";
+  const Case c =
+      parse_case(with_material(hgo + "fibre_field = \"cylindrical\"\nfibre_axis = [0, 0, 1]\n"
+                                     "fibre_axis_point = [\"5 mm\", \"0 mm\", \"0 mm\"]\n"),
+                 "ball.toml");
+  const fem::FibreField fibres = law_of(c.materials[0]).fibres;
+  EXPECT_EQ(fibres.kind, fem::FibreField::Kind::Cylindrical);
+  EXPECT_DOUBLE_EQ(fibres.origin[0], 0.005);
+  EXPECT_EQ(fibres.families, 2);
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c) << resolved_toml(c);
+  EXPECT_THAT(message_of(with_material(hgo)), HasSubstr("material[0].fibre_direction"));
+  EXPECT_THAT(message_of(with_material(hgo + "fibre_direction = [1, 0, 0]\n"
+                                             "fibre_plane = [2, 0, 0]\n")),
+              HasSubstr("parallel"));
+}
+
+TEST(Case, RejectsConstantsThatTheLawHasNotOrThatDoNotFit) {
+  const std::string mooney = "law = \"mooney-rivlin\"\nC10 = \"1 kPa\"\npoisson = 0.49\n";
+  EXPECT_THAT(message_of(with_material(mooney)), HasSubstr("material[0].C01"));
+  EXPECT_THAT(message_of(with_material(mooney + "C01 = \"-2 kPa\"\n")),
+              HasSubstr("C10 + C01 = -1000"));
+  EXPECT_THAT(message_of(with_material(mooney + "C01 = \"1 kPa\"\nyoung = \"1 kPa\"\n")),
+              HasSubstr("unknown key 'young'"));
+  EXPECT_THAT(message_of(with_material("law = \"demiray-fung\"\nmu = \"1 kPa\"\nb = -1\n"
+                                       "poisson = 0.49\n")),
+              HasSubstr("material[0].b = -1"));
+  EXPECT_THAT(message_of(with_material("law = \"mooney\"\n")),
+              HasSubstr("is 'mooney', which is not one of neo-hookean, mooney-rivlin"));
 }
 
 TEST(Case, ChecksThatPartsFitTogether) {

@@ -81,8 +81,7 @@ Curves truth_curves(const Body& body) {
 InverseSettings settings_from(double soft, double stiff) {
   InverseSettings settings;
   settings.campaign = campaign(soft, stiff);
-  settings.sought = {{{"soft", fem::ConstantKind::Young}, 100, 1e6},
-                     {{"stiff", fem::ConstantKind::Young}, 100, 1e6}};
+  settings.sought = {{{"soft", "young"}, 100, 1e6}, {{"stiff", "young"}, 100, 1e6}};
   settings.depths = 4;
   return settings;
 }
@@ -147,8 +146,7 @@ TEST(Inverse, WarnsOfConstantsThatTheCurvesCannotTellApart) {
   const Body body = two_halves();
   Curves truth = truth_curves(body);
   InverseSettings settings = settings_from(kTop, kBase);
-  settings.sought = {{{"soft", fem::ConstantKind::Young}, 100, 1e6},
-                     {{"soft", fem::ConstantKind::Poisson}, 0.1, 0.499}};
+  settings.sought = {{{"soft", "young"}, 100, 1e6}, {{"soft", "poisson"}, 0.1, 0.499}};
   truth.sites.resize(1);
   const InverseFit fit = calibrate_inverse(body, truth, settings);
   EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("hardly tell them apart")));

@@ -134,7 +134,7 @@ TEST(Campaign, RefusesWhatDoesNotFit) {
   s.sites = {100000};
   EXPECT_THAT(refusal(s), HasSubstr("not a site"));
   s = quick();
-  s.materials[0].law.poisson = 0.5;
+  s.materials[0].law.at("poisson") = 0.5;
   EXPECT_THAT(refusal(s), HasSubstr("poisson"));
 }
 

@@ -5,10 +5,13 @@
 
 #include <Eigen/Dense>
 #include <random>
+#include <tuple>
 
 #include "fem/at.hpp"
+#include "fem/laws/law_table.hpp"
 #include "fem/newton.hpp"
 #include "tests/support/block_body.hpp"
+#include "tests/support/sample_laws.hpp"
 
 namespace palpate::fem {
 namespace {
@@ -31,10 +34,13 @@ Body held_all_around() {
   return body;
 }
 
-TEST(PatchTest, AnAffineBoundaryGivesAnAffineInterior) {
+class PatchTest : public testing::TestWithParam<std::tuple<LawConstants, Dilatation>> {};
+
+TEST_P(PatchTest, AnAffineBoundaryGivesAnAffineInterior) {
   const Body body = held_all_around();
-  const auto law = NeoHookean::from_young_poisson(10e3, 0.49, "t");
-  const SolidModel model(body, {law});
+  const auto& [constants, dilatation] = GetParam();
+  const Law law = make_law(constants, "t");
+  const SolidModel model(body, {law}, dilatation);
   Eigen::Matrix<double, 3, 3, Eigen::RowMajor> F;
   F << 1.10, 0.20, -0.05, 0.00, 0.92, 0.10, 0.04, -0.03, 1.02;
   const Displacement affine = F * model.mesh().X - model.mesh().X;
@@ -53,12 +59,33 @@ TEST(PatchTest, AnAffineBoundaryGivesAnAffineInterior) {
   EXPECT_TRUE(result.converged) << result.reason;
   EXPECT_LT((u - affine).lpNorm<Eigen::Infinity>(), 1e-11);
 
-  Tensor2<double> t;
-  Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(t.data()) = F;
-  const double J = F.determinant();
+  Tensor2<Lanes> t;
+  for (int i = 0; i < 9; ++i) t[at(i)] = Lanes::Constant(F(i / 3, i % 3));
+  Fibres<Lanes> a;
+  const auto fibres = law.fibres_at({});
+  for (std::size_t f = 0; f < 2; ++f)
+    for (std::size_t i = 0; i < 3; ++i) a[f][i] = Lanes::Constant(fibres[f][i]);
+  const Lanes J = Lanes::Constant(F.determinant());
   const double volume = std::pow(0.03, 3);
-  EXPECT_NEAR(model.energy(u).energy, volume * (law.psi(t, J) + law.volumetric_energy(J)), 1e-12);
+  const double density = law.psi(t, J, a)[0] + law.volumetric_energy(J)[0];
+  EXPECT_NEAR(model.energy(u).energy, volume * density, 1e-12);
 }
+
+std::string name_of(const testing::TestParamInfo<PatchTest::ParamType>& instance) {
+  const auto& [constants, dilatation] = instance.param;
+  std::string name = constants.law + (dilatation == Dilatation::Mean ? "" : "Displacement");
+  std::erase(name, '-');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryLaw, PatchTest,
+                         testing::Combine(testing::ValuesIn(test::sample_laws(0.49)),
+                                          testing::Values(Dilatation::Mean)),
+                         name_of);
+INSTANTIATE_TEST_SUITE_P(PureDisplacement, PatchTest,
+                         testing::Combine(testing::Values(test::sample_laws(0.45).front()),
+                                          testing::Values(Dilatation::Pointwise)),
+                         name_of);
 
 }  // namespace
 }  // namespace palpate::fem
