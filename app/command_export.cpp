@@ -5,6 +5,7 @@
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/export/csv.hpp"
+#include "app/export/deck.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/vtkhdf/grids.hpp"
 #include "format/crash_safe_file.hpp"
@@ -33,6 +34,47 @@ int export_curves(const Workspace& space) {
 int export_library(const Workspace& space) {
   write(vtkhdf::library_grid(read_library(space.library()), space.c.indentation.depth),
         space.out / "library.vtkhdf");
+  return kExitDone;
+}
+
+struct SiteOptions {
+  std::int32_t vertex = -1;
+  bool calculix = false, febio = false;
+  double patch_radius = 0;  ///< mm; 0: that of the tool
+};
+
+std::string patch_csv(const fem::PatchCurve& curve) {
+  std::string out = "depth_m,force_x_N,force_y_N,force_z_N,strain_energy_J\n";
+  for (const fem::PatchForce& s : curve.samples) {
+    out += fmt::format("{},{},{},{},{}\n", s.depth, s.force[0], s.force[1], s.force[2],
+                       s.strain_energy);
+  }
+  return out;
+}
+
+/// Decks of a stuck patch for other programs, beside what palpate computes for the same patch.
+int export_decks(const Workspace& space, const SiteOptions& options) {
+  const Body body = read_body(space.body());
+  const fem::CampaignSettings settings = campaign_settings(space);
+  const double radius =
+      options.patch_radius > 0 ? 1e-3 * options.patch_radius : settings.indentation.tool_radius;
+  const Deck deck = make_deck(body, settings, options.vertex, radius);
+  const std::string stem = fmt::format("site-{}", options.vertex);
+  const auto save = [&](const std::string& text, const std::string& name) {
+    write_file_crash_safely(space.out / name, text);
+    say("export: {}", (space.out / name).string());
+  };
+  // Both are made before either is written: a law that one of them lacks leaves nothing half done.
+  const std::string calculix = options.calculix ? calculix_deck(deck) : std::string();
+  const std::string febio = options.febio ? febio_deck(deck) : std::string();
+  const fem::PatchCurve curve = fem::press_patch(body, settings, options.vertex, radius);
+  if (!calculix.empty()) save(calculix, stem + ".inp");
+  if (!febio.empty()) save(febio, stem + ".feb");
+  save(patch_csv(curve), stem + "-patch.csv");
+  const fem::PatchForce& end = curve.samples.back();
+  say("site {}: {} nodes moved together by {:.2f} mm, force {:.4f} N by {}", options.vertex,
+      deck.patch.nodes.size(), 1e3 * end.depth, norm(end.force), space.c.solver.element);
+  if (!curve.reason.empty()) say("the curve ends early: {}", curve.reason);
   return kExitDone;
 }
 
@@ -95,11 +137,21 @@ void add_export_command(CLI::App& root, Action& action) {
            "library.h5 -> library.vtkhdf, with the forces at the depth of the case",
            export_library);
   add_recording_part(*command, action);
-  const auto vertex = std::make_shared<std::int32_t>(-1);
+  const auto options = std::make_shared<SiteOptions>();
   CLI::App* site =
-      add_part(*command, action, "site", "The body deformed at one site -> site-N.vtkhdf",
-               [vertex](const Workspace& space) { return export_site(space, *vertex); });
-  site->add_option("--vertex", *vertex, "Response vertex, as in curves.csv")->required();
+      add_part(*command, action, "site",
+               "The body deformed at one site -> site-N.vtkhdf, or that site for another solver",
+               [options](const Workspace& space) {
+                 const bool decks = options->calculix || options->febio;
+                 return decks ? export_decks(space, *options) : export_site(space, options->vertex);
+               });
+  site->add_option("--vertex", options->vertex, "Response vertex, as in curves.csv")->required();
+  site->add_flag("--calculix", options->calculix,
+                 "Write site-N.inp for CalculiX: the surface nodes under the tool moved together");
+  site->add_flag("--febio", options->febio, "Write site-N.feb for FEBio 4");
+  site->add_option("--patch-radius-mm", options->patch_radius,
+                   "Radius of those nodes about the site (default: that of the tool)")
+      ->check(CLI::PositiveNumber);
 }
 
 }  // namespace palpate::app

@@ -7,6 +7,7 @@
 
 #include "fem/at.hpp"
 #include "fem/indentation.hpp"
+#include "fem/stuck_patch.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
 
@@ -38,52 +39,69 @@ CampaignSettings settings_of(const LawConstants& tissue, const LawConstants& ski
   CampaignSettings settings;
   settings.materials = {{"tissue", tissue}, {"skin", skin}};
   settings.indentation.tool_radius = 0.008;
-  settings.indentation.depth = 0.003;
-  settings.indentation.increments = 6;
-  settings.indentation.held_depths = {0.002};
-  settings.indentation.lateral_travel = 0.0015;
-  settings.indentation.lateral_increments = 3;
+  settings.indentation.depth = 0.002;
+  settings.indentation.increments = 4;
+  settings.indentation.held_depths = {0.001};
+  settings.indentation.lateral_travel = 0.001;
+  settings.indentation.lateral_increments = 2;
   return settings;
 }
 
 SiteCurves press(const Body& body, const CampaignSettings& settings, Engine engine) {
   const CampaignContext context(body, settings, engine);
-  return solve_site(context, middle(body), nullptr);
+  SiteCurves site = solve_site(context, middle(body), nullptr);
+  EXPECT_EQ(site.status, SiteStatus::Complete) << site.reason;
+  return site;
 }
 
-void expect_complete_and_conserving(const SiteCurves& site) {
-  ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
-  for (const CurvePath& path : site.paths) {
-    const CurveSample& end = path.samples.back();
-    EXPECT_GT(dot(end.force, path.direction), 0);
-    EXPECT_NEAR(end.tool_work, end.strain_energy, 0.005 * end.strain_energy);
-  }
+double end_force(const SiteCurves& site) {
+  return norm(site.paths.front().samples.back().force);
 }
 
 class LawIndentation : public testing::TestWithParam<LawConstants> {};
 
-TEST_P(LawIndentation, ConvergesAsWithNewtonAndConservesEnergy) {
+TEST_P(LawIndentation, ConvergesAsWithNewton) {
   const Body body = layered_block();
   const CampaignSettings settings = settings_of(GetParam(), GetParam());
   const SiteCurves direct = press(body, settings, Engine::Direct);
   const SiteCurves shared = press(body, settings, Engine::SharedFactor);
-  expect_complete_and_conserving(direct);
-  expect_complete_and_conserving(shared);
+  ASSERT_EQ(direct.paths.size(), shared.paths.size());
   for (std::size_t p = 0; p < direct.paths.size(); ++p) {
     const Vec3 a = direct.paths[p].samples.back().force, b = shared.paths[p].samples.back().force;
     EXPECT_LT(norm(a - b), 1e-3 * norm(a));
+    EXPECT_GT(dot(a, direct.paths[p].direction), 0);
   }
 }
 
 TEST_P(LawIndentation, WorksAsASkinOnAnotherLaw) {
   const Body body = layered_block();
-  const LawConstants soft(5e3, 0.45);
-  const SiteCurves site = press(body, settings_of(soft, GetParam()), Engine::SharedFactor);
-  expect_complete_and_conserving(site);
-  const SiteCurves soft_alone = press(body, settings_of(soft, soft), Engine::SharedFactor);
-  // The skins are all stiffer than the tissue below.
-  EXPECT_GT(norm(site.paths[0].samples.back().force),
-            norm(soft_alone.paths[0].samples.back().force));
+  const LawConstants soft(4e3, 0.45);
+  CampaignSettings settings = settings_of(soft, GetParam());
+  settings.indentation.held_depths.clear();
+  const double layered = end_force(press(body, settings, Engine::SharedFactor));
+  settings.materials[0].law = GetParam();
+  const double stiff = end_force(press(body, settings, Engine::SharedFactor));
+  settings.materials = {{"tissue", soft}, {"skin", soft}};
+  const double alone = end_force(press(body, settings, Engine::SharedFactor));
+  EXPECT_GT(layered, 1.05 * alone);
+  EXPECT_LT(layered, 0.95 * stiff);
+}
+
+/// Without the steps that a contact makes in the force, the work of the tool is the stored energy
+/// to the error of the integration over eight increments.
+TEST_P(LawIndentation, StoresTheWorkDoneOnAStuckPatch) {
+  const Body body = layered_block();
+  CampaignSettings settings = settings_of(GetParam(), GetParam());
+  settings.indentation.increments = 8;
+  const PatchCurve curve = press_patch(body, settings, middle(body), 0.0041);
+  ASSERT_EQ(curve.reason, "");
+  std::vector<double> depth, force;
+  for (const PatchForce& sample : curve.samples) {
+    depth.push_back(sample.depth);
+    force.push_back(-sample.force[2]);
+  }
+  const double work = running_integral(depth, force).back();
+  EXPECT_NEAR(work, curve.samples.back().strain_energy, 1e-3 * work);
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryLaw, LawIndentation, testing::ValuesIn(test::sample_laws(0.45)),

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Keywords as in the CalculiX CrunchiX user's manual 2.20.
+#include <fmt/format.h>
+
+#include <array>
+#include <iterator>
+
+#include "app/export/deck.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+/// A coefficient of (J - 1)^4 and higher terms that adds nothing; zero would mean a default.
+constexpr double kNone = 1e20;
+
+std::string list(std::initializer_list<double> values) {
+  std::string text;
+  std::size_t count = 0;
+  for (const double value : values) {
+    text += fmt::format("{:.10g}", value);
+    // At most eight constants a line, as the manual has it; and no line ends in a comma otherwise.
+    if (++count < values.size()) text += count % 8 == 0 ? ",\n" : ",";
+  }
+  return text + "\n";
+}
+
+/// The *HYPERELASTIC (or *ELASTIC) card of a law; empty where there is none.
+std::string law_card(const fem::LawConstants& c) {
+  const fem::RestModuli rest = fem::rest_moduli(c);
+  const double D = 2 / rest.kappa();
+  if (c.law == "neo-hookean") return "*HYPERELASTIC, NEO HOOKE\n" + list({rest.mu() / 2, D});
+  if (c.law == "mooney-rivlin") {
+    return "*HYPERELASTIC, MOONEY-RIVLIN\n" + list({c.at("C10"), c.at("C01"), D});
+  }
+  if (c.law == "mooney-rivlin-5") {
+    return "*HYPERELASTIC, POLYNOMIAL, N=2\n" +
+           list({c.at("C10"), c.at("C01"), c.at("C20"), c.at("C11"), c.at("C02"), D, kNone});
+  }
+  if (c.law == "yeoh") {
+    return "*HYPERELASTIC, YEOH\n" + list({c.at("C10"), c.at("C20"), c.at("C30"), D, kNone, kNone});
+  }
+  if (c.law == "ogden-1") {
+    return "*HYPERELASTIC, OGDEN, N=1\n" + list({c.at("mu_1"), c.at("alpha_1"), D});
+  }
+  if (c.law == "ogden-2") {
+    return "*HYPERELASTIC, OGDEN, N=2\n" +
+           list({c.at("mu_1"), c.at("alpha_1"), c.at("mu_2"), c.at("alpha_2"), D, kNone});
+  }
+  if (c.law == "ogden-3") {
+    return "*HYPERELASTIC, OGDEN, N=3\n" +
+           list({c.at("mu_1"), c.at("alpha_1"), c.at("mu_2"), c.at("alpha_2"), c.at("mu_3"),
+                 c.at("alpha_3"), D, kNone, kNone});
+  }
+  if (c.law == "arruda-boyce") {
+    // CalculiX takes the modulus mu' before the series: mu = mu' (1 + 3/(5 l^2) + ...).
+    const double n = c.at("lambda_m") * c.at("lambda_m");
+    const double series = 1 + 3 / (5 * n) + 99 / (175 * n * n) + 513 / (875 * n * n * n) +
+                          42039 / (67375 * n * n * n * n);
+    return "*HYPERELASTIC, ARRUDA-BOYCE\n" + list({c.at("mu") / series, c.at("lambda_m"), D});
+  }
+  if (c.law == "saint-venant-kirchhoff") return "*ELASTIC\n" + list({rest.young, rest.poisson});
+  return {};
+}
+
+class Writer {
+ public:
+  explicit Writer(const Deck& deck) : deck_(deck) {}
+
+  std::string write() {
+    add("*HEADING\n{}\n** SI units: m, N, Pa\n", deck_.title);
+    nodes();
+    for (std::size_t region = 0; region < deck_.laws.size(); ++region) elements(region);
+    node_set("HELD", held());
+    node_set("PATCH", deck_.patch.nodes);
+    step();
+    return std::move(out_);
+  }
+
+ private:
+  template <class... Args>
+  void add(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
+  }
+
+  void nodes() {
+    const auto& X = deck_.patch.mesh.X;
+    add("*NODE, NSET=ALL\n");
+    for (Eigen::Index i = 0; i < X.cols(); ++i) {
+      add("{},{:.12e},{:.12e},{:.12e}\n", i + 1, X(0, i), X(1, i), X(2, i));
+    }
+  }
+
+  void elements(std::size_t region) {
+    const auto& mesh = deck_.patch.mesh;
+    const std::string card = law_card(deck_.laws[region]);
+    if (card.empty()) {
+      throw Error(ErrorKind::Configuration,
+                  "material of region '" + deck_.region_names[region] + "'",
+                  "CalculiX has no law like " + deck_.laws[region].law,
+                  "compare with a law that it has: neo-hookean, mooney-rivlin, mooney-rivlin-5, "
+                  "yeoh, ogden, arruda-boyce, saint-venant-kirchhoff");
+    }
+    // Names by number: those of the case may hold what CalculiX does not take.
+    add("** region {}: {}\n*ELEMENT, TYPE=C3D10, ELSET=REGION{}\n", deck_.region_names[region],
+        deck_.laws[region].law, region + 1);
+    for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+      if (mesh.region[e] != static_cast<std::int32_t>(region)) continue;
+      add("{}", e + 1);
+      for (const std::int32_t node : mesh.tetrahedra[e]) add(",{}", node + 1);
+      add("\n");
+    }
+    add("*MATERIAL, NAME=LAW{0}\n{1}*SOLID SECTION, ELSET=REGION{0}, MATERIAL=LAW{0}\n", region + 1,
+        card);
+  }
+
+  std::vector<std::int32_t> held() const {
+    std::vector<std::int32_t> nodes;
+    const auto& mesh = deck_.patch.mesh;
+    for (std::size_t node = 0; node < mesh.held.size(); ++node) {
+      if (mesh.held[node]) nodes.push_back(static_cast<std::int32_t>(node));
+    }
+    return nodes;
+  }
+
+  void node_set(const char* name, const std::vector<std::int32_t>& nodes) {
+    add("*NSET, NSET={}\n", name);
+    for (const std::int32_t node : nodes) add("{},\n", node + 1);
+  }
+
+  void step() {
+    const double first = 1.0 / deck_.increments;
+    add("*BOUNDARY\nHELD,1,3\n*STEP, NLGEOM, INC=10000\n*STATIC\n{0:.10g},1.,{1:.3g},{0:.10g}\n",
+        first, 1e-4 * first);
+    // The default lets the forces be off by half a percent.
+    add("*CONTROLS, PARAMETERS=FIELD\n1.e-5,1.e-3\n*BOUNDARY\n");
+    for (int i = 0; i < 3; ++i) {
+      add("PATCH,{0},{0},{1:.12e}\n", i + 1,
+          deck_.depth * deck_.direction[static_cast<std::size_t>(i)]);
+    }
+    add("*NODE PRINT, NSET=PATCH, TOTALS=ONLY\nRF\n*END STEP\n");
+  }
+
+  const Deck& deck_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string calculix_deck(const Deck& deck) {
+  return Writer(deck).write();
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Sections and parameters as in the FEBio user's manual, file format 4.0.
+#include <fmt/format.h>
+
+#include <iterator>
+#include <utility>
+
+#include "app/export/deck.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+using Parameters = std::vector<std::pair<std::string, double>>;
+
+struct FebioLaw {
+  std::string type;  ///< empty where FEBio has no such law
+  Parameters parameters;
+};
+
+Parameters ogden_parameters(const fem::LawConstants& c, int terms) {
+  Parameters parameters;
+  for (int i = 1; i <= terms; ++i) {
+    // FEBio: sum of c_i/m_i^2 (...).
+    parameters.emplace_back(fmt::format("c{}", i), 2 * c.at(fmt::format("mu_{}", i)));
+    parameters.emplace_back(fmt::format("m{}", i), c.at(fmt::format("alpha_{}", i)));
+  }
+  return parameters;
+}
+
+/// Uncoupled laws of the same isochoric energy. Its Arruda-Boyce has other coefficients.
+FebioLaw febio_law(const fem::LawConstants& c) {
+  const fem::RestModuli rest = fem::rest_moduli(c);
+  if (c.law == "neo-hookean") return {"Mooney-Rivlin", {{"c1", rest.mu() / 2}, {"c2", 0}}};
+  if (c.law == "mooney-rivlin") {
+    return {"Mooney-Rivlin", {{"c1", c.at("C10")}, {"c2", c.at("C01")}}};
+  }
+  if (c.law == "yeoh") {
+    return {"Yeoh", {{"c1", c.at("C10")}, {"c2", c.at("C20")}, {"c3", c.at("C30")}}};
+  }
+  if (c.law == "ogden-1") return {"Ogden", ogden_parameters(c, 1)};
+  if (c.law == "ogden-2") return {"Ogden", ogden_parameters(c, 2)};
+  if (c.law == "ogden-3") return {"Ogden", ogden_parameters(c, 3)};
+  if (c.law == "veronda-westmann") {
+    return {"Veronda-Westmann", {{"c1", c.at("C1")}, {"c2", c.at("C2")}}};
+  }
+  if (c.law == "saint-venant-kirchhoff") {
+    return {"isotropic elastic", {{"E", rest.young}, {"v", rest.poisson}}};
+  }
+  if (c.law == "holzapfel-gasser-ogden" && c.fibres.kind == fem::FibreField::Kind::Constant) {
+    // FEBio has two families at +-gamma; one family is two that coincide, of half the stiffness.
+    const double share = c.fibres.families == 1 ? 0.5 : 1;
+    const double degrees = c.fibres.families == 1 ? 0 : c.fibres.angle * 180 / 3.141592653589793;
+    return {"Holzapfel-Gasser-Ogden",
+            {{"c", c.at("c")},
+             {"k1", share * c.at("k1")},
+             {"k2", c.at("k2")},
+             {"gamma", degrees},
+             {"kappa", c.at("kappa")}}};
+  }
+  return {};
+}
+
+std::string escaped(std::string_view text) {
+  std::string out;
+  for (const char letter : text) {
+    switch (letter) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += letter;
+    }
+  }
+  return out;
+}
+
+class Writer {
+ public:
+  explicit Writer(const Deck& deck) : deck_(deck) {}
+
+  std::string write() {
+    add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- {} -->\n<febio_spec version=\"4.0\">\n",
+        comment(deck_.title));
+    add("<Module type=\"solid\">\n<units>SI</units>\n</Module>\n");
+    control();
+    materials();
+    mesh();
+    domains();
+    boundary();
+    add("<LoadData>\n<load_controller id=\"1\" name=\"ramp\" type=\"loadcurve\">\n"
+        "<interpolate>LINEAR</interpolate>\n<points><pt>0,0</pt><pt>1,1</pt></points>\n"
+        "</load_controller>\n</LoadData>\n");
+    add("<Output>\n<logfile>\n<node_data data=\"Rx;Ry;Rz\" file=\"patch_forces.txt\" "
+        "node_set=\"patch\"/>\n</logfile>\n</Output>\n</febio_spec>\n");
+    return std::move(out_);
+  }
+
+ private:
+  template <class... Args>
+  void add(fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
+  }
+
+  /// XML comments hold no double hyphen.
+  static std::string comment(std::string text) {
+    for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--")) {
+      text.replace(at, 2, "-");
+    }
+    return escaped(text);
+  }
+
+  void control() {
+    add("<Control>\n<analysis>STATIC</analysis>\n<time_steps>{}</time_steps>\n"
+        "<step_size>{:.12g}</step_size>\n"
+        "<solver type=\"solid\">\n<symmetric_stiffness>symmetric</symmetric_stiffness>\n"
+        "<dtol>0.001</dtol>\n<etol>1e-8</etol>\n<rtol>1e-6</rtol>\n<qn_method type=\"BFGS\"/>\n"
+        "</solver>\n</Control>\n",
+        deck_.increments, 1.0 / deck_.increments);
+  }
+
+  void materials() {
+    add("<Material>\n");
+    for (std::size_t region = 0; region < deck_.laws.size(); ++region) {
+      const fem::LawConstants& c = deck_.laws[region];
+      const FebioLaw law = febio_law(c);
+      if (law.type.empty()) {
+        throw Error(ErrorKind::Configuration,
+                    "material of region '" + deck_.region_names[region] + "'",
+                    "FEBio has no law like " + c.law + " of this energy",
+                    "compare with a law that it has: neo-hookean, mooney-rivlin, yeoh, ogden, "
+                    "veronda-westmann, saint-venant-kirchhoff, holzapfel-gasser-ogden with a "
+                    "constant direction");
+      }
+      add("<material id=\"{}\" name=\"{}\" type=\"{}\">\n", region + 1,
+          escaped(deck_.region_names[region]), law.type);
+      for (const auto& [name, value] : law.parameters) add("<{0}>{1:.12g}</{0}>\n", name, value);
+      if (c.law != "saint-venant-kirchhoff") {
+        add("<k>{:.12g}</k>\n<pressure_model>3</pressure_model>\n", fem::rest_moduli(c).kappa());
+      }
+      if (c.law == "holzapfel-gasser-ogden") material_axes(c.fibres);
+      add("</material>\n");
+    }
+    add("</Material>\n");
+  }
+
+  /// First axis: the mean direction, or that of the only family.
+  void material_axes(const fem::FibreField& fibres) {
+    fem::FibreField frame = fibres;
+    if (fibres.families == 2) frame.angle = 0;
+    frame.families = 1;
+    const Vec3 a = frame.at({})[0];
+    frame.angle += 1.5707963267948966;
+    const Vec3 d = frame.at({})[0];
+    add("<mat_axis "
+        "type=\"vector\">\n<a>{:.12g},{:.12g},{:.12g}</a>\n<d>{:.12g},{:.12g},{:.12g}</d>\n"
+        "</mat_axis>\n",
+        a[0], a[1], a[2], d[0], d[1], d[2]);
+  }
+
+  void mesh() {
+    const auto& mesh = deck_.patch.mesh;
+    add("<Mesh>\n<Nodes name=\"body\">\n");
+    for (Eigen::Index i = 0; i < mesh.X.cols(); ++i) {
+      add("<node id=\"{}\">{:.12e},{:.12e},{:.12e}</node>\n", i + 1, mesh.X(0, i), mesh.X(1, i),
+          mesh.X(2, i));
+    }
+    add("</Nodes>\n");
+    for (std::size_t region = 0; region < deck_.laws.size(); ++region) {
+      add("<Elements type=\"tet10\" name=\"{}\">\n", part(region));
+      for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+        if (mesh.region[e] != static_cast<std::int32_t>(region)) continue;
+        add("<elem id=\"{}\">", e + 1);
+        const char* between = "";
+        for (const std::int32_t node : mesh.tetrahedra[e]) {
+          add("{}{}", between, node + 1);
+          between = ",";
+        }
+        add("</elem>\n");
+      }
+      add("</Elements>\n");
+    }
+    std::vector<std::int32_t> held;
+    for (std::size_t node = 0; node < mesh.held.size(); ++node) {
+      if (mesh.held[node]) held.push_back(static_cast<std::int32_t>(node));
+    }
+    node_set("held", held);
+    node_set("patch", deck_.patch.nodes);
+    add("</Mesh>\n");
+  }
+
+  static std::string part(std::size_t region) { return fmt::format("region_{}", region + 1); }
+
+  void node_set(const char* name, const std::vector<std::int32_t>& nodes) {
+    add("<NodeSet name=\"{}\">", name);
+    const char* between = "";
+    for (const std::int32_t node : nodes) {
+      add("{}{}", between, node + 1);
+      between = ",";
+    }
+    add("</NodeSet>\n");
+  }
+
+  void domains() {
+    add("<MeshDomains>\n");
+    for (std::size_t region = 0; region < deck_.laws.size(); ++region) {
+      add("<SolidDomain name=\"{}\" mat=\"{}\" elem_type=\"TET10G4\" type=\"elastic-solid\"/>\n",
+          part(region), escaped(deck_.region_names[region]));
+    }
+    add("</MeshDomains>\n");
+  }
+
+  void boundary() {
+    add("<Boundary>\n<bc name=\"support\" node_set=\"held\" type=\"zero displacement\">\n"
+        "<x_dof>1</x_dof>\n<y_dof>1</y_dof>\n<z_dof>1</z_dof>\n</bc>\n");
+    for (std::size_t i = 0; i < 3; ++i) {
+      add("<bc name=\"press_{0}\" node_set=\"patch\" type=\"prescribed displacement\">\n"
+          "<dof>{0}</dof>\n<value lc=\"1\">{1:.12e}</value>\n<relative>0</relative>\n</bc>\n",
+          "xyz"[i], deck_.depth * deck_.direction[i]);
+    }
+    add("</Boundary>\n");
+  }
+
+  const Deck& deck_;
+  std::string out_;
+};
+
+}  // namespace
+
+std::string febio_deck(const Deck& deck) {
+  return Writer(deck).write();
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The same mesh, element, laws and boundary conditions in CalculiX: a stuck patch pressed into a
+// block, by the deck that `palpate export site --calculix` writes.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "app/export/deck.hpp"
+#include "fem/at.hpp"
+#include "tests/support/block_body.hpp"
+#include "tests/support/sample_laws.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPatchRadius = 0.005;
+
+/// 30 x 30 x 15 mm, base held; half of it of a second region.
+Body block(int cells) {
+  Body body = test::make_block(test::even(-0.015, 0.015, cells), test::even(-0.015, 0.015, cells),
+                               test::even(-0.015, 0, cells / 2));
+  body.region_names = {"upper", "lower"};
+  for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
+    double z = 0;
+    for (const std::int32_t n : body.tetrahedra[t]) z += 0.25 * body.nodes[fem::at(n)][2];
+    body.tetrahedron_region[t] = z < -0.0075 ? 1 : 0;
+  }
+  return body;
+}
+
+std::int32_t middle(const Body& body) {
+  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
+    const Vec3& x = body.nodes[fem::at(body.response.node[v])];
+    if (norm({x[0], x[1], 0}) < 1e-9) return static_cast<std::int32_t>(v);
+  }
+  return -1;
+}
+
+fem::CampaignSettings settings_of(const fem::LawConstants& law, fem::Dilatation dilatation) {
+  fem::CampaignSettings settings;
+  settings.materials = {{"upper", law}, {"lower", law}};
+  settings.dilatation = dilatation;
+  settings.indentation.depth = 0.003;
+  settings.indentation.increments = 3;
+  return settings;
+}
+
+bool has_calculix() {
+  return std::system("command -v ccx > /dev/null") == 0;
+}
+
+/// Force of the patch on the body after each increment, as CalculiX prints it.
+std::vector<Vec3> run_calculix(const Deck& deck) {
+  std::string name = (fs::temp_directory_path() / "palpate-ccx-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
+  const fs::path folder = name;
+  std::ofstream(folder / "site.inp") << calculix_deck(deck);
+  const std::string command =
+      "cd " + folder.string() + " && OMP_NUM_THREADS=1 timeout 300 ccx site > site.log 2>&1";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  std::ifstream printed(folder / "site.dat");
+  std::vector<Vec3> forces;
+  for (std::string line; std::getline(printed, line);) {
+    if (line.find("total force") == std::string::npos) continue;
+    Vec3 force{};
+    printed >> force[0] >> force[1] >> force[2];
+    forces.push_back(force);
+  }
+  fs::remove_all(folder);
+  return forces;
+}
+
+/// Largest difference of the normal force over all increments, relative.
+double compare(const char* what, const Body& body, const fem::CampaignSettings& settings) {
+  const std::int32_t vertex = middle(body);
+  const auto ours = fem::press_patch(body, settings, vertex, kPatchRadius);
+  EXPECT_EQ(ours.reason, "");
+  const auto theirs = run_calculix(make_deck(body, settings, vertex, kPatchRadius));
+  EXPECT_EQ(theirs.size() + 1, ours.samples.size());
+  double worst = 0;
+  for (std::size_t i = 0; i < std::min(theirs.size(), ours.samples.size() - 1); ++i) {
+    const double a = ours.samples[i + 1].force[2], b = theirs[i][2];
+    worst = std::max(worst, std::abs(a / b - 1));
+  }
+  if (!theirs.empty()) {
+    std::printf("%-24s palpate %.5f N, CalculiX %.5f N at the end, worst of %zu depths %.4f %%\n",
+                what, -ours.samples.back().force[2], -theirs.back()[2], theirs.size(), 100 * worst);
+  }
+  return worst;
+}
+
+class Calculix : public testing::TestWithParam<fem::LawConstants> {};
+
+/// With the same volumetric energy the two programs solve the same equations; with CalculiX's
+/// kappa/2 (J - 1)^2 they differ by what that makes of a compressible tissue.
+double allowed(const std::string& law) {
+  return law == "arruda-boyce" || law == "saint-venant-kirchhoff" ? 1e-4 : 0.005;
+}
+
+TEST_P(Calculix, AgreesOnEveryLawItHas) {
+  if (!has_calculix()) GTEST_SKIP() << "ccx is not installed (package calculix-ccx)";
+  const auto settings = settings_of(GetParam(), fem::Dilatation::Pointwise);
+  EXPECT_LT(compare(GetParam().law.c_str(), block(4), settings), allowed(GetParam().law));
+}
+
+std::vector<fem::LawConstants> shared_laws() {
+  std::vector<fem::LawConstants> laws;
+  for (const fem::LawConstants& law : test::sample_laws(0.45))
+    if (law.law != "demiray-fung" && law.law != "veronda-westmann" &&
+        law.law != "holzapfel-gasser-ogden")
+      laws.push_back(law);
+  return laws;
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, Calculix, testing::ValuesIn(shared_laws()),
+                         [](const auto& instance) {
+                           std::string name = instance.param.law;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+TEST(Calculix, AgreesOnRegionsOfDifferentLaws) {
+  if (!has_calculix()) GTEST_SKIP() << "ccx is not installed (package calculix-ccx)";
+  auto settings = settings_of({"arruda-boyce", {{"mu", 3e3}, {"lambda_m", 1.6}, {"poisson", 0.45}}},
+                              fem::Dilatation::Pointwise);
+  settings.materials[1].law = {"saint-venant-kirchhoff", {{"young", 30e3}, {"poisson", 0.4}}};
+  EXPECT_LT(compare("two regions", block(4), settings), 1e-4);
+}
+
+/// What the element-constant pressure changes: at nu = 0.49 the element of displacements alone, in
+/// either program, is too stiff.
+TEST(Calculix, SharesTheLockingOfPureDisplacementsAndThePressureElementDoesNot) {
+  if (!has_calculix()) GTEST_SKIP() << "ccx is not installed (package calculix-ccx)";
+  const Body body = block(6);
+  const auto pointwise = settings_of({10e3, 0.49}, fem::Dilatation::Pointwise);
+  EXPECT_LT(compare("neo-Hookean, nu = 0.49", body, pointwise), 0.005);
+  const auto force = [&](fem::Dilatation dilatation) {
+    const auto settings = settings_of({10e3, 0.49}, dilatation);
+    return -fem::press_patch(body, settings, middle(body), kPatchRadius).samples.back().force[2];
+  };
+  const double displacement = force(fem::Dilatation::Pointwise);
+  const double pressure = force(fem::Dilatation::Mean);
+  std::printf("nu = 0.49: displacements alone %.5f N, element-constant pressure %.5f N: %+.1f %%\n",
+              displacement, pressure, 100 * (pressure / displacement - 1));
+  EXPECT_LT(pressure, 0.98 * displacement);
+}
+
+}  // namespace
+}  // namespace palpate::app
