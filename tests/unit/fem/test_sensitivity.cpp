@@ -78,6 +78,29 @@ TEST(Sensitivity, IsTheDerivativeByDifferences) {
   }
 }
 
+TEST(Sensitivity, HoldsForConstantsOfAnyLaw) {
+  const Body body = test::make_block(test::even(-0.016, 0.016, 4), test::even(-0.016, 0.016, 4),
+                                     test::even(-0.012, 0, 3));
+  const auto settings = [&](double alpha, double mu) {
+    CampaignSettings s = settings_of(body, 1, 1, 0.45);
+    s.materials = {{"tissue", {"ogden-1", {{"mu_1", mu}, {"alpha_1", alpha}, {"poisson", 0.45}}}}};
+    return s;
+  };
+  const auto force = [&](double alpha, double mu) {
+    return run_sensitivity(body, settings(alpha, mu), {0.003}, {}).front().samples.front().force;
+  };
+  const double alpha = -4.7, mu = 3e3, h = 1e-3;
+  const auto exact = run_sensitivity(body, settings(alpha, mu), {0.003},
+                                     {{"tissue", "alpha_1"}, {"tissue", "mu_1"}})
+                         .front();
+  ASSERT_EQ(exact.samples.size(), 1U) << exact.reason;
+  const double by_alpha = (force(alpha + h, mu) - force(alpha - h, mu)) / (2 * h);
+  EXPECT_NEAR(exact.samples[0].slope[0], by_alpha, 1e-3 * std::abs(by_alpha));
+  // The force is proportional to the only modulus.
+  EXPECT_NEAR(mu * exact.samples[0].slope[1], exact.samples[0].force,
+              1e-6 * exact.samples[0].force);
+}
+
 /// Scale all moduli and the force scales: Euler's theorem for a homogeneous function of degree one.
 TEST(Sensitivity, ModuliObeyEulersTheorem) {
   const Body body = layered();
