@@ -163,10 +163,11 @@ void check_constants(const LawConstants& given, const LawEntry& entry, const std
     require_constant(std::isfinite(*value) && constant.holds(*value), where,
                      std::string(constant.name), *value, range_of(constant));
   }
-  for (const auto& [name, value] : given.values) {
+  for (const auto& value : given.values) {
     const bool known = std::any_of(entry.constants.begin(), entry.constants.end(),
-                                   [&](const LawConstant& c) { return c.name == name; });
-    if (!known) refuse(where, "the law " + given.law + " has no constant " + name, "remove it");
+                                   [&](const LawConstant& c) { return c.name == value.first; });
+    if (!known)
+      refuse(where, "the law " + given.law + " has no constant " + value.first, "remove it");
   }
 }
 
