@@ -40,6 +40,15 @@ CurveTriple curves_of(const Library& library, const Triangle& triangle, const Tr
           frame.gradient};
 }
 
+CurveTriple couplings_of(const Library& library, const Triangle& triangle,
+                         const TriangleFrame& frame) {
+  const auto curve = [&](std::size_t l) {
+    const CouplingCurve& coupling = response(library, triangle[l]).coupling;
+    return runtime::CompiledCurve(coupling.curve, static_cast<double>(coupling.base));
+  };
+  return {{curve(0), curve(1), curve(2)}, frame.gradient};
+}
+
 TriangleBounds bound_triangle(const Library& library, std::size_t index, double depth,
                               double friction) {
   const Triangle& triangle = library.triangles[index];
@@ -49,12 +58,12 @@ TriangleBounds bound_triangle(const Library& library, std::size_t index, double 
   bounds.certificate.cos_theta = frame.cos_theta;
   // Without a response at a vertex there is no local model: a border, nothing to bound.
   if (has_hole(library, triangle)) return bounds;
-  const ContactElement element{frame, curves_of(library, triangle, frame, &NodeResponse::normal),
-                               curves_of(library, triangle, frame, &NodeResponse::lateral),
-                               friction, depth};
-  // The Jacobian at a fixed contact point is g' n n^T + h' t t^T + (h/rho) s s^T, its norm the
-  // largest of the three; h/rho <= max h', and no interpolated slope exceeds those at the vertices.
-  bounds.certificate.stick = std::max(element.normal.max_slope(), element.lateral.max_slope());
+  ContactElement element{frame, curves_of(library, triangle, frame, &NodeResponse::normal),
+                         curves_of(library, triangle, frame, &NodeResponse::lateral), friction,
+                         depth};
+  if (library.kind == ResponseKind::Coupled)
+    element.coupling = couplings_of(library, triangle, frame);
+  bounds.certificate.stick = stick_bound(element);
   bounds.slide = slide_bound(element);
   bounds.certificate.slip = bounds.slide.total;
   bounds.certificate.sliding_passive = slide_lowers_energy(element);

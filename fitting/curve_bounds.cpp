@@ -93,6 +93,20 @@ Range CurveTriple::slope(const Range& range) const {
   return result;
 }
 
+Range CurveTriple::curvature(const Range& range) const {
+  Range result{kInfinity, -kInfinity};
+  for (const auto& curve : curves_) {
+    const auto& pieces = curve.pieces();
+    for (std::size_t k = 0; k < pieces.size(); ++k) {
+      const double end = k + 1 < pieces.size() ? pieces[k + 1].start : kInfinity;
+      if (end < range.low || pieces[k].start > range.high) continue;
+      result.low = std::min(result.low, 2 * pieces[k].curvature);
+      result.high = std::max(result.high, 2 * pieces[k].curvature);
+    }
+  }
+  return result;
+}
+
 std::vector<double> CurveTriple::cells(const Range& range, int parts) const {
   std::vector<double> ends{range.low, range.high};
   for (const auto& curve : curves_) {

@@ -30,6 +30,8 @@ class CurveTriple {
   double least_force(double d) const;     ///< over the triangle
   double greatest_force(double d) const;  ///< over the triangle
   Range slope(const Range& range) const;  ///< over the triangle and the range, exact
+  /// Second derivative over the triangle and the range; at a knot that of both its pieces.
+  Range curvature(const Range& range) const;
   /// sup |grad_c f_c(d)|, N/m
   double force_gradient(const Range& range) const;
   /// sup |grad_c E_c(d)| / f_c(d), 1; finite down to d = 0. Infinite where the force is zero.

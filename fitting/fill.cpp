@@ -65,6 +65,22 @@ double largest_difference(const ResponseCurve& filled, const CurveList& curves) 
   return largest;
 }
 
+CouplingCurve mean_coupling(const std::vector<const NodeResponse*>& sources,
+                            CurveFitSettings settings, const std::string& where) {
+  CouplingCurve mean;
+  CurveList curves;
+  double base = 0;
+  for (const NodeResponse* source : sources) {
+    curves.emplace_back(source->coupling.curve);
+    base += static_cast<double>(source->coupling.base) / static_cast<double>(sources.size());
+  }
+  mean.base = static_cast<float>(base);
+  settings.zero_first_slope = true;
+  settings.absolute_tolerance = settings.relative_tolerance;  // of w, which is about 1
+  mean.curve = fit_curve(mean_samples(curves), settings, where).curve;
+  return mean;
+}
+
 NodeResponse mean_response(const std::vector<const NodeResponse*>& sources,
                            const FitSettings& settings, const std::string& where) {
   CurveList normal;
@@ -80,6 +96,8 @@ NodeResponse mean_response(const std::vector<const NodeResponse*>& sources,
   response.normal = fit_curve(mean_samples(normal), curve, where).curve;
   curve.zero_first_slope = false;
   response.lateral = fit_curve(mean_samples(lateral), curve, where).curve;
+  if (settings.kind == ResponseKind::Coupled)
+    response.coupling = mean_coupling(sources, curve, where);
   response.normal_error = largest_difference(response.normal, normal);
   response.lateral_error = largest_difference(response.lateral, lateral);
   return response;

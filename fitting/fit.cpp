@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "fitting/couple.hpp"
 #include "fitting/curve_fit.hpp"
 #include "fitting/fill.hpp"
 #include "fitting/fitting.hpp"
@@ -69,15 +70,23 @@ bool usable(const SiteCurves& site, double depth) {
          !lateral_paths(site).empty();
 }
 
-/// Largest distance of the curve from every single path, so that what the mean over depths and
-/// azimuths loses is part of the stated error.
-double lateral_error(const ResponseCurve& curve,
-                     const std::vector<std::vector<ForceSample>>& paths) {
-  const runtime::CompiledCurve rendered(curve);
+/// Largest distance of the lateral response from every single path, so that what the mean over
+/// azimuths, and over depths when decoupled, loses is part of the stated error.
+double lateral_error(const NodeResponse& node, ResponseKind kind, const SiteCurves& site) {
+  const runtime::CompiledCurve rendered(node.lateral);
+  runtime::CompiledCurve weight;
+  if (kind == ResponseKind::Coupled)
+    weight = {node.coupling.curve, static_cast<double>(node.coupling.base)};
   double largest = 0;
-  for (const auto& path : paths) {
-    for (const ForceSample& sample : path) {
-      largest = std::max(largest, std::abs(rendered.force(sample.displacement) - sample.force));
+  for (const CurvePath& path : site.paths) {
+    SiteCurves one;
+    one.paths.push_back(path);
+    const double w = kind == ResponseKind::Coupled ? weight.force(path.held_depth) : 1;
+    for (const auto& samples : lateral_paths(one)) {
+      for (const ForceSample& sample : samples) {
+        const double error = w * rendered.force(sample.displacement) - sample.force;
+        largest = std::max(largest, std::abs(error));
+      }
     }
   }
   return largest;
@@ -89,10 +98,28 @@ NodeResponse fit_site(const SiteCurves& site, const FitSettings& settings) {
                          settings.max_knots, true};
   const CurveFit normal = fit_curve(normal_samples(site), curve, where + ", normal response");
   curve.zero_first_slope = false;
-  const auto paths = lateral_paths(site);
-  const CurveFit lateral = fit_curve(mean_lateral(paths), curve, where + ", lateral response");
-  return {ResponseStatus::Fitted, normal.curve, lateral.curve, normal.largest_error,
-          lateral_error(lateral.curve, paths)};
+  NodeResponse node{ResponseStatus::Fitted, normal.curve, {}, normal.largest_error, 0, {}};
+  if (settings.kind == ResponseKind::Coupled) {
+    CoupledLateral coupled = fit_coupled(site, normal_reach(site), curve, where);
+    node.lateral = std::move(coupled.lateral);
+    node.coupling = std::move(coupled.coupling);
+  } else {
+    const auto mean = mean_lateral(lateral_paths(site));
+    node.lateral = fit_curve(mean, curve, where + ", lateral response").curve;
+  }
+  node.lateral_error = lateral_error(node, settings.kind, site);
+  return node;
+}
+
+/// One held depth says nothing of how the lateral response depends on depth.
+void check_depths(const Curves& curves, ResponseKind kind) {
+  const auto several = [](const SiteCurves& site) { return held_depths(site).size() > 1; };
+  if (kind == ResponseKind::Decoupled ||
+      std::any_of(curves.sites.begin(), curves.sites.end(), several)) {
+    return;
+  }
+  refuse("fit settings", "coupled responses need lateral paths at several held depths",
+         "precompute with two or more held_depths, or fit decoupled responses");
 }
 
 /// The response surface without the triangles that touch a support. Vertices keep their numbers.
@@ -121,7 +148,9 @@ Library surface_library(const Body& body, const Curves& curves) {
 Library fit(const Body& body, const Curves& curves, const FitSettings& settings) {
   check_settings(settings);
   check_curves(body, curves);
+  check_depths(curves, settings.kind);
   Library library = surface_library(body, curves);
+  library.kind = settings.kind;
   std::size_t fitted = 0;
   for (const SiteCurves& site : curves.sites) {
     if (!usable(site, curves.depth)) continue;

@@ -34,6 +34,8 @@ inline constexpr Rule kKnownFinite{-kLargest, kLargest, false, true, "finite (Na
 inline constexpr Rule kKnownNonNegative{0, kLargest, false, true,
                                         "finite and not negative (NaN: unknown)"};
 inline constexpr Rule kNonNegative{0, kLargest, false, false, "finite and not negative"};
+inline constexpr Rule kPositive{std::numeric_limits<double>::min(), kLargest, false, false,
+                                "finite and above 0"};
 inline constexpr Rule kBound{0, kInfinity, false, false, "not negative (infinite: no bound)"};
 inline constexpr Rule kKnownBound{0, kInfinity, false, true, "not negative (NaN: unknown)"};
 inline constexpr Rule kUnit{-2, 2, true, false, "a unit direction"};

@@ -116,8 +116,11 @@ class Reader {
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
-  /// First of all: is it this kind of artifact, of this schema version?
-  void require_artifact(const std::string& artifact, std::int64_t schema);
+  /// First of all: is it this kind of artifact, of a schema version in this range? @return it.
+  std::int64_t require_artifact(const std::string& artifact, std::int64_t first, std::int64_t last);
+  void require_artifact(const std::string& artifact, std::int64_t schema) {
+    require_artifact(artifact, schema, schema);
+  }
 
   bool has(const std::string& path) const;
   bool has_attribute(const std::string& object, const std::string& name) const;

@@ -237,18 +237,21 @@ void Reader::fail(const std::string& object, const std::string& problem) const {
   state_->fail(object, problem);
 }
 
-void Reader::require_artifact(const std::string& artifact, std::int64_t schema) {
+std::int64_t Reader::require_artifact(const std::string& artifact, std::int64_t first,
+                                      std::int64_t last) {
   if (H5Aexists(state_->file.get(), "artifact") <= 0) {
     fail("/", "is not a palpate artifact, " + artifact + " expected");
   }
   const std::string found = text("/", "artifact");
   if (found != artifact) fail("/", "holds " + quoted(found) + ", " + artifact + " expected");
   const std::int64_t version = integer("/", "schema");
-  if (version == schema) return;
+  if (version >= first && version <= last) return version;
+  const std::string known =
+      std::to_string(first) + (last > first ? " to " + std::to_string(last) : std::string());
   const std::string problem =
-      "has schema " + std::to_string(version) + ", this palpate reads " + std::to_string(schema);
+      "has schema " + std::to_string(version) + ", this palpate reads " + known;
   const std::string update =
-      version > schema ? "update palpate to the version that wrote it, or " : "";
+      version > last ? "update palpate to the version that wrote it, or " : "";
   throw Error(ErrorKind::Configuration, state_->path.string() + ":/", problem,
               update + state_->remedy);
 }

@@ -52,13 +52,26 @@ struct FlatCurves {
   std::vector<float> slope;
 };
 
-using CurveMember = ResponseCurve NodeResponse::*;
+/// One of the curves of a node.
+using CurveMember = ResponseCurve& (*)(NodeResponse&);
+ResponseCurve& normal_of(NodeResponse& node) {
+  return node.normal;
+}
+ResponseCurve& lateral_of(NodeResponse& node) {
+  return node.lateral;
+}
+ResponseCurve& coupling_of(NodeResponse& node) {
+  return node.coupling.curve;
+}
+const ResponseCurve& get(const NodeResponse& node, CurveMember which) {
+  return which(const_cast<NodeResponse&>(node));
+}
 
 FlatCurves flatten(const std::vector<NodeResponse>& responses, CurveMember which) {
   FlatCurves flat;
   flat.offset.push_back(0);
   for (const NodeResponse& response : responses) {
-    const ResponseCurve& curve = response.*which;
+    const ResponseCurve& curve = get(response, which);
     flat.knot.insert(flat.knot.end(), curve.knot.begin(), curve.knot.end());
     flat.slope.insert(flat.slope.end(), curve.slope.begin(), curve.slope.end());
     flat.offset.push_back(static_cast<std::int64_t>(flat.knot.size()));
@@ -67,12 +80,12 @@ FlatCurves flatten(const std::vector<NodeResponse>& responses, CurveMember which
 }
 
 void write_flat(hdf5::Writer& writer, const std::string& stem, const std::string& which,
-                const FlatCurves& flat) {
+                const FlatCurves& flat, const std::string& unit = "N/m") {
   writer.dataset(stem + "offset", flat.offset,
                  {"1", "First knot of each vertex; one row more than vertices."});
   writer.dataset(stem + "knot", flat.knot, {"m", "Knots of the " + which + " curves, from 0."});
   writer.dataset(stem + "slope", flat.slope,
-                 {"N/m", "Slope of the force of the " + which + " curves at each knot."});
+                 {unit, "Slope of the " + which + " curves at each knot."});
 }
 
 /// Checks of the offsets come first: the other loops rely on them.
@@ -119,9 +132,24 @@ void read_flat(const hdf5::Reader& reader, const std::string& stem,
   for (std::size_t vertex = 0; vertex < responses.size(); ++vertex) {
     const auto first = flat.offset[vertex];
     const auto last = flat.offset[vertex + 1];
-    (responses[vertex].*which).knot.assign(flat.knot.begin() + first, flat.knot.begin() + last);
-    (responses[vertex].*which).slope.assign(flat.slope.begin() + first, flat.slope.begin() + last);
+    ResponseCurve& curve = which(responses[vertex]);
+    curve.knot.assign(flat.knot.begin() + first, flat.knot.begin() + last);
+    curve.slope.assign(flat.slope.begin() + first, flat.slope.begin() + last);
   }
+}
+
+std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses) {
+  std::vector<float> bases;
+  bases.reserve(responses.size());
+  for (const NodeResponse& response : responses) bases.push_back(response.coupling.base);
+  return bases;
+}
+
+void read_coupling(const hdf5::Reader& reader, std::vector<NodeResponse>& responses) {
+  read_flat(reader, "/response/coupling_", responses, coupling_of);
+  const auto bases = reader.dataset<float>("/response/coupling_base", responses.size());
+  Checks(reader).numbers("/response/coupling_base", bases, rules::kPositive);
+  for (std::size_t v = 0; v < bases.size(); ++v) responses[v].coupling.base = bases[v];
 }
 
 void check_surface(const Checks& checks, const Library& library) {
@@ -164,17 +192,21 @@ void check_for_writing(const Checks& checks, const Library& library) {
   check_surface(checks, library);
   check_columns(checks, "/response", library.responses, kResponseColumns);
   for (std::size_t vertex = 0; vertex < library.responses.size(); ++vertex) {
-    for (const CurveMember which : {&NodeResponse::normal, &NodeResponse::lateral}) {
-      const ResponseCurve& curve = library.responses[vertex].*which;
+    for (const CurveMember which : {normal_of, lateral_of, coupling_of}) {
+      const ResponseCurve& curve = get(library.responses[vertex], which);
       if (curve.knot.size() != curve.slope.size()) {
         checks.fail_row("/response/status", vertex, "knots and slopes differ in number");
       }
     }
   }
-  check_flat(checks, "/response/normal_", flatten(library.responses, &NodeResponse::normal),
+  check_flat(checks, "/response/normal_", flatten(library.responses, normal_of), library.responses);
+  check_flat(checks, "/response/lateral_", flatten(library.responses, lateral_of),
              library.responses);
-  check_flat(checks, "/response/lateral_", flatten(library.responses, &NodeResponse::lateral),
-             library.responses);
+  if (library.kind == ResponseKind::Coupled) {
+    check_flat(checks, "/response/coupling_", flatten(library.responses, coupling_of),
+               library.responses);
+    checks.numbers("/response/coupling_base", coupling_bases(library.responses), rules::kPositive);
+  }
   check_certificate(checks, library);
   check_provenance(checks, library.provenance);
 }
@@ -191,10 +223,13 @@ void write_surface(hdf5::Writer& writer, const Library& library) {
 void write_responses(hdf5::Writer& writer, const Library& library) {
   writer.group("/response", "Force-deflection curves of each vertex: slopes at knots.");
   write_columns(writer, "/response", library.responses, kResponseColumns);
-  write_flat(writer, "/response/normal_", "normal",
-             flatten(library.responses, &NodeResponse::normal));
-  write_flat(writer, "/response/lateral_", "lateral",
-             flatten(library.responses, &NodeResponse::lateral));
+  write_flat(writer, "/response/normal_", "normal", flatten(library.responses, normal_of));
+  write_flat(writer, "/response/lateral_", "lateral", flatten(library.responses, lateral_of));
+  if (library.kind == ResponseKind::Decoupled) return;
+  writer.dataset("/response/coupling_base", coupling_bases(library.responses),
+                 {"1", "w(0) of each vertex; 1 at a hole."});
+  write_flat(writer, "/response/coupling_", "coupling", flatten(library.responses, coupling_of),
+             "1/m");
 }
 
 void write_certificate(hdf5::Writer& writer, const Certificate& certificate) {
@@ -264,7 +299,8 @@ std::string verdict(const DeviceCertificate& device) {
 void write_library(const std::filesystem::path& path, const Library& library) {
   check_for_writing(Checks(path), library);
   hdf5::Writer writer(path);
-  write_root(writer, kArtifact, kLibrarySchema,
+  const bool coupled = library.kind == ResponseKind::Coupled;
+  write_root(writer, kArtifact, coupled ? kCoupledLibrarySchema : kLibrarySchema,
              "A response library: surface, responses, certificate.");
   writer.set_text("/", "name", library.name);
   writer.set_text("/", "tool_shape", library.tool_shape);
@@ -278,8 +314,11 @@ void write_library(const std::filesystem::path& path, const Library& library) {
 
 Library read_library(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kRemedy);
-  reader.require_artifact(kArtifact, kLibrarySchema);
   Library library;
+  if (reader.require_artifact(kArtifact, kLibrarySchema, kCoupledLibrarySchema) ==
+      kCoupledLibrarySchema) {
+    library.kind = ResponseKind::Coupled;
+  }
   library.name = reader.text("/", "name");
   library.tool_shape = reader.text("/", "tool_shape");
   library.tool_radius = reader.real("/", "tool_radius");
@@ -287,8 +326,9 @@ Library read_library(const std::filesystem::path& path) {
   library.inward = reader.dataset<Vec3>("/surface/inward", library.positions.size());
   library.triangles = reader.dataset<Triangle>("/surface/triangles");
   library.responses = read_columns(reader, "/response", kResponseColumns, library.positions.size());
-  read_flat(reader, "/response/normal_", library.responses, &NodeResponse::normal);
-  read_flat(reader, "/response/lateral_", library.responses, &NodeResponse::lateral);
+  read_flat(reader, "/response/normal_", library.responses, normal_of);
+  read_flat(reader, "/response/lateral_", library.responses, lateral_of);
+  if (library.kind == ResponseKind::Coupled) read_coupling(reader, library.responses);
   library.certificate = read_certificate(reader);
   library.provenance = read_provenance(reader);
   const Checks checks(reader);

@@ -13,7 +13,10 @@
 
 namespace palpate {
 
+/// Schema of a library of decoupled responses, and of one of coupled responses: a reader of the
+/// first must not take the second for what it knows.
 inline constexpr int kLibrarySchema = 1;
+inline constexpr int kCoupledLibrarySchema = 2;
 
 /// A response f(d), d >= 0, with f(0) = 0: the force is piecewise quadratic and C1, its slope
 /// piecewise linear and continuous. Between knots k and k+1, with h = d_{k+1} - d_k:
@@ -33,12 +36,26 @@ enum class ResponseStatus : std::uint8_t {
   Hole = 2     ///< no response: triangles at this vertex are a border for the runtime
 };
 
+/// How the responses of a node depend on each other.
+enum class ResponseKind : std::uint8_t {
+  Decoupled,  ///< E = G(z) + H(rho): f^r does not know the depth [Mahvash & Hayward 2005, eq. 32]
+  Coupled     ///< E = G(z) + w(z) H(rho)
+};
+
+/// w(z) = base + the curve, 1: how the lateral response of a node grows with depth. base > 0 and
+/// slopes >= 0 keep E >= 0, and the force of a growing deflection opposed to it.
+struct CouplingCurve {
+  float base = 1;       ///< w(0)
+  ResponseCurve curve;  ///< knots in m, slopes in 1/m; empty in a decoupled library
+};
+
 struct NodeResponse {
   ResponseStatus status = ResponseStatus::Hole;
   ResponseCurve normal;     ///< f^z(delta^z); slope[0] = 0 so that the slope is continuous at touch
   ResponseCurve lateral;    ///< f^r(delta^r)
   double normal_error = 0;  ///< largest |fit - sample|, N
   double lateral_error = 0;  ///< same, N
+  CouplingCurve coupling{};  ///< of a coupled library only
 };
 
 /// Bounds of one triangle, `runtime` theory page, "certificate".
@@ -79,6 +96,7 @@ struct Certificate {
 };
 
 struct Library {
+  ResponseKind kind = ResponseKind::Decoupled;
   std::string name;
   std::string tool_shape;
   double tool_radius = 0;       ///< m

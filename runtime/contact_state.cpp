@@ -199,7 +199,7 @@ LocalModel ContactState::slide(const Vec3& x, const Candidate& held, double shar
     return {*surface_, p.point, model_->offset()};
   }
   const LocalResponse& at = held.response;
-  if (!(at.lateral_force > settings_.friction * at.normal_force)) return *model_;
+  if (!(at.lateral_force > settings_.friction * at.grip)) return *model_;
   const double excess = d.lateral - model_->slip_limit_below(d, at, settings_.friction);
   if (!(excess > 0)) return *model_;
   const Walk moved = walk(*surface_, model_->point(), d.tangent, share * excess, delivered_);

@@ -29,9 +29,11 @@ double solve_rising_quadratic(const MergedPiece& p, double target) noexcept {
 /// Walks the three knot sequences in ascending order.
 class KnotMerge {
  public:
-  explicit KnotMerge(const InterpolatedResponse& response) noexcept : response_(response) {}
+  KnotMerge(const InterpolatedResponse& response, const Vec3& weights) noexcept
+      : response_(response), weights_(weights) {}
   /// On the piece that holds `at`.
-  KnotMerge(const InterpolatedResponse& response, double at) noexcept : response_(response) {
+  KnotMerge(const InterpolatedResponse& response, const Vec3& weights, double at) noexcept
+      : response_(response), weights_(weights) {
     for (std::size_t l = 0; l < 3; ++l) index_[l] = response_.node(l).lateral().piece_at(at);
     start_ = last_start();
   }
@@ -45,7 +47,7 @@ class KnotMerge {
       const PackedPiece& p = curve.piece(index_[l]);
       const double slope = static_cast<double>(p.slope);
       const double x = start_ - static_cast<double>(p.start);
-      const double weight = response_.natural()[l];
+      const double weight = weights_[l];
       merged.force += weight * (p.force + x * (slope + x * p.curvature));
       merged.slope += weight * (slope + 2.0 * x * p.curvature);
       merged.curvature += weight * p.curvature;
@@ -96,15 +98,16 @@ class KnotMerge {
   }
 
   const InterpolatedResponse& response_;
+  Vec3 weights_;
   std::array<std::size_t, 3> index_{};
   double start_ = 0;
 };
 
 }  // namespace
 
-double InterpolatedResponse::lateral_inverse(double force) const noexcept {
+double InterpolatedResponse::lateral_inverse(double force, const Vec3& weights) const noexcept {
   if (!(force > 0.0)) return 0.0;
-  KnotMerge merge(*this);
+  KnotMerge merge(*this, weights);
   while (true) {
     const MergedPiece p = merge.piece();
     const double end = merge.end();
@@ -118,9 +121,10 @@ double InterpolatedResponse::lateral_inverse(double force) const noexcept {
   }
 }
 
-double InterpolatedResponse::lateral_inverse_below(double force, double from) const noexcept {
+double InterpolatedResponse::lateral_inverse_below(double force, double from,
+                                                   const Vec3& weights) const noexcept {
   if (!(force > 0.0)) return 0.0;
-  KnotMerge merge(*this, from);
+  KnotMerge merge(*this, weights, from);
   double end = from;
   while (true) {
     const MergedPiece p = merge.piece();

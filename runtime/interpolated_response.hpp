@@ -11,8 +11,12 @@ namespace palpate::runtime {
 
 /// The responses at a point of a triangle, given by its natural coordinates n_l >= 0, sum 1:
 ///   g(z) = sum n_l f_l^z(z),   h(rho) = sum n_l f_l^r(rho)     [Mahvash & Hayward 2005, eq. 29]
-/// A view of three nodes: cheap to copy, valid while the nodes live. Evaluation is noexcept,
-/// allocation-free and bounded by the number of knots.
+/// Coupled responses are interpolated as potentials,
+///   E(z, rho) = sum n_l (G_l(z) + w_l(z) H_l(rho)),
+/// which is the same with w_l = 1. At a depth their lateral response is sum (n_l w_l) f_l^r(rho):
+/// the natural coordinates give way to the weights n_l w_l, whose sum is not 1. A view of three
+/// nodes: cheap to copy, valid while the nodes live. Evaluation is noexcept, allocation-free and
+/// bounded by the number of knots.
 class InterpolatedResponse {
  public:
   InterpolatedResponse(const std::array<const NodeCurves*, 3>& nodes, const Vec3& natural) noexcept
@@ -29,14 +33,51 @@ class InterpolatedResponse {
                nodes_[2]->lateral().evaluate(rho));
   }
 
+  bool coupled() const noexcept { return nodes_[0]->coupled(); }
+
+  /// What the three lateral responses count for at a depth: n_l, or n_l w_l(z).
+  Vec3 lateral_weights(double z) const noexcept {
+    if (!coupled()) return natural_;
+    Vec3 weights;
+    for (std::size_t l = 0; l < 3; ++l)
+      weights[l] = natural_[l] * nodes_[l]->coupling().evaluate_from_start(z).force;
+    return weights;
+  }
+
+  /// Forces and energy of coupled responses, the gradient of one potential.
+  struct CoupledValue {
+    double normal = 0;   ///< dE/dz = g + sum n_l w_l' H_l, N
+    double lateral = 0;  ///< dE/drho = sum n_l w_l h_l, N
+    double grip = 0;     ///< g, N
+    double energy = 0;   ///< J
+  };
+  CoupledValue coupled_at(double z, double rho) const noexcept {
+    CoupledValue value;
+    for (std::size_t l = 0; l < 3; ++l) {
+      const double n = natural_[l];
+      const CurveValue g = nodes_[l]->normal().evaluate(z);
+      const CurveValue h = nodes_[l]->lateral().evaluate(rho);
+      const CurveValue w = nodes_[l]->coupling().evaluate_from_start(z);
+      value.normal += n * (g.force + w.slope * h.energy);
+      value.lateral += n * (w.force * h.force);
+      value.grip += n * g.force;
+      value.energy += n * (g.energy + w.force * h.energy);
+    }
+    return value;
+  }
+
   /// Smallest rho >= 0 with h(rho) = force, in closed form: the knots of the three curves are
   /// walked in order, and on the piece that holds the answer h is one quadratic. 0 for force <= 0;
   /// infinity when h never reaches the force (nothing can slip there).
-  double lateral_inverse(double force) const noexcept;
+  double lateral_inverse(double force) const noexcept { return lateral_inverse(force, natural_); }
+  double lateral_inverse(double force, const Vec3& weights) const noexcept;
 
   /// The same for a force that h reaches at `from` or before: walks down from there, hence in one
   /// or two pieces when the answer is near.
-  double lateral_inverse_below(double force, double from) const noexcept;
+  double lateral_inverse_below(double force, double from, const Vec3& weights) const noexcept;
+  double lateral_inverse_below(double force, double from) const noexcept {
+    return lateral_inverse_below(force, from, natural_);
+  }
 
   /// Depth beyond which at least one of the three normal responses is a continuation, m.
   double deepest() const noexcept;

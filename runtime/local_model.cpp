@@ -6,11 +6,12 @@
 namespace palpate::runtime {
 
 double LocalModel::energy(const Deflection& d) const noexcept {
-  return response_.normal(d.depth).energy + response_.lateral(d.lateral).energy;
+  return respond(d).energy;
 }
 
 double LocalModel::slip_limit(const Deflection& d, double friction) const noexcept {
-  return response_.lateral_inverse(friction * response_.normal(d.depth).force);
+  return response_.lateral_inverse(friction * response_.normal(d.depth).force,
+                                   response_.lateral_weights(d.depth));
 }
 
 double LocalModel::energy_slope(const Deflection& at, const Vec3& d) const noexcept {
@@ -21,12 +22,14 @@ double LocalModel::energy_slope(const Deflection& at, const Vec3& d) const noexc
     const double rate = dot(e.gradient[l], d);
     const NodeCurves& node = response_.node(l);
     turn = turn + rate * surface_->inward(e, l);
+    const double w = node.coupled() ? node.coupling().evaluate_from_start(at.depth).force : 1.0;
     change_of_curves += rate * (node.normal().evaluate(at.depth).energy +
-                                node.lateral().evaluate(at.lateral).energy);
+                                w * node.lateral().evaluate(at.lateral).energy);
   }
   turn = (1.0 / norm(surface_->direction_sum(point_))) * (turn - dot(turn, n_) * n_);
-  const double g = response_.normal(at.depth).force;
-  const double h = response_.lateral(at.lateral).force;
+  const LocalResponse response = respond(at);
+  const double g = response.normal_force;
+  const double h = response.lateral_force;
   const double tilt = dot(at.tangent, turn);
   return change_of_curves + (g * at.lateral - h * at.depth) * tilt - g * dot(n_, d) -
          h * dot(at.tangent, d) - offset_ * h * tilt;

@@ -38,10 +38,13 @@ CurveValue on_piece(const CompiledCurve::Piece& p, double d) noexcept {
 
 }  // namespace
 
-CompiledCurve::CompiledCurve(const ResponseCurve& curve) {
+CompiledCurve::CompiledCurve(const ResponseCurve& curve) : CompiledCurve(curve, 0) {}
+
+CompiledCurve::CompiledCurve(const ResponseCurve& curve, double start) {
   check(curve);
   const std::size_t knots = curve.knot.size();
   pieces_.resize(knots);
+  pieces_[0].force = start;
   for (std::size_t k = 0; k < knots; ++k) {
     Piece& p = pieces_[k];
     p.start = static_cast<double>(curve.knot[k]);
@@ -67,7 +70,7 @@ CurveValue CompiledCurve::evaluate(double d) const noexcept {
 void NodeCurves::prefetch() const noexcept {
   constexpr std::size_t kLine = 64;  // bytes fetched at once
   const auto* at = reinterpret_cast<const char*>(pieces_);
-  const std::size_t bytes = (std::size_t{normal_} + lateral_) * sizeof(PackedPiece);
+  const std::size_t bytes = (std::size_t{normal_} + lateral_ + coupling_) * sizeof(PackedPiece);
   for (std::size_t i = 0; i < bytes && i < 16 * kLine; i += kLine) __builtin_prefetch(at + i);
 }
 

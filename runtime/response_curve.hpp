@@ -42,6 +42,9 @@ class CompiledCurve {
   /// slopes
   ///   negative or not finite, unequal lengths.
   explicit CompiledCurve(const ResponseCurve& curve);
+  /// The same with the value `start` at 0 instead of 0: w of a coupled response. "Force" is then w,
+  /// "slope" w', and the energy means nothing.
+  CompiledCurve(const ResponseCurve& curve, double start);
 
   CurveValue evaluate(double d) const noexcept;
   double force(double d) const noexcept { return evaluate(d).force; }
@@ -88,6 +91,12 @@ class CurveView {
             p.energy + x * (p.force + x * (slope / 2.0 + x * p.curvature / 3.0))};
   }
 
+  /// Of a curve that does not start at 0: at d <= 0 its first value, flat.
+  CurveValue evaluate_from_start(double d) const noexcept {
+    if (count_ == 0 || d > 0.0) return evaluate(d);
+    return {pieces_[0].force, 0, 0};
+  }
+
   const PackedPiece& piece(std::size_t k) const noexcept { return pieces_[k]; }
   std::size_t size() const noexcept { return count_; }
   double start(std::size_t k) const noexcept { return static_cast<double>(pieces_[k].start); }
@@ -109,21 +118,26 @@ class CurveView {
   std::size_t count_ = 0;
 };
 
-/// Both responses of a node, side by side in memory: f^z, then f^r.
+/// The responses of a node, side by side in memory: f^z, then f^r, then w when they are coupled.
 class NodeCurves {
  public:
   NodeCurves() = default;
-  NodeCurves(const PackedPiece* pieces, std::uint16_t normal, std::uint16_t lateral) noexcept
-      : pieces_(pieces), normal_(normal), lateral_(lateral) {}
+  NodeCurves(const PackedPiece* pieces, std::uint16_t normal, std::uint16_t lateral,
+             std::uint16_t coupling = 0) noexcept
+      : pieces_(pieces), normal_(normal), lateral_(lateral), coupling_(coupling) {}
 
   CurveView normal() const noexcept { return {pieces_, normal_}; }              ///< f^z
   CurveView lateral() const noexcept { return {pieces_ + normal_, lateral_}; }  ///< f^r
+  CurveView coupling() const noexcept {                                         ///< w
+    return {pieces_ + normal_ + lateral_, coupling_};
+  }
+  bool coupled() const noexcept { return coupling_ > 0; }
   /// Asks the processor to have the curves at hand soon.
   void prefetch() const noexcept;
 
  private:
   const PackedPiece* pieces_ = nullptr;
-  std::uint16_t normal_ = 0, lateral_ = 0;
+  std::uint16_t normal_ = 0, lateral_ = 0, coupling_ = 0;
 };
 
 /// A piece of a CompiledCurve, packed.

@@ -49,6 +49,15 @@ double origin_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   return inside ? norm(foot) : to_edges;
 }
 
+CompiledCurve coupling_of(const NodeResponse& response, std::size_t vertex) {
+  const double base = static_cast<double>(response.coupling.base);
+  if (!(std::isfinite(base) && base > 0)) {
+    throw Error(ErrorKind::Configuration, "library vertex " + std::to_string(vertex),
+                "the coupling does not start above 0", "fit the curves again");
+  }
+  return {response.coupling.curve, base};
+}
+
 }  // namespace
 
 Surface::Surface(const Library& library) : elements_(library.triangles.size()) {
@@ -75,33 +84,37 @@ Surface::Surface(const Library& library) : elements_(library.triangles.size()) {
 
 void Surface::build_nodes(const Library& library) {
   struct Count {
-    std::size_t normal = 0, lateral = 0;
+    std::size_t normal = 0, lateral = 0, coupling = 0;
   };
   std::vector<Count> counts(library.responses.size());
+  const auto append = [&](const CompiledCurve& curve) {
+    for (const CompiledCurve::Piece& piece : curve.pieces()) pieces_.push_back(pack(piece));
+    return curve.pieces().size();
+  };
   for (std::size_t v = 0; v < counts.size(); ++v) {
     const NodeResponse& response = library.responses[v];
     if (response.status == ResponseStatus::Hole) continue;
     const CompiledCurve normal(response.normal);
-    const CompiledCurve lateral(response.lateral);
-    counts[v] = {normal.pieces().size(), lateral.pieces().size()};
-    if (std::max(counts[v].normal, counts[v].lateral) > kMostKnots) {
+    counts[v].normal = append(normal);
+    counts[v].lateral = append(CompiledCurve(response.lateral));
+    if (library.kind == ResponseKind::Coupled)
+      counts[v].coupling = append(coupling_of(response, v));
+    if (std::max({counts[v].normal, counts[v].lateral, counts[v].coupling}) > kMostKnots) {
       throw Error(ErrorKind::Configuration, "library vertex " + std::to_string(v),
                   "a response has more than " + std::to_string(kMostKnots) + " knots",
                   "fit with fewer");
     }
     deepest_ = std::max(deepest_, normal.last_knot());
-    for (const CompiledCurve* curve : {&normal, &lateral}) {
-      for (const CompiledCurve::Piece& piece : curve->pieces()) pieces_.push_back(pack(piece));
-    }
   }
   nodes_.resize(counts.size());
   const PackedPiece* next = pieces_.data();
   for (std::size_t v = 0; v < counts.size(); ++v) {
-    const auto [normal, lateral] = counts[v];
+    const auto [normal, lateral, coupling] = counts[v];
     nodes_[v] = {
         library.positions[v], library.inward[v],
-        NodeCurves(next, static_cast<std::uint16_t>(normal), static_cast<std::uint16_t>(lateral))};
-    next += normal + lateral;
+        NodeCurves(next, static_cast<std::uint16_t>(normal), static_cast<std::uint16_t>(lateral),
+                   static_cast<std::uint16_t>(coupling))};
+    next += normal + lateral + coupling;
   }
 }
 

@@ -193,6 +193,9 @@ void describe(V& v, FitSection& s) {
   v.flag(
       s.fill_holes,
       {"fill_holes", "give failed sites the mean response of their neighbours, marked as filled"});
+  v.text(s.responses,
+         {"responses", "coupled: the lateral response grows with depth (several held_depths)"},
+         {"decoupled", "coupled"});
 }
 
 template <class V>

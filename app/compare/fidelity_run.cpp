@@ -56,8 +56,9 @@ double bytes_per_node(const Library& library) {
   for (const NodeResponse& node : library.responses) {
     if (node.status == ResponseStatus::Hole) continue;
     ++nodes;
-    for (const ResponseCurve* curve : {&node.normal, &node.lateral})
+    for (const ResponseCurve* curve : {&node.normal, &node.lateral, &node.coupling.curve})
       numbers += curve->knot.size() + curve->slope.size();
+    if (library.kind == ResponseKind::Coupled) ++numbers;  // w(0)
   }
   return nodes == 0 ? 0 : static_cast<double>(numbers * sizeof(float)) / static_cast<double>(nodes);
 }

@@ -94,6 +94,7 @@ fitting::FitSettings fit_settings(const Workspace& space) {
   settings.absolute_tolerance = fit.absolute_tolerance;
   settings.max_knots = fit.max_knots;
   settings.fill_holes = fit.fill_holes;
+  settings.kind = fit.responses == "coupled" ? ResponseKind::Coupled : ResponseKind::Decoupled;
   return settings;
 }
 

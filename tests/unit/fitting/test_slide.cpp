@@ -34,6 +34,9 @@ class PlainModel {
       u_[l] = library.inward[v];
       normal_[l] = runtime::CompiledCurve(library.responses[v].normal);
       lateral_[l] = runtime::CompiledCurve(library.responses[v].lateral);
+      if (library.kind == ResponseKind::Decoupled) continue;
+      const CouplingCurve& w = library.responses[v].coupling;
+      weight_[l] = runtime::CompiledCurve(w.curve, static_cast<double>(w.base));
     }
     facet_ = unit(cross(x_[1] - x_[0], x_[2] - x_[0]));
   }
@@ -64,24 +67,28 @@ class PlainModel {
     const Vec3 lateral = delta - state.z * state.n;
     state.rho = norm(lateral);
     if (state.rho > 0) state.t = (1 / state.rho) * lateral;
+    double normal_force = 0;
     for (std::size_t l = 0; l < 3; ++l) {
+      const double weight = weight_at(l, state.z);
+      const double H = lateral_[l].energy(state.rho);
       state.g += w[l] * normal_[l].force(state.z);
-      state.h += w[l] * lateral_[l].force(state.rho);
-      state.energy += w[l] * (normal_[l].energy(state.z) + lateral_[l].energy(state.rho));
+      normal_force += w[l] * (normal_[l].force(state.z) + weight_[l].slope(state.z) * H);
+      state.h += w[l] * weight * lateral_[l].force(state.rho);
+      state.energy += w[l] * (normal_[l].energy(state.z) + weight * H);
     }
-    state.force = state.g * state.n + state.h * state.t;
+    state.force = normal_force * state.n + state.h * state.t;
     return state;
   }
 
-  /// rho_s by bisection.
-  double slip_limit(const Vec3& c, double limit) const {
+  /// rho_s at a depth, by bisection.
+  double slip_limit(const Vec3& c, double z, double limit) const {
     const auto w = natural(c);
     double low = 0;
     double high = 1;
     for (int i = 0; i < 100; ++i) {
       const double middle = 0.5 * (low + high);
       double h = 0;
-      for (std::size_t l = 0; l < 3; ++l) h += w[l] * lateral_[l].force(middle);
+      for (std::size_t l = 0; l < 3; ++l) h += w[l] * weight_at(l, z) * lateral_[l].force(middle);
       (h < limit ? low : high) = middle;
     }
     return high;
@@ -93,7 +100,7 @@ class PlainModel {
   std::optional<Vec3> slid(const Vec3& x, Vec3 c, double d0, double mu) const {
     for (int i = 0; i < 400; ++i) {
       const Contact state = at(x, c, d0);
-      const double excess = state.rho - slip_limit(c, mu * state.g);
+      const double excess = state.rho - slip_limit(c, state.z, mu * state.g);
       if (excess < 1e-16) return c;
       c = c + excess * in_plane(state.t);
     }
@@ -101,8 +108,13 @@ class PlainModel {
   }
 
  private:
+  double weight_at(std::size_t l, double z) const {
+    if (weight_[l].pieces().empty()) return 1;
+    return z > 0 ? weight_[l].force(z) : weight_[l].pieces().front().force;
+  }
+
   std::array<Vec3, 3> x_{}, u_{};
-  std::array<runtime::CompiledCurve, 3> normal_, lateral_;
+  std::array<runtime::CompiledCurve, 3> normal_, lateral_, weight_;
   Vec3 facet_{};
 };
 
@@ -112,6 +124,17 @@ Library random_triangle(std::mt19937& engine, double lean, double spread) {
   for (Vec3& u : library.inward) u = unit({tilt(engine), tilt(engine), -1});
   for (int l = 0; l < 3; ++l) library.responses.push_back(random_response(engine, spread));
   return library;
+}
+
+/// Lateral responses that stiffen with depth, each in its own way.
+void couple(Library& library, std::mt19937& engine, double spread) {
+  std::uniform_real_distribution<double> factor(1 - spread, 1 + spread);
+  library.kind = ResponseKind::Coupled;
+  for (NodeResponse& node : library.responses) {
+    const double s = factor(engine);
+    const auto f = [&](double value) { return static_cast<float>(s * value); };
+    node.coupling = {f(0.3), {{0.0F, 0.001F, 0.003F, 0.008F}, {0.0F, f(280), f(150), f(70)}}};
+  }
 }
 
 /// A tool in contact: c inside, z + d0 <= depth, lateral deflection rho in a random direction.
@@ -174,6 +197,34 @@ TEST(StickBound, NoJacobianIsSteeper) {
   EXPECT_GT(closest, 0.95);  // reached at a vertex, where the stiffest curve stands alone
 }
 
+TEST(StickBound, NoCoupledJacobianWithinTheSlipLimitIsSteeper) {
+  std::mt19937 engine(33);
+  std::uniform_real_distribution<double> u(0, 1);
+  double closest = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    Library library = random_triangle(engine, 0.2, 0.5);
+    couple(library, engine, 0.2);
+    CertifySettings settings;
+    settings.friction = 0.1 + 0.2 * (trial % 4);
+    certify(library, settings);
+    const PlainModel model(library, 0);
+    double steepest = 0;
+    for (int i = 0; i < 250; ++i) {
+      const auto up_to_slip = [&](const Vec3& c, double z) {
+        const Vec3 n = model.direction(c);
+        return u(engine) * model.slip_limit(c, z, settings.friction * model.at(c + z * n, c, 0).g);
+      };
+      const Start start = random_start(engine, model, library.certificate.depth, up_to_slip);
+      const Eigen::Matrix3d J = jacobian(model, start);
+      steepest = std::max(steepest, Eigen::JacobiSVD<Eigen::Matrix3d>(J).singularValues()[0]);
+    }
+    EXPECT_LE(steepest, library.certificate.stick * (1 + 1e-5));
+    EXPECT_GE(steepest, 0.5 * library.certificate.stick);  // no idle bound
+    closest = std::max(closest, steepest / library.certificate.stick);
+  }
+  std::printf("steepest coupled Jacobian seen: %.3f of L_stick\n", closest);
+}
+
 struct SlideCensus {
   double closest = 0;  ///< largest quotient / L_slip
   int slides = 0;
@@ -188,7 +239,7 @@ void try_slides(std::mt19937& engine, const Library& library, double mu, SlideCe
     const Start start =
         random_start(engine, model, library.certificate.depth, [&](const Vec3& c, double z) {
           const Vec3 n = model.direction(c);
-          return model.slip_limit(c, mu * model.at(c + z * n, c, 0).g);
+          return model.slip_limit(c, z, mu * model.at(c + z * n, c, 0).g);
         });
     const Contact before = model.at(start.x, start.c, start.d0);
     for (int k = 0; k < 12; ++k) {
@@ -263,6 +314,28 @@ TEST(SlipBound, NoSlidingPathIsSteeper) {
   EXPECT_GT(census.closest, 0.5);  // and the bound is not idle
 }
 
+TEST(SlipBound, NoCoupledSlidingPathIsSteeper) {
+  std::mt19937 engine(39);
+  SlideCensus census;
+  int bounded = 0;
+  for (const double mu : {0.1, 0.3, 0.6}) {
+    for (int trial = 0; trial < 40; ++trial) {
+      Library library = random_triangle(engine, 0.03, 0.05 + 0.1 * (trial % 3));
+      couple(library, engine, 0.1);
+      CertifySettings settings;
+      settings.friction = mu;
+      certify(library, settings);
+      if (std::isinf(library.certificate.slip)) continue;
+      ++bounded;
+      try_slides(engine, library, mu, census);
+    }
+  }
+  std::printf("steepest coupled slide seen: %.3f of the bound, %d slides on %d triangles\n",
+              census.closest, census.slides, bounded);
+  EXPECT_GT(census.slides, 10000);
+  EXPECT_GT(census.closest, 0.5);
+}
+
 TEST(SlipBound, HoldsOnTheTrianglesOfASphere) {
   std::mt19937 engine(41);
   Library library = sphere(0.04, 2);
@@ -297,7 +370,7 @@ std::optional<EnergyStep> slide_once(std::mt19937& engine, const PlainModel& mod
   constexpr double kExcess = 1e-6;
   const Start start = random_start(engine, model, depth, [&](const Vec3& c, double z) {
     const Vec3 n = model.direction(c);
-    return model.slip_limit(c, mu * model.at(c + z * n, c, 0).g) + kExcess;
+    return model.slip_limit(c, z, mu * model.at(c + z * n, c, 0).g) + kExcess;
   });
   const Contact before = model.at(start.x, start.c, start.d0);
   const Vec3 c = start.c + kExcess * model.in_plane(before.t);

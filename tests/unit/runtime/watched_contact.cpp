@@ -29,6 +29,22 @@ double curve_energy(const ResponseCurve& curve, double d) {
   return energy;
 }
 
+/// w at a depth, from its slopes.
+double coupling_weight(const CouplingCurve& coupling, double z) {
+  const ResponseCurve& curve = coupling.curve;
+  double w = static_cast<double>(coupling.base);
+  for (std::size_t k = 0; k < curve.knot.size() && z > static_cast<double>(curve.knot[k]); ++k) {
+    const bool last = k + 1 == curve.knot.size();
+    const double start = static_cast<double>(curve.knot[k]);
+    const double s0 = static_cast<double>(curve.slope[k]);
+    const double piece = last ? 1 : static_cast<double>(curve.knot[k + 1]) - start;
+    const double rate = last ? 0 : (static_cast<double>(curve.slope[k + 1]) - s0) / piece;
+    const double x = last ? z - start : std::min(z - start, piece);
+    w += x * (s0 + x * rate / 2);
+  }
+  return w;
+}
+
 bool finite(const Vec3& v) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
@@ -45,8 +61,10 @@ double model_energy(const Library& library, const runtime::ContactObservation& m
   double energy = 0;
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
+    const double z = depth - model.offset;
+    const double w = library.kind == ResponseKind::Coupled ? coupling_weight(node.coupling, z) : 1;
     energy += model.point.natural[l] *
-              (curve_energy(node.normal, depth - model.offset) + curve_energy(node.lateral, rho));
+              (curve_energy(node.normal, z) + w * curve_energy(node.lateral, rho));
   }
   return energy;
 }
