@@ -124,6 +124,48 @@ TEST(Fit, EveryCompleteSiteCarriesItsResponses) {
   EXPECT_LE(4 * floats / 7, 64u);
 }
 
+/// A stuck contact that stiffens like the radius of contact of a sphere.
+double contact_width(double depth) {
+  return std::sqrt(depth / 0.003);
+}
+
+TEST(Fit, CoupledResponsesFollowTheDepth) {
+  const Body body = hexagon();
+  Curves curves = complete_curves(body);
+  for (SiteCurves& site : curves.sites) {
+    site.paths = {normal_path(kDepth, 1)};
+    for (const double z : {0.0015, 0.003, 0.005})
+      site.paths.push_back(lateral_path({1, 0, 0}, z, 70 * contact_width(z)));
+  }
+  FitSettings settings;
+  settings.kind = ResponseKind::Coupled;
+  const Library library = fit(body, curves, settings);
+  EXPECT_EQ(library.kind, ResponseKind::Coupled);
+  const NodeResponse& node = library.responses[0];
+  const runtime::CompiledCurve h(node.lateral);
+  const runtime::CompiledCurve w(node.coupling.curve, static_cast<double>(node.coupling.base));
+  EXPECT_NEAR(h.force(0.002), 0.14, 0.001);  // at the middle depth w is 1
+  for (const double z : {0.0004, 0.001, 0.002, 0.003, 0.004, 0.006})
+    EXPECT_NEAR(w.force(z), contact_width(z), 0.02) << z;
+  EXPECT_EQ(node.coupling.curve.slope[0], 0.0F);  // the normal force is continuous at touch
+  EXPECT_LT(node.lateral_error, 0.004);
+  // One response for all depths misses by what it cannot have.
+  const Library decoupled = fit(body, curves, {});
+  EXPECT_GT(decoupled.responses[0].lateral_error, 10 * node.lateral_error);
+  const std::size_t bytes = 4 + 8 * (node.normal.knot.size() + node.lateral.knot.size() +
+                                     node.coupling.curve.knot.size());
+  std::printf("bytes of the coupled curves of a node: %zu\n", bytes);
+  EXPECT_LE(bytes, 160u);
+}
+
+TEST(Fit, CoupledResponsesNeedSeveralDepths) {
+  const Body body = hexagon();
+  FitSettings settings;
+  settings.kind = ResponseKind::Coupled;
+  EXPECT_NE(problem_of([&] { fit(body, complete_curves(body), settings); }).find("several held"),
+            std::string::npos);
+}
+
 TEST(Fit, TheLateralResponseIsTheMeanOverAzimuthsAndDepths) {
   const Body body = hexagon();
   Curves curves = complete_curves(body);

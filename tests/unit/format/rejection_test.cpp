@@ -30,7 +30,7 @@ using Break = std::function<void(const Path&)>;
 const double kNaN = std::numeric_limits<double>::quiet_NaN();
 const double kInfinity = std::numeric_limits<double>::infinity();
 
-enum class Kind { Body, Curves, Library, Recording };
+enum class Kind { Body, Curves, Library, CoupledLibrary, Recording };
 
 void write_sample(Kind kind, const Path& path) {
   switch (kind) {
@@ -40,6 +40,8 @@ void write_sample(Kind kind, const Path& path) {
       return write_curves(path, samples::curves(1));
     case Kind::Library:
       return write_library(path, samples::library(1));
+    case Kind::CoupledLibrary:
+      return write_library(path, samples::coupled_library(1));
     case Kind::Recording:
       return write_recording(path, samples::recording(1));
   }
@@ -62,6 +64,7 @@ void read_sample(Kind kind, const Path& path) {
       static_cast<void>(read_curves(path));
       return;
     case Kind::Library:
+    case Kind::CoupledLibrary:
       static_cast<void>(read_library(path));
       return;
     case Kind::Recording:
@@ -180,7 +183,8 @@ std::vector<Case> common_cases() {
   for (const auto& [name, kind] : kinds) {
     add(name + "OfLaterSchema", kind,
         edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 99, H5T_NATIVE_INT); }), ":/",
-        "has schema 99, this palpate reads 1; update palpate");
+        kind == Kind::Library ? "has schema 99, this palpate reads 1 to 2; update palpate"
+                              : "has schema 99, this palpate reads 1; update palpate");
     add(name + "OfEarlierSchema", kind,
         edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 0, H5T_NATIVE_INT); }), ":/",
         "has schema 0, this palpate reads 1");
@@ -327,7 +331,20 @@ std::vector<Case> curves_cases() {
 
 std::vector<Case> library_cases() {
   const auto kind = Kind::Library;
+  const auto coupled = Kind::CoupledLibrary;
   return {
+      {"LibraryCoupledBaseZero", coupled, poke("/response/coupling_base", 0, 0),
+       "/response/coupling_base[0]", "finite and above 0"},
+      {"LibraryCoupledSlopeNegative", coupled, poke("/response/coupling_slope", 1, -1),
+       "/response/coupling_slope[1]", "finite and not negative"},
+      {"LibraryCoupledWithoutWeights", coupled, remove("/response/coupling_knot"),
+       "/response/coupling_knot", "is missing"},
+      {"LibraryCoupledWithoutBase", coupled, remove("/response/coupling_base"),
+       "/response/coupling_base", "is missing"},
+      // A library of decoupled responses cannot pass for the other kind.
+      {"LibraryOfOtherKindOfResponse", kind,
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 2, H5T_NATIVE_INT); }),
+       "/response/coupling_offset", "is missing"},
       {"LibraryPositionNaN", kind, poke("/surface/position", 0, kNaN), "/surface/position[0]",
        "nan is not finite"},
       {"LibraryPositionElsewhere", kind, link_elsewhere, "/surface/position",

@@ -41,6 +41,10 @@ TEST(RoundTrip, Library) {
     const Library library = samples::library(seed);
     write_library(folder / "library.h5", library);
     EXPECT_EQ(dump(read_library(folder / "library.h5")), dump(library));
+    const Library coupled = samples::coupled_library(seed);
+    write_library(folder / "coupled.h5", coupled);
+    EXPECT_EQ(dump(read_library(folder / "coupled.h5")), dump(coupled));
+    EXPECT_NE(dump(coupled), dump(library));
   }
 }
 

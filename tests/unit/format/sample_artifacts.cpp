@@ -257,6 +257,17 @@ Library library(unsigned seed) {
   return library;
 }
 
+Library coupled_library(unsigned seed) {
+  Random random(seed + 1000);
+  Library coupled = library(seed);
+  coupled.kind = ResponseKind::Coupled;
+  for (NodeResponse& node : coupled.responses) {
+    if (node.status == ResponseStatus::Hole) continue;
+    node.coupling = {static_cast<float>(random.between(0.1, 1)), response_curve(random)};
+  }
+  return coupled;
+}
+
 Recording recording(unsigned seed) {
   Random random(seed);
   Recording recording{"simulated", std::string(64, 'c'), 1000, 0.3, {}, {}, {}};
@@ -306,10 +317,12 @@ std::string dump(const Curves& curves) {
 
 std::string dump(const Library& library) {
   Dump out;
+  out << static_cast<int>(library.kind);
   out << library.name << library.tool_shape << library.tool_radius << library.positions
       << library.inward << library.triangles;
   for (const NodeResponse& r : library.responses) {
     out << static_cast<int>(r.status) << r.normal << r.lateral << r.normal_error << r.lateral_error;
+    out << static_cast<double>(r.coupling.base) << r.coupling.curve;
   }
   const Certificate& c = library.certificate;
   out << c.friction << c.depth << c.stick << c.slip << c.worst_triangle << c.limited_by << c.basis

@@ -17,6 +17,8 @@ Recording recording(unsigned seed);  ///< 5000 steps: more than one chunk; one r
 /// Every member as text, floating point in hexadecimal: equal texts mean equal bits.
 std::string dump(const Body& body);
 std::string dump(const Curves& curves);
+/// The same with coupled responses.
+Library coupled_library(unsigned seed);
 std::string dump(const Library& library);
 std::string dump(const Recording& recording);
 

@@ -142,6 +142,18 @@ NodeResponse wall_response(double stiffness, double lateral_stiffness) {
   return response;
 }
 
+Library coupled(Library library) {
+  library.kind = ResponseKind::Coupled;
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const Vec3& x = library.positions[v];
+    const double s = 1 + 0.3 * std::sin(130 * x[0] + 80 * x[2]) * std::cos(100 * x[1]);
+    const auto f = [&](double value) { return static_cast<float>(s * value); };
+    library.responses[v].coupling = {
+        f(0.25), {{0.0F, 0.001F, 0.003F, 0.006F}, {0.0F, f(300), f(150), f(80)}}};
+  }
+  return library;
+}
+
 Library sphere(int level, double radius, const Responses& responses) {
   return bumpy_sphere(level, radius, 0, responses);
 }

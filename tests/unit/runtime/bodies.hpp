@@ -20,6 +20,9 @@ ResponseCurve stiffening_curve(double first, double last, int knots, double step
 using Responses = std::function<NodeResponse(const Vec3& x)>;
 NodeResponse wall_response(double stiffness, double lateral_stiffness);
 
+/// The same library with lateral responses that grow with depth, not alike everywhere; w(0) > 0.
+Library coupled(Library library);
+
 /// Icosahedron subdivided `level` times, vertices on the sphere, directions radial.
 Library sphere(int level, double radius, const Responses& responses);
 
