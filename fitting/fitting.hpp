@@ -61,4 +61,24 @@ std::string basis_of(const Provenance& provenance);
 /// library is unchanged then.
 void certify(Library& library, const CertifySettings& settings);
 
+/// The stiffest response that Theorem 1 [Mahvash & Hayward 2005] certifies for a device with this
+/// smallest damping at this rate: sigma_0(B) rate/2, N/m. All bounds grow with the forces, so a
+/// library whose bound is L is certified when its forces are scaled by this over L.
+double certified_bound(double damping, double rate);
+
+/// What it took to certify a library for a bound.
+struct Softening {
+  double cap =
+      std::numeric_limits<double>::infinity();  ///< N/m, steepest slope left; infinite: none
+  std::size_t curves = 0;                       ///< that were changed
+  /// Share of the force at the last knot that is lost, over both curves of all nodes.
+  double median = 0, p95 = 0, worst = 0;
+};
+
+/// Certify, and where max(L_stick, L_slip) exceeds `bound`, cap the slopes of all curves at the
+/// highest value (by bisection) that brings it down to the bound. What is stiff is softened, the
+/// rest stays as it was. @throws Error(Configuration) when not even a hundredth of the steepest
+/// slope is certified; the library then keeps its responses.
+Softening soften(Library& library, const CertifySettings& settings, double bound);
+
 }  // namespace palpate::fitting

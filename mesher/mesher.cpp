@@ -196,6 +196,13 @@ std::size_t exclude_sites_at_supports(ResponseSurface& response, const Surface& 
   return excluded;
 }
 
+/// Where the geometry forced the largest change, and by how much.
+std::string most_turned(const InwardDirections& directions, const NestedSurface& nested) {
+  const Vec3& x = nested.response.points[directions.turned_most];
+  return text(", by ", std::lround(directions.largest_turn * 57.29577951308232),
+              " degrees at most, near ", millimetres(x));
+}
+
 void set_response(Body& body, const NestedSurface& nested, const std::vector<std::uint8_t>& held,
                   const Settings& settings) {
   const Log& log = settings.log;
@@ -215,7 +222,8 @@ void set_response(Body& body, const NestedSurface& nested, const std::vector<std
                    " no site"));
   }
   note(log, text("inward directions: ", directions.adjusted, " of ", response.inward.size(),
-                 " turned so that they can be interpolated"));
+                 " turned so that they can be interpolated",
+                 directions.adjusted == 0 ? std::string() : most_turned(directions, nested)));
   if (directions.unresolved.empty()) return;
   for (const std::int32_t v : directions.unresolved) {
     response.is_site[static_cast<std::size_t>(v)] = 0;

@@ -148,7 +148,13 @@ InwardDirections inward_directions(const Surface& response, const Surface& bound
     if (result.unresolved.empty()) break;
   }
   for (std::size_t v = 0; v < mean.size(); ++v) {
-    if (dot(mean[v], result.inward[v]) < 1 - 1e-12) ++result.adjusted;
+    const double cosine = dot(mean[v], result.inward[v]);
+    if (cosine >= 1 - 1e-12) continue;
+    ++result.adjusted;
+    const double turn = std::acos(std::clamp(cosine, -1.0, 1.0));
+    if (turn <= result.largest_turn) continue;
+    result.largest_turn = turn;
+    result.turned_most = v;
   }
   return result;
 }

@@ -17,6 +17,8 @@ bool is_held(const std::vector<Support>& supports, const Vec3& point, double tol
 struct InwardDirections {
   std::vector<Vec3> inward;              ///< unit, one for each response vertex
   std::size_t adjusted = 0;              ///< directions turned away from the mean normal
+  double largest_turn = 0;               ///< rad, of the one that was turned most
+  std::size_t turned_most = 0;           ///< its response vertex
   std::vector<std::int32_t> unresolved;  ///< response vertices of triangles that break a condition
 };
 

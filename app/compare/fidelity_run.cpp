@@ -14,6 +14,8 @@
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 #include "format/sha256.hpp"
+#include "format/site_journal.hpp"
+#include "palpate_version.hpp"
 
 namespace palpate::app {
 namespace {
@@ -51,6 +53,50 @@ void require_same_body(const Curves& curves, const fs::path& body_file) {
               "run 'palpate build' again");
 }
 
+/// A library of another surface would be pressed beside its points.
+void require_same_surface(const Library& library, const Body& body, const fs::path& file) {
+  bool same = library.positions.size() == body.response.node.size();
+  for (std::size_t v = 0; same && v < library.positions.size(); ++v)
+    same = library.positions[v] == body.nodes[static_cast<std::size_t>(body.response.node[v])];
+  if (same) return;
+  throw Error(ErrorKind::Configuration, file.string(),
+              "its surface is not that of the body of the case",
+              "judge a library that was fitted on this body");
+}
+
+/// All that decides the direct solutions.
+std::string direct_key(const Workspace& space, const fem::CampaignSettings& settings) {
+  std::string text = fmt::format("fidelity\n{}\n{}\n{}\n{}\n", sha256_of_file(space.body()),
+                                 stage_case(space, Stage::Precompute), PALPATE_VERSION,
+                                 settings.indentation.lateral_increments);
+  for (const fem::PressPoint& p : settings.points)
+    text += fmt::format("{} {} {} {} {} {}\n", p.position[0], p.position[1], p.position[2],
+                        p.inward[0], p.inward[1], p.inward[2]);
+  for (const double depth : settings.indentation.held_depths) text += fmt::format("{} ", depth);
+  for (const double azimuth : settings.indentation.azimuths) text += fmt::format("{} ", azimuth);
+  return sha256(text);
+}
+
+/// The direct solutions, those of an earlier run taken over: they cost minutes, and every library
+/// of the body is judged on the same.
+Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSettings settings) {
+  SiteJournal journal(
+      space.out / "fidelity.journal",
+      {direct_key(space, settings), static_cast<std::int64_t>(settings.points.size())});
+  settings.known = journal.found();
+  settings.finished = [&](const SiteCurves& site) { journal.append(site); };
+  ProgressDisplay display("direct");
+  settings.progress = [&](const fem::CampaignProgress& p) {
+    display.show(p.done, p.failed, p.running, p.total, p.known);
+  };
+  fem::CampaignReport report;
+  Curves direct = fem::run_campaign(body, settings, report);
+  say("compare: {} direct presses, {} of them known, in {} ({} on the processors)",
+      settings.points.size(), settings.known.size(), duration_text(report.seconds),
+      duration_text(report.cpu_seconds));
+  return direct;
+}
+
 double bytes_per_node(const Library& library) {
   std::size_t numbers = 0, nodes = 0;
   for (const NodeResponse& node : library.responses) {
@@ -71,25 +117,22 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
   require_same_body(sampled, space.body());
   std::vector<fs::path> files = options.libraries;
   if (files.empty()) files.push_back(space.library());
-  const Library first = read_input(files.front(), "fit", read_library);
   prepare_output(space.out);
-  const auto points = fidelity::draw_points(first, options.off_node, options.at_node, options.seed);
-
-  fem::CampaignSettings settings = direct_settings(space, points);
-  ProgressDisplay display("direct");
-  settings.progress = [&](const fem::CampaignProgress& p) {
-    display.show(p.done, p.failed, p.running, p.total, p.known);
-  };
-  fem::CampaignReport report;
-  const Curves direct = fem::run_campaign(body, settings, report);
-  say("compare: {} direct presses in {} ({} on the processors)", points.size(),
-      duration_text(report.seconds), duration_text(report.cpu_seconds));
+  std::vector<Library> libraries;
+  for (const fs::path& file : files) {
+    libraries.push_back(read_input(file, "fit", read_library));
+    require_same_surface(libraries.back(), body, file);
+  }
+  const auto points =
+      fidelity::draw_points(libraries.front(), options.off_node, options.at_node, options.seed);
+  const Curves direct = solve_direct(space, body, direct_settings(space, points));
 
   std::string text, states;
   nlohmann::ordered_json json = fidelity_heading(options, space.c.certify.friction, points);
   bool complete = true;
-  for (const fs::path& file : files) {
-    const Library library = read_input(file, "fit", read_library);
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const fs::path& file = files[i];
+    const Library& library = libraries[i];
     const fidelity::Fidelity result =
         fidelity::measure(library, fidelity::RenderedBody(file), points, direct, sampled,
                           {options.floor, space.c.certify.friction});

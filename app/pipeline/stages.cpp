@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "app/console.hpp"
+#include "app/pipeline/device_profile.hpp"
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
@@ -119,6 +120,72 @@ void run_certify(const Workspace& space) {
   write_library(space.library(), library);
   tell_certificate(library.certificate);
   say("certify: {}", space.library().string());
+}
+
+namespace {
+
+void tell_keep(const Library& library, const fitting::DeviceProfile& device, double rate) {
+  if (std::isnan(device.damping))
+    return say("  {}: damping unknown: nothing is certified for this device", device.name);
+  const Certificate& c = library.certificate;
+  const double bound = fitting::certified_bound(device.damping, rate);
+  const double steepest = std::max(c.stick, c.slip);
+  const auto over = std::count_if(c.triangles.begin(), c.triangles.end(),
+                                  [&](const auto& t) { return std::max(t.stick, t.slip) > bound; });
+  say("  {} at {} Hz: certified up to {:.1f} N/m", device.name, rate, bound);
+  if (steepest <= bound)
+    return say("    the library, {:.1f} N/m, is certified with room for {:.2f} times its forces",
+               steepest, bound / steepest);
+  say("    the library has {}: {} of {} triangles are over, the worst is triangle {}",
+      bound_text(steepest, "N/m"), over, c.triangles.size(), c.worst_triangle);
+  if (std::isfinite(steepest))
+    say("    {:.2f} times its forces would be certified; --soften caps the stiff slopes alone",
+        bound / steepest);
+}
+
+void write_softened(const Workspace& space, const KeepOptions& options, Library library,
+                    const fitting::CertifySettings& settings) {
+  const bool one = settings.devices.size() == 1 && !std::isnan(settings.devices[0].damping);
+  if (!one) {
+    throw Error(ErrorKind::Configuration, "--soften", "it takes one device of known damping",
+                "name its profile with --device");
+  }
+  const double bound = fitting::certified_bound(settings.devices[0].damping, options.rate);
+  const fitting::Softening soft = fitting::soften(library, settings, bound);
+  std::erase_if(library.provenance.steps, [](const ProvenanceStep& step) {
+    return step.stage == stage_name(Stage::Certify);
+  });
+  ProvenanceStep step = make_stage_step(space, Stage::Certify, {});
+  step.facts.emplace_back("softened_for_hz", fmt::format("{}", options.rate));
+  step.facts.emplace_back("softened_slope_cap", fmt::format("{}", soft.cap));
+  library.provenance.steps.push_back(step);
+  write_library(options.softened, library);
+  if (soft.curves == 0) {
+    say("certify: nothing had to be softened -> {}", options.softened.string());
+    return;
+  }
+  say("certify: slopes capped at {:.1f} N/m, {} curves changed -> {}", soft.cap, soft.curves,
+      options.softened.string());
+  say("  force lost at full deflection: median {:.1f} %, 95 % of the curves {:.1f} %, worst {:.1f} "
+      "%",
+      100 * soft.median, 100 * soft.p95, 100 * soft.worst);
+  say("  against direct solutions: palpate compare --fem CASE --out DIR --library {}",
+      options.softened.string());
+  tell_certificate(library.certificate);
+}
+
+}  // namespace
+
+void run_keep(const Workspace& space, const KeepOptions& options) {
+  const Library library = read_input(space.library(), "fit", read_library);
+  fitting::CertifySettings settings = certify_settings(space);
+  if (!options.device.empty()) settings.devices = {read_device_profile(options.device)};
+  Library certified = library;
+  fitting::certify(certified, settings);
+  say("certify: what may be kept at {} Hz, mu = {}", options.rate, settings.friction);
+  for (const fitting::DeviceProfile& device : settings.devices)
+    tell_keep(certified, device, options.rate);
+  if (!options.softened.empty()) write_softened(space, options, library, settings);
 }
 
 SiteCounts run_build(const Workspace& space, Stage last) {

@@ -30,6 +30,16 @@ SiteCounts run_merge(const Workspace& space, std::vector<std::filesystem::path> 
 void run_fit(const Workspace& space);
 void run_certify(const Workspace& space);
 
+/// What may be kept at a rate.
+struct KeepOptions {
+  double rate = 0;                 ///< Hz
+  std::filesystem::path device;    ///< profile; empty: those of the case
+  std::filesystem::path softened;  ///< where a library goes that is softened until it is certified
+};
+/// Tells for each device the stiffest response that is certified at the rate and what the library
+/// lacks for it; writes the softened library for a single device when it is asked for.
+void run_keep(const Workspace& space, const KeepOptions& options);
+
 /// The stages up to `last`, each only when its artifact is not up to date. @return the sites, none
 /// when the curves were not asked for.
 SiteCounts run_build(const Workspace& space, Stage last = Stage::Certify);

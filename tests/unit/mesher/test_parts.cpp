@@ -241,6 +241,46 @@ TEST(InwardDirections, TooSharpASpikeIsTurnedOrReported) {
   EXPECT_THAT(directions.unresolved, testing::Contains(0));
 }
 
+TEST(InwardDirections, TellWhichWasTurnedMostAndHowFar) {
+  // Leaning spikes, the mean of whose facets does not point into all of them.
+  int turned = 0;
+  for (int lean = 0; lean < 12; ++lean) {
+    Surface spike;
+    spike.points = {{0.2 * lean, 0, 0.5}, {1, 0, 0}, {-0.5, 0.8, 0}, {-0.5, -0.8, 0}};
+    spike.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
+    const auto directions = inward_directions(spike, spike, {0, 0, 0, 0});
+    std::vector<Vec3> sum(4, Vec3{});
+    for (const Triangle& t : spike.triangles) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto at = [&](std::size_t i) {
+          return spike.points[static_cast<std::size_t>(t[i % 3])];
+        };
+        const Vec3 a = at(k + 1) - at(k), b = at(k + 2) - at(k);
+        const double angle = std::acos(dot(a, b) / (norm(a) * norm(b)));
+        Vec3& mean = sum[static_cast<std::size_t>(t[k])];
+        mean = mean - angle * unit(cross(at(1) - at(0), at(2) - at(0)));
+      }
+    }
+    double largest = 0;
+    for (std::size_t v = 0; v < 4; ++v) {
+      const double cosine = dot(unit(sum[v]), directions.inward[v]);
+      largest = std::max(largest, std::acos(std::min(1.0, cosine)));
+    }
+    if (directions.adjusted == 0) {
+      EXPECT_EQ(directions.largest_turn, 0);
+      EXPECT_LT(largest, 1e-6);
+      continue;
+    }
+    ++turned;
+    EXPECT_NEAR(directions.largest_turn, largest, 1e-6);
+    EXPECT_NEAR(std::acos(dot(unit(sum[directions.turned_most]),
+                              directions.inward[directions.turned_most])),
+                largest, 1e-6);
+  }
+  EXPECT_GT(turned, 0);
+  EXPECT_LT(turned, 12);
+}
+
 TEST(Supports, EachShapeHoldsItsInside) {
   const std::vector<Support> plane = {PlaneSupport{{0, 0, 1}, {0, 0, 2}}};
   EXPECT_TRUE(is_held(plane, {5, 5, 1.5}, 0));
