@@ -18,6 +18,7 @@
 #include <map>
 #include <memory>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "bench/runtime/octasphere.hpp"
@@ -36,10 +37,10 @@ constexpr int kSteps = 200000;
 constexpr std::size_t kBatch = 100;
 
 /// The libraries are large; each is made once.
-const palpate_library& body_of(int n) {
-  static std::map<int, std::unique_ptr<palpate_library>> made;
-  auto& body = made[n];
-  if (!body) body = std::make_unique<palpate_library>(octasphere(n));
+const palpate_library& body_of(int n, ResponseKind kind) {
+  static std::map<std::pair<int, ResponseKind>, std::unique_ptr<palpate_library>> made;
+  auto& body = made[{n, kind}];
+  if (!body) body = std::make_unique<palpate_library>(octasphere(n, kind));
   return *body;
 }
 
@@ -77,7 +78,8 @@ double clock_cost() {
 }
 
 void step_on_sphere(benchmark::State& state) {
-  palpate_state tool(body_of(static_cast<int>(state.range(0))),
+  const auto kind = state.range(1) == 0 ? ResponseKind::Decoupled : ResponseKind::Coupled;
+  palpate_state tool(body_of(static_cast<int>(state.range(0)), kind),
                      {.friction = 0.3, .tank_cap = 5e-3, .steepness = 1200});
   std::vector<std::int64_t> all;
   std::vector<std::int64_t> spent;
@@ -124,12 +126,14 @@ void step_on_sphere(benchmark::State& state) {
   state.counters["sliding"] = static_cast<double>(sliding) / static_cast<double>(all.size());
 }
 
-// n = 8, 25, 79, 250: 512, 5 000, 49 928 and 500 000 triangles.
+// n = 8, 25, 79, 250: 512, 5 000, 49 928 and 500 000 triangles; then coupled responses.
 BENCHMARK(step_on_sphere)
-    ->Arg(8)
-    ->Arg(25)
-    ->Arg(79)
-    ->Arg(250)
+    ->Args({8, 0})
+    ->Args({25, 0})
+    ->Args({79, 0})
+    ->Args({250, 0})
+    ->Args({8, 1})
+    ->Args({79, 1})
     ->Iterations(kSteps)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);

@@ -28,6 +28,8 @@ NodeResponse response(const Vec3& x) {
   r.status = ResponseStatus::Fitted;
   r.normal = curve(0, k);
   r.lateral = curve(0.6 * k, 0.8 * k);
+  r.coupling = {0.3F,
+                {{0, 0.0005F, 0.001F, 0.003F, 0.006F}, {0, 300, 250, 150, 90}}};  // if coupled
   return r;
 }
 
@@ -59,8 +61,9 @@ class Vertices {
 
 }  // namespace
 
-Library octasphere(int n) {
+Library octasphere(int n, ResponseKind kind) {
   Library library;
+  library.kind = kind;
   library.name = "octasphere";
   Vertices vertices(n, library);
   for (int octant = 0; octant < 8; ++octant) {

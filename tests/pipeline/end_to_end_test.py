@@ -239,6 +239,49 @@ class Pipeline(unittest.TestCase):
         out = self.run_ok("build", self.case, "--out", self.out)
         self.assertEqual(out.count("up to date"), 2, out)
 
+    def test_a_node_pressed_again_is_rendered_as_it_was_fitted(self):
+        """The same solution twice, once through fit, file and runtime: within the tolerance of the
+        fit. Between nodes and obliquely the error is measured, not known beforehand."""
+        arguments = ("compare", "--fem", self.case, "--out", self.out, "--points", 2, "--nodes", 1,
+                     "--floor-mN", 20, "--threads", 2)
+        out = self.run_ok(*arguments)
+        self.assertIn("3 direct presses, 0 of them known", out)
+        first = json.loads((self.out / "fidelity.json").read_text(encoding="utf-8"))
+        rows = {(r["what"], r["part"]): r for r in first["libraries"][0]["rows"]}
+        at_node = rows["normal press, at node", "normal"]
+        self.assertGreaterEqual(at_node["states"], 4)
+        self.assertLess(at_node["worst"], max(0.01, 0.002 / 0.02) + 0.005)
+        self.assertLess(rows["normal press, off node", "normal"]["worst"], 1)
+        self.assertGreater(rows["decoupling of f^r from depth", "lateral"]["worst"], 0.01)
+        states = rows_of(self.out / "fidelity-states.csv")
+        self.assertEqual({int(s["point"]) for s in states}, {0, 1, 2})
+        # Again: no solution is repeated, and all figures are the same.
+        self.assertIn("3 direct presses, 3 of them known", self.run_ok(*arguments))
+        self.assertEqual(json.loads((self.out / "fidelity.json").read_text(encoding="utf-8")), first)
+
+    def test_certify_tells_what_may_be_kept_and_softens_to_it(self):
+        with h5py.File(self.out / "library.h5") as file:
+            certificate = file["certificate"].attrs
+            bound = max(certificate["stick"], certificate["slip"])
+        self.assertTrue(np.isfinite(bound))
+        damping = 0.5
+        rate = 2 * 0.7 * bound / damping  # what certifies 0.7 of the library
+        soft = self.root / "soft.h5"
+        out = self.run_ok("certify", self.case, "--out", self.out, "--rate", rate, "--soften", soft)
+        self.assertIn("0.70 times its forces would be certified", out)
+        self.assertIn("force lost", out)
+        with h5py.File(soft) as file:
+            certificate = file["certificate"].attrs
+            softened = max(certificate["stick"], certificate["slip"])
+        self.assertLessEqual(softened, 0.7 * bound * (1 + 1e-6))
+        self.assertGreater(softened, 0.6 * bound)
+        # The library of the case is as it was, and more than fast enough at twice the lowest rate.
+        out = self.run_ok("certify", self.case, "--out", self.out, "--rate", 4 * bound / damping)
+        self.assertIn("certified with room for 2.00 times its forces", out)
+        refused = palpate("certify", self.case, "--out", self.out, "--soften", soft)
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("--rate", refused.stderr)
+
     def test_threads_do_not_change_the_curves(self):
         other = self.root / "one-thread"
         other.mkdir(exist_ok=True)
