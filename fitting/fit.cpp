@@ -111,17 +111,6 @@ NodeResponse fit_site(const SiteCurves& site, const FitSettings& settings) {
   return node;
 }
 
-/// One held depth says nothing of how the lateral response depends on depth.
-void check_depths(const Curves& curves, ResponseKind kind) {
-  const auto several = [](const SiteCurves& site) { return held_depths(site).size() > 1; };
-  if (kind == ResponseKind::Decoupled ||
-      std::any_of(curves.sites.begin(), curves.sites.end(), several)) {
-    return;
-  }
-  refuse("fit settings", "coupled responses need lateral paths at several held depths",
-         "precompute with two or more held_depths, or fit decoupled responses");
-}
-
 /// The response surface without the triangles that touch a support. Vertices keep their numbers.
 Library surface_library(const Body& body, const Curves& curves) {
   Library library;
@@ -148,7 +137,6 @@ Library surface_library(const Body& body, const Curves& curves) {
 Library fit(const Body& body, const Curves& curves, const FitSettings& settings) {
   check_settings(settings);
   check_curves(body, curves);
-  check_depths(curves, settings.kind);
   Library library = surface_library(body, curves);
   library.kind = settings.kind;
   std::size_t fitted = 0;

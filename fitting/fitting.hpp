@@ -18,7 +18,7 @@ struct FitSettings {
   double absolute_tolerance = 0.005;  ///< N; the larger of the two applies
   int max_knots = 12;                 ///< per curve
   bool fill_holes = false;            ///< responses of failed sites from their neighbours, marked
-  ResponseKind kind = ResponseKind::Decoupled;  ///< Coupled needs lateral paths at several depths
+  ResponseKind kind = ResponseKind::Decoupled;
 };
 
 /// Fit every site; monotone, passive and C1 by construction (see ResponseCurve and

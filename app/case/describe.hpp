@@ -194,7 +194,8 @@ void describe(V& v, FitSection& s) {
       s.fill_holes,
       {"fill_holes", "give failed sites the mean response of their neighbours, marked as filled"});
   v.text(s.responses,
-         {"responses", "coupled: the lateral response grows with depth (several held_depths)"},
+         {"responses",
+          "coupled: the lateral response grows with depth, best from several held_depths"},
          {"decoupled", "coupled"});
 }
 

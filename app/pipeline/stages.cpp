@@ -12,6 +12,7 @@
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
+#include "fitting/couple.hpp"
 #include "format/body.hpp"
 #include "format/error.hpp"
 #include "format/library.hpp"
@@ -92,6 +93,20 @@ void run_mesh(const Workspace& space) {
       body.tetrahedra.size(), body.response.triangles.size(), sites, space.body().string());
 }
 
+namespace {
+
+/// Where the depths of the lateral paths do not say how the response grows, the tool's shape does.
+void tell_single_depths(const Curves& curves) {
+  const auto single =
+      std::count_if(curves.sites.begin(), curves.sites.end(),
+                    [](const SiteCurves& site) { return fitting::held_depths(site).size() == 1; });
+  if (single > 0)
+    say("fit: {} sites have lateral paths at one depth: coupled like the square root of depth",
+        single);
+}
+
+}  // namespace
+
 void run_fit(const Workspace& space) {
   const Body body = read_input(space.body(), "mesh", read_body);
   const Curves curves = read_input(space.curves(), "precompute", read_curves);
@@ -99,6 +114,7 @@ void run_fit(const Workspace& space) {
   Library library = fitting::fit(body, curves, fit_settings(space));
   append(library.provenance, curves.provenance, make_stage_step(space, Stage::Fit, {}));
   write_library(space.library(), library);
+  if (library.kind == ResponseKind::Coupled) tell_single_depths(curves);
   const auto with_status = [&](ResponseStatus status) {
     return std::count_if(library.responses.begin(), library.responses.end(),
                          [=](const NodeResponse& r) { return r.status == status; });
