@@ -57,7 +57,7 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
   const Body body = read_body(space.body());
   const fem::CampaignSettings settings = campaign_settings(space);
   const double radius =
-      options.patch_radius > 0 ? 1e-3 * options.patch_radius : settings.indentation.tool_radius;
+      options.patch_radius > 0 ? 1e-3 * options.patch_radius : settings.indentation.tool.radius;
   const Deck deck = make_deck(body, settings, options.vertex, radius);
   const std::string stem = fmt::format("site-{}", options.vertex);
   const auto save = [&](const std::string& text, const std::string& name) {

@@ -150,7 +150,9 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
   const auto start = std::chrono::steady_clock::now();
   check_indentation(settings.indentation);
   Curves curves;
-  curves.tool = {"sphere", settings.indentation.tool_radius, "frictionless"};
+  const ToolGeometry& tool = settings.indentation.tool;
+  curves.tool = {name_of(tool.shape), tool.radius, name_of(settings.indentation.friction),
+                 tool.edge_radius, tool.length};
   curves.depth = settings.indentation.depth;
   curves.lateral_travel = settings.indentation.lateral_travel;
   for (const auto vertex : chosen_places(body, settings)) {

@@ -10,6 +10,7 @@
 
 #include "fem/dilatation.hpp"
 #include "fem/laws/law_table.hpp"
+#include "fem/tool.hpp"
 #include "format/body.hpp"
 #include "format/curves.hpp"
 
@@ -21,12 +22,15 @@ struct RegionMaterial {
 };
 
 struct IndentationSettings {
-  double tool_radius = 0.005;     ///< m, sphere
-  double depth = 0.006;           ///< m, end of the normal path
-  int increments = 12;            ///< of the normal path
+  ToolGeometry tool;
+  ToolFriction friction = ToolFriction::Frictionless;  ///< of the normal path
+  double tool_azimuth = 0;  ///< rad, of the axis of a cylinder, from the first tangent of the site
+  double depth = 0.006;     ///< m, end of the normal path
+  int increments = 12;      ///< of the normal path
   double lateral_travel = 0.003;  ///< m, end of each lateral path
   int lateral_increments = 6;
-  std::vector<double> held_depths{0.003};  ///< m, where lateral paths start; each at most `depth`
+  std::vector<double> held_depths{0.002, 0.004,
+                                  0.006};  ///< m, where lateral paths start; each at most `depth`
   std::vector<double> azimuths{0.0};       ///< rad, from the first tangent direction of the site
   double force_tolerance = 1e-4;  ///< relative error of the tool force allowed to the solver
 };

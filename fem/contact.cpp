@@ -45,8 +45,8 @@ constexpr double kStuckOverUnilateral = 300000;
 
 }  // namespace
 
-SphereContact::SphereContact(const QuadraticMesh& mesh, const Eigen::Vector3d& site, double reach,
-                             double stiffness)
+ToolContact::ToolContact(const QuadraticMesh& mesh, const Eigen::Vector3d& site, double reach,
+                         double stiffness)
     : mesh_(&mesh), eps_(stiffness), stuck_eps_(kStuckOverUnilateral * stiffness) {
   const auto& X = mesh.X;
   const auto rule = triangle_rule();
@@ -71,11 +71,11 @@ SphereContact::SphereContact(const QuadraticMesh& mesh, const Eigen::Vector3d& s
   }
 }
 
-void SphereContact::move_to(const Sphere& tool) {
+void ToolContact::move_to(const Tool& tool) {
   tool_ = tool;
 }
 
-Eigen::Vector3d SphereContact::position(const Point& point, const Displacement& u) const {
+Eigen::Vector3d ToolContact::position(const Point& point, const Displacement& u) const {
   const Facet& facet = facets_[at(point.facet)];
   const auto& X = mesh_->X;
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
@@ -83,44 +83,41 @@ Eigen::Vector3d SphereContact::position(const Point& point, const Displacement& 
   return x;
 }
 
-Eigen::Vector3d SphereContact::gradient(const Point& point, const Eigen::Vector3d& x) const {
-  const Eigen::Vector3d r = x - tool_.centre;
-  if (point.stuck) return point.traction + stuck_eps_ * (r - point.arm);
-  const double distance = r.norm();
-  const double p = eps_ * std::max(0.0, tool_.radius - distance);
-  return (-p / distance) * r;
+Eigen::Vector3d ToolContact::gradient(const Point& point, const Eigen::Vector3d& x) const {
+  if (point.stuck) return point.traction + stuck_eps_ * (x - tool_.tip - point.arm);
+  if (tool_.distance(x) >= 0) return Eigen::Vector3d::Zero();
+  const Gap gap = tool_.gap(x);
+  return eps_ * gap.distance * gap.normal;
 }
 
-Eigen::Matrix3d SphereContact::hessian(const Point& point, const Eigen::Vector3d& x,
-                                       bool geometric) const {
+Eigen::Matrix3d ToolContact::hessian(const Point& point, const Eigen::Vector3d& x,
+                                     bool geometric) const {
   if (point.stuck) return stuck_eps_ * Eigen::Matrix3d::Identity();
-  const Eigen::Vector3d r = x - tool_.centre;
-  const double distance = r.norm();
-  const double p = eps_ * (tool_.radius - distance);
-  if (p <= 0) return Eigen::Matrix3d::Zero();
-  const Eigen::Matrix3d nn = r * r.transpose() / (distance * distance);
-  Eigen::Matrix3d H = eps_ * nn;
-  if (geometric) H -= p / distance * (Eigen::Matrix3d::Identity() - nn);
+  if (tool_.distance(x) >= 0) return Eigen::Matrix3d::Zero();
+  const Gap gap = tool_.gap(x);
+  Eigen::Matrix3d H = eps_ * gap.normal * gap.normal.transpose();
+  if (geometric) H += eps_ * gap.distance * gap.curvature;
   return H;
 }
 
-double SphereContact::energy(const Point& point, const Eigen::Vector3d& x) const {
+double ToolContact::energy(const Point& point, const Eigen::Vector3d& x) const {
   if (!point.stuck) {
-    const double overlap = std::min(0.0, gap(x));
+    const double overlap = std::min(0.0, tool_.distance(x));
     return 0.5 * eps_ * point.area * overlap * overlap;
   }
-  const Eigen::Vector3d slip = x - tool_.centre - point.arm;
-  return point.area * (point.traction.dot(slip) + 0.5 * stuck_eps_ * slip.squaredNorm());
+  const Eigen::Vector3d slip = x - tool_.tip - point.arm;
+  return point.area * (point.traction.squaredNorm() / (2 * eps_) + point.traction.dot(slip) +
+                       0.5 * stuck_eps_ * slip.squaredNorm());
 }
 
-double SphereContact::energy(const Displacement& u) const {
+double ToolContact::energy(const Displacement& u) const {
   double sum = 0;
   for (const Point& point : points_) sum += energy(point, position(point, u));
   return sum;
 }
 
-void SphereContact::add_forces(const SolidModel& model, const Displacement& u,
-                               Eigen::VectorXd& f) const {
+void ToolContact::add_forces(const SolidModel& model, const Displacement& u,
+                             Eigen::VectorXd& f) const {
   for (const Point& point : points_) {
     const Eigen::Vector3d g = point.area * gradient(point, position(point, u));
     if (g.isZero(0)) continue;
@@ -132,8 +129,8 @@ void SphereContact::add_forces(const SolidModel& model, const Displacement& u,
   }
 }
 
-void SphereContact::add_stiffness(const SolidModel& model, const Displacement& u, bool geometric,
-                                  std::vector<double>& values) const {
+void ToolContact::add_stiffness(const SolidModel& model, const Displacement& u, bool geometric,
+                                std::vector<double>& values) const {
   const SparsePattern& pattern = model.pattern();
   for (const Point& point : points_) {
     const Eigen::Matrix3d H = point.area * hessian(point, position(point, u), geometric);
@@ -152,25 +149,23 @@ void SphereContact::add_stiffness(const SolidModel& model, const Displacement& u
   }
 }
 
-void SphereContact::bond(const Displacement& u) {
+void ToolContact::bond(const Displacement& u, double closeness) {
   for (Point& point : points_) {
     const Eigen::Vector3d x = position(point, u);
-    const Eigen::Vector3d g = gradient(point, x);
-    if (point.stuck || g.isZero(0)) continue;
+    if (point.stuck || tool_.distance(x) >= closeness) continue;
+    point.traction = gradient(point, x);
+    point.arm = x - tool_.tip;
     point.stuck = true;
-    point.traction = g;
-    point.arm = x - tool_.centre;
   }
 }
 
-Eigen::Vector3d SphereContact::tool_force(const Displacement& u) const {
+Eigen::Vector3d ToolContact::tool_force(const Displacement& u) const {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (const Point& point : points_) force -= point.area * gradient(point, position(point, u));
   return force;
 }
 
-Eigen::Vector3d SphereContact::tool_force_slope(const Displacement& u,
-                                                const Displacement& du) const {
+Eigen::Vector3d ToolContact::tool_force_slope(const Displacement& u, const Displacement& du) const {
   Eigen::Vector3d slope = Eigen::Vector3d::Zero();
   for (const Point& point : points_) {
     const Eigen::Matrix3d H = hessian(point, position(point, u), true);
@@ -181,25 +176,35 @@ Eigen::Vector3d SphereContact::tool_force_slope(const Displacement& u,
   return slope;
 }
 
-double SphereContact::contact_area(const Displacement& u) const {
+double ToolContact::contact_area(const Displacement& u) const {
   double area = 0;
   for (const Point& point : points_)
     if (point.stuck || !gradient(point, position(point, u)).isZero(0)) area += point.area;
   return area;
 }
 
-double SphereContact::penetration(const Displacement& u) const {
+double ToolContact::penetration(const Displacement& u) const {
   double deepest = 0;
   for (const Point& point : points_)
-    deepest = std::max(deepest, tool_.radius - (position(point, u) - tool_.centre).norm());
+    deepest = std::max(deepest, -tool_.distance(position(point, u)));
   return deepest;
 }
 
-double SphereContact::rest_penetration(const Sphere& tool) const {
+double ToolContact::tension(const Displacement& u) const {
+  double sum = 0;
+  for (const Point& point : points_) {
+    if (!point.stuck) continue;
+    const Eigen::Vector3d x = position(point, u);
+    sum += point.area * std::max(0.0, gradient(point, x).dot(tool_.gap(x).normal));
+  }
+  return sum;
+}
+
+double ToolContact::rest_penetration(const Tool& tool) const {
   double deepest = 0;
   const Displacement rest = Displacement::Zero(3, mesh_->nodes());
   for (const Point& point : points_)
-    deepest = std::max(deepest, tool.radius - (position(point, rest) - tool.centre).norm());
+    deepest = std::max(deepest, -tool.distance(position(point, rest)));
   return deepest;
 }
 

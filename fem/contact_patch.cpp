@@ -8,7 +8,7 @@
 
 namespace palpate::fem {
 
-ContactPatch::ContactPatch(const SphereContact& contact, const SolidModel& model,
+ContactPatch::ContactPatch(const ToolContact& contact, const SolidModel& model,
                            const Displacement& u)
     : near_(contact.facets_.size(), 0) {
   std::set<int> touched;  // nodes of the facets in contact
@@ -52,18 +52,18 @@ ContactPatch::ContactPatch(const SphereContact& contact, const SolidModel& model
   }
 }
 
-bool ContactPatch::covers(const SphereContact& contact, const Displacement& u) const {
+bool ContactPatch::covers(const ToolContact& contact, const Displacement& u) const {
   return std::all_of(contact.points_.begin(), contact.points_.end(), [&](const auto& point) {
     return near_[at(point.facet)] != 0 ||
            !(point.stuck || contact.gap(contact.position(point, u)) < 0);
   });
 }
 
-void ContactPatch::start_from(const SphereContact& contact, const Displacement& u) {
+void ContactPatch::start_from(const ToolContact& contact, const Displacement& u) {
   for (Point& point : points_) point.x = contact.position(contact.points_[point.index], u);
 }
 
-Eigen::Vector3d ContactPatch::position(const SphereContact& contact, const Point& point,
+Eigen::Vector3d ContactPatch::position(const ToolContact& contact, const Point& point,
                                        const Eigen::VectorXd& d) const {
   const auto& N = contact.points_[point.index].N;
   Eigen::Vector3d x = point.x;
@@ -72,14 +72,14 @@ Eigen::Vector3d ContactPatch::position(const SphereContact& contact, const Point
   return x;
 }
 
-double ContactPatch::energy(const SphereContact& contact, const Eigen::VectorXd& d) const {
+double ContactPatch::energy(const ToolContact& contact, const Eigen::VectorXd& d) const {
   double sum = 0;
   for (const Point& point : points_)
     sum += contact.energy(contact.points_[point.index], position(contact, point, d));
   return sum;
 }
 
-double ContactPatch::derivatives(const SphereContact& contact, const Eigen::VectorXd& d,
+double ContactPatch::derivatives(const ToolContact& contact, const Eigen::VectorXd& d,
                                  bool geometric, Eigen::VectorXd& g, Eigen::MatrixXd* H) const {
   double sum = 0;
   g.setZero(d.size());

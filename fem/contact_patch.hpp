@@ -15,20 +15,20 @@ namespace palpate::fem {
 class ContactPatch {
  public:
   /// The patch at displacement u; without contact, around the facet nearest to the tool.
-  ContactPatch(const SphereContact& contact, const SolidModel& model, const Displacement& u);
+  ContactPatch(const ToolContact& contact, const SolidModel& model, const Displacement& u);
 
   /// False when a facet outside the patch is in contact.
-  bool covers(const SphereContact& contact, const Displacement& u) const;
+  bool covers(const ToolContact& contact, const Displacement& u) const;
 
   /// The unknowns of the model that belong to the patch, ascending; empty when it has none there.
   const std::vector<int>& unknowns() const { return unknowns_; }
 
   /// The displacement that d is a change of.
-  void start_from(const SphereContact& contact, const Displacement& u);
-  double energy(const SphereContact& contact, const Eigen::VectorXd& d) const;
+  void start_from(const ToolContact& contact, const Displacement& u);
+  double energy(const ToolContact& contact, const Eigen::VectorXd& d) const;
   /// Energy; g = dE/dd, and unless null H = d2E/dd2, its lower triangle. `geometric` as in
-  /// SphereContact::add_stiffness.
-  double derivatives(const SphereContact& contact, const Eigen::VectorXd& d, bool geometric,
+  /// ToolContact::add_stiffness.
+  double derivatives(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
                      Eigen::VectorXd& g, Eigen::MatrixXd* H) const;
 
  private:
@@ -38,7 +38,7 @@ class ContactPatch {
     Eigen::Vector3d x;         ///< at the start
   };
 
-  Eigen::Vector3d position(const SphereContact& contact, const Point& point,
+  Eigen::Vector3d position(const ToolContact& contact, const Point& point,
                            const Eigen::VectorXd& d) const;
 
   std::vector<char> near_;  ///< (facets of the contact)

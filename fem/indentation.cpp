@@ -12,6 +12,7 @@
 
 #include "fem/at.hpp"
 #include "fem/region_laws.hpp"
+#include "fem/self_contact.hpp"
 #include "fem/shared_factor_solver.hpp"
 #include "format/error.hpp"
 
@@ -28,7 +29,13 @@ constexpr int kHalvingsBeforeDirect = 2;
 /// the total is flat between 1.6 and 2.4.
 constexpr double kWindowRadius = 2;
 constexpr double kLargestPenetration =
-    0.01;                              ///< over the tool radius; a free surface stays far below
+    0.01;  ///< over the tool radius; a free surface stays far below
+/// A stuck tool holds at its first touch what is nearer than this, over its radius.
+constexpr double kTouching = 1e-6;
+/// Where the body is watched for contact with itself, over the extent of the tool.
+constexpr double kWatched = 4;
+/// An element whose volume has shrunk to less than this is about to invert.
+constexpr double kNearInversion = 0.25;
 constexpr double kLargestStep = 0.25;  ///< of one increment, over the tool radius
 /// Residual at which the shared-factor solver stops, over the wanted error of the force: the force
 /// is less sensitive to a residual far from the tool than to one at it.
@@ -105,6 +112,13 @@ std::string in_millimetres(double metres) {
   return text;
 }
 
+/// "(1.0, -2.5, 30.0) mm"
+std::string place(const Eigen::Vector3d& X) {
+  char text[64];
+  std::snprintf(text, sizeof text, "(%.1f, %.1f, %.1f) mm", 1e3 * X[0], 1e3 * X[1], 1e3 * X[2]);
+  return text;
+}
+
 }  // namespace
 
 std::array<Eigen::Vector3d, 2> tangents(const Eigen::Vector3d& normal) {
@@ -144,7 +158,7 @@ double contact_stiffness(const Body& body, const CampaignSettings& settings,
     for (const auto& material : settings.materials)
       if (material.region == body.region_names[at(region)])
         stiffest = std::max(stiffest, rest_moduli(material.law).young);
-  return kContactStiffness * stiffest / settings.indentation.tool_radius;
+  return kContactStiffness * stiffest / settings.indentation.tool.radius;
 }
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e)
@@ -163,6 +177,16 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
       std::make_unique<RestFactor>(model.pattern(), permutation, K, body.name, settings.memory);
 }
 
+namespace {
+
+/// The part of the body around a site where the strains are large.
+SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site) {
+  const ToolGeometry& tool = context.indentation.tool;
+  return {context.model, site, tool.extent() + (kWindowRadius - 1) * tool.radius};
+}
+
+}  // namespace
+
 double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
   // Counted here and in the solvers: history, trials and line searches of a path; curvature pairs,
   // residuals and directions; the factor of a window over its stiffness.
@@ -170,8 +194,7 @@ double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
   const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
   const double held = static_cast<double>(context.indentation.held_depths.size());
   const double numbers = 3 * nodes * (kDisplacements + held) + unknowns * kVectors;
-  const SolidModel window(context.model, to_eigen(context.place(vertex).position),
-                          kWindowRadius * context.indentation.tool_radius);
+  const SolidModel window = window_at(context, to_eigen(context.place(vertex).position));
   return sizeof(double) * (numbers + kWindowFill * window.pattern().nonzeros()) + window.bytes();
 }
 
@@ -189,15 +212,14 @@ class SiteEquilibrium {
                   SolveBatch::Member* batch)
       : context_(context) {
     if (context.engine == Engine::Direct) return;
-    const double radius = kWindowRadius * context.indentation.tool_radius;
-    window_ = std::make_unique<SolidModel>(context.model, site, radius);
+    window_ = std::make_unique<SolidModel>(window_at(context, site));
     shared_ = std::make_unique<SharedFactorSolver>(
         context.model, *window_,
         [batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch->solve(b, x); });
   }
 
   /// The whole body is factorized only where `direct_allowed`, for it costs a hundred times more.
-  NewtonResult solve(const SphereContact& contact, bool direct_allowed, Displacement& u) {
+  NewtonResult solve(const ToolContact& contact, bool direct_allowed, Displacement& u) {
     NewtonResult result;
     if (shared_) {
       result = solve_shared(contact, u);
@@ -214,7 +236,7 @@ class SiteEquilibrium {
   }
 
  private:
-  NewtonResult solve_shared(const SphereContact& contact, Displacement& u) {
+  NewtonResult solve_shared(const ToolContact& contact, Displacement& u) {
     NewtonOptions options;
     options.tolerance = kSharedTolerance * context_.indentation.force_tolerance;
     Displacement trial = u;
@@ -226,7 +248,7 @@ class SiteEquilibrium {
     return result;
   }
 
-  NewtonResult solve_direct(const SphereContact& contact, Displacement& u) {
+  NewtonResult solve_direct(const ToolContact& contact, Displacement& u) {
     NewtonOptions options;
     options.tolerance = context_.indentation.force_tolerance;
     if (!direct_) direct_ = std::make_unique<NewtonSolver>(context_.model, &context_.permutation);
@@ -235,7 +257,7 @@ class SiteEquilibrium {
 
   /// One site at a time, and nothing is kept: factors of the body by the dozen would fill the
   /// memory.
-  NewtonResult solve_direct_alone(const SphereContact& contact, Displacement& u) {
+  NewtonResult solve_direct_alone(const ToolContact& contact, Displacement& u) {
     const std::lock_guard lock(context_.direct_solve);
     const NewtonResult result = solve_direct(contact, u);
     direct_.reset();
@@ -254,35 +276,41 @@ struct SiteSolver::Site {
   Site(const CampaignContext& context, const PressPoint& place, SolveBatch::Member* batch)
       : X(to_eigen(place.position)),
         inward(to_eigen(place.inward)),
-        reach(2 * context.indentation.tool_radius + context.indentation.lateral_travel),
+        reach(context.indentation.tool.extent() + context.indentation.tool.radius +
+              context.indentation.lateral_travel),
         contact(context.model.mesh(), X, reach, context.contact_stiffness),
-        equilibrium(context, X, batch) {
-    // On a concave surface the sphere meets the body before its tip does: back off to first touch.
+        equilibrium(context, X, batch),
+        watch(context.model.mesh(), X, kWatched * context.indentation.tool.extent()) {
+    // On a concave surface the tool meets the body before its tip does: back off to first touch.
     for (int i = 0; i < 60; ++i) {
-      const double depth =
-          contact.rest_penetration({tip_centre(context, 0), context.indentation.tool_radius});
-      if (depth <= 1e-7 * context.indentation.tool_radius) break;
+      const double depth = contact.rest_penetration(tool_at(context, 0));
+      if (depth <= 1e-7 * context.indentation.tool.radius) break;
       back_off += depth;
     }
   }
 
-  /// Centre of the sphere at a depth below first touch.
-  Eigen::Vector3d tip_centre(const CampaignContext& context, double depth) const {
-    return X + (depth - back_off - context.indentation.tool_radius) * inward;
+  /// The tool at a depth below first touch, moved sideways by `aside`.
+  Tool tool_at(const CampaignContext& context, double depth,
+               const Eigen::Vector3d& aside = Eigen::Vector3d::Zero()) const {
+    const auto [first, second] = tangents(inward);
+    const double azimuth = context.indentation.tool_azimuth;
+    return {context.indentation.tool, X + (depth - back_off) * inward + aside, inward,
+            std::cos(azimuth) * first + std::sin(azimuth) * second};
   }
 
   /// State at a held depth.
   struct Held {
     Displacement u;
-    SphereContact contact;
+    ToolContact contact;
     double work;
   };
 
   Eigen::Vector3d X, inward;
   double reach;
   double back_off = 0;
-  SphereContact contact;
+  ToolContact contact;
   SiteEquilibrium equilibrium;
+  SelfContact watch;
   std::map<double, Held> held;
 };
 
@@ -291,11 +319,12 @@ namespace {
 /// Drives one path: increments with predictor and cut-back.
 class PathDriver {
  public:
-  PathDriver(const CampaignContext& context, SphereContact& contact, SiteEquilibrium& equilibrium,
-             std::function<Sphere(double)> tool_at)
+  PathDriver(const CampaignContext& context, ToolContact& contact, SiteEquilibrium& equilibrium,
+             const SelfContact& watch, std::function<Tool(double)> tool_at)
       : context_(context),
         contact_(contact),
         equilibrium_(equilibrium),
+        watch_(watch),
         tool_at_(std::move(tool_at)) {
     equilibrium_.restart();
   }
@@ -304,8 +333,8 @@ class PathDriver {
   /// `sample` is filled but for the work.
   bool advance(double from, double to, History& history, Displacement& u, CurveSample& sample,
                std::string& reason) {
-    // A sphere that is moved by a large part of its size at once could pass the surface unnoticed.
-    double at = from, step = std::min(to - from, kLargestStep * context_.indentation.tool_radius);
+    // A tool that is moved by a large part of its size at once could pass the surface unnoticed.
+    double at = from, step = std::min(to - from, kLargestStep * context_.indentation.tool.radius);
     int halvings = 0;
     sample.iterations = 0;
     std::string failure;  // of the last attempt: no news when a cut-back overcomes it
@@ -321,6 +350,7 @@ class PathDriver {
       }
       if (outcome == Outcome::Meaningless || ++halvings > kMaxHalvings) {
         reason = "at " + in_millimetres(next) + ": " + failure;
+        if (outcome == Outcome::NotFound) reason += about_inversion(history.last());
         return false;
       }
       step *= 0.5;
@@ -343,15 +373,31 @@ class PathDriver {
     reason = result.reason;
     if (!result.converged) return Outcome::NotFound;
     record(s, u, sample);
-    if (sample.penetration > kLargestPenetration * context_.indentation.tool_radius) {
+    if (sample.penetration > kLargestPenetration * context_.indentation.tool.radius) {
       reason = "the tool cuts into a part of the surface that cannot yield (is it held there?)";
       return Outcome::Meaningless;
     }
-    if (s > kLargestStep * context_.indentation.tool_radius && sample.contact_area == 0) {
+    if (s > kLargestStep * context_.indentation.tool.radius && sample.contact_area == 0) {
       reason = "the tool has lost the surface";
       return Outcome::Meaningless;
     }
+    const int entering = watch_.entering_node(u);
+    if (entering >= 0) {
+      reason = "the surface meets itself at " + place(context_.model.mesh().X.col(entering)) +
+               ", which is not modelled";
+      return Outcome::Meaningless;
+    }
     return Outcome::Found;
+  }
+
+  /// What the last equilibrium before a failure says about its cause; empty when nothing.
+  std::string about_inversion(const Displacement& u) const {
+    const auto [J, X] = context_.model.most_compressed(u);
+    if (J > kNearInversion) return {};
+    char text[96];
+    std::snprintf(text, sizeof text, " (an element at %s is about to invert: det F = %.2f)",
+                  place(X).c_str(), J);
+    return text;
   }
 
   void record(double s, const Displacement& u, CurveSample& sample) const {
@@ -362,12 +408,15 @@ class PathDriver {
     sample.min_jacobian = state.min_J;
     sample.penetration = contact_.penetration(u);
     sample.contact_area = contact_.contact_area(u);
+    sample.contact_energy = contact_.energy(u);
+    sample.tension = contact_.tension(u);
   }
 
   const CampaignContext& context_;
-  SphereContact& contact_;
+  ToolContact& contact_;
   SiteEquilibrium& equilibrium_;
-  std::function<Sphere(double)> tool_at_;
+  const SelfContact& watch_;
+  std::function<Tool(double)> tool_at_;
 };
 
 /// A path of the site stopped early; every path that did leaves its reason.
@@ -402,19 +451,23 @@ void fill_work(CurvePath& path, double start) {
 }  // namespace
 
 void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
-  const double radius = context_.indentation.tool_radius;
-  PathDriver driver(context_, site.contact, site.equilibrium, [&](double depth) {
-    return Sphere{site.tip_centre(context_, depth), radius};
-  });
+  const bool stuck = context_.indentation.friction == ToolFriction::Stuck;
+  PathDriver driver(context_, site.contact, site.equilibrium, site.watch,
+                    [&](double depth) { return site.tool_at(context_, depth); });
   CurvePath path;
   path.kind = PathKind::Normal;
   path.direction = to_vec3(site.inward);
   path.samples.emplace_back();
+  path.samples.back().contact_energy = path.samples.back().tension = 0;
 
   Displacement u = Displacement::Zero(3, context_.model.mesh().nodes());
   History history;
   history.add(0, u);
   double from = 0;
+  if (stuck) {
+    site.contact.move_to(site.tool_at(context_, 0));
+    site.contact.bond(u, kTouching * context_.indentation.tool.radius);
+  }
   for (const double depth : normal_increments(context_.indentation)) {
     CurveSample sample;
     std::string reason;
@@ -423,6 +476,7 @@ void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
       break;
     }
     path.samples.push_back(sample);
+    if (stuck) site.contact.bond(u);
     if (observer_) observer_(site.contact, u, sample);
     for (const double held : context_.indentation.held_depths)
       if (std::abs(held - depth) < 1e-9 * depth)
@@ -444,15 +498,11 @@ void SiteSolver::run_lateral_path(Site& site, double held_depth, double azimuth,
   const Site::Held& held = found->second;
   const auto [first, second] = tangents(site.inward);
   const Eigen::Vector3d direction = std::cos(azimuth) * first + std::sin(azimuth) * second;
-  const Eigen::Vector3d centre = site.tip_centre(context_, held_depth);
-  const double radius = context_.indentation.tool_radius;
-
-  SphereContact contact = held.contact;
+  ToolContact contact = held.contact;
   Displacement u = held.u;
   contact.bond(u);
-  PathDriver driver(context_, contact, site.equilibrium, [&](double s) {
-    return Sphere{centre + s * direction, radius};
-  });
+  PathDriver driver(context_, contact, site.equilibrium, site.watch,
+                    [&](double s) { return site.tool_at(context_, held_depth, s * direction); });
   CurvePath path;
   path.kind = PathKind::Lateral;
   path.held_depth = held_depth;

@@ -52,8 +52,7 @@ class SiteSolver {
   SiteCurves solve(std::int32_t vertex);
 
   /// Called with every equilibrium of the normal path, the tool in its place.
-  using Observer =
-      std::function<void(const SphereContact&, const Displacement&, const CurveSample&)>;
+  using Observer = std::function<void(const ToolContact&, const Displacement&, const CurveSample&)>;
   void observe(Observer observer) { observer_ = std::move(observer); }
 
   /// The end of the normal path of the site last solved.

@@ -26,7 +26,7 @@ void move(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacem
     if (model.equation(node) >= 0) u.col(node) += s * d.segment<3>(model.equation(node));
 }
 
-Equilibrium evaluate(const SolidModel& model, const SphereContact& contact, const Displacement& u) {
+Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u) {
   Equilibrium now;
   const SolidModel::State state = model.forces(u, now.residual);
   now.energy = state.energy + contact.energy(u);
@@ -35,7 +35,7 @@ Equilibrium evaluate(const SolidModel& model, const SphereContact& contact, cons
   return now;
 }
 
-void NewtonSolver::choose_patch(const SphereContact& contact, const Displacement& u) {
+void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& u) {
   if (patch_ && patch_->covers(contact, u)) return;
   patch_.emplace(contact, model_, u);
   factor_.emplace(model_.pattern(), permutation_, patch_->unknowns());
@@ -67,7 +67,7 @@ bool NewtonSolver::factorize(const Displacement& u) {
   return true;
 }
 
-Eigen::VectorXd NewtonSolver::patch_minimum(const SphereContact& contact, const Eigen::VectorXd& x,
+Eigen::VectorXd NewtonSolver::patch_minimum(const ToolContact& contact, const Eigen::VectorXd& x,
                                             double tolerance) const {
   Eigen::VectorXd d = Eigen::VectorXd::Zero(x.size()), contact_force, g;
   Eigen::MatrixXd H;
@@ -98,7 +98,7 @@ Eigen::VectorXd NewtonSolver::patch_minimum(const SphereContact& contact, const 
   return d;
 }
 
-Eigen::VectorXd NewtonSolver::direction(const SphereContact& contact, const Displacement& u,
+Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displacement& u,
                                         const Eigen::VectorXd& residual, double tolerance) {
   Eigen::VectorXd load = -residual, y(load.size()), d(load.size());
   contact.add_forces(model_, u, load);  // what is left are the internal forces
@@ -116,7 +116,7 @@ Eigen::VectorXd NewtonSolver::direction(const SphereContact& contact, const Disp
   return d;
 }
 
-bool NewtonSolver::line_search(const SphereContact& contact, const Eigen::VectorXd& d,
+bool NewtonSolver::line_search(const ToolContact& contact, const Eigen::VectorXd& d,
                                Equilibrium& now, Displacement& u) const {
   const double slope = now.residual.dot(d);
   const double norm = now.residual.norm();
@@ -136,7 +136,7 @@ bool NewtonSolver::line_search(const SphereContact& contact, const Eigen::Vector
   return false;
 }
 
-NewtonResult NewtonSolver::solve(const SphereContact& contact, const NewtonOptions& options,
+NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions& options,
                                  Displacement& u) {
   constexpr double kGoodContraction = 0.3;
   NewtonResult result;

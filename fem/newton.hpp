@@ -31,7 +31,7 @@ struct Equilibrium {
   double min_J = 1;  ///< the rest is void when not positive
   Eigen::VectorXd residual;
 };
-Equilibrium evaluate(const SolidModel& model, const SphereContact& contact, const Displacement& u);
+Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u);
 
 /// Minimises the energy of body and contact over the unknowns of a model. Each iteration replaces
 /// the solid by its quadratic model, with a Cholesky factorization of its tangent A alone, and
@@ -49,18 +49,18 @@ class NewtonSolver {
   explicit NewtonSolver(const SolidModel& model, const std::vector<int>* permutation = nullptr)
       : model_(model), permutation_(permutation) {}
 
-  NewtonResult solve(const SphereContact& contact, const NewtonOptions& options, Displacement& u);
+  NewtonResult solve(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
 
  private:
-  void choose_patch(const SphereContact& contact, const Displacement& u);
+  void choose_patch(const ToolContact& contact, const Displacement& u);
   bool factorize(const Displacement& u);
   /// The minimum of the model above, contact residual left: `tolerance`, N.
-  Eigen::VectorXd direction(const SphereContact& contact, const Displacement& u,
+  Eigen::VectorXd direction(const ToolContact& contact, const Displacement& u,
                             const Eigen::VectorXd& residual, double tolerance);
-  Eigen::VectorXd patch_minimum(const SphereContact& contact, const Eigen::VectorXd& x,
+  Eigen::VectorXd patch_minimum(const ToolContact& contact, const Eigen::VectorXd& x,
                                 double tolerance) const;
   /// Moves u along d; false when no admissible step is found.
-  bool line_search(const SphereContact& contact, const Eigen::VectorXd& d, Equilibrium& now,
+  bool line_search(const ToolContact& contact, const Eigen::VectorXd& d, Equilibrium& now,
                    Displacement& u) const;
 
   /// In the patch, of the i-th of the last unknowns of the factor.

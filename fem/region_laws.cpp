@@ -49,7 +49,7 @@ std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMater
 }
 
 void check_indentation(const IndentationSettings& settings) {
-  require_positive("tool_radius", settings.tool_radius);
+  check_tool(settings.tool);
   require_positive("depth", settings.depth);
   require_positive("force_tolerance", settings.force_tolerance);
   require_positive("increments", settings.increments);

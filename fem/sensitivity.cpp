@@ -77,7 +77,7 @@ class Differentiator {
         factor_(context.model.pattern(), &context.permutation) {}
 
   /// False when the stiffness is not positive definite: the equilibrium is at a limit point.
-  bool differentiate(const SphereContact& contact, const Displacement& u, const Vec3& inward,
+  bool differentiate(const ToolContact& contact, const Displacement& u, const Vec3& inward,
                      std::vector<double>& slope) {
     const SolidModel& model = context_.model;
     model.stiffness(u, K_);
@@ -119,16 +119,15 @@ SiteSensitivity differentiate_site(const CampaignContext& context, SolveBatch::M
   result.vertex = vertex;
   const Vec3 inward = context.body.response.inward[at(vertex)];
   SiteSolver solver(context, batch);
-  solver.observe(
-      [&](const SphereContact& contact, const Displacement& u, const CurveSample& sample) {
-        if (!is_among(sample.displacement, context.indentation.held_depths)) return;
-        ForceSensitivity s{sample.displacement, dot(sample.force, inward), {}};
-        if (differentiator.differentiate(contact, u, inward, s.slope)) {
-          result.samples.push_back(std::move(s));
-        } else if (result.reason.empty()) {
-          result.reason = "the stiffness is not positive definite at an equilibrium";
-        }
-      });
+  solver.observe([&](const ToolContact& contact, const Displacement& u, const CurveSample& sample) {
+    if (!is_among(sample.displacement, context.indentation.held_depths)) return;
+    ForceSensitivity s{sample.displacement, dot(sample.force, inward), {}};
+    if (differentiator.differentiate(contact, u, inward, s.slope)) {
+      result.samples.push_back(std::move(s));
+    } else if (result.reason.empty()) {
+      result.reason = "the stiffness is not positive definite at an equilibrium";
+    }
+  });
   const SiteCurves curves = solver.solve(vertex);
   if (!curves.reason.empty()) result.reason = curves.reason;
   return result;

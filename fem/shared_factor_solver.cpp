@@ -18,7 +18,7 @@ Eigen::VectorXd difference(const SolidModel& model, const Displacement& a, const
 
 }  // namespace
 
-bool SharedFactorSolver::relax_window(const SphereContact& contact, const NewtonOptions& options,
+bool SharedFactorSolver::relax_window(const ToolContact& contact, const NewtonOptions& options,
                                       Displacement& u, NewtonResult& result) {
   NewtonOptions inner = options;
   // What is left inside must not be seen from outside; far from the end that is little to ask.
@@ -42,7 +42,7 @@ Eigen::VectorXd SharedFactorSolver::direction(const Eigen::VectorXd& residual) {
   return -d;
 }
 
-bool SharedFactorSolver::step(const SphereContact& contact, const NewtonOptions& options,
+bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& options,
                               const Eigen::VectorXd& d, Equilibrium& now, Displacement& u,
                               NewtonResult& result) {
   const double slope = now.residual.dot(d);
@@ -66,7 +66,7 @@ bool SharedFactorSolver::step(const SphereContact& contact, const NewtonOptions&
   return false;
 }
 
-NewtonResult SharedFactorSolver::solve(const SphereContact& contact, const NewtonOptions& options,
+NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonOptions& options,
                                        Displacement& u) {
   NewtonResult result;
   error_ = 0.1;

@@ -25,7 +25,7 @@ class SharedFactorSolver {
 
   /// The factor and curvature pairs of the last call are kept: successive calls should be
   /// neighbours on a path.
-  NewtonResult solve(const SphereContact& contact, const NewtonOptions& options, Displacement& u);
+  NewtonResult solve(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
 
   /// Forget the curvature pairs, as at the start of a path.
   void restart() { pairs_.clear(); }
@@ -36,10 +36,10 @@ class SharedFactorSolver {
     double sy;
   };
 
-  bool relax_window(const SphereContact& contact, const NewtonOptions& options, Displacement& u,
+  bool relax_window(const ToolContact& contact, const NewtonOptions& options, Displacement& u,
                     NewtonResult& result);
   Eigen::VectorXd direction(const Eigen::VectorXd& residual);
-  bool step(const SphereContact& contact, const NewtonOptions& options, const Eigen::VectorXd& d,
+  bool step(const ToolContact& contact, const NewtonOptions& options, const Eigen::VectorXd& d,
             Equilibrium& now, Displacement& u, NewtonResult& result);
 
   const SolidModel& whole_;

@@ -221,6 +221,24 @@ void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) c
   }
 }
 
+SolidModel::Compressed SolidModel::most_compressed(const Displacement& u) const {
+  Compressed worst{1, Eigen::Vector3d::Zero()};
+  int element = -1;
+  for (const Block& block : blocks_) {
+    const auto k = kinematics(block.geometry, gather(block, u));
+    const Lanes J = k.J[0].min(k.J[1]).min(k.J[2]).min(k.J[3]);
+    for (int lane = 0; lane < block.count; ++lane)
+      if (element < 0 || J[lane] < worst.J) {
+        worst.J = J[lane];
+        element = block.element[at(lane)];
+      }
+  }
+  if (element < 0) return worst;
+  for (std::size_t c = 0; c < 4; ++c)
+    worst.X += 0.25 * mesh().X.col(mesh().tetrahedra[at(element)][c]);
+  return worst;
+}
+
 void SolidModel::element_fields(const Displacement& u, std::vector<double>& energy_density,
                                 std::vector<double>& pressure) const {
   energy_density.resize(mesh().tetrahedra.size());

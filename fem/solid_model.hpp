@@ -54,6 +54,13 @@ class SolidModel {
   void element_fields(const Displacement& u, std::vector<double>& energy_density,
                       std::vector<double>& pressure) const;
 
+  /// The element with the smallest det F at a Gauss point: that value, and its centre at rest, m.
+  struct Compressed {
+    double J;
+    Eigen::Vector3d X;
+  };
+  Compressed most_compressed(const Displacement& u) const;
+
   const QuadraticMesh& mesh() const { return solid_->mesh; }
   /// First of the three unknowns of a node, -1 where it is not free.
   int equation(int node) const { return equation_[at(node)]; }

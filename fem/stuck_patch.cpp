@@ -108,7 +108,7 @@ class PatchPress {
   SolidModel held_, free_;
   std::vector<std::int32_t> patch_;
   Eigen::Vector3d inward_;
-  SphereContact no_contact_;
+  ToolContact no_contact_;
   NewtonSolver newton_;
   NewtonOptions options_;
   Displacement u_, before_;

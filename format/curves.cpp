@@ -80,6 +80,12 @@ constexpr auto kSampleColumns = std::make_tuple(
            rules::kKnownNonNegative, true),
     column("force_uncertainty", &CurveSample::force_uncertainty, "N",
            "Standard uncertainty of the force along the path; NaN when unknown.",
+           rules::kKnownNonNegative, true),
+    column("contact_energy", &CurveSample::contact_energy, "J",
+           "Stored in the springs that enforce the contact; NaN when unknown.", rules::kKnownFinite,
+           true),
+    column("tension", &CurveSample::tension, "N",
+           "Pulls of stuck points on the body, added up; NaN when unknown.",
            rules::kKnownNonNegative, true));
 
 /// The curves as they lie on disk.
@@ -167,6 +173,8 @@ void check_heading(const Checks& checks, const Curves& curves) {
     if (!(std::isfinite(value) && value >= 0)) checks.fail(name, "is not finite and not negative");
   };
   check("/@tool_radius", curves.tool.radius);
+  check("/@tool_edge_radius", curves.tool.edge_radius);
+  check("/@tool_length", curves.tool.length);
   check("/@depth", curves.depth);
   check("/@lateral_travel", curves.lateral_travel);
   checks.digest("/@body_sha256", curves.body_sha256, true);
@@ -203,6 +211,8 @@ void write_curves(const std::filesystem::path& path, const Curves& curves) {
   writer.set_text("/", "tool_shape", curves.tool.shape);
   writer.set_real("/", "tool_radius", curves.tool.radius);
   writer.set_text("/", "tool_friction", curves.tool.friction);
+  writer.set_real("/", "tool_edge_radius", curves.tool.edge_radius);
+  writer.set_real("/", "tool_length", curves.tool.length);
   writer.set_real("/", "depth", curves.depth);
   writer.set_real("/", "lateral_travel", curves.lateral_travel);
   writer.set_text("/", "body_sha256", curves.body_sha256);
@@ -224,6 +234,10 @@ Curves read_curves(const std::filesystem::path& path) {
   curves.tool.shape = reader.text("/", "tool_shape");
   curves.tool.radius = reader.real("/", "tool_radius");
   curves.tool.friction = reader.text("/", "tool_friction");
+  if (reader.has_attribute("/", "tool_edge_radius"))
+    curves.tool.edge_radius = reader.real("/", "tool_edge_radius");
+  if (reader.has_attribute("/", "tool_length"))
+    curves.tool.length = reader.real("/", "tool_length");
   curves.depth = reader.real("/", "depth");
   curves.lateral_travel = reader.real("/", "lateral_travel");
   curves.body_sha256 = reader.text("/", "body_sha256");

@@ -29,8 +29,8 @@ enum class PathKind : std::uint8_t {
 
 /// One converged state of the tool on a path. The first sample of a normal path is the touch
 /// (displacement 0, force 0); the first of a lateral path is the held state (displacement 0). What
-/// only a solver knows (strain energy, Jacobian, penetration, area) is NaN in a measured sample,
-/// what only a measurement has (the last two) in a simulated one.
+/// only a solver knows (energies, Jacobian, penetration, area) is NaN in a measured sample, what
+/// only a measurement has (scatter, uncertainty) in a simulated one.
 struct CurveSample {
   double displacement = 0;   ///< m, of the tool along the path
   Vec3 force{};              ///< N, of the tool ON the body
@@ -44,6 +44,12 @@ struct CurveSample {
   double force_scatter = std::numeric_limits<double>::quiet_NaN();
   /// N, standard uncertainty of the force along the path; NaN when unknown.
   double force_uncertainty = std::numeric_limits<double>::quiet_NaN();
+  /// J, stored in the springs that enforce the contact; NaN when unknown. With it the balance is
+  /// complete: tool_work = strain_energy + contact_energy.
+  double contact_energy = std::numeric_limits<double>::quiet_NaN();
+  /// N, pulls of stuck points on the body, added up (a surface without glue would let go there);
+  /// NaN when unknown.
+  double tension = std::numeric_limits<double>::quiet_NaN();
 };
 
 /// The displacement of its samples begins at 0 and never decreases.
@@ -68,9 +74,11 @@ struct SiteCurves {
 
 /// How the curves were obtained: what a reader needs to interpret them.
 struct ToolDescription {
-  std::string shape;     ///< "sphere"
-  double radius = 0;     ///< m
-  std::string friction;  ///< of the normal path: "frictionless" or "stuck"
+  std::string shape;       ///< "sphere", "disc" or "cylinder"
+  double radius = 0;       ///< m
+  std::string friction;    ///< of the normal path: "frictionless" or "stuck"
+  double edge_radius = 0;  ///< m, fillet of the edge of a disc
+  double length = 0;       ///< m, of a cylinder, between the centres of its rounded ends
 };
 
 struct Curves {

@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kFirstLine = "palpate.journal 1\n";
+constexpr std::string_view kFirstLine = "palpate.journal 2\n";
 constexpr std::size_t kDigest = 64;
 
 std::string heading_text(const JournalHeading& heading) {

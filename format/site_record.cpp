@@ -84,7 +84,7 @@ class ByteReader {
   const std::string& where_;
 };
 
-constexpr std::size_t kSampleBytes = 11 * sizeof(double) + sizeof(std::int32_t);
+constexpr std::size_t kSampleBytes = 13 * sizeof(double) + sizeof(std::int32_t);
 constexpr std::size_t kSmallestPathBytes =
     1 + 5 * sizeof(double) + sizeof(std::int32_t) + sizeof(std::uint32_t);
 
@@ -97,6 +97,8 @@ void put(ByteWriter& out, const CurveSample& s) {
   out.put(s.iterations);
   out.put(s.force_scatter);
   out.put(s.force_uncertainty);
+  out.put(s.contact_energy);
+  out.put(s.tension);
 }
 
 CurveSample sample_of(ByteReader& in) {
@@ -109,6 +111,8 @@ CurveSample sample_of(ByteReader& in) {
   s.iterations = in.get<std::int32_t>();
   s.force_scatter = in.get<double>();
   s.force_uncertainty = in.get<double>();
+  s.contact_energy = in.get<double>();
+  s.tension = in.get<double>();
   return s;
 }
 
@@ -165,6 +169,8 @@ std::string content_sha256(const Curves& curves) {
   out.put(curves.tool.shape);
   out.put(curves.tool.radius);
   out.put(curves.tool.friction);
+  out.put(curves.tool.edge_radius);
+  out.put(curves.tool.length);
   out.put(curves.depth);
   out.put(curves.lateral_travel);
   for (SiteCurves site : curves.sites) {

@@ -57,6 +57,13 @@ void check_settings(const Settings& s) {
     if (plane && !positive(norm(plane->normal))) {
       refuse_setting("the normal of a plane support has no direction", "correct the case");
     }
+    const auto* near = std::get_if<SurfaceSupport>(&support);
+    if (near == nullptr) continue;
+    check_unit(near->surface);
+    if (!std::isfinite(near->distance) || near->distance < 0) {
+      refuse_setting(text("the distance of a surface support is ", near->distance, " m"),
+                     "give 0 or more");
+    }
   }
   check_unit(s.surface);
   for (const SurfaceFile& inclusion : s.inclusions) check_unit(inclusion);
@@ -136,12 +143,18 @@ void set_regions(Body& body, const Settings& settings, const Filling& filling,
 std::vector<std::uint8_t> set_supports(Body& body, const Settings& settings,
                                        const Surface& boundary) {
   std::vector<std::uint8_t> held(boundary.points.size(), 0);
-  for (std::size_t i = 0; i < held.size(); ++i) {
-    if (is_held(settings.supports, boundary.points[i], kSupportTolerance * settings.element_size)) {
-      held[i] = 1;
-      body.fixed_nodes.push_back(static_cast<std::int32_t>(i));
-    }
+  const double tolerance = kSupportTolerance * settings.element_size;
+  for (std::size_t i = 0; i < held.size(); ++i)
+    held[i] = is_held(settings.supports, boundary.points[i], tolerance) ? 1 : 0;
+  for (const Support& support : settings.supports) {
+    const auto* near = std::get_if<SurfaceSupport>(&support);
+    if (near == nullptr) continue;
+    const SurfaceQuery surface(read_surface(near->surface, settings.log));
+    for (std::size_t i = 0; i < held.size(); ++i)
+      if (is_near(surface, boundary.points[i], near->distance + tolerance)) held[i] = 1;
   }
+  for (std::size_t i = 0; i < held.size(); ++i)
+    if (held[i] != 0) body.fixed_nodes.push_back(static_cast<std::int32_t>(i));
   return held;
 }
 

@@ -32,7 +32,12 @@ struct SphereSupport {
   Vec3 centre{};
   double radius = 0;  ///< m
 };
-using Support = std::variant<PlaneSupport, BoxSupport, SphereSupport>;
+/// Nodes inside a second closed surface (a bone) or nearer to it than `distance`.
+struct SurfaceSupport {
+  SurfaceFile surface;
+  double distance = 0;  ///< m
+};
+using Support = std::variant<PlaneSupport, BoxSupport, SphereSupport, SurfaceSupport>;
 
 struct Settings {
   std::string name;

@@ -28,6 +28,11 @@ bool holds(const SphereSupport& sphere, const Vec3& x, double tolerance) {
   return norm(x - sphere.centre) <= sphere.radius + tolerance;
 }
 
+/// That takes the surface itself: see is_near.
+bool holds(const SurfaceSupport&, const Vec3&, double) {
+  return false;
+}
+
 double angle_at(const Vec3& apex, const Vec3& b, const Vec3& c) {
   return std::atan2(norm(cross(b - apex, c - apex)), dot(b - apex, c - apex));
 }
@@ -135,6 +140,10 @@ bool is_held(const std::vector<Support>& supports, const Vec3& point, double tol
   return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
     return std::visit([&](const auto& shape) { return holds(shape, point, tolerance); }, support);
   });
+}
+
+bool is_near(const SurfaceQuery& surface, const Vec3& point, double distance) {
+  return norm(surface.closest(point).point - point) <= distance || surface.contains(point);
 }
 
 InwardDirections inward_directions(const Surface& response, const Surface& boundary,

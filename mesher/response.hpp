@@ -6,13 +6,17 @@
 #include <vector>
 
 #include "mesher/mesher.hpp"
+#include "mesher/queries.hpp"
 #include "mesher/surface.hpp"
 
 namespace palpate::mesher {
 
-/// True where any support holds the point; `tolerance` (m) widens each support so that nodes lying
-/// on its border but for rounding are held.
+/// True where any support but a SurfaceSupport holds the point; `tolerance` (m) widens each support
+/// so that nodes lying on its border but for rounding are held.
 bool is_held(const std::vector<Support>& supports, const Vec3& point, double tolerance);
+
+/// True for points inside a closed surface or within `distance` of it.
+bool is_near(const SurfaceQuery& surface, const Vec3& point, double distance);
 
 struct InwardDirections {
   std::vector<Vec3> inward;              ///< unit, one for each response vertex

@@ -132,7 +132,14 @@ class Inverse {
 
  private:
   void take_targets(const Curves& measured) {
-    const double radius = settings_.campaign.indentation.tool_radius;
+    const std::string shape = fem::name_of(settings_.campaign.indentation.tool.shape);
+    if (measured.tool.shape != shape) {
+      refuse("measured curves",
+             fmt::format("they were made with a {}, the tool of the case is a {}",
+                         measured.tool.shape, shape),
+             "set tool.shape of the case to that of the measurement");
+    }
+    const double radius = settings_.campaign.indentation.tool.radius;
     if (std::abs(measured.tool.radius - radius) > 1e-6 * radius) {
       refuse("measured curves",
              fmt::format("they were made with a tool of {:.4g} mm radius, the case has {:.4g} mm",

@@ -77,6 +77,22 @@ void check_materials(const Case& c, const SourceMap& sources) {
   }
 }
 
+/// Held depths that the case leaves open follow its depth.
+void choose_depths(Case& c, const SourceMap& sources) {
+  if (sources.has("indentation.held_depths")) return;
+  const double depth = c.indentation.depth;
+  c.indentation.held_depths = {depth / 3, 2 * depth / 3, depth};
+}
+
+void check_tool(const Case& c, const SourceMap& sources) {
+  if (c.tool.edge_radius <= c.tool.radius) return;
+  fail(sources.where("tool.edge_radius"),
+       fmt::format("tool.edge_radius = {} is larger than tool.radius = {}",
+                   print_quantity(c.tool.edge_radius, Dimension::Length),
+                   print_quantity(c.tool.radius, Dimension::Length)),
+       "give at most the radius of the disc, or 0 for a sharp edge");
+}
+
 void check_depths(const Case& c, const SourceMap& sources) {
   for (const double held : c.indentation.held_depths) {
     if (held <= c.indentation.depth) continue;
@@ -119,6 +135,8 @@ Case parsed(const toml::table& table, const std::string& file_name) {
   fill_defaults(c, file_name);
   check_name(c, sources);
   check_materials(c, sources);
+  choose_depths(c, sources);
+  check_tool(c, sources);
   check_depths(c, sources);
   check_supports(c, sources);
   check_sizes(c, sources);

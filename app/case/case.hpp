@@ -36,11 +36,14 @@ struct MeshSection {
 
 /// Only the members that belong to `shape` are read and printed; the others stay zero.
 struct SupportSection {
-  std::string shape;       ///< "plane", "box" or "sphere"
+  std::string shape;       ///< "plane", "box", "sphere" or "surface"
   Vec3 point{}, normal{};  ///< plane; m, unit vector
   Vec3 low{}, high{};      ///< box; m
   Vec3 centre{};           ///< sphere; m
   double radius = 0;       ///< sphere; m
+  std::string file;        ///< surface: relative to the folder of the case file
+  std::string unit;        ///< surface: symbol of the length unit of the file
+  double distance = 0;     ///< surface; m
   bool operator==(const SupportSection&) const = default;
 };
 
@@ -60,9 +63,14 @@ struct MaterialSection {
   double& constant(std::string_view name);
 };
 
+/// Only the members that belong to `shape` are read and printed; the others stay zero.
 struct ToolSection {
   std::string shape = "sphere";
-  double radius = 0.005;  ///< m
+  double radius = 0.005;   ///< m
+  double edge_radius = 0;  ///< m, disc
+  double length = 0;       ///< m, cylinder
+  double azimuth = 0;      ///< rad, cylinder
+  std::string friction = "frictionless";
   bool operator==(const ToolSection&) const = default;
 };
 
@@ -71,7 +79,8 @@ struct IndentationSection {
   int increments = 12;
   double lateral_travel = 0.003;  ///< m
   int lateral_increments = 6;
-  std::vector<double> held_depths{0.003};  ///< m
+  std::vector<double> held_depths{0.002, 0.004,
+                                  0.006};  ///< m; not given: a third of depth, two, all
   std::vector<double> azimuths{0.0};       ///< rad
   double force_tolerance = 1e-4;
   bool operator==(const IndentationSection&) const = default;

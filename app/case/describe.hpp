@@ -80,7 +80,7 @@ void describe(V& v, MeshSection& s) {
 template <class V>
 void describe(V& v, SupportSection& s) {
   v.text(s.shape, {"shape", "surface nodes inside this shape are held", kRequired},
-         {"plane", "box", "sphere"});
+         {"plane", "box", "sphere", "surface"});
   if (v.when("shape", s.shape, "plane")) {
     v.point(s.point, Dimension::Length, {"point", "a point of the plane", kRequired});
     v.direction(s.normal,
@@ -94,6 +94,15 @@ void describe(V& v, SupportSection& s) {
     v.point(s.centre, Dimension::Length, {"centre", "centre of the sphere", kRequired});
     v.quantity(s.radius, Dimension::Length,
                {"radius", "radius of the sphere", kRequired, kPositive});
+  }
+  if (v.when("shape", s.shape, "surface")) {
+    v.text(s.file,
+           {"file", "closed surface, such as that of a bone: nodes inside or near it are held",
+            kRequired});
+    v.text(s.unit, {"unit", "length unit of the coordinates in the file", kRequired},
+           unit_symbols(Dimension::Length));
+    v.quantity(s.distance, Dimension::Length,
+               {"distance", "how near is held", kRequired, kNotNegative});
   }
 }
 
@@ -152,8 +161,30 @@ void describe(V& v, MaterialSection& s) {
 
 template <class V>
 void describe(V& v, ToolSection& s) {
-  v.text(s.shape, {"shape", "shape of the rigid tool"}, {"sphere"});
-  v.quantity(s.radius, Dimension::Length, {"radius", "radius of the tool", kOptional, kPositive});
+  v.text(
+      s.shape,
+      {"shape",
+       "of the rigid tool; disc: the flat end of an upright cylinder; cylinder: a lying one, its "
+       "ends rounded to hemispheres"},
+      {"sphere", "disc", "cylinder"});
+  v.quantity(s.radius, Dimension::Length,
+             {"radius", "of the sphere, the disc or the cross-section of the cylinder", kOptional,
+              kPositive});
+  v.text(
+      s.friction,
+      {"friction", "while pressing: the surface slides along the tool, or sticks where it touches"},
+      {"frictionless", "stuck"});
+  if (v.when("shape", s.shape, "disc")) {
+    v.quantity(s.edge_radius, Dimension::Length,
+               {"edge_radius", "fillet of the edge, 0 when sharp; at most `radius`", kOptional,
+                kNotNegative});
+  }
+  if (v.when("shape", s.shape, "cylinder")) {
+    v.quantity(s.length, Dimension::Length,
+               {"length", "between the centres of the ends", kRequired, kPositive});
+    v.quantity(s.azimuth, Dimension::Angle,
+               {"azimuth", "of the axis in the tangent plane", kOptional, kAny});
+  }
 }
 
 template <class V>
@@ -167,8 +198,10 @@ void describe(V& v, IndentationSection& s) {
       s.lateral_increments,
       {"lateral_increments", "steps of each lateral path", kOptional, {.low = 2, .high = 1000}});
   v.quantities(s.held_depths, Dimension::Length,
-               {"held_depths", "depths where lateral paths start; each at most `depth`", kOptional,
-                kPositive});
+               {"held_depths",
+                "depths where lateral paths start, each at most `depth`; by default a third, two "
+                "thirds and all of it",
+                kOptional, kPositive});
   v.quantities(
       s.azimuths, Dimension::Angle,
       {"azimuths", "directions of the lateral paths in the tangent plane", kOptional, kAny});

@@ -28,6 +28,7 @@ class SourceMap {
   void remember(const std::string& key, const toml::node& node) {
     lines_[key] = node.source().begin.line;
   }
+  bool has(const std::string& key) const { return lines_.contains(key); }
   /// "file:line" of a dotted key, or of the file when the key was not written.
   std::string where(const std::string& key) const;
   std::string where(const toml::node& node) const;

@@ -89,6 +89,39 @@ Json failures_of(const Curves& curves) {
   return failures;
 }
 
+/// The largest value and the site where it stands; unknown values do not count.
+struct Worst {
+  double value = std::numeric_limits<double>::quiet_NaN();
+  std::int32_t vertex = -1;
+
+  void take(double other, std::int32_t at) {
+    if (std::isnan(other) || other <= value) return;
+    value = other;
+    vertex = at;
+  }
+};
+
+/// How well the contact was kept: how deep the surface stands in the tool, which part of the energy
+/// is in the springs that hold it out (no energy there, no pressure across a gap), and how hard
+/// stuck points pull where a surface would let go.
+Json contact_of(const Curves& curves) {
+  Worst penetration, springs, pull;
+  for (const SiteCurves& site : curves.sites)
+    for (const CurvePath& path : site.paths)
+      for (const CurveSample& sample : path.samples) {
+        penetration.take(sample.penetration, site.vertex);
+        if (sample.strain_energy > 0)
+          springs.take(sample.contact_energy / sample.strain_energy, site.vertex);
+        if (norm(sample.force) > 0) pull.take(sample.tension / norm(sample.force), site.vertex);
+      }
+  return {{"largest_penetration", with_unit(penetration.value, "m")},
+          {"at_site", penetration.vertex},
+          {"largest_energy_in_springs_over_stored", springs.value},
+          {"at_site_of_the_springs", springs.vertex},
+          {"largest_pull_over_force", pull.value},
+          {"at_site_of_the_pull", pull.vertex}};
+}
+
 Json summary_of(const Curves& curves) {
   double cpu = 0, force = 0;
   double jacobian = std::numeric_limits<double>::quiet_NaN();  // unknown where all is measured
@@ -114,6 +147,7 @@ Json summary_of(const Curves& curves) {
           {"samples", samples},
           {"largest_force", with_unit(force, "N")},
           {"smallest_jacobian", jacobian},
+          {"contact", contact_of(curves)},
           {"cpu_time", with_unit(cpu, "s")},
           {"content_sha256", content_sha256(curves)},
           {"failures", failures}};

@@ -23,12 +23,23 @@ mesher::SurfaceFile surface_file(const Workspace& space, const Section& section)
   return {space.case_folder / section.file, unit_length(section.unit), section.region};
 }
 
-mesher::Support support_of(const SupportSection& section) {
+mesher::Support support_of(const Workspace& space, const SupportSection& section) {
+  if (section.shape == "surface") {
+    return mesher::SurfaceSupport{{space.case_folder / section.file, unit_length(section.unit), ""},
+                                  section.distance};
+  }
   if (section.shape == "plane") {
     return mesher::PlaneSupport{section.point, (1 / norm(section.normal)) * section.normal};
   }
   if (section.shape == "box") return mesher::BoxSupport{section.low, section.high};
   return mesher::SphereSupport{section.centre, section.radius};
+}
+
+fem::ToolGeometry tool_of(const ToolSection& section) {
+  fem::ToolShape shape = fem::ToolShape::Sphere;
+  if (section.shape == "disc") shape = fem::ToolShape::Disc;
+  if (section.shape == "cylinder") shape = fem::ToolShape::Cylinder;
+  return {shape, section.radius, section.edge_radius, section.length};
 }
 
 }  // namespace
@@ -55,12 +66,12 @@ mesher::Settings mesh_settings(const Workspace& space) {
   for (const auto& inclusion : c.inclusions) {
     settings.inclusions.push_back(surface_file(space, inclusion));
   }
-  for (const auto& support : c.supports) settings.supports.push_back(support_of(support));
+  for (const auto& support : c.supports) settings.supports.push_back(support_of(space, support));
   settings.patch_spacing = c.mesh.patch_spacing;
   settings.element_size = c.mesh.element_size;
   settings.interior_growth = c.mesh.interior_growth;
   settings.feature_angle = c.mesh.feature_angle * 180 / std::numbers::pi;
-  settings.tool_radius = c.tool.radius;
+  settings.tool_radius = tool_of(c.tool).extent();
   settings.depth = c.indentation.depth;
   return settings;
 }
@@ -74,7 +85,9 @@ fem::CampaignSettings campaign_settings(const Workspace& space) {
   settings.dilatation =
       c.solver.element == "tet10-displacement" ? fem::Dilatation::Pointwise : fem::Dilatation::Mean;
   fem::IndentationSettings& indentation = settings.indentation;
-  indentation.tool_radius = c.tool.radius;
+  indentation.tool = tool_of(c.tool);
+  indentation.tool_azimuth = c.tool.azimuth;
+  if (c.tool.friction == "stuck") indentation.friction = fem::ToolFriction::Stuck;
   indentation.depth = c.indentation.depth;
   indentation.increments = c.indentation.increments;
   indentation.lateral_travel = c.indentation.lateral_travel;
@@ -114,6 +127,9 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
       inputs.push_back(space.case_folder / space.c.surface.file);
       for (const auto& inclusion : space.c.inclusions) {
         inputs.push_back(space.case_folder / inclusion.file);
+      }
+      for (const auto& support : space.c.supports) {
+        if (support.shape == "surface") inputs.push_back(space.case_folder / support.file);
       }
       break;
     case Stage::Precompute:

@@ -76,11 +76,13 @@ std::vector<PathBalance> path_balances(const Curves& curves) {
     for (const CurvePath& path : site.paths) {
       if (path.samples.empty()) continue;
       const CurveSample& end = path.samples.back();
-      const double scale = std::max(std::abs(end.tool_work), std::abs(end.strain_energy));
+      const double springs = std::isfinite(end.contact_energy) ? end.contact_energy : 0;
+      const double stored = end.strain_energy + springs;
+      const double scale = std::max(std::abs(end.tool_work), std::abs(stored));
       // A measured path has no stored energy to compare with.
-      if (!(scale > 0) || !std::isfinite(end.strain_energy)) continue;
-      balances.push_back({site.vertex, path.kind, end.tool_work, end.strain_energy,
-                          (end.tool_work - end.strain_energy) / scale});
+      if (!(scale > 0) || !std::isfinite(stored)) continue;
+      balances.push_back(
+          {site.vertex, path.kind, end.tool_work, stored, (end.tool_work - stored) / scale});
     }
   }
   return balances;

@@ -35,7 +35,8 @@ struct ChosenVertices {
 ChosenVertices choose_vertices(const Library& library, const std::vector<PeakForce>& peaks,
                                double d);
 
-/// Energy balance at the end of one path: the work of the tool must be the stored energy.
+/// Energy balance at the end of one path: the work of the tool must be the energy stored in the
+/// body and, where that is known, in the springs of the contact.
 struct PathBalance {
   std::int32_t vertex = -1;
   PathKind kind = PathKind::Normal;

@@ -36,7 +36,7 @@ Body block(int cells) {
 CampaignSettings settings(double poisson) {
   CampaignSettings s;
   s.materials = {{"tissue", {10e3, poisson}}};
-  s.indentation.tool_radius = 0.005;
+  s.indentation.tool.radius = 0.005;
   s.indentation.depth = 0.004;
   s.indentation.increments = 10;
   s.indentation.held_depths.clear();

@@ -38,6 +38,8 @@ void multiply(Curves& curves, double factor) {
         sample.force = factor * sample.force;
         sample.strain_energy *= factor;
         sample.tool_work *= factor;
+        sample.contact_energy *= factor;
+        sample.tension *= factor;
       }
     }
   }

@@ -183,6 +183,8 @@ class FileFormat(unittest.TestCase):
             self.assertEqual(file.attrs["tool_shape"], known.text())
             self.assertEqual(file.attrs["tool_radius"], known.number())
             self.assertEqual(file.attrs["tool_friction"], known.text())
+            self.assertEqual(file.attrs["tool_edge_radius"], known.number())
+            self.assertEqual(file.attrs["tool_length"], known.number())
             self.assertEqual(file.attrs["depth"], known.number())
             self.assertEqual(file.attrs["lateral_travel"], known.number())
             self.assertEqual(file.attrs["body_sha256"], known.text())
@@ -209,7 +211,7 @@ class FileFormat(unittest.TestCase):
         for k in range(first, first + path["sample_count"][j]):
             for name in ("displacement", "force", "strain_energy", "tool_work", "min_jacobian",
                          "penetration", "contact_area", "iterations", "force_scatter",
-                         "force_uncertainty"):
+                         "force_uncertainty", "contact_energy", "tension"):
                 np.testing.assert_equal(np.ravel(sample[name][k]), known.numbers(), name)
 
     def test_library_values(self):

@@ -36,7 +36,7 @@ Press press(double fine, double poisson) {
   }
   CampaignSettings settings;
   settings.materials = {{"tissue", {kYoung, poisson}}};
-  settings.indentation.tool_radius = kRadius;
+  settings.indentation.tool.radius = kRadius;
   settings.indentation.depth = kDepth;
   settings.indentation.increments = 2;
   settings.indentation.held_depths.clear();

@@ -42,6 +42,12 @@ centre = ["1 mm", "2 cm", "0 m"]
 radius = "5 mm"
 
 [[support]]
+shape = "surface"
+file = "bone.stl"
+unit = "mm"
+distance = "500 um"
+
+[[support]]
 shape = "box"
 low = ["-1 mm", "-1 mm", "-1 mm"]
 high = ["1 mm", "1 mm", "1 mm"]
@@ -91,7 +97,8 @@ TEST(Case, ReadsQuantitiesInSiAndFillsDefaults) {
   EXPECT_EQ(c.surface.unit, "mm");
   ASSERT_EQ(c.inclusions.size(), 1U);
   EXPECT_DOUBLE_EQ(c.mesh.patch_spacing, 0.008);
-  ASSERT_EQ(c.supports.size(), 3U);
+  ASSERT_EQ(c.supports.size(), 4U);
+  EXPECT_DOUBLE_EQ(c.supports[2].distance, 0.0005);
   EXPECT_DOUBLE_EQ(c.supports[0].point[2], -0.015);
   EXPECT_DOUBLE_EQ(c.supports[1].centre[1], 0.02);
   EXPECT_DOUBLE_EQ(law_of(c.materials[1]).at("young"), 1e5);
@@ -115,6 +122,42 @@ TEST(Case, ResolvedCaseKeepsOddNumbersAndTexts) {
   c.indentation.azimuths = {1.0 / 7, -2.0};
   c.supports[0].normal = {1.0 / 3, 0, -1e-20};
   EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c) << resolved_toml(c);
+}
+
+std::string with_tool(const std::string& tool) {
+  return replaced(kGood, "[indentation]", "[tool]\n" + tool + "\n[indentation]");
+}
+
+TEST(Case, ToolsHaveTheSizesOfTheirShape) {
+  const Case disc = parse_case(
+      with_tool(
+          "shape = \"disc\"\nradius = \"3 mm\"\nedge_radius = \"500 um\"\nfriction = \"stuck\""),
+      "ball.toml");
+  EXPECT_DOUBLE_EQ(disc.tool.edge_radius, 0.0005);
+  EXPECT_EQ(disc.tool.friction, "stuck");
+  const Case rod = parse_case(
+      with_tool("shape = \"cylinder\"\nlength = \"12 mm\"\nazimuth = \"90 deg\""), "ball.toml");
+  EXPECT_DOUBLE_EQ(rod.tool.length, 0.012);
+  EXPECT_NEAR(rod.tool.azimuth, 1.5707963267948966, 1e-15);
+  for (const Case& c : {disc, rod}) EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
+}
+
+TEST(Case, RejectsToolsOfImpossibleSize) {
+  EXPECT_THAT(message_of(with_tool("shape = \"disc\"\nradius = \"3 mm\"\nedge_radius = \"4 mm\"")),
+              HasSubstr("tool.edge_radius = 4 mm is larger than tool.radius = 3 mm"));
+  EXPECT_THAT(message_of(with_tool("shape = \"cylinder\"")), HasSubstr("length"));
+  EXPECT_THAT(message_of(with_tool("shape = \"sphere\"\nlength = \"3 mm\"")), HasSubstr("length"));
+  EXPECT_THAT(message_of(with_tool("shape = \"cone\"")), HasSubstr("sphere, disc, cylinder"));
+  EXPECT_THAT(message_of(with_tool("radius = \"-1 mm\"")), HasSubstr("radius"));
+}
+
+TEST(Case, LateralPathsStartAtThreeDepthsUnlessTheCaseSaysOtherwise) {
+  const Case c =
+      parse_case(replaced(kGood, "held_depths = [\"1 mm\", \"3.3 mm\"]\n", ""), "b.toml");
+  ASSERT_EQ(c.indentation.held_depths.size(), 3U);
+  EXPECT_DOUBLE_EQ(c.indentation.held_depths[0], 0.004 / 3);
+  EXPECT_DOUBLE_EQ(c.indentation.held_depths[2], 0.004);
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
 }
 
 TEST(Case, SectionsOfAStageAreIndependentOfTheOthers) {
@@ -154,7 +197,7 @@ TEST(Case, NamesTheNearestKnownKey) {
       message_with("young = \"10 kPa\"", "yuong = \"10 kPa\"\nyoung = \"1 Pa\"");
   EXPECT_THAT(message, HasSubstr("unknown key 'yuong' in [[material]]"));
   EXPECT_THAT(message, HasSubstr("'young'"));
-  EXPECT_THAT(message, HasSubstr("ball.toml:34: "));
+  EXPECT_THAT(message, HasSubstr("ball.toml:40: "));
   EXPECT_THAT(message_with("[mesh]", "[mehs]"), HasSubstr("nearest known key is 'mesh'"));
 }
 
@@ -254,7 +297,7 @@ TEST(Case, RejectsWhatIsMissing) {
   EXPECT_THAT(message_with("poisson = 0.49\n", ""), HasSubstr("material[0].poisson"));
   EXPECT_THAT(message_with("poisson = 0.49\n", "posson = 0.49\n"),
               HasSubstr("unknown key 'posson'"));
-  EXPECT_THAT(message_with("shape = \"box\"\n", ""), HasSubstr("support[2].shape"));
+  EXPECT_THAT(message_with("shape = \"box\"\n", ""), HasSubstr("support[3].shape"));
   EXPECT_THAT(message_of("name = \"x\"\n"), HasSubstr("key 'surface' is missing"));
 }
 

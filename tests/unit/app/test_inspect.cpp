@@ -50,5 +50,30 @@ TEST(Inspect, CallsAnInfiniteBoundNotCertified) {
   EXPECT_THAT(text, Not(ContainsRegex("[^a-z](inf|nan)[^a-z]")));
 }
 
+TEST(Inspect, NamesTheSiteWhereContactIsKeptWorst) {
+  Curves curves;
+  curves.tool = {"sphere", 0.005, "frictionless"};
+  for (std::int32_t vertex = 3; vertex < 6; ++vertex) {
+    SiteCurves site{vertex, SiteStatus::Complete, "", 1, {}};
+    CurveSample sample;
+    sample.force = {0, 0, -2};
+    sample.strain_energy = 1e-3;
+    sample.penetration = vertex == 4 ? 2e-5 : 1e-5;
+    sample.contact_energy = vertex == 5 ? 4e-6 : 1e-6;
+    sample.tension = vertex == 3 ? 0.5 : std::numeric_limits<double>::quiet_NaN();
+    site.paths.push_back({PathKind::Normal, 0, {0, 0, -1}, {sample}});
+    curves.sites.push_back(site);
+  }
+  const samples::TemporaryFolder folder;
+  write_curves(folder / "curves.h5", curves);
+  const auto contact = summarize_artifact(folder / "curves.h5")["contact"];
+  EXPECT_EQ(contact["largest_penetration"]["value"], 2e-5);
+  EXPECT_EQ(contact["at_site"], 4);
+  EXPECT_EQ(contact["largest_energy_in_springs_over_stored"], 4e-3);
+  EXPECT_EQ(contact["at_site_of_the_springs"], 5);
+  EXPECT_EQ(contact["largest_pull_over_force"], 0.25);
+  EXPECT_EQ(contact["at_site_of_the_pull"], 3);
+}
+
 }  // namespace
 }  // namespace palpate::app

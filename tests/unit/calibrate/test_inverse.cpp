@@ -48,7 +48,7 @@ std::vector<std::int32_t> sites_of(const Body& body) {
 fem::CampaignSettings campaign(double soft, double stiff) {
   fem::CampaignSettings settings;
   settings.materials = {{"soft", {soft, 0.45}}, {"stiff", {stiff, 0.45}}};
-  settings.indentation.tool_radius = 0.008;
+  settings.indentation.tool.radius = 0.008;
   settings.indentation.depth = 0.002;
   settings.indentation.increments = 2;
   settings.indentation.force_tolerance = 1e-5;
@@ -164,8 +164,11 @@ TEST(Inverse, RefusesWhatDoesNotFitTogether) {
     return std::string("accepted");
   };
   InverseSettings settings = settings_from(kTop, kBase);
-  settings.campaign.indentation.tool_radius = 0.004;
+  settings.campaign.indentation.tool.radius = 0.004;
   EXPECT_THAT(refusal(curves, settings), HasSubstr("a tool of 8 mm radius, the case has 4 mm"));
+  settings.campaign.indentation.tool.shape = fem::ToolShape::Disc;
+  EXPECT_THAT(refusal(curves, settings),
+              HasSubstr("made with a sphere, the tool of the case is a disc"));
   settings = settings_from(kTop, kBase);
   settings.sought.clear();
   EXPECT_THAT(refusal(curves, settings), HasSubstr("no constant is sought"));

@@ -128,7 +128,7 @@ TEST(Campaign, RefusesWhatDoesNotFit) {
   s.indentation.held_depths = {0.003};
   EXPECT_THAT(refusal(s), HasSubstr("beyond the depth"));
   s = quick();
-  s.indentation.tool_radius = std::nan("");
+  s.indentation.tool.radius = std::nan("");
   EXPECT_THAT(refusal(s), HasSubstr("tool_radius"));
   s = quick();
   s.sites = {100000};

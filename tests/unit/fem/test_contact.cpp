@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
 #include "fem/at.hpp"
 #include "fem/contact_patch.hpp"
 #include "tests/support/block_body.hpp"
@@ -8,20 +10,25 @@
 namespace palpate::fem {
 namespace {
 
+/// A sphere of 5 mm above the block.
+Tool sphere(const Eigen::Vector3d& centre) {
+  return {{}, centre - 0.005 * Eigen::Vector3d::UnitZ()};
+}
+
 /// A sphere of 5 mm pressed 1 mm into the middle of the top of an undeformed block, so that some
 /// points are in contact and some are not.
 struct Pressed {
   Body body = test::make_block(test::even(-0.01, 0.01, 4), test::even(-0.01, 0.01, 4),
                                test::even(-0.02, 0, 3));
   SolidModel model{body, {NeoHookean::from_young_poisson(10e3, 0.49, "t")}};
-  SphereContact contact{model.mesh(), Eigen::Vector3d::Zero(), 0.01, 1e8};
+  ToolContact contact{model.mesh(), Eigen::Vector3d::Zero(), 0.01, 1e8};
   Displacement u = Displacement::Zero(3, model.mesh().nodes());
 
-  Pressed() { contact.move_to({Eigen::Vector3d(2e-4, 1e-4, 0.004), 0.005}); }
+  Pressed() { contact.move_to(sphere(Eigen::Vector3d(2e-4, 1e-4, 0.004))); }
 };
 
 /// Forces and stiffness of the contact against central differences of its energy.
-void expect_derivatives(const SolidModel& model, const SphereContact& contact, Displacement u) {
+void expect_derivatives(const SolidModel& model, const ToolContact& contact, Displacement u) {
   const int n = model.pattern().n;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
   contact.add_forces(model, u, f);
@@ -52,15 +59,15 @@ void expect_derivatives(const SolidModel& model, const SphereContact& contact, D
   EXPECT_GT(compared, 20);
 }
 
-TEST(SphereContact, ForcesAndStiffnessAreDerivativesOfTheEnergy) {
+TEST(ToolContact, ForcesAndStiffnessAreDerivativesOfTheEnergy) {
   const Pressed p;
   expect_derivatives(p.model, p.contact, p.u);
 }
 
-TEST(SphereContact, StuckForcesAndStiffnessAreDerivativesOfTheEnergy) {
+TEST(ToolContact, StuckForcesAndStiffnessAreDerivativesOfTheEnergy) {
   Pressed p;
   p.contact.bond(p.u);
-  p.contact.move_to({Eigen::Vector3d(5e-4, 1e-4, 0.004), 0.005});
+  p.contact.move_to(sphere(Eigen::Vector3d(5e-4, 1e-4, 0.004)));
   expect_derivatives(p.model, p.contact, p.u);
 }
 
@@ -70,7 +77,7 @@ TEST(ContactPatch, IsTheContactOnItsUnknowns) {
   for (const bool bonded : {false, true}) {
     if (bonded) {
       p.contact.bond(p.u);
-      p.contact.move_to({Eigen::Vector3d(5e-4, 1e-4, 0.004), 0.005});
+      p.contact.move_to(sphere(Eigen::Vector3d(5e-4, 1e-4, 0.004)));
     }
     ContactPatch patch(p.contact, p.model, p.u);
     EXPECT_TRUE(patch.covers(p.contact, p.u));
@@ -112,10 +119,10 @@ TEST(ContactPatch, SaysWhenTheContactHasGrownBeyondIt) {
   const Body body = test::make_block(test::even(-0.01, 0.01, 10), test::even(-0.01, 0.01, 10),
                                      test::even(-0.004, 0, 2));
   const SolidModel model(body, {NeoHookean::from_young_poisson(10e3, 0.49, "t")});
-  SphereContact contact(model.mesh(), Eigen::Vector3d::Zero(), 0.02, 1e8);
+  ToolContact contact(model.mesh(), Eigen::Vector3d::Zero(), 0.02, 1e8);
   const Displacement u = Displacement::Zero(3, model.mesh().nodes());
   const auto press = [&](double depth) {
-    contact.move_to({Eigen::Vector3d(0, 0, 0.005 - depth), 0.005});
+    contact.move_to(sphere(Eigen::Vector3d(0, 0, 0.005 - depth)));
   };
   press(1e-4);  // a circle of 1 mm radius on facets of 2 mm
   const ContactPatch patch(contact, model, u);
@@ -125,15 +132,37 @@ TEST(ContactPatch, SaysWhenTheContactHasGrownBeyondIt) {
   EXPECT_FALSE(patch.covers(contact, u));
 }
 
-TEST(SphereContact, BondingLeavesTheForceAsItWas) {
+TEST(ToolContact, EveryToolHasForcesAndStiffnessOfItsEnergy) {
+  for (const ToolGeometry& tool : {ToolGeometry{ToolShape::Disc, 0.005, 0.001, 0},
+                                   ToolGeometry{ToolShape::Cylinder, 0.004, 0, 0.005}}) {
+    Pressed p;
+    const Eigen::Vector3d inward = Eigen::Vector3d(0.1, 0.05, -1).normalized();
+    p.contact.move_to({tool, Eigen::Vector3d(2e-4, 1e-4, -5e-4), inward, inward.unitOrthogonal()});
+    expect_derivatives(p.model, p.contact, p.u);
+  }
+}
+
+TEST(ToolContact, StuckPointsThatAreDrawnOffPull) {
+  Pressed p;
+  EXPECT_EQ(p.contact.tension(p.u), 0);
+  p.contact.bond(p.u);
+  EXPECT_EQ(p.contact.tension(p.u), 0);  // pressed all over
+  p.contact.move_to(sphere(Eigen::Vector3d(2e-4, 1e-4, 0.006)));
+  EXPECT_GT(p.contact.tension(p.u), 1);
+  EXPECT_GT(p.contact.tool_force(p.u)[2], 0);
+}
+
+TEST(ToolContact, BondingLeavesForceAndEnergyAsTheyWere) {
   Pressed p;
   const Eigen::Vector3d before = p.contact.tool_force(p.u);
+  const double energy = p.contact.energy(p.u);
   ASSERT_GT(before.norm(), 0.01);
   p.contact.bond(p.u);
+  EXPECT_NEAR(p.contact.energy(p.u), energy, 1e-12 * energy);
   EXPECT_LT((p.contact.tool_force(p.u) - before).norm(), 1e-12 * before.norm());
 }
 
-TEST(SphereContact, ToolForceBalancesTheForcesOnTheNodes) {
+TEST(ToolContact, ToolForceBalancesTheForcesOnTheNodes) {
   const Pressed p;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(p.model.pattern().n);
   p.contact.add_forces(p.model, p.u, f);
@@ -143,12 +172,12 @@ TEST(SphereContact, ToolForceBalancesTheForcesOnTheNodes) {
   EXPECT_LT(p.contact.tool_force(p.u)[2], 0);  // the tool pushes the body down
 }
 
-TEST(SphereContact, RestPenetrationIsTheDepthOfTheSphere) {
+TEST(ToolContact, RestPenetrationIsTheDepthOfTheSphere) {
   const Pressed p;
-  const double depth = p.contact.rest_penetration({Eigen::Vector3d(0, 0, 0.004), 0.005});
+  const double depth = p.contact.rest_penetration(sphere(Eigen::Vector3d(0, 0, 0.004)));
   EXPECT_LE(depth, 1e-3);
   EXPECT_GT(depth, 0.9e-3);  // the deepest quadrature point lies near, not at, the pole
-  EXPECT_LE(p.contact.rest_penetration({Eigen::Vector3d(0, 0, 0.0051), 0.005}), 0);
+  EXPECT_LE(p.contact.rest_penetration(sphere(Eigen::Vector3d(0, 0, 0.0051))), 0);
 }
 
 }  // namespace

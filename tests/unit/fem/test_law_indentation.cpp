@@ -38,7 +38,7 @@ std::int32_t middle(const Body& body) {
 CampaignSettings settings_of(const LawConstants& tissue, const LawConstants& skin) {
   CampaignSettings settings;
   settings.materials = {{"tissue", tissue}, {"skin", skin}};
-  settings.indentation.tool_radius = 0.008;
+  settings.indentation.tool.radius = 0.008;
   settings.indentation.depth = 0.002;
   settings.indentation.increments = 4;
   settings.indentation.held_depths = {0.001};

@@ -41,7 +41,7 @@ std::int32_t middle(const Body& body) {
 CampaignSettings settings_of(const Body& body, double top, double base, double poisson) {
   CampaignSettings settings;
   settings.materials = {{"top", {top, poisson}}, {"base", {base, 0.45}}};
-  settings.indentation.tool_radius = 0.008;
+  settings.indentation.tool.radius = 0.008;
   settings.indentation.depth = 0.003;
   settings.indentation.increments = 3;
   settings.indentation.force_tolerance = 1e-8;

@@ -122,6 +122,7 @@ void make_measured(CurvePath& path, Random& random) {
   for (CurveSample& sample : path.samples) {
     sample.strain_energy = sample.min_jacobian = unknown;
     sample.penetration = sample.contact_area = unknown;
+    sample.contact_energy = sample.tension = unknown;
     sample.force_uncertainty = random.between(0, 0.1);
     if (path.repeats > 1) sample.force_scatter = random.between(0, 0.1);
   }
@@ -134,6 +135,8 @@ CurvePath curve_path(Random& random, PathKind kind) {
     path.samples.push_back({travel, random.vector(3), random.between(0, 1), random.between(0, 1),
                             random.between(0.2, 1), random.between(-1e-5, 1e-5),
                             random.between(0, 1e-4), random.integer(1, 20)});
+    path.samples.back().contact_energy = random.between(-1e-6, 1e-6);
+    path.samples.back().tension = random.between(0, 1);
     travel += random.between(1e-5, 1e-3);
   }
   if (path.samples.size() % 2 == 0) make_measured(path, random);
@@ -205,7 +208,8 @@ Body body(unsigned seed) {
 Curves curves(unsigned seed) {
   Random random(seed);
   Curves curves;
-  curves.tool = {"sphere", random.between(1e-3, 1e-2), "frictionless"};
+  curves.tool = {"disc", random.between(1e-3, 1e-2), "frictionless", random.between(0, 1e-3),
+                 random.between(0, 1e-2)};
   curves.depth = random.between(1e-3, 1e-2);
   curves.lateral_travel = random.between(1e-3, 1e-2);
   curves.body_sha256 = std::string(64, 'b');
@@ -297,8 +301,8 @@ std::string dump(const Body& body) {
 
 std::string dump(const Curves& curves) {
   Dump out;
-  out << curves.tool.shape << curves.tool.radius << curves.tool.friction << curves.depth
-      << curves.lateral_travel << curves.body_sha256;
+  out << curves.tool.shape << curves.tool.radius << curves.tool.friction << curves.tool.edge_radius
+      << curves.tool.length << curves.depth << curves.lateral_travel << curves.body_sha256;
   for (const SiteCurves& site : curves.sites) {
     out << site.vertex << static_cast<int>(site.status) << site.reason << site.cpu_seconds
         << site.paths.size();
@@ -308,7 +312,7 @@ std::string dump(const Curves& curves) {
       for (const CurveSample& s : path.samples) {
         out << s.displacement << s.force << s.strain_energy << s.tool_work << s.min_jacobian
             << s.penetration << s.contact_area << s.iterations << s.force_scatter
-            << s.force_uncertainty;
+            << s.force_uncertainty << s.contact_energy << s.tension;
       }
     }
   }

@@ -121,6 +121,31 @@ TEST(Mesh, SphereOfEachSizeConvergesAndPointsToItsCentre) {
   EXPECT_LT(worst_angle[1], worst_angle[0]);
 }
 
+TEST(Mesh, NodesNearASecondSurfaceAreHeld) {
+  const Vec3 centre{0, 0, 0}, bone{0, 0, -0.033};
+  const test::TemporaryFile skin("skin.off", test::off_text(test::sphere(centre, 0.030, 120)));
+  const test::TemporaryFile ball("bone.off", test::off_text(test::sphere(1000 * bone, 8, 120)));
+  Settings s;
+  s.surface = {skin.path(), 1.0, ""};
+  s.supports = {SurfaceSupport{{ball.path(), 0.001, ""}, 0.002}};
+  s.patch_spacing = 0.006;
+  s.element_size = 0.003;
+  const Body body = mesh(s);
+  std::vector<std::uint8_t> held(body.nodes.size(), 0);
+  for (const auto node : body.fixed_nodes) held[static_cast<std::size_t>(node)] = 1;
+  int inside = 0;
+  for (const Triangle& facet : body.boundary) {
+    for (const auto node : facet) {
+      const auto i = static_cast<std::size_t>(node);
+      const double distance = norm(body.nodes[i] - bone) - 0.008;
+      if (std::abs(distance - 0.002) < 2e-5) continue;  // the ball is a polyhedron
+      EXPECT_EQ(held[i] != 0, distance < 0.002) << distance;
+      if (distance < -0.002) ++inside;
+    }
+  }
+  EXPECT_GT(inside, 0);  // the bone reaches through the skin
+}
+
 TEST(Mesh, InclusionIsItsOwnRegionAndVolumesAddUp) {
   constexpr double radius = 0.012;
   const test::TemporaryFile skin("skin.off",

@@ -217,6 +217,11 @@ TEST(Refusals, SettingsThatMakeNoSense) {
   expect(with([](Settings& s) { s.tool_radius = 0; }), "tool_radius");
   expect(with([](Settings& s) { s.surface.unit = 0; }), "unit");
   expect(with([](Settings& s) { s.supports = {PlaneSupport{}}; }), "normal");
+  expect(with([](Settings& s) { s.supports = {SurfaceSupport{s.surface, -0.001}}; }), "distance");
+  expect(with([](Settings& s) {
+           s.supports = {SurfaceSupport{{"bone.off", 0, ""}, 0.001}};
+         }),
+         "unit");
   const Settings tiny = with([](Settings& s) { s.element_size = 1e-5; });
   expect_refused(tiny, "sense.off", "0.01 mm needs about", "increase element_size",
                  ErrorKind::Configuration);

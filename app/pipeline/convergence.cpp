@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/pipeline/convergence.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "app/console.hpp"
+#include "app/pipeline/campaign_sites.hpp"
+#include "app/pipeline/settings.hpp"
+#include "fem/campaign.hpp"
+#include "format/crash_safe_file.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr double kRefinement = 1.4;
+
+/// First, middle and last but one part of all sites: spread over the body as its numbering is.
+std::vector<std::int32_t> three_of(const std::vector<std::int32_t>& all) {
+  std::vector<std::int32_t> some;
+  for (const std::size_t sixth : {1, 3, 5}) some.push_back(all[sixth * all.size() / 6]);
+  some.erase(std::unique(some.begin(), some.end()), some.end());
+  return some;
+}
+
+double last_force(const CurvePath& path, double end) {
+  const CurveSample& sample = path.samples.back();
+  if (path.samples.size() < 2 || sample.displacement < end * (1 - 1e-9))
+    return std::numeric_limits<double>::quiet_NaN();
+  return dot(sample.force - path.samples.front().force, path.direction);
+}
+
+/// The forces of a site that are followed: at the end of the normal path, and of the lateral one.
+void add_forces(const SiteCurves& site, const fem::IndentationSettings& settings,
+                std::vector<ConvergenceRow>& rows) {
+  const auto add = [&](const std::string& quantity, double force) {
+    for (ConvergenceRow& row : rows) {
+      if (row.vertex != site.vertex || row.quantity != quantity) continue;
+      row.forces.push_back(force);
+      return;
+    }
+    rows.push_back({site.vertex, quantity, {force}, {}});
+  };
+  double normal = std::numeric_limits<double>::quiet_NaN(), lateral = normal;
+  for (const CurvePath& path : site.paths) {
+    if (path.kind == PathKind::Normal) normal = last_force(path, settings.depth);
+    if (path.kind == PathKind::Lateral) lateral = last_force(path, settings.lateral_travel);
+  }
+  add(fmt::format("normal force at {:.3g} mm", 1e3 * settings.depth), normal);
+  if (settings.held_depths.empty()) return;
+  add(fmt::format("lateral force after {:.3g} mm at {:.3g} mm", 1e3 * settings.lateral_travel,
+                  1e3 * settings.held_depths.back()),
+      lateral);
+}
+
+/// The response surfaces of all meshes are one: only what lies between them is finer.
+void check_same_sites(const Body& first, const Body& finer, const std::string& where) {
+  bool same = first.response.node.size() == finer.response.node.size();
+  for (std::size_t v = 0; same && v < first.response.node.size(); ++v) {
+    const auto at = [&](const Body& body) {
+      return body.nodes[static_cast<std::size_t>(body.response.node[v])];
+    };
+    same = norm(at(first) - at(finer)) == 0;
+  }
+  if (same) return;
+  throw Error(ErrorKind::Internal, where, "the finer mesh has another response surface",
+              "change patch_spacing a little and report the case");
+}
+
+void tell(const ConvergenceTable& table) {
+  for (const ConvergenceRow& row : table.rows) {
+    std::string forces;
+    for (const double f : row.forces) forces += fmt::format(" {:.2f}", 1e3 * f);
+    if (row.limit.trusted) {
+      say("  site {}, {}:{} -> {:.2f} mN, order {:.2f}; the case's mesh is {:+.1f} % off",
+          row.vertex, row.quantity, forces, 1e3 * row.limit.value, row.limit.order,
+          100 * row.limit.error);
+    } else {
+      say("  site {}, {}:{} mN follow no power of the element size; they span {:.1f} %", row.vertex,
+          row.quantity, forces, 100 * row.limit.error);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<double> finer_element_sizes(double patch_spacing, double element_size, int levels) {
+  std::vector<double> sizes;
+  int divisions = std::max(1, static_cast<int>(std::lround(patch_spacing / element_size)));
+  for (int level = 0; level < levels; ++level) {
+    sizes.push_back(patch_spacing / divisions);
+    divisions = std::max(divisions + 1, static_cast<int>(std::lround(kRefinement * divisions)));
+  }
+  return sizes;
+}
+
+std::string convergence_csv(const ConvergenceTable& table) {
+  std::string out = "vertex,quantity";
+  for (const double size : table.element_sizes) out += fmt::format(",force_N_at_{}_m", size);
+  out += ",order,extrapolated_force_N,error_of_the_case,follows_a_power\n";
+  for (const ConvergenceRow& row : table.rows) {
+    out += fmt::format("{},{}", row.vertex, row.quantity);
+    for (const double force : row.forces) out += fmt::format(",{}", force);
+    out += fmt::format(",{},{},{},{}\n", row.limit.order, row.limit.value, row.limit.error,
+                       row.limit.trusted ? 1 : 0);
+  }
+  return out;
+}
+
+ConvergenceTable run_convergence(const Workspace& space, int levels,
+                                 std::vector<std::int32_t> sites) {
+  if (levels < 3) {
+    throw Error(ErrorKind::Configuration, fmt::format("--convergence {}", levels),
+                "an order and a limit need at least three meshes", "give 3 or more");
+  }
+  prepare_output(space.out);
+  mesher::Settings meshing = mesh_settings(space);
+  fem::CampaignSettings campaign = campaign_settings(space);
+  fem::IndentationSettings& paths = campaign.indentation;
+  if (paths.held_depths.size() > 1)
+    paths.held_depths = {*std::max_element(paths.held_depths.begin(), paths.held_depths.end())};
+  if (paths.azimuths.size() > 1) paths.azimuths = {paths.azimuths.front()};
+
+  ConvergenceTable table;
+  table.element_sizes = finer_element_sizes(meshing.patch_spacing, meshing.element_size, levels);
+  Body first;
+  for (const double size : table.element_sizes) {
+    meshing.element_size = size;
+    Body body = mesher::mesh(meshing);
+    if (table.nodes.empty()) {
+      first = body;
+      if (sites.empty()) sites = three_of(sites_of(body));
+    }
+    check_same_sites(first, body, space.c.name);
+    table.nodes.push_back(static_cast<std::int64_t>(body.nodes.size()));
+    campaign.sites = sites;
+    fem::CampaignReport report;
+    const Curves curves = fem::run_campaign(body, campaign, report);
+    for (const SiteCurves& site : curves.sites) add_forces(site, paths, table.rows);
+    say("convergence: elements of {:.3g} mm, {} unknowns, {} a site", 1e3 * size, report.unknowns,
+        duration_text(report.cpu_seconds / static_cast<double>(curves.sites.size())));
+  }
+  for (ConvergenceRow& row : table.rows) row.limit = extrapolate(table.element_sizes, row.forces);
+  tell(table);
+  const auto file = space.out / "convergence.csv";
+  write_file_crash_safely(file, convergence_csv(table));
+  say("convergence: {}", file.string());
+  return table;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/pipeline/richardson.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate::app {
+namespace {
+
+constexpr double kLowest = 0.3, kHighest = 6;
+
+/// (f1 - f2)/(f2 - f3) of values that follow h^p: it grows with p.
+double ratio(double h1, double h2, double h3, double p) {
+  return (std::pow(h1 / h3, p) - std::pow(h2 / h3, p)) / (std::pow(h2 / h3, p) - 1);
+}
+
+double order_of(double h1, double h2, double h3, double wanted) {
+  if (!(wanted >= ratio(h1, h2, h3, kLowest) && wanted <= ratio(h1, h2, h3, kHighest)))
+    return std::numeric_limits<double>::quiet_NaN();
+  double low = kLowest, high = kHighest;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (ratio(h1, h2, h3, middle) < wanted ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+Extrapolation extrapolate(const std::vector<double>& sizes, const std::vector<double>& values) {
+  const std::size_t n = values.size();
+  const double h1 = sizes[n - 3], h2 = sizes[n - 2], h3 = sizes[n - 1];
+  const double f1 = values[n - 3], f2 = values[n - 2], f3 = values[n - 1];
+  Extrapolation e{order_of(h1, h2, h3, (f1 - f2) / (f2 - f3)), f3, 0, false};
+  e.trusted = std::isfinite(e.order);
+  if (e.trusted) {
+    e.value = f3 + (f3 - f2) / (std::pow(h2 / h3, e.order) - 1);
+    e.error = (values.front() - e.value) / e.value;
+    return e;
+  }
+  const bool known =
+      std::all_of(values.begin(), values.end(), [](double f) { return !std::isnan(f); });
+  const auto [least, most] = std::minmax_element(values.begin(), values.end());
+  e.value = known ? f3 : std::numeric_limits<double>::quiet_NaN();
+  e.error = (*most - *least) / e.value;
+  return e;
+}
+
+}  // namespace palpate::app

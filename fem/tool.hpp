@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Rigid tools: their shapes as signed distances.
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+
+namespace palpate::fem {
+
+enum class ToolShape {
+  Sphere,
+  Disc,     ///< the flat end of a long upright cylinder, its edge sharp or rounded
+  Cylinder  ///< a lying cylinder with ends rounded to hemispheres
+};
+
+/// Whether the surface may slide along the tool while it is pressed.
+enum class ToolFriction { Frictionless, Stuck };
+
+/// Size and shape of a tool, m.
+struct ToolGeometry {
+  ToolShape shape = ToolShape::Sphere;
+  double radius = 0.005;   ///< of the sphere, the disc or the cross-section of the cylinder
+  double edge_radius = 0;  ///< disc: fillet of its edge, 0 (sharp) to `radius`
+  double length = 0;       ///< cylinder: between the centres of its ends
+
+  /// Largest distance of a point of the end of the tool from its axis of pressing.
+  double extent() const;
+};
+
+/// The name of a shape in cases and files: "sphere", "disc", "cylinder".
+std::string name_of(ToolShape shape);
+/// "frictionless", "stuck".
+std::string name_of(ToolFriction friction);
+
+/// @throws Error(Configuration) naming the size, its value and range: radius > 0; edge_radius of a
+/// disc alone, 0 .. radius; length of a cylinder alone, > 0.
+void check_tool(const ToolGeometry& geometry);
+
+/// Signed distance of a point to the surface of a tool, negative inside, with its derivatives.
+struct Gap {
+  double distance;            ///< m
+  Eigen::Vector3d normal;     ///< unit, out of the tool: d(distance)/dx
+  Eigen::Matrix3d curvature;  ///< d2(distance)/dx2, 1/m
+};
+
+/// A tool in its place. The point of it that is pressed in first is its tip.
+struct Tool {
+  ToolGeometry geometry;
+  Eigen::Vector3d tip = Eigen::Vector3d::Zero();
+  Eigen::Vector3d inward = -Eigen::Vector3d::UnitZ();  ///< unit: out of the tool at its tip
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();     ///< unit, normal to inward: of a cylinder
+
+  double distance(const Eigen::Vector3d& x) const;
+  Gap gap(const Eigen::Vector3d& x) const;
+};
+
+}  // namespace palpate::fem
