@@ -26,9 +26,9 @@ struct Packs {
   Pack& operator[](int k) { return of[k]; }
 };
 
-/// A supernode is stored as panels of up to sixteen columns, one after the other, each by rows: its
-/// own triangle as a square, then every row of the supernode below that. Both sweeps thus read the
-/// factor from end to end, and a row of the right-hand sides once for all columns of a panel.
+// A supernode is stored as panels of up to sixteen columns, one after the other, each by rows: its
+// own triangle as a square, then every row of the supernode below that. Both sweeps thus read the
+// factor from end to end, and a row of the right-hand sides once for all columns of a panel.
 
 /// Calls work.operator()<W>(first column) for the panels of a supernode, widest first; backwards
 /// when asked.
