@@ -117,6 +117,14 @@ void check_supports(const Case& c, const SourceMap& sources) {
   }
 }
 
+/// The gap to a flat end jumps at its edge: what is pressed there can neither slide off nor come
+/// back.
+void check_edge(const Case& c, const SourceMap& sources) {
+  if (c.tool.shape != "disc" || c.tool.edge_radius > 0 || c.tool.friction == "stuck") return;
+  fail(sources.where("tool.shape"), "a disc with a sharp edge cannot be pressed without friction",
+       "give tool.edge_radius (a hundredth of the radius is enough), or friction = \"stuck\"");
+}
+
 void check_sizes(const Case& c, const SourceMap& sources) {
   if (c.mesh.element_size <= c.mesh.patch_spacing) return;
   fail(sources.where("mesh.element_size"),
@@ -140,6 +148,7 @@ Case parsed(const toml::table& table, const std::string& file_name) {
   check_depths(c, sources);
   check_supports(c, sources);
   check_sizes(c, sources);
+  check_edge(c, sources);
   return c;
 }
 

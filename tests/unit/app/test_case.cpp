@@ -292,6 +292,14 @@ TEST(Case, ChecksThatPartsFitTogether) {
   EXPECT_THAT(message_with("name = \"ball\"", "name = \"../ball\""), HasSubstr("cannot name"));
 }
 
+TEST(Case, RejectsASharpEdgeWithoutFriction) {
+  const std::string disc = "shape = \"disc\"\nradius = \"3 mm\"\n";
+  EXPECT_THAT(message_of(with_tool(disc)), HasSubstr("sharp edge"));
+  EXPECT_EQ(parse_case(with_tool(disc + "friction = \"stuck\"\n"), "x.toml").tool.edge_radius, 0);
+  EXPECT_EQ(parse_case(with_tool(disc + "edge_radius = \"0.03 mm\"\n"), "x.toml").tool.shape,
+            "disc");
+}
+
 TEST(Case, RejectsWhatIsMissing) {
   EXPECT_THAT(message_with("unit = \"mm\"\n", ""), HasSubstr("key 'surface.unit' is missing"));
   EXPECT_THAT(message_with("poisson = 0.49\n", ""), HasSubstr("material[0].poisson"));
