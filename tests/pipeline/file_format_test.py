@@ -16,7 +16,8 @@ import h5py
 import numpy as np
 
 PROGRAM, SCHEMA = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-KINDS = ("body", "curves", "library", "recording")
+# Sample files and the kind of artifact that each is.
+FILES = {"body": "body", "curves": "curves", "library": "library", "coupled": "library", "recording": "recording"}
 
 
 def table_rows(page, columns):
@@ -27,8 +28,9 @@ def table_rows(page, columns):
             yield [cells[0].strip("`")] + cells[1:]
 
 
-def documented_datasets(kind):
-    return {row[0]: row[1:4] for row in table_rows(f"{kind}.md", 5)}
+def documented_datasets(kind, schema):
+    return {row[0]: row[1:4] for row in table_rows(f"{kind}.md", 5)
+            if schema > 1 or "schema 2 only" not in row[4]}
 
 
 def documented_attributes(kind):
@@ -91,8 +93,8 @@ def for_each_kind(test):
     """Runs test(self, kind, file) as a subtest for each kind of artifact."""
     @functools.wraps(test)
     def run(self):
-        for kind in KINDS:
-            with self.subTest(kind), h5py.File(self.folder / f"{kind}.h5", "r") as file:
+        for name, kind in FILES.items():
+            with self.subTest(name), h5py.File(self.folder / f"{name}.h5", "r") as file:
                 test(self, kind, file)
     return run
 
@@ -116,12 +118,12 @@ class FileFormat(unittest.TestCase):
 
     @for_each_kind
     def test_datasets_are_those_of_the_page(self, kind, file):
-        self.assertEqual(set(datasets_of(file)), set(documented_datasets(kind)))
+        self.assertEqual(set(datasets_of(file)), set(documented_datasets(kind, file.attrs["schema"])))
 
     @for_each_kind
     def test_types_shapes_and_units_are_those_of_the_page(self, kind, file):
         sizes = {}
-        for name, (dtype, shape, units) in documented_datasets(kind).items():
+        for name, (dtype, shape, units) in documented_datasets(kind, file.attrs["schema"]).items():
             dataset = file[name]
             self.assertEqual(type_name(dataset), dtype, name)
             self.assertEqual(dataset.attrs["units"], units, name)
@@ -146,7 +148,8 @@ class FileFormat(unittest.TestCase):
         self.assertEqual(file.attrs["artifact"], f"palpate.{kind}")
         page = (SCHEMA / f"{kind}.md").read_text()
         self.assertIn(f"`palpate.{kind}`", page)
-        self.assertIn(f"schema {file.attrs['schema']}\n", page)
+        heading = next(line for line in page.splitlines() if line.startswith("# "))
+        self.assertRegex(heading, rf"schema .*\b{file.attrs['schema']}\b")
         self.assertRegex(file.attrs["creator"], r"^palpate \d+\.\d+\.\d+ \(.+\)$")
 
     def test_provenance_is_in_order_and_readable(self):
@@ -215,23 +218,38 @@ class FileFormat(unittest.TestCase):
                 np.testing.assert_equal(np.ravel(sample[name][k]), known.numbers(), name)
 
     def test_library_values(self):
-        known = Tokens(self.folder / "library.txt")
-        with h5py.File(self.folder / "library.h5", "r") as file:
+        for name in ("library", "coupled"):
+            with self.subTest(name):
+                self.check_library_values(name)
+
+    def check_library_values(self, name):
+        known = Tokens(self.folder / f"{name}.txt")
+        with h5py.File(self.folder / f"{name}.h5", "r") as file:
+            coupled = known.number() == 1
+            self.assertEqual(file.attrs["schema"], 2 if coupled else 1)
             self.assertEqual(file.attrs["name"], known.text())
             self.assertEqual(file.attrs["tool_shape"], known.text())
             self.assertEqual(file.attrs["tool_radius"], known.number())
             for name in ("position", "inward", "triangles"):
                 np.testing.assert_array_equal(file["surface"][name][()], known.table())
             response = {name: data[()] for name, data in file["response"].items()}
+
+            def check_curve(which, i, stored):
+                rows = slice(*response[f"{which}_offset"][i:i + 2]) if stored else None
+                for what in ("knot", "slope"):
+                    values = [value for (value,) in known.table()]
+                    self.assertEqual(response[f"{which}_{what}"][rows].tolist() if stored else [], values)
+
             for i in range(len(response["status"])):
                 self.assertEqual(response["status"][i], known.number())
-                for which in ("normal", "lateral"):
-                    rows = slice(*response[f"{which}_offset"][i:i + 2])
-                    for what in ("knot", "slope"):
-                        self.assertEqual(response[f"{which}_{what}"][rows].tolist(),
-                                         [value for (value,) in known.table()])
+                check_curve("normal", i, True)
+                check_curve("lateral", i, True)
                 self.assertEqual(response["normal_error"][i], known.number())
                 self.assertEqual(response["lateral_error"][i], known.number())
+                base = known.number()
+                if coupled:
+                    self.assertEqual(response["coupling_base"][i], base)
+                check_curve("coupling", i, coupled)
             certificate = file["certificate"]
             for name in ("friction", "depth", "stick", "slip", "worst_triangle"):
                 self.assertEqual(certificate.attrs[name], known.number())

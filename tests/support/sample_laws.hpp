@@ -2,9 +2,19 @@
 // One set of constants for every law of the table, of a soft tissue.
 #pragma once
 
+#include <ostream>
 #include <vector>
 
 #include "fem/laws/law_table.hpp"
+
+namespace palpate::fem {
+
+/// How googletest names a law among the parameters of a test.
+inline void PrintTo(const LawConstants& constants, std::ostream* out) {
+  *out << constants.law;
+}
+
+}  // namespace palpate::fem
 
 namespace palpate::test {
 

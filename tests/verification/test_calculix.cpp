@@ -48,6 +48,7 @@ fem::CampaignSettings settings_of(const fem::LawConstants& law, fem::Dilatation 
   settings.dilatation = dilatation;
   settings.indentation.depth = 0.003;
   settings.indentation.increments = 3;
+  settings.indentation.held_depths.clear();
   return settings;
 }
 
