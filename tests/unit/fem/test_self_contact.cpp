@@ -32,7 +32,7 @@ class Bar : public testing::Test {
 
 TEST_F(Bar, EndsOfARingMeetAtAFullCircle) {
   const SelfContact watch(mesh, Eigen::Vector3d(0.03, 0, 0), 1);
-  for (const double share : {0.0, 0.5, 0.9, 0.99})
+  for (const double share : {0.01, 0.5, 0.9, 0.99})
     EXPECT_EQ(watch.entering_node(bent(mesh, 0.06, share * 2 * M_PI)), -1) << share;
   const int node = watch.entering_node(bent(mesh, 0.06, 1.02 * 2 * M_PI));
   ASSERT_GE(node, 0);
