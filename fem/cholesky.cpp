@@ -202,7 +202,8 @@ Eigen::MatrixXd Cholesky::last_block() const {
     const int rows = v.row_start[k + 1] - v.row_start[k];
     const int* row = v.rows + v.row_start[k];
     for (int j = std::max(first, v.first_column[k]); j < v.first_column[k + 1]; ++j) {
-      const double* column = v.values + v.value_start[k] + (j - v.first_column[k]) * rows;
+      const double* column =
+          v.values + v.value_start[k] + std::ptrdiff_t{j - v.first_column[k]} * rows;
       for (int i = j - v.first_column[k]; i < rows; ++i) L(row[i] - first, j - first) = column[i];
     }
   }

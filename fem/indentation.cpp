@@ -259,7 +259,7 @@ class SiteEquilibrium {
   /// memory.
   NewtonResult solve_direct_alone(const ToolContact& contact, Displacement& u) {
     const std::lock_guard lock(context_.direct_solve);
-    const NewtonResult result = solve_direct(contact, u);
+    NewtonResult result = solve_direct(contact, u);
     direct_.reset();
     return result;
   }

@@ -88,7 +88,7 @@ void backward_panel(const float* panel, float* own, int inside, const int* rows,
                     float* y) {
   Packs<W> x;
   for (int k = 0; k < W; ++k) x[k] = pack(own, k);
-  const float* row = panel + W * W;
+  const float* row = panel + at(W) * at(W);
   const auto subtract = [&](const Pack& value) {
     for (int k = 0; k < W; ++k) x[k] -= row[k] * value;
     row += W;

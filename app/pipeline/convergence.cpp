@@ -22,7 +22,8 @@ constexpr double kRefinement = 1.4;
 /// First, middle and last but one part of all sites: spread over the body as its numbering is.
 std::vector<std::int32_t> three_of(const std::vector<std::int32_t>& all) {
   std::vector<std::int32_t> some;
-  for (const std::size_t sixth : {1, 3, 5}) some.push_back(all[sixth * all.size() / 6]);
+  for (const std::size_t sixth : {std::size_t{1}, std::size_t{3}, std::size_t{5}})
+    some.push_back(all[sixth * all.size() / 6]);
   some.erase(std::unique(some.begin(), some.end()), some.end());
   return some;
 }
