@@ -88,13 +88,13 @@ class Campaign(unittest.TestCase):
     def kill_until_done(self, out, moment):
         """Starts the campaign again and again, killing it at random moments, until it ends. @return the kills."""
         journal = out / "curves.journal"
-        kept, kills = 0, 0
+        kept, kills, stretch = 0, 0, 1.0
         while True:
             run = subprocess.Popen([PALPATE, "precompute", self.case, "--out", out, "--threads", "2"],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
             # Late enough for some progress once in a while, early enough to kill many times.
             try:
-                run.wait(timeout=moment())
+                run.wait(timeout=stretch * moment())
             except subprocess.TimeoutExpired:
                 run.send_signal(signal.SIGKILL)
             run.stderr.close()
@@ -106,6 +106,8 @@ class Campaign(unittest.TestCase):
             self.assertLess(kills, 200, "no progress")
             now = summary(journal)["sites_done"] if journal.exists() and journal.stat().st_size > 90 else 0
             self.assertGreaterEqual(now, kept)
+            # Sites end in waves: on a machine that has become slower no kill would be late enough for one.
+            stretch = 1.0 if now > kept else 1.2 * stretch
             kept = now
 
     def test_a_full_disk_ends_in_one_line_and_the_run_can_go_on(self):
