@@ -162,9 +162,8 @@ void add_body_part(CLI::App& command, Action& action) {
   CLI::App* part = command.add_subcommand(
       "body", "From indentation curves measured on a body, by the finite element model");
   part->footer(
-      "Example: palpate calibrate body data/cases/bench.toml --measured "
-      "out/bench-measured/curves.h5 "
-      "--young gel --out out/bench");
+      "Example: palpate calibrate body data/cases/pad.toml --measured out/pad-measured/curves.h5 "
+      "--young gel --out out/pad");
   const auto options = std::make_shared<BodyOptions>();
   options->common = add_case_options(*part, ThreadsOption::Present);
   part->add_option("--measured", options->measured, "curves.h5 of `palpate import`")->required();

@@ -152,7 +152,7 @@ void add_compare_command(CLI::App& root, Action& action) {
       "solutions");
   command->footer(
       "Examples:\n"
-      "  palpate compare out/bench-measured/curves.h5 out/bench/curves.h5 --out out/bench\n"
+      "  palpate compare out/pad-measured/curves.h5 out/pad/curves.h5 --out out/pad\n"
       "  palpate compare --fem data/cases/cylinder-demo.toml --out out/cylinder-demo");
   const auto options = std::make_shared<Options>();
   CLI::Option* reference = command->add_option("REFERENCE", options->reference,

@@ -27,6 +27,13 @@ int import_records(const Options& options) {
         site["vertex"].get<int>(), site["repeats"].get<int>(), 1e3 * site["depth_m"].get<double>(),
         site["force_N"].get<double>(), site["force_uncertainty_N"].get<double>(),
         1e6 * site["contact_uncertainty_m"].get<double>());
+    for (const auto& drag : site["lateral_paths"]) {
+      if (drag["repeats"] == 0) continue;  // made from the normal path, not measured
+      say("    drag at {:.2f} mm: {} repeats to {:.2f} mm, {:.4f} N +- {:.4f} N",
+          1e3 * drag["held_depth_m"].get<double>(), drag["repeats"].get<int>(),
+          1e3 * drag["travel_m"].get<double>(), drag["force_N"].get<double>(),
+          drag["force_uncertainty_N"].get<double>());
+    }
   }
   say("import: {} records at {} sites -> {} (account in import.json)",
       result.account["records"].size(), result.curves.sites.size(), (out / "curves.h5").string());
@@ -39,8 +46,8 @@ void add_import_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
       "import", "Records of a testing machine or robot -> curves.h5, like those of a campaign");
   command->footer(
-      "Example: palpate import data/measured/bench/bench.toml --body out/bench/body.h5 "
-      "--out out/bench-measured");
+      "Example: palpate import data/measured/pad/presses.toml --body out/pad/body.h5 "
+      "--out out/pad-measured");
   const auto options = std::make_shared<Options>();
   command->add_option("SIDECAR", options->sidecar, "Sidecar (TOML), see docs/measured.md")
       ->required();

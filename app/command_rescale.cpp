@@ -44,7 +44,7 @@ void add_rescale_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
       "rescale", "Simulated curves with the scale of measured ones -> curves.h5");
   command->footer(
-      "Example: palpate rescale out/bench/curves.h5 out/bench-measured/curves.h5 --out out/scaled");
+      "Example: palpate rescale out/pad/curves.h5 out/pad-measured/curves.h5 --out out/scaled");
   const auto options = std::make_shared<Options>();
   command->add_option("SIMULATED", options->simulated, "curves.h5 of `palpate precompute`")
       ->required();

@@ -2,19 +2,15 @@
 #include "fem/campaign.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <deque>
-#include <exception>
 #include <mutex>
 #include <numeric>
-#include <thread>
 
 #include "fem/at.hpp"
 #include "fem/cholesky.hpp"
+#include "fem/crew.hpp"
 #include "fem/indentation.hpp"
-#include "fem/memory.hpp"
 #include "fem/region_laws.hpp"
 #include "format/error.hpp"
 
@@ -68,8 +64,7 @@ std::vector<std::size_t> take_over(const std::vector<SiteCurves>& known, Curves&
   return open;
 }
 
-/// Solves the sites on several cores. Each core serves a batch of up to kBatch sites, a thread for
-/// each, of which one runs at a time; they share the block solves.
+/// Solves the sites that are open and tells of each as it finishes.
 class Crew {
  public:
   /// `open`: the places of `curves` that are to be solved.
@@ -84,64 +79,37 @@ class Crew {
   }
 
   void run() {
-    const std::size_t cores = at(std::max(1, settings_.threads));
-    const std::size_t share = (open_.size() + cores - 1) / cores;
-    // One site at a time may need a factor of its own, in double precision.
-    const double fallback = 2 * context_.rest_factor->bytes();
-    const double bound = settings_.memory > 0 ? std::max(1.0, settings_.memory - fallback) : 0;
-    const int lanes = fitting_times(
-        bound,
-        static_cast<double>(cores) * bytes_of_site(context_, curves_.sites[open_.front()].vertex),
-        static_cast<int>(std::min<std::size_t>(kBatch, share)),
-        "beside a factor for the site that needs its own, a site on each of " +
-            std::to_string(cores) + " cores");
-    std::deque<SolveBatch> batches;
-    std::vector<std::thread> threads;
-    for (std::size_t core = 0; core < cores; ++core) {
-      SolveBatch& batch = batches.emplace_back(*context_.rest_factor, lanes);
-      for (int lane = 0; lane < lanes; ++lane)
-        threads.emplace_back([this, &batch, lane] { work(batch, lane); });
-    }
-    for (auto& thread : threads) thread.join();
-    if (failure_) std::rethrow_exception(failure_);
+    const CrewSize size =
+        crew_size(*context_.rest_factor, settings_.threads, open_.size(), settings_.memory,
+                  bytes_of_site(context_, curves_.sites[open_.front()].vertex));
+    work_abreast(*context_.rest_factor, size, open_.size(),
+                 [this](SolveBatch::Member& member, std::size_t i) {
+                   solve(member, curves_.sites[open_[i]]);
+                 });
   }
 
  private:
-  void work(SolveBatch& batch, int lane) {
-    use_one_thread_per_site();
-    SolveBatch::Member member(batch, lane);
-    try {
-      SiteSolver solver(context_, &member);
-      for (std::size_t next = next_++; next < open_.size(); next = next_++) {
-        SiteCurves& place = curves_.sites[open_[next]];
-        {
-          const std::lock_guard lock(mutex_);
-          ++progress_.running;
-        }
-        SiteCurves site = solver.solve(place.vertex);
-        const std::lock_guard lock(mutex_);
-        --progress_.running;
-        ++progress_.done;
-        if (site.status != SiteStatus::Complete) ++progress_.failed;
-        place = std::move(site);
-        if (settings_.finished) settings_.finished(place);
-        if (settings_.progress) settings_.progress(progress_);
-      }
-    } catch (...) {
+  void solve(SolveBatch::Member& member, SiteCurves& place) {
+    {
       const std::lock_guard lock(mutex_);
-      failure_ = std::current_exception();
-      next_ = open_.size();
+      ++progress_.running;
     }
+    SiteCurves site = SiteSolver(context_, &member).solve(place.vertex);
+    const std::lock_guard lock(mutex_);
+    --progress_.running;
+    ++progress_.done;
+    if (site.status != SiteStatus::Complete) ++progress_.failed;
+    place = std::move(site);
+    if (settings_.finished) settings_.finished(place);
+    if (settings_.progress) settings_.progress(progress_);
   }
 
   const CampaignContext& context_;
   const CampaignSettings& settings_;
   std::vector<std::size_t> open_;
   Curves& curves_;
-  std::atomic<std::size_t> next_{0};
   std::mutex mutex_;
   CampaignProgress progress_;
-  std::exception_ptr failure_;
 };
 
 }  // namespace

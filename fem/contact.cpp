@@ -165,15 +165,19 @@ Eigen::Vector3d ToolContact::tool_force(const Displacement& u) const {
   return force;
 }
 
-Eigen::Vector3d ToolContact::tool_force_slope(const Displacement& u, const Displacement& du) const {
-  Eigen::Vector3d slope = Eigen::Vector3d::Zero();
+void ToolContact::add_tool_force_gradient(const SolidModel& model, const Displacement& u,
+                                          const Eigen::Vector3d& direction,
+                                          Eigen::VectorXd& g) const {
   for (const Point& point : points_) {
     const Eigen::Matrix3d H = hessian(point, position(point, u), true);
     if (H.isZero(0)) continue;
+    const Eigen::Vector3d pull = point.area * H * direction;
     const Facet& facet = facets_[at(point.facet)];
-    for (std::size_t a = 0; a < 6; ++a) slope -= point.area * point.N[a] * H * du.col(facet[a]);
+    for (std::size_t a = 0; a < 6; ++a) {
+      const int first = model.equation(facet[a]);
+      if (first >= 0) g.segment<3>(first) -= point.N[a] * pull;
+    }
   }
-  return slope;
 }
 
 double ToolContact::contact_area(const Displacement& u) const {

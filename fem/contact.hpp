@@ -42,8 +42,9 @@ class ToolContact {
   void bond(const Displacement& u, double closeness = 0);
 
   Eigen::Vector3d tool_force(const Displacement& u) const;  ///< of the tool ON the body, N
-  /// d(tool_force)/du applied to `du`.
-  Eigen::Vector3d tool_force_slope(const Displacement& u, const Displacement& du) const;
+  /// Adds d(tool_force . direction)/du to the unknowns of `model`.
+  void add_tool_force_gradient(const SolidModel& model, const Displacement& u,
+                               const Eigen::Vector3d& direction, Eigen::VectorXd& g) const;
   double contact_area(const Displacement& u) const;  ///< m^2, reference
   double penetration(const Displacement& u) const;   ///< m, deepest
   /// N, the pulls of stuck points on the body, added up: a surface that is not glued would let go.

@@ -177,15 +177,10 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
       std::make_unique<RestFactor>(model.pattern(), permutation, K, body.name, settings.memory);
 }
 
-namespace {
-
-/// The part of the body around a site where the strains are large.
 SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site) {
   const ToolGeometry& tool = context.indentation.tool;
   return {context.model, site, tool.extent() + (kWindowRadius - 1) * tool.radius};
 }
-
-}  // namespace
 
 double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
   // Counted here and in the solvers: history, trials and line searches of a path; curvature pairs,

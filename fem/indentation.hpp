@@ -38,6 +38,9 @@ struct CampaignContext {
   mutable std::mutex direct_solve;          ///< held while a site factorizes the whole body
 };
 
+/// The part of the body around a site where the strains are large.
+SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site);
+
 /// Memory of a site under way, at most.
 double bytes_of_site(const CampaignContext& context, std::int32_t vertex);
 

@@ -2,17 +2,15 @@
 #include "fem/sensitivity.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <mutex>
-#include <optional>
-#include <thread>
 
 #include "fem/at.hpp"
+#include "fem/crew.hpp"
 #include "fem/indentation.hpp"
 #include "fem/laws/law.hpp"
 #include "fem/region_laws.hpp"
+#include "fem/tangent_solver.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fem {
@@ -68,44 +66,56 @@ Varied varied(const Body& body, const CampaignSettings& settings, const RegionCo
   return v;
 }
 
-/// Differentiates at the equilibria of one site.
+/// Differentiates at the equilibria of one site, by the adjoint of its tangent.
 class Differentiator {
  public:
-  Differentiator(const CampaignContext& context, const std::vector<Varied>& constants)
+  Differentiator(const CampaignContext& context, const std::vector<Varied>& constants,
+                 SolveBatch::Member& batch, const PressPoint& place)
       : context_(context),
         constants_(constants),
-        factor_(context.model.pattern(), &context.permutation) {}
+        inward_(place.inward.data()),
+        window_(window_at(context, Eigen::Vector3d(place.position.data()))),
+        solver_(context.model, window_,
+                [&batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch.solve(b, x); }) {}
 
   /// False when the stiffness is not positive definite: the equilibrium is at a limit point.
-  bool differentiate(const ToolContact& contact, const Displacement& u, const Vec3& inward,
+  bool differentiate(const ToolContact& contact, const Displacement& u,
                      std::vector<double>& slope) {
+    slope.clear();
+    if (constants_.empty()) return true;
     const SolidModel& model = context_.model;
-    model.stiffness(u, K_);
-    contact.add_stiffness(model, u, true, K_);
-    if (!factor_.factorize(K_)) return false;
-    const Eigen::Vector3d direction(inward[0], inward[1], inward[2]);
+    Eigen::VectorXd by_u = Eigen::VectorXd::Zero(model.pattern().n), adjoint;
+    contact.add_tool_force_gradient(model, u, inward_, by_u);
+    if (!solve(contact, u, by_u, adjoint)) return false;
     Eigen::VectorXd contact_forces = Eigen::VectorXd::Zero(model.pattern().n);
     contact.add_forces(model, u, contact_forces);
-    slope.clear();
+    const double force = contact.tool_force(u).dot(inward_);
     for (const Varied& constant : constants_) {
-      Eigen::VectorXd d(model.pattern().n);
-      const Eigen::VectorXd load = -(constant.slope(u) + constant.penalty * contact_forces);
-      factor_.solve(load.data(), d.data(), workspace_);
-      Displacement du = Displacement::Zero(3, u.cols());
-      move(model, 1, d, du);
-      const Eigen::Vector3d dF =
-          contact.tool_force_slope(u, du) + constant.penalty * contact.tool_force(u);
-      slope.push_back(dF.dot(direction));
+      const Eigen::VectorXd residual = constant.slope(u) + constant.penalty * contact_forces;
+      slope.push_back(constant.penalty * force - adjoint.dot(residual));
     }
     return true;
   }
 
  private:
+  /// K x = b; by a factor of K itself where the shared one does not get there.
+  bool solve(const ToolContact& contact, const Displacement& u, const Eigen::VectorXd& b,
+             Eigen::VectorXd& x) {
+    if (solver_.linearize(contact, u) && solver_.solve(b, x)) return true;
+    const std::lock_guard lock(context_.direct_solve);
+    Cholesky factor(context_.model.pattern(), &context_.permutation);
+    if (!factor.factorize(solver_.values())) return false;
+    SolveWorkspace workspace;
+    x.resize(b.size());
+    factor.solve(b.data(), x.data(), workspace);
+    return true;
+  }
+
   const CampaignContext& context_;
   const std::vector<Varied>& constants_;
-  Cholesky factor_;
-  SolveWorkspace workspace_;
-  std::vector<double> K_;
+  Eigen::Vector3d inward_;
+  SolidModel window_;
+  TangentSolver solver_;
 };
 
 bool is_among(double depth, const std::vector<double>& depths) {
@@ -113,16 +123,18 @@ bool is_among(double depth, const std::vector<double>& depths) {
                      [&](double d) { return std::abs(d - depth) < 1e-9 * depth; });
 }
 
-SiteSensitivity differentiate_site(const CampaignContext& context, SolveBatch::Member* batch,
-                                   Differentiator& differentiator, std::int32_t vertex) {
+SiteSensitivity differentiate_site(const CampaignContext& context,
+                                   const std::vector<Varied>& constants, SolveBatch::Member& batch,
+                                   std::int32_t vertex) {
   SiteSensitivity result;
   result.vertex = vertex;
-  const Vec3 inward = context.body.response.inward[at(vertex)];
-  SiteSolver solver(context, batch);
+  const PressPoint place = context.place(vertex);
+  Differentiator differentiator(context, constants, batch, place);
+  SiteSolver solver(context, &batch);
   solver.observe([&](const ToolContact& contact, const Displacement& u, const CurveSample& sample) {
     if (!is_among(sample.displacement, context.indentation.held_depths)) return;
-    ForceSensitivity s{sample.displacement, dot(sample.force, inward), {}};
-    if (differentiator.differentiate(contact, u, inward, s.slope)) {
+    ForceSensitivity s{sample.displacement, dot(sample.force, place.inward), {}};
+    if (differentiator.differentiate(contact, u, s.slope)) {
       result.samples.push_back(std::move(s));
     } else if (result.reason.empty()) {
       result.reason = "the stiffness is not positive definite at an equilibrium";
@@ -131,6 +143,11 @@ SiteSensitivity differentiate_site(const CampaignContext& context, SolveBatch::M
   const SiteCurves curves = solver.solve(vertex);
   if (!curves.reason.empty()) result.reason = curves.reason;
   return result;
+}
+
+/// Of a site that is differentiated: beside what its paths need, the tangent of the whole body.
+double bytes_of(const CampaignContext& context, std::int32_t vertex) {
+  return bytes_of_site(context, vertex) + sizeof(double) * context.model.pattern().nonzeros();
 }
 
 }  // namespace
@@ -142,36 +159,22 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
   normal.indentation.held_depths = depths;  // the states that the path must pass
   normal.indentation.depth = *std::max_element(depths.begin(), depths.end());
   normal.indentation.azimuths.clear();  // no lateral paths
+  // An equilibrium without friction does not depend on the way there: the depths are steps enough.
+  if (normal.indentation.friction == ToolFriction::Frictionless) normal.indentation.increments = 1;
   check_indentation(normal.indentation);
+  std::vector<SiteSensitivity> results(settings.sites.size());
+  if (results.empty()) return results;
   const CampaignContext context(body, normal, Engine::SharedFactor);
   std::vector<Varied> derivatives;
   for (const RegionConstant& constant : constants) {
     derivatives.push_back(varied(body, normal, constant));
   }
-  std::vector<SiteSensitivity> results(settings.sites.size());
-  std::atomic<std::size_t> next{0};
-  std::mutex mutex;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      use_one_thread_per_site();
-      SolveBatch batch(*context.rest_factor, 1);
-      SolveBatch::Member member(batch, 0);
-      Differentiator differentiator(context, derivatives);
-      for (std::size_t i = next++; i < results.size(); i = next++) {
-        results[i] = differentiate_site(context, &member, differentiator, settings.sites[i]);
-      }
-    } catch (...) {
-      const std::lock_guard lock(mutex);
-      failure = std::current_exception();
-      next = results.size();
-    }
-  };
-  std::vector<std::thread> threads;
-  const auto count = std::min<std::size_t>(at(std::max(1, settings.threads)), results.size());
-  for (std::size_t t = 0; t < count; ++t) threads.emplace_back(work);
-  for (std::thread& thread : threads) thread.join();
-  if (failure) std::rethrow_exception(failure);
+  const CrewSize size = crew_size(*context.rest_factor, settings.threads, results.size(),
+                                  settings.memory, bytes_of(context, settings.sites.front()));
+  work_abreast(*context.rest_factor, size, results.size(),
+               [&](SolveBatch::Member& member, std::size_t i) {
+                 results[i] = differentiate_site(context, derivatives, member, settings.sites[i]);
+               });
   return results;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How the force of a normal path depends on the constants of the regions: the tangent-linear model
-// of the indentation, solved at the equilibria that the campaign finds.
+// How the force of a normal path depends on the constants of the regions: the adjoint of the
+// indentation, solved at the equilibria that the campaign finds.
 #pragma once
 
 #include <string>
@@ -31,11 +31,13 @@ struct SiteSensitivity {
 };
 
 /// Press the sites to the given depths (settings.indentation.depth is the last of them) and
-/// differentiate. With R(u, c) = 0 the equilibrium and F(u, c) the force of the tool,
-///   K du/dc = -dR/dc,   dF/dc = dF/du . du/dc + dF/dc|_u,
-/// exact for the discrete model at the equilibrium: the contact penalty follows the stiffest
-/// modulus at the surface and is differentiated with it. One factorization a sample, in double
-/// precision.
+/// differentiate. With R(u, c) = 0 the equilibrium, K its tangent and F(u, c) the force of the
+/// tool,
+///   K l = dF/du,   dF/dc = dF/dc|_u - l . dR/dc|_u,
+/// one solve a sample for any number of constants, exact for the discrete model at the equilibrium:
+/// the contact penalty follows the stiffest modulus at the surface and is differentiated with it.
+/// Sites run abreast as in a campaign, and the solves share its factor: none of the body is made
+/// but that at rest.
 /// @throws Error(Configuration) as run_campaign; for a region that the body has not.
 std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSettings& settings,
                                              const std::vector<double>& depths,

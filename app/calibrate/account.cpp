@@ -53,6 +53,7 @@ Json calibration_account(const calibrate::Calibration& calibration, double confi
           {"condition", number(calibration.condition)},
           {"degrees_of_freedom", calibration.freedom},
           {"residual_scatter", calibration.scatter},
+          {"intervals_widened", calibration.widened},
           {"iterations", calibration.iterations},
           {"warnings", calibration.warnings}};
 }
@@ -81,6 +82,10 @@ Json homogeneous_account(const calibrate::HomogeneousFit& fit,
                       {"fitted_nominal_Pa", fit.predicted[i]}});
   }
   account["tests"] = errors;
+  Json unstable = nullptr;
+  if (std::isfinite(fit.all_states.unstable_at[0])) unstable = fit.all_states.unstable_at;
+  account["stability_of_all_states"] = {{"largest_log_strain", fit.all_states.largest_strain},
+                                        {"unstable_at_stretches", unstable}};
   return account;
 }
 

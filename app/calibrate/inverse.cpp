@@ -195,8 +195,13 @@ class Inverse {
     }
   }
 
-  /// The model at these constants, remembered: the solver asks for values and slopes separately.
+  /// The model at these constants. The last two are remembered: the solver asks for values and
+  /// slopes separately, and goes back to the point before when a step does not help.
   bool solve(const std::vector<double>& sought) {
+    if (sought == at_) return usable_;
+    std::swap(at_, before_.at);
+    std::swap(usable_, before_.usable);
+    std::swap(model_, before_.model);
     if (sought == at_) return usable_;
     at_ = sought;
     ++evaluations_;
@@ -313,8 +318,15 @@ class Inverse {
   std::vector<double> depths_;
   std::vector<Target> targets_;
   bool known_ = false;
+  struct Evaluation {
+    std::vector<double> at;
+    bool usable = false;
+    std::vector<fem::SiteSensitivity> model;
+  };
+
   std::vector<double> at_;
   bool usable_ = false;
+  Evaluation before_;
   std::string failure_;
   std::vector<fem::SiteSensitivity> model_;
   int evaluations_ = 0;

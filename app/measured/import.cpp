@@ -33,7 +33,7 @@ Json number(double value) {
 /// Everything found at one site.
 struct SiteRecords {
   std::vector<m::PressCurve> presses;
-  std::vector<CurvePath> lateral;
+  std::vector<m::DragCurve> drags;
 };
 
 class Importer {
@@ -159,17 +159,16 @@ class Importer {
     settings.press = press_settings(robot.cycle);
     settings.placement_tolerance = s_.placement.tolerance;
     settings.lateral_samples = s_.path.lateral_samples;
-    settings.force_calibration = s_.machine.force_calibration;
     settings.centre_to_tip = s_.tool.reference == "centre" ? s_.tool.radius : 0;
     const m::RobotCurves curves = m::analyse_robot_log(robot_log(file, table), *body_, settings);
     add_account(robot.file, table, curves.site.vertex, curves.site.distance, curves.press);
     records_.back()["tilt_rad"] = curves.tilt;
     records_.back()["touch_m"] = curves.touch;
-    if (curves.lateral) {
-      records_.back()["lateral"] = {{"held_depth_m", curves.lateral->held_depth},
-                                    {"travel_m", curves.lateral->samples.back().displacement},
-                                    {"slip_at_m", number(curves.slip)}};
-      sites_[curves.site.vertex].lateral.push_back(*curves.lateral);
+    if (curves.drag) {
+      records_.back()["drag"] = {{"held_depth_m", curves.drag->held_depth},
+                                 {"travel_m", curves.drag->travel.back()},
+                                 {"slip_at_m", number(curves.drag->slip)}};
+      sites_[curves.site.vertex].drags.push_back(*curves.drag);
     }
     sites_[curves.site.vertex].presses.push_back(curves.press);
     files_.push_back(file);
@@ -215,14 +214,17 @@ class Importer {
       site.paths.push_back(m::mean_path(records.presses, inward_of(vertex), settings,
                                         fmt::format("site at vertex {}", vertex)));
       curves.depth = std::max(curves.depth, site.paths.back().samples.back().displacement);
-      if (records.lateral.empty() && s_.path.lateral_ratio > 0) {
+      if (records.drags.empty() && s_.path.lateral_ratio > 0) {
         site.paths.push_back(m::lateral_from_normal(site.paths.front(), s_.path.lateral_ratio));
         curves.lateral_travel =
             std::max(curves.lateral_travel, site.paths.back().samples.back().displacement);
       }
-      for (const CurvePath& path : records.lateral) {
+      for (CurvePath& path :
+           m::lateral_paths(records.drags, inward_of(vertex),
+                            {s_.path.lateral_samples, s_.machine.force_calibration},
+                            fmt::format("drags of the site at vertex {}", vertex))) {
         curves.lateral_travel = std::max(curves.lateral_travel, path.samples.back().displacement);
-        site.paths.push_back(path);
+        site.paths.push_back(std::move(path));
       }
       curves.sites.push_back(std::move(site));
     }
@@ -258,19 +260,32 @@ class Importer {
                        s_.path.lateral_ratio);
   }
 
+  static Json end_account(const CurvePath& path) {
+    const CurveSample& end = path.samples.back();
+    return {{"repeats", path.repeats},
+            {"contact_uncertainty_m", number(path.contact_uncertainty)},
+            {"force_N", dot(end.force, path.direction)},
+            {"force_scatter_N", number(end.force_scatter)},
+            {"force_uncertainty_N", number(end.force_uncertainty)}};
+  }
+
   static Json sites_account(const Curves& curves) {
     Json sites = Json::array();
     for (const SiteCurves& site : curves.sites) {
-      const CurvePath& path = site.paths.front();
-      const CurveSample& end = path.samples.back();
-      sites.push_back({{"vertex", site.vertex},
-                       {"repeats", path.repeats},
-                       {"lateral_paths", site.paths.size() - 1},
-                       {"contact_uncertainty_m", path.contact_uncertainty},
-                       {"depth_m", end.displacement},
-                       {"force_N", dot(end.force, path.direction)},
-                       {"force_scatter_N", number(end.force_scatter)},
-                       {"force_uncertainty_N", number(end.force_uncertainty)}});
+      const CurvePath& normal = site.paths.front();
+      Json account = {{"vertex", site.vertex}, {"depth_m", normal.samples.back().displacement}};
+      account.update(end_account(normal));
+      Json lateral = Json::array();
+      for (std::size_t i = 1; i < site.paths.size(); ++i) {
+        const CurvePath& path = site.paths[i];
+        Json entry = {{"held_depth_m", path.held_depth},
+                      {"travel_m", path.samples.back().displacement},
+                      {"direction", path.direction}};
+        entry.update(end_account(path));
+        lateral.push_back(entry);
+      }
+      account["lateral_paths"] = lateral;
+      sites.push_back(account);
     }
     return sites;
   }

@@ -56,14 +56,13 @@ inline double cauchy_over_nominal(Mode mode, double s) {
   return mode == Mode::SimpleShear ? 1 : s;
 }
 
-/// Smaller eigenvalue of the Hessian of W by the logarithmic strains (e1, e2), e3 = -e1 - e2: the
-/// law resists every small further deformation where it is positive [Drucker 1957; as a test of
-/// fitted rubber laws, Ogden 1972].
+/// Smaller eigenvalue of the Hessian of W by the logarithmic strains (e1, e2), e3 = -e1 - e2, at
+/// these stretches: the law resists every small further deformation where it is positive
+/// [Drucker 1957; as a test of fitted rubber laws, Ogden 1972].
 template <class Energy>
-double least_tangent(const Energy& energy, Mode mode, double s) {
+double least_tangent(const Energy& energy, const std::array<double, 3>& l) {
   using Inner = Dual<double, 2>;
   using Outer = Dual<Inner, 2>;
-  const auto l = stretches(mode, s);
   std::array<Outer, 3> strain;
   for (int i = 0; i < 2; ++i) {
     const Inner e(std::log(l[static_cast<std::size_t>(i)]), i);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numbers>
 
 #include "format/error.hpp"
 
@@ -28,7 +29,7 @@ struct Law {
   std::function<std::vector<std::vector<double>>(double scale)> starts;
   /// Nominal stress; its derivatives by the constants into `slope` unless null.
   std::function<double(const double* c, Mode mode, double s, double* slope)> stress;
-  std::function<double(const double* c, Mode mode, double s)> tangent;
+  std::function<double(const double* c, const std::array<double, 3>& stretches)> tangent;
 };
 
 template <class Energy>
@@ -48,13 +49,13 @@ double stress_of(const double* c, Mode mode, double s, double* slope) {
 }
 
 template <class Energy>
-double tangent_of(const double* c, Mode mode, double s) {
-  const auto energy = [&]<class T>(const std::array<T, 3>& l) {
+double tangent_of(const double* c, const std::array<double, 3>& l) {
+  const auto energy = [&]<class T>(const std::array<T, 3>& at) {
     std::array<T, Energy::kConstants> constants;
     for (std::size_t i = 0; i < constants.size(); ++i) constants[i] = T(c[i]);
-    return Energy{}(constants.data(), l);
+    return Energy{}(constants.data(), at);
   };
-  return least_tangent(energy, mode, s);
+  return least_tangent(energy, l);
 }
 
 template <class Energy>
@@ -271,12 +272,51 @@ StabilityLimit stability_in(const Law& law, const std::vector<double>& c, Mode m
   for (const double end : {high, low}) {
     for (int i = 0; i <= steps; ++i) {
       const double s = rest + (end - rest) * i / steps;
-      if (law.tangent(c.data(), mode, s) > 0) continue;
+      if (law.tangent(c.data(), stretches(mode, s)) > 0) continue;
       limit.unstable_at = s;
       return limit;
     }
   }
   return limit;
+}
+
+double largest_strain(const std::vector<HomogeneousTest>& tests) {
+  double largest = 0;
+  for (const HomogeneousTest& test : tests) {
+    for (const double s : test.deformation) {
+      for (const double l : stretches(test.mode, s)) {
+        largest = std::max(largest, std::abs(std::log(l)));
+      }
+    }
+  }
+  return largest;
+}
+
+/// A ray of states from uniaxial extension (share 0) over pure shear to uniaxial compression (1):
+/// by isotropy the other directions of strain repeat these.
+std::array<double, 3> stretches_on_ray(double share, double strain) {
+  const double angle = share * std::numbers::pi / 3;
+  std::array<double, 3> e;
+  for (std::size_t i = 0; i < 3; ++i) {
+    e[i] = std::cos(angle - 2 * std::numbers::pi / 3 * static_cast<double>(i));
+  }
+  const double largest = std::max(std::abs(e[0]), std::abs(e[2]));
+  for (double& value : e) value = std::exp(strain / largest * value);
+  return e;
+}
+
+StabilityOfStates stability_of_states(const Law& law, const std::vector<double>& c, double strain) {
+  constexpr int steps = 100, rays = 30;
+  StabilityOfStates result{strain, {kUnknown, kUnknown, kUnknown}};
+  for (int i = 1; i <= steps; ++i) {
+    for (int ray = 0; ray <= rays; ++ray) {
+      const auto l = stretches_on_ray(static_cast<double>(ray) / rays, strain * i / steps);
+      if (law.tangent(c.data(), l) > 0) continue;
+      result.unstable_at = l;
+      return result;
+    }
+  }
+  return result;
 }
 
 std::vector<Constant> problem_constants(const Law& law, double scale,
@@ -298,6 +338,24 @@ std::vector<Constant> problem_constants(const Law& law, double scale,
   return out;
 }
 
+void warn_of_instability(const std::vector<HomogeneousTest>& tests, HomogeneousFit& fit) {
+  bool in_a_test = false;
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    const double at = fit.stability[i].unstable_at;
+    if (!std::isfinite(at)) continue;
+    in_a_test = true;
+    fit.calibration.warnings.push_back("the fitted law is unstable in the range of " +
+                                       tests[i].name + ": from a deformation of " +
+                                       std::to_string(at) + " on");
+  }
+  const std::array<double, 3>& l = fit.all_states.unstable_at;
+  if (in_a_test || !std::isfinite(l[0])) return;
+  fit.calibration.warnings.push_back(
+      "the fitted law is unstable outside the modes of the tests: at stretches " +
+      std::to_string(l[0]) + ", " + std::to_string(l[1]) + ", " + std::to_string(l[2]) +
+      ", within their strains; add a test in another mode, or bound the constants");
+}
+
 }  // namespace
 
 std::vector<std::string_view> homogeneous_laws() {
@@ -316,7 +374,7 @@ double law_stress(std::string_view law, const std::vector<double>& constants, Mo
 
 double law_tangent(std::string_view law, const std::vector<double>& constants, Mode mode,
                    double s) {
-  return law_named(law).tangent(constants.data(), mode, s);
+  return law_named(law).tangent(constants.data(), stretches(mode, s));
 }
 
 HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
@@ -365,12 +423,9 @@ HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
     const double rest = rest_of(test.mode);
     fit.stability.push_back(
         stability_in(law, c, test.mode, std::min(*low, rest), std::max(*high, rest)));
-    if (std::isfinite(fit.stability.back().unstable_at)) {
-      fit.calibration.warnings.push_back("the fitted law is unstable in the range of " + test.name +
-                                         ": from a deformation of " +
-                                         std::to_string(fit.stability.back().unstable_at) + " on");
-    }
   }
+  fit.all_states = stability_of_states(law, c, largest_strain(tests));
+  warn_of_instability(tests, fit);
   // Simple shear at rest: the slope of the stress is the shear modulus.
   constexpr double small = 1e-6;
   fit.shear_modulus = law.stress(c.data(), Mode::SimpleShear, small, nullptr) / small;

@@ -2,6 +2,7 @@
 // Constants of a law from tests in homogeneous deformations, alone or several together.
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -65,11 +66,20 @@ struct StabilityLimit {
   double unstable_at = 0;    ///< NaN when none
 };
 
+/// The same over all states whose principal logarithmic strains stay within the largest of the
+/// tests: what a body in contact goes through is none of the modes of a test.
+struct StabilityOfStates {
+  double largest_strain = 0;  ///< logarithmic
+  /// Principal stretches of the unstable state of least strain; NaN when there is none.
+  std::array<double, 3> unstable_at{};
+};
+
 struct HomogeneousFit {
   Calibration calibration;
   double shear_modulus = 0;  ///< Pa, at rest
   std::vector<TestError> errors;
   std::vector<StabilityLimit> stability;
+  StabilityOfStates all_states;
   std::vector<std::vector<double>> predicted;  ///< nominal stress at the points of each test, Pa
 };
 

@@ -90,6 +90,13 @@ std::string text_of(double value) {
   return text;
 }
 
+/// Whether residuals over their stated uncertainty scatter more than chance lets them: a scatter of
+/// one over n - p residuals is itself uncertain by 1/sqrt(2 (n - p)).
+bool is_unexplained(const Calibration& result) {
+  constexpr double kDeviations = 3;
+  return result.freedom > 0 && result.scatter > 1 + kDeviations / std::sqrt(2.0 * result.freedom);
+}
+
 /// Covariance of the free constants from the Jacobian, scaled to a unit diagonal for the condition.
 void add_intervals(const LeastSquares& problem, const std::vector<double>& J,
                    const std::vector<double>& r, Calibration& result) {
@@ -134,11 +141,12 @@ void add_intervals(const LeastSquares& problem, const std::vector<double>& J,
       }
     }
   }
-  const double s = problem.known_scatter ? 1 : result.scatter;
-  const double t = result.freedom > 0
-                       ? measured::student_quantile(problem.confidence,
-                                                    problem.known_scatter ? 1e6 : result.freedom)
-                       : std::numeric_limits<double>::infinity();
+  result.widened = problem.known_scatter && is_unexplained(result);
+  const bool estimated = !problem.known_scatter || result.widened;
+  const double s = estimated ? result.scatter : 1;
+  const double t = result.freedom > 0 ? measured::student_quantile(problem.confidence,
+                                                                   estimated ? result.freedom : 1e6)
+                                      : std::numeric_limits<double>::infinity();
   result.correlation.assign(columns, std::vector<double>(columns, kUnknown));
   for (std::size_t i = 0; i < n; ++i) {
     Estimate& e = result.estimates[free[i]];
@@ -152,7 +160,7 @@ void add_intervals(const LeastSquares& problem, const std::vector<double>& J,
   }
 }
 
-void add_warnings(const LeastSquares& problem, Calibration& result) {
+void add_warnings(Calibration& result) {
   const auto warn = [&](const std::string& text) { result.warnings.push_back(text); };
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
     const Estimate& e = result.estimates[i];
@@ -171,10 +179,10 @@ void add_warnings(const LeastSquares& problem, Calibration& result) {
            ": the data hardly tell them apart");
     }
   }
-  if (problem.known_scatter && result.scatter > 2) {
+  if (result.widened) {
     warn("the residuals are " + text_of(result.scatter) +
-         " times the stated uncertainty: the model does not describe the data within it, and the "
-         "intervals are too narrow");
+         " times the stated uncertainty: the model does not describe the data within it; the "
+         "intervals are widened by that factor, as if the misfit were noise");
   }
   if (!result.converged) warn("the iteration did not converge");
 }
@@ -228,7 +236,7 @@ std::optional<Calibration> try_minimise(const LeastSquares& problem) {
     result.estimates.push_back({c.name, c.unit, p[i], kUnknown, kUnknown, kUnknown, at_bound});
   }
   add_intervals(problem, J, r, result);
-  add_warnings(problem, result);
+  add_warnings(result);
   return result;
 }
 

@@ -44,17 +44,19 @@ struct Calibration {
   std::vector<std::vector<double>> correlation;  ///< NaN for a constant at a bound
   double cost = 0;                               ///< half the sum of squares
   double scatter = 0;                            ///< standard deviation of the residuals, n - p
-  int freedom = 0;                               ///< n - p
+  bool widened = false;  ///< known scatter, but the residuals say more: the intervals are theirs
+  int freedom = 0;       ///< n - p
   int iterations = 0;
   double condition = 1;  ///< of the scaled normal matrix: square root of the ratio of eigenvalues
   std::vector<std::string> warnings;  ///< identifiability, bounds, disagreement with the scatter
 };
 
 /// Minimise 1/2 |r|^2 within the bounds by Levenberg-Marquardt (Ceres). The intervals are those of
-/// the linearised model, t sqrt(s^2 (J^T J)^-1), s = 1 when the scatter is known; constants at a
-/// bound are left out of the matrix and have none.
-/// Warned of: correlations beyond 0.95 (two constants that the data cannot tell apart), an interval
-/// wider than the value, a constant at its bound, residuals that a known scatter does not explain.
+/// the linearised model, t sqrt(s^2 (J^T J)^-1); constants at a bound are left out of the matrix
+/// and have none. s is the scatter of the residuals; when it is known, 1, unless the residuals
+/// scatter by more than chance lets them: then theirs again [Birge 1932]. Warned of: correlations
+/// beyond 0.95 (two constants that the data cannot tell apart), an interval wider than the value, a
+/// constant at its bound, residuals that a known scatter does not explain.
 /// @throws Error(Configuration) naming `where` when there are fewer residuals than constants, a
 ///   start outside its bounds, or no value at the start.
 Calibration minimise(const LeastSquares& problem, const std::string& where);

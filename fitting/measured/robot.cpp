@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "fitting/measured/repeats.hpp"
 #include "fitting/measured/statistics.hpp"
 #include "format/error.hpp"
 
@@ -14,7 +13,6 @@ namespace {
 
 constexpr double kDragOverDepth = 0.1;  ///< sideways travel that makes a drag
 constexpr double kHeldWithin = 0.1;     ///< change of depth that a drag may have
-constexpr double kSlipSlope = 0.2;      ///< of the first lateral stiffness
 constexpr double kLargestTilt = std::numbers::pi / 6;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& problem,
@@ -76,13 +74,13 @@ Parts parts_of(const RobotLog& log, const Vec3& inward) {
 }
 
 /// Samples begin .. end drag the tool at a held depth.
-struct Drag {
+struct DragSpan {
   std::size_t begin = 0, end = 0;
 };
 
 /// The drag, if there is one, from where the tip begins to leave the line of the press to where it
 /// is farthest.
-std::optional<Drag> drag_of(const Parts& parts, std::size_t touch, std::size_t first_deep) {
+std::optional<DragSpan> drag_of(const Parts& parts, std::size_t touch, std::size_t first_deep) {
   const double depth = parts.along[first_deep] - parts.along[touch];
   const Vec3 line = parts.across[first_deep];
   std::size_t farthest = first_deep;
@@ -97,90 +95,34 @@ std::optional<Drag> drag_of(const Parts& parts, std::size_t touch, std::size_t f
   for (; begin > first_deep; --begin) {
     if (norm(parts.across[begin] - line) < 0.01 * travel) break;
   }
-  return Drag{begin, farthest + 1};
+  return DragSpan{begin, farthest + 1};
 }
 
-struct LateralSamples {
-  std::vector<double> travel;
-  std::vector<Vec3> force;  ///< whole vector, offset removed
-};
-
-/// Stiffness along the travel at each grid step, to see the slip.
-std::size_t slip_step(const std::vector<double>& force_along, double step) {
-  double first = 0;
-  for (std::size_t i = 1; i < force_along.size(); ++i) {
-    const double slope = (force_along[i] - force_along[i - 1]) / step;
-    if (i <= 2) {
-      first = std::max(first, slope);
-    } else if (slope < kSlipSlope * first) {
-      return i;
-    }
-  }
-  return force_along.size();
-}
-
-/// Each component of the force as a function of the travel on a grid, by local lines.
-void lateral_path(const LateralSamples& samples, const RobotSettings& settings,
-                  const std::string& where, RobotCurves& curves, CurvePath& path) {
-  const double end = samples.travel.back();
-  std::vector<double> grid;
-  for (int i = 0; i <= settings.lateral_samples; ++i) {
-    grid.push_back(end * i / settings.lateral_samples);
-  }
-  std::array<GriddedPress, 3> component;
-  GriddedPress along;
-  for (std::size_t axis = 0; axis < 4; ++axis) {
-    std::vector<DepthForce> branch;
-    for (std::size_t i = 0; i < samples.travel.size(); ++i) {
-      const double f = axis < 3 ? samples.force[i][axis] : dot(samples.force[i], path.direction);
-      branch.push_back({samples.travel[i], f});
-    }
-    (axis < 3 ? component[axis] : along) = on_grid(branch, grid, where);
-  }
-  const std::size_t kept = slip_step(along.force, grid[1]);
-  if (kept < grid.size()) curves.slip = grid[kept - 1];
-  double work = curves.press.work_loading;
-  for (std::size_t i = 0; i < kept; ++i) {
-    CurveSample sample = measured_sample();
-    sample.displacement = grid[i];
-    sample.force = {component[0].force[i], component[1].force[i], component[2].force[i]};
-    sample.force_uncertainty =
-        std::hypot(along.uncertainty[i], settings.force_calibration * along.force[i]);
-    if (i > 0) work += 0.5 * (along.force[i] + along.force[i - 1]) * (grid[i] - grid[i - 1]);
-    sample.tool_work = work;
-    path.samples.push_back(sample);
-  }
-}
-
-std::optional<CurvePath> drag_path(const RobotLog& log, const Parts& parts, const Drag& drag,
-                                   const Vec3& inward, const Vec3& rest,
-                                   const RobotSettings& settings, RobotCurves& curves) {
-  const Vec3 start = parts.across[drag.begin];
-  const Vec3 way = parts.across[drag.end - 1] - start;
-  CurvePath path;
-  path.kind = PathKind::Lateral;
+/// The force along inward is that of the press, offset and drift removed; across it, the offset.
+DragCurve drag_curve(const RobotLog& log, const Parts& parts, const DragSpan& span,
+                     const Vec3& inward, const Vec3& rest, const RobotSettings& settings,
+                     const PressCurve& press) {
+  const Vec3 start = parts.across[span.begin];
+  const Vec3 way = parts.across[span.end - 1] - start;
+  DragCurve drag;
   // Across inward to rounding, as the record asks.
   const Vec3 tangent = way - dot(way, inward) * inward;
-  path.direction = (1 / norm(tangent)) * tangent;
-  path.repeats = 1;
-  path.contact_uncertainty = curves.press.contact.uncertainty;
-  LateralSamples samples;
+  drag.direction = (1 / norm(tangent)) * tangent;
+  drag.contact_uncertainty = press.contact.uncertainty;
+  drag.work_before = press.work_loading;
   double depth = 0;
-  for (std::size_t i = drag.begin; i < drag.end; ++i) {
-    const double travel = dot(parts.across[i] - start, path.direction);
-    if (!samples.travel.empty() && travel < samples.travel.back()) continue;
-    samples.travel.push_back(std::max(0.0, travel));
-    const double f =
-        dot(rest, inward) +
-        curves.press.baseline.drift * (log.time.empty() ? 0.0 : log.time[i] - log.time.front());
-    samples.force.push_back(log.force[i] - (rest - dot(rest, inward) * inward) - f * inward);
-    depth += parts.along[i] - curves.press.contact.displacement -
-             settings.press.compliance * dot(samples.force.back(), inward);
+  for (std::size_t i = span.begin; i < span.end; ++i) {
+    const double travel = std::max(0.0, dot(parts.across[i] - start, drag.direction));
+    if (!drag.travel.empty() && travel < drag.travel.back()) continue;
+    drag.travel.push_back(travel);
+    const double drift =
+        press.baseline.drift * (log.time.empty() ? 0.0 : log.time[i] - log.time.front());
+    drag.force.push_back(log.force[i] - rest - drift * inward);
+    depth += parts.along[i] - press.contact.displacement -
+             settings.press.compliance * dot(drag.force.back(), inward);
   }
-  path.held_depth = std::max(0.0, depth / static_cast<double>(samples.travel.size()));
-  lateral_path(samples, settings, log.name, curves, path);
-  if (path.samples.size() < 3) return std::nullopt;
-  return path;
+  drag.held_depth = std::max(0.0, depth / static_cast<double>(drag.travel.size()));
+  return drag;
 }
 
 }  // namespace
@@ -219,7 +161,7 @@ RobotCurves analyse_robot_log(const RobotLog& log, const Body& body,
                " degrees off the inward direction of its site",
            "press along the surface normal, or check the frame");
   }
-  const std::optional<Drag> drag = drag_of(parts, touch, first_deep);
+  const std::optional<DragSpan> drag = drag_of(parts, touch, first_deep);
   PressRecord press{log.name, log.time, parts.along, parts.force_along};
   if (drag) {
     const auto cut = static_cast<std::ptrdiff_t>(drag->begin + 1);
@@ -234,7 +176,8 @@ RobotCurves analyse_robot_log(const RobotLog& log, const Body& body,
     const Vec3 idle = median_of(log.force, head);
     // Along inward the press knows the offset better.
     const Vec3 rest = idle + (curves.press.baseline.offset - dot(idle, inward)) * inward;
-    curves.lateral = drag_path(log, parts, *drag, inward, rest, settings, curves);
+    curves.drag = drag_curve(log, parts, *drag, inward, rest, settings, curves.press);
+    if (!cut_at_slip(*curves.drag, settings.lateral_samples, log.name)) curves.drag.reset();
   }
   return curves;
 }

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "fitting/measured/drag.hpp"
 #include "fitting/measured/placement.hpp"
 #include "fitting/measured/press.hpp"
-#include "format/curves.hpp"
 
 namespace palpate::measured {
 
@@ -26,23 +26,21 @@ struct RobotSettings {
   double placement_tolerance = 0.005;  ///< m, from the first touch to the vertex of the site
   double centre_to_tip = 0;            ///< m, from the logged point to the tip, along the press
   int lateral_samples = 12;
-  double force_calibration = 0;  ///< relative standard uncertainty of the force sensor
 };
 
 /// What one log says about its site.
 struct RobotCurves {
   NearestSite site;
-  Vec3 touch{};                      ///< where the tip was at the contact point
-  PressCurve press;                  ///< normal parts
-  double tilt = 0;                   ///< rad, of the direction of the press against inward
-  std::optional<CurvePath> lateral;  ///< empty when the log has no drag at a held depth
-  double slip = kUnknown;            ///< m, where the contact slipped and the path was cut
+  Vec3 touch{};                   ///< where the tip was at the contact point
+  PressCurve press;               ///< normal parts
+  double tilt = 0;                ///< rad, of the direction of the press against inward
+  std::optional<DragCurve> drag;  ///< empty when the log has no drag at a held depth
 };
 
 /// Find the site by the first touch, turn displacement and force into their parts along inward and
 /// across it, and sort out press and drag. A drag begins where the tip leaves the line of the press
-/// sideways at a depth that stays within a tenth; its path ends where the lateral stiffness has
-/// fallen to a fifth of its first value: from there on the tool slips, and a lateral path is stuck.
+/// sideways at a depth that stays within a tenth; it ends where the tool slips (cut_at_slip), for a
+/// lateral path is stuck.
 /// @throws Error(Configuration) as analyse_press and nearest_site; for a press tilted by more than
 ///   30 degrees.
 RobotCurves analyse_robot_log(const RobotLog& log, const Body& body, const RobotSettings& settings);

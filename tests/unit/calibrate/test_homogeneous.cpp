@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <numbers>
 #include <random>
 
 #include "fem/material.hpp"
@@ -280,6 +282,82 @@ TEST(Homogeneous, WarnsOfALawThatLosesStability) {
   const HomogeneousFit fit = fit_homogeneous({test}, settings);
   EXPECT_TRUE(std::isfinite(fit.stability[0].unstable_at));
   EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("unstable in the range")));
+}
+
+/// Least eigenvalue of the Hessian of W by (e1, e2) by differences.
+double least_eigenvalue(const std::function<double(double, double)>& W, double x, double y) {
+  const double h = 1e-4;
+  const double a = (W(x + h, y) - 2 * W(x, y) + W(x - h, y)) / (h * h);
+  const double d = (W(x, y + h) - 2 * W(x, y) + W(x, y - h)) / (h * h);
+  const double b =
+      (W(x + h, y + h) - W(x + h, y - h) - W(x - h, y + h) + W(x - h, y - h)) / (4 * h * h);
+  return 0.5 * (a + d) - std::hypot(0.5 * (a - d), b);
+}
+
+/// Mooney-Rivlin with a negative C01 meets a compression test and fails in tension, at strains that
+/// the test has in its sides: the fit must say where, although no test went there.
+TEST(Homogeneous, WarnsOfInstabilityOutsideTheModesOfTheTests) {
+  constexpr double C10 = 1000, C01 = -100;
+  HomogeneousTest test{"compression", Mode::Uniaxial, {}, {}, {}, 1};
+  for (int i = 1; i <= 30; ++i) {
+    const double s = 1 - 0.7 / 30 * i;
+    test.deformation.push_back(s);
+    test.nominal.push_back(2 * (s - 1 / (s * s)) * (C10 + C01 / s));
+  }
+  HomogeneousSettings settings;
+  settings.law = "mooney-rivlin";
+  settings.constants = {{"C10", true, 500, 1, 1e6}, {"C01", true, 10, -1e6, 1e6}};
+  const HomogeneousFit fit = fit_homogeneous({test}, settings);
+  EXPECT_NEAR(fit.calibration.estimates[1].value, C01, 1e-3);
+  EXPECT_TRUE(std::isnan(fit.stability[0].unstable_at));
+  EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("outside the modes of the tests")));
+  const auto W = [&](double x, double y) {
+    const double a = std::exp(x), b = std::exp(y), c = 1 / (a * b);
+    return C10 * (a * a + b * b + c * c) + C01 * (1 / (a * a) + 1 / (b * b) + 1 / (c * c));
+  };
+  const auto& l = fit.all_states.unstable_at;
+  EXPECT_NEAR(l[0] * l[1] * l[2], 1, 1e-12);
+  EXPECT_LT(least_eigenvalue(W, std::log(l[0]), std::log(l[1])), 0);
+  // No state of less strain is: the scan goes outwards by hundredths of the largest strain.
+  const double reached = std::max(std::log(l[0]), -std::log(l[2]));
+  const double before = reached - 0.011 * fit.all_states.largest_strain;
+  for (int i = 0; i < 360; ++i) {
+    const double x = std::cos(i * std::numbers::pi / 180), y = std::sin(i * std::numbers::pi / 180);
+    const double largest = std::max({std::abs(x), std::abs(y), std::abs(x + y)});
+    EXPECT_GT(least_eigenvalue(W, before * x / largest, before * y / largest), 0);
+  }
+  // With both constants positive the law is stable everywhere.
+  settings.constants.clear();
+  EXPECT_TRUE(std::isnan(fit_homogeneous({test}, settings).all_states.unstable_at[0]));
+}
+
+/// Uncertainties stated four times too small: the residuals tell, and the intervals still hold the
+/// truth as often as they say.
+TEST(Homogeneous, IntervalsCoverTheTruthWhereTheStatedUncertaintyIsTooSmall) {
+  constexpr int kTrials = 300;
+  std::mt19937 engine(9);
+  std::normal_distribution<double> noise(0, 1);
+  int inside = 0, widened = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    HomogeneousTest test{"synthetic", Mode::PureShear, {}, {}, {}, 1};
+    for (int i = 1; i <= 20; ++i) {
+      const double s = 1 + 0.025 * i, sigma = 60;
+      test.deformation.push_back(s);
+      test.nominal.push_back(law_stress("neo-hookean", {2378}, test.mode, s) +
+                             sigma * noise(engine));
+      test.uncertainty.push_back(sigma / 4);
+    }
+    HomogeneousSettings settings;
+    settings.law = "neo-hookean";
+    settings.weighting = Weighting::Uncertainty;
+    const Calibration calibration = fit_homogeneous({test}, settings).calibration;
+    const Estimate& e = calibration.estimates[0];
+    if (e.low <= 2378 && 2378 <= e.high) ++inside;
+    if (calibration.widened) ++widened;
+  }
+  EXPECT_GE(widened, kTrials - 1);
+  EXPECT_GE(inside, 273);  // 285 expected, three standard deviations are 11
+  EXPECT_LE(inside, 296);
 }
 
 TEST(Homogeneous, WarnsOfABoundAndOfUnexplainedResiduals) {

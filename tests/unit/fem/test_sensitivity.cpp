@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "fem/indentation.hpp"
 #include "fem/sensitivity.hpp"
+#include "fem/tangent_solver.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -114,6 +116,39 @@ TEST(Sensitivity, ModuliObeyEulersTheorem) {
     EXPECT_GT(s.slope[0], 0);
     EXPECT_GT(s.slope[1], 0);
   }
+}
+
+/// At a deep press the tangent is far from that at rest: the solve that never factorizes it must
+/// still agree with one that does, after few steps.
+TEST(TangentSolver, AgreesWithAFactorOfTheTangent) {
+  const Body body = layered();
+  CampaignSettings settings = settings_of(body, 8e3, 20e3, 0.49);
+  settings.indentation.azimuths.clear();
+  settings.indentation.held_depths.clear();
+  const CampaignContext context(body, settings, Engine::SharedFactor);
+  SolveBatch batch(*context.rest_factor, 1);
+  SolveBatch::Member member(batch, 0);
+  const Vec3 site = context.place(settings.sites.front()).position;
+  const SolidModel window = window_at(context, Eigen::Vector3d(site.data()));
+  TangentSolver solver(context.model, window,
+                       [&](const Eigen::VectorXd& b, Eigen::VectorXd& x) { member.solve(b, x); });
+  SiteSolver paths(context, &member);
+  int compared = 0;
+  paths.observe([&](const ToolContact& contact, const Displacement& u, const CurveSample&) {
+    ASSERT_TRUE(solver.linearize(contact, u));
+    const Eigen::VectorXd b = Eigen::VectorXd::LinSpaced(context.model.pattern().n, -1, 2);
+    Eigen::VectorXd x, exact(b.size());
+    ASSERT_TRUE(solver.solve(b, x));
+    Cholesky factor(context.model.pattern(), &context.permutation);
+    ASSERT_TRUE(factor.factorize(solver.values()));
+    SolveWorkspace workspace;
+    factor.solve(b.data(), exact.data(), workspace);
+    EXPECT_LT((x - exact).norm(), 1e-5 * exact.norm());
+    ++compared;
+  });
+  paths.solve(settings.sites.front());
+  EXPECT_EQ(compared, 3);
+  EXPECT_LT(solver.iterations(), 30 * compared);
 }
 
 TEST(Sensitivity, RefusesARegionWithoutMaterial) {

@@ -45,6 +45,7 @@ struct Drag {
   Vec3 sensor_offset{0.03, -0.05, 0.2};
   double noise = 0.001;
   bool drags = true;
+  double stiffness = kLateralStiffness;
 };
 
 /// Approach over 2 mm, press to a depth, drag sideways: force stuck up to the slip, then constant.
@@ -62,7 +63,7 @@ RobotLog log_of(const Drag& drag, unsigned seed) {
     log.time.push_back(t);
     log.tip.push_back(drag.touch + depth * kInward + s * drag.direction);
     log.force.push_back(sneddon_force(depth, kBench.radius, kBench.modulus) * kInward +
-                        kLateralStiffness * std::min(s, kSlipAt) * drag.direction +
+                        drag.stiffness * std::min(s, kSlipAt) * drag.direction +
                         drag.sensor_offset + jitter);
   }
   return log;
@@ -81,8 +82,10 @@ TEST(Robot, PressAndDragAreToldApart) {
     EXPECT_NEAR(dot(s.force, kInward), sneddon_force(s.displacement, kBench.radius, kBench.modulus),
                 4 * s.force_uncertainty + 1e-3);
   }
-  ASSERT_TRUE(curves.lateral);
-  const CurvePath& lateral = *curves.lateral;
+  ASSERT_TRUE(curves.drag);
+  const CurvePath lateral = lateral_paths({*curves.drag}, kInward, {24}, "log").front();
+  EXPECT_EQ(lateral.kind, PathKind::Lateral);
+  EXPECT_EQ(lateral.repeats, 1);
   EXPECT_NEAR(lateral.held_depth, drag.depth, 0.02 * drag.depth);
   EXPECT_NEAR(dot(lateral.direction, drag.direction), 1, 1e-3);
   EXPECT_NEAR(dot(lateral.direction, kInward), 0, 1e-12);
@@ -100,21 +103,103 @@ TEST(Robot, ThePathEndsWhereTheToolSlips) {
   RobotSettings settings;
   settings.lateral_samples = 24;
   const RobotCurves curves = analyse_robot_log(log_of({}, 2), plate(), settings);
-  ASSERT_TRUE(curves.lateral);
-  EXPECT_NEAR(curves.slip, kSlipAt, 0.0003);
-  EXPECT_LE(curves.lateral->samples.back().displacement, kSlipAt + 0.0003);
+  ASSERT_TRUE(curves.drag);
+  EXPECT_NEAR(curves.drag->slip, kSlipAt, 0.0003);
+  EXPECT_LE(curves.drag->travel.back(), kSlipAt + 0.0003);
   Drag shorter;
   shorter.travel = 0.0015;
   const RobotCurves stuck = analyse_robot_log(log_of(shorter, 3), plate(), settings);
-  EXPECT_TRUE(std::isnan(stuck.slip));
-  ASSERT_TRUE(stuck.lateral);
-  EXPECT_NEAR(stuck.lateral->samples.back().displacement, 0.0015, 0.0001);
+  ASSERT_TRUE(stuck.drag);
+  EXPECT_TRUE(std::isnan(stuck.drag->slip));
+  EXPECT_NEAR(stuck.drag->travel.back(), 0.0015, 0.0001);
 }
 
 TEST(Robot, APressAloneHasNoLateralPath) {
   Drag press;
   press.drags = false;
-  EXPECT_FALSE(analyse_robot_log(log_of(press, 4), plate(), {}).lateral);
+  EXPECT_FALSE(analyse_robot_log(log_of(press, 4), plate(), {}).drag);
+}
+
+DragCurve drag_of(const Drag& drag, unsigned seed) {
+  return *analyse_robot_log(log_of(drag, seed), plate(), {}).drag;
+}
+
+/// Repeats of a drag that differ by a known scatter of the stiffness: the path is their mean, and
+/// its uncertainty that of a mean.
+TEST(Drags, RepeatsAreAveragedWithTheirScatter) {
+  constexpr int kRepeats = 20;
+  std::mt19937 engine(3);
+  std::normal_distribution<double> normal(0, 1);
+  std::vector<DragCurve> drags;
+  double sum = 0, squares = 0;
+  for (unsigned i = 0; i < kRepeats; ++i) {
+    Drag drag;
+    drag.travel = 0.0015;
+    drag.stiffness *= 1 + 0.1 * normal(engine);
+    sum += drag.stiffness / kRepeats;
+    squares += drag.stiffness * drag.stiffness / kRepeats;
+    drags.push_back(drag_of(drag, 40 + i));
+  }
+  const double scatter = std::sqrt((squares - sum * sum) * kRepeats / (kRepeats - 1));
+  const auto paths = lateral_paths(drags, kInward, {6}, "site");
+  ASSERT_EQ(paths.size(), 1U);
+  EXPECT_EQ(paths[0].repeats, kRepeats);
+  ASSERT_EQ(paths[0].samples.size(), 7U);
+  const CurveSample& end = paths[0].samples.back();
+  EXPECT_NEAR(end.displacement, 0.0015, 0.00005);
+  EXPECT_NEAR(dot(end.force, paths[0].direction), sum * end.displacement, 0.001);
+  EXPECT_NEAR(end.force_scatter, scatter * end.displacement, 0.15 * scatter * end.displacement);
+  EXPECT_NEAR(end.force_uncertainty, end.force_scatter / std::sqrt(double{kRepeats}),
+              0.02 * end.force_uncertainty);
+  // Work of a spring on top of that of the press.
+  EXPECT_NEAR(end.tool_work - paths[0].samples.front().tool_work,
+              0.5 * sum * end.displacement * end.displacement, 2e-6);
+}
+
+TEST(Drags, OtherDepthsAndDirectionsStayApart) {
+  Drag deep, shallow, back;
+  deep.travel = shallow.travel = back.travel = 0.0015;
+  shallow.depth = 0.003;
+  back.direction = -1.0 * deep.direction;
+  const auto paths =
+      lateral_paths({drag_of(deep, 80), drag_of(shallow, 81), drag_of(back, 82), drag_of(deep, 83)},
+                    kInward, {6}, "site");
+  ASSERT_EQ(paths.size(), 3U);
+  EXPECT_EQ(paths[0].repeats, 2);
+  EXPECT_EQ(paths[1].repeats, 1);
+  EXPECT_NEAR(paths[1].held_depth, 0.003, 0.0001);
+  EXPECT_LT(dot(paths[2].direction, paths[0].direction), -0.99);
+}
+
+/// What is stated of single drags covers the truth: noise and depth of a stuck contact whose
+/// stiffness goes as the root of the depth.
+TEST(Drags, UncertaintyCoversTheTruth) {
+  int inside = 0, total = 0;
+  for (unsigned trial = 0; trial < 100; ++trial) {
+    Drag drag;
+    drag.travel = 0.0015;
+    drag.noise = 0.002;
+    const CurvePath path = lateral_paths({drag_of(drag, 100 + trial)}, kInward, {6}, "s").front();
+    for (std::size_t i = 2; i < path.samples.size(); i += 2) {
+      const CurveSample& s = path.samples[i];
+      const double truth = drag.stiffness * s.displacement;
+      if (std::abs(dot(s.force, path.direction) - truth) <= 2 * s.force_uncertainty) ++inside;
+      ++total;
+    }
+  }
+  RecordProperty("inside_percent", 100 * inside / total);
+  EXPECT_GE(inside, 0.88 * total);
+}
+
+/// The force sensor's calibration is common to all repeats and does not average out.
+TEST(Drags, CalibrationDoesNotAverageOut) {
+  std::vector<DragCurve> drags;
+  Drag drag;
+  drag.travel = 0.0015;
+  for (unsigned i = 0; i < 10; ++i) drags.push_back(drag_of(drag, 300 + i));
+  const CurveSample end = lateral_paths(drags, kInward, {6, 0.05}, "s").front().samples.back();
+  EXPECT_GE(end.force_uncertainty, 0.05 * drag.stiffness * end.displacement * 0.98);
+  EXPECT_LT(end.force_uncertainty, 0.06 * drag.stiffness * end.displacement);
 }
 
 /// The frame of the robot is any: fiducials bring it to the body, forces turn with it.

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/crew.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "fem/at.hpp"
+#include "fem/memory.hpp"
+
+namespace palpate::fem {
+
+CrewSize crew_size(const RestFactor& factor, int threads, std::size_t sites, double memory,
+                   double each) {
+  CrewSize size;
+  size.cores = std::max(1, threads);
+  const std::size_t share = (sites + at(size.cores) - 1) / at(size.cores);
+  const double fallback = 2 * factor.bytes();
+  const double bound = memory > 0 ? std::max(1.0, memory - fallback) : 0;
+  size.lanes = fitting_times(bound, size.cores * each,
+                             static_cast<int>(std::min<std::size_t>(kBatch, share)),
+                             "beside a factor for the site that needs its own, a site on each of " +
+                                 std::to_string(size.cores) + " cores");
+  return size;
+}
+
+void work_abreast(const RestFactor& factor, const CrewSize& size, std::size_t count,
+                  const std::function<void(SolveBatch::Member&, std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto serve = [&](SolveBatch& batch, int lane) {
+    use_one_thread_per_site();
+    SolveBatch::Member member(batch, lane);
+    try {
+      for (std::size_t i = next++; i < count; i = next++) work(member, i);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+      next = count;
+    }
+  };
+  std::deque<SolveBatch> batches;
+  std::vector<std::thread> threads;
+  for (int core = 0; core < size.cores; ++core) {
+    SolveBatch& batch = batches.emplace_back(factor, size.lanes);
+    for (int lane = 0; lane < size.lanes; ++lane)
+      threads.emplace_back([&serve, &batch, lane] { serve(batch, lane); });
+  }
+  for (std::thread& thread : threads) thread.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace palpate::fem
