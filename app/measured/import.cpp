@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <map>
@@ -120,7 +121,7 @@ class Importer {
 
   void read_press(const PressFileSection& press) {
     const fs::path file = path_of(press.file);
-    const m::CsvTable table = m::read_csv(file, declared_);
+    const m::CsvTable table = m::read_csv(file, declared_, press.table);
     m::PressRecord record{file.string(), column(table, s_.columns.time, m::Quantity::Time),
                           column(table, s_.columns.displacement, m::Quantity::Length),
                           column(table, s_.columns.force, m::Quantity::Force)};
@@ -130,7 +131,12 @@ class Importer {
     const m::PressCurve curve = m::analyse_press(record, press_settings(press.cycle));
     add_account(press.file, table, vertex, distance, curve);
     sites_[vertex].presses.push_back(curve);
-    files_.push_back(file);
+    add_file(file);
+  }
+
+  /// A file of several tables is one input.
+  void add_file(const fs::path& file) {
+    if (std::find(files_.begin(), files_.end(), file) == files_.end()) files_.push_back(file);
   }
 
   m::RobotLog robot_log(const fs::path& file, const m::CsvTable& table) const {
@@ -154,7 +160,7 @@ class Importer {
 
   void read_robot(const RobotFileSection& robot) {
     const fs::path file = path_of(robot.file);
-    const m::CsvTable table = m::read_csv(file, declared_);
+    const m::CsvTable table = m::read_csv(file, declared_, robot.table);
     m::RobotSettings settings;
     settings.press = press_settings(robot.cycle);
     settings.placement_tolerance = s_.placement.tolerance;
@@ -171,7 +177,7 @@ class Importer {
       sites_[curves.site.vertex].drags.push_back(*curves.drag);
     }
     sites_[curves.site.vertex].presses.push_back(curves.press);
-    files_.push_back(file);
+    add_file(file);
   }
 
   void add_account(const std::string& file, const m::CsvTable& table, int vertex, double distance,
@@ -249,7 +255,7 @@ class Importer {
                                                      {"licence", s_.licence},
                                                      {"instrument", s_.instrument},
                                                      {"date", s_.date},
-                                                     {"records", std::to_string(files_.size())},
+                                                     {"records", std::to_string(records_.size())},
                                                      {"lateral", lateral_fact()}}));
     return provenance;
   }

@@ -100,12 +100,16 @@ void describe(V& v, PressFileSection& s) {
   v.text(s.file, {"file", "record, relative to the sidecar", kRequired});
   v.integer(s.vertex, {"vertex", "response vertex of the body", kOptional, kNotNegative});
   v.point(s.site, Dimension::Length, {"site", "point that was pressed, in the frame of the body"});
+  v.integer(s.table, {"table", "which table of the file, from 1; needed when it has several",
+                      kOptional, kNotNegative});
   v.integer(s.cycle, {"cycle", "which press of the record; -1 is the last"});
 }
 
 template <class V>
 void describe(V& v, RobotFileSection& s) {
   v.text(s.file, {"file", "log, relative to the sidecar", kRequired});
+  v.integer(s.table, {"table", "which table of the file, from 1; needed when it has several",
+                      kOptional, kNotNegative});
   v.integer(s.cycle, {"cycle", "which press of the log; -1 is the last"});
 }
 

@@ -63,11 +63,13 @@ struct PressFileSection {
   std::string file;  ///< relative to the sidecar
   int vertex = -1;
   Vec3 site{kNotGiven, kNotGiven, kNotGiven};  ///< m, in the frame of the body
+  int table = 0;                               ///< of the file; 0: its only one
   int cycle = 1;
 };
 
 struct RobotFileSection {
   std::string file;
+  int table = 0;
   int cycle = 1;
 };
 

@@ -30,6 +30,60 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
+void append_utf8(std::string& out, unsigned code) {
+  if (code < 0x80) {
+    out += static_cast<char>(code);
+  } else if (code < 0x800) {
+    out += static_cast<char>(0xC0 | (code >> 6));
+    out += static_cast<char>(0x80 | (code & 0x3F));
+  } else {
+    out += static_cast<char>(0xE0 | (code >> 12));
+    out += static_cast<char>(0x80 | ((code >> 6) & 0x3F));
+    out += static_cast<char>(0x80 | (code & 0x3F));
+  }
+}
+
+unsigned byte_at(std::string_view text, std::size_t i) {
+  return static_cast<unsigned char>(text[i]);
+}
+
+/// Whether every byte beyond ASCII belongs to a sequence of its length.
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned lead = byte_at(text, i);
+    const std::size_t length = lead < 0x80                   ? 1
+                               : lead >= 0xC2 && lead < 0xE0 ? 2
+                               : lead >= 0xE0 && lead < 0xF0 ? 3
+                               : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                             : 0;
+    if (length == 0 || i + length > text.size()) return false;
+    for (std::size_t k = 1; k < length; ++k) {
+      if ((byte_at(text, i + k) & 0xC0) != 0x80) return false;
+    }
+    i += length;
+  }
+  return true;
+}
+
+/// What spreadsheets save: UTF-16 by its mark (names of the plane of all living scripts), else
+/// UTF-8, else Latin-1.
+std::string as_utf8(std::string_view text) {
+  const bool little = text.starts_with("\xFF\xFE"), big = text.starts_with("\xFE\xFF");
+  std::string out;
+  if (little || big) {
+    for (std::size_t i = 2; i + 1 < text.size(); i += 2) {
+      append_utf8(out,
+                  byte_at(text, i + (little ? 1 : 0)) << 8 | byte_at(text, i + (little ? 0 : 1)));
+    }
+    return out;
+  }
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  if (is_utf8(text)) return std::string(text);
+  for (std::size_t i = 0; i < text.size(); ++i) append_utf8(out, byte_at(text, i));
+  return out;
+}
+
 struct Line {
   std::size_t number = 0;  ///< counted from 1
   std::string_view text;
@@ -37,8 +91,6 @@ struct Line {
 
 /// The lines that hold something.
 std::vector<Line> lines_of(std::string_view text) {
-  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
-  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
   std::vector<Line> lines;
   for (std::size_t number = 1; !text.empty(); ++number) {
     const auto end = text.find('\n');
@@ -77,7 +129,44 @@ std::vector<std::string> split(std::string_view line, char separator) {
   return fields;
 }
 
+/// Without the marks that group its digits by three: blanks and apostrophes, and the other one of
+/// point and comma where the decimal sign follows ("1,234" alone could be either). The field itself
+/// where it is not grouped so.
+std::string ungrouped(const std::string& field, char decimal) {
+  std::string digits;
+  char mark = 0;
+  std::size_t in_group = 0;
+  bool grouped = false;
+  std::size_t i = field.starts_with('-') || field.starts_with('+') ? 1 : 0;
+  digits.append(field, 0, i);
+  for (; i < field.size() && field[i] != decimal; ++i) {
+    const char c = field[i];
+    if (c >= '0' && c <= '9') {
+      digits += c;
+      ++in_group;
+      continue;
+    }
+    // No-break spaces, wide and narrow, in UTF-8.
+    const std::string_view rest = std::string_view(field).substr(i);
+    const std::size_t wide = rest.starts_with("\xC2\xA0")       ? 2
+                             : rest.starts_with("\xE2\x80\xAF") ? 3
+                                                                : 1;
+    const char kind = wide > 1 ? ' ' : c;
+    const bool known = kind == ' ' || kind == '\'' || kind == (decimal == '.' ? ',' : '.');
+    const bool fits = grouped ? kind == mark && in_group == 3 : in_group >= 1 && in_group <= 3;
+    if (!known || !fits) return field;
+    grouped = true;
+    mark = kind;
+    in_group = 0;
+    i += wide - 1;
+  }
+  const bool ambiguous = (mark == ',' || mark == '.') && i == field.size();
+  if (!grouped || in_group != 3 || ambiguous) return field;
+  return digits + field.substr(i);
+}
+
 std::optional<double> number_of(std::string field, char decimal) {
+  field = ungrouped(field, decimal);
   if (decimal == ',') {
     if (field.find('.') != std::string::npos) return std::nullopt;
     std::replace(field.begin(), field.end(), ',', '.');
@@ -114,13 +203,24 @@ std::size_t width_if_numbers(const Line& line, const Dialect& dialect) {
   return fields.size();
 }
 
-Run longest_run(const std::vector<Line>& lines, const Dialect& dialect) {
-  Run longest, run;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
+/// The first run at or after a line; empty when there is none.
+Run next_run(const std::vector<Line>& lines, std::size_t from, const Dialect& dialect) {
+  Run run{from, from, 0};
+  for (std::size_t i = from; i < lines.size(); ++i) {
     const std::size_t width = width_if_numbers(lines[i], dialect);
-    if (width < 2 || width != run.width) run = {i, i, width};
+    if (run.rows() > 0 && width != run.width) break;
+    if (width < 2) continue;
+    if (run.rows() == 0) run = {i, i, width};
     run.end = i + 1;
-    if (width >= 2 && run.rows() > longest.rows()) longest = run;
+  }
+  return run;
+}
+
+Run longest_run(const std::vector<Line>& lines, const Dialect& dialect) {
+  Run longest;
+  for (Run run = next_run(lines, 0, dialect); run.rows() > 0;
+       run = next_run(lines, run.end, dialect)) {
+    if (run.rows() > longest.rows()) longest = run;
   }
   return longest;
 }
@@ -137,12 +237,12 @@ std::string at_line(const std::string& file, const Line& line) {
     if (number_of(fields[i], dialect.decimal)) continue;
     refuse(at_line(file, line),
            "field " + std::to_string(i + 1) + " ('" + fields[i] + "') is not a number",
-           "mend or remove the row; a file holds one table, split one that holds more");
+           "mend or remove the row; another table needs a header of its own");
   }
   refuse(at_line(file, line),
          "the row has " + std::to_string(fields.size()) + " fields, " + std::to_string(width) +
              " expected",
-         "mend or remove the row; a file holds one table, split one that holds more");
+         "mend or remove the row; another table needs a header of its own");
 }
 
 std::string without_brackets(std::string_view text) {
@@ -241,42 +341,104 @@ void read_rows(const std::vector<Line>& lines, const Run& run, const Dialect& di
 
 }  // namespace
 
+namespace {
+
+/// Whether the lines before a run end in a header of its own: names for all its columns, none of
+/// them a number.
+bool has_header(const std::vector<Line>& lines, std::size_t begin, const Run& run,
+                const Dialect& dialect) {
+  if (run.begin <= begin) return false;
+  std::size_t names_at = run.begin - 1;
+  auto names = split(lines[names_at].text, dialect.separator);
+  if (is_unit_row(names) && names_at > begin)
+    names = split(lines[--names_at].text, dialect.separator);
+  return names.size() == run.width &&
+         std::none_of(names.begin(), names.end(), [&](const auto& name) {
+           return name.empty() || number_of(name, dialect.decimal);
+         });
+}
+
+/// The tables of a file: the first run that is long enough, and every later one under a header.
+std::vector<Run> tables_of(const std::vector<Line>& lines, const std::string& file,
+                           const Run& longest, const Dialect& dialect) {
+  std::vector<Run> tables;
+  std::size_t from = 0;
+  while (from < lines.size()) {
+    Run run = next_run(lines, from, dialect);
+    if (run.rows() == 0) break;
+    const bool is_first = tables.empty();
+    const bool is_table =
+        run.rows() >= kFewestRows &&
+        (is_first ? run.width == longest.width || has_header(lines, from, run, dialect)
+                  : has_header(lines, from, run, dialect));
+    if (is_table) tables.push_back(run);
+    if (!is_table && !is_first) break;
+    from = run.end;
+  }
+  // What follows the last table is neither a table nor numbers of one.
+  const std::size_t end = tables.empty() ? lines.size() : tables.back().end;
+  if (end < lines.size()) refuse_row(file, lines[end], dialect, tables.back().width);
+  return tables;
+}
+
+const Run& chosen(const std::vector<Run>& tables, int table, const std::string& file) {
+  const std::string count = std::to_string(tables.size());
+  if (table == 0 && tables.size() > 1) {
+    refuse(file, "it holds " + count + " tables", "choose one with `table` = 1 to " + count);
+  }
+  if (table < 0 || static_cast<std::size_t>(table) > tables.size()) {
+    refuse(file, "there is no table " + std::to_string(table) + ", the file has " + count,
+           "choose one with `table` = 1 to " + count);
+  }
+  return tables[table == 0 ? 0 : static_cast<std::size_t>(table - 1)];
+}
+
+}  // namespace
+
 CsvTable parse_csv(std::string_view text, const std::string& file,
-                   const std::vector<DeclaredColumn>& declared) {
-  const std::vector<Line> lines = lines_of(text);
-  Run run;
+                   const std::vector<DeclaredColumn>& declared, int table_number) {
+  const std::string utf8 = as_utf8(text);
+  const std::vector<Line> lines = lines_of(utf8);
+  Run longest;
   Dialect dialect = kDialects[0];
   for (const Dialect& candidate : kDialects) {
     const Run found = longest_run(lines, candidate);
-    if (found.rows() <= run.rows()) continue;
-    run = found;
+    if (found.rows() <= longest.rows()) continue;
+    longest = found;
     dialect = candidate;
   }
-  if (run.rows() < kFewestRows) {
+  if (longest.rows() < kFewestRows) {
     refuse(file, "no table of numbers in it",
            "give a text file with columns separated by tabs, semicolons, commas or blanks");
   }
-  if (run.end < lines.size()) refuse_row(file, lines[run.end], dialect, run.width);
+  const std::vector<Run> tables = tables_of(lines, file, longest, dialect);
+  const Run& run = chosen(tables, table_number, file);
   CsvTable table;
   table.file = file;
   table.first_data_line = lines[run.begin].number;
   std::size_t header_begin = run.begin;
   table.columns = declared.empty() ? header_columns(file, lines, run, dialect, header_begin)
                                    : declared_columns(file, run, declared);
-  for (std::size_t i = 0; i < header_begin; ++i) {
+  // Of a later table: what stands between it and the one before.
+  std::size_t first = 0;
+  for (const Run& other : tables) {
+    if (other.end <= header_begin) first = other.end;
+  }
+  for (std::size_t i = first; i < header_begin; ++i) {
     table.preamble.emplace_back(trimmed(lines[i].text));
   }
   read_rows(lines, run, dialect, table.columns);
   return table;
 }
 
-CsvTable read_csv(const std::filesystem::path& path, const std::vector<DeclaredColumn>& declared) {
+CsvTable read_csv(const std::filesystem::path& path, const std::vector<DeclaredColumn>& declared,
+                  int table) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
   if (!stream || !(text << stream.rdbuf())) {
     refuse(path.string(), "the record cannot be read", "check the path and the rights");
   }
-  return parse_csv(text.str(), path.string(), declared);
+  return parse_csv(text.str(), path.string(), declared, table);
 }
 
 std::vector<double> column_in_si(const CsvTable& table, const std::string& name, Quantity quantity,

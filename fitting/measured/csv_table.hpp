@@ -34,15 +34,18 @@ struct CsvTable {
 };
 
 /// The separator (tab, semicolon, comma, blanks) and the decimal sign are those under which the
-/// longest run of rows is all numbers. A file holds one table: a row after it that is not of
-/// numbers is an error, never skipped.
+/// longest run of rows is all numbers. Digits may stand in groups where that is unmistakable:
+/// "1,234.5", "1.234,5", "1 234", "1'234", but "1,234" is the decimal 1.234 or refused. Text is
+/// UTF-8, UTF-16 with its mark, or else taken as Latin-1. A file may hold several tables, each
+/// under its own full header; any other row that is not of numbers is an error, never skipped.
 /// @param declared  columns in order, in place of a header; empty to read the header.
+/// @param table     counted from 1; 0: the only one.
 /// @throws Error(Configuration) with file and line: no table of numbers, a broken row, a header of
-///   another length.
+///   another length, no such table, several and none chosen.
 CsvTable parse_csv(std::string_view text, const std::string& file,
-                   const std::vector<DeclaredColumn>& declared = {});
+                   const std::vector<DeclaredColumn>& declared = {}, int table = 0);
 CsvTable read_csv(const std::filesystem::path& path,
-                  const std::vector<DeclaredColumn>& declared = {});
+                  const std::vector<DeclaredColumn>& declared = {}, int table = 0);
 
 /// The column with this name, in SI. `declared_unit` serves a column for which the file gives none;
 /// where both are given they must agree.

@@ -85,6 +85,74 @@ TEST(Csv, ReadsFilesWithoutHeaderWhenDeclared) {
   EXPECT_THAT(refusal(text, {{"x", "mm"}}), HasSubstr("1 columns are declared, the table has 2"));
 }
 
+/// The raw data of several specimens below each other, each under its own header.
+TEST(Csv, ReadsOneOfSeveralTables) {
+  const std::string text =
+      "\"Operator\",\"A\"\r\n\"Specimen\",\"1\"\r\n\"Time\",\"Extension\",\"Load\"\r\n"
+      "\"(s)\",\"(mm)\",\"(N)\"\r\n0,0,1\r\n1,1,2\r\n2,2,3\r\n\r\n"
+      "\"Specimen\",\"2\"\r\n\"Time\",\"Extension\",\"Load\"\r\n\"(s)\",\"(mm)\",\"(kN)\"\r\n"
+      "0,0,4\r\n1,1,5\r\n2,2,6\r\n3,3,7\r\n\r\n\r\n";
+  EXPECT_THAT(refusal(text), HasSubstr("it holds 2 tables; choose one with `table` = 1 to 2"));
+  const CsvTable first = parse_csv(text, "a.csv", {}, 1), second = parse_csv(text, "a.csv", {}, 2);
+  EXPECT_THAT(column_in_si(first, "Load", Quantity::Force), ElementsAre(1, 2, 3));
+  EXPECT_THAT(column_in_si(second, "Load", Quantity::Force), ElementsAre(4e3, 5e3, 6e3, 7e3));
+  EXPECT_THAT(second.preamble, ElementsAre("\"Specimen\",\"2\""));
+  EXPECT_THROW(parse_csv(text, "a.csv", {}, 3), Error);
+  // A header that lost a name is none: the file is refused at it, whichever table is asked for.
+  EXPECT_THAT(refusal("x (mm),f (N)\n1,2\n3,4\n5,6\nx (mm)\n1,2\n3,4\n5,6\n"),
+              HasSubstr("a.csv:5: field 1 ('x (mm)') is not a number"));
+}
+
+/// Digits in groups, where it is unmistakable which mark is the decimal sign.
+TEST(Csv, ReadsGroupedDigits) {
+  const auto values = [](const std::string& text) {
+    return column_in_si(parse_csv(text, "a.csv"), "f", Quantity::Force);
+  };
+  EXPECT_THAT(values("x (mm);f (N)\n1;999.5\n2;1,234.5\n3;-1,234,567.25\n"),
+              ElementsAre(999.5, 1234.5, -1234567.25));
+  EXPECT_THAT(values("\"x (mm)\",\"f (N)\"\n\"1\",\"999.5\"\n\"2\",\"1,234.5\"\n\"3\",\"2\"\n"),
+              ElementsAre(999.5, 1234.5, 2));
+  EXPECT_THAT(values("x (mm);f (N)\n1,0;999,5\n2,0;1.234,5\n3,0;-12.345,25\n"),
+              ElementsAre(999.5, 1234.5, -12345.25));
+  EXPECT_THAT(values("x (mm);f (N)\n1;1 234\n2;1'234,5\n3;1\xC2\xA0"
+                     "234\xC2\xA0"
+                     "567,5\n4;1\xE2\x80\xAF"
+                     "234\n"),
+              ElementsAre(1234, 1234.5, 1234567.5, 1234));
+  // Three digits after a comma are decimals, wherever the file leaves no other reading.
+  EXPECT_THAT(values("x (mm);f (N)\n1,0;0,500\n2,0;1,234\n3,0;10,000\n"),
+              ElementsAre(0.5, 1.234, 10));
+  EXPECT_THAT(refusal("x (mm);f (N)\n1;999.5\n2;1000.5\n3;1100.5\n4;1,234\n"),
+              HasSubstr("a.csv:5: field 2 ('1,234') is not a number"));
+  EXPECT_THAT(refusal("x (mm);f (N)\n1;99.5\n2;10.5\n3;11.5\n4;12,34.5\n"),
+              HasSubstr("('12,34.5') is not a number"));
+}
+
+/// Headers in the encodings that spreadsheets and machines write.
+TEST(Csv, ReadsOtherEncodings) {
+  const std::string name =
+      "Pr\xC3\xBC"
+      "fweg";
+  const auto is_read = [&](const std::string& text) {
+    const CsvTable table = parse_csv(text, "a.csv");
+    EXPECT_THAT(column_in_si(table, name, Quantity::Length), ElementsAre(1e-6, 2e-6, 3e-6));
+  };
+  is_read(name + " / \xC2\xB5m;f / N\n1;1\n2;1\n3;1\n");
+  is_read(
+      "Pr\xFC"
+      "fweg / \xB5m;f / N\r\n1;1\r\n2;1\r\n3;1\r\n");
+  std::string little = "\xFF\xFE", big = "\xFE\xFF";
+  for (const char c : std::string("Pr\xFC"
+                                  "fweg [\xB5m]\tf [N]\r\n1\t1\r\n2\t1\r\n3\t1\r\n")) {
+    little += c;
+    little += '\0';
+    big += '\0';
+    big += c;
+  }
+  is_read(little);
+  is_read(big);
+}
+
 TEST(Csv, NeverSkipsARow) {
   EXPECT_THAT(refusal("x (mm),f (N)\n1,2\n3,4\n5,6\n7,####\n8,9\n"),
               HasSubstr("a.csv:5: field 2 ('####') is not a number"));
