@@ -35,6 +35,9 @@ int import_records(const Options& options) {
           drag["force_uncertainty_N"].get<double>());
     }
   }
+  for (const auto& warning : result.account["warnings"]) {
+    say("  warning: {}", warning.get<std::string>());
+  }
   say("import: {} records at {} sites -> {} (account in import.json)",
       result.account["records"].size(), result.curves.sites.size(), (out / "curves.h5").string());
   return kExitDone;

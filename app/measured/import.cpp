@@ -53,6 +53,7 @@ class Importer {
     result.curves = curves();
     account_["sites"] = sites_account(result.curves);
     account_["records"] = records_;
+    account_["warnings"] = warnings_;
     result.account = account_;
     return result;
   }
@@ -129,9 +130,50 @@ class Importer {
     double distance = 0;
     const int vertex = vertex_of(press, distance);
     const m::PressCurve curve = m::analyse_press(record, press_settings(press.cycle));
+    check_depth(file.string(), curve);
     add_account(press.file, table, vertex, distance, curve);
     sites_[vertex].presses.push_back(curve);
     add_file(file);
+  }
+
+  /// A wrong unit shows in a tool that is deeper in the body than that is large, and a depth that
+  /// is many times the tool where there is no body to tell.
+  void check_depth(const std::string& where, const m::PressCurve& curve) {
+    const double depth = curve.loading.back().depth;
+    if (body_ && depth > extent_of(*body_)) {
+      throw Error(ErrorKind::Configuration, where,
+                  fmt::format("the tool goes {:.4g} mm deep into a body of {:.4g} mm", 1e3 * depth,
+                              1e3 * extent_of(*body_)),
+                  "check the unit of the displacement");
+    }
+    constexpr double kManyRadii = 10;
+    if (depth > kManyRadii * s_.tool.radius) {
+      warn(fmt::format("{}: the tool goes {:.4g} mm deep, its radius is {:.4g} mm: check the units",
+                       where, 1e3 * depth, 1e3 * s_.tool.radius));
+    }
+  }
+
+  static double extent_of(const Body& body) {
+    Vec3 low = body.nodes.front(), high = low;
+    for (const Vec3& x : body.nodes) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        low[i] = std::min(low[i], x[i]);
+        high[i] = std::max(high[i], x[i]);
+      }
+    }
+    return norm(high - low);
+  }
+
+  void warn(const std::string& text) { warnings_.push_back(text); }
+
+  /// What is known to within half of itself is hardly measured.
+  void warn_of_doubt(const SiteCurves& site) {
+    for (const CurvePath& path : site.paths) {
+      const CurveSample& end = path.samples.back();
+      if (!(end.force_uncertainty > 0.5 * std::abs(dot(end.force, path.direction)))) continue;
+      warn(fmt::format("site {}: the force is uncertain by more than half of itself", site.vertex));
+      return;
+    }
   }
 
   /// A file of several tables is one input.
@@ -167,6 +209,7 @@ class Importer {
     settings.lateral_samples = s_.path.lateral_samples;
     settings.centre_to_tip = s_.tool.reference == "centre" ? s_.tool.radius : 0;
     const m::RobotCurves curves = m::analyse_robot_log(robot_log(file, table), *body_, settings);
+    check_depth(file.string(), curves.press);
     add_account(robot.file, table, curves.site.vertex, curves.site.distance, curves.press);
     records_.back()["tilt_rad"] = curves.tilt;
     records_.back()["touch_m"] = curves.touch;
@@ -232,6 +275,7 @@ class Importer {
         curves.lateral_travel = std::max(curves.lateral_travel, path.samples.back().displacement);
         site.paths.push_back(std::move(path));
       }
+      warn_of_doubt(site);
       curves.sites.push_back(std::move(site));
     }
     curves.provenance = provenance();
@@ -303,7 +347,7 @@ class Importer {
   m::Registration registration_;
   std::map<int, SiteRecords> sites_;
   std::vector<fs::path> files_;
-  Json account_ = Json::object(), records_ = Json::array();
+  Json account_ = Json::object(), records_ = Json::array(), warnings_ = Json::array();
 };
 
 }  // namespace

@@ -299,6 +299,28 @@ void orient(PressRecord& record) {
   if (record.displacement[peak] < start) flip(record.displacement);
 }
 
+namespace {
+
+/// What the machine yields is a part of what it shows. More than nearly all of that means a wrong
+/// unit, or nothing is known of the specimen.
+void check_compliance(const PressRecord& record, const Cycle& cycle, double compliance) {
+  constexpr double kLargestShare = 0.9;
+  const auto span = [&](const std::vector<double>& values) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(cycle.begin);
+    const auto end = values.begin() + static_cast<std::ptrdiff_t>(cycle.peak) + 1;
+    const auto [low, high] = std::minmax_element(begin, end);
+    return *high - *low;
+  };
+  const double yields = compliance * span(record.force), travel = span(record.displacement);
+  if (yields <= kLargestShare * travel) return;
+  refuse(record.name,
+         "by its compliance the machine would yield " + std::to_string(1e3 * yields) + " mm of " +
+             std::to_string(1e3 * travel) + " mm of travel",
+         "check the units of force, displacement and machine.compliance");
+}
+
+}  // namespace
+
 PressCurve analyse_press(const PressRecord& record, const PressSettings& settings) {
   check_record(record);
   const std::vector<Cycle> cycles = cycles_of(record.displacement);
@@ -314,6 +336,7 @@ PressCurve analyse_press(const PressRecord& record, const PressSettings& setting
            "count from 1, or from the end with -1");
   }
   const Cycle& cycle = cycles[static_cast<std::size_t>(wanted)];
+  check_compliance(record, cycle, settings.compliance);
   const std::size_t onset = onset_of(record, cycle);
   PressCurve curve;
   curve.cycles = count;

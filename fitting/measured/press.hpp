@@ -68,7 +68,7 @@ struct PressCurve {
 /// the contact point with its uncertainty, the depth less what the machine itself yields.
 /// @throws Error(Configuration) naming the record: columns of unequal length, time that goes
 ///   backwards, no press, no such cycle, a press that begins in contact, a force that never rises
-///   above the noise.
+///   above the noise, a machine that by its compliance would yield nearly all the travel.
 PressCurve analyse_press(const PressRecord& record, const PressSettings& settings);
 
 /// Turn the signs so that displacement grows into the body and force is positive in compression.

@@ -10,6 +10,9 @@
 namespace palpate::measured {
 namespace {
 
+/// Between the reaches of presses that repeat each other.
+constexpr double kLargestRatio = 5;
+
 double deepest(const PressCurve& press) {
   double depth = 0;
   for (const DepthForce& sample : press.loading) depth = std::max(depth, sample.depth);
@@ -86,8 +89,17 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
 
 CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
                     const RepeatSettings& settings, const std::string& where) {
-  double reach = deepest(presses.front());
-  for (const PressCurve& press : presses) reach = std::min(reach, deepest(press));
+  double reach = deepest(presses.front()), farthest = reach;
+  for (const PressCurve& press : presses) {
+    reach = std::min(reach, deepest(press));
+    farthest = std::max(farthest, deepest(press));
+  }
+  if (farthest > kLargestRatio * reach) {
+    throw Error(ErrorKind::Configuration, where,
+                "one of its presses reaches " + std::to_string(1e3 * reach) + " mm, another " +
+                    std::to_string(1e3 * farthest) + " mm",
+                "check their units of length; leave out a press that ended early");
+  }
   std::vector<double> depths;
   for (int i = 1; i <= settings.samples; ++i) depths.push_back(reach * i / settings.samples);
   std::vector<GriddedPress> gridded;

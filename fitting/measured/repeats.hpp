@@ -37,6 +37,7 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
 ///   force_uncertainty  u^2 = max(scatter^2/n, (noise^2 + k^2 u_c^2)/n) + (r f)^2 + (k f u_C)^2,
 /// where the last two, calibration r and compliance u_C, are common to all presses.
 /// `contact_uncertainty` is the one of the mean contact point.
+/// @throws Error(Configuration) as on_grid; for presses of which one reaches five times as deep.
 CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
                     const RepeatSettings& settings, const std::string& where);
 

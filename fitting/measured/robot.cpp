@@ -161,6 +161,12 @@ RobotCurves analyse_robot_log(const RobotLog& log, const Body& body,
                " degrees off the inward direction of its site",
            "press along the surface normal, or check the frame");
   }
+  const Vec3 pull =
+      log.force[first_deep] - median_of(log.force, std::max<std::size_t>(8, touch / 2));
+  if (dot(pull, inward) < 0) {
+    refuse(log.name, "where the tool is deepest the force pulls the body outwards",
+           "check placement.force_is: \"on body\" or \"on tool\"");
+  }
   const std::optional<DragSpan> drag = drag_of(parts, touch, first_deep);
   PressRecord press{log.name, log.time, parts.along, parts.force_along};
   if (drag) {

@@ -42,7 +42,7 @@ struct RobotCurves {
 /// sideways at a depth that stays within a tenth; it ends where the tool slips (cut_at_slip), for a
 /// lateral path is stuck.
 /// @throws Error(Configuration) as analyse_press and nearest_site; for a press tilted by more than
-///   30 degrees.
+///   30 degrees, a force that pulls.
 RobotCurves analyse_robot_log(const RobotLog& log, const Body& body, const RobotSettings& settings);
 
 }  // namespace palpate::measured

@@ -177,6 +177,34 @@ class Measured(unittest.TestCase):
         self.refuse(["this is a record", "TOML"], "Time,Load\n0,0\n", name="press.csv")
         self.refuse(["cannot be read"], text.replace("press-20-20-1.csv", "press-none.csv"))
 
+    def test_bad_records_are_refused(self):
+        """What laboratories get wrong: each is one line that names the file and the remedy."""
+        record = (self.presses.parent / "press-20-20-1.csv").read_bytes().decode()
+        units = '"(s)","(mm)","(N)"'
+        self.assertIn(units, record)
+        bad = Path(self.folder.name) / "record.csv"
+        text = self.presses.read_text(encoding="utf-8")
+        text = text[:text.index("[[press]]")] + '[[press]]\nfile = "../record.csv"\nsite = ["20 mm", "20 mm", "20 mm"]\n'
+        for words, content in (
+                (["its unit is not given"], record.replace(units + "\r\n", "")),
+                (["mm deep into a body of", "check the unit"], record.replace(units, '"(s)","(m)","(N)"')),
+                (["would yield", "check the units"], record.replace(units, '"(s)","(mm)","(kN)"')),
+                (["'mm' is not a unit of force"], record.replace(units, '"(s)","(mm)","(mm)"')),
+                (["is not a number"], record.replace('"0.100"', '"NaN"', 1)),
+                (["never rises"], record[:4000])):
+            bad.write_bytes(content.encode())
+            with self.subTest(words):
+                sidecar = Path(self.folder.name) / "side" / "bad.toml"
+                sidecar.parent.mkdir(exist_ok=True)
+                sidecar.write_text(text, encoding="utf-8")
+                out = Path(self.folder.name) / "none"
+                result = palpate("import", sidecar, "--out", out, "--body", self.out / "body.h5")
+                self.assertEqual(result.returncode, 2, result.stdout)
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                for word in words:
+                    self.assertIn(word, result.stderr)
+                self.assertFalse(out.exists())
+
     def test_fit_files_of_the_shipped_tables(self):
         for fit in sorted((SOURCE / "data/measured").glob("*/*.toml")):
             if fit.parent.name == "pad":

@@ -147,6 +147,11 @@ TEST(Press, RefusesWhatCannotBeSortedOut) {
   bench = {};
   bench.modulus = 1;
   EXPECT_THAT(refusal(press_on(bench, 1)), HasSubstr("never rises above its noise"));
+  bench = {};
+  bench.modulus *= 1000;  // a file in mN that is said to be in N
+  PressSettings compliant;
+  compliant.compliance = 0.05e-3;
+  EXPECT_THAT(refusal(press_on(bench, 1), compliant), HasSubstr("check the units of force"));
   PressRecord still = press_on({}, 1);
   still.displacement.assign(still.displacement.size(), 0.001);
   EXPECT_THAT(refusal(still), HasSubstr("no press"));
@@ -202,6 +207,18 @@ TEST(Repeats, ScatterIsThatOfTheSpecimens) {
   EXPECT_NEAR(relative, 0.1, 0.035);  // three standard deviations of the scatter of forty
   EXPECT_NEAR(end.force_uncertainty, end.force_scatter / std::sqrt(40.0),
               0.05 * end.force_uncertainty);
+}
+
+/// One file of the repeats in another unit of length.
+TEST(Repeats, RefusesPressesOfOtherDepths) {
+  std::vector<PressCurve> presses = presses_of_site(2, 0, 61);
+  for (DepthForce& sample : presses[1].loading) sample.depth *= 1000;
+  try {
+    mean_path(presses, kInward, {}, "site 4");
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("check their units of length"));
+  }
 }
 
 TEST(Repeats, OnePressHasNoScatterButAnUncertainty) {

@@ -273,6 +273,9 @@ TEST(Robot, RefusesWhatIsNotOnTheBody) {
   for (Vec3& x : slanted.tip) x[0] -= 0.9 * x[2];
   EXPECT_THAT(refusal(slanted), HasSubstr("degrees off the inward direction"));
   EXPECT_EQ(refusal(log_of({}, 10)), "accepted");
+  RobotLog pulling = log_of({}, 11);
+  for (Vec3& f : pulling.force) f = -1.0 * f;
+  EXPECT_THAT(refusal(pulling), HasSubstr("pulls the body outwards; check placement.force_is"));
   const std::vector<Fiducial> line{
       {{0, 0, 0}, {0, 0, 0}}, {{1, 0, 0}, {1, 0, 0}}, {{2, 0, 0}, {2, 0, 0}}};
   EXPECT_THROW(register_fiducials(line, "s"), Error);
