@@ -54,20 +54,29 @@ const named = (name) => () => (name.startsWith('#') ? name : colour(name));
 /** Range from zero to a little above the largest value. */
 const fromZero = (_, low, high) => [Math.min(0, low ?? 0), high > 0 ? high * 1.05 : 1];
 
+/** Range of values of either sign, zero among them, with a margin. */
+const aroundZero = (_, low, high) => {
+  const [least, most] = [Math.min(0, low ?? 0), Math.max(0, high ?? 0)];
+  const margin = 0.06 * (most - least || 1);
+  return [least - margin, most + margin];
+};
+
 /**
  * Several curves and markers, each with its own abscissae.
- * sets: [{label, colour, x, y, markers: bool}]; every x ascending. mark: abscissa of a dashed line.
+ * sets: [{label, colour, x, y, markers: bool, width, dash}]; every x ascending, later sets on top.
+ * mark: abscissa of a dashed line. signed: ordinates of either sign.
  */
-export function curvePlot(title, xLabel, yLabel, height) {
+export function curvePlot(title, xLabel, yLabel, height, { signed = false } = {}) {
   const spec = (sets, mark) => ({
     legend: { show: false },
     cursor: { drag: { x: false, y: false }, points: { show: false } },
-    scales: { x: { time: false, range: fromZero }, y: { range: fromZero } },
+    scales: { x: { time: false, range: fromZero }, y: { range: signed ? aroundZero : fromZero } },
     axes: [axis(xLabel, 2), axis(yLabel, 3)],
     series: [{}, ...sets.map((s) => ({
       label: s.label,
       stroke: named(s.colour),
-      width: s.markers ? 0 : 2,
+      width: s.markers ? 0 : s.width ?? 2,
+      dash: s.dash,
       pxAlign: 0,
       spanGaps: true,
       paths: s.markers ? () => null : uPlot.paths.linear(),

@@ -21,10 +21,11 @@ function overlay(curve) {
   const x = curve.points.map((p) => p.displacement_m * 1e3);
   const band = (sign) => curve.points.map((p) => p.reference_N + sign * 2 * (p.uncertainty_N ?? 0));
   const known = curve.points.some((p) => p.uncertainty_N !== null);
+  const thin = (sign) => ({ label: 'two standard uncertainties', colour: 'muted', width: 1, dash: [3, 3], x, y: band(sign) });
   return [
-    { label: 'reference', colour: 'series-1', markers: true, x, y: curve.points.map((p) => p.reference_N) },
+    ...(known ? [thin(-1), thin(1)] : []),
     { label: 'model', colour: 'series-2', x, y: curve.points.map((p) => p.model_N) },
-    ...(known ? [-1, 1].map((sign) => ({ label: 'two standard uncertainties', colour: 'grid', x, y: band(sign) })) : []),
+    { label: 'reference', colour: 'series-1', markers: true, x, y: curve.points.map((p) => p.reference_N) },
   ];
 }
 
@@ -43,11 +44,18 @@ function blandAltman(data, kind, summary) {
   const points = distinct(curves.flatMap((c) => c.points.map((p) => [(p.model_N + p.reference_N) / 2, difference(p)])));
   const all = points.map(([x]) => x);
   const ends = [Math.min(...all), Math.max(...all)];
-  const line = (label, y) => ({ label, colour: 'muted', x: ends, y: [y, y] });
+  const line = (label, y, dash) => ({ label, colour: 'muted', width: 1.5, dash, x: ends, y: [y, y] });
+  const limit = (y) => line('limit of agreement', y, [6, 4]);
   return sorted([
+    line('bias', summary.bias_N), limit(summary.agreement_low_N), limit(summary.agreement_high_N),
     { label: 'points', colour: 'series-1', markers: true, x: all, y: points.map(([, y]) => y) },
-    line('bias', summary.bias_N), line('limit', summary.agreement_low_N), line('limit', summary.agreement_high_N),
   ]);
+}
+
+/** The first few of a list that may be as long as the body has sites. */
+function someOf(texts, most = 3) {
+  const rest = texts.length - most;
+  return texts.slice(0, most).join('; ') + (rest > 0 ? `; and ${units.count(rest)} more, in comparison.json` : '');
 }
 
 const percentOf = (share) => (share === null ? 'unknown' : units.percent(share));
@@ -79,16 +87,18 @@ export function comparisonSection(data) {
     c.curves.map((curve, i) => el('option', { value: i }, name(curve))));
   show(0);
   const agreement = c.summaries.map((s) => {
-    const figure = curvePlot(`Difference over mean, ${s.kind} curves (Bland\u2013Altman)`, 'Mean force (N)', 'Model less reference (N)', 240);
+    const figure = curvePlot(`Difference over mean, ${s.kind} curves (Bland\u2013Altman)`, 'Mean force (N)', 'Model less reference (N)', 240, { signed: true });
     figure.set(blandAltman(data, s.kind, s));
-    return el('div', {}, figure.element, summaryOf(s));
+    return el('div', {}, figure.element,
+      paragraph('Line: bias. Dashed: limits of agreement, 1.96 standard deviations of the differences to either side.', 'note'),
+      summaryOf(s));
   });
   return el('section', { id: 'comparison' },
     el('h2', {}, 'Against the reference'),
     paragraph(`Model: ${c.model}. Reference: ${c.reference}. A difference of ${percentOf(c.jnd)} of the force, or of ${units.force(c.jnd_floor_N)} where that is more, counts as just noticeable.`, 'lead'),
     el('div', { class: 'controls' }, el('label', {}, 'Curve', select)), plot.element,
-    paragraph('Markers: the reference, with two of its standard uncertainties as thin lines where they are known. Line: the model. The map of the error is a colour of the body above.', 'note'),
+    paragraph('Markers: the reference, between dashed lines at two of its standard uncertainties where they are known. Line: the model. The map of the error is a colour of the body above.', 'note'),
     agreement,
     table(['Node', 'Path', 'RMSE', 'of largest', 'R\u00b2', 'Bias', 'JND', 'Uncertainty', 'Scatter'], curveRows(c.curves), [0, 2, 3, 4, 5, 6, 7, 8]),
-    c.unmatched.length ? paragraph(`Without a partner: ${c.unmatched.join('; ')}.`, 'note') : null);
+    c.unmatched.length ? paragraph(`Without a partner: ${someOf(c.unmatched)}.`, 'note') : null);
 }
