@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <vector>
 
 #include "fem/solid_model.hpp"
@@ -11,21 +12,29 @@
 
 namespace palpate::fem {
 
-/// Frictionless unilateral contact before bond(), then stuck: the points that were in contact
-/// follow the tool in all directions, the others stay unilateral.
-///   unilateral: p = max(0, -eps g), g the signed distance to the tool, n its normal at x; force on
-///               the body p n
-///   stuck:      t = t0 + eps_s (x - x_tool), force on the body -t, t0 = -p n where it was bonded
-/// Each point carries the reference area w of its share of the facet; the energy is
-///   sum w p^2/(2 eps)   and   sum w (t0^2/(2 eps) + t0 . s + eps_s/2 s^2), s = x - x_tool,
-/// so that bonding changes neither force nor energy.
-/// Stuck facets can follow the tool exactly, so a far larger eps_s constrains nothing too much.
+/// How firmly a surface is held to the tool.
+struct ContactStiffness {
+  double contact;  ///< eps, N/m^3, of the surface against the tool
+  double young;    ///< E, Pa, of the solid behind the surface
+};
+
+/// Frictionless unilateral contact; after bond() the surface in contact follows the tool as well.
+///   contact: p = max(0, -eps g), g the signed distance to the tool, n its normal at x; force on
+///   the
+///            body p n, at quadrature points with the reference area w of their share of the facet
+///   tie:     force on a node -k s, s = (x - x_tool) now minus then
+/// with the energy sum w p^2/(2 eps) + sum k s^2/2. Of the surface A around a node (the integral of
+/// the positive part of its shape function) a share phi is in contact when it is tied:
+///   k = c E sqrt(A) phi/(1 - phi).
+/// Where all of it is in contact, the tie is rigid. Where a part is, it is about as stiff as the
+/// elements behind, the scale of Nitsche's method: a rigid tie there would hold whole facets, and
+/// the stuck patch would be half a facet too large all around. A tie is slack when it is made, so
+/// that bonding changes neither force nor energy.
 class ToolContact {
  public:
   /// Candidates: the boundary facets with a node within `reach` of `site` in the rest state.
-  /// `stiffness`: eps, N/m^3.
   ToolContact(const QuadraticMesh& mesh, const Eigen::Vector3d& site, double reach,
-              double stiffness);
+              const ContactStiffness& stiffness);
 
   void move_to(const Tool& tool);
 
@@ -37,8 +46,8 @@ class ToolContact {
   void add_stiffness(const SolidModel& model, const Displacement& u, bool geometric,
                      std::vector<double>& values) const;
 
-  /// Hold the points now in contact to the tool, with their present tractions; also those that are
-  /// nearer than `closeness`, m, without any.
+  /// Tie to the tool the surface in contact, or nearer than `closeness`, m. Nodes that are tied
+  /// already are tied further where their share has grown.
   void bond(const Displacement& u, double closeness = 0);
 
   Eigen::Vector3d tool_force(const Displacement& u) const;  ///< of the tool ON the body, N
@@ -47,7 +56,8 @@ class ToolContact {
                                const Eigen::Vector3d& direction, Eigen::VectorXd& g) const;
   double contact_area(const Displacement& u) const;  ///< m^2, reference
   double penetration(const Displacement& u) const;   ///< m, deepest
-  /// N, the pulls of stuck points on the body, added up: a surface that is not glued would let go.
+  /// N, the pulls on facets that the ties draw off the body, added up: a surface that is not glued
+  /// would let go.
   double tension(const Displacement& u) const;
   /// Largest depth of a candidate point of the rest surface inside `tool`.
   double rest_penetration(const Tool& tool) const;
@@ -59,23 +69,41 @@ class ToolContact {
     int facet;                ///< index into facets_
     std::array<double, 6> N;  ///< shape functions of the facet at the point
     double area;              ///< weight times reference area
-    bool stuck = false;
-    Eigen::Vector3d traction;  ///< Pa, stuck: t0
-    Eigen::Vector3d arm;       ///< stuck: position relative to the tip of the tool
+    bool beneath = true;      ///< the end of a sharp disc: whether it is there
+  };
+  struct Tie {
+    int node;
+    double stiffness;     ///< k, N/m
+    Eigen::Vector3d arm;  ///< position relative to the tip of the tool when it was made
   };
 
   Eigen::Vector3d position(const Point& point, const Displacement& u) const;
-  double gap(const Eigen::Vector3d& x) const { return tool_.distance(x); }
-  double energy(const Point& point, const Eigen::Vector3d& x) const;
-  /// Derivative of the energy of a point by its position, per unit area.
-  Eigen::Vector3d gradient(const Point& point, const Eigen::Vector3d& x) const;
-  Eigen::Matrix3d hessian(const Point& point, const Eigen::Vector3d& x, bool geometric) const;
+  Eigen::Vector3d position(int node, const Displacement& u) const {
+    return mesh_->X.col(node) + u.col(node);
+  }
+  Eigen::Vector3d slip(const Tie& tie, const Eigen::Vector3d& x) const {
+    return x - tool_.tip - tie.arm;
+  }
+  /// The distance jumps at the edge of a sharp disc. What is beneath its end is settled when the
+  /// surface is tied, and meets the plane of the end until then.
+  double gap(const Point& point, const Eigen::Vector3d& x) const;
+  void settle_beneath(const Displacement& u);
+  Gap gap_derivatives(const Eigen::Vector3d& x) const;
+  /// Energy of a point at x per unit area, and its derivatives.
+  double energy_at(const Point& point, const Eigen::Vector3d& x) const;
+  Eigen::Vector3d gradient_at(const Point& point, const Eigen::Vector3d& x) const;
+  Eigen::Matrix3d hessian_at(const Point& point, const Eigen::Vector3d& x, bool geometric) const;
+  /// The stiffness of a tie to each node in contact, or nearer than `closeness`.
+  std::map<int, double> tie_stiffnesses(const Displacement& u, double closeness) const;
+  /// N, what the tool does to each facet along its normal: pushes, and pulls of the ties.
+  std::vector<double> facet_pressures(const Displacement& u) const;
 
   const QuadraticMesh* mesh_;
-  double eps_, stuck_eps_;
+  double eps_, young_;
   Tool tool_;
   std::vector<Facet> facets_;
   std::vector<Point> points_;
+  std::vector<Tie> ties_;
 };
 
 }  // namespace palpate::fem

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 #include <set>
-#include <unordered_map>
 
 namespace palpate::fem {
 
@@ -16,30 +15,31 @@ ContactPatch::ContactPatch(const ToolContact& contact, const SolidModel& model,
   int nearest_facet = -1;
   for (const auto& point : contact.points_) {
     const Eigen::Vector3d x = contact.position(point, u);
-    const double gap = contact.gap(x);
+    const double gap = contact.gap(point, x);
     if (gap < nearest) {
       nearest = gap;
       nearest_facet = point.facet;
     }
-    if (point.stuck || gap < 0)
+    if (gap < 0)
       touched.insert(contact.facets_[at(point.facet)].begin(),
                      contact.facets_[at(point.facet)].end());
   }
+  for (const auto& tie : contact.ties_) touched.insert(tie.node);
   if (touched.empty() && nearest_facet >= 0)
     touched.insert(contact.facets_[at(nearest_facet)].begin(),
                    contact.facets_[at(nearest_facet)].end());
-  std::set<int> free;
   for (std::size_t f = 0; f < near_.size(); ++f) {
     const Facet& facet = contact.facets_[f];
     if (std::none_of(facet.begin(), facet.end(), [&](int n) { return touched.contains(n); }))
       continue;
     near_[f] = 1;
-    for (const int node : facet)
-      if (model.equation(node) >= 0) free.insert(model.equation(node));
+    for (const int node : facet) node_place_[node] = -1;
   }
-  std::unordered_map<int, int> place{{-1, -1}};
-  for (const int first : free) {
-    place[first] = static_cast<int>(unknowns_.size());
+  std::map<int, int> free;  // first unknown to node
+  for (const auto& [node, place] : node_place_)
+    if (model.equation(node) >= 0) free[model.equation(node)] = node;
+  for (const auto& [first, node] : free) {
+    node_place_[node] = static_cast<int>(unknowns_.size());
     for (int i = 0; i < 3; ++i) unknowns_.push_back(first + i);
   }
   for (std::size_t i = 0; i < contact.points_.size(); ++i) {
@@ -47,20 +47,27 @@ ContactPatch::ContactPatch(const ToolContact& contact, const SolidModel& model,
     if (near_[at(point.facet)] == 0) continue;
     Point mine{i, {}, Eigen::Vector3d::Zero()};
     for (std::size_t a = 0; a < 6; ++a)
-      mine.place[a] = place.at(model.equation(contact.facets_[at(point.facet)][a]));
+      mine.place[a] = node_place_.at(contact.facets_[at(point.facet)][a]);
     points_.push_back(mine);
   }
 }
 
 bool ContactPatch::covers(const ToolContact& contact, const Displacement& u) const {
-  return std::all_of(contact.points_.begin(), contact.points_.end(), [&](const auto& point) {
-    return near_[at(point.facet)] != 0 ||
-           !(point.stuck || contact.gap(contact.position(point, u)) < 0);
-  });
+  const auto inside = [&](const auto& point) {
+    return near_[at(point.facet)] != 0 || contact.gap(point, contact.position(point, u)) >= 0;
+  };
+  const auto held = [&](const auto& tie) { return node_place_.contains(tie.node); };
+  return std::all_of(contact.points_.begin(), contact.points_.end(), inside) &&
+         std::all_of(contact.ties_.begin(), contact.ties_.end(), held);
 }
 
 void ContactPatch::start_from(const ToolContact& contact, const Displacement& u) {
   for (Point& point : points_) point.x = contact.position(contact.points_[point.index], u);
+  ties_.clear();
+  for (std::size_t i = 0; i < contact.ties_.size(); ++i) {
+    const int node = contact.ties_[i].node;
+    ties_.push_back({i, node_place_.at(node), contact.position(node, u)});
+  }
 }
 
 Eigen::Vector3d ContactPatch::position(const ToolContact& contact, const Point& point,
@@ -72,10 +79,21 @@ Eigen::Vector3d ContactPatch::position(const ToolContact& contact, const Point& 
   return x;
 }
 
+Eigen::Vector3d ContactPatch::slip(const ToolContact& contact, const Tie& tie,
+                                   const Eigen::VectorXd& d) const {
+  Eigen::Vector3d x = tie.x;
+  if (tie.place >= 0) x += d.segment<3>(tie.place);
+  return contact.slip(contact.ties_[tie.index], x);
+}
+
 double ContactPatch::energy(const ToolContact& contact, const Eigen::VectorXd& d) const {
   double sum = 0;
-  for (const Point& point : points_)
-    sum += contact.energy(contact.points_[point.index], position(contact, point, d));
+  for (const Point& point : points_) {
+    const auto& source = contact.points_[point.index];
+    sum += source.area * contact.energy_at(source, position(contact, point, d));
+  }
+  for (const Tie& tie : ties_)
+    sum += 0.5 * contact.ties_[tie.index].stiffness * slip(contact, tie, d).squaredNorm();
   return sum;
 }
 
@@ -87,18 +105,25 @@ double ContactPatch::derivatives(const ToolContact& contact, const Eigen::Vector
   for (const Point& point : points_) {
     const auto& source = contact.points_[point.index];
     const Eigen::Vector3d x = position(contact, point, d);
-    const Eigen::Vector3d force = source.area * contact.gradient(source, x);
+    const Eigen::Vector3d force = source.area * contact.gradient_at(source, x);
     if (force.isZero(0)) continue;
-    sum += contact.energy(source, x);
+    sum += source.area * contact.energy_at(source, x);
     for (std::size_t a = 0; a < 6; ++a)
       if (point.place[a] >= 0) g.segment<3>(point.place[a]) += source.N[a] * force;
     if (!H) continue;
-    const Eigen::Matrix3d h = source.area * contact.hessian(source, x, geometric);
+    const Eigen::Matrix3d h = source.area * contact.hessian_at(source, x, geometric);
     for (std::size_t a = 0; a < 6; ++a)
       for (std::size_t b = 0; b < 6; ++b) {
         if (point.place[b] < 0 || point.place[a] < point.place[b]) continue;
         H->block<3, 3>(point.place[a], point.place[b]) += source.N[a] * source.N[b] * h;
       }
+  }
+  for (const Tie& tie : ties_) {
+    const Eigen::Vector3d s = slip(contact, tie, d);
+    sum += 0.5 * contact.ties_[tie.index].stiffness * s.squaredNorm();
+    if (tie.place < 0) continue;
+    g.segment<3>(tie.place) += contact.ties_[tie.index].stiffness * s;
+    if (H) H->diagonal().segment<3>(tie.place).array() += contact.ties_[tie.index].stiffness;
   }
   return sum;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <vector>
 
 #include "fem/contact.hpp"
@@ -37,13 +38,21 @@ class ContactPatch {
     std::array<int, 6> place;  ///< in d of the first unknown of each node, -1: none
     Eigen::Vector3d x;         ///< at the start
   };
+  struct Tie {
+    std::size_t index;  ///< in the contact
+    int place;          ///< as above
+    Eigen::Vector3d x;  ///< at the start
+  };
 
   Eigen::Vector3d position(const ToolContact& contact, const Point& point,
                            const Eigen::VectorXd& d) const;
+  Eigen::Vector3d slip(const ToolContact& contact, const Tie& tie, const Eigen::VectorXd& d) const;
 
-  std::vector<char> near_;  ///< (facets of the contact)
+  std::vector<char> near_;         ///< (facets of the contact)
+  std::map<int, int> node_place_;  ///< of every node of them, -1: none
   std::vector<int> unknowns_;
   std::vector<Point> points_;
+  std::vector<Tie> ties_;  ///< of the contact that the start was with
 };
 
 }  // namespace palpate::fem

@@ -151,14 +151,14 @@ std::vector<double> running_integral(const std::vector<double>& x, const std::ve
   return sum;
 }
 
-double contact_stiffness(const Body& body, const CampaignSettings& settings,
-                         const SolidModel& model) {
+ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& settings,
+                                   const SolidModel& model) {
   double stiffest = 0;
   for (const auto region : model.mesh().facet_region)
     for (const auto& material : settings.materials)
       if (material.region == body.region_names[at(region)])
         stiffest = std::max(stiffest, rest_moduli(material.law).young);
-  return kContactStiffness * stiffest / settings.indentation.tool.radius;
+  return {kContactStiffness * stiffest / settings.indentation.tool.radius, stiffest};
 }
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e)

@@ -32,8 +32,8 @@ struct CampaignContext {
   IndentationSettings indentation;
   Engine engine;
   SolidModel model;
-  std::vector<int> permutation;             ///< elimination order of the whole body
-  double contact_stiffness;                 ///< eps, N/m^3
+  std::vector<int> permutation;  ///< elimination order of the whole body
+  ContactStiffness contact_stiffness;
   std::unique_ptr<RestFactor> rest_factor;  ///< SharedFactor only
   mutable std::mutex direct_solve;          ///< held while a site factorizes the whole body
 };
@@ -73,10 +73,10 @@ class SiteSolver {
   Observer observer_;
 };
 
-/// Penalty eps of the contact, N/m^3: a multiple of the largest Young's modulus at rest behind the
-/// boundary, over the radius of the tool. What lies deeper must not stiffen the contact.
-double contact_stiffness(const Body& body, const CampaignSettings& settings,
-                         const SolidModel& model);
+/// The largest Young's modulus at rest behind the boundary, and a multiple of it over the radius of
+/// the tool. What lies deeper must not stiffen the contact.
+ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& settings,
+                                   const SolidModel& model);
 
 /// Solve one site alone.
 SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displacement* pressed);

@@ -60,9 +60,9 @@ Varied varied(const Body& body, const CampaignSettings& settings, const RegionCo
   value_of(less, constant) = value - step;
   Varied v{SolidModel(body, unchecked_laws(body, more), settings.dilatation),
            SolidModel(body, unchecked_laws(body, less), settings.dilatation), 2 * step, 0};
-  v.penalty =
-      std::log(contact_stiffness(body, more, v.more) / contact_stiffness(body, less, v.less)) /
-      v.width;
+  v.penalty = std::log(contact_stiffness(body, more, v.more).contact /
+                       contact_stiffness(body, less, v.less).contact) /
+              v.width;
   return v;
 }
 

@@ -59,7 +59,7 @@ class PatchPress {
         free_(body, laws_of_regions(body, settings.materials), settings.dilatation),
         patch_(newly_held(held_.mesh(), free_.mesh())),
         inward_(body.response.inward[at(vertex)].data()),
-        no_contact_(held_.mesh(), Eigen::Vector3d::Constant(1e6), 1e-6, 1),
+        no_contact_(held_.mesh(), Eigen::Vector3d::Constant(1e6), 1e-6, {1, 1}),
         newton_(held_),
         u_(Displacement::Zero(3, held_.mesh().nodes())),
         before_(u_) {

@@ -50,6 +50,15 @@ struct Tool {
   Eigen::Vector3d inward = -Eigen::Vector3d::UnitZ();  ///< unit: out of the tool at its tip
   Eigen::Vector3d axis = Eigen::Vector3d::UnitX();     ///< unit, normal to inward: of a cylinder
 
+  bool has_sharp_edge() const {
+    return geometry.shape == ToolShape::Disc && geometry.edge_radius == 0;
+  }
+  /// Signed distance to the plane of the tip, negative on the side of the tool.
+  double beyond_end(const Eigen::Vector3d& x) const { return (x - tip).dot(inward); }
+  double from_axis(const Eigen::Vector3d& x) const {
+    return (x - tip - beyond_end(x) * inward).norm();
+  }
+
   double distance(const Eigen::Vector3d& x) const;
   Gap gap(const Eigen::Vector3d& x) const;
 };

@@ -47,7 +47,7 @@ struct CurveSample {
   /// J, stored in the springs that enforce the contact; NaN when unknown. With it the balance is
   /// complete: tool_work = strain_energy + contact_energy.
   double contact_energy = std::numeric_limits<double>::quiet_NaN();
-  /// N, pulls of stuck points on the body, added up (a surface without glue would let go there);
+  /// N, pulls of what sticks on the body, added up (a surface without glue would let go there);
   /// NaN when unknown.
   double tension = std::numeric_limits<double>::quiet_NaN();
 };

@@ -21,7 +21,7 @@ struct Pressed {
   Body body = test::make_block(test::even(-0.01, 0.01, 4), test::even(-0.01, 0.01, 4),
                                test::even(-0.02, 0, 3));
   SolidModel model{body, {NeoHookean::from_young_poisson(10e3, 0.49, "t")}};
-  ToolContact contact{model.mesh(), Eigen::Vector3d::Zero(), 0.01, 1e8};
+  ToolContact contact{model.mesh(), Eigen::Vector3d::Zero(), 0.01, {1e8, 1e4}};
   Displacement u = Displacement::Zero(3, model.mesh().nodes());
 
   Pressed() { contact.move_to(sphere(Eigen::Vector3d(2e-4, 1e-4, 0.004))); }
@@ -119,7 +119,7 @@ TEST(ContactPatch, SaysWhenTheContactHasGrownBeyondIt) {
   const Body body = test::make_block(test::even(-0.01, 0.01, 10), test::even(-0.01, 0.01, 10),
                                      test::even(-0.004, 0, 2));
   const SolidModel model(body, {NeoHookean::from_young_poisson(10e3, 0.49, "t")});
-  ToolContact contact(model.mesh(), Eigen::Vector3d::Zero(), 0.02, 1e8);
+  ToolContact contact(model.mesh(), Eigen::Vector3d::Zero(), 0.02, {1e8, 1e4});
   const Displacement u = Displacement::Zero(3, model.mesh().nodes());
   const auto press = [&](double depth) {
     contact.move_to(sphere(Eigen::Vector3d(0, 0, 0.005 - depth)));

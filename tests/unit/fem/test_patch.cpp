@@ -51,7 +51,7 @@ TEST_P(PatchTest, AnAffineBoundaryGivesAnAffineInterior) {
     if (model.equation(node) >= 0)
       u.col(node) += Eigen::Vector3d(shift(random), shift(random), shift(random));
 
-  const ToolContact far_away(model.mesh(), Eigen::Vector3d(1, 1, 1), 1e-6, 1);
+  const ToolContact far_away(model.mesh(), Eigen::Vector3d(1, 1, 1), 1e-6, {1, 1});
   NewtonSolver newton(model);
   NewtonOptions options;
   options.tolerance = 10;  // over a tool force of 1e-12 N: the residual is round-off

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Contact that sticks: against Mindlin's half-space, and the balance of energy of every path.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "fem/at.hpp"
+#include "fem/indentation.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+constexpr double kYoung = 10e3;
+
+double force_at(const CurvePath& path, double depth) {
+  for (const CurveSample& sample : path.samples)
+    if (std::abs(sample.displacement - depth) < 1e-9 * depth)
+      return dot(sample.force, path.direction);
+  return std::nan("");
+}
+
+/// Lateral over normal stiffness of a sphere pressed to the depth at which its contact is a circle
+/// of 1 mm radius, then moved aside with the contact stuck: the mean over places of the sphere on a
+/// mesh of this element size and two directions.
+double lateral_over_normal(double element, double poisson, int places) {
+  const double a = 1e-3, radius = 10 * a, depth = a * a / radius;
+  const auto across = test::graded(25 * a, 2.2 * a, element, 1.8);
+  std::vector<double> down;
+  for (const double x : across)
+    if (x <= 0) down.push_back(x);
+  const Body body = test::make_block(across, across, down);
+  CampaignSettings settings;
+  settings.materials = {{"tissue", {kYoung, poisson}}};
+  settings.indentation.tool.radius = radius;
+  settings.indentation.depth = 1.1 * depth;
+  settings.indentation.increments = 1;
+  settings.indentation.held_depths = {0.9 * depth, depth};
+  settings.indentation.lateral_travel = 0.02 * depth;
+  settings.indentation.lateral_increments = 1;
+  settings.indentation.azimuths = {0, M_PI / 2};
+  settings.indentation.force_tolerance = 3e-5;
+  for (int i = 0; i < places; ++i)  // spread over a cell of the mesh
+    settings.points.push_back(
+        {{element * (i + 0.5) / places, element * std::fmod(0.618 * i + 0.3, 1.0), 0}, {0, 0, -1}});
+  const CampaignContext context(body, settings, Engine::SharedFactor);
+  double sum = 0;
+  int count = 0;
+  for (int i = 0; i < places; ++i) {
+    const SiteCurves curves = solve_site(context, i, nullptr);
+    EXPECT_EQ(curves.status, SiteStatus::Complete) << curves.reason;
+    const CurvePath& pressed = curves.paths.front();
+    const double normal =
+        (force_at(pressed, 1.1 * depth) - force_at(pressed, 0.9 * depth)) / (0.2 * depth);
+    for (const CurvePath& path : curves.paths) {
+      if (path.kind != PathKind::Lateral || path.held_depth < 0.95 * depth) continue;
+      const Vec3 change = path.samples.back().force - path.samples.front().force;
+      sum += dot(change, path.direction) / settings.indentation.lateral_travel / normal;
+      ++count;
+    }
+  }
+  return sum / count;
+}
+
+struct MindlinCase {
+  double poisson, element, bound;
+};
+
+class Mindlin : public testing::TestWithParam<MindlinCase> {};
+
+/// k_t/k_n = 2(1 - nu)/(2 - nu) [Mindlin 1949], whatever the radius of contact.
+TEST_P(Mindlin, AStuckSphereIsAsStiffSideways) {
+  const auto [poisson, element, bound] = GetParam();
+  const double exact = 2 * (1 - poisson) / (2 - poisson);
+  const double ratio = lateral_over_normal(element, poisson, 3);
+  std::printf("nu %.2f, elements of %.1f contact radii: k_t/k_n %.4f, Mindlin %.4f (%+.1f %%)\n",
+              poisson, element / 1e-3, ratio, exact, 100 * (ratio / exact - 1));
+  EXPECT_NEAR(ratio / exact, 1, bound);
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, Mindlin,
+                         testing::Values(MindlinCase{0.3, 0.7e-3, 0.02},
+                                         MindlinCase{0.49, 0.7e-3, 0.02},
+                                         MindlinCase{0.49, 1.4e-3, 0.06}));
+
+struct BalanceCase {
+  ToolGeometry tool;
+  ToolFriction friction;
+};
+
+class Balance : public testing::TestWithParam<BalanceCase> {};
+
+/// Elements nearly as large as the tool, so that facets stick in part; deep presses.
+TEST_P(Balance, WorkOfTheToolIsTheStoredEnergy) {
+  const auto across = test::even(-0.03, 0.03, 15);
+  const Body body =
+      test::make_block(across, across, {-0.03, -0.022, -0.015, -0.01, -0.006, -0.003, 0});
+  CampaignSettings settings;
+  settings.materials = {{"tissue", {kYoung, 0.49}}};
+  settings.indentation.tool = GetParam().tool;
+  settings.indentation.friction = GetParam().friction;
+  settings.indentation.depth = 0.005;
+  settings.indentation.increments = 10;
+  settings.indentation.held_depths = {0.0015, 0.003, 0.005};
+  settings.indentation.lateral_travel = 0.003;
+  settings.indentation.lateral_increments = 5;
+  settings.indentation.azimuths = {0.0, 2.2};
+  settings.points = {{{0.0027, 0.0013, 0}, {0, 0, -1}}};
+  const CampaignContext context(body, settings, Engine::SharedFactor);
+  const SiteCurves curves = solve_site(context, 0, nullptr);
+  ASSERT_EQ(curves.status, SiteStatus::Complete) << curves.reason;
+  ASSERT_EQ(curves.paths.size(), 7u);
+  for (const CurvePath& path : curves.paths) {
+    const CurveSample& end = path.samples.back();
+    const double stored = end.strain_energy + end.contact_energy;
+    std::printf(
+        "%s, held at %.1f mm: work %.4f mJ, balance %+.3f %%, in springs %.3f %%, pull %.1f %%\n",
+        path.kind == PathKind::Normal ? "normal" : "lateral", 1e3 * path.held_depth,
+        1e3 * end.tool_work, 100 * (end.tool_work / stored - 1), 100 * end.contact_energy / stored,
+        100 * end.tension / norm(end.force));
+    EXPECT_NEAR(end.tool_work / stored, 1, 0.005);
+  }
+}
+
+constexpr ToolGeometry kSphere{ToolShape::Sphere, 0.005, 0, 0},
+    kSharpDisc{ToolShape::Disc, 0.005, 0, 0}, kRoundedDisc{ToolShape::Disc, 0.005, 0.001, 0},
+    kCylinder{ToolShape::Cylinder, 0.004, 0, 0.006};
+
+INSTANTIATE_TEST_SUITE_P(Tools, Balance,
+                         testing::Values(BalanceCase{kSphere, ToolFriction::Frictionless},
+                                         BalanceCase{kSphere, ToolFriction::Stuck},
+                                         BalanceCase{kSharpDisc, ToolFriction::Stuck},
+                                         BalanceCase{kRoundedDisc, ToolFriction::Frictionless},
+                                         BalanceCase{kCylinder, ToolFriction::Frictionless},
+                                         BalanceCase{kCylinder, ToolFriction::Stuck}));
+
+}  // namespace
+}  // namespace palpate::fem
