@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -7,6 +8,7 @@
 
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/experiment/energy_balance.hpp"
 #include "app/experiment/phase_plane.hpp"
 #include "app/experiment/slingshot.hpp"
 #include "app/pipeline/workspace.hpp"
@@ -41,13 +43,14 @@ void wall_margins(double tolerance) {
     SlingshotSetup setup;
     setup.rate = rate;
     say("  {:>5g} Hz {:>10.1f} {:>16.1f}", rate, passivity_margin(setup, 20, 800, tolerance),
-        margin_by_energy_balance(rate));
+        stuck_margin_by_energy_balance(rate, 0));
   }
 }
 
 void cylinder_margins(double tolerance) {
   say("cylinder, 2000 Hz: the same, search in the force loop and at 100 Hz");
-  say("  {:>8} {:>5} {:>10} {:>10}", "off axis", "mu", "one rate", "two rates");
+  say("  {:>8} {:>5} {:>10} {:>10} {:>16}", "off axis", "mu", "one rate", "two rates",
+      "energy balance");
   struct Line {
     double off_axis, friction;
   };
@@ -56,9 +59,13 @@ void cylinder_margins(double tolerance) {
     SlingshotSetup one{VirtualBody::Cylinder, off_axis, friction, 2000, 0};
     SlingshotSetup two = one;
     two.search_rate = 100;
-    say("  {:>5g} mm {:>5g} {:>10.1f} {:>10.1f}", 1e3 * off_axis, friction,
-        passivity_margin(one, 100, 600, tolerance), passivity_margin(two, 100, 600, tolerance));
+    say("  {:>5g} mm {:>5g} {:>10.1f} {:>10.1f} {:>16.1f}", 1e3 * off_axis, friction,
+        passivity_margin(one, 100, 600, tolerance), passivity_margin(two, 100, 600, tolerance),
+        margin_by_played_swings(one));
   }
+  constexpr double kOffAxis = 0.01, kRadius = 0.04;  // m
+  say("  {:>5g} mm stuck, in closed form {:>27.1f}", 1e3 * kOffAxis,
+      stuck_margin_by_energy_balance(2000, std::asin(kOffAxis / kRadius)));
 }
 
 int experiment(const ExperimentOptions& options) {
@@ -76,10 +83,12 @@ int experiment(const ExperimentOptions& options) {
 }  // namespace
 
 void add_experiment_command(CLI::App& root, Action& action) {
-  CLI::App* command = root.add_subcommand(
-      "experiment",
-      "Repeat the published stability experiment in simulation: phase planes, margins");
-  command->footer("Example: palpate experiment --margins");
+  CLI::App* parent =
+      root.add_subcommand("experiment", "Repeat a published experiment in simulation");
+  parent->require_subcommand(1);
+  CLI::App* command = parent->add_subcommand(
+      "passivity", "A device slung into a virtual body: phase planes, stability margins");
+  command->footer("Example: palpate experiment passivity --margins");
   const auto options = std::make_shared<ExperimentOptions>();
   command->add_option("--out", options->out, "Folder of the pictures (default: out/experiment)");
   command->add_flag("--margins", options->margins,

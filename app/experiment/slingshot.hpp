@@ -3,8 +3,6 @@
 // virtual body by a rubber band, and either comes to rest or keeps swinging.
 #pragma once
 
-#include <functional>
-#include <string>
 #include <vector>
 
 namespace palpate::app {
@@ -45,10 +43,5 @@ SlingshotOutcome sling(const SlingshotSetup& setup, double k, bool keep_path = f
 /// The stiffness at which the swing begins to last, to `tolerance` (N/m) between low and high.
 /// @throws Error(Internal) when it does not lie between them.
 double passivity_margin(const SlingshotSetup& setup, double low, double high, double tolerance);
-
-/// The margin from the balance of energy over a cycle, for the wall: the k at which the largest
-/// value over all amplitudes of the integral of (1.5 T W''(x) - b) v^2 - S |v| dt is zero, T the
-/// period and W' the force of the wall and the band. Not a simulation: its check.
-double margin_by_energy_balance(double rate);
 
 }  // namespace palpate::app

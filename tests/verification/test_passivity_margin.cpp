@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "app/experiment/energy_balance.hpp"
 #include "app/experiment/slingshot.hpp"
 
 namespace palpate::app {
@@ -23,19 +24,47 @@ TEST(PassivityMargin, TheWallDecaysAt168AndSwingsAt179AsPublished) {
 }
 
 TEST(PassivityMargin, TheWallIsThatOfTheEnergyBalanceAtEveryRate) {
-  for (const double rate : {1000.0, 2000.0, 4000.0}) {
+  struct Case {
+    double rate, expected;  // Hz, N/m
+  };
+  for (const auto& [rate, expected] : {Case{1000, 75.6}, Case{2000, 170.6}, Case{4000, 425}}) {
     SlingshotSetup setup;
     setup.rate = rate;
     const double simulated = passivity_margin(setup, 20, 800, 0.2);
-    EXPECT_NEAR(simulated, margin_by_energy_balance(rate), kTolerance) << rate << " Hz";
+    EXPECT_NEAR(simulated, expected, kTolerance) << rate << " Hz";
+    EXPECT_NEAR(simulated, stuck_margin_by_energy_balance(rate, 0), kTolerance) << rate << " Hz";
   }
   EXPECT_NEAR(passivity_margin({}, 100, 300, 0.2), 170, kTolerance);  // published
 }
 
 TEST(PassivityMargin, TheCylinderIsAsStableAsTheWall) {
   const SlingshotSetup one{VirtualBody::Cylinder, 0, 0.3, 2000, 0};
-  EXPECT_NEAR(passivity_margin(one, 160, 180, 0.2), 170, kTolerance);
+  EXPECT_NEAR(passivity_margin(one, 160, 180, 0.2), 170.6, kTolerance);
 }
+
+TEST(PassivityMargin, StuckOffTheAxisItIsThatOfTwoSprings) {
+  // Friction holds the contact point: the line crosses the surface at asin(10 mm / 40 mm).
+  const SlingshotSetup stuck{VirtualBody::Cylinder, 0.01, 0.3, 2000, 0};
+  const double balance = stuck_margin_by_energy_balance(2000, std::asin(0.25));
+  EXPECT_GT(balance, 175);  // so that it is not that of the axis
+  EXPECT_NEAR(passivity_margin(stuck, 160, 200, 0.2), balance, kTolerance);
+}
+
+class PlayedSwings : public ::testing::TestWithParam<SlingshotSetup> {};
+
+TEST_P(PlayedSwings, LastFromTheSameStiffnessOn) {
+  const double balance = margin_by_played_swings(GetParam());
+  const double simulated = passivity_margin(GetParam(), 100, 600, 0.5);
+  EXPECT_NEAR(simulated, balance, 0.015 * balance);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Cylinder, PlayedSwings,
+    ::testing::Values(SlingshotSetup{},  // the wall: as its closed balance
+                      SlingshotSetup{VirtualBody::Cylinder, 0, 0.3, 2000, 0},
+                      SlingshotSetup{VirtualBody::Cylinder, 0.01, 0.3, 2000, 0},
+                      SlingshotSetup{VirtualBody::Cylinder, 0.01, 0.1, 2000, 0},
+                      SlingshotSetup{VirtualBody::Cylinder, 0.01, 0, 2000, 0}));
 
 class TwoRates : public ::testing::TestWithParam<SlingshotSetup> {};
 
@@ -53,6 +82,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(SlingshotSetup{VirtualBody::Cylinder, 0, 0.3, 2000, 100},
                       SlingshotSetup{VirtualBody::Cylinder, 0, 0.3, 2000, 50},
                       SlingshotSetup{VirtualBody::Cylinder, 0.01, 0.3, 2000, 100},
+                      SlingshotSetup{VirtualBody::Cylinder, 0.01, 0.1, 2000, 100},
                       SlingshotSetup{VirtualBody::Cylinder, 0.01, 0, 2000, 100}));
 
 }  // namespace

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The device and the bodies of the published experiment.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "app/experiment/slingshot.hpp"
+#include "runtime/contact_state.hpp"
+#include "runtime/handles.hpp"
+#include "runtime/lockstep_search.hpp"
+
+namespace palpate::app::slingshot {
+
+inline constexpr double kMass = 0.0845;    // kg
+inline constexpr double kDamping = 0.081;  // N s/m
+inline constexpr double kFriction = 0.01;  // N
+inline constexpr double kBand = 20;        // N/m
+inline constexpr double kAnchor = 0.0584;  // m
+inline constexpr double kRelease = -0.03;  // m
+inline constexpr double kCurved = 0.005;   // m: the wall is quadratic up to here
+
+/// Of the wall (34) at depth x, N.
+double wall_force(double k, double x);
+
+/// The body, felt along a line that is parallel to the x axis: depth in, force against the motion
+/// out. Each call is one sample of the force loop.
+class LineOfTouch {
+ public:
+  LineOfTouch(const SlingshotSetup& setup, double k);
+  double force(double depth);
+
+ private:
+  SlingshotSetup setup_;
+  double k_;
+  double entry_ = 0;  ///< m, of the line into the undeformed cylinder
+  std::unique_ptr<palpate_library> body_;
+  std::optional<runtime::ContactState> contact_;
+  std::unique_ptr<runtime::LockstepSearch> search_;
+};
+
+}  // namespace palpate::app::slingshot
