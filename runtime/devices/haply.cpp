@@ -33,7 +33,8 @@ HaplyDevice::~HaplyDevice() {
 void HaplyDevice::open() {
   socket_.connect("Haply Inverse Service", settings_.host, settings_.port);
   find_device();
-  halted_ = false;
+  halted_ = saturated_ = false;
+  sent_ = sent_before_ = {};
   open_ = true;
   awaiting_ = send_force({});
 }
@@ -71,10 +72,18 @@ bool HaplyDevice::take_state(std::string_view text) noexcept {
   for (std::size_t i = 0; devices[i]; ++i) {
     if (devices[i]["device_id"].string() != settings_.device_id) continue;
     const JsonView state = devices[i]["state"];
+    Vec3 given{};
+    saturated_ = take_vector(state["current_cursor_force"], given) && gives_less(given);
     return take_vector(state["cursor_position"], last_.position) &&
            take_vector(state["cursor_velocity"], last_.velocity);
   }
   return false;
+}
+
+bool HaplyDevice::gives_less(const Vec3& given) const noexcept {
+  constexpr double kShare = 0.9, kSmall = 0.05;  // N: below it friction and rounding are as much
+  const double asked = std::min(norm(sent_), norm(sent_before_));
+  return norm(given) < kShare * asked - kSmall;
 }
 
 DeviceStatus HaplyDevice::read(DeviceReading& reading) noexcept {
@@ -118,8 +127,10 @@ bool HaplyDevice::send_force(const Vec3& force) noexcept {
 DeviceStatus HaplyDevice::command(const Vec3& force) noexcept {
   if (!open_) return DeviceStatus::Lost;
   if (awaiting_) return DeviceStatus::Late;
-  awaiting_ = send_force(halted_ ? Vec3{} : force);
-  return awaiting_ ? DeviceStatus::Good : DeviceStatus::Lost;
+  sent_before_ = std::exchange(sent_, halted_ ? Vec3{} : force);
+  awaiting_ = send_force(sent_);
+  if (!awaiting_) return DeviceStatus::Lost;
+  return saturated_ ? DeviceStatus::Saturated : DeviceStatus::Good;
 }
 
 void HaplyDevice::halt() noexcept {

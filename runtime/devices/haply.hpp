@@ -21,8 +21,10 @@ struct HaplySettings {
 
 /// The service sends an inventory first, then exactly one state for each message it gets: command()
 /// sends a force, the next read() waits for the state that answers it, up to the timeout. A late
-/// state leaves the last one in place (Late); no further force is sent until it has come. Sockets
-/// are system calls: this loop is not free of them.
+/// state leaves the last one in place (Late); no further force is sent until it has come. A force
+/// that the service says it gives, and that is less than nine tenths of the lesser of the last two
+/// it was sent (which of them it answers is not documented), is Saturated. Sockets are system
+/// calls: this loop is not free of them.
 class HaplyDevice : public Device {
  public:
   explicit HaplyDevice(HaplySettings settings);
@@ -39,10 +41,13 @@ class HaplyDevice : public Device {
   void find_device();
   bool send_force(const Vec3& force) noexcept;
   bool take_state(std::string_view text) noexcept;
+  bool gives_less(const Vec3& given) const noexcept;
 
   HaplySettings settings_;
   WebSocket socket_;
   DeviceReading last_;
+  Vec3 sent_{}, sent_before_{};  ///< N
+  bool saturated_ = false;       ///< in the last state
   bool open_ = false;
   bool awaiting_ = false;  ///< a force was sent whose state has not come
   std::atomic<bool> halted_{false};

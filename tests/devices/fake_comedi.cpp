@@ -56,6 +56,7 @@ const char* comedi_strerror(int) {
 }
 int comedi_data_read(void*, unsigned subdevice, unsigned channel, unsigned, unsigned,
                      unsigned* data) {
+  world.wait_for_device();
   if (world.unplugged || subdevice != 2 || channel > 2) return -1;
   if (!armed[channel] || !quadrature[channel]) return -1;
   const auto counts = std::llround(kCountsPerMetre * world.position()[channel]);

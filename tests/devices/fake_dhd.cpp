@@ -52,6 +52,7 @@ int dhdGetSystemType(char) {
   return gone() ? fail(2) : 33;
 }
 int dhdGetPosition(double* x, double* y, double* z, char) {
+  world.wait_for_device();
   return get(world.position(), x, y, z);
 }
 int dhdGetLinearVelocity(double* x, double* y, double* z, char) {

@@ -134,6 +134,7 @@ bool FakeHaplyService::answer(int connection, const std::string& message) {
   if (command.at("device_id") != "049D") return false;
   const auto& force = command.at("commands").at("set_cursor_force").at("values");
   world_.send_force({force.at("x"), force.at("y"), force.at("z")});
+  world_.wait_for_device();
   while (world_.late && !stop_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (world_.forces % 10 == 3) send_frame(connection, 0x89, "are you there");
   const std::string whole = state(!world_.unplugged);
@@ -152,7 +153,8 @@ std::string FakeHaplyService::state(bool with_device) {
          {"state",
           {{"cursor_position", vector_of(world_.position())},
            {"cursor_velocity", vector_of(world_.velocity())},
-           {"current_cursor_force", vector_of(world_.last_force())}}}});
+           {"current_cursor_force",
+            vector_of((world_.saturated ? 0.25 : 1.0) * world_.last_force())}}}});
   }
   return all.dump();
 }

@@ -63,6 +63,7 @@ void hdDisableDevice(unsigned) {
   ++world.closed;
 }
 void hdBeginFrame(unsigned) {
+  world.wait_for_device();
   in_frame = true;
 }
 void hdEndFrame(unsigned) {

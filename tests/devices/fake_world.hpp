@@ -3,7 +3,9 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <mutex>
+#include <thread>
 
 #include "format/vec3.hpp"
 #include "runtime/device_simulated.hpp"
@@ -29,7 +31,11 @@ struct FakeWorld {
     buttons = 0;
     present = true;
     unplugged = saturated = late = forces_enabled = false;
-    forces = opened = closed = 0;
+    forces = opened = closed = stall_ms = 0;
+  }
+  /// Where a driver waits for its device. Once it takes as long as a test says.
+  void wait_for_device() {
+    std::this_thread::sleep_for(std::chrono::milliseconds(stall_ms.exchange(0)));
   }
   void send_force(const Vec3& f) {
     const std::scoped_lock lock(mutex);
@@ -70,7 +76,7 @@ struct FakeWorld {
   std::atomic<int> buttons{0};
   std::atomic<bool> present{true}, unplugged{false}, saturated{false}, late{false};
   std::atomic<bool> forces_enabled{false};
-  std::atomic<int> forces{0}, opened{0}, closed{0};
+  std::atomic<int> forces{0}, opened{0}, closed{0}, stall_ms{0};
 };
 
 }  // namespace palpate::test

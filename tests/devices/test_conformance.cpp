@@ -12,6 +12,7 @@
 #include "backends.hpp"
 #include "bodies.hpp"
 #include "format/error.hpp"
+#include "runtime/device_virtual.hpp"
 #include "runtime/force_loop.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/palpate.h"
@@ -180,7 +181,6 @@ TEST_P(Conformance, UnpluggedInTheLoopItIsLostAndTheLoopEnds) {
 }
 
 TEST_P(Conformance, SaysWhenItSaturates) {
-  if (backend().name == "Haply") GTEST_SKIP() << "its service does not say";
   device_->open();
   EXPECT_EQ(saturate(), DeviceStatus::Saturated);
 }
@@ -203,6 +203,50 @@ TEST_P(Conformance, SaysWhenASampleIsLateAndGoesOn) {
   for (int i = 0; i < 100 && status == DeviceStatus::Late; ++i) status = device_->read(reading);
   EXPECT_EQ(status, DeviceStatus::Good);
   EXPECT_EQ(device_->command({0.2, 0, 0}), DeviceStatus::Good);
+}
+
+TEST_P(Conformance, AStallOfTheDriverCutsTheForceOffAndItComesBackByTheRamp) {
+  const palpate_library body(plate(8, 0.08, [](const Vec3&) { return wall_response(170, 120); }));
+  palpate_state state(body, {0.3, 5e-3});
+  runtime::SafetySettings safety = kPatient;
+  safety.watchdog = 0.1;
+  safety.ramp = 0.005;
+  StepQueue queue(1 << 16);
+  world().place({0.04, 0.04, 0.002}, {});
+  device_->open();
+  world().pull_to({0.04, 0.04, -0.02});
+  ForceLoop loop(*device_, state, safety, &queue);
+  int stalled_at = -1;
+  bool was_cut = false;
+  in_loop(*device_, 60000, [&](int i) {
+    if (stalled_at < 0 && norm(world().last_force()) > 0.2) {
+      world().stall_ms = 150;
+      stalled_at = i;
+    }
+    const double given = norm(world().last_force());
+    was_cut = was_cut || (loop.counts().late > 0 && given < 0.01);
+    return loop.tick(runtime::monotonic_ns()) && !(was_cut && given > 0.2);
+  });
+  ASSERT_GT(stalled_at, 0);
+  EXPECT_EQ(loop.counts().unrecorded, 0U);
+  EXPECT_GE(loop.counts().late, 1U);
+  EXPECT_FALSE(loop.counts().lost);
+  RecordedStep step;
+  int cut = 0, ramping = 0, late = 0;
+  double last = 0;
+  for (int i = 0; queue.try_dequeue(step); ++i) {
+    if (i > stalled_at && step.status & PALPATE_LOOP_LATE) ++late;
+    if (step.status & PALPATE_LOOP_LATE) {
+      EXPECT_EQ(norm(step.force), 0);
+      ++cut;
+    }
+    if (late > 0 && step.status & PALPATE_LOOP_RAMPING) ++ramping;
+    last = norm(step.force);
+  }
+  EXPECT_GE(late, 1);
+  EXPECT_GE(ramping, 1);
+  EXPECT_EQ(static_cast<std::uint64_t>(cut), loop.counts().late);
+  EXPECT_GT(last, 0.1);  // and it is felt again
 }
 
 TEST_P(Conformance, CloseLeavesNoForceAndMayComeTwice) {
@@ -266,6 +310,66 @@ TEST_P(Conformance, ALoopThreadDrivesItWhateverThreadThatIs) {
 
 INSTANTIATE_TEST_SUITE_P(Device, Conformance, ::testing::Range(std::size_t{0}, std::size_t{4}),
                          [](const auto& about) { return backends()[about.param].name; });
+
+/// The simulated device has no driver that could fail; what the interface promises it keeps too.
+class SimulatedConformance : public ::testing::Test {
+ protected:
+  static runtime::VirtualDevice make() {
+    runtime::SimulatedDeviceSettings settings;
+    settings.hand_stiffness = 200;
+    settings.hand_damping = 2;
+    return {settings, 1000, [](double) { return runtime::HandTarget{{0.04, 0.04, -0.006}, {}}; }};
+  }
+  DeviceReading reading_;
+};
+
+TEST_F(SimulatedConformance, ClosedItIsLostAndOpensAgain) {
+  runtime::VirtualDevice device = make();
+  EXPECT_EQ(device.read(reading_), DeviceStatus::Lost);
+  EXPECT_EQ(device.command({}), DeviceStatus::Lost);
+  device.open();
+  EXPECT_EQ(device.read(reading_), DeviceStatus::Good);
+  EXPECT_EQ(device.command({}), DeviceStatus::Good);
+  device.close();
+  device.close();
+  EXPECT_EQ(device.read(reading_), DeviceStatus::Lost);
+  device.open();
+  EXPECT_EQ(device.read(reading_), DeviceStatus::Good);
+}
+
+TEST_F(SimulatedConformance, HaltedItMovesAsWithoutForce) {
+  runtime::VirtualDevice halted = make(), free = make();
+  halted.open();
+  free.open();
+  std::thread([&] { halted.halt(); }).join();
+  DeviceReading expected;
+  for (int i = 0; i < 500; ++i) {
+    ASSERT_EQ(halted.command({3, -2, 1}), DeviceStatus::Good);
+    free.command({});
+    halted.read(reading_);
+    free.read(expected);
+    ASSERT_EQ(reading_.position, expected.position);
+  }
+}
+
+TEST_F(SimulatedConformance, FeelsABody) {
+  const palpate_library body(plate(8, 0.08, [](const Vec3&) { return wall_response(170, 120); }));
+  palpate_state state(body, {0.3, 5e-3});
+  runtime::SimulatedDeviceSettings settings;
+  settings.damping = 2;
+  settings.hand_stiffness = 200;
+  runtime::VirtualDevice device(settings, 1000, [](double t) {
+    return runtime::HandTarget{{0.04, 0.04, std::max(-0.006, 0.002 - 0.02 * t)}, {}};
+  });
+  device.open();
+  ForceLoop loop(device, state, kPatient, nullptr);
+  for (int i = 0; i < 3000; ++i) ASSERT_TRUE(loop.tick(runtime::monotonic_ns()));
+  const double z = state.contact.observation().deflection.depth;
+  const double wall = z < 0.005 ? 100 * 170 * z * z : 170 * (z - 0.0025);
+  device.read(reading_);
+  EXPECT_GT(wall, 0.1);
+  EXPECT_NEAR(200 * (reading_.position[2] + 0.006), wall, 0.03 * wall);  // dry friction: 0.01 N
+}
 
 }  // namespace
 }  // namespace palpate::test
