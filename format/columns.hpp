@@ -39,17 +39,41 @@ using Stored =
 template <class Record, class... Fields>
 void write_columns(hdf5::Writer& writer, const std::string& group,
                    const std::vector<Record>& records,
-                   const std::tuple<Column<Record, Fields>...>& columns,
-                   hdf5::Storage storage = hdf5::Storage::Contiguous) {
+                   const std::tuple<Column<Record, Fields>...>& columns) {
   const auto write_one = [&]<class Field>(const Column<Record, Field>& column) {
     std::vector<Stored<Field>> values;
     values.reserve(records.size());
     for (const Record& record : records) {
       values.push_back(static_cast<Stored<Field>>(record.*column.member));
     }
-    writer.dataset(group + "/" + column.name, values, {column.units, column.description}, storage);
+    writer.dataset(group + "/" + column.name, values, {column.units, column.description});
   };
   std::apply([&](const auto&... column) { (write_one(column), ...); }, columns);
+}
+
+/// The datasets of a table of so many records, to be filled by append_columns().
+template <class Record, class... Fields>
+void begin_columns(hdf5::Writer& writer, const std::string& group, std::uint64_t records,
+                   const std::tuple<Column<Record, Fields>...>& columns) {
+  const auto begin_one = [&]<class Field>(const Column<Record, Field>& column) {
+    writer.begin_dataset<Stored<Field>>(group + "/" + column.name, records,
+                                        {column.units, column.description});
+  };
+  std::apply([&](const auto&... column) { (begin_one(column), ...); }, columns);
+}
+
+template <class Record, class... Fields>
+void append_columns(hdf5::Writer& writer, const std::string& group,
+                    const std::vector<Record>& records,
+                    const std::tuple<Column<Record, Fields>...>& columns) {
+  const auto append_one = [&]<class Field>(const Column<Record, Field>& column) {
+    std::vector<Stored<Field>> values;
+    values.reserve(records.size());
+    for (const Record& record : records)
+      values.push_back(static_cast<Stored<Field>>(record.*column.member));
+    writer.append(group + "/" + column.name, values);
+  };
+  std::apply([&](const auto&... column) { (append_one(column), ...); }, columns);
 }
 
 template <class Record, class Field>
@@ -73,8 +97,8 @@ std::vector<Record> read_columns(const hdf5::Reader& reader, const std::string& 
   bool sized = false;
   const auto read_one = [&]<class Field>(const Column<Record, Field>& column) {
     if (column.optional && !reader.has(group + "/" + column.name)) return;
-    const auto values =
-        reader.dataset<Stored<Field>>(group + "/" + column.name, sized ? records.size() : rows);
+    const auto values = reader.dataset<Stored<Field>>(group + "/" + column.name, column.units,
+                                                      sized ? records.size() : rows);
     check_column(checks, group, values, column);
     if (!sized) records.resize(values.size());
     sized = true;

@@ -72,6 +72,17 @@ void CrashSafeFile::write(std::string_view bytes) {
   }
 }
 
+void CrashSafeFile::reserve(std::uint64_t bytes) {
+  const int problem = ::posix_fallocate(descriptor_, 0, static_cast<off_t>(bytes));
+  if (problem != 0) fail("cannot be written", problem);
+}
+
+void CrashSafeFile::continue_at(std::uint64_t end) {
+  const auto offset = static_cast<off_t>(end);
+  if (::ftruncate(descriptor_, offset) != 0) fail("cannot be shortened", errno);
+  if (::lseek(descriptor_, offset, SEEK_SET) != offset) fail("cannot be written", errno);
+}
+
 void CrashSafeFile::commit() {
   if (::fsync(descriptor_) != 0) fail("cannot be put on the disk", errno);
   // close() reports what a network file system held back until now.

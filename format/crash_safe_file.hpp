@@ -2,6 +2,7 @@
 // A file that is either wholly there or not there at all.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string_view>
 
@@ -23,6 +24,14 @@ class CrashSafeFile {
   CrashSafeFile& operator=(const CrashSafeFile&) = delete;
 
   void write(std::string_view bytes);
+
+  /// For who writes into the temporary by other means: where it is; room on the disk for so many
+  /// bytes, so that a full disk is met here and not later; the end of what was written, where
+  /// write() goes on.
+  const std::filesystem::path& temporary() const { return temporary_; }
+  void reserve(std::uint64_t bytes);
+  void continue_at(std::uint64_t end);
+
   void commit();  ///< fsync, rename, fsync of the folder
 
  private:

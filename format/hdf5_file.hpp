@@ -50,19 +50,22 @@ struct About {
   std::string description;  ///< one sentence
 };
 
-enum class Storage {
-  Contiguous,
-  Deflated  ///< in chunks, shuffled and deflated: for long columns
+inline constexpr std::size_t kChunkRows = 4096;  ///< of long columns
+
+/// Room that a file may need on the disk, taken before its first byte is written.
+struct OnDisk {
+  std::uint64_t bytes = 0;
 };
 
 /// Builds a file in memory and puts it on the disk in one crash-safe move, so that a full disk is
 /// met by plain file calls and never by an HDF5 file that can no longer be closed. Needs memory for
-/// twice the file. The bytes depend on the content alone (no time stamps) and end with a seal
-/// (format/seal.hpp).
+/// twice the file; or, built OnDisk, next to none, in room that is taken beforehand. The bytes
+/// depend on the content alone (no time stamps) and end with a seal (format/seal.hpp).
 /// @throws Error(Internal) when HDF5 fails, else as CrashSafeFile.
 class Writer {
  public:
   explicit Writer(std::filesystem::path target);
+  Writer(std::filesystem::path target, OnDisk room);
   ~Writer();
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
@@ -70,12 +73,21 @@ class Writer {
   void group(const std::string& path, const std::string& description);
 
   template <class T>
-  void dataset(const std::string& path, const std::vector<T>& rows, const About& about,
-               Storage storage = Storage::Contiguous) {
-    put(path, Row<T>::scalar, rows.size(), Row<T>::columns, rows.data(), about, storage);
+  void dataset(const std::string& path, const std::vector<T>& rows, const About& about) {
+    put(path, Row<T>::scalar, rows.size(), Row<T>::columns, rows.data(), about);
   }
   void texts(const std::string& path, const std::vector<std::string>& rows,
              const std::string& description);
+
+  /// A long dataset, to be filled from the front by append(): in chunks, shuffled and deflated.
+  template <class T>
+  void begin_dataset(const std::string& path, std::uint64_t rows, const About& about) {
+    begin(path, Row<T>::scalar, rows, Row<T>::columns, about);
+  }
+  template <class T>
+  void append(const std::string& path, const std::vector<T>& rows) {
+    fill(path, Row<T>::scalar, rows.size(), Row<T>::columns, rows.data());
+  }
 
   /// Attributes of the group or dataset `object`. Texts are UTF-8 of variable length.
   void set_text(const std::string& object, const std::string& name, const std::string& value);
@@ -93,7 +105,13 @@ class Writer {
 
  private:
   void put(const std::string& path, Scalar scalar, std::size_t rows, std::size_t columns,
-           const void* data, const About& about, Storage storage);
+           const void* data, const About& about);
+  void begin(const std::string& path, Scalar scalar, std::uint64_t rows, std::size_t columns,
+             const About& about);
+  void fill(const std::string& path, Scalar scalar, std::uint64_t rows, std::size_t columns,
+            const void* data);
+  void commit_from_memory();
+  void commit_on_disk();
   void set_about(const std::string& path, const About& about);
 
   struct State;
@@ -104,10 +122,10 @@ class Writer {
 inline constexpr std::size_t kAnyRows = static_cast<std::size_t>(-1);
 
 /// Reads a file and believes nothing: the seal must be unbroken, a dataset must have exactly the
-/// asked type, rank and shape, lie in this very file (no external or virtual storage) and be wholly
-/// present: HDF5 itself reads a part that was never written as zeros, with success. Memory is only
-/// taken for data that the file really holds. @throws Error(Configuration): "<file>:<object>:
-/// <problem>; <remedy>".
+/// asked type, rank, shape and units, lie in this very file (no external or virtual storage) and be
+/// wholly present: HDF5 itself reads a part that was never written as zeros, with success. Memory
+/// is only taken for data that the file really holds. @throws Error(Configuration):
+/// "<file>:<object>: <problem>; <remedy>".
 class Reader {
  public:
   /// `remedy`: what the user should do when the file is no good, e.g. how to make it again.
@@ -127,8 +145,10 @@ class Reader {
   std::vector<std::string> children(const std::string& group) const;  ///< ascending by name
 
   template <class T>
-  std::vector<T> dataset(const std::string& path, std::size_t rows = kAnyRows) const {
+  std::vector<T> dataset(const std::string& path, const std::string& units,
+                         std::size_t rows = kAnyRows) const {
     std::vector<T> values(checked_rows(path, Row<T>::scalar, rows, Row<T>::columns, sizeof(T)));
+    require_units(path, units);
     get(path, Row<T>::scalar, values.data());
     return values;
   }
@@ -146,6 +166,7 @@ class Reader {
  private:
   std::size_t checked_rows(const std::string& path, Scalar scalar, std::size_t rows,
                            std::size_t columns, std::size_t row_bytes) const;
+  void require_units(const std::string& path, const std::string& units) const;
   void get(const std::string& path, Scalar scalar, void* data) const;
 
   struct State;

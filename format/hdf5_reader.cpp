@@ -285,6 +285,12 @@ std::size_t Reader::checked_rows(const std::string& path, Scalar scalar, std::si
   return found;
 }
 
+void Reader::require_units(const std::string& path, const std::string& units) const {
+  const std::string found = text(path, "units");
+  if (found == units) return;
+  fail(path + "@units", "is " + quoted(found) + ", " + quoted(units) + " expected");
+}
+
 void Reader::get(const std::string& path, Scalar scalar, void* data) const {
   const Handle dataset = state_->open_dataset(path);
   if (data == nullptr) return;

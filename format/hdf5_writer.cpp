@@ -1,24 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
+#include <map>
+#include <optional>
 #include <string_view>
 
 #include "format/crash_safe_file.hpp"
 #include "format/hdf5_handle.hpp"
 #include "format/seal.hpp"
+#include "format/sha256.hpp"
 
 namespace palpate::hdf5 {
 namespace {
 
 constexpr std::size_t kMemoryStep = std::size_t{1} << 20;
-constexpr hsize_t kChunkRows = 4096;
 constexpr unsigned kDeflateLevel = 4;
+
+enum class Storage { Contiguous, Deflated };
 
 }  // namespace
 
 struct Writer::State {
+  /// A dataset under way.
+  struct Filling {
+    Handle dataset;
+    hsize_t rows = 0, filled = 0;
+  };
+
   Session session;
   std::filesystem::path target;
+  std::optional<CrashSafeFile> disk;  ///< where there is none the file is built in memory
   Handle file;
+  std::map<std::string, Filling> fillings;  ///< closed before the file
 
   [[noreturn]] void fail(const std::string& object) const {
     throw Error(ErrorKind::Internal, target.string() + ":" + object,
@@ -55,6 +68,8 @@ struct Writer::State {
   }
   Handle creation_properties(const std::string& path, Storage storage,
                              const std::vector<hsize_t>& extent) const;
+  Handle make_dataset(const std::string& path, Scalar scalar, std::uint64_t rows,
+                      std::size_t columns, Storage storage) const;
 };
 
 Handle Writer::State::creation_properties(const std::string& path, Storage storage,
@@ -63,7 +78,7 @@ Handle Writer::State::creation_properties(const std::string& path, Storage stora
   check(H5Pset_obj_track_times(properties.get(), false), path);
   if (storage == Storage::Deflated && extent[0] > 0) {
     std::vector<hsize_t> chunk = extent;
-    chunk[0] = std::min(chunk[0], kChunkRows);
+    chunk[0] = std::min<hsize_t>(chunk[0], kChunkRows);
     check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), path);
     check(H5Pset_shuffle(properties.get()), path);
     check(H5Pset_deflate(properties.get(), kDeflateLevel), path);
@@ -80,6 +95,16 @@ Writer::Writer(std::filesystem::path target) : state_(std::make_unique<State>())
       H5Fclose, "/");
 }
 
+Writer::Writer(std::filesystem::path target, OnDisk room) : state_(std::make_unique<State>()) {
+  state_->target = std::move(target);
+  state_->disk.emplace(state_->target);
+  state_->disk->reserve(room.bytes);
+  state_->file = state_->checked(
+      H5Fcreate(state_->disk->temporary().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT),
+      H5Fclose, "/");
+  state_->disk->reserve(room.bytes);  // once more: HDF5 has emptied the file
+}
+
 Writer::~Writer() = default;
 
 void Writer::group(const std::string& path, const std::string& description) {
@@ -91,22 +116,51 @@ void Writer::group(const std::string& path, const std::string& description) {
   set_text(path, "description", description);
 }
 
-void Writer::put(const std::string& path, Scalar scalar, std::size_t rows, std::size_t columns,
-                 const void* data, const About& about, Storage storage) {
+Handle Writer::State::make_dataset(const std::string& path, Scalar scalar, std::uint64_t rows,
+                                   std::size_t columns, Storage storage) const {
   std::vector<hsize_t> extent{rows};
   if (columns > 0) extent.push_back(columns);
-  const Handle space = state_->checked(
+  const Handle space = checked(
       H5Screate_simple(static_cast<int>(extent.size()), extent.data(), nullptr), H5Sclose, path);
-  const Handle properties = state_->creation_properties(path, storage, extent);
-  const Handle dataset =
-      state_->checked(H5Dcreate2(state_->file.get(), path.c_str(), stored_type(scalar), space.get(),
-                                 H5P_DEFAULT, properties.get(), H5P_DEFAULT),
-                      H5Dclose, path);
+  const Handle properties = creation_properties(path, storage, extent);
+  return checked(H5Dcreate2(file.get(), path.c_str(), stored_type(scalar), space.get(), H5P_DEFAULT,
+                            properties.get(), H5P_DEFAULT),
+                 H5Dclose, path);
+}
+
+void Writer::put(const std::string& path, Scalar scalar, std::size_t rows, std::size_t columns,
+                 const void* data, const About& about) {
+  const Handle dataset = state_->make_dataset(path, scalar, rows, columns, Storage::Contiguous);
   if (rows > 0) {
     state_->check(H5Dwrite(dataset.get(), native_type(scalar), H5S_ALL, H5S_ALL, H5P_DEFAULT, data),
                   path);
   }
   set_about(path, about);
+}
+
+void Writer::begin(const std::string& path, Scalar scalar, std::uint64_t rows, std::size_t columns,
+                   const About& about) {
+  state_->fillings[path] = {state_->make_dataset(path, scalar, rows, columns, Storage::Deflated),
+                            rows, 0};
+  set_about(path, about);
+}
+
+void Writer::fill(const std::string& path, Scalar scalar, std::uint64_t rows, std::size_t columns,
+                  const void* data) {
+  State::Filling& filling = state_->fillings.at(path);
+  const std::array<hsize_t, 2> start{filling.filled, 0};
+  const std::array<hsize_t, 2> count{rows, std::max<hsize_t>(columns, 1)};
+  const int rank = columns > 0 ? 2 : 1;
+  const Handle held =
+      state_->checked(H5Screate_simple(rank, count.data(), nullptr), H5Sclose, path);
+  const Handle space = state_->checked(H5Dget_space(filling.dataset.get()), H5Sclose, path);
+  state_->check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr,
+                                    count.data(), nullptr),
+                path);
+  state_->check(H5Dwrite(filling.dataset.get(), native_type(scalar), held.get(), space.get(),
+                         H5P_DEFAULT, data),
+                path);
+  filling.filled += rows;
 }
 
 void Writer::texts(const std::string& path, const std::vector<std::string>& rows,
@@ -181,6 +235,28 @@ void Writer::set_ascii(const std::string& object, const std::string& name,
 }
 
 void Writer::commit() {
+  for (const auto& [path, filling] : state_->fillings)
+    if (filling.filled != filling.rows) state_->fail(path);
+  state_->fillings.clear();
+  if (state_->disk) {
+    commit_on_disk();
+  } else {
+    commit_from_memory();
+  }
+}
+
+void Writer::commit_on_disk() {
+  state_->check(H5Fflush(state_->file.get(), H5F_SCOPE_GLOBAL), "/");
+  hsize_t size = 0;
+  state_->check(H5Fget_filesize(state_->file.get(), &size), "/");
+  state_->check(H5Fclose(state_->file.release()), "/");
+  CrashSafeFile& disk = *state_->disk;
+  disk.continue_at(size);
+  disk.write(seal_of_digest(sha256_of_file(disk.temporary())));
+  disk.commit();
+}
+
+void Writer::commit_from_memory() {
   state_->check(H5Fflush(state_->file.get(), H5F_SCOPE_GLOBAL), "/");
   const ssize_t size = H5Fget_file_image(state_->file.get(), nullptr, 0);
   if (size < 0) state_->fail("/");

@@ -123,11 +123,12 @@ void check_flat(const Checks& checks, const std::string& stem, const FlatCurves&
 }
 
 void read_flat(const hdf5::Reader& reader, const std::string& stem,
-               std::vector<NodeResponse>& responses, CurveMember which) {
+               std::vector<NodeResponse>& responses, CurveMember which,
+               const char* slope_units = "N/m") {
   FlatCurves flat;
-  flat.offset = reader.dataset<std::int64_t>(stem + "offset", responses.size() + 1);
-  flat.knot = reader.dataset<float>(stem + "knot");
-  flat.slope = reader.dataset<float>(stem + "slope", flat.knot.size());
+  flat.offset = reader.dataset<std::int64_t>(stem + "offset", "1", responses.size() + 1);
+  flat.knot = reader.dataset<float>(stem + "knot", "m");
+  flat.slope = reader.dataset<float>(stem + "slope", slope_units, flat.knot.size());
   check_flat(Checks(reader), stem, flat, responses);
   for (std::size_t vertex = 0; vertex < responses.size(); ++vertex) {
     const auto first = flat.offset[vertex];
@@ -146,8 +147,8 @@ std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses) {
 }
 
 void read_coupling(const hdf5::Reader& reader, std::vector<NodeResponse>& responses) {
-  read_flat(reader, "/response/coupling_", responses, coupling_of);
-  const auto bases = reader.dataset<float>("/response/coupling_base", responses.size());
+  read_flat(reader, "/response/coupling_", responses, coupling_of, "1/m");
+  const auto bases = reader.dataset<float>("/response/coupling_base", "1", responses.size());
   Checks(reader).numbers("/response/coupling_base", bases, rules::kPositive);
   for (std::size_t v = 0; v < bases.size(); ++v) responses[v].coupling.base = bases[v];
 }
@@ -322,9 +323,9 @@ Library read_library(const std::filesystem::path& path) {
   library.name = reader.text("/", "name");
   library.tool_shape = reader.text("/", "tool_shape");
   library.tool_radius = reader.real("/", "tool_radius");
-  library.positions = reader.dataset<Vec3>("/surface/position");
-  library.inward = reader.dataset<Vec3>("/surface/inward", library.positions.size());
-  library.triangles = reader.dataset<Triangle>("/surface/triangles");
+  library.positions = reader.dataset<Vec3>("/surface/position", "m");
+  library.inward = reader.dataset<Vec3>("/surface/inward", "1", library.positions.size());
+  library.triangles = reader.dataset<Triangle>("/surface/triangles", "1");
   library.responses = read_columns(reader, "/response", kResponseColumns, library.positions.size());
   read_flat(reader, "/response/normal_", library.responses, normal_of);
   read_flat(reader, "/response/lateral_", library.responses, lateral_of);

@@ -83,37 +83,94 @@ void check_settings(const Checks& checks, const SessionSettings& settings) {
       checks.fail(std::string("/settings@") + kAxes[i], "is not finite");
 }
 
-void check_recording(const Checks& checks, const Recording& recording) {
+void check_heading(const Checks& checks, const RecordingHeading& heading) {
   const auto check = [&](const char* name, double value) {
     if (!(std::isfinite(value) && value >= 0)) checks.fail(name, "is not finite and not negative");
   };
-  check("/@rate", recording.rate);
-  check("/@friction", recording.friction);
-  checks.digest("/@library_sha256", recording.library_sha256, true);
-  check_settings(checks, recording.settings);
-  check_columns(checks, "/step", recording.steps, kStepColumns);
-  for (std::size_t row = 1; row < recording.steps.size(); ++row) {
-    if (recording.steps[row].time_ns < recording.steps[row - 1].time_ns) {
-      checks.fail_row("/step/time", row, "goes backwards");
-    }
+  check("/@rate", heading.rate);
+  check("/@friction", heading.friction);
+  checks.digest("/@library_sha256", heading.library_sha256, true);
+  check_settings(checks, heading.settings);
+  check_provenance(checks, heading.provenance);
+}
+
+/// `before`: the time of the step before the first of these.
+void check_steps(const Checks& checks, const std::vector<RecordedStep>& steps,
+                 std::int64_t before) {
+  check_columns(checks, "/step", steps, kStepColumns);
+  for (std::size_t row = 0; row < steps.size(); ++row) {
+    if (steps[row].time_ns < before) checks.fail_row("/step/time", row, "goes backwards");
+    before = steps[row].time_ns;
   }
-  check_provenance(checks, recording.provenance);
+}
+
+void write_heading(hdf5::Writer& writer, const RecordingHeading& heading) {
+  write_root(writer, kArtifact, kRecordingSchema, "Every step of a haptic session.");
+  writer.set_text("/", "device", heading.device);
+  writer.set_text("/", "library_sha256", heading.library_sha256);
+  writer.set_real("/", "rate", heading.rate);
+  writer.set_real("/", "friction", heading.friction);
+  write_settings(writer, heading.settings);
+  write_provenance(writer, heading.provenance);
+}
+
+/// No recording needs more: HDF5 stores a chunk that does not deflate as it is, and chunks whole.
+hdf5::OnDisk room_for(const RecordingHeading& heading, std::uint64_t steps) {
+  constexpr std::uint64_t kMetadata = 128 * 1024, kChunkEntries = 16 * 1024;
+  constexpr std::uint64_t kStepBytes = sizeof(RecordedStep);
+  std::uint64_t texts = 0;
+  for (const ProvenanceStep& step : heading.provenance.steps)
+    texts += 4096 + 2 * step.resolved_case.size() + 256 * (step.inputs.size() + step.facts.size());
+  const std::uint64_t chunks = (steps + hdf5::kChunkRows - 1) / hdf5::kChunkRows;
+  const std::uint64_t rows = steps < hdf5::kChunkRows ? steps : chunks * hdf5::kChunkRows;
+  return {kMetadata + texts + chunks * kChunkEntries + rows * kStepBytes};
 }
 
 }  // namespace
 
+struct RecordingWriter::State {
+  State(const std::filesystem::path& path, const RecordingHeading& heading, std::uint64_t steps)
+      : checks(path), writer(path, room_for(heading, steps)) {}
+
+  void write_waiting() {
+    append_columns(writer, "/step", waiting, kStepColumns);
+    waiting.clear();
+  }
+
+  Checks checks;
+  hdf5::Writer writer;
+  std::vector<RecordedStep> waiting;  ///< less than a chunk: each chunk is written whole
+  std::int64_t last_time = 0;
+};
+
+RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHeading& heading,
+                                 std::uint64_t steps) {
+  check_heading(Checks(path), heading);
+  state_ = std::make_unique<State>(path, heading, steps);
+  write_heading(state_->writer, heading);
+  state_->writer.group("/step", "One row for each step of the force loop.");
+  begin_columns(state_->writer, "/step", steps, kStepColumns);
+}
+
+RecordingWriter::~RecordingWriter() = default;
+
+void RecordingWriter::append(const std::vector<RecordedStep>& steps) {
+  check_steps(state_->checks, steps, state_->last_time);
+  if (!steps.empty()) state_->last_time = steps.back().time_ns;
+  for (const RecordedStep& step : steps) {
+    state_->waiting.push_back(step);
+    if (state_->waiting.size() == hdf5::kChunkRows) state_->write_waiting();
+  }
+}
+
+void RecordingWriter::commit() {
+  state_->write_waiting();
+  state_->writer.commit();
+}
+
 void write_recording(const std::filesystem::path& path, const Recording& recording) {
-  check_recording(Checks(path), recording);
-  hdf5::Writer writer(path);
-  write_root(writer, kArtifact, kRecordingSchema, "Every step of a haptic session.");
-  writer.set_text("/", "device", recording.device);
-  writer.set_text("/", "library_sha256", recording.library_sha256);
-  writer.set_real("/", "rate", recording.rate);
-  writer.set_real("/", "friction", recording.friction);
-  write_settings(writer, recording.settings);
-  writer.group("/step", "One row for each step of the force loop.");
-  write_columns(writer, "/step", recording.steps, kStepColumns, hdf5::Storage::Deflated);
-  write_provenance(writer, recording.provenance);
+  RecordingWriter writer(path, recording, recording.steps.size());
+  writer.append(recording.steps);
   writer.commit();
 }
 
@@ -128,7 +185,9 @@ Recording read_recording(const std::filesystem::path& path) {
   recording.settings = read_settings(reader);
   recording.steps = read_columns(reader, "/step", kStepColumns);
   recording.provenance = read_provenance(reader);
-  check_recording(Checks(reader), recording);
+  const Checks checks(reader);
+  check_heading(checks, recording);
+  check_steps(checks, recording.steps, 0);
   return recording;
 }
 

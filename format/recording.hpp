@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -42,17 +43,41 @@ struct SessionSettings {
   double max_force = 0, max_speed = 0;  ///< N, may be infinite; m/s
 };
 
-struct Recording {
+/// What a recording says besides its steps.
+struct RecordingHeading {
   std::string device;
   std::string library_sha256;
   double rate = 0;  ///< Hz
   double friction = 0;
-  std::vector<RecordedStep> steps;
-  Provenance provenance;
   SessionSettings settings;
+  Provenance provenance;
+};
+
+struct Recording : RecordingHeading {
+  std::vector<RecordedStep> steps;
+};
+
+/// Writes a recording of any length in the memory of a few thousand steps, crash-safely. The room
+/// that it may need is taken on the disk at the beginning, so that a full disk is met there.
+/// @throws Error as hdf5::Writer, and Internal for a step that the schema does not allow.
+class RecordingWriter {
+ public:
+  RecordingWriter(const std::filesystem::path& path, const RecordingHeading& heading,
+                  std::uint64_t steps);
+  ~RecordingWriter();
+  RecordingWriter(const RecordingWriter&) = delete;
+  RecordingWriter& operator=(const RecordingWriter&) = delete;
+
+  void append(const std::vector<RecordedStep>& steps);
+  void commit();  ///< after exactly the promised number of steps
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 void write_recording(const std::filesystem::path& path, const Recording& recording);
+/// All of it in memory: about 170 bytes a step.
 Recording read_recording(const std::filesystem::path& path);
 
 }  // namespace palpate

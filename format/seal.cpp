@@ -25,7 +25,11 @@ std::string tail_of(const std::filesystem::path& path) {
 }  // namespace
 
 std::string seal_of(std::string_view content) {
-  return std::string(kMark).append(sha256(content)).append("\n");
+  return seal_of_digest(sha256(content));
+}
+
+std::string seal_of_digest(std::string_view digest) {
+  return std::string(kMark).append(digest).append("\n");
 }
 
 void require_unbroken_seal(const std::filesystem::path& file, const std::string& remedy) {

@@ -13,6 +13,8 @@ namespace palpate {
 /// What to append to `content`: "\npalpate-sha256:<64 hexadecimal digits>\n". HDF5 ignores bytes
 /// after its own end, and cuts them off when a program changes the file.
 std::string seal_of(std::string_view content);
+/// The same where the SHA-256 of the content is known.
+std::string seal_of_digest(std::string_view digest);
 
 /// Compare the seal of a file with its content. A file without a seal passes: another program wrote
 /// or changed it. @throws Error(Configuration) when they differ, saying `remedy`.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "format/curves.hpp"
+#include "format/record_file.hpp"
 
 namespace palpate {
 
@@ -38,9 +39,6 @@ class SiteJournal {
   /// `<path>.old` (replacing an older one). @throws Error when the disk refuses, or Configuration
   /// when another process holds it.
   SiteJournal(const std::filesystem::path& path, const JournalHeading& heading);
-  ~SiteJournal();
-  SiteJournal(const SiteJournal&) = delete;
-  SiteJournal& operator=(const SiteJournal&) = delete;
 
   const std::vector<SiteCurves>& found() const { return found_; }  ///< sites kept from before
   std::uint64_t dropped_bytes() const { return dropped_bytes_; }
@@ -53,15 +51,11 @@ class SiteJournal {
   void remove();
 
  private:
-  void open_and_lock();
   void continue_or_begin(const JournalHeading& heading);
   void move_aside();
   void begin(const JournalHeading& heading);
-  void write_at_end(const std::string& bytes);
 
-  std::filesystem::path path_;
-  int descriptor_ = -1;
-  std::uint64_t end_ = 0;
+  RecordFile file_;
   std::vector<SiteCurves> found_;
   std::uint64_t dropped_bytes_ = 0;
   bool moved_aside_ = false;

@@ -1,88 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/site_record.hpp"
 
-#include <bit>
-#include <cstring>
-#include <type_traits>
+#include <utility>
 
-#include "format/error.hpp"
+#include "format/bytes.hpp"
 #include "format/sha256.hpp"
 
 namespace palpate {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "a record is the memory as it is");
-
-class ByteWriter {
- public:
-  template <class Number>
-  void put(Number value) {
-    static_assert(std::is_arithmetic_v<Number>);
-    char raw[sizeof value];
-    std::memcpy(raw, &value, sizeof value);
-    bytes.append(raw, sizeof value);
-  }
-  void put(const Vec3& v) {
-    for (const double x : v) put(x);
-  }
-  void put(const std::string& text) {
-    put(static_cast<std::uint32_t>(text.size()));
-    bytes.append(text);
-  }
-
-  std::string bytes;
-};
-
-class ByteReader {
- public:
-  ByteReader(std::string_view bytes, const std::string& where) : bytes_(bytes), where_(where) {}
-
-  template <class Number>
-  Number get() {
-    Number value{};
-    std::memcpy(&value, take(sizeof value).data(), sizeof value);
-    return value;
-  }
-  Vec3 vector() {
-    Vec3 v{};
-    for (double& x : v) x = get<double>();
-    return v;
-  }
-  std::string text() {
-    const auto length = get<std::uint32_t>();
-    return std::string(take(length));
-  }
-  /// A length that could not fit into what is left is damage, not a reason to allocate.
-  std::size_t count(std::size_t smallest_item) {
-    const auto n = get<std::uint32_t>();
-    if (n > bytes_.size() / smallest_item) fail();
-    return n;
-  }
-  template <class Enum>
-  Enum one_of(Enum last) {
-    const auto value = get<std::uint8_t>();
-    if (value > static_cast<std::uint8_t>(last)) fail();
-    return static_cast<Enum>(value);
-  }
-  void expect_end() const {
-    if (!bytes_.empty()) fail();
-  }
-
- private:
-  std::string_view take(std::size_t n) {
-    if (n > bytes_.size()) fail();
-    const std::string_view head = bytes_.substr(0, n);
-    bytes_.remove_prefix(n);
-    return head;
-  }
-  [[noreturn]] void fail() const {
-    throw Error(ErrorKind::Configuration, where_, "holds a record that is no site",
-                "remove the file and run `palpate precompute` again");
-  }
-
-  std::string_view bytes_;
-  const std::string& where_;
-};
 
 constexpr std::size_t kSampleBytes = 13 * sizeof(double) + sizeof(std::int32_t);
 constexpr std::size_t kSmallestPathBytes =
@@ -152,7 +77,8 @@ std::string site_bytes(const SiteCurves& site) {
 }
 
 SiteCurves site_from_bytes(std::string_view bytes, const std::string& where) {
-  ByteReader in(bytes, where);
+  ByteReader in(bytes, where, "holds a record that is no site",
+                "remove the file and run `palpate precompute` again");
   SiteCurves site;
   site.vertex = in.get<std::int32_t>();
   site.status = in.one_of(SiteStatus::Failed);

@@ -12,6 +12,7 @@
 #include "format/hdf5_file.hpp"
 #include "format/library.hpp"
 #include "format/recording.hpp"
+#include "format/session_journal.hpp"
 #include "format/site_journal.hpp"
 #include "format/site_record.hpp"
 
@@ -265,6 +266,16 @@ Json summary_of(const JournalContents& journal) {
           {"key", journal.heading.key}};
 }
 
+/// A session under way, or one that was cut off.
+Json summary_of(const SessionSummary& session) {
+  return {{"device", session.heading.device},
+          {"library_sha256", session.heading.library_sha256},
+          {"rate", with_unit(session.heading.rate, "Hz")},
+          {"steps", session.steps},
+          {"duration", with_unit(static_cast<double>(session.last_time_ns) * 1e-9, "s")},
+          {"broken_bytes_at_the_end", session.broken_bytes}};
+}
+
 std::string artifact_kind(const std::filesystem::path& file) {
   const hdf5::Reader reader(file, "give an artifact made by palpate");
   return reader.text("/", "artifact");
@@ -325,6 +336,13 @@ void print(const Json& object, const std::string& indent, std::string& out) {
 }  // namespace
 
 Json summarize_artifact(const std::filesystem::path& file) {
+  if (file.extension() == ".journal" && is_session_journal(file)) {
+    Json summary{{"file", file.string()}, {"artifact", "palpate.session"}};
+    const SessionSummary session = summarize_session(file);
+    summary.update(summary_of(session));
+    summary["provenance"] = provenance_of(session.heading.provenance);
+    return summary;
+  }
   if (file.extension() == ".journal") {
     Json summary{{"file", file.string()}, {"artifact", "palpate.journal"}};
     summary.update(summary_of(read_site_journal(file)));

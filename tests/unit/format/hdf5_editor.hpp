@@ -39,9 +39,11 @@ class Hdf5Editor {
     poke(object, position, value, H5T_NATIVE_DOUBLE);
   }
 
-  /// A dataset of another shape or type in the place of the old one, its data all `value`.
+  /// A dataset of another shape or type in the place of the old one, of the same units, its data
+  /// all `value`.
   void replace(const std::string& object, const std::vector<hsize_t>& extent, hid_t type,
                double value = 0) {
+    const std::string units = text(object, "units");
     remove(object);
     const hid_t space = dataspace(extent);
     const hid_t dataset = checked(
@@ -51,6 +53,7 @@ class Hdf5Editor {
     checked(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()));
     H5Dclose(dataset);
     H5Sclose(space);
+    add_text(object, "units", units.c_str());
   }
 
   /// A dataset that claims `extent` but holds nothing, stored as `properties` say.
@@ -65,7 +68,32 @@ class Hdf5Editor {
 
   template <class T>
   void set_attribute(const std::string& object, const std::string& name, T value, hid_t type) {
+    remove_attribute(object, name);
+    add_attribute(object, name, value, type);
+  }
+  void remove_attribute(const std::string& object, const std::string& name) {
     checked(H5Adelete_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT));
+  }
+  void set_text(const std::string& object, const std::string& name, const char* value) {
+    remove_attribute(object, name);
+    add_text(object, name, value);
+  }
+  std::string text(const std::string& object, const std::string& name) {
+    const hid_t type = text_type();
+    const hid_t attribute =
+        checked(H5Aopen_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT));
+    char* value = nullptr;
+    checked(H5Aread(attribute, type, static_cast<void*>(&value)));
+    std::string result = value == nullptr ? "" : value;
+    H5free_memory(value);
+    H5Aclose(attribute);
+    H5Tclose(type);
+    return result;
+  }
+
+ private:
+  template <class T>
+  void add_attribute(const std::string& object, const std::string& name, T value, hid_t type) {
     const hid_t space = H5Screate(H5S_SCALAR);
     const hid_t attribute = checked(H5Acreate_by_name(
         file_, object.c_str(), name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
@@ -73,15 +101,18 @@ class Hdf5Editor {
     H5Aclose(attribute);
     H5Sclose(space);
   }
-  void set_text(const std::string& object, const std::string& name, const char* value) {
+  static hid_t text_type() {
     const hid_t type = H5Tcopy(H5T_C_S1);
     H5Tset_size(type, H5T_VARIABLE);
     H5Tset_cset(type, H5T_CSET_UTF8);
-    set_attribute(object, name, value, type);
+    return type;
+  }
+  void add_text(const std::string& object, const std::string& name, const char* value) {
+    const hid_t type = text_type();
+    add_attribute(object, name, value, type);
     H5Tclose(type);
   }
 
- private:
   template <class T>
   static T checked(T result) {
     if (result < 0) throw std::runtime_error("the test's own HDF5 call failed");

@@ -274,7 +274,11 @@ Library coupled_library(unsigned seed) {
 
 Recording recording(unsigned seed) {
   Random random(seed);
-  Recording recording{"simulated", std::string(64, 'c'), 1000, 0.3, {}, {}, {}};
+  Recording recording;
+  recording.device = "simulated";
+  recording.library_sha256 = std::string(64, 'c');
+  recording.rate = 1000;
+  recording.friction = 0.3;
   for (int i = 0; i < 5000; ++i) {
     recording.steps.push_back(
         {std::int64_t{1000000} * i, random.vector(0.1), random.vector(1), random.vector(5),

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,11 +18,13 @@
 #include "format/hdf5_file.hpp"
 #include "format/sha256.hpp"
 #include "tests/unit/format/sample_artifacts.hpp"
+#include "tests/unit/format/small_disk.hpp"
 #include "tests/unit/format/temporary_folder.hpp"
 
 namespace palpate {
 namespace {
 
+using samples::SmallDisk;
 using samples::TemporaryFolder;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -35,27 +36,6 @@ std::string text_of(const Path& path) {
   text << std::ifstream(path, std::ios::binary).rdbuf();
   return text.str();
 }
-
-/// The disk takes no more than `bytes` in one file while this lives.
-class SmallDisk {
- public:
-  explicit SmallDisk(rlim_t bytes) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    handler_ = signal(SIGXFSZ, SIG_IGN);
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~SmallDisk() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    signal(SIGXFSZ, handler_);
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int) = nullptr;
-};
 
 void expect_refusal(const std::function<void()>& action, ErrorKind kind, const std::string& where,
                     const std::string& problem) {
