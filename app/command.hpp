@@ -32,6 +32,7 @@ void add_export_command(CLI::App& root, Action& action);
 void add_import_command(CLI::App& root, Action& action);
 void add_rescale_command(CLI::App& root, Action& action);
 void add_run_command(CLI::App& root, Action& action);
+void add_recover_command(CLI::App& root, Action& action);
 void add_replay_command(CLI::App& root, Action& action);
 void add_experiment_command(CLI::App& root, Action& action);
 void add_report_command(CLI::App& root, Action& action);

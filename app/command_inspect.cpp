@@ -17,8 +17,9 @@ void add_inspect_command(CLI::App& root, Action& action) {
   command->footer("Example: palpate inspect out/cylinder/library.h5 --json");
   const auto options = std::make_shared<Options>();
   command
-      ->add_option("FILE", options->file,
-                   "body.h5, curves.h5, library.h5, recording.h5 or curves.journal")
+      ->add_option(
+          "FILE", options->file,
+          "body.h5, curves.h5, library.h5, recording.h5, curves.journal or recording.journal")
       ->required();
   command->add_flag("--json", options->json, "Print JSON, with the resolved case of each stage");
   command->callback([options, &action] {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <csignal>
@@ -13,6 +14,8 @@
 #include "app/console.hpp"
 #include "app/pipeline/device_profile.hpp"
 #include "app/pipeline/workspace.hpp"
+#include "app/record/session_recorder.hpp"
+#include "app/record/tell.hpp"
 #include "app/run/certified.hpp"
 #include "app/run/device_choice.hpp"
 #include "app/run/live_session.hpp"
@@ -33,21 +36,24 @@ struct RunOptions {
 
 std::atomic<bool> interrupted{false};
 
-/// Ctrl-C ends the session, not the process, while this lives.
+/// Ctrl-C, a closed terminal and a polite kill end the session, not the process, while this lives.
 class StopOnInterrupt {
  public:
   StopOnInterrupt() {
     interrupted = false;
     struct sigaction action {};
     action.sa_handler = [](int) { interrupted = true; };
-    sigaction(SIGINT, &action, &before_);
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &before_[i]);
   }
-  ~StopOnInterrupt() { sigaction(SIGINT, &before_, nullptr); }
+  ~StopOnInterrupt() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
+  }
   StopOnInterrupt(const StopOnInterrupt&) = delete;
   StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
 
  private:
-  struct sigaction before_ {};
+  static constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
+  std::array<struct sigaction, 3> before_{};
 };
 
 int list_devices() {
@@ -93,22 +99,34 @@ void summarize(const LiveOutcome& outcome, const std::string& file) {
       c.cut_off, c.clamped, c.saturated, c.stale, c.unrecorded);
 }
 
-void write(const RunOptions& options, const Library& library, const std::string& device,
-           const LiveOutcome& outcome) {
-  Recording recording;
-  recording.device = device;
-  recording.library_sha256 = sha256_of_file(options.library);
-  recording.rate = options.live.loop.rate;
-  recording.friction = options.live.contact.friction;
-  recording.settings = session_settings(options.live);
-  recording.steps = outcome.steps;
-  recording.provenance = library.provenance;
-  recording.provenance.steps.push_back(
+RecordingHeading heading_of(const RunOptions& options, const Library& library,
+                            const std::string& device) {
+  RecordingHeading heading;
+  heading.device = device;
+  heading.library_sha256 = sha256_of_file(options.library);
+  heading.rate = options.live.loop.rate;
+  heading.friction = options.live.contact.friction;
+  heading.settings = session_settings(options.live);
+  heading.provenance = library.provenance;
+  heading.provenance.steps.push_back(
       make_provenance_step("run",
                            fmt::format("device = \"{}\"\nrate = {:g}\nuncertified = {}\n", device,
                                        options.live.loop.rate, options.uncertified),
                            {options.library}));
-  write_recording(options.recording, recording);
+  return heading;
+}
+
+/// The session ended by itself, but not as it should.
+void require_good_end(const LiveOutcome& outcome, const std::string& device,
+                      const std::string& recording) {
+  if (outcome.counts.lost) {
+    throw Error(ErrorKind::Configuration, device, "the device was lost",
+                "check cable and power; what was recorded is in " + recording);
+  }
+  if (outcome.halted) {
+    throw Error(ErrorKind::Internal, device, "the watchdog halted the device",
+                "lower --rate or the load of the machine; what was recorded is in " + recording);
+  }
 }
 
 void settle(RunOptions& options, const Library& library, const palpate_library& body) {
@@ -137,20 +155,16 @@ int run(RunOptions options) {
   const palpate_library body(library);
   settle(options, library, body);
   const auto device = make_device(options.device, scripted_hand(library, options.live.pose));
+  tell_what_was_left(options.recording);
+  device->open();
+  SessionRecorder recorder(options.recording, heading_of(options, library, device->name()));
   const StopOnInterrupt stop_on_interrupt;
   say("run: {} at {:g} Hz; Ctrl-C ends it", options.device.name, options.live.loop.rate);
-  const LiveOutcome outcome = run_live(*device, body, options.live, interrupted);
-  write(options, library, device->name(), outcome);
+  const LiveOutcome outcome = run_live(*device, body, options.live, recorder, interrupted);
+  if (outcome.not_recorded) throw_keeping_journal(*outcome.not_recorded, recorder.journal());
+  recorder.finish();
   summarize(outcome, options.recording);
-  if (outcome.counts.lost) {
-    throw Error(ErrorKind::Configuration, device->name(), "the device was lost",
-                "check cable and power; what was recorded is in " + options.recording);
-  }
-  if (outcome.halted) {
-    throw Error(
-        ErrorKind::Internal, device->name(), "the watchdog halted the device",
-        "lower --rate or the load of the machine; what was recorded is in " + options.recording);
-  }
+  require_good_end(outcome, device->name(), options.recording);
   return kExitDone;
 }
 

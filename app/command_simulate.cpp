@@ -1,47 +1,46 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 
 #include "app/case_options.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/record/tell.hpp"
 #include "app/simulate/session.hpp"
 #include "format/error.hpp"
+#include "runtime/latency_histogram.hpp"
 #include "runtime/palpate.h"
 
 namespace palpate::app {
 namespace {
 
-std::int64_t steps_with(const Recording& recording, std::uint32_t bit) {
-  return std::count_if(recording.steps.begin(), recording.steps.end(),
-                       [bit](const RecordedStep& step) { return (step.status & bit) != 0; });
-}
+/// What is told of a session, gathered as it goes.
+struct Summary {
+  std::int64_t steps = 0, contact = 0, sliding = 0, limited = 0, beyond = 0;
+  double deepest = 0, largest = 0, absorbed = 0;
+  runtime::LatencyHistogram latency;
 
-/// The latency that this share of the steps did not exceed, us.
-double latency_quantile(const Recording& recording, double share) {
-  std::vector<std::int64_t> latencies;
-  for (const RecordedStep& step : recording.steps) latencies.push_back(step.latency_ns);
-  const auto index =
-      static_cast<std::ptrdiff_t>(std::floor(share * static_cast<double>(latencies.size() - 1)));
-  std::nth_element(latencies.begin(), latencies.begin() + index, latencies.end());
-  return static_cast<double>(latencies[static_cast<std::size_t>(index)]) * 1e-3;
-}
-
-void summarize(const Recording& recording, const std::filesystem::path& file) {
-  double deepest = 0, largest = 0;
-  for (const RecordedStep& step : recording.steps) {
+  void see(const RecordedStep& step) {
+    const auto one_if = [&](std::uint32_t bit) { return (step.status & bit) != 0 ? 1 : 0; };
+    ++steps;
+    contact += one_if(PALPATE_CONTACT);
+    sliding += one_if(PALPATE_SLIDING);
+    limited += one_if(PALPATE_ENERGY_LIMITED);
+    beyond += one_if(PALPATE_BEYOND_DEPTH);
     deepest = std::max(deepest, step.depth);
     largest = std::max(largest, norm(step.force));
+    absorbed = step.absorbed;
+    latency.add(step.latency_ns);
   }
-  say("simulate: {} steps at {} Hz, deepest {:.2f} mm, largest force {:.3f} N -> {}",
-      recording.steps.size(), recording.rate, deepest * 1e3, largest, file.string());
+};
+
+void tell(const Summary& s, double rate, const std::filesystem::path& file) {
+  say("simulate: {} steps at {} Hz, deepest {:.2f} mm, largest force {:.3f} N -> {}", s.steps, rate,
+      s.deepest * 1e3, s.largest, file.string());
   say("  contact in {} steps, sliding in {}, energy rule in {}, beyond the deepest sample in {}",
-      steps_with(recording, PALPATE_CONTACT), steps_with(recording, PALPATE_SLIDING),
-      steps_with(recording, PALPATE_ENERGY_LIMITED), steps_with(recording, PALPATE_BEYOND_DEPTH));
+      s.contact, s.sliding, s.limited, s.beyond);
   say("  absorbed by the body: {:.3f} mJ; force step: median {:.2f} us, 99 % within {:.2f} us",
-      recording.steps.back().absorbed * 1e3, latency_quantile(recording, 0.5),
-      latency_quantile(recording, 0.99));
+      s.absorbed * 1e3, s.latency.quantile(0.5) * 1e-3, s.latency.quantile(0.99) * 1e-3);
 }
 
 int simulate(const CaseOptions& options, const std::string& library_option) {
@@ -54,12 +53,24 @@ int simulate(const CaseOptions& options, const std::string& library_option) {
   }
   const Library library = read_library(file);
   prepare_output(space.out);
-  Recording recording = play_session(file, library, space.c.simulate);
-  recording.provenance = library.provenance;
-  recording.provenance.steps.push_back(
+  tell_what_was_left(space.recording());
+  ScriptedSession session(file, library, space.c.simulate);
+  RecordingHeading heading = session.heading();
+  heading.provenance = library.provenance;
+  heading.provenance.steps.push_back(
       make_provenance_step("simulate", resolved_toml(space.c), {file}));
-  write_recording(space.recording(), recording);
-  summarize(recording, space.recording());
+  SessionRecorder recorder(space.recording(), heading);
+  Summary summary;
+  try {
+    session.play([&](const RecordedStep& step) {
+      summary.see(step);
+      recorder.add(step);
+    });
+  } catch (const Error& error) {
+    throw_keeping_journal(error, recorder.journal());
+  }
+  recorder.finish();
+  tell(summary, heading.rate, space.recording());
   return kExitDone;
 }
 

@@ -6,6 +6,18 @@
 
 namespace palpate::runtime {
 
+void enter_observation(const palpate_state& state, RecordedStep& step) noexcept {
+  const ContactObservation seen = state.observe();
+  step.contact_point = seen.contact_point;
+  step.depth = seen.deflection.depth;
+  step.lateral = seen.deflection.lateral;
+  step.offset = seen.offset;
+  step.energy = seen.energy;
+  step.tank = seen.tank;
+  step.absorbed = seen.absorbed;
+  step.element = seen.point.element;
+}
+
 ForceLoop::ForceLoop(Device& device, palpate_state& state, const SafetySettings& safety,
                      StepQueue* queue)
     : device_(device), state_(state), safety_(safety), queue_(queue) {}
@@ -64,20 +76,12 @@ void ForceLoop::record(const DeviceReading& reading, const Vec3& force, std::uin
   counts_.compute.add(spent);
   ++counts_.steps;
   if (queue_ == nullptr) return;
-  const ContactObservation seen = state_.observe();
   RecordedStep step;
   step.time_ns = began - start_;
   step.position = reading.position;
   step.velocity = reading.velocity;
   step.force = force;
-  step.contact_point = seen.contact_point;
-  step.depth = seen.deflection.depth;
-  step.lateral = seen.deflection.lateral;
-  step.offset = seen.offset;
-  step.energy = seen.energy;
-  step.tank = seen.tank;
-  step.absorbed = seen.absorbed;
-  step.element = seen.point.element;
+  enter_observation(state_, step);
   step.status = status;
   step.latency_ns = spent;
   if (!queue_->try_enqueue(step)) ++counts_.unrecorded;

@@ -19,6 +19,9 @@ namespace palpate::runtime {
 /// Steps on their way from the force loop to whoever writes them down.
 using StepQueue = moodycamel::BlockingReaderWriterCircularBuffer<RecordedStep>;
 
+/// Enters into `step` what the model did in it: contact, deflections and the energy account.
+void enter_observation(const palpate_state& state, RecordedStep& step) noexcept;
+
 /// What the loop did, to be read when it has stopped.
 struct LoopCounts {
   std::uint64_t steps = 0;

@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "format/error.hpp"
+#include "runtime/force_loop.hpp"
 #include "runtime/palpate.h"
 #include "runtime/safety.hpp"
 
@@ -31,18 +32,6 @@ std::optional<runtime::Safety> safety_of(const SessionSettings& settings) {
       {settings.ramp, settings.max_force, settings.max_speed, settings.watchdog});
 }
 
-void observe(const palpate_state& state, RecordedStep& step) {
-  const runtime::ContactObservation seen = state.observe();
-  step.contact_point = seen.contact_point;
-  step.depth = seen.deflection.depth;
-  step.lateral = seen.deflection.lateral;
-  step.offset = seen.offset;
-  step.energy = seen.energy;
-  step.tank = seen.tank;
-  step.absorbed = seen.absorbed;
-  step.element = seen.point.element;
-}
-
 /// The step as the force loop made it, see ForceLoop::tick.
 RecordedStep step_again(const RecordedStep& recorded, double dt, palpate_state& state,
                         std::optional<runtime::Safety>& safety) {
@@ -59,7 +48,7 @@ RecordedStep step_again(const RecordedStep& recorded, double dt, palpate_state& 
       step.status |= verdict.status;
     }
   }
-  observe(state, step);
+  runtime::enter_observation(state, step);
   return step;
 }
 

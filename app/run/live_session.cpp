@@ -2,7 +2,7 @@
 #include "app/run/live_session.hpp"
 
 #include <chrono>
-#include <memory>
+#include <exception>
 #include <thread>
 
 namespace palpate::app {
@@ -11,45 +11,58 @@ namespace {
 constexpr std::size_t kQueueRoom = 1 << 15;  // steps: 30 s at 1 kHz, should the writer be held up
 constexpr auto kNap = std::chrono::milliseconds(5);
 
-/// Takes the steps off the queue until the loop has stopped, in a thread of its own.
-class Collector {
+/// Takes the steps off the queue and writes them down, in a thread of its own, until the loop has
+/// stopped or the disk refuses.
+class RecordingThread {
  public:
-  explicit Collector(runtime::StepQueue& queue) : queue_(queue), thread_([this] { collect(); }) {}
-  ~Collector() { finish(); }
-  Collector(const Collector&) = delete;
-  Collector& operator=(const Collector&) = delete;
+  RecordingThread(runtime::StepQueue& queue, SessionRecorder& recorder)
+      : queue_(queue), recorder_(recorder), thread_([this] { write_down(); }) {}
+  ~RecordingThread() { finish(); }
+  RecordingThread(const RecordingThread&) = delete;
+  RecordingThread& operator=(const RecordingThread&) = delete;
 
-  /// All that was recorded; the loop has stopped.
-  std::vector<RecordedStep> finish() {
+  bool failed() const noexcept { return failed_; }
+  /// After the loop has stopped. @return what the disk refused.
+  std::optional<Error> finish() {
     stop_ = true;
     if (thread_.joinable()) thread_.join();
-    return std::move(steps_);
+    return failure_;
   }
 
  private:
-  void collect() {
-    while (!stop_) {
+  void write_down() {
+    try {
+      while (!stop_) {
+        drain();
+        recorder_.breathe();
+        std::this_thread::sleep_for(kNap);
+      }
       drain();
-      std::this_thread::sleep_for(kNap);
+    } catch (const Error& error) {
+      failure_ = error;
+    } catch (const std::exception& error) {
+      failure_.emplace(ErrorKind::Internal, recorder_.journal().string(), error.what(),
+                       "free some memory");
     }
-    drain();
+    failed_ = failure_.has_value();
   }
   void drain() {
     RecordedStep step;
-    while (queue_.try_dequeue(step)) steps_.push_back(step);
+    while (queue_.try_dequeue(step)) recorder_.add(step);
   }
 
   runtime::StepQueue& queue_;
-  std::vector<RecordedStep> steps_;
-  std::atomic<bool> stop_{false};
+  SessionRecorder& recorder_;
+  std::optional<Error> failure_;
+  std::atomic<bool> stop_{false}, failed_{false};
   std::thread thread_;
 };
 
-void wait_for_the_end(const runtime::LoopThread& loop, double duration,
-                      const std::atomic<bool>& stop) {
+void wait_for_the_end(const runtime::LoopThread& loop, const RecordingThread& recording,
+                      double duration, const std::atomic<bool>& stop) {
   const auto start = std::chrono::steady_clock::now();
   const std::chrono::duration<double> most(duration);
-  while (loop.running() && !stop) {
+  while (loop.running() && !recording.failed() && !stop) {
     if (duration > 0 && std::chrono::steady_clock::now() - start >= most) return;
     std::this_thread::sleep_for(kNap);
   }
@@ -72,22 +85,22 @@ SessionSettings session_settings(const LiveSettings& live) {
 }
 
 LiveOutcome run_live(runtime::Device& device, const palpate_library& body,
-                     const LiveSettings& settings, const std::atomic<bool>& stop) {
+                     const LiveSettings& settings, SessionRecorder& recorder,
+                     const std::atomic<bool>& stop) {
   palpate_state state(body, settings.contact, settings.search_rate);
   state.pose = settings.pose;
   runtime::StepQueue queue(kQueueRoom);
   runtime::ForceLoop loop(device, state, settings.safety, &queue);
-  device.open();
   LiveOutcome outcome;
   {
-    Collector collector(queue);
+    RecordingThread recording(queue, recorder);
     runtime::LoopThread thread(loop, device, settings.loop);
-    wait_for_the_end(thread, settings.duration, stop);
+    wait_for_the_end(thread, recording, settings.duration, stop);
     thread.stop();
     device.close();
     outcome.missing_rights = thread.missing_rights();
     outcome.halted = thread.halted();
-    outcome.steps = collector.finish();
+    outcome.not_recorded = recording.finish();
   }
   outcome.counts = loop.counts();
   return outcome;

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <string>
-#include <vector>
 
+#include "app/record/session_recorder.hpp"
+#include "format/error.hpp"
 #include "format/recording.hpp"
 #include "runtime/device.hpp"
 #include "runtime/force_loop.hpp"
@@ -27,15 +29,17 @@ struct LiveSettings {
 SessionSettings session_settings(const LiveSettings& live);
 
 struct LiveOutcome {
-  std::vector<RecordedStep> steps;
   runtime::LoopCounts counts;
-  std::string missing_rights;  ///< one line, empty when all was granted
-  bool halted = false;         ///< by the watchdog
+  std::string missing_rights;         ///< one line, empty when all was granted
+  bool halted = false;                ///< by the watchdog
+  std::optional<Error> not_recorded;  ///< what the disk refused; it ended the session
 };
 
-/// Opens the device, runs the loop until the time is over, `stop` is set, or the device is lost,
-/// and closes it. What was recorded until then is kept in any case. @throws Error from opening.
+/// Runs the loop on a device that is open until the time is over, `stop` is set, or the device is
+/// lost, or the disk takes no more steps, and closes it. What was recorded until then is with the
+/// recorder, or in its journal.
 LiveOutcome run_live(runtime::Device& device, const palpate_library& body,
-                     const LiveSettings& settings, const std::atomic<bool>& stop);
+                     const LiveSettings& settings, SessionRecorder& recorder,
+                     const std::atomic<bool>& stop);
 
 }  // namespace palpate::app

@@ -95,34 +95,54 @@ HandPath hand_path_of(const Library& library, const SimulateSection& script) {
 
 }  // namespace
 
-Recording play_session(const std::filesystem::path& library_file, const Library& library,
-                       const SimulateSection& script) {
-  const LibraryHandle handle = load(library_file);
-  const StateHandle state = create(handle.get(), library_file);
-  const HandPath hand = hand_path_of(library, script);
-  runtime::SimulatedDevice device = device_of(script);
-  const double dt = 1 / script.rate;
-  constexpr double kRestAfterwards = 0.2;  // s, for the device to come to rest
+struct ScriptedSession::State {
+  State(const std::filesystem::path& file, const Library& library, const SimulateSection& given)
+      : script(given),
+        handle(load(file)),
+        state(create(handle.get(), file)),
+        hand(hand_path_of(library, given)),
+        device(device_of(given)) {
+    heading.device = "simulated";
+    heading.library_sha256 = sha256_of_file(file);
+    heading.rate = script.rate;
+    heading.friction = library.certificate.friction;
+    heading.settings = settings_of(handle.get());
+  }
 
-  Recording recording;
-  recording.device = "simulated";
-  recording.library_sha256 = sha256_of_file(library_file);
-  recording.rate = script.rate;
-  recording.friction = library.certificate.friction;
-  recording.settings = settings_of(handle.get());
-  const auto count = static_cast<std::int64_t>((hand.duration() + kRestAfterwards) * script.rate);
-  recording.steps.reserve(static_cast<std::size_t>(count));
-  device.place(hand.at(0).position, {});
+  SimulateSection script;
+  LibraryHandle handle;
+  StateHandle state;
+  HandPath hand;
+  runtime::SimulatedDevice device;
+  RecordingHeading heading;
+};
+
+ScriptedSession::ScriptedSession(const std::filesystem::path& library_file, const Library& library,
+                                 const SimulateSection& script)
+    : state_(std::make_unique<State>(library_file, library, script)) {}
+
+ScriptedSession::~ScriptedSession() = default;
+
+RecordingHeading ScriptedSession::heading() const {
+  return state_->heading;
+}
+
+void ScriptedSession::play(const std::function<void(const RecordedStep&)>& record) {
+  constexpr double kRestAfterwards = 0.2;  // s, for the device to come to rest
+  State& s = *state_;
+  const double dt = 1 / s.script.rate;
+  const auto count =
+      static_cast<std::int64_t>((s.hand.duration() + kRestAfterwards) * s.script.rate);
+  s.device.place(s.hand.at(0).position, {});
   for (std::int64_t k = 0; k < count; ++k) {
     const double time = static_cast<double>(k) * dt;
-    const HandState target = hand.at(time);
-    device.set_target(target.position, target.velocity);
-    RecordedStep step = force_step(state.get(), device, dt);
+    const HandState target = s.hand.at(time);
+    s.device.set_target(target.position, target.velocity);
+    RecordedStep step = force_step(s.state.get(), s.device, dt);
     step.time_ns = std::llround(time * 1e9);
-    device.step(dt, step.force);
-    recording.steps.push_back(step);
+    s.device.step(dt, step.force);
+    record(step);
   }
-  return recording;
 }
 
 }  // namespace palpate::app

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 
 #include "app/case/case.hpp"
 #include "format/library.hpp"
@@ -9,11 +11,25 @@
 
 namespace palpate::app {
 
-/// Play the script on a library through the public C interface, with a simulated device and hand,
-/// and record every step. `library` is the content of `library_file`. The provenance of the
-/// recording is left to the caller. @throws Error(Configuration) when the library cannot be loaded
-/// or the script does not fit it.
-Recording play_session(const std::filesystem::path& library_file, const Library& library,
-                       const SimulateSection& script);
+/// A script on a library, played through the public C interface with a simulated device and hand.
+class ScriptedSession {
+ public:
+  /// `library` is the content of `library_file`. @throws Error(Configuration) when the library
+  /// cannot be loaded or the script does not fit it.
+  ScriptedSession(const std::filesystem::path& library_file, const Library& library,
+                  const SimulateSection& script);
+  ~ScriptedSession();
+  ScriptedSession(const ScriptedSession&) = delete;
+  ScriptedSession& operator=(const ScriptedSession&) = delete;
+
+  /// Its provenance is left to the caller.
+  RecordingHeading heading() const;
+  /// Every step, as it is made.
+  void play(const std::function<void(const RecordedStep&)>& record);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace palpate::app

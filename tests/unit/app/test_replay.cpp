@@ -12,6 +12,7 @@
 #include "format/error.hpp"
 #include "runtime/device_virtual.hpp"
 #include "runtime/palpate.h"
+#include "tests/unit/app/live_play.hpp"
 
 namespace palpate::app {
 namespace {
@@ -49,11 +50,7 @@ class Replay : public testing::Test {
     settings.safety.max_force = 0.3;
     settings.duration = 0.4;
     const std::atomic<bool> stop{false};
-    Recording recording;
-    recording.friction = 0.3;
-    recording.settings = session_settings(settings);
-    recording.steps = run_live(device, body_, settings, stop).steps;
-    return recording;
+    return play_live(device, body_, settings, stop).recording;
   }
 
   palpate_library body_{plate()};

@@ -16,6 +16,8 @@
 #include "format/error.hpp"
 #include "runtime/device_virtual.hpp"
 #include "runtime/palpate.h"
+#include "tests/unit/app/live_play.hpp"
+#include "tests/unit/format/small_disk.hpp"
 
 namespace palpate::app {
 namespace {
@@ -92,16 +94,17 @@ TEST(LiveSession, PressesAndRecordsInTheFrameOfTheDevice) {
     return runtime::HandTarget{{0.54, -0.21, 1.001 - 0.03 * t}, {0, 0, -0.03}};
   });
   const std::atomic<bool> stop{false};
-  const LiveOutcome outcome = run_live(device, body, settings, stop);
-  ASSERT_GT(outcome.steps.size(), 30U);
-  EXPECT_EQ(outcome.steps.size(), outcome.counts.steps);
+  const auto [outcome, recording] = play_live(device, body, settings, stop);
+  const std::vector<RecordedStep>& steps = recording.steps;
+  ASSERT_GT(steps.size(), 30U);
+  EXPECT_EQ(steps.size(), outcome.counts.steps);
   const auto touching = [](const RecordedStep& s) { return (s.status & PALPATE_CONTACT) != 0; };
-  const auto first = std::find_if(outcome.steps.begin(), outcome.steps.end(), touching);
-  ASSERT_NE(first, outcome.steps.end());
+  const auto first = std::find_if(steps.begin(), steps.end(), touching);
+  ASSERT_NE(first, steps.end());
   EXPECT_NEAR(first->contact_point[0], 0.54, 1e-6);
   EXPECT_NEAR(first->contact_point[2], 1.0, 1e-9);
-  for (std::size_t i = 1; i < outcome.steps.size(); ++i) {
-    EXPECT_GT(outcome.steps[i].time_ns, outcome.steps[i - 1].time_ns);
+  for (std::size_t i = 1; i < steps.size(); ++i) {
+    EXPECT_GT(steps[i].time_ns, steps[i - 1].time_ns);
   }
 }
 
@@ -109,7 +112,7 @@ TEST(LiveSession, EndsWhenTold) {
   const palpate_library body(certified_plate());
   runtime::VirtualDevice device(held(), 1000, [](double) { return runtime::HandTarget{}; });
   const std::atomic<bool> stop{true};
-  const LiveOutcome outcome = run_live(device, body, quick(0), stop);
+  const LiveOutcome outcome = play_live(device, body, quick(0), stop).outcome;
   EXPECT_FALSE(outcome.counts.lost);
   EXPECT_FALSE(outcome.halted);
 }
@@ -130,10 +133,53 @@ TEST(LiveSession, KeepsTheRecordOfALostDevice) {
   const palpate_library body(certified_plate());
   FailingDevice device(held(), 1000, [](double) { return runtime::HandTarget{}; });
   const std::atomic<bool> stop{false};
-  const LiveOutcome outcome = run_live(device, body, quick(0), stop);
+  const auto [outcome, recording] = play_live(device, body, quick(0), stop);
   EXPECT_TRUE(outcome.counts.lost);
-  EXPECT_EQ(outcome.steps.size(), 26U);
-  EXPECT_TRUE(outcome.steps.back().status & PALPATE_LOOP_DEVICE_LOST);
+  EXPECT_EQ(recording.steps.size(), 26U);
+  EXPECT_TRUE(recording.steps.back().status & PALPATE_LOOP_DEVICE_LOST);
+}
+
+/// Remembers the last force.
+class ListeningDevice : public runtime::VirtualDevice {
+ public:
+  using VirtualDevice::VirtualDevice;
+  runtime::DeviceStatus command(const Vec3& force) noexcept override {
+    last_ = force;
+    return VirtualDevice::command(force);
+  }
+  const Vec3& last() const { return last_; }
+
+ private:
+  Vec3 last_{};
+};
+
+TEST(LiveSession, EndsWithoutForceWhenTheDiskIsFullAndKeepsWhatItTook) {
+  const samples::TemporaryFolder folder;
+  const palpate_library body(certified_plate());
+  ListeningDevice device(held(), 1000, [](double) {
+    return runtime::HandTarget{{0.04, 0.04, -0.003}, {}};
+  });
+  device.open();
+  const LiveSettings settings = quick(0);
+  RecordingHeading heading;
+  heading.settings = session_settings(settings);
+  const std::atomic<bool> stop{false};
+  LiveOutcome outcome;
+  {
+    SessionRecorder recorder(folder / "recording.h5", heading);
+    const samples::SmallDisk disk(200'000);  // about a thousand steps
+    outcome = run_live(device, body, settings, recorder, stop);
+  }
+  ASSERT_TRUE(outcome.not_recorded);
+  EXPECT_NE(std::string(outcome.not_recorded->what()).find("recording.journal"), std::string::npos);
+  EXPECT_EQ(norm(device.last()), 0);
+  const Recovered recovered = recover(folder / "recording.journal", folder / "recording.h5");
+  const Recording recording = read_recording(folder / "recording.h5");
+  EXPECT_EQ(recording.steps.size(), recovered.steps);
+  EXPECT_GT(recovered.steps, 100U);
+  EXPECT_LT(recovered.steps, outcome.counts.steps);
+  EXPECT_EQ(recording.provenance.steps.back().stage, "recover");
+  EXPECT_FALSE(std::filesystem::exists(folder / "recording.journal"));
 }
 
 TEST(DeviceChoice, KnowsEveryNameItLists) {

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "app/record/tell.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+
+namespace {
+
+struct Options {
+  std::string journal, out;
+};
+
+int recover_session(const Options& options) {
+  const std::filesystem::path journal = options.journal;
+  std::filesystem::path out = options.out;
+  if (out.empty()) {
+    out = journal;
+    out.replace_extension(".h5");
+    if (std::filesystem::exists(out)) {
+      throw Error(ErrorKind::Configuration, out.string(), "exists already",
+                  "name another file with --out");
+    }
+  }
+  tell(recover(journal, out));
+  return kExitDone;
+}
+
+}  // namespace
+
+void add_recover_command(CLI::App& root, Action& action) {
+  CLI::App* command = root.add_subcommand(
+      "recover", "The recording of a session that was cut off, from the journal it left");
+  command->footer("Example: palpate recover recording.journal");
+  const auto options = std::make_shared<Options>();
+  command->add_option("JOURNAL", options->journal, "Left by run or simulate (recording.journal)")
+      ->required();
+  command->add_option("--out", options->out, "Recording (default: beside the journal)");
+  command->callback(
+      [options, &action] { action = [options] { return recover_session(*options); }; });
+}
+
+}  // namespace palpate::app

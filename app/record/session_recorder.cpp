@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/record/session_recorder.hpp"
+
+#include <system_error>
+#include <utility>
+
+#include "format/error.hpp"
+#include "format/record_file.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMostWaiting = 4096;  // steps: 700 kB
+constexpr std::chrono::milliseconds kLongestWait{250};
+constexpr std::chrono::seconds kSynchronizeEvery{1};
+
+/// The first `<stem>.recovered-<n>.h5` that is free.
+fs::path free_name(const fs::path& recording) {
+  for (int n = 1;; ++n) {
+    fs::path name = recording;
+    name.replace_filename(recording.stem().string() + ".recovered-" + std::to_string(n) +
+                          recording.extension().string());
+    if (!fs::exists(name)) return name;
+  }
+}
+
+/// A stage that ends now, of this build, without inputs of its own.
+std::string now() {
+  return make_provenance_step("now", "", {}).utc;
+}
+
+}  // namespace
+
+void throw_keeping_journal(const Error& error, const fs::path& journal) {
+  throw Error(error.kind(), error.where(), error.problem(),
+              error.remedy() + "; the steps are kept: `palpate recover " + journal.string() +
+                  "` makes the recording of them");
+}
+
+fs::path journal_of(const fs::path& recording) {
+  fs::path journal = recording;
+  return journal.replace_extension(".journal");
+}
+
+Recovered recover(const fs::path& journal, const fs::path& recording) {
+  const SessionSummary summary = summarize_session(journal);
+  RecordFile held(journal, "the session is still running", "wait until it ends");
+  Provenance provenance = summary.heading.provenance;
+  provenance.steps.push_back(make_provenance_step(
+      "recover", "", {},
+      {{"dropped_bytes", std::to_string(summary.broken_bytes)},
+       {"reason", "the session was cut off; this is what its journal holds"}}));
+  Recovered result{recording, 0, summary.broken_bytes};
+  result.steps = write_recording_of(journal, recording, provenance);
+  held.remove();
+  return result;
+}
+
+std::optional<Recovered> recover_what_was_left(const fs::path& recording) {
+  const fs::path journal = journal_of(recording);
+  std::error_code ignored;
+  if (!fs::exists(journal, ignored) || !is_session_journal(journal)) return {};
+  return recover(journal, free_name(recording));
+}
+
+SessionRecorder::SessionRecorder(fs::path recording, RecordingHeading heading)
+    : recording_(std::move(recording)),
+      provenance_(heading.provenance),
+      journal_(journal_of(recording_), heading) {
+  waiting_.reserve(kMostWaiting);
+}
+
+void SessionRecorder::add(const RecordedStep& step) {
+  waiting_.push_back(step);
+  if (waiting_.size() == kMostWaiting) write_waiting();
+}
+
+void SessionRecorder::breathe() {
+  if (!waiting_.empty() && Clock::now() - written_ >= kLongestWait) write_waiting();
+}
+
+void SessionRecorder::write_waiting() {
+  journal_.append(waiting_);
+  waiting_.clear();
+  written_ = Clock::now();
+  if (written_ - synchronized_ < kSynchronizeEvery) return;
+  journal_.synchronize();
+  synchronized_ = Clock::now();
+}
+
+void SessionRecorder::finish() {
+  try {
+    write_waiting();
+    if (!provenance_.steps.empty()) provenance_.steps.back().utc = now();
+    write_recording_of(journal_.path(), recording_, provenance_);
+  } catch (const Error& error) {
+    throw_keeping_journal(error, journal_.path());
+  }
+  journal_.remove();
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,259 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""A session that is killed, or whose disk fills up, keeps what it recorded; a long one takes no memory.
+
+Usage: session_crash_test.py PALPATE WRITE_PLATE. Sessions are those of the real command with the simulated device.
+"""
+import contextlib
+import hashlib
+import os
+import re
+import resource
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+from bodies import CASE, write_case  # noqa: E402
+
+PALPATE = None
+WRITE_PLATE = None
+DONE, INTERNAL, CONFIGURATION = 0, 1, 2
+RATE = 1000  # Hz
+
+
+def palpate(*arguments, **options):
+    return subprocess.run([PALPATE, *map(str, arguments)], capture_output=True, text=True, check=False, **options)
+
+
+def record(payload):
+    return struct.pack("<I", len(payload)) + payload + hashlib.sha256(payload).hexdigest().encode()
+
+
+class Session(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.root = Path(self.folder.name)
+        self.library = self.root / "plate.h5"
+        subprocess.run([WRITE_PLATE, self.library], check=True)
+
+    def run_arguments(self, out, duration):
+        # Without a search thread, so that the session can be replayed to the bit.
+        return ["run", self.library, "--uncertified", "--rate", RATE, "--duration", duration, "--priority", 0,
+                "--watchdog", 60, "--search-rate", 0, "--out", out]
+
+    def start(self, out, duration=600):
+        """A session under way: its process, once it has begun."""
+        command = [PALPATE, *map(str, self.run_arguments(out, duration))]
+        process = subprocess.Popen(["stdbuf", "-oL", *command], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(process.stderr.close)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(process.kill)
+        while not (line := process.stdout.readline()).startswith("run: "):
+            self.assertTrue(line, "the session did not begin")
+        return process
+
+    def wait_for_steps(self, journal, least):
+        """Until the journal holds so many steps."""
+        limit = time.monotonic() + 120
+        while time.monotonic() < limit:
+            if journal.exists() and self.steps_in(journal) >= least:
+                return
+            time.sleep(0.1)
+        self.fail(f"no {least} steps in two minutes")
+
+    @staticmethod
+    def steps_in(journal):
+        said = palpate("inspect", journal)
+        found = re.search(r"^steps: (\d+)$", said.stdout, re.MULTILINE)
+        return int(found.group(1)) if found else 0
+
+    def assert_good(self, recording):
+        """Whole, sealed, and the motion gives the same forces again."""
+        content = recording.read_bytes()
+        seal = re.search(rb"\npalpate-sha256:([0-9a-f]{64})\n$", content)
+        self.assertTrue(seal, "no seal")
+        self.assertEqual(hashlib.sha256(content[: seal.start()]).hexdigest().encode(), seal.group(1))
+        replayed = palpate("replay", recording, "--library", self.library)
+        self.assertEqual(replayed.returncode, DONE, replayed.stderr)
+
+    def test_killed_it_keeps_all_but_the_last_moment(self):
+        out, journal = self.root / "recording.h5", self.root / "recording.journal"
+        process = self.start(out)
+        self.wait_for_steps(journal, 2 * RATE)
+        before = self.steps_in(journal)
+        seen = time.monotonic()
+        time.sleep(0.5)
+        process.send_signal(signal.SIGKILL)
+        killed = time.monotonic()
+        process.wait()
+        self.assertFalse(out.exists())
+        recovered = palpate("recover", journal)
+        self.assertEqual(recovered.returncode, DONE, recovered.stderr)
+        self.assertFalse(journal.exists())
+        with h5py.File(out) as file:
+            kept = file["step/time"][-1] * 1e-9
+            self.assertGreaterEqual(len(file["step/time"]), before)
+            at_least = file["step/time"][before - 1] * 1e-9 + (killed - seen) - 1
+            self.assertGreaterEqual(kept, at_least)  # "up to about the last second"
+            self.assertRegex(sorted(file["provenance"])[-1], "^[0-9]+_recover$")
+            self.assertEqual(file.attrs["device"], "simulated")
+        self.assert_good(out)
+
+    def test_the_next_session_saves_what_was_left(self):
+        out, journal = self.root / "recording.h5", self.root / "recording.journal"
+        process = self.start(out)
+        self.wait_for_steps(journal, RATE // 2)
+        second = palpate(*self.run_arguments(out, 0.2))
+        self.assertEqual(second.returncode, CONFIGURATION)
+        self.assertIn("still running", second.stderr)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        left = self.steps_in(journal)
+        after = palpate(*self.run_arguments(out, 0.3))
+        self.assertEqual(after.returncode, DONE, after.stderr)
+        saved = self.root / "recording.recovered-1.h5"
+        self.assertIn(f"recover: {left} steps", after.stdout)
+        with h5py.File(saved) as file:
+            self.assertEqual(len(file["step/time"]), left)
+        self.assert_good(saved)
+        self.assert_good(out)
+        self.assertFalse(journal.exists())
+
+    def test_ctrl_c_and_a_polite_kill_end_it_whole(self):
+        for number in (signal.SIGINT, signal.SIGTERM):
+            out = self.root / f"{number}.h5"
+            process = self.start(out)
+            self.wait_for_steps(self.root / f"{number}.journal", 300)
+            process.send_signal(number)
+            self.assertEqual(process.wait(timeout=60), DONE)
+            self.assert_good(out)
+            self.assertFalse((self.root / f"{number}.journal").exists())
+
+    @unittest.skipUnless(os.geteuid() == 0, "mounting a small disk needs root")
+    def test_on_a_disk_that_fills_up_it_ends_and_keeps_what_was_written(self):
+        disk = self.root / "small"
+        disk.mkdir()
+        if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=400k", "none", disk], check=False).returncode != 0:
+            self.skipTest("this system lets nobody mount a disk")
+        with contextlib.ExitStack() as cleanup:
+            cleanup.callback(subprocess.run, ["umount", "-l", disk], check=True)
+            out, journal = disk / "recording.h5", disk / "recording.journal"
+            filled = palpate(*self.run_arguments(out, 600), timeout=300)
+            self.assertEqual(filled.returncode, INTERNAL, filled.stdout + filled.stderr)
+            self.assertEqual(len(filled.stderr.splitlines()), 1, filled.stderr)
+            self.assertIn("No space left", filled.stderr)
+            self.assertIn(f"palpate recover {journal}", filled.stderr)
+            self.assertEqual(os.listdir(disk), ["recording.journal"])
+            kept = self.steps_in(journal)
+            self.assertGreater(kept, RATE)
+            # Still no room: the journal stays as it is. Elsewhere there is.
+            again = palpate("recover", journal)
+            self.assertEqual(again.returncode, INTERNAL)
+            self.assertIn("space", again.stderr)
+            self.assertEqual(self.steps_in(journal), kept)
+            elsewhere = palpate("recover", journal, "--out", self.root / "elsewhere.h5")
+            self.assertEqual(elsewhere.returncode, DONE, elsewhere.stderr)
+        with h5py.File(self.root / "elsewhere.h5") as file:
+            self.assertEqual(len(file["step/time"]), kept)
+        self.assert_good(self.root / "elsewhere.h5")
+
+    def scripted(self, out, press_speed):
+        """Arguments of a session of the plate at 20 kHz: the slower the press, the longer it is."""
+        case = write_case(self.root, CASE.replace('press_speed = "40 mm/s"',
+                                                  f'press_speed = "{press_speed} mm/s"\nrate = "20 kHz"'))
+        out.mkdir(exist_ok=True)
+        if self.library.parent != out:
+            shutil.copy(self.library, out / "library.h5")
+        certified = palpate("certify", case, "--out", out)
+        self.assertEqual(certified.returncode, DONE, certified.stderr)
+        self.library = out / "library.h5"
+        return ["simulate", case, "--out", out]
+
+    def test_a_killed_simulation_keeps_its_steps(self):
+        out = self.root / "out"
+        command = self.scripted(out, 0.005)
+        process = subprocess.Popen([PALPATE, *map(str, command)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        self.addCleanup(process.kill)
+        self.wait_for_steps(out / "recording.journal", 100_000)
+        process.send_signal(signal.SIGKILL)
+        self.assertEqual(process.wait(), -signal.SIGKILL)
+        recovered = palpate("recover", out / "recording.journal")
+        self.assertEqual(recovered.returncode, DONE, recovered.stderr)
+        self.assert_good(out / "recording.h5")
+
+    def peak(self, *arguments):
+        """Exit code and largest resident memory, bytes."""
+        pid = os.posix_spawn(PALPATE, [PALPATE, *map(str, arguments)], os.environ,
+                             file_actions=[(os.POSIX_SPAWN_OPEN, 1, os.devnull, os.O_WRONLY, 0)])
+        _, status, usage = os.wait4(pid, 0)
+        return os.waitstatus_to_exitcode(status), 1024 * usage.ru_maxrss
+
+    def test_memory_does_not_grow_with_the_session(self):
+        out = self.root / "out"
+        peaks, steps = [], []
+        for press_speed in (1, 0.2):
+            code, used = self.peak(*self.scripted(out, press_speed))
+            self.assertEqual(code, DONE)
+            peaks.append(used)
+            with h5py.File(out / "recording.h5") as file:
+                steps.append(len(file["step/time"]))
+        more = 168 * (steps[1] - steps[0])  # bytes of steps
+        self.assertGreater(more, 150e6)
+        self.assertLess(peaks[1] - peaks[0], 0.05 * more)
+
+    def test_a_journal_written_as_its_page_says_is_read(self):
+        text = lambda s: struct.pack("<I", len(s)) + s.encode()  # noqa: E731
+        heading = (text("bench") + text("") + struct.pack("<2d", 500, 0.25)
+                   + struct.pack("<7d", 5e-3, 300, 100, 0.5, 0.02, 4, 3) + struct.pack("<3d", 0.1, 0, -0.2)
+                   + struct.pack("<B", 1) + struct.pack("<I", 1)
+                   + b"".join(map(text, ("run", "0", "abc", "2026-01-31T12:00:00Z", "rate = 500")))
+                   + struct.pack("<I", 1) + text("library.h5") + text("f" * 64)
+                   + struct.pack("<I", 1) + text("fact") + text("value"))
+        steps = [struct.pack("<q12d6diIq", 2_000_000 * i, *(i + 0.01 * np.arange(18)), i - 1, i, 900 + i)
+                 for i in range(5)]
+        journal = self.root / "by-hand.journal"
+        journal.write_bytes(b"palpate.session 1\n" + record(heading) + record(b"".join(steps[:3]))
+                            + record(b"".join(steps[3:])) + b"cut short")
+        recovered = palpate("recover", journal)
+        self.assertEqual(recovered.returncode, DONE, recovered.stderr)
+        self.assertIn("9 bytes", recovered.stdout)
+        with h5py.File(self.root / "by-hand.h5") as file:
+            self.assertEqual(file["step/time"][()].tolist(), [0, 2_000_000, 4_000_000, 6_000_000, 8_000_000])
+            self.assertEqual(file["step/position"][2].tolist(), [2.0, 2.01, 2.02])
+            self.assertEqual(file["step/absorbed"][4], 4 + 0.01 * 17)
+            self.assertEqual(file["step/element"][()].tolist(), [-1, 0, 1, 2, 3])
+            self.assertEqual(file["step/latency"][1], 901)
+            self.assertEqual(file["settings"].attrs["body_z"], -0.2)
+            self.assertEqual(file["settings"].attrs["max_force"], 4)
+            self.assertEqual(file["provenance/00_run"].attrs["git_revision"], "abc")
+            self.assertEqual(file["provenance/01_recover"].attrs["fact_value"][0], "9")
+
+    def test_recover_overwrites_nothing_it_was_not_told_to(self):
+        (self.root / "recording.h5").write_text("an older recording", encoding="ascii")
+        journal = self.root / "recording.journal"
+        journal.write_bytes(b"palpate.session 1\n")
+        refused = palpate("recover", journal)
+        self.assertEqual(refused.returncode, CONFIGURATION)
+        self.assertIn("--out", refused.stderr)
+        refused = palpate("recover", journal, "--out", self.root / "new.h5")
+        self.assertEqual(refused.returncode, CONFIGURATION)
+        self.assertIn("no journal", refused.stderr)
+        self.assertFalse((self.root / "new.h5").exists())
+
+
+if __name__ == "__main__":
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    WRITE_PLATE = sys.argv.pop(2)
+    PALPATE = sys.argv.pop(1)
+    unittest.main()
