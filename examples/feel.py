@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Feel a library from Python, with nothing but ctypes: feel.py LIBPALPATE LIBRARY"""
+"""Feel a library from Python, with nothing but ctypes: feel.py LIBPALPATE LIBRARY X Y Z
+
+A tip goes to the middle of the body from the side that is given, at 0.1 m/s, until it is 3 mm deep.
+"""
 import ctypes
 import sys
 
@@ -11,7 +14,20 @@ class Settings(ctypes.Structure):
                 ("steepness", ctypes.c_double), ("search_rate", ctypes.c_double)]
 
 
-def main(path, library_file):
+class Info(ctypes.Structure):
+    _fields_ = [("size", ctypes.c_uint32), ("vertices", ctypes.c_int32), ("triangles", ctypes.c_int32),
+                ("stick", ctypes.c_double), ("slip", ctypes.c_double), ("friction", ctypes.c_double),
+                ("depth", ctypes.c_double), ("low", Vector), ("high", Vector)]
+
+
+class Observation(ctypes.Structure):
+    _fields_ = [("size", ctypes.c_uint32), ("status", ctypes.c_uint32), ("element", ctypes.c_int32),
+                ("contact_point", Vector), ("natural", Vector), ("normal", Vector), ("depth", ctypes.c_double),
+                ("lateral", ctypes.c_double), ("offset", ctypes.c_double), ("energy", ctypes.c_double),
+                ("tank", ctypes.c_double), ("absorbed", ctypes.c_double), ("force_on_body", Vector)]
+
+
+def main(path, library_file, *side):
     palpate = ctypes.CDLL(path)
     palpate.palpate_last_error.restype = ctypes.c_char_p
     library, state, settings = ctypes.c_void_p(), ctypes.c_void_p(), Settings()
@@ -20,11 +36,17 @@ def main(path, library_file):
     if palpate.palpate_library_load(library_file.encode(), ctypes.byref(library)) or \
             palpate.palpate_state_create(library, ctypes.byref(settings), ctypes.byref(state)):
         sys.exit(palpate.palpate_last_error().decode())
-    force = Vector()
-    for i in range(40):
-        position = Vector(0.031, 0.042, 0.0005 - 1e-4 * i)
-        palpate.palpate_step(state, position, Vector(0, 0, -0.1), ctypes.c_double(1e-3), force)
-    print(f"{force[2]:.4f} N at {3.4} mm")
+    info, seen, force = Info(ctypes.sizeof(Info)), Observation(ctypes.sizeof(Observation)), Vector()
+    palpate.palpate_library_describe(library, ctypes.byref(info))
+    velocity = Vector(*(-0.1 * float(s) for s in side))
+    for i in range(5000):  # your force loop, 1 kHz
+        position = Vector(*((low + high) / 2 + (1e-3 * i - 2) * v
+                            for low, high, v in zip(info.low, info.high, velocity)))
+        palpate.palpate_step(state, position, velocity, ctypes.c_double(1e-3), force)
+        palpate.palpate_observe(state, ctypes.byref(seen))
+        if seen.depth >= 0.003:
+            break
+    print("({:.4f}, {:.4f}, {:.4f}) N, {:.3f} mm deep".format(*force, 1e3 * seen.depth))
     palpate.palpate_state_destroy(state)
     palpate.palpate_library_destroy(library)
 
