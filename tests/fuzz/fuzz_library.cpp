@@ -38,7 +38,8 @@ struct Attribute {
 /// What there is to edit.
 struct Targets {
   std::vector<std::string> datasets;
-  std::vector<Attribute> attributes;
+  std::vector<Attribute> attributes;  ///< numbers
+  std::vector<Attribute> texts;       ///< the others: units, names, provenance
 };
 
 herr_t note_attribute(hid_t object, const char* name, const H5A_info_t*, void* targets) {
@@ -46,7 +47,8 @@ herr_t note_attribute(hid_t object, const char* name, const H5A_info_t*, void* t
   const bool numeric = H5Tget_class(type) == H5T_FLOAT || H5Tget_class(type) == H5T_INTEGER;
   std::array<char, 256> path{};
   H5Iget_name(object, path.data(), path.size());
-  if (numeric) static_cast<Targets*>(targets)->attributes.push_back({path.data(), name});
+  auto* all = static_cast<Targets*>(targets);
+  (numeric ? all->attributes : all->texts).push_back({path.data(), name});
   H5Tclose(type), H5Aclose(attribute);
   return 0;
 }
@@ -119,12 +121,26 @@ void edit_number(hid_t file, const std::string& name, std::size_t position, Chan
   H5Sclose(space), H5Dclose(dataset);
 }
 
+/// An attribute goes, or a text becomes another.
+void edit_attribute(const Edit& edit, const Targets& targets, Hdf5Editor& editor) {
+  const bool number = edit.special % 2 == 0;
+  const std::vector<Attribute>& all = number ? targets.attributes : targets.texts;
+  const auto& [object, name] = all[edit.position % all.size()];
+  if (!editor.has_attribute(object, name)) return;
+  if (number || edit.special % 4 == 1) return editor.remove_attribute(object, name);
+  constexpr std::array<const char*, 4> kTexts{"mm", "N/mm", "", "1"};
+  editor.set_text(object, name, kTexts[edit.target % kTexts.size()]);
+}
+
 void apply(const Edit& edit, const Targets& targets, Hdf5Editor& editor) {
+  if (edit.operation >= 0xF0) return edit_attribute(edit, targets, editor);
   const std::string& dataset = targets.datasets[edit.target % targets.datasets.size()];
   const Attribute& attribute = targets.attributes[edit.target % targets.attributes.size()];
   const double special = kSpecial[edit.special % kSpecial.size()];
-  if (edit.operation % 8 == 7)
+  if (edit.operation % 8 == 7) {
+    if (!editor.has_attribute(attribute.object, attribute.name)) return;
     return editor.set_attribute(attribute.object, attribute.name, special, H5T_NATIVE_DOUBLE);
+  }
   if (H5Lexists(editor.file(), dataset.c_str(), H5P_DEFAULT) <= 0) return;
   const auto change = [&](auto&& how) { edit_number(editor.file(), dataset, edit.position, how); };
   switch (edit.operation % 8) {
@@ -185,7 +201,8 @@ class Fuzzer {
  public:
   Fuzzer() : targets_(targets_of(golden())) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    if (targets_.datasets.empty() || targets_.attributes.empty()) fail("no golden file");
+    if (targets_.datasets.empty() || targets_.attributes.empty() || targets_.texts.empty())
+      fail("no golden file");
   }
 
   void run(const std::uint8_t* bytes, std::size_t size) {

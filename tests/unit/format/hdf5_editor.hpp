@@ -43,7 +43,8 @@ class Hdf5Editor {
   /// all `value`.
   void replace(const std::string& object, const std::vector<hsize_t>& extent, hid_t type,
                double value = 0) {
-    const std::string units = text(object, "units");
+    const bool has_units = has_attribute(object, "units");
+    const std::string units = has_units ? text(object, "units") : "";
     remove(object);
     const hid_t space = dataspace(extent);
     const hid_t dataset = checked(
@@ -53,7 +54,7 @@ class Hdf5Editor {
     checked(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, data.data()));
     H5Dclose(dataset);
     H5Sclose(space);
-    add_text(object, "units", units.c_str());
+    if (has_units) add_text(object, "units", units.c_str());
   }
 
   /// A dataset that claims `extent` but holds nothing, stored as `properties` say.
@@ -70,6 +71,9 @@ class Hdf5Editor {
   void set_attribute(const std::string& object, const std::string& name, T value, hid_t type) {
     remove_attribute(object, name);
     add_attribute(object, name, value, type);
+  }
+  bool has_attribute(const std::string& object, const std::string& name) const {
+    return H5Aexists_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
   }
   void remove_attribute(const std::string& object, const std::string& name) {
     checked(H5Adelete_by_name(file_, object.c_str(), name.c_str(), H5P_DEFAULT));

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""A session that is killed, or whose disk fills up, keeps what it recorded; a long one takes no memory.
+"""A session that is killed, or whose disk fills up, keeps what it recorded; a long one takes no memory; some never begin.
 
-Usage: session_crash_test.py PALPATE WRITE_PLATE. Sessions are those of the real command with the simulated device.
+Usage: session_test.py PALPATE WRITE_PLATE. Sessions are those of the real command with the simulated device.
 """
 import contextlib
 import hashlib
@@ -238,6 +238,22 @@ class Session(unittest.TestCase):
             self.assertEqual(file["settings"].attrs["max_force"], 4)
             self.assertEqual(file["provenance/00_run"].attrs["git_revision"], "abc")
             self.assertEqual(file["provenance/01_recover"].attrs["fact_value"][0], "9")
+
+    def test_what_is_not_certified_or_not_there_is_refused_in_one_line(self):
+        listed = palpate("run", "--list")
+        self.assertEqual(listed.returncode, DONE)
+        devices = re.findall(r"^  ([a-z-]+) ", listed.stdout, re.MULTILINE)
+        self.assertEqual(set(devices), {"simulated", "force-dimension", "openhaptics", "haply", "lab"})
+        out = self.root / "recording.h5"
+        refused = palpate("run", self.library, "--duration", 1, "--out", out)
+        self.assertEqual(refused.returncode, CONFIGURATION)
+        self.assertIn("--uncertified", refused.stderr)
+        for device, missing in (("force-dimension", "libdhd"), ("openhaptics", "libHD"), ("haply", "localhost")):
+            absent = palpate("run", self.library, "--device", device, "--port", 1, "--uncertified", "--out", out)
+            self.assertEqual(absent.returncode, CONFIGURATION, device)
+            self.assertEqual(len(absent.stderr.splitlines()), 1, absent.stderr)
+            self.assertIn(missing, absent.stderr)
+        self.assertEqual(sorted(os.listdir(self.root)), ["plate.h5"])  # no journal of what never began
 
     def test_recover_overwrites_nothing_it_was_not_told_to(self):
         (self.root / "recording.h5").write_text("an older recording", encoding="ascii")
