@@ -15,7 +15,8 @@ void add_certify_command(CLI::App& root, Action& action) {
       "Examples:\n"
       "  palpate certify data/cases/cylinder.toml --out out/cylinder\n"
       "  palpate certify data/cases/cylinder.toml --out out/cylinder --rate 2000 --device "
-      "data/devices/paper-simulated.toml --soften soft.h5");
+      "data/devices/paper-simulated.toml --soften soft.h5\n"
+      "  palpate certify data/cases/cylinder.toml --out out/cylinder --challenge 400");
   const auto options = add_case_options(*command, ThreadsOption::Absent);
   const auto keep = std::make_shared<KeepOptions>();
   CLI::Option* rate = command
@@ -29,10 +30,19 @@ void add_certify_command(CLI::App& root, Action& action) {
       ->add_option("--soften", keep->softened,
                    "Write a library here whose stiff slopes are capped until it is certified")
       ->needs(rate);
-  command->callback([options, keep, &action] {
-    action = [options, keep] {
+  const auto tries = std::make_shared<int>(0);
+  command
+      ->add_option("--challenge", *tries,
+                   "Instead, look for forces steeper than the certificate says, so often in each "
+                   "triangle")
+      ->check(CLI::Range(1, 1000000))
+      ->excludes(rate);
+  command->callback([options, keep, tries, &action] {
+    action = [options, keep, tries] {
       const Workspace space = open_workspace(*options);
-      if (keep->rate > 0) {
+      if (*tries > 0) {
+        run_challenge(space, *tries);
+      } else if (keep->rate > 0) {
         run_keep(space, *keep);
       } else {
         run_certify(space);

@@ -40,6 +40,10 @@ struct KeepOptions {
 /// lacks for it; writes the softened library for a single device when it is asked for.
 void run_keep(const Workspace& space, const KeepOptions& options);
 
+/// Looks in the library, `tries` times in each triangle, for forces steeper than its certificate
+/// says, and tells how near it came. @throws Error(Geometry) when it finds one.
+void run_challenge(const Workspace& space, int tries);
+
 /// The stages up to `last`, each only when its artifact is not up to date. @return the sites, none
 /// when the curves were not asked for.
 SiteCounts run_build(const Workspace& space, Stage last = Stage::Certify);
