@@ -8,6 +8,7 @@
 #include "app/export/deck.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/vtkhdf/grids.hpp"
+#include "fem/pressure_smoothness.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 
@@ -83,12 +84,17 @@ int export_site(const Workspace& space, std::int32_t vertex) {
   const Body body = read_body(space.body());
   const fem::DeformedState state = fem::deformed_state(body, campaign_settings(space), vertex);
   const vtkhdf::DeformedFields fields{state.displacement, state.strain_energy_density,
-                                      state.pressure};
+                                      state.pressure, state.smooth_pressure};
   vtkhdf::Grid grid = vtkhdf::deformed_grid(body, fields);
   grid.provenance.steps.push_back(make_provenance_step(
       "export", resolved_toml(space.c), {space.body()}, {{"vertex", std::to_string(vertex)}}));
   say("site {}: depth {:.2f} mm, force {:.4f} N", vertex, state.sample.displacement * 1e3,
       norm(state.sample.force));
+  say("pressures alternate between elements: {:.1f} (about 1.6 when they do not){}",
+      state.pressure_alternation,
+      state.pressure_alternation > fem::kAlternating
+          ? "; read smooth_pressure, or set [solver] element = \"tet10-nodal-pressure\""
+          : "");
   write(grid, space.out / fmt::format("site-{}.vtkhdf", vertex));
   return kExitDone;
 }

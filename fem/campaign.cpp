@@ -11,6 +11,7 @@
 #include "fem/cholesky.hpp"
 #include "fem/crew.hpp"
 #include "fem/indentation.hpp"
+#include "fem/pressure_smoothness.hpp"
 #include "fem/region_laws.hpp"
 #include "format/error.hpp"
 
@@ -135,8 +136,7 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
   report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   for (const auto& site : curves.sites) report.cpu_seconds += site.cpu_seconds;
   report.facts = {
-      {"element", settings.dilatation == Dilatation::Mean ? "Tet10, element-constant pressure"
-                                                          : "Tet10, pure displacement"},
+      {"element", name_of(settings.dilatation)},
       {"nodes", std::to_string(context.model.mesh().nodes())},
       {"unknowns", std::to_string(report.unknowns)},
       {"rest_factor_bytes", std::to_string(static_cast<long long>(context.rest_factor->bytes()))},
@@ -160,6 +160,9 @@ DeformedState deformed_state(const Body& body, const CampaignSettings& settings,
     state.displacement.push_back({u(0, column), u(1, column), u(2, column)});
   }
   context.model.element_fields(u, state.strain_energy_density, state.pressure);
+  SmoothPressure smooth = smooth_pressure(context.model.mesh(), state.pressure);
+  state.smooth_pressure = std::move(smooth.pressure);
+  state.pressure_alternation = smooth.alternation;
   state.sample = curves.paths.front().samples.back();
   return state;
 }

@@ -85,7 +85,9 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
 struct DeformedState {
   std::vector<Vec3> displacement;             ///< (N) m
   std::vector<double> strain_energy_density;  ///< (T) J/m^3, element mean
-  std::vector<double> pressure;               ///< (T) Pa, element-constant, tension positive
+  std::vector<double> pressure;               ///< (T) Pa, element mean, tension positive
+  std::vector<double> smooth_pressure;        ///< (T) Pa, see SmoothPressure
+  double pressure_alternation = 0;            ///< see SmoothPressure
   CurveSample sample;
 };
 DeformedState deformed_state(const Body& body, const CampaignSettings& settings,

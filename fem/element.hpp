@@ -2,9 +2,11 @@
 // Tet10 with an element-constant pressure (mean dilatation [Simo, Taylor & Pister 1985],
 // condensed):
 //   Pi_e = sum_q w_q psi(F_q) + V U(Jbar),   Jbar = (1/V) sum_q w_q J_q,
-// so that the stiffness stays symmetric and positive definite near nu = 1/2 without locking. For
-// comparison with other programs the pure displacement element is here as well:
-//   Pi_e = sum_q w_q (psi(F_q) + U(J_q)).
+// so that the stiffness stays symmetric and positive definite near nu = 1/2 without locking. Two
+// others: the pure displacement element, for comparison with other programs,
+//   Pi_e = sum_q w_q (psi(F_q) + U(J_q)),
+// and Pi_e = sum_q w_q psi(F_q) alone, to which the means around the corner nodes add their U
+// (fem/nodal_pressure.hpp).
 #pragma once
 
 #include "fem/dilatation.hpp"
@@ -67,17 +69,40 @@ ElementKinematics<T> kinematics(const ElementGeometry<T>& geometry, const Elemen
   return k;
 }
 
-/// Strain energy of the element, J.
+/// Strain energy of the element, J; with Dilatation::Nodal its isochoric part.
 template <class T, class Law>
 T element_energy(const Law& law, Dilatation dilatation, const ElementGeometry<T>& geometry,
                  const ElementKinematics<T>& k) {
-  const bool mean = dilatation == Dilatation::Mean;
-  T density = mean ? law.volumetric_energy(k.mean_J) : zero_of<T>();
+  T density = dilatation == Dilatation::Mean ? law.volumetric_energy(k.mean_J) : zero_of<T>();
   for (std::size_t q = 0; q < kTetPoints; ++q) {
     density += 0.25 * law.psi(k.F[q], k.J[q], geometry.fibres);
-    if (!mean) density += 0.25 * law.volumetric_energy(k.J[q]);
+    if (dilatation == Dilatation::Pointwise) density += 0.25 * law.volumetric_energy(k.J[q]);
   }
   return geometry.volume * density;
+}
+
+/// dU/dJ at the Gauss points, Pa.
+template <class T>
+using PointPressures = std::array<T, kTetPoints>;
+
+template <class T, class Law>
+PointPressures<T> own_pressures(const Law& law, Dilatation dilatation,
+                                const ElementKinematics<T>& k) {
+  PointPressures<T> p;
+  if (dilatation == Dilatation::Mean)
+    p.fill(law.pressure(k.mean_J));
+  else
+    for (std::size_t q = 0; q < kTetPoints; ++q) p[q] = law.pressure(k.J[q]);
+  return p;
+}
+
+/// Linear between the pressures of the corners.
+template <class T>
+PointPressures<T> interpolated_pressures(const std::array<T, 4>& corner) {
+  PointPressures<T> p;
+  const T sum = kTetFar * (corner[0] + corner[1] + corner[2] + corner[3]);
+  for (std::size_t q = 0; q < kTetPoints; ++q) p[q] = sum + (kTetNear - kTetFar) * corner[q];
+  return p;
 }
 
 /// Nodal forces f_a = sum_c dN_a/dL_c (w P . dL_c/dX), accumulated over the Gauss points for a
@@ -108,15 +133,14 @@ ElementVector<T> nodal_forces(const ElementGeometry<T>& geometry, Stress&& stres
   return f;
 }
 
-/// Internal forces of the element, N: the derivative of element_energy.
+/// Internal forces of the element, N: the derivative of its energy, and of what its corners have of
+/// their own.
 template <class T, class Law>
-ElementVector<T> element_forces(const Law& law, Dilatation dilatation,
-                                const ElementGeometry<T>& geometry, const ElementKinematics<T>& k) {
-  const T mean = law.pressure(k.mean_J);
+ElementVector<T> element_forces(const Law& law, const ElementGeometry<T>& geometry,
+                                const ElementKinematics<T>& k, const PointPressures<T>& pressure) {
   return nodal_forces(geometry, [&](std::size_t q) {
     Tensor2<T> P = law.piola(k.F[q], k.cof[q], k.J[q], geometry.fibres);
-    const T p = dilatation == Dilatation::Mean ? mean : law.pressure(k.J[q]);
-    for (std::size_t i = 0; i < 9; ++i) P[i] += p * k.cof[q][i];
+    for (std::size_t i = 0; i < 9; ++i) P[i] += pressure[q] * k.cof[q][i];
     return P;
   });
 }
@@ -208,22 +232,24 @@ void set_pressure_stiffness(const Law& law, const ElementGeometry<T>& geometry,
   }
 }
 
-/// Stiffness of the element, N/m: the derivative of element_forces.
+/// Stiffness of the element, N/m: the derivative of element_forces; with Dilatation::Nodal that at
+/// fixed pressures.
 template <class T, class Law>
 void element_stiffness(const Law& law, Dilatation dilatation, const ElementGeometry<T>& geometry,
-                       const ElementKinematics<T>& k, ElementMatrix<T>& K) {
-  const bool by_mean = dilatation == Dilatation::Mean;
-  if (by_mean)
+                       const ElementKinematics<T>& k, const PointPressures<T>& pressure,
+                       ElementMatrix<T>& K) {
+  if (dilatation == Dilatation::Mean)
     set_pressure_stiffness(law, geometry, k, K);
   else
     K.fill(zero_of<T>());
-  const T mean = law.pressure(k.mean_J), weight = 0.25 * geometry.volume;
+  const T weight = 0.25 * geometry.volume;
   for (std::size_t q = 0; q < kTetPoints; ++q) {
     Tensor4<T> A;
     for (auto& row : A) row.fill(zero_of<T>());
     law.add_tangent(k.F[q], k.cof[q], k.J[q], geometry.fibres, A);
-    add_cofactor_tangent(k.F[q], by_mean ? mean : T(law.pressure(k.J[q])), A);
-    if (!by_mean) add_dilatation_tangent(k.cof[q], T(law.pressure_slope(k.J[q])), A);
+    add_cofactor_tangent(k.F[q], pressure[q], A);
+    if (dilatation == Dilatation::Pointwise)
+      add_dilatation_tangent(k.cof[q], T(law.pressure_slope(k.J[q])), A);
     add_point_stiffness(q, weight, geometry, A, K);
   }
 }

@@ -19,7 +19,7 @@ ElementGeometry<double> geometry_of(const QuadraticMesh& mesh, int element) {
   for (int c = 0; c < 3; ++c) edges.col(c) = mesh.X.col(node[at(c + 1)]) - mesh.X.col(node[0]);
   const Eigen::Matrix3d inverse = edges.inverse();  // rows: gradients of L_1, L_2, L_3
   ElementGeometry<double> geometry;
-  geometry.volume = edges.determinant() / 6;
+  geometry.volume = volume_of(mesh, element);
   for (int j = 0; j < 3; ++j) {
     for (int c = 0; c < 3; ++c) geometry.gradient[at(c + 1)][at(j)] = inverse(c, j);
     geometry.gradient[0][at(j)] = -inverse.col(j).sum();
@@ -64,7 +64,8 @@ SolidModel::SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, d
 double SolidModel::bytes() const {
   return static_cast<double>(blocks_.size() * sizeof(Block) +
                              sizeof(int) * (scatter_.size() + equation_.size() +
-                                            pattern_.row.size() + pattern_.start.size()));
+                                            pattern_.row.size() + pattern_.start.size()) +
+                             nodal_.bytes());
 }
 
 void SolidModel::number_unknowns(const std::vector<bool>& free) {
@@ -77,8 +78,16 @@ void SolidModel::number_unknowns(const std::vector<bool>& free) {
 }
 
 void SolidModel::take_elements(const std::vector<int>& elements) {
-  pattern_ = stiffness_pattern(mesh(), elements, equation_, unknowns_);
-  make_blocks(elements);
+  std::vector<std::span<const std::int32_t>> coupled;
+  if (solid_->dilatation == Dilatation::Nodal) {
+    nodal_ = NodalPressure(mesh(), elements, equation_);
+    for (const NodalPressure::Point& point : nodal_.points()) coupled.emplace_back(point.nodes);
+    make_blocks(nodal_.elements());
+  } else {
+    for (const int e : elements) coupled.emplace_back(mesh().tetrahedra[at(e)]);
+    make_blocks(elements);
+  }
+  pattern_ = stiffness_pattern(coupled, equation_, unknowns_);
   make_scatter();
 }
 
@@ -102,6 +111,8 @@ SolidModel::Block SolidModel::make_block(const std::vector<int>& elements, std::
     const int element = elements[std::min(first + at(lane), elements.size() - 1)];
     const ElementGeometry<double> one = geometry_of(mesh(), element);
     block.element[at(lane)] = element;
+    if (solid_->dilatation == Dilatation::Nodal)
+      block.pressure_point[at(lane)] = nodal_.points_of(mesh(), element);
     block.geometry.volume[lane] = one.volume;
     const auto fibres = solid_->laws[at(region)].fibres_at(centroid(mesh(), element));
     for (std::size_t family = 0; family < fibres.size(); ++family)
@@ -166,18 +177,90 @@ SolidModel::State checked(SolidModel::State state) {
 }
 
 /// Mean over the element of tr(sigma)/3 = p + P:F/(3 J).
-Lanes mean_stress(const Law& law, Dilatation dilatation, const ElementGeometry<Lanes>& geometry,
-                  const ElementKinematics<Lanes>& k) {
+Lanes mean_stress(const Law& law, const PointPressures<Lanes>& pressure,
+                  const ElementGeometry<Lanes>& geometry, const ElementKinematics<Lanes>& k) {
   Lanes mean = Lanes::Zero();
   for (std::size_t q = 0; q < kTetPoints; ++q) {
     const Tensor2<Lanes> P = law.piola(k.F[q], k.cof[q], k.J[q], geometry.fibres);
-    mean += 0.25 * (law.pressure(dilatation == Dilatation::Mean ? k.mean_J : k.J[q]) +
-                    double_contraction(P, k.F[q]) / (3.0 * k.J[q]));
+    mean += 0.25 * (pressure[q] + double_contraction(P, k.F[q]) / (3.0 * k.J[q]));
   }
   return mean;
 }
 
 }  // namespace
+
+SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
+  PointState state;
+  const auto& points = nodal_.points();
+  std::vector<double> mean(points.size(), 0.0);
+  for (const Block& block : blocks_) {
+    if (points.empty()) break;
+    const auto k = kinematics(block.geometry, gather(block, u));
+    const auto& J = k.J;
+    const Lanes all = kTetFar * (J[0] + J[1] + J[2] + J[3]);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Lanes share = 0.25 * block.geometry.volume * (all + (kTetNear - kTetFar) * J[c]);
+      for (int lane = 0; lane < block.count; ++lane)
+        if (const int point = block.pressure_point[at(lane)][c]; point >= 0)
+          mean[at(point)] += share[lane];
+    }
+  }
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Law& law = solid_->laws[at(points[n].region)];
+    const Lanes J = Lanes::Constant(mean[n] / points[n].volume);
+    state.pressure.push_back(law.pressure(J)[0]);
+    state.slope.push_back(law.pressure_slope(J)[0]);
+    state.energy += points[n].volume * law.volumetric_energy(J)[0];
+  }
+  return state;
+}
+
+PointPressures<Lanes> SolidModel::pressures(const Block& block, const ElementKinematics<Lanes>& k,
+                                            const PointState& points) const {
+  if (solid_->dilatation != Dilatation::Nodal)
+    return own_pressures(solid_->laws[at(block.region)], solid_->dilatation, k);
+  std::array<Lanes, 4> corner;
+  for (std::size_t c = 0; c < 4; ++c)
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int point = block.pressure_point[at(lane)][c];
+      corner[c][lane] = point >= 0 ? points.pressure[at(point)] : 0.0;
+    }
+  return interpolated_pressures(corner);
+}
+
+/// (U''/V_n) g g^T with g = d(V_n Jbar_n)/du.
+void SolidModel::add_point_stiffness(const Displacement& u, const PointState& state,
+                                     std::vector<double>& values) const {
+  const auto& points = nodal_.points();
+  std::vector<Eigen::Matrix3Xd> slope;
+  for (const auto& point : points)
+    slope.emplace_back(Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(point.nodes.size())));
+  for (const Block& block : blocks_) {
+    if (points.empty()) break;
+    const auto k = kinematics(block.geometry, gather(block, u));
+    for (std::size_t c = 0; c < 4; ++c) {
+      const ElementVector<Lanes> g = nodal_forces(block.geometry, [&](std::size_t q) {
+        Tensor2<Lanes> cof = k.cof[q];
+        for (Lanes& entry : cof) entry *= q == c ? kTetNear : kTetFar;
+        return cof;
+      });
+      for (int lane = 0; lane < block.count; ++lane) {
+        const int point = block.pressure_point[at(lane)][c];
+        if (point < 0) continue;
+        const auto& nodes = points[at(point)].nodes;
+        const auto& node = mesh().tetrahedra[at(block.element[at(lane)])];
+        for (std::size_t a = 0; a < kTetNodes; ++a) {
+          if (equation(node[a]) < 0) continue;
+          const auto place = std::lower_bound(nodes.begin(), nodes.end(), node[a]) - nodes.begin();
+          for (int i = 0; i < 3; ++i) slope[at(point)](i, place) += g[a][at(i)][lane];
+        }
+      }
+    }
+  }
+  for (std::size_t n = 0; n < points.size(); ++n)
+    add_rank_one(pattern_, equation_, points[n].nodes, state.slope[n] / points[n].volume,
+                 slope[n].data(), values);
+}
 
 SolidModel::State SolidModel::energy(const Displacement& u) const {
   State state;
@@ -189,22 +272,24 @@ SolidModel::State SolidModel::energy(const Displacement& u) const {
         element_energy(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k);
     state.energy += energy.head(block.count).sum();
   }
+  state.energy += point_state(u).energy;
   return checked(state);
 }
 
 SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) const {
   State state;
   f.setZero(pattern_.n);
+  const PointState points = point_state(u);
   for (const Block& block : blocks_) {
     const auto k = kinematics(block.geometry, gather(block, u));
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
     const Law& law = solid_->laws[at(block.region)];
-    const Dilatation dilatation = solid_->dilatation;
-    const Lanes energy = element_energy(law, dilatation, block.geometry, k);
+    const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
     state.energy += energy.head(block.count).sum();
-    scatter(block, element_forces(law, dilatation, block.geometry, k), f);
+    scatter(block, element_forces(law, block.geometry, k, pressures(block, k, points)), f);
   }
+  state.energy += points.energy;
   return checked(state);
 }
 
@@ -212,13 +297,16 @@ void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) c
   values.assign(at(pattern_.nonzeros()), 0.0);
   ElementMatrix<Lanes> K;
   const int* place = scatter_.data();
+  const PointState points = point_state(u);
   for (const Block& block : blocks_) {
     const auto k = kinematics(block.geometry, gather(block, u));
-    element_stiffness(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k, K);
+    element_stiffness(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k,
+                      pressures(block, k, points), K);
     for (std::size_t entry = 0; entry < kElementEntries; ++entry, place += kLanes)
       for (int lane = 0; lane < block.count; ++lane)
         if (place[lane] >= 0) values[at(place[lane])] += K[entry][lane];
   }
+  add_point_stiffness(u, points, values);
 }
 
 SolidModel::Compressed SolidModel::most_compressed(const Displacement& u) const {
@@ -243,12 +331,13 @@ void SolidModel::element_fields(const Displacement& u, std::vector<double>& ener
                                 std::vector<double>& pressure) const {
   energy_density.resize(mesh().tetrahedra.size());
   pressure.resize(mesh().tetrahedra.size());
+  const PointState points = point_state(u);
   for (const Block& block : blocks_) {
     const Law& law = solid_->laws[at(block.region)];
     const auto k = kinematics(block.geometry, gather(block, u));
     const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
     const Lanes density = energy / block.geometry.volume;
-    const Lanes p = mean_stress(law, solid_->dilatation, block.geometry, k);
+    const Lanes p = mean_stress(law, pressures(block, k, points), block.geometry, k);
     for (int lane = 0; lane < block.count; ++lane) {
       energy_density[at(block.element[at(lane)])] = density[lane];
       pressure[at(block.element[at(lane)])] = p[lane];

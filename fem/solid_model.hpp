@@ -9,6 +9,7 @@
 #include "fem/element.hpp"
 #include "fem/laws/law.hpp"
 #include "fem/material.hpp"
+#include "fem/nodal_pressure.hpp"
 #include "fem/quadratic_mesh.hpp"
 #include "fem/sparse_pattern.hpp"
 
@@ -72,7 +73,13 @@ class SolidModel {
     int count = 0;  ///< lanes in use; the others repeat the last element
     int region = 0;
     std::array<int, kLanes> element{};
+    std::array<std::array<int, 4>, kLanes> pressure_point{};  ///< Dilatation::Nodal: or -1
     ElementGeometry<Lanes> geometry;
+  };
+  /// Dilatation::Nodal: Jbar_n, and what it makes of U there.
+  struct PointState {
+    std::vector<double> pressure, slope;  ///< dU/dJ and d2U/dJ2, Pa
+    double energy = 0;                    ///< sum of V_n U(Jbar_n), J
   };
 
   void number_unknowns(const std::vector<bool>& free);
@@ -84,11 +91,17 @@ class SolidModel {
   void make_scatter();
   ElementVector<Lanes> gather(const Block& block, const Displacement& u) const;
   void scatter(const Block& block, const ElementVector<Lanes>& forces, Eigen::VectorXd& f) const;
+  PointState point_state(const Displacement& u) const;
+  PointPressures<Lanes> pressures(const Block& block, const ElementKinematics<Lanes>& k,
+                                  const PointState& points) const;
+  void add_point_stiffness(const Displacement& u, const PointState& points,
+                           std::vector<double>& values) const;
 
   std::shared_ptr<const Solid> solid_;
   std::vector<int> equation_;  ///< (nodes)
   int unknowns_ = 0;
   SparsePattern pattern_;
+  NodalPressure nodal_;
   std::vector<Block> blocks_;
   std::vector<int>
       scatter_;  ///< place in the values of each entry, by block, entry and lane; -1: none

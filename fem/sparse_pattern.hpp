@@ -2,9 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
-
-#include "fem/quadratic_mesh.hpp"
 
 namespace palpate::fem {
 
@@ -21,10 +20,17 @@ struct SparsePattern {
   int position(int i, int j) const;
 };
 
-/// Pattern of the stiffness of some elements of a mesh: all unknowns of an element are coupled.
-/// `equation`: first of the three unknowns of each node, or -1; `unknowns`: their number.
-SparsePattern stiffness_pattern(const QuadraticMesh& mesh, const std::vector<int>& elements,
+/// Pattern of a stiffness that couples all unknowns within each of some groups of nodes: elements,
+/// or all that a pressure acts on. `equation`: first of the three unknowns of each node, or -1;
+/// `unknowns`: their number.
+SparsePattern stiffness_pattern(const std::vector<std::span<const std::int32_t>>& groups,
                                 const std::vector<int>& equation, int unknowns);
+
+/// values += scale g g^T, g given on three unknowns of each of some nodes, all coupled in `pattern`
+/// and ascending.
+void add_rank_one(const SparsePattern& pattern, const std::vector<int>& equation,
+                  std::span<const std::int32_t> nodes, double scale, const double* g,
+                  std::vector<double>& values);
 
 /// y = A x for a symmetric matrix stored by its lower triangle.
 void symmetric_multiply(const SparsePattern& pattern, const std::vector<double>& values,

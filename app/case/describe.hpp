@@ -267,11 +267,13 @@ void describe(V& v, SimulateSection& s) {
 
 template <class V>
 void describe(V& v, SolverSection& s) {
-  v.text(s.element,
-         {"element",
-          "tetrahedra of ten nodes with an element-constant pressure, or, to compare with other "
-          "programs, of displacements alone (too stiff near poisson = 0.5)"},
-         {"tet10-pressure", "tet10-displacement"});
+  v.text(
+      s.element,
+      {"element",
+       "tetrahedra of ten nodes with an element-constant pressure; with a continuous one, where "
+       "pressures are wanted near poisson = 0.5 (slower); or, to compare with other programs, of "
+       "displacements alone (too stiff near poisson = 0.5)"},
+      {"tet10-pressure", "tet10-nodal-pressure", "tet10-displacement"});
 }
 
 template <class V>

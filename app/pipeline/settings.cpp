@@ -82,8 +82,8 @@ fem::CampaignSettings campaign_settings(const Workspace& space) {
   for (const MaterialSection& material : c.materials) {
     settings.materials.push_back({material.region, law_of(material)});
   }
-  settings.dilatation =
-      c.solver.element == "tet10-displacement" ? fem::Dilatation::Pointwise : fem::Dilatation::Mean;
+  if (c.solver.element == "tet10-displacement") settings.dilatation = fem::Dilatation::Pointwise;
+  if (c.solver.element == "tet10-nodal-pressure") settings.dilatation = fem::Dilatation::Nodal;
   fem::IndentationSettings& indentation = settings.indentation;
   indentation.tool = tool_of(c.tool);
   indentation.tool_azimuth = c.tool.azimuth;

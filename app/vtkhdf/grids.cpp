@@ -89,7 +89,8 @@ Grid body_grid(const Body& body) {
 Grid deformed_grid(const Body& body, const DeformedFields& fields) {
   const bool fits = fields.displacement.size() == body.nodes.size() &&
                     fields.strain_energy_density.size() == body.tetrahedra.size() &&
-                    fields.pressure.size() == body.tetrahedra.size();
+                    fields.pressure.size() == body.tetrahedra.size() &&
+                    fields.smooth_pressure.size() == body.tetrahedra.size();
   if (!fits) {
     throw Error(ErrorKind::Internal, "deformed state of " + body.name,
                 "its fields have not the size of the body", "report this as a defect of palpate");
@@ -101,6 +102,9 @@ Grid deformed_grid(const Body& body, const DeformedFields& fields) {
       {"strain_energy_density", "J/m^3", "Mean over the element.", fields.strain_energy_density});
   grid.cell_data.push_back(
       {"pressure", "Pa", "Of the element, tension positive.", fields.pressure});
+  grid.cell_data.push_back({"smooth_pressure", "Pa",
+                            "Its projection onto continuous pressures: without checkerboards.",
+                            fields.smooth_pressure});
   return grid;
 }
 

@@ -22,10 +22,11 @@ struct DeformedFields {
   std::vector<Vec3> displacement;             ///< (N) m
   std::vector<double> strain_energy_density;  ///< (T) J/m^3
   std::vector<double> pressure;               ///< (T) Pa, tension positive
+  std::vector<double> smooth_pressure;        ///< (T) Pa, the same without checkerboards
 };
 
 /// body_grid in the reference position with `displacement` per point (ParaView: Warp By Vector) and
-/// `strain_energy_density` and `pressure` per cell.
+/// `strain_energy_density`, `pressure` and `smooth_pressure` per cell.
 /// @throws Error(Internal) when a field has not the size of the body.
 Grid deformed_grid(const Body& body, const DeformedFields& fields);
 

@@ -96,6 +96,7 @@ class VtkHdf(unittest.TestCase):
         row = np.arange(grid.GetNumberOfCells())
         np.testing.assert_array_equal(cells["strain_energy_density"], 0.5 * row)
         np.testing.assert_array_equal(cells["pressure"], -3.0 * row)
+        np.testing.assert_array_equal(cells["smooth_pressure"], -2.0 * row)
         self.assertIn("region", cells)
 
     def test_library(self):

@@ -23,6 +23,7 @@ vtkhdf::DeformedFields known_fields(const palpate::Body& body) {
   for (std::size_t row = 0; row < body.tetrahedra.size(); ++row) {
     fields.strain_energy_density.push_back(0.5 * static_cast<double>(row));
     fields.pressure.push_back(-3.0 * static_cast<double>(row));
+    fields.smooth_pressure.push_back(-2.0 * static_cast<double>(row));
   }
   return fields;
 }

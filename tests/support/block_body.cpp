@@ -22,17 +22,6 @@ std::array<Face, 4> facets_of(const Tetrahedron& t) {
   return {{{t[0], t[2], t[1]}, {t[0], t[1], t[3]}, {t[1], t[2], t[3]}, {t[2], t[0], t[3]}}};
 }
 
-std::vector<Triangle> boundary_of(const std::vector<Tetrahedron>& tetrahedra) {
-  std::map<Face, int> uses;
-  for (const auto& t : tetrahedra)
-    for (const auto& face : facets_of(t)) ++uses[key_of(face)];
-  std::vector<Triangle> boundary;
-  for (const auto& t : tetrahedra)
-    for (const auto& face : facets_of(t))
-      if (uses[key_of(face)] == 1) boundary.push_back(face);
-  return boundary;
-}
-
 /// The six tetrahedra of a cell: one for each order of the steps along the axes.
 void add_cell(const std::function<std::int32_t(int, int, int)>& node, int i, int j, int k,
               std::vector<Tetrahedron>& tetrahedra) {
@@ -79,6 +68,17 @@ void add_response_surface(Body& body, double top) {
 }
 
 }  // namespace
+
+std::vector<Triangle> boundary_of(const std::vector<Tetrahedron>& tetrahedra) {
+  std::map<Face, int> uses;
+  for (const auto& t : tetrahedra)
+    for (const auto& face : facets_of(t)) ++uses[key_of(face)];
+  std::vector<Triangle> boundary;
+  for (const auto& t : tetrahedra)
+    for (const auto& face : facets_of(t))
+      if (uses[key_of(face)] == 1) boundary.push_back(face);
+  return boundary;
+}
 
 Body make_block(const std::vector<double>& x, const std::vector<double>& y,
                 const std::vector<double>& z) {

@@ -22,6 +22,9 @@ std::vector<double> even(double low, double high, int count);
 /// outwards by `growth`, fitted to end at `half`.
 std::vector<double> graded(double half, double core, double fine, double growth);
 
+/// The facets that belong to one tetrahedron only, outward.
+std::vector<Triangle> boundary_of(const std::vector<Tetrahedron>& tetrahedra);
+
 /// Move every node by a map; the topology stays.
 void deform(Body& body, const std::function<Vec3(const Vec3&)>& map);
 

@@ -11,11 +11,12 @@
 #include "fem/at.hpp"
 #include "fem/indentation.hpp"
 #include "tests/support/block_body.hpp"
+#include "tests/verification/record.hpp"
 
 namespace palpate::fem {
 namespace {
 
-constexpr double kYoung = 10e3, kRadius = 0.010, kDepth = 1e-4;
+constexpr double kYoung = 10e3, kRadius = 0.010;
 
 struct Press {
   double force;
@@ -23,8 +24,12 @@ struct Press {
   int nodes;
 };
 
-Press press(double fine, double poisson) {
-  const auto across = test::graded(0.1, 0.0012, fine, 3.0);
+struct Grid {
+  double half, core, fine, growth;
+};
+
+Press press(const Grid& grid, double poisson, double depth, int increments) {
+  const auto across = test::graded(grid.half, grid.core, grid.fine, grid.growth);
   std::vector<double> down;
   for (const double x : across)
     if (x <= 0) down.push_back(x);
@@ -37,8 +42,8 @@ Press press(double fine, double poisson) {
   CampaignSettings settings;
   settings.materials = {{"tissue", {kYoung, poisson}}};
   settings.indentation.tool.radius = kRadius;
-  settings.indentation.depth = kDepth;
-  settings.indentation.increments = 2;
+  settings.indentation.depth = depth;
+  settings.indentation.increments = increments;
   settings.indentation.held_depths.clear();
   settings.indentation.lateral_travel = 0;
   const CampaignContext context(body, settings, Engine::SharedFactor);
@@ -48,27 +53,40 @@ Press press(double fine, double poisson) {
   return {-end.force[2], std::sqrt(end.contact_area / M_PI), context.model.mesh().nodes()};
 }
 
-double hertz(double poisson) {
-  return 4.0 / 3.0 * kYoung / (1 - poisson * poisson) * std::sqrt(kRadius) * std::pow(kDepth, 1.5);
+double hertz(double poisson, double depth) {
+  return 4.0 / 3.0 * kYoung / (1 - poisson * poisson) * std::sqrt(kRadius) * std::pow(depth, 1.5);
 }
 
 class Hertz : public testing::TestWithParam<double> {};
 
 TEST_P(Hertz, ForceConvergesToTheHalfSpace) {
-  const double nu = GetParam(), exact = hertz(nu);
-  const Press coarse = press(1.2e-3, nu), fine = press(0.6e-3, nu);
-  const double coarse_error = coarse.force / exact - 1, fine_error = fine.force / exact - 1;
-  std::printf(
-      "nu %.2f: Hertz %.4f mN; %d nodes %+.2f %%, %d nodes %+.2f %%; contact radius %.3f mm\n", nu,
-      1e3 * exact, coarse.nodes, 100 * coarse_error, fine.nodes, 100 * fine_error,
-      1e3 * fine.contact_radius);
-  EXPECT_LT(std::abs(fine_error), 0.02);
-  EXPECT_LT(std::abs(fine_error), std::abs(coarse_error));
+  const double nu = GetParam(), depth = 1e-4, exact = hertz(nu, depth);
+  const Press coarse = press({0.1, 0.0012, 1.2e-3, 3}, nu, depth, 2);
+  const Press fine = press({0.1, 0.0012, 0.6e-3, 3}, nu, depth, 2);
+  const auto row = [&](const char* what, const Press& press, double bound) {
+    char name[96];
+    std::snprintf(name, sizeof name, "force at nu = %.2f, %s", nu, what);
+    test::verify({"Hertz: a sphere on a half-space, d/R = 0.01, base 100 contact radii away", name,
+                  "mN", 1e3 * press.force, 1e3 * exact, "[C] Hertz 1882", bound});
+  };
+  row("0.8 elements a contact radius", coarse, 0.04);
+  row("1.7 elements a contact radius", fine, 0.01);
+  EXPECT_LT(std::abs(fine.force / exact - 1), std::abs(coarse.force / exact - 1));
   // An area counted in quadrature points is known to about a third of an element.
-  EXPECT_NEAR(fine.contact_radius, std::sqrt(kRadius * kDepth), 0.2e-3);
+  EXPECT_NEAR(fine.contact_radius, std::sqrt(kRadius * depth), 0.2e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Compressibility, Hertz, testing::Values(0.3, 0.49));
+
+/// F = 16/9 E0 sqrt(R) d^1.5 (1 - 0.15 d/R), incompressible neo-Hookean: a trend, recalled.
+TEST(LargeStrain, SphereOnNeoHookeanFollowsTheTrendOfZhang) {
+  const double nu = 0.499, share = 0.4, depth = share * kRadius;
+  const Press deep = press({0.6, 0.0075, 2.5e-3, 3}, nu, depth, 4);
+  test::verify({"Large strain: a sphere on a neo-Hookean half-space",
+                "force over Hertz at d/R = 0.4, nu = 0.499, 2.5 elements a contact radius", "1",
+                deep.force / hertz(nu, depth), 1 - 0.15 * share,
+                "[R] Zhang et al. 2014: 1 - 0.15 d/R", 0.05});
+}
 
 }  // namespace
 }  // namespace palpate::fem

@@ -32,7 +32,8 @@ SolidModel two_laws(const Body& body, Dilatation dilatation = Dilatation::Mean) 
           dilatation};
 }
 
-constexpr std::array<Dilatation, 2> kBoth{Dilatation::Mean, Dilatation::Pointwise};
+constexpr std::array<Dilatation, 3> kEach{Dilatation::Mean, Dilatation::Nodal,
+                                          Dilatation::Pointwise};
 
 Displacement random_displacement(const SolidModel& model, double size, unsigned seed) {
   std::mt19937 random(seed);
@@ -86,7 +87,7 @@ TEST(SolidModel, FibresRunAroundTheirAxisElementByElement) {
 
 TEST(SolidModel, ForcesAreTheDerivativeOfTheEnergy) {
   const Body body = distorted_block();
-  for (const Dilatation dilatation : kBoth) {
+  for (const Dilatation dilatation : kEach) {
     const SolidModel model = two_laws(body, dilatation);
     Displacement u = random_displacement(model, 3e-4, 11);
     Eigen::VectorXd f;
@@ -109,7 +110,7 @@ TEST(SolidModel, ForcesAreTheDerivativeOfTheEnergy) {
 
 TEST(SolidModel, StiffnessIsTheDerivativeOfTheForces) {
   const Body body = distorted_block();
-  for (const Dilatation dilatation : kBoth) {
+  for (const Dilatation dilatation : kEach) {
     const SolidModel model = two_laws(body, dilatation);
     const Displacement u = random_displacement(model, 3e-4, 12);
     std::vector<double> K;

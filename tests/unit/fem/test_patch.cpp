@@ -73,14 +73,16 @@ TEST_P(PatchTest, AnAffineBoundaryGivesAnAffineInterior) {
 
 std::string name_of(const testing::TestParamInfo<PatchTest::ParamType>& instance) {
   const auto& [constants, dilatation] = instance.param;
-  std::string name = constants.law + (dilatation == Dilatation::Mean ? "" : "Displacement");
+  std::string name = constants.law;
+  if (dilatation == Dilatation::Nodal) name += "NodalPressure";
+  if (dilatation == Dilatation::Pointwise) name += "Displacement";
   std::erase(name, '-');
   return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryLaw, PatchTest,
                          testing::Combine(testing::ValuesIn(test::sample_laws(0.49)),
-                                          testing::Values(Dilatation::Mean)),
+                                          testing::Values(Dilatation::Mean, Dilatation::Nodal)),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(PureDisplacement, PatchTest,
                          testing::Combine(testing::Values(test::sample_laws(0.45).front()),

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What curved facets are worth: a sphere pressed onto a round body whose facets are flat, as they
+// are in the solver, and curved: the mid-edge nodes of the contact surface on the true sphere, the
+// elements below as they were.
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "fem/at.hpp"
+#include "fem/newton.hpp"
+#include "tests/support/prism_body.hpp"
+
+namespace {
+
+using namespace palpate;
+
+constexpr double kBody = 0.030, kThickness = 0.015, kTool = 0.005, kYoung = 10e3, kPoisson = 0.45;
+constexpr double kHalfAngle = 0.9;
+constexpr double kDepths[] = {0.0005, 0.001, 0.002, 0.004};
+
+/// The cap of a ball, pole up, its inside held: elements of size h.
+Body cap(double h) {
+  std::vector<double> radii;
+  const int count = static_cast<int>(std::ceil(kBody * kHalfAngle / h));
+  for (int i = 1; i <= count; ++i) radii.push_back(kHalfAngle * i / count);
+  const int layers = static_cast<int>(std::ceil(kThickness / h));
+  Body body = test::make_prisms(test::rings(radii, count), layers, [&](const Vec3& x, int layer) {
+    const double angle = norm(x), r = kBody - kThickness * (layers - layer) / layers;
+    const double across = angle > 0 ? r * std::sin(angle) / angle : 0;
+    return Vec3{across * x[0], across * x[1], r * std::cos(angle)};
+  });
+  const auto on_one_layer = static_cast<std::int32_t>(body.nodes.size()) / (layers + 1);
+  for (std::int32_t i = 0; i < on_one_layer; ++i) body.fixed_nodes.push_back(i);
+  return body;
+}
+
+fem::QuadraticMesh curved(fem::QuadraticMesh mesh) {
+  for (const fem::Facet& facet : mesh.facets) {
+    bool outside = true;
+    for (std::size_t c = 0; c < 3; ++c)
+      outside = outside && mesh.X.col(facet[c]).norm() > kBody * (1 - 1e-9);
+    for (std::size_t m = 3; outside && m < 6; ++m) {
+      mesh.X.col(facet[m]) = kBody * mesh.X.col(facet[m]).normalized();
+    }
+  }
+  return mesh;
+}
+
+/// The force at each depth, N.
+std::vector<double> press(const fem::SolidModel& model, const fem::QuadraticMesh& surface) {
+  const Eigen::Vector3d pole(0, 0, kBody);
+  fem::ToolContact contact(surface, pole, 3 * kTool, 5000 * kYoung / kTool);
+  fem::NewtonSolver newton(model);
+  fem::Displacement u = fem::Displacement::Zero(3, model.mesh().nodes());
+  std::vector<double> forces;
+  double reached = 0;
+  for (const double depth : kDepths) {
+    for (; reached < depth - 1e-12;) {
+      reached = std::min(depth, reached + 0.0005);
+      fem::Tool tool;
+      tool.geometry.radius = kTool;
+      tool.tip = pole - Eigen::Vector3d(0, 0, reached);
+      contact.move_to(tool);
+      fem::NewtonOptions options;
+      options.tolerance = 1e-5;
+      const fem::NewtonResult result = newton.solve(contact, options, u);
+      if (!result.converged) std::printf("at %.2f mm: %s\n", 1e3 * reached, result.reason.c_str());
+    }
+    forces.push_back(-contact.tool_force(u)[2]);
+  }
+  return forces;
+}
+
+void print_row(double h, const char* facets, int nodes, const std::vector<double>& forces) {
+  std::printf("| %.2f mm | %s | %d |", 1e3 * h, facets, nodes);
+  for (const double force : forces) std::printf(" %.3f mN |", 1e3 * force);
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+}  // namespace
+
+int main() {
+  std::printf("| elements | facets | nodes |");
+  for (const double depth : kDepths) std::printf(" %.1f mm |", 1e3 * depth);
+  std::printf("\n|---|---|---|---|---|---|---|\n");
+  for (const double h : {0.006, 0.004, 0.003, 0.002, 0.0014}) {
+    const fem::SolidModel model(
+        cap(h), {fem::NeoHookean::from_young_poisson(kYoung, kPoisson, "the ball")});
+    print_row(h, "flat", model.mesh().nodes(), press(model, model.mesh()));
+    print_row(h, "curved", model.mesh().nodes(), press(model, curved(model.mesh())));
+  }
+}

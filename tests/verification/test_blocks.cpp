@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Homogeneous deformations of a block of distorted elements between planes of symmetry: the solver
+// against the closed forms of the incompressible solid, P over the rest area.
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <random>
+#include <utility>
+
+#include "fem/at.hpp"
+#include "fem/laws/law_table.hpp"
+#include "tests/support/block_body.hpp"
+#include "tests/support/equilibrium.hpp"
+#include "tests/verification/record.hpp"
+
+namespace palpate::fem {
+namespace {
+
+using test::Prescribed;
+
+/// The unit cube in 2 x 2 x 2 cells, the node within moved.
+Body unit_cube() {
+  Body body = test::make_block(test::even(0, 1, 2), test::even(0, 1, 2), test::even(0, 1, 2));
+  body.fixed_nodes.clear();
+  for (Vec3& x : body.nodes)
+    if (x[0] == 0.5 && x[1] == 0.5 && x[2] == 0.5) x = {0.56, 0.45, 0.53};
+  return body;
+}
+
+/// Faces that are moved along one axis: by how much, as a function of the place at rest.
+struct Motion {
+  int face_axis;
+  double face;  ///< 0 or 1
+  int axis;
+  std::function<double(const Eigen::Vector3d& X)> by;
+};
+
+/// A block and where it is.
+class Block {
+ public:
+  explicit Block(const LawConstants& law)
+      : body_(unit_cube()),
+        model_(body_, {make_law(law, "block")}),
+        u_(Displacement::Zero(3, model_.mesh().nodes())) {}
+
+  void deform(const std::vector<Motion>& motions, double share) {
+    std::vector<Prescribed> prescribed;
+    for (int node = 0; node < model_.mesh().nodes(); ++node) {
+      const Eigen::Vector3d X = model_.mesh().X.col(node);
+      std::array<bool, 3> given{};
+      for (const Motion& m : motions) {
+        if (X[m.face_axis] != m.face || given[at(m.axis)]) continue;
+        given[at(m.axis)] = true;
+        prescribed.push_back({model_.equation(node) + m.axis, share * m.by(X)});
+      }
+    }
+    test::equilibrate(model_, test::Loads::Zero(3, model_.mesh().nodes()), prescribed, u_);
+  }
+  void start_from(const Block& other) { u_ = other.u_; }
+
+  /// Force on a face at 1 over its rest area.
+  double nominal_stress(int face_axis, int axis) const {
+    Eigen::VectorXd f;
+    model_.forces(u_, f);
+    double sum = 0;
+    for (int node = 0; node < model_.mesh().nodes(); ++node)
+      if (model_.mesh().X(face_axis, node) == 1) sum += f[model_.equation(node) + axis];
+    return sum;
+  }
+
+ private:
+  Body body_;
+  SolidModel model_;
+  Displacement u_;
+};
+
+struct Stress {
+  int face_axis, axis;
+};
+
+/// Stresses of a law of its own Poisson's ratio, in ten steps from rest.
+std::vector<double> stresses(const LawConstants& law, const std::vector<Motion>& motions,
+                             const std::vector<Stress>& wanted, std::optional<Block>& block) {
+  if (!block) {
+    block.emplace(law);
+    for (int step = 1; step <= 10; ++step) block->deform(motions, 0.1 * step);
+  } else {
+    Block next(law);
+    next.start_from(*block);
+    next.deform(motions, 1);
+    block.emplace(std::move(next));
+  }
+  std::vector<double> found;
+  for (const Stress& s : wanted) found.push_back(block->nominal_stress(s.face_axis, s.axis));
+  return found;
+}
+
+/// Of the incompressible solid: the bulk modulus grows threefold, each state starting from the one
+/// before, until the error of compression, which goes as its inverse, can be extrapolated away.
+std::vector<double> incompressible(LawConstants law, const std::vector<Motion>& motions,
+                                   const std::vector<Stress>& wanted) {
+  law.values.emplace_back("poisson", 0.45);
+  std::optional<Block> block;
+  std::vector<double> before, now;
+  for (double compressibility = 0.05; compressibility > 1e-6; compressibility /= 3) {
+    law.at("poisson") = 0.5 - compressibility;  // kappa goes as its inverse
+    if (law.law == "neo-hookean") law.at("young") = 2 * (1.5 - compressibility);
+    before = std::exchange(now, stresses(law, motions, wanted, block));
+  }
+  for (std::size_t i = 0; i < now.size(); ++i) now[i] += (now[i] - before[i]) / 2;
+  return now;
+}
+
+Motion moved(int axis, double stretch) {
+  return {axis, 1, axis, [stretch](const Eigen::Vector3d&) { return stretch - 1; }};
+}
+Motion at_rest(int face_axis, double face, int axis) {
+  return {face_axis, face, axis, [](const Eigen::Vector3d&) { return 0.0; }};
+}
+std::vector<Motion> symmetry() {
+  return {at_rest(0, 0, 0), at_rest(1, 0, 1), at_rest(2, 0, 2)};
+}
+
+enum class Mode { Uniaxial, Equibiaxial, PureShear };
+
+std::vector<Motion> motions_of(Mode mode, double stretch) {
+  std::vector<Motion> motions = symmetry();
+  motions.push_back(moved(0, stretch));
+  if (mode == Mode::Equibiaxial) motions.push_back(moved(1, stretch));
+  if (mode == Mode::PureShear) motions.push_back(at_rest(1, 1, 1));
+  return motions;
+}
+
+double incompressible_stress(const LawConstants& law, Mode mode, double stretch) {
+  return incompressible(law, motions_of(mode, stretch), {{0, 0}}).front();
+}
+
+const char* name_of(Mode mode) {
+  return mode == Mode::Uniaxial      ? "uniaxial"
+         : mode == Mode::Equibiaxial ? "equibiaxial"
+                                     : "pure shear";
+}
+
+constexpr auto kProblem = "Blocks: nominal stress of homogeneous deformations";
+
+void check(const LawConstants& law, Mode mode, double stretch, double expected) {
+  char name[80];
+  std::snprintf(name, sizeof name, "%s, %s, stretch %.1f", law.law.c_str(), name_of(mode), stretch);
+  test::verify({kProblem, name, "mu", incompressible_stress(law, mode, stretch), expected,
+                "[C] closed form, incompressible", 1e-5});
+}
+
+struct Printed {
+  LawConstants law;
+  double compressed, uniaxial, equibiaxial, pure_shear;
+};
+
+/// Moduli in units of mu. Printed with six decimals.
+std::vector<Printed> printed() {
+  return {{LawConstants("neo-hookean", {{"young", 3}}), -0.334568, 0.708284, 1.030671, 0.844834},
+          {LawConstants("mooney-rivlin", {{"C10", 0.4}, {"C01", 0.1}}), -0.342003, 0.675594,
+           1.172904, 0.844834},
+          {LawConstants("yeoh", {{"C10", 0.5}, {"C20", -0.02}, {"C30", 0.003}}), -0.333712,
+           0.696004, 0.980359, 0.827000},
+          {LawConstants("demiray-fung", {{"mu", 1}, {"b", 3}}), -0.368524, 1.405614, 9.212796,
+           1.967045},
+          {LawConstants("veronda-westmann", {{"C1", 0.25}, {"C2", 4}}), -0.389443, 2.987940,
+           36.497640, 4.369419}};
+}
+
+class Blocks : public testing::TestWithParam<Printed> {};
+
+TEST_P(Blocks, HaveTheStressOfTheClosedForm) {
+  const Printed& p = GetParam();
+  check(p.law, Mode::Uniaxial, 0.9, p.compressed);
+  check(p.law, Mode::Uniaxial, 1.3, p.uniaxial);
+  check(p.law, Mode::Equibiaxial, 1.3, p.equibiaxial);
+  check(p.law, Mode::PureShear, 1.3, p.pure_shear);
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, Blocks, testing::ValuesIn(printed()), [](const auto& instance) {
+  std::string name = instance.param.law.law;
+  std::erase(name, '-');
+  return name;
+});
+
+/// mu_i of the table, MPa, is 2 mu/alpha of a term mu/alpha (sum l^alpha - 3): half alpha of it is
+/// the shear modulus of the term.
+TEST(Block, OgdenRubberHasTheStressOfTheClosedForm) {
+  const LawConstants rubber("ogden-3", {{"mu_1", 0.5 * 1.3 * 0.63},
+                                        {"alpha_1", 1.3},
+                                        {"mu_2", 0.5 * 5 * 0.0012},
+                                        {"alpha_2", 5},
+                                        {"mu_3", 0.5 * 2 * 0.01},
+                                        {"alpha_3", -2}});
+  const auto row = [&](Mode mode, double expected) {
+    test::verify({kProblem, std::string("ogden-3, ") + name_of(mode) + ", stretch 2.0", "MPa",
+                  incompressible_stress(rubber, mode, 2), expected,
+                  "[C] closed form, Treloar's rubber, printed with five digits", 2e-5});
+  };
+  row(Mode::Uniaxial, 0.60272);
+  row(Mode::Equibiaxial, 0.82161);
+  row(Mode::PureShear, 0.68562);
+}
+
+/// S = E* E11 with the modulus of each mode: a law of its own compressibility.
+TEST(Block, SaintVenantKirchhoffHasTheStressOfTheClosedForm) {
+  const double nu = 0.3, l = 1.2, uniaxial = l * (l * l - 1) / 2;
+  const auto row = [&](Mode mode, double expected) {
+    std::optional<Block> block;
+    const LawConstants law("saint-venant-kirchhoff", {{"young", 1}, {"poisson", nu}});
+    const double computed = stresses(law, motions_of(mode, l), {{0, 0}}, block).front();
+    test::verify({kProblem, law.law + ", " + name_of(mode) + ", stretch 1.2, nu = 0.3", "E",
+                  computed, expected, "[C] closed form", 1e-8});
+  };
+  row(Mode::Uniaxial, uniaxial);
+  row(Mode::Equibiaxial, uniaxial / (1 - nu));
+  row(Mode::PureShear, uniaxial / (1 - nu * nu));
+}
+
+/// P = mu (l - l^-2) + 2 l k1 (l^2 - 1) exp(k2 (l^2 - 1)^2) along one family of aligned fibres.
+TEST(Block, FibresHaveTheStressOfTheClosedForm) {
+  LawConstants law("holzapfel-gasser-ogden", {{"c", 1}, {"k1", 2}, {"k2", 0.8}, {"kappa", 0}});
+  const double l = 1.3, E = l * l - 1;
+  check(law, Mode::Uniaxial, l, l - 1 / (l * l) + 4 * l * E * std::exp(0.8 * E * E));
+}
+
+/// s12 = 2 g (W1 + W2); with s33 = 0 the traction normal to the sheared face is -2 g^2 W2.
+TEST(Block, SimpleShearHasTheStressesOfTheClosedForm) {
+  const double g = 0.4, C10 = 0.4, C01 = 0.1;
+  std::vector<Motion> motions{at_rest(2, 0, 2)};
+  for (const int face_axis : {0, 1})
+    for (const double face : {0.0, 1.0}) {
+      motions.push_back({face_axis, face, 0, [g](const Eigen::Vector3d& X) { return g * X[1]; }});
+      motions.push_back(at_rest(face_axis, face, 1));
+    }
+  const auto found =
+      incompressible({"mooney-rivlin", {{"C10", C10}, {"C01", C01}}}, motions, {{1, 0}, {1, 1}});
+  const std::string source = "[C] closed form, incompressible";
+  test::verify({kProblem, "mooney-rivlin, simple shear 0.4, along the face", "mu", found[0],
+                2 * g * (C10 + C01), source, 1e-5});
+  test::verify({kProblem, "mooney-rivlin, simple shear 0.4, normal to the face", "mu", found[1],
+                -2 * g * g * C01, source, 1e-5});
+}
+
+class Patch : public testing::TestWithParam<Dilatation> {};
+
+/// The faces of a cube of 3 x 3 x 3 distorted cells are moved affinely: so must all within be.
+TEST_P(Patch, AnAffineBoundaryGivesAnAffineInterior) {
+  Body body = test::make_block(test::even(0, 1, 3), test::even(0, 1, 3), test::even(0, 1, 3));
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> shift(-0.07, 0.07);
+  body.fixed_nodes.clear();
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    Vec3& x = body.nodes[i];
+    if (*std::min_element(x.begin(), x.end()) == 0 || *std::max_element(x.begin(), x.end()) == 1)
+      body.fixed_nodes.push_back(static_cast<std::int32_t>(i));
+    else
+      x = x + Vec3{shift(random), shift(random), shift(random)};
+  }
+  const SolidModel model(body, {NeoHookean::from_young_poisson(1, 0.49, "block")}, GetParam());
+  Eigen::Matrix3d F;
+  F << 1.10, 0.20, -0.05, 0.00, 0.92, 0.10, 0.04, -0.03, 1.02;
+  const Displacement affine = F * model.mesh().X - model.mesh().X;
+  Displacement u = affine;
+  for (int node = 0; node < model.mesh().nodes(); ++node)
+    if (model.equation(node) >= 0)
+      u.col(node) += 0.02 * Eigen::Vector3d(shift(random), shift(random), shift(random));
+  test::equilibrate(model, test::Loads::Zero(3, model.mesh().nodes()), {}, u);
+  test::verify(
+      {"Patch test on a distorted mesh, finite strain, nu = 0.49",
+       std::string("largest distance from the affine field over the edge, ") + name_of(GetParam()),
+       "1", (u - affine).lpNorm<Eigen::Infinity>(), 0, "[C] affine field", 1e-9,
+       test::Error::Absolute});
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, Patch,
+                         testing::Values(Dilatation::Mean, Dilatation::Nodal,
+                                         Dilatation::Pointwise));
+
+}  // namespace
+}  // namespace palpate::fem
