@@ -49,7 +49,7 @@ fem::QuadraticMesh curved(fem::QuadraticMesh mesh) {
 /// The force at each depth, N.
 std::vector<double> press(const fem::SolidModel& model, const fem::QuadraticMesh& surface) {
   const Eigen::Vector3d pole(0, 0, kBody);
-  fem::ToolContact contact(surface, pole, 3 * kTool, 5000 * kYoung / kTool);
+  fem::ToolContact contact(surface, pole, 3 * kTool, {5000 * kYoung / kTool, kYoung});
   fem::NewtonSolver newton(model);
   fem::Displacement u = fem::Displacement::Zero(3, model.mesh().nodes());
   std::vector<double> forces;
