@@ -14,6 +14,7 @@ from pathlib import Path
 
 PAGE = Path(__file__).resolve().parent.parent / "docs" / "VERIFICATION.md"
 DRIFT = 0.05  # of the bound
+ROUNDING = 6e-6  # of six printed digits
 HEAD = """# Verification
 
 Made by `scripts/verification_table.py build/release/verification` from the rows that
@@ -94,7 +95,7 @@ def differences(rows, skipped, committed):
                 yield f"{where}: {name} {now[column]}, on the page {page[column]}"
         printed = float(page[1].split()[0])
         allowed = DRIFT * row["bound"] * (abs(row["reference"]) if row["relative"] else 1)
-        if abs(printed - row["computed"]) > allowed + 1e-6 * abs(printed):
+        if abs(printed - row["computed"]) > allowed + ROUNDING * abs(printed):
             yield f"{where}: computed {now[1]}, on the page {page[1]}"
 
 

@@ -16,7 +16,7 @@ using namespace palpate;
 
 constexpr double kBody = 0.030, kThickness = 0.015, kTool = 0.005, kYoung = 10e3, kPoisson = 0.45;
 constexpr double kHalfAngle = 0.9;
-constexpr double kDepths[] = {0.0005, 0.001, 0.002, 0.004};
+constexpr double kDepths[] = {0.0005, 0.001, 0.002};
 
 /// The cap of a ball, pole up, its inside held: elements of size h.
 Body cap(double h) {
@@ -83,8 +83,8 @@ void print_row(double h, const char* facets, int nodes, const std::vector<double
 int main() {
   std::printf("| elements | facets | nodes |");
   for (const double depth : kDepths) std::printf(" %.1f mm |", 1e3 * depth);
-  std::printf("\n|---|---|---|---|---|---|---|\n");
-  for (const double h : {0.006, 0.004, 0.003, 0.002, 0.0014}) {
+  std::printf("\n|---|---|---|---|---|---|\n");
+  for (const double h : {0.006, 0.004, 0.003, 0.002}) {
     const fem::SolidModel model(
         cap(h), {fem::NeoHookean::from_young_poisson(kYoung, kPoisson, "the ball")});
     print_row(h, "flat", model.mesh().nodes(), press(model, model.mesh()));
