@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "app/export/deck.hpp"
+#include "app/markup.hpp"
 #include "format/error.hpp"
 
 namespace palpate::app {
@@ -61,29 +62,6 @@ FebioLaw febio_law(const fem::LawConstants& c) {
   return {};
 }
 
-std::string escaped(std::string_view text) {
-  std::string out;
-  for (const char letter : text) {
-    switch (letter) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += letter;
-    }
-  }
-  return out;
-}
-
 class Writer {
  public:
   explicit Writer(const Deck& deck) : deck_(deck) {}
@@ -116,7 +94,7 @@ class Writer {
     for (std::size_t at = text.find("--"); at != std::string::npos; at = text.find("--")) {
       text.replace(at, 2, "-");
     }
-    return escaped(text);
+    return escape_markup(text);
   }
 
   void control() {
@@ -142,7 +120,7 @@ class Writer {
                     "constant direction");
       }
       add("<material id=\"{}\" name=\"{}\" type=\"{}\">\n", region + 1,
-          escaped(deck_.region_names[region]), law.type);
+          escape_markup(deck_.region_names[region]), law.type);
       for (const auto& [name, value] : law.parameters) add("<{0}>{1:.12g}</{0}>\n", name, value);
       if (c.law != "saint-venant-kirchhoff") {
         add("<k>{:.12g}</k>\n<pressure_model>3</pressure_model>\n", fem::rest_moduli(c).kappa());
@@ -214,7 +192,7 @@ class Writer {
     add("<MeshDomains>\n");
     for (std::size_t region = 0; region < deck_.laws.size(); ++region) {
       add("<SolidDomain name=\"{}\" mat=\"{}\" elem_type=\"TET10G4\" type=\"elastic-solid\"/>\n",
-          part(region), escaped(deck_.region_names[region]));
+          part(region), escape_markup(deck_.region_names[region]));
     }
     add("</MeshDomains>\n");
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Text and numbers that are safe to place inside an HTML file.
+// Data that is safe to place inside an HTML file.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,6 @@
 #include <vector>
 
 namespace palpate::report {
-
-/// Text for an HTML element or a quoted attribute: & < > " ' become entities.
-std::string escape_html(std::string_view text);
 
 /// JSON for a <script type="application/json"> element: no '<', '>' or '&' survives, so nothing in
 /// the data can end the element; bytes that are not UTF-8 become U+FFFD; NaN and infinity null.

@@ -3,6 +3,7 @@
 
 #include <string_view>
 
+#include "app/markup.hpp"
 #include "app/report/embed.hpp"
 #include "app/report/page.hpp"
 #include "app/report/page_data.hpp"
@@ -16,7 +17,7 @@ std::string render(const ReportInput& input) {
   const nlohmann::json data = report::page_data(input);
   std::string html;
   html += report::page_before_title();
-  html += report::escape_html(data["title"].get<std::string>());
+  html += app::escape_markup(data["title"].get<std::string>());
   html += report::page_before_data();
   html += report::script_json(data);
   html += report::page_after_data();
