@@ -116,7 +116,7 @@ void write_heading(hdf5::Writer& writer, const RecordingHeading& heading) {
 
 /// No recording needs more: HDF5 stores a chunk that does not deflate as it is, and chunks whole.
 hdf5::OnDisk room_for(const RecordingHeading& heading, std::uint64_t steps) {
-  constexpr std::uint64_t kMetadata = 128 * 1024, kChunkEntries = 16 * 1024;
+  constexpr std::uint64_t kMetadata = 131072, kChunkEntries = 16384;  // bytes
   constexpr std::uint64_t kStepBytes = sizeof(RecordedStep);
   std::uint64_t texts = 0;
   for (const ProvenanceStep& step : heading.provenance.steps)

@@ -65,7 +65,7 @@ std::optional<Recovered> recover_what_was_left(const fs::path& recording) {
   return recover(journal, free_name(recording));
 }
 
-SessionRecorder::SessionRecorder(fs::path recording, RecordingHeading heading)
+SessionRecorder::SessionRecorder(fs::path recording, const RecordingHeading& heading)
     : recording_(std::move(recording)),
       provenance_(heading.provenance),
       journal_(journal_of(recording_), heading) {

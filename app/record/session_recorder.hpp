@@ -42,7 +42,7 @@ std::optional<Recovered> recover_what_was_left(const std::filesystem::path& reco
 class SessionRecorder {
  public:
   /// Begins the journal; nothing of an earlier session may be there (recover_what_was_left).
-  SessionRecorder(std::filesystem::path recording, RecordingHeading heading);
+  SessionRecorder(std::filesystem::path recording, const RecordingHeading& heading);
 
   /// @throws Error when the disk refuses; what is in the journal stays there.
   void add(const RecordedStep& step);
