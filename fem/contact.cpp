@@ -229,6 +229,26 @@ void ToolContact::add_tool_force_gradient(const SolidModel& model, const Displac
       g.segment<3>(first) -= tie.stiffness * direction;
 }
 
+void ToolContact::add_bond_gradient(const SolidModel& model, const ToolContact& before,
+                                    const Displacement& u_b, const Displacement& l,
+                                    const Eigen::Vector3d& direction, Eigen::VectorXd& g) const {
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const Point &point = points_[i], &then = before.points_[i];
+    if (!point.stuck || then.stuck) continue;
+    const Facet& facet = facets_[at(point.facet)];
+    Eigen::Vector3d moved = direction;
+    for (std::size_t a = 0; a < 6; ++a) moved += point.N[a] * l.col(facet[a]);
+    // dt0/du_b and d(-eps_s arm)/du_b
+    const Eigen::Matrix3d kept = before.hessian(then, before.position(then, u_b), true) -
+                                 stuck_eps_ * Eigen::Matrix3d::Identity();
+    const Eigen::Vector3d pull = point.area * kept * moved;
+    for (std::size_t a = 0; a < 6; ++a) {
+      const int first = model.equation(facet[a]);
+      if (first >= 0) g.segment<3>(first) -= point.N[a] * pull;
+    }
+  }
+}
+
 double ToolContact::contact_area(const Displacement& u) const {
   double area = 0;
   for (const Point& point : points_)

@@ -54,9 +54,9 @@ double thread_cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Depths of the increments: evenly spaced, with the held depths among them.
-std::vector<double> normal_increments(const IndentationSettings& settings) {
-  std::vector<double> depths(settings.held_depths);
+/// Depths of the increments: evenly spaced, with the stops among them.
+std::vector<double> normal_increments(const IndentationSettings& settings,
+                                      std::vector<double> depths) {
   for (int i = 1; i <= settings.increments; ++i)
     depths.push_back(settings.depth * i / settings.increments);
   std::sort(depths.begin(), depths.end());
@@ -445,7 +445,7 @@ void fill_work(CurvePath& path, double start) {
 
 }  // namespace
 
-void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
+void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves) {
   const bool stuck = context_.indentation.friction == ToolFriction::Stuck;
   PathDriver driver(context_, site.contact, site.equilibrium, site.watch,
                     [&](double depth) { return site.tool_at(context_, depth); });
@@ -463,7 +463,7 @@ void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
     site.contact.move_to(site.tool_at(context_, 0));
     site.contact.bond(u, kTouching * context_.indentation.tool.radius);
   }
-  for (const double depth : normal_increments(context_.indentation)) {
+  for (const double depth : normal_increments(context_.indentation, stops)) {
     CurveSample sample;
     std::string reason;
     if (!driver.advance(from, depth, history, u, sample, reason)) {
@@ -473,7 +473,7 @@ void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
     path.samples.push_back(sample);
     if (stuck) site.contact.bond(u);
     if (observer_) observer_(site.contact, u, sample);
-    for (const double held : context_.indentation.held_depths)
+    for (const double held : stops)
       if (std::abs(held - depth) < 1e-9 * depth)
         site.held.emplace(held, Site::Held{u, site.contact, 0.0});
     from = depth;
@@ -486,13 +486,12 @@ void SiteSolver::run_normal_path(Site& site, SiteCurves& curves) {
   curves.paths.push_back(std::move(path));
 }
 
-void SiteSolver::run_lateral_path(Site& site, double held_depth, double azimuth,
-                                  SiteCurves& curves) {
+void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurves& curves) {
+  const double held_depth = plan.held_depth;
   const auto found = site.held.find(held_depth);
   if (found == site.held.end()) return;  // the normal path ended before: already recorded
   const Site::Held& held = found->second;
-  const auto [first, second] = tangents(site.inward);
-  const Eigen::Vector3d direction = std::cos(azimuth) * first + std::sin(azimuth) * second;
+  const Eigen::Vector3d direction = to_eigen(plan.direction);
   ToolContact contact = held.contact;
   Displacement u = held.u;
   contact.bond(u);
@@ -501,41 +500,56 @@ void SiteSolver::run_lateral_path(Site& site, double held_depth, double azimuth,
   CurvePath path;
   path.kind = PathKind::Lateral;
   path.held_depth = held_depth;
-  path.direction = to_vec3(direction);
+  path.direction = plan.direction;
   History history;
   history.add(0, u);
+  path.samples.push_back(curves.paths.front().samples.front());
+  for (const auto& pressed : curves.paths.front().samples)
+    if (std::abs(pressed.displacement - held_depth) < 1e-9 * held_depth)
+      path.samples.back() = pressed;
+  path.samples.back().displacement = 0;
   double from = 0;
-  for (int i = 0; i <= context_.indentation.lateral_increments; ++i) {
+  for (const double s : plan.travels) {
     CurveSample sample;
     std::string reason;
-    const double s =
-        context_.indentation.lateral_travel * i / context_.indentation.lateral_increments;
-    if (i == 0) {
-      sample = curves.paths.front().samples.front();
-      for (const auto& pressed : curves.paths.front().samples)
-        if (std::abs(pressed.displacement - held_depth) < 1e-9 * held_depth) sample = pressed;
-      sample.displacement = 0;
-    } else if (!driver.advance(from, s, history, u, sample, reason)) {
+    if (!driver.advance(from, s, history, u, sample, reason)) {
       stop_early(curves, "lateral path at depth " + in_millimetres(held_depth) + " " + reason);
       break;
     }
     path.samples.push_back(sample);
+    if (lateral_observer_) lateral_observer_(plan, contact, u, sample);
     from = s;
   }
   fill_work(path, held.work);
   curves.paths.push_back(std::move(path));
 }
 
+SitePlan SiteSolver::plan_of_settings(const Vec3& inward) const {
+  const IndentationSettings& settings = context_.indentation;
+  SitePlan plan{settings.held_depths, {}};
+  std::vector<double> travels;
+  for (int i = 1; i <= settings.lateral_increments; ++i)
+    travels.push_back(settings.lateral_travel * i / settings.lateral_increments);
+  const auto [first, second] = tangents(to_eigen(inward));
+  for (const double held_depth : settings.held_depths)
+    for (const double azimuth : settings.azimuths)
+      plan.lateral.push_back(
+          {held_depth, to_vec3(std::cos(azimuth) * first + std::sin(azimuth) * second), travels});
+  return plan;
+}
+
 SiteCurves SiteSolver::solve(std::int32_t vertex) {
+  return solve(vertex, plan_of_settings(context_.place(vertex).inward));
+}
+
+SiteCurves SiteSolver::solve(std::int32_t vertex, const SitePlan& plan) {
   const double start = thread_cpu_seconds();
   SiteCurves curves;
   curves.vertex = vertex;
   curves.status = SiteStatus::Complete;
   Site site(context_, context_.place(vertex), batch_);
-  run_normal_path(site, curves);
-  for (const double held_depth : context_.indentation.held_depths)
-    for (const double azimuth : context_.indentation.azimuths)
-      run_lateral_path(site, held_depth, azimuth, curves);
+  run_normal_path(site, plan.stops, curves);
+  for (const LateralPlan& lateral : plan.lateral) run_lateral_path(site, lateral, curves);
   if (curves.paths.front().samples.size() < 2) curves.status = SiteStatus::Failed;
   curves.cpu_seconds = thread_cpu_seconds() - start;
   return curves;

@@ -44,6 +44,19 @@ SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site
 /// Memory of a site under way, at most.
 double bytes_of_site(const CampaignContext& context, std::int32_t vertex);
 
+/// The tool held at a depth and moved sideways, the contact stuck.
+struct LateralPlan {
+  double held_depth = 0;        ///< m
+  Vec3 direction{};             ///< unit, across inward
+  std::vector<double> travels;  ///< m, ascending, without the 0 of the start
+};
+
+/// What is done at one site.
+struct SitePlan {
+  std::vector<double> stops;  ///< m, depths that the normal path passes; where lateral ones start
+  std::vector<LateralPlan> lateral;
+};
+
 /// Solves sites one after another on one thread.
 class SiteSolver {
  public:
@@ -51,12 +64,19 @@ class SiteSolver {
   SiteSolver(const CampaignContext& context, SolveBatch::Member* batch)
       : context_(context), batch_(batch) {}
 
-  /// All paths of a site. A failure is recorded in the result, never thrown.
+  /// All paths of a site, those of the settings or of a plan. A failure is recorded in the result,
+  /// never thrown.
   SiteCurves solve(std::int32_t vertex);
+  SiteCurves solve(std::int32_t vertex, const SitePlan& plan);
 
   /// Called with every equilibrium of the normal path, the tool in its place.
   using Observer = std::function<void(const ToolContact&, const Displacement&, const CurveSample&)>;
   void observe(Observer observer) { observer_ = std::move(observer); }
+
+  /// Called with every equilibrium of the lateral paths but their starts.
+  using LateralObserver = std::function<void(const LateralPlan&, const ToolContact&,
+                                             const Displacement&, const CurveSample&)>;
+  void observe_lateral(LateralObserver observer) { lateral_observer_ = std::move(observer); }
 
   /// The end of the normal path of the site last solved.
   const Displacement& pressed_state() const { return pressed_; }
@@ -64,13 +84,15 @@ class SiteSolver {
  private:
   struct Site;  ///< geometry and solvers of one site
 
-  void run_normal_path(Site& site, SiteCurves& curves);
-  void run_lateral_path(Site& site, double held_depth, double azimuth, SiteCurves& curves);
+  SitePlan plan_of_settings(const Vec3& inward) const;
+  void run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves);
+  void run_lateral_path(Site& site, const LateralPlan& plan, SiteCurves& curves);
 
   const CampaignContext& context_;
   SolveBatch::Member* batch_;
   Displacement pressed_;
   Observer observer_;
+  LateralObserver lateral_observer_;
 };
 
 /// The largest Young's modulus at rest behind the boundary, and a multiple of it over the radius of

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <mutex>
 
 #include "fem/at.hpp"
@@ -73,31 +74,65 @@ class Differentiator {
                  SolveBatch::Member& batch, const PressPoint& place)
       : context_(context),
         constants_(constants),
-        inward_(place.inward.data()),
         window_(window_at(context, Eigen::Vector3d(place.position.data()))),
         solver_(context.model, window_,
                 [&batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch.solve(b, x); }) {}
 
-  /// False when the stiffness is not positive definite: the equilibrium is at a limit point.
+  /// Of the force along `direction`. False when the stiffness is not positive definite: the
+  /// equilibrium is at a limit point. `adjoint`: K^-1 dF/du.
   bool differentiate(const ToolContact& contact, const Displacement& u,
-                     std::vector<double>& slope) {
-    slope.clear();
+                     const Eigen::Vector3d& direction, std::vector<double>& slope,
+                     Eigen::VectorXd& adjoint) {
+    slope.assign(constants_.size(), 0.0);
     if (constants_.empty()) return true;
-    const SolidModel& model = context_.model;
-    Eigen::VectorXd by_u = Eigen::VectorXd::Zero(model.pattern().n), adjoint;
-    contact.add_tool_force_gradient(model, u, inward_, by_u);
+    Eigen::VectorXd by_u = Eigen::VectorXd::Zero(context_.model.pattern().n);
+    contact.add_tool_force_gradient(context_.model, u, direction, by_u);
     if (!solve(contact, u, by_u, adjoint)) return false;
-    Eigen::VectorXd contact_forces = Eigen::VectorXd::Zero(model.pattern().n);
-    contact.add_forces(model, u, contact_forces);
-    const double force = contact.tool_force(u).dot(inward_);
-    for (const Varied& constant : constants_) {
-      const Eigen::VectorXd residual = constant.slope(u) + constant.penalty * contact_forces;
-      slope.push_back(constant.penalty * force - adjoint.dot(residual));
-    }
+    const double force = contact.tool_force(u).dot(direction);
+    const auto residuals = residual_slopes(contact, u);
+    for (std::size_t i = 0; i < constants_.size(); ++i)
+      slope[i] = constants_[i].penalty * force - adjoint.dot(residuals[i]);
+    return true;
+  }
+
+  /// Keep a state from which lateral paths start, before the contact is bonded.
+  void hold(double depth, const ToolContact& contact, const Displacement& u) {
+    held_.insert_or_assign(depth, Held{contact, u, residual_slopes(contact, u)});
+  }
+
+  /// The same of a lateral path that started from a held state.
+  bool differentiate_lateral(const LateralPlan& plan, const ToolContact& contact,
+                             const Displacement& u, std::vector<double>& slope) {
+    const Eigen::Vector3d direction(plan.direction.data());
+    Eigen::VectorXd adjoint, by_bond = Eigen::VectorXd::Zero(context_.model.pattern().n), m;
+    if (!differentiate(contact, u, direction, slope, adjoint)) return false;
+    if (constants_.empty()) return true;
+    const Held& held = held_.at(plan.held_depth);
+    Displacement l = Displacement::Zero(3, u.cols());
+    move(context_.model, 1, adjoint, l);
+    contact.add_bond_gradient(context_.model, held.contact, held.u, l, direction, by_bond);
+    if (!solve(held.contact, held.u, by_bond, m)) return false;
+    for (std::size_t i = 0; i < constants_.size(); ++i) slope[i] -= m.dot(held.residuals[i]);
     return true;
   }
 
  private:
+  struct Held {
+    ToolContact contact;
+    Displacement u;
+    std::vector<Eigen::VectorXd> residuals;
+  };
+
+  /// dR/dc at fixed displacement, of each constant.
+  std::vector<Eigen::VectorXd> residual_slopes(const ToolContact& contact, const Displacement& u) {
+    Eigen::VectorXd contact_forces = Eigen::VectorXd::Zero(context_.model.pattern().n);
+    contact.add_forces(context_.model, u, contact_forces);
+    std::vector<Eigen::VectorXd> slopes;
+    for (const Varied& constant : constants_)
+      slopes.push_back(constant.slope(u) + constant.penalty * contact_forces);
+    return slopes;
+  }
+
   /// K x = b; by a factor of K itself where the shared one does not get there.
   bool solve(const ToolContact& contact, const Displacement& u, const Eigen::VectorXd& b,
              Eigen::VectorXd& x) {
@@ -113,9 +148,9 @@ class Differentiator {
 
   const CampaignContext& context_;
   const std::vector<Varied>& constants_;
-  Eigen::Vector3d inward_;
   SolidModel window_;
   TangentSolver solver_;
+  std::map<double, Held> held_;
 };
 
 bool is_among(double depth, const std::vector<double>& depths) {
@@ -123,27 +158,70 @@ bool is_among(double depth, const std::vector<double>& depths) {
                      [&](double d) { return std::abs(d - depth) < 1e-9 * depth; });
 }
 
-SiteSensitivity differentiate_site(const CampaignContext& context,
-                                   const std::vector<Varied>& constants, SolveBatch::Member& batch,
-                                   std::int32_t vertex) {
-  SiteSensitivity result;
-  result.vertex = vertex;
-  const PressPoint place = context.place(vertex);
-  Differentiator differentiator(context, constants, batch, place);
-  SiteSolver solver(context, &batch);
-  solver.observe([&](const ToolContact& contact, const Displacement& u, const CurveSample& sample) {
-    if (!is_among(sample.displacement, context.indentation.held_depths)) return;
-    ForceSensitivity s{sample.displacement, dot(sample.force, place.inward), {}};
-    if (differentiator.differentiate(contact, u, s.slope)) {
-      result.samples.push_back(std::move(s));
-    } else if (result.reason.empty()) {
-      result.reason = "the stiffness is not positive definite at an equilibrium";
-    }
-  });
-  const SiteCurves curves = solver.solve(vertex);
-  if (!curves.reason.empty()) result.reason = curves.reason;
-  return result;
-}
+/// Presses one site, moves the tool sideways where asked, and differentiates at the stops.
+class SiteDifferentiation {
+ public:
+  SiteDifferentiation(const CampaignContext& context, const std::vector<Varied>& constants,
+                      SolveBatch::Member& batch, std::int32_t vertex,
+                      const std::vector<LateralPlan>& lateral)
+      : place_(context.place(vertex)),
+        lateral_(lateral),
+        depths_(context.indentation.held_depths),
+        differentiator_(context, constants, batch, place_),
+        solver_(context, &batch) {
+    result_.vertex = vertex;
+    result_.lateral.resize(lateral.size());
+  }
+
+  SiteSensitivity run() {
+    SitePlan plan{depths_, lateral_};
+    for (const LateralPlan& path : lateral_) plan.stops.push_back(path.held_depth);
+    solver_.observe([this](const auto&... state) { pressed(state...); });
+    solver_.observe_lateral([this](const auto&... state) { moved(state...); });
+    const SiteCurves curves = solver_.solve(result_.vertex, plan);
+    if (!curves.reason.empty()) result_.reason = curves.reason;
+    return std::move(result_);
+  }
+
+ private:
+  void pressed(const ToolContact& contact, const Displacement& u, const CurveSample& sample) {
+    for (const LateralPlan& path : lateral_)
+      if (is_among(sample.displacement, {path.held_depth}))
+        differentiator_.hold(path.held_depth, contact, u);
+    if (!is_among(sample.displacement, depths_)) return;
+    ForceSensitivity s{sample.displacement, dot(sample.force, place_.inward), {}};
+    Eigen::VectorXd adjoint;
+    const Eigen::Vector3d inward(place_.inward.data());
+    keep(differentiator_.differentiate(contact, u, inward, s.slope, adjoint), s, result_.samples);
+  }
+
+  void moved(const LateralPlan& path, const ToolContact& contact, const Displacement& u,
+             const CurveSample& sample) {
+    ForceSensitivity s{sample.displacement, dot(sample.force, path.direction), {}};
+    const auto index = static_cast<std::size_t>(
+        std::find_if(lateral_.begin(), lateral_.end(),
+                     [&](const LateralPlan& p) {
+                       return p.held_depth == path.held_depth && p.direction == path.direction;
+                     }) -
+        lateral_.begin());
+    keep(differentiator_.differentiate_lateral(path, contact, u, s.slope), s,
+         result_.lateral[index]);
+  }
+
+  void keep(bool found, const ForceSensitivity& s, std::vector<ForceSensitivity>& samples) {
+    if (found)
+      samples.push_back(s);
+    else if (result_.reason.empty())
+      result_.reason = "the stiffness is not positive definite at an equilibrium";
+  }
+
+  PressPoint place_;
+  const std::vector<LateralPlan>& lateral_;
+  const std::vector<double>& depths_;
+  Differentiator differentiator_;
+  SiteSolver solver_;
+  SiteSensitivity result_;
+};
 
 /// Of a site that is differentiated: beside what its paths need, the tangent of the whole body.
 double bytes_of(const CampaignContext& context, std::int32_t vertex) {
@@ -154,14 +232,24 @@ double bytes_of(const CampaignContext& context, std::int32_t vertex) {
 
 std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSettings& settings,
                                              const std::vector<double>& depths,
-                                             const std::vector<RegionConstant>& constants) {
+                                             const std::vector<RegionConstant>& constants,
+                                             const std::vector<std::vector<LateralPlan>>& lateral) {
   CampaignSettings normal = settings;
   normal.indentation.held_depths = depths;  // the states that the path must pass
   normal.indentation.depth = *std::max_element(depths.begin(), depths.end());
   normal.indentation.azimuths.clear();  // no lateral paths
   // An equilibrium without friction does not depend on the way there: the depths are steps enough.
   if (normal.indentation.friction == ToolFriction::Frictionless) normal.indentation.increments = 1;
+  normal.indentation.lateral_travel = 0;  // only how far candidates of the contact reach
+  for (const auto& plans : lateral) {
+    for (const LateralPlan& plan : plans) {
+      normal.indentation.depth = std::max(normal.indentation.depth, plan.held_depth);
+      normal.indentation.lateral_travel =
+          std::max(normal.indentation.lateral_travel, plan.travels.back());
+    }
+  }
   check_indentation(normal.indentation);
+  const std::vector<LateralPlan> none;
   std::vector<SiteSensitivity> results(settings.sites.size());
   if (results.empty()) return results;
   const CampaignContext context(body, normal, Engine::SharedFactor);
@@ -173,7 +261,9 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
                                   settings.memory, bytes_of(context, settings.sites.front()));
   work_abreast(*context.rest_factor, size, results.size(),
                [&](SolveBatch::Member& member, std::size_t i) {
-                 results[i] = differentiate_site(context, derivatives, member, settings.sites[i]);
+                 results[i] = SiteDifferentiation(context, derivatives, member, settings.sites[i],
+                                                  lateral.empty() ? none : lateral[i])
+                                  .run();
                });
   return results;
 }

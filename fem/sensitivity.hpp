@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "fem/campaign.hpp"
+#include "fem/indentation.hpp"
 
 namespace palpate::fem {
 
@@ -26,8 +27,10 @@ struct ForceSensitivity {
 
 struct SiteSensitivity {
   std::int32_t vertex = -1;
-  std::string reason;                     ///< why the path ended early; empty when it did not
+  std::string reason;                     ///< why a path ended early; empty when none did
   std::vector<ForceSensitivity> samples;  ///< of the depths that were reached
+  /// One for each plan: force along its direction, `depth` the travel.
+  std::vector<std::vector<ForceSensitivity>> lateral;
 };
 
 /// Press the sites to the given depths (settings.indentation.depth is the last of them) and
@@ -38,9 +41,14 @@ struct SiteSensitivity {
 /// the contact penalty follows the stiffest modulus at the surface and is differentiated with it.
 /// Sites run abreast as in a campaign, and the solves share its factor: none of the body is made
 /// but that at rest.
+/// A lateral path also depends on the state at which its contact was bonded, u_b: with v the
+/// derivative of the force by u_b, K_b m = v adds - m . dR_b/dc, a second solve.
+/// Not differentiated: points that stick already on the normal path (ToolFriction::Stuck).
+/// @param lateral  for each site the lateral paths to follow; empty: none.
 /// @throws Error(Configuration) as run_campaign; for a region that the body has not.
-std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSettings& settings,
-                                             const std::vector<double>& depths,
-                                             const std::vector<RegionConstant>& constants);
+std::vector<SiteSensitivity> run_sensitivity(
+    const Body& body, const CampaignSettings& settings, const std::vector<double>& depths,
+    const std::vector<RegionConstant>& constants,
+    const std::vector<std::vector<LateralPlan>>& lateral = {});
 
 }  // namespace palpate::fem

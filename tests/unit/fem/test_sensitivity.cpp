@@ -118,6 +118,47 @@ TEST(Sensitivity, ModuliObeyEulersTheorem) {
   }
 }
 
+/// A lateral path starts from a state that depends on the constants as well: leave that out and the
+/// differences tell.
+TEST(Sensitivity, OfALateralPathIsTheDerivativeByDifferences) {
+  const Body body = layered();
+  const std::vector<RegionConstant> constants{
+      {"top", "young"}, {"base", "young"}, {"top", "poisson"}};
+  const std::vector<std::vector<LateralPlan>> plans{
+      {{0.002, {0.6, 0.8, 0}, {0.0005, 0.001}}, {0.003, {-1, 0, 0}, {0.001}}}};
+  const auto run = [&](double top, double base, double nu, bool differentiate) {
+    CampaignSettings settings = settings_of(body, top, base, nu);
+    settings.indentation.force_tolerance = 1e-6;
+    return run_sensitivity(body, settings, {0.003},
+                           differentiate ? constants : std::vector<RegionConstant>{}, plans)
+        .front();
+  };
+  const double top = 8e3, base = 20e3, nu = 0.45, h = 1e-3, k = 1e-3;
+  const SiteSensitivity exact = run(top, base, nu, true);
+  const std::array<std::array<SiteSensitivity, 2>, 3> varied{
+      {{run(top * (1 + h), base, nu, false), run(top * (1 - h), base, nu, false)},
+       {run(top, base * (1 + h), nu, false), run(top, base * (1 - h), nu, false)},
+       {run(top, base, nu + k, false), run(top, base, nu - k, false)}}};
+  const std::array<double, 3> width{2 * h * top, 2 * h * base, 2 * k};
+  ASSERT_EQ(exact.lateral.size(), 2U) << exact.reason;
+  ASSERT_EQ(exact.lateral[0].size(), 2U) << exact.reason;
+  ASSERT_EQ(exact.lateral[1].size(), 1U) << exact.reason;
+  for (std::size_t path = 0; path < 2; ++path) {
+    for (std::size_t i = 0; i < exact.lateral[path].size(); ++i) {
+      const ForceSensitivity& s = exact.lateral[path][i];
+      EXPECT_GT(s.force, 0);
+      for (std::size_t c = 0; c < 3; ++c) {
+        const double wanted =
+            (varied[c][0].lateral[path][i].force - varied[c][1].lateral[path][i].force) / width[c];
+        // Beside the truncation: the forces are known to three tolerances of the solver.
+        const double noise = 2 * 3e-6 * s.force / width[c];
+        EXPECT_NEAR(s.slope[c], wanted, 2e-3 * std::abs(wanted) + noise) << path << i << c;
+      }
+      EXPECT_NEAR(top * s.slope[0] + base * s.slope[1], s.force, 1e-4 * s.force);  // Euler
+    }
+  }
+}
+
 /// At a deep press the tangent is far from that at rest: the solve that never factorizes it must
 /// still agree with one that does, after few steps.
 TEST(TangentSolver, AgreesWithAFactorOfTheTangent) {
