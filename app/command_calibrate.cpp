@@ -64,6 +64,7 @@ struct BodyOptions {
   std::string measured;
   std::vector<std::string> young, poisson, constant;
   int depths = 6;
+  bool drags = false;
   double confidence = 0.95;
 };
 
@@ -91,6 +92,7 @@ InverseSettings inverse_settings(const BodyOptions& options, const Workspace& sp
   InverseSettings settings;
   settings.campaign = campaign_settings(space);
   settings.depths = options.depths;
+  settings.drags = options.drags;
   settings.confidence = options.confidence;
   settings.log = [](const std::string& line) { say("  {}", line); };
   for (const std::string& region : options.young) {
@@ -116,20 +118,23 @@ Json inverse_account(const InverseFit& fit, double confidence) {
   account["rms_N"] = fit.rms;
   account["relative_rms"] = fit.relative_rms;
   account["evaluations"] = fit.evaluations;
-  Json sites = Json::array();
-  for (const InverseSite& site : fit.sites) {
+  Json paths = Json::array();
+  for (const InversePath& path : fit.paths) {
     Json uncertainty = Json::array();
-    for (const double u : site.uncertainty) {
+    for (const double u : path.uncertainty) {
       uncertainty.push_back(std::isfinite(u) ? Json(u) : Json(nullptr));
     }
-    sites.push_back({{"vertex", site.vertex},
-                     {"contact_shift_m", site.contact_shift},
-                     {"depth_m", site.depth},
-                     {"measured_N", site.measured},
-                     {"fitted_N", site.fitted},
+    const bool normal = path.kind == PathKind::Normal;
+    paths.push_back({{"vertex", path.vertex},
+                     {"kind", normal ? "normal" : "lateral"},
+                     {"held_depth_m", normal ? Json(nullptr) : Json(path.held_depth)},
+                     {"contact_shift_m", path.contact_shift},
+                     {"displacement_m", path.depth},
+                     {"measured_N", path.measured},
+                     {"fitted_N", path.fitted},
                      {"uncertainty_N", uncertainty}});
   }
-  account["sites"] = sites;
+  account["paths"] = paths;
   return account;
 }
 
@@ -143,8 +148,12 @@ int calibrate_body(const BodyOptions& options) {
                 "import the measurement again with --body " + space.body().string());
   }
   const InverseFit fit = calibrate_inverse(body, measured, inverse_settings(options, space));
-  say("calibrate: {} sites, rms {:.4g} N ({:.2g} % of the largest force), {} evaluations",
-      fit.sites.size(), fit.rms, 100 * fit.relative_rms, fit.evaluations);
+  const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(), [](const InversePath& p) {
+    return p.kind == PathKind::Lateral;
+  });
+  say("calibrate: {} sites, {} drags, rms {:.4g} N ({:.2g} % of the largest force), {} evaluations",
+      static_cast<std::ptrdiff_t>(fit.paths.size()) - drags, drags, fit.rms, 100 * fit.relative_rms,
+      fit.evaluations);
   say_calibration(fit.calibration, options.confidence);
   Json account = {{"name", space.c.name},
                   {"creator", creator_text()},
@@ -174,6 +183,8 @@ void add_body_part(CLI::App& command, Action& action) {
   part->add_option("--depths", options->depths, "Depths of each curve that are compared")
       ->capture_default_str()
       ->check(CLI::Range(2, 200));
+  part->add_flag("--drags", options->drags,
+                 "Compare measured drags too; needs a mesh that resolves the contact");
   part->add_option("--confidence", options->confidence, "Of the intervals")
       ->capture_default_str()
       ->check(CLI::Range(0.5, 0.9999));

@@ -57,9 +57,13 @@ bool admissible(const fem::CampaignSettings& campaign) {
   return true;
 }
 
-/// One measured curve at the depths that are compared.
+/// One measured curve at the depths, or the travels of a drag, that are compared.
 struct Target {
   std::int32_t vertex = -1;
+  std::size_t site = 0;  ///< among those that are solved
+  std::size_t plan = 0;  ///< of a lateral path, among those of its site
+  PathKind kind = PathKind::Normal;
+  double held_depth = 0;  ///< m, of a lateral path
   std::vector<double> depth, force, uncertainty;
   std::vector<double> slope;  ///< N/m, of the force; from the model, for a measured one is noisy
   double contact_uncertainty = kUnknown;
@@ -78,6 +82,8 @@ Target target_of(const SiteCurves& site, const CurvePath& path, const std::vecto
   const bool known = std::all_of(u.begin() + 1, u.end(), [](double v) { return std::isfinite(v); });
   Target target;
   target.vertex = site.vertex;
+  target.kind = path.kind;
+  target.held_depth = path.held_depth;
   target.contact_uncertainty = path.contact_uncertainty;
   for (const double depth : depths) {
     if (depth > x.back() * (1 + 1e-9)) break;
@@ -86,6 +92,14 @@ Target target_of(const SiteCurves& site, const CurvePath& path, const std::vecto
     target.uncertainty.push_back(known ? doubt.value(depth) : kUnknown);
   }
   return target;
+}
+
+std::string shift_name(const Target& target) {
+  if (target.kind == PathKind::Normal) {
+    return fmt::format("contact shift of site {}", target.vertex);
+  }
+  return fmt::format("contact shift of the drag at {:.2f} mm of site {}", 1e3 * target.held_depth,
+                     target.vertex);
 }
 
 class Inverse {
@@ -110,8 +124,7 @@ class Inverse {
     for (Target& target : targets_) {
       if (!known_ || !(target.contact_uncertainty > 0)) continue;
       target.shift = static_cast<int>(problem.constants.size());
-      problem.constants.push_back(
-          {fmt::format("contact shift of site {}", target.vertex), "m", 0, -infinity, infinity});
+      problem.constants.push_back({shift_name(target), "m", 0, -infinity, infinity});
       ++problem.residuals;
     }
     for (const Target& target : targets_) problem.residuals += target.depth.size();
@@ -161,12 +174,7 @@ class Inverse {
         refuse(fmt::format("site at vertex {}", site.vertex), "it is no site of the body",
                "import the measurement on this body");
       }
-      for (const CurvePath& path : site.paths) {
-        if (path.kind != PathKind::Normal || path.samples.size() < 3) continue;
-        Target target = target_of(site, path, depths_);
-        if (!target.depth.empty()) targets_.push_back(std::move(target));
-        break;
-      }
+      take_paths(site);
     }
     if (targets_.empty()) {
       refuse("measured curves", "they hold no normal path",
@@ -175,22 +183,68 @@ class Inverse {
     }
   }
 
+  void take_paths(const SiteCurves& site) {
+    std::vector<fem::LateralPlan> plans;
+    std::vector<Target> targets;
+    bool has_normal = false;
+    for (const CurvePath& path : site.paths) {
+      if (path.samples.size() < 3) continue;
+      const bool normal = path.kind == PathKind::Normal;
+      if (normal ? has_normal : !is_measured_drag(path)) continue;
+      Target target = target_of(site, path, normal ? depths_ : travels_of(path));
+      if (target.depth.empty()) continue;
+      target.site = vertices_.size();
+      target.plan = plans.size();
+      if (!normal) plans.push_back({path.held_depth, path.direction, target.depth});
+      has_normal = has_normal || normal;
+      targets.push_back(std::move(target));
+    }
+    // A drag alone has no normal curve to hold its depth against.
+    if (!has_normal) return;
+    vertices_.push_back(site.vertex);
+    plans_.push_back(std::move(plans));
+    for (Target& target : targets) targets_.push_back(std::move(target));
+  }
+
+  /// A path without repeats was computed, not measured.
+  bool is_measured_drag(const CurvePath& path) const {
+    return settings_.drags && path.kind == PathKind::Lateral && path.repeats > 0 &&
+           path.held_depth > 0;
+  }
+
+  std::vector<double> travels_of(const CurvePath& path) const {
+    std::vector<double> travels;
+    for (int i = 1; i <= settings_.depths; ++i) {
+      travels.push_back(path.samples.back().displacement * i / settings_.depths);
+    }
+    return travels;
+  }
+
+  const std::vector<fem::ForceSensitivity>& model_of(const Target& target) const {
+    const fem::SiteSensitivity& site = model_[target.site];
+    return target.kind == PathKind::Normal ? site.samples : site.lateral[target.plan];
+  }
+
   /// The slopes of the first evaluation, scaled to the measured forces, serve throughout: weights
   /// that moved with the constants would bias them.
   void freeze_slopes() {
-    for (std::size_t t = 0; t < targets_.size(); ++t) {
-      Target& target = targets_[t];
+    for (Target& target : targets_) {
+      const std::vector<fem::ForceSensitivity>& model = model_of(target);
       std::vector<double> x{0}, f{0};
       double product = 0, square = 0;
       for (std::size_t i = 0; i < target.depth.size(); ++i) {
-        x.push_back(model_[t].samples[i].depth);
-        f.push_back(model_[t].samples[i].force);
+        x.push_back(model[i].depth);
+        f.push_back(model[i].force);
         product += target.force[i] * f.back();
         square += f.back() * f.back();
       }
+      const double scale = product / square;
       const compare::MonotoneCubic curve(x, f);
-      for (const double depth : target.depth) {
-        target.slope.push_back(product / square * curve.slope(depth));
+      for (std::size_t i = 0; i < target.depth.size(); ++i) {
+        // The lateral force of a stuck sphere goes as the root of its depth, see lateral_paths().
+        target.slope.push_back(scale * (target.kind == PathKind::Normal
+                                            ? curve.slope(target.depth[i])
+                                            : model[i].force / (2 * target.held_depth)));
       }
     }
   }
@@ -214,19 +268,18 @@ class Inverse {
       constants.push_back(constant);
       line += fmt::format(" {} = {:.6g}", constant_name(constant), sought[i]);
     }
-    campaign.sites.clear();
-    for (const Target& target : targets_) campaign.sites.push_back(target.vertex);
+    campaign.sites = vertices_;
     // At the start the refusal itself is the best message.
     usable_ = evaluations_ == 1 || admissible(campaign);
     if (!usable_) {
       if (settings_.log) settings_.log(line + ", refused by the law");
       return false;
     }
-    model_ = fem::run_sensitivity(body_, campaign, depths_, constants);
-    for (std::size_t t = 0; t < targets_.size(); ++t) {
-      if (model_[t].samples.size() >= targets_[t].depth.size()) continue;
+    model_ = fem::run_sensitivity(body_, campaign, depths_, constants, plans_);
+    for (const Target& target : targets_) {
+      if (model_of(target).size() >= target.depth.size()) continue;
       usable_ = false;
-      failure_ = fmt::format("site {}: {}", targets_[t].vertex, model_[t].reason);
+      failure_ = fmt::format("site {}: {}", target.vertex, model_[target.site].reason);
       line += ", failed at " + failure_;
     }
     if (settings_.log) settings_.log(line);
@@ -248,11 +301,11 @@ class Inverse {
     const std::vector<double> sought(c, c + settings_.sought.size());
     if (!solve(sought)) return false;
     std::size_t row = 0;
-    for (std::size_t t = 0; t < targets_.size(); ++t) {
-      const Target& target = targets_[t];
+    for (const Target& target : targets_) {
+      const std::vector<fem::ForceSensitivity>& samples = model_of(target);
       const double shift = target.shift < 0 ? 0 : c[target.shift];
       for (std::size_t i = 0; i < target.depth.size(); ++i, ++row) {
-        const fem::ForceSensitivity& model = model_[t].samples[i];
+        const fem::ForceSensitivity& model = samples[i];
         const double u = own_uncertainty(target, i);
         r[row] = (model.force + target.slope[i] * shift - target.force[i]) / u;
         if (J == nullptr) continue;
@@ -283,25 +336,27 @@ class Inverse {
     solve(found);
     double squares = 0, largest = 0;
     std::size_t count = 0;
-    for (std::size_t t = 0; t < targets_.size(); ++t) {
-      const Target& target = targets_[t];
-      InverseSite site;
-      site.vertex = target.vertex;
-      site.depth = target.depth;
-      site.measured = target.force;
-      site.uncertainty = target.uncertainty;
+    for (const Target& target : targets_) {
+      const std::vector<fem::ForceSensitivity>& model = model_of(target);
+      InversePath path;
+      path.vertex = target.vertex;
+      path.kind = target.kind;
+      path.held_depth = target.held_depth;
+      path.depth = target.depth;
+      path.measured = target.force;
+      path.uncertainty = target.uncertainty;
       if (target.shift >= 0) {
-        site.contact_shift =
+        path.contact_shift =
             fit.calibration.estimates[static_cast<std::size_t>(target.shift)].value;
       }
       for (std::size_t i = 0; i < target.depth.size(); ++i) {
-        site.fitted.push_back(model_[t].samples[i].force + target.slope[i] * site.contact_shift);
-        const double e = site.fitted.back() - target.force[i];
+        path.fitted.push_back(model[i].force + target.slope[i] * path.contact_shift);
+        const double e = path.fitted.back() - target.force[i];
         squares += e * e;
         largest = std::max(largest, std::abs(target.force[i]));
         ++count;
       }
-      fit.sites.push_back(std::move(site));
+      fit.paths.push_back(std::move(path));
     }
     fit.rms = std::sqrt(squares / static_cast<double>(count));
     fit.relative_rms = fit.rms / largest;
@@ -316,6 +371,8 @@ class Inverse {
   const Body& body_;
   const InverseSettings& settings_;
   std::vector<double> depths_;
+  std::vector<std::int32_t> vertices_;  ///< of the sites that are solved
+  std::vector<std::vector<fem::LateralPlan>> plans_;
   std::vector<Target> targets_;
   bool known_ = false;
   struct Evaluation {

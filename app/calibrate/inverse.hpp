@@ -23,29 +23,35 @@ struct SoughtConstant {
 struct InverseSettings {
   fem::CampaignSettings campaign;  ///< materials (starts), tool, tolerance, threads
   std::vector<SoughtConstant> sought;
-  int depths = 6;  ///< of each measured curve that are compared, evenly spaced
+  int depths = 6;      ///< of each measured curve that are compared, evenly spaced
+  bool drags = false;  ///< compare measured drags as well
   double confidence = 0.95;
   std::function<void(const std::string& line)> log;  ///< one line an evaluation; may be empty
 };
 
-/// One site as it was fitted.
-struct InverseSite {
+/// One path as it was fitted.
+struct InversePath {
   std::int32_t vertex = -1;
+  PathKind kind = PathKind::Normal;
+  double held_depth = 0;                                     ///< m, of a lateral path
   std::vector<double> depth, measured, fitted, uncertainty;  ///< m, N, N, N (NaN unknown)
   double contact_shift = 0;                                  ///< m, found with the constants
 };
 
 struct InverseFit {
   calibrate::Calibration calibration;  ///< the sought constants; then the contact shifts
-  std::vector<InverseSite> sites;
+  std::vector<InversePath> paths;
   double rms = 0;           ///< N
   double relative_rms = 0;  ///< over the largest measured force
   int evaluations = 0;      ///< of the finite element model
 };
 
+/// Measured drags are compared with the stuck lateral paths of the model at their held depth;
+/// lateral paths that were made from the normal one are no measurement and left out.
 /// Where a measured path states the uncertainty of its contact point, the shift of that point is
 /// sought as well, held by the stated uncertainty: an error of the contact point acts on all
-/// samples of a curve alike and must not be averaged away. Where every sample states its
+/// samples of a curve alike and must not be averaged away. On a drag it acts by the held depth, as
+/// force/(2 depth). Where every sample states its
 /// uncertainty the residuals are divided by what the shift leaves of it, and the intervals follow
 /// from that; otherwise the scatter is estimated from the residuals.
 /// @throws Error(Configuration) for curves of another tool, sites that are not of the body, no

@@ -98,6 +98,45 @@ TEST(Inverse, FindsTheModuliThatMadeTheCurves) {
   EXPECT_LT(fit.evaluations, 15);
 }
 
+/// A press alone hardly tells Poisson's ratio from Young's modulus; a drag at the same site does.
+/// The truth is a campaign, as a robot would have gone through it.
+TEST(Inverse, DragsTellPoissonsRatioFromTheModulus) {
+  const Body body = two_halves();
+  fem::CampaignSettings truth = campaign(kTop, kBase);
+  truth.sites = {sites_of(body).front()};
+  truth.indentation.increments = 4;
+  truth.indentation.held_depths = {0.002};
+  truth.indentation.lateral_travel = 0.0008;
+  truth.indentation.lateral_increments = 4;
+  truth.indentation.azimuths = {0.4};
+  fem::CampaignReport report;
+  Curves curves = fem::run_campaign(body, truth, report);
+  for (CurvePath& path : curves.sites.front().paths) {
+    path.repeats = 1;
+    for (CurveSample& s : path.samples)
+      s.force_uncertainty = 1e-3 * norm(path.samples.back().force);
+  }
+  InverseSettings settings = settings_from(12e3, kBase);
+  settings.sought = {{{"soft", "young"}, 100, 1e6}, {{"soft", "poisson"}, 0.1, 0.499}};
+  settings.campaign.materials[0].law.at("poisson") = 0.4;
+  settings.drags = true;
+  const InverseFit fit = calibrate_inverse(body, curves, settings);
+  ASSERT_EQ(fit.paths.size(), 2U);
+  EXPECT_EQ(fit.paths[1].kind, PathKind::Lateral);
+  EXPECT_TRUE(fit.calibration.converged);
+  EXPECT_NEAR(fit.calibration.estimates[0].value, kTop, 5e-3 * kTop);
+  EXPECT_NEAR(fit.calibration.estimates[1].value, 0.45, 2e-3);
+  settings.drags = false;
+  const InverseFit alone = calibrate_inverse(body, curves, settings);
+  EXPECT_EQ(alone.paths.size(), 1U);
+  EXPECT_LT(2 * fit.calibration.estimates[1].standard_error,
+            alone.calibration.estimates[1].standard_error);
+  // What was made from the normal path is no measurement.
+  curves.sites.front().paths.back().repeats = 0;
+  settings.drags = true;
+  EXPECT_EQ(calibrate_inverse(body, curves, settings).paths.size(), 1U);
+}
+
 /// Noise on every sample and a shift of the contact point of every curve, both as stated: the 95 %
 /// intervals must hold the truth in about 95 % of many measurements.
 TEST(Inverse, IntervalsCoverTheTruth) {
