@@ -230,22 +230,12 @@ void ToolContact::add_tool_force_gradient(const SolidModel& model, const Displac
 }
 
 void ToolContact::add_bond_gradient(const SolidModel& model, const ToolContact& before,
-                                    const Displacement& u_b, const Displacement& l,
-                                    const Eigen::Vector3d& direction, Eigen::VectorXd& g) const {
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const Point &point = points_[i], &then = before.points_[i];
-    if (!point.stuck || then.stuck) continue;
-    const Facet& facet = facets_[at(point.facet)];
-    Eigen::Vector3d moved = direction;
-    for (std::size_t a = 0; a < 6; ++a) moved += point.N[a] * l.col(facet[a]);
-    // dt0/du_b and d(-eps_s arm)/du_b
-    const Eigen::Matrix3d kept = before.hessian(then, before.position(then, u_b), true) -
-                                 stuck_eps_ * Eigen::Matrix3d::Identity();
-    const Eigen::Vector3d pull = point.area * kept * moved;
-    for (std::size_t a = 0; a < 6; ++a) {
-      const int first = model.equation(facet[a]);
-      if (first >= 0) g.segment<3>(first) -= point.N[a] * pull;
-    }
+                                    const Displacement& l, const Eigen::Vector3d& direction,
+                                    Eigen::VectorXd& g) const {
+  for (std::size_t i = before.ties_.size(); i < ties_.size(); ++i) {
+    const Tie& tie = ties_[i];
+    if (const int first = model.equation(tie.node); first >= 0)
+      g.segment<3>(first) += tie.stiffness * (l.col(tie.node) + direction);
   }
 }
 

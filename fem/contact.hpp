@@ -54,12 +54,10 @@ class ToolContact {
   /// Adds d(tool_force . direction)/du to the unknowns of `model`.
   void add_tool_force_gradient(const SolidModel& model, const Displacement& u,
                                const Eigen::Vector3d& direction, Eigen::VectorXd& g) const;
-  /// Adds to the unknowns of `model` how what the bond kept acts: with E the energy and
-  /// F = tool_force . direction at the present state, the derivative of -l . dE/du + F by the
-  /// displacement u_b at which the points were bonded. `before`: the contact then, unbonded.
-  /// `l`: of all nodes.
-  void add_bond_gradient(const SolidModel& model, const ToolContact& before,
-                         const Displacement& u_b, const Displacement& l,
+  /// Adds to the unknowns of `model` how the arms of the ties act that bond() has made since
+  /// `before`: with E the energy and F = tool_force . direction at the present state, the
+  /// derivative of -l . dE/du + F by the displacement at which they were made. `l`: of all nodes.
+  void add_bond_gradient(const SolidModel& model, const ToolContact& before, const Displacement& l,
                          const Eigen::Vector3d& direction, Eigen::VectorXd& g) const;
   double contact_area(const Displacement& u) const;  ///< m^2, reference
   double penetration(const Displacement& u) const;   ///< m, deepest

@@ -110,7 +110,7 @@ class Differentiator {
     const Held& held = held_.at(plan.held_depth);
     Displacement l = Displacement::Zero(3, u.cols());
     move(context_.model, 1, adjoint, l);
-    contact.add_bond_gradient(context_.model, held.contact, held.u, l, direction, by_bond);
+    contact.add_bond_gradient(context_.model, held.contact, l, direction, by_bond);
     if (!solve(held.contact, held.u, by_bond, m)) return false;
     for (std::size_t i = 0; i < constants_.size(); ++i) slope[i] -= m.dot(held.residuals[i]);
     return true;
