@@ -50,6 +50,11 @@ std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMater
 
 void check_indentation(const IndentationSettings& settings) {
   check_tool(settings.tool);
+  const ToolGeometry& tool = settings.tool;
+  if (tool.shape == ToolShape::Disc && tool.edge_radius == 0 &&
+      settings.friction == ToolFriction::Frictionless)
+    refuse("tool", "a disc with a sharp edge cannot be pressed without friction",
+           "give it an edge radius (a hundredth of its own is enough), or let it stick");
   require_positive("depth", settings.depth);
   require_positive("force_tolerance", settings.force_tolerance);
   require_positive("increments", settings.increments);

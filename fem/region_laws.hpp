@@ -14,7 +14,7 @@ namespace palpate::fem {
 std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMaterial>& materials);
 
 /// @throws Error(Configuration) when a length is not positive and finite, a held depth lies beyond
-/// the depth, or a count is below one.
+/// the depth, a count is below one, or a disc with a sharp edge is pressed without friction.
 void check_indentation(const IndentationSettings& settings);
 
 }  // namespace palpate::fem

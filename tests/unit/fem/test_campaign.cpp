@@ -134,6 +134,9 @@ TEST(Campaign, RefusesWhatDoesNotFit) {
   s.sites = {100000};
   EXPECT_THAT(refusal(s), HasSubstr("not a site"));
   s = quick();
+  s.indentation.tool = {ToolShape::Disc, 0.005, 0, 0};
+  EXPECT_THAT(refusal(s), HasSubstr("a sharp edge cannot be pressed without friction"));
+  s = quick();
   s.materials[0].law.at("poisson") = 0.5;
   EXPECT_THAT(refusal(s), HasSubstr("poisson"));
 }
