@@ -11,6 +11,7 @@
 #include "app/console.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
+#include "fitting/fidelity/skin.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 #include "format/sha256.hpp"
@@ -31,7 +32,8 @@ constexpr int kLeastIncrements = 6;
 fem::CampaignSettings direct_settings(const Workspace& space,
                                       const std::vector<fidelity::HeldOutPoint>& points) {
   fem::CampaignSettings settings = campaign_settings(space);
-  for (const fidelity::HeldOutPoint& p : points) settings.points.push_back({p.position, p.inward});
+  for (const fidelity::HeldOutPoint& p : points)
+    settings.points.push_back({p.position + p.skin * p.inward, p.inward});
   fem::IndentationSettings& indentation = settings.indentation;
   for (const double share : kHeldShares)
     indentation.held_depths.push_back(share * indentation.depth);
@@ -97,6 +99,23 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
   return direct;
 }
 
+/// Depths count from the skin, on either side: what lies between it and the flat triangles is an
+/// error of shape, told apart from that of the force.
+std::string find_skin(const Body& body, std::vector<fidelity::HeldOutPoint>& points) {
+  std::vector<double> distances;
+  for (fidelity::HeldOutPoint& point : points) {
+    if (point.node) continue;
+    point.skin = fidelity::skin_beside(body, point.position, point.inward);
+    distances.push_back(std::abs(point.skin));
+  }
+  if (distances.empty()) return {};
+  std::sort(distances.begin(), distances.end());
+  return fmt::format(
+      "the skin is {:.2f} mm (median), {:.2f} mm (worst) from the response triangles at the points "
+      "off node; depths count from it\n",
+      1e3 * distances[distances.size() / 2], 1e3 * distances.back());
+}
+
 double bytes_per_node(const Library& library) {
   std::size_t numbers = 0, nodes = 0;
   for (const NodeResponse& node : library.responses) {
@@ -123,11 +142,11 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
     libraries.push_back(read_input(file, "fit", read_library));
     require_same_surface(libraries.back(), body, file);
   }
-  const auto points =
+  auto points =
       fidelity::draw_points(libraries.front(), options.off_node, options.at_node, options.seed);
+  std::string text = find_skin(body, points), states;
   const Curves direct = solve_direct(space, body, direct_settings(space, points));
 
-  std::string text, states;
   nlohmann::ordered_json json = fidelity_heading(options, space.c.certify.friction, points);
   bool complete = true;
   for (std::size_t i = 0; i < files.size(); ++i) {

@@ -57,7 +57,8 @@ Json fidelity_heading(const FidelityOptions& options, double friction,
                     {"natural", p.natural},
                     {"position_m", p.position},
                     {"inward", p.inward},
-                    {"at_node", p.node}});
+                    {"at_node", p.node},
+                    {"skin_m", p.skin}});
   }
   return {{"kind", "palpate.fidelity"}, {"relative_to", "max(|direct force|, floor)"},
           {"floor_N", options.floor},   {"friction", friction},

@@ -29,7 +29,7 @@ bool has_responses(const Library& library, const Triangle& triangle) {
 
 HeldOutPoint point_of(const Library& library, std::size_t triangle, const Vec3& natural) {
   const Triangle& t = library.triangles[triangle];
-  HeldOutPoint point{static_cast<std::int32_t>(triangle), natural, {}, {}, false};
+  HeldOutPoint point{static_cast<std::int32_t>(triangle), natural, {}, {}, false, 0};
   for (std::size_t l = 0; l < 3; ++l) {
     point.position = point.position + natural[l] * at_vertex(library.positions, t[l]);
     point.inward = point.inward + natural[l] * at_vertex(library.inward, t[l]);

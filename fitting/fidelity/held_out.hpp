@@ -16,6 +16,7 @@ struct HeldOutPoint {
   Vec3 position{};    ///< m
   Vec3 inward{};      ///< unit, n(c) of the interpolation
   bool node = false;  ///< at a vertex: what the fit alone costs, without interpolation
+  double skin = 0;    ///< m, along `inward` to the skin of the body, where direct presses start
 };
 
 /// `off_node` points drawn evenly over the area of the triangles that have responses at all three

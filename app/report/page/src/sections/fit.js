@@ -25,7 +25,7 @@ function balancePanel(balance) {
   const of = (kind) => Array.from(balance.difference).filter((_, i) => balance.kind[i] === kind).map((x) => 100 * x);
   const w = balance.worst;
   return el('div', {},
-    histogram('Energy balance of the curves', '(work of the tool \u2212 strain energy) / larger of the two (%)', 'Paths',
+    histogram('Energy balance of the curves', '(work of the tool \u2212 stored energy) / larger of the two (%)', 'Paths',
       [{ label: 'normal', colour: 'series-1', values: of(0) }, { label: 'lateral', colour: 'series-3', values: of(1) }], { zero: true }),
     el('p', { class: 'note', id: 'worst-balance' },
       `Worst: node ${w.vertex}, ${w.kind === 0 ? 'normal' : 'lateral'} path, ${units.percent(w.difference)} (work ${units.energy(w.work)}, stored ${units.energy(w.energy)}).`));
@@ -34,6 +34,6 @@ function balancePanel(balance) {
 export function fitSection(data) {
   return el('section', { id: 'fit' },
     el('h2', {}, 'Can the curves be trusted?'),
-    paragraph('The fit must follow the computed states, and the work of the tool at the end of each path must be the energy stored in the body.', 'lead'),
+    paragraph('The fit must follow the computed states, and the work of the tool at the end of each path must be the energy stored in the body and its contact.', 'lead'),
     el('div', { class: 'pair' }, fitPanel(data.vertices), balancePanel(data.balance)));
 }
