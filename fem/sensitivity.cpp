@@ -225,7 +225,8 @@ class SiteDifferentiation {
 
 /// Of a site that is differentiated: beside what its paths need, the tangent of the whole body.
 double bytes_of(const CampaignContext& context, std::int32_t vertex) {
-  return bytes_of_site(context, vertex) + sizeof(double) * context.model.pattern().nonzeros();
+  return bytes_of_site(context, vertex) +
+         static_cast<double>(sizeof(double)) * context.model.pattern().nonzeros();
 }
 
 }  // namespace
