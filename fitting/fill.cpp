@@ -2,18 +2,14 @@
 #include "fitting/fill.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "fitting/curve_fit.hpp"
-#include "runtime/response_curve.hpp"
+#include "fitting/mean_response.hpp"
 
 namespace palpate::fitting {
 namespace {
-
-using CurveList = std::vector<runtime::CompiledCurve>;
 
 std::vector<std::set<std::size_t>> neighbours_of(const Library& library) {
   std::vector<std::set<std::size_t>> neighbours(library.positions.size());
@@ -27,80 +23,18 @@ std::vector<std::set<std::size_t>> neighbours_of(const Library& library) {
   return neighbours;
 }
 
-double mean_force(const CurveList& curves, double d) {
-  double sum = 0;
-  for (const runtime::CompiledCurve& curve : curves) sum += curve.force(d);
-  return sum / static_cast<double>(curves.size());
-}
-
-/// Samples of the mean, several in each piece of each curve, so that the fit sees all of it.
-std::vector<ForceSample> mean_samples(const CurveList& curves) {
-  constexpr int kPerPiece = 4;
-  std::set<double> displacements;
-  for (const runtime::CompiledCurve& curve : curves) {
-    const auto& pieces = curve.pieces();
-    for (std::size_t k = 0; k + 1 < pieces.size(); ++k) {
-      const double low = pieces[k].start;
-      const double high = pieces[k + 1].start;
-      for (int i = 1; i <= kPerPiece; ++i) {
-        displacements.insert(low + (high - low) * i / kPerPiece);
-      }
-    }
+NodeResponse mean_of_neighbours(const std::vector<const NodeResponse*>& neighbours,
+                                const FitSettings& settings, const std::string& where) {
+  std::vector<WeightedResponse> sources;
+  for (const NodeResponse* neighbour : neighbours)
+    sources.push_back({neighbour, 1 / static_cast<double>(neighbours.size())});
+  NodeResponse mean = mean_response(sources, settings, where);
+  for (const NodeResponse* neighbour : neighbours) {
+    const ResponseDifference difference = largest_difference(mean, *neighbour);
+    mean.normal_error = std::max(mean.normal_error, difference.normal);
+    mean.lateral_error = std::max(mean.lateral_error, difference.lateral);
   }
-  std::vector<ForceSample> samples;
-  samples.reserve(displacements.size());
-  for (const double d : displacements) samples.push_back({d, mean_force(curves, d)});
-  return samples;
-}
-
-double largest_difference(const ResponseCurve& filled, const CurveList& curves) {
-  const runtime::CompiledCurve rendered(filled);
-  double largest = 0;
-  for (const ForceSample& sample : mean_samples(curves)) {
-    const double force = rendered.force(sample.displacement);
-    for (const runtime::CompiledCurve& curve : curves) {
-      largest = std::max(largest, std::abs(force - curve.force(sample.displacement)));
-    }
-  }
-  return largest;
-}
-
-CouplingCurve mean_coupling(const std::vector<const NodeResponse*>& sources,
-                            CurveFitSettings settings, const std::string& where) {
-  CouplingCurve mean;
-  CurveList curves;
-  double base = 0;
-  for (const NodeResponse* source : sources) {
-    curves.emplace_back(source->coupling.curve);
-    base += static_cast<double>(source->coupling.base) / static_cast<double>(sources.size());
-  }
-  mean.base = static_cast<float>(base);
-  settings.zero_first_slope = true;
-  settings.absolute_tolerance = settings.relative_tolerance;  // of w, which is about 1
-  mean.curve = fit_curve(mean_samples(curves), settings, where).curve;
   return mean;
-}
-
-NodeResponse mean_response(const std::vector<const NodeResponse*>& sources,
-                           const FitSettings& settings, const std::string& where) {
-  CurveList normal;
-  CurveList lateral;
-  for (const NodeResponse* source : sources) {
-    normal.emplace_back(source->normal);
-    lateral.emplace_back(source->lateral);
-  }
-  CurveFitSettings curve{settings.relative_tolerance, settings.absolute_tolerance,
-                         settings.max_knots, true};
-  NodeResponse response;
-  response.status = ResponseStatus::Filled;
-  response.normal = fit_curve(mean_samples(normal), curve, where).curve;
-  curve.zero_first_slope = false;
-  response.lateral = fit_curve(mean_samples(lateral), curve, where).curve;
-  if (settings.kind == ResponseKind::Coupled)
-    response.coupling = mean_coupling(sources, curve, where);
-  response.normal_error = largest_difference(response.normal, normal);
-  response.lateral_error = largest_difference(response.lateral, lateral);
-  return response;
 }
 
 }  // namespace
@@ -119,7 +53,7 @@ void fill_holes(Library& library, const FitSettings& settings) {
       }
       if (sources.empty()) continue;
       library.responses[v] =
-          mean_response(sources, settings, "filled response of vertex " + std::to_string(v));
+          mean_of_neighbours(sources, settings, "filled response of vertex " + std::to_string(v));
       progress = true;
     }
   }

@@ -7,6 +7,7 @@
 #include "fitting/curve_fit.hpp"
 #include "fitting/fill.hpp"
 #include "fitting/fitting.hpp"
+#include "fitting/sampling/site_choice.hpp"
 #include "fitting/site_samples.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
@@ -132,6 +133,13 @@ Library surface_library(const Body& body, const Curves& curves) {
   return library;
 }
 
+std::vector<std::int32_t> vertices_of(const Curves& curves) {
+  std::vector<std::int32_t> vertices;
+  for (const SiteCurves& site : curves.sites) vertices.push_back(site.vertex);
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
 }  // namespace
 
 Library fit(const Body& body, const Curves& curves, const FitSettings& settings) {
@@ -154,6 +162,7 @@ Library fit(const Body& body, const Curves& curves, const FitSettings& settings)
     refuse("body '" + body.name + "'", "every response triangle touches a support",
            "hold a smaller part of the surface");
   }
+  if (settings.interpolate) interpolate_rest(body, vertices_of(curves), settings, library);
   if (settings.fill_holes) fill_holes(library, settings);
   return library;
 }

@@ -18,15 +18,17 @@ struct FitSettings {
   double absolute_tolerance = 0.005;  ///< N; the larger of the two applies
   int max_knots = 12;                 ///< per curve
   bool fill_holes = false;            ///< responses of failed sites from their neighbours, marked
+  bool interpolate = false;  ///< responses of sites that were not computed, from all around, marked
   ResponseKind kind = ResponseKind::Decoupled;
 };
 
 /// Fit every site; monotone, passive and C1 by construction (see ResponseCurve and
 /// docs/theory-fitting.md). A site counts when a normal path reaches half of the requested depth
-/// and a lateral path has a sample; the others are holes, or filled on request. f^r is the mean
-/// over azimuths and held depths; lateral_error is the distance to every single path, so what the
-/// mean loses is part of it. Coupled responses have one f^r and a weight w of the depth instead
-/// (see CoupledLateral). Vertices keep their numbers; triangles with a held vertex are left out.
+/// and a lateral path has a sample; the others are holes, or filled on request. Sites without
+/// curves are holes too, or interpolated on request (fitting/sampling). f^r is the mean over
+/// azimuths and held depths; lateral_error is the distance to every single path, so what the mean
+/// loses is part of it. Coupled responses have one f^r and a weight w of the depth instead (see
+/// CoupledLateral). Vertices keep their numbers; triangles with a held vertex are left out.
 /// Deterministic. @throws Error(Configuration) when the curves belong to another body, no site is
 /// usable, or coupled responses are asked of lateral paths at a single depth.
 Library fit(const Body& body, const Curves& curves, const FitSettings& settings);

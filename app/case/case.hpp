@@ -86,6 +86,16 @@ struct IndentationSection {
   bool operator==(const IndentationSection&) const = default;
 };
 
+/// Only the members that belong to `method` are read and printed; the others keep their defaults.
+struct SamplingSection {
+  std::string method = "spacing";
+  double start_spacing = 0.030;  ///< m, adaptive
+  double tolerance = 0.05;       ///< of the force, adaptive
+  int held_out = 40;             ///< points, adaptive
+  int most_sites = 100000;       ///< adaptive
+  bool operator==(const SamplingSection&) const = default;
+};
+
 struct FitSection {
   double relative_tolerance = 0.01;
   double absolute_tolerance = 0.005;  ///< N
@@ -135,6 +145,7 @@ struct Case {
   std::vector<MaterialSection> materials;
   ToolSection tool;
   IndentationSection indentation;
+  SamplingSection sampling;
   SolverSection solver;
   FitSection fit;
   CertifySection certify;

@@ -212,6 +212,33 @@ void describe(V& v, IndentationSection& s) {
 }
 
 template <class V>
+void describe(V& v, SamplingSection& s) {
+  v.text(s.method,
+         {"method",
+          "which points of the response surface are pressed: all; all surface nodes (patch_spacing "
+          "is then element_size); or as many as it takes, the rest interpolated"},
+         {"spacing", "nodes", "adaptive"});
+  if (v.when("method", s.method, "adaptive")) {
+    v.quantity(s.start_spacing, Dimension::Length,
+               {"start_spacing", "of the first sites", kOptional, kPositive});
+    v.number(s.tolerance,
+             {"tolerance",
+              "sites are added until 95 % of the forces at points held out are as near as this, "
+              "relative to the local force",
+              kOptional,
+              {.low = 0, .high = 1, .low_open = true, .high_open = true}});
+    v.integer(s.held_out, {"held_out",
+                           "random points of the surface, pressed but never fitted",
+                           kOptional,
+                           {.low = 10, .high = 10000}});
+    v.integer(s.most_sites, {"most_sites",
+                             "end with this many sites, whatever the error",
+                             kOptional,
+                             {.low = 1, .high = 1000000}});
+  }
+}
+
+template <class V>
 void describe(V& v, FitSection& s) {
   v.number(s.relative_tolerance, {"relative_tolerance",
                                   "allowed error of a response over the local force",
@@ -294,6 +321,7 @@ void describe(V& v, Case& c) {
   v.sections("material", c.materials, kRequired, "One for each region.");
   v.section("tool", c.tool, kOptional, "What presses.");
   v.section("indentation", c.indentation, kOptional, "What is computed at each site.");
+  v.section("sampling", c.sampling, kOptional, "Where the tool is pressed.");
   v.section("solver", c.solver, kOptional, "How the equilibria are computed.");
   v.section("fit", c.fit, kOptional, "From curves to responses.");
   v.section("certify", c.certify, kOptional, "Passivity certificate.");

@@ -101,15 +101,8 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
 
 /// Depths count from the skin, on either side: what lies between it and the flat triangles is an
 /// error of shape, told apart from that of the force.
-std::string find_skin(const Body& body, std::vector<fidelity::HeldOutPoint>& points) {
-  std::vector<double> distances;
-  for (fidelity::HeldOutPoint& point : points) {
-    if (point.node) continue;
-    point.skin = fidelity::skin_beside(body, point.position, point.inward);
-    distances.push_back(std::abs(point.skin));
-  }
+std::string tell_skin(const std::vector<double>& distances) {
   if (distances.empty()) return {};
-  std::sort(distances.begin(), distances.end());
   return fmt::format(
       "the skin is {:.2f} mm (median), {:.2f} mm (worst) from the response triangles at the points "
       "off node; depths count from it\n",
@@ -144,7 +137,7 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
   }
   auto points =
       fidelity::draw_points(libraries.front(), options.off_node, options.at_node, options.seed);
-  std::string text = find_skin(body, points), states;
+  std::string text = tell_skin(fidelity::find_skin(body, points)), states;
   const Curves direct = solve_direct(space, body, direct_settings(space, points));
 
   nlohmann::ordered_json json = fidelity_heading(options, space.c.certify.friction, points);

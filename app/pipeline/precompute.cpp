@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.hpp"
+#include "app/pipeline/adaptive.hpp"
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/settings.hpp"
@@ -72,6 +73,25 @@ class Teller {
            {"total", p.total}});
   }
 
+  void round(const SamplingRound& r) {
+    if (telling_ == Telling::Text)
+      return say(
+          "  round {}: {} of {} sites; at points held out 95 % of the forces are off by less than "
+          "{:.1f} "
+          "% along the press, {:.1f} % in all (median {:.1f} %)",
+          r.number, r.sites, r.of_sites, 100 * r.along.p95, 100 * r.whole.p95,
+          100 * r.whole.median);
+    event({{"event", "round"},
+           {"round", r.number},
+           {"sites", r.sites},
+           {"of_sites", r.of_sites},
+           {"leave_one_out_error_p95", r.leave_one_out},
+           {"held_out_states", r.along.states},
+           {"held_out_points_failed", r.points_failed},
+           {"error_along_press", error_of(r.along)},
+           {"error_of_vector", error_of(r.whole)}});
+  }
+
   void end(const std::filesystem::path& file, const SiteCounts& counts, double seconds,
            double cpu_seconds) {
     if (telling_ == Telling::Text) {
@@ -93,6 +113,10 @@ class Teller {
   bool tells_text() const { return telling_ == Telling::Text; }
 
  private:
+  static Json error_of(const fidelity::ErrorRow& row) {
+    return {{"median", row.median}, {"p95", row.p95}, {"worst", row.worst}};
+  }
+
   static void event(const Json& what) { print_line(what.dump()); }
 
   Telling telling_;
@@ -140,9 +164,42 @@ std::optional<SiteCounts> finished_part(const Workspace& space, Teller& teller) 
   return counts;
 }
 
+/// What one stage computes, however its sites are chosen.
+struct Campaign {
+  Curves curves;
+  fem::CampaignReport report;
+  std::vector<std::pair<std::string, std::string>> facts;
+};
+
+Campaign press_all(const Body& body, const fem::CampaignSettings& settings) {
+  Campaign campaign;
+  campaign.curves = fem::run_campaign(body, settings, campaign.report);
+  return campaign;
+}
+
+Campaign press_by_need(const Workspace& space, const Body& body,
+                       const fem::CampaignSettings& settings, const std::string& key,
+                       Teller& teller) {
+  AdaptiveCampaign adaptive = sample_adaptively(
+      space, body, settings, key, [&](const SamplingRound& round) { teller.round(round); });
+  if (teller.tells_text())
+    say("  {}{}",
+        adaptive.end == SamplingEnd::ToleranceMet ? "" : "WARNING: ", words(adaptive.end));
+  return {std::move(adaptive.curves), std::move(adaptive.report), std::move(adaptive.facts)};
+}
+
+/// Each round waits for all sites of the one before.
+void require_whole(const Workspace& space) {
+  if (space.shard.count == 1 || !is_adaptive(space)) return;
+  throw Error(ErrorKind::Configuration, "--shard",
+              "adaptive sampling chooses sites by the results of others and cannot be divided",
+              "leave --shard out, or set sampling.method = \"spacing\"");
+}
+
 }  // namespace
 
 SiteCounts run_precompute(const Workspace& space, Telling telling) {
+  require_whole(space);
   const Body body = read_input(space.body(), "mesh", read_body);
   prepare_output(space.out);
   Teller teller(telling);
@@ -151,8 +208,8 @@ SiteCounts run_precompute(const Workspace& space, Telling telling) {
   fem::CampaignSettings settings = campaign_settings(space);
   settings.sites = sites_of_shard(body, space.shard);
 
-  SiteJournal journal(space.journal(), {campaign_key(space, body_sha256),
-                                        static_cast<std::int64_t>(settings.sites.size())});
+  const std::string key = campaign_key(space, body_sha256);
+  SiteJournal journal(space.journal(), {key, static_cast<std::int64_t>(settings.sites.size())});
   teller.journal(journal, space.journal());
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) {
@@ -161,13 +218,16 @@ SiteCounts run_precompute(const Workspace& space, Telling telling) {
   };
   settings.progress = [&](const fem::CampaignProgress& p) { teller.progress(p); };
 
-  fem::CampaignReport report;
-  Curves curves = fem::run_campaign(body, settings, report);
+  auto [curves, report, facts] = is_adaptive(space)
+                                     ? press_by_need(space, body, settings, key, teller)
+                                     : press_all(body, settings);
   curves.body_sha256 = body_sha256;
-  append(curves.provenance, body.provenance,
-         make_stage_step(space, Stage::Precompute, facts_of(space, report, settings.known.size())));
+  const auto general = facts_of(space, report, settings.known.size());
+  facts.insert(facts.begin(), general.begin(), general.end());
+  append(curves.provenance, body.provenance, make_stage_step(space, Stage::Precompute, facts));
   write_curves(space.precomputed(), curves);
   journal.remove();
+  forget_held_out(space);
   const SiteCounts counts = count_sites(curves);
   teller.end(space.precomputed(), counts, report.seconds, report.cpu_seconds);
   if (teller.tells_text()) tell_failures(curves);

@@ -58,6 +58,10 @@ std::string stage_name(Stage stage) {
   return {};
 }
 
+bool is_adaptive(const Workspace& space) {
+  return space.c.sampling.method == "adaptive";
+}
+
 mesher::Settings mesh_settings(const Workspace& space) {
   const Case& c = space.c;
   mesher::Settings settings;
@@ -67,7 +71,8 @@ mesher::Settings mesh_settings(const Workspace& space) {
     settings.inclusions.push_back(surface_file(space, inclusion));
   }
   for (const auto& support : c.supports) settings.supports.push_back(support_of(space, support));
-  settings.patch_spacing = c.mesh.patch_spacing;
+  const bool all_nodes = c.sampling.method == "nodes";
+  settings.patch_spacing = all_nodes ? c.mesh.element_size : c.mesh.patch_spacing;
   settings.element_size = c.mesh.element_size;
   settings.interior_growth = c.mesh.interior_growth;
   settings.feature_angle = c.mesh.feature_angle * 180 / std::numbers::pi;
@@ -107,6 +112,7 @@ fitting::FitSettings fit_settings(const Workspace& space) {
   settings.absolute_tolerance = fit.absolute_tolerance;
   settings.max_knots = fit.max_knots;
   settings.fill_holes = fit.fill_holes;
+  settings.interpolate = is_adaptive(space);
   settings.kind = fit.responses == "coupled" ? ResponseKind::Coupled : ResponseKind::Decoupled;
   return settings;
 }
@@ -151,11 +157,15 @@ std::string stage_case(const Workspace& space, Stage stage) {
   switch (stage) {
     case Stage::Mesh:  // the tool and its depth: the mesher checks that the body is thick enough
       return resolved_sections(
-          space.c, {"", "surface", "inclusion", "mesh", "support", "tool", "indentation"});
-    case Stage::Precompute:
-      return resolved_sections(space.c, {"material", "tool", "indentation", "solver"});
+                 space.c, {"", "surface", "inclusion", "mesh", "support", "tool", "indentation"}) +
+             (space.c.sampling.method == "nodes" ? "every surface node\n" : "");
+    case Stage::Precompute:  // adaptive sampling judges what is fitted
+      return is_adaptive(space)
+                 ? resolved_sections(
+                       space.c, {"material", "tool", "indentation", "sampling", "solver", "fit"})
+                 : resolved_sections(space.c, {"material", "tool", "indentation", "solver"});
     case Stage::Fit:
-      return resolved_sections(space.c, {"fit"});
+      return resolved_sections(space.c, {"fit"}) + (is_adaptive(space) ? "interpolated\n" : "");
     case Stage::Certify:
       return resolved_sections(space.c, {"certify"});
   }

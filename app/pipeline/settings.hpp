@@ -17,6 +17,9 @@ enum class Stage { Mesh, Precompute, Fit, Certify };
 
 std::string stage_name(Stage stage);  ///< as in the provenance: "mesh", ...
 
+/// Whether only some sites are computed and the others interpolated.
+bool is_adaptive(const Workspace& space);
+
 mesher::Settings mesh_settings(const Workspace& space);
 fem::CampaignSettings campaign_settings(const Workspace& space);
 fitting::FitSettings fit_settings(const Workspace& space);

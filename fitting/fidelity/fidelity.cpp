@@ -273,7 +273,7 @@ Fidelity measure(const Library& library, const RenderedBody& body,
   rows.add(
       "anywhere, off node", "total", [&](const ComparedState& s) { return !points[s.point].node; },
       whole);
-  rows.add_parts("normal press, off node", is(PathKind::Normal, false), false);
+  rows.add_parts(kNormalOffNode, is(PathKind::Normal, false), false);
   rows.add_parts("normal press, at node", is(PathKind::Normal, true), false);
   rows.add_parts("oblique press, off node", is(PathKind::Lateral, false), true);
   rows.add_parts("oblique press, at node", is(PathKind::Lateral, true), true);

@@ -48,6 +48,9 @@ struct Fidelity {
   std::vector<std::string> left_out;  ///< presses that could not be used, and why
 };
 
+/// ErrorRow::what of the presses along the inward direction where no node is.
+inline constexpr const char* kNormalOffNode = "normal press, off node";
+
 /// Presses of the library at the points against direct solutions `direct` (its `vertex` counts the
 /// points; normal paths along the inward direction, lateral paths with the contact stuck).
 /// `sampled` are the curves that the library was fitted to: they separate what interpolation costs

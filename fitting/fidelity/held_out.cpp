@@ -27,6 +27,10 @@ bool has_responses(const Library& library, const Triangle& triangle) {
   });
 }
 
+bool is_computed(const Library& library, std::int32_t vertex) {
+  return library.responses[static_cast<std::size_t>(vertex)].status == ResponseStatus::Fitted;
+}
+
 HeldOutPoint point_of(const Library& library, std::size_t triangle, const Vec3& natural) {
   const Triangle& t = library.triangles[triangle];
   HeldOutPoint point{static_cast<std::int32_t>(triangle), natural, {}, {}, false, 0};
@@ -77,7 +81,8 @@ std::vector<HeldOutPoint> draw_points(const Library& library, int off_node, int 
   for (int tries = 0; tries < 100 * at_node && static_cast<int>(taken.size()) < at_node; ++tries) {
     const std::size_t m = usable[engine() % usable.size()];
     const std::size_t corner = engine() % 3;
-    if (!taken.insert(library.triangles[m][corner]).second) continue;
+    const std::int32_t vertex = library.triangles[m][corner];
+    if (!is_computed(library, vertex) || !taken.insert(vertex).second) continue;
     Vec3 natural{};
     natural[corner] = 1;
     points.push_back(point_of(library, m, natural));

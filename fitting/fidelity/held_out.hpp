@@ -20,8 +20,9 @@ struct HeldOutPoint {
 };
 
 /// `off_node` points drawn evenly over the area of the triangles that have responses at all three
-/// vertices, then up to `at_node` different vertices of such triangles. The same seed draws the
-/// same points. @throws Error(Configuration) when no triangle has responses.
+/// vertices, then up to `at_node` different vertices of such triangles whose responses were
+/// computed (Fitted). The same seed draws the same points. @throws Error(Configuration) when no
+/// triangle has responses.
 std::vector<HeldOutPoint> draw_points(const Library& library, int off_node, int at_node,
                                       std::uint32_t seed);
 

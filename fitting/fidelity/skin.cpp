@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fitting/fidelity/skin.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -43,6 +44,17 @@ double skin_beside(const Body& body, const Vec3& position, const Vec3& inward) {
                 "mesh the body again: its response surface is not that of its boundary");
   }
   return nearest;
+}
+
+std::vector<double> find_skin(const Body& body, std::vector<HeldOutPoint>& points) {
+  std::vector<double> distances;
+  for (HeldOutPoint& point : points) {
+    if (point.node) continue;
+    point.skin = skin_beside(body, point.position, point.inward);
+    distances.push_back(std::abs(point.skin));
+  }
+  std::sort(distances.begin(), distances.end());
+  return distances;
 }
 
 }  // namespace palpate::fidelity

@@ -2,6 +2,9 @@
 // Where the skin of the body lies beside the flat triangles that carry the responses.
 #pragma once
 
+#include <vector>
+
+#include "fitting/fidelity/held_out.hpp"
 #include "format/body.hpp"
 
 namespace palpate::fidelity {
@@ -11,5 +14,9 @@ namespace palpate::fidelity {
 /// lies below. Of several places the nearest at which the line enters the body. @throws
 /// Error(Geometry) when the line enters it nowhere.
 double skin_beside(const Body& body, const Vec3& position, const Vec3& inward);
+
+/// Sets HeldOutPoint::skin of the points that are at no node. @return how far the skin is from
+/// them, m, ascending. @throws as skin_beside.
+std::vector<double> find_skin(const Body& body, std::vector<HeldOutPoint>& points);
 
 }  // namespace palpate::fidelity

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/pipeline/adaptive.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <system_error>
+
+#include "app/pipeline/campaign_sites.hpp"
+#include "app/pipeline/settings.hpp"
+#include "fitting/fidelity/fidelity.hpp"
+#include "fitting/fidelity/skin.hpp"
+#include "fitting/sampling/site_choice.hpp"
+#include "format/sha256.hpp"
+#include "format/site_journal.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Not the seed of `palpate compare --fem`: what that judges stays unseen by the sampling as well.
+constexpr std::uint32_t kSeed = 20051031;
+
+constexpr std::size_t kFewestAdded = 8;    // sites of a round: each costs a factorization
+constexpr std::size_t kLeastGrowth = 4;    // a quarter as many again, at most half
+constexpr double kLeastTarget = 1.0 / 64;  // of the tolerance
+
+fs::path held_out_journal(const Workspace& space) {
+  return space.out / "held-out.journal";
+}
+
+/// Removed when done, also after an error: a file that only the runtime was to read.
+class PassingFile {
+ public:
+  explicit PassingFile(fs::path path) : path_(std::move(path)) {}
+  PassingFile(const PassingFile&) = delete;
+  PassingFile& operator=(const PassingFile&) = delete;
+  ~PassingFile() {
+    std::error_code none;
+    fs::remove(path_, none);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+/// Random points of the surface and the forces of direct presses there.
+class HeldOut {
+ public:
+  HeldOut(const Workspace& space, const Body& body, const Library& library,
+          fem::CampaignSettings settings, const std::string& key)
+      : space_(space), body_(body) {
+    points_ = fidelity::draw_points(library, space.c.sampling.held_out, 0, kSeed);
+    fidelity::find_skin(body, points_);
+    settings.sites.clear();
+    for (const fidelity::HeldOutPoint& p : points_)
+      settings.points.push_back({p.position + p.skin * p.inward, p.inward});
+    settings.indentation.held_depths.clear();  // sampling has no part in how directions couple
+    SiteJournal journal(held_out_journal(space),
+                        {sha256("held out\n" + key), static_cast<std::int64_t>(points_.size())});
+    settings.known = journal.found();
+    settings.finished = [&](const SiteCurves& site) { journal.append(site); };
+    settings.progress = nullptr;
+    direct_ = fem::run_campaign(body, settings, report_);
+  }
+
+  const fem::CampaignReport& report() const { return report_; }
+
+  void judge(const Library& library, const Curves& curves, SamplingRound& round) const {
+    const PassingFile file(space_.out / ".library.held-out.h5");
+    write_library(file.path(), library);
+    const fidelity::Fidelity result =
+        fidelity::measure(library, fidelity::RenderedBody(file.path()), points_, direct_, curves,
+                          {0.02, space_.c.certify.friction});
+    round.points_failed = result.left_out.size();
+    for (const fidelity::ErrorRow& row : result.rows) {
+      if (row.what != fidelity::kNormalOffNode) continue;
+      if (row.part == "normal") round.along = row;
+      if (row.part == "total") round.whole = row;
+    }
+  }
+
+ private:
+  const Workspace& space_;
+  const Body& body_;
+  std::vector<fidelity::HeldOutPoint> points_;
+  Curves direct_;
+  fem::CampaignReport report_;
+};
+
+/// Sites solved in this run or an interrupted one, by vertex: of the latter some are for later
+/// rounds.
+class KnownSites {
+ public:
+  explicit KnownSites(const std::vector<SiteCurves>& sites) { add(sites); }
+
+  void add(const std::vector<SiteCurves>& sites) {
+    for (const SiteCurves& site : sites) sites_.insert_or_assign(site.vertex, site);
+  }
+
+  std::vector<SiteCurves> among(const std::vector<std::int32_t>& vertices) const {
+    std::vector<SiteCurves> chosen;
+    for (const std::int32_t vertex : vertices) {
+      const auto found = sites_.find(vertex);
+      if (found != sites_.end()) chosen.push_back(found->second);
+    }
+    return chosen;
+  }
+
+ private:
+  std::map<std::int32_t, SiteCurves> sites_;
+};
+
+double p95_of(const std::vector<fitting::Miss>& misses) {
+  if (misses.empty()) return 0;
+  std::vector<double> relative;
+  for (const fitting::Miss& miss : misses) relative.push_back(miss.relative);
+  std::sort(relative.begin(), relative.end());
+  const double rank = std::ceil(0.95 * static_cast<double>(relative.size()));
+  return relative[static_cast<std::size_t>(rank) - 1];
+}
+
+/// Sites to add; the worst ones by a target that is lowered until there are enough of them, since
+/// the points held out say that the present one will not do.
+std::vector<std::int32_t> sites_to_add(const Workspace& space, const Body& body,
+                                       const std::vector<std::int32_t>& computed,
+                                       const Library& library) {
+  const SamplingSection& sampling = space.c.sampling;
+  const auto most_sites = static_cast<std::size_t>(sampling.most_sites);
+  if (computed.size() >= most_sites) return {};
+  const std::size_t fewest = std::max(kFewestAdded, computed.size() / kLeastGrowth);
+  const std::size_t most = std::min(2 * fewest, most_sites - computed.size());
+  std::vector<std::int32_t> sites;
+  for (double part = 1; part >= kLeastTarget && sites.size() < std::min(fewest, most); part /= 2)
+    sites = fitting::next_sites(body, computed, library, part * sampling.tolerance, most);
+  return sites;
+}
+
+std::string distribution(const fidelity::ErrorRow& row) {
+  return fmt::format("median {:.6g}, p95 {:.6g}, worst {:.6g}", row.median, row.p95, row.worst);
+}
+
+std::vector<std::pair<std::string, std::string>> facts_of(const SamplingRound& last,
+                                                          SamplingEnd end,
+                                                          const SamplingSection& sampling) {
+  return {{"sampling", "adaptive"},
+          {"sampling_rounds", std::to_string(last.number)},
+          {"sites_computed", fmt::format("{} of {}", last.sites, last.of_sites)},
+          {"held_out_points", std::to_string(sampling.held_out)},
+          {"held_out_points_failed", std::to_string(last.points_failed)},
+          {"held_out_states", std::to_string(last.along.states)},
+          {"held_out_tolerance", fmt::format("{:.6g}", sampling.tolerance)},
+          {"held_out_error_along_press", distribution(last.along)},
+          {"held_out_error_of_vector", distribution(last.whole)},
+          {"sampling_ended", words(end)}};
+}
+
+/// Twice as many sites have not made the error less by a tenth.
+bool no_longer_helps(const std::vector<SamplingRound>& rounds) {
+  const SamplingRound& last = rounds.back();
+  for (const SamplingRound& before : rounds)
+    if (last.sites >= 2 * before.sites && last.along.p95 > 0.9 * before.along.p95) return true;
+  return false;
+}
+
+/// Why to stop, if so.
+std::optional<SamplingEnd> end_of(const std::vector<SamplingRound>& rounds,
+                                  const std::vector<std::int32_t>& more,
+                                  const SamplingSection& sampling) {
+  const SamplingRound& last = rounds.back();
+  if (last.along.states > 0 && last.along.p95 <= sampling.tolerance)
+    return SamplingEnd::ToleranceMet;
+  if (last.sites == last.of_sites) return SamplingEnd::AllSites;
+  if (last.sites >= static_cast<std::size_t>(sampling.most_sites)) return SamplingEnd::MostSites;
+  if (more.empty() || no_longer_helps(rounds)) return SamplingEnd::NoLongerHelps;
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string words(SamplingEnd end) {
+  switch (end) {
+    case SamplingEnd::ToleranceMet:
+      return "the points held out are met within the tolerance";
+    case SamplingEnd::NoLongerHelps:
+      return "more sites no longer help: finer elements or patches might";
+    case SamplingEnd::AllSites:
+      return "every response point is a site: a finer mesh.patch_spacing offers more";
+    case SamplingEnd::MostSites:
+      return "sampling.most_sites is reached";
+  }
+  return {};
+}
+
+AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
+                                   fem::CampaignSettings settings, const std::string& key,
+                                   const std::function<void(const SamplingRound&)>& tell) {
+  const SamplingSection& sampling = space.c.sampling;
+  const std::size_t of_sites = sites_of(body).size();
+  KnownSites known(settings.known);
+  AdaptiveCampaign result;
+  std::optional<HeldOut> held_out;
+  std::vector<SamplingRound> rounds;
+  settings.sites = fitting::spread_sites(body, sampling.start_spacing);
+  double seconds = 0;
+  for (bool open = true; open;) {
+    settings.known = known.among(settings.sites);
+    result.report = {};
+    result.curves = fem::run_campaign(body, settings, result.report);
+    seconds += result.report.seconds;
+    known.add(result.curves.sites);
+    const Library library = fitting::fit(body, result.curves, fit_settings(space));
+    if (!held_out) held_out.emplace(space, body, library, settings, key);
+    rounds.push_back({static_cast<int>(rounds.size()) + 1,
+                      settings.sites.size(),
+                      of_sites,
+                      p95_of(fitting::leave_one_out(library)),
+                      {},
+                      {},
+                      0});
+    held_out->judge(library, result.curves, rounds.back());
+    tell(rounds.back());
+    const auto more = sites_to_add(space, body, settings.sites, library);
+    const auto end = end_of(rounds, more, sampling);
+    open = !end;
+    if (end) result.end = *end;
+    settings.sites.insert(settings.sites.end(), more.begin(), more.end());
+    std::sort(settings.sites.begin(), settings.sites.end());
+  }
+  result.report.seconds = seconds + held_out->report().seconds;
+  result.report.cpu_seconds += held_out->report().cpu_seconds;
+  result.facts = facts_of(rounds.back(), result.end, sampling);
+  return result;
+}
+
+void forget_held_out(const Workspace& space) {
+  std::error_code none;
+  fs::remove(held_out_journal(space), none);
+}
+
+}  // namespace palpate::app
