@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <map>
@@ -54,8 +55,8 @@ class PassingFile {
 class HeldOut {
  public:
   HeldOut(const Workspace& space, const Body& body, const Library& library,
-          fem::CampaignSettings settings, const std::string& key)
-      : space_(space), body_(body) {
+          fem::PreparedBody& prepared, fem::CampaignSettings settings, const std::string& key)
+      : space_(space) {
     points_ = fidelity::draw_points(library, space.c.sampling.held_out, 0, kSeed);
     fidelity::find_skin(body, points_);
     settings.sites.clear();
@@ -67,7 +68,7 @@ class HeldOut {
     settings.known = journal.found();
     settings.finished = [&](const SiteCurves& site) { journal.append(site); };
     settings.progress = nullptr;
-    direct_ = fem::run_campaign(body, settings, report_);
+    direct_ = prepared.run(settings, report_);
   }
 
   const fem::CampaignReport& report() const { return report_; }
@@ -88,7 +89,6 @@ class HeldOut {
 
  private:
   const Workspace& space_;
-  const Body& body_;
   std::vector<fidelity::HeldOutPoint> points_;
   Curves direct_;
   fem::CampaignReport report_;
@@ -208,15 +208,15 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
   std::optional<HeldOut> held_out;
   std::vector<SamplingRound> rounds;
   settings.sites = fitting::spread_sites(body, sampling.start_spacing);
-  double seconds = 0;
+  const auto start = std::chrono::steady_clock::now();
+  fem::PreparedBody prepared(body, settings);
   for (bool open = true; open;) {
     settings.known = known.among(settings.sites);
     result.report = {};
-    result.curves = fem::run_campaign(body, settings, result.report);
-    seconds += result.report.seconds;
+    result.curves = prepared.run(settings, result.report);
     known.add(result.curves.sites);
     const Library library = fitting::fit(body, result.curves, fit_settings(space));
-    if (!held_out) held_out.emplace(space, body, library, settings, key);
+    if (!held_out) held_out.emplace(space, body, library, prepared, settings, key);
     rounds.push_back({static_cast<int>(rounds.size()) + 1,
                       settings.sites.size(),
                       of_sites,
@@ -233,7 +233,8 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
     settings.sites.insert(settings.sites.end(), more.begin(), more.end());
     std::sort(settings.sites.begin(), settings.sites.end());
   }
-  result.report.seconds = seconds + held_out->report().seconds;
+  result.report.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result.report.cpu_seconds += held_out->report().cpu_seconds;
   result.facts = facts_of(rounds.back(), result.end, sampling);
   return result;

@@ -33,6 +33,19 @@ CampaignSettings quick() {
   return s;
 }
 
+void expect_same_bits(const SiteCurves& one, const SiteCurves& two) {
+  EXPECT_EQ(one.vertex, two.vertex);
+  ASSERT_EQ(one.paths.size(), two.paths.size());
+  for (std::size_t p = 0; p < one.paths.size(); ++p) {
+    ASSERT_EQ(one.paths[p].samples.size(), two.paths[p].samples.size());
+    for (std::size_t s = 0; s < one.paths[p].samples.size(); ++s) {
+      const auto &a = one.paths[p].samples[s], &b = two.paths[p].samples[s];
+      EXPECT_EQ(std::memcmp(&a.force, &b.force, sizeof a.force), 0);
+      EXPECT_EQ(a.strain_energy, b.strain_energy);
+    }
+  }
+}
+
 TEST(Campaign, GivesTheSameBitsWhateverTheNumberOfThreads) {
   const Body body = small_block();
   CampaignSettings settings = quick();
@@ -42,15 +55,24 @@ TEST(Campaign, GivesTheSameBitsWhateverTheNumberOfThreads) {
   const Curves two = run_campaign(body, settings, report);
   ASSERT_EQ(one.sites.size(), 9u);
   ASSERT_EQ(two.sites.size(), 9u);
-  for (std::size_t i = 0; i < one.sites.size(); ++i) {
-    EXPECT_EQ(one.sites[i].vertex, two.sites[i].vertex);
-    for (std::size_t p = 0; p < one.sites[i].paths.size(); ++p)
-      for (std::size_t s = 0; s < one.sites[i].paths[p].samples.size(); ++s) {
-        const auto &a = one.sites[i].paths[p].samples[s], &b = two.sites[i].paths[p].samples[s];
-        EXPECT_EQ(std::memcmp(&a.force, &b.force, sizeof a.force), 0);
-        EXPECT_EQ(a.strain_energy, b.strain_energy);
-      }
-  }
+  for (std::size_t i = 0; i < one.sites.size(); ++i) expect_same_bits(one.sites[i], two.sites[i]);
+}
+
+TEST(Campaign, CampaignsOnAPreparedBodyKnowNothingOfOneAnother) {
+  const Body body = small_block();
+  const CampaignSettings settings = quick();
+  CampaignSettings some = settings, points = settings;
+  const auto& is_site = body.response.is_site;
+  const auto first = std::find(is_site.begin(), is_site.end(), std::uint8_t{1});
+  some.sites = {static_cast<std::int32_t>(first - is_site.begin())};
+  points.points = {{{0.002, 0.001, 0}, {0, 0, -1}}};
+  points.indentation.held_depths.clear();
+  CampaignReport report;
+  PreparedBody prepared(body, settings);
+  prepared.run(points, report);
+  const Curves after = prepared.run(some, report);
+  ASSERT_EQ(after.sites.size(), 1u);
+  expect_same_bits(after.sites[0], run_campaign(body, some, report).sites[0]);
 }
 
 TEST(Campaign, SymmetricSitesRespondAlike) {
