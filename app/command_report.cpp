@@ -8,9 +8,18 @@
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/report/report.hpp"
+#include "format/sha256.hpp"
 
 namespace palpate::app {
 namespace {
+
+std::string text_if_there(const std::filesystem::path& file) {
+  if (!std::filesystem::exists(file)) return {};
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
 
 int report(const CaseOptions& options) {
   const Workspace space = open_workspace(options);
@@ -25,13 +34,9 @@ int report(const CaseOptions& options) {
   input.library = &library;
   input.recording = recording ? &*recording : nullptr;
   input.library_bytes = std::filesystem::file_size(space.library());
-  const std::filesystem::path comparison = space.out / "comparison.json";
-  if (std::filesystem::exists(comparison)) {
-    std::ifstream stream(comparison, std::ios::binary);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    input.comparison = text.str();
-  }
+  input.library_sha256 = sha256_of_file(space.library());
+  input.comparison = text_if_there(space.out / "comparison.json");
+  input.fidelity = text_if_there(space.out / "fidelity.json");
   write_report(input, space.report());
   say("report: {}{}", space.report().string(),
       recording ? "" : " (without a session: run `palpate simulate` first to see one)");

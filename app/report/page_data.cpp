@@ -280,6 +280,7 @@ json page_data(const ReportInput& input) {
           {"balance", balance_data(*input.curves)},
           {"certificate", certificate_data(library)},
           {"comparison", comparison_data(input.comparison, library.responses.size())},
+          {"fidelity", fidelity_data(input.fidelity, input.library_sha256)},
           {"session", input.recording == nullptr ? json() : session_data(*input.recording)},
           {"provenance", provenance_data(input)}};
 }

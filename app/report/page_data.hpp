@@ -16,6 +16,9 @@ nlohmann::json session_data(const Recording& recording);
 nlohmann::json certificate_data(const Library& library);
 /// @throws Error(Configuration) when the text is no comparison of these vertices.
 nlohmann::json comparison_data(const std::string& text, std::size_t vertices);
+/// What a judgement says of the library of this digest; {"other_library": true} when it says
+/// nothing of it. @throws Error(Configuration) when the text is no judgement.
+nlohmann::json fidelity_data(const std::string& text, const std::string& library_sha256);
 nlohmann::json provenance_data(const ReportInput& input);
 /// The [[material]] tables of a resolved case, each a list of [key, value], as written there.
 nlohmann::json materials(const std::string& resolved_case);

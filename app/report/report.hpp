@@ -25,6 +25,10 @@ struct ReportInput {
   /// Text of comparison.json (`palpate compare`); empty: there is none. Its vertices are those of
   /// the library.
   std::string comparison{};
+  /// Text of fidelity.json (`palpate compare --fem`); empty: there is none. Shown when it judges
+  /// the library of this digest.
+  std::string fidelity{};
+  std::string library_sha256{};
 };
 
 /// Write one self-contained HTML file: no network, no WebGL, opens from disk in any browser with

@@ -124,6 +124,23 @@ TEST(Case, ResolvedCaseKeepsOddNumbersAndTexts) {
   EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c) << resolved_toml(c);
 }
 
+std::string with_sampling(const std::string& keys) {
+  return replaced(kGood, "[indentation]", "[sampling]\n" + keys + "\n[indentation]");
+}
+
+TEST(Case, KeysOfAdaptiveSamplingBelongToIt) {
+  EXPECT_EQ(parse_case(kGood, "ball.toml").sampling.method, "spacing");
+  const Case c = parse_case(
+      with_sampling("method = \"adaptive\"\nstart_spacing = \"2 cm\"\ntolerance = 0.08"), "a");
+  EXPECT_DOUBLE_EQ(c.sampling.start_spacing, 0.02);
+  EXPECT_DOUBLE_EQ(c.sampling.tolerance, 0.08);
+  EXPECT_EQ(c.sampling.held_out, SamplingSection{}.held_out);
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
+  EXPECT_ANY_THROW(parse_case(with_sampling("tolerance = 0.08"), "a"));
+  EXPECT_ANY_THROW(parse_case(with_sampling("method = \"adaptive\"\ntolerance = 5"), "a"));
+  EXPECT_ANY_THROW(parse_case(with_sampling("method = \"adaptive\"\nheld_out = 3"), "a"));
+}
+
 std::string with_tool(const std::string& tool) {
   return replaced(kGood, "[indentation]", "[tool]\n" + tool + "\n[indentation]");
 }

@@ -108,13 +108,15 @@ class ReportPage(unittest.TestCase):
         cls.unbounded = drawn(path / "unbounded.html")
         cls.bare = drawn(path / "bare.html")
         cls.compared = drawn(path / "compared.html")
+        cls.judged = drawn(path / "judged.html")
+        cls.judged_other = drawn(path / "judged-other.html")
 
     @classmethod
     def tearDownClass(cls):
         cls.folder.cleanup()
 
     def test_both_pages_are_drawn_without_an_error(self):
-        for page in (self.full, self.unbounded, self.bare, self.compared):
+        for page in (self.full, self.unbounded, self.bare, self.compared, self.judged, self.judged_other):
             self.assertEqual(page.root.get("data-errors"), "0", page.text[-500:])
             self.assertEqual(page.root.get("data-ready"), "ok")
 
@@ -155,6 +157,17 @@ class ReportPage(unittest.TestCase):
             self.assertNotIn(slip, self.compared.text)
         self.assertIn("Error against the reference", self.compared.text)
         self.assertNotIn("Error against the reference", self.full.text)
+
+    def test_the_fidelity_is_shown_where_it_is_known(self):
+        self.assertNotIn("fidelity", self.full.by_id)
+        said = self.judged.by_id["fidelity"]
+        for words in ("87 of 1340 sites were computed in 4 rounds", "95 % below 4.6\u00a0%, worst 31\u00a0%",
+                      "2 random points and 1 nodes", "20.0\u00a0mN", "normal press, off node", "4.9\u00a0%"):
+            self.assertIn(words, said)
+        other = self.judged_other.by_id["fidelity"]
+        self.assertIn("87 of 1340", other)
+        self.assertIn("of another library", other)
+        self.assertNotIn("4.9\u00a0%", other)
 
     def test_each_device_gets_a_verdict(self):
         data = json.loads(self.full.by_id["data"])

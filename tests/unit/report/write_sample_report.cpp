@@ -63,6 +63,36 @@ std::string comparison_of(std::int32_t vertex, const std::string& model) {
       .dump();
 }
 
+std::string judgement_of(const std::string& library) {
+  using nlohmann::json;
+  const json row{{"what", "normal press, off node"},
+                 {"part", "total"},
+                 {"states", 40},
+                 {"median", 0.021},
+                 {"p95", 0.049},
+                 {"worst", 0.123}};
+  return json({{"kind", "palpate.fidelity"},
+               {"floor_N", 0.02},
+               {"friction", 0.3},
+               {"points", {{{"at_node", false}}, {{"at_node", false}}, {{"at_node", true}}}},
+               {"libraries", {{{"sha256", library}, {"rows", {row}}}}}})
+      .dump();
+}
+
+palpate::ProvenanceStep sampling_step() {
+  palpate::ProvenanceStep step;
+  step.stage = "precompute";
+  step.utc = "2026-01-01T00:00:00Z";
+  step.facts = {{"sampling", "adaptive"},
+                {"sampling_rounds", "4"},
+                {"sites_computed", "87 of 1340"},
+                {"held_out_points", "40"},
+                {"held_out_error_along_press", "median 0.018, p95 0.046, worst 0.31"},
+                {"held_out_error_of_vector", "median 0.02, p95 0.05, worst 0.32"},
+                {"sampling_ended", "the points held out are met within the tolerance"}};
+  return step;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -80,6 +110,16 @@ int main(int argc, char** argv) {
   input.comparison = comparison_of(all.curves.sites.front().vertex, "<b>curves</b>.h5");
   palpate::write_report(input, folder / "compared.html");
   input.comparison.clear();
+
+  const palpate::Provenance before = all.curves.provenance;
+  all.curves.provenance.steps.push_back(sampling_step());
+  input.library_sha256 = "cafe";
+  input.fidelity = judgement_of(input.library_sha256);
+  palpate::write_report(input, folder / "judged.html");
+  input.fidelity = judgement_of("beef");
+  palpate::write_report(input, folder / "judged-other.html");
+  input.fidelity.clear();
+  all.curves.provenance = before;
 
   // A rim too sharp for the slide to be bounded: on one triangle, and so for the body.
   auto& certificate = all.library.certificate;

@@ -8,6 +8,7 @@ import { bodySection } from './sections/body.js';
 import { certificateSection } from './sections/certificate.js';
 import { comparisonSection } from './sections/comparison.js';
 import { Curves } from './sections/curves.js';
+import { fidelitySection } from './sections/fidelity.js';
 import { fitSection } from './sections/fit.js';
 import { headerSection } from './sections/header.js';
 import { recordSection } from './sections/record.js';
@@ -39,6 +40,7 @@ try {
   place('header', () => headerSection(data, nodes));
   place('body', () => bodySection(data, nodes, new Curves(data, nodes)));
   place('fit', () => fitSection(data));
+  place('fidelity', () => fidelitySection(data) ?? '');
   if (data.comparison) place('comparison', () => comparisonSection(data));
   place('session', () => sessionSection(data));
   place('certificate', () => certificateSection(data));

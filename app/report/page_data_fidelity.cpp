@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/report/page_data.hpp"
+#include "format/error.hpp"
+
+namespace palpate::report {
+namespace {
+
+using nlohmann::json;
+
+[[noreturn]] void refuse(const char* problem) {
+  throw Error(ErrorKind::Configuration, "fidelity.json", problem,
+              "make it again with `palpate compare --fem`, or remove it from the folder");
+}
+
+bool is_row(const json& row) {
+  return row.is_object() && row.value("what", json()).is_string() &&
+         row.value("part", json()).is_string() && row.value("states", json()).is_number() &&
+         row.value("median", json()).is_number() && row.value("p95", json()).is_number() &&
+         row.value("worst", json()).is_number();
+}
+
+std::size_t points_at_nodes(const json& points) {
+  std::size_t count = 0;
+  for (const json& point : points) count += point.value("at_node", false) ? 1 : 0;
+  return count;
+}
+
+}  // namespace
+
+json fidelity_data(const std::string& text, const std::string& library_sha256) {
+  if (text.empty()) return nullptr;
+  const json judged = json::parse(text, nullptr, false);
+  if (judged.is_discarded() || !judged.is_object() ||
+      judged.value("kind", json()) != "palpate.fidelity" || !judged.contains("points") ||
+      !judged.contains("libraries") || !judged["libraries"].is_array()) {
+    refuse("it is not a judgement that this version reads");
+  }
+  for (const json& library : judged["libraries"]) {
+    if (library.value("sha256", "") != library_sha256) continue;
+    const json rows = library.value("rows", json::array());
+    for (const json& row : rows)
+      if (!is_row(row)) refuse("a row of it is not complete");
+    const std::size_t at_nodes = points_at_nodes(judged["points"]);
+    return {{"floor", judged.value("floor_N", 0.0)},
+            {"friction", judged.value("friction", 0.0)},
+            {"off_node", judged["points"].size() - at_nodes},
+            {"at_node", at_nodes},
+            {"rows", rows}};
+  }
+  return {{"other_library", true}};
+}
+
+}  // namespace palpate::report
