@@ -199,9 +199,9 @@ TEST(SiteChoice, LinearStiffnessIsInterpolatedAndAsksForNothingMore) {
 }
 
 TEST(SiteChoice, LeavingOutTellsTheErrorOfTheNeighbours) {
-  const Body body = plate(12);
+  const Body body = plate(9);
   const Field bump = [](const Vec3& x) {
-    const Vec3 r = x - Vec3{0.03, 0.03, 0};
+    const Vec3 r = x - Vec3{0.02, 0.02, 0};
     return 1 + 2 * std::exp(-dot(r, r) / (2 * 0.006 * 0.006));
   };
   const auto sites = spread_sites(body, 0.012);
@@ -209,7 +209,8 @@ TEST(SiteChoice, LeavingOutTellsTheErrorOfTheNeighbours) {
   const auto misses = leave_one_out(library);
   ASSERT_EQ(misses.size(), sites.size());
   // Independently: without its curves the site is interpolated by the fit.
-  for (const Miss& miss : misses) {
+  for (std::size_t i = 0; i < misses.size(); i += 5) {
+    const Miss& miss = misses[i];
     auto others = sites;
     others.erase(std::find(others.begin(), others.end(), miss.vertex));
     const Library without = fit(body, press_all(body, others, bump), interpolating());
