@@ -2,14 +2,14 @@
 // What a site costs, on blocks of tissue pressed by a sphere. Each part is one run on one machine;
 // only ratios within a part mean anything.
 //
-// Usage: bench_precompute newton [8|26]   against one site after another by Newton's method with a
-// Cholesky
-//                                         factorization of the whole body: same body, sites,
-//                                         increments, predictor, tolerance and BLAS kernel, one
-//                                         thread
-//        bench_precompute growth [CELLS...]  time and memory against the size of the mesh, cells an
-//        edge bench_precompute sites           time against the number of sites bench_precompute
-//        threads         one thread against two
+// Usage: bench_precompute PART
+//   newton [8|26]       against one site after another by Newton's method with a Cholesky
+//                       factorization of the whole body: same body, sites, increments, predictor,
+//                       tolerance and BLAS kernel, one thread
+//   growth [CELLS...]   time and memory against the size of the mesh, cells an edge
+//   elements [CELLS...] constant, nodal and no pressures
+//   sites               time against the number of sites
+//   threads             one thread against two
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fem/cholesky.hpp"
@@ -170,9 +171,42 @@ void against_threads() {
       one, two, one / two, set_up, (one - set_up) / (two - set_up));
 }
 
+/// What a pressure costs: the same sites with each kind of it.
+void elements(const std::vector<int>& cells) {
+  std::printf(
+      "normal path to 4 mm in 10 increments, nu = 0.49, 16 sites, one thread\n"
+      "| nodes | element | processor time, a site | over constant pressures | mean force "
+      "|\n|---|---|---|---|---|\n");
+  for (const int each : cells) {
+    const Body body = block(each);
+    const int per_edge = 2 * each + 1;
+    double constant = 0;
+    for (const auto& [dilatation, name] :
+         {std::pair{Dilatation::Mean, "tet10-pressure"},
+          std::pair{Dilatation::Nodal, "tet10-nodal-pressure"},
+          std::pair{Dilatation::Pointwise, "tet10-displacement"}}) {
+      CampaignSettings s = settings(0.49);
+      s.dilatation = dilatation;
+      s.sites = inner_sites(body, 16);
+      CampaignReport report;
+      const Curves curves = run_campaign(body, s, report);
+      double force = 0;
+      for (const SiteCurves& site : curves.sites)
+        force += last_force(site) / static_cast<double>(curves.sites.size());
+      const double each_site = report.cpu_seconds / static_cast<double>(curves.sites.size());
+      if (dilatation == Dilatation::Mean) constant = each_site;
+      std::printf("| %d | %s | %.3f s | %.2f | %.4f N |\n", per_edge * per_edge * (each + 1), name,
+                  each_site, each_site / constant, force);
+      std::fflush(stdout);
+    }
+  }
+}
+
 int usage() {
-  std::fputs("usage: bench_precompute newton [8|26] | growth [CELLS...] | sites | threads\n",
-             stderr);
+  std::fputs(
+      "usage: bench_precompute newton [8|26] | growth [CELLS...] | elements [CELLS...] | sites | "
+      "threads\n",
+      stderr);
   return 2;
 }
 
@@ -183,6 +217,8 @@ int run(const std::string& part, const std::vector<int>& numbers) {
     against_newton(cells.empty() ? std::vector<int>{12, 18} : cells);
   } else if (part == "growth") {
     growth(numbers.empty() ? std::vector<int>{8, 12, 18, 24, 28} : numbers);
+  } else if (part == "elements") {
+    elements(numbers.empty() ? std::vector<int>{8, 12} : numbers);
   } else if (part == "sites") {
     against_sites();
   } else if (part == "threads") {
