@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -56,20 +57,22 @@ Eigen::MatrixXd gradient_norm(const SolidModel& model) {
   return A;
 }
 
-/// The inf-sup constant: min over pressures p of max over u of (p, div u)/(|p| |grad u|). Its
-/// square is the smallest of the eigenvalues of B^T M^-1 B u = beta^2 A u that belong to a
-/// pressure: the `pressures` largest.
-double inf_sup(Dilatation dilatation, int cells) {
-  const Body body = cube(cells);
+/// Of a body at rest, ascending: beta^2 of B^T M^-1 B u = beta^2 A u, one for every pressure. beta
+/// is max over u of (p, div u)/(|p| |grad u|) for the pressures p that diagonalize it.
+Eigen::VectorXd hold_of_pressures(const Body& body, Dilatation dilatation) {
   const SolidModel model(body, {NeoHookean::from_moduli(1, 1)}, dilatation);
   const Eigen::LLT<Eigen::MatrixXd> A(gradient_norm(model));
   const Eigen::MatrixXd half = A.matrixL().solve(bulk_stiffness(body, dilatation, model));
   const Eigen::MatrixXd C = A.matrixL().solve(half.transpose());
   const Eigen::VectorXd values =
       Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(C, Eigen::EigenvaluesOnly).eigenvalues();
-  const auto pressures = static_cast<Eigen::Index>(
-      dilatation == Dilatation::Mean ? body.tetrahedra.size() : body.nodes.size());
-  return std::sqrt(std::max(0.0, values[values.size() - pressures]));
+  return values.tail(static_cast<Eigen::Index>(
+      dilatation == Dilatation::Mean ? body.tetrahedra.size() : body.nodes.size()));
+}
+
+/// The inf-sup constant: the least of them.
+double inf_sup(Dilatation dilatation, int cells) {
+  return std::sqrt(std::max(0.0, hold_of_pressures(cube(cells), dilatation)[0]));
 }
 
 TEST(InfSup, ElementConstantPressuresLoseTheirHoldAndNodalOnesDoNot) {
