@@ -9,6 +9,7 @@
 #include "app/pipeline/settings.hpp"
 #include "app/vtkhdf/grids.hpp"
 #include "fem/pressure_smoothness.hpp"
+#include "fem/stuck_patch.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 
@@ -41,25 +42,58 @@ int export_library(const Workspace& space) {
 struct SiteOptions {
   std::int32_t vertex = -1;
   bool calculix = false, febio = false;
+  bool patch = false;       ///< moved together, instead of the tool
   double patch_radius = 0;  ///< mm; 0: that of the tool
 };
 
-std::string patch_csv(const fem::PatchCurve& curve) {
-  std::string out = "depth_m,force_x_N,force_y_N,force_z_N,strain_energy_J\n";
+/// What palpate computes for a deck.
+struct OwnSolution {
+  std::string csv;
+  std::string what;
+  double depth = 0, force = 0;  ///< at the end
+  std::string reason;           ///< why it ends early
+};
+
+OwnSolution press_patch(const Body& body, const fem::CampaignSettings& settings,
+                        std::int32_t vertex, double radius, std::size_t nodes) {
+  const fem::PatchCurve curve = fem::press_patch(body, settings, vertex, radius);
+  OwnSolution own{"depth_m,force_x_N,force_y_N,force_z_N,strain_energy_J\n",
+                  fmt::format("{} nodes moved together", nodes), 0, 0, curve.reason};
   for (const fem::PatchForce& s : curve.samples) {
-    out += fmt::format("{},{},{},{},{}\n", s.depth, s.force[0], s.force[1], s.force[2],
-                       s.strain_energy);
+    own.csv += fmt::format("{},{},{},{},{}\n", s.depth, s.force[0], s.force[1], s.force[2],
+                           s.strain_energy);
+    own.depth = s.depth;
+    own.force = norm(s.force);
   }
-  return out;
+  return own;
 }
 
-/// Decks of a stuck patch for other programs, beside what palpate computes for the same patch.
+OwnSolution press_tool(const Body& body, fem::CampaignSettings settings, std::int32_t vertex) {
+  settings.sites = {vertex};
+  settings.indentation.held_depths.clear();
+  fem::CampaignReport report;
+  const Curves curves = fem::run_campaign(body, settings, report);
+  const SiteCurves& site = curves.sites.front();
+  OwnSolution own{"depth_m,force_x_N,force_y_N,force_z_N,strain_energy_J,penetration_m\n",
+                  name_of(settings.indentation.tool.shape) + " pressed in", 0, 0, site.reason};
+  for (const CurveSample& s : site.paths.front().samples) {
+    own.csv += fmt::format("{},{},{},{},{},{}\n", s.displacement, s.force[0], s.force[1],
+                           s.force[2], s.strain_energy, s.penetration);
+    own.depth = s.displacement;
+    own.force = norm(s.force);
+  }
+  return own;
+}
+
+/// Decks of the site for other programs, beside what palpate computes for the same.
 int export_decks(const Workspace& space, const SiteOptions& options) {
   const Body body = read_body(space.body());
   const fem::CampaignSettings settings = campaign_settings(space);
+  const bool patch = options.patch || options.patch_radius > 0;
   const double radius =
       options.patch_radius > 0 ? 1e-3 * options.patch_radius : settings.indentation.tool.radius;
-  const Deck deck = make_deck(body, settings, options.vertex, radius);
+  const Deck deck = patch ? make_patch_deck(body, settings, options.vertex, radius)
+                          : make_tool_deck(body, settings, options.vertex);
   const std::string stem = fmt::format("site-{}", options.vertex);
   const auto save = [&](const std::string& text, const std::string& name) {
     write_file_crash_safely(space.out / name, text);
@@ -68,14 +102,15 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
   // Both are made before either is written: a law that one of them lacks leaves nothing half done.
   const std::string calculix = options.calculix ? calculix_deck(deck) : std::string();
   const std::string febio = options.febio ? febio_deck(deck) : std::string();
-  const fem::PatchCurve curve = fem::press_patch(body, settings, options.vertex, radius);
+  const OwnSolution own =
+      patch ? press_patch(body, settings, options.vertex, radius, deck.patch.size())
+            : press_tool(body, settings, options.vertex);
   if (!calculix.empty()) save(calculix, stem + ".inp");
   if (!febio.empty()) save(febio, stem + ".feb");
-  save(patch_csv(curve), stem + "-patch.csv");
-  const fem::PatchForce& end = curve.samples.back();
-  say("site {}: {} nodes moved together by {:.2f} mm, force {:.4f} N by {}", options.vertex,
-      deck.patch.nodes.size(), 1e3 * end.depth, norm(end.force), space.c.solver.element);
-  if (!curve.reason.empty()) say("the curve ends early: {}", curve.reason);
+  save(own.csv, stem + (patch ? "-patch.csv" : "-tool.csv"));
+  say("site {}: {} by {:.2f} mm, force {:.4f} N by {}", options.vertex, own.what, 1e3 * own.depth,
+      own.force, space.c.solver.element);
+  if (!own.reason.empty()) say("the curve ends early: {}", own.reason);
   return kExitDone;
 }
 
@@ -153,8 +188,10 @@ void add_export_command(CLI::App& root, Action& action) {
                });
   site->add_option("--vertex", options->vertex, "Response vertex, as in curves.csv")->required();
   site->add_flag("--calculix", options->calculix,
-                 "Write site-N.inp for CalculiX: the surface nodes under the tool moved together");
+                 "Write site-N.inp for CalculiX: the tool pressed in without friction");
   site->add_flag("--febio", options->febio, "Write site-N.feb for FEBio 4");
+  site->add_flag("--patch", options->patch,
+                 "In these, move the surface nodes under the tool together instead: no contact");
   site->add_option("--patch-radius-mm", options->patch_radius,
                    "Radius of those nodes about the site (default: that of the tool)")
       ->check(CLI::PositiveNumber);

@@ -38,6 +38,8 @@ class ToolContact {
 
   void move_to(const Tool& tool);
 
+  const std::vector<Facet>& facets() const { return facets_; }
+
   double energy(const Displacement& u) const;
   /// Adds d(energy)/du to the unknowns of `model`, any model of the same mesh.
   void add_forces(const SolidModel& model, const Displacement& u, Eigen::VectorXd& f) const;

@@ -200,6 +200,41 @@ PressPoint CampaignContext::place(std::int32_t vertex) const {
 
 namespace {
 
+/// The facets that the tool may meet at a place.
+ToolContact contact_at(const CampaignContext& context, const Eigen::Vector3d& X) {
+  const IndentationSettings& settings = context.indentation;
+  const double reach = settings.tool.extent() + settings.tool.radius + settings.lateral_travel;
+  return {context.model.mesh(), X, reach, context.contact_stiffness};
+}
+
+/// The tool with its tip at a place.
+Tool tool_over(const IndentationSettings& settings, const PressPoint& place) {
+  const Eigen::Vector3d inward = to_eigen(place.inward);
+  const auto [first, second] = tangents(inward);
+  return {settings.tool, to_eigen(place.position), inward,
+          std::cos(settings.tool_azimuth) * first + std::sin(settings.tool_azimuth) * second};
+}
+
+/// On a concave surface the tool meets the body before its tip does: back off to first touch.
+Tool drawn_back(const ToolContact& contact, Tool tool) {
+  for (int i = 0; i < 60; ++i) {
+    const double depth = contact.rest_penetration(tool);
+    if (depth <= 1e-7 * tool.geometry.radius) break;
+    tool.tip -= depth * tool.inward;
+  }
+  return tool;
+}
+
+}  // namespace
+
+FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex) {
+  const PressPoint place = context.place(vertex);
+  const ToolContact contact = contact_at(context, to_eigen(place.position));
+  return {drawn_back(contact, tool_over(context.indentation, place)), contact.facets()};
+}
+
+namespace {
+
 /// The solvers of one site: the shared factor first, the whole body by Newton where that fails.
 class SiteEquilibrium {
  public:
@@ -271,26 +306,16 @@ struct SiteSolver::Site {
   Site(const CampaignContext& context, const PressPoint& place, SolveBatch::Member* batch)
       : X(to_eigen(place.position)),
         inward(to_eigen(place.inward)),
-        reach(context.indentation.tool.extent() + context.indentation.tool.radius +
-              context.indentation.lateral_travel),
-        contact(context.model.mesh(), X, reach, context.contact_stiffness),
+        contact(contact_at(context, X)),
+        touching(drawn_back(contact, tool_over(context.indentation, place))),
         equilibrium(context, X, batch),
-        watch(context.model.mesh(), X, kWatched * context.indentation.tool.extent()) {
-    // On a concave surface the tool meets the body before its tip does: back off to first touch.
-    for (int i = 0; i < 60; ++i) {
-      const double depth = contact.rest_penetration(tool_at(context, 0));
-      if (depth <= 1e-7 * context.indentation.tool.radius) break;
-      back_off += depth;
-    }
-  }
+        watch(context.model.mesh(), X, kWatched * context.indentation.tool.extent()) {}
 
   /// The tool at a depth below first touch, moved sideways by `aside`.
-  Tool tool_at(const CampaignContext& context, double depth,
-               const Eigen::Vector3d& aside = Eigen::Vector3d::Zero()) const {
-    const auto [first, second] = tangents(inward);
-    const double azimuth = context.indentation.tool_azimuth;
-    return {context.indentation.tool, X + (depth - back_off) * inward + aside, inward,
-            std::cos(azimuth) * first + std::sin(azimuth) * second};
+  Tool tool_at(double depth, const Eigen::Vector3d& aside = Eigen::Vector3d::Zero()) const {
+    Tool tool = touching;
+    tool.tip += depth * inward + aside;
+    return tool;
   }
 
   /// State at a held depth.
@@ -301,9 +326,8 @@ struct SiteSolver::Site {
   };
 
   Eigen::Vector3d X, inward;
-  double reach;
-  double back_off = 0;
   ToolContact contact;
+  Tool touching;
   SiteEquilibrium equilibrium;
   SelfContact watch;
   std::map<double, Held> held;
@@ -448,7 +472,7 @@ void fill_work(CurvePath& path, double start) {
 void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves) {
   const bool stuck = context_.indentation.friction == ToolFriction::Stuck;
   PathDriver driver(context_, site.contact, site.equilibrium, site.watch,
-                    [&](double depth) { return site.tool_at(context_, depth); });
+                    [&](double depth) { return site.tool_at(depth); });
   CurvePath path;
   path.kind = PathKind::Normal;
   path.direction = to_vec3(site.inward);
@@ -460,7 +484,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
   history.add(0, u);
   double from = 0;
   if (stuck) {
-    site.contact.move_to(site.tool_at(context_, 0));
+    site.contact.move_to(site.tool_at(0));
     site.contact.bond(u, kTouching * context_.indentation.tool.radius);
   }
   for (const double depth : normal_increments(context_.indentation, stops)) {
@@ -496,7 +520,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
   Displacement u = held.u;
   contact.bond(u);
   PathDriver driver(context_, contact, site.equilibrium, site.watch,
-                    [&](double s) { return site.tool_at(context_, held_depth, s * direction); });
+                    [&](double s) { return site.tool_at(held_depth, s * direction); });
   CurvePath path;
   path.kind = PathKind::Lateral;
   path.held_depth = held_depth;

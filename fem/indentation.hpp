@@ -44,6 +44,13 @@ SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site
 /// Memory of a site under way, at most.
 double bytes_of_site(const CampaignContext& context, std::int32_t vertex);
 
+/// Where a normal path begins: the tool as it first touches the body, and the facets it may meet.
+struct FirstTouch {
+  Tool tool;
+  std::vector<Facet> facets;
+};
+FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex);
+
 /// The tool held at a depth and moved sideways, the contact stuck.
 struct LateralPlan {
   double held_depth = 0;        ///< m

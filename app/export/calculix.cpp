@@ -69,11 +69,14 @@ class Writer {
 
   std::string write() {
     add("*HEADING\n{}\n** SI units: m, N, Pa\n", deck_.title);
-    nodes();
+    nodes("ALL", deck_.mesh.X, 0);
     for (std::size_t region = 0; region < deck_.laws.size(); ++region) elements(region);
     node_set("HELD", held());
-    node_set("PATCH", deck_.patch.nodes);
-    step();
+    if (deck_.tool)
+      tool(*deck_.tool);
+    else
+      node_set("PATCH", deck_.patch);
+    step(deck_.tool ? "TOOL" : "PATCH");
     return std::move(out_);
   }
 
@@ -83,16 +86,21 @@ class Writer {
     fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
   }
 
-  void nodes() {
-    const auto& X = deck_.patch.mesh.X;
-    add("*NODE, NSET=ALL\n");
+  void nodes(const char* set, const Eigen::Matrix3Xd& X, Eigen::Index before) {
+    add("*NODE, NSET={}\n", set);
     for (Eigen::Index i = 0; i < X.cols(); ++i) {
-      add("{},{:.12e},{:.12e},{:.12e}\n", i + 1, X(0, i), X(1, i), X(2, i));
+      add("{},{:.12e},{:.12e},{:.12e}\n", before + i + 1, X(0, i), X(1, i), X(2, i));
     }
   }
 
+  void element(std::size_t number, const fem::Tetrahedron10& nodes, Eigen::Index nodes_before) {
+    add("{}", number);
+    for (const std::int32_t node : nodes) add(",{}", nodes_before + node + 1);
+    add("\n");
+  }
+
   void elements(std::size_t region) {
-    const auto& mesh = deck_.patch.mesh;
+    const auto& mesh = deck_.mesh;
     const std::string card = law_card(deck_.laws[region]);
     if (card.empty()) {
       throw Error(ErrorKind::Configuration,
@@ -106,9 +114,7 @@ class Writer {
         deck_.laws[region].law, region + 1);
     for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
       if (mesh.region[e] != static_cast<std::int32_t>(region)) continue;
-      add("{}", e + 1);
-      for (const std::int32_t node : mesh.tetrahedra[e]) add(",{}", node + 1);
-      add("\n");
+      element(e + 1, mesh.tetrahedra[e], 0);
     }
     add("*MATERIAL, NAME=LAW{0}\n{1}*SOLID SECTION, ELSET=REGION{0}, MATERIAL=LAW{0}\n", region + 1,
         card);
@@ -116,7 +122,7 @@ class Writer {
 
   std::vector<std::int32_t> held() const {
     std::vector<std::int32_t> nodes;
-    const auto& mesh = deck_.patch.mesh;
+    const auto& mesh = deck_.mesh;
     for (std::size_t node = 0; node < mesh.held.size(); ++node) {
       if (mesh.held[node]) nodes.push_back(static_cast<std::int32_t>(node));
     }
@@ -128,17 +134,37 @@ class Writer {
     for (const std::int32_t node : nodes) add("{},\n", node + 1);
   }
 
-  void step() {
+  /// The tool beside the body, every node of it moved alike, and its contact.
+  void tool(const PressingTool& tool) {
+    const Eigen::Index nodes_before = deck_.mesh.X.cols();
+    nodes("TOOL", tool.mesh.X, nodes_before);
+    add("*ELEMENT, TYPE=C3D10, ELSET=TOOL\n");
+    for (std::size_t e = 0; e < tool.mesh.tetrahedra.size(); ++e) {
+      element(deck_.mesh.tetrahedra.size() + e + 1, tool.mesh.tetrahedra[e], nodes_before);
+    }
+    // Rigid by its motion: what it is made of does not matter.
+    add("*MATERIAL, NAME=TOOL\n*ELASTIC\n1.e6,0.\n*SOLID SECTION, ELSET=TOOL, MATERIAL=TOOL\n");
+    add("*SURFACE, NAME=SKIN, TYPE=ELEMENT\n");
+    for (const ElementSide& s : tool.skin) add("{},S{}\n", s.element + 1, s.side + 1);
+    add("*SURFACE, NAME=TOOL, TYPE=ELEMENT\nTOOL,S1\n"
+        "*SURFACE INTERACTION, NAME=CONTACT\n"
+        "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{:.10g}\n"
+        "*CONTACT PAIR, INTERACTION=CONTACT, TYPE=SURFACE TO SURFACE\nSKIN,TOOL\n",
+        tool.stiffness);
+  }
+
+  /// `moved`: the node set that is moved.
+  void step(const char* moved) {
     const double first = 1.0 / deck_.increments;
     add("*BOUNDARY\nHELD,1,3\n*STEP, NLGEOM, INC=10000\n*STATIC\n{0:.10g},1.,{1:.3g},{0:.10g}\n",
         first, 1e-4 * first);
     // The default lets the forces be off by half a percent.
     add("*CONTROLS, PARAMETERS=FIELD\n1.e-5,1.e-3\n*BOUNDARY\n");
     for (int i = 0; i < 3; ++i) {
-      add("PATCH,{0},{0},{1:.12e}\n", i + 1,
+      add("{0},{1},{1},{2:.12e}\n", moved, i + 1,
           deck_.depth * deck_.direction[static_cast<std::size_t>(i)]);
     }
-    add("*NODE PRINT, NSET=PATCH, TOTALS=ONLY\nRF\n*END STEP\n");
+    add("*NODE PRINT, NSET={}, TOTALS=ONLY\nRF\n*END STEP\n", moved);
   }
 
   const Deck& deck_;

@@ -4,17 +4,46 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
+#include "fem/at.hpp"
+#include "fem/indentation.hpp"
+#include "fem/stuck_patch.hpp"
 #include "format/error.hpp"
 
 namespace palpate::app {
 
-Deck make_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
-               double radius) {
+namespace {
+
+using fem::at;
+using Corners = std::array<std::int32_t, 3>;
+
+Corners sorted(Corners corners) {
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+std::vector<ElementSide> sides_of(const fem::QuadraticMesh& mesh,
+                                  const std::vector<fem::Facet>& facets) {
+  std::map<Corners, ElementSide> wanted;
+  for (const fem::Facet& f : facets) wanted[sorted({f[0], f[1], f[2]})] = {-1, -1};
+  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
+    const fem::Tetrahedron10& nodes = mesh.tetrahedra[e];
+    for (std::size_t side = 0; side < kTetSides.size(); ++side) {
+      const auto [a, b, c] = kTetSides[side];
+      const auto found = wanted.find(sorted({nodes[a], nodes[b], nodes[c]}));
+      if (found != wanted.end())
+        found->second = {static_cast<std::int32_t>(e), static_cast<std::int32_t>(side)};
+    }
+  }
+  std::vector<ElementSide> sides;
+  for (const auto& [corners, side] : wanted) sides.push_back(side);
+  return sides;
+}
+
+/// All but what presses.
+Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex) {
   Deck deck;
-  deck.patch = fem::stuck_patch(body, vertex, radius);
-  deck.title = fmt::format("{}: site {}, surface nodes within {:.6g} m moved inward by {:.6g} m",
-                           body.name, vertex, radius, settings.indentation.depth);
   deck.region_names = body.region_names;
   for (const std::string& region : body.region_names) {
     const auto found =
@@ -27,9 +56,62 @@ Deck make_deck(const Body& body, const fem::CampaignSettings& settings, std::int
     fem::check_law(found->law, "material of region '" + region + "'");
     deck.laws.push_back(found->law);
   }
-  deck.direction = body.response.inward[static_cast<std::size_t>(vertex)];
+  deck.direction = body.response.inward[at(vertex)];
   deck.depth = settings.indentation.depth;
   deck.increments = settings.indentation.increments;
+  return deck;
+}
+
+void check_pressing(const Body& body, const fem::IndentationSettings& press, std::int32_t vertex) {
+  const auto count = static_cast<std::int32_t>(body.response.node.size());
+  if (vertex < 0 || vertex >= count || body.response.is_site[at(vertex)] == 0)
+    throw Error(ErrorKind::Configuration, body.name,
+                fmt::format("response vertex {} is not a site", vertex),
+                fmt::format("choose a vertex outside the supports, from 0 to {}", count - 1));
+  fem::check_tool(press.tool);
+  if (press.friction == fem::ToolFriction::Stuck || (fem::Tool{press.tool}).has_sharp_edge())
+    throw Error(ErrorKind::Configuration, "tool",
+                "it is stuck or has a sharp edge, which other programs hold to the surface in ways "
+                "of their own",
+                "export a patch (--patch), or a tool without friction and with a rounded edge");
+}
+
+}  // namespace
+
+fem::Facet facet_of(const fem::Tetrahedron10& element, std::int32_t side) {
+  // kTetSides go around as seen from within.
+  const auto [c, b, a] = kTetSides[at(side)];
+  const auto middle = [&](std::size_t i, std::size_t j) {
+    for (std::size_t e = 0; e < fem::kTetEdges.size(); ++e)
+      if (std::minmax(fem::kTetEdges[e][0], fem::kTetEdges[e][1]) == std::minmax(i, j))
+        return element[4 + e];
+    return std::int32_t{-1};
+  };
+  return {element[a], element[b], element[c], middle(a, b), middle(b, c), middle(c, a)};
+}
+
+Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
+                     double radius) {
+  fem::StuckPatch patch = fem::stuck_patch(body, vertex, radius);
+  Deck deck = body_deck(body, settings, vertex);
+  deck.title = fmt::format("{}: site {}, surface nodes within {:.6g} m moved inward by {:.6g} m",
+                           body.name, vertex, radius, deck.depth);
+  deck.mesh = std::move(patch.mesh);
+  deck.patch = std::move(patch.nodes);
+  return deck;
+}
+
+Deck make_tool_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex) {
+  check_pressing(body, settings.indentation, vertex);
+  Deck deck = body_deck(body, settings, vertex);
+  const fem::ToolGeometry& tool = settings.indentation.tool;
+  deck.title = fmt::format("{}: site {}, {} of radius {:.6g} m pressed in by {:.6g} m", body.name,
+                           vertex, name_of(tool.shape), tool.radius, deck.depth);
+  const fem::CampaignContext context(body, settings, fem::Engine::Direct);
+  const fem::FirstTouch touch = fem::first_touch(context, vertex);
+  deck.mesh = context.model.mesh();
+  deck.tool = PressingTool{fem::make_tool_mesh(touch.tool, 2 * deck.depth + tool.radius),
+                           sides_of(deck.mesh, touch.facets), context.contact_stiffness.contact};
   return deck;
 }
 

@@ -1,38 +1,71 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One site as an input file of another finite element program, in SI units: mesh, laws, supports
-// and a patch of the surface that is moved inward in increments.
+// One site as an input file of another finite element program, in SI units: mesh, laws, supports,
+// and the tool that is pressed in by increments, or a patch of the surface that is moved instead.
 #pragma once
 
+#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "fem/campaign.hpp"
-#include "fem/stuck_patch.hpp"
+#include "fem/quadratic_mesh.hpp"
+#include "fem/tool_mesh.hpp"
 
 namespace palpate::app {
 
+/// A facet of the body: an element and one of its four sides. Side 0 has the corners 0, 1, 2 of the
+/// element, then 0, 3, 1; 1, 3, 2; 2, 3, 0.
+struct ElementSide {
+  std::int32_t element, side;
+};
+inline constexpr std::array<std::array<std::size_t, 3>, 4> kTetSides{
+    {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
+
+/// The six nodes of a side, as seen from outside.
+fem::Facet facet_of(const fem::Tetrahedron10& element, std::int32_t side);
+
+/// A rigid tool without friction, at its first touch.
+struct PressingTool {
+  fem::ToolMesh mesh;
+  std::vector<ElementSide> skin;  ///< of the body, where it may meet the tool
+  double stiffness = 0;           ///< N/m^3, pressure over penetration
+};
+
 struct Deck {
   std::string title;
-  fem::StuckPatch patch;
+  fem::QuadraticMesh mesh;          ///< `held`: by the supports alone
+  std::vector<std::int32_t> patch;  ///< nodes moved together; none where a tool is pressed
+  std::optional<PressingTool> tool;
   std::vector<std::string> region_names;
   std::vector<fem::LawConstants> laws;  ///< of each region
-  Vec3 direction{};                     ///< of the motion of the patch, unit
+  Vec3 direction{};                     ///< of the motion, unit
   double depth = 0;                     ///< m, at the end
   int increments = 1;
 };
 
+/// The surface nodes within `radius` of a site moved inward together: no contact, which any program
+/// can repeat node by node.
 /// @throws Error(Configuration) as fem::stuck_patch and fem::run_campaign.
-Deck make_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
-               double radius);
+Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
+                     double radius);
 
-/// Input of CalculiX: C3D10 elements, *HYPERELASTIC; the forces of the patch in each increment
-/// go to its .dat file. Its volumetric energy is kappa/2 (J - 1)^2, which agrees with that of
-/// palpate to second order in J - 1 (but for Arruda-Boyce, where it is the same).
+/// The tool of the settings pressed in along the inward direction, with the contact stiffness of
+/// the campaign.
+/// @throws Error(Configuration) for a vertex that is no site, a stuck tool or one with a sharp
+/// edge, as fem::run_campaign.
+Deck make_tool_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex);
+
+/// Input of CalculiX: C3D10 elements, *HYPERELASTIC, face-to-face contact; the forces of the tool
+/// or the patch in each increment go to its .dat file. Its volumetric energy is kappa/2 (J - 1)^2,
+/// which agrees with that of palpate to second order in J - 1 (but for Arruda-Boyce, where it is
+/// the same).
 /// @throws Error(Configuration) naming the region and the law where CalculiX has none like it.
 std::string calculix_deck(const Deck& deck);
 
 /// Input of FEBio, file format 4.0: tet10 elements of four points, uncoupled laws with the same
-/// volumetric energy as here; the nodal forces of the patch go to a text file.
+/// volumetric energy as here, sliding-elastic contact; the forces of the tool or the nodes of the
+/// patch go to a text file.
 /// @throws Error(Configuration) naming the region and the law where FEBio has none like it.
 std::string febio_deck(const Deck& deck);
 

@@ -2,6 +2,7 @@
 // Sections and parameters as in the FEBio user's manual, file format 4.0.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iterator>
 #include <utility>
 
@@ -75,11 +76,12 @@ class Writer {
     mesh();
     domains();
     boundary();
+    if (deck_.tool) contact(*deck_.tool);
     add("<LoadData>\n<load_controller id=\"1\" name=\"ramp\" type=\"loadcurve\">\n"
         "<interpolate>LINEAR</interpolate>\n<points><pt>0,0</pt><pt>1,1</pt></points>\n"
         "</load_controller>\n</LoadData>\n");
-    add("<Output>\n<logfile>\n<node_data data=\"Rx;Ry;Rz\" file=\"patch_forces.txt\" "
-        "node_set=\"patch\"/>\n</logfile>\n</Output>\n</febio_spec>\n");
+    output();
+    add("</febio_spec>\n");
     return std::move(out_);
   }
 
@@ -128,6 +130,11 @@ class Writer {
       if (c.law == "holzapfel-gasser-ogden") material_axes(c.fibres);
       add("</material>\n");
     }
+    if (deck_.tool) {
+      add("<material id=\"{}\" name=\"{}\" type=\"rigid "
+          "body\">\n<density>1</density>\n</material>\n",
+          tool_material(), tool_name());
+    }
     add("</Material>\n");
   }
 
@@ -146,24 +153,15 @@ class Writer {
   }
 
   void mesh() {
-    const auto& mesh = deck_.patch.mesh;
-    add("<Mesh>\n<Nodes name=\"body\">\n");
-    for (Eigen::Index i = 0; i < mesh.X.cols(); ++i) {
-      add("<node id=\"{}\">{:.12e},{:.12e},{:.12e}</node>\n", i + 1, mesh.X(0, i), mesh.X(1, i),
-          mesh.X(2, i));
-    }
-    add("</Nodes>\n");
+    const auto& mesh = deck_.mesh;
+    add("<Mesh>\n");
+    nodes("body", mesh.X, 0);
+    if (deck_.tool) nodes("tool", deck_.tool->mesh.X, mesh.X.cols());
     for (std::size_t region = 0; region < deck_.laws.size(); ++region) {
       add("<Elements type=\"tet10\" name=\"{}\">\n", part(region));
       for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e) {
         if (mesh.region[e] != static_cast<std::int32_t>(region)) continue;
-        add("<elem id=\"{}\">", e + 1);
-        const char* between = "";
-        for (const std::int32_t node : mesh.tetrahedra[e]) {
-          add("{}{}", between, node + 1);
-          between = ",";
-        }
-        add("</elem>\n");
+        element("elem", e + 1, mesh.tetrahedra[e], 0);
       }
       add("</Elements>\n");
     }
@@ -171,9 +169,58 @@ class Writer {
     for (std::size_t node = 0; node < mesh.held.size(); ++node) {
       if (mesh.held[node]) held.push_back(static_cast<std::int32_t>(node));
     }
+    if (deck_.tool) tool_elements(*deck_.tool);
     node_set("held", held);
-    node_set("patch", deck_.patch.nodes);
+    if (deck_.tool) {
+      surfaces(*deck_.tool);
+    } else {
+      node_set("patch", deck_.patch);
+    }
     add("</Mesh>\n");
+  }
+
+  void nodes(const char* name, const Eigen::Matrix3Xd& X, Eigen::Index before) {
+    add("<Nodes name=\"{}\">\n", name);
+    for (Eigen::Index i = 0; i < X.cols(); ++i) {
+      add("<node id=\"{}\">{:.12e},{:.12e},{:.12e}</node>\n", before + i + 1, X(0, i), X(1, i),
+          X(2, i));
+    }
+    add("</Nodes>\n");
+  }
+
+  /// An element or a facet.
+  template <class Nodes>
+  void element(const char* tag, std::size_t number, const Nodes& nodes, Eigen::Index before) {
+    add("<{} id=\"{}\">", tag, number);
+    const char* between = "";
+    for (const std::int32_t node : nodes) {
+      add("{}{}", between, before + node + 1);
+      between = ",";
+    }
+    add("</{}>\n", tag);
+  }
+
+  void tool_elements(const PressingTool& tool) {
+    add("<Elements type=\"tet10\" name=\"tool\">\n");
+    for (std::size_t e = 0; e < tool.mesh.tetrahedra.size(); ++e) {
+      element("elem", deck_.mesh.tetrahedra.size() + e + 1, tool.mesh.tetrahedra[e],
+              deck_.mesh.X.cols());
+    }
+    add("</Elements>\n");
+  }
+
+  void surfaces(const PressingTool& tool) {
+    add("<Surface name=\"skin\">\n");
+    for (std::size_t i = 0; i < tool.skin.size(); ++i) {
+      const auto [e, side] = tool.skin[i];
+      element("tri6", i + 1, facet_of(deck_.mesh.tetrahedra[static_cast<std::size_t>(e)], side), 0);
+    }
+    add("</Surface>\n<Surface name=\"tool_surface\">\n");
+    for (std::size_t e = 0; e < tool.mesh.tetrahedra.size(); ++e) {
+      element("tri6", e + 1, facet_of(tool.mesh.tetrahedra[e], 0), deck_.mesh.X.cols());
+    }
+    add("</Surface>\n<SurfacePair name=\"contact\">\n<primary>skin</primary>\n"
+        "<secondary>tool_surface</secondary>\n</SurfacePair>\n");
   }
 
   static std::string part(std::size_t region) { return fmt::format("region_{}", region + 1); }
@@ -194,18 +241,57 @@ class Writer {
       add("<SolidDomain name=\"{}\" mat=\"{}\" elem_type=\"TET10G4\" type=\"elastic-solid\"/>\n",
           part(region), escape_markup(deck_.region_names[region]));
     }
+    if (deck_.tool) add("<SolidDomain name=\"tool\" mat=\"{}\"/>\n", tool_name());
     add("</MeshDomains>\n");
   }
 
   void boundary() {
     add("<Boundary>\n<bc name=\"support\" node_set=\"held\" type=\"zero displacement\">\n"
         "<x_dof>1</x_dof>\n<y_dof>1</y_dof>\n<z_dof>1</z_dof>\n</bc>\n");
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t i = 0; i < 3 && !deck_.tool; ++i) {
       add("<bc name=\"press_{0}\" node_set=\"patch\" type=\"prescribed displacement\">\n"
           "<dof>{0}</dof>\n<value lc=\"1\">{1:.12e}</value>\n<relative>0</relative>\n</bc>\n",
           "xyz"[i], deck_.depth * deck_.direction[i]);
     }
     add("</Boundary>\n");
+  }
+
+  /// The tool is moved without turning; its contact has the penalty of palpate.
+  void contact(const PressingTool& tool) {
+    add("<Rigid>\n<rigid_bc name=\"upright\" "
+        "type=\"rigid_fixed\">\n<rb>{}</rb>\n<Ru_dof>1</Ru_dof>\n"
+        "<Rv_dof>1</Rv_dof>\n<Rw_dof>1</Rw_dof>\n</rigid_bc>\n",
+        tool_name());
+    for (std::size_t i = 0; i < 3; ++i) {
+      add("<rigid_bc name=\"press_{0}\" type=\"rigid_displacement\">\n<rb>{1}</rb>\n"
+          "<dof>{0}</dof>\n<value lc=\"1\">{2:.12e}</value>\n<relative>0</relative>\n</rigid_bc>\n",
+          "xyz"[i], tool_name(), deck_.depth * deck_.direction[i]);
+    }
+    add("</Rigid>\n<Contact>\n<contact name=\"tool\" type=\"sliding-elastic\" "
+        "surface_pair=\"contact\">\n<laugon>0</laugon>\n<penalty>{:.10g}</penalty>\n"
+        "<auto_penalty>0</auto_penalty>\n<two_pass>0</two_pass>\n"
+        "<symmetric_stiffness>1</symmetric_stiffness>\n<fric_coeff>0</fric_coeff>\n</contact>\n"
+        "</Contact>\n",
+        tool.stiffness);
+  }
+
+  void output() {
+    add("<Output>\n<logfile>\n");
+    if (deck_.tool) {
+      add("<rigid_body_data data=\"Fx;Fy;Fz\" file=\"tool_forces.txt\">{}</rigid_body_data>\n",
+          tool_material());
+    } else {
+      add("<node_data data=\"Rx;Ry;Rz\" file=\"patch_forces.txt\" node_set=\"patch\"/>\n");
+    }
+    add("</logfile>\n</Output>\n");
+  }
+
+  std::size_t tool_material() const { return deck_.laws.size() + 1; }
+  /// Unlike that of any region.
+  std::string tool_name() const {
+    std::string name = "rigid_tool";
+    while (std::count(deck_.region_names.begin(), deck_.region_names.end(), name) > 0) name += "_";
+    return name;
   }
 
   const Deck& deck_;

@@ -97,12 +97,12 @@ Foreign run_calculix(const app::Deck& deck) {
 }
 
 /// Of a disc as large as the facets that the patch moves as a whole.
-double equal_radius(const fem::StuckPatch& patch) {
-  std::vector<bool> moved(static_cast<std::size_t>(patch.mesh.nodes()), false);
-  for (const std::int32_t node : patch.nodes) moved[static_cast<std::size_t>(node)] = true;
+double equal_radius(const app::Deck& deck) {
+  std::vector<bool> moved(static_cast<std::size_t>(deck.mesh.nodes()), false);
+  for (const std::int32_t node : deck.patch) moved[static_cast<std::size_t>(node)] = true;
   double area = 0;
-  for (const fem::Facet& facet : patch.mesh.facets) {
-    const auto& X = patch.mesh.X;
+  for (const fem::Facet& facet : deck.mesh.facets) {
+    const auto& X = deck.mesh.X;
     if (std::any_of(facet.begin(), facet.end(),
                     [&](int node) { return !moved[static_cast<std::size_t>(node)]; }))
       continue;
@@ -118,8 +118,8 @@ void compare(double fine) {
   fem::CampaignSettings s = settings();
   s.sites = inner_sites(body);
   const app::Deck deck =
-      app::make_deck(body, s, s.sites[s.sites.size() / 2], s.indentation.tool.radius);
-  s.indentation.tool.radius = equal_radius(deck.patch);
+      app::make_patch_deck(body, s, s.sites[s.sites.size() / 2], s.indentation.tool.radius);
+  s.indentation.tool.radius = equal_radius(deck);
   fem::CampaignReport report;
   const Curves curves = fem::run_campaign(body, s, report);
   const std::size_t middle = s.sites.size() / 2;

@@ -7,6 +7,7 @@ what is asserted are laws that hold whatever the numbers.
 """
 import csv
 import json
+import math
 import subprocess
 import sys
 import tempfile
@@ -210,6 +211,20 @@ class Pipeline(unittest.TestCase):
             self.assertGreater(vtk_points(vtkHDFReader, self.out / file), 0)
         self.run_ok("export", "site", self.case, "--out", self.out, "--vertex", site)
         self.assertGreater(vtk_points(vtkHDFReader, self.out / f"site-{site}.vtkhdf"), 0)
+
+    def test_a_site_is_exported_for_other_solvers(self):
+        site = next(iter(rows_of_export(self)))["vertex"]
+        decks = ("export", "site", self.case, "--out", self.out, "--vertex", site, "--calculix", "--febio")
+        forces = {}
+        for what, options in (("tool", ()), ("patch", ("--patch",))):
+            self.run_ok(*decks, *options)
+            moved = what.upper() + ",3,3,"
+            self.assertIn(moved, (self.out / f"site-{site}.inp").read_text(encoding="utf-8"))
+            self.assertIn("</febio_spec>", (self.out / f"site-{site}.feb").read_text(encoding="utf-8"))
+            rows = (self.out / f"site-{site}-{what}.csv").read_text(encoding="utf-8").splitlines()
+            forces[what] = math.hypot(*(float(f) for f in rows[-1].split(",")[1:4]))
+        # What is moved as a whole resists more than what a sphere touches.
+        self.assertGreater(forces["patch"], forces["tool"])
 
     def test_provenance_names_every_stage_and_input(self):
         steps = self.summary("library.h5")["provenance"]

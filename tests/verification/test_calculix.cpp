@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The same mesh, element, laws and boundary conditions in CalculiX: a stuck patch pressed into a
-// block, by the deck that `palpate export site --calculix` writes.
+// The same mesh, element, laws and boundary conditions in CalculiX, by the decks that `palpate
+// export site --calculix` writes: a stuck patch, and rigid tools in contact, pressed into a block.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -11,6 +11,8 @@
 
 #include "app/export/deck.hpp"
 #include "fem/at.hpp"
+#include "fem/indentation.hpp"
+#include "fem/stuck_patch.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
 #include "tests/verification/record.hpp"
@@ -64,7 +66,7 @@ std::vector<Vec3> run_calculix(const Deck& deck) {
   const fs::path folder = name;
   std::ofstream(folder / "site.inp") << calculix_deck(deck);
   const std::string command =
-      "cd " + folder.string() + " && OMP_NUM_THREADS=1 timeout 300 ccx site > site.log 2>&1";
+      "cd " + folder.string() + " && OMP_NUM_THREADS=1 timeout 550 ccx site > site.log 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0);
   std::ifstream printed(folder / "site.dat");
   std::vector<Vec3> forces;
@@ -80,9 +82,9 @@ std::vector<Vec3> run_calculix(const Deck& deck) {
 
 constexpr auto kProblem = "CalculiX on the same mesh and element: a stuck patch of 5 mm, 3 mm deep";
 
-bool skipped() {
+bool skipped(const char* problem = kProblem) {
   if (has_calculix()) return false;
-  test::record_skipped(kProblem, "ccx is not installed (package calculix-ccx)");
+  test::record_skipped(problem, "ccx is not installed (package calculix-ccx)");
   return true;
 }
 
@@ -92,7 +94,7 @@ void compare(const std::string& what, const Body& body, const fem::CampaignSetti
   const std::int32_t vertex = middle(body);
   const auto ours = fem::press_patch(body, settings, vertex, kPatchRadius);
   EXPECT_EQ(ours.reason, "");
-  const auto theirs = run_calculix(make_deck(body, settings, vertex, kPatchRadius));
+  const auto theirs = run_calculix(make_patch_deck(body, settings, vertex, kPatchRadius));
   EXPECT_EQ(theirs.size() + 1, ours.samples.size());
   double worst = 0;
   for (std::size_t i = 0; i < std::min(theirs.size(), ours.samples.size() - 1); ++i) {
@@ -160,6 +162,80 @@ TEST(Calculix, SharesTheLockingOfPureDisplacementsAndThePressureElementDoesNot) 
   std::printf("nu = 0.49: displacements alone %.5f N, element-constant pressure %.5f N: %+.1f %%\n",
               displacement, pressure, 100 * (pressure / displacement - 1));
   EXPECT_LT(pressure, 0.98 * displacement);
+}
+
+constexpr auto kToolProblem =
+    "CalculiX with the tool: pressed 2 mm without friction, nu = 0.45, elements of 3 mm";
+constexpr auto kDeck = "[C] CalculiX, deck of palpate export, the same contact stiffness";
+
+/// 30 x 30 x 15 mm, base held, finer towards the middle of its top.
+Body graded_block() {
+  const auto across = test::graded(0.015, 0.006, 0.003, 1.7);
+  std::vector<double> down;
+  for (const double x : across)
+    if (x <= 0) down.push_back(x);
+  return test::make_block(across, across, down);
+}
+
+fem::CampaignSettings pressing(const fem::ToolGeometry& tool) {
+  // The law whose volumetric energy is the same in both programs: what is left is the contact.
+  auto settings = settings_of({"arruda-boyce", {{"mu", 3.5e3}, {"lambda_m", 2}, {"poisson", 0.45}}},
+                              fem::Dilatation::Pointwise);
+  settings.materials = {{"tissue", settings.materials.front().law}};
+  settings.indentation.tool = tool;
+  settings.indentation.depth = 0.002;
+  settings.indentation.increments = 2;
+  settings.indentation.lateral_travel = 0;
+  return settings;
+}
+
+double own_force(const Body& body, const fem::CampaignSettings& settings) {
+  const fem::CampaignContext context(body, settings, fem::Engine::SharedFactor);
+  const SiteCurves curves = fem::solve_site(context, middle(body), nullptr);
+  EXPECT_EQ(curves.status, SiteStatus::Complete) << curves.reason;
+  return -curves.paths.front().samples.back().force[2];
+}
+
+double their_force(const Deck& deck) {
+  const auto forces = run_calculix(deck);
+  EXPECT_EQ(forces.size(), static_cast<std::size_t>(deck.increments));
+  return forces.empty() ? 0 : -forces.back()[2];
+}
+
+/// Both have the pressure eps times the penetration, of the same eps, at points of the facets: of
+/// palpate at twelve, of CalculiX at seven of every piece into which the facets of the tool cut
+/// them. Where a facet is touched in part, or the pressure peaks within one, that makes a
+/// difference.
+void compare_tool(const std::string& what, const fem::ToolGeometry& tool, double bound) {
+  if (skipped(kToolProblem)) GTEST_SKIP() << "ccx is not installed (package calculix-ccx)";
+  const Body body = graded_block();
+  const auto settings = pressing(tool);
+  test::verify({kToolProblem, what, "N", own_force(body, settings),
+                their_force(make_tool_deck(body, settings, middle(body))), kDeck, bound});
+}
+
+/// The pressure peaks over the edge, which is a third of an element here.
+TEST(CalculixTool, AgreesOnADisc) {
+  compare_tool("disc of 5 mm, edge of 1 mm", {fem::ToolShape::Disc, 0.005, 0.001, 0}, 0.025);
+}
+
+TEST(CalculixTool, AgreesOnALyingCylinder) {
+  compare_tool("cylinder of 3 mm, 8 mm long", {fem::ToolShape::Cylinder, 0.003, 0, 0.008}, 0.01);
+}
+
+/// The force falls short by a part that goes like one over the stiffness: a tenth of it makes nine
+/// times what is left at the whole.
+TEST(CalculixTool, AgreesOnASphereWhateverTheContactStiffness) {
+  if (skipped(kToolProblem)) GTEST_SKIP() << "ccx is not installed (package calculix-ccx)";
+  const Body body = graded_block();
+  const auto settings = pressing({fem::ToolShape::Sphere, 0.005, 0, 0});
+  Deck deck = make_tool_deck(body, settings, middle(body));
+  const double force = their_force(deck);
+  test::verify(
+      {kToolProblem, "sphere of 5 mm", "N", own_force(body, settings), force, kDeck, 0.01});
+  deck.tool->stiffness *= 0.1;
+  test::verify({kToolProblem, "sphere of 5 mm, CalculiX with a tenth of the contact stiffness", "N",
+                their_force(deck), force, "[C] CalculiX with all of it", 0.01});
 }
 
 }  // namespace

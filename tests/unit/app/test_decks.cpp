@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Input files of other programs, by their structure: tags that close, counts, numbers that refer to
-// what exists. That CalculiX computes the same is shown by the verification tests.
+// what exists; the tool as a mesh. That CalculiX computes the same is shown by the verification
+// tests.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+
+#include <map>
 #include <regex>
 #include <set>
 
 #include "app/export/deck.hpp"
+#include "fem/at.hpp"
+#include "fem/tool_mesh.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
@@ -37,7 +43,7 @@ Deck deck_of(const fem::LawConstants& law) {
   fem::CampaignSettings settings;
   settings.materials = {{"tissue", law}};
   settings.indentation.depth = 0.002;
-  return make_deck(body, settings, middle(body), 0.0052);
+  return make_patch_deck(body, settings, middle(body), 0.0052);
 }
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -72,23 +78,23 @@ TEST(Decks, MoveTheSurfaceNodesUnderThePatch) {
   // the grid, two or so across a cell are longer than the patch but join nodes of it.
   std::set<std::int32_t> corners;
   const auto grid = static_cast<std::int32_t>(block().nodes.size());
-  for (const std::int32_t node : deck.patch.nodes) {
-    EXPECT_NEAR(deck.patch.mesh.X(2, node), 0.01, 1e-12);
+  for (const std::int32_t node : deck.patch) {
+    EXPECT_NEAR(deck.mesh.X(2, node), 0.01, 1e-12);
     if (node < grid) corners.insert(node);
   }
   EXPECT_EQ(corners.size(), 5u);
-  EXPECT_GE(deck.patch.nodes.size(), 9u);
+  EXPECT_GE(deck.patch.size(), 9u);
 }
 
 TEST(Decks, RefuseAPatchOnASupportOrWithoutSize) {
   const Body body = block();
   fem::CampaignSettings settings;
   settings.materials = {{"tissue", {10e3, 0.45}}};
-  EXPECT_THROW(make_deck(body, settings, middle(body), 0.02), Error);
-  EXPECT_THROW(make_deck(body, settings, middle(body), 0), Error);
-  EXPECT_THROW(make_deck(body, settings, 100000, 0.005), Error);
+  EXPECT_THROW(make_patch_deck(body, settings, middle(body), 0.02), Error);
+  EXPECT_THROW(make_patch_deck(body, settings, middle(body), 0), Error);
+  EXPECT_THROW(make_patch_deck(body, settings, 100000, 0.005), Error);
   settings.materials[0].law.at("poisson") = 0.5;
-  EXPECT_THROW(make_deck(body, settings, middle(body), 0.005), Error);
+  EXPECT_THROW(make_patch_deck(body, settings, middle(body), 0.005), Error);
 }
 
 TEST(Decks, CalculixHoldsEveryNodeAndElementOnce) {
@@ -96,9 +102,9 @@ TEST(Decks, CalculixHoldsEveryNodeAndElementOnce) {
   const std::string text = calculix_deck(deck);
   const std::string nodes =
       text.substr(text.find("*NODE,"), text.find("** region") - text.find("*NODE,"));
-  EXPECT_EQ(count(nodes, "\n") - 1, static_cast<std::size_t>(deck.patch.mesh.X.cols()));
+  EXPECT_EQ(count(nodes, "\n") - 1, static_cast<std::size_t>(deck.mesh.X.cols()));
   const std::size_t first = text.find("*ELEMENT"), last = text.find("*MATERIAL");
-  EXPECT_EQ(count(text.substr(first, last - first), "\n") - 1, deck.patch.mesh.tetrahedra.size());
+  EXPECT_EQ(count(text.substr(first, last - first), "\n") - 1, deck.mesh.tetrahedra.size());
   EXPECT_THAT(text, HasSubstr("PATCH,3,3,-2.000000000000e-03"));
 }
 
@@ -111,13 +117,146 @@ TEST(Decks, FebioIsWellFormedAndCountsRight) {
     const Deck deck = deck_of(law);
     const std::string text = febio_deck(deck);
     EXPECT_EQ(xml_fault(text), "") << law.law;
-    EXPECT_EQ(count(text, "<node id="), static_cast<std::size_t>(deck.patch.mesh.X.cols()));
-    EXPECT_EQ(count(text, "<elem id="), deck.patch.mesh.tetrahedra.size());
+    EXPECT_EQ(count(text, "<node id="), static_cast<std::size_t>(deck.mesh.X.cols()));
+    EXPECT_EQ(count(text, "<elem id="), deck.mesh.tetrahedra.size());
     EXPECT_EQ(count(text, "<material id="), 1u);
     const std::size_t set = text.find("<NodeSet name=\"patch\">");
     const std::size_t end = text.find("</NodeSet>", set);
-    EXPECT_EQ(count(text.substr(set, end - set), ",") + 1, deck.patch.nodes.size());
+    EXPECT_EQ(count(text.substr(set, end - set), ",") + 1, deck.patch.size());
   }
+}
+
+fem::CampaignSettings pressed_by(const fem::ToolGeometry& tool) {
+  fem::CampaignSettings settings;
+  settings.materials = {{"tissue", {10e3, 0.45}}};
+  settings.indentation.tool = tool;
+  settings.indentation.depth = 0.002;
+  return settings;
+}
+
+const fem::ToolGeometry kTools[] = {{fem::ToolShape::Sphere, 0.004, 0, 0},
+                                    {fem::ToolShape::Disc, 0.004, 0.001, 0},
+                                    {fem::ToolShape::Disc, 0.004, 0.004, 0},
+                                    {fem::ToolShape::Cylinder, 0.003, 0, 0.004}};
+
+Eigen::Vector3d corner_normal(const Eigen::Matrix3Xd& X, const fem::Facet& facet) {
+  const Eigen::Vector3d a = X.col(facet[1]) - X.col(facet[0]),
+                        b = X.col(facet[2]) - X.col(facet[0]);
+  return 0.5 * a.cross(b);
+}
+
+/// Of the quadratic facet, halfway between a corner and the middle of the opposite edge or so.
+Eigen::Vector3d inner_point(const Eigen::Matrix3Xd& X, const fem::Facet& facet) {
+  const double L[3] = {0.5, 0.3, 0.2};
+  Eigen::Vector3d x = Eigen::Vector3d::Zero();
+  for (std::size_t c = 0; c < 3; ++c) {
+    x += L[c] * (2 * L[c] - 1) * X.col(facet[c]);
+    x += 4 * L[c] * L[(c + 1) % 3] * X.col(facet[3 + c]);
+  }
+  return x;
+}
+
+TEST(ToolMesh, LiesOnTheToolAndFacesOutwards) {
+  for (const fem::ToolGeometry& geometry : kTools) {
+    fem::Tool tool{geometry};
+    tool.tip = {0.001, 0.002, 0.003};
+    tool.inward = Eigen::Vector3d(0.6, 0, -0.8);
+    tool.axis = {0, 1, 0};
+    const fem::ToolMesh mesh = fem::make_tool_mesh(tool, 0.006);
+    double lowest = 1;
+    for (const fem::Tetrahedron10& tetrahedron : mesh.tetrahedra) {
+      const fem::Facet facet = facet_of(tetrahedron, 0);
+      for (const std::int32_t node : facet) {
+        EXPECT_LT(std::abs(tool.distance(mesh.X.col(node))), 1e-9 * geometry.radius);
+        lowest = std::min(lowest, -tool.beyond_end(mesh.X.col(node)));
+      }
+      // What a facet of six nodes on the tool leaves of its roundness between them.
+      const Eigen::Vector3d between = inner_point(mesh.X, facet);
+      const double allowed = geometry.shape == fem::ToolShape::Sphere ? 1e-4 : 1e-3;
+      EXPECT_LT(std::abs(tool.distance(between)), allowed * geometry.radius);
+      EXPECT_GT(corner_normal(mesh.X, facet).dot(tool.gap(between).normal), 0);
+    }
+    EXPECT_NEAR(lowest, 0, 1e-12) << "the tip is on the mesh";
+  }
+}
+
+/// No gaps, no overlaps: each inner edge belongs to two facets, and the area is that of the shape.
+TEST(ToolMesh, IsOnePieceOfTheRightArea) {
+  for (const fem::ToolGeometry& g : kTools) {
+    const double side = 0.006;
+    const fem::ToolMesh mesh = fem::make_tool_mesh(fem::Tool{g}, side);
+    double area = 0;
+    std::map<std::int32_t, int> facets_at_edge;  // by its middle node
+    for (const fem::Tetrahedron10& tetrahedron : mesh.tetrahedra) {
+      const fem::Facet f = facet_of(tetrahedron, 0);
+      for (std::size_t m = 3; m < 6; ++m) ++facets_at_edge[f[m]];
+      for (const fem::Facet& part : {fem::Facet{f[0], f[3], f[5]}, fem::Facet{f[3], f[1], f[4]},
+                                     fem::Facet{f[5], f[4], f[2]}, fem::Facet{f[3], f[4], f[5]}})
+        area += corner_normal(mesh.X, part).norm();
+    }
+    const double R = g.radius, e = g.edge_radius;
+    double expected = 2 * M_PI * R * R;
+    if (g.shape == fem::ToolShape::Cylinder) expected += M_PI * R * g.length;
+    if (g.shape == fem::ToolShape::Disc)
+      expected = M_PI * (R - e) * (R - e) + M_PI * M_PI * (R - e) * e + 2 * M_PI * e * e +
+                 2 * M_PI * R * side;
+    EXPECT_NEAR(area / expected, 1, 3e-3) << name_of(g.shape);
+    for (const auto& [node, facets] : facets_at_edge) EXPECT_LE(facets, 2);
+  }
+}
+
+TEST(Decks, PressTheToolAgainstTheSkinThatItMayMeet) {
+  const Body body = block();
+  for (const fem::ToolGeometry& tool : kTools) {
+    const Deck deck = make_tool_deck(body, pressed_by(tool), middle(body));
+    ASSERT_TRUE(deck.tool.has_value());
+    EXPECT_TRUE(deck.patch.empty());
+    // On a flat top the tip starts on the site.
+    double lowest = 1;
+    for (Eigen::Index i = 0; i < deck.tool->mesh.X.cols(); ++i)
+      lowest = std::min(lowest, deck.tool->mesh.X(2, i));
+    EXPECT_NEAR(lowest, 0.01, 1e-9);
+    double top = 0;
+    for (const ElementSide& s : deck.tool->skin) {
+      const fem::Facet facet = facet_of(deck.mesh.tetrahedra[fem::at(s.element)], s.side);
+      const Eigen::Vector3d area = corner_normal(deck.mesh.X, facet);
+      if (area[2] > 0.9 * area.norm()) top += area[2];
+      for (std::size_t m = 0; m < 3; ++m) {
+        const Eigen::Vector3d between =
+            0.5 * (deck.mesh.X.col(facet[m]) + deck.mesh.X.col(facet[(m + 1) % 3]));
+        EXPECT_LT((deck.mesh.X.col(facet[3 + m]) - between).norm(), 1e-12);
+      }
+    }
+    EXPECT_NEAR(top, 0.02 * 0.02, 1e-9) << "all of the top is within reach here";
+  }
+}
+
+TEST(Decks, OfAToolAreWellFormedAndCountRight) {
+  const Body body = block();
+  const Deck deck = make_tool_deck(body, pressed_by(kTools[0]), middle(body));
+  const auto nodes = static_cast<std::size_t>(deck.mesh.X.cols() + deck.tool->mesh.X.cols());
+  const std::size_t elements = deck.mesh.tetrahedra.size() + deck.tool->mesh.tetrahedra.size();
+  const std::string febio = febio_deck(deck);
+  EXPECT_EQ(xml_fault(febio), "");
+  EXPECT_EQ(count(febio, "<node id="), nodes);
+  EXPECT_EQ(count(febio, "<elem id="), elements);
+  EXPECT_EQ(count(febio, "<tri6 id="), deck.tool->skin.size() + deck.tool->mesh.tetrahedra.size());
+  EXPECT_EQ(count(febio, "prescribed displacement"), 0u);
+  EXPECT_THAT(febio, HasSubstr("<value lc=\"1\">-2.000000000000e-03</value>"));
+  const std::string calculix = calculix_deck(deck);
+  EXPECT_EQ(count(calculix, "*NODE, NSET=TOOL"), 1u);
+  EXPECT_THAT(calculix, HasSubstr("TOOL,3,3,-2.000000000000e-03"));
+  EXPECT_THAT(calculix, HasSubstr(std::to_string(elements) + ","));
+}
+
+TEST(Decks, RefuseToolsThatOtherProgramsHoldInTheirOwnWay) {
+  const Body body = block();
+  fem::CampaignSettings settings = pressed_by({fem::ToolShape::Disc, 0.004, 0, 0});
+  EXPECT_THROW(make_tool_deck(body, settings, middle(body)), Error);
+  settings = pressed_by(kTools[0]);
+  settings.indentation.friction = fem::ToolFriction::Stuck;
+  EXPECT_THROW(make_tool_deck(body, settings, middle(body)), Error);
+  EXPECT_THROW(make_tool_deck(body, pressed_by(kTools[0]), -1), Error);
 }
 
 TEST(Decks, NameTheLawThatTheOtherProgramLacks) {
