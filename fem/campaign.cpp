@@ -113,6 +113,17 @@ class Crew {
   CampaignProgress progress_;
 };
 
+/// What else than held nodes carries the body, and how far it sags.
+void add_supports(const CampaignContext& context, const CampaignSettings& settings,
+                  CampaignReport& report) {
+  if (const auto& foundation = context.body.foundation; !foundation.empty())
+    report.facts.emplace_back("facets_on_springs", std::to_string(foundation.size()));
+  if (!settings.gravity.acts()) return;
+  const double sag = context.rest.colwise().norm().maxCoeff();
+  report.facts.emplace_back("largest_sag_m", std::to_string(sag));
+  report.facts.emplace_back("min_jacobian_before_touch", std::to_string(context.at_rest.min_J));
+}
+
 }  // namespace
 
 PreparedBody::PreparedBody(const Body& body, const CampaignSettings& settings) : body_(body) {
@@ -152,6 +163,7 @@ Curves PreparedBody::run(const CampaignSettings& settings, CampaignReport& repor
       {"rest_factor_bytes", std::to_string(static_cast<long long>(context.rest_factor->bytes()))},
       {"blas_kernel", blas_kernel()},
       {"solver", solver_versions()}};
+  add_supports(context, settings, report);
   return curves;
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "fem/dilatation.hpp"
+#include "fem/gravity.hpp"
 #include "fem/laws/law_table.hpp"
 #include "fem/tool.hpp"
 #include "format/body.hpp"
@@ -52,6 +53,8 @@ struct CampaignProgress {
 struct CampaignSettings {
   std::vector<RegionMaterial> materials;  ///< one for each region of the body
   Dilatation dilatation = Dilatation::Mean;
+  /// The body sags under its weight first; depths, work and energy are counted from there.
+  Gravity gravity;
   IndentationSettings indentation;
   std::vector<std::int32_t> sites;  ///< response vertices; empty = every vertex with is_site
   /// Pressed instead of response vertices when not empty; the `vertex` of a result is then the
@@ -76,6 +79,7 @@ struct CampaignReport {
 
 /// The sites come back in ascending order of vertex whatever the number of threads. A site whose
 /// solve failed is data: its status, reason and partial curve are kept.
+/// @throws Error(Geometry) when the body finds no equilibrium under its weight.
 /// @throws Error(Configuration) for constants out of range (named, with value and range), a region
 ///   without a law, a law without a region, a held depth beyond the depth, a vertex that is no
 ///   site.
@@ -87,8 +91,8 @@ struct CampaignContext;
 /// mesh takes as long as dozens of sites. For campaigns that follow one another.
 class PreparedBody {
  public:
-  /// Materials, element, tool and memory of the settings are those of all campaigns. The body must
-  /// outlive this object. @throws as run_campaign.
+  /// Materials, element, gravity, tool and memory of the settings are those of all campaigns. The
+  /// body must outlive this object. @throws as run_campaign.
   PreparedBody(const Body& body, const CampaignSettings& settings);
   ~PreparedBody();
   PreparedBody(const PreparedBody&) = delete;

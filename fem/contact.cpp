@@ -279,11 +279,10 @@ double ToolContact::tension(const Displacement& u) const {
   return sum;
 }
 
-double ToolContact::rest_penetration(const Tool& tool) const {
+double ToolContact::penetration_of(const Tool& tool, const Displacement& u) const {
   double deepest = 0;
-  const Displacement rest = Displacement::Zero(3, mesh_->nodes());
   for (const Point& point : points_)
-    deepest = std::max(deepest, -tool.distance(position(point, rest)));
+    deepest = std::max(deepest, -tool.distance(position(point, u)));
   return deepest;
 }
 

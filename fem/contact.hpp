@@ -66,8 +66,8 @@ class ToolContact {
   /// N, the pulls on facets that the ties draw off the body, added up: a surface that is not glued
   /// would let go.
   double tension(const Displacement& u) const;
-  /// Largest depth of a candidate point of the rest surface inside `tool`.
-  double rest_penetration(const Tool& tool) const;
+  /// Largest depth of a candidate point of the surface at `u` inside `tool`.
+  double penetration_of(const Tool& tool, const Displacement& u) const;
 
  private:
   friend class ContactPatch;

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "fem/at.hpp"
+#include "fem/preload.hpp"
 #include "fem/region_laws.hpp"
 #include "fem/self_contact.hpp"
 #include "fem/shared_factor_solver.hpp"
@@ -166,15 +167,21 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
       points(settings.points),
       indentation(settings.indentation),
       engine(e),
-      model(b, laws_of_regions(b, settings.materials), settings.dilatation),
-      permutation(nested_dissection(model.pattern())) {
+      model(b, laws_of_regions(b, settings.materials), settings.dilatation, settings.gravity),
+      permutation(nested_dissection(model.pattern())),
+      rest(equilibrium_under_weight(model, permutation, b.name)),
+      at_rest(model.energy(rest)) {
   use_one_thread_per_site();
   contact_stiffness = fem::contact_stiffness(b, settings, model);
   if (engine == Engine::Direct) return;
   std::vector<double> K;
-  model.stiffness(Displacement::Zero(3, model.mesh().nodes()), K);
+  model.stiffness(rest, K);
   rest_factor =
       std::make_unique<RestFactor>(model.pattern(), permutation, K, body.name, settings.memory);
+}
+
+Eigen::Vector3d CampaignContext::rest_position(const Vec3& X) const {
+  return to_eigen(X) + displacement_at(model.mesh(), rest, to_eigen(X));
 }
 
 SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site) {
@@ -207,18 +214,19 @@ ToolContact contact_at(const CampaignContext& context, const Eigen::Vector3d& X)
   return {context.model.mesh(), X, reach, context.contact_stiffness};
 }
 
-/// The tool with its tip at a place.
-Tool tool_over(const IndentationSettings& settings, const PressPoint& place) {
+/// The tool with its tip where a place of the surface is before it is touched.
+Tool tool_over(const CampaignContext& context, const PressPoint& place) {
+  const IndentationSettings& settings = context.indentation;
   const Eigen::Vector3d inward = to_eigen(place.inward);
   const auto [first, second] = tangents(inward);
-  return {settings.tool, to_eigen(place.position), inward,
+  return {settings.tool, context.rest_position(place.position), inward,
           std::cos(settings.tool_azimuth) * first + std::sin(settings.tool_azimuth) * second};
 }
 
 /// On a concave surface the tool meets the body before its tip does: back off to first touch.
-Tool drawn_back(const ToolContact& contact, Tool tool) {
+Tool drawn_back(const ToolContact& contact, const Displacement& rest, Tool tool) {
   for (int i = 0; i < 60; ++i) {
-    const double depth = contact.rest_penetration(tool);
+    const double depth = contact.penetration_of(tool, rest);
     if (depth <= 1e-7 * tool.geometry.radius) break;
     tool.tip -= depth * tool.inward;
   }
@@ -230,7 +238,7 @@ Tool drawn_back(const ToolContact& contact, Tool tool) {
 FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex) {
   const PressPoint place = context.place(vertex);
   const ToolContact contact = contact_at(context, to_eigen(place.position));
-  return {drawn_back(contact, tool_over(context.indentation, place)), contact.facets()};
+  return {drawn_back(contact, context.rest, tool_over(context, place)), contact.facets()};
 }
 
 namespace {
@@ -307,7 +315,7 @@ struct SiteSolver::Site {
       : X(to_eigen(place.position)),
         inward(to_eigen(place.inward)),
         contact(contact_at(context, X)),
-        touching(drawn_back(contact, tool_over(context.indentation, place))),
+        touching(drawn_back(contact, context.rest, tool_over(context, place))),
         equilibrium(context, X, batch),
         watch(context.model.mesh(), X, kWatched * context.indentation.tool.extent()) {}
 
@@ -406,6 +414,11 @@ class PathDriver {
                ", which is not modelled";
       return Outcome::Meaningless;
     }
+    if (const auto loss = context_.model.ellipticity_loss(u)) {
+      reason = "the law loses ellipticity in the element at " + place(loss->X) +
+               ": what follows would depend on the mesh";
+      return Outcome::Meaningless;
+    }
     return Outcome::Found;
   }
 
@@ -423,7 +436,7 @@ class PathDriver {
     const SolidModel::State state = context_.model.energy(u);
     sample.displacement = s;
     sample.force = to_vec3(contact_.tool_force(u));
-    sample.strain_energy = state.energy;
+    sample.strain_energy = state.energy - context_.at_rest.energy;
     sample.min_jacobian = state.min_J;
     sample.penetration = contact_.penetration(u);
     sample.contact_area = contact_.contact_area(u);
@@ -478,8 +491,9 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
   path.direction = to_vec3(site.inward);
   path.samples.emplace_back();
   path.samples.back().contact_energy = path.samples.back().tension = 0;
+  path.samples.back().min_jacobian = context_.at_rest.min_J;
 
-  Displacement u = Displacement::Zero(3, context_.model.mesh().nodes());
+  Displacement u = context_.rest;
   History history;
   history.add(0, u);
   double from = 0;

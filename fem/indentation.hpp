@@ -26,6 +26,8 @@ struct CampaignContext {
 
   /// Of a response vertex, or of a point of the settings by its index when there are any.
   PressPoint place(std::int32_t vertex) const;
+  /// Where a point of the boundary is before it is touched.
+  Eigen::Vector3d rest_position(const Vec3& X) const;
 
   const Body& body;
   std::vector<PressPoint> points;
@@ -33,6 +35,8 @@ struct CampaignContext {
   Engine engine;
   SolidModel model;
   std::vector<int> permutation;  ///< elimination order of the whole body
+  Displacement rest;          ///< where the body is before it is touched: sagged under its weight
+  SolidModel::State at_rest;  ///< there
   ContactStiffness contact_stiffness;
   std::unique_ptr<RestFactor> rest_factor;  ///< SharedFactor only
   mutable std::mutex direct_solve;          ///< held while a site factorizes the whole body

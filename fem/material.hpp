@@ -55,6 +55,9 @@ class NeoHookean : public LogQuadraticVolume {
 
   double mu() const { return mu_; }  ///< shear modulus, Pa
 
+  /// Always: J^{-2/3} I1 is polyconvex, and strictly elliptic [Hartmann & Neff 2003].
+  bool polyconvex() const { return true; }
+
   /// Isochoric energy density, J/m^3.
   template <class T>
   T psi(const Tensor2<T>& F, const T& J) const {

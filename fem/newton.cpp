@@ -26,6 +26,13 @@ void move(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacem
     if (model.equation(node) >= 0) u.col(node) += s * d.segment<3>(model.equation(node));
 }
 
+double imbalance(const SolidModel& model, const Eigen::VectorXd& residual) {
+  if (model.mesh().sprung.empty()) return residual.norm();
+  const Eigen::Vector3d sum =
+      Eigen::Map<const Eigen::Matrix3Xd>(residual.data(), 3, residual.size() / 3).rowwise().sum();
+  return std::max(residual.norm(), sum.norm());
+}
+
 Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u) {
   Equilibrium now;
   const SolidModel::State state = model.forces(u, now.residual);
@@ -126,7 +133,8 @@ bool NewtonSolver::line_search(const ToolContact& contact, const Eigen::VectorXd
     move(model_, step, d, trial);
     Equilibrium next = evaluate(model_, contact, trial);
     if (!(next.min_J > 0)) continue;
-    const bool lower = next.energy <= now.energy + 1e-4 * step * slope + kEnergyNoise * now.energy;
+    const bool lower =
+        next.energy <= now.energy + 1e-4 * step * slope + kEnergyNoise * std::abs(now.energy);
     // Close to the minimum the energy is at its round-off: judge by the gradient as well.
     if (!lower && next.residual.norm() > (1 - 0.1 * step) * norm) continue;
     u.swap(trial);
@@ -149,7 +157,7 @@ NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     const double before = now.residual.norm();
     const double allowed = options.tolerance * std::max(contact.tool_force(u).norm(), 1e-12);
-    if (before <= allowed) {
+    if (imbalance(model_, now.residual) <= allowed) {
       result.converged = true;
       return result;
     }

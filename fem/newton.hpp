@@ -31,6 +31,9 @@ struct Equilibrium {
   double min_J = 1;  ///< the rest is void when not positive
   Eigen::VectorXd residual;
 };
+/// What `options.tolerance` is held against, N: the norm of the residual, and on springs, where no
+/// support takes what is left over, the sum of it.
+double imbalance(const SolidModel& model, const Eigen::VectorXd& residual);
 Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u);
 
 /// Minimises the energy of body and contact over the unknowns of a model. Each iteration replaces

@@ -87,6 +87,7 @@ QuadraticMesh make_quadratic_mesh(const Body& body) {
         {t[0], t[1], t[2], edges.of(t[0], t[1]), edges.of(t[1], t[2]), edges.of(t[2], t[0])});
 
   mesh.facet_region = regions_behind(body);
+  mesh.sprung = body.foundation;
 
   const auto corner_count = static_cast<Eigen::Index>(body.nodes.size());
   mesh.X.resize(3, corner_count + static_cast<Eigen::Index>(edges.corners().size()));

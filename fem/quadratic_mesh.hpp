@@ -26,6 +26,7 @@ struct QuadraticMesh {
   std::vector<Facet> facets;               ///< boundary, outward
   std::vector<std::int32_t> facet_region;  ///< region of the tetrahedron behind each facet
   std::vector<bool> held;                  ///< (nodes) by a support
+  std::vector<SprungFacet> sprung;
 
   int nodes() const { return static_cast<int>(X.cols()); }
 };

@@ -34,6 +34,14 @@ struct Varied {
   }
 };
 
+/// Where the tool touches would depend on the constants through the sag.
+void refuse_gravity(const CampaignSettings& settings) {
+  if (!settings.gravity.acts()) return;
+  throw Error(ErrorKind::Configuration, "gravity",
+              "the gradients by constants of a body that sags are not computed",
+              "calibrate without [gravity]");
+}
+
 double& value_of(CampaignSettings& settings, const RegionConstant& constant) {
   for (RegionMaterial& material : settings.materials)
     if (material.region == constant.region) return material.law.at(constant.name);
@@ -235,6 +243,7 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
                                              const std::vector<double>& depths,
                                              const std::vector<RegionConstant>& constants,
                                              const std::vector<std::vector<LateralPlan>>& lateral) {
+  refuse_gravity(settings);
   CampaignSettings normal = settings;
   normal.indentation.held_depths = depths;  // the states that the path must pass
   normal.indentation.depth = *std::max_element(depths.begin(), depths.end());

@@ -45,7 +45,8 @@ struct SiteSensitivity {
 /// derivative of the force by u_b, K_b m = v adds - m . dR_b/dc, a second solve.
 /// Not differentiated: points that stick already on the normal path (ToolFriction::Stuck).
 /// @param lateral  for each site the lateral paths to follow; empty: none.
-/// @throws Error(Configuration) as run_campaign; for a region that the body has not.
+/// @throws Error(Configuration) as run_campaign; for a region that the body has not;
+/// with gravity.
 std::vector<SiteSensitivity> run_sensitivity(
     const Body& body, const CampaignSettings& settings, const std::vector<double>& depths,
     const std::vector<RegionConstant>& constants,

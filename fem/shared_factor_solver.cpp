@@ -74,7 +74,7 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
   Equilibrium now = evaluate(whole_, contact, u);
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     const double scale = std::max(contact.tool_force(u).norm(), 1e-12);
-    error_ = now.residual.norm() / scale;
+    error_ = imbalance(whole_, now.residual) / scale;
     if (error_ <= options.tolerance) {
       result.converged = true;
       result.reason.clear();

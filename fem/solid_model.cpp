@@ -4,7 +4,10 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+
+#include "fem/ellipticity.hpp"
 
 namespace palpate::fem {
 
@@ -33,11 +36,31 @@ Vec3 centroid(const QuadraticMesh& mesh, int element) {
   return {sum[0] / 4, sum[1] / 4, sum[2] / 4};
 }
 
+/// Integrals of N_a over an element: -V/20 at the corners, V/5 at the mid-edges.
+Eigen::Matrix3Xd nodal_weight(const QuadraticMesh& mesh, const Gravity& gravity) {
+  if (!gravity.acts()) return {};
+  Eigen::Matrix3Xd weight = Eigen::Matrix3Xd::Zero(3, mesh.nodes());
+  const Eigen::Vector3d per_volume = gravity.density * Eigen::Vector3d(gravity.acceleration.data());
+  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e)
+    for (std::size_t a = 0; a < kTetNodes; ++a)
+      weight.col(mesh.tetrahedra[at(e)][a]) +=
+          volume_of(mesh, e) * (a < 4 ? -0.05 : 0.2) * per_volume;
+  return weight;
+}
+
+std::shared_ptr<const Solid> make_solid(const Body& body, std::vector<Law> laws,
+                                        Dilatation dilatation, const Gravity& gravity) {
+  auto solid =
+      std::make_shared<Solid>(Solid{make_quadratic_mesh(body), std::move(laws), dilatation, {}});
+  solid->weight = nodal_weight(solid->mesh, gravity);
+  return solid;
+}
+
 }  // namespace
 
-SolidModel::SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation)
-    : solid_(
-          std::make_shared<Solid>(Solid{make_quadratic_mesh(body), std::move(laws), dilatation})) {
+SolidModel::SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation,
+                       const Gravity& gravity)
+    : solid_(make_solid(body, std::move(laws), dilatation, gravity)) {
   std::vector<bool> free = mesh().held;
   free.flip();
   number_unknowns(free);
@@ -65,7 +88,7 @@ double SolidModel::bytes() const {
   return static_cast<double>(blocks_.size() * sizeof(Block) +
                              sizeof(int) * (scatter_.size() + equation_.size() +
                                             pattern_.row.size() + pattern_.start.size()) +
-                             nodal_.bytes());
+                             nodal_.bytes() + foundation_.bytes());
 }
 
 void SolidModel::number_unknowns(const std::vector<bool>& free) {
@@ -87,6 +110,7 @@ void SolidModel::take_elements(const std::vector<int>& elements) {
     for (const int e : elements) coupled.emplace_back(mesh().tetrahedra[at(e)]);
     make_blocks(elements);
   }
+  foundation_ = Foundation(mesh(), equation_);
   pattern_ = stiffness_pattern(coupled, equation_, unknowns_);
   make_scatter();
 }
@@ -262,6 +286,21 @@ void SolidModel::add_point_stiffness(const Displacement& u, const PointState& st
                  slope[n].data(), values);
 }
 
+Eigen::VectorXd SolidModel::weight() const {
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(unknowns_);
+  if (solid_->weight.cols() == 0) return load;
+  for (int node = 0; node < mesh().nodes(); ++node)
+    if (equation(node) >= 0) load.segment<3>(equation(node)) = solid_->weight.col(node);
+  return load;
+}
+
+double SolidModel::work_of_gravity(const Displacement& u) const {
+  double work = 0;
+  for (int node = 0; node < static_cast<int>(solid_->weight.cols()); ++node)
+    if (equation(node) >= 0) work += solid_->weight.col(node).dot(u.col(node));
+  return work;
+}
+
 SolidModel::State SolidModel::energy(const Displacement& u) const {
   State state;
   for (const Block& block : blocks_) {
@@ -272,7 +311,7 @@ SolidModel::State SolidModel::energy(const Displacement& u) const {
         element_energy(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k);
     state.energy += energy.head(block.count).sum();
   }
-  state.energy += point_state(u).energy;
+  state.energy += point_state(u).energy + foundation_.energy(u) - work_of_gravity(u);
   return checked(state);
 }
 
@@ -289,7 +328,10 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) 
     state.energy += energy.head(block.count).sum();
     scatter(block, element_forces(law, block.geometry, k, pressures(block, k, points)), f);
   }
-  state.energy += points.energy;
+  state.energy += points.energy + foundation_.energy(u) - work_of_gravity(u);
+  foundation_.add_forces(equation_, u, f);
+  for (int node = 0; node < static_cast<int>(solid_->weight.cols()); ++node)
+    if (equation(node) >= 0) f.segment<3>(equation(node)) -= solid_->weight.col(node);
   return checked(state);
 }
 
@@ -307,6 +349,7 @@ void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) c
         if (place[lane] >= 0) values[at(place[lane])] += K[entry][lane];
   }
   add_point_stiffness(u, points, values);
+  foundation_.add_stiffness(equation_, pattern_, values);
 }
 
 SolidModel::Compressed SolidModel::most_compressed(const Displacement& u) const {
@@ -325,6 +368,38 @@ SolidModel::Compressed SolidModel::most_compressed(const Displacement& u) const 
   for (std::size_t c = 0; c < 4; ++c)
     worst.X += 0.25 * mesh().X.col(mesh().tetrahedra[at(element)][c]);
   return worst;
+}
+
+Lanes SolidModel::weakest_waves(const Block& block, const ElementKinematics<Lanes>& k) const {
+  const Law& law = solid_->laws[at(block.region)];
+  const bool own = solid_->dilatation == Dilatation::Pointwise;
+  Lanes weakest = Lanes::Constant(std::numeric_limits<double>::infinity());
+  for (std::size_t q = 0; q < kTetPoints; ++q) {
+    Tensor4<Lanes> A;
+    for (auto& row : A) row.fill(Lanes::Zero());
+    law.add_tangent(k.F[q], k.cof[q], k.J[q], block.geometry.fibres, A);
+    add_dilatation_tangent(k.cof[q], law.pressure_slope(own ? k.J[q] : k.mean_J), A);
+    weakest = weakest.min(weakest_wave(k.F[q], A));
+  }
+  return weakest;
+}
+
+std::optional<SolidModel::EllipticityLoss> SolidModel::ellipticity_loss(
+    const Displacement& u) const {
+  double weakest = std::numeric_limits<double>::min();
+  int element = -1;
+  for (const Block& block : blocks_) {
+    if (solid_->laws[at(block.region)].polyconvex()) continue;
+    const Lanes stiffness = weakest_waves(block, kinematics(block.geometry, gather(block, u)));
+    for (int lane = 0; lane < block.count; ++lane) {
+      if (stiffness[lane] >= weakest) continue;
+      weakest = stiffness[lane];
+      element = block.element[at(lane)];
+    }
+  }
+  if (element < 0) return std::nullopt;
+  const Vec3 X = centroid(mesh(), element);
+  return EllipticityLoss{weakest, Eigen::Vector3d(X.data())};
 }
 
 void SolidModel::element_fields(const Displacement& u, std::vector<double>& energy_density,

@@ -3,10 +3,13 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "fem/at.hpp"
 #include "fem/element.hpp"
+#include "fem/foundation.hpp"
+#include "fem/gravity.hpp"
 #include "fem/laws/law.hpp"
 #include "fem/material.hpp"
 #include "fem/nodal_pressure.hpp"
@@ -23,29 +26,31 @@ struct Solid {
   QuadraticMesh mesh;
   std::vector<Law> laws;
   Dilatation dilatation;
+  Eigen::Matrix3Xd weight;  ///< (nodes), N; no columns where there is none
 };
 
-/// The body without the tool, or a part of it: strain energy, internal forces and stiffness as
-/// functions of the displacement, on a chosen set of free nodes. Immutable after construction;
-/// every method may be called from several threads.
+/// The body without the tool, or a part of it, with the springs that it rests on: energy, internal
+/// forces and stiffness as functions of the displacement, on a chosen set of free nodes. Immutable
+/// after construction; every method may be called from several threads.
 class SolidModel {
  public:
   /// The whole body. One law for each region, in the order of Body::region_names.
-  SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation = Dilatation::Mean);
+  SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation = Dilatation::Mean,
+             const Gravity& gravity = {});
 
   /// The part of `whole` that feels its nodes within `radius` of `centre` move: those nodes are
   /// free, the elements at them are kept, all other nodes stay where the displacement puts them.
   SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, double radius);
 
   struct State {
-    double energy = 0;  ///< J
+    double energy = 0;  ///< J, strain energy, what the foundation stores, less the work of gravity
     /// Smallest det F at the Gauss points; 0 where the energy has no finite value. The rest is
     /// void when it is not positive.
     double min_J = 1;
   };
 
   State energy(const Displacement& u) const;
-  /// Internal forces on the unknowns, N.
+  /// Internal forces on the unknowns, N, those of the foundation counted, less the weight.
   State forces(const Displacement& u, Eigen::VectorXd& f) const;
   /// Values of pattern(), N/m.
   void stiffness(const Displacement& u, std::vector<double>& values) const;
@@ -55,12 +60,25 @@ class SolidModel {
   void element_fields(const Displacement& u, std::vector<double>& energy_density,
                       std::vector<double>& pressure) const;
 
+  /// The weight on the unknowns, N; 0 without gravity.
+  Eigen::VectorXd weight() const;
+
   /// The element with the smallest det F at a Gauss point: that value, and its centre at rest, m.
   struct Compressed {
     double J;
     Eigen::Vector3d X;
   };
   Compressed most_compressed(const Displacement& u) const;
+
+  /// A point where the law lets a plane wave of no speed stand: its acoustic tensor has an
+  /// eigenvalue that is not positive. `X` is the centre of its element at rest, m; the stiffness is
+  /// that eigenvalue, Pa, the smallest of all points.
+  struct EllipticityLoss {
+    double stiffness;
+    Eigen::Vector3d X;
+  };
+  /// None where every Gauss point is elliptic; laws that are polyconvex are not looked at.
+  std::optional<EllipticityLoss> ellipticity_loss(const Displacement& u) const;
 
   const QuadraticMesh& mesh() const { return solid_->mesh; }
   /// First of the three unknowns of a node, -1 where it is not free.
@@ -91,7 +109,11 @@ class SolidModel {
   void make_scatter();
   ElementVector<Lanes> gather(const Block& block, const Displacement& u) const;
   void scatter(const Block& block, const ElementVector<Lanes>& forces, Eigen::VectorXd& f) const;
+  double work_of_gravity(const Displacement& u) const;  ///< on the free nodes, J
   PointState point_state(const Displacement& u) const;
+  /// The smallest stiffness of a wave at each element of a block, Pa; no more than positive where
+  /// it is known to be that.
+  Lanes weakest_waves(const Block& block, const ElementKinematics<Lanes>& k) const;
   PointPressures<Lanes> pressures(const Block& block, const ElementKinematics<Lanes>& k,
                                   const PointState& points) const;
   void add_point_stiffness(const Displacement& u, const PointState& points,
@@ -102,6 +124,7 @@ class SolidModel {
   int unknowns_ = 0;
   SparsePattern pattern_;
   NodalPressure nodal_;
+  Foundation foundation_;
   std::vector<Block> blocks_;
   std::vector<int>
       scatter_;  ///< place in the values of each entry, by block, entry and lane; -1: none

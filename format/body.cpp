@@ -37,6 +37,20 @@ void check_fixed_nodes(const Checks& checks, const Body& body) {
   }
 }
 
+void check_foundation(const Checks& checks, const Body& body) {
+  for (std::size_t row = 0; row < body.foundation.size(); ++row) {
+    const SprungFacet& sprung = body.foundation[row];
+    checks.index("/foundation/facet", row, sprung.facet, body.boundary.size());
+    if (row > 0 && sprung.facet <= body.foundation[row - 1].facet) {
+      checks.fail_row("/foundation/facet", row, "is not above the row before it");
+    }
+    checks.number("/foundation/normal_stiffness", row, sprung.normal_stiffness,
+                  rules::kNonNegative);
+    checks.number("/foundation/tangential_stiffness", row, sprung.tangential_stiffness,
+                  rules::kNonNegative);
+  }
+}
+
 void check_response(const Checks& checks, const Body& body) {
   const ResponseSurface& surface = body.response;
   checks.indices("/response/node", surface.node, body.nodes.size());
@@ -62,8 +76,39 @@ void check_body(const Checks& checks, const Body& body) {
   check_tetrahedra(checks, body);
   checks.corners("/boundary", body.boundary, body.nodes.size());
   check_fixed_nodes(checks, body);
+  check_foundation(checks, body);
   check_response(checks, body);
   check_provenance(checks, body.provenance);
+}
+
+void write_foundation(hdf5::Writer& writer, const std::vector<SprungFacet>& foundation) {
+  std::vector<std::int32_t> facet;
+  std::vector<double> normal, tangential;
+  for (const SprungFacet& sprung : foundation) {
+    facet.push_back(sprung.facet);
+    normal.push_back(sprung.normal_stiffness);
+    tangential.push_back(sprung.tangential_stiffness);
+  }
+  writer.group("/foundation", "Boundary facets that rest on springs.");
+  writer.dataset("/foundation/facet", facet, {"1", "Row of /boundary, ascending."});
+  writer.dataset("/foundation/normal_stiffness", normal,
+                 {"N/m^3", "Springs per area along the normal of the facet at rest."});
+  writer.dataset("/foundation/tangential_stiffness", tangential,
+                 {"N/m^3", "Springs per area across that normal."});
+}
+
+std::vector<SprungFacet> read_foundation(hdf5::Reader& reader) {
+  const auto facet = reader.dataset<std::int32_t>("/foundation/facet", "1");
+  const auto normal = reader.dataset<double>("/foundation/normal_stiffness", "N/m^3");
+  const auto tangential = reader.dataset<double>("/foundation/tangential_stiffness", "N/m^3");
+  const Checks checks(reader);
+  checks.same_size("/foundation/normal_stiffness", normal.size(), facet.size());
+  checks.same_size("/foundation/tangential_stiffness", tangential.size(), facet.size());
+  std::vector<SprungFacet> foundation;
+  for (std::size_t row = 0; row < facet.size(); ++row) {
+    foundation.push_back({facet[row], normal[row], tangential[row]});
+  }
+  return foundation;
 }
 
 void write_response(hdf5::Writer& writer, const ResponseSurface& surface) {
@@ -75,7 +120,7 @@ void write_response(hdf5::Writer& writer, const ResponseSurface& surface) {
   writer.dataset("/response/triangles", surface.triangles,
                  {"1", "Response vertices of each triangle, counter-clockwise seen from outside."});
   writer.dataset("/response/is_site", surface.is_site,
-                 {"1", "1 where the tool may be pressed, 0 in a support."});
+                 {"1", "1 where the tool may be pressed, 0 in a support or on springs."});
 }
 
 }  // namespace
@@ -83,7 +128,8 @@ void write_response(hdf5::Writer& writer, const ResponseSurface& surface) {
 void write_body(const std::filesystem::path& path, const Body& body) {
   check_body(Checks(path), body);
   hdf5::Writer writer(path);
-  write_root(writer, kArtifact, kBodySchema, "A tetrahedralized body, ready for indentation.");
+  write_root(writer, kArtifact, body.foundation.empty() ? kBodySchema : kSprungBodySchema,
+             "A tetrahedralized body, ready for indentation.");
   writer.set_text("/", "name", body.name);
   writer.dataset("/nodes", body.nodes, {"m", "Reference position X of each node."});
   writer.dataset("/tetrahedra", body.tetrahedra,
@@ -95,6 +141,7 @@ void write_body(const std::filesystem::path& path, const Body& body) {
   writer.dataset("/boundary", body.boundary,
                  {"1", "Nodes of each boundary facet, counter-clockwise seen from outside."});
   writer.dataset("/fixed_nodes", body.fixed_nodes, {"1", "Nodes held by a support, ascending."});
+  if (!body.foundation.empty()) write_foundation(writer, body.foundation);
   write_response(writer, body.response);
   write_provenance(writer, body.provenance);
   writer.commit();
@@ -102,7 +149,7 @@ void write_body(const std::filesystem::path& path, const Body& body) {
 
 Body read_body(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kRemedy);
-  reader.require_artifact(kArtifact, kBodySchema);
+  const auto schema = reader.require_artifact(kArtifact, kBodySchema, kSprungBodySchema);
   Body body;
   body.name = reader.text("/", "name");
   body.nodes = reader.dataset<Vec3>("/nodes", "m");
@@ -111,6 +158,7 @@ Body read_body(const std::filesystem::path& path) {
   body.region_names = reader.texts("/region_names");
   body.boundary = reader.dataset<Triangle>("/boundary", "1");
   body.fixed_nodes = reader.dataset<std::int32_t>("/fixed_nodes", "1");
+  if (schema == kSprungBodySchema) body.foundation = read_foundation(reader);
   body.response.node = reader.dataset<std::int32_t>("/response/node", "1");
   body.response.inward = reader.dataset<Vec3>("/response/inward", "1");
   body.response.triangles = reader.dataset<Triangle>("/response/triangles", "1");

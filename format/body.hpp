@@ -13,6 +13,7 @@
 namespace palpate {
 
 inline constexpr int kBodySchema = 1;
+inline constexpr int kSprungBodySchema = 2;  ///< of a body with a foundation
 
 /// The coarse triangulation that carries the stored responses. Its vertices are nodes of the body.
 struct ResponseSurface {
@@ -20,6 +21,15 @@ struct ResponseSurface {
   std::vector<Vec3> inward;           ///< (V) unit direction u^z, into the body
   std::vector<Triangle> triangles;    ///< (M) indices into `node`; counter-clockwise from outside
   std::vector<std::uint8_t> is_site;  ///< (V) 1 where the tool may be pressed: not in a support
+};
+
+/// A boundary facet on springs, slack at rest: stress on the body -k u, N/m^3 along the normal of
+/// the facet at rest and across it.
+struct SprungFacet {
+  std::int32_t facet = 0;  ///< index into Body::boundary
+  double normal_stiffness = 0;
+  double tangential_stiffness = 0;
+  bool operator==(const SprungFacet&) const = default;
 };
 
 /// A body ready for indentation: straight-sided tetrahedra, their regions, the supports, and the
@@ -33,6 +43,7 @@ struct Body {
   std::vector<std::string> region_names;         ///< region 0 is the matrix
   std::vector<Triangle> boundary;                ///< (B) boundary facets, outward orientation
   std::vector<std::int32_t> fixed_nodes;         ///< nodes held by a support, ascending
+  std::vector<SprungFacet> foundation;           ///< ascending facets; empty: none
   ResponseSurface response;
   Provenance provenance;
 };

@@ -34,7 +34,7 @@ enum class PathKind : std::uint8_t {
 struct CurveSample {
   double displacement = 0;   ///< m, of the tool along the path
   Vec3 force{};              ///< N, of the tool ON the body
-  double strain_energy = 0;  ///< J, stored in the body (without contact penalty)
+  double strain_energy = 0;  ///< J, since the touch: of body and foundation, less gravity's work
   double tool_work = 0;      ///< J, integral of force . d(displacement) since the touch, as solved
   double min_jacobian = 1;   ///< smallest det F over the body
   double penetration = 0;    ///< m, deepest violation of the contact constraint

@@ -2,9 +2,11 @@
 #include "mesher/mesher.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "format/error.hpp"
@@ -52,7 +54,18 @@ void check_settings(const Settings& s) {
                      "give a positive length, 0.001 for millimetres");
     }
   };
-  for (const Support& support : s.supports) {
+  std::vector<Support> supports = s.supports;
+  for (const Springs& springs : s.foundation) {
+    supports.push_back(springs.where);
+    const auto stiffness = [](double value) { return std::isfinite(value) && value >= 0; };
+    if (!stiffness(springs.normal_stiffness) || !stiffness(springs.tangential_stiffness) ||
+        springs.normal_stiffness + springs.tangential_stiffness == 0) {
+      refuse_setting(text("springs of ", springs.normal_stiffness, " and ",
+                          springs.tangential_stiffness, " N/m^3"),
+                     "give stiffnesses that are not negative, one of them positive");
+    }
+  }
+  for (const Support& support : supports) {
     const auto* plane = std::get_if<PlaneSupport>(&support);
     if (plane && !positive(norm(plane->normal))) {
       refuse_setting("the normal of a plane support has no direction", "correct the case");
@@ -139,38 +152,179 @@ void set_regions(Body& body, const Settings& settings, const Filling& filling,
   }
 }
 
+/// Which known names of a surface hold the label.
+std::vector<bool> bearing(const std::string& label, const Surface& skin, const std::string& where) {
+  std::vector<bool> bears;
+  std::set<std::string> all;
+  bool found = false;
+  for (const Names& names : skin.known_names) {
+    all.insert(names.begin(), names.end());
+    bears.push_back(std::find(names.begin(), names.end(), label) != names.end());
+    found = found || bears.back();
+  }
+  if (found) return bears;
+  std::string list;
+  for (const std::string& name : all) list += (list.empty() ? "" : ", ") + name;
+  throw Error(ErrorKind::Configuration, where,
+              text("no face bears the name '", label, "', which a support asks for"),
+              all.empty() ? "name faces by 'g', 'o' or 'usemtl' in an OBJ file; other kinds of "
+                            "file carry no names"
+                          : text("use one of ", list));
+}
+
+/// Points within `tolerance` of a face that bears the label. The nearest face, or one that shares a
+/// corner with it, is that face.
+std::vector<std::uint8_t> points_on(const LabelSupport& support, const Surface& skin,
+                                    const std::string& where, const std::vector<Vec3>& points,
+                                    double tolerance) {
+  const std::vector<bool> bears = bearing(support.label, skin, where);
+  const SurfaceQuery query(skin);
+  const auto around = incident_triangles(skin.points.size(), skin.triangles);
+  const auto lies_on = [&](const Vec3& x, std::int32_t t) {
+    const auto triangle = static_cast<std::size_t>(t);
+    const auto corner = [&](std::size_t k) {
+      return skin.points[static_cast<std::size_t>(skin.triangles[triangle][k])];
+    };
+    return bears[skin.names[triangle]] &&
+           distance_to_triangle(x, corner(0), corner(1), corner(2)) <= tolerance;
+  };
+  std::vector<std::uint8_t> on(points.size(), 0);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto nearest = static_cast<std::size_t>(query.closest(points[i]).triangle);
+    for (const std::int32_t corner : skin.triangles[nearest])
+      for (const std::int32_t t : around[static_cast<std::size_t>(corner)])
+        if (lies_on(points[i], t)) on[i] = 1;
+  }
+  return on;
+}
+
+/// The boundary points inside a support, with a margin for rounding.
+std::vector<std::uint8_t> points_inside(const Support& support, const Settings& settings,
+                                        const Surface& skin, const Surface& boundary) {
+  std::vector<std::uint8_t> inside(boundary.points.size(), 0);
+  const double tolerance = kSupportTolerance * settings.element_size;
+  if (const auto* label = std::get_if<LabelSupport>(&support)) {
+    return points_on(*label, skin, settings.surface.path.string(), boundary.points, tolerance);
+  }
+  if (const auto* near = std::get_if<SurfaceSupport>(&support)) {
+    const SurfaceQuery surface(read_surface(near->surface, settings.log));
+    for (std::size_t i = 0; i < inside.size(); ++i)
+      inside[i] = is_near(surface, boundary.points[i], near->distance + tolerance) ? 1 : 0;
+  } else {
+    for (std::size_t i = 0; i < inside.size(); ++i)
+      inside[i] = is_held({support}, boundary.points[i], tolerance) ? 1 : 0;
+  }
+  return inside;
+}
+
+void add(std::vector<std::uint8_t>& marks, const std::vector<std::uint8_t>& more) {
+  for (std::size_t i = 0; i < marks.size(); ++i) marks[i] |= more[i];
+}
+
 /// Held boundary points; every one of them a node of the same number.
-std::vector<std::uint8_t> set_supports(Body& body, const Settings& settings,
+std::vector<std::uint8_t> set_supports(Body& body, const Settings& settings, const Surface& skin,
                                        const Surface& boundary) {
   std::vector<std::uint8_t> held(boundary.points.size(), 0);
-  const double tolerance = kSupportTolerance * settings.element_size;
-  for (std::size_t i = 0; i < held.size(); ++i)
-    held[i] = is_held(settings.supports, boundary.points[i], tolerance) ? 1 : 0;
-  for (const Support& support : settings.supports) {
-    const auto* near = std::get_if<SurfaceSupport>(&support);
-    if (near == nullptr) continue;
-    const SurfaceQuery surface(read_surface(near->surface, settings.log));
-    for (std::size_t i = 0; i < held.size(); ++i)
-      if (is_near(surface, boundary.points[i], near->distance + tolerance)) held[i] = 1;
-  }
+  for (const Support& support : settings.supports)
+    add(held, points_inside(support, settings, skin, boundary));
   for (std::size_t i = 0; i < held.size(); ++i)
     if (held[i] != 0) body.fixed_nodes.push_back(static_cast<std::int32_t>(i));
   return held;
 }
 
-/// Three points off one line stop every rigid motion.
-bool stops_rigid_motion(const std::vector<Vec3>& points, const std::vector<std::int32_t>& held) {
-  if (held.empty()) return false;
-  const auto at = [&](std::int32_t i) { return points[static_cast<std::size_t>(i)]; };
-  const Vec3 first = at(held.front());
-  Vec3 axis{};
-  for (const std::int32_t i : held) {
-    if (norm(at(i) - first) > norm(axis)) axis = at(i) - first;
+/// The facets on springs. @return their nodes, marked.
+std::vector<std::uint8_t> set_foundation(Body& body, const Settings& settings, const Surface& skin,
+                                         const Surface& boundary) {
+  std::vector<std::uint8_t> sprung(boundary.points.size(), 0);
+  std::map<std::int32_t, SprungFacet> facets;
+  for (const Springs& springs : settings.foundation) {
+    const auto inside = points_inside(springs.where, settings, skin, boundary);
+    for (std::size_t f = 0; f < boundary.triangles.size(); ++f) {
+      if (!all_held(boundary.triangles[f], inside)) continue;
+      const auto number = static_cast<std::int32_t>(f);
+      SprungFacet& facet = facets[number];
+      facet.facet = number;
+      facet.normal_stiffness += springs.normal_stiffness;
+      facet.tangential_stiffness += springs.tangential_stiffness;
+      for (const std::int32_t node : boundary.triangles[f])
+        sprung[static_cast<std::size_t>(node)] = 1;
+    }
   }
-  const double length2 = dot(axis, axis);
-  return std::any_of(held.begin(), held.end(), [&](std::int32_t i) {
-    return norm(cross(axis, at(i) - first)) > 1e-3 * length2;
-  });
+  for (const auto& [number, facet] : facets) body.foundation.push_back(facet);
+  if (!settings.foundation.empty() && facets.empty()) {
+    const Bounds box = bounds(boundary.points);
+    throw Error(ErrorKind::Geometry, settings.surface.path.string(),
+                "the supports with springs hold no facet",
+                text("place them on the body, which spans ", millimetres(box.low), " to ",
+                     millimetres(box.high)));
+  }
+  return sprung;
+}
+
+/// The six rigid motions about a point, displacements at x for a unit of each: three shifts, three
+/// turns by 1/length.
+std::array<Vec3, 6> rigid_motions(const Vec3& x, double length) {
+  const Vec3 r = (1 / length) * x;
+  return {Vec3{1, 0, 0},        Vec3{0, 1, 0},        Vec3{0, 0, 1},
+          Vec3{0, -r[2], r[1]}, Vec3{r[2], 0, -r[0]}, Vec3{-r[1], r[0], 0}};
+}
+
+/// Whether elimination of a symmetric matrix, the largest pivot first, meets none near 0.
+bool is_definite(std::array<std::array<double, 6>, 6> K) {
+  double first = 0;
+  std::array<bool, 6> done{};
+  for (std::size_t step = 0; step < 6; ++step) {
+    std::size_t p = 6;
+    for (std::size_t i = 0; i < 6; ++i)
+      if (!done[i] && (p == 6 || K[i][i] > K[p][p])) p = i;
+    first = std::max(first, K[p][p]);
+    if (!(K[p][p] > 1e-6 * first)) return false;
+    done[p] = true;
+    for (std::size_t i = 0; i < 6; ++i)
+      for (std::size_t k = 0; k < 6 && !done[i]; ++k)
+        if (k != p) K[i][k] -= K[i][p] / K[p][p] * K[p][k];
+  }
+  return true;
+}
+
+/// A point that is held, or rests on springs along a direction and across it.
+struct Supported {
+  Vec3 x{};
+  Vec3 normal{1, 0, 0};
+  double along = 1, across = 1;
+
+  double resistance(const Vec3& a, const Vec3& b) const {
+    return across * dot(a, b) + (along - across) * dot(a, normal) * dot(b, normal);
+  }
+};
+
+std::vector<Supported> supported_points(const Body& body, const Surface& boundary) {
+  const auto at = [&](std::int32_t i) { return boundary.points[static_cast<std::size_t>(i)]; };
+  std::vector<Supported> points;
+  for (const std::int32_t node : body.fixed_nodes) points.push_back({at(node)});
+  for (const SprungFacet& sprung : body.foundation) {
+    const Triangle& facet = boundary.triangles[static_cast<std::size_t>(sprung.facet)];
+    const double most = std::max(sprung.normal_stiffness, sprung.tangential_stiffness);
+    for (const std::int32_t node : facet)
+      points.push_back({at(node), unit(area_vector(boundary.points, facet)),
+                        sprung.normal_stiffness / most, sprung.tangential_stiffness / most});
+  }
+  return points;
+}
+
+/// Whether held points and springs resist every rigid motion: their stiffness against the six of
+/// them, relative to the stiffest spring of each facet, is definite.
+bool stops_rigid_motion(const std::vector<Supported>& points) {
+  double length = 0;
+  for (const Supported& point : points) length = std::max(length, norm(point.x - points.front().x));
+  if (length == 0) return false;
+  std::array<std::array<double, 6>, 6> K{};
+  for (const Supported& point : points) {
+    const auto motion = rigid_motions(point.x - points.front().x, length);
+    for (std::size_t a = 0; a < 6; ++a)
+      for (std::size_t b = 0; b < 6; ++b) K[a][b] += point.resistance(motion[a], motion[b]);
+  }
+  return is_definite(K);
 }
 
 void check_supports(const Body& body, const Settings& settings, const Surface& boundary) {
@@ -178,11 +332,17 @@ void check_supports(const Body& body, const Settings& settings, const Surface& b
   const Bounds box = bounds(boundary.points);
   const std::string extent =
       text("the body spans ", millimetres(box.low), " to ", millimetres(box.high));
-  if (!stops_rigid_motion(boundary.points, body.fixed_nodes)) {
+  if (!stops_rigid_motion(supported_points(body, boundary))) {
+    const std::string springs =
+        body.foundation.empty()
+            ? std::string()
+            : text(" and ", counted(body.foundation.size(), "facet"), " on springs");
     throw Error(ErrorKind::Geometry, where,
                 text("the supports hold ", body.fixed_nodes.size(), " of ", boundary.points.size(),
-                     " surface nodes, the body would float"),
-                "place a support on it: " + extent);
+                     " surface nodes", springs, ", the body would float"),
+                (springs.empty() ? "place a support on it: "
+                                 : "give tangential_stiffness, or place a support on it: ") +
+                    extent);
   }
   const auto& site = body.response.is_site;
   if (std::find(site.begin(), site.end(), std::uint8_t{1}) == site.end()) {
@@ -374,7 +534,8 @@ Body mesh(const Settings& settings) {
   Body body;
   body.name = name_or(settings.name, settings.surface.path.stem().string());
   body.boundary = nested.boundary.triangles;
-  const auto held = set_supports(body, settings, nested.boundary);
+  auto held = set_supports(body, settings, skin, nested.boundary);
+  add(held, set_foundation(body, settings, skin, nested.boundary));
   set_response(body, nested, held, settings);
   check_supports(body, settings, nested.boundary);
   check_depth(body, settings, nested.boundary);
@@ -394,6 +555,8 @@ Body mesh(const Settings& settings) {
   note(settings.log,
        text("body: ", body.nodes.size(), " nodes, ", body.tetrahedra.size(), " tetrahedra, ",
             body.fixed_nodes.size(), " nodes held, ",
+            body.foundation.empty() ? std::string()
+                                    : text(body.foundation.size(), " facets on springs, "),
             std::count(body.response.is_site.begin(), body.response.is_site.end(), 1), " sites"));
   note(settings.log, "quality: " + summary(quality));
   return body;

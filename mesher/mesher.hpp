@@ -37,13 +37,25 @@ struct SurfaceSupport {
   SurfaceFile surface;
   double distance = 0;  ///< m
 };
-using Support = std::variant<PlaneSupport, BoxSupport, SphereSupport, SurfaceSupport>;
+/// Nodes on the faces of the skin that bear a name in its file.
+struct LabelSupport {
+  std::string label;
+};
+using Support = std::variant<PlaneSupport, BoxSupport, SphereSupport, SurfaceSupport, LabelSupport>;
+
+/// Boundary facets whose nodes all lie inside `where` rest on springs, N/m^3, along and across
+/// their normals.
+struct Springs {
+  Support where;
+  double normal_stiffness = 0, tangential_stiffness = 0;
+};
 
 struct Settings {
   std::string name;
   SurfaceFile surface;                  ///< the outer skin
   std::vector<SurfaceFile> inclusions;  ///< closed surfaces strictly inside it, disjoint
   std::vector<Support> supports;        ///< surface nodes inside any of them are fixed
+  std::vector<Springs> foundation;      ///< where several overlap, they add up
   double patch_spacing = 0.010;         ///< m, edge length of the response surface
   double element_size = 0.005;          ///< m, edge length of the boundary facets
   double interior_growth = 1.5;         ///< largest interior edge over element_size (aimed at)
@@ -58,9 +70,9 @@ struct Settings {
 /// vertices put back on the input surface, so that the two surfaces are nested: the facets of
 /// response triangle m are Body::boundary[m n^2 .. (m+1) n^2), and response vertex v is node v.
 /// Equal settings and files give equal bodies. Nodes within element_size/1000 of a support are
-/// held. Response vertices within tool_radius of a held node are no sites. Response vertices where
-/// no direction can be interpolated (sharper than the patches resolve) are no sites; the log counts
-/// them. Provenance is left to the caller.
+/// held. Response vertices within tool_radius of a node that is held or on springs are no sites.
+/// Response vertices where no direction can be interpolated (sharper than the patches resolve) are
+/// no sites; the log counts them. Provenance is left to the caller.
 /// @throws Error(Geometry) for a surface that is missing, empty, not closed, not orientable,
 ///   self-intersecting, in several parts, has non-finite coordinates, an implausible size for its
 ///   unit (the largest dimension must lie in 1 mm .. 10 m), an inclusion outside the skin, supports

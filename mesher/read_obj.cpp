@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "mesher/read_obj.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <limits>
@@ -52,11 +53,41 @@ std::optional<std::vector<std::size_t>> parse_face(std::istringstream& words,
   return corners;
 }
 
+/// What `o`, `g` and `usemtl` say of the faces that follow.
+class CurrentNames {
+ public:
+  /// Other keywords change nothing.
+  void take(const std::string& keyword, std::istringstream& words) {
+    Names* const target = keyword == "o"        ? &object_
+                          : keyword == "g"      ? &groups_
+                          : keyword == "usemtl" ? &material_
+                                                : nullptr;
+    if (target == nullptr) return;
+    target->clear();
+    for (std::string word; words >> word && word.front() != '#';) target->push_back(word);
+  }
+
+  /// Place among the known names; they are added where they are new.
+  std::size_t place_in(std::vector<Names>& known) const {
+    Names all = object_;
+    all.insert(all.end(), groups_.begin(), groups_.end());
+    all.insert(all.end(), material_.begin(), material_.end());
+    const auto found = std::find(known.begin(), known.end(), all);
+    const auto place = static_cast<std::size_t>(found - known.begin());
+    if (found == known.end()) known.push_back(all);
+    return place;
+  }
+
+ private:
+  Names object_, groups_, material_;
+};
+
 }  // namespace
 
 Soup read_obj(const std::filesystem::path& path) {
   std::ifstream in(path);
   Soup soup;
+  CurrentNames names;
   std::size_t number = 0;
   const auto refuse = [&](const std::string& problem) {
     throw Error(ErrorKind::Geometry, path.string(), text("line ", number, ": ", problem),
@@ -82,6 +113,9 @@ Soup read_obj(const std::filesystem::path& path) {
       auto face = parse_face(words, soup.points.size());
       if (!face) refuse("a face with an index that is no number");
       soup.polygons.push_back(std::move(*face));
+      soup.names.push_back(names.place_in(soup.known_names));
+    } else {
+      names.take(keyword, words);
     }
   }
   return soup;

@@ -113,18 +113,35 @@ void scale_to_metres(Soup& soup, const SurfaceFile& file) {
   for (Vec3& x : soup.points) x = file.unit * x;
 }
 
+/// Hands the names of a polygon on to the triangles made of it.
+struct NamesOfParts : pmp::Triangulate_faces::Default_visitor<Mesh> {
+  explicit NamesOfParts(std::vector<std::size_t>& n) : names(&n) {}
+  void before_subface_creations(Mesh::Face_index face) { whole = (*names)[face.idx()]; }
+  void after_subface_created(Mesh::Face_index face) {
+    if (face.idx() >= names->size()) names->resize(face.idx() + 1);
+    (*names)[face.idx()] = whole;
+  }
+  std::vector<std::size_t>* names;
+  std::size_t whole = 0;
+};
+
 /// @pre the soup is manifold, closed and oriented.
 Surface triangulate(const Soup& soup, const std::string& where) {
   std::vector<Point> points;
   for (const Vec3& x : soup.points) points.push_back(to_point(x));
   Mesh mesh;
   pmp::polygon_soup_to_polygon_mesh(points, soup.polygons, mesh);
-  if (!pmp::triangulate_faces(mesh)) {
+  std::vector<std::size_t> names = soup.names;
+  names.resize(soup.polygons.size());
+  if (!pmp::triangulate_faces(mesh, pmp::parameters::visitor(NamesOfParts(names)))) {
     refuse(where, "a face with more than three corners cannot be split into triangles",
            "triangulate the surface in a mesh editor");
   }
-  mesh.collect_garbage();
-  return to_surface(mesh);
+  mesh.collect_garbage();  // there is none: faces are split, not removed
+  Surface surface = to_surface(mesh);
+  if (!soup.names.empty()) surface.names = std::move(names);
+  surface.known_names = soup.known_names;
+  return surface;
 }
 
 void check_geometry(const Surface& surface, const std::string& where) {

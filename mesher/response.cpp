@@ -33,13 +33,13 @@ bool holds(const SurfaceSupport&, const Vec3&, double) {
   return false;
 }
 
-double angle_at(const Vec3& apex, const Vec3& b, const Vec3& c) {
-  return std::atan2(norm(cross(b - apex, c - apex)), dot(b - apex, c - apex));
+/// That takes the faces of the file.
+bool holds(const LabelSupport&, const Vec3&, double) {
+  return false;
 }
 
-bool all_held(const Triangle& t, const std::vector<std::uint8_t>& held) {
-  return std::all_of(t.begin(), t.end(),
-                     [&](std::int32_t v) { return held[static_cast<std::size_t>(v)] != 0; });
+double angle_at(const Vec3& apex, const Vec3& b, const Vec3& c) {
+  return std::atan2(norm(cross(b - apex, c - apex)), dot(b - apex, c - apex));
 }
 
 /// Outward normals weighted by the angle of each facet at the vertex [Thuermer & Wuthrich 1998].
@@ -135,6 +135,11 @@ std::vector<std::int32_t> sweep(const OpenTriangles& open, std::vector<Vec3>& in
 }
 
 }  // namespace
+
+bool all_held(const Triangle& t, const std::vector<std::uint8_t>& held) {
+  return std::all_of(t.begin(), t.end(),
+                     [&](std::int32_t v) { return held[static_cast<std::size_t>(v)] != 0; });
+}
 
 bool is_held(const std::vector<Support>& supports, const Vec3& point, double tolerance) {
   return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {

@@ -11,9 +11,12 @@
 
 namespace palpate::mesher {
 
-/// True where any support but a SurfaceSupport holds the point; `tolerance` (m) widens each support
-/// so that nodes lying on its border but for rounding are held.
+/// True where any support but a SurfaceSupport or a LabelSupport holds the point; `tolerance` (m)
+/// widens each support so that nodes lying on its border but for rounding are held.
 bool is_held(const std::vector<Support>& supports, const Vec3& point, double tolerance);
+
+/// Whether all corners are marked.
+bool all_held(const Triangle& t, const std::vector<std::uint8_t>& held);
 
 /// True for points inside a closed surface or within `distance` of it.
 bool is_near(const SurfaceQuery& surface, const Vec3& point, double distance);

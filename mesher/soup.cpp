@@ -58,6 +58,12 @@ std::size_t drop_collapsed_polygons(Soup& soup) {
     corners.erase(std::unique(corners.begin(), corners.end()), corners.end());
     while (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
   }
+  if (!soup.names.empty()) {
+    std::size_t kept = 0;
+    for (std::size_t p = 0; p < soup.polygons.size(); ++p)
+      if (soup.polygons[p].size() >= 3) soup.names[kept++] = soup.names[p];
+    soup.names.resize(kept);
+  }
   return std::erase_if(soup.polygons, [](const auto& corners) { return corners.size() < 3; });
 }
 

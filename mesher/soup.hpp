@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "format/vec3.hpp"
+#include "mesher/surface.hpp"
 #include "mesher/text.hpp"
 
 namespace palpate::mesher {
@@ -14,6 +15,8 @@ namespace palpate::mesher {
 struct Soup {
   std::vector<Vec3> points;
   std::vector<std::vector<std::size_t>> polygons;
+  std::vector<std::size_t> names;  ///< of each polygon, as in Surface; may be empty
+  std::vector<Names> known_names;
 };
 
 /// Harmless repair, each step logged when it does something: points with exactly equal coordinates

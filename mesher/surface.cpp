@@ -69,4 +69,18 @@ Vec3 unit(const Vec3& a) {
   return (1 / norm(a)) * a;
 }
 
+double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto to_segment = [&](const Vec3& p, const Vec3& q) {
+    const Vec3 pq = q - p;
+    const double length2 = dot(pq, pq);
+    const double s = length2 > 0 ? std::clamp(dot(x - p, pq) / length2, 0.0, 1.0) : 0.0;
+    return norm(x - p - s * pq);
+  };
+  const Vec3 n = cross(b - a, c - a);
+  const bool above = dot(cross(b - a, x - a), n) >= 0 && dot(cross(c - b, x - b), n) >= 0 &&
+                     dot(cross(a - c, x - c), n) >= 0;
+  if (above && norm(n) > 0) return std::abs(dot(x - a, n)) / norm(n);
+  return std::min({to_segment(a, b), to_segment(b, c), to_segment(c, a)});
+}
+
 }  // namespace palpate::mesher

@@ -2,17 +2,25 @@
 // A triangulated surface in memory, free of any geometry library.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "format/vec3.hpp"
 
 namespace palpate::mesher {
 
+/// The names a face bears in its file: of its object, its groups, its material.
+using Names = std::vector<std::string>;
+
 /// Closed and oriented outward once it has passed `read_surface`.
 struct Surface {
   std::vector<Vec3> points;  ///< m
   std::vector<Triangle> triangles;
+  std::vector<std::size_t> names;  ///< of each triangle, an index into known_names; may be empty
+  std::vector<Names> known_names;
 };
+
+double distance_to_triangle(const Vec3& x, const Vec3& a, const Vec3& b, const Vec3& c);
 
 struct Bounds {
   Vec3 low{}, high{};

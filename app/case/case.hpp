@@ -36,7 +36,7 @@ struct MeshSection {
 
 /// Only the members that belong to `shape` are read and printed; the others stay zero.
 struct SupportSection {
-  std::string shape;       ///< "plane", "box", "sphere" or "surface"
+  std::string shape;       ///< "plane", "box", "sphere", "surface" or "label"
   Vec3 point{}, normal{};  ///< plane; m, unit vector
   Vec3 low{}, high{};      ///< box; m
   Vec3 centre{};           ///< sphere; m
@@ -44,6 +44,9 @@ struct SupportSection {
   std::string file;        ///< surface: relative to the folder of the case file
   std::string unit;        ///< surface: symbol of the length unit of the file
   double distance = 0;     ///< surface; m
+  std::string label;       ///< label: name of faces in the file of the surface
+  /// N/m^3; where either is not 0 the region rests on springs instead of being held.
+  double normal_stiffness = 0, tangential_stiffness = 0;
   bool operator==(const SupportSection&) const = default;
 };
 
@@ -131,6 +134,13 @@ struct SolverSection {
   bool operator==(const SolverSection&) const = default;
 };
 
+/// The body sags under its weight before it is touched.
+struct GravitySection {
+  Vec3 acceleration{};    ///< m/s^2; zero: no gravity
+  double density = 1000;  ///< kg/m^3
+  bool operator==(const GravitySection&) const = default;
+};
+
 struct OutputSection {
   std::string folder;  ///< relative to the current folder; empty means "out/<name>"
   bool operator==(const OutputSection&) const = default;
@@ -147,6 +157,7 @@ struct Case {
   IndentationSection indentation;
   SamplingSection sampling;
   SolverSection solver;
+  GravitySection gravity;
   FitSection fit;
   CertifySection certify;
   SimulateSection simulate;

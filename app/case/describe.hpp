@@ -80,7 +80,15 @@ void describe(V& v, MeshSection& s) {
 template <class V>
 void describe(V& v, SupportSection& s) {
   v.text(s.shape, {"shape", "surface nodes inside this shape are held", kRequired},
-         {"plane", "box", "sphere", "surface"});
+         {"plane", "box", "sphere", "surface", "label"});
+  v.quantity(s.normal_stiffness, Dimension::FoundationStiffness,
+             {"normal_stiffness",
+              "instead of being held, the facets inside rest on springs per area: along their "
+              "normals at rest; 0 with the next: held",
+              kOptional, kNotNegative});
+  v.quantity(
+      s.tangential_stiffness, Dimension::FoundationStiffness,
+      {"tangential_stiffness", "of those springs, across the normals", kOptional, kNotNegative});
   if (v.when("shape", s.shape, "plane")) {
     v.point(s.point, Dimension::Length, {"point", "a point of the plane", kRequired});
     v.direction(s.normal,
@@ -103,6 +111,12 @@ void describe(V& v, SupportSection& s) {
            unit_symbols(Dimension::Length));
     v.quantity(s.distance, Dimension::Length,
                {"distance", "how near is held", kRequired, kNotNegative});
+  }
+  if (v.when("shape", s.shape, "label")) {
+    v.text(s.label, {"label",
+                     "name of the held faces in the OBJ file of the surface: of a group (`g`), an "
+                     "object (`o`) or a material (`usemtl`)",
+                     kRequired});
   }
 }
 
@@ -304,6 +318,14 @@ void describe(V& v, SolverSection& s) {
 }
 
 template <class V>
+void describe(V& v, GravitySection& s) {
+  v.point(s.acceleration, Dimension::Acceleration,
+          {"acceleration", "of gravity; all 0: the body has no weight"});
+  v.quantity(s.density, Dimension::Density,
+             {"density", "at rest, of every region", kOptional, kPositive});
+}
+
+template <class V>
 void describe(V& v, OutputSection& s) {
   v.text(
       s.folder,
@@ -323,6 +345,8 @@ void describe(V& v, Case& c) {
   v.section("indentation", c.indentation, kOptional, "What is computed at each site.");
   v.section("sampling", c.sampling, kOptional, "Where the tool is pressed.");
   v.section("solver", c.solver, kOptional, "How the equilibria are computed.");
+  v.section("gravity", c.gravity, kOptional,
+            "The body comes to equilibrium under its weight before it is touched.");
   v.section("fit", c.fit, kOptional, "From curves to responses.");
   v.section("certify", c.certify, kOptional, "Passivity certificate.");
   v.section("simulate", c.simulate, kOptional, "Scripted session of `palpate simulate`.");

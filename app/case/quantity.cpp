@@ -22,6 +22,12 @@ constexpr std::array kSpeed{Unit{"mm/s", 1e-3}, Unit{"cm/s", 1e-2}, Unit{"m/s", 
 constexpr std::array kTime{Unit{"ms", 1e-3}, Unit{"us", 1e-6}, Unit{"s", 1}};
 constexpr std::array kCompliance{Unit{"mm/N", 1e-3}, Unit{"um/N", 1e-6}, Unit{"m/N", 1}};
 
+constexpr std::array kFoundationStiffness{Unit{"kPa/mm", 1e6}, Unit{"N/mm^3", 1e9},
+                                          Unit{"N/m^3", 1}};
+
+constexpr std::array kAcceleration{Unit{"m/s^2", 1}};
+constexpr std::array kDensity{Unit{"g/cm^3", 1e3}, Unit{"kg/m^3", 1}};
+
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view blanks = " \t";
   const auto first = text.find_first_not_of(blanks);
@@ -61,6 +67,12 @@ std::string_view dimension_name(Dimension dimension) {
       return "time";
     case Dimension::Compliance:
       return "compliance";
+    case Dimension::FoundationStiffness:
+      return "stiffness per area";
+    case Dimension::Acceleration:
+      return "acceleration";
+    case Dimension::Density:
+      return "density";
   }
   return "";
 }
@@ -89,6 +101,12 @@ std::span<const Unit> units_of(Dimension dimension) {
       return kTime;
     case Dimension::Compliance:
       return kCompliance;
+    case Dimension::FoundationStiffness:
+      return kFoundationStiffness;
+    case Dimension::Acceleration:
+      return kAcceleration;
+    case Dimension::Density:
+      return kDensity;
   }
   return {};
 }

@@ -21,7 +21,10 @@ enum class Dimension {
   Stiffness,
   Speed,
   Time,
-  Compliance
+  Compliance,
+  FoundationStiffness,
+  Acceleration,
+  Density
 };
 
 struct Unit {

@@ -43,6 +43,11 @@ std::vector<ElementSide> sides_of(const fem::QuadraticMesh& mesh,
 
 /// All but what presses.
 Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex) {
+  if (settings.gravity.acts() || !body.foundation.empty()) {
+    throw Error(ErrorKind::Configuration, body.name,
+                "decks for other programs hold neither gravity nor springs",
+                "export a case without [gravity] and without supports that have a stiffness");
+  }
   Deck deck;
   deck.region_names = body.region_names;
   for (const std::string& region : body.region_names) {

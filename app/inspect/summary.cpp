@@ -72,6 +72,7 @@ Json summary_of(const Body& body) {
           {"tetrahedra", body.tetrahedra.size()},
           {"boundary_facets", body.boundary.size()},
           {"held_nodes", body.fixed_nodes.size()},
+          {"facets_on_springs", body.foundation.size()},
           {"response_vertices", body.response.node.size()},
           {"response_triangles", body.response.triangles.size()},
           {"sites", std::count(is_site.begin(), is_site.end(), 1)},

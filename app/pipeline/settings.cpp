@@ -32,6 +32,7 @@ mesher::Support support_of(const Workspace& space, const SupportSection& section
     return mesher::PlaneSupport{section.point, (1 / norm(section.normal)) * section.normal};
   }
   if (section.shape == "box") return mesher::BoxSupport{section.low, section.high};
+  if (section.shape == "label") return mesher::LabelSupport{section.label};
   return mesher::SphereSupport{section.centre, section.radius};
 }
 
@@ -70,7 +71,14 @@ mesher::Settings mesh_settings(const Workspace& space) {
   for (const auto& inclusion : c.inclusions) {
     settings.inclusions.push_back(surface_file(space, inclusion));
   }
-  for (const auto& support : c.supports) settings.supports.push_back(support_of(space, support));
+  for (const auto& support : c.supports) {
+    if (support.normal_stiffness > 0 || support.tangential_stiffness > 0) {
+      settings.foundation.push_back(
+          {support_of(space, support), support.normal_stiffness, support.tangential_stiffness});
+    } else {
+      settings.supports.push_back(support_of(space, support));
+    }
+  }
   const bool all_nodes = c.sampling.method == "nodes";
   settings.patch_spacing = all_nodes ? c.mesh.element_size : c.mesh.patch_spacing;
   settings.element_size = c.mesh.element_size;
@@ -89,6 +97,7 @@ fem::CampaignSettings campaign_settings(const Workspace& space) {
   }
   if (c.solver.element == "tet10-displacement") settings.dilatation = fem::Dilatation::Pointwise;
   if (c.solver.element == "tet10-nodal-pressure") settings.dilatation = fem::Dilatation::Nodal;
+  settings.gravity = {c.gravity.acceleration, c.gravity.density};
   fem::IndentationSettings& indentation = settings.indentation;
   indentation.tool = tool_of(c.tool);
   indentation.tool_azimuth = c.tool.azimuth;
@@ -161,9 +170,10 @@ std::string stage_case(const Workspace& space, Stage stage) {
              (space.c.sampling.method == "nodes" ? "every surface node\n" : "");
     case Stage::Precompute:  // adaptive sampling judges what is fitted
       return is_adaptive(space)
-                 ? resolved_sections(
-                       space.c, {"material", "tool", "indentation", "sampling", "solver", "fit"})
-                 : resolved_sections(space.c, {"material", "tool", "indentation", "solver"});
+                 ? resolved_sections(space.c, {"material", "tool", "indentation", "sampling",
+                                               "solver", "gravity", "fit"})
+                 : resolved_sections(space.c,
+                                     {"material", "tool", "indentation", "solver", "gravity"});
     case Stage::Fit:
       return resolved_sections(space.c, {"fit"}) + (is_adaptive(space) ? "interpolated\n" : "");
     case Stage::Certify:

@@ -32,6 +32,10 @@ class HolzapfelGasserOgden : public LogQuadraticVolume {
 
   const FibreField& fibres() const { return field_; }
 
+  /// Always, for J^{-2/3} I4 is polyconvex as J^{-2/3} I1 is, and a family carries no compression
+  /// [Schroeder & Neff 2003].
+  bool polyconvex() const { return true; }
+
   template <class T>
   T psi(const Tensor2<T>& F, const T& J, const Fibres<T>& a) const {
     const T scale = power_of(J, -2.0 / 3.0);

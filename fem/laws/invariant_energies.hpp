@@ -14,6 +14,7 @@ struct MooneyRivlinEnergy {
   static constexpr bool kSecond = true;
   double C10, C01;
 
+  bool polyconvex() const { return C10 > 0 && C01 == 0; }
   template <class T>
   T value(const T& x, const T& y) const {
     return C10 * x + C01 * y;
@@ -31,6 +32,7 @@ struct MooneyRivlin5Energy {
   static constexpr bool kSecond = true;
   double C10, C01, C20, C11, C02;
 
+  bool polyconvex() const { return C10 > 0 && C20 >= 0 && C01 == 0 && C11 == 0 && C02 == 0; }
   template <class T>
   T value(const T& x, const T& y) const {
     return C10 * x + C01 * y + C20 * x * x + C11 * x * y + C02 * y * y;
@@ -47,6 +49,7 @@ struct YeohEnergy {
   static constexpr bool kSecond = false;
   double C10, C20, C30;
 
+  bool polyconvex() const { return C10 > 0 && C20 >= 0 && C30 >= 0; }
   template <class T>
   T value(const T& x, const T&) const {
     return x * (C10 + x * (C20 + C30 * x));
@@ -63,6 +66,7 @@ struct DemirayFungEnergy {
   static constexpr bool kSecond = false;
   double mu, b;
 
+  bool polyconvex() const { return true; }
   template <class T>
   T value(const T& x, const T&) const {
     return (0.5 * mu / b) * (exponential(T(b * x)) - 1.0);
@@ -79,6 +83,7 @@ struct VerondaWestmannEnergy {
   static constexpr bool kSecond = true;
   double C1, C2;
 
+  bool polyconvex() const { return false; }
   template <class T>
   T value(const T& x, const T& y) const {
     return C1 * (exponential(T(C2 * x)) - 1.0) - (0.5 * C1 * C2) * y;
@@ -98,6 +103,7 @@ struct ArrudaBoyceEnergy {
                                                  519.0 / 673750};
   double mu, lambda_m;
 
+  bool polyconvex() const { return true; }
   /// Coefficient of I1^k, k = 1..5.
   std::array<double, 5> coefficients() const {
     std::array<double, 5> c{};

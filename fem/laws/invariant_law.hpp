@@ -81,6 +81,10 @@ class InvariantLaw : public LogQuadraticVolume {
   /// `kappa`: bulk modulus, Pa.
   InvariantLaw(Energy energy, double kappa) : LogQuadraticVolume(kappa), energy_(energy) {}
 
+  /// Whether the constants are known to make the energy polyconvex [Hartmann & Neff 2003]: powers
+  /// of x with coefficients that are not negative do; y is not polyconvex.
+  bool polyconvex() const { return energy_.polyconvex(); }
+
   /// Isochoric energy density, J/m^3.
   template <class T>
   T psi(const Tensor2<T>& F, const T& J) const {

@@ -41,6 +41,9 @@ class Law {
   Lanes pressure(const Lanes& J) const { return kernel_->pressure(J); }
   Lanes pressure_slope(const Lanes& J) const { return kernel_->pressure_slope(J); }
 
+  /// Whether the constants make the energy polyconvex, so that it is elliptic in every state.
+  bool polyconvex() const { return kernel_->polyconvex(); }
+
   /// Directions of the fibres at X; zero for a law without.
   std::array<Vec3, 2> fibres_at(const Vec3& X) const { return kernel_->fibres_at(X); }
 
@@ -55,6 +58,7 @@ class Law {
     virtual Lanes volumetric_energy(const Lanes&) const = 0;
     virtual Lanes pressure(const Lanes&) const = 0;
     virtual Lanes pressure_slope(const Lanes&) const = 0;
+    virtual bool polyconvex() const = 0;
     virtual std::array<Vec3, 2> fibres_at(const Vec3&) const = 0;
   };
 
@@ -84,6 +88,7 @@ class Law {
     Lanes volumetric_energy(const Lanes& J) const override { return law.volumetric_energy(J); }
     Lanes pressure(const Lanes& J) const override { return law.pressure(J); }
     Lanes pressure_slope(const Lanes& J) const override { return law.pressure_slope(J); }
+    bool polyconvex() const override { return law.polyconvex(); }
     std::array<Vec3, 2> fibres_at(const Vec3& X) const override {
       if constexpr (Anisotropic<L>)
         return law.fibres().at(X);

@@ -21,6 +21,14 @@ class Ogden : public LogQuadraticVolume {
   Ogden(std::vector<Term> terms, double kappa)
       : LogQuadraticVolume(kappa), terms_(std::move(terms)) {}
 
+  /// Terms of a positive modulus are polyconvex for alpha >= 3/2 and, by the stretches of areas,
+  /// for alpha <= -3 [Hartmann & Neff 2003].
+  bool polyconvex() const {
+    return std::all_of(terms_.begin(), terms_.end(), [](const Term& term) {
+      return term.mu > 0 && (term.alpha >= 1.5 || term.alpha <= -3);
+    });
+  }
+
   template <class T>
   T psi(const Tensor2<T>& F, const T& J) const {
     const auto strain = logarithmic_strains(principal_stretches(gram(F)), J);

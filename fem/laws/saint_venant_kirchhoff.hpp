@@ -13,6 +13,8 @@ class SaintVenantKirchhoff {
   /// Lame's constants, Pa.
   SaintVenantKirchhoff(double lambda, double mu) : lambda_(lambda), mu_(mu) {}
 
+  bool polyconvex() const { return false; }
+
   template <class T>
   T psi(const Tensor2<T>& F, const T&) const {
     const Tensor2<T> E = strain(F);

@@ -141,6 +141,40 @@ TEST(Case, KeysOfAdaptiveSamplingBelongToIt) {
   EXPECT_ANY_THROW(parse_case(with_sampling("method = \"adaptive\"\nheld_out = 3"), "a"));
 }
 
+TEST(Case, ReadsASupportByTheNameOfFaces) {
+  const std::string text =
+      replaced(kGood, "[[support]]\nshape = \"sphere\"",
+               "[[support]]\nshape = \"label\"\nlabel = \"bone side\"\n\n[[support]]\nshape = "
+               "\"sphere\"");
+  const Case c = parse_case(text, "ball.toml");
+  ASSERT_EQ(c.supports.size(), 5U);
+  EXPECT_EQ(c.supports[1].label, "bone side");
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
+  EXPECT_THAT(message_of(replaced(text, "label = \"bone side\"\n", "")), HasSubstr("label"));
+}
+
+TEST(Case, ReadsSpringsAndGravity) {
+  const Case held = parse_case(kGood, "ball.toml");
+  EXPECT_EQ(held.supports[0].normal_stiffness, 0);
+  EXPECT_EQ(held.gravity.acceleration, (Vec3{0, 0, 0}));
+  const std::string text =
+      replaced(kGood, "normal = [0, 0, -1]",
+               "normal = [0, 0, -1]\nnormal_stiffness = \"20 kPa/mm\"\n"
+               "tangential_stiffness = \"3e5 N/m^3\"") +
+      "\n[gravity]\nacceleration = [\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]\n"
+      "density = \"1.05 g/cm^3\"\n";
+  const Case c = parse_case(text, "ball.toml");
+  EXPECT_DOUBLE_EQ(c.supports[0].normal_stiffness, 2e7);
+  EXPECT_DOUBLE_EQ(c.supports[0].tangential_stiffness, 3e5);
+  EXPECT_DOUBLE_EQ(c.gravity.acceleration[2], -9.81);
+  EXPECT_DOUBLE_EQ(c.gravity.density, 1050);
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
+  EXPECT_THAT(message_of(replaced(text, "20 kPa/mm", "-1 N/m^3")),
+              HasSubstr("support[0].normal_stiffness"));
+  EXPECT_THAT(message_of(replaced(text, "20 kPa/mm", "20 kPa")), HasSubstr("kPa/mm, N/mm^3"));
+  EXPECT_THAT(message_of(replaced(text, "1.05 g/cm^3", "0 kg/m^3")), HasSubstr("gravity.density"));
+}
+
 std::string with_tool(const std::string& tool) {
   return replaced(kGood, "[indentation]", "[tool]\n" + tool + "\n[indentation]");
 }

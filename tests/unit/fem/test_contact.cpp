@@ -172,12 +172,13 @@ TEST(ToolContact, ToolForceBalancesTheForcesOnTheNodes) {
   EXPECT_LT(p.contact.tool_force(p.u)[2], 0);  // the tool pushes the body down
 }
 
-TEST(ToolContact, RestPenetrationIsTheDepthOfTheSphere) {
+TEST(ToolContact, PenetrationOfARestingSurfaceIsTheDepthOfTheSphere) {
   const Pressed p;
-  const double depth = p.contact.rest_penetration(sphere(Eigen::Vector3d(0, 0, 0.004)));
+  const Displacement rest = Displacement::Zero(3, p.u.cols());
+  const double depth = p.contact.penetration_of(sphere(Eigen::Vector3d(0, 0, 0.004)), rest);
   EXPECT_LE(depth, 1e-3);
   EXPECT_GT(depth, 0.9e-3);  // the deepest quadrature point lies near, not at, the pole
-  EXPECT_LE(p.contact.rest_penetration(sphere(Eigen::Vector3d(0, 0, 0.0051))), 0);
+  EXPECT_LE(p.contact.penetration_of(sphere(Eigen::Vector3d(0, 0, 0.0051)), rest), 0);
 }
 
 }  // namespace

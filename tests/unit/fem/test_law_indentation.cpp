@@ -58,11 +58,18 @@ double end_force(const SiteCurves& site) {
   return norm(site.paths.front().samples.back().force);
 }
 
+/// Saint Venant-Kirchhoff loses ellipticity under the tool before 2 mm.
+CampaignSettings bearable(const LawConstants& tissue, const LawConstants& skin) {
+  CampaignSettings settings = settings_of(tissue, skin);
+  if (skin.law == "saint-venant-kirchhoff") settings.indentation.depth = 0.0015;
+  return settings;
+}
+
 class LawIndentation : public testing::TestWithParam<LawConstants> {};
 
 TEST_P(LawIndentation, ConvergesAsWithNewton) {
   const Body body = layered_block();
-  const CampaignSettings settings = settings_of(GetParam(), GetParam());
+  const CampaignSettings settings = bearable(GetParam(), GetParam());
   const SiteCurves direct = press(body, settings, Engine::Direct);
   const SiteCurves shared = press(body, settings, Engine::SharedFactor);
   ASSERT_EQ(direct.paths.size(), shared.paths.size());
@@ -76,7 +83,7 @@ TEST_P(LawIndentation, ConvergesAsWithNewton) {
 TEST_P(LawIndentation, WorksAsASkinOnAnotherLaw) {
   const Body body = layered_block();
   const LawConstants soft(4e3, 0.45);
-  CampaignSettings settings = settings_of(soft, GetParam());
+  CampaignSettings settings = bearable(soft, GetParam());
   settings.indentation.held_depths.clear();
   const double layered = end_force(press(body, settings, Engine::SharedFactor));
   settings.materials[0].law = GetParam();

@@ -34,12 +34,14 @@ using Break = std::function<void(const Path&)>;
 const double kNaN = std::numeric_limits<double>::quiet_NaN();
 const double kInfinity = std::numeric_limits<double>::infinity();
 
-enum class Kind { Body, Curves, Library, CoupledLibrary, Recording };
+enum class Kind { Body, SprungBody, Curves, Library, CoupledLibrary, Recording };
 
 void write_sample(Kind kind, const Path& path) {
   switch (kind) {
     case Kind::Body:
       return write_body(path, samples::body(1));
+    case Kind::SprungBody:
+      return write_body(path, samples::sprung_body(1));
     case Kind::Curves:
       return write_curves(path, samples::curves(1));
     case Kind::Library:
@@ -62,6 +64,7 @@ void copy_sample(Kind kind, const Path& path) {
 void read_sample(Kind kind, const Path& path) {
   switch (kind) {
     case Kind::Body:
+    case Kind::SprungBody:
       static_cast<void>(read_body(path));
       return;
     case Kind::Curves:
@@ -187,8 +190,9 @@ std::vector<Case> common_cases() {
   for (const auto& [name, kind] : kinds) {
     add(name + "OfLaterSchema", kind,
         edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 99, H5T_NATIVE_INT); }), ":/",
-        kind == Kind::Library ? "has schema 99, this palpate reads 1 to 2; update palpate"
-                              : "has schema 99, this palpate reads 1; update palpate");
+        kind == Kind::Library || kind == Kind::Body
+            ? "has schema 99, this palpate reads 1 to 2; update palpate"
+            : "has schema 99, this palpate reads 1; update palpate");
     add(name + "OfEarlierSchema", kind,
         edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 0, H5T_NATIVE_INT); }), ":/",
         "has schema 0, this palpate reads 1");
@@ -224,7 +228,20 @@ std::vector<Case> body_cases() {
   const auto poke_u8 = [](const std::string& object, double value) {
     return poke(object, 0, value);
   };
+  constexpr auto kSprung = Kind::SprungBody;
   return {
+      {"BodySpringsMissing", kSprung, remove("/foundation/facet"), "/foundation/facet",
+       "is missing"},
+      {"BodySprungFacetTooLarge", kSprung, poke("/foundation/facet", 3, 100000),
+       "/foundation/facet[3]", "index 100000 is not below"},
+      {"BodySprungFacetsUnsorted", kSprung, poke("/foundation/facet", 2, 1), "/foundation/facet[2]",
+       "is not above the row before it"},
+      {"BodySpringNegative", kSprung, poke("/foundation/normal_stiffness", 1, -1.0),
+       "/foundation/normal_stiffness[1]", "is not finite and not negative"},
+      {"BodySpringNaN", kSprung, poke("/foundation/tangential_stiffness", 0, kNaN),
+       "/foundation/tangential_stiffness[0]", "is not finite and not negative"},
+      {"BodySpringsTooFew", kSprung, replace("/foundation/normal_stiffness", {3}, H5T_IEEE_F64LE),
+       "/foundation/normal_stiffness", "4"},
       {"BodyNodesMissing", kind, remove("/nodes"), "/nodes", "is missing"},
       {"BodyNodeNaN", kind, poke("/nodes", 4, kNaN), "/nodes[1]", "nan is not finite"},
       {"BodyNodeInfinite", kind, poke("/nodes", 0, kInfinity), "/nodes[0]", "inf is not finite"},

@@ -23,6 +23,10 @@ TEST(RoundTrip, Body) {
     const Body body = samples::body(seed);
     write_body(folder / "body.h5", body);
     EXPECT_EQ(dump(read_body(folder / "body.h5")), dump(body));
+    const Body sprung = samples::sprung_body(seed);
+    write_body(folder / "sprung.h5", sprung);
+    EXPECT_EQ(dump(read_body(folder / "sprung.h5")), dump(sprung));
+    EXPECT_NE(dump(sprung), dump(body));
   }
 }
 

@@ -205,6 +205,14 @@ Body body(unsigned seed) {
   return body;
 }
 
+Body sprung_body(unsigned seed) {
+  Random random(seed);
+  Body sprung = body(seed);
+  for (std::int32_t facet = 1; facet < 12; facet += 3)
+    sprung.foundation.push_back({facet, random.between(0, 1e6), random.between(0, 1e5)});
+  return sprung;
+}
+
 Curves curves(unsigned seed) {
   Random random(seed);
   Curves curves;
@@ -295,11 +303,18 @@ Recording recording(unsigned seed) {
   return recording;
 }
 
+static std::vector<Vec3> springs_of(const Body& body) {
+  std::vector<Vec3> rows;
+  for (const SprungFacet& f : body.foundation)
+    rows.push_back({static_cast<double>(f.facet), f.normal_stiffness, f.tangential_stiffness});
+  return rows;
+}
+
 std::string dump(const Body& body) {
   const ResponseSurface& r = body.response;
   return (Dump() << body.name << body.nodes << body.tetrahedra << body.tetrahedron_region
                  << body.region_names << body.boundary << body.fixed_nodes << r.node << r.inward
-                 << r.triangles << r.is_site << body.provenance)
+                 << r.triangles << r.is_site << body.provenance << springs_of(body))
       .text();
 }
 

@@ -169,8 +169,31 @@ TEST(Refusals, SupportsThatHoldNothingOrEverything) {
   expect_refused(s, "held.off", "hold 0 of", "place a support");
   s.supports = {BoxSupport{{-1, -1, -1}, {1, 0, 0}}};  // one edge: the body could still turn
   expect_refused(s, "held.off", "the body would float", "place a support");
+  const BoxSupport base{{-1, -1, -1}, {1, 1, 0}};
+  s.supports.clear();
+  s.foundation = {{base, 1e6, 0}};  // springs along one direction only: it could still slide
+  expect_refused(s, "held.off", "on springs, the body would float", "tangential_stiffness");
+  s.foundation = {{SphereSupport{{1, 1, 1}, 0.01}, 1e6, 1e6}};
+  expect_refused(s, "held.off", "hold no facet", "place them on the body");
+  s.foundation = {{base, 0, 0}};
+  expect_refused(s, "mesh", "springs of 0", "one of them positive", ErrorKind::Configuration);
+  s.foundation.clear();
   s.supports = {BoxSupport{{-1, -1, -1}, {1, 1, 1}}};
   expect_refused(s, "held.off", "nothing can be touched", "smaller");
+}
+
+TEST(Refusals, NamesThatNoFaceBears) {
+  const TemporaryFile file("unnamed.off", off_text(cube()));
+  Settings s = settings_for(file.path());
+  s.supports = {LabelSupport{"bone"}};
+  expect_refused(s, "unnamed.off", "no face bears the name 'bone'", "in an OBJ file",
+                 ErrorKind::Configuration);
+  const TemporaryFile named("named.obj",
+                            "v 0 0 0\nv 0.05 0 0\nv 0 0.05 0\nv 0 0 0.05\ng skin\nf 1 3 2\nf 1 2 "
+                            "4\ng bed # below\nf 2 3 4\nf 3 1 4\n");
+  s.surface.path = named.path();
+  expect_refused(s, "named.obj", "no face bears the name 'bone'", "use one of bed, skin",
+                 ErrorKind::Configuration);
 }
 
 TEST(Refusals, DepthBeyondTheThickness) {

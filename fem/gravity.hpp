@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "format/vec3.hpp"
+
+namespace palpate::fem {
+
+/// Weight of every region alike.
+struct Gravity {
+  Vec3 acceleration{};  ///< m/s^2
+  double density = 0;   ///< kg/m^3, at rest
+  bool acts() const { return norm(acceleration) > 0 && density > 0; }
+};
+
+}  // namespace palpate::fem
