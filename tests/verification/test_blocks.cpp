@@ -62,6 +62,13 @@ class Block {
   }
   void start_from(const Block& other) { u_ = other.u_; }
 
+  /// Of an edge of the cube, where its face stays plane.
+  double stretch(int axis) const {
+    for (int node = 0; node < model_.mesh().nodes(); ++node)
+      if (model_.mesh().X(axis, node) == 1) return 1 + u_(axis, node);
+    return 0;
+  }
+
   /// Force on a face at 1 over its rest area.
   double nominal_stress(int face_axis, int axis) const {
     Eigen::VectorXd f;
@@ -220,6 +227,20 @@ TEST(Block, SaintVenantKirchhoffHasTheStressOfTheClosedForm) {
   row(Mode::Uniaxial, uniaxial);
   row(Mode::Equibiaxial, uniaxial / (1 - nu));
   row(Mode::PureShear, uniaxial / (1 - nu * nu));
+}
+
+/// A beam of 8 under a Cauchy stress of 2, C10 = 1.92505, D1 = 0.026: stretched as printed it must
+/// have that stress. CalculiX has kappa/2 (J - 1)^2 where J is 1.01 here.
+TEST(Block, CompressibleNeoHookeanHasTheElongationThatCalculixPrints) {
+  const double mu = 2 * 1.92505, kappa = 2 / 0.026;
+  const double nu = (3 * kappa - 2 * mu) / (2 * (3 * kappa + mu));
+  std::optional<Block> block;
+  const double nominal = stresses({2 * mu * (1 + nu), nu},
+                                  motions_of(Mode::Uniaxial, 1 + 1.415438 / 8), {{0, 0}}, block)
+                             .front();
+  test::verify({kProblem, "neo-hookean, compressible, Cauchy stress at an elongation of 1.415438/8",
+                "1", nominal / (block->stretch(1) * block->stretch(2)), 2,
+                "[P] CalculiX, test example beamnh", 0.005});
 }
 
 /// P = mu (l - l^-2) + 2 l k1 (l^2 - 1) exp(k2 (l^2 - 1)^2) along one family of aligned fibres.

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <utility>
 
 #include "fem/at.hpp"
+#include "fem/laws/invariant_energies.hpp"
 #include "fem/solid_model.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
@@ -79,8 +82,12 @@ double inflation(double inner) {
 /// wall moved outwards in proportion to their place.
 class OctantOfSphere {
  public:
-  OctantOfSphere(int divisions, int layers)
-      : body_(test::make_prisms(test::octant_of_sphere(divisions), layers,
+  using LawOf = std::function<Law(double bulk_modulus)>;
+
+  /// `law_of`: of a shear modulus of 1.
+  OctantOfSphere(int divisions, int layers, LawOf law_of)
+      : law_of_(std::move(law_of)),
+        body_(test::make_prisms(test::octant_of_sphere(divisions), layers,
                                 [layers](const Vec3& x, int layer) {
                                   return std::pow(2.0, layer / static_cast<double>(layers)) * x;
                                 })) {
@@ -90,9 +97,7 @@ class OctantOfSphere {
     path_ = Displacement::Zero(3, model.mesh().nodes());
   }
 
-  SolidModel with_poisson(double nu) const {
-    return {body_, {NeoHookean::from_moduli(1, bulk_modulus(1, nu))}};
-  }
+  SolidModel with_poisson(double nu) const { return {body_, {law_of_(bulk_modulus(1, nu))}}; }
 
   /// Pressure over mu in the limit of no compression: the error is that of the compressibility,
   /// proportional to mu/kappa, and two small ones give the limit. Stretches must ascend.
@@ -149,6 +154,7 @@ class OctantOfSphere {
     return slope / (3 * stretch * stretch * hollow_);
   }
 
+  LawOf law_of_;
   Body body_;
   double hollow_ = 0;                   ///< volume between the inner facets and the centre
   std::vector<test::Prescribed> wall_;  ///< its unknowns, with their reference coordinates
@@ -157,14 +163,28 @@ class OctantOfSphere {
   double reached_ = 1;
 };
 
+constexpr auto kThickSphere = "Thick sphere 1:2, inflated, incompressible";
+
+std::string at_stretch(double stretch) {
+  char name[64];
+  std::snprintf(name, sizeof name, "pressure over mu at an inner stretch of %.2f", stretch);
+  return name;
+}
+
 TEST(Solid, ThickSphereInflates) {
-  OctantOfSphere sphere(8, 6);
-  for (const double stretch : {1.25, 1.5, 2.0}) {
-    char name[64];
-    std::snprintf(name, sizeof name, "pressure over mu at an inner stretch of %.2f", stretch);
-    test::verify({"Thick sphere 1:2, inflated, incompressible", name, "1", sphere.pressure(stretch),
+  OctantOfSphere sphere(8, 6, [](double kappa) { return NeoHookean::from_moduli(1, kappa); });
+  for (const double stretch : {1.25, 1.5, 2.0})
+    test::verify({kThickSphere, at_stretch(stretch), "1", sphere.pressure(stretch),
                   inflation(stretch), "[C] closed form, neo-Hookean", 0.003});
-  }
+}
+
+TEST(Solid, ThickSphereOfMooneyRivlinInflates) {
+  OctantOfSphere sphere(8, 6,
+                        [](double kappa) { return MooneyRivlin({.C10 = 0.4, .C01 = 0.1}, kappa); });
+  for (const auto& [stretch, expected] :
+       {std::pair{1.25, 0.583743}, std::pair{1.5, 0.847427}, std::pair{2.0, 1.033830}})
+    test::verify({kThickSphere, at_stretch(stretch) + ", Mooney-Rivlin, C01/C10 = 1/4", "1",
+                  sphere.pressure(stretch), expected, "[C] closed form, six digits", 0.003});
 }
 
 /// A smooth finite deformation of the unit cube. The isochoric one has no pressure for the law to
