@@ -231,7 +231,7 @@ bool ContactState::release(const Candidate& moved, const Vec3& x, double energy_
 void ContactState::commit(const Candidate& next, double energy_before) noexcept {
   const bool same_element = model_ && model_->point().element == next.model.point().element;
   model_ = next.model;
-  if (ahead_ != kNoElement || !same_element) look_ahead();
+  if (ahead_ != kNoElement || !same_element) look_ahead(next.deflection);
   goal_ = next.goal;
   tank_.settle(energy_before, next.response.energy);
   if (next.deflection.depth > next.model.deepest()) seen_.status |= PALPATE_BEYOND_DEPTH;
@@ -246,10 +246,11 @@ void ContactState::commit(const Candidate& next, double energy_before) noexcept 
 }
 
 /// What the contact point may reach in the next steps is fetched from memory in this one.
-void ContactState::look_ahead() noexcept {
+void ContactState::look_ahead(const Deflection& at) noexcept {
   const std::int32_t now = model_->point().element;
-  if (ahead_ != kNoElement) surface_->prefetch_curves_around(ahead_);
-  if (ahead_ != now) surface_->prefetch_around(now);
+  const NodeCurves::InUse in_use = model_->curves_in_use(at);
+  if (ahead_ != kNoElement) surface_->prefetch_beyond(ahead_, in_use);
+  if (ahead_ != now) surface_->prefetch_around(now, in_use);
   ahead_ = ahead_ == now ? kNoElement : now;
 }
 

@@ -103,7 +103,7 @@ class ContactState {
                    double recovery) const noexcept;
   bool release(const Candidate& moved, const Vec3& x, double energy_before) noexcept;
   void commit(const Candidate& next, double energy_before) noexcept;
-  void look_ahead() noexcept;
+  void look_ahead(const Deflection& at) noexcept;
   void free_contact() noexcept;
   void drop() noexcept;
 

@@ -86,6 +86,9 @@ class LocalModel {
   double offset() const noexcept { return offset_; }
   void set_offset(double offset) noexcept { offset_ = offset; }
   double deepest() const noexcept { return response_.deepest(); }
+  NodeCurves::InUse curves_in_use(const Deflection& d) const noexcept {
+    return response_.node(0).in_use(d.depth, d.lateral);
+  }
 
  private:
   const Surface* surface_;

@@ -67,11 +67,33 @@ CurveValue CompiledCurve::evaluate(double d) const noexcept {
   return on_piece(*(after - 1), d);
 }
 
-void NodeCurves::prefetch() const noexcept {
-  constexpr std::size_t kLine = 64;  // bytes fetched at once
-  const auto* at = reinterpret_cast<const char*>(pieces_);
-  const std::size_t bytes = (std::size_t{normal_} + lateral_ + coupling_) * sizeof(PackedPiece);
-  for (std::size_t i = 0; i < bytes && i < 16 * kLine; i += kLine) __builtin_prefetch(at + i);
+std::size_t NodeCurves::lines(const CurveSizes& sizes) noexcept {
+  return knot_lines(sizes) + (sizes.sum() + kPiecesALine - 1) / kPiecesALine;
+}
+
+NodeCurves NodeCurves::write(CacheLine* memory, const CompiledCurve& normal,
+                             const CompiledCurve& lateral, const CompiledCurve& coupling) noexcept {
+  const auto size = [](const CompiledCurve& c) {
+    return static_cast<std::uint16_t>(c.pieces().size());
+  };
+  const CurveSizes sizes{size(normal), size(lateral), size(coupling)};
+  auto* knots = reinterpret_cast<float*>(memory);
+  auto* pieces = reinterpret_cast<PackedPiece*>(memory + knot_lines(sizes));
+  for (const CompiledCurve* curve : {&normal, &lateral, &coupling}) {
+    for (const CompiledCurve::Piece& piece : curve->pieces()) {
+      *pieces = pack(piece);
+      *knots++ = pieces++->start;
+    }
+  }
+  return {memory, sizes};
+}
+
+NodeCurves::InUse NodeCurves::in_use(double depth, double lateral_deflection) const noexcept {
+  const auto line = [&](std::size_t first, const CurveView& curve, double at) {
+    return knot_lines(sizes_) + (first + curve.piece_at(at)) / kPiecesALine;
+  };
+  return {line(0, normal(), depth), line(sizes_.normal, lateral(), lateral_deflection),
+          coupled() ? line(std::size_t{sizes_.normal} + sizes_.lateral, coupling(), depth) : 0};
 }
 
 PackedPiece pack(const CompiledCurve::Piece& p) noexcept {

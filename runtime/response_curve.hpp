@@ -2,6 +2,7 @@
 // One stored response made ready for the force loop: force, slope, energy at a deflection.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -73,14 +74,14 @@ struct alignas(32) PackedPiece {
   double energy = 0;     ///< E_k, J
 };
 
-/// View of a curve in a row of packed pieces: the same response as the CompiledCurve that was
-/// packed, to the last bit. Valid while the row lives; cheap to copy; evaluation as there. Inline:
-/// a step evaluates a dozen of them.
+/// View of a packed curve, its knots beside its pieces: the same response as the CompiledCurve that
+/// was packed, to the last bit. Valid while the memory lives; cheap to copy; evaluation as there.
+/// Inline: a step evaluates a dozen of them.
 class CurveView {
  public:
   CurveView() = default;  ///< the zero response
-  CurveView(const PackedPiece* pieces, std::size_t count) noexcept
-      : pieces_(pieces), count_(count) {}
+  CurveView(const float* knots, const PackedPiece* pieces, std::size_t count) noexcept
+      : knots_(knots), pieces_(pieces), count_(count) {}
 
   CurveValue evaluate(double d) const noexcept {
     if (count_ == 0 || !(d > 0.0)) return {};
@@ -99,7 +100,7 @@ class CurveView {
 
   const PackedPiece& piece(std::size_t k) const noexcept { return pieces_[k]; }
   std::size_t size() const noexcept { return count_; }
-  double start(std::size_t k) const noexcept { return static_cast<double>(pieces_[k].start); }
+  double start(std::size_t k) const noexcept { return static_cast<double>(knots_[k]); }
   double last_knot() const noexcept { return count_ == 0 ? 0.0 : start(count_ - 1); }
 
   /// Index of the piece that holds d; 0 for d <= 0 and for the zero response.
@@ -114,30 +115,67 @@ class CurveView {
   }
 
  private:
+  const float* knots_ = nullptr;
   const PackedPiece* pieces_ = nullptr;
   std::size_t count_ = 0;
 };
 
+inline constexpr std::size_t kCacheLine = 64;  ///< bytes that the processor fetches at once
+
+/// Memory that is counted in lines.
+struct alignas(kCacheLine) CacheLine {
+  std::array<std::byte, kCacheLine> bytes{};
+};
+
+/// How many pieces the responses of a node have.
+struct CurveSizes {
+  std::uint16_t normal = 0, lateral = 0, coupling = 0;
+  std::size_t sum() const noexcept { return std::size_t{normal} + lateral + coupling; }
+};
+
 /// The responses of a node, side by side in memory: f^z, then f^r, then w when they are coupled.
+/// First all knots, so that looking up a piece costs one line and not one for each comparison; then
+/// the pieces.
 class NodeCurves {
  public:
   NodeCurves() = default;
-  NodeCurves(const PackedPiece* pieces, std::uint16_t normal, std::uint16_t lateral,
-             std::uint16_t coupling = 0) noexcept
-      : pieces_(pieces), normal_(normal), lateral_(lateral), coupling_(coupling) {}
+  /// Of curves that write() put there.
+  NodeCurves(const CacheLine* memory, CurveSizes sizes) noexcept : memory_(memory), sizes_(sizes) {}
 
-  CurveView normal() const noexcept { return {pieces_, normal_}; }              ///< f^z
-  CurveView lateral() const noexcept { return {pieces_ + normal_, lateral_}; }  ///< f^r
-  CurveView coupling() const noexcept {                                         ///< w
-    return {pieces_ + normal_ + lateral_, coupling_};
+  /// Lines that curves of these sizes take.
+  static std::size_t lines(const CurveSizes& sizes) noexcept;
+  /// The compiled curves into that many lines.
+  static NodeCurves write(CacheLine* memory, const CompiledCurve& normal,
+                          const CompiledCurve& lateral,
+                          const CompiledCurve& coupling = {}) noexcept;
+
+  CurveView normal() const noexcept { return view(0, sizes_.normal); }                ///< f^z
+  CurveView lateral() const noexcept { return view(sizes_.normal, sizes_.lateral); }  ///< f^r
+  CurveView coupling() const noexcept {                                               ///< w
+    return view(std::size_t{sizes_.normal} + sizes_.lateral, sizes_.coupling);
   }
-  bool coupled() const noexcept { return coupling_ > 0; }
-  /// Asks the processor to have the curves at hand soon.
-  void prefetch() const noexcept;
+  bool coupled() const noexcept { return sizes_.coupling > 0; }
+
+  /// Lines from the first to those of the pieces at a deflection; 0 for w of decoupled responses.
+  struct InUse {
+    std::size_t normal = 0, lateral = 0, coupling = 0;
+  };
+  InUse in_use(double depth, double lateral_deflection) const noexcept;
 
  private:
-  const PackedPiece* pieces_ = nullptr;
-  std::uint16_t normal_ = 0, lateral_ = 0, coupling_ = 0;
+  static constexpr std::size_t kKnotsALine = kCacheLine / sizeof(float);
+  static constexpr std::size_t kPiecesALine = kCacheLine / sizeof(PackedPiece);
+  static std::size_t knot_lines(const CurveSizes& sizes) noexcept {
+    return (sizes.sum() + kKnotsALine - 1) / kKnotsALine;
+  }
+  CurveView view(std::size_t first, std::size_t count) const noexcept {
+    const auto* knots = reinterpret_cast<const float*>(memory_);
+    const auto* pieces = reinterpret_cast<const PackedPiece*>(memory_ + knot_lines(sizes_));
+    return {knots + first, pieces + first, count};
+  }
+
+  const CacheLine* memory_ = nullptr;
+  CurveSizes sizes_;
 };
 
 /// A piece of a CompiledCurve, packed.

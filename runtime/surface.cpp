@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <new>
 #include <string>
 #include <utility>
 
@@ -20,12 +22,44 @@ std::string triangle_name(std::size_t m) {
   return "library triangle " + std::to_string(m);
 }
 
-constexpr std::size_t kLine = 64;  // bytes that the processor fetches at once
-
-void prefetch(const void* what, std::size_t bytes) noexcept {
-  for (std::size_t i = 0; i < bytes; i += kLine) {
-    __builtin_prefetch(static_cast<const char*>(what) + i);
+/// The numbers of the points along a curve through space on which near points are mostly near each
+/// other (Z order; G. M. Morton 1966).
+std::vector<std::size_t> along_a_curve(const std::vector<Vec3>& points, const Vec3& low,
+                                       const Vec3& high) {
+  constexpr int kBits = 20;  // an axis
+  std::vector<std::pair<std::uint64_t, std::size_t>> place;
+  place.reserve(points.size());
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    std::uint64_t code = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double extent = std::max(high[i] - low[i], 1e-12);
+      const auto cell =
+          static_cast<std::uint64_t>((points[v][i] - low[i]) / extent * ((1 << kBits) - 1));
+      for (int bit = 0; bit < kBits; ++bit)
+        code |= ((cell >> bit) & 1U) << (3U * static_cast<unsigned>(bit) + i);
+    }
+    place.emplace_back(code, v);
   }
+  std::sort(place.begin(), place.end());
+  std::vector<std::size_t> order;
+  order.reserve(place.size());
+  for (const auto& [code, v] : place) order.push_back(v);
+  return order;
+}
+
+/// Pieces are as many as knots; a hole has none.
+CurveSizes sizes_of(const Library& library, std::size_t v) {
+  const NodeResponse& r = library.responses[v];
+  if (r.status == ResponseStatus::Hole) return {};
+  const bool coupled = library.kind == ResponseKind::Coupled;
+  const std::size_t coupling = coupled ? r.coupling.curve.knot.size() : 0;
+  if (std::max({r.normal.knot.size(), r.lateral.knot.size(), coupling}) > kMostKnots) {
+    throw Error(ErrorKind::Configuration, "library vertex " + std::to_string(v),
+                "a response has more than " + std::to_string(kMostKnots) + " knots",
+                "fit with fewer");
+  }
+  return {static_cast<std::uint16_t>(r.normal.knot.size()),
+          static_cast<std::uint16_t>(r.lateral.knot.size()), static_cast<std::uint16_t>(coupling)};
 }
 
 /// Distance of the origin from the segment a b.
@@ -66,69 +100,67 @@ Surface::Surface(const Library& library) : elements_(library.triangles.size()) {
     throw Error(ErrorKind::Configuration, "library",
                 "positions, directions and responses differ in number", "build it again");
   }
-  build_nodes(library);
-  for (std::size_t m = 0; m < elements_.size(); ++m) build_element(library, m);
+  const std::vector<std::int32_t> record = build_nodes(library);
+  for (std::size_t m = 0; m < elements_.size(); ++m) build_element(library, record, m);
   if (std::none_of(elements_.begin(), elements_.end(), [](const Element& e) { return e.active; })) {
     throw Error(ErrorKind::Configuration, "library",
                 "no triangle has responses at its three vertices", "fit more sites");
   }
   connect();
-  low_ = high_ = nodes_.front().position;
+}
+
+/// Where the record of each vertex begins.
+std::vector<std::int32_t> Surface::build_nodes(const Library& library) {
+  if (library.positions.empty()) {
+    throw Error(ErrorKind::Configuration, "library", "it has no vertices", "build it again");
+  }
+  low_ = high_ = library.positions.front();
   for (const Vec3& p : library.positions) {
     for (std::size_t i = 0; i < 3; ++i) {
       low_[i] = std::min(low_[i], p[i]);
       high_[i] = std::max(high_[i], p[i]);
     }
   }
-}
-
-void Surface::build_nodes(const Library& library) {
-  struct Count {
-    std::size_t normal = 0, lateral = 0, coupling = 0;
-  };
-  std::vector<Count> counts(library.responses.size());
-  const auto append = [&](const CompiledCurve& curve) {
-    for (const CompiledCurve::Piece& piece : curve.pieces()) pieces_.push_back(pack(piece));
-    return curve.pieces().size();
-  };
-  for (std::size_t v = 0; v < counts.size(); ++v) {
-    const NodeResponse& response = library.responses[v];
-    if (response.status == ResponseStatus::Hole) continue;
-    const CompiledCurve normal(response.normal);
-    counts[v].normal = append(normal);
-    counts[v].lateral = append(CompiledCurve(response.lateral));
-    if (library.kind == ResponseKind::Coupled)
-      counts[v].coupling = append(coupling_of(response, v));
-    if (std::max({counts[v].normal, counts[v].lateral, counts[v].coupling}) > kMostKnots) {
-      throw Error(ErrorKind::Configuration, "library vertex " + std::to_string(v),
-                  "a response has more than " + std::to_string(kMostKnots) + " knots",
-                  "fit with fewer");
+  const std::vector<std::size_t> order = along_a_curve(library.positions, low_, high_);
+  std::vector<std::int32_t> record(order.size());
+  std::size_t lines = 0;
+  for (const std::size_t v : order) {
+    record[v] = static_cast<std::int32_t>(lines);
+    lines += 1 + NodeCurves::lines(sizes_of(library, v));
+    if (lines > std::numeric_limits<std::int32_t>::max()) {
+      throw Error(ErrorKind::Configuration, "library", "its responses take more than 128 GB",
+                  "fit with fewer knots");
     }
-    deepest_ = std::max(deepest_, normal.last_knot());
   }
-  nodes_.resize(counts.size());
-  const PackedPiece* next = pieces_.data();
-  for (std::size_t v = 0; v < counts.size(); ++v) {
-    const auto [normal, lateral, coupling] = counts[v];
-    nodes_[v] = {
-        library.positions[v], library.inward[v],
-        NodeCurves(next, static_cast<std::uint16_t>(normal), static_cast<std::uint16_t>(lateral),
-                   static_cast<std::uint16_t>(coupling))};
-    next += normal + lateral + coupling;
+  records_.resize(lines);
+  for (const std::size_t v : order) {
+    const NodeResponse& response = library.responses[v];
+    SurfaceNode node{library.positions[v], library.inward[v], {}};
+    CacheLine* const memory = &records_[static_cast<std::size_t>(record[v])];
+    if (response.status != ResponseStatus::Hole) {
+      const CompiledCurve normal(response.normal);
+      const bool coupled = library.kind == ResponseKind::Coupled;
+      node.curves = NodeCurves::write(memory + 1, normal, CompiledCurve(response.lateral),
+                                      coupled ? coupling_of(response, v) : CompiledCurve());
+      deepest_ = std::max(deepest_, normal.last_knot());
+    }
+    new (memory) SurfaceNode(node);
   }
+  return record;
 }
 
-void Surface::build_element(const Library& library, std::size_t m) {
+void Surface::build_element(const Library& library, const std::vector<std::int32_t>& record,
+                            std::size_t m) {
   Element& e = elements_[m];
-  e.vertices = library.triangles[m];
   e.active = true;
-  for (const std::int32_t v : e.vertices) {
-    if (v < 0 || static_cast<std::size_t>(v) >= nodes_.size()) {
+  for (std::size_t l = 0; l < 3; ++l) {
+    const auto v = static_cast<std::size_t>(library.triangles[m][l]);
+    if (v >= record.size()) {  // a negative index is a huge one
       throw Error(ErrorKind::Configuration, triangle_name(m), "vertex index out of range",
                   "build it again");
     }
-    e.active =
-        e.active && library.responses[static_cast<std::size_t>(v)].status != ResponseStatus::Hole;
+    e.vertices[l] = record[v];
+    e.active = e.active && library.responses[v].status != ResponseStatus::Hole;
   }
   const Vec3 outward = cross(vertex(e, 1) - vertex(e, 0), vertex(e, 2) - vertex(e, 0));
   const double twice_area = norm(outward);
@@ -144,16 +176,16 @@ void Surface::build_element(const Library& library, std::size_t m) {
     const Vec3 edge = vertex(e, (l + 2) % 3) - vertex(e, (l + 1) % 3);
     e.gradient[l] = (1.0 / twice_area) * cross(edge, e.facet_normal);
   }
-  if (e.active) check_directions(m);
+  if (e.active) check_directions(library, m);
 }
 
-void Surface::check_directions(std::size_t m) const {
+void Surface::check_directions(const Library& library, std::size_t m) const {
   const Element& e = elements_[m];
   const char* remedy = "refine the response surface there or smooth the inward directions";
   for (std::size_t l = 0; l < 3; ++l) {
     if (!(dot(inward(e, l), e.facet_normal) > 0)) {
       throw Error(ErrorKind::Geometry, triangle_name(m),
-                  "the inward direction of vertex " + std::to_string(e.vertices[l]) +
+                  "the inward direction of vertex " + std::to_string(library.triangles[m][l]) +
                       " does not point to its inner side",
                   remedy);
     }
@@ -200,34 +232,44 @@ void Surface::connect() {
   }
 }
 
-void Surface::prefetch_around(std::int32_t m) const noexcept {
+void Surface::prefetch_around(std::int32_t m, const NodeCurves::InUse& in_use) const noexcept {
   const Element& e = element(m);
   for (std::size_t l = 0; l < 3; ++l) {
     if (e.neighbour[l] == kNoElement) continue;
-    const Element& next = element(e.neighbour[l]);
-    for (const std::int32_t beyond : next.neighbour) {
+    prefetch_opposite(e, l, in_use);
+    for (const std::int32_t beyond : element(e.neighbour[l]).neighbour) {
       if (beyond == kNoElement || beyond == m) continue;
-      prefetch(&element(beyond), sizeof(Element));
+      const auto* lines = reinterpret_cast<const CacheLine*>(&element(beyond));
+      __builtin_prefetch(lines);
+      __builtin_prefetch(lines + 1);
     }
-    const std::int32_t v = opposite_vertex(e, l);
-    if (v >= 0) prefetch(&nodes_[static_cast<std::size_t>(v)], sizeof(SurfaceNode));
   }
 }
 
-void Surface::prefetch_curves_around(std::int32_t m) const noexcept {
-  const Element& e = element(m);
-  for (std::size_t l = 0; l < 3; ++l) {
-    const std::int32_t v = opposite_vertex(e, l);
-    if (v >= 0) nodes_[static_cast<std::size_t>(v)].curves.prefetch();
+void Surface::prefetch_beyond(std::int32_t m, const NodeCurves::InUse& in_use) const noexcept {
+  for (const std::int32_t next : element(m).neighbour) {
+    if (next == kNoElement) continue;
+    const Element& e = element(next);
+    for (std::size_t l = 0; l < 3; ++l) {
+      if (e.neighbour[l] != kNoElement && e.neighbour[l] != m) prefetch_opposite(e, l, in_use);
+    }
   }
 }
 
-/// The vertex of the neighbour across edge l that the element does not have; -1 at a border.
-std::int32_t Surface::opposite_vertex(const Element& e, std::size_t l) const noexcept {
-  if (e.neighbour[l] == kNoElement) return -1;
+/// The vertex of the neighbour across edge l that the element does not have.
+void Surface::prefetch_opposite(const Element& e, std::size_t l,
+                                const NodeCurves::InUse& in_use) const noexcept {
+  // The sum of the three less the shared two, all as bits: sums of three may be large.
+  const auto bits = [](std::int32_t v) { return static_cast<std::uint32_t>(v); };
   const auto& theirs = element(e.neighbour[l]).vertices;
-  // The sum of the three less the shared two.
-  return theirs[0] + theirs[1] + theirs[2] - e.vertices[(l + 1) % 3] - e.vertices[(l + 2) % 3];
+  const std::uint32_t v = bits(theirs[0]) + bits(theirs[1]) + bits(theirs[2]) -
+                          bits(e.vertices[(l + 1) % 3]) - bits(e.vertices[(l + 2) % 3]);
+  const CacheLine* const record = &records_[v];
+  __builtin_prefetch(record);
+  __builtin_prefetch(record + 1);  // the knots
+  __builtin_prefetch(record + 1 + in_use.normal);
+  __builtin_prefetch(record + 1 + in_use.lateral);
+  if (in_use.coupling > 0) __builtin_prefetch(record + 1 + in_use.coupling);
 }
 
 }  // namespace palpate::runtime

@@ -16,8 +16,8 @@ namespace palpate::runtime {
 inline constexpr std::int32_t kNoElement = -1;
 
 /// A triangle of the response surface. Everything about it is constant over the triangle.
-struct alignas(64) Element {
-  std::array<std::int32_t, 3> vertices{};
+struct alignas(kCacheLine) Element {
+  std::array<std::int32_t, 3> vertices{};  ///< their records in the memory of the surface
   /// neighbour[l] is across the edge opposite to vertex l; kNoElement at a border.
   std::array<std::int32_t, 3> neighbour{kNoElement, kNoElement, kNoElement};
   std::array<Vec3, 3> gradient{};  ///< of the natural coordinates, 1/m, in the plane
@@ -25,12 +25,15 @@ struct alignas(64) Element {
   bool active = false;             ///< false next to a hole: never touched, a border for the others
 };
 
-/// All that belongs to a vertex, in one cache line.
-struct alignas(64) SurfaceNode {
+/// All that belongs to a vertex: one cache line, which those of its curves follow. An element names
+/// it by the number of that line, so that what a step will need of it can be asked for without
+/// having read anything of it.
+struct alignas(kCacheLine) SurfaceNode {
   Vec3 position{};  ///< m
   Vec3 inward{};    ///< unit
   NodeCurves curves;
 };
+static_assert(sizeof(SurfaceNode) == kCacheLine);
 
 /// A point of the surface: an element and natural coordinates n_l >= 0 that sum to 1.
 struct SurfacePoint {
@@ -77,9 +80,11 @@ class Surface {
 
   /// Asks the processor for what lies around an element, in two calls that should be a step apart:
   /// first the elements beyond its neighbours and the vertices opposite to its edges, then the
-  /// curves of those vertices. The contact point then moves on without waiting for the memory.
-  void prefetch_around(std::int32_t m) const noexcept;
-  void prefetch_curves_around(std::int32_t m) const noexcept;
+  /// vertices of the elements beyond. The contact point then moves on, over an edge or near a
+  /// vertex over two, without waiting for the memory. Of the curves only the lines are asked for
+  /// that are in use at the contact point now.
+  void prefetch_around(std::int32_t m, const NodeCurves::InUse& in_use) const noexcept;
+  void prefetch_beyond(std::int32_t m, const NodeCurves::InUse& in_use) const noexcept;
 
   /// Signed distance of x to the plane of an element, positive OUTSIDE the body, m. Collision and
   /// release use this one expression, so that they never disagree on which side a point is.
@@ -93,20 +98,22 @@ class Surface {
   double deepest() const noexcept { return deepest_; }  ///< deepest sample of any node, m
 
  private:
-  void build_nodes(const Library& library);
-  void build_element(const Library& library, std::size_t m);
+  std::vector<std::int32_t> build_nodes(const Library& library);
+  void build_element(const Library& library, const std::vector<std::int32_t>& record,
+                     std::size_t m);
   void connect();
-  void check_directions(std::size_t m) const;
+  void check_directions(const Library& library, std::size_t m) const;
 
-  std::int32_t opposite_vertex(const Element& e, std::size_t l) const noexcept;
+  void prefetch_opposite(const Element& e, std::size_t l,
+                         const NodeCurves::InUse& in_use) const noexcept;
   const SurfaceNode& node(const Element& e, std::size_t l) const noexcept {
-    return nodes_[static_cast<std::size_t>(e.vertices[l])];
+    return *reinterpret_cast<const SurfaceNode*>(
+        &records_[static_cast<std::size_t>(e.vertices[l])]);
   }
 
   template <class T>
   using Table = std::vector<T, LargeMemory<T>>;
-  Table<SurfaceNode> nodes_;
-  Table<PackedPiece> pieces_;  ///< of all nodes, one after the other
+  Table<CacheLine> records_;  ///< of each node a SurfaceNode and its curves
   Table<Element> elements_;
   Vec3 low_{}, high_{};
   double deepest_ = 0;

@@ -28,27 +28,20 @@ ResponseCurve random_curve(std::mt19937& random, bool with_plateaus) {
   return curve;
 }
 
-void append(const CompiledCurve& curve, std::vector<PackedPiece>& row) {
-  for (const CompiledCurve::Piece& piece : curve.pieces()) row.push_back(pack(piece));
-}
-
 struct Nodes {
   explicit Nodes(std::mt19937& random, bool with_plateaus = false) {
     for (std::size_t l = 0; l < 3; ++l) {
       for (const std::size_t kind : {0U, 1U}) {
         curves[l][kind] = CompiledCurve(random_curve(random, with_plateaus));
-        append(curves[l][kind], knots[l]);
       }
-      packed[l] =
-          NodeCurves(knots[l].data(), static_cast<std::uint16_t>(curves[l][0].pieces().size()),
-                     static_cast<std::uint16_t>(curves[l][1].pieces().size()));
+      packed[l] = NodeCurves::write(memory[l].data(), curves[l][0], curves[l][1]);
     }
   }
   InterpolatedResponse at(const Vec3& natural) const {
     return {{&packed[0], &packed[1], &packed[2]}, natural};
   }
   std::array<std::array<CompiledCurve, 2>, 3> curves;  // normal, lateral
-  std::array<std::vector<PackedPiece>, 3> knots;
+  std::array<std::array<CacheLine, 16>, 3> memory;
   std::array<NodeCurves, 3> packed;
 };
 
@@ -131,9 +124,9 @@ TEST(InterpolatedResponse, LateralInverseAgreesWithBisection) {
 }
 
 TEST(InterpolatedResponse, NothingSlipsWhereTheLateralForceStaysBelowTheLimit) {
-  std::vector<PackedPiece> knots;
-  append(CompiledCurve(ResponseCurve{{0.0F, 0.001F, 0.002F}, {100.0F, 0.0F, 0.0F}}), knots);
-  const NodeCurves flat(knots.data(), 0, 3);
+  const CompiledCurve lateral(ResponseCurve{{0.0F, 0.001F, 0.002F}, {100.0F, 0.0F, 0.0F}});
+  std::array<CacheLine, 4> memory;
+  const NodeCurves flat = NodeCurves::write(memory.data(), CompiledCurve(), lateral);
   const InterpolatedResponse r({&flat, &flat, &flat}, {0.2, 0.3, 0.5});
   EXPECT_NEAR(r.lateral(1.0).force, 0.05, 1e-8);  // knots are single precision
   EXPECT_TRUE(std::isinf(r.lateral_inverse(0.06)));
