@@ -9,27 +9,20 @@
 int main(int argc, char** argv) {
   palpate_library* library;
   palpate_state* state;
-  palpate_settings settings;
-  palpate_library_info info = {.size = sizeof info};
+  palpate_library_info box = {.size = sizeof box};
   palpate_observation seen = {.size = sizeof seen};
-  double force[3], position[3], velocity[3];
-  palpate_settings_default(&settings);
-  settings.friction = 0.3;
+  double at[3], v[3], force[3];
   if (argc < 5 || palpate_library_load(argv[1], &library) ||
-      palpate_state_create(library, &settings, &state)) {
+      palpate_state_create(library, NULL, &state))
     return fprintf(stderr, "feel LIBRARY X Y Z: %s\n", palpate_last_error()), 1;
-  }
-  palpate_library_describe(library, &info);
-  for (int i = 0; i < 5000 && seen.depth < 0.003; ++i) { /* your force loop, 1 kHz */
-    for (int k = 0; k < 3; ++k) {
-      velocity[k] = -0.1 * atof(argv[2 + k]);
-      position[k] = (info.low[k] + info.high[k]) / 2 + (1e-3 * i - 2) * velocity[k];
-    }
-    palpate_step(state, position, velocity, 1e-3, force);
+  palpate_library_describe(library, &box);
+  for (int k = 0; k < 3; ++k) v[k] = -0.1 * atof(argv[2 + k]);
+  for (int i = -2000; i < 2000 && seen.depth < 0.003; ++i) { /* your force loop, 1 kHz */
+    for (int k = 0; k < 3; ++k) at[k] = (box.low[k] + box.high[k]) / 2 + 1e-3 * i * v[k];
+    palpate_step(state, at, v, 1e-3, force);
     palpate_observe(state, &seen);
   }
   printf("(%.4f, %.4f, %.4f) N, %.3f mm deep\n", force[0], force[1], force[2], 1e3 * seen.depth);
   palpate_state_destroy(state);
   palpate_library_destroy(library);
-  return 0;
 }

@@ -9,11 +9,6 @@ import sys
 Vector = ctypes.c_double * 3
 
 
-class Settings(ctypes.Structure):
-    _fields_ = [("size", ctypes.c_uint32), ("friction", ctypes.c_double), ("tank_cap", ctypes.c_double),
-                ("steepness", ctypes.c_double), ("search_rate", ctypes.c_double)]
-
-
 class Info(ctypes.Structure):
     _fields_ = [("size", ctypes.c_uint32), ("vertices", ctypes.c_int32), ("triangles", ctypes.c_int32),
                 ("stick", ctypes.c_double), ("slip", ctypes.c_double), ("friction", ctypes.c_double),
@@ -30,17 +25,15 @@ class Observation(ctypes.Structure):
 def main(path, library_file, *side):
     palpate = ctypes.CDLL(path)
     palpate.palpate_last_error.restype = ctypes.c_char_p
-    library, state, settings = ctypes.c_void_p(), ctypes.c_void_p(), Settings()
-    palpate.palpate_settings_default(ctypes.byref(settings))
-    settings.friction = 0.3
+    library, state = ctypes.c_void_p(), ctypes.c_void_p()
     if palpate.palpate_library_load(library_file.encode(), ctypes.byref(library)) or \
-            palpate.palpate_state_create(library, ctypes.byref(settings), ctypes.byref(state)):
+            palpate.palpate_state_create(library, None, ctypes.byref(state)):
         sys.exit(palpate.palpate_last_error().decode())
     info, seen, force = Info(ctypes.sizeof(Info)), Observation(ctypes.sizeof(Observation)), Vector()
     palpate.palpate_library_describe(library, ctypes.byref(info))
     velocity = Vector(*(-0.1 * float(s) for s in side))
-    for i in range(5000):  # your force loop, 1 kHz
-        position = Vector(*((low + high) / 2 + (1e-3 * i - 2) * v
+    for i in range(-2000, 2000):  # your force loop, 1 kHz
+        position = Vector(*((low + high) / 2 + 1e-3 * i * v
                             for low, high, v in zip(info.low, info.high, velocity)))
         palpate.palpate_step(state, position, velocity, ctypes.c_double(1e-3), force)
         palpate.palpate_observe(state, ctypes.byref(seen))

@@ -11,7 +11,7 @@ trap 'rm -rf "$work"' EXIT
 "$cmake" --install "$build" --component runtime --prefix "$work/first" > /dev/null
 mv "$work/first" "$work/moved"
 prefix=$work/moved
-"$write_plate" "$work/plate.h5"
+"$write_plate" "$work/plate.h5" 0.3
 
 "$cmake" -G Ninja -S "$source/consumer" -B "$work/by_cmake" -DCMAKE_PREFIX_PATH="$prefix" \
   -DCMAKE_C_COMPILER="$cc" -DCMAKE_CXX_COMPILER="$cxx" -DEXAMPLES="$examples" > "$work/log" || { cat "$work/log"; exit 1; }
