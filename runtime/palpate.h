@@ -158,6 +158,7 @@ typedef struct palpate_loop_settings {
   double max_force; /* N; default: no clamp */
   double max_speed; /* m/s, beyond it the force is cut off; default 3 */
   double watchdog;  /* s without a step after which the device is halted; default 0.02 */
+  uint32_t record;  /* steps that are kept until palpate_loop_take; default 0: none are */
 } palpate_loop_settings;
 
 typedef struct palpate_loop_report {
@@ -167,7 +168,22 @@ typedef struct palpate_loop_report {
   double wake_median, wake_p999, wake_longest;          /* s late for a step */
   double compute_median, compute_p999, compute_longest; /* s for a step with the device's calls */
   char missing_rights[256]; /* one line on what the system refused; empty: nothing */
+  uint64_t unrecorded;      /* steps for which the record had no room */
 } palpate_loop_report;
+
+/* What a step of the loop read, felt and commanded. */
+typedef struct palpate_loop_step {
+  uint32_t size;                   /* sizeof(palpate_loop_step), set by the caller */
+  uint32_t status;                 /* status bits, those of the loop included */
+  int32_t element;                 /* active triangle, -1 without contact */
+  int64_t time_ns;                 /* since the first step */
+  int64_t spent_ns;                /* by the step, the calls of the device included */
+  double position[3], velocity[3]; /* as the device told them */
+  double force[3];                 /* commanded, N */
+  double contact_point[3];         /* m */
+  double depth, lateral, offset;   /* m */
+  double energy, tank, absorbed;   /* J, the energy account */
+} palpate_loop_step;
 
 typedef struct palpate_loop palpate_loop;
 
@@ -178,8 +194,14 @@ PALPATE_API int palpate_loop_start(palpate_state* state, const palpate_device* d
                                    const palpate_loop_settings* settings, palpate_loop** loop);
 /* 1 until it has been stopped or the device is lost. */
 PALPATE_API int palpate_loop_running(const palpate_loop* loop);
-/* Ends the loop after the step under way, commands no force, waits, reports (report may be NULL)
- * and frees the loop. */
+/* The oldest step that was recorded and not yet taken: 1, or 0 when there is none now. From one
+ * thread at a time, which never holds up the loop; a loop that finds no room leaves a step out and
+ * counts it. */
+PALPATE_API int palpate_loop_take(palpate_loop* loop, palpate_loop_step* step);
+/* Ends the loop after the step under way, commands no force and waits. What was recorded can still
+ * be taken. */
+PALPATE_API void palpate_loop_end(palpate_loop* loop);
+/* Ends the loop if that was not done, reports (report may be NULL) and frees the loop. */
 PALPATE_API int palpate_loop_stop(palpate_loop* loop, palpate_loop_report* report);
 
 #ifdef __cplusplus

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The force loop of the C interface.
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "runtime/c_boundary.hpp"
@@ -59,15 +62,50 @@ struct palpate_loop {
   palpate_loop(palpate_state& state, const palpate_device& functions,
                const palpate_loop_settings& settings)
       : device(functions),
-        loop(device, state, safety_of(settings), nullptr),
+        loop(device, state, safety_of(settings), queue_of(settings)),
         thread(loop, device, thread_of(settings)) {}
 
+ private:
+  palpate::runtime::StepQueue* queue_of(const palpate_loop_settings& settings) {
+    return settings.record == 0 ? nullptr : &record.emplace(settings.record);
+  }
+
+ public:
   CallerDevice device;
+  std::optional<palpate::runtime::StepQueue> record;
   palpate::runtime::ForceLoop loop;
   palpate::runtime::LoopThread thread;
 };
 
 namespace {
+
+// Sizes of the structs in the first header that was published.
+constexpr std::uint32_t kFirstSettings = offsetof(palpate_loop_settings, record);
+constexpr std::uint32_t kFirstReport = offsetof(palpate_loop_report, unrecorded);
+constexpr std::uint32_t kFirstStep = sizeof(palpate_loop_step);
+
+void copy(const Vec3& from, double to[3]) noexcept {
+  std::copy(from.begin(), from.end(), to);
+}
+
+palpate_loop_step translate(const palpate::RecordedStep& recorded) noexcept {
+  palpate_loop_step step{};
+  step.status = recorded.status;
+  step.element = recorded.element;
+  step.time_ns = recorded.time_ns;
+  step.spent_ns = recorded.latency_ns;
+  copy(recorded.position, step.position);
+  copy(recorded.velocity, step.velocity);
+  copy(recorded.force, step.force);
+  copy(recorded.contact_point, step.contact_point);
+  step.depth = recorded.depth;
+  step.lateral = recorded.lateral;
+  step.offset = recorded.offset;
+  step.energy = recorded.energy;
+  step.tank = recorded.tank;
+  step.absorbed = recorded.absorbed;
+  return step;
+}
 
 palpate_loop_report report_on(const palpate_loop& loop) {
   constexpr double kNanosecond = 1e-9;
@@ -91,6 +129,7 @@ palpate_loop_report report_on(const palpate_loop& loop) {
   report.compute_longest = kNanosecond * static_cast<double>(c.compute.largest());
   const std::string missing = loop.thread.missing_rights();
   std::strncpy(report.missing_rights, missing.c_str(), sizeof report.missing_rights - 1);
+  report.unrecorded = c.unrecorded;
   return report;
 }
 
@@ -109,7 +148,8 @@ void palpate_loop_settings_default(palpate_loop_settings* settings) {
                safety.ramp,
                safety.max_force,
                safety.max_speed,
-               safety.watchdog};
+               safety.watchdog,
+               0};
 }
 
 int palpate_loop_start(palpate_state* state, const palpate_device* device,
@@ -127,11 +167,11 @@ int palpate_loop_start(palpate_state* state, const palpate_device* device,
   palpate_loop_settings chosen;
   palpate_loop_settings_default(&chosen);
   if (settings != nullptr) {
-    if (settings->size < sizeof(palpate_loop_settings)) {
+    if (settings->size < kFirstSettings) {
       return fail(PALPATE_ERROR_ARGUMENT,
                   "palpate_loop_start: fill the settings with palpate_loop_settings_default first");
     }
-    chosen = *settings;
+    palpate::runtime::give(*settings, &chosen, settings->size);
   }
   return palpate::runtime::guarded(PALPATE_ERROR_ARGUMENT, [&] {
     *loop = new palpate_loop(*state, *device, chosen);
@@ -143,10 +183,22 @@ int palpate_loop_running(const palpate_loop* loop) {
   return loop != nullptr && loop->thread.running() ? 1 : 0;
 }
 
+int palpate_loop_take(palpate_loop* loop, palpate_loop_step* step) {
+  if (loop == nullptr || step == nullptr || step->size < kFirstStep || !loop->record) return 0;
+  palpate::RecordedStep recorded;
+  if (!loop->record->try_dequeue(recorded)) return 0;
+  palpate::runtime::give(translate(recorded), step, step->size);
+  return 1;
+}
+
+void palpate_loop_end(palpate_loop* loop) {
+  if (loop != nullptr) loop->thread.stop();
+}
+
 int palpate_loop_stop(palpate_loop* loop, palpate_loop_report* report) {
   using palpate::runtime::fail;
   if (loop == nullptr) return fail(PALPATE_ERROR_ARGUMENT, "palpate_loop_stop: loop is null");
-  if (report != nullptr && report->size < sizeof(palpate_loop_report))
+  if (report != nullptr && report->size < kFirstReport)
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_loop_stop: set report->size to sizeof");
   loop->thread.stop();
   const int status = palpate::runtime::guarded(PALPATE_ERROR_MEMORY, [&] {

@@ -310,6 +310,82 @@ TEST_F(PalpateApi, RunsALoopOfItsOwnUntilTheDeviceIsLost) {
   EXPECT_EQ(own.last, 0);
 }
 
+/// A loop over the own device until that is lost, with so much room for its steps.
+struct RecordedLoop {
+  RecordedLoop(palpate_state* state, std::uint32_t room) {
+    OwnDevice own;
+    const palpate_device device = own.functions();
+    palpate_loop_settings settings;
+    palpate_loop_settings_default(&settings);
+    EXPECT_EQ(settings.record, 0U);
+    settings.priority = 0;
+    settings.rate = 2000;
+    settings.ramp = 0;
+    settings.watchdog = 10;
+    settings.record = room;
+    palpate_loop* loop = nullptr;
+    EXPECT_EQ(palpate_loop_start(state, &device, &settings, &loop), PALPATE_OK);
+    for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    palpate_loop_end(loop);
+    palpate_loop_step step{};
+    EXPECT_EQ(palpate_loop_take(loop, &step), 0);  // its size is not set
+    step.size = sizeof step;
+    while (palpate_loop_take(loop, &step) == 1) steps.push_back(step);
+    report.size = sizeof report;
+    EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
+  }
+  std::vector<palpate_loop_step> steps;
+  palpate_loop_report report{};
+};
+
+TEST_F(PalpateApi, ALoopHandsOutEveryStep) {
+  const RecordedLoop loop(state_, 1000);
+  ASSERT_EQ(loop.steps.size(), 151U);
+  EXPECT_EQ(loop.report.unrecorded, 0U);
+  // The same motion by palpate_step: the same forces and the same account, to the bit.
+  palpate_state_reset(state_);
+  double largest = 0;
+  for (std::size_t i = 0; i + 1 < loop.steps.size(); ++i) {
+    const palpate_loop_step& recorded = loop.steps[i];
+    EXPECT_EQ(recorded.position[2], 0.0005 - 2e-5 * static_cast<double>(i));
+    EXPECT_EQ(recorded.velocity[2], -0.02);
+    const std::uint32_t status =
+        step({recorded.position[0], recorded.position[1], recorded.position[2]});
+    const palpate_observation seen = observe();
+    EXPECT_EQ(recorded.status, status);
+    EXPECT_EQ(recorded.element, seen.element);
+    EXPECT_EQ(recorded.depth, seen.depth);
+    EXPECT_EQ(recorded.energy, seen.energy);
+    EXPECT_EQ(recorded.absorbed, seen.absorbed);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(recorded.force[k], force_[k]);
+      EXPECT_EQ(recorded.contact_point[k], seen.contact_point[k]);
+    }
+    if (i > 0) {
+      EXPECT_GT(recorded.time_ns, loop.steps[i - 1].time_ns);
+    }
+    largest = std::max(largest, recorded.force[2]);
+  }
+  EXPECT_GT(largest, 0.1);
+  const palpate_loop_step& last = loop.steps.back();
+  EXPECT_NE(last.status & PALPATE_LOOP_DEVICE_LOST, 0U);
+  EXPECT_EQ(last.force[2], 0);
+}
+
+TEST_F(PalpateApi, ALoopWithoutRoomLeavesStepsOutAndSaysSo) {
+  const RecordedLoop full(state_, 100);
+  ASSERT_EQ(full.steps.size(), 100U);
+  EXPECT_EQ(full.report.unrecorded, 51U);
+  EXPECT_EQ(full.steps.back().position[2], 0.0005 - 2e-5 * 99);
+  const RecordedLoop none(state_, 0);
+  EXPECT_TRUE(none.steps.empty());
+  EXPECT_EQ(none.report.unrecorded, 0U);
+  EXPECT_EQ(palpate_loop_take(nullptr, nullptr), 0);
+  palpate_loop_end(nullptr);
+}
+
 TEST_F(PalpateApi, RefusesALoopThatCannotRun) {
   OwnDevice own;
   palpate_device device = own.functions();
