@@ -136,7 +136,8 @@ int export_site(const Workspace& space, std::int32_t vertex) {
 
 int export_recording(const std::filesystem::path& recording) {
   const std::filesystem::path file = std::filesystem::path(recording).replace_extension(".csv");
-  write_file_crash_safely(file, recording_csv(read_recording(recording)));
+  RecordingReader reader(recording);
+  write_recording_csv(reader, file);
   say("export: {}", file.string());
   return kExitDone;
 }

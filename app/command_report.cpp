@@ -26,20 +26,23 @@ int report(const CaseOptions& options) {
   const Body body = read_body(space.body());
   const Curves curves = read_curves(space.curves());
   const Library library = read_library(space.library());
-  std::optional<Recording> recording;
-  if (std::filesystem::exists(space.recording())) recording = read_recording(space.recording());
+  std::optional<report::SessionDigest> session;
+  if (std::filesystem::exists(space.recording())) {
+    RecordingReader reader(space.recording());
+    session = report::digest(reader);
+  }
   ReportInput input;
   input.body = &body;
   input.curves = &curves;
   input.library = &library;
-  input.recording = recording ? &*recording : nullptr;
+  input.session = session ? &*session : nullptr;
   input.library_bytes = std::filesystem::file_size(space.library());
   input.library_sha256 = sha256_of_file(space.library());
   input.comparison = text_if_there(space.out / "comparison.json");
   input.fidelity = text_if_there(space.out / "fidelity.json");
   write_report(input, space.report());
   say("report: {}{}", space.report().string(),
-      recording ? "" : " (without a session: run `palpate simulate` first to see one)");
+      session ? "" : " (without a session: run `palpate simulate` first to see one)");
   return kExitDone;
 }
 

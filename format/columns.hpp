@@ -110,18 +110,47 @@ std::vector<Record> read_columns(const hdf5::Reader& reader, const std::string& 
   return records;
 }
 
+/// The rows of a table whose columns are all as they should be, values apart.
+template <class Record, class... Fields>
+std::size_t rows_of_columns(const hdf5::Reader& reader, const std::string& group,
+                            const std::tuple<Column<Record, Fields>...>& columns) {
+  std::size_t rows = hdf5::kAnyRows;
+  const auto look = [&]<class Field>(const Column<Record, Field>& column) {
+    rows = reader.rows_of<Stored<Field>>(group + "/" + column.name, column.units, rows);
+  };
+  std::apply([&](const auto&... column) { (look(column), ...); }, columns);
+  return rows;
+}
+
+/// Some rows of such a table, not yet checked. For columns that are not optional.
+template <class Record, class... Fields>
+std::vector<Record> read_rows(const hdf5::Reader& reader, const std::string& group,
+                              const std::tuple<Column<Record, Fields>...>& columns,
+                              std::size_t first, std::size_t count) {
+  std::vector<Record> records(count);
+  const auto read_one = [&]<class Field>(const Column<Record, Field>& column) {
+    static_assert(!std::is_enum_v<Field>, "an enumeration is checked before it is one");
+    const auto values = reader.part<Stored<Field>>(group + "/" + column.name, first, count);
+    for (std::size_t row = 0; row < count; ++row)
+      records[row].*column.member = static_cast<Field>(values[row]);
+  };
+  std::apply([&](const auto&... column) { (read_one(column), ...); }, columns);
+  return records;
+}
+
+/// `first`: the row of the first record in the table.
 template <class Record, class... Fields>
 void check_columns(const Checks& checks, const std::string& group,
                    const std::vector<Record>& records,
-                   const std::tuple<Column<Record, Fields>...>& columns) {
+                   const std::tuple<Column<Record, Fields>...>& columns, std::size_t first = 0) {
   const auto check_one = [&]<class Field>(const Column<Record, Field>& column) {
     const std::string dataset = group + "/" + column.name;
     for (std::size_t row = 0; row < records.size(); ++row) {
       const auto value = static_cast<Stored<Field>>(records[row].*column.member);
       if constexpr (std::is_same_v<Field, Vec3>) {
-        checks.vector(dataset, row, value, column.rule);
+        checks.vector(dataset, first + row, value, column.rule);
       } else {
-        checks.number(dataset, row, static_cast<double>(value), column.rule);
+        checks.number(dataset, first + row, static_cast<double>(value), column.rule);
       }
     }
   };

@@ -152,6 +152,21 @@ class Reader {
     get(path, Row<T>::scalar, values.data());
     return values;
   }
+  /// Rows of a dataset that is read in parts: all that dataset() checks, but for the values.
+  template <class T>
+  std::size_t rows_of(const std::string& path, const std::string& units,
+                      std::size_t rows = kAnyRows) const {
+    const std::size_t found = checked_rows(path, Row<T>::scalar, rows, Row<T>::columns, sizeof(T));
+    require_units(path, units);
+    return found;
+  }
+  /// Some of the rows that rows_of() told.
+  template <class T>
+  std::vector<T> part(const std::string& path, std::size_t first, std::size_t count) const {
+    std::vector<T> values(count);
+    get_part(path, Row<T>::scalar, Row<T>::columns, first, count, values.data());
+    return values;
+  }
   std::vector<std::string> texts(const std::string& path, std::size_t rows = kAnyRows) const;
 
   std::string text(const std::string& object, const std::string& name) const;
@@ -168,6 +183,8 @@ class Reader {
                            std::size_t columns, std::size_t row_bytes) const;
   void require_units(const std::string& path, const std::string& units) const;
   void get(const std::string& path, Scalar scalar, void* data) const;
+  void get_part(const std::string& path, Scalar scalar, std::size_t columns, std::size_t first,
+                std::size_t count, void* data) const;
 
   struct State;
   std::unique_ptr<State> state_;

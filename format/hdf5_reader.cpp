@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <fstream>
 #include <limits>
@@ -295,6 +296,21 @@ void Reader::get(const std::string& path, Scalar scalar, void* data) const {
   const Handle dataset = state_->open_dataset(path);
   if (data == nullptr) return;
   if (H5Dread(dataset.get(), native_type(scalar), H5S_ALL, H5S_ALL, H5P_DEFAULT, data) < 0) {
+    fail(path, "cannot be read (" + last_hdf5_message() + ")");
+  }
+}
+
+void Reader::get_part(const std::string& path, Scalar scalar, std::size_t columns,
+                      std::size_t first, std::size_t count, void* data) const {
+  if (count == 0) return;
+  const Handle dataset = state_->open_dataset(path);
+  const Handle stored(H5Dget_space(dataset.get()), H5Sclose);
+  const std::array<hsize_t, 2> from{first, 0}, extent{count, columns};
+  const Handle here(H5Screate_simple(columns > 0 ? 2 : 1, extent.data(), nullptr), H5Sclose);
+  if (H5Sselect_hyperslab(stored.get(), H5S_SELECT_SET, from.data(), nullptr, extent.data(),
+                          nullptr) < 0 ||
+      H5Dread(dataset.get(), native_type(scalar), here.get(), stored.get(), H5P_DEFAULT, data) <
+          0) {
     fail(path, "cannot be read (" + last_hdf5_message() + ")");
   }
 }

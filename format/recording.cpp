@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/recording.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
@@ -94,12 +95,12 @@ void check_heading(const Checks& checks, const RecordingHeading& heading) {
   check_provenance(checks, heading.provenance);
 }
 
-/// `before`: the time of the step before the first of these.
-void check_steps(const Checks& checks, const std::vector<RecordedStep>& steps,
-                 std::int64_t before) {
-  check_columns(checks, "/step", steps, kStepColumns);
+/// `before`: the time of the step before the first of these, which is step `first`.
+void check_steps(const Checks& checks, const std::vector<RecordedStep>& steps, std::int64_t before,
+                 std::size_t first) {
+  check_columns(checks, "/step", steps, kStepColumns, first);
   for (std::size_t row = 0; row < steps.size(); ++row) {
-    if (steps[row].time_ns < before) checks.fail_row("/step/time", row, "goes backwards");
+    if (steps[row].time_ns < before) checks.fail_row("/step/time", first + row, "goes backwards");
     before = steps[row].time_ns;
   }
 }
@@ -141,6 +142,7 @@ struct RecordingWriter::State {
   hdf5::Writer writer;
   std::vector<RecordedStep> waiting;  ///< less than a chunk: each chunk is written whole
   std::int64_t last_time = 0;
+  std::size_t appended = 0;
 };
 
 RecordingWriter::RecordingWriter(const std::filesystem::path& path, const RecordingHeading& heading,
@@ -155,7 +157,8 @@ RecordingWriter::RecordingWriter(const std::filesystem::path& path, const Record
 RecordingWriter::~RecordingWriter() = default;
 
 void RecordingWriter::append(const std::vector<RecordedStep>& steps) {
-  check_steps(state_->checks, steps, state_->last_time);
+  check_steps(state_->checks, steps, state_->last_time, state_->appended);
+  state_->appended += steps.size();
   if (!steps.empty()) state_->last_time = steps.back().time_ns;
   for (const RecordedStep& step : steps) {
     state_->waiting.push_back(step);
@@ -174,20 +177,54 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
   writer.commit();
 }
 
+struct RecordingReader::State {
+  explicit State(const std::filesystem::path& path) : reader(path, kRemedy) {
+    reader.require_artifact(kArtifact, kRecordingSchema);
+    heading.device = reader.text("/", "device");
+    heading.library_sha256 = reader.text("/", "library_sha256");
+    heading.rate = reader.real("/", "rate");
+    heading.friction = reader.real("/", "friction");
+    heading.settings = read_settings(reader);
+    heading.provenance = read_provenance(reader);
+    check_heading(Checks(reader), heading);
+    rows = rows_of_columns(reader, "/step", kStepColumns);
+  }
+
+  hdf5::Reader reader;
+  RecordingHeading heading;
+  std::size_t rows = 0, read = 0;
+  std::int64_t last_time = 0;
+};
+
+RecordingReader::RecordingReader(const std::filesystem::path& path)
+    : state_(std::make_unique<State>(path)) {}
+
+RecordingReader::~RecordingReader() = default;
+
+const RecordingHeading& RecordingReader::heading() const noexcept {
+  return state_->heading;
+}
+
+std::uint64_t RecordingReader::steps() const noexcept {
+  return state_->rows;
+}
+
+std::vector<RecordedStep> RecordingReader::next() {
+  State& s = *state_;
+  const std::size_t count = std::min<std::size_t>(hdf5::kChunkRows, s.rows - s.read);
+  std::vector<RecordedStep> steps = read_rows(s.reader, "/step", kStepColumns, s.read, count);
+  check_steps(Checks(s.reader), steps, s.last_time, s.read);
+  s.read += count;
+  if (!steps.empty()) s.last_time = steps.back().time_ns;
+  return steps;
+}
+
 Recording read_recording(const std::filesystem::path& path) {
-  hdf5::Reader reader(path, kRemedy);
-  reader.require_artifact(kArtifact, kRecordingSchema);
-  Recording recording;
-  recording.device = reader.text("/", "device");
-  recording.library_sha256 = reader.text("/", "library_sha256");
-  recording.rate = reader.real("/", "rate");
-  recording.friction = reader.real("/", "friction");
-  recording.settings = read_settings(reader);
-  recording.steps = read_columns(reader, "/step", kStepColumns);
-  recording.provenance = read_provenance(reader);
-  const Checks checks(reader);
-  check_heading(checks, recording);
-  check_steps(checks, recording.steps, 0);
+  RecordingReader reader(path);
+  Recording recording{reader.heading(), {}};
+  recording.steps.reserve(reader.steps());
+  for (auto steps = reader.next(); !steps.empty(); steps = reader.next())
+    recording.steps.insert(recording.steps.end(), steps.begin(), steps.end());
   return recording;
 }
 

@@ -76,6 +76,25 @@ class RecordingWriter {
   std::unique_ptr<State> state_;
 };
 
+/// Reads a recording of any length in the memory of a few thousand steps. Steps are checked as
+/// they come. @throws Error as hdf5::Reader.
+class RecordingReader {
+ public:
+  explicit RecordingReader(const std::filesystem::path& path);
+  ~RecordingReader();
+  RecordingReader(const RecordingReader&) = delete;
+  RecordingReader& operator=(const RecordingReader&) = delete;
+
+  const RecordingHeading& heading() const noexcept;
+  std::uint64_t steps() const noexcept;  ///< of the whole recording
+  /// The steps that follow, some thousands; none when all were read.
+  std::vector<RecordedStep> next();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
 void write_recording(const std::filesystem::path& path, const Recording& recording);
 /// All of it in memory: about 170 bytes a step.
 Recording read_recording(const std::filesystem::path& path);

@@ -49,20 +49,25 @@ std::string curves_csv(const Curves& curves) {
   return out;
 }
 
-std::string recording_csv(const Recording& recording) {
-  std::string out =
+void write_recording_csv(RecordingReader& recording, const std::filesystem::path& file) {
+  CrashSafeFile csv(file);
+  csv.write(
       "time_ns,position_x_m,position_y_m,position_z_m,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s,"
       "force_x_N,force_y_N,force_z_N,contact_x_m,contact_y_m,contact_z_m,depth_m,lateral_m,offset_"
       "m,"
-      "energy_J,tank_J,absorbed_J,element,status,latency_ns\n";
-  for (const RecordedStep& s : recording.steps) {
-    const auto vector = [](const Vec3& v) { return fmt::format("{},{},{}", v[0], v[1], v[2]); };
-    fmt::format_to(std::back_inserter(out), "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                   s.time_ns, vector(s.position), vector(s.velocity), vector(s.force),
-                   vector(s.contact_point), s.depth, s.lateral, s.offset, s.energy, s.tank,
-                   s.absorbed, s.element, s.status, s.latency_ns);
+      "energy_J,tank_J,absorbed_J,element,status,latency_ns\n");
+  const auto vector = [](const Vec3& v) { return fmt::format("{},{},{}", v[0], v[1], v[2]); };
+  for (auto steps = recording.next(); !steps.empty(); steps = recording.next()) {
+    std::string rows;
+    for (const RecordedStep& s : steps) {
+      fmt::format_to(std::back_inserter(rows), "{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+                     s.time_ns, vector(s.position), vector(s.velocity), vector(s.force),
+                     vector(s.contact_point), s.depth, s.lateral, s.offset, s.energy, s.tank,
+                     s.absorbed, s.element, s.status, s.latency_ns);
+    }
+    csv.write(rows);
   }
-  return out;
+  csv.commit();
 }
 
 void write_curves_csv(const Curves& curves, const std::filesystem::path& file) {

@@ -14,10 +14,11 @@ namespace palpate::app {
 /// Numbers read back exactly.
 std::string curves_csv(const Curves& curves);
 
-/// Every step of a session, one row each, with a title row that carries the SI units.
-std::string recording_csv(const Recording& recording);
-
 /// Written crash-safe.
 void write_curves_csv(const Curves& curves, const std::filesystem::path& file);
+
+/// Every step of a session that was not yet read, one row each, with a title row that carries the
+/// SI units; a few thousand steps in memory. Written crash-safe.
+void write_recording_csv(RecordingReader& recording, const std::filesystem::path& file);
 
 }  // namespace palpate::app

@@ -205,21 +205,24 @@ Json summary_of(const Library& library) {
           {"certificate", summary_of(library.certificate)}};
 }
 
-Json summary_of(const Recording& recording) {
+Json summary_of(RecordingReader& reader) {
   double depth = 0, force = 0;
   std::int64_t slowest = 0;
-  for (const RecordedStep& step : recording.steps) {
-    depth = std::max(depth, step.depth);
-    force = std::max(force, norm(step.force));
-    slowest = std::max(slowest, step.latency_ns);
+  RecordedStep last;
+  for (auto steps = reader.next(); !steps.empty(); steps = reader.next()) {
+    for (const RecordedStep& step : steps) {
+      depth = std::max(depth, step.depth);
+      force = std::max(force, norm(step.force));
+      slowest = std::max(slowest, step.latency_ns);
+    }
+    last = steps.back();
   }
-  const bool any = !recording.steps.empty();
-  const auto last = any ? recording.steps.back() : RecordedStep{};
+  const RecordingHeading& recording = reader.heading();
   return {{"device", recording.device},
           {"library_sha256", recording.library_sha256},
           {"rate", with_unit(recording.rate, "Hz")},
           {"friction", recording.friction},
-          {"steps", recording.steps.size()},
+          {"steps", reader.steps()},
           {"duration", with_unit(static_cast<double>(last.time_ns) * 1e-9, "s")},
           {"deepest", with_unit(depth, "m")},
           {"largest_force", with_unit(force, "N")},
@@ -356,7 +359,13 @@ Json summarize_artifact(const std::filesystem::path& file) {
   if (kind == "palpate.body") return complete(head(kBodySchema), read_body(file));
   if (kind == "palpate.curves") return complete(head(kCurvesSchema), read_curves(file));
   if (kind == "palpate.library") return complete(head(kLibrarySchema), read_library(file));
-  if (kind == "palpate.recording") return complete(head(kRecordingSchema), read_recording(file));
+  if (kind == "palpate.recording") {
+    RecordingReader reader(file);
+    Json summary = head(kRecordingSchema);
+    summary.update(summary_of(reader));
+    summary["provenance"] = provenance_of(reader.heading().provenance);
+    return summary;
+  }
   throw Error(ErrorKind::Configuration, file.string(), "unknown kind of artifact '" + kind + "'",
               "use the version of palpate that made it");
 }

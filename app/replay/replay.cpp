@@ -9,7 +9,6 @@
 #include "format/error.hpp"
 #include "runtime/force_loop.hpp"
 #include "runtime/palpate.h"
-#include "runtime/safety.hpp"
 
 namespace palpate::app {
 namespace {
@@ -18,7 +17,7 @@ namespace {
 constexpr std::uint32_t kOfTheDevice =
     PALPATE_LOOP_SATURATED | PALPATE_LOOP_STALE | PALPATE_LOOP_DEVICE_LOST;
 
-runtime::ContactSettings contact_settings(const Recording& recording) {
+runtime::ContactSettings contact_settings(const RecordingHeading& recording) {
   runtime::ContactSettings settings;
   settings.friction = recording.friction;
   settings.tank_cap = recording.settings.tank_cap;
@@ -73,43 +72,51 @@ bool any_value(const RecordedStep& a, const RecordedStep& b, Visit&& visit) {
 
 }  // namespace
 
+Replay::Replay(const RecordingHeading& recorded, const palpate_library& body)
+    : state_(body, contact_settings(recorded)), safety_(safety_of(recorded.settings)) {
+  state_.pose.position = recorded.settings.body_position;
+}
+
+RecordedStep Replay::step(const RecordedStep& recorded) {
+  const double dt = 1e-9 * static_cast<double>(recorded.time_ns - last_.value_or(recorded.time_ns));
+  last_ = recorded.time_ns;
+  return step_again(recorded, dt, state_, safety_);
+}
+
 Recording replay(const Recording& recorded, const palpate_library& body) {
-  palpate_state state(body, contact_settings(recorded));
-  state.pose.position = recorded.settings.body_position;
-  std::optional<runtime::Safety> safety = safety_of(recorded.settings);
+  Replay model(recorded, body);
   Recording again = recorded;
-  std::int64_t last = recorded.steps.empty() ? 0 : recorded.steps.front().time_ns;
-  for (RecordedStep& step : again.steps) {
-    const double dt = 1e-9 * static_cast<double>(step.time_ns - last);
-    last = step.time_ns;
-    step = step_again(step, dt, state, safety);
-  }
+  for (RecordedStep& step : again.steps) step = model.step(step);
   return again;
+}
+
+std::optional<Difference> difference(const RecordedStep& recorded, const RecordedStep& replayed,
+                                     std::size_t number) {
+  std::optional<Difference> found;
+  any_value(recorded, replayed, [&](const char* what, double a, double b) {
+    if (!same_bits(a, b)) found = Difference{number, what, a, b};
+    return found.has_value();
+  });
+  return found;
 }
 
 std::optional<Difference> first_difference(const Recording& recorded, const Recording& replayed) {
   for (std::size_t i = 0; i < recorded.steps.size(); ++i) {
-    std::optional<Difference> found;
-    any_value(recorded.steps[i], replayed.steps[i], [&](const char* what, double a, double b) {
-      if (!same_bits(a, b)) found = Difference{i, what, a, b};
-      return found.has_value();
-    });
+    const auto found = difference(recorded.steps[i], replayed.steps[i], i);
     if (found) return found;
   }
   return {};
 }
 
-void require_same(const Recording& recorded, const Recording& replayed, const std::string& file) {
-  const auto found = first_difference(recorded, replayed);
-  if (!found) return;
+void refuse(const Difference& found, const RecordingHeading& recorded, const std::string& file) {
   const bool threaded = recorded.settings.search_rate > 0;
-  throw Error(ErrorKind::Internal, fmt::format("{}, step {}", file, found->step),
-              fmt::format("{} was {:.17g} and is now {:.17g}", found->what, found->recorded,
-                          found->replayed),
-              threaded ? "the search thread of the session may have been late there: record with "
-                         "--search-rate 0 for what repeats itself to the bit"
-                       : "replay with the version of palpate and on the kind of processor that "
-                         "recorded it (see `palpate inspect`)");
+  throw Error(
+      ErrorKind::Internal, fmt::format("{}, step {}", file, found.step),
+      fmt::format("{} was {:.17g} and is now {:.17g}", found.what, found.recorded, found.replayed),
+      threaded ? "the search thread of the session may have been late there: record with "
+                 "--search-rate 0 for what repeats itself to the bit"
+               : "replay with the version of palpate and on the kind of processor that "
+                 "recorded it (see `palpate inspect`)");
 }
 
 }  // namespace palpate::app

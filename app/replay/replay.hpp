@@ -3,29 +3,48 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 
 #include "format/recording.hpp"
 #include "runtime/handles.hpp"
+#include "runtime/safety.hpp"
 
 namespace palpate::app {
 
-/// The recorded motion through the model, with the settings of the recording: the steps as they
-/// would be recorded now; latencies are those of the recording. The body is searched in every step.
+/// The recorded motion through the model, step after step, with the settings of the recording.
+/// Latencies are those of the recording. The body is searched in every step.
+class Replay {
+ public:
+  /// Both must outlive the replay.
+  Replay(const RecordingHeading& recorded, const palpate_library& body);
+  /// The next recorded step as it would be recorded now.
+  RecordedStep step(const RecordedStep& recorded);
+
+ private:
+  palpate_state state_;
+  std::optional<runtime::Safety> safety_;
+  std::optional<std::int64_t> last_;  ///< time of the step before, ns
+};
+
+/// All steps at once.
 Recording replay(const Recording& recorded, const palpate_library& body);
 
 /// Where two recordings of the same motion part.
 struct Difference {
-  std::size_t step;
+  std::size_t step = 0;
   std::string what;  ///< a column of recording.h5
-  double recorded, replayed;
+  double recorded = 0, replayed = 0;
 };
 
-/// The first value that has not the same bits, latencies apart.
+/// The first value of a step that has not the same bits, latency apart; `number`: of the step.
+std::optional<Difference> difference(const RecordedStep& recorded, const RecordedStep& replayed,
+                                     std::size_t number);
 std::optional<Difference> first_difference(const Recording& recorded, const Recording& replayed);
 
-/// @throws Error(Internal) that says what was the first difference and what can be behind it.
-void require_same(const Recording& recorded, const Recording& replayed, const std::string& file);
+/// Says what was the first difference and what can be behind it.
+[[noreturn]] void refuse(const Difference& found, const RecordingHeading& recorded,
+                         const std::string& file);
 
 }  // namespace palpate::app

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <utility>
 
@@ -17,10 +16,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 double along(const CurveSample& sample, const CurvePath& path, const Vec3& inward) {
   return dot(sample.force, path.kind == PathKind::Normal ? inward : path.direction);
-}
-
-double force_of(const RecordedStep& step) {
-  return norm(step.force);
 }
 
 }  // namespace
@@ -127,40 +122,6 @@ double median_edge(const std::vector<Vec3>& points, const std::vector<Triangle>&
     lengths.push_back(
         norm(points[static_cast<std::size_t>(a)] - points[static_cast<std::size_t>(b)]));
   return percentile(lengths, 0.5);
-}
-
-std::vector<std::size_t> thin_session(const Recording& recording, std::size_t buckets) {
-  const auto& steps = recording.steps;
-  std::vector<std::size_t> kept;
-  const std::size_t length = std::max<std::size_t>(1, (steps.size() + buckets - 1) / buckets);
-  const std::function<double(const RecordedStep&)> keys[] = {
-      force_of, [](const RecordedStep& s) { return s.depth; },
-      [](const RecordedStep& s) { return s.energy; },
-      [](const RecordedStep& s) { return static_cast<double>(s.latency_ns); }};
-  for (std::size_t begin = 0; begin < steps.size(); begin += length) {
-    const std::size_t end = std::min(steps.size(), begin + length);
-    kept.push_back(begin);
-    kept.push_back(end - 1);
-    for (const auto& key : keys) {
-      const auto less = [&](const RecordedStep& a, const RecordedStep& b) {
-        return key(a) < key(b);
-      };
-      const auto first = steps.begin() + static_cast<std::ptrdiff_t>(begin);
-      const auto last = steps.begin() + static_cast<std::ptrdiff_t>(end);
-      const auto [low, high] = std::minmax_element(first, last, less);
-      kept.push_back(static_cast<std::size_t>(low - steps.begin()));
-      kept.push_back(static_cast<std::size_t>(high - steps.begin()));
-    }
-  }
-  for (std::size_t i = 1, changes = 0; i < steps.size() && changes < buckets; ++i) {
-    if ((steps[i].element >= 0) == (steps[i - 1].element >= 0)) continue;
-    kept.push_back(i - 1);
-    kept.push_back(i);
-    ++changes;
-  }
-  std::sort(kept.begin(), kept.end());
-  kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
-  return kept;
 }
 
 }  // namespace palpate::report

@@ -7,7 +7,6 @@
 
 #include "format/curves.hpp"
 #include "format/library.hpp"
-#include "format/recording.hpp"
 
 namespace palpate::report {
 
@@ -60,9 +59,5 @@ double percentile(std::vector<double>& values, double fraction);
 
 /// Median length of the distinct edges of a triangulation, m.
 double median_edge(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles);
-
-/// Steps of a session worth drawing: the extremes of force, depth, energy and latency in each of
-/// `buckets` equal runs of steps, and every start and end of contact up to `buckets`; ascending.
-std::vector<std::size_t> thin_session(const Recording& recording, std::size_t buckets);
 
 }  // namespace palpate::report

@@ -281,7 +281,7 @@ json page_data(const ReportInput& input) {
           {"certificate", certificate_data(library)},
           {"comparison", comparison_data(input.comparison, library.responses.size())},
           {"fidelity", fidelity_data(input.fidelity, input.library_sha256)},
-          {"session", input.recording == nullptr ? json() : session_data(*input.recording)},
+          {"session", input.session == nullptr ? json() : session_data(*input.session)},
           {"provenance", provenance_data(input)}};
 }
 

@@ -12,7 +12,7 @@ namespace palpate::report {
 nlohmann::json page_data(const ReportInput& input);
 
 /// Parts of it, one for each section of the page.
-nlohmann::json session_data(const Recording& recording);
+nlohmann::json session_data(const SessionDigest& session);
 nlohmann::json certificate_data(const Library& library);
 /// @throws Error(Configuration) when the text is no comparison of these vertices.
 nlohmann::json comparison_data(const std::string& text, std::size_t vertices);

@@ -28,7 +28,7 @@ std::vector<ProvenanceStep> joined_chain(const ReportInput& input) {
   add(input.body->provenance);
   add(input.curves->provenance);
   add(input.library->provenance);
-  if (input.recording != nullptr) add(input.recording->provenance);
+  if (input.session != nullptr) add(input.session->heading().provenance);
   return chain;
 }
 

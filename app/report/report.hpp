@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <string>
 
+#include "app/report/session_digest.hpp"
 #include "format/body.hpp"
 #include "format/curves.hpp"
 #include "format/library.hpp"
-#include "format/recording.hpp"
 
 namespace palpate {
 
@@ -19,9 +19,9 @@ struct ReportInput {
   const Body* body = nullptr;
   const Curves* curves = nullptr;
   const Library* library = nullptr;
-  const Recording* recording = nullptr;  ///< may be null: the section then says so
-  std::string title;                     ///< any text; empty = the name of the library
-  std::uintmax_t library_bytes = 0;      ///< size of library.h5 on disk; 0 = not told
+  const report::SessionDigest* session = nullptr;  ///< may be null: the section then says so
+  std::string title;                               ///< any text; empty = the name of the library
+  std::uintmax_t library_bytes = 0;                ///< size of library.h5 on disk; 0 = not told
   /// Text of comparison.json (`palpate compare`); empty: there is none. Its vertices are those of
   /// the library.
   std::string comparison{};

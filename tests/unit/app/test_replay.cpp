@@ -71,7 +71,6 @@ TEST_F(Replay, GivesALiveSessionAgainToTheBit) {
   const auto found = first_difference(recorded, again);
   EXPECT_FALSE(found) << found->what << " in step " << found->step << ": " << found->recorded
                       << " and " << found->replayed;
-  EXPECT_NO_THROW(require_same(recorded, again, "recording.h5"));
 }
 
 TEST_F(Replay, FindsTheSmallestChangeOfAForce) {
@@ -83,7 +82,7 @@ TEST_F(Replay, FindsTheSmallestChangeOfAForce) {
   ASSERT_TRUE(found);
   EXPECT_EQ(found->step, recorded.steps.size() / 2);
   EXPECT_EQ(found->what, "force[1]");
-  EXPECT_THROW(require_same(recorded, again, "recording.h5"), Error);
+  EXPECT_THROW(refuse(*found, recorded, "recording.h5"), Error);
 }
 
 TEST_F(Replay, AnotherFrictionIsAnotherSession) {

@@ -49,7 +49,8 @@ class Report : public ::testing::Test {
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
   ReportInput input(bool recording = true) {
-    return {&all_.body, &all_.curves, &all_.library, recording ? &all_.recording : nullptr,
+    session_ = report::digest(all_.recording);
+    return {&all_.body, &all_.curves, &all_.library, recording ? &*session_ : nullptr,
             "Lump",     1234};
   }
   std::string written(const ReportInput& from) {
@@ -69,6 +70,7 @@ class Report : public ::testing::Test {
       ("palpate_report_" + std::to_string(getpid()) + "_" +
        ::testing::UnitTest::GetInstance()->current_test_info()->name());
   testing::Synthetic all_ = testing::synthetic(2, 1);
+  std::optional<report::SessionDigest> session_;
 };
 
 /// Decode base64 bit by bit from its definition, so that it is not the encoder run backwards.

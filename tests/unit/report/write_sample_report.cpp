@@ -103,8 +103,9 @@ int main(int argc, char** argv) {
   const std::filesystem::path folder = argv[1];
   std::filesystem::create_directories(folder);
   auto all = palpate::testing::synthetic(3, 2);
-  palpate::ReportInput input{&all.body,      &all.curves,          &all.library,
-                             &all.recording, "Lump with a nodule", 356129};
+  const auto session = palpate::report::digest(all.recording);
+  palpate::ReportInput input{&all.body, &all.curves,          &all.library,
+                             &session,  "Lump with a nodule", 356129};
   palpate::write_report(input, folder / "full.html");
 
   input.comparison = comparison_of(all.curves.sites.front().vertex, "<b>curves</b>.h5");
@@ -140,7 +141,7 @@ int main(int argc, char** argv) {
   all.curves.provenance = all.body.provenance = {};
   for (auto& site : all.curves.sites) site.cpu_seconds = 0;
   input.title = hostile;
-  input.recording = nullptr;
+  input.session = nullptr;
   input.library_bytes = 0;
   palpate::write_report(input, folder / "bare.html");
 }
