@@ -33,16 +33,23 @@ class WatchedContact {
   double largest_gain = 0;          ///< J, of tank + E at an activation: passive means none
   double largest_disagreement = 0;  ///< J, runtime's account against work()
   /// Largest |f_i(x_i) - f_{i-1}(x_{i-1})| over steepness |x_i - x_{i-1}|, of the steps that did
-  /// not report a drop.
+  /// not report a drop. Of coupled responses those that friction held: beyond the slip limit, at a
+  /// border or while a slide is held back, they are steeper.
   double steepest_step = 0;
+  /// Of coupled responses, all such steps, over the larger of the steepness and of what the stored
+  /// curves allow a held contact point at that lateral deflection.
+  double steepest_beyond = 0;
+  long stuck = 0;  ///< steps of coupled responses that friction held
 
  private:
   void account(const Vec3& x, const runtime::ContactObservation& before);
   void compare(const Vec3& x, const runtime::ContactObservation& before);
+  bool sticks(const runtime::ContactObservation& model, double depth, double rho) const;
 
   const Library& library_;
   runtime::ContactState contact_;
   double bound_ = 0;  ///< N/m
+  double friction_ = 0;
   Vec3 last_{};
   double work_ = 0;
 };
