@@ -39,6 +39,8 @@ Json calibration_account(const calibrate::Calibration& calibration, double confi
                          {"standard_error", number(e.standard_error)},
                          {"low", number(e.low)},
                          {"high", number(e.high)},
+                         {"profile_low", number(e.profile_low)},
+                         {"profile_high", number(e.profile_high)},
                          {"at_bound", e.at_bound}});
   }
   for (const auto& row : calibration.correlation) {
@@ -95,8 +97,12 @@ void say_calibration(const calibrate::Calibration& calibration, double confidenc
     if (e.at_bound) {
       say("  {} = {:.6g}{}, at its bound", e.name, e.value, unit);
     } else {
-      say("  {} = {:.6g}{}, {:.4g} % interval {:.6g} to {:.6g}", e.name, e.value, unit,
-          100 * confidence, e.low, e.high);
+      const std::string profile =
+          std::isnan(e.profile_low)
+              ? ""
+              : fmt::format(", by its profile {:.6g} to {:.6g}", e.profile_low, e.profile_high);
+      say("  {} = {:.6g}{}, {:.4g} % interval {:.6g} to {:.6g}{}", e.name, e.value, unit,
+          100 * confidence, e.low, e.high, profile);
     }
   }
   for (const std::string& warning : calibration.warnings) say("  warning: {}", warning);

@@ -192,6 +192,7 @@ FitFile read_fit_file(const std::filesystem::path& path) {
   fit.settings.residual = document.law.residual == "cauchy" ? calibrate::Residual::Cauchy
                                                             : calibrate::Residual::Nominal;
   fit.settings.confidence = document.law.confidence;
+  fit.settings.profiles = true;
   for (std::size_t i = 0; i < document.constants.size(); ++i) {
     fit.settings.constants.push_back(constant_of(document.constants[i], fit.settings.law,
                                                  sources.where(fmt::format("constant[{}].", i))));

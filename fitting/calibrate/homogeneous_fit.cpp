@@ -411,6 +411,7 @@ HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
   std::vector<std::vector<double>> starts;
   if (law.starts && settings.constants.empty()) starts = law.starts(scale);
   fit.calibration = starts.empty() ? minimise(problem, where) : minimise(problem, starts, where);
+  if (settings.profiles) add_profiles(problem, fit.calibration);
   std::vector<double> c;
   for (const Estimate& e : fit.calibration.estimates) c.push_back(e.value);
   for (const HomogeneousTest& test : tests) {

@@ -45,6 +45,7 @@ struct HomogeneousSettings {
   Weighting weighting = Weighting::PerTest;
   Residual residual = Residual::Nominal;
   double confidence = 0.95;
+  bool profiles = false;                ///< intervals by profile likelihoods as well
   std::vector<ConstantInfo> constants;  ///< starts and bounds in place of the defaults, by name
 };
 

@@ -203,42 +203,185 @@ void check_problem(const LeastSquares& problem, const std::string& where) {
   }
 }
 
+/// Where a descent ended.
+struct Minimum {
+  std::vector<double> at, residuals;
+  double cost = 0;
+  bool converged = false;
+  int iterations = 0;
+};
+
+std::optional<Minimum> descend(const LeastSquares& problem) {
+  const std::size_t n = problem.constants.size();
+  Minimum found;
+  found.at.resize(n);
+  found.residuals.resize(problem.residuals);
+  for (std::size_t i = 0; i < n; ++i) found.at[i] = problem.constants[i].start;
+  double* p = found.at.data();
+  if (!problem.model(p, found.residuals.data(), nullptr)) return std::nullopt;
+  if (n > 0) {
+    ceres::Problem solver;
+    solver.AddResidualBlock(new Cost(problem), nullptr, p);
+    for (std::size_t i = 0; i < n; ++i) {
+      const Constant& c = problem.constants[i];
+      if (std::isfinite(c.low)) solver.SetParameterLowerBound(p, static_cast<int>(i), c.low);
+      if (std::isfinite(c.high)) solver.SetParameterUpperBound(p, static_cast<int>(i), c.high);
+    }
+    ceres::Solver::Options options;
+    options.linear_solver_type = ceres::DENSE_QR;
+    options.max_num_iterations = problem.max_iterations;
+    options.function_tolerance = problem.tolerance;
+    options.parameter_tolerance = problem.step_tolerance;
+    options.gradient_tolerance = 1e-14;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &solver, &summary);
+    if (!summary.IsSolutionUsable()) return std::nullopt;
+    if (!problem.model(p, found.residuals.data(), nullptr)) return std::nullopt;
+    found.converged = summary.termination_type == ceres::CONVERGENCE;
+    found.iterations = static_cast<int>(summary.iterations.size()) - 1;
+  }
+  for (const double value : found.residuals) found.cost += 0.5 * value * value;
+  return found;
+}
+
 std::optional<Calibration> try_minimise(const LeastSquares& problem) {
   const std::size_t n = problem.constants.size();
-  std::vector<double> p(n), r(problem.residuals), J(problem.residuals * n);
-  for (std::size_t i = 0; i < n; ++i) p[i] = problem.constants[i].start;
-  if (!problem.model(p.data(), r.data(), nullptr)) return std::nullopt;
-  ceres::Problem solver;
-  solver.AddResidualBlock(new Cost(problem), nullptr, p.data());
-  for (std::size_t i = 0; i < n; ++i) {
-    const Constant& c = problem.constants[i];
-    if (std::isfinite(c.low)) solver.SetParameterLowerBound(p.data(), static_cast<int>(i), c.low);
-    if (std::isfinite(c.high)) solver.SetParameterUpperBound(p.data(), static_cast<int>(i), c.high);
-  }
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = problem.max_iterations;
-  options.function_tolerance = problem.tolerance;
-  options.parameter_tolerance = problem.step_tolerance;
-  options.gradient_tolerance = 1e-14;
-  options.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &solver, &summary);
-  if (!summary.IsSolutionUsable()) return std::nullopt;
-  if (!problem.model(p.data(), r.data(), J.data())) return std::nullopt;
+  const auto found = descend(problem);
+  if (!found) return std::nullopt;
+  std::vector<double> r(problem.residuals), J(problem.residuals * n);
+  if (!problem.model(found->at.data(), r.data(), J.data())) return std::nullopt;
   Calibration result;
-  result.converged = summary.termination_type == ceres::CONVERGENCE;
-  result.iterations = static_cast<int>(summary.iterations.size()) - 1;
-  for (const double value : r) result.cost += 0.5 * value * value;
+  result.converged = found->converged;
+  result.iterations = found->iterations;
+  result.cost = found->cost;
   for (std::size_t i = 0; i < n; ++i) {
     const Constant& c = problem.constants[i];
-    const bool at_bound = is_at(p[i], c.low) || is_at(p[i], c.high);
-    result.estimates.push_back({c.name, c.unit, p[i], kUnknown, kUnknown, kUnknown, at_bound});
+    const double value = found->at[i];
+    Estimate& e = result.estimates.emplace_back();
+    e.name = c.name;
+    e.unit = c.unit;
+    e.value = value;
+    e.standard_error = e.low = e.high = kUnknown;
+    e.at_bound = is_at(value, c.low) || is_at(value, c.high);
   }
   add_intervals(problem, J, r, result);
   add_warnings(result);
   return result;
 }
+
+/// The problem with one constant held.
+class Held {
+ public:
+  Held(const LeastSquares& problem, std::size_t held)
+      : problem_(problem), held_(held), all_(problem.constants.size()) {
+    reduced_ = problem;
+    reduced_.constants.erase(reduced_.constants.begin() + static_cast<std::ptrdiff_t>(held));
+    reduced_.model = [this](const double* c, double* r, double* J) { return evaluate(c, r, J); };
+  }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+  /// Cost of the best fit near `others`, which moves there; infinite where the model has no value.
+  double cost(double value, std::vector<double>& others) {
+    all_[held_] = value;
+    for (std::size_t i = 0; i < others.size(); ++i) reduced_.constants[i].start = others[i];
+    const auto found = descend(reduced_);
+    if (!found) return std::numeric_limits<double>::infinity();
+    others = found->at;
+    return found->cost;
+  }
+
+ private:
+  bool evaluate(const double* c, double* r, double* J) {
+    const std::size_t n = all_.size();
+    for (std::size_t i = 0, j = 0; i < n; ++i)
+      if (i != held_) all_[i] = c[j++];
+    std::vector<double> whole(J == nullptr ? 0 : problem_.residuals * n);
+    if (!problem_.model(all_.data(), r, J == nullptr ? nullptr : whole.data())) return false;
+    if (J == nullptr) return true;
+    for (std::size_t row = 0; row < problem_.residuals; ++row)
+      for (std::size_t i = 0, j = 0; i < n; ++i)
+        if (i != held_) J[row * (n - 1) + j++] = whole[row * n + i];
+    return true;
+  }
+
+  const LeastSquares& problem_;
+  std::size_t held_;
+  std::vector<double> all_;
+  LeastSquares reduced_;
+};
+
+/// One end of a profile: from the best fit outwards until the cost has risen by `rise`.
+class ProfileEnd {
+ public:
+  ProfileEnd(const LeastSquares& problem, const Calibration& best, std::size_t constant,
+             double rise)
+      : constant_(problem.constants[constant]),
+        held_(problem, constant),
+        value_(best.estimates[constant].value),
+        allowed_(best.cost + rise),
+        cost_(best.cost) {
+    for (std::size_t i = 0; i < best.estimates.size(); ++i)
+      if (i != constant) others_.push_back(best.estimates[i].value);
+  }
+
+  /// `step`: where the linearised interval ends, from the value. The bound, or infinity, when the
+  /// profile does not get there.
+  double find(double step) {
+    constexpr int kDoublings = 12;
+    const double bound = step > 0 ? constant_.high : constant_.low;
+    double inside = value_, inside_excess = cost_ - allowed_;
+    for (int i = 0; i < kDoublings; ++i, step *= 2) {
+      const double reached = value_ + step;
+      const bool past = step > 0 ? reached >= bound : reached <= bound;
+      const double outside = past ? bound : reached;
+      std::vector<double> others = others_;
+      const double excess = held_.cost(outside, others) - allowed_;
+      better_ = better_ || excess + allowed_ < cost_ * (1 - kSameCost);
+      if (excess > 0) return between(inside, inside_excess, outside, excess);
+      if (past) return bound;
+      others_ = others;
+      inside = outside;
+      inside_excess = excess;
+    }
+    return step > 0 ? std::numeric_limits<double>::infinity()
+                    : -std::numeric_limits<double>::infinity();
+  }
+
+  bool met_better_fit() const { return better_; }
+
+ private:
+  /// Regula falsi with halved weights [Dahlquist & Bjorck 1974, sec. 6.4].
+  double between(double a, double excess_a, double b, double excess_b) {
+    constexpr int kMost = 40;
+    constexpr double kClose = 1e-4;  // of the distance from the best fit
+    for (int i = 0; i < kMost && std::abs(b - a) > kClose * std::abs(b - value_); ++i) {
+      const double middle =
+          std::isfinite(excess_b) ? b - excess_b * (b - a) / (excess_b - excess_a) : 0.5 * (a + b);
+      std::vector<double> others = others_;
+      const double excess = held_.cost(middle, others) - allowed_;
+      if (std::abs(excess) <= kClose * (allowed_ - cost_)) return middle;
+      if (excess > 0) {
+        b = middle;
+        excess_b = excess;
+        excess_a *= 0.5;
+      } else {
+        a = middle;
+        excess_a = excess;
+        if (std::isfinite(excess_b)) excess_b *= 0.5;
+        others_ = others;
+      }
+    }
+    return 0.5 * (a + b);
+  }
+
+  const Constant& constant_;
+  Held held_;
+  double value_, allowed_, cost_;
+  std::vector<double> others_;  ///< of the last fit within the interval
+  bool better_ = false;
+};
 
 /// Two sets of constants that fit alike but are not alike.
 void warn_of_other_minimum(const std::vector<Calibration>& found, Calibration& best) {
@@ -283,6 +426,35 @@ Calibration minimise(LeastSquares problem, const std::vector<std::vector<double>
     return *best;
   }
   refuse(where, "the model has no value near any start", "give starts of the constants");
+}
+
+void add_profiles(const LeastSquares& problem, Calibration& result) {
+  constexpr double kFar = 0.25;  // of the half width: how far an end is from the linearised one
+  const bool estimated = !problem.known_scatter || result.widened;
+  if (result.freedom <= 0) return;
+  const double s = estimated ? result.scatter : 1;
+  const double t = measured::student_quantile(problem.confidence, estimated ? result.freedom : 1e6);
+  for (std::size_t i = 0; i < result.estimates.size(); ++i) {
+    Estimate& e = result.estimates[i];
+    const double half = e.high - e.value;
+    if (e.at_bound || !(half > 0) || !std::isfinite(half)) continue;
+    ProfileEnd below(problem, result, i, 0.5 * t * t * s * s);
+    ProfileEnd above(problem, result, i, 0.5 * t * t * s * s);
+    e.profile_low = below.find(-half);
+    e.profile_high = above.find(half);
+    const std::string ends = text_of(e.profile_low) + " to " + text_of(e.profile_high);
+    if (below.met_better_fit() || above.met_better_fit()) {
+      result.warnings.push_back("away from the best " + e.name +
+                                " there is a better fit: choose other starts");
+    } else if (!std::isfinite(e.profile_high - e.profile_low)) {
+      result.warnings.push_back(e.name + " is not bounded by the data: its profile goes from " +
+                                ends);
+    } else if (std::max(std::abs(e.profile_low - e.low), std::abs(e.profile_high - e.high)) >
+               kFar * half) {
+      result.warnings.push_back("the interval of " + e.name +
+                                " is not symmetric: its profile goes from " + ends);
+    }
+  }
 }
 
 }  // namespace palpate::calibrate

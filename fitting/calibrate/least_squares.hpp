@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,9 @@ struct Estimate {
   double standard_error = 0;  ///< NaN at a bound
   double low = 0, high = 0;   ///< of the confidence interval, by Student's t
   bool at_bound = false;
+  /// Of the profile likelihood, see add_profiles(); NaN without, infinite where it does not end.
+  double profile_low = std::numeric_limits<double>::quiet_NaN();
+  double profile_high = std::numeric_limits<double>::quiet_NaN();
 };
 
 struct Calibration {
@@ -65,5 +69,13 @@ Calibration minimise(const LeastSquares& problem, const std::string& where);
 /// a warning that names another one.
 Calibration minimise(LeastSquares problem, const std::vector<std::vector<double>>& starts,
                      const std::string& where);
+
+/// Intervals that do not linearise: of each constant the values at which the best fit of all others
+/// is worse than the best fit by no more than chance allows,
+///   2 (cost(value) - cost) <= t^2 s^2, s and t those of the linearised intervals,
+/// found by fits with the constant held [Bates & Watts 1988, sec. 6.1]. They end at the bounds of
+/// the constant. Constants at a bound get none. Warned of: a profile that does not end, one that is
+/// far from its linearised interval, one that meets a better fit. Some dozens of fits a constant.
+void add_profiles(const LeastSquares& problem, Calibration& result);
 
 }  // namespace palpate::calibrate
