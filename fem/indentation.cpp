@@ -162,13 +162,15 @@ ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& set
   return {kContactStiffness * stiffest / settings.indentation.tool.radius, stiffest};
 }
 
-CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e)
+CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
+                                 KeptFactor* kept)
     : body(b),
       points(settings.points),
       indentation(settings.indentation),
       engine(e),
       model(b, laws_of_regions(b, settings.materials), settings.dilatation, settings.gravity),
-      permutation(nested_dissection(model.pattern())),
+      permutation(kept != nullptr ? kept->permutation(model.pattern())
+                                  : nested_dissection(model.pattern())),
       rest(equilibrium_under_weight(model, permutation, b.name)),
       at_rest(model.energy(rest)) {
   use_one_thread_per_site();
@@ -176,8 +178,9 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
   if (engine == Engine::Direct) return;
   std::vector<double> K;
   model.stiffness(rest, K);
-  rest_factor =
-      std::make_unique<RestFactor>(model.pattern(), permutation, K, body.name, settings.memory);
+  rest_factor = kept != nullptr ? kept->factor_of(model.pattern(), K, body.name, settings.memory)
+                                : std::make_shared<RestFactor>(model.pattern(), permutation, K,
+                                                               body.name, settings.memory);
 }
 
 Eigen::Vector3d CampaignContext::rest_position(const Vec3& X) const {

@@ -22,7 +22,9 @@ enum class Engine {
 
 /// What all sites share: the model, the factor of the rest stiffness, the settings.
 struct CampaignContext {
-  CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine);
+  /// `kept`: shared with earlier campaigns on the body; may be null.
+  CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
+                  KeptFactor* kept = nullptr);
 
   /// Of a response vertex, or of a point of the settings by its index when there are any.
   PressPoint place(std::int32_t vertex) const;
@@ -38,8 +40,8 @@ struct CampaignContext {
   Displacement rest;          ///< where the body is before it is touched: sagged under its weight
   SolidModel::State at_rest;  ///< there
   ContactStiffness contact_stiffness;
-  std::unique_ptr<RestFactor> rest_factor;  ///< SharedFactor only
-  mutable std::mutex direct_solve;          ///< held while a site factorizes the whole body
+  std::shared_ptr<const RestFactor> rest_factor;  ///< SharedFactor only
+  mutable std::mutex direct_solve;                ///< held while a site factorizes the whole body
 };
 
 /// The part of the body around a site where the strains are large.

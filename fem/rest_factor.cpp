@@ -2,7 +2,9 @@
 #include "fem/rest_factor.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "fem/at.hpp"
 #include "fem/memory.hpp"
@@ -175,6 +177,51 @@ void RestFactor::solve(std::vector<float>& block, std::vector<float>& scratch) c
     std::memcpy(&block[at(permutation_[at(i)]) * kBatch], &scratch[at(i) * kBatch], kRow);
 }
 
+namespace {
+
+/// Largest over smallest local stiffness, of the new matrix over the old, that a factor is kept
+/// for. The eigenvalues of what it preconditions are within about that ratio.
+constexpr double kMostSpread = 1.25;
+
+std::vector<double> diagonal_of(const SparsePattern& pattern, const std::vector<double>& values) {
+  std::vector<double> diagonal(at(pattern.n));
+  for (int column = 0; column < pattern.n; ++column)  // the first of the lower triangle
+    diagonal[at(column)] = values[at(pattern.start[at(column)])];
+  return diagonal;
+}
+
+}  // namespace
+
+const std::vector<int>& KeptFactor::permutation(const SparsePattern& pattern) {
+  if (permutation_.empty()) permutation_ = nested_dissection(pattern);
+  return permutation_;
+}
+
+std::shared_ptr<const RestFactor> KeptFactor::factor_of(const SparsePattern& pattern,
+                                                        const std::vector<double>& values,
+                                                        const std::string& owner, double memory) {
+  std::vector<double> diagonal = diagonal_of(pattern, values);
+  if (factor_ && diagonal.size() == diagonal_.size()) {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (std::size_t i = 0; i < diagonal.size(); ++i) {
+      least = std::min(least, diagonal[i] / diagonal_[i]);
+      most = std::max(most, diagonal[i] / diagonal_[i]);
+    }
+    if (least > 0 && most <= kMostSpread * least) {
+      const double scale = std::sqrt(least * most);
+      factor_->scale(scale / scale_);
+      scale_ = scale;
+      return factor_;
+    }
+  }
+  factor_.reset();  // its memory is needed
+  factor_ = std::make_shared<RestFactor>(pattern, permutation(pattern), values, owner, memory);
+  diagonal_ = std::move(diagonal);
+  scale_ = 1;
+  ++factorizations_;
+  return factor_;
+}
+
 SolveBatch::SolveBatch(const RestFactor& factor, int members)
     : factor_(factor), members_(members), block_(at(factor.size()) * kBatch, 0.0f) {}
 
@@ -205,7 +252,8 @@ void SolveBatch::Member::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   const std::uint64_t mine = batch_.generation_;
   batch_.serve_if_all_wait();
   batch_.served_.wait(lock_, [&] { return batch_.generation_ != mine; });
-  for (Eigen::Index i = 0; i < b.size(); ++i) x[i] = length * lane[i * kBatch];
+  const double scale = length * batch_.factor_.inverse_scale();
+  for (Eigen::Index i = 0; i < b.size(); ++i) x[i] = scale * lane[i * kBatch];
 }
 
 }  // namespace palpate::fem

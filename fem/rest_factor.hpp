@@ -5,7 +5,9 @@
 #include <Eigen/Core>
 #include <condition_variable>
 #include <cstdint>
+#include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "fem/cholesky.hpp"
@@ -26,6 +28,12 @@ class RestFactor {
   RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
              const std::vector<double>& values, const std::string& owner, double memory = 0);
 
+  /// From now on the factor of `ratio` times the matrix: a body whose laws all became so much
+  /// stiffer. Not while solves are under way.
+  void scale(double ratio) { inverse_scale_ /= ratio; }
+  /// K0^-1 b is this times the solution of solve().
+  double inverse_scale() const { return inverse_scale_; }
+
   int size() const { return n_; }
   double bytes() const { return static_cast<double>(values_.size()) * sizeof(float); }
 
@@ -43,9 +51,33 @@ class RestFactor {
   void backward(float* y) const;
 
   int n_ = 0;
+  double inverse_scale_ = 1;
   std::vector<Supernode> supernodes_;
   std::vector<int> rows_, permutation_;
   std::vector<float> values_;
+};
+
+/// The factors of campaigns on one body that differ in the constants of their laws alone, one
+/// after the other: of a calibration. A factor is a preconditioner and accuracy does not depend on
+/// it, so that it serves as long as the stiffness at rest is nearly a multiple of the one it was
+/// made of: exactly so when all laws scale together. The elimination order is made once.
+class KeptFactor {
+ public:
+  /// Of `values` on `pattern`, which is that of every call before. @throws Error as RestFactor.
+  std::shared_ptr<const RestFactor> factor_of(const SparsePattern& pattern,
+                                              const std::vector<double>& values,
+                                              const std::string& owner, double memory);
+  /// Made by the first call.
+  const std::vector<int>& permutation(const SparsePattern& pattern);
+
+  int factorizations() const { return factorizations_; }
+
+ private:
+  std::vector<int> permutation_;
+  std::vector<double> diagonal_;  ///< of the matrix that was factorized
+  double scale_ = 1;              ///< of what the factor stands for now
+  std::shared_ptr<RestFactor> factor_;
+  int factorizations_ = 0;
 };
 
 /// Gathers the requests of up to kBatch sites that run side by side, each on its own thread, and

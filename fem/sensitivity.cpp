@@ -242,7 +242,8 @@ double bytes_of(const CampaignContext& context, std::int32_t vertex) {
 std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSettings& settings,
                                              const std::vector<double>& depths,
                                              const std::vector<RegionConstant>& constants,
-                                             const std::vector<std::vector<LateralPlan>>& lateral) {
+                                             const std::vector<std::vector<LateralPlan>>& lateral,
+                                             KeptFactor* kept) {
   refuse_gravity(settings);
   CampaignSettings normal = settings;
   normal.indentation.held_depths = depths;  // the states that the path must pass
@@ -262,7 +263,7 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
   const std::vector<LateralPlan> none;
   std::vector<SiteSensitivity> results(settings.sites.size());
   if (results.empty()) return results;
-  const CampaignContext context(body, normal, Engine::SharedFactor);
+  const CampaignContext context(body, normal, Engine::SharedFactor, kept);
   std::vector<Varied> derivatives;
   for (const RegionConstant& constant : constants) {
     derivatives.push_back(varied(body, normal, constant));

@@ -40,16 +40,17 @@ struct SiteSensitivity {
 /// one solve a sample for any number of constants, exact for the discrete model at the equilibrium:
 /// the contact penalty follows the stiffest modulus at the surface and is differentiated with it.
 /// Sites run abreast as in a campaign, and the solves share its factor: none of the body is made
-/// but that at rest.
+/// but that at rest, and that one not again where a factor that was kept will do.
 /// A lateral path also depends on the state at which its contact was bonded, u_b: with v the
 /// derivative of the force by u_b, K_b m = v adds - m . dR_b/dc, a second solve.
 /// Not differentiated: points that stick already on the normal path (ToolFriction::Stuck).
 /// @param lateral  for each site the lateral paths to follow; empty: none.
+/// @param kept  the factor of earlier calls for the same body, with other constants; may be null.
 /// @throws Error(Configuration) as run_campaign; for a region that the body has not;
 /// with gravity.
 std::vector<SiteSensitivity> run_sensitivity(
     const Body& body, const CampaignSettings& settings, const std::vector<double>& depths,
     const std::vector<RegionConstant>& constants,
-    const std::vector<std::vector<LateralPlan>>& lateral = {});
+    const std::vector<std::vector<LateralPlan>>& lateral = {}, KeptFactor* kept = nullptr);
 
 }  // namespace palpate::fem

@@ -275,7 +275,7 @@ class Inverse {
       if (settings_.log) settings_.log(line + ", refused by the law");
       return false;
     }
-    model_ = fem::run_sensitivity(body_, campaign, depths_, constants, plans_);
+    model_ = fem::run_sensitivity(body_, campaign, depths_, constants, plans_, &kept_);
     for (const Target& target : targets_) {
       if (model_of(target).size() >= target.depth.size()) continue;
       usable_ = false;
@@ -386,6 +386,7 @@ class Inverse {
   Evaluation before_;
   std::string failure_;
   std::vector<fem::SiteSensitivity> model_;
+  fem::KeptFactor kept_;
   int evaluations_ = 0;
 };
 

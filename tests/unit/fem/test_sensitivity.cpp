@@ -192,6 +192,33 @@ TEST(TangentSolver, AgreesWithAFactorOfTheTangent) {
   EXPECT_LT(solver.iterations(), 30 * compared);
 }
 
+/// Constants are tried one after the other with what was made for the first: the answers are those
+/// of calls that know nothing of each other, and the body is factorized only where it must be.
+TEST(Sensitivity, KeepsAFactorWhileItServes) {
+  const Body body = layered();
+  const std::vector<RegionConstant> constants{{"top", "young"}, {"base", "young"}};
+  struct Trial {
+    double top, base, poisson;
+    int factorizations;
+  };
+  KeptFactor kept;
+  for (const Trial& t :
+       {Trial{8e3, 20e3, 0.45, 1}, Trial{24e3, 60e3, 0.45, 1}, Trial{24e3, 70e3, 0.45, 1},
+        Trial{24e3, 70e3, 0.49, 2}, Trial{6e3, 70e3, 0.49, 3}, Trial{0.6e3, 7e3, 0.49, 3}}) {
+    const CampaignSettings settings = settings_of(body, t.top, t.base, t.poisson);
+    const auto reused = run_sensitivity(body, settings, kDepths, constants, {}, &kept).front();
+    const auto alone = run_sensitivity(body, settings, kDepths, constants).front();
+    EXPECT_EQ(kept.factorizations(), t.factorizations) << t.top << ' ' << t.base;
+    ASSERT_EQ(reused.samples.size(), kDepths.size()) << reused.reason;
+    for (std::size_t i = 0; i < kDepths.size(); ++i) {
+      const ForceSensitivity &a = reused.samples[i], &b = alone.samples[i];
+      EXPECT_NEAR(a.force, b.force, 1e-7 * b.force);
+      for (std::size_t c = 0; c < constants.size(); ++c)
+        EXPECT_NEAR(a.slope[c], b.slope[c], 1e-5 * std::abs(b.slope[c]));
+    }
+  }
+}
+
 TEST(Sensitivity, RefusesARegionWithoutMaterial) {
   const Body body = layered();
   EXPECT_THROW(

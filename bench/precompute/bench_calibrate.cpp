@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What one step of a calibration costs: forces of all sites and their derivatives by each constant,
+// by the adjoint and by differences, in one run on one thread. Only ratios mean anything.
+//
+// Usage: bench_calibrate [CELLS [SITES]]   a block of two layers, cells an edge (default 12 and 8)
+//
+// The constants are the Young's moduli and Poisson's ratios of the two layers. Differences press
+// the same sites to the same depths once more for each constant (twice for central ones), as
+// tightly as they need: at the tolerance of a campaign they would be noise. `campaign` is the
+// normal paths with twelve increments, without derivatives. The last lines repeat the adjoint with
+// other constants and the factor of the first.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include "fem/sensitivity.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+constexpr double kDepth = 0.004;  // m
+constexpr double kStep = 1e-3;    // relative, of the differences
+
+/// 60 x 60 x 30 mm with its base held, the lower half a region of its own.
+Body layered(int cells) {
+  Body body = test::make_block(test::even(-0.03, 0.03, cells), test::even(-0.03, 0.03, cells),
+                               test::even(-0.03, 0, cells / 2));
+  body.region_names = {"top", "base"};
+  for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
+    double z = 0;
+    for (const std::int32_t n : body.tetrahedra[t])
+      z += 0.25 * body.nodes[static_cast<std::size_t>(n)][2];
+    body.tetrahedron_region[t] = z < -0.015 ? 1 : 0;
+  }
+  return body;
+}
+
+struct Constants {
+  double top = 8e3, base = 20e3, top_poisson = 0.45, base_poisson = 0.45;
+};
+
+CampaignSettings settings_of(const Body& body, const Constants& c, std::size_t sites) {
+  CampaignSettings s;
+  s.materials = {{"top", {c.top, c.top_poisson}}, {"base", {c.base, c.base_poisson}}};
+  s.indentation.tool.radius = 0.005;
+  s.indentation.depth = kDepth;
+  s.indentation.held_depths.clear();
+  s.indentation.azimuths.clear();
+  s.threads = 1;
+  for (std::size_t v = 0; v < body.response.node.size() && s.sites.size() < sites; ++v) {
+    const Vec3& X = body.nodes[static_cast<std::size_t>(body.response.node[v])];
+    if (body.response.is_site[v] != 0 && std::max(std::abs(X[0]), std::abs(X[1])) < 0.0151)
+      s.sites.push_back(static_cast<std::int32_t>(v));
+  }
+  return s;
+}
+
+template <class Work>
+double seconds(Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+using Sites = std::vector<SiteSensitivity>;
+
+/// The slope of the last sample of a site by differences of two runs.
+double quotient(const Sites& high, const Sites& low, std::size_t site, double width) {
+  return (high[site].samples.back().force - low[site].samples.back().force) / width;
+}
+
+void run(int cells, std::size_t sites) {
+  const Body body = layered(cells);
+  const std::vector<double> depths{kDepth / 4, kDepth / 2, 3 * kDepth / 4, kDepth};
+  const std::vector<RegionConstant> constants{
+      {"top", "young"}, {"base", "young"}, {"top", "poisson"}, {"base", "poisson"}};
+  const Constants middle;
+  const CampaignSettings settings = settings_of(body, middle, sites);
+  std::printf("%zu sites, %zu depths, %zu constants\n", settings.sites.size(), depths.size(),
+              constants.size());
+
+  CampaignReport report;
+  const double campaign = seconds([&] { run_campaign(body, settings, report); });
+  std::printf("%-52s %8.2f s   1.00\n", "campaign", campaign);
+  const auto tell = [&](const char* what, double spent) {
+    std::printf("%-52s %8.2f s %6.2f of a campaign\n", what, spent, spent / campaign);
+  };
+
+  KeptFactor kept;
+  Sites adjoint;
+  const double by_adjoint =
+      seconds([&] { adjoint = run_sensitivity(body, settings, depths, constants, {}, &kept); });
+  tell("forces and derivatives, adjoint", by_adjoint);
+
+  CampaignSettings tight = settings;
+  tight.indentation.force_tolerance = 1e-7;
+  const auto forces = [&](const Constants& c) {
+    CampaignSettings s = tight;
+    s.materials = settings_of(body, c, 0).materials;
+    return run_sensitivity(body, s, depths, {});
+  };
+  std::vector<Constants> more(4, middle), less(4, middle);
+  std::vector<double> width;
+  const auto vary = [&](std::size_t i, double Constants::*member, double step) {
+    more[i].*member += step;
+    less[i].*member -= step;
+    width.push_back(2 * step);
+  };
+  vary(0, &Constants::top, kStep * middle.top);
+  vary(1, &Constants::base, kStep * middle.base);
+  vary(2, &Constants::top_poisson, kStep * (0.5 - middle.top_poisson));
+  vary(3, &Constants::base_poisson, kStep * (0.5 - middle.base_poisson));
+  std::vector<Sites> high, low;
+  const double one_sided = seconds([&] {
+    forces(middle);
+    for (const Constants& c : more) high.push_back(forces(c));
+  });
+  const double others = seconds([&] {
+    for (const Constants& c : less) low.push_back(forces(c));
+  });
+  tell("the same by one-sided differences", one_sided);
+  tell("the same by central differences", one_sided + others);
+  double worst = 0;
+  for (std::size_t c = 0; c < constants.size(); ++c) {
+    double largest = 0;
+    for (std::size_t s = 0; s < adjoint.size(); ++s)
+      largest = std::max(largest, std::abs(adjoint[s].samples.back().slope[c]));
+    for (std::size_t s = 0; s < adjoint.size(); ++s) {
+      const double by_differences = quotient(high[c], low[c], s, width[c]);
+      worst =
+          std::max(worst, std::abs(adjoint[s].samples.back().slope[c] - by_differences) / largest);
+    }
+  }
+  std::printf("differences over adjoint: %.1f one-sided, %.1f central; they agree within %.1e\n",
+              one_sided / by_adjoint, (one_sided + others) / by_adjoint, worst);
+
+  const auto again = [&](const char* what, const Constants& c) {
+    CampaignSettings s = settings;
+    s.materials = settings_of(body, c, 0).materials;
+    const int before = kept.factorizations();
+    tell(what, seconds([&] { run_sensitivity(body, s, depths, constants, {}, &kept); }));
+    std::printf("  (%d factorization%s)\n", kept.factorizations() - before,
+                kept.factorizations() - before == 1 ? "" : "s");
+  };
+  again("adjoint again, all moduli half as large again", {1.5 * middle.top, 1.5 * middle.base});
+  again("adjoint again, one modulus by a tenth", {1.65 * middle.top, 1.5 * middle.base});
+  again("adjoint again, Poisson's ratios 0.49", {middle.top, middle.base, 0.49, 0.49});
+}
+
+}  // namespace
+}  // namespace palpate::fem
+
+int main(int argc, char** argv) {
+  const int cells = argc > 1 ? std::atoi(argv[1]) : 12;
+  const int sites = argc > 2 ? std::atoi(argv[2]) : 8;
+  if (cells < 2 || sites < 1) {
+    std::fprintf(stderr, "usage: bench_calibrate [CELLS [SITES]]\n");
+    return 2;
+  }
+  palpate::fem::run(cells, static_cast<std::size_t>(sites));
+  return 0;
+}
