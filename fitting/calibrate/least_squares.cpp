@@ -327,7 +327,7 @@ class ProfileEnd {
   }
 
   /// `step`: where the linearised interval ends, from the value. The bound, or infinity, when the
-  /// profile does not get there.
+  /// profile has not got there at 4096 times the step.
   double find(double step) {
     constexpr int kDoublings = 12;
     const double bound = step > 0 ? constant_.high : constant_.low;
@@ -440,8 +440,10 @@ void add_profiles(const LeastSquares& problem, Calibration& result) {
     if (e.at_bound || !(half > 0) || !std::isfinite(half)) continue;
     ProfileEnd below(problem, result, i, 0.5 * t * t * s * s);
     ProfileEnd above(problem, result, i, 0.5 * t * t * s * s);
-    e.profile_low = below.find(-half);
-    e.profile_high = above.find(half);
+    // Of a constant that is not determined the linearised interval can be any size.
+    const double step = e.value != 0 ? std::min(half, std::abs(e.value)) : half;
+    e.profile_low = below.find(-step);
+    e.profile_high = above.find(step);
     const std::string ends = text_of(e.profile_low) + " to " + text_of(e.profile_high);
     if (below.met_better_fit() || above.met_better_fit()) {
       result.warnings.push_back("away from the best " + e.name +

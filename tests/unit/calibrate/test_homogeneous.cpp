@@ -338,9 +338,23 @@ TEST(Profile, SaysWhatTheDataDoNotBound) {
   };
   Calibration fit = minimise(problem, "product");
   add_profiles(problem, fit);
-  EXPECT_TRUE(std::isinf(fit.estimates[1].profile_high) ||
-              std::isnan(fit.estimates[1].profile_high));
-  EXPECT_THAT(fit.warnings, Contains(HasSubstr("b")));
+  // The product is 2 + sum(noise x)/sum(x x), known to t s/sqrt(sum x x) with two degrees of
+  // freedom.
+  double xx = 0, noise_x = 0, squares = 0;
+  for (int i = 0; i < 4; ++i) {
+    xx += (1 + i) * (1 + i);
+    noise_x += (1 + i) * (i % 2 == 0 ? 0.1 : -0.1);
+  }
+  for (int i = 0; i < 4; ++i) {
+    const double r = noise_x / xx * (1 + i) - (i % 2 == 0 ? 0.1 : -0.1);
+    squares += r * r;
+  }
+  const double high = 2 + noise_x / xx + 4.302653 * std::sqrt(squares / 2 / xx);
+  EXPECT_NEAR(fit.estimates[0].profile_high, high / 0.5, 1e-3);  // b at its bound
+  EXPECT_NEAR(fit.estimates[0].profile_low, 0, 1e-3);            // any b however large
+  EXPECT_EQ(fit.estimates[1].profile_low, 0.5);
+  EXPECT_TRUE(std::isinf(fit.estimates[1].profile_high));
+  EXPECT_THAT(fit.warnings, Contains(HasSubstr("b is not bounded by the data")));
 }
 
 TEST(Homogeneous, WarnsOfConstantsThatTheDataCannotTellApart) {
