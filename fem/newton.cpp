@@ -13,6 +13,9 @@ namespace {
 /// Round-off of an energy summed over the elements, relative.
 constexpr double kEnergyNoise = 1e-14;
 
+/// Forces that a sagged body may be left with, over its weight: ten times what it is left with.
+constexpr double kWeightNoise = 1e-8;
+
 /// Of the contact on the patch. A facet that flips costs one iteration.
 constexpr int kPatchIterations = 50;
 constexpr int kPatchHalvings = 10;
@@ -27,6 +30,7 @@ void move(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacem
 }
 
 double imbalance(const SolidModel& model, const Eigen::VectorXd& residual) {
+  if (residual.norm() <= kWeightNoise * model.weight_norm()) return 0;
   if (model.mesh().sprung.empty()) return residual.norm();
   const Eigen::Vector3d sum =
       Eigen::Map<const Eigen::Matrix3Xd>(residual.data(), 3, residual.size() / 3).rowwise().sum();

@@ -32,7 +32,8 @@ struct Equilibrium {
   Eigen::VectorXd residual;
 };
 /// What `options.tolerance` is held against, N: the norm of the residual, and on springs, where no
-/// support takes what is left over, the sum of it.
+/// support takes what is left over, the sum of it. 0 where it is round-off of the weight: a tool
+/// that meets nothing yet has no force to measure by.
 double imbalance(const SolidModel& model, const Eigen::VectorXd& residual);
 Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u);
 

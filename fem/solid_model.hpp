@@ -62,6 +62,8 @@ class SolidModel {
 
   /// The weight on the unknowns, N; 0 without gravity.
   Eigen::VectorXd weight() const;
+  /// The norm of the weight on all nodes of the body, N.
+  double weight_norm() const { return solid_->weight.norm(); }
 
   /// The element with the smallest det F at a Gauss point: that value, and its centre at rest, m.
   struct Compressed {

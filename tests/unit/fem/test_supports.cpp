@@ -317,6 +317,23 @@ TEST(Gravity, APressStartsFromTheSaggedBodyAndBalancesItsEnergy) {
   }
 }
 
+/// The tool passes 20 um before a point of the coarse facets meets it: the sagged body, whose
+/// forces balance but for round-off, is in equilibrium all the same.
+TEST(Gravity, AToolThatMeetsNothingYetHasNoForce) {
+  const Body body = test::make_block(test::even(-0.016, 0.016, 4), test::even(-0.016, 0.016, 4),
+                                     test::even(-0.024, 0, 4));
+  CampaignSettings settings = pressing({4e3, 0.45});
+  settings.gravity = {{0, 0, -9.81}, 1000};
+  settings.indentation.depth = 5e-6;
+  settings.indentation.increments = 2;
+  settings.indentation.held_depths.clear();
+  for (const Engine engine : {Engine::Direct, Engine::SharedFactor}) {
+    const SiteCurves site = press(body, settings, engine);
+    ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
+    EXPECT_EQ(norm(site.paths.front().samples.back().force), 0);
+  }
+}
+
 /// I1 alone, softening: simple shear loses ellipticity at k = 0.35. The neo-Hookean solid of the
 /// same modulus keeps it at every depth.
 TEST(Indentation, EndsWhereTheLawLosesEllipticity) {
