@@ -17,7 +17,7 @@ import numpy as np
 
 PROGRAM, SCHEMA = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 # Sample files and the kind of artifact that each is.
-FILES = {"body": "body", "curves": "curves", "library": "library", "coupled": "library", "recording": "recording"}
+FILES = {"body": "body", "sprung": "body", "curves": "curves", "library": "library", "coupled": "library", "recording": "recording"}
 
 
 def table_rows(page, columns):
@@ -33,9 +33,10 @@ def documented_datasets(kind, schema):
             if schema > 1 or "schema 2 only" not in row[4]}
 
 
-def documented_attributes(kind):
+def documented_attributes(kind, schema):
     pages = ("common.md", f"{kind}.md")
-    return {row[0]: row[1] for page in pages for row in table_rows(page, 3)}
+    return {row[0]: row[1] for page in pages for row in table_rows(page, 3)
+            if schema > 1 or "schema 2 only" not in row[2]}
 
 
 def datasets_of(file):
@@ -135,7 +136,7 @@ class FileFormat(unittest.TestCase):
 
     @for_each_kind
     def test_attributes_are_those_of_the_page(self, kind, file):
-        documented = documented_attributes(kind)
+        documented = documented_attributes(kind, file.attrs["schema"])
         found = {}
         for group, item in groups_of(file).items():
             pattern = re.sub(r"^/provenance/\d\d_\w+$", "/provenance/*", group)
@@ -164,8 +165,14 @@ class FileFormat(unittest.TestCase):
                              {"CGAL": "5.5", "BLAS kernel": "Haswell", "empty": ""})
 
     def test_body_values(self):
-        known = Tokens(self.folder / "body.txt")
-        with h5py.File(self.folder / "body.h5", "r") as file:
+        for name, schema in (("body", 1), ("sprung", 2)):
+            with self.subTest(name):
+                self.check_body_values(name, schema)
+
+    def check_body_values(self, name, schema):
+        known = Tokens(self.folder / f"{name}.txt")
+        with h5py.File(self.folder / f"{name}.h5", "r") as file:
+            self.assertEqual(file.attrs["schema"], schema)
             self.assertEqual(file.attrs["name"], known.text())
             for name in ("nodes", "tetrahedra"):
                 np.testing.assert_array_equal(file[name][()], known.table())
@@ -179,6 +186,11 @@ class FileFormat(unittest.TestCase):
             for name in ("response/inward", "response/triangles"):
                 np.testing.assert_array_equal(file[name][()], known.table())
             np.testing.assert_array_equal(file["response/is_site"][()], np.ravel(known.table()))
+            springs = known.table()
+            self.assertEqual("foundation" in file, len(springs) > 0)
+            columns = zip(*springs) if springs else ()
+            for name, column in zip(("facet", "normal_stiffness", "tangential_stiffness"), columns):
+                np.testing.assert_array_equal(file["foundation"][name][()], column)
 
     def test_curves_values(self):
         known = Tokens(self.folder / "curves.txt")

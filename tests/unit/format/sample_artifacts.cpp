@@ -314,7 +314,7 @@ std::string dump(const Body& body) {
   const ResponseSurface& r = body.response;
   return (Dump() << body.name << body.nodes << body.tetrahedra << body.tetrahedron_region
                  << body.region_names << body.boundary << body.fixed_nodes << r.node << r.inward
-                 << r.triangles << r.is_site << body.provenance << springs_of(body))
+                 << r.triangles << r.is_site << springs_of(body) << body.provenance)
       .text();
 }
 
