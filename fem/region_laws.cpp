@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/fibre_potential.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fem {
@@ -29,6 +30,20 @@ void require_positive(const char* name, double value) {
 
 }  // namespace
 
+LawConstants placed_on(const Body& body, std::int32_t region, const LawConstants& law) {
+  if (!law_entry(law.law).has_fibres) return law;
+  const std::string where =
+      "material of region '" + body.region_names[static_cast<std::size_t>(region)] + "'";
+  LawConstants placed = law;
+  if (law.fibres.kind == FibreField::Kind::Laplace) {
+    law.fibres.check(where);
+    placed.fibres = fibres_of_potential(body, region, law.fibres, where);
+  }
+  if (placed.fibres.kind == FibreField::Kind::Sampled && !placed.fibres.samples)
+    refuse(where, "the directions of its fibres are missing", "read them from their file first");
+  return placed;
+}
+
 std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMaterial>& materials) {
   for (const auto& material : materials)
     if (std::find(body.region_names.begin(), body.region_names.end(), material.region) ==
@@ -43,7 +58,9 @@ std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMater
       refuse("region '" + region + "'", std::to_string(count) + " materials are given for it",
              "give exactly one");
     const auto& law = std::find_if(materials.begin(), materials.end(), is_it)->law;
-    laws.push_back(make_law(law, "material of region '" + region + "'"));
+    const std::string where = "material of region '" + region + "'";
+    check_law(law, where);
+    laws.push_back(make_law(placed_on(body, static_cast<std::int32_t>(laws.size()), law), where));
   }
   return laws;
 }

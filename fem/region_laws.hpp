@@ -13,6 +13,10 @@ namespace palpate::fem {
 /// twice, or constants out of range.
 std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMaterial>& materials);
 
+/// The law of a region, its fibres where they depend on the body as samples of it.
+/// @throws Error(Configuration) as fibres_of_potential, and where a file of fibres was not read.
+LawConstants placed_on(const Body& body, std::int32_t region, const LawConstants& law);
+
 /// @throws Error(Configuration) when a length is not positive and finite, a held depth lies beyond
 /// the depth, a count is below one, or a disc with a sharp edge is pressed without friction.
 void check_indentation(const IndentationSettings& settings);

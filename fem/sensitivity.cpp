@@ -53,7 +53,9 @@ std::vector<Law> unchecked_laws(const Body& body, const CampaignSettings& settin
   std::vector<Law> laws;
   for (const std::string& region : body.region_names)
     for (const RegionMaterial& material : settings.materials)
-      if (material.region == region) laws.push_back(unchecked_law(material.law));
+      if (material.region == region)
+        laws.push_back(
+            unchecked_law(placed_on(body, static_cast<std::int32_t>(laws.size()), material.law)));
   return laws;
 }
 

@@ -56,7 +56,9 @@ struct MaterialSection {
   std::string law = "neo-hookean";
   std::vector<std::pair<std::string, double>> constants;  ///< by name in the table of laws, SI
   std::string fibre_field = "constant";
-  Vec3 fibre_direction{}, fibre_plane{};  ///< constant field
+  Vec3 fibre_direction{}, fibre_plane{};  ///< constant field; the plane also of the next two
+  std::string fibre_file, fibre_unit;     ///< field from a file, relative to the case file
+  Vec3 fibre_from_low{}, fibre_from_high{}, fibre_to_low{}, fibre_to_high{};  ///< laplace, m
   Vec3 fibre_axis{}, fibre_axis_point{};  ///< cylindrical field; point in m
   double fibre_angle = 0;                 ///< rad
   int fibre_families = 1;

@@ -132,7 +132,7 @@ void describe_fibres(V& v, MaterialSection& s) {
               kOptional,
               {.low = 0, .high = 1.5707963267948966}});
   v.text(s.fibre_field, {"fibre_field", "how the directions vary in the region"},
-         {"constant", "cylindrical"});
+         {"constant", "cylindrical", "file", "laplace"});
   if (v.when("fibre_field", s.fibre_field, "constant")) {
     v.direction(s.fibre_direction, {"fibre_direction", "mean direction", kRequired});
     v.direction(s.fibre_plane,
@@ -143,6 +143,35 @@ void describe_fibres(V& v, MaterialSection& s) {
                 {"fibre_axis", "the mean direction runs around it, the plane along it", kRequired});
     v.point(s.fibre_axis_point, Dimension::Length,
             {"fibre_axis_point", "a point of the axis", kRequired});
+  }
+  if (v.when("fibre_field", s.fibre_field, "file")) {
+    v.text(s.fibre_file,
+           {"fibre_file",
+            "directions at points, one line each below `x,y,z,fx,fy,fz` (or with `,sx,sy,sz`, a "
+            "second "
+            "direction of the plane); an element takes those of the point nearest to its centroid",
+            kRequired});
+    v.text(s.fibre_unit, {"fibre_unit", "length unit of x, y, z in the file", kRequired},
+           unit_symbols(Dimension::Length));
+    v.direction(
+        s.fibre_plane,
+        {"fibre_plane", "second direction of the plane where the file has none", kRequired});
+  }
+  if (v.when("fibre_field", s.fibre_field, "laplace")) {
+    v.point(
+        s.fibre_from_low, Dimension::Length,
+        {"fibre_from_low",
+         "corner of a box around the part of the surface where the fibres begin; they follow the "
+         "gradient of a potential",
+         kRequired});
+    v.point(s.fibre_from_high, Dimension::Length,
+            {"fibre_from_high", "its opposite corner", kRequired});
+    v.point(s.fibre_to_low, Dimension::Length,
+            {"fibre_to_low", "the same where they end", kRequired});
+    v.point(s.fibre_to_high, Dimension::Length,
+            {"fibre_to_high", "its opposite corner", kRequired});
+    v.direction(s.fibre_plane,
+                {"fibre_plane", "second direction of the plane of the fibres", kRequired});
   }
 }
 

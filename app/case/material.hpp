@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
+
 #include "app/case/case.hpp"
 #include "fem/laws/law_table.hpp"
 
@@ -8,5 +10,12 @@ namespace palpate::app {
 
 /// The law that a [[material]] table declares.
 fem::LawConstants law_of(const MaterialSection& material);
+
+/// With the directions of the fibres that a file holds; `folder`: that of the case file.
+/// @throws Error(Configuration) as read_fibre_file.
+fem::LawConstants law_of(const MaterialSection& material, const std::filesystem::path& folder);
+
+/// Whether the second of these reads a file.
+bool reads_fibre_file(const MaterialSection& material);
 
 }  // namespace palpate::app

@@ -93,7 +93,7 @@ fem::CampaignSettings campaign_settings(const Workspace& space) {
   const Case& c = space.c;
   fem::CampaignSettings settings;
   for (const MaterialSection& material : c.materials) {
-    settings.materials.push_back({material.region, law_of(material)});
+    settings.materials.push_back({material.region, law_of(material, space.case_folder)});
   }
   if (c.solver.element == "tet10-displacement") settings.dilatation = fem::Dilatation::Pointwise;
   if (c.solver.element == "tet10-nodal-pressure") settings.dilatation = fem::Dilatation::Nodal;
@@ -149,6 +149,9 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
       break;
     case Stage::Precompute:
       inputs = {space.body()};
+      for (const MaterialSection& material : space.c.materials) {
+        if (reads_fibre_file(material)) inputs.push_back(space.case_folder / material.fibre_file);
+      }
       break;
     case Stage::Fit:
       inputs = {space.body(), space.curves()};

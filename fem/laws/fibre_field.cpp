@@ -30,13 +30,21 @@ Vec3 any_normal(const Vec3& n) {
 
 std::array<Vec3, 2> FibreField::at(const Vec3& X) const {
   Vec3 mean = unit(first), across{};
-  if (kind == Kind::Constant) {
-    across = unit(normal_part(second, mean));
-  } else {
+  if (kind == Kind::Cylindrical) {
     across = unit(first);
     const Vec3 radial = normal_part(X - origin, across);
     const Vec3 outward = norm(radial) > 0 ? unit(radial) : any_normal(across);
     mean = cross(across, outward);
+  } else {
+    Vec3 in_plane = second;
+    if (kind == Kind::Sampled) {
+      const FibreSample& sample = samples->nearest(X);
+      mean = unit(sample.mean);
+      if (norm(sample.across) > 0) in_plane = sample.across;
+    }
+    const Vec3 part = normal_part(in_plane, mean);
+    // Where a sampled direction runs along the plane's second one, any other serves.
+    across = norm(part) > 1e-6 * norm(in_plane) ? unit(part) : any_normal(mean);
   }
   const double c = std::cos(angle), s = std::sin(angle);
   const Vec3 plus = c * mean + s * across;
@@ -47,6 +55,13 @@ void FibreField::check(const std::string& where) const {
   require_constant(families == 1 || families == 2, where, "families", families, "1 or 2");
   require_constant(angle >= 0 && angle <= std::numbers::pi / 2, where, "angle (rad)", angle,
                    "0 <= angle <= pi/2");
+  if (kind == Kind::Sampled || kind == Kind::Laplace) {
+    if (!(std::isfinite(norm(second)) && norm(second) > 0))
+      throw Error(ErrorKind::Configuration, where,
+                  "the second direction of the plane of the fibres has no length",
+                  "give a direction that is finite and not zero");
+    return;
+  }
   const double length = norm(first);
   if (!(std::isfinite(length) && length > 0))
     throw Error(ErrorKind::Configuration, where, "the direction of the fibres has no length",

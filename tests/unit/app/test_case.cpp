@@ -314,6 +314,32 @@ TEST(Case, ReadsFieldsOfFibres) {
               HasSubstr("parallel"));
 }
 
+TEST(Case, ReadsFieldsOfFibresThatDependOnTheBody) {
+  const std::string hgo =
+      "law = \"holzapfel-gasser-ogden\"\nc = \"3 kPa\"\nk1 = \"2.4 kPa\"\nk2 = 0.84\nkappa = 0\n"
+      "poisson = 0.49\nfibre_plane = [0, 0, 1]\n";
+  const std::string box =
+      "fibre_field = \"laplace\"\nfibre_from_low = [\"0 mm\", \"0 mm\", \"0 mm\"]\n"
+      "fibre_from_high = [\"1 mm\", \"1 mm\", \"1 mm\"]\nfibre_to_low = [\"3 mm\", \"0 mm\", \"0 "
+      "mm\"]\n";
+  const std::string end = "fibre_to_high = [\"4 mm\", \"1 mm\", \"1 mm\"]\n";
+  const Case between = parse_case(with_material(hgo + box + end), "ball.toml");
+  const fem::FibreField fibres = law_of(between.materials[0]).fibres;
+  EXPECT_EQ(fibres.kind, fem::FibreField::Kind::Laplace);
+  EXPECT_DOUBLE_EQ(fibres.to.low[0], 0.003);
+  EXPECT_DOUBLE_EQ(fibres.from.high[1], 0.001);
+  EXPECT_EQ(parse_case(resolved_toml(between), "resolved"), between) << resolved_toml(between);
+  EXPECT_THAT(message_of(with_material(hgo + box)), HasSubstr("material[0].fibre_to_high"));
+
+  const Case of_file = parse_case(
+      with_material(hgo + "fibre_field = \"file\"\nfibre_file = \"f.csv\"\nfibre_unit = \"mm\"\n"),
+      "ball.toml");
+  EXPECT_EQ(law_of(of_file.materials[0]).fibres.kind, fem::FibreField::Kind::Sampled);
+  EXPECT_TRUE(reads_fibre_file(of_file.materials[0]));
+  EXPECT_THROW(law_of(of_file.materials[0], "/nonexistent"), Error);
+  EXPECT_EQ(parse_case(resolved_toml(of_file), "resolved"), of_file) << resolved_toml(of_file);
+}
+
 TEST(Case, RejectsConstantsThatTheLawHasNotOrThatDoNotFit) {
   const std::string mooney = "law = \"mooney-rivlin\"\nC10 = \"1 kPa\"\npoisson = 0.49\n";
   EXPECT_THAT(message_of(with_material(mooney)), HasSubstr("material[0].C01"));
