@@ -21,8 +21,10 @@ using Eigen::Vector3d;
 /// Directions from which a minimum is sought. The form has few minima: a dozen found the lowest in
 /// every state tried.
 constexpr int kDirections = 48;
-constexpr double kRoughly = 1e-4, kExactly = 1e-13;  ///< change of a step, relative
-constexpr int kRoughSteps = 10, kExactSteps = 1000;
+constexpr double kRoughly = 1e-4, kNearly = 1e-8;  ///< change of a step, relative
+constexpr int kRoughSteps = 10, kNearSteps = 100, kNewtonSteps = 20;
+constexpr double kTurn = 1e-4;  ///< rad, of difference quotients
+constexpr int kCandidates = 8;  ///< of the rough minima, that are followed to the end
 /// A pivot over the largest entry of the diagonal that is positive beyond round-off.
 constexpr double kSurely = 1e-8;
 
@@ -128,16 +130,55 @@ Descent descend(const Tensor4<double>& A, const Vector3d& start, double settled,
   return now;
 }
 
+double weakest_along(const Tensor4<double>& A, const Vector3d& n) {
+  return Eigen::SelfAdjointEigenSolver<Matrix3d>(acoustic_tensor(A, n), Eigen::EigenvaluesOnly)
+      .eigenvalues()[0];
+}
+
+/// Newton's method over the sphere of directions, by difference quotients: turns by turns creep
+/// along the valleys that stiff fibres make. Only steps that lower the value are taken; where two
+/// eigenvalues cross and it has no derivative, none may be.
+Descent sharpen(const Tensor4<double>& A, Descent now) {
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    const Vector3d e1 = now.n.unitOrthogonal(), e2 = now.n.cross(e1);
+    const auto turned = [&](double a, double b) {
+      return (now.n + a * e1 + b * e2).normalized().eval();
+    };
+    const auto value = [&](double a, double b) {
+      return weakest_along(A, turned(a * kTurn, b * kTurn));
+    };
+    const double f = value(0, 0), right = value(1, 0), left = value(-1, 0), up = value(0, 1),
+                 down = value(0, -1);
+    const double cross = (value(1, 1) - value(1, -1) - value(-1, 1) + value(-1, -1)) / 4;
+    Eigen::Matrix2d hessian;
+    hessian << right - 2 * f + left, cross, cross, up - 2 * f + down;
+    const Eigen::Vector2d gradient((right - left) / 2, (up - down) / 2);
+    if (!(hessian.determinant() > 0 && hessian(0, 0) > 0)) break;
+    const Eigen::Vector2d turn = -kTurn * hessian.inverse() * gradient;
+    if (!(turn.norm() < 1)) break;
+    const Vector3d n = turned(turn[0], turn[1]);
+    const double stiffness = weakest_along(A, n);
+    if (!(stiffness < now.stiffness)) break;
+    now = {stiffness, n};
+  }
+  return now;
+}
+
 }  // namespace
 
 double weakest_wave(const Tensor4<double>& A) {
   static const std::vector<Vector3d> directions = half_sphere();
-  Descent weakest{std::numeric_limits<double>::infinity(), {}};
-  for (const Vector3d& start : directions) {
-    const Descent found = descend(A, start, kRoughly, kRoughSteps);
-    if (found.stiffness < weakest.stiffness) weakest = found;
-  }
-  return descend(A, weakest.n, kExactly, kExactSteps).stiffness;
+  std::vector<Descent> found;
+  for (const Vector3d& start : directions)
+    found.push_back(descend(A, start, kRoughly, kRoughSteps));
+  std::sort(found.begin(), found.end(),
+            [](const Descent& a, const Descent& b) { return a.stiffness < b.stiffness; });
+  // Two minima may be nearer to each other than the rough values are to them.
+  double weakest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kCandidates; ++i)
+    weakest =
+        std::min(weakest, sharpen(A, descend(A, found[at(i)].n, kNearly, kNearSteps)).stiffness);
+  return weakest;
 }
 
 Lanes weakest_wave(const Tensor2<Lanes>& F, const Tensor4<Lanes>& A) {

@@ -51,7 +51,7 @@ struct LawConstants {
   LawConstants(double young, double poisson);
   LawConstants(std::string name, std::vector<std::pair<std::string, double>> constants,
                FibreField fibre_field = {})
-      : law(std::move(name)), values(std::move(constants)), fibres(fibre_field) {}
+      : law(std::move(name)), values(std::move(constants)), fibres(std::move(fibre_field)) {}
 
   std::string law = "neo-hookean";
   std::vector<std::pair<std::string, double>> values;  ///< by name, SI
