@@ -26,7 +26,7 @@ std::string triangle_name(std::size_t m) {
 /// other (Z order; G. M. Morton 1966).
 std::vector<std::size_t> along_a_curve(const std::vector<Vec3>& points, const Vec3& low,
                                        const Vec3& high) {
-  constexpr int kBits = 20;  // an axis
+  constexpr std::size_t kBits = 20;  // an axis
   std::vector<std::pair<std::uint64_t, std::size_t>> place;
   place.reserve(points.size());
   for (std::size_t v = 0; v < points.size(); ++v) {
@@ -34,9 +34,8 @@ std::vector<std::size_t> along_a_curve(const std::vector<Vec3>& points, const Ve
     for (std::size_t i = 0; i < 3; ++i) {
       const double extent = std::max(high[i] - low[i], 1e-12);
       const auto cell =
-          static_cast<std::uint64_t>((points[v][i] - low[i]) / extent * ((1 << kBits) - 1));
-      for (int bit = 0; bit < kBits; ++bit)
-        code |= ((cell >> bit) & 1U) << (3U * static_cast<unsigned>(bit) + i);
+          static_cast<std::uint64_t>((points[v][i] - low[i]) / extent * ((1U << kBits) - 1));
+      for (std::size_t bit = 0; bit < kBits; ++bit) code |= ((cell >> bit) & 1U) << (3 * bit + i);
     }
     place.emplace_back(code, v);
   }

@@ -102,7 +102,7 @@ std::optional<Difference> difference(const RecordedStep& recorded, const Recorde
 
 std::optional<Difference> first_difference(const Recording& recorded, const Recording& replayed) {
   for (std::size_t i = 0; i < recorded.steps.size(); ++i) {
-    const auto found = difference(recorded.steps[i], replayed.steps[i], i);
+    auto found = difference(recorded.steps[i], replayed.steps[i], i);
     if (found) return found;
   }
   return {};
