@@ -126,31 +126,22 @@ void add_supports(const CampaignContext& context, const CampaignSettings& settin
 
 }  // namespace
 
-PreparedBody::PreparedBody(const Body& body, const CampaignSettings& settings) : body_(body) {
-  check_indentation(settings.indentation);
-  chosen_places(body, settings);  // refused before the factor is made
-  context_ = std::make_unique<CampaignContext>(body, settings, Engine::SharedFactor);
-}
-
-PreparedBody::~PreparedBody() = default;
-
-Curves PreparedBody::run(const CampaignSettings& settings, CampaignReport& report) {
+Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
+                    KeptFactor* kept) {
   const auto start = std::chrono::steady_clock::now();
   check_indentation(settings.indentation);
-  context_->points = settings.points;
-  context_->indentation = settings.indentation;
   Curves curves;
   const ToolGeometry& tool = settings.indentation.tool;
   curves.tool = {name_of(tool.shape), tool.radius, name_of(settings.indentation.friction),
                  tool.edge_radius, tool.length};
   curves.depth = settings.indentation.depth;
   curves.lateral_travel = settings.indentation.lateral_travel;
-  for (const auto vertex : chosen_places(body_, settings)) {
+  for (const auto vertex : chosen_places(body, settings)) {
     curves.sites.emplace_back();
     curves.sites.back().vertex = vertex;
   }
   const std::vector<std::size_t> open = take_over(settings.known, curves);
-  const CampaignContext& context = *context_;
+  const CampaignContext context(body, settings, Engine::SharedFactor, kept);
   if (!open.empty()) Crew(context, settings, open, curves).run();
 
   report.unknowns = context.model.pattern().n;
@@ -164,13 +155,6 @@ Curves PreparedBody::run(const CampaignSettings& settings, CampaignReport& repor
       {"blas_kernel", blas_kernel()},
       {"solver", solver_versions()}};
   add_supports(context, settings, report);
-  return curves;
-}
-
-Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report) {
-  const auto start = std::chrono::steady_clock::now();
-  Curves curves = PreparedBody(body, settings).run(settings, report);
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return curves;
 }
 

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -77,35 +76,19 @@ struct CampaignReport {
   std::vector<std::pair<std::string, std::string>> facts;  ///< BLAS kernel, factor size, versions
 };
 
+class KeptFactor;
+
 /// The sites come back in ascending order of vertex whatever the number of threads. A site whose
 /// solve failed is data: its status, reason and partial curve are kept.
+/// @param kept  the factor of earlier campaigns on this body, which on a large mesh takes as long
+/// as
+///   dozens of sites; may be null. With the same laws it changes no bit.
 /// @throws Error(Geometry) when the body finds no equilibrium under its weight.
 /// @throws Error(Configuration) for constants out of range (named, with value and range), a region
 ///   without a law, a law without a region, a held depth beyond the depth, a vertex that is no
 ///   site.
-Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report);
-
-struct CampaignContext;
-
-/// A body made ready to be pressed: its model and the factor that all sites share, which on a large
-/// mesh takes as long as dozens of sites. For campaigns that follow one another.
-class PreparedBody {
- public:
-  /// Materials, element, gravity, tool and memory of the settings are those of all campaigns. The
-  /// body must outlive this object. @throws as run_campaign.
-  PreparedBody(const Body& body, const CampaignSettings& settings);
-  ~PreparedBody();
-  PreparedBody(const PreparedBody&) = delete;
-  PreparedBody& operator=(const PreparedBody&) = delete;
-
-  /// run_campaign on this body, to the same bits; its paths, sites and points may differ from
-  /// those of other calls. One call at a time. The seconds told are those of the call.
-  Curves run(const CampaignSettings& settings, CampaignReport& report);
-
- private:
-  const Body& body_;
-  std::unique_ptr<CampaignContext> context_;
-};
+Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
+                    KeptFactor* kept = nullptr);
 
 /// Displacement of the nodes of the body (corner nodes, same order as Body::nodes) for one site at
 /// the end of its normal path: for pictures and exports.

@@ -21,14 +21,8 @@ namespace palpate::fem {
 
 namespace {
 
-/// Penalty over E/R: the gap it leaves is micrometres for a tool of millimetres, a change of the
-/// force of about 0.1 %.
-constexpr double kContactStiffness = 5000;
 constexpr int kMaxHalvings = 5;
 constexpr int kHalvingsBeforeDirect = 2;
-/// Of the window, over the tool radius. A wider one costs factorizations, a narrower one solves:
-/// the total is flat between 1.6 and 2.4.
-constexpr double kWindowRadius = 2;
 constexpr double kLargestPenetration =
     0.01;  ///< over the tool radius; a free surface stays far below
 /// A stuck tool holds at its first touch what is nearer than this, over its radius.
@@ -150,62 +144,6 @@ std::vector<double> running_integral(const std::vector<double>& x, const std::ve
     sum[i] = sum[i - 1] + step;
   }
   return sum;
-}
-
-ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& settings,
-                                   const SolidModel& model) {
-  double stiffest = 0;
-  for (const auto region : model.mesh().facet_region)
-    for (const auto& material : settings.materials)
-      if (material.region == body.region_names[at(region)])
-        stiffest = std::max(stiffest, rest_moduli(material.law).young);
-  return {kContactStiffness * stiffest / settings.indentation.tool.radius, stiffest};
-}
-
-CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
-                                 KeptFactor* kept)
-    : body(b),
-      points(settings.points),
-      indentation(settings.indentation),
-      engine(e),
-      model(b, laws_of_regions(b, settings.materials), settings.dilatation, settings.gravity),
-      permutation(kept != nullptr ? kept->permutation(model.pattern())
-                                  : nested_dissection(model.pattern())),
-      rest(equilibrium_under_weight(model, permutation, b.name)),
-      at_rest(model.energy(rest)) {
-  use_one_thread_per_site();
-  contact_stiffness = fem::contact_stiffness(b, settings, model);
-  if (engine == Engine::Direct) return;
-  std::vector<double> K;
-  model.stiffness(rest, K);
-  rest_factor = kept != nullptr ? kept->factor_of(model.pattern(), K, body.name, settings.memory)
-                                : std::make_shared<RestFactor>(model.pattern(), permutation, K,
-                                                               body.name, settings.memory);
-}
-
-Eigen::Vector3d CampaignContext::rest_position(const Vec3& X) const {
-  return to_eigen(X) + displacement_at(model.mesh(), rest, to_eigen(X));
-}
-
-SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site) {
-  const ToolGeometry& tool = context.indentation.tool;
-  return {context.model, site, tool.extent() + (kWindowRadius - 1) * tool.radius};
-}
-
-double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
-  // Counted here and in the solvers: history, trials and line searches of a path; curvature pairs,
-  // residuals and directions; the factor of a window over its stiffness.
-  constexpr double kDisplacements = 12, kVectors = 20, kWindowFill = 8;
-  const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
-  const double held = static_cast<double>(context.indentation.held_depths.size());
-  const double numbers = 3 * nodes * (kDisplacements + held) + unknowns * kVectors;
-  const SolidModel window = window_at(context, to_eigen(context.place(vertex).position));
-  return sizeof(double) * (numbers + kWindowFill * window.pattern().nonzeros()) + window.bytes();
-}
-
-PressPoint CampaignContext::place(std::int32_t vertex) const {
-  if (!points.empty()) return points[at(vertex)];
-  return {body.nodes[at(body.response.node[at(vertex)])], body.response.inward[at(vertex)]};
 }
 
 namespace {

@@ -13,6 +13,7 @@
 
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/settings.hpp"
+#include "fem/rest_factor.hpp"
 #include "fitting/fidelity/fidelity.hpp"
 #include "fitting/fidelity/skin.hpp"
 #include "fitting/sampling/site_choice.hpp"
@@ -54,8 +55,8 @@ class PassingFile {
 /// Random points of the surface and the forces of direct presses there.
 class HeldOut {
  public:
-  HeldOut(const Workspace& space, const Body& body, const Library& library,
-          fem::PreparedBody& prepared, fem::CampaignSettings settings, const std::string& key)
+  HeldOut(const Workspace& space, const Body& body, const Library& library, fem::KeptFactor& kept,
+          fem::CampaignSettings settings, const std::string& key)
       : space_(space) {
     points_ = fidelity::draw_points(library, space.c.sampling.held_out, 0, kSeed);
     fidelity::find_skin(body, points_);
@@ -68,7 +69,7 @@ class HeldOut {
     settings.known = journal.found();
     settings.finished = [&](const SiteCurves& site) { journal.append(site); };
     settings.progress = nullptr;
-    direct_ = prepared.run(settings, report_);
+    direct_ = fem::run_campaign(body, settings, report_, &kept);
   }
 
   const fem::CampaignReport& report() const { return report_; }
@@ -209,14 +210,14 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
   std::vector<SamplingRound> rounds;
   settings.sites = fitting::spread_sites(body, sampling.start_spacing);
   const auto start = std::chrono::steady_clock::now();
-  fem::PreparedBody prepared(body, settings);
+  fem::KeptFactor kept;
   for (bool open = true; open;) {
     settings.known = known.among(settings.sites);
     result.report = {};
-    result.curves = prepared.run(settings, result.report);
+    result.curves = fem::run_campaign(body, settings, result.report, &kept);
     known.add(result.curves.sites);
     const Library library = fitting::fit(body, result.curves, fit_settings(space));
-    if (!held_out) held_out.emplace(space, body, library, prepared, settings, key);
+    if (!held_out) held_out.emplace(space, body, library, kept, settings, key);
     rounds.push_back({static_cast<int>(rounds.size()) + 1,
                       settings.sites.size(),
                       of_sites,

@@ -25,7 +25,7 @@ namespace {
 
 constexpr double kDepth = 0.004;  // m
 // Steps of the differences: of a modulus, and of what a Poisson's ratio lacks to 1/2.
-constexpr double kStep = 1e-3, kPoissonStep = 2e-2;
+constexpr double kStep = 1e-3, kPoissonStep = 4e-3;
 
 /// 60 x 60 x 30 mm with its base held, the lower half a region of its own.
 Body layered(int cells) {

@@ -2,6 +2,8 @@
 #include "tests/support/block_body.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 
 #include "fem/at.hpp"
@@ -68,6 +70,19 @@ void add_response_surface(Body& body, double top) {
 }
 
 }  // namespace
+
+std::int32_t site_nearest(const Body& body, double x, double y) {
+  std::int32_t nearest = -1;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
+    const Vec3& at = body.nodes[static_cast<std::size_t>(body.response.node[v])];
+    const double distance = std::hypot(at[0] - x, at[1] - y);
+    if (body.response.is_site[v] == 0 || distance >= least) continue;
+    least = distance;
+    nearest = static_cast<std::int32_t>(v);
+  }
+  return nearest;
+}
 
 std::vector<Triangle> boundary_of(const std::vector<Tetrahedron>& tetrahedra) {
   std::map<Face, int> uses;

@@ -2,6 +2,7 @@
 // Bodies for tests, made without the mesher: blocks of tetrahedra on a (graded) grid.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -21,6 +22,9 @@ std::vector<double> even(double low, double high, int count);
 /// Coordinates from -half to half, symmetric, with cells of `fine` within |x| <= core that grow
 /// outwards by `growth`, fitted to end at `half`.
 std::vector<double> graded(double half, double core, double fine, double growth);
+
+/// The site nearest to the vertical line through (x, y); -1 without any.
+std::int32_t site_nearest(const Body& body, double x = 0, double y = 0);
 
 /// The facets that belong to one tetrahedron only, outward.
 std::vector<Triangle> boundary_of(const std::vector<Tetrahedron>& tetrahedra);

@@ -37,14 +37,6 @@ Body block(int cells) {
   return body;
 }
 
-std::int32_t middle(const Body& body) {
-  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
-    const Vec3& x = body.nodes[fem::at(body.response.node[v])];
-    if (norm({x[0], x[1], 0}) < 1e-9) return static_cast<std::int32_t>(v);
-  }
-  return -1;
-}
-
 fem::CampaignSettings settings_of(const fem::LawConstants& law, fem::Dilatation dilatation) {
   fem::CampaignSettings settings;
   settings.materials = {{"upper", law}, {"lower", law}};
@@ -91,7 +83,7 @@ bool skipped(const char* problem = kProblem) {
 /// The normal force at every increment; its largest relative difference is a row.
 void compare(const std::string& what, const Body& body, const fem::CampaignSettings& settings,
              double allowed) {
-  const std::int32_t vertex = middle(body);
+  const std::int32_t vertex = test::site_nearest(body);
   const auto ours = fem::press_patch(body, settings, vertex, kPatchRadius);
   EXPECT_EQ(ours.reason, "");
   const auto theirs = run_calculix(make_patch_deck(body, settings, vertex, kPatchRadius));
@@ -155,7 +147,9 @@ TEST(Calculix, SharesTheLockingOfPureDisplacementsAndThePressureElementDoesNot) 
   compare("neo-hookean, nu = 0.49, both without a pressure of their own", body, pointwise, 0.005);
   const auto force = [&](fem::Dilatation dilatation) {
     const auto settings = settings_of({10e3, 0.49}, dilatation);
-    return -fem::press_patch(body, settings, middle(body), kPatchRadius).samples.back().force[2];
+    return -fem::press_patch(body, settings, test::site_nearest(body), kPatchRadius)
+                .samples.back()
+                .force[2];
   };
   const double displacement = force(fem::Dilatation::Pointwise);
   const double pressure = force(fem::Dilatation::Mean);
@@ -191,7 +185,7 @@ fem::CampaignSettings pressing(const fem::ToolGeometry& tool) {
 
 double own_force(const Body& body, const fem::CampaignSettings& settings) {
   const fem::CampaignContext context(body, settings, fem::Engine::SharedFactor);
-  const SiteCurves curves = fem::solve_site(context, middle(body), nullptr);
+  const SiteCurves curves = fem::solve_site(context, test::site_nearest(body), nullptr);
   EXPECT_EQ(curves.status, SiteStatus::Complete) << curves.reason;
   return -curves.paths.front().samples.back().force[2];
 }
@@ -211,7 +205,8 @@ void compare_tool(const std::string& what, const fem::ToolGeometry& tool, double
   const Body body = graded_block();
   const auto settings = pressing(tool);
   test::verify({kToolProblem, what, "N", own_force(body, settings),
-                their_force(make_tool_deck(body, settings, middle(body))), kDeck, bound});
+                their_force(make_tool_deck(body, settings, test::site_nearest(body))), kDeck,
+                bound});
 }
 
 /// The pressure peaks over the edge, which is a third of an element here.
@@ -229,7 +224,7 @@ TEST(CalculixTool, AgreesOnASphereWhateverTheContactStiffness) {
   if (skipped(kToolProblem)) GTEST_SKIP() << "ccx is not installed (package calculix-ccx)";
   const Body body = graded_block();
   const auto settings = pressing({fem::ToolShape::Sphere, 0.005, 0, 0});
-  Deck deck = make_tool_deck(body, settings, middle(body));
+  Deck deck = make_tool_deck(body, settings, test::site_nearest(body));
   const double force = their_force(deck);
   test::verify(
       {kToolProblem, "sphere of 5 mm", "N", own_force(body, settings), force, kDeck, 0.01});

@@ -30,20 +30,12 @@ Body block() {
   return body;
 }
 
-std::int32_t middle(const Body& body) {
-  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
-    const Vec3& x = body.nodes[static_cast<std::size_t>(body.response.node[v])];
-    if (std::abs(x[0] - 0.01) + std::abs(x[1] - 0.01) < 1e-9) return static_cast<std::int32_t>(v);
-  }
-  return -1;
-}
-
 Deck deck_of(const fem::LawConstants& law) {
   const Body body = block();
   fem::CampaignSettings settings;
   settings.materials = {{"tissue", law}};
   settings.indentation.depth = 0.002;
-  return make_patch_deck(body, settings, middle(body), 0.0052);
+  return make_patch_deck(body, settings, test::site_nearest(body, 0.01, 0.01), 0.0052);
 }
 
 std::size_t count(const std::string& text, const std::string& part) {
@@ -90,11 +82,11 @@ TEST(Decks, RefuseAPatchOnASupportOrWithoutSize) {
   const Body body = block();
   fem::CampaignSettings settings;
   settings.materials = {{"tissue", {10e3, 0.45}}};
-  EXPECT_THROW(make_patch_deck(body, settings, middle(body), 0.02), Error);
-  EXPECT_THROW(make_patch_deck(body, settings, middle(body), 0), Error);
+  EXPECT_THROW(make_patch_deck(body, settings, test::site_nearest(body, 0.01, 0.01), 0.02), Error);
+  EXPECT_THROW(make_patch_deck(body, settings, test::site_nearest(body, 0.01, 0.01), 0), Error);
   EXPECT_THROW(make_patch_deck(body, settings, 100000, 0.005), Error);
   settings.materials[0].law.at("poisson") = 0.5;
-  EXPECT_THROW(make_patch_deck(body, settings, middle(body), 0.005), Error);
+  EXPECT_THROW(make_patch_deck(body, settings, test::site_nearest(body, 0.01, 0.01), 0.005), Error);
 }
 
 TEST(Decks, CalculixHoldsEveryNodeAndElementOnce) {
@@ -208,7 +200,7 @@ TEST(ToolMesh, IsOnePieceOfTheRightArea) {
 TEST(Decks, PressTheToolAgainstTheSkinThatItMayMeet) {
   const Body body = block();
   for (const fem::ToolGeometry& tool : kTools) {
-    const Deck deck = make_tool_deck(body, pressed_by(tool), middle(body));
+    const Deck deck = make_tool_deck(body, pressed_by(tool), test::site_nearest(body, 0.01, 0.01));
     ASSERT_TRUE(deck.tool.has_value());
     EXPECT_TRUE(deck.patch.empty());
     // On a flat top the tip starts on the site.
@@ -233,7 +225,8 @@ TEST(Decks, PressTheToolAgainstTheSkinThatItMayMeet) {
 
 TEST(Decks, OfAToolAreWellFormedAndCountRight) {
   const Body body = block();
-  const Deck deck = make_tool_deck(body, pressed_by(kTools[0]), middle(body));
+  const Deck deck =
+      make_tool_deck(body, pressed_by(kTools[0]), test::site_nearest(body, 0.01, 0.01));
   const auto nodes = static_cast<std::size_t>(deck.mesh.X.cols() + deck.tool->mesh.X.cols());
   const std::size_t elements = deck.mesh.tetrahedra.size() + deck.tool->mesh.tetrahedra.size();
   const std::string febio = febio_deck(deck);
@@ -252,10 +245,10 @@ TEST(Decks, OfAToolAreWellFormedAndCountRight) {
 TEST(Decks, RefuseToolsThatOtherProgramsHoldInTheirOwnWay) {
   const Body body = block();
   fem::CampaignSettings settings = pressed_by({fem::ToolShape::Disc, 0.004, 0, 0});
-  EXPECT_THROW(make_tool_deck(body, settings, middle(body)), Error);
+  EXPECT_THROW(make_tool_deck(body, settings, test::site_nearest(body, 0.01, 0.01)), Error);
   settings = pressed_by(kTools[0]);
   settings.indentation.friction = fem::ToolFriction::Stuck;
-  EXPECT_THROW(make_tool_deck(body, settings, middle(body)), Error);
+  EXPECT_THROW(make_tool_deck(body, settings, test::site_nearest(body, 0.01, 0.01)), Error);
   EXPECT_THROW(make_tool_deck(body, pressed_by(kTools[0]), -1), Error);
 }
 

@@ -9,6 +9,7 @@
 
 #include "fem/at.hpp"
 #include "fem/campaign.hpp"
+#include "fem/rest_factor.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -58,7 +59,7 @@ TEST(Campaign, GivesTheSameBitsWhateverTheNumberOfThreads) {
   for (std::size_t i = 0; i < one.sites.size(); ++i) expect_same_bits(one.sites[i], two.sites[i]);
 }
 
-TEST(Campaign, CampaignsOnAPreparedBodyKnowNothingOfOneAnother) {
+TEST(Campaign, CampaignsThatShareAFactorKnowNothingOfOneAnother) {
   const Body body = small_block();
   const CampaignSettings settings = quick();
   CampaignSettings some = settings, points = settings;
@@ -68,9 +69,10 @@ TEST(Campaign, CampaignsOnAPreparedBodyKnowNothingOfOneAnother) {
   points.points = {{{0.002, 0.001, 0}, {0, 0, -1}}};
   points.indentation.held_depths.clear();
   CampaignReport report;
-  PreparedBody prepared(body, settings);
-  prepared.run(points, report);
-  const Curves after = prepared.run(some, report);
+  KeptFactor kept;
+  run_campaign(body, points, report, &kept);
+  const Curves after = run_campaign(body, some, report, &kept);
+  EXPECT_EQ(kept.factorizations(), 1);
   ASSERT_EQ(after.sites.size(), 1u);
   expect_same_bits(after.sites[0], run_campaign(body, some, report).sites[0]);
 }

@@ -27,14 +27,6 @@ Body layered_block() {
   return body;
 }
 
-std::int32_t middle(const Body& body) {
-  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
-    const Vec3& x = body.nodes[at(body.response.node[v])];
-    if (std::hypot(x[0], x[1]) < 1e-9) return static_cast<std::int32_t>(v);
-  }
-  return -1;
-}
-
 CampaignSettings settings_of(const LawConstants& tissue, const LawConstants& skin) {
   CampaignSettings settings;
   settings.materials = {{"tissue", tissue}, {"skin", skin}};
@@ -49,7 +41,7 @@ CampaignSettings settings_of(const LawConstants& tissue, const LawConstants& ski
 
 SiteCurves press(const Body& body, const CampaignSettings& settings, Engine engine) {
   const CampaignContext context(body, settings, engine);
-  SiteCurves site = solve_site(context, middle(body), nullptr);
+  SiteCurves site = solve_site(context, test::site_nearest(body), nullptr);
   EXPECT_EQ(site.status, SiteStatus::Complete) << site.reason;
   return site;
 }
@@ -100,7 +92,7 @@ TEST_P(LawIndentation, StoresTheWorkDoneOnAStuckPatch) {
   const Body body = layered_block();
   CampaignSettings settings = settings_of(GetParam(), GetParam());
   settings.indentation.increments = 8;
-  const PatchCurve curve = press_patch(body, settings, middle(body), 0.0041);
+  const PatchCurve curve = press_patch(body, settings, test::site_nearest(body), 0.0041);
   ASSERT_EQ(curve.reason, "");
   std::vector<double> depth, force;
   for (const PatchForce& sample : curve.samples) {

@@ -27,19 +27,6 @@ Body layered() {
   return body;
 }
 
-std::int32_t middle(const Body& body) {
-  std::int32_t best = -1;
-  double least = 1;
-  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
-    const Vec3& x = body.nodes[static_cast<std::size_t>(body.response.node[v])];
-    const double distance = std::hypot(x[0], x[1]);
-    if (body.response.is_site[v] == 0 || distance >= least) continue;
-    least = distance;
-    best = static_cast<std::int32_t>(v);
-  }
-  return best;
-}
-
 CampaignSettings settings_of(const Body& body, double top, double base, double poisson) {
   CampaignSettings settings;
   settings.materials = {{"top", {top, poisson}}, {"base", {base, 0.45}}};
@@ -47,7 +34,7 @@ CampaignSettings settings_of(const Body& body, double top, double base, double p
   settings.indentation.depth = 0.003;
   settings.indentation.increments = 3;
   settings.indentation.force_tolerance = 1e-8;
-  settings.sites = {middle(body)};
+  settings.sites = {test::site_nearest(body)};
   return settings;
 }
 

@@ -115,14 +115,6 @@ Body sprung_block(double stiffness) {
   return body;
 }
 
-std::int32_t middle(const Body& body) {
-  for (std::size_t v = 0; v < body.response.node.size(); ++v) {
-    const Vec3& x = body.nodes[at(body.response.node[v])];
-    if (std::hypot(x[0], x[1]) < 1e-9) return static_cast<std::int32_t>(v);
-  }
-  return -1;
-}
-
 CampaignSettings pressing(const LawConstants& law) {
   CampaignSettings settings;
   settings.materials = {{"tissue", law}};
@@ -137,7 +129,7 @@ CampaignSettings pressing(const LawConstants& law) {
 
 SiteCurves press(const Body& body, const CampaignSettings& settings, Engine engine,
                  Displacement* pressed = nullptr) {
-  return solve_site(CampaignContext(body, settings, engine), middle(body), pressed);
+  return solve_site(CampaignContext(body, settings, engine), test::site_nearest(body), pressed);
 }
 
 void expect_same_forces(const SiteCurves& a, const SiteCurves& b, double tolerance) {
@@ -287,7 +279,7 @@ TEST(Gravity, APressStartsFromTheSaggedBodyAndBalancesItsEnergy) {
   const double sag = -top_displacement(body, context.rest);
   EXPECT_GT(sag, 2e-4);
   Displacement u;
-  const SiteCurves heavy = solve_site(context, middle(body), &u);
+  const SiteCurves heavy = solve_site(context, test::site_nearest(body), &u);
   ASSERT_EQ(heavy.status, SiteStatus::Complete) << heavy.reason;
   expect_same_forces(press(body, settings, Engine::Direct), heavy, 1e-3);
 
