@@ -108,6 +108,7 @@ class ReportPage(unittest.TestCase):
         cls.unbounded = drawn(path / "unbounded.html")
         cls.bare = drawn(path / "bare.html")
         cls.compared = drawn(path / "compared.html")
+        cls.sparse = drawn(path / "sparse.html")
         cls.judged = drawn(path / "judged.html")
         cls.judged_other = drawn(path / "judged-other.html")
 
@@ -116,7 +117,8 @@ class ReportPage(unittest.TestCase):
         cls.folder.cleanup()
 
     def test_both_pages_are_drawn_without_an_error(self):
-        for page in (self.full, self.unbounded, self.bare, self.compared, self.judged, self.judged_other):
+        for page in (self.full, self.unbounded, self.bare, self.compared, self.sparse, self.judged,
+                     self.judged_other):
             self.assertEqual(page.root.get("data-errors"), "0", page.text[-500:])
             self.assertEqual(page.root.get("data-ready"), "ok")
 
@@ -227,6 +229,63 @@ class ReportPage(unittest.TestCase):
         half = [k for k in secant_stiffness(data, data["key"]["depth"] / 2) if k is not None]
         self.assertIn("at d = 3.00\u00a0mm", said["half"])
         self.assertIn(f"{min(half):.1f} to {max(half):.0f} N/m", said["half"])
+
+    def test_the_map_of_the_error_marks_single_sites(self):
+        """Four sites were compared, three of them around one triangle: that triangle and one disc have a
+        colour, the rest of the body is grey, and the figures of the disc are under the pointer."""
+        act = """addEventListener('load', () => setTimeout(() => {
+          const canvas = document.querySelector('.stage canvas'), box = canvas.getBoundingClientRect();
+          const look = () => {
+            const { width, height, data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+            const seen = {body: 0, coloured: 0, worst: 0, x: 0, y: 0, high: width};
+            for (let i = 0; i < data.length; i += 4) {
+              if (data[i + 3] < 255) continue;
+              const [r, g, b] = data.subarray(i, i + 3);
+              seen.body += 1;
+              seen.coloured += Math.max(r, g, b) - Math.min(r, g, b) > 40;
+              if (r < 240 || g < 215 || b > 60) continue;  // the top of the colours, unshaded
+              seen.worst += 1;
+              seen.x += ((i / 4) % width) * box.width / width;
+              seen.y += Math.floor(i / 4 / width) * box.height / height;
+            }
+            return seen;
+          };
+          const said = {};
+          for (const name of ['stiffness', 'error_lateral', 'error_normal']) {
+            const field = document.getElementById('field');
+            field.value = name;
+            field.dispatchEvent(new Event('change'));
+            said[name] = {...look(), range: document.getElementById('field-range').textContent};
+          }
+          const {x, y, worst} = said.error_normal;
+          const now = canvas.getBoundingClientRect();  // the controls above are others
+          canvas.dispatchEvent(new PointerEvent('pointermove',
+            {clientX: now.left + x / worst, clientY: now.top + y / worst, bubbles: true}));
+          said.tip = document.querySelector('.tip').innerText;
+          document.body.append(Object.assign(document.createElement('p'), {id: 'said', textContent: JSON.stringify(said)}));
+        }, 300));"""
+        text = (self.path / "sparse.html").read_text()
+        cut = text.rindex("</body>")
+        acted = self.path / "sparse-acted.html"
+        acted.write_text(f"{text[:cut]}<script>{act}</script>{text[cut:]}")
+        page = Page(browse(acted, "--dump-dom", "--window-size=1300,1200"))
+        self.assertEqual(page.root.get("data-errors"), "0")
+        said = json.loads(page.by_id["said"])
+        data = json.loads(page.by_id["data"])
+        compared = {c["vertex"]: c for c in data["comparison"]["curves"] if c["kind"] == "normal"}
+        worst = max(compared, key=lambda v: compared[v]["rms_jnd"])
+        for kind in ("error_normal", "error_lateral"):
+            self.assertIn("1.29 to 2.86 JND", said[kind]["range"])
+            self.assertIn(f"4 of {len(column(data['vertices']['is_site']))} nodes were compared. Discs: 1 node without",
+                          said[kind]["range"])
+            # A disc of eight pixels radius, less its rim, and a triangle of some hundred: the rest is grey.
+            self.assertGreater(said[kind]["worst"], 60)
+            self.assertLess(said[kind]["worst"], 220)
+            self.assertGreater(said[kind]["coloured"], 2 * said[kind]["worst"])
+            self.assertLess(said[kind]["coloured"], 0.05 * said[kind]["body"])
+        self.assertGreater(said["stiffness"]["coloured"], 0.5 * said["stiffness"]["body"])
+        self.assertIn(f"node {worst}", said["tip"], said)
+        self.assertIn("normal: off by 124\u00a0mN (2.86\u00a0JND), scatter 30.0\u00a0mN", said["tip"])
 
     def test_what_is_missing_is_said(self):
         self.assertIn("No recording was given", self.bare.by_id["session"])

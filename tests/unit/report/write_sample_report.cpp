@@ -1,22 +1,45 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // write_sample_report <folder>: the reports that test_report_page.py opens in a browser.
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "app/report/report.hpp"
 #include "synthetic.hpp"
 
 namespace {
 
-/// What `palpate compare` writes, of one node: a normal curve 10 % too stiff with known
-/// uncertainty, a lateral one about which nothing is known.
-std::string comparison_of(std::int32_t vertex, const std::string& model) {
+using palpate::operator-;
+
+struct ComparedNode {
+  std::int32_t vertex;
+  double error;  ///< over that of a model 10 % too stiff
+};
+
+nlohmann::json comparison_of(const std::string& model) {
   using nlohmann::json;
-  json curves = json::array(), summaries = json::array();
+  return {{"artifact", "palpate.comparison"},
+          {"schema", 1},
+          {"reference", "measured/curves.h5"},
+          {"model", model},
+          {"jnd", 0.07},
+          {"jnd_floor_N", 0.005},
+          {"summaries", json::array()},
+          {"unmatched", {"site 3 of measured has no partner"}},
+          {"curves", json::array()}};
+}
+
+/// What `palpate compare` writes of nodes: a normal curve 10 % too stiff with known uncertainty, a
+/// lateral one about which nothing is known.
+std::string comparison_of(const std::vector<ComparedNode>& nodes, const std::string& model) {
+  using nlohmann::json;
+  json all = comparison_of(model);
   for (const char* kind : {"normal", "lateral"}) {
     const bool known = std::string(kind) == "normal";
     json points = json::array();
@@ -37,30 +60,52 @@ std::string comparison_of(std::int32_t vertex, const std::string& model) {
                    {"within_uncertainty_share", known ? json(0.4) : json(nullptr)},
                    {"scatter_N", known ? json(0.03) : json(nullptr)},
                    {"worst", points.back()}};
-    json curve = common, summary = common;
-    curve.update({{"vertex", vertex},
-                  {"held_depth_m", known ? 0.0 : 0.003},
-                  {"r2", 0.95},
-                  {"uncertainty_N", known ? json(0.02) : json(nullptr)},
-                  {"points", points}});
-    summary.update({{"curves", 1},
-                    {"points", 10},
+    json summary = common;
+    summary.update({{"curves", nodes.size()},
+                    {"points", 10 * nodes.size()},
                     {"agreement_low_N", 0.0},
                     {"agreement_high_N", 0.11},
-                    {"worst_vertex", vertex}});
-    curves.push_back(curve);
-    summaries.push_back(summary);
+                    {"worst_vertex", nodes.front().vertex}});
+    all["summaries"].push_back(summary);
+    for (const ComparedNode& node : nodes) {
+      json curve = common;
+      curve.update({{"vertex", node.vertex},
+                    {"rmse_N", 0.062 * node.error},
+                    {"rms_jnd", 1.43 * node.error},
+                    {"held_depth_m", known ? 0.0 : 0.003},
+                    {"r2", 0.95},
+                    {"uncertainty_N", known ? json(0.02) : json(nullptr)},
+                    {"points", points}});
+      all["curves"].push_back(curve);
+    }
   }
-  return json({{"artifact", "palpate.comparison"},
-               {"schema", 1},
-               {"reference", "measured/curves.h5"},
-               {"model", model},
-               {"jnd", 0.07},
-               {"jnd_floor_N", 0.005},
-               {"summaries", summaries},
-               {"unmatched", {"site 3 of measured has no partner"}},
-               {"curves", curves}})
-      .dump();
+  return all.dump();
+}
+
+bool is_fitted(const palpate::Library& library, std::int32_t v) {
+  return library.responses[static_cast<std::size_t>(v)].status == palpate::ResponseStatus::Fitted;
+}
+
+/// What a few measured sites make: the stiffest node alone (the page faces it) with the largest
+/// error, and the corners of a triangle apart from it.
+std::vector<ComparedNode> sparse_nodes(const palpate::Library& library) {
+  const auto place = [&](std::int32_t v) { return library.positions[static_cast<std::size_t>(v)]; };
+  std::int32_t stiffest = library.triangles.front()[0];
+  for (const auto& triangle : library.triangles) {
+    for (const std::int32_t v : triangle) {
+      if (is_fitted(library, v) && palpate::testing::hertz_factor(place(v)) >
+                                       palpate::testing::hertz_factor(place(stiffest)))
+        stiffest = v;
+    }
+  }
+  for (const auto& triangle : library.triangles) {
+    const bool apart = std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
+      const double away = palpate::norm(place(v) - place(stiffest));
+      return is_fitted(library, v) && away > 0.015 && away < 0.03;
+    });
+    if (apart) return {{stiffest, 2}, {triangle[0], 0.9}, {triangle[1], 1.0}, {triangle[2], 1.1}};
+  }
+  throw std::logic_error("the sample body has no triangle beside its stiffest node");
 }
 
 std::string judgement_of(const std::string& library) {
@@ -108,8 +153,10 @@ int main(int argc, char** argv) {
                              &session,  "Lump with a nodule", 356129};
   palpate::write_report(input, folder / "full.html");
 
-  input.comparison = comparison_of(all.curves.sites.front().vertex, "<b>curves</b>.h5");
+  input.comparison = comparison_of({{all.curves.sites.front().vertex, 1.0}}, "<b>curves</b>.h5");
   palpate::write_report(input, folder / "compared.html");
+  input.comparison = comparison_of(sparse_nodes(all.library), "curves.h5");
+  palpate::write_report(input, folder / "sparse.html");
   input.comparison.clear();
 
   const palpate::Provenance before = all.curves.provenance;

@@ -1,15 +1,28 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The turning picture of the body: colours, nodes, contact path, hovering and clicking.
 import { Camera } from './camera.js';
+import { viridis } from './colormap.js';
 import { FIXED, HOLE, TOUCHABLE } from './data.js';
 import { el } from './dom.js';
 import { Raster } from './raster.js';
 import { colour, onThemeChange, rgb } from './theme.js';
+import { significant } from './units.js';
 
 const MAX_PIXELS = 3.2e6;
+const DISC = 8;          // radius, pixels
+const MOST_LABELS = 30;  // numbers that can be read side by side
+
+function label(context, text, x, y, scale) {
+  context.lineWidth = 3 * scale;
+  context.strokeStyle = '#fff';
+  context.strokeText(text, x, y);
+  context.fillStyle = '#000';
+  context.fillText(text, x, y);
+}
 
 export class BodyView {
-  /** field: {ofVertex | ofTriangle, low, high}; describe(vertex, triangle): lines of the tip. */
+  /** field: {ofVertex | ofTriangle, low, high, sparse}, sparse: known at some vertices only, those
+   *  without known neighbours are drawn as discs; describe(vertex, triangle): lines of the tip. */
   constructor(model, { facing, onPick, describe }) {
     this.model = model;
     this.home = facing;
@@ -18,6 +31,7 @@ export class BodyView {
     this.describe = describe;
     this.raster = new Raster();
     this.marked = [];
+    this.discs = [];
     this.path = null;
     this.show = { nodes: true, borders: true, path: true };
     this.canvas = el('canvas', { tabindex: '0', role: 'img', 'aria-label': 'The body in three dimensions. Arrow keys turn it.' });
@@ -31,7 +45,10 @@ export class BodyView {
 
   setField(field) {
     this.field = field;
-    this.pointValue = field.ofVertex ? this.model.interpolate(field.ofVertex) : null;
+    const { model } = this;
+    this.pointValue = !field.ofVertex ? null
+      : field.sparse ? model.interpolateWithin(field.ofVertex) : model.interpolate(field.ofVertex);
+    this.discs = field.sparse ? model.singles(field.ofVertex) : [];
     this.draw();
   }
 
@@ -145,6 +162,7 @@ export class BodyView {
     if (this.show.nodes) this.drawNodes(context, place);
     if (this.show.path && this.path) this.drawPath(context, place);
     for (const mark of this.marked) this.drawMark(context, place, mark);
+    this.drawDiscs(context, place);
   }
 
   drawNodes(context, place) {
@@ -157,6 +175,28 @@ export class BodyView {
       context.beginPath();
       context.arc(x, y, 1.4 * this.scale, 0, 7);
       context.fill();
+    }
+  }
+
+  /** Single vertices in the colour of their value, and the value itself where there are few. Those
+   *  on the far side are left out: a colour seen through the body would be read as one in front. */
+  drawDiscs(context, place) {
+    const { ofVertex, low, high } = this.field;
+    const seen = this.discs.map((v) => ({ v, ...place(this.model.vertices.position, 3 * v) })).filter((d) => d.seen);
+    context.font = `${12 * this.scale}px system-ui, sans-serif`;
+    context.textBaseline = 'middle';
+    for (const { v, x, y } of seen) {
+      const value = ofVertex[v];
+      context.beginPath();
+      context.arc(x, y, DISC * this.scale, 0, 7);
+      context.fillStyle = `rgb(${viridis((value - low) / (high - low || 1)).map(Math.round).join(' ')})`;
+      context.fill();
+      for (const [stroke, width] of [['#fff', 3], ['#000', 1]]) {
+        context.strokeStyle = stroke;
+        context.lineWidth = width * this.scale;
+        context.stroke();
+      }
+      if (seen.length <= MOST_LABELS) label(context, significant(value), x + 1.6 * DISC * this.scale, y, this.scale);
     }
   }
 

@@ -82,6 +82,33 @@ export class Model {
     return out;
   }
 
+  /** The same of values known at some vertices only: none is drawn beyond the triangles that are
+   *  known at all three corners. */
+  interpolateWithin(ofVertex) {
+    const { point_triangle: triangle, point_natural: natural, triangles } = this.surface;
+    const out = this.interpolate(ofVertex);
+    for (let p = 0; p < out.length; ++p) {
+      const first = natural[2 * p] / 65535, second = natural[2 * p + 1] / 65535;
+      const share = [first, second, 1 - first - second];
+      for (let l = 0; l < 3; ++l) {
+        if (share[l] > 1e-4 && triangle[p] >= 0 && !Number.isFinite(ofVertex[triangles[3 * triangle[p] + l]])) out[p] = NaN;
+      }
+    }
+    return out;
+  }
+
+  /** Vertices with a value, but in no triangle that is known at all three corners. */
+  singles(ofVertex) {
+    const { triangles } = this.surface;
+    const single = new Set();
+    ofVertex.forEach((value, v) => { if (Number.isFinite(value)) single.add(v); });
+    for (let t = 0; t < triangles.length; t += 3) {
+      const corners = triangles.subarray(t, t + 3);
+      if (corners.every((v) => Number.isFinite(ofVertex[v]))) corners.forEach((v) => single.delete(v));
+    }
+    return [...single];
+  }
+
   triangleOf(facet) {
     return this.surface.facet_triangle[facet];
   }

@@ -7,10 +7,11 @@ import { el, paragraph } from '../dom.js';
 import { Model } from '../model.js';
 import { secantStiffness, responseForce } from '../response.js';
 import { colour } from '../theme.js';
-import { errorOfVertices } from './comparison.js';
+import { errorOfVertices, errorsAt } from './comparison.js';
 import * as units from '../units.js';
 
-/** The fields the picture can be coloured with: {label, unit, values(depth)}. */
+/** The fields the picture can be coloured with: {label, unit, values(depth), sparse, from}. `sparse`:
+ *  known at some nodes only; `from`: the value where the colours begin, if not the least. */
 function fields(data) {
   const { vertices, certificate, surface } = data;
   const all = (f) => Float32Array.from({ length: vertices.response_status.length }, (_, v) => f(v));
@@ -26,8 +27,10 @@ function fields(data) {
     fit: { label: 'Fit error, normal', unit: '% of peak force',
       ofVertex: () => all((v) => (100 * vertices.normal_error[v]) / vertices.normal_peak[v]) },
   };
-  if (data.comparison) {
-    list.comparison = { label: 'Error against the reference', unit: 'JND', ofVertex: () => errorOfVertices(data) };
+  for (const kind of ['normal', 'lateral']) {
+    if (!data.comparison?.curves.some((c) => c.kind === kind)) continue;
+    list[`error_${kind}`] = { label: `Error against the reference, ${kind}`, unit: 'JND', sparse: true, from: 0,
+      ofVertex: () => errorOfVertices(data, kind) };
   }
   if (certificate) {
     list.slip = { label: 'L_slip of each triangle', unit: 'N/m', ofTriangle: () => perTriangle(certificate.triangle_slip) };
@@ -52,6 +55,15 @@ function rangeText(field, depth, span, unbounded) {
   const values = span ? `${units.significant(span[0])} to ${units.significant(span[1])} ${field.unit}` : 'no value';
   const grey = unbounded ? ` ${units.count(unbounded)} ${unbounded === 1 ? 'triangle is' : 'triangles are'} not certified: no bound, in grey.` : '';
   return `${field.label}${at}: ${values}.${grey}`;
+}
+
+/** What the picture shows of a field that is known at some nodes only. */
+function sparseText(field, ofVertex, single) {
+  if (!field.sparse) return '';
+  const known = ofVertex.filter(Number.isFinite).length;
+  const discs = single
+    ? ` Discs: ${units.count(single)} ${single === 1 ? 'node' : 'nodes'} without compared neighbours, in the colour of the error; hover for the figures.` : '';
+  return ` ${units.count(known)} of ${units.count(ofVertex.length)} nodes were compared.${discs} Grey: not compared.`;
 }
 
 class ColourBar {
@@ -102,13 +114,14 @@ export function bodySection(data, nodes, curves) {
     const field = options[name];
     const ofVertex = field.ofVertex?.(depth), ofTriangle = field.ofTriangle?.();
     const span = extent(ofVertex ?? ofTriangle);
-    const [low, high] = span ?? [0, 1];
-    view.setField({ ofVertex, ofTriangle, low, high });
+    const [least, high] = span ?? [0, 1];
+    const low = field.from ?? least;
+    view.setField({ ofVertex, ofTriangle, low, high, sparse: field.sparse });
     bar.set(field.label, field.unit, low, high);
     depthText.textContent = units.length(depth);
     depthControl.style.display = field.deep ? '' : 'none';
     const unbounded = (ofTriangle ?? []).filter((bound) => bound === Infinity).length;
-    range.textContent = rangeText(field, depth, span, unbounded);
+    range.textContent = rangeText(field, depth, span, unbounded) + sparseText(field, ofVertex, view.discs.length);
     curves.setDepth(depth);
   };
   nodes.onChange(() => {
@@ -166,6 +179,7 @@ function describe(data, { vertex, triangle, facet }, depth) {
   lines.push(`site ${SITE[vertices.site_status[vertex]]}; response ${RESPONSE[vertices.response_status[vertex]]}`);
   const m = surface.library_triangle[triangle];
   if (certificate && m >= 0) lines.push(`triangle ${m}: L_slip ${units.bound(certificate.triangle_slip[m])}`);
+  lines.push(...errorsAt(data, vertex));
   const reason = vertices.reasons[vertex];
   if (reason) lines.push(reason);
   return lines;

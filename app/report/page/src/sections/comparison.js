@@ -10,12 +10,27 @@ const sorted = (sets) => sets.map((s) => {
   return { ...s, x: order.map((i) => s.x[i]), y: order.map((i) => s.y[i]) };
 });
 
-/** Root mean square error of the normal curve of each vertex, in just noticeable differences. */
-export function errorOfVertices(data) {
-  const values = new Float32Array(data.vertices.response_status.length).fill(NaN);
-  for (const c of data.comparison.curves) if (c.kind === 'normal') values[c.vertex] = c.rms_jnd;
-  return values;
+/** Error of the curves of one kind at each vertex, in just noticeable differences: the root mean
+ *  square over its points, and over its curves where a vertex has several. */
+export function errorOfVertices(data, kind) {
+  const size = data.vertices.response_status.length;
+  const squares = new Float64Array(size), count = new Uint32Array(size);
+  for (const c of data.comparison.curves) {
+    if (c.kind !== kind) continue;
+    squares[c.vertex] += c.rms_jnd ** 2;
+    count[c.vertex] += 1;
+  }
+  return Float32Array.from(squares, (sum, v) => (count[v] ? Math.sqrt(sum / count[v]) : NaN));
 }
+
+/** Lines of the tip: what the curves of a vertex are off by. */
+export function errorsAt(data, vertex) {
+  return (data.comparison?.curves ?? []).filter((c) => c.vertex === vertex).map((c) =>
+    `${pathName(c)}: off by ${units.force(c.rmse_N)} (${units.significant(c.rms_jnd)}\u00a0JND)`
+    + (c.scatter_N === null ? '' : `, scatter ${units.force(c.scatter_N)}`));
+}
+
+const pathName = (curve) => (curve.kind === 'lateral' ? `lateral at ${units.length(curve.held_depth_m)}` : curve.kind);
 
 function overlay(curve) {
   const x = curve.points.map((p) => p.displacement_m * 1e3);
@@ -81,7 +96,7 @@ function curveRows(curves) {
 export function comparisonSection(data) {
   const c = data.comparison;
   const plot = curvePlot('One curve: reference and model', 'Displacement (mm)', 'Force (N)', 240);
-  const name = (curve) => `node ${curve.vertex}, ${curve.kind}${curve.kind === 'lateral' ? ` at ${units.length(curve.held_depth_m)}` : ''}`;
+  const name = (curve) => `node ${curve.vertex}, ${pathName(curve)}`;
   const show = (i) => plot.set(overlay(c.curves[i]));
   const select = el('select', { id: 'compared-curve', onchange: (e) => show(Number(e.target.value)) },
     c.curves.map((curve, i) => el('option', { value: i }, name(curve))));
