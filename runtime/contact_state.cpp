@@ -21,6 +21,16 @@ bool finite(const Vec3& v) noexcept {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
+/// Where a straight way from `near`, no longer than `allowed`, to `far`, which is longer, becomes
+/// too long: its share, in [0, 1].
+double share_within(const Vec3& near, const Vec3& far, double allowed) noexcept {
+  const Vec3 way = far - near;
+  const double a = dot(way, way);
+  const double b = dot(near, way);
+  const double c = allowed * allowed - dot(near, near);
+  return c > 0 ? c / (b + std::sqrt(b * b + a * c)) : 0;
+}
+
 }  // namespace
 
 ContactState::ContactState(const Surface& surface, const CollisionTree& tree,
@@ -107,17 +117,21 @@ bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
   model.set_offset(depth);
   approaching_.reset();
   seen_.status |= PALPATE_ACTIVATED;
-  const Deflection d = model.deflection(x);
-  commit({model, d, model.respond(d), depth, 0}, 0);
+  Candidate first{model, {}, {}, depth, 0};
+  respond(first, x);
+  commit(first, 0);
   return true;
 }
 
 void ContactState::touch(const Vec3& x, double travelled) noexcept {
-  Candidate held{*model_, model_->deflection(x), {}, goal_, 0};
+  Held held{{*model_, model_->deflection(x), {}, goal_, 0}, travelled};
+  held.allowance = std::isinf(settings_.steepness) ? settings_.steepness  // also at rest
+                                                   : settings_.steepness * travelled;
   held.response = model_->respond(held.deflection);
+  held.excess = excess(held);
   const double energy_before = held.response.energy;  // E_{i-1}(x_i)
   seen_.absorbed += energy_before - seen_.energy;
-  const Candidate next = choose(x, held, travelled);
+  const Candidate next = choose(x, held);
   seen_.status |= next.status;
   if (release(next, x, energy_before)) return;
   if (norm(next.model.contact_point() - model_->contact_point()) > 0) {
@@ -126,36 +140,57 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
   commit(next, energy_before);
 }
 
-/// The slide and the return of the offset as far as the force may change in this step. To hold the
-/// contact point is always within the limit.
-ContactState::Candidate ContactState::choose(const Vec3& x, const Candidate& held,
-                                             double travelled) const noexcept {
-  const double allowed = std::isinf(settings_.steepness)
-                             ? settings_.steepness
-                             : settings_.steepness * travelled + kRounding;
+/// Zero where friction holds. Out of normal contact the slip limit is 0.
+double ContactState::excess(const Candidate& at) const noexcept {
+  if (!(at.response.lateral_force > settings_.friction * at.response.grip)) return 0;
+  const double limit = at.model.slip_limit_below(at.deflection, at.response, settings_.friction);
+  return std::max(at.deflection.lateral - limit, 0.0);
+}
+
+/// The slide and the return of the offset as far as the force may change in this step.
+ContactState::Candidate ContactState::choose(const Vec3& x, const Held& held) const noexcept {
+  const double allowed = held.allowance + kRounding;
   const auto within = [&](const Candidate& c) {
     return norm(c.response.force - seen_.force) <= allowed;
   };
-  Candidate next = move(x, held, 1, kRecoveryShare * travelled);
+  Candidate next = move(x, held, {.recovery = kRecoveryShare * held.travelled});
   if (within(next)) return next;
-  next = move(x, held, 1, 0);
-  double share = 1;
-  for (int i = 0; i < kShorterSlides && !within(next); ++i) {
-    const double excess = norm(next.response.force - seen_.force) / allowed;
-    share *= std::clamp(0.9 / excess, 0.02, 0.7);
-    next = move(x, held, share, 0);
-  }
-  if (!within(next)) next = held;
-  next.status |= PALPATE_FORCE_LIMITED;
+  next = move(x, held, {});
+  const std::uint32_t obstacles = next.status & (PALPATE_AT_BORDER | PALPATE_AWAITING);
+  if (!within(next)) next = hold_back(x, held, next, allowed);
+  next.status |= obstacles | PALPATE_FORCE_LIMITED;
   return next;
 }
 
+/// As much of a slide as the limit on the change of force has room for. With c held the tool slips
+/// over it, which is within a certified limit from any state in which friction holds; where more
+/// was left over than the limit lets go of now, the tool slips in part.
+ContactState::Candidate ContactState::hold_back(const Vec3& x, const Held& held,
+                                                const Candidate& asked,
+                                                double allowed) const noexcept {
+  const auto change = [&](const Candidate& c) { return c.response.force - seen_.force; };
+  const auto within = [&](const Candidate& c) { return norm(change(c)) <= allowed; };
+  const Candidate slipping = move(x, held, {.follow = 0});
+  const bool may_follow = within(slipping);
+  const Candidate base = may_follow ? slipping : static_cast<const Candidate&>(held);
+  Candidate next = may_follow ? asked : slipping;
+  double share = 1;
+  for (int i = 0; i < kShorterSlides; ++i) {
+    share *= std::clamp(0.9 * share_within(change(base), change(next), allowed), 0.02, 0.9);
+    next = move(x, held, may_follow ? Shares{.follow = share} : Shares{.follow = 0, .slip = share});
+    if (within(next)) return next;
+  }
+  return base;
+}
+
 /// The model after a share of the slide, with an offset that keeps the energy in the budget.
-ContactState::Candidate ContactState::move(const Vec3& x, const Candidate& held, double share,
-                                           double recovery) const noexcept {
-  Candidate next = held;
-  next.model = slide(x, held, share, next.status);
+ContactState::Candidate ContactState::move(const Vec3& x, const Held& held,
+                                           const Shares& shares) const noexcept {
+  std::uint32_t status = 0;
+  Candidate next{slide(x, held, shares, status), {}, {}, goal_, 0};
+  next.status = status;
   next.deflection = next.model.deflection(x);
+  double recovery = shares.recovery;
   if (!(next.deflection.depth > 0)) {
     // Out of normal contact but perhaps inside the body: the offset follows the tip outwards, at no
     // energy, until the true surface is felt again.
@@ -167,62 +202,104 @@ ContactState::Candidate ContactState::move(const Vec3& x, const Candidate& held,
   }
   next.response = next.model.respond(next.deflection);
   if (settings_.budget == EnergyBudget::Kept) keep_budget(next, x, held, recovery);
+  if (shares.slip == 1) keep_friction(next, x, held.allowance);
   return next;
 }
 
-void ContactState::keep_budget(Candidate& moved, const Vec3& x, const Candidate& held,
+/// Where no offset keeps a slide in the budget c is held, and the tool slips over it: at the same c
+/// that lowers the energy.
+void ContactState::keep_budget(Candidate& moved, const Vec3& x, const Held& held,
                                double recovery) const noexcept {
   const EnergyVerdict verdict = judge(moved.model, x, moved.response,
                                       tank_.budget(held.response.energy), moved.goal, recovery);
-  const std::uint32_t status =
-      moved.status | (verdict.limited ? std::uint32_t{PALPATE_ENERGY_LIMITED} : 0);
+  if (!verdict.limited && verdict.offset == moved.model.offset()) return;
+  if (verdict.limited) moved.status |= PALPATE_ENERGY_LIMITED;
   if (verdict.hold) {
-    moved = held;
-  } else if (verdict.offset != moved.model.offset()) {
+    moved.model = let_go(held, 1);
+    moved.goal = goal_;
+  } else {
     moved.model.set_offset(verdict.offset);
-    moved.deflection = moved.model.deflection(x);
-    moved.response = moved.model.respond(moved.deflection);
   }
-  moved.status = status;
+  respond(moved, x);
 }
 
-/// Where the lateral deflection exceeds the slip limit, c moves by the excess, or a share of it.
-/// Out of normal contact the limit is 0: c follows the tip until x - c is parallel to n.
-LocalModel ContactState::slide(const Vec3& x, const Candidate& held, double share,
+void ContactState::respond(Candidate& at, const Vec3& x) noexcept {
+  at.deflection = at.model.deflection(x);
+  at.response = at.model.respond(at.deflection);
+}
+
+/// What a slide or a change of the offset has left of the lateral force above mu g is let go at
+/// once: all of coupled responses, whose bound holds up to the slip limit. Of decoupled ones, whose
+/// bound holds everywhere, what is above that of one step of travel; the next slide of c takes the
+/// rest.
+void ContactState::keep_friction(Candidate& moved, const Vec3& x, double allowance) const noexcept {
+  const LocalResponse& r = moved.response;
+  const double tolerated = moved.model.coupled() ? 0 : allowance;
+  if (!(r.lateral_force > settings_.friction * r.grip + tolerated)) return;
+  moved.model.slip(excess(moved), x, moved.deflection, moved.response);
+}
+
+LocalModel ContactState::slide(const Vec3& x, const Held& held, const Shares& shares,
                                std::uint32_t& status) const noexcept {
-  const Deflection& d = held.deflection;
-  if (!(d.depth > 0) && share == 1) {
-    const Projection p =
-        project(*surface_, model_->point(), x, kRelaxedPasses, kRelaxed, delivered_);
-    if (p.at_border) status |= PALPATE_AT_BORDER;
-    if (p.awaiting) status |= PALPATE_AWAITING;
-    return {*surface_, p.point, model_->offset()};
-  }
-  const LocalResponse& at = held.response;
-  if (!(at.lateral_force > settings_.friction * at.grip)) return *model_;
-  const double excess = d.lateral - model_->slip_limit_below(d, at, settings_.friction);
-  if (!(excess > 0)) return *model_;
-  const Walk moved = walk(*surface_, model_->point(), d.tangent, share * excess, delivered_);
+  if (shares.follow == 0) return let_go(held, shares.slip);
+  if (!(held.deflection.depth > 0) && shares.follow == 1) return relax(x, status);
+  const bool apart = model_->lateral_offset() != Vec3{};
+  if (!apart && !(held.excess > 0)) return *model_;
+  return follow(held, shares.follow, apart, status);
+}
+
+/// Where the lateral deflection exceeds the slip limit the anchor c + s moves by the excess along
+/// t, and c goes a share of the way to it. What c does not go is left in s. Where nothing hinders
+/// c, s stays zero: of an ordinary slide the next step takes what the curvature left over.
+LocalModel ContactState::follow(const Held& held, double share, bool apart,
+                                std::uint32_t& status) const noexcept {
+  const Vec3 lag = model_->lateral_offset() + held.excess * held.deflection.tangent;
+  const double distance = apart ? norm(lag) : held.excess;
+  const Vec3 direction = apart ? (1.0 / distance) * lag : held.deflection.tangent;
+  const Walk moved = walk(*surface_, model_->point(), direction, share * distance, delivered_);
   if (moved.at_border) status |= PALPATE_AT_BORDER;
   if (moved.awaiting) status |= PALPATE_AWAITING;
-  return {*surface_, moved.point, model_->offset()};
+  LocalModel next(*surface_, moved.point, model_->offset());
+  if (apart || moved.hindered || share != 1) {
+    next.set_lateral_offset(lag - (next.contact_point() - model_->contact_point()));
+    if (share == 1 && norm(next.lateral_offset()) <= kRelaxed) next.set_lateral_offset({});
+  }
+  return next;
 }
 
-/// The contact ends when the tip is out of normal contact and outside the body. What a border kept
-/// from relaxing is discarded, not credited to the tank.
+/// Out of normal contact nothing holds the tool: c follows the tip until x - c is parallel to n,
+/// and where it cannot, s does.
+LocalModel ContactState::relax(const Vec3& x, std::uint32_t& status) const noexcept {
+  const Projection p = project(*surface_, model_->point(), x, kRelaxedPasses, kRelaxed, delivered_);
+  if (p.at_border) status |= PALPATE_AT_BORDER;
+  if (p.awaiting) status |= PALPATE_AWAITING;
+  LocalModel next(*surface_, p.point, model_->offset());
+  if (p.lateral > kRelaxed) next.set_lateral_offset(x - next.contact_point());
+  return next;
+}
+
+/// c held; of the excess over the slip limit a share goes into s.
+LocalModel ContactState::let_go(const Held& held, double share) const noexcept {
+  LocalModel next = *model_;
+  next.set_lateral_offset(model_->lateral_offset() +
+                          (share * held.excess) * held.deflection.tangent);
+  return next;
+}
+
+/// The contact ends when the tip is out of normal contact and outside the body, and the lateral
+/// deflection has relaxed: nothing is stored then.
 bool ContactState::release(const Candidate& moved, const Vec3& x, double energy_before) noexcept {
   const Deflection& d = moved.deflection;
   const Element& e = surface_->element(moved.model.point().element);
   if (d.depth > 0 || surface_->outside_distance(e, x) < 0) return false;
-  if (d.lateral > kRelaxed) {
-    // The lateral force still has to fall as the tip goes on, or the way for c is not there yet; or
-    // c is not opposite to the tip, so that its plane does not decide on which side the tip is.
-    if (moved.status & (PALPATE_FORCE_LIMITED | PALPATE_AWAITING)) return false;
+  if (d.lateral > kRelaxed) return false;  // the force still falls
+  if (norm(moved.model.lateral_offset()) > kRelaxed) {
+    // The way for c is not there yet; or c is not opposite to the tip, so that its plane does not
+    // decide on which side the tip is.
+    if (moved.status & PALPATE_AWAITING) return false;
     if (closest_if_inside(x).element != kNoElement) return false;
-    seen_.status |= PALPATE_DROPPED;
-  } else {
-    tank_.settle(energy_before, 0);
   }
+  tank_.settle(energy_before, 0);
   seen_.status |= PALPATE_RELEASED;
   free_contact();
   return true;
@@ -240,6 +317,7 @@ void ContactState::commit(const Candidate& next, double energy_before) noexcept 
   seen_.normal = next.model.normal();
   seen_.deflection = next.deflection;
   seen_.offset = next.model.offset();
+  seen_.lateral_offset = next.model.lateral_offset();
   seen_.energy = next.response.energy;
   seen_.force = next.response.force;
   seen_.tank = tank_.level();

@@ -35,11 +35,12 @@ struct ContactObservation {
   Vec3 contact_point{};
   Vec3 normal{};
   Deflection deflection;
-  double offset = 0;    ///< d0, m
-  double energy = 0;    ///< E_i(x_i), J
-  double tank = 0;      ///< J
-  double absorbed = 0;  ///< J
-  Vec3 force{};         ///< f, of the tool ON the body, N
+  double offset = 0;      ///< d0, m
+  Vec3 lateral_offset{};  ///< s, m
+  double energy = 0;      ///< E_i(x_i), J
+  double tank = 0;        ///< J
+  double absorbed = 0;    ///< J
+  Vec3 force{};           ///< f, of the tool ON the body, N
 };
 
 /// The contact of one tip with one surface, advanced one sample of the force loop at a time:
@@ -54,10 +55,14 @@ struct ContactObservation {
 /// At every instant absorbed >= tank + E >= 0.
 ///
 /// Between two steps |f_i(x_i) - f_{i-1}(x_{i-1})| <= steepness |x_i - x_{i-1}|, unless DROPPED
-/// says otherwise. With the contact point held this is so for any steepness >= L_stick; a slide, or
-/// a change of the offset, that would exceed it is made in part, and the rest in later steps. So
-/// the condition of Theorem 1 [Mahvash & Hayward 2005, eq. 33] is met in every sample, also at
-/// edges, at borders and by the energy rule.
+/// says otherwise. With the contact point held this is so for any steepness that is certified; a
+/// slide, or a change of the offset, that would exceed it is made in part, and the rest in later
+/// steps. So the condition of Theorem 1 [Mahvash & Hayward 2005, eq. 33] is met in every sample,
+/// also at edges, at borders and by the energy rule.
+///
+/// Where friction lets go but c cannot follow (a border, an edge whose neighbour has not come, a
+/// slide that is held back) the lateral offset s takes what c does not, so that the lateral force
+/// does not exceed mu g there; c catches up with c + s as soon as it may.
 ///
 /// step() is noexcept, allocation-free and bounded. One
 /// object belongs to one thread at a time; the surface and the tree may be shared.
@@ -93,14 +98,34 @@ class ContactState {
     std::uint32_t status = 0;
   };
 
+  /// How much a step takes of what the tip asks for.
+  struct Shares {
+    double follow = 1;    ///< of the way of c to the anchor
+    double slip = 1;      ///< of the excess over the slip limit
+    double recovery = 0;  ///< m, most that the offset may return
+  };
+  struct Held : Candidate {
+    double travelled = 0;  ///< m, by the tip in this step
+    double allowance = 0;  ///< N, that the force may change by
+    double excess = 0;     ///< m, of the lateral deflection over the slip limit
+  };
+
   void touch(const Vec3& x, double travelled) noexcept;
-  Candidate choose(const Vec3& x, const Candidate& held, double travelled) const noexcept;
-  Candidate move(const Vec3& x, const Candidate& held, double share,
-                 double recovery) const noexcept;
-  LocalModel slide(const Vec3& x, const Candidate& held, double share,
+  double excess(const Candidate& at) const noexcept;
+  Candidate choose(const Vec3& x, const Held& held) const noexcept;
+  Candidate hold_back(const Vec3& x, const Held& held, const Candidate& asked,
+                      double allowed) const noexcept;
+  Candidate move(const Vec3& x, const Held& held, const Shares& shares) const noexcept;
+  LocalModel slide(const Vec3& x, const Held& held, const Shares& shares,
                    std::uint32_t& status) const noexcept;
-  void keep_budget(Candidate& moved, const Vec3& x, const Candidate& held,
+  LocalModel follow(const Held& held, double share, bool apart,
+                    std::uint32_t& status) const noexcept;
+  LocalModel relax(const Vec3& x, std::uint32_t& status) const noexcept;
+  LocalModel let_go(const Held& held, double share) const noexcept;
+  static void respond(Candidate& at, const Vec3& x) noexcept;
+  void keep_budget(Candidate& moved, const Vec3& x, const Held& held,
                    double recovery) const noexcept;
+  void keep_friction(Candidate& moved, const Vec3& x, double allowance) const noexcept;
   bool release(const Candidate& moved, const Vec3& x, double energy_before) noexcept;
   void commit(const Candidate& next, double energy_before) noexcept;
   void look_ahead(const Deflection& at) noexcept;

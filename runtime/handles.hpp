@@ -71,6 +71,7 @@ struct palpate_state {
     palpate::runtime::ContactObservation seen = contact.observation();
     seen.force = pose.turn(seen.force);
     seen.normal = pose.turn(seen.normal);
+    seen.lateral_offset = pose.turn(seen.lateral_offset);
     if (seen.point.element >= 0) seen.contact_point = pose.to_world(seen.contact_point);
     return seen;
   }

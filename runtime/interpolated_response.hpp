@@ -44,24 +44,39 @@ class InterpolatedResponse {
     return weights;
   }
 
+  /// What coupled responses are at a depth, whatever the lateral deflection.
+  struct AtDepth {
+    double grip = 0;    ///< g, N
+    double energy = 0;  ///< sum n_l G_l, J
+    Vec3 weights{};     ///< n_l w_l
+    Vec3 rates{};       ///< n_l w_l', 1/m
+  };
+  AtDepth at_depth(double z) const noexcept {
+    AtDepth at;
+    for (std::size_t l = 0; l < 3; ++l) {
+      const CurveValue g = nodes_[l]->normal().evaluate(z);
+      const CurveValue w = nodes_[l]->coupling().evaluate_from_start(z);
+      at.grip += natural_[l] * g.force;
+      at.energy += natural_[l] * g.energy;
+      at.weights[l] = natural_[l] * w.force;
+      at.rates[l] = natural_[l] * w.slope;
+    }
+    return at;
+  }
+
   /// Forces and energy of coupled responses, the gradient of one potential.
   struct CoupledValue {
     double normal = 0;   ///< dE/dz = g + sum n_l w_l' H_l, N
     double lateral = 0;  ///< dE/drho = sum n_l w_l h_l, N
-    double grip = 0;     ///< g, N
     double energy = 0;   ///< J
   };
-  CoupledValue coupled_at(double z, double rho) const noexcept {
-    CoupledValue value;
+  CoupledValue coupled_at(const AtDepth& at, double rho) const noexcept {
+    CoupledValue value{at.grip, 0, at.energy};
     for (std::size_t l = 0; l < 3; ++l) {
-      const double n = natural_[l];
-      const CurveValue g = nodes_[l]->normal().evaluate(z);
       const CurveValue h = nodes_[l]->lateral().evaluate(rho);
-      const CurveValue w = nodes_[l]->coupling().evaluate_from_start(z);
-      value.normal += n * (g.force + w.slope * h.energy);
-      value.lateral += n * (w.force * h.force);
-      value.grip += n * g.force;
-      value.energy += n * (g.energy + w.force * h.energy);
+      value.normal += at.rates[l] * h.energy;
+      value.lateral += at.weights[l] * h.force;
+      value.energy += at.weights[l] * h.energy;
     }
     return value;
   }

@@ -9,12 +9,29 @@ double LocalModel::energy(const Deflection& d) const noexcept {
   return respond(d).energy;
 }
 
+LocalResponse LocalModel::respond_coupled(const Deflection& d,
+                                          const InterpolatedResponse::AtDepth& at) const noexcept {
+  const auto v = response_.coupled_at(at, d.lateral);
+  return {v.normal, v.lateral, v.energy, v.normal * n_ + v.lateral * d.tangent, at.grip, at};
+}
+
+LocalResponse LocalModel::respond_coupled(const Deflection& d) const noexcept {
+  return respond_coupled(d, response_.at_depth(d.depth));
+}
+
+void LocalModel::slip(double way, const Vec3& x, Deflection& d, LocalResponse& at) noexcept {
+  set_lateral_offset(lateral_offset_ + way * d.tangent);
+  d = deflection(x);
+  at = coupled() ? respond_coupled(d, at.at_depth) : respond(d);
+}
+
 double LocalModel::slip_limit(const Deflection& d, double friction) const noexcept {
   return response_.lateral_inverse(friction * response_.normal(d.depth).force,
                                    response_.lateral_weights(d.depth));
 }
 
-double LocalModel::energy_slope(const Deflection& at, const Vec3& d) const noexcept {
+double LocalModel::energy_slope(const Deflection& at, const Vec3& d,
+                                const Vec3& anchor_rate) const noexcept {
   const Element& e = surface_->element(point_.element);
   Vec3 turn{};
   double change_of_curves = 0;
@@ -28,11 +45,10 @@ double LocalModel::energy_slope(const Deflection& at, const Vec3& d) const noexc
   }
   turn = (1.0 / norm(surface_->direction_sum(point_))) * (turn - dot(turn, n_) * n_);
   const LocalResponse response = respond(at);
-  const double g = response.normal_force;
-  const double h = response.lateral_force;
-  const double tilt = dot(at.tangent, turn);
-  return change_of_curves + (g * at.lateral - h * at.depth) * tilt - g * dot(n_, d) -
-         h * dot(at.tangent, d) - offset_ * h * tilt;
+  const Vec3 lateral = at.lateral * at.tangent + lateral_offset_;
+  return change_of_curves + response.normal_force * (dot(lateral, turn) - dot(n_, d)) -
+         response.lateral_force *
+             (dot(at.tangent, anchor_rate) + at.geometric * dot(at.tangent, turn));
 }
 
 }  // namespace palpate::runtime

@@ -12,8 +12,8 @@ namespace palpate::runtime {
 struct Deflection {
   double geometric = 0;  ///< n . (x - c), m: depth of the tip below the surface at rest
   double depth = 0;      ///< z = geometric - d0, m
-  double lateral = 0;    ///< rho >= 0, m
-  Vec3 tangent{};        ///< t, unit; zero when rho = 0
+  double lateral = 0;  ///< rho = |q| >= 0, m, q what the lateral offset leaves of the lateral part
+  Vec3 tangent{};      ///< t = q/rho, unit; zero when rho = 0
 };
 
 /// Force and energy of a local model at one tip position.
@@ -23,12 +23,15 @@ struct LocalResponse {
   double energy = 0;  ///< E = sum n_l (G_l(z) + H_l(rho)), J [Mahvash & Hayward 2005, eq. 32]
   Vec3 force{};       ///< f = g n + h t, of the tool ON the body, N [eq. 28]
   double grip = 0;    ///< g(z), N: friction holds up to mu times it
+  InterpolatedResponse::AtDepth at_depth{};  ///< of coupled responses only
 };
 
-/// With c, n = n(c) and the offset d0 held:
-///   delta = x - c - d0 n,  z = n . delta,  lateral = delta - z n,  rho = |lateral|,  t =
-///   lateral/rho, f(x) = g(z) n + h(rho) t = grad E(x).                      [Mahvash & Hayward
-///   2005, eqs. 26-32]
+/// With c, n = n(c), the offset d0 and the lateral offset s (s . n = 0) held:
+///   r = x - c,  z = n . r - d0,  q = r - (n . r) n - s,  rho = |q|,  t = q/rho,
+///   f(x) = g(z) n + h(rho) t = grad E(x).          [Mahvash & Hayward 2005, eqs. 26-32, with s =
+///   0]
+/// s is how far friction has let go of the tool where c could not follow; a = c + s, the anchor, is
+/// where c would be.
 /// Coupled responses: E = sum n_l (G_l(z) + w_l(z) H_l(rho)), and the same f = grad E. Slip is
 /// judged by g(z), which the normal force is never below. Decoupled, its Jacobian is g' n n^T + h'
 /// t t^T + (h/rho) s s^T with s = n x t: no steeper than the steepest stored slope. noexcept,
@@ -48,19 +51,16 @@ class LocalModel {
     const Vec3 r = x - c_;
     d.geometric = dot(n_, r);
     d.depth = d.geometric - offset_;
-    const Vec3 lateral = r - d.geometric * n_;
+    const Vec3 lateral = r - d.geometric * n_ - lateral_offset_;
     d.lateral = norm(lateral);
     if (d.lateral > 0) d.tangent = (1.0 / d.lateral) * lateral;
     return d;
   }
   LocalResponse respond(const Deflection& d) const noexcept {
-    if (response_.coupled()) {
-      const auto v = response_.coupled_at(d.depth, d.lateral);
-      return {v.normal, v.lateral, v.energy, v.normal * n_ + v.lateral * d.tangent, v.grip};
-    }
+    if (response_.coupled()) return respond_coupled(d);
     const CurveValue g = response_.normal(d.depth);
     const CurveValue h = response_.lateral(d.lateral);
-    return {g.force, h.force, g.energy + h.energy, g.force * n_ + h.force * d.tangent, g.force};
+    return {g.force, h.force, g.energy + h.energy, g.force * n_ + h.force * d.tangent, g.force, {}};
   }
   double energy(const Deflection& d) const noexcept;
   /// rho_s = h^{-1}(mu g(z)): the lateral deflection at which slip begins, m.
@@ -69,34 +69,53 @@ class LocalModel {
   /// The same where the response is known and exceeds the limit: rho_s < rho.
   double slip_limit_below(const Deflection& d, const LocalResponse& at,
                           double friction) const noexcept {
-    return response_.lateral_inverse_below(friction * at.grip, d.lateral,
-                                           response_.lateral_weights(d.depth));
+    return response_.lateral_inverse_below(
+        friction * at.grip, d.lateral,
+        response_.coupled() ? at.at_depth.weights : response_.natural());
   }
 
-  /// Rate of change of E when c moves by unit length along d in its element while x stays, J/m:
+  /// Lets the tool slip while c is held: the lateral offset grows by `way` (m, no more than rho)
+  /// along t. The deflection and the response at x follow.
+  void slip(double way, const Vec3& x, Deflection& d, LocalResponse& at) noexcept;
+
+  /// Rate of change of E when c moves by unit length along d in its element and the anchor c + s by
+  /// a', while x stays, J/m:
   ///   n' = P (sum u_l grad n_l . d)/|sum n_l u_l|, P the projector normal to n,
-  ///   dE/ds = sum (grad n_l . d)(G_l + H_l) + (g rho - h z)(t . n') - g (n . d) - h (t . d)
-  ///           - d0 h (t . n'),
-  /// with H_l times w_l(z), and dE/dz, dE/drho for g, h, where responses are coupled.
-  double energy_slope(const Deflection& at, const Vec3& d) const noexcept;
+  ///   dE/ds = sum (grad n_l . d)(G_l + H_l) + g ((q + s) . n' - n . d)
+  ///           - h (t . a' + (z + d0)(t . n')),
+  /// with H_l times w_l(z), and dE/dz, dE/drho for g, h, where responses are coupled. An ordinary
+  /// slide takes the anchor along, a' = d; where c catches up with it, a' = 0.
+  double energy_slope(const Deflection& at, const Vec3& d, const Vec3& anchor_rate) const noexcept;
+  double energy_slope(const Deflection& at, const Vec3& d) const noexcept {
+    return energy_slope(at, d, d);
+  }
 
   const SurfacePoint& point() const noexcept { return point_; }
   const Vec3& contact_point() const noexcept { return c_; }
   const Vec3& normal() const noexcept { return n_; }
   double offset() const noexcept { return offset_; }
   void set_offset(double offset) noexcept { offset_ = offset; }
+  const Vec3& lateral_offset() const noexcept { return lateral_offset_; }
+  /// Of any vector its part across n.
+  void set_lateral_offset(const Vec3& s) noexcept { lateral_offset_ = s - dot(s, n_) * n_; }
+  bool coupled() const noexcept { return response_.coupled(); }
   double deepest() const noexcept { return response_.deepest(); }
   NodeCurves::InUse curves_in_use(const Deflection& d) const noexcept {
     return response_.node(0).in_use(d.depth, d.lateral);
   }
 
  private:
+  LocalResponse respond_coupled(const Deflection& d) const noexcept;
+  LocalResponse respond_coupled(const Deflection& d,
+                                const InterpolatedResponse::AtDepth& at) const noexcept;
+
   const Surface* surface_;
   SurfacePoint point_;
   Vec3 c_;
   Vec3 n_;
   InterpolatedResponse response_;
   double offset_;
+  Vec3 lateral_offset_{};
 };
 
 }  // namespace palpate::runtime

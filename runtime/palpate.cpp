@@ -39,7 +39,7 @@ thread_local char last_error[512] = "";
 // Sizes of the structs in the first header that was published: a smaller one is a mistake, one in
 // between is an older header, a larger one a newer.
 constexpr std::uint32_t kFirstSettings = 40;
-constexpr std::uint32_t kFirstObservation = sizeof(palpate_observation);
+constexpr std::uint32_t kFirstObservation = offsetof(palpate_observation, lateral_offset);
 constexpr std::uint32_t kFirstInfo = sizeof(palpate_library_info);
 static_assert(sizeof(palpate_settings) >= kFirstSettings);
 
@@ -99,6 +99,7 @@ palpate_observation translate(const ContactObservation& seen) noexcept {
   o.tank = seen.tank;
   o.absorbed = seen.absorbed;
   copy(seen.force, o.force_on_body);
+  copy(seen.lateral_offset, o.lateral_offset);
   return o;
 }
 

@@ -47,7 +47,7 @@ enum {
   PALPATE_BEYOND_DEPTH = 1u << 6,   /* deeper than the deepest sample: linear continuation */
   PALPATE_BAD_INPUT = 1u << 7,      /* NaN, infinity, dt <= 0, or a step longer than the diagonal of
                                        the body: zero force, the contact is dropped */
-  PALPATE_DROPPED = 1u << 8,        /* the contact was dropped with stored energy discarded */
+  PALPATE_DROPPED = 1u << 8,        /* the contact was dropped, what it stored discarded */
   PALPATE_FORCE_LIMITED = 1u << 9,  /* a slide or a return of d0 was made in part only, so that the
                                        force changes by no more than steepness times the travel */
   PALPATE_AWAITING = 1u << 10,      /* the contact point waits at an edge for triangles that the
@@ -76,20 +76,23 @@ typedef struct palpate_settings {
 
 /* Everything a recorder or a picture wants to know of the last step. */
 typedef struct palpate_observation {
-  uint32_t size;           /* sizeof(palpate_observation), set by the caller */
-  uint32_t status;         /* bits of the last step */
-  int32_t element;         /* active triangle, -1 without contact */
-  double contact_point[3]; /* c, m */
-  double natural[3];       /* natural coordinates of c in the element */
-  double normal[3];        /* n, unit, into the body */
-  double depth;            /* z = delta^z, m */
-  double lateral;          /* rho = |delta^r|, m */
-  double offset;           /* d0, m */
-  double energy;           /* E_i(x), J */
-  double tank;             /* J */
-  double absorbed;         /* net work done by the tool on the body since creation, J: the exact
-                              sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}) */
-  double force_on_body[3]; /* f, N; the device is commanded -f */
+  uint32_t size;            /* sizeof(palpate_observation), set by the caller */
+  uint32_t status;          /* bits of the last step */
+  int32_t element;          /* active triangle, -1 without contact */
+  double contact_point[3];  /* c, m */
+  double natural[3];        /* natural coordinates of c in the element */
+  double normal[3];         /* n, unit, into the body */
+  double depth;             /* z = delta^z, m */
+  double lateral;           /* rho = |x - c - (z + d0) n - s|, m */
+  double offset;            /* d0, m */
+  double energy;            /* E_i(x), J */
+  double tank;              /* J */
+  double absorbed;          /* net work done by the tool on the body since creation, J: the exact
+                               sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}) */
+  double force_on_body[3];  /* f, N; the device is commanded -f */
+  double lateral_offset[3]; /* s, m: how far friction has let go of the tool where c could not
+                               follow: at borders, at edges not yet delivered, and while a slide is
+                               held back */
 } palpate_observation;
 
 typedef struct palpate_library_info {

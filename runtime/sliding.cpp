@@ -47,7 +47,7 @@ class Walker {
       if (vertex_here() == kNone && !cross(exit) && !follow(exit)) break;
     }
     point_.natural = tidy(point_.natural);
-    return {point_, stopped_by_.border, stopped_by_.undelivered};
+    return {point_, stopped_by_.border, stopped_by_.undelivered, followed_ || remaining_ > 0};
   }
 
  private:
@@ -149,6 +149,7 @@ class Walker {
   }
 
   bool go_along(std::size_t from, std::size_t to) noexcept {
+    followed_ = true;
     const Element& e = element();
     const Vec3 edge = surface_.vertex(e, to) - surface_.vertex(e, from);
     const double length = norm(edge);
@@ -243,6 +244,7 @@ class Walker {
   Vec3 in_plane_{};
   Spoke spoke_;
   Obstacle stopped_by_;
+  bool followed_ = false;  ///< an edge instead of the direction
 };
 
 }  // namespace

@@ -12,6 +12,7 @@ struct Walk {
   SurfacePoint point;
   bool at_border = false;  ///< a border of the response surface stood in the way
   bool awaiting = false;   ///< a triangle that has not been delivered stood in the way
+  bool hindered = false;   ///< it followed an edge, or did not go all the way
 };
 
 /// Moves a point over the surface by `distance` (m, >= 0) along the projection of `direction` on

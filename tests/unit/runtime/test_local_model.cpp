@@ -161,6 +161,52 @@ TEST_F(LocalModelTest, EnergySlopeAgreesWithMovingTheContactPoint) {
   }
 }
 
+TEST_F(LocalModelTest, ALateralOffsetKeepsTheFieldConservative) {
+  const double h = 1e-7;
+  std::uniform_real_distribution<double> any(-0.003, 0.003);
+  for (int trial = 0; trial < 300; ++trial) {
+    LocalModel model(surface_, random_point(), 0.0004);
+    const Vec3 x = random_tip(model);
+    model.set_lateral_offset({any(random_), any(random_), any(random_)});
+    EXPECT_NEAR(dot(model.lateral_offset(), model.normal()), 0, 1e-17);
+    for (std::size_t i = 0; i < 3; ++i) {
+      Vec3 up = x, down = x;
+      up[i] += h;
+      down[i] -= h;
+      EXPECT_NEAR((energy(model, up) - energy(model, down)) / (2 * h), force(model, x)[i], 1e-7);
+    }
+  }
+}
+
+TEST_F(LocalModelTest, EnergySlopeAgreesWithMovingTheContactPointAndTheAnchor) {
+  // c along d in its element, c + s by a': s is what is left of c + s - c across n(c).
+  const double h = 2e-7;
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int trial = 0; trial < 500; ++trial) {
+    const SurfacePoint p = random_point();
+    LocalModel model(surface_, p, 0.0005);
+    const Vec3 x = random_tip(model);
+    model.set_lateral_offset(0.002 * Vec3{any(random_), any(random_), any(random_)});
+    const Vec3 anchor = model.contact_point() + model.lateral_offset();
+    const Element& e = surface_.element(p.element);
+    Vec3 d{any(random_), any(random_), any(random_)};
+    d = d - dot(d, e.facet_normal) * e.facet_normal;
+    d = (1.0 / norm(d)) * d;
+    const Vec3 rate =
+        trial % 2 == 0 ? Vec3{} : any(random_) * model.deflection(x).tangent;  // catching up; slip
+    const auto moved = [&](double s) {
+      SurfacePoint q = p;
+      for (std::size_t l = 0; l < 3; ++l) q.natural[l] += s * dot(e.gradient[l], d);
+      LocalModel there(surface_, q, 0.0005);
+      there.set_lateral_offset(anchor + s * rate - there.contact_point());
+      return energy(there, x);
+    };
+    const double numeric = (8 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12 * h);
+    const double exact = model.energy_slope(model.deflection(x), d, rate);
+    EXPECT_NEAR(numeric, exact, 1e-7 * std::max(1.0, std::abs(exact)));
+  }
+}
+
 TEST_F(LocalModelTest, ForceAndEnergyAreContinuousAcrossEdges) {
   for (std::int32_t m = 0; m < surface_.element_count(); ++m) {
     const Element& here = surface_.element(m);

@@ -7,6 +7,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -261,6 +262,31 @@ TEST_F(PalpateApi, AProgramWithANewerHeaderGetsWhatThisLibraryKnows) {
   EXPECT_EQ(newer.known.element, -1);
   newer.known.size = 8;
   EXPECT_EQ(palpate_observe(state_, &newer.known), PALPATE_ERROR_ARGUMENT);
+}
+
+TEST_F(PalpateApi, AProgramWithTheFirstHeaderGetsWhatItKnows) {
+  palpate_observation seen{};
+  seen.size = offsetof(palpate_observation, lateral_offset);
+  seen.lateral_offset[0] = 42;
+  step({0.03, 0.033, 0.001});
+  EXPECT_EQ(palpate_observe(state_, &seen), PALPATE_OK);
+  EXPECT_EQ(seen.lateral_offset[0], 42);
+  EXPECT_EQ(seen.size, offsetof(palpate_observation, lateral_offset));
+}
+
+TEST_F(PalpateApi, TellsHowFarTheToolHasSlippedOverABorder) {
+  // What an observation says of itself: x = c + (z + d0) n + s + q, |q| = rho.
+  step({0.07, 0.05, 0.0001});
+  for (int i = 1; i <= 30; ++i) step({0.07, 0.05, -1e-4 * i});
+  for (int i = 1; i <= 250; ++i) step({0.07 + 1e-4 * i, 0.05, -0.003});
+  const palpate_observation seen = observe();
+  const auto vec = [](const double v[3]) { return Vec3{v[0], v[1], v[2]}; };
+  ASSERT_TRUE(seen.status & PALPATE_AT_BORDER);
+  EXPECT_GT(norm(vec(seen.lateral_offset)), 0.005);
+  const Vec3 q = Vec3{0.095, 0.05, -0.003} - vec(seen.contact_point) -
+                 (seen.depth + seen.offset) * vec(seen.normal) - vec(seen.lateral_offset);
+  EXPECT_NEAR(norm(q), seen.lateral, 1e-15);
+  EXPECT_NEAR(dot(vec(seen.lateral_offset), vec(seen.normal)), 0, 1e-15);
 }
 
 /// A device of the embedding program: presses slowly, counts, and may vanish.

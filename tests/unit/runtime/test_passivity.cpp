@@ -80,7 +80,7 @@ class HeldModelWork {
     const Triangle& t = library_.triangles[static_cast<std::size_t>(model_.point.element)];
     const Vec3 r = x - model_.contact_point;
     const double depth = dot(r, model_.normal);
-    const Vec3 lateral = r - depth * model_.normal;
+    const Vec3 lateral = r - depth * model_.normal - model_.lateral_offset;
     const double rho = norm(lateral);
     double g = 0;
     double h = 0;
@@ -101,7 +101,7 @@ class HeldModelWork {
     const Vec3 r = from - model_.contact_point;
     const double z0 = dot(r, model_.normal);
     const double dz = dot(step, model_.normal);
-    const Vec3 l0 = r - z0 * model_.normal;
+    const Vec3 l0 = r - z0 * model_.normal - model_.lateral_offset;
     const Vec3 dl = step - dz * model_.normal;
     const double a = dot(dl, dl);
     const double b = dot(l0, dl);

@@ -41,30 +41,6 @@ double coupling_weight(const CouplingCurve& coupling, double z) {
   return static_cast<double>(coupling.base) + curve_at(coupling.curve, z).force;
 }
 
-double steepest_slope(const ResponseCurve& curve) {
-  return static_cast<double>(*std::max_element(curve.slope.begin(), curve.slope.end()));
-}
-
-double sharpest_bend(const ResponseCurve& curve) {
-  double sharpest = 0;
-  for (std::size_t k = 1; k < curve.knot.size(); ++k)
-    sharpest =
-        std::max(sharpest, static_cast<double>(std::abs(curve.slope[k] - curve.slope[k - 1]) /
-                                               (curve.knot[k] - curve.knot[k - 1])));
-  return sharpest;
-}
-
-/// What no Jacobian of coupled responses can exceed up to a lateral deflection, slip or not. With
-/// E = G + w H its entries are g' + w'' H along n, w' h between n and t, w h' and w h/rho across n;
-/// a symmetric matrix is no larger than its largest diagonal entry and what stands beside it.
-double coupled_steepness(const NodeResponse& node, double depth, double rho) {
-  const CurvePoint h = curve_at(node.lateral, rho);
-  const ResponseCurve& w = node.coupling.curve;
-  const double along = steepest_slope(node.normal) + sharpest_bend(w) * h.energy;
-  const double across = coupling_weight(node.coupling, depth) * steepest_slope(node.lateral);
-  return std::max(along, across) + steepest_slope(w) * h.force;
-}
-
 bool finite(const Vec3& v) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
@@ -77,7 +53,7 @@ double model_energy(const Library& library, const runtime::ContactObservation& m
   const Triangle& t = library.triangles[static_cast<std::size_t>(model.point.element)];
   const Vec3 r = x - model.contact_point;
   const double depth = dot(r, model.normal);
-  const double rho = norm(r - depth * model.normal);
+  const double rho = norm(r - depth * model.normal - model.lateral_offset);
   double energy = 0;
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
@@ -104,7 +80,6 @@ std::uint32_t WatchedContact::step(const Vec3& x) {
   slides += status & PALPATE_SLIDING ? 1 : 0;
   limited += status & PALPATE_ENERGY_LIMITED ? 1 : 0;
   force_limited += status & PALPATE_FORCE_LIMITED ? 1 : 0;
-  drops += status & PALPATE_DROPPED ? 1 : 0;
   always_finite = always_finite && finite(seen().force) && std::isfinite(seen().energy) &&
                   std::isfinite(seen().absorbed) && std::isfinite(seen().tank);
   if (status & PALPATE_BAD_INPUT) {
@@ -112,6 +87,7 @@ std::uint32_t WatchedContact::step(const Vec3& x) {
     if (finite(x)) last_ = x;
     return status;
   }
+  cuts += status & PALPATE_DROPPED ? 1 : 0;
   account(x, before);
   compare(x, before);
   last_ = x;
@@ -124,49 +100,37 @@ void WatchedContact::account(const Vec3& x, const runtime::ContactObservation& b
   work_ += energy_before - model_energy(library_, before, last_);
   lowest = std::min(lowest, work_);
   largest_gain = std::max(largest_gain, energy_after + seen().tank - energy_before - before.tank);
-  largest_disagreement = std::max(largest_disagreement, std::abs(work_ - seen().absorbed));
+  largest_disagreement =
+      std::max(largest_disagreement, std::abs(work_ - seen().absorbed) / std::max(work_, 1.0));
 }
 
-/// Whether friction holds the model, with the tip at a deflection: w h(rho) <= mu g(z).
-bool WatchedContact::sticks(const runtime::ContactObservation& model, double depth,
-                            double rho) const {
-  if (model.point.element < 0) return true;
+/// By how much the lateral force w h(rho) is above mu g(z), N.
+double WatchedContact::overdraft(const runtime::ContactObservation& model) const {
   double lateral = 0, grip = 0;
   const Triangle& t = library_.triangles[static_cast<std::size_t>(model.point.element)];
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library_.responses[static_cast<std::size_t>(t[l])];
-    const double w = coupling_weight(node.coupling, depth);
-    lateral += model.point.natural[l] * w * curve_at(node.lateral, rho).force;
-    grip += model.point.natural[l] * curve_at(node.normal, depth).force;
+    const double w = library_.kind == ResponseKind::Coupled
+                         ? coupling_weight(node.coupling, model.deflection.depth)
+                         : 1;
+    const double n = model.point.natural[l];
+    lateral += n * w * curve_at(node.lateral, model.deflection.lateral).force;
+    grip += n * curve_at(node.normal, model.deflection.depth).force;
   }
-  return lateral <= friction_ * grip;
+  return lateral - friction_ * grip;
 }
 
 void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& before) {
-  if (seen().status & PALPATE_DROPPED) return;  // reported
   const double travel = norm(x - last_);
   const double change = norm(seen().force - before.force);
-  const double quotient = change / (bound_ * travel + kForceTolerance);
-  if (library_.kind == ResponseKind::Decoupled || before.point.element < 0) {
-    steepest_step = std::max(steepest_step, quotient);
-    return;
-  }
-  const Vec3 r = x - before.contact_point;
-  const double depth = dot(r, before.normal) - before.offset;
-  const double rho = norm(r - dot(r, before.normal) * before.normal);
-  const double deepest = std::max(depth, before.deflection.depth);
-  const double widest = std::max(rho, before.deflection.lateral);
-  if (sticks(before, before.deflection.depth, before.deflection.lateral) &&
-      sticks(before, depth, rho)) {
-    ++stuck;
-    steepest_step = std::max(steepest_step, quotient);
-  }
-  double steepness = bound_;
-  for (const std::int32_t v : library_.triangles[static_cast<std::size_t>(before.point.element)])
-    steepness = std::max(
-        steepness,
-        coupled_steepness(library_.responses[static_cast<std::size_t>(v)], deepest, widest));
-  steepest_beyond = std::max(steepest_beyond, change / (steepness * travel + kForceTolerance));
+  steepest_step = std::max(steepest_step, change / (bound_ * travel + kForceTolerance));
+  longest_ = before.point.element < 0 ? travel : std::max(longest_, travel);
+  if (seen().point.element < 0) return;
+  const double over = overdraft(seen());
+  const bool coupled = library_.kind == ResponseKind::Coupled;
+  const double one_step = coupled ? 0 : (1 + friction_) * bound_ * longest_;
+  largest_overdraft = std::max(largest_overdraft, over / (one_step + kForceTolerance));
+  if (norm(seen().lateral_offset) > 0) ++apart;
 }
 
 }  // namespace palpate::test

@@ -27,29 +27,32 @@ class WatchedContact {
   const runtime::ContactObservation& seen() const { return contact_.observation(); }
   double work() const { return work_; }  ///< net work of the tool on the body since the start, J
 
-  long steps = 0, contacts = 0, slides = 0, limited = 0, force_limited = 0, drops = 0;
+  long steps = 0, contacts = 0, slides = 0, limited = 0, force_limited = 0;
+  long cuts = 0;  ///< contacts dropped although the input was good
   bool always_finite = true;
-  double lowest = 0;                ///< J, least of work()
-  double largest_gain = 0;          ///< J, of tank + E at an activation: passive means none
-  double largest_disagreement = 0;  ///< J, runtime's account against work()
-  /// Largest |f_i(x_i) - f_{i-1}(x_{i-1})| over steepness |x_i - x_{i-1}|, of the steps that did
-  /// not report a drop. Of coupled responses those that friction held: beyond the slip limit, at a
-  /// border or while a slide is held back, they are steeper.
+  double lowest = 0;        ///< J, least of work()
+  double largest_gain = 0;  ///< J, of tank + E at an activation: passive means none
+  /// J, runtime's account against work(); of more than a joule, the relative difference.
+  double largest_disagreement = 0;
+  /// Largest |f_i(x_i) - f_{i-1}(x_{i-1})| over steepness |x_i - x_{i-1}|, of the steps with
+  /// good input.
   double steepest_step = 0;
-  /// Of coupled responses, all such steps, over the larger of the steepness and of what the stored
-  /// curves allow a held contact point at that lateral deflection.
-  double steepest_beyond = 0;
-  long stuck = 0;  ///< steps of coupled responses that friction held
+  /// Largest excess of the lateral force over mu g; of decoupled responses over what one step of
+  /// travel can give, (1 + mu) steepness times the longest of the contact, of coupled ones over
+  /// nothing but rounding.
+  double largest_overdraft = 0;
+  long apart = 0;  ///< steps in which the lateral offset was not zero
 
  private:
   void account(const Vec3& x, const runtime::ContactObservation& before);
   void compare(const Vec3& x, const runtime::ContactObservation& before);
-  bool sticks(const runtime::ContactObservation& model, double depth, double rho) const;
+  double overdraft(const runtime::ContactObservation& model) const;
 
   const Library& library_;
   runtime::ContactState contact_;
   double bound_ = 0;  ///< N/m
   double friction_ = 0;
+  double longest_ = 0;  ///< m, step of the contact
   Vec3 last_{};
   double work_ = 0;
 };
