@@ -15,6 +15,7 @@ constexpr int kActivationPasses = 24;  // each gains at least a digit where the 
 constexpr int kRelaxedPasses = 8;
 constexpr double kRecoveryShare = 0.5;  // of the tip's travel: how fast the offset may return
 constexpr double kRounding = 1e-12;     // N; what the limit on the change of force overlooks
+constexpr double kNoWay = 1e-100;       // m; of a length to be divided by that can be zero
 constexpr int kShorterSlides = 4;       // tries, before the contact point is held
 
 bool finite(const Vec3& v) noexcept {
@@ -22,13 +23,13 @@ bool finite(const Vec3& v) noexcept {
 }
 
 /// Where a straight way from `near`, no longer than `allowed`, to `far`, which is longer, becomes
-/// too long: its share, in [0, 1].
+/// too long: its share, in [0, 1]. Half of the way when both are too long.
 double share_within(const Vec3& near, const Vec3& far, double allowed) noexcept {
   const Vec3 way = far - near;
   const double a = dot(way, way);
   const double b = dot(near, way);
   const double c = allowed * allowed - dot(near, near);
-  return c > 0 ? c / (b + std::sqrt(b * b + a * c)) : 0;
+  return c > 0 ? c / (b + std::sqrt(b * b + a * c)) : 0.5;
 }
 
 }  // namespace
@@ -255,7 +256,7 @@ LocalModel ContactState::follow(const Held& held, double share, bool apart,
                                 std::uint32_t& status) const noexcept {
   const Vec3 lag = model_->lateral_offset() + held.excess * held.deflection.tangent;
   const double distance = apart ? norm(lag) : held.excess;
-  const Vec3 direction = apart ? (1.0 / distance) * lag : held.deflection.tangent;
+  const Vec3 direction = apart ? (1.0 / std::max(distance, kNoWay)) * lag : held.deflection.tangent;
   const Walk moved = walk(*surface_, model_->point(), direction, share * distance, delivered_);
   if (moved.at_border) status |= PALPATE_AT_BORDER;
   if (moved.awaiting) status |= PALPATE_AWAITING;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // What the loader of libraries accepts must be safe to feel. The input is read as a list of edits
-// of a good library, made behind the back of the writers; the file is then refused with an error of
+// of a good library, of decoupled responses or (where bytes are left over, and those an odd number)
+// of coupled ones, made behind the back of the writers; the file is then refused with an error of
 // ours, or it is felt: pressed, slid and crossed, where every force must be finite and no energy
 // may come out.
 //
@@ -197,20 +198,40 @@ void feel(const Library& library, const palpate_library& body) {
       }
 }
 
+/// The golden library with responses that grow with depth: of schema 2.
+void write_coupled(const std::filesystem::path& golden, const std::filesystem::path& file) {
+  Library library = read_library(golden);
+  library.kind = ResponseKind::Coupled;
+  for (NodeResponse& node : library.responses)
+    node.coupling = {0.3F, {{0.0F, 0.001F, 0.004F}, {0.0F, 200.0F, 100.0F}}};
+  write_library(file, library);
+}
+
+/// A good library and what there is in it to edit.
+struct Original {
+  std::filesystem::path file;
+  Targets targets;
+
+  explicit Original(const std::filesystem::path& from) : file(from), targets(targets_of(from)) {
+    if (targets.datasets.empty() || targets.attributes.empty() || targets.texts.empty())
+      fail("no golden file");
+  }
+};
+
 class Fuzzer {
  public:
-  Fuzzer() : targets_(targets_of(golden())) {
+  Fuzzer() : decoupled_(PALPATE_GOLDEN_LIBRARY), coupled_(made_coupled()) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    if (targets_.datasets.empty() || targets_.attributes.empty() || targets_.texts.empty())
-      fail("no golden file");
   }
 
   void run(const std::uint8_t* bytes, std::size_t size) {
-    std::filesystem::copy_file(golden(), file_, std::filesystem::copy_options::overwrite_existing);
+    const Original& original = size % kEditBytes % 2 == 0 ? decoupled_ : coupled_;
+    std::filesystem::copy_file(original.file, file_,
+                               std::filesystem::copy_options::overwrite_existing);
     {
       Hdf5Editor editor(file_);
       for (std::size_t i = 0; i < kMostEdits && (i + 1) * kEditBytes <= size; ++i)
-        apply(edit_at(bytes + i * kEditBytes), targets_, editor);
+        apply(edit_at(bytes + i * kEditBytes), original.targets, editor);
     }
     Library library;
     std::unique_ptr<palpate_library> body;
@@ -227,11 +248,15 @@ class Fuzzer {
   int felt() const { return felt_; }
 
  private:
-  static std::filesystem::path golden() { return PALPATE_GOLDEN_LIBRARY; }
+  std::filesystem::path made_coupled() const {
+    const std::filesystem::path file = folder_ / "coupled.h5";
+    write_coupled(PALPATE_GOLDEN_LIBRARY, file);
+    return file;
+  }
 
   samples::TemporaryFolder folder_;
   std::filesystem::path file_ = folder_ / "library.h5";
-  Targets targets_;
+  Original decoupled_, coupled_;
   int felt_ = 0;
 };
 

@@ -14,7 +14,7 @@ int main(int count, char** arguments) {
   const int runs = count > 1 ? std::atoi(arguments[1]) : 1000;
   std::mt19937_64 random(1);
   for (int run = 0; run < runs; ++run) {
-    std::vector<std::uint8_t> bytes(13 * (1 + random() % 4));
+    std::vector<std::uint8_t> bytes(13 * (1 + random() % 4) + random() % 2);
     for (std::uint8_t& byte : bytes) byte = static_cast<std::uint8_t>(random());
     LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
   }
