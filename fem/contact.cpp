@@ -31,8 +31,9 @@ std::vector<TrianglePoint> triangle_rule() {
   return rule;
 }
 
-std::array<double, 6> facet_shape(double L0, double L1) {
+std::array<double, 6> facet_shape(double L0, double L1, bool linear) {
   const double L2 = 1 - L0 - L1;
+  if (linear) return {L0, L1, L2, 0, 0, 0};
   return {L0 * (2 * L0 - 1), L1 * (2 * L1 - 1), L2 * (2 * L2 - 1),
           4 * L0 * L1,       4 * L1 * L2,       4 * L2 * L0};
 }
@@ -66,7 +67,7 @@ ToolContact::ToolContact(const QuadraticMesh& mesh, const Eigen::Vector3d& site,
     for (const auto& q : rule) {
       Point point;
       point.facet = static_cast<int>(facets_.size());
-      point.N = facet_shape(q.L0, q.L1);
+      point.N = facet_shape(q.L0, q.L1, mesh.linear);
       point.area = q.weight * area;
       points_.push_back(point);
     }
@@ -172,7 +173,8 @@ std::map<int, double> ToolContact::tie_stiffnesses(const Displacement& u, double
     const bool in_contact = gap(point, position(point, u)) < closeness;
     const Facet& facet = facets_[at(point.facet)];
     for (std::size_t a = 0; a < 6; ++a) {
-      const double area = point.area * std::max(0.0, point.N[a]);
+      if (point.N[a] <= 0) continue;
+      const double area = point.area * point.N[a];
       around[facet[a]].area += area;
       if (in_contact) around[facet[a]].in_contact += area;
     }

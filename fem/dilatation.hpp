@@ -3,12 +3,24 @@
 
 namespace palpate::fem {
 
-/// Where the volumetric energy of an element is taken, and with it what its pressure is like.
+/// The element: where its volumetric energy is taken, and with it what its pressure is like, and
+/// whether its displacements are quadratic (Tet10) or linear (Tet4).
 enum class Dilatation {
   Mean,       ///< at the mean dilatation: an element-constant pressure
   Nodal,      ///< at the means around the corner nodes: a continuous, linear pressure
   Pointwise,  ///< at every Gauss point: the pure displacement element, which locks near nu = 1/2
+  /// Linear, with the means around the nodes [Bonet & Burton 1998]: for quick looks.
+  LinearNodal,
 };
+
+constexpr bool is_linear(Dilatation dilatation) {
+  return dilatation == Dilatation::LinearNodal;
+}
+
+/// Whether the volumetric energy belongs to the nodes (fem/nodal_pressure.hpp).
+constexpr bool has_nodal_pressure(Dilatation dilatation) {
+  return dilatation == Dilatation::Nodal || dilatation == Dilatation::LinearNodal;
+}
 
 /// For the provenance: "Tet10, element-constant pressure" ..
 inline const char* name_of(Dilatation dilatation) {
@@ -19,6 +31,8 @@ inline const char* name_of(Dilatation dilatation) {
       return "Tet10, nodal pressure";
     case Dilatation::Pointwise:
       return "Tet10, pure displacement";
+    case Dilatation::LinearNodal:
+      return "Tet4, nodal pressure: for quick looks";
   }
   return "";
 }

@@ -6,7 +6,8 @@
 // others: the pure displacement element, for comparison with other programs,
 //   Pi_e = sum_q w_q (psi(F_q) + U(J_q)),
 // and Pi_e = sum_q w_q psi(F_q) alone, to which the means around the corner nodes add their U
-// (fem/nodal_pressure.hpp).
+// (fem/nodal_pressure.hpp). The linear element, Tet4, is the last one with F constant: one point
+// does, and the mid-edge nodes have no part in it.
 #pragma once
 
 #include "fem/dilatation.hpp"
@@ -69,13 +70,39 @@ ElementKinematics<T> kinematics(const ElementGeometry<T>& geometry, const Elemen
   return k;
 }
 
-/// Strain energy of the element, J; with Dilatation::Nodal its isochoric part.
+/// Of the linear element: the same at every point.
+template <class T>
+ElementKinematics<T> linear_kinematics(const ElementGeometry<T>& geometry,
+                                       const ElementVector<T>& u) {
+  ElementKinematics<T> k;
+  Tensor2<T>& F = k.F[0];
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) {
+      F[3 * i + j] = u[0][i] * geometry.gradient[0][j];
+      for (std::size_t c = 1; c < 4; ++c) F[3 * i + j] += u[c][i] * geometry.gradient[c][j];
+      if (i == j) F[3 * i + j] += 1.0;
+    }
+  k.cof[0] = cofactor(F);
+  k.J.fill(determinant(F, k.cof[0]));
+  k.F.fill(Tensor2<T>(F));
+  k.cof.fill(Tensor2<T>(k.cof[0]));
+  k.mean_J = k.J[0];
+  return k;
+}
+
+/// How many points of the element differ, each of the same weight.
+constexpr std::size_t points_of(Dilatation dilatation) {
+  return is_linear(dilatation) ? 1 : kTetPoints;
+}
+
+/// Strain energy of the element, J; where pressures are nodal its isochoric part.
 template <class T, class Law>
 T element_energy(const Law& law, Dilatation dilatation, const ElementGeometry<T>& geometry,
                  const ElementKinematics<T>& k) {
   T density = dilatation == Dilatation::Mean ? law.volumetric_energy(k.mean_J) : zero_of<T>();
-  for (std::size_t q = 0; q < kTetPoints; ++q) {
-    density += 0.25 * law.psi(k.F[q], k.J[q], geometry.fibres);
+  const std::size_t points = points_of(dilatation);
+  for (std::size_t q = 0; q < points; ++q) {
+    density += (1.0 / static_cast<double>(points)) * law.psi(k.F[q], k.J[q], geometry.fibres);
     if (dilatation == Dilatation::Pointwise) density += 0.25 * law.volumetric_energy(k.J[q]);
   }
   return geometry.volume * density;
@@ -102,6 +129,14 @@ PointPressures<T> interpolated_pressures(const std::array<T, 4>& corner) {
   PointPressures<T> p;
   const T sum = kTetFar * (corner[0] + corner[1] + corner[2] + corner[3]);
   for (std::size_t q = 0; q < kTetPoints; ++q) p[q] = sum + (kTetNear - kTetFar) * corner[q];
+  return p;
+}
+
+/// Their mean, at the one point of the linear element.
+template <class T>
+PointPressures<T> mean_pressure(const std::array<T, 4>& corner) {
+  PointPressures<T> p;
+  p.fill(0.25 * (corner[0] + corner[1] + corner[2] + corner[3]));
   return p;
 }
 
@@ -133,16 +168,45 @@ ElementVector<T> nodal_forces(const ElementGeometry<T>& geometry, Stress&& stres
   return f;
 }
 
+/// Of the linear element, for the one stress it has: f_c = V P . dL_c/dX.
+template <class T>
+ElementVector<T> linear_forces(const ElementGeometry<T>& geometry, const Tensor2<T>& P) {
+  ElementVector<T> f;
+  for (auto& force : f) force.fill(zero_of<T>());
+  for (std::size_t c = 0; c < 4; ++c)
+    for (std::size_t i = 0; i < 3; ++i)
+      f[c][i] = geometry.volume *
+                (P[3 * i] * geometry.gradient[c][0] + P[3 * i + 1] * geometry.gradient[c][1] +
+                 P[3 * i + 2] * geometry.gradient[c][2]);
+  return f;
+}
+
 /// Internal forces of the element, N: the derivative of its energy, and of what its corners have of
 /// their own.
 template <class T, class Law>
-ElementVector<T> element_forces(const Law& law, const ElementGeometry<T>& geometry,
-                                const ElementKinematics<T>& k, const PointPressures<T>& pressure) {
-  return nodal_forces(geometry, [&](std::size_t q) {
+ElementVector<T> element_forces(const Law& law, Dilatation dilatation,
+                                const ElementGeometry<T>& geometry, const ElementKinematics<T>& k,
+                                const PointPressures<T>& pressure) {
+  const auto stress = [&](std::size_t q) {
     Tensor2<T> P = law.piola(k.F[q], k.cof[q], k.J[q], geometry.fibres);
     for (std::size_t i = 0; i < 9; ++i) P[i] += pressure[q] * k.cof[q][i];
     return P;
-  });
+  };
+  return is_linear(dilatation) ? linear_forces(geometry, stress(0))
+                               : nodal_forces(geometry, stress);
+}
+
+/// d(integral of L_c det F over the element)/du.
+template <class T>
+ElementVector<T> dilatation_forces(Dilatation dilatation, const ElementGeometry<T>& geometry,
+                                   const ElementKinematics<T>& k, std::size_t c) {
+  const auto share = [&](std::size_t q) {
+    const double L = is_linear(dilatation) ? 0.25 : q == c ? kTetNear : kTetFar;
+    Tensor2<T> cof = k.cof[q];
+    for (T& entry : cof) entry *= L;
+    return cof;
+  };
+  return is_linear(dilatation) ? linear_forces(geometry, share(0)) : nodal_forces(geometry, share);
 }
 
 /// Add p d(cof F)/dF, the geometric part of the pressure: with the permutation symbol e,
@@ -164,12 +228,14 @@ void add_cofactor_tangent(const Tensor2<T>& F, const T& p, Tensor4<T>& A) {
     }
 }
 
-/// Add the stiffness of one Gauss point: M_cd = dL_c/dX . A . dL_d/dX for the volume coordinates,
-/// then K_ab = sum_cd dN_a/dL_c M_cd dN_b/dL_d.
+/// M_cd = dL_c/dX . A . dL_d/dX for the volume coordinates, M[c][d][3 i + k].
 template <class T>
-void add_point_stiffness(std::size_t q, const T& weight, const ElementGeometry<T>& geometry,
-                         const Tensor4<T>& A, ElementMatrix<T>& K) {
-  std::array<std::array<std::array<T, 9>, 4>, 4> M;  // M[c][d][3 i + k]
+using CoordinateStiffness = std::array<std::array<std::array<T, 9>, 4>, 4>;
+
+template <class T>
+CoordinateStiffness<T> coordinate_stiffness(const T& weight, const ElementGeometry<T>& geometry,
+                                            const Tensor4<T>& A) {
+  CoordinateStiffness<T> M;
   for (std::size_t d = 0; d < 4; ++d) {
     const auto& g = geometry.gradient[d];
     std::array<std::array<T, 3>, 9> Ag;
@@ -185,6 +251,12 @@ void add_point_stiffness(std::size_t q, const T& weight, const ElementGeometry<T
               h[0] * Ag[3 * i][k] + h[1] * Ag[3 * i + 1][k] + h[2] * Ag[3 * i + 2][k];
     }
   }
+  return M;
+}
+
+/// Add the stiffness of one Gauss point: K_ab = sum_cd dN_a/dL_c M_cd dN_b/dL_d.
+template <class T>
+void add_point_stiffness(std::size_t q, const CoordinateStiffness<T>& M, ElementMatrix<T>& K) {
   const auto& B = kTetShape[q];
   for (std::size_t a = 0; a < kTetNodes; ++a)
     for (std::size_t b = 0; b <= a; ++b) {
@@ -210,6 +282,14 @@ void add_point_stiffness(std::size_t q, const T& weight, const ElementGeometry<T
     }
 }
 
+/// The same where N_c = L_c.
+template <class T>
+void add_linear_stiffness(const CoordinateStiffness<T>& M, ElementMatrix<T>& K) {
+  for (std::size_t row = 0; row < 12; ++row)
+    for (std::size_t column = 0; column <= row; ++column)
+      K[lower_index(row, column)] += M[row / 3][column / 3][3 * (row % 3) + column % 3];
+}
+
 /// Add U''(J) cof F x cof F, the pure displacement element's resistance to dilatation.
 template <class T>
 void add_dilatation_tangent(const Tensor2<T>& cof, const T& slope, Tensor4<T>& A) {
@@ -232,8 +312,8 @@ void set_pressure_stiffness(const Law& law, const ElementGeometry<T>& geometry,
   }
 }
 
-/// Stiffness of the element, N/m: the derivative of element_forces; with Dilatation::Nodal that at
-/// fixed pressures.
+/// Stiffness of the element, N/m: the derivative of element_forces; where pressures are nodal that
+/// at fixed pressures.
 template <class T, class Law>
 void element_stiffness(const Law& law, Dilatation dilatation, const ElementGeometry<T>& geometry,
                        const ElementKinematics<T>& k, const PointPressures<T>& pressure,
@@ -242,15 +322,20 @@ void element_stiffness(const Law& law, Dilatation dilatation, const ElementGeome
     set_pressure_stiffness(law, geometry, k, K);
   else
     K.fill(zero_of<T>());
-  const T weight = 0.25 * geometry.volume;
-  for (std::size_t q = 0; q < kTetPoints; ++q) {
+  const std::size_t points = points_of(dilatation);
+  const T weight = (1.0 / static_cast<double>(points)) * geometry.volume;
+  for (std::size_t q = 0; q < points; ++q) {
     Tensor4<T> A;
     for (auto& row : A) row.fill(zero_of<T>());
     law.add_tangent(k.F[q], k.cof[q], k.J[q], geometry.fibres, A);
     add_cofactor_tangent(k.F[q], pressure[q], A);
     if (dilatation == Dilatation::Pointwise)
       add_dilatation_tangent(k.cof[q], T(law.pressure_slope(k.J[q])), A);
-    add_point_stiffness(q, weight, geometry, A, K);
+    const CoordinateStiffness<T> M = coordinate_stiffness(weight, geometry, A);
+    if (is_linear(dilatation))
+      add_linear_stiffness(M, K);
+    else
+      add_point_stiffness(q, M, K);
   }
 }
 

@@ -10,9 +10,11 @@ namespace palpate::fem {
 
 namespace {
 
+using FacetMass = Eigen::Matrix<double, 6, 6>;
+
 /// Integrals of N_a N_b over a straight facet of area 1: corners 0..2, then the edges 01, 12, 20.
-Eigen::Matrix<double, 6, 6> facet_mass() {
-  Eigen::Matrix<double, 6, 6> M;
+FacetMass quadratic_mass() {
+  FacetMass M;
   M << 6, -1, -1, 0, -4, 0,  //
       -1, 6, -1, 0, 0, -4,   //
       -1, -1, 6, -4, 0, 0,   //
@@ -22,11 +24,17 @@ Eigen::Matrix<double, 6, 6> facet_mass() {
   return M / 180;
 }
 
-const Eigen::Matrix<double, 6, 6> kMass = facet_mass();
+/// Of linear shape functions of the corners alone.
+FacetMass linear_mass() {
+  FacetMass M = FacetMass::Zero();
+  M.topLeftCorner<3, 3>() << 2, 1, 1, 1, 2, 1, 1, 1, 2;
+  return M / 12;
+}
 
 }  // namespace
 
-Foundation::Foundation(const QuadraticMesh& mesh, const std::vector<int>& equation) {
+Foundation::Foundation(const QuadraticMesh& mesh, const std::vector<int>& equation)
+    : mass_(mesh.linear ? linear_mass() : quadratic_mass()) {
   for (const SprungFacet& sprung : mesh.sprung) {
     const Facet& nodes = mesh.facets[at(sprung.facet)];
     if (std::ranges::all_of(nodes, [&](int node) { return equation[at(node)] < 0; })) continue;
@@ -45,7 +53,7 @@ double Foundation::energy(const Eigen::Matrix3Xd& u) const {
   for (const Spring& spring : springs_) {
     Eigen::Matrix<double, 3, 6> local;
     for (int a = 0; a < 6; ++a) local.col(a) = u.col(spring.nodes[at(a)]);
-    sum += 0.5 * spring.area * (spring.per_area * local * kMass).cwiseProduct(local).sum();
+    sum += 0.5 * spring.area * (spring.per_area * local * mass_).cwiseProduct(local).sum();
   }
   return sum;
 }
@@ -55,7 +63,7 @@ void Foundation::add_forces(const std::vector<int>& equation, const Eigen::Matri
   for (const Spring& spring : springs_) {
     Eigen::Matrix<double, 3, 6> local;
     for (int a = 0; a < 6; ++a) local.col(a) = u.col(spring.nodes[at(a)]);
-    const Eigen::Matrix<double, 3, 6> forces = spring.area * (spring.per_area * local * kMass);
+    const Eigen::Matrix<double, 3, 6> forces = spring.area * (spring.per_area * local * mass_);
     for (int a = 0; a < 6; ++a)
       if (const int first = equation[at(spring.nodes[at(a)])]; first >= 0)
         f.segment<3>(first) += forces.col(a);
@@ -69,12 +77,12 @@ void Foundation::add_stiffness(const std::vector<int>& equation, const SparsePat
       for (int b = 0; b < 6; ++b) {
         const int row = equation[at(spring.nodes[at(a)])],
                   column = equation[at(spring.nodes[at(b)])];
-        if (row < 0 || column < 0 || kMass(a, b) == 0) continue;
+        if (row < 0 || column < 0 || mass_(a, b) == 0) continue;
         for (int i = 0; i < 3; ++i)
           for (int k = 0; k < 3; ++k)
             if (row + i >= column + k)
               values[at(pattern.position(row + i, column + k))] +=
-                  spring.area * kMass(a, b) * spring.per_area(i, k);
+                  spring.area * mass_(a, b) * spring.per_area(i, k);
       }
 }
 

@@ -35,6 +35,7 @@ class Foundation {
     Eigen::Matrix3d per_area;  ///< k_n N x N + k_t (1 - N x N), N/m^3
   };
   std::vector<Spring> springs_;
+  Eigen::Matrix<double, 6, 6> mass_;  ///< integrals of N_a N_b over a facet of area 1
 };
 
 }  // namespace palpate::fem

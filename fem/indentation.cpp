@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "fem/at.hpp"
+#include "fem/in_words.hpp"
 #include "fem/preload.hpp"
 #include "fem/region_laws.hpp"
 #include "fem/self_contact.hpp"
@@ -99,19 +100,6 @@ Displacement predict(const SolidModel& model, const History& history, double s) 
     if (model.energy(u).min_J > 0.3) return u;
   }
   return history.last();
-}
-
-std::string in_millimetres(double metres) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f mm", 1e3 * metres);
-  return text;
-}
-
-/// "(1.0, -2.5, 30.0) mm"
-std::string place(const Eigen::Vector3d& X) {
-  char text[64];
-  std::snprintf(text, sizeof text, "(%.1f, %.1f, %.1f) mm", 1e3 * X[0], 1e3 * X[1], 1e3 * X[2]);
-  return text;
 }
 
 }  // namespace
@@ -351,13 +339,13 @@ class PathDriver {
     }
     const int entering = watch_.entering_node(u);
     if (entering >= 0) {
-      reason = "the surface meets itself at " + place(context_.model.mesh().X.col(entering)) +
+      reason = "the surface meets itself at " +
+               point_in_millimetres(context_.model.mesh().X.col(entering)) +
                ", which is not modelled";
       return Outcome::Meaningless;
     }
     if (const auto loss = context_.model.ellipticity_loss(u)) {
-      reason = "the law loses ellipticity in the element at " + place(loss->X) +
-               ": what follows would depend on the mesh";
+      reason = loss->reason();
       return Outcome::Meaningless;
     }
     return Outcome::Found;
@@ -369,7 +357,7 @@ class PathDriver {
     if (J > kNearInversion) return {};
     char text[96];
     std::snprintf(text, sizeof text, " (an element at %s is about to invert: det F = %.2f)",
-                  place(X).c_str(), J);
+                  point_in_millimetres(X).c_str(), J);
     return text;
   }
 

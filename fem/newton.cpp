@@ -27,6 +27,7 @@ constexpr double kPatchTolerance = 0.1;
 void move(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacement& u) {
   for (int node = 0; node < model.mesh().nodes(); ++node)
     if (model.equation(node) >= 0) u.col(node) += s * d.segment<3>(model.equation(node));
+  straighten(model.mesh(), u);
 }
 
 double imbalance(const SolidModel& model, const Eigen::VectorXd& residual) {

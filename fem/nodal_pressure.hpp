@@ -6,6 +6,7 @@
 //   L_n(q)
 // over the corner nodes n, at an interface once for each region. The stiffness stays symmetric and
 // positive definite; each node adds a matrix of rank one on all nodes of the elements around it.
+// With linear displacements it is the node-averaged dilatation of Bonet & Burton 1998.
 #pragma once
 
 #include <vector>

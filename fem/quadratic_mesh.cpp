@@ -36,13 +36,24 @@ class EdgeNodes {
   std::vector<std::array<std::int32_t, 2>> corners_;
 };
 
+/// The middle of an edge is held where the edge is: on a facet with three held corners, or in a
+/// volume that is held, of which at least one end lies inside. An edge that runs through the body
+/// from one held face to another is free between them.
 void mark_held_nodes(const Body& body, const EdgeNodes& edges, QuadraticMesh& mesh) {
   mesh.held.assign(at(mesh.nodes()), false);
   for (const auto node : body.fixed_nodes) mesh.held[at(node)] = true;
+  std::vector<bool> on_boundary(body.nodes.size(), false);
+  for (const Triangle& facet : body.boundary)
+    for (const auto corner : facet) on_boundary[at(corner)] = true;
   const auto corner_count = body.nodes.size();
-  for (std::size_t e = 0; e < edges.corners().size(); ++e)
-    mesh.held[corner_count + e] =
-        mesh.held[at(edges.corners()[e][0])] && mesh.held[at(edges.corners()[e][1])];
+  for (std::size_t e = 0; e < edges.corners().size(); ++e) {
+    const auto [a, b] = edges.corners()[e];
+    const bool across = on_boundary[at(a)] && on_boundary[at(b)];
+    mesh.held[corner_count + e] = mesh.held[at(a)] && mesh.held[at(b)] && !across;
+  }
+  for (const Facet& facet : mesh.facets)
+    if (mesh.held[at(facet[0])] && mesh.held[at(facet[1])] && mesh.held[at(facet[2])])
+      for (std::size_t edge = 3; edge < 6; ++edge) mesh.held[at(facet[edge])] = true;
 }
 
 using Corners = std::array<std::int32_t, 3>;
@@ -70,8 +81,9 @@ std::vector<std::int32_t> regions_behind(const Body& body) {
 
 }  // namespace
 
-QuadraticMesh make_quadratic_mesh(const Body& body) {
+QuadraticMesh make_quadratic_mesh(const Body& body, bool linear) {
   QuadraticMesh mesh;
+  mesh.linear = linear;
   EdgeNodes edges(static_cast<std::int32_t>(body.nodes.size()));
   mesh.region = body.tetrahedron_region;
   mesh.tetrahedra.reserve(body.tetrahedra.size());
@@ -97,7 +109,14 @@ QuadraticMesh make_quadratic_mesh(const Body& body) {
     mesh.X.col(corner_count + static_cast<Eigen::Index>(e)) =
         0.5 * (mesh.X.col(edges.corners()[e][0]) + mesh.X.col(edges.corners()[e][1]));
   mark_held_nodes(body, edges, mesh);
+  mesh.edges = edges.corners();
   return mesh;
+}
+
+void straighten(const QuadraticMesh& mesh, Eigen::Matrix3Xd& u) {
+  if (!mesh.linear) return;
+  Eigen::Index node = mesh.corners();
+  for (const auto& [a, b] : mesh.edges) u.col(node++) = 0.5 * (u.col(a) + u.col(b));
 }
 
 }  // namespace palpate::fem

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "fem/at.hpp"
 #include "fem/tet10.hpp"
 #include "format/body.hpp"
 
@@ -18,7 +19,7 @@ using Facet = std::array<std::int32_t, 6>;
 using Tetrahedron10 = std::array<std::int32_t, kTetNodes>;
 
 /// The body on quadratic elements: the nodes of the body come first, in its order, the mid-edge
-/// nodes follow. A mid-edge node is held when both its corners are.
+/// nodes follow. A mid-edge node is held when its edge lies on a held facet or in a held volume.
 struct QuadraticMesh {
   Eigen::Matrix3Xd X;  ///< (3, nodes) reference positions, m
   std::vector<Tetrahedron10> tetrahedra;
@@ -27,10 +28,19 @@ struct QuadraticMesh {
   std::vector<std::int32_t> facet_region;  ///< region of the tetrahedron behind each facet
   std::vector<bool> held;                  ///< (nodes) by a support
   std::vector<SprungFacet> sprung;
+  std::vector<std::array<std::int32_t, 2>> edges;  ///< the two corners of each mid-edge node
+  /// Displacements are linear in each element: mid-edge nodes stay halfway between their corners.
+  bool linear = false;
 
   int nodes() const { return static_cast<int>(X.cols()); }
+  int corners() const { return nodes() - static_cast<int>(edges.size()); }
+  /// Whether a node has displacements of its own: it is not held, nor does it follow its corners.
+  bool is_free(int node) const { return !held[at(node)] && (!linear || node < corners()); }
 };
 
-QuadraticMesh make_quadratic_mesh(const Body& body);
+QuadraticMesh make_quadratic_mesh(const Body& body, bool linear = false);
+
+/// If the mesh is linear: mid-edge nodes to where they belong between their corners.
+void straighten(const QuadraticMesh& mesh, Eigen::Matrix3Xd& u);
 
 }  // namespace palpate::fem

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "fem/ellipticity.hpp"
+#include "fem/in_words.hpp"
 
 namespace palpate::fem {
 
@@ -36,7 +37,12 @@ Vec3 centroid(const QuadraticMesh& mesh, int element) {
   return {sum[0] / 4, sum[1] / 4, sum[2] / 4};
 }
 
-/// Integrals of N_a over an element: -V/20 at the corners, V/5 at the mid-edges.
+/// Integral of N_a over an element of volume 1.
+double shape_integral(std::size_t a, bool linear) {
+  if (linear) return a < 4 ? 0.25 : 0;
+  return a < 4 ? -0.05 : 0.2;
+}
+
 Eigen::Matrix3Xd nodal_weight(const QuadraticMesh& mesh, const Gravity& gravity) {
   if (!gravity.acts()) return {};
   Eigen::Matrix3Xd weight = Eigen::Matrix3Xd::Zero(3, mesh.nodes());
@@ -44,14 +50,14 @@ Eigen::Matrix3Xd nodal_weight(const QuadraticMesh& mesh, const Gravity& gravity)
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e)
     for (std::size_t a = 0; a < kTetNodes; ++a)
       weight.col(mesh.tetrahedra[at(e)][a]) +=
-          volume_of(mesh, e) * (a < 4 ? -0.05 : 0.2) * per_volume;
+          volume_of(mesh, e) * shape_integral(a, mesh.linear) * per_volume;
   return weight;
 }
 
 std::shared_ptr<const Solid> make_solid(const Body& body, std::vector<Law> laws,
                                         Dilatation dilatation, const Gravity& gravity) {
-  auto solid =
-      std::make_shared<Solid>(Solid{make_quadratic_mesh(body), std::move(laws), dilatation, {}});
+  auto solid = std::make_shared<Solid>(
+      Solid{make_quadratic_mesh(body, is_linear(dilatation)), std::move(laws), dilatation, {}});
   solid->weight = nodal_weight(solid->mesh, gravity);
   return solid;
 }
@@ -61,8 +67,8 @@ std::shared_ptr<const Solid> make_solid(const Body& body, std::vector<Law> laws,
 SolidModel::SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation,
                        const Gravity& gravity)
     : solid_(make_solid(body, std::move(laws), dilatation, gravity)) {
-  std::vector<bool> free = mesh().held;
-  free.flip();
+  std::vector<bool> free(at(mesh().nodes()));
+  for (int node = 0; node < mesh().nodes(); ++node) free[at(node)] = mesh().is_free(node);
   number_unknowns(free);
   std::vector<int> elements(mesh().tetrahedra.size());
   std::iota(elements.begin(), elements.end(), 0);
@@ -74,7 +80,7 @@ SolidModel::SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, d
   std::vector<bool> free(at(mesh().nodes()));
   for (int node = 0; node < mesh().nodes(); ++node)
     free[at(node)] =
-        !mesh().held[at(node)] && (mesh().X.col(node) - centre).squaredNorm() <= radius * radius;
+        mesh().is_free(node) && (mesh().X.col(node) - centre).squaredNorm() <= radius * radius;
   number_unknowns(free);
   std::vector<int> elements;
   for (int e = 0; e < static_cast<int>(mesh().tetrahedra.size()); ++e)
@@ -102,7 +108,7 @@ void SolidModel::number_unknowns(const std::vector<bool>& free) {
 
 void SolidModel::take_elements(const std::vector<int>& elements) {
   std::vector<std::span<const std::int32_t>> coupled;
-  if (solid_->dilatation == Dilatation::Nodal) {
+  if (has_nodal_pressure(solid_->dilatation)) {
     nodal_ = NodalPressure(mesh(), elements, equation_);
     for (const NodalPressure::Point& point : nodal_.points()) coupled.emplace_back(point.nodes);
     make_blocks(nodal_.elements());
@@ -135,7 +141,7 @@ SolidModel::Block SolidModel::make_block(const std::vector<int>& elements, std::
     const int element = elements[std::min(first + at(lane), elements.size() - 1)];
     const ElementGeometry<double> one = geometry_of(mesh(), element);
     block.element[at(lane)] = element;
-    if (solid_->dilatation == Dilatation::Nodal)
+    if (has_nodal_pressure(solid_->dilatation))
       block.pressure_point[at(lane)] = nodal_.points_of(mesh(), element);
     block.geometry.volume[lane] = one.volume;
     const auto fibres = solid_->laws[at(region)].fibres_at(centroid(mesh(), element));
@@ -188,6 +194,13 @@ void SolidModel::scatter(const Block& block, const ElementVector<Lanes>& forces,
   }
 }
 
+ElementKinematics<Lanes> SolidModel::kinematics_of(const Block& block,
+                                                   const Displacement& u) const {
+  const ElementVector<Lanes> local = gather(block, u);
+  return is_linear(solid_->dilatation) ? linear_kinematics(block.geometry, local)
+                                       : kinematics(block.geometry, local);
+}
+
 namespace {
 
 double smallest(const ElementKinematics<Lanes>& k) {
@@ -219,7 +232,7 @@ SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
   std::vector<double> mean(points.size(), 0.0);
   for (const Block& block : blocks_) {
     if (points.empty()) break;
-    const auto k = kinematics(block.geometry, gather(block, u));
+    const auto k = kinematics_of(block, u);
     const auto& J = k.J;
     const Lanes all = kTetFar * (J[0] + J[1] + J[2] + J[3]);
     for (std::size_t c = 0; c < 4; ++c) {
@@ -241,7 +254,7 @@ SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
 
 PointPressures<Lanes> SolidModel::pressures(const Block& block, const ElementKinematics<Lanes>& k,
                                             const PointState& points) const {
-  if (solid_->dilatation != Dilatation::Nodal)
+  if (!has_nodal_pressure(solid_->dilatation))
     return own_pressures(solid_->laws[at(block.region)], solid_->dilatation, k);
   std::array<Lanes, 4> corner;
   for (std::size_t c = 0; c < 4; ++c)
@@ -249,7 +262,7 @@ PointPressures<Lanes> SolidModel::pressures(const Block& block, const ElementKin
       const int point = block.pressure_point[at(lane)][c];
       corner[c][lane] = point >= 0 ? points.pressure[at(point)] : 0.0;
     }
-  return interpolated_pressures(corner);
+  return is_linear(solid_->dilatation) ? mean_pressure(corner) : interpolated_pressures(corner);
 }
 
 /// (U''/V_n) g g^T with g = d(V_n Jbar_n)/du.
@@ -261,13 +274,9 @@ void SolidModel::add_point_stiffness(const Displacement& u, const PointState& st
     slope.emplace_back(Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(point.nodes.size())));
   for (const Block& block : blocks_) {
     if (points.empty()) break;
-    const auto k = kinematics(block.geometry, gather(block, u));
+    const auto k = kinematics_of(block, u);
     for (std::size_t c = 0; c < 4; ++c) {
-      const ElementVector<Lanes> g = nodal_forces(block.geometry, [&](std::size_t q) {
-        Tensor2<Lanes> cof = k.cof[q];
-        for (Lanes& entry : cof) entry *= q == c ? kTetNear : kTetFar;
-        return cof;
-      });
+      const auto g = dilatation_forces(solid_->dilatation, block.geometry, k, c);
       for (int lane = 0; lane < block.count; ++lane) {
         const int point = block.pressure_point[at(lane)][c];
         if (point < 0) continue;
@@ -304,7 +313,7 @@ double SolidModel::work_of_gravity(const Displacement& u) const {
 SolidModel::State SolidModel::energy(const Displacement& u) const {
   State state;
   for (const Block& block : blocks_) {
-    const auto k = kinematics(block.geometry, gather(block, u));
+    const auto k = kinematics_of(block, u);
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
     const Lanes energy =
@@ -320,13 +329,15 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) 
   f.setZero(pattern_.n);
   const PointState points = point_state(u);
   for (const Block& block : blocks_) {
-    const auto k = kinematics(block.geometry, gather(block, u));
+    const auto k = kinematics_of(block, u);
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
     const Law& law = solid_->laws[at(block.region)];
     const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
     state.energy += energy.head(block.count).sum();
-    scatter(block, element_forces(law, block.geometry, k, pressures(block, k, points)), f);
+    scatter(block,
+            element_forces(law, solid_->dilatation, block.geometry, k, pressures(block, k, points)),
+            f);
   }
   state.energy += points.energy + foundation_.energy(u) - work_of_gravity(u);
   foundation_.add_forces(equation_, u, f);
@@ -341,7 +352,7 @@ void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) c
   const int* place = scatter_.data();
   const PointState points = point_state(u);
   for (const Block& block : blocks_) {
-    const auto k = kinematics(block.geometry, gather(block, u));
+    const auto k = kinematics_of(block, u);
     element_stiffness(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k,
                       pressures(block, k, points), K);
     for (std::size_t entry = 0; entry < kElementEntries; ++entry, place += kLanes)
@@ -356,7 +367,7 @@ SolidModel::Compressed SolidModel::most_compressed(const Displacement& u) const 
   Compressed worst{1, Eigen::Vector3d::Zero()};
   int element = -1;
   for (const Block& block : blocks_) {
-    const auto k = kinematics(block.geometry, gather(block, u));
+    const auto k = kinematics_of(block, u);
     const Lanes J = k.J[0].min(k.J[1]).min(k.J[2]).min(k.J[3]);
     for (int lane = 0; lane < block.count; ++lane)
       if (element < 0 || J[lane] < worst.J) {
@@ -374,7 +385,7 @@ Lanes SolidModel::weakest_waves(const Block& block, const ElementKinematics<Lane
   const Law& law = solid_->laws[at(block.region)];
   const bool own = solid_->dilatation == Dilatation::Pointwise;
   Lanes weakest = Lanes::Constant(std::numeric_limits<double>::infinity());
-  for (std::size_t q = 0; q < kTetPoints; ++q) {
+  for (std::size_t q = 0; q < points_of(solid_->dilatation); ++q) {
     Tensor4<Lanes> A;
     for (auto& row : A) row.fill(Lanes::Zero());
     law.add_tangent(k.F[q], k.cof[q], k.J[q], block.geometry.fibres, A);
@@ -384,13 +395,18 @@ Lanes SolidModel::weakest_waves(const Block& block, const ElementKinematics<Lane
   return weakest;
 }
 
+std::string SolidModel::EllipticityLoss::reason() const {
+  return "the law loses ellipticity in the element at " + point_in_millimetres(X) +
+         ": what follows would depend on the mesh";
+}
+
 std::optional<SolidModel::EllipticityLoss> SolidModel::ellipticity_loss(
     const Displacement& u) const {
   double weakest = std::numeric_limits<double>::min();
   int element = -1;
   for (const Block& block : blocks_) {
     if (solid_->laws[at(block.region)].polyconvex()) continue;
-    const Lanes stiffness = weakest_waves(block, kinematics(block.geometry, gather(block, u)));
+    const Lanes stiffness = weakest_waves(block, kinematics_of(block, u));
     for (int lane = 0; lane < block.count; ++lane) {
       if (stiffness[lane] >= weakest) continue;
       weakest = stiffness[lane];
@@ -409,7 +425,7 @@ void SolidModel::element_fields(const Displacement& u, std::vector<double>& ener
   const PointState points = point_state(u);
   for (const Block& block : blocks_) {
     const Law& law = solid_->laws[at(block.region)];
-    const auto k = kinematics(block.geometry, gather(block, u));
+    const auto k = kinematics_of(block, u);
     const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
     const Lanes density = energy / block.geometry.volume;
     const Lanes p = mean_stress(law, pressures(block, k, points), block.geometry, k);

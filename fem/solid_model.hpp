@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "fem/at.hpp"
@@ -78,6 +79,7 @@ class SolidModel {
   struct EllipticityLoss {
     double stiffness;
     Eigen::Vector3d X;
+    std::string reason() const;  ///< why a path ends there
   };
   /// None where every Gauss point is elliptic; laws that are polyconvex are not looked at.
   std::optional<EllipticityLoss> ellipticity_loss(const Displacement& u) const;
@@ -93,10 +95,10 @@ class SolidModel {
     int count = 0;  ///< lanes in use; the others repeat the last element
     int region = 0;
     std::array<int, kLanes> element{};
-    std::array<std::array<int, 4>, kLanes> pressure_point{};  ///< Dilatation::Nodal: or -1
+    std::array<std::array<int, 4>, kLanes> pressure_point{};  ///< where pressures are nodal: or -1
     ElementGeometry<Lanes> geometry;
   };
-  /// Dilatation::Nodal: Jbar_n, and what it makes of U there.
+  /// Where pressures are nodal: Jbar_n, and what it makes of U there.
   struct PointState {
     std::vector<double> pressure, slope;  ///< dU/dJ and d2U/dJ2, Pa
     double energy = 0;                    ///< sum of V_n U(Jbar_n), J
@@ -110,6 +112,7 @@ class SolidModel {
   int unknown(const Tetrahedron10& node, std::size_t row) const;
   void make_scatter();
   ElementVector<Lanes> gather(const Block& block, const Displacement& u) const;
+  ElementKinematics<Lanes> kinematics_of(const Block& block, const Displacement& u) const;
   void scatter(const Block& block, const ElementVector<Lanes>& forces, Eigen::VectorXd& f) const;
   double work_of_gravity(const Displacement& u) const;  ///< on the free nodes, J
   PointState point_state(const Displacement& u) const;

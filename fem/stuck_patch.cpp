@@ -7,6 +7,7 @@
 
 #include "fem/at.hpp"
 #include "fem/cholesky.hpp"
+#include "fem/in_words.hpp"
 #include "fem/newton.hpp"
 #include "fem/region_laws.hpp"
 #include "format/error.hpp"
@@ -42,11 +43,11 @@ Body held_at_patch(const Body& body, std::int32_t vertex, double radius) {
   return held;
 }
 
-/// Nodes held in `mesh` that `free` does not hold.
+/// Nodes held in `mesh` that are free in `free`.
 std::vector<std::int32_t> newly_held(const QuadraticMesh& mesh, const QuadraticMesh& free) {
   std::vector<std::int32_t> nodes;
   for (int node = 0; node < mesh.nodes(); ++node)
-    if (mesh.held[at(node)] && !free.held[at(node)]) nodes.push_back(node);
+    if (free.is_free(node) && !mesh.is_free(node)) nodes.push_back(node);
   return nodes;
 }
 
@@ -82,21 +83,30 @@ class PatchPress {
   }
 
  private:
+  void put_patch(double depth, Displacement& u) const {
+    for (const std::int32_t node : patch_) u.col(node) = depth * inward_;
+    straighten(held_.mesh(), u);
+  }
+
   bool advance(double depth, int halvings, std::string& reason) {
     constexpr int kMaxHalvings = 8;
     Displacement trial = u_;
     if (depth_ > before_depth_)
       trial += (depth - depth_) / (depth_ - before_depth_) * (u_ - before_);
-    for (const std::int32_t node : patch_) trial.col(node) = depth * inward_;
+    put_patch(depth, trial);
     if (!(held_.energy(trial).min_J > 0)) {
       trial = u_;
-      for (const std::int32_t node : patch_) trial.col(node) = depth * inward_;
+      put_patch(depth, trial);
     }
     const NewtonResult result = newton_.solve(no_contact_, options_, trial);
     if (!result.converged) {
       reason = result.reason;
       return halvings < kMaxHalvings && advance(0.5 * (depth_ + depth), halvings + 1, reason) &&
              advance(depth, halvings + 1, reason);
+    }
+    if (const auto loss = held_.ellipticity_loss(trial)) {
+      reason = "at " + in_millimetres(depth) + ": " + loss->reason();
+      return false;
     }
     before_.swap(u_);
     before_depth_ = depth_;

@@ -17,7 +17,8 @@ struct StuckPatch {
   std::vector<std::int32_t> nodes;  ///< of the mesh, moved together
 };
 
-/// The surface nodes within `radius` of a response vertex, with the mid-edge nodes between them.
+/// The surface nodes within `radius` of a response vertex, with the mid-edge nodes of the facets
+/// between them.
 /// @throws Error(Configuration) for a vertex that is no site, a radius that is not positive, or a
 /// patch that reaches a support.
 StuckPatch stuck_patch(const Body& body, std::int32_t vertex, double radius);
@@ -35,6 +36,7 @@ struct PatchCurve {
 
 /// Moves the patch inward by the depth and the increments of `settings.indentation`, with its
 /// materials and element; Newton with a factorization of the whole body. The force is good to 1e-6.
+/// The curve ends where the law loses ellipticity.
 /// @throws Error(Configuration) as stuck_patch and run_campaign.
 PatchCurve press_patch(const Body& body, const CampaignSettings& settings, std::int32_t vertex,
                        double radius);

@@ -342,8 +342,10 @@ void describe(V& v, SolverSection& s) {
       {"element",
        "tetrahedra of ten nodes with an element-constant pressure; with a continuous one, where "
        "pressures are wanted near poisson = 0.5 (slower); or, to compare with other programs, of "
-       "displacements alone (too stiff near poisson = 0.5)"},
-      {"tet10-pressure", "tet10-nodal-pressure", "tet10-displacement"});
+       "displacements alone (too stiff near poisson = 0.5); tet4: of four nodes, for quick looks "
+       "at "
+       "a case, with forces too high by tens of percent"},
+      {"tet10-pressure", "tet10-nodal-pressure", "tet10-displacement", "tet4"});
 }
 
 template <class V>

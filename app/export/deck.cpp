@@ -48,6 +48,11 @@ Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int
                 "decks for other programs hold neither gravity nor springs",
                 "export a case without [gravity] and without supports that have a stiffness");
   }
+  if (fem::is_linear(settings.dilatation)) {
+    throw Error(ErrorKind::Configuration, "solver.element",
+                "other programs have no tetrahedron of four nodes with pressures around its nodes",
+                "export with element = \"tet10-displacement\", which they have");
+  }
   Deck deck;
   deck.region_names = body.region_names;
   for (const std::string& region : body.region_names) {

@@ -46,14 +46,14 @@ struct Deck {
 
 /// The surface nodes within `radius` of a site moved inward together: no contact, which any program
 /// can repeat node by node.
-/// @throws Error(Configuration) as fem::stuck_patch and fem::run_campaign.
+/// @throws Error(Configuration) for linear elements, and as fem::stuck_patch and fem::run_campaign.
 Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
                      double radius);
 
 /// The tool of the settings pressed in along the inward direction, with the contact stiffness of
 /// the campaign.
-/// @throws Error(Configuration) for a vertex that is no site, a stuck tool or one with a sharp
-/// edge, as fem::run_campaign.
+/// @throws Error(Configuration) for linear elements, a vertex that is no site, a stuck tool or one
+/// with a sharp edge, as fem::run_campaign.
 Deck make_tool_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex);
 
 /// Input of CalculiX: C3D10 elements, *HYPERELASTIC, face-to-face contact; the forces of the tool

@@ -53,6 +53,13 @@ class Teller {
           journal.dropped_bytes());
   }
 
+  /// Forces that are for looks must not be taken for more.
+  void element(fem::Dilatation dilatation) {
+    if (telling_ == Telling::Text && fem::is_linear(dilatation))
+      say("  WARNING: element = \"tet4\" is for quick looks: its forces are too high by tens of "
+          "percent, and the file says so; take tet10-pressure for a library to feel");
+  }
+
   void site(const SiteCurves& site) {
     if (telling_ == Telling::Text) return;
     constexpr const char* kStatus[] = {"complete", "partial", "failed"};
@@ -211,6 +218,7 @@ SiteCounts run_precompute(const Workspace& space, Telling telling) {
   const std::string key = campaign_key(space, body_sha256);
   SiteJournal journal(space.journal(), {key, static_cast<std::int64_t>(settings.sites.size())});
   teller.journal(journal, space.journal());
+  teller.element(settings.dilatation);
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) {
     journal.append(site);

@@ -97,6 +97,7 @@ fem::CampaignSettings campaign_settings(const Workspace& space) {
   }
   if (c.solver.element == "tet10-displacement") settings.dilatation = fem::Dilatation::Pointwise;
   if (c.solver.element == "tet10-nodal-pressure") settings.dilatation = fem::Dilatation::Nodal;
+  if (c.solver.element == "tet4") settings.dilatation = fem::Dilatation::LinearNodal;
   settings.gravity = {c.gravity.acceleration, c.gravity.density};
   fem::IndentationSettings& indentation = settings.indentation;
   indentation.tool = tool_of(c.tool);

@@ -171,7 +171,7 @@ void against_threads() {
       one, two, one / two, set_up, (one - set_up) / (two - set_up));
 }
 
-/// What a pressure costs: the same sites with each kind of it.
+/// What an element costs: the same sites with each kind of it.
 void elements(const std::vector<int>& cells) {
   std::printf(
       "normal path to 4 mm in 10 increments, nu = 0.49, 16 sites, one thread\n"
@@ -181,10 +181,10 @@ void elements(const std::vector<int>& cells) {
     const Body body = block(each);
     const int per_edge = 2 * each + 1;
     double constant = 0;
-    for (const auto& [dilatation, name] :
-         {std::pair{Dilatation::Mean, "tet10-pressure"},
-          std::pair{Dilatation::Nodal, "tet10-nodal-pressure"},
-          std::pair{Dilatation::Pointwise, "tet10-displacement"}}) {
+    for (const auto& [dilatation, name] : {std::pair{Dilatation::Mean, "tet10-pressure"},
+                                           std::pair{Dilatation::Nodal, "tet10-nodal-pressure"},
+                                           std::pair{Dilatation::Pointwise, "tet10-displacement"},
+                                           std::pair{Dilatation::LinearNodal, "tet4"}}) {
       CampaignSettings s = settings(0.49);
       s.dilatation = dilatation;
       s.sites = inner_sites(body, 16);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 
 #include "fem/cholesky.hpp"
@@ -22,8 +23,15 @@ constexpr std::array<double, 4> kWeight{0.173927422568727, 0.326072577431273, 0.
                                         0.173927422568727};
 
 /// Shape functions and derivatives at volume coordinates L, with dL/dX.
-VolumePoint point_at(const std::array<double, 4>& L, const std::array<Vector3d, 4>& dL) {
+VolumePoint point_at(const std::array<double, 4>& L, const std::array<Vector3d, 4>& dL,
+                     bool linear) {
   VolumePoint p{};
+  for (std::size_t n = 0; n < fem::kTetNodes; ++n) p.dN[n].setZero();
+  if (linear) {
+    std::copy(L.begin(), L.end(), p.N.begin());
+    std::copy(dL.begin(), dL.end(), p.dN.begin());
+    return p;
+  }
   for (std::size_t c = 0; c < 4; ++c) {
     p.N[c] = L[c] * (2 * L[c] - 1);
     p.dN[c] = (4 * L[c] - 1) * dL[c];
@@ -54,7 +62,7 @@ void for_each_volume_point(const fem::QuadraticMesh& mesh,
       for (std::size_t j = 0; j < 4; ++j)
         for (std::size_t k = 0; k < 4; ++k) {
           const double a = kPoint[i], b = kPoint[j] * (1 - a), c = kPoint[k] * (1 - a - b);
-          VolumePoint p = point_at({a, b, c, 1 - a - b - c}, dL);
+          VolumePoint p = point_at({a, b, c, 1 - a - b - c}, dL, mesh.linear);
           p.element = e;
           p.X.setZero();
           for (std::size_t n = 0; n < 4; ++n)

@@ -195,6 +195,84 @@ INSTANTIATE_TEST_SUITE_P(Laws, Blocks, testing::ValuesIn(printed()), [](const au
   return name;
 });
 
+/// dW/dI1 and dW/dI2 of a law.
+using Slopes = std::function<std::array<double, 2>(double I1, double I2)>;
+
+/// P of the incompressible solid: 2 (l - l^-n) (W1 + W2 l^m).
+double closed_form(const Slopes& slopes, Mode mode, double l) {
+  const double l2 = l * l, l4 = l2 * l2;
+  if (mode == Mode::Uniaxial) {
+    const auto [W1, W2] = slopes(l2 + 2 / l, 2 * l + 1 / l2);
+    return 2 * (l - 1 / l2) * (W1 + W2 / l);
+  }
+  if (mode == Mode::Equibiaxial) {
+    const auto [W1, W2] = slopes(2 * l2 + 1 / l4, l4 + 2 / l2);
+    return 2 * (l - 1 / (l4 * l)) * (W1 + l2 * W2);
+  }
+  const double I = l2 + 1 + 1 / l2;
+  const auto [W1, W2] = slopes(I, I);
+  return 2 * (l - 1 / (l2 * l)) * (W1 + W2);
+}
+
+void check_all(const LawConstants& law, const std::function<double(Mode, double)>& expected) {
+  check(law, Mode::Uniaxial, 0.9, expected(Mode::Uniaxial, 0.9));
+  for (const Mode mode : {Mode::Uniaxial, Mode::Equibiaxial, Mode::PureShear})
+    check(law, mode, 1.3, expected(mode, 1.3));
+}
+
+TEST(Block, MooneyRivlinOfFiveConstantsHasTheStressOfTheClosedForm) {
+  const LawConstants law("mooney-rivlin-5",
+                         {{"C10", 0.3}, {"C01", 0.2}, {"C20", 0.12}, {"C11", 0.06}, {"C02", 0.09}});
+  check_all(law, [](Mode mode, double l) {
+    return closed_form(
+        [](double I1, double I2) -> std::array<double, 2> {
+          return {0.3 + 0.24 * (I1 - 3) + 0.06 * (I2 - 3), 0.2 + 0.06 * (I1 - 3) + 0.18 * (I2 - 3)};
+        },
+        mode, l);
+  });
+}
+
+/// W' and the modulus at rest of the series as it is commonly printed, term by term.
+TEST(Block, ArrudaBoyceHasTheStressOfTheClosedForm) {
+  const double n = 1.6 * 1.6;
+  const double at_rest = 1 + 3 / (5 * n) + 99 / (175 * n * n) + 513 / (875 * n * n * n) +
+                         42039 / (67375 * n * n * n * n);
+  check_all(LawConstants("arruda-boyce", {{"mu", 1}, {"lambda_m", 1.6}}), [&](Mode mode, double l) {
+    return closed_form(
+        [&](double I1, double) -> std::array<double, 2> {
+          const double x = I1 / n;
+          return {(0.5 + x / 10 + 11 * x * x / 350 + 19 * x * x * x / 1750 +
+                   519 * x * x * x * x / 134750) /
+                      at_rest,
+                  0};
+        },
+        mode, l);
+  });
+}
+
+/// P = sum of 2 mu/alpha (l^(alpha-1) - l^-n), n = 1 + alpha/2, 1 + 2 alpha and 1 + alpha.
+TEST(Block, OgdenOfOneAndTwoTermsHasTheStressOfTheClosedForm) {
+  struct Term {
+    double mu, alpha;
+  };
+  const auto stress = [](const std::vector<Term>& terms, Mode mode, double l) {
+    double sum = 0;
+    for (const auto& [mu, alpha] : terms) {
+      const double share = mode == Mode::Uniaxial ? 0.5 : mode == Mode::Equibiaxial ? 2 : 1;
+      sum += 2 * mu / alpha * (std::pow(l, alpha - 1) - std::pow(l, -share * alpha - 1));
+    }
+    return sum;
+  };
+  check_all(LawConstants("ogden-1", {{"mu_1", 1}, {"alpha_1", -4.7}}), [&](Mode mode, double l) {
+    return stress({{1, -4.7}}, mode, l);
+  });
+  check_all(
+      LawConstants("ogden-2", {{"mu_1", 0.6}, {"alpha_1", 3.5}, {"mu_2", 0.4}, {"alpha_2", -6}}),
+      [&](Mode mode, double l) {
+        return stress({{0.6, 3.5}, {0.4, -6}}, mode, l);
+      });
+}
+
 /// mu_i of the table, MPa, is 2 mu/alpha of a term mu/alpha (sum l^alpha - 3): half alpha of it is
 /// the shear modulus of the term.
 TEST(Block, OgdenRubberHasTheStressOfTheClosedForm) {
@@ -300,8 +378,8 @@ TEST_P(Patch, AnAffineBoundaryGivesAnAffineInterior) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Elements, Patch,
-                         testing::Values(Dilatation::Mean, Dilatation::Nodal,
-                                         Dilatation::Pointwise));
+                         testing::Values(Dilatation::Mean, Dilatation::Nodal, Dilatation::Pointwise,
+                                         Dilatation::LinearNodal));
 
 }  // namespace
 }  // namespace palpate::fem

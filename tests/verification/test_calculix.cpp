@@ -110,8 +110,13 @@ double allowed(const std::string& law) {
 
 TEST_P(Calculix, AgreesOnEveryLawItHas) {
   if (skipped()) GTEST_SKIP() << "ccx is not installed (package calculix-ccx)";
-  const auto settings = settings_of(GetParam(), fem::Dilatation::Pointwise);
-  compare(GetParam().law + ", nu = 0.45", block(4), settings, allowed(GetParam().law));
+  auto settings = settings_of(GetParam(), fem::Dilatation::Pointwise);
+  std::string what = GetParam().law + ", nu = 0.45";
+  if (GetParam().law == "saint-venant-kirchhoff") {  // deeper it loses ellipticity
+    settings.indentation.depth = 0.001;
+    what += ", 1 mm deep";
+  }
+  compare(what, block(4), settings, allowed(GetParam().law));
 }
 
 std::vector<fem::LawConstants> shared_laws() {

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "fem/at.hpp"
 #include "fem/indentation.hpp"
@@ -19,9 +20,11 @@ namespace {
 constexpr double kYoung = 10e3, kRadius = 0.010;
 
 struct Press {
-  double force;
-  double contact_radius;
-  int nodes;
+  std::vector<CurveSample> samples;
+
+  double force(std::size_t increment) const { return -samples[increment].force[2]; }
+  double force() const { return force(samples.size() - 1); }
+  double contact_radius() const { return std::sqrt(samples.back().contact_area / M_PI); }
 };
 
 struct Grid {
@@ -49,8 +52,7 @@ Press press(const Grid& grid, double poisson, double depth, int increments) {
   const CampaignContext context(body, settings, Engine::SharedFactor);
   const SiteCurves curves = solve_site(context, centre, nullptr);
   EXPECT_EQ(curves.status, SiteStatus::Complete) << curves.reason;
-  const CurveSample& end = curves.paths.front().samples.back();
-  return {-end.force[2], std::sqrt(end.contact_area / M_PI), context.model.mesh().nodes()};
+  return {curves.paths.front().samples};
 }
 
 double hertz(double poisson, double depth) {
@@ -67,25 +69,48 @@ TEST_P(Hertz, ForceConvergesToTheHalfSpace) {
     char name[96];
     std::snprintf(name, sizeof name, "force at nu = %.2f, %s", nu, what);
     test::verify({"Hertz: a sphere on a half-space, d/R = 0.01, base 100 contact radii away", name,
-                  "mN", 1e3 * press.force, 1e3 * exact, "[C] Hertz 1882", bound});
+                  "mN", 1e3 * press.force(), 1e3 * exact, "[C] Hertz 1882", bound});
   };
   row("0.8 elements a contact radius", coarse, 0.04);
   row("1.7 elements a contact radius", fine, 0.01);
-  EXPECT_LT(std::abs(fine.force / exact - 1), std::abs(coarse.force / exact - 1));
+  EXPECT_LT(std::abs(fine.force() / exact - 1), std::abs(coarse.force() / exact - 1));
   // An area counted in quadrature points is known to about a third of an element.
-  EXPECT_NEAR(fine.contact_radius, std::sqrt(kRadius * depth), 0.2e-3);
+  EXPECT_NEAR(fine.contact_radius(), std::sqrt(kRadius * depth), 0.2e-3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Compressibility, Hertz, testing::Values(0.3, 0.49));
 
+/// F = E*/2 ((a^2 + R^2) ln((R + a)/(R - a)) - 2 a R), d = a/2 ln((R + a)/(R - a)) [Sneddon 1965]:
+/// a sphere instead of Hertz's paraboloid, small strains.
+double sneddon(double poisson, double depth) {
+  const double R = kRadius;
+  const auto log_of = [&](double a) { return std::log((R + a) / (R - a)); };
+  double low = 0, high = R;
+  for (int i = 0; i < 100; ++i) {
+    const double a = 0.5 * (low + high);
+    (0.5 * a * log_of(a) < depth ? low : high) = a;
+  }
+  const double plane = kYoung / (1 - poisson * poisson);
+  return 0.5 * plane * ((low * low + R * R) * log_of(low) - 2 * low * R);
+}
+
+/// Deep presses, where the sphere is no paraboloid any more (Sneddon) and strains are large:
 /// F = 16/9 E0 sqrt(R) d^1.5 (1 - 0.15 d/R), incompressible neo-Hookean: a trend, recalled.
-TEST(LargeStrain, SphereOnNeoHookeanFollowsTheTrendOfZhang) {
+TEST(LargeStrain, DeepSphereOnNeoHookeanFollowsSneddonAndTheTrendOfZhang) {
   const double nu = 0.499, share = 0.4, depth = share * kRadius;
   const Press deep = press({0.6, 0.0075, 2.5e-3, 3}, nu, depth, 4);
   test::verify({"Large strain: a sphere on a neo-Hookean half-space",
                 "force over Hertz at d/R = 0.4, nu = 0.499, 2.5 elements a contact radius", "1",
-                deep.force / hertz(nu, depth), 1 - 0.15 * share,
+                deep.force() / hertz(nu, depth), 1 - 0.15 * share,
                 "[R] Zhang et al. 2014: 1 - 0.15 d/R", 0.05});
+  const auto row = [&](std::size_t increment, const char* what, double bound) {
+    const double d = depth * static_cast<double>(increment) / 4;
+    test::verify({"Large strain: a sphere on a neo-Hookean half-space", what, "1",
+                  deep.force(increment) / hertz(nu, d), sneddon(nu, d) / hertz(nu, d),
+                  "[C] Sneddon 1965, small strains", bound});
+  };
+  row(2, "force over Hertz at d/R = 0.2, nu = 0.499, 1.7 elements a contact radius", 0.03);
+  row(4, "force over Hertz at d/R = 0.4, nu = 0.499, 2.4 elements a contact radius", 0.04);
 }
 
 }  // namespace

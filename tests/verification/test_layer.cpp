@@ -45,9 +45,13 @@ TEST_P(BondedLayer, CarriesAFlatPunch) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Table, BondedLayer,
-                         testing::Values(Layer{0.3, 0.2, 1.207, 4}, Layer{0.3, 0.6, 1.785, 4},
-                                         Layer{0.3, 1, 2.484, 4}, Layer{0.3, 2, 4.353, 5},
-                                         Layer{0.4999, 1, 3.619, 5}, Layer{0.4999, 2, 9.149, 5}));
+                         testing::Values(Layer{0.3, 0.2, 1.207, 4}, Layer{0.3, 0.4, 1.473, 4},
+                                         Layer{0.3, 0.6, 1.785, 4}, Layer{0.3, 0.8, 2.126, 4},
+                                         Layer{0.3, 1, 2.484, 4}, Layer{0.3, 1.5, 3.409, 5},
+                                         Layer{0.3, 2, 4.353, 5}, Layer{0.4999, 0.2, 1.281, 4},
+                                         Layer{0.4999, 0.4, 1.684, 4}, Layer{0.4999, 0.6, 2.213, 5},
+                                         Layer{0.4999, 0.8, 2.860, 5}, Layer{0.4999, 1, 3.619, 5},
+                                         Layer{0.4999, 1.5, 6.003, 5}, Layer{0.4999, 2, 9.149, 5}));
 
 }  // namespace
 }  // namespace palpate::fem

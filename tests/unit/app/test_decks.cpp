@@ -89,6 +89,24 @@ TEST(Decks, RefuseAPatchOnASupportOrWithoutSize) {
   EXPECT_THROW(make_patch_deck(body, settings, test::site_nearest(body, 0.01, 0.01), 0.005), Error);
 }
 
+TEST(Decks, RefuseLinearElements) {
+  fem::CampaignSettings settings;
+  settings.materials = {{"tissue", {10e3, 0.45}}};
+  settings.indentation.tool.radius = 0.004;
+  settings.dilatation = fem::Dilatation::LinearNodal;
+  const Body body = block();
+  const std::int32_t site = test::site_nearest(body, 0.01, 0.01);
+  for (const bool patch : {false, true}) {
+    try {
+      patch ? make_patch_deck(body, settings, site, 0.0052) : make_tool_deck(body, settings, site);
+      FAIL() << "a deck was made";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::Configuration);
+      EXPECT_THAT(error.what(), HasSubstr("solver.element"));
+    }
+  }
+}
+
 TEST(Decks, CalculixHoldsEveryNodeAndElementOnce) {
   const Deck deck = deck_of({10e3, 0.45});
   const std::string text = calculix_deck(deck);

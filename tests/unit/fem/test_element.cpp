@@ -32,8 +32,8 @@ SolidModel two_laws(const Body& body, Dilatation dilatation = Dilatation::Mean) 
           dilatation};
 }
 
-constexpr std::array<Dilatation, 3> kEach{Dilatation::Mean, Dilatation::Nodal,
-                                          Dilatation::Pointwise};
+constexpr std::array<Dilatation, 4> kEach{Dilatation::Mean, Dilatation::Nodal,
+                                          Dilatation::Pointwise, Dilatation::LinearNodal};
 
 Displacement random_displacement(const SolidModel& model, double size, unsigned seed) {
   std::mt19937 random(seed);

@@ -90,7 +90,7 @@ TEST_P(LawIndentation, WorksAsASkinOnAnotherLaw) {
 /// to the error of the integration over eight increments.
 TEST_P(LawIndentation, StoresTheWorkDoneOnAStuckPatch) {
   const Body body = layered_block();
-  CampaignSettings settings = settings_of(GetParam(), GetParam());
+  CampaignSettings settings = bearable(GetParam(), GetParam());
   settings.indentation.increments = 8;
   const PatchCurve curve = press_patch(body, settings, test::site_nearest(body), 0.0041);
   ASSERT_EQ(curve.reason, "");

@@ -76,13 +76,15 @@ std::string name_of(const testing::TestParamInfo<PatchTest::ParamType>& instance
   std::string name = constants.law;
   if (dilatation == Dilatation::Nodal) name += "NodalPressure";
   if (dilatation == Dilatation::Pointwise) name += "Displacement";
+  if (dilatation == Dilatation::LinearNodal) name += "Linear";
   std::erase(name, '-');
   return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryLaw, PatchTest,
                          testing::Combine(testing::ValuesIn(test::sample_laws(0.49)),
-                                          testing::Values(Dilatation::Mean, Dilatation::Nodal)),
+                                          testing::Values(Dilatation::Mean, Dilatation::Nodal,
+                                                          Dilatation::LinearNodal)),
                          name_of);
 INSTANTIATE_TEST_SUITE_P(PureDisplacement, PatchTest,
                          testing::Combine(testing::Values(test::sample_laws(0.45).front()),

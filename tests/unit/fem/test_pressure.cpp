@@ -19,20 +19,22 @@ Body block() {
   return body;
 }
 
+class NodalPressures : public testing::TestWithParam<Dilatation> {};
+
 /// The elements beyond the free nodes take part in the dilatation around the nodes at the edge.
-TEST(NodalPressure, AWindowHasTheForcesAndTheStiffnessOfTheWhole) {
+TEST_P(NodalPressures, OfAWindowHaveTheForcesAndTheStiffnessOfTheWhole) {
   const Body body = block();
   const SolidModel whole(body,
                          {NeoHookean::from_young_poisson(10e3, 0.499, "tissue"),
                           NeoHookean::from_young_poisson(30e3, 0.49, "nodule")},
-                         Dilatation::Nodal);
+                         GetParam());
   const SolidModel window(whole, Eigen::Vector3d(0.01, 0.01, 0.02), 0.006);
   ASSERT_LT(window.pattern().n, whole.pattern().n / 3);
   std::mt19937 random(3);
   std::uniform_real_distribution<double> entry(-2e-4, 2e-4);
   Displacement u = Displacement::Zero(3, whole.mesh().nodes());
   for (int node = 0; node < whole.mesh().nodes(); ++node)
-    if (!whole.mesh().held[at(node)])
+    if (whole.mesh().is_free(node))
       u.col(node) = Eigen::Vector3d(entry(random), entry(random), entry(random));
   Eigen::VectorXd all, part;
   whole.forces(u, all);
@@ -51,6 +53,9 @@ TEST(NodalPressure, AWindowHasTheForcesAndTheStiffnessOfTheWhole) {
     }
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Elements, NodalPressures,
+                         testing::Values(Dilatation::Nodal, Dilatation::LinearNodal));
 
 TEST(SmoothPressure, LeavesAConstantAndFlattensAlternatingPressures) {
   Body body = block();

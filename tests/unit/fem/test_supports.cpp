@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bodies that rest on springs, that sag under their weight, and whose law ceases to be elliptic.
+// Bodies that are held, that rest on springs, that sag under their weight, and whose law ceases to
+// be elliptic.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include "fem/at.hpp"
 #include "fem/indentation.hpp"
 #include "fem/preload.hpp"
+#include "fem/stuck_patch.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
@@ -16,6 +18,38 @@ namespace palpate::fem {
 namespace {
 
 using testing::HasSubstr;
+
+/// A wall of one cell between two faces that are held, under its weight along them: what is not
+/// held hangs in between, u = rho g x (w - x)/(2 mu), for a neo-Hookean solid so at any strain, if
+/// it can only move up and down. Its rim, held too, is felt like exp(-pi r/w).
+TEST(Held, TheMiddleOfAWallBetweenTwoHeldFacesIsFree) {
+  constexpr double kWidth = 0.01, kSide = 0.12, kWeight = 9810;
+  const NeoHookean law = NeoHookean::from_young_poisson(10e3, 0.3, "t");
+  Body body = test::make_block(test::even(0, kWidth, 1), test::even(0, kSide, 12),
+                               test::even(0, kSide, 12));
+  body.fixed_nodes.clear();
+  for (std::size_t i = 0; i < body.nodes.size(); ++i)
+    body.fixed_nodes.push_back(static_cast<std::int32_t>(i));  // they all lie on the two faces
+  const SolidModel model(body, {law});
+  const QuadraticMesh& mesh = model.mesh();
+  std::vector<test::Prescribed> sideways;
+  for (int node = 0; node < mesh.nodes(); ++node)
+    for (int i = 0; i < 2 && model.equation(node) >= 0; ++i)
+      sideways.push_back({model.equation(node) + i, 0});
+  Displacement u = Displacement::Zero(3, mesh.nodes());
+  const auto weight = [](const Eigen::Vector3d&) { return Eigen::Vector3d(0, 0, -kWeight); };
+  test::equilibrate(model, test::body_loads(mesh, weight), sideways, u);
+  const double hang = -kWeight * kWidth * kWidth / (8 * law.mu());
+  int between = 0;
+  for (int node = 0; node < mesh.nodes(); ++node) {
+    const Eigen::Vector3d off = mesh.X.col(node) - Eigen::Vector3d(kWidth, kSide, kSide) / 2;
+    if (std::max(std::abs(off[1]), std::abs(off[2])) > 0.6 * kWidth) continue;
+    const bool in_the_middle = std::abs(off[0]) < 1e-9;
+    between += in_the_middle ? 1 : 0;
+    EXPECT_NEAR(u(2, node), in_the_middle ? hang : 0, 3e-3 * std::abs(hang));
+  }
+  EXPECT_GT(between, 5);
+}
 
 /// A column along z from 0 to `height`, its base on springs instead of held.
 Body sprung_column(double height, double normal_stiffness, double tangential_stiffness) {
@@ -345,6 +379,23 @@ TEST(Indentation, EndsWhereTheLawLosesEllipticity) {
   settings.materials[0].law = {2 * 1.45 * 3e3, 0.45};
   const SiteCurves sound = press(body, settings, Engine::SharedFactor);
   EXPECT_EQ(sound.status, SiteStatus::Complete) << sound.reason;
+}
+
+/// The same of a patch that is moved as a whole, as decks for other programs have it.
+TEST(Indentation, OfAPatchEndsThereToo) {
+  const Body body = test::make_block(test::even(-0.016, 0.016, 4), test::even(-0.016, 0.016, 4),
+                                     test::even(-0.012, 0, 3));
+  CampaignSettings settings =
+      pressing({"yeoh", {{"C10", 1.5e3}, {"C20", -2.5e3}, {"C30", 1.6e3}, {"poisson", 0.45}}});
+  settings.indentation.depth = 0.005;
+  const PatchCurve softening = press_patch(body, settings, test::site_nearest(body), 0.0081);
+  EXPECT_THAT(softening.reason, HasSubstr("loses ellipticity in the element at ("));
+  EXPECT_GT(softening.samples.size(), 2u);
+  EXPECT_LT(softening.samples.back().depth, 0.005);
+  settings.materials[0].law = {2 * 1.45 * 3e3, 0.45};
+  const PatchCurve sound = press_patch(body, settings, test::site_nearest(body), 0.0081);
+  EXPECT_EQ(sound.reason, "");
+  EXPECT_EQ(sound.samples.size(), 21u);
 }
 
 }  // namespace

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Directions of fibres: constant in a plane, and around the axis of a cylinder.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "fem/at.hpp"
+#include "fem/laws/law.hpp"
+#include "fem/laws/law_table.hpp"
+
+namespace palpate::fem {
+namespace {
+
+TEST(FibreField, GivesUnitVectorsInThePlaneAsked) {
+  FibreField field;
+  field.first = {2, 0, 0};
+  field.second = {5, 3, 0};
+  field.angle = M_PI / 6;
+  field.families = 2;
+  const auto a = field.at({1, 2, 3});
+  EXPECT_NEAR(a[0][0], std::sqrt(0.75), 1e-15);
+  EXPECT_NEAR(a[0][1], 0.5, 1e-15);
+  EXPECT_NEAR(a[1][1], -0.5, 1e-15);
+  field.families = 1;
+  EXPECT_EQ(field.at({})[1], field.at({})[0]);
+}
+
+TEST(FibreField, RunsAroundTheAxisOfACylinder) {
+  FibreField field;
+  field.kind = FibreField::Kind::Cylindrical;
+  field.first = {0, 0, 3};
+  field.origin = {0.1, 0, 0};
+  field.angle = 0;
+  // Around the axis, whichever way is meant by it, and along it at a right angle.
+  EXPECT_NEAR(std::abs(field.at({0.2, 0, 0.5})[0][1]), 1, 1e-15);
+  EXPECT_NEAR(std::abs(field.at({0.1, -0.3, 0.5})[0][0]), 1, 1e-15);
+  field.angle = M_PI / 2;
+  EXPECT_NEAR(field.at({0.2, 0, 0.5})[0][2], 1, 1e-15);
+  EXPECT_NEAR(norm(field.at(field.origin)[0]), 1, 1e-15);
+}
+
+}  // namespace
+}  // namespace palpate::fem
