@@ -3,11 +3,15 @@
 
 #include <algorithm>
 
+#include "fem/rigid_motion.hpp"
+
 namespace palpate::fem {
 
 namespace {
 
 constexpr std::size_t kPairs = 6;
+/// Of the body as a whole, from where its stiffness at rest must be turned with it, |R - 1|.
+constexpr double kTurned = 5e-3;
 
 Eigen::VectorXd difference(const SolidModel& model, const Displacement& a, const Displacement& b) {
   Eigen::VectorXd d(model.pattern().n);
@@ -36,10 +40,21 @@ Eigen::VectorXd SharedFactorSolver::direction(const Eigen::VectorXd& residual) {
     alpha[i] = pairs_[i].s.dot(q) / pairs_[i].sy;
     q -= alpha[i] * pairs_[i].y;
   }
-  rest_solve_(q, d);
+  solve_turned(q, d);
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     d += (alpha[i] - pairs_[i].y.dot(d) / pairs_[i].sy) * pairs_[i].s;
   return -d;
+}
+
+void SharedFactorSolver::solve_turned(Eigen::VectorXd& q, Eigen::VectorXd& d) const {
+  if (!turned_) return rest_solve_(q, d);
+  const auto turn = [](const Eigen::Matrix3d& R, Eigen::VectorXd& v) {
+    Eigen::Map<Eigen::Matrix3Xd> nodes(v.data(), 3, v.size() / 3);
+    nodes = (R * nodes).eval();
+  };
+  turn(turn_.transpose(), q);
+  rest_solve_(q, d);
+  turn(turn_, d);
 }
 
 bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& options,
@@ -49,7 +64,7 @@ bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& o
   double length = 1;
   for (int halvings = 0; halvings < 6; ++halvings, length *= 0.5) {
     Displacement trial = u;
-    move(whole_, length, d, trial);
+    move_turning(whole_, length, d, trial);
     if (!relax_window(contact, options, trial, result)) continue;
     Equilibrium next = evaluate(whole_, contact, trial);
     if (!(next.min_J > 0)) continue;
@@ -70,6 +85,8 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
                                        Displacement& u) {
   NewtonResult result;
   error_ = 0.1;
+  turn_ = mean_rotation(whole_.mesh(), u);
+  turned_ = (turn_ - Eigen::Matrix3d::Identity()).norm() > kTurned;
   if (!relax_window(contact, options, u, result)) return result;
   Equilibrium now = evaluate(whole_, contact, u);
   for (; result.iterations < options.max_iterations; ++result.iterations) {

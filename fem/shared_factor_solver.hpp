@@ -39,6 +39,8 @@ class SharedFactorSolver {
   bool relax_window(const ToolContact& contact, const NewtonOptions& options, Displacement& u,
                     NewtonResult& result);
   Eigen::VectorXd direction(const Eigen::VectorXd& residual);
+  /// d = R K0^-1 R^T q: the stiffness at rest turned with the body. q is overwritten.
+  void solve_turned(Eigen::VectorXd& q, Eigen::VectorXd& d) const;
   bool step(const ToolContact& contact, const NewtonOptions& options, const Eigen::VectorXd& d,
             Equilibrium& now, Displacement& u, NewtonResult& result);
 
@@ -46,6 +48,8 @@ class SharedFactorSolver {
   NewtonSolver newton_;
   RestSolve rest_solve_;
   std::deque<Pair> pairs_;
+  Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  ///< R, of the whole body
+  bool turned_ = false;                                 ///< whether R is worth the while
   double error_ = 0;  ///< |residual| over |tool force| at the present iterate
 };
 
