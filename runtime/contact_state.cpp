@@ -16,7 +16,7 @@ constexpr int kRelaxedPasses = 8;
 constexpr double kRecoveryShare = 0.5;  // of the tip's travel: how fast the offset may return
 constexpr double kRounding = 1e-12;     // N; what the limit on the change of force overlooks
 constexpr double kNoWay = 1e-100;       // m; of a length to be divided by that can be zero
-constexpr int kShorterSlides = 4;       // tries, before the contact point is held
+constexpr int kShorterSlides = 5;       // tries, before the contact point is held
 
 bool finite(const Vec3& v) noexcept {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
@@ -165,7 +165,9 @@ ContactState::Candidate ContactState::choose(const Vec3& x, const Held& held) co
 
 /// As much of a slide as the limit on the change of force has room for. With c held the tool slips
 /// over it, which is within a certified limit from any state in which friction holds; where more
-/// was left over than the limit lets go of now, the tool slips in part.
+/// was left over than the limit lets go of now, the tool slips in part. How far c may go is first
+/// taken from the straight line over its whole way; that may lead over a seam of the body and say
+/// nothing of the way to it, so the next tries are of the travel of the tip and of ever less.
 ContactState::Candidate ContactState::hold_back(const Vec3& x, const Held& held,
                                                 const Candidate& asked,
                                                 double allowed) const noexcept {
@@ -177,7 +179,9 @@ ContactState::Candidate ContactState::hold_back(const Vec3& x, const Held& held,
   Candidate next = may_follow ? asked : slipping;
   double share = 1;
   for (int i = 0; i < kShorterSlides; ++i) {
-    share *= std::clamp(0.9 * share_within(change(base), change(next), allowed), 0.02, 0.9);
+    const double line = 0.9 * share_within(change(base), change(next), allowed);
+    share *= std::clamp(line, 0.02, may_follow && i > 1 ? 0.25 : 0.9);
+    if (may_follow && i == 1) share = std::min(share, held.travelled / norm(lag(held)));
     next = move(x, held, may_follow ? Shares{.follow = share} : Shares{.follow = 0, .slip = share});
     if (within(next)) return next;
   }
@@ -254,18 +258,23 @@ LocalModel ContactState::slide(const Vec3& x, const Held& held, const Shares& sh
 /// c, s stays zero: of an ordinary slide the next step takes what the curvature left over.
 LocalModel ContactState::follow(const Held& held, double share, bool apart,
                                 std::uint32_t& status) const noexcept {
-  const Vec3 lag = model_->lateral_offset() + held.excess * held.deflection.tangent;
-  const double distance = apart ? norm(lag) : held.excess;
-  const Vec3 direction = apart ? (1.0 / std::max(distance, kNoWay)) * lag : held.deflection.tangent;
+  const Vec3 way = lag(held);
+  const double distance = apart ? norm(way) : held.excess;
+  const Vec3 direction = apart ? (1.0 / std::max(distance, kNoWay)) * way : held.deflection.tangent;
   const Walk moved = walk(*surface_, model_->point(), direction, share * distance, delivered_);
   if (moved.at_border) status |= PALPATE_AT_BORDER;
   if (moved.awaiting) status |= PALPATE_AWAITING;
   LocalModel next(*surface_, moved.point, model_->offset());
   if (apart || moved.hindered || share != 1) {
-    next.set_lateral_offset(lag - (next.contact_point() - model_->contact_point()));
+    next.set_lateral_offset(way - (next.contact_point() - model_->contact_point()));
     if (share == 1 && norm(next.lateral_offset()) <= kRelaxed) next.set_lateral_offset({});
   }
   return next;
+}
+
+/// From c to the anchor once it has slipped.
+Vec3 ContactState::lag(const Held& held) const noexcept {
+  return model_->lateral_offset() + held.excess * held.deflection.tangent;
 }
 
 /// Out of normal contact nothing holds the tool: c follows the tip until x - c is parallel to n,

@@ -120,6 +120,7 @@ class ContactState {
                    std::uint32_t& status) const noexcept;
   LocalModel follow(const Held& held, double share, bool apart,
                     std::uint32_t& status) const noexcept;
+  Vec3 lag(const Held& held) const noexcept;
   LocalModel relax(const Vec3& x, std::uint32_t& status) const noexcept;
   LocalModel let_go(const Held& held, double share) const noexcept;
   static void respond(Candidate& at, const Vec3& x) noexcept;

@@ -303,6 +303,34 @@ TEST(Contact, TheForceChangesNoFasterThanTheSteepnessUntilItHasGone) {
   }
 }
 
+TEST(Contact, ASlideThatTheLimitHoldsBackIsFeltAsFrictionAndMadeUpFor) {
+  // Over a seam beyond which the body is four times as stiff: c may not follow all at once, the
+  // tool slips ahead of it, and c is with the anchor again soon after.
+  const Responses seam = [](const Vec3& x) {
+    return x[0] < 0.05 ? wall_response(40, 100) : wall_response(160, 100);
+  };
+  const double steepness = 160;
+  for (const double step : {1e-5, 1e-4, 4e-4}) {
+    Rig rig(plate(200, 0.1, seam), {kMu, 5e-3, runtime::EnergyBudget::Kept, steepness});
+    rig.step({0.03, 0.05, 1e-4});
+    for (int i = 0; i <= 50; ++i) rig.step({0.03, 0.05, -1e-4 * i});
+    double furthest = 0;
+    std::uint32_t status = 0;
+    for (double way = 0; way < 0.04; way += step) {
+      const Vec3 before = rig.seen().force;
+      status |= rig.step({0.03 + way, 0.05, -0.005});
+      const Vec3 f = rig.seen().force;
+      ASSERT_LE(norm(f - before), steepness * step + 1e-9);
+      ASSERT_LE(f[0], kMu * -f[2] + (1 + kMu) * steepness * step);
+      furthest = std::max(furthest, norm(rig.seen().lateral_offset));
+    }
+    EXPECT_TRUE(status & PALPATE_FORCE_LIMITED) << step;
+    EXPECT_GT(furthest, step) << step;
+    EXPECT_EQ(norm(rig.seen().lateral_offset), 0) << step;
+    EXPECT_NEAR(rig.seen().force[0], kMu * -rig.seen().force[2], 1e-9) << step;
+  }
+}
+
 TEST(Contact, WithoutALimitTheSlideGoesOnUnderATipAtRest) {
   // No travel and no limit: infinity times zero must not pass for a limit of nothing.
   Rig rig(sphere(2, 0.03, uniform), {0.1, 5e-3});
