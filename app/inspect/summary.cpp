@@ -124,6 +124,35 @@ Json contact_of(const Curves& curves) {
           {"at_site_of_the_pull", pull.vertex}};
 }
 
+/// The work of the tool over what is stored at the end of a path, less 1; NaN where one of them is
+/// not known.
+double imbalance_of(const CurvePath& path) {
+  if (path.samples.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const CurveSample& end = path.samples.back();
+  const double stored = end.strain_energy + end.contact_energy;
+  return stored > 0 ? std::abs(end.tool_work / stored - 1)
+                    : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// How well work and stored energy balance: what they differ by is the integration of the force
+/// over the increments of the case.
+Json energy_of(const Curves& curves) {
+  constexpr double kHalfAPercent = 0.005;
+  Worst imbalance;
+  int paths = 0, beyond = 0;
+  for (const SiteCurves& site : curves.sites)
+    for (const CurvePath& path : site.paths) {
+      const double here = imbalance_of(path);
+      imbalance.take(here, site.vertex);
+      paths += std::isnan(here) ? 0 : 1;
+      beyond += here > kHalfAPercent ? 1 : 0;
+    }
+  return {{"largest_imbalance", imbalance.value},
+          {"at_site", imbalance.vertex},
+          {"paths_with_a_balance", paths},
+          {"paths_out_by_more_than_half_a_percent", beyond}};
+}
+
 Json summary_of(const Curves& curves) {
   double cpu = 0, force = 0;
   double jacobian = std::numeric_limits<double>::quiet_NaN();  // unknown where all is measured
@@ -150,6 +179,7 @@ Json summary_of(const Curves& curves) {
           {"largest_force", with_unit(force, "N")},
           {"smallest_jacobian", jacobian},
           {"contact", contact_of(curves)},
+          {"energy", energy_of(curves)},
           {"cpu_time", with_unit(cpu, "s")},
           {"content_sha256", content_sha256(curves)},
           {"failures", failures}};

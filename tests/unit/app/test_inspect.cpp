@@ -75,5 +75,26 @@ TEST(Inspect, NamesTheSiteWhereContactIsKeptWorst) {
   EXPECT_EQ(contact["at_site_of_the_pull"], 3);
 }
 
+TEST(Inspect, CountsThePathsWhoseEnergyDoesNotBalance) {
+  Curves curves;
+  curves.tool = {"sphere", 0.005, "frictionless"};
+  for (std::int32_t vertex = 3; vertex < 7; ++vertex) {
+    SiteCurves site{vertex, SiteStatus::Complete, "", 1, {}};
+    CurveSample sample;
+    sample.strain_energy = 0.9e-3;
+    sample.contact_energy = vertex == 6 ? std::numeric_limits<double>::quiet_NaN() : 0.1e-3;
+    sample.tool_work = vertex == 3 ? 1.004e-3 : vertex == 4 ? 0.98e-3 : 1.006e-3;
+    site.paths.push_back({PathKind::Normal, 0, {0, 0, -1}, {sample}});
+    curves.sites.push_back(site);
+  }
+  const samples::TemporaryFolder folder;
+  write_curves(folder / "curves.h5", curves);
+  const auto energy = summarize_artifact(folder / "curves.h5")["energy"];
+  EXPECT_NEAR(energy["largest_imbalance"].get<double>(), 0.02, 1e-12);
+  EXPECT_EQ(energy["at_site"], 4);
+  EXPECT_EQ(energy["paths_with_a_balance"], 3);
+  EXPECT_EQ(energy["paths_out_by_more_than_half_a_percent"], 2);
+}
+
 }  // namespace
 }  // namespace palpate::app
