@@ -66,6 +66,7 @@ struct BodyOptions {
   int depths = 6;
   bool drags = false;
   double confidence = 0.95;
+  std::string profiles = "doubtful";
 };
 
 /// The constant with its bounds: a factor to either side of its start, within the range of the law.
@@ -94,6 +95,9 @@ InverseSettings inverse_settings(const BodyOptions& options, const Workspace& sp
   settings.depths = options.depths;
   settings.drags = options.drags;
   settings.confidence = options.confidence;
+  settings.profiles = options.profiles == "all"    ? Profiles::All
+                      : options.profiles == "none" ? Profiles::None
+                                                   : Profiles::Doubtful;
   settings.log = [](const std::string& line) { say("  {}", line); };
   for (const std::string& region : options.young) {
     settings.sought.push_back(sought_constant(settings.campaign, region, "young"));
@@ -118,6 +122,7 @@ Json inverse_account(const InverseFit& fit, double confidence) {
   account["rms_N"] = fit.rms;
   account["relative_rms"] = fit.relative_rms;
   account["evaluations"] = fit.evaluations;
+  account["profile_evaluations"] = fit.profile_evaluations;
   Json paths = Json::array();
   for (const InversePath& path : fit.paths) {
     Json uncertainty = Json::array();
@@ -154,6 +159,8 @@ int calibrate_body(const BodyOptions& options) {
   say("calibrate: {} sites, {} drags, rms {:.4g} N ({:.2g} % of the largest force), {} evaluations",
       static_cast<std::ptrdiff_t>(fit.paths.size()) - drags, drags, fit.rms, 100 * fit.relative_rms,
       fit.evaluations);
+  if (fit.profile_evaluations > 0)
+    say("calibrate: {} more evaluations for the profiles", fit.profile_evaluations);
   say_calibration(fit.calibration, options.confidence);
   Json account = {{"name", space.c.name},
                   {"creator", creator_text()},
@@ -188,6 +195,11 @@ void add_body_part(CLI::App& command, Action& action) {
   part->add_option("--confidence", options->confidence, "Of the intervals")
       ->capture_default_str()
       ->check(CLI::Range(0.5, 0.9999));
+  part->add_option("--profiles", options->profiles,
+                   "Intervals by profile likelihoods: of constants whose linearised interval is in "
+                   "doubt, all, none. Each end takes 3 to 20 evaluations of the model")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"doubtful", "all", "none"}));
   part->callback([options, &action] { action = [options] { return calibrate_body(*options); }; });
 }
 

@@ -56,6 +56,11 @@ Json calibration_account(const calibrate::Calibration& calibration, double confi
           {"degrees_of_freedom", calibration.freedom},
           {"residual_scatter", calibration.scatter},
           {"intervals_widened", calibration.widened},
+          {"residual_lag_one_correlation", calibration.lag_one},
+          {"residual_durbin_watson", calibration.durbin_watson},
+          {"noise_autocorrelation", calibration.autocorrelation},
+          {"intervals_widened_for_correlation", calibration.correlation_widening},
+          {"effective_degrees_of_freedom", calibration.effective_freedom},
           {"iterations", calibration.iterations},
           {"warnings", calibration.warnings}};
 }

@@ -18,6 +18,11 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// What is left of the uncertainty of a force beside the contact point, at least: the difference of
 /// two uncertainties is itself uncertain, and one that is too small makes intervals too narrow.
 constexpr double kLeastOwnShare = 0.5;
+/// Ends of profiles, relative to their distance from the best fit.
+constexpr double kProfileCloseness = 0.01;
+/// Linearised intervals of a half width below this share of the value, of a constant that is
+/// correlated with no other beyond this, are not in doubt.
+constexpr double kPreciseEnough = 0.1, kInDoubt = 0.95;
 
 [[noreturn]] void refuse(const std::string& where, const std::string& problem,
                          const std::string& remedy) {
@@ -127,7 +132,10 @@ class Inverse {
       problem.constants.push_back({shift_name(target), "m", 0, -infinity, infinity});
       ++problem.residuals;
     }
-    for (const Target& target : targets_) problem.residuals += target.depth.size();
+    for (const Target& target : targets_) {
+      problem.residuals += target.depth.size();
+      problem.series.push_back(target.depth.size());
+    }
     problem.known_scatter = known_;
     problem.confidence = settings_.confidence;
     problem.max_iterations = 40;
@@ -140,10 +148,30 @@ class Inverse {
     InverseFit fit;
     fit.calibration = calibrate::minimise(problem, "calibration of body '" + body_.name + "'");
     finish(fit);
+    const int before = evaluations_;
+    calibrate::ProfileSettings profiles{profiled(fit.calibration), kProfileCloseness};
+    if (!profiles.of.empty()) calibrate::add_profiles(problem, fit.calibration, profiles);
+    fit.profile_evaluations = evaluations_ - before;
     return fit;
   }
 
  private:
+  /// The constants whose profiles are asked for, see Profiles.
+  std::vector<std::size_t> profiled(const calibrate::Calibration& calibration) const {
+    std::vector<std::size_t> of;
+    for (std::size_t i = 0; i < settings_.sought.size(); ++i) {
+      const calibrate::Estimate& e = calibration.estimates[i];
+      bool wanted = settings_.profiles == Profiles::All;
+      if (settings_.profiles == Profiles::Doubtful) {
+        wanted = !(e.high - e.value < kPreciseEnough * std::abs(e.value));
+        for (std::size_t j = 0; j < settings_.sought.size(); ++j)
+          wanted = wanted || (j != i && std::abs(calibration.correlation[i][j]) > kInDoubt);
+      }
+      if (wanted) of.push_back(i);
+    }
+    return of;
+  }
+
   void take_targets(const Curves& measured) {
     const std::string shape = fem::name_of(settings_.campaign.indentation.tool.shape);
     if (measured.tool.shape != shape) {

@@ -20,12 +20,18 @@ struct SoughtConstant {
   double low = 0, high = 0;  ///< Pa, or pure
 };
 
+/// Of which constants a profile likelihood is computed: none, all that are sought, or those whose
+/// linearised interval is in doubt, wider than a tenth of the value to either side or correlated
+/// beyond 0.95 with another one.
+enum class Profiles { None, Doubtful, All };
+
 struct InverseSettings {
   fem::CampaignSettings campaign;  ///< materials (starts), tool, tolerance, threads
   std::vector<SoughtConstant> sought;
   int depths = 6;      ///< of each measured curve that are compared, evenly spaced
   bool drags = false;  ///< compare measured drags as well
   double confidence = 0.95;
+  Profiles profiles = Profiles::Doubtful;
   std::function<void(const std::string& line)> log;  ///< one line an evaluation; may be empty
 };
 
@@ -41,9 +47,10 @@ struct InversePath {
 struct InverseFit {
   calibrate::Calibration calibration;  ///< the sought constants; then the contact shifts
   std::vector<InversePath> paths;
-  double rms = 0;           ///< N
-  double relative_rms = 0;  ///< over the largest measured force
-  int evaluations = 0;      ///< of the finite element model
+  double rms = 0;               ///< N
+  double relative_rms = 0;      ///< over the largest measured force
+  int evaluations = 0;          ///< of the finite element model, for the best fit
+  int profile_evaluations = 0;  ///< and for the profiles
 };
 
 /// Measured drags are compared with the stuck lateral paths of the model at their held depth;
@@ -53,7 +60,10 @@ struct InverseFit {
 /// samples of a curve alike and must not be averaged away. On a drag it acts by the held depth, as
 /// force/(2 depth). Where every sample states its
 /// uncertainty the residuals are divided by what the shift leaves of it, and the intervals follow
-/// from that; otherwise the scatter is estimated from the residuals.
+/// from that; otherwise the scatter is estimated from the residuals. The samples of a path follow
+/// each other: where they are missed alike the intervals count it (LeastSquares::series). Profiles
+/// cost some three evaluations an end where one constant is sought, some ten to twenty where there
+/// are more; ends are found to a hundredth of their distance.
 /// @throws Error(Configuration) for curves of another tool, sites that are not of the body, no
 ///   measured normal path, constants of unknown regions; when the model fails at the start.
 InverseFit calibrate_inverse(const Body& body, const Curves& measured,

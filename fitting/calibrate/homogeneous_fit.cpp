@@ -390,6 +390,7 @@ HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
   for (const HomogeneousTest& test : tests) {
     factor.push_back(factors(test, settings));
     problem.residuals += test.nominal.size();
+    problem.series.push_back(test.nominal.size());
   }
   const std::size_t n = problem.constants.size();
   problem.model = [&](const double* c, double* r, double* J) {

@@ -25,6 +25,9 @@ struct LeastSquares {
   /// True when each residual is divided by its known standard uncertainty; otherwise the scatter is
   /// estimated from the residuals.
   bool known_scatter = false;
+  /// Lengths of runs of residuals that follow each other along a curve, from the first residual on;
+  /// what is left is on its own. Empty: residuals are taken for independent.
+  std::vector<std::size_t> series;
   double confidence = 0.95;
   int max_iterations = 200;
   double tolerance = 1e-12;       ///< relative, of the cost
@@ -35,6 +38,7 @@ struct Estimate {
   std::string name, unit;
   double value = 0;
   double standard_error = 0;  ///< NaN at a bound
+  double unit_error = 0;      ///< the same for independent residuals of unit scatter
   double low = 0, high = 0;   ///< of the confidence interval, by Student's t
   bool at_bound = false;
   /// Of the profile likelihood, see add_profiles(); NaN without, infinite where it does not end.
@@ -47,9 +51,15 @@ struct Calibration {
   std::vector<Estimate> estimates;
   std::vector<std::vector<double>> correlation;  ///< NaN for a constant at a bound
   double cost = 0;                               ///< half the sum of squares
-  double scatter = 0;                            ///< standard deviation of the residuals, n - p
+  double scatter = 0;    ///< standard deviation of the noise, from the residuals
   bool widened = false;  ///< known scatter, but the residuals say more: the intervals are theirs
-  int freedom = 0;       ///< n - p
+  /// Of residuals that follow each other, see CorrelatedNoise; `correlated`: more than by chance,
+  /// and the intervals count it, which makes them `correlation_widening` times as wide at most.
+  double lag_one = 0, durbin_watson = 2, autocorrelation = 0;
+  bool correlated = false;
+  double correlation_widening = 1;
+  int freedom = 0;               ///< n - p
+  double effective_freedom = 0;  ///< of the scatter: n - p, fewer where residuals are correlated
   int iterations = 0;
   double condition = 1;  ///< of the scaled normal matrix: square root of the ratio of eigenvalues
   std::vector<std::string> warnings;  ///< identifiability, bounds, disagreement with the scatter
@@ -60,7 +70,9 @@ struct Calibration {
 /// and have none. s is the scatter of the residuals; when it is known, 1, unless the residuals
 /// scatter by more than chance lets them: then theirs again [Birge 1932]. Warned of: correlations
 /// beyond 0.95 (two constants that the data cannot tell apart), an interval wider than the value, a
-/// constant at its bound, residuals that a known scatter does not explain.
+/// constant at its bound, residuals that a known scatter does not explain. Where residuals that
+/// follow each other are alike by more than chance, the covariance is s^2 (J^T J)^-1 J^T V J
+/// (J^T J)^-1 with the correlation V that they show, and that is warned of (correlated_noise.hpp).
 /// @throws Error(Configuration) naming `where` when there are fewer residuals than constants, a
 ///   start outside its bounds, or no value at the start.
 Calibration minimise(const LeastSquares& problem, const std::string& where);
@@ -70,12 +82,20 @@ Calibration minimise(const LeastSquares& problem, const std::string& where);
 Calibration minimise(LeastSquares problem, const std::vector<std::vector<double>>& starts,
                      const std::string& where);
 
+struct ProfileSettings {
+  std::vector<std::size_t> of;  ///< indices of the constants; empty: all
+  double closeness = 1e-4;      ///< of an end, relative to its distance from the best fit
+};
+
 /// Intervals that do not linearise: of each constant the values at which the best fit of all others
 /// is worse than the best fit by no more than chance allows,
 ///   2 (cost(value) - cost) <= t^2 s^2, s and t those of the linearised intervals,
-/// found by fits with the constant held [Bates & Watts 1988, sec. 6.1]. They end at the bounds of
-/// the constant. Constants at a bound get none. Warned of: a profile that does not end, one that is
-/// far from its linearised interval, one that meets a better fit. Some dozens of fits a constant.
-void add_profiles(const LeastSquares& problem, Calibration& result);
+/// found by fits with the constant held [Bates & Watts 1988, sec. 6.1]; times what correlated
+/// residuals add to the variance of the constant. They end at the bounds of the constant. Constants
+/// at a bound get none. Warned of: a profile that does not end, or only where the model has no
+/// value, one that is far from its linearised interval, one that meets a better fit. The square
+/// root of the cost is followed, which is linear where the problem is: a few fits an end.
+void add_profiles(const LeastSquares& problem, Calibration& result,
+                  const ProfileSettings& settings = {});
 
 }  // namespace palpate::calibrate

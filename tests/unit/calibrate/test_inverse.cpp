@@ -83,6 +83,7 @@ InverseSettings settings_from(double soft, double stiff) {
   settings.campaign = campaign(soft, stiff);
   settings.sought = {{{"soft", "young"}, 100, 1e6}, {{"stiff", "young"}, 100, 1e6}};
   settings.depths = 4;
+  settings.profiles = Profiles::None;
   return settings;
 }
 
@@ -189,6 +190,59 @@ TEST(Inverse, WarnsOfConstantsThatTheCurvesCannotTellApart) {
   truth.sites.resize(1);
   const InverseFit fit = calibrate_inverse(body, truth, settings);
   EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("hardly tell them apart")));
+}
+
+/// Of one constant the profile ends where the misfit itself, computed here from the forces at that
+/// constant, has risen by t^2/2.
+TEST(Inverse, ProfileEndsWhereTheMisfitHasRisen) {
+  const Body body = two_halves();
+  Curves measured = truth_curves(body);
+  measured.sites.resize(1);
+  CurvePath& path = measured.sites.front().paths.front();
+  std::mt19937 engine(3);
+  std::normal_distribution<double> normal(0, 1);
+  const double noise = 0.002 * norm(path.samples.back().force);
+  for (std::size_t i = 1; i < path.samples.size(); ++i) {
+    path.samples[i].force = path.samples[i].force + noise * normal(engine) * path.direction;
+    path.samples[i].force_uncertainty = noise;
+  }
+  InverseSettings settings = settings_from(kTop, kBase);
+  settings.sought = {{{"soft", "poisson"}, 0.1, 0.4995}};
+  settings.depths = 4;
+  settings.profiles = Profiles::All;
+  const InverseFit one = calibrate_inverse(body, measured, settings);
+  const calibrate::Estimate& e = one.calibration.estimates[0];
+  std::vector<double> x, f;
+  for (const CurveSample& s : path.samples) {
+    x.push_back(s.displacement);
+    f.push_back(dot(s.force, path.direction));
+  }
+  const compare::MonotoneCubic curve(x, f);
+  const std::vector<double> depths{0.0005, 0.001, 0.0015, 0.002};
+  const auto cost_at = [&](double poisson) {
+    fem::CampaignSettings campaign = settings.campaign;
+    campaign.materials[0].law.at("poisson") = poisson;
+    campaign.sites = {measured.sites.front().vertex};
+    double cost = 0;
+    const auto site = fem::run_sensitivity(body, campaign, depths, {}).front();
+    for (std::size_t i = 0; i < depths.size(); ++i)
+      cost += 0.5 * std::pow((site.samples[i].force - curve.value(depths[i])) / noise, 2);
+    return cost;
+  };
+  ASSERT_FALSE(one.calibration.widened);
+  const double rise = 0.5 * 1.959964 * 1.959964;
+  for (const double end : {e.profile_low, e.profile_high}) {
+    ASSERT_GT(end, 0.1);
+    ASSERT_LT(end, 0.4995);
+    // To a hundredth of the distance: the root of the rise is within about a hundredth.
+    EXPECT_NEAR(std::sqrt((cost_at(end) - one.calibration.cost) / rise), 1, 0.02) << end;
+  }
+  EXPECT_GT(one.profile_evaluations, 0);
+  EXPECT_LE(one.profile_evaluations, 16);
+  settings.profiles = Profiles::None;
+  const InverseFit none = calibrate_inverse(body, measured, settings);
+  EXPECT_TRUE(std::isnan(none.calibration.estimates[0].profile_low));
+  EXPECT_EQ(none.profile_evaluations, 0);
 }
 
 TEST(Inverse, RefusesWhatDoesNotFitTogether) {
