@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What a reader of libraries must refuse.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/unit/format/breakage.hpp"
+
+namespace palpate::samples {
+namespace {
+
+/// 2^40 numbers in deflated chunks of which none is stored.
+void claim_a_terabyte(const Path& path) {
+  Hdf5Editor editor(path);
+  const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+  const hsize_t chunk = 1 << 20;
+  H5Pset_chunk(properties, 1, &chunk);
+  H5Pset_deflate(properties, 9);
+  editor.claim("/response/normal_knot", {hsize_t{1} << 40}, H5T_IEEE_F32LE, properties);
+  H5Pclose(properties);
+}
+
+void link_elsewhere(const Path& path) {
+  const Path other = path.parent_path() / "other.h5";
+  std::filesystem::copy_file(path, other);
+  Hdf5Editor editor(path);
+  editor.remove("/surface/position");
+  H5Lcreate_external(other.c_str(), "/surface/position", editor.file(), "/surface/position",
+                     H5P_DEFAULT, H5P_DEFAULT);
+}
+
+std::vector<Case> library_cases() {
+  const auto kind = Kind::Library;
+  const auto coupled = Kind::CoupledLibrary;
+  return {
+      {"LibraryCoupledBaseZero", coupled, poke("/response/coupling_base", 0, 0),
+       "/response/coupling_base[0]", "finite and above 0"},
+      {"LibraryCoupledSlopeNegative", coupled, poke("/response/coupling_slope", 1, -1),
+       "/response/coupling_slope[1]", "finite and not negative"},
+      {"LibraryCoupledWithoutWeights", coupled, remove("/response/coupling_knot"),
+       "/response/coupling_knot", "is missing"},
+      {"LibraryCoupledWithoutBase", coupled, remove("/response/coupling_base"),
+       "/response/coupling_base", "is missing"},
+      // A library of decoupled responses cannot pass for the other kind.
+      {"LibraryOfOtherKindOfResponse", kind,
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 2, H5T_NATIVE_INT); }),
+       "/response/coupling_offset", "is missing"},
+      {"LibraryPositionNaN", kind, poke("/surface/position", 0, kNaN), "/surface/position[0]",
+       "nan is not finite"},
+      {"LibraryPositionElsewhere", kind, link_elsewhere, "/surface/position",
+       "is kept in another file by a link"},
+      {"LibraryInwardNotUnit", kind, poke("/surface/inward", 1, 2), "/surface/inward[0]",
+       "1 expected"},
+      {"LibraryTriangleOutOfRange", kind, poke("/surface/triangles", 0, 999),
+       "/surface/triangles[0]", "index 999"},
+      {"LibraryOffsetDecreasing", kind, poke("/response/normal_offset", 2, 0),
+       "/response/normal_offset[2]", "is below the row before it"},
+      {"LibraryOffsetNotFromZero", kind, poke("/response/lateral_offset", 0, 1),
+       "/response/lateral_offset[0]", "is not 0"},
+      {"LibraryOffsetBeyondKnots", kind, poke("/response/normal_offset", 56, 1e15),
+       "/response/normal_offset", "ends at 1000000000000000"},
+      {"LibraryOffsetsTooFew", kind, replace("/response/normal_offset", {56}, H5T_STD_I64LE),
+       "/response/normal_offset", "has shape (56), (57) expected"},
+      {"LibraryCurveVanished", kind, poke("/response/normal_offset", 1, 0),
+       "/response/normal_offset[0]", "under 2 knots"},
+      {"LibraryKnotNotFromZero", kind, poke("/response/normal_knot", 0, 1e-5),
+       "/response/normal_knot[0]", "begins not at 0"},
+      {"LibraryKnotRepeated", kind, poke("/response/lateral_knot", 1, 0),
+       "/response/lateral_knot[1]", "is not above the knot before it"},
+      {"LibraryKnotNaN", kind, poke("/response/normal_knot", 1, kNaN), "/response/normal_knot[1]",
+       "nan is not finite"},
+      {"LibrarySlopeNegative", kind, poke("/response/normal_slope", 1, -1e-3),
+       "/response/normal_slope[1]", "is not finite and not negative"},
+      {"LibrarySlopeInfinite", kind, poke("/response/lateral_slope", 0, kInfinity),
+       "/response/lateral_slope[0]", "inf is not finite"},
+      {"LibrarySlopesTooFew", kind, replace("/response/normal_slope", {7}, H5T_IEEE_F32LE),
+       "/response/normal_slope", "has shape (7)"},
+      {"LibraryKnotsInDoublePrecision", kind, replace("/response/normal_knot", {7}, H5T_IEEE_F64LE),
+       "/response/normal_knot", "32-bit float expected"},
+      {"LibraryKnotsAreABomb", kind, claim_a_terabyte, "/response/normal_knot",
+       "claims more data than the file holds"},
+      {"LibraryStatusUnknown", kind, poke("/response/status", 0, 9), "/response/status[0]",
+       "is not a status"},
+      {"LibraryHoleThatIsNone", kind, poke("/response/status", 5, 0), "/response/normal_offset[5]",
+       "under 2 knots"},
+      {"LibraryErrorNaN", kind, poke("/response/normal_error", 2, kNaN),
+       "/response/normal_error[2]", "nan"},
+      {"LibraryCertificateMissing", kind, remove("/certificate"), "/certificate", "is missing"},
+      {"LibraryStickNaN", kind, real("/certificate", "stick", kNaN), "/certificate@stick",
+       "not negative"},
+      {"LibraryFrictionInfinite", kind, real("/certificate", "friction", kInfinity),
+       "/certificate@friction", "is not finite"},
+      {"LibraryWorstTriangleOutOfRange", kind, edit([](Hdf5Editor& e) {
+         e.set_attribute("/certificate", "worst_triangle", 108, H5T_NATIVE_INT);
+       }),
+       "/certificate@worst_triangle", "-1 or a triangle"},
+      {"LibraryWorstTriangleHuge", kind, edit([](Hdf5Editor& e) {
+         e.set_attribute("/certificate", "worst_triangle", 1LL << 40, H5T_NATIVE_LLONG);
+       }),
+       "/certificate@worst_triangle", "is out of range"},
+      {"LibraryBoundMissing", kind, poke("/certificate/triangle/stick", 4, kNaN),
+       "/certificate/triangle/stick[4]", "nan is not"},
+      {"LibraryCosineAboveOne", kind, poke("/certificate/triangle/cos_theta", 4, 1.1),
+       "/certificate/triangle/cos_theta[4]", "between -1 and 1"},
+      {"LibraryDeviceNameMissing", kind, remove("/certificate/device/name"),
+       "/certificate/device/name", "is missing"},
+  };
+}
+
+INSTANTIATE_TEST_SUITE_P(Libraries, Rejection, testing::ValuesIn(library_cases()), name_of);
+
+}  // namespace
+}  // namespace palpate::samples
