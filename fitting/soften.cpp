@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "fitting/fitting.hpp"
+#include "fitting/nearest_rank.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
 
@@ -57,14 +57,10 @@ Softening cost(const Library& before, const Library& after, double cap) {
     losses.push_back(lost(was.lateral, is.lateral));
   }
   std::sort(losses.begin(), losses.end());
-  const auto rank = [&](double share) {
-    const double at = std::ceil(share * static_cast<double>(losses.size()));
-    return losses[static_cast<std::size_t>(std::max(1.0, at)) - 1];
-  };
   result.curves = static_cast<std::size_t>(
       std::count_if(losses.begin(), losses.end(), [](double loss) { return loss > 0; }));
-  result.median = rank(0.5);
-  result.p95 = rank(0.95);
+  result.median = losses[nearest_rank(losses.size(), 0.5)];
+  result.p95 = losses[nearest_rank(losses.size(), 0.95)];
   result.worst = losses.back();
   return result;
 }

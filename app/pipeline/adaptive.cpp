@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "fem/rest_factor.hpp"
 #include "fitting/fidelity/fidelity.hpp"
 #include "fitting/fidelity/skin.hpp"
+#include "fitting/nearest_rank.hpp"
 #include "fitting/sampling/site_choice.hpp"
 #include "format/sha256.hpp"
 #include "format/site_journal.hpp"
@@ -123,8 +123,7 @@ double p95_of(const std::vector<fitting::Miss>& misses) {
   std::vector<double> relative;
   for (const fitting::Miss& miss : misses) relative.push_back(miss.relative);
   std::sort(relative.begin(), relative.end());
-  const double rank = std::ceil(0.95 * static_cast<double>(relative.size()));
-  return relative[static_cast<std::size_t>(rank) - 1];
+  return relative[fitting::nearest_rank(relative.size(), 0.95)];
 }
 
 /// Sites to add; the worst ones by a target that is lowered until there are enough of them, since

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "fitting/compare/compare.hpp"
+#include "fitting/nearest_rank.hpp"
 #include "fitting/site_samples.hpp"
 
 namespace palpate::fidelity {
@@ -32,12 +33,8 @@ ErrorRow row_of(std::string what, std::string part, std::vector<Sampled> errors)
   if (errors.empty()) return row;
   std::sort(errors.begin(), errors.end(),
             [](const Sampled& a, const Sampled& b) { return a.relative < b.relative; });
-  const auto n = static_cast<double>(errors.size());
-  const auto rank = [&](double share) {
-    return errors[static_cast<std::size_t>(std::max(1.0, std::ceil(share * n))) - 1].relative;
-  };
-  row.median = rank(0.5);
-  row.p95 = rank(0.95);
+  row.median = errors[fitting::nearest_rank(errors.size(), 0.5)].relative;
+  row.p95 = errors[fitting::nearest_rank(errors.size(), 0.95)].relative;
   row.worst = errors.back().relative;
   row.worst_newton = errors.back().newton;
   row.worst_point = errors.back().point;
