@@ -197,7 +197,7 @@ void add_body_part(CLI::App& command, Action& action) {
       ->check(CLI::Range(0.5, 0.9999));
   part->add_option("--profiles", options->profiles,
                    "Intervals by profile likelihoods: of constants whose linearised interval is in "
-                   "doubt, all, none. Each end takes 3 to 20 evaluations of the model")
+                   "doubt, all, none. Each end takes 1 to 20 evaluations of the model")
       ->capture_default_str()
       ->check(CLI::IsMember({"doubtful", "all", "none"}));
   part->callback([options, &action] { action = [options] { return calibrate_body(*options); }; });

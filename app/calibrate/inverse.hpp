@@ -62,7 +62,7 @@ struct InverseFit {
 /// uncertainty the residuals are divided by what the shift leaves of it, and the intervals follow
 /// from that; otherwise the scatter is estimated from the residuals. The samples of a path follow
 /// each other: where they are missed alike the intervals count it (LeastSquares::series). Profiles
-/// cost some three evaluations an end where one constant is sought, some ten to twenty where there
+/// cost one to three evaluations an end where one constant is sought, up to some twenty where there
 /// are more; ends are found to a hundredth of their distance.
 /// @throws Error(Configuration) for curves of another tool, sites that are not of the body, no
 ///   measured normal path, constants of unknown regions; when the model fails at the start.

@@ -63,7 +63,8 @@ void add_warnings(Calibration& result) {
   }
   if (result.correlated) {
     warn("the residuals of neighbouring points are alike (correlation " + text_of(result.lag_one) +
-         ", Durbin-Watson " + text_of(result.durbin_watson) +
+         " after the fit, " + text_of(result.autocorrelation) + " before it, Durbin-Watson " +
+         text_of(result.durbin_watson) +
          "): the model misses the shape of the data; the intervals are up to " +
          text_of(result.correlation_widening) +
          " times as wide for it, as if the misfit were correlated noise");
