@@ -438,8 +438,8 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
       break;
     }
     path.samples.push_back(sample);
-    if (stuck) site.contact.bond(u);
     if (observer_) observer_(site.contact, u, sample);
+    if (stuck) site.contact.bond(u);
     for (const double held : stops)
       if (std::abs(held - depth) < 1e-9 * depth)
         site.held.emplace(held, Site::Held{u, site.contact, 0.0});

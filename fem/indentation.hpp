@@ -46,7 +46,8 @@ class SiteSolver {
   SiteCurves solve(std::int32_t vertex);
   SiteCurves solve(std::int32_t vertex, const SitePlan& plan);
 
-  /// Called with every equilibrium of the normal path, the tool in its place.
+  /// Called with every equilibrium of the normal path, the tool in its place, before the surface is
+  /// tied to it.
   using Observer = std::function<void(const ToolContact&, const Displacement&, const CurveSample&)>;
   void observe(Observer observer) { observer_ = std::move(observer); }
 

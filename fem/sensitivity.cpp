@@ -105,29 +105,36 @@ class Differentiator {
     return true;
   }
 
-  /// Keep a state from which lateral paths start, before the contact is bonded.
-  void hold(double depth, const ToolContact& contact, const Displacement& u) {
-    held_.insert_or_assign(depth, Held{contact, u, residual_slopes(contact, u)});
+  /// Keep a state at which the surface is tied after it was observed, in the order of the path.
+  void keep(const ToolContact& contact, const Displacement& u) {
+    bonded_.push_back({contact, u, residual_slopes(contact, u)});
   }
+  std::size_t kept() const { return bonded_.size(); }
 
-  /// The same of a lateral path that started from a held state.
-  bool differentiate_lateral(const LateralPlan& plan, const ToolContact& contact,
-                             const Displacement& u, std::vector<double>& slope) {
-    const Eigen::Vector3d direction(plan.direction.data());
-    Eigen::VectorXd adjoint, by_bond = Eigen::VectorXd::Zero(context_.model.pattern().n), m;
+  /// Of a state whose ties were made at the first `count` of the states that were kept.
+  bool differentiate_tied(const ToolContact& contact, const Displacement& u, std::size_t count,
+                          const Eigen::Vector3d& direction, std::vector<double>& slope) {
+    Eigen::VectorXd adjoint;
     if (!differentiate(contact, u, direction, slope, adjoint)) return false;
     if (constants_.empty()) return true;
-    const Held& held = held_.at(plan.held_depth);
-    Displacement l = Displacement::Zero(3, u.cols());
-    move(context_.model, 1, adjoint, l);
-    contact.add_bond_gradient(context_.model, held.contact, l, direction, by_bond);
-    if (!solve(held.contact, held.u, by_bond, m)) return false;
-    for (std::size_t i = 0; i < constants_.size(); ++i) slope[i] -= m.dot(held.residuals[i]);
+    Displacement multiplier = Displacement::Zero(3, u.cols());
+    move(context_.model, 1, adjoint, multiplier);
+    const ToolContact* after = &contact;
+    for (std::size_t i = count; i-- > 0; after = &bonded_[i].contact) {
+      const Bonded& bonded = bonded_[i];
+      Eigen::VectorXd by_bond = Eigen::VectorXd::Zero(context_.model.pattern().n), m;
+      after->add_bond_gradient(context_.model, bonded.contact, multiplier, direction, by_bond);
+      if (by_bond.isZero(0)) continue;  // nothing was tied there
+      if (!solve(bonded.contact, bonded.u, by_bond, m)) return false;
+      for (std::size_t c = 0; c < constants_.size(); ++c) slope[c] -= m.dot(bonded.residuals[c]);
+      move(context_.model, 1, m, multiplier);
+    }
     return true;
   }
 
  private:
-  struct Held {
+  /// An equilibrium, before the surface that is in contact there is tied to the tool.
+  struct Bonded {
     ToolContact contact;
     Displacement u;
     std::vector<Eigen::VectorXd> residuals;
@@ -160,7 +167,7 @@ class Differentiator {
   const std::vector<Varied>& constants_;
   SolidModel window_;
   TangentSolver solver_;
-  std::map<double, Held> held_;
+  std::vector<Bonded> bonded_;
 };
 
 bool is_among(double depth, const std::vector<double>& depths) {
@@ -177,6 +184,7 @@ class SiteDifferentiation {
       : place_(context.place(vertex)),
         lateral_(lateral),
         depths_(context.indentation.held_depths),
+        stuck_(context.indentation.friction == ToolFriction::Stuck),
         differentiator_(context, constants, batch, place_),
         solver_(context, &batch) {
     result_.vertex = vertex;
@@ -195,14 +203,19 @@ class SiteDifferentiation {
 
  private:
   void pressed(const ToolContact& contact, const Displacement& u, const CurveSample& sample) {
+    if (is_among(sample.displacement, depths_)) {
+      ForceSensitivity s{sample.displacement, dot(sample.force, place_.inward), {}};
+      const Eigen::Vector3d inward(place_.inward.data());
+      keep(differentiator_.differentiate_tied(contact, u, differentiator_.kept(), inward, s.slope),
+           s, result_.samples);
+    }
+    bool held = false;
+    for (const LateralPlan& path : lateral_)
+      held = held || is_among(sample.displacement, {path.held_depth});
+    if (held || stuck_) differentiator_.keep(contact, u);
     for (const LateralPlan& path : lateral_)
       if (is_among(sample.displacement, {path.held_depth}))
-        differentiator_.hold(path.held_depth, contact, u);
-    if (!is_among(sample.displacement, depths_)) return;
-    ForceSensitivity s{sample.displacement, dot(sample.force, place_.inward), {}};
-    Eigen::VectorXd adjoint;
-    const Eigen::Vector3d inward(place_.inward.data());
-    keep(differentiator_.differentiate(contact, u, inward, s.slope, adjoint), s, result_.samples);
+        tied_when_held_[path.held_depth] = differentiator_.kept();
   }
 
   void moved(const LateralPlan& path, const ToolContact& contact, const Displacement& u,
@@ -214,8 +227,10 @@ class SiteDifferentiation {
                        return p.held_depth == path.held_depth && p.direction == path.direction;
                      }) -
         lateral_.begin());
-    keep(differentiator_.differentiate_lateral(path, contact, u, s.slope), s,
-         result_.lateral[index]);
+    const Eigen::Vector3d direction(path.direction.data());
+    keep(differentiator_.differentiate_tied(contact, u, tied_when_held_.at(path.held_depth),
+                                            direction, s.slope),
+         s, result_.lateral[index]);
   }
 
   void keep(bool found, const ForceSensitivity& s, std::vector<ForceSensitivity>& samples) {
@@ -228,6 +243,8 @@ class SiteDifferentiation {
   PressPoint place_;
   const std::vector<LateralPlan>& lateral_;
   const std::vector<double>& depths_;
+  bool stuck_;
+  std::map<double, std::size_t> tied_when_held_;  ///< states kept up to each held depth
   Differentiator differentiator_;
   SiteSolver solver_;
   SiteSensitivity result_;

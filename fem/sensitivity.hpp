@@ -41,9 +41,13 @@ struct SiteSensitivity {
 /// the contact penalty follows the stiffest modulus at the surface and is differentiated with it.
 /// Sites run abreast as in a campaign, and the solves share its factor: none of the body is made
 /// but that at rest, and that one not again where a factor that was kept will do.
-/// A lateral path also depends on the state at which its contact was bonded, u_b: with v the
-/// derivative of the force by u_b, K_b m = v adds - m . dR_b/dc, a second solve.
-/// Not differentiated: points that stick already on the normal path (ToolFriction::Stuck).
+/// What sticks is tied where it is at the end of an increment, u_b, so that a force also depends on
+/// the states u_b at which its ties were made: those of all increments of a normal path that sticks
+/// (ToolFriction::Stuck), and the one from which a lateral path starts. Backwards through them,
+/// with v the derivative of F - l . R by u_b (k (l + direction) at a tied node), K_b m = v adds
+/// - m . dR_b/dc, and m is added to l for the ties that were made before: a solve an increment.
+/// How firmly a node is tied follows the share of the surface around it that is in contact, a count
+/// of quadrature points: it has jumps, and no derivative beside that by the modulus.
 /// @param lateral  for each site the lateral paths to follow; empty: none.
 /// @param kept  the factor of earlier calls for the same body, with other constants; may be null.
 /// @throws Error(Configuration) as run_campaign; for a region that the body has not;

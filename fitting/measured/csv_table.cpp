@@ -7,6 +7,7 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "format/error.hpp"
@@ -195,7 +196,13 @@ struct Run {
   std::size_t rows() const { return end - begin; }
 };
 
+/// A row that was cut off in the middle of a number would otherwise pass for a shorter number.
+bool ends_within_quotes(const Line& line) {
+  return std::count(line.text.begin(), line.text.end(), '"') % 2 != 0;
+}
+
 std::size_t width_if_numbers(const Line& line, const Dialect& dialect) {
+  if (ends_within_quotes(line)) return 0;
   const auto fields = split(line.text, dialect.separator);
   for (const std::string& field : fields) {
     if (!number_of(field, dialect.decimal)) return 0;
@@ -232,12 +239,21 @@ std::string at_line(const std::string& file, const Line& line) {
 /// A row that breaks off the numbers, told by its first field that is none.
 [[noreturn]] void refuse_row(const std::string& file, const Line& line, const Dialect& dialect,
                              std::size_t width) {
+  if (ends_within_quotes(line)) {
+    refuse(at_line(file, line), "the row ends within quotes",
+           "the file was cut off: copy it again");
+  }
   const auto fields = split(line.text, dialect.separator);
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (number_of(fields[i], dialect.decimal)) continue;
     refuse(at_line(file, line),
            "field " + std::to_string(i + 1) + " ('" + fields[i] + "') is not a number",
            "mend or remove the row; another table needs a header of its own");
+  }
+  const std::string_view row = trimmed(line.text);
+  if (fields.size() + 1 == width && (row.ends_with(dialect.separator) || row.ends_with("\"\""))) {
+    refuse(at_line(file, line), "field " + std::to_string(width) + " is empty",
+           "mend or remove the row");
   }
   refuse(at_line(file, line),
          "the row has " + std::to_string(fields.size()) + " fields, " + std::to_string(width) +
@@ -435,6 +451,11 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<DeclaredC
                   int table) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
+  std::error_code none;
+  if (stream && std::filesystem::is_regular_file(path, none) &&
+      std::filesystem::is_empty(path, none)) {
+    refuse(path.string(), "the file is empty", "copy or record it again");
+  }
   if (!stream || !(text << stream.rdbuf())) {
     refuse(path.string(), "the record cannot be read", "check the path and the rights");
   }

@@ -146,6 +146,44 @@ TEST(Sensitivity, OfALateralPathIsTheDerivativeByDifferences) {
   }
 }
 
+/// What sticks while the tool goes down is tied where it is at each increment, which depends on the
+/// constants: the normal force, and the drags that start from it.
+TEST(Sensitivity, OfAStuckPathIsTheDerivativeByDifferences) {
+  const Body body = layered();
+  const std::vector<RegionConstant> constants{
+      {"top", "young"}, {"base", "young"}, {"top", "poisson"}};
+  const std::vector<std::vector<LateralPlan>> plans{{{0.002, {0.6, 0.8, 0}, {0.001}}}};
+  const auto run = [&](double top, double base, double nu, bool differentiate) {
+    CampaignSettings settings = settings_of(body, top, base, nu);
+    settings.indentation.friction = ToolFriction::Stuck;
+    settings.indentation.force_tolerance = 1e-7;
+    return run_sensitivity(body, settings, kDepths,
+                           differentiate ? constants : std::vector<RegionConstant>{}, plans)
+        .front();
+  };
+  const double top = 8e3, base = 20e3, nu = 0.45, h = 1e-4, k = 1e-4;
+  const SiteSensitivity exact = run(top, base, nu, true);
+  const std::array<std::array<SiteSensitivity, 2>, 3> varied{
+      {{run(top * (1 + h), base, nu, false), run(top * (1 - h), base, nu, false)},
+       {run(top, base * (1 + h), nu, false), run(top, base * (1 - h), nu, false)},
+       {run(top, base, nu + k, false), run(top, base, nu - k, false)}}};
+  const std::array<double, 3> width{2 * h * top, 2 * h * base, 2 * k};
+  ASSERT_EQ(exact.samples.size(), 2U) << exact.reason;
+  ASSERT_EQ(exact.lateral[0].size(), 1U) << exact.reason;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto held = [&](const ForceSensitivity& s, double more, double less) {
+      const double wanted = (more - less) / width[c];
+      const double noise = 2 * 3e-7 * s.force / width[c];
+      EXPECT_NEAR(s.slope[c], wanted, 2e-3 * std::abs(wanted) + noise) << c << ' ' << s.depth;
+    };
+    for (std::size_t i = 0; i < 2; ++i)
+      held(exact.samples[i], varied[c][0].samples[i].force, varied[c][1].samples[i].force);
+    held(exact.lateral[0][0], varied[c][0].lateral[0][0].force, varied[c][1].lateral[0][0].force);
+  }
+  for (const ForceSensitivity& s : exact.samples)
+    EXPECT_NEAR(top * s.slope[0] + base * s.slope[1], s.force, 1e-4 * s.force);  // Euler
+}
+
 /// At a deep press the tangent is far from that at rest: the solve that never factorizes it must
 /// still agree with one that does, after few steps.
 TEST(TangentSolver, AgreesWithAFactorOfTheTangent) {

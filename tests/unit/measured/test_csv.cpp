@@ -2,6 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <string>
+
 #include "fitting/measured/csv_table.hpp"
 #include "format/error.hpp"
 
@@ -164,8 +168,28 @@ TEST(Csv, NeverSkipsARow) {
               HasSubstr("a.csv:5: field 1 ('Specimen 2') is not a number"));
   EXPECT_THAT(refusal("x (mm),f (N),t (s)\n1,2\n3,4\n5,6\n"),
               HasSubstr("a.csv:1: the header has 3 names for 2 columns"));
+  EXPECT_THAT(refusal("\"x (mm)\",\"f (N)\"\n\"1\",\"2\"\n\"3\",\"4\"\n\"5\",\"6\"\n\"7\",\"0.0"),
+              HasSubstr("a.csv:5: the row ends within quotes; the file was cut off"));
+  EXPECT_THAT(refusal("\"x (mm)\",\"f (N)\"\n\"1\",\"2\"\n\"3\",\"4\"\n\"5\",\"6\"\n\"7\",\"\"\n"),
+              HasSubstr("a.csv:5: field 2 is empty"));
   EXPECT_THAT(refusal("nothing here\n"), HasSubstr("no table of numbers"));
   EXPECT_THAT(refusal(""), HasSubstr("no table of numbers"));
+}
+
+TEST(Csv, TellsAnEmptyFileFromOneThatIsNotThere) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "palpate-empty.csv";
+  std::ofstream(path).close();
+  const auto refusal_of = [](const std::filesystem::path& file) {
+    try {
+      read_csv(file);
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_THAT(refusal_of(path), HasSubstr("the file is empty"));
+  std::filesystem::remove(path);
+  EXPECT_THAT(refusal_of(path), HasSubstr("the record cannot be read"));
 }
 
 TEST(Csv, NeverAssumesAUnit) {
