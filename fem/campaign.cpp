@@ -154,6 +154,8 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
       {"rest_factor_bytes", std::to_string(static_cast<long long>(context.rest_factor->bytes()))},
       {"blas_kernel", blas_kernel()},
       {"solver", solver_versions()}};
+  if (settings.indentation.divide_under_tool)
+    report.facts.emplace_back("under_the_tool", "elements divided in eight");
   add_supports(context, settings, report);
   return curves;
 }

@@ -34,6 +34,9 @@ struct IndentationSettings {
                                   0.006};  ///< m, where lateral paths start; each at most `depth`
   std::vector<double> azimuths{0.0};       ///< rad, from the first tangent direction of the site
   double force_tolerance = 1e-4;  ///< relative error of the tool force allowed to the solver
+  /// Elements around the tool are divided in eight, for each site anew: a contact that is smaller
+  /// than a facet is met where elements of half the size meet it.
+  bool divide_under_tool = false;
 };
 
 /// Where the tool is pressed: any point of the boundary, and the direction of its normal path.

@@ -6,7 +6,8 @@
 #include "fem/at.hpp"
 #include "fem/preload.hpp"
 #include "fem/region_laws.hpp"
-#include "fem/shared_factor_solver.hpp"
+#include "fem/site_body.hpp"
+#include "format/error.hpp"
 
 namespace palpate::fem {
 
@@ -35,6 +36,24 @@ ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& set
   return {kContactStiffness * stiffest / settings.indentation.tool.radius, stiffest};
 }
 
+namespace {
+
+/// What is divided under the tool knows the energy of the elements alone.
+void check_division(const Body& body, const CampaignSettings& settings, Engine engine) {
+  if (!settings.indentation.divide_under_tool) return;
+  const auto refuse = [&](const char* with) {
+    throw Error(ErrorKind::Configuration, body.name,
+                std::string("elements cannot be divided under the tool ") + with,
+                "leave solver.divide_under_tool out, and choose a smaller mesh.element_size");
+  };
+  if (has_nodal_pressure(settings.dilatation)) refuse("where pressures are nodal");
+  if (!body.foundation.empty()) refuse("of a body on springs");
+  if (settings.gravity.acts()) refuse("of a body under its weight");
+  if (engine == Engine::Direct) refuse("where every step factorizes the body");
+}
+
+}  // namespace
+
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
                                  KeptFactor* kept)
     : body(b),
@@ -47,6 +66,7 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
       rest(equilibrium_under_weight(model, permutation, b.name)),
       at_rest(model.energy(rest)) {
   use_one_thread_per_site();
+  check_division(b, settings, engine);
   contact_stiffness = fem::contact_stiffness(b, settings, model);
   if (engine == Engine::Direct) return;
   std::vector<double> K;
@@ -60,9 +80,13 @@ Eigen::Vector3d CampaignContext::rest_position(const Vec3& X) const {
   return to_eigen(X) + displacement_at(model.mesh(), rest, to_eigen(X));
 }
 
-SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site) {
+double window_radius(const CampaignContext& context) {
   const ToolGeometry& tool = context.indentation.tool;
-  return {context.model, site, tool.extent() + (kWindowRadius - 1) * tool.radius};
+  return tool.extent() + (kWindowRadius - 1) * tool.radius;
+}
+
+SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site) {
+  return {context.model, site, window_radius(context)};
 }
 
 double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
@@ -72,8 +96,9 @@ double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
   const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
   const double held = static_cast<double>(context.indentation.held_depths.size());
   const double numbers = 3 * nodes * (kDisplacements + held) + unknowns * kVectors;
-  const SolidModel window = window_at(context, to_eigen(context.place(vertex).position));
-  return sizeof(double) * (numbers + kWindowFill * window.pattern().nonzeros()) + window.bytes();
+  const SiteBody site(context, to_eigen(context.place(vertex).position));
+  return sizeof(double) * (numbers + kWindowFill * site.window().pattern().nonzeros()) +
+         site.bytes();
 }
 
 PressPoint CampaignContext::place(std::int32_t vertex) const {

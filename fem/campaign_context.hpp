@@ -42,7 +42,9 @@ struct CampaignContext {
   mutable std::mutex direct_solve;                ///< held while a site factorizes the whole body
 };
 
-/// The part of the body around a site where the strains are large.
+/// Of the part of the body around a site where the strains are large, m.
+double window_radius(const CampaignContext& context);
+/// That part.
 SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site);
 
 /// Memory of a site under way, at most.

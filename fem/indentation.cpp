@@ -16,6 +16,7 @@
 #include "fem/region_laws.hpp"
 #include "fem/self_contact.hpp"
 #include "fem/shared_factor_solver.hpp"
+#include "fem/site_body.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fem {
@@ -137,10 +138,11 @@ std::vector<double> running_integral(const std::vector<double>& x, const std::ve
 namespace {
 
 /// The facets that the tool may meet at a place.
-ToolContact contact_at(const CampaignContext& context, const Eigen::Vector3d& X) {
+ToolContact contact_at(const CampaignContext& context, const QuadraticMesh& mesh,
+                       const Eigen::Vector3d& X) {
   const IndentationSettings& settings = context.indentation;
   const double reach = settings.tool.extent() + settings.tool.radius + settings.lateral_travel;
-  return {context.model.mesh(), X, reach, context.contact_stiffness};
+  return {mesh, X, reach, context.contact_stiffness};
 }
 
 /// The tool with its tip where a place of the surface is before it is touched.
@@ -166,23 +168,23 @@ Tool drawn_back(const ToolContact& contact, const Displacement& rest, Tool tool)
 
 FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex) {
   const PressPoint place = context.place(vertex);
-  const ToolContact contact = contact_at(context, to_eigen(place.position));
+  const ToolContact contact = contact_at(context, context.model.mesh(), to_eigen(place.position));
   return {drawn_back(contact, context.rest, tool_over(context, place)), contact.facets()};
 }
 
 namespace {
 
 /// The solvers of one site: the shared factor first, the whole body by Newton where that fails.
+/// There is no factor of a body whose elements are divided: it has the first alone.
 class SiteEquilibrium {
  public:
-  SiteEquilibrium(const CampaignContext& context, const Eigen::Vector3d& site,
-                  SolveBatch::Member* batch)
-      : context_(context) {
+  SiteEquilibrium(const CampaignContext& context, const SiteBody& body, SolveBatch::Member* batch)
+      : context_(context), direct_possible_(body.prolongation() == nullptr) {
     if (context.engine == Engine::Direct) return;
-    window_ = std::make_unique<SolidModel>(window_at(context, site));
     shared_ = std::make_unique<SharedFactorSolver>(
-        context.model, *window_,
-        [batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch->solve(b, x); });
+        body.whole(), body.window(),
+        [batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch->solve(b, x); },
+        body.prolongation());
   }
 
   /// The whole body is factorized only where `direct_allowed`, for it costs a hundred times more.
@@ -190,7 +192,7 @@ class SiteEquilibrium {
     NewtonResult result;
     if (shared_) {
       result = solve_shared(contact, u);
-      if (result.converged || !direct_allowed) return result;
+      if (result.converged || !direct_allowed || !direct_possible_) return result;
     }
     const int before = result.iterations;
     result = shared_ ? solve_direct_alone(contact, u) : solve_direct(contact, u);
@@ -232,7 +234,7 @@ class SiteEquilibrium {
   }
 
   const CampaignContext& context_;
-  std::unique_ptr<SolidModel> window_;
+  bool direct_possible_;
   std::unique_ptr<SharedFactorSolver> shared_;
   std::unique_ptr<NewtonSolver> direct_;
 };
@@ -243,10 +245,11 @@ struct SiteSolver::Site {
   Site(const CampaignContext& context, const PressPoint& place, SolveBatch::Member* batch)
       : X(to_eigen(place.position)),
         inward(to_eigen(place.inward)),
-        contact(contact_at(context, X)),
-        touching(drawn_back(contact, context.rest, tool_over(context, place))),
-        equilibrium(context, X, batch),
-        watch(context.model.mesh(), X, kWatched * context.indentation.tool.extent()) {}
+        body(context, X),
+        contact(contact_at(context, body.mesh(), X)),
+        touching(drawn_back(contact, body.rest(), tool_over(context, place))),
+        equilibrium(context, body, batch),
+        watch(body.mesh(), X, kWatched * context.indentation.tool.extent()) {}
 
   /// The tool at a depth below first touch, moved sideways by `aside`.
   Tool tool_at(double depth, const Eigen::Vector3d& aside = Eigen::Vector3d::Zero()) const {
@@ -263,6 +266,7 @@ struct SiteSolver::Site {
   };
 
   Eigen::Vector3d X, inward;
+  SiteBody body;
   ToolContact contact;
   Tool touching;
   SiteEquilibrium equilibrium;
@@ -275,9 +279,11 @@ namespace {
 /// Drives one path: increments with predictor and cut-back.
 class PathDriver {
  public:
-  PathDriver(const CampaignContext& context, ToolContact& contact, SiteEquilibrium& equilibrium,
-             const SelfContact& watch, std::function<Tool(double)> tool_at)
+  PathDriver(const CampaignContext& context, const SolidModel& model, ToolContact& contact,
+             SiteEquilibrium& equilibrium, const SelfContact& watch,
+             std::function<Tool(double)> tool_at)
       : context_(context),
+        model_(model),
         contact_(contact),
         equilibrium_(equilibrium),
         watch_(watch),
@@ -296,7 +302,7 @@ class PathDriver {
     std::string failure;  // of the last attempt: no news when a cut-back overcomes it
     while (at < to) {
       const double next = to - at <= 1.001 * step ? to : at + step;
-      Displacement trial = predict(context_.model, history, next);
+      Displacement trial = predict(model_, history, next);
       const Outcome outcome = equilibrate(next, halvings, trial, sample, failure);
       if (outcome == Outcome::Found) {
         u = trial;
@@ -340,11 +346,10 @@ class PathDriver {
     const int entering = watch_.entering_node(u);
     if (entering >= 0) {
       reason = "the surface meets itself at " +
-               point_in_millimetres(context_.model.mesh().X.col(entering)) +
-               ", which is not modelled";
+               point_in_millimetres(model_.mesh().X.col(entering)) + ", which is not modelled";
       return Outcome::Meaningless;
     }
-    if (const auto loss = context_.model.ellipticity_loss(u)) {
+    if (const auto loss = model_.ellipticity_loss(u)) {
       reason = loss->reason();
       return Outcome::Meaningless;
     }
@@ -353,7 +358,7 @@ class PathDriver {
 
   /// What the last equilibrium before a failure says about its cause; empty when nothing.
   std::string about_inversion(const Displacement& u) const {
-    const auto [J, X] = context_.model.most_compressed(u);
+    const auto [J, X] = model_.most_compressed(u);
     if (J > kNearInversion) return {};
     char text[96];
     std::snprintf(text, sizeof text, " (an element at %s is about to invert: det F = %.2f)",
@@ -362,7 +367,7 @@ class PathDriver {
   }
 
   void record(double s, const Displacement& u, CurveSample& sample) const {
-    const SolidModel::State state = context_.model.energy(u);
+    const SolidModel::State state = model_.energy(u);
     sample.displacement = s;
     sample.force = to_vec3(contact_.tool_force(u));
     sample.strain_energy = state.energy - context_.at_rest.energy;
@@ -374,6 +379,7 @@ class PathDriver {
   }
 
   const CampaignContext& context_;
+  const SolidModel& model_;
   ToolContact& contact_;
   SiteEquilibrium& equilibrium_;
   const SelfContact& watch_;
@@ -413,7 +419,7 @@ void fill_work(CurvePath& path, double start) {
 
 void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves) {
   const bool stuck = context_.indentation.friction == ToolFriction::Stuck;
-  PathDriver driver(context_, site.contact, site.equilibrium, site.watch,
+  PathDriver driver(context_, site.body.whole(), site.contact, site.equilibrium, site.watch,
                     [&](double depth) { return site.tool_at(depth); });
   CurvePath path;
   path.kind = PathKind::Normal;
@@ -422,7 +428,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
   path.samples.back().contact_energy = path.samples.back().tension = 0;
   path.samples.back().min_jacobian = context_.at_rest.min_J;
 
-  Displacement u = context_.rest;
+  Displacement u = site.body.rest();
   History history;
   history.add(0, u);
   double from = 0;
@@ -445,7 +451,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
         site.held.emplace(held, Site::Held{u, site.contact, 0.0});
     from = depth;
   }
-  pressed_ = u;
+  pressed_ = u.leftCols(context_.model.mesh().nodes());
   fill_work(path, 0);
   for (auto& [depth, held] : site.held)
     for (const auto& sample : path.samples)
@@ -462,7 +468,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
   ToolContact contact = held.contact;
   Displacement u = held.u;
   contact.bond(u);
-  PathDriver driver(context_, contact, site.equilibrium, site.watch,
+  PathDriver driver(context_, site.body.whole(), contact, site.equilibrium, site.watch,
                     [&](double s) { return site.tool_at(held_depth, s * direction); });
   CurvePath path;
   path.kind = PathKind::Lateral;

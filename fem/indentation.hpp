@@ -47,7 +47,7 @@ class SiteSolver {
   SiteCurves solve(std::int32_t vertex, const SitePlan& plan);
 
   /// Called with every equilibrium of the normal path, the tool in its place, before the surface is
-  /// tied to it.
+  /// tied to it; with elements divided under the tool the displacement has their nodes too.
   using Observer = std::function<void(const ToolContact&, const Displacement&, const CurveSample&)>;
   void observe(Observer observer) { observer_ = std::move(observer); }
 
@@ -56,7 +56,7 @@ class SiteSolver {
                                              const Displacement&, const CurveSample&)>;
   void observe_lateral(LateralObserver observer) { lateral_observer_ = std::move(observer); }
 
-  /// The end of the normal path of the site last solved.
+  /// The end of the normal path of the site last solved, on the nodes of the body.
   const Displacement& pressed_state() const { return pressed_; }
 
  private:

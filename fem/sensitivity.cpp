@@ -34,8 +34,12 @@ struct Varied {
   }
 };
 
-/// Where the tool touches would depend on the constants through the sag.
-void refuse_gravity(const CampaignSettings& settings) {
+/// With gravity, where the tool touches would depend on the constants through the sag.
+void refuse_what_is_not_differentiated(const CampaignSettings& settings) {
+  if (settings.indentation.divide_under_tool)
+    throw Error(ErrorKind::Configuration, "divide_under_tool",
+                "gradients are those of the elements of the body, not of divided ones",
+                "calibrate without solver.divide_under_tool, on a smaller mesh.element_size");
   if (!settings.gravity.acts()) return;
   throw Error(ErrorKind::Configuration, "gravity",
               "the gradients by constants of a body that sags are not computed",
@@ -263,7 +267,7 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
                                              const std::vector<RegionConstant>& constants,
                                              const std::vector<std::vector<LateralPlan>>& lateral,
                                              KeptFactor* kept) {
-  refuse_gravity(settings);
+  refuse_what_is_not_differentiated(settings);
   CampaignSettings normal = settings;
   normal.indentation.held_depths = depths;  // the states that the path must pass
   normal.indentation.depth = *std::max_element(depths.begin(), depths.end());

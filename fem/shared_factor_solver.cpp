@@ -13,10 +13,13 @@ constexpr std::size_t kPairs = 6;
 /// Of the body as a whole, from where its stiffness at rest must be turned with it, |R - 1|.
 constexpr double kTurned = 5e-3;
 
-Eigen::VectorXd difference(const SolidModel& model, const Displacement& a, const Displacement& b) {
-  Eigen::VectorXd d(model.pattern().n);
+/// On the first `count` unknowns.
+Eigen::VectorXd difference(const SolidModel& model, Eigen::Index count, const Displacement& a,
+                           const Displacement& b) {
+  Eigen::VectorXd d(count);
   for (int node = 0; node < model.mesh().nodes(); ++node)
-    if (model.equation(node) >= 0) d.segment<3>(model.equation(node)) = a.col(node) - b.col(node);
+    if (const int first = model.equation(node); first >= 0 && first < count)
+      d.segment<3>(first) = a.col(node) - b.col(node);
   return d;
 }
 
@@ -31,6 +34,16 @@ bool SharedFactorSolver::relax_window(const ToolContact& contact, const NewtonOp
   const NewtonResult relaxed = newton_.solve(contact, inner, u);
   if (!relaxed.converged) result.reason = relaxed.reason;
   return relaxed.converged;
+}
+
+Equilibrium SharedFactorSolver::evaluated(const ToolContact& contact, const Displacement& u) const {
+  Equilibrium now = evaluate(whole_, contact, u);
+  if (prolongation_ != nullptr) now.residual = prolongation_->reduced(now.residual);
+  return now;
+}
+
+void SharedFactorSolver::moved(double length, const Eigen::VectorXd& d, Displacement& u) const {
+  move_turning(whole_, length, prolongation_ != nullptr ? prolongation_->extended(d) : d, u);
 }
 
 Eigen::VectorXd SharedFactorSolver::direction(const Eigen::VectorXd& residual) {
@@ -64,13 +77,13 @@ bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& o
   double length = 1;
   for (int halvings = 0; halvings < 6; ++halvings, length *= 0.5) {
     Displacement trial = u;
-    move_turning(whole_, length, d, trial);
+    moved(length, d, trial);
     if (!relax_window(contact, options, trial, result)) continue;
-    Equilibrium next = evaluate(whole_, contact, trial);
+    Equilibrium next = evaluated(contact, trial);
     if (!(next.min_J > 0)) continue;
     const bool lower = next.energy <= now.energy + 1e-4 * length * slope;
     if (!lower && next.residual.norm() > (1 - 0.1 * length) * now.residual.norm()) continue;
-    Pair pair{difference(whole_, trial, u), next.residual - now.residual, 0};
+    Pair pair{difference(whole_, d.size(), trial, u), next.residual - now.residual, 0};
     pair.sy = pair.s.dot(pair.y);
     if (pair.sy > 1e-10 * pair.s.norm() * pair.y.norm()) pairs_.push_back(std::move(pair));
     if (pairs_.size() > kPairs) pairs_.pop_front();
@@ -88,7 +101,7 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
   turn_ = mean_rotation(whole_.mesh(), u);
   turned_ = (turn_ - Eigen::Matrix3d::Identity()).norm() > kTurned;
   if (!relax_window(contact, options, u, result)) return result;
-  Equilibrium now = evaluate(whole_, contact, u);
+  Equilibrium now = evaluated(contact, u);
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     const double scale = std::max(contact.tool_force(u).norm(), 1e-12);
     error_ = imbalance(whole_, now.residual) / scale;

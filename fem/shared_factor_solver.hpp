@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 
+#include "fem/divided_mesh.hpp"
 #include "fem/newton.hpp"
 
 namespace palpate::fem {
@@ -20,8 +21,15 @@ class SharedFactorSolver {
   /// x = K0^-1 b on the unknowns of the whole body.
   using RestSolve = std::function<void(const Eigen::VectorXd& b, Eigen::VectorXd& x)>;
 
-  SharedFactorSolver(const SolidModel& whole, const SolidModel& window, RestSolve rest_solve)
-      : whole_(whole), newton_(window), rest_solve_(std::move(rest_solve)) {}
+  /// `prolongation`: where the window has smaller elements than the body that was factorized, how
+  /// their nodes follow its nodes; `whole` and `window` are then on the divided mesh. phi is a
+  /// function of the body's own unknowns all the same. Null: one mesh.
+  SharedFactorSolver(const SolidModel& whole, const SolidModel& window, RestSolve rest_solve,
+                     const Prolongation* prolongation = nullptr)
+      : whole_(whole),
+        newton_(window),
+        rest_solve_(std::move(rest_solve)),
+        prolongation_(prolongation) {}
 
   /// The factor and curvature pairs of the last call are kept: successive calls should be
   /// neighbours on a path.
@@ -41,12 +49,16 @@ class SharedFactorSolver {
   Eigen::VectorXd direction(const Eigen::VectorXd& residual);
   /// d = R K0^-1 R^T q: the stiffness at rest turned with the body. q is overwritten.
   void solve_turned(Eigen::VectorXd& q, Eigen::VectorXd& d) const;
+  /// Its residual on the unknowns of the body.
+  Equilibrium evaluated(const ToolContact& contact, const Displacement& u) const;
+  void moved(double length, const Eigen::VectorXd& d, Displacement& u) const;
   bool step(const ToolContact& contact, const NewtonOptions& options, const Eigen::VectorXd& d,
             Equilibrium& now, Displacement& u, NewtonResult& result);
 
   const SolidModel& whole_;
   NewtonSolver newton_;
   RestSolve rest_solve_;
+  const Prolongation* prolongation_;
   std::deque<Pair> pairs_;
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  ///< R, of the whole body
   bool turned_ = false;                                 ///< whether R is worth the while

@@ -75,12 +75,20 @@ SolidModel::SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilat
   take_elements(elements);
 }
 
+std::vector<bool> nodes_within(const QuadraticMesh& mesh, const Eigen::Vector3d& centre,
+                               double radius) {
+  std::vector<bool> within(at(mesh.nodes()));
+  for (int node = 0; node < mesh.nodes(); ++node)
+    within[at(node)] = (mesh.X.col(node) - centre).squaredNorm() <= radius * radius;
+  return within;
+}
+
 SolidModel::SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, double radius)
-    : solid_(whole.solid_) {
-  std::vector<bool> free(at(mesh().nodes()));
-  for (int node = 0; node < mesh().nodes(); ++node)
-    free[at(node)] =
-        mesh().is_free(node) && (mesh().X.col(node) - centre).squaredNorm() <= radius * radius;
+    : SolidModel(whole, nodes_within(whole.mesh(), centre, radius)) {}
+
+SolidModel::SolidModel(const SolidModel& whole, std::vector<bool> free) : solid_(whole.solid_) {
+  for (std::size_t node = 0; node < free.size(); ++node)
+    free[node] = free[node] && mesh().is_free(static_cast<int>(node));
   number_unknowns(free);
   std::vector<int> elements;
   for (int e = 0; e < static_cast<int>(mesh().tetrahedra.size()); ++e)
@@ -88,6 +96,19 @@ SolidModel::SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, d
                             [&](int node) { return equation(node) >= 0; }))
       elements.push_back(e);
   take_elements(elements);
+}
+
+SolidModel SolidModel::without_stiffness(const SolidModel& whole, QuadraticMesh mesh) {
+  SolidModel model(std::make_shared<const Solid>(
+      Solid{std::move(mesh), whole.solid_->laws, whole.solid_->dilatation, {}}));
+  std::vector<bool> free = model.mesh().held;
+  free.flip();
+  model.number_unknowns(free);
+  std::vector<int> elements(model.mesh().tetrahedra.size());
+  std::iota(elements.begin(), elements.end(), 0);
+  model.make_blocks(elements);
+  model.pattern_.n = model.unknowns_;
+  return model;
 }
 
 double SolidModel::bytes() const {

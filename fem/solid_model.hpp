@@ -30,6 +30,10 @@ struct Solid {
   Eigen::Matrix3Xd weight;  ///< (nodes), N; no columns where there is none
 };
 
+/// One flag for each node: whether it lies within `radius` of `centre` at rest.
+std::vector<bool> nodes_within(const QuadraticMesh& mesh, const Eigen::Vector3d& centre,
+                               double radius);
+
 /// The body without the tool, or a part of it, with the springs that it rests on: energy, internal
 /// forces and stiffness as functions of the displacement, on a chosen set of free nodes. Immutable
 /// after construction; every method may be called from several threads.
@@ -42,6 +46,12 @@ class SolidModel {
   /// The part of `whole` that feels its nodes within `radius` of `centre` move: those nodes are
   /// free, the elements at them are kept, all other nodes stay where the displacement puts them.
   SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, double radius);
+  /// The same with any choice of nodes; those that are held stay so.
+  SolidModel(const SolidModel& whole, std::vector<bool> free);
+
+  /// The laws of `whole` on another mesh of the body, for energies and forces alone: it has no
+  /// stiffness, and its pattern() nothing but the number of unknowns. No weight, no springs.
+  static SolidModel without_stiffness(const SolidModel& whole, QuadraticMesh mesh);
 
   struct State {
     double energy = 0;  ///< J, strain energy, what the foundation stores, less the work of gravity
@@ -104,6 +114,7 @@ class SolidModel {
     double energy = 0;                    ///< sum of V_n U(Jbar_n), J
   };
 
+  explicit SolidModel(std::shared_ptr<const Solid> solid) : solid_(std::move(solid)) {}
   void number_unknowns(const std::vector<bool>& free);
   void take_elements(const std::vector<int>& elements);
   void make_blocks(const std::vector<int>& elements);

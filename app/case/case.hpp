@@ -133,6 +133,7 @@ struct SimulateSection {
 
 struct SolverSection {
   std::string element = "tet10-pressure";
+  bool divide_under_tool = false;
   bool operator==(const SolverSection&) const = default;
 };
 

@@ -346,6 +346,10 @@ void describe(V& v, SolverSection& s) {
        "at "
        "a case, with forces too high by tens of percent"},
       {"tet10-pressure", "tet10-nodal-pressure", "tet10-displacement", "tet4"});
+  v.flag(s.divide_under_tool,
+         {"divide_under_tool",
+          "divide the elements around the tool in eight, for each site anew: for contacts smaller "
+          "than a facet"});
 }
 
 template <class V>

@@ -53,6 +53,12 @@ Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int
                 "other programs have no tetrahedron of four nodes with pressures around its nodes",
                 "export with element = \"tet10-displacement\", which they have");
   }
+  if (settings.indentation.divide_under_tool) {
+    throw Error(ErrorKind::Configuration, body.name,
+                "decks for other programs hold the mesh of the body, not what is divided under the "
+                "tool",
+                "export a case without solver.divide_under_tool, on a smaller mesh.element_size");
+  }
   Deck deck;
   deck.region_names = body.region_names;
   for (const std::string& region : body.region_names) {

@@ -110,6 +110,7 @@ fem::CampaignSettings campaign_settings(const Workspace& space) {
   indentation.held_depths = c.indentation.held_depths;
   indentation.azimuths = c.indentation.azimuths;
   indentation.force_tolerance = c.indentation.force_tolerance;
+  indentation.divide_under_tool = c.solver.divide_under_tool;
   settings.threads = space.threads;
   settings.memory = space.memory;
   return settings;

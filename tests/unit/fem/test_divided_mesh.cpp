@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Elements that are divided under the tool, against bodies that were divided as a whole before
+// anything was solved on them.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+#include "fem/at.hpp"
+#include "fem/divided_mesh.hpp"
+#include "fem/indentation.hpp"
+#include "format/error.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+using testing::HasSubstr;
+
+Body block_of(int across) {
+  return test::make_block(test::even(-0.015, 0.015, across), test::even(-0.015, 0.015, across),
+                          test::even(-0.015, 0, across / 2));
+}
+
+std::vector<int> all_elements(const QuadraticMesh& mesh) {
+  std::vector<int> all(mesh.tetrahedra.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// A body whose elements are the children of all elements of another, with its sites.
+Body divided_body(const Body& body) {
+  const QuadraticMesh mesh = make_quadratic_mesh(body);
+  const DividedMesh divided = divide(mesh, all_elements(mesh));
+  Body fine;
+  fine.name = "divided";
+  fine.region_names = body.region_names;
+  for (int node = 0; node < mesh.nodes(); ++node) {
+    fine.nodes.push_back({mesh.X(0, node), mesh.X(1, node), mesh.X(2, node)});
+    if (mesh.held[at(node)]) fine.fixed_nodes.push_back(node);
+  }
+  for (const Tetrahedron10& t : divided.mesh.tetrahedra)
+    fine.tetrahedra.push_back({t[0], t[1], t[2], t[3]});
+  fine.tetrahedron_region = divided.mesh.region;
+  for (const Facet& f : divided.mesh.facets) fine.boundary.push_back({f[0], f[1], f[2]});
+  fine.response = body.response;
+  return fine;
+}
+
+CampaignSettings pressed_by(double radius, double depth) {
+  CampaignSettings s;
+  s.materials = {{"tissue", {10e3, 0.49}}};
+  s.indentation.tool.radius = radius;
+  s.indentation.depth = depth;
+  s.indentation.increments = 4;
+  s.indentation.held_depths = {depth};
+  s.indentation.lateral_travel = 0.5 * depth;
+  s.indentation.lateral_increments = 4;
+  s.threads = 2;
+  return s;
+}
+
+SiteCurves press(const Body& body, CampaignSettings settings, bool divide, double x = 0,
+                 double y = 0) {
+  settings.indentation.divide_under_tool = divide;
+  settings.points = {{{x, y, 0}, {0, 0, -1}}};
+  CampaignReport report;
+  return run_campaign(body, settings, report).sites.front();
+}
+
+double volume(const QuadraticMesh& mesh, const Tetrahedron10& t) {
+  const auto edge = [&](std::size_t i) -> Eigen::Vector3d {
+    return mesh.X.col(t[i]) - mesh.X.col(t[0]);
+  };
+  return edge(1).cross(edge(2)).dot(edge(3)) / 6;
+}
+
+double area(const QuadraticMesh& mesh) {
+  double sum = 0;
+  for (const Facet& f : mesh.facets)
+    sum += 0.5 * Eigen::Vector3d(mesh.X.col(f[1]) - mesh.X.col(f[0]))
+                     .cross(Eigen::Vector3d(mesh.X.col(f[2]) - mesh.X.col(f[0])))
+                     .norm();
+  return sum;
+}
+
+std::vector<int> elements_around(const QuadraticMesh& mesh, double radius) {
+  std::vector<int> elements;
+  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e)
+    if (std::ranges::any_of(mesh.tetrahedra[at(e)],
+                            [&](int node) { return mesh.X.col(node).norm() < radius; }))
+      elements.push_back(e);
+  return elements;
+}
+
+/// Each face belongs to two elements or to one and to the boundary, mid-edge nodes are in the
+/// middle of their edges, and elements that share an edge share its node.
+void expect_fit(const QuadraticMesh& mesh) {
+  std::map<std::array<std::int32_t, 3>, int> owners;
+  std::map<std::array<std::int32_t, 2>, std::int32_t> middle_of;
+  for (const Tetrahedron10& t : mesh.tetrahedra) {
+    EXPECT_GT(volume(mesh, t), 0);
+    for (std::size_t without = 0; without < 4; ++without) {
+      std::array<std::int32_t, 3> face{};
+      for (std::size_t c = 0, i = 0; c < 4; ++c)
+        if (c != without) face[i++] = t[c];
+      std::sort(face.begin(), face.end());
+      ++owners[face];
+    }
+    for (std::size_t e = 0; e < 6; ++e) {
+      const auto [low, high] = std::minmax(t[kTetEdges[e][0]], t[kTetEdges[e][1]]);
+      EXPECT_EQ(middle_of.try_emplace({low, high}, t[4 + e]).first->second, t[4 + e]);
+      const Eigen::Vector3d middle = 0.5 * (mesh.X.col(low) + mesh.X.col(high));
+      EXPECT_LT((mesh.X.col(t[4 + e]) - middle).norm(), 1e-15);
+    }
+  }
+  for (const Facet& f : mesh.facets) {
+    std::array<std::int32_t, 3> face{f[0], f[1], f[2]};
+    std::sort(face.begin(), face.end());
+    EXPECT_EQ(owners[face], 1);
+    ++owners[face];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto [low, high] = std::minmax(f[c], f[(c + 1) % 3]);
+      EXPECT_EQ(middle_of.at({low, high}), f[3 + c]);
+    }
+  }
+  for (const auto& [face, count] : owners) EXPECT_EQ(count, 2);
+}
+
+TEST(DividedMesh, FitsTogetherAndKeepsVolumeAndSurface) {
+  const QuadraticMesh whole = make_quadratic_mesh(block_of(6));
+  for (const double radius : {0.001, 0.004, 0.009}) {
+    const std::vector<int> some = elements_around(whole, radius);
+    const DividedMesh divided = divide(whole, some);
+    expect_fit(divided.mesh);
+    EXPECT_GT(divided.mesh.tetrahedra.size(), whole.tetrahedra.size() + 7 * some.size());
+    double sum = 0;
+    for (const Tetrahedron10& t : divided.mesh.tetrahedra) sum += volume(divided.mesh, t);
+    EXPECT_NEAR(sum, 0.03 * 0.03 * 0.015, 1e-12);
+    EXPECT_NEAR(area(divided.mesh), area(whole), 1e-12);
+  }
+  const DividedMesh all = divide(whole, all_elements(whole));
+  expect_fit(all.mesh);
+  EXPECT_EQ(all.mesh.tetrahedra.size(), 8 * whole.tetrahedra.size());
+}
+
+// Any field that is quadratic in space is met by one element and by its children alike.
+TEST(DividedMesh, ProlongsQuadraticFieldsExactly) {
+  const QuadraticMesh whole = make_quadratic_mesh(block_of(4));
+  const DividedMesh divided = divide(whole, elements_around(whole, 0.005));
+  const auto field = [](const Eigen::Vector3d& X) {
+    return 3 + 2 * X[0] - X[2] + 40 * X[0] * X[1] - 7 * X[2] * X[2];
+  };
+  for (std::size_t i = 0; i < divided.made.size(); ++i) {
+    const DividedMesh::Made& made = divided.made[i];
+    double value = 0;
+    for (std::size_t a = 0; a < kTetNodes; ++a)
+      value += made.N[a] * field(whole.X.col(whole.tetrahedra[at(made.parent)][a]));
+    const Eigen::Vector3d X = divided.mesh.X.col(whole.nodes() + static_cast<int>(i));
+    EXPECT_NEAR(value, field(X), 1e-12);
+  }
+}
+
+// A tool as large as the body: what the site divides is the body divided beforehand.
+TEST(DivideUnderTool, IsTheDividedBodyWhereTheToolSpansItAll) {
+  const Body coarse = block_of(4), fine = divided_body(coarse);
+  const CampaignSettings settings = pressed_by(0.027, 0.003);
+  const SiteCurves ours = press(coarse, settings, true), reference = press(fine, settings, false);
+  ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
+  ASSERT_EQ(ours.paths.size(), 2u);
+  for (std::size_t p = 0; p < 2; ++p)
+    for (std::size_t i = 1; i < ours.paths[p].samples.size(); ++i) {
+      const CurveSample &a = ours.paths[p].samples[i], &b = reference.paths[p].samples[i];
+      EXPECT_LT(norm(a.force - b.force), 5e-4 * norm(b.force));
+      EXPECT_NEAR(a.strain_energy, b.strain_energy, 1e-3 * b.strain_energy);
+    }
+}
+
+// A contact smaller than a facet, beside the nodes: what division leaves of the error of the mesh.
+TEST(DivideUnderTool, MeetsSmallContactsLikeTheDividedBody) {
+  const Body coarse = block_of(6), fine = divided_body(coarse);
+  const CampaignSettings settings = pressed_by(0.004, 0.0016);
+  const double x = 0.0012, y = 0.0021;
+  const SiteCurves ours = press(coarse, settings, true, x, y),
+                   reference = press(fine, settings, false, x, y),
+                   undivided = press(coarse, settings, false, x, y);
+  ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
+  for (std::size_t i = 1; i < reference.paths[0].samples.size(); ++i) {
+    const Vec3& exact = reference.paths[0].samples[i].force;
+    EXPECT_LT(norm(ours.paths[0].samples[i].force - exact), 0.01 * norm(exact));
+  }
+  const Vec3& first = reference.paths[0].samples[1].force;
+  EXPECT_GT(norm(undivided.paths[0].samples[1].force - first), 0.05 * norm(first));
+}
+
+TEST(DivideUnderTool, LosesNoEnergyWhereSmallElementsMeetLargeOnes) {
+  const SiteCurves site = press(block_of(6), pressed_by(0.005, 0.003), true, 0.0012, 0.0021);
+  ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
+  for (const CurvePath& path : site.paths) {
+    const CurveSample& end = path.samples.back();
+    EXPECT_NEAR(end.strain_energy + end.contact_energy, end.tool_work, 0.005 * end.tool_work);
+  }
+}
+
+TEST(DivideUnderTool, IsRefusedWhereItIsNotThoughtThrough) {
+  const Body body = block_of(4);
+  CampaignSettings settings = pressed_by(0.005, 0.002);
+  settings.dilatation = Dilatation::Nodal;
+  try {
+    press(body, settings, true);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("divide"));
+  }
+  settings.dilatation = Dilatation::Mean;
+  settings.gravity = {{0, 0, -9.81}, 1000};
+  EXPECT_THROW(press(body, settings, true), Error);
+}
+
+}  // namespace
+}  // namespace palpate::fem
