@@ -2,6 +2,7 @@
 #include "fitting/fidelity/fidelity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <map>
@@ -10,7 +11,6 @@
 
 #include "fitting/compare/compare.hpp"
 #include "fitting/nearest_rank.hpp"
-#include "fitting/site_samples.hpp"
 
 namespace palpate::fidelity {
 namespace {
@@ -134,39 +134,73 @@ class Rows {
   Fidelity& result_;
 };
 
-/// Normal force of a vertex as sampled, at a depth; absent beyond the samples.
-std::optional<double> sampled_force(const SiteCurves& site, double depth) {
-  std::vector<double> x{0}, y{0};
-  for (const fitting::ForceSample& sample : fitting::normal_samples(site)) {
+/// What a tool feels at a depth of a normal press: along it, and across it.
+struct PressForce {
+  double along = 0;
+  Vec3 across{};
+};
+
+/// Of a vertex as sampled; absent beyond the samples.
+std::optional<PressForce> sampled_force(const SiteCurves& site, double depth) {
+  const auto path = std::find_if(site.paths.begin(), site.paths.end(),
+                                 [](const CurvePath& p) { return p.kind == PathKind::Normal; });
+  if (path == site.paths.end()) return std::nullopt;
+  std::vector<double> x{0}, along{0};
+  std::array<std::vector<double>, 3> across{{{0}, {0}, {0}}};
+  for (const CurveSample& sample : path->samples) {
+    if (!(sample.displacement > 0)) continue;
     x.push_back(sample.displacement);
-    y.push_back(sample.force);
+    along.push_back(dot(sample.force, path->direction));
+    const Vec3 rest = sample.force - along.back() * path->direction;
+    for (std::size_t i = 0; i < 3; ++i) across[i].push_back(rest[i]);
   }
   if (x.size() < 2 || depth > x.back() * (1 + kSameDepth)) return std::nullopt;
-  return compare::MonotoneCubic(x, y).value(depth);
+  PressForce force{compare::MonotoneCubic(x, along).value(depth), {}};
+  for (std::size_t i = 0; i < 3; ++i)
+    force.across[i] = compare::MonotoneCubic(x, across[i]).value(depth);
+  return force;
 }
 
-/// The samples of the three vertices, interpolated, against the direct normal force: no fit.
-void add_interpolation_row(const Library& library, const std::vector<HeldOutPoint>& points,
-                           const Curves& sampled, Fidelity& result) {
-  std::map<std::int32_t, const SiteCurves*> at;
-  for (const SiteCurves& site : sampled.sites) at[site.vertex] = &site;
-  std::vector<Sampled> errors;
+/// Of a point in a triangle, by the samples of its three vertices; absent where one has none.
+std::optional<PressForce> interpolated_force(
+    const Library& library, const HeldOutPoint& point, double depth,
+    const std::map<std::int32_t, const SiteCurves*>& site_at) {
+  const Triangle& triangle = library.triangles[static_cast<std::size_t>(point.triangle)];
+  PressForce sum;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const auto found = site_at.find(triangle[l]);
+    if (found == site_at.end()) return std::nullopt;
+    const std::optional<PressForce> part = sampled_force(*found->second, depth);
+    if (!part) return std::nullopt;
+    sum.along += point.natural[l] * part->along;
+    sum.across = sum.across + point.natural[l] * part->across;
+  }
+  sum.across = sum.across - dot(sum.across, point.inward) * point.inward;
+  return sum;
+}
+
+/// The samples of the three vertices, interpolated, against the direct force: no fit. Across the
+/// press this is what a model would err by that rendered those forces, too.
+void add_interpolation_rows(const Library& library, const std::vector<HeldOutPoint>& points,
+                            const Curves& sampled, Fidelity& result) {
+  std::map<std::int32_t, const SiteCurves*> site_at;
+  for (const SiteCurves& site : sampled.sites) site_at[site.vertex] = &site;
+  std::vector<Sampled> along, across;
   for (const ComparedState& s : result.states) {
     const HeldOutPoint& point = points[s.point];
     if (s.kind != PathKind::Normal || point.node) continue;
-    const Triangle& triangle = library.triangles[static_cast<std::size_t>(point.triangle)];
-    std::optional<double> force = 0;
-    for (std::size_t l = 0; l < 3 && force; ++l) {
-      const auto found = at.find(triangle[l]);
-      const auto part = found == at.end() ? std::nullopt : sampled_force(*found->second, s.depth);
-      force = part ? std::optional(*force + point.natural[l] * *part) : std::nullopt;
-    }
+    const std::optional<PressForce> force = interpolated_force(library, point, s.depth, site_at);
     if (!force) continue;
-    const double newton = std::abs(*force - dot(s.direct, point.inward));
-    errors.push_back({newton / s.scale, newton, s.point});
+    const double direct = dot(s.direct, point.inward);
+    const double newton = std::abs(force->along - direct);
+    along.push_back({newton / s.scale, newton, s.point});
+    const double aside = norm(force->across - (s.direct - direct * point.inward));
+    across.push_back({aside / s.scale, aside, s.point});
   }
-  if (errors.empty()) return;
-  result.rows.push_back(row_of("interpolation of the samples, off node", "normal", errors));
+  if (along.empty()) return;
+  const char* what = "interpolation of the samples, off node";
+  result.rows.push_back(row_of(what, "normal", std::move(along)));
+  result.rows.push_back(row_of(what, "direction", std::move(across)));
 }
 
 std::vector<double> held_depths(const Curves& curves) {
@@ -280,7 +314,7 @@ Fidelity measure(const Library& library, const RenderedBody& body,
         return s.kind == PathKind::Lateral && s.within_friction && !points[s.point].node;
       },
       true);
-  add_interpolation_row(library, points, sampled, result);
+  add_interpolation_rows(library, points, sampled, result);
   decoupling.write(result);
   return result;
 }

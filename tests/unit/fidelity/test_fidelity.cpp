@@ -148,6 +148,28 @@ TEST(Fidelity, SeparatesAForceThatNoModelOfThisKindHas) {
   EXPECT_NEAR(row(fidelity, "normal press, off node", "direction").worst,
               0.05 / std::hypot(0.12, 0.05), 1e-6);
   EXPECT_NEAR(row(fidelity, "oblique press, off node", "lateral").worst, 0, 1e-6);
+  EXPECT_NEAR(row(fidelity, "interpolation of the samples, off node", "direction").worst_newton,
+              0.05, 1e-9);
+}
+
+TEST(Fidelity, TellsWhatForcesAcrossThePressWouldMend) {
+  // Pulls aside in proportion to the depth, half as large at the vertices as between them.
+  const Library library = even_plate();
+  const auto points = draw_points(library, 4, 0, 7);
+  const Vec3 across{-0.8, 0.6, 0};
+  const auto direct = direct_of(points, {}, [&](const HeldOutPoint&, double z, double) {
+    return linear(kNormal * z, 0) + 20 * z * across;
+  });
+  Curves sampled = sampled_of({120, 120, 120, 120}, 0.003);
+  for (SiteCurves& site : sampled.sites)
+    for (CurveSample& sample : site.paths[0].samples)
+      sample.force = sample.force + 10 * sample.displacement * across;
+  const Fidelity fidelity = measure_on(library, points, direct, sampled);
+  const ErrorRow& left = row(fidelity, "interpolation of the samples, off node", "direction");
+  EXPECT_NEAR(left.worst_newton, 0.04, 1e-9);
+  EXPECT_NEAR(left.median, 10 / std::hypot(120.0, 20.0), 1e-6);
+  EXPECT_NEAR(row(fidelity, "normal press, off node", "direction").median,
+              20 / std::hypot(120.0, 20.0), 1e-6);
 }
 
 TEST(Fidelity, TellsWhatOneLateralResponseForAllDepthsCosts) {
