@@ -86,8 +86,12 @@ class Series {
 /// Traces over the residuals M e of noise e with covariance V, M = I - Q Q^T.
 class FittedNoise {
  public:
+  /// Without a column, where all constants are at their bounds, Q is a column of zeros: M = I.
   FittedNoise(const Series& series, const MatrixXd& Q)
-      : series_(series), Q_(Q), AQ_(series.neighbours(Q)), DQ_(series.within(Q)) {}
+      : series_(series),
+        Q_(Q.cols() > 0 ? Q : MatrixXd(MatrixXd::Zero(Q.rows(), 1))),
+        AQ_(series.neighbours(Q_)),
+        DQ_(series.within(Q_)) {}
 
   /// tr(A M V M) / tr(D M V M): the lag-one correlation that residuals are expected to have.
   double expected_lag_one(double rho) const {
@@ -127,7 +131,7 @@ class FittedNoise {
 
  private:
   const Series& series_;
-  const MatrixXd& Q_;
+  MatrixXd Q_;
   MatrixXd AQ_, DQ_;
 };
 
