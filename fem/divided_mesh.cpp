@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <utility>
 
 #include "fem/at.hpp"
 
@@ -131,8 +132,10 @@ double six_volumes(const QuadraticMesh& mesh, const std::array<std::int32_t, 4>&
 /// Divides the elements one after another; an edge that two of them share gets one middle.
 class Divider {
  public:
-  Divider(const QuadraticMesh& whole, const std::vector<int>& elements, DividedMesh& divided)
-      : whole_(whole), divided_(divided), edges_(whole.tetrahedra.size(), 0U) {
+  explicit Divider(const QuadraticMesh& whole)
+      : whole_(whole), edges_(whole.tetrahedra.size(), 0U) {}
+
+  DividedMesh run(const std::vector<int>& elements) && {
     choose_edges(elements);
     for (std::size_t e = 0; e < edges_.size(); ++e)
       if (edges_[e] == 0) add_element(whole_.tetrahedra[e], whole_.region[e]);
@@ -140,6 +143,7 @@ class Divider {
       if (edges_[e] != 0) divide_element(static_cast<int>(e));
     for (std::size_t f = 0; f < whole_.facets.size(); ++f) divide_facet(f);
     place_nodes();
+    return std::move(divided_);
   }
 
  private:
@@ -254,7 +258,7 @@ class Divider {
   }
 
   const QuadraticMesh& whole_;
-  DividedMesh& divided_;
+  DividedMesh divided_;
   std::vector<unsigned> edges_;          ///< of each element, those that are divided, one bit each
   std::vector<bool> split_;              ///< of each mid-edge node, whether its edge is divided
   std::vector<bool> held_;               ///< of each new node
@@ -264,9 +268,7 @@ class Divider {
 }  // namespace
 
 DividedMesh divide(const QuadraticMesh& mesh, const std::vector<int>& elements) {
-  DividedMesh divided;
-  Divider(mesh, elements, divided);
-  return divided;
+  return Divider(mesh).run(elements);
 }
 
 Prolongation::Prolongation(const DividedMesh& divided, const std::vector<Tetrahedron10>& elements,
