@@ -5,15 +5,16 @@
 #include <algorithm>
 #include <bit>
 #include <map>
+#include <string>
 #include <utility>
 
 #include "fem/at.hpp"
+#include "format/error.hpp"
 
 namespace palpate::fem {
 
 namespace {
 
-using Edge = std::array<std::int32_t, 2>;
 using Volume = std::array<double, 4>;  ///< volume coordinates
 
 /// The corners of the face opposite to each corner.
@@ -120,12 +121,18 @@ std::vector<Child> children(const QuadraticMesh& mesh, const Tetrahedron10& node
   return children_along(apart);
 }
 
-double six_volumes(const QuadraticMesh& mesh, const std::array<std::int32_t, 4>& c) {
-  const auto edge = [&](std::size_t i) -> Eigen::Vector3d {
-    return mesh.X.col(c[i]) - mesh.X.col(c[0]);
-  };
+/// Volume of a child over that of its parent, if the parent had straight edges.
+double straight_volume(const Child& child) {
+  Eigen::Matrix4d corners;
+  for (int c = 0; c < 4; ++c)
+    corners.col(c) = Eigen::Vector4d(volume_coordinates(child[at(c)]).data());
+  return corners.determinant();
+}
+
+double six_volumes(const QuadraticMesh& mesh, const Tetrahedron10& node, const Child& child) {
   Eigen::Matrix3d edges;
-  edges << edge(1), edge(2), edge(3);
+  for (int c = 0; c < 3; ++c)
+    edges.col(c) = mesh.X.col(node[child[at(c + 1)]]) - mesh.X.col(node[child[0]]);
   return edges.determinant();
 }
 
@@ -205,14 +212,21 @@ class Divider {
   void divide_element(int element) {
     const Tetrahedron10& node = whole_.tetrahedra[at(element)];
     for (Child child : children(whole_, node, edges_[at(element)])) {
-      if (six_volumes(whole_, {node[child[0]], node[child[1]], node[child[2]], node[child[3]]}) < 0)
-        std::swap(child[2], child[3]);
+      if (straight_volume(child) < 0) std::swap(child[2], child[3]);
+      if (!(six_volumes(whole_, node, child) > 0)) refuse(element);
       Tetrahedron10 nodes{};
       for (std::size_t c = 0; c < 4; ++c) nodes[c] = node[child[c]];
       for (std::size_t e = 0; e < 6; ++e)
         nodes[4 + e] = middle(element, child[kTetEdges[e][0]], child[kTetEdges[e][1]]);
       add_element(nodes, whole_.region[at(element)]);
     }
+  }
+
+  [[noreturn]] static void refuse(int element) {
+    throw Error(
+        ErrorKind::Geometry, "element " + std::to_string(element) + " of the body",
+        "cannot be divided: its curved edges turn a part of it over",
+        "mesh the body again, or take smaller elements instead of solver.divide_under_tool");
   }
 
   /// After the elements: all middles are known.
@@ -251,8 +265,13 @@ class Divider {
     const auto made = static_cast<Eigen::Index>(divided_.made.size());
     divided_.mesh.X.resize(3, whole_.X.cols() + made);
     divided_.mesh.X.leftCols(whole_.X.cols()) = whole_.X;
-    for (const auto& [edge, node] : middle_)
-      divided_.mesh.X.col(node) = 0.5 * (whole_.X.col(edge[0]) + whole_.X.col(edge[1]));
+    for (Eigen::Index i = 0; i < made; ++i) {
+      const auto& [parent, N] = divided_.made[at(static_cast<int>(i))];
+      auto x = divided_.mesh.X.col(whole_.X.cols() + i);
+      x.setZero();
+      for (std::size_t a = 0; a < kTetNodes; ++a)
+        x += N[a] * whole_.X.col(whole_.tetrahedra[at(parent)][a]);
+    }
     divided_.mesh.held = whole_.held;
     divided_.mesh.held.insert(divided_.mesh.held.end(), held_.begin(), held_.end());
   }

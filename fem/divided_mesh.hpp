@@ -14,7 +14,8 @@ namespace palpate::fem {
 /// in four along its shortest diagonal [Bey 1995]. Their neighbours are divided as far as the mesh
 /// has to fit together: along one edge, along two opposite ones, or along those of one face; in
 /// eight where that is not enough. The nodes of the undivided mesh come first, in its order. The
-/// new ones are the middles of the new edges.
+/// new ones are the middles of the new edges. All lie on the quadratic through the nodes of their
+/// parents, so that the children of elements under a curved skin follow it.
 struct DividedMesh {
   /// Where a new node lies: its displacement, were the parent still one quadratic element, is
   /// sum N_a u_a over the nodes of the parent.
@@ -27,7 +28,8 @@ struct DividedMesh {
   std::vector<Made> made;
 };
 
-/// `elements`: to be divided in eight.
+/// `elements`: to be divided in eight. @throws Error(Geometry) where a curved edge turns a child
+/// over.
 DividedMesh divide(const QuadraticMesh& mesh, const std::vector<int>& elements);
 
 /// The new unknowns of a divided mesh as functions of those of the undivided one. Both numbered by

@@ -108,6 +108,8 @@ QuadraticMesh make_quadratic_mesh(const Body& body, bool linear) {
   for (std::size_t e = 0; e < edges.corners().size(); ++e)
     mesh.X.col(corner_count + static_cast<Eigen::Index>(e)) =
         0.5 * (mesh.X.col(edges.corners()[e][0]) + mesh.X.col(edges.corners()[e][1]));
+  for (const CurvedEdge& curved : body.curved_edges)
+    mesh.X.col(edges.of(curved.ends[0], curved.ends[1])) = Eigen::Vector3d(curved.middle.data());
   mark_held_nodes(body, edges, mesh);
   mesh.edges = edges.corners();
   return mesh;

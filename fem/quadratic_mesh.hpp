@@ -19,7 +19,9 @@ using Facet = std::array<std::int32_t, 6>;
 using Tetrahedron10 = std::array<std::int32_t, kTetNodes>;
 
 /// The body on quadratic elements: the nodes of the body come first, in its order, the mid-edge
-/// nodes follow. A mid-edge node is held when its edge lies on a held facet or in a held volume.
+/// nodes follow, those of curved edges on the skin. Elements have flat sides between their corners;
+/// only a tool and the division of elements see where mid-edge nodes lie. A mid-edge node is held
+/// when its edge lies on a held facet or in a held volume.
 struct QuadraticMesh {
   Eigen::Matrix3Xd X;  ///< (3, nodes) reference positions, m
   std::vector<Tetrahedron10> tetrahedra;

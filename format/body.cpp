@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/body.hpp"
 
+#include <algorithm>
+
 #include "format/artifact.hpp"
 
 namespace palpate {
@@ -26,6 +28,38 @@ void check_tetrahedra(const Checks& checks, const Body& body) {
   checks.require(!body.region_names.empty(), "/region_names", "is empty");
   checks.same_size("/tetrahedron_region", body.tetrahedron_region.size(), body.tetrahedra.size());
   checks.indices("/tetrahedron_region", body.tetrahedron_region, body.region_names.size());
+}
+
+std::vector<Edge> edges_of(const std::vector<Triangle>& facets) {
+  std::vector<Edge> edges;
+  for (const Triangle& facet : facets)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(facet[i], facet[(i + 1) % 3]);
+      edges.push_back({low, high});
+    }
+  std::sort(edges.begin(), edges.end());
+  return edges;
+}
+
+void check_curved_edges(const Checks& checks, const Body& body) {
+  const std::vector<Edge> edges = edges_of(body.boundary);
+  for (std::size_t row = 0; row < body.curved_edges.size(); ++row) {
+    const auto& [ends, middle] = body.curved_edges[row];
+    if (!std::binary_search(edges.begin(), edges.end(), ends)) {
+      checks.fail_row("/curved_edges/ends", row,
+                      "is not an edge of the boundary, lower node first");
+    }
+    if (row > 0 && !(body.curved_edges[row - 1].ends < ends)) {
+      checks.fail_row("/curved_edges/ends", row, "is not above the row before it");
+    }
+    checks.vector("/curved_edges/middle", row, middle, rules::kFinite);
+    const Vec3 a = body.nodes[static_cast<std::size_t>(ends[0])];
+    const Vec3 b = body.nodes[static_cast<std::size_t>(ends[1])];
+    if (!(norm(middle - 0.5 * (a + b)) <= kMostBulge * norm(b - a))) {
+      checks.fail_row("/curved_edges/middle", row,
+                      "is farther from the edge than a quarter of its length");
+    }
+  }
 }
 
 void check_fixed_nodes(const Checks& checks, const Body& body) {
@@ -75,6 +109,7 @@ void check_body(const Checks& checks, const Body& body) {
   checks.vectors("/nodes", body.nodes, rules::kFinite);
   check_tetrahedra(checks, body);
   checks.corners("/boundary", body.boundary, body.nodes.size());
+  check_curved_edges(checks, body);
   check_fixed_nodes(checks, body);
   check_foundation(checks, body);
   check_response(checks, body);
@@ -111,6 +146,33 @@ std::vector<SprungFacet> read_foundation(hdf5::Reader& reader) {
   return foundation;
 }
 
+void write_curved_edges(hdf5::Writer& writer, const std::vector<CurvedEdge>& curved) {
+  std::vector<Edge> ends;
+  std::vector<Vec3> middle;
+  for (const CurvedEdge& edge : curved) {
+    ends.push_back(edge.ends);
+    middle.push_back(edge.middle);
+  }
+  writer.group("/curved_edges", "Edges of the boundary that follow a curved skin.");
+  writer.dataset("/curved_edges/ends", ends, {"1", "Rows of /nodes, ascending."});
+  writer.dataset("/curved_edges/middle", middle,
+                 {"m", "Where the skin is, halfway between the ends of each edge."});
+}
+
+std::vector<CurvedEdge> read_curved_edges(hdf5::Reader& reader) {
+  const auto ends = reader.dataset<Edge>("/curved_edges/ends", "1");
+  const auto middle = reader.dataset<Vec3>("/curved_edges/middle", "m", ends.size());
+  std::vector<CurvedEdge> curved;
+  for (std::size_t row = 0; row < ends.size(); ++row) curved.push_back({ends[row], middle[row]});
+  return curved;
+}
+
+/// The lowest schema whose readers know all that the body has.
+int schema_of(const Body& body) {
+  if (!body.curved_edges.empty()) return kCurvedBodySchema;
+  return body.foundation.empty() ? kBodySchema : kSprungBodySchema;
+}
+
 void write_response(hdf5::Writer& writer, const ResponseSurface& surface) {
   writer.group("/response", "The coarse triangulation that carries the responses.");
   writer.dataset("/response/node", surface.node,
@@ -128,8 +190,7 @@ void write_response(hdf5::Writer& writer, const ResponseSurface& surface) {
 void write_body(const std::filesystem::path& path, const Body& body) {
   check_body(Checks(path), body);
   hdf5::Writer writer(path);
-  write_root(writer, kArtifact, body.foundation.empty() ? kBodySchema : kSprungBodySchema,
-             "A tetrahedralized body, ready for indentation.");
+  write_root(writer, kArtifact, schema_of(body), "A tetrahedralized body, ready for indentation.");
   writer.set_text("/", "name", body.name);
   writer.dataset("/nodes", body.nodes, {"m", "Reference position X of each node."});
   writer.dataset("/tetrahedra", body.tetrahedra,
@@ -141,6 +202,7 @@ void write_body(const std::filesystem::path& path, const Body& body) {
   writer.dataset("/boundary", body.boundary,
                  {"1", "Nodes of each boundary facet, counter-clockwise seen from outside."});
   writer.dataset("/fixed_nodes", body.fixed_nodes, {"1", "Nodes held by a support, ascending."});
+  if (!body.curved_edges.empty()) write_curved_edges(writer, body.curved_edges);
   if (!body.foundation.empty()) write_foundation(writer, body.foundation);
   write_response(writer, body.response);
   write_provenance(writer, body.provenance);
@@ -149,7 +211,7 @@ void write_body(const std::filesystem::path& path, const Body& body) {
 
 Body read_body(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kRemedy);
-  const auto schema = reader.require_artifact(kArtifact, kBodySchema, kSprungBodySchema);
+  const auto schema = reader.require_artifact(kArtifact, kBodySchema, kCurvedBodySchema);
   Body body;
   body.name = reader.text("/", "name");
   body.nodes = reader.dataset<Vec3>("/nodes", "m");
@@ -158,7 +220,10 @@ Body read_body(const std::filesystem::path& path) {
   body.region_names = reader.texts("/region_names");
   body.boundary = reader.dataset<Triangle>("/boundary", "1");
   body.fixed_nodes = reader.dataset<std::int32_t>("/fixed_nodes", "1");
-  if (schema == kSprungBodySchema) body.foundation = read_foundation(reader);
+  if (schema == kCurvedBodySchema) body.curved_edges = read_curved_edges(reader);
+  if (schema == kSprungBodySchema || (schema == kCurvedBodySchema && reader.has("/foundation"))) {
+    body.foundation = read_foundation(reader);
+  }
   body.response.node = reader.dataset<std::int32_t>("/response/node", "1");
   body.response.inward = reader.dataset<Vec3>("/response/inward", "1");
   body.response.triangles = reader.dataset<Triangle>("/response/triangles", "1");

@@ -14,6 +14,7 @@ namespace palpate {
 
 inline constexpr int kBodySchema = 1;
 inline constexpr int kSprungBodySchema = 2;  ///< of a body with a foundation
+inline constexpr int kCurvedBodySchema = 3;  ///< of a body with curved edges, with or without one
 
 /// The coarse triangulation that carries the stored responses. Its vertices are nodes of the body.
 struct ResponseSurface {
@@ -32,9 +33,21 @@ struct SprungFacet {
   bool operator==(const SprungFacet&) const = default;
 };
 
-/// A body ready for indentation: straight-sided tetrahedra, their regions, the supports, and the
-/// response surface. Positions in metres. The boundary facets are refinements of the triangles of
-/// the response surface, so every response vertex is a boundary node.
+/// An edge of the boundary whose middle is not halfway between its ends: along the edge the skin is
+/// the parabola through the three. The skin of a facet is the quadratic in its volume coordinates
+/// through its corners and the middles of its edges.
+struct CurvedEdge {
+  Edge ends{};    ///< indices into Body::nodes, ascending
+  Vec3 middle{};  ///< m
+  bool operator==(const CurvedEdge&) const = default;
+};
+/// A middle may lie this far from halfway between the ends, in parts of the length of the edge.
+inline constexpr double kMostBulge = 0.25;
+
+/// A body ready for indentation: straight-sided tetrahedra, their regions, the supports, the skin
+/// that a tool meets and the response surface. Positions in metres. The boundary facets are
+/// refinements of the triangles of the response surface, so every response vertex is a boundary
+/// node.
 struct Body {
   std::string name;
   std::vector<Vec3> nodes;                       ///< (N) m
@@ -42,6 +55,7 @@ struct Body {
   std::vector<std::int32_t> tetrahedron_region;  ///< (T) index into region_names
   std::vector<std::string> region_names;         ///< region 0 is the matrix
   std::vector<Triangle> boundary;                ///< (B) boundary facets, outward orientation
+  std::vector<CurvedEdge> curved_edges;          ///< ascending ends; empty: flat facets
   std::vector<std::int32_t> fixed_nodes;         ///< nodes held by a support, ascending
   std::vector<SprungFacet> foundation;           ///< ascending facets; empty: none
   ResponseSurface response;

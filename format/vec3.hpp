@@ -9,6 +9,7 @@
 namespace palpate {
 
 using Vec3 = std::array<double, 3>;
+using Edge = std::array<std::int32_t, 2>;
 using Triangle = std::array<std::int32_t, 3>;  ///< vertex indices, counter-clockwise from outside
 using Tetrahedron = std::array<std::int32_t, 4>;  ///< positively oriented vertex indices
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "format/error.hpp"
+#include "mesher/curved_skin.hpp"
 #include "mesher/fill.hpp"
 #include "mesher/quality.hpp"
 #include "mesher/queries.hpp"
@@ -474,9 +475,9 @@ void check_counts(const Settings& settings, const Surface& skin) {
 NestedSurface remesh_skin(const Settings& settings, const Surface& skin) {
   const int subdivisions =
       std::max(1, static_cast<int>(std::lround(settings.patch_spacing / settings.element_size)));
-  NestedSurface nested =
-      remesh(skin, {settings.patch_spacing, subdivisions, settings.feature_angle},
-             settings.surface.path.string(), settings.log);
+  NestedSurface nested = remesh(
+      skin, {settings.patch_spacing, subdivisions, settings.feature_angle, settings.curved_facets},
+      settings.surface.path.string(), settings.log);
   note(settings.log, text("response surface: ", nested.response.points.size(), " vertices, ",
                           nested.response.triangles.size(), " triangles; each divided into ",
                           subdivisions, " x ", subdivisions, " facets"));
@@ -516,6 +517,16 @@ std::vector<Surface> remesh_inclusions(const Settings& settings,
   return remeshed;
 }
 
+void curve_skin(Body& body, const NestedSurface& nested, const Settings& settings) {
+  body.curved_edges = nested.curved;
+  const std::size_t drawn_back = draw_back_edges(body);
+  if (drawn_back > 0) {
+    note(settings.log,
+         text(counted(drawn_back, "edge"), " of ", nested.curved.size(),
+              " do not follow the skin all the way: an element under them would fold"));
+  }
+}
+
 }  // namespace
 
 Body mesh(const Settings& settings) {
@@ -549,6 +560,8 @@ Body mesh(const Settings& settings) {
   set_regions(body, settings, filling, inclusions);
   body.nodes = std::move(filling.nodes);
   body.tetrahedra = std::move(filling.tetrahedra);
+
+  curve_skin(body, nested, settings);
 
   const Quality quality = measure_quality(body.nodes, body.tetrahedra);
   check_volumes(quality, nested.boundary, where);

@@ -60,6 +60,7 @@ struct Settings {
   double element_size = 0.005;          ///< m, edge length of the boundary facets
   double interior_growth = 1.5;         ///< largest interior edge over element_size (aimed at)
   double feature_angle = 45;            ///< degrees; sharper edges of the input are kept
+  bool curved_facets = true;            ///< Body::curved_edges, else the tool meets flat facets
   double tool_radius = 0.005;           ///< m, keeps sites clear of supports; depth check
   double depth = 0;                     ///< m, of the planned indentation; 0 skips the check
   std::function<void(std::string_view)> log;  ///< one line a step, may be empty

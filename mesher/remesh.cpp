@@ -7,8 +7,10 @@
 #include <CGAL/Polygon_mesh_processing/detect_features.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
 
+#include <algorithm>
 #include <map>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "format/error.hpp"
@@ -33,6 +35,10 @@ constexpr unsigned kIterationsPerRound = 3;
 // Sharp edges of a noisy surface come in fragments. One that is shorter than this many spacings
 // is no feature of the response surface: its ends could not be moved and would force tiny edges.
 constexpr double kShortestFeature = 3;
+
+// An edge that bulges less than this, in parts of its length, is straight: what is left is
+// rounding.
+constexpr double kLeastBulge = 1e-9;
 
 double length(const Mesh& mesh, Mesh::Edge_index edge) {
   const auto h = mesh.halfedge(edge);
@@ -120,6 +126,24 @@ class Subdivision {
     return std::move(result_);
   }
 
+  /// The middles of the edges between the facets of run(), put on the target.
+  std::vector<CurvedEdge> curved_edges(const Surface& boundary) const {
+    std::set<Edge> edges;
+    for (const Triangle& facet : boundary.triangles)
+      for (std::size_t i = 0; i < 3; ++i) edges.insert(ordered(facet[i], facet[(i + 1) % 3]));
+    std::vector<CurvedEdge> curved;
+    for (const Edge& ends : edges) {
+      const Vec3 a = boundary.points[static_cast<std::size_t>(ends[0])];
+      const Vec3 b = boundary.points[static_cast<std::size_t>(ends[1])];
+      const Vec3 straight = 0.5 * (a + b);
+      const Vec3 middle =
+          sharp_edges_.contains(ends) ? target_.on_feature(straight) : target_.on_surface(straight);
+      const double bulge = norm(middle - straight) / norm(b - a);
+      if (bulge > kLeastBulge && bulge <= kMostBulge) curved.push_back({ends, middle});
+    }
+    return curved;
+  }
+
  private:
   std::vector<Vec3>& points() { return result_.boundary.points; }
 
@@ -132,6 +156,8 @@ class Subdivision {
   /// it.
   Mesh::Halfedge_index first_halfedge(Mesh::Edge_index e) const { return mesh_.halfedge(e, 0); }
 
+  static Edge ordered(std::int32_t a, std::int32_t b) { return {std::min(a, b), std::max(a, b)}; }
+
   void split_edge(Mesh::Edge_index e) {
     const auto h = first_halfedge(e);
     const Vec3 a = to_vec3(mesh_.point(mesh_.source(h)));
@@ -141,6 +167,8 @@ class Subdivision {
       const Vec3 x = a + (static_cast<double>(k) / n_) * (b - a);
       add(sharp_[e] ? target_.on_feature(x) : target_.on_surface(x));
     }
+    for (int k = 0; sharp_[e] && k < n_; ++k)
+      sharp_edges_.insert(ordered(on_halfedge(h, k), on_halfedge(h, k + 1)));
   }
 
   /// Point k of 0..n on the halfedge, counted from its source.
@@ -196,6 +224,7 @@ class Subdivision {
   const Target& target_;
   int n_;
   std::vector<std::int32_t> first_on_edge_;
+  std::set<Edge> sharp_edges_;  ///< of the boundary
   NestedSurface result_;
 };
 
@@ -244,7 +273,9 @@ NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const
     put_back(mesh, sharp, target);
   }
   mesh.collect_garbage();
-  NestedSurface nested = Subdivision(mesh, sharp, target, settings.subdivisions).run();
+  Subdivision subdivision(mesh, sharp, target, settings.subdivisions);
+  NestedSurface nested = subdivision.run();
+  if (settings.curved) nested.curved = subdivision.curved_edges(nested.boundary);
   check_nesting(nested, settings.spacing, where);
   return nested;
 }

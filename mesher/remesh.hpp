@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "format/body.hpp"
 #include "mesher/surface.hpp"
 #include "mesher/text.hpp"
 
@@ -13,16 +14,19 @@ struct NestedSurface {
   Surface response;                  ///< coarse; its points lie on the input surface
   Surface boundary;                  ///< fine; its points begin with those of `response`
   std::vector<std::int32_t> parent;  ///< response triangle of each boundary facet
+  std::vector<CurvedEdge> curved;    ///< of `boundary`, their middles on the input surface
 };
 
 struct RemeshSettings {
   double spacing = 0;        ///< m, edge length of the response surface
   int subdivisions = 1;      ///< n: each response triangle becomes n x n boundary facets
   double feature_angle = 0;  ///< degrees; sharper edges of the input are kept
+  bool curved = false;       ///< put the middles of boundary edges on the input surface
 };
 
 /// Remesh `input` isotropically to the spacing, keep its sharp edges, and subdivide each triangle;
-/// the new vertices are put on the input surface, those of sharp edges on the sharp edges.
+/// the new vertices, and the middles of curved edges, are put on the input surface, those of sharp
+/// edges on the sharp edges.
 /// @throws Error(Geometry) when the result folds over or cuts itself: the spacing is too coarse.
 NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const std::string& where,
                      const Log& log);

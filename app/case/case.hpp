@@ -31,6 +31,7 @@ struct MeshSection {
   double element_size = 0.005;   ///< m
   double interior_growth = 1.5;
   double feature_angle = 0.7853981633974483;  ///< rad
+  bool curved_facets = true;
   bool operator==(const MeshSection&) const = default;
 };
 

@@ -75,6 +75,9 @@ void describe(V& v, MeshSection& s) {
               "sharper edges of the surface are kept",
               kOptional,
               {.low = 0, .high = 3.141592653589793, .low_open = true}});
+  v.flag(s.curved_facets, {"curved_facets",
+                           "the tool meets a skin that is curved as the surface is, through the "
+                           "middles of the edges of facets; false: flat facets"});
 }
 
 template <class V>

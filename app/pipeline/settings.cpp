@@ -84,6 +84,7 @@ mesher::Settings mesh_settings(const Workspace& space) {
   settings.element_size = c.mesh.element_size;
   settings.interior_growth = c.mesh.interior_growth;
   settings.feature_angle = c.mesh.feature_angle * 180 / std::numbers::pi;
+  settings.curved_facets = c.mesh.curved_facets;
   settings.tool_radius = tool_of(c.tool).extent();
   settings.depth = c.indentation.depth;
   return settings;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <optional>
 
 #include "format/error.hpp"
 
@@ -12,34 +14,75 @@ namespace {
 
 /// Of edges, so that no line slips through between two facets.
 constexpr double kRounding = 1e-9;
+/// Each step leaves a part of the error that is the slope of the bulge, a tenth or so.
+constexpr int kSteps = 12;
 
-/// Where the line position + s inward enters the body through a facet; NaN where it does not.
-double entry(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& position,
-             const Vec3& inward) {
-  const Vec3 outward = cross(b - a, c - a);  // twice the area long
+/// Where a line meets the plane of a triangle.
+struct Crossing {
+  double s;  ///< along the line
+  Vec3 L;    ///< volume coordinates
+};
+
+/// None where the line leaves the body or runs along the triangle.
+std::optional<Crossing> crossing(const std::array<Vec3, 3>& x, const Vec3& position,
+                                 const Vec3& inward) {
+  const Vec3 outward = cross(x[1] - x[0], x[2] - x[0]);  // twice the area long
   const double along = dot(outward, inward);
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  if (!(along < 0)) return none;
-  const double s = dot(outward, a - position) / along;
-  const Vec3 x = position + s * inward;
-  const double least = -kRounding * dot(outward, outward);
-  const bool inside = dot(cross(b - a, x - a), outward) >= least &&
-                      dot(cross(c - b, x - b), outward) >= least &&
-                      dot(cross(a - c, x - c), outward) >= least;
-  return inside ? s : none;
+  if (!(along < 0)) return std::nullopt;
+  const double s = dot(outward, x[0] - position) / along;
+  const Vec3 at = position + s * inward;
+  const double square = dot(outward, outward);
+  const double L2 = dot(cross(x[1] - x[0], at - x[0]), outward) / square;
+  const double L0 = dot(cross(x[2] - x[1], at - x[1]), outward) / square;
+  return Crossing{s, {L0, 1 - L0 - L2, L2}};
 }
 
 }  // namespace
 
-double skin_beside(const Body& body, const Vec3& position, const Vec3& inward) {
+Skin::Skin(const Body& body) : owner_("body '" + body.name + "'") {
+  std::map<Edge, Vec3> middle;
+  for (const CurvedEdge& edge : body.curved_edges) middle.emplace(edge.ends, edge.middle);
+  for (const Triangle& nodes : body.boundary) {
+    Facet facet;
+    for (std::size_t i = 0; i < 3; ++i)
+      facet.corner[i] = body.nodes[static_cast<std::size_t>(nodes[i])];
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(nodes[i], nodes[(i + 1) % 3]);
+      const auto found = middle.find({low, high});
+      if (found == middle.end()) continue;
+      facet.bulge[i] = found->second - 0.5 * (facet.corner[i] + facet.corner[(i + 1) % 3]);
+      facet.curved = true;
+    }
+    facets_.push_back(facet);
+  }
+}
+
+/// Where the line position + s inward enters the body through a facet; NaN where it does not. On a
+/// curved facet sum_i L_i x_i + sum_ij 4 L_i L_j b_ij, with b the bulges, the line that is moved
+/// back by the second sum meets the flat one: a fixed point.
+double Skin::entry(const Facet& facet, const Vec3& position, const Vec3& inward) {
+  std::optional<Crossing> at = crossing(facet.corner, position, inward);
+  const auto inside = [&] {
+    return std::ranges::all_of(at->L, [](double L) { return L >= -kRounding; });
+  };
+  if (!at || !inside()) return std::numeric_limits<double>::quiet_NaN();
+  for (int step = 0; facet.curved && step < kSteps; ++step) {
+    Vec3 bulge{};
+    for (std::size_t i = 0; i < 3; ++i)
+      bulge = bulge + (4 * at->L[i] * at->L[(i + 1) % 3]) * facet.bulge[i];
+    at = crossing(facet.corner, position - bulge, inward);
+  }
+  return at->s;
+}
+
+double Skin::beside(const Vec3& position, const Vec3& inward) const {
   double nearest = std::numeric_limits<double>::infinity();
-  const auto node = [&](std::int32_t n) { return body.nodes[static_cast<std::size_t>(n)]; };
-  for (const Triangle& facet : body.boundary) {
-    const double s = entry(node(facet[0]), node(facet[1]), node(facet[2]), position, inward);
+  for (const Facet& facet : facets_) {
+    const double s = entry(facet, position, inward);
     if (std::abs(s) < std::abs(nearest)) nearest = s;
   }
   if (std::isinf(nearest)) {
-    throw Error(ErrorKind::Geometry, "body '" + body.name + "'",
+    throw Error(ErrorKind::Geometry, owner_,
                 "the skin is nowhere below a point of the response surface",
                 "mesh the body again: its response surface is not that of its boundary");
   }
@@ -47,10 +90,11 @@ double skin_beside(const Body& body, const Vec3& position, const Vec3& inward) {
 }
 
 std::vector<double> find_skin(const Body& body, std::vector<HeldOutPoint>& points) {
+  const Skin skin(body);
   std::vector<double> distances;
   for (HeldOutPoint& point : points) {
     if (point.node) continue;
-    point.skin = skin_beside(body, point.position, point.inward);
+    point.skin = skin.beside(point.position, point.inward);
     distances.push_back(std::abs(point.skin));
   }
   std::sort(distances.begin(), distances.end());

@@ -2,6 +2,8 @@
 // Where the skin of the body lies beside the flat triangles that carry the responses.
 #pragma once
 
+#include <array>
+#include <string>
 #include <vector>
 
 #include "fitting/fidelity/held_out.hpp"
@@ -9,14 +11,30 @@
 
 namespace palpate::fidelity {
 
-/// How far the skin, the boundary of the body, is from a point of the response surface along the
-/// unit direction `inward`, m: negative where it bulges out over the triangle, positive where it
-/// lies below. Of several places the nearest at which the line enters the body. @throws
-/// Error(Geometry) when the line enters it nowhere.
-double skin_beside(const Body& body, const Vec3& position, const Vec3& inward);
+/// The skin of a body: its boundary facets, curved where their edges are (CurvedEdge). Immutable.
+class Skin {
+ public:
+  explicit Skin(const Body& body);
+
+  /// How far the skin is from a point of the response surface along the unit vector `inward`, m:
+  /// positive where the skin lies below, negative where it bulges out. Of several crossings the
+  /// nearest. @throws Error(Geometry) where there is none.
+  double beside(const Vec3& position, const Vec3& inward) const;
+
+ private:
+  /// Corners, then bulges of the edges 01, 12, 20 over the straight ones.
+  struct Facet {
+    std::array<Vec3, 3> corner{}, bulge{};
+    bool curved = false;
+  };
+  static double entry(const Facet& facet, const Vec3& position, const Vec3& inward);
+
+  std::string owner_;
+  std::vector<Facet> facets_;
+};
 
 /// Sets HeldOutPoint::skin of the points that are at no node. @return how far the skin is from
-/// them, m, ascending. @throws as skin_beside.
+/// them, m, ascending. @throws as Skin::beside.
 std::vector<double> find_skin(const Body& body, std::vector<HeldOutPoint>& points);
 
 }  // namespace palpate::fidelity

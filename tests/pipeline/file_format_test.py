@@ -17,7 +17,7 @@ import numpy as np
 
 PROGRAM, SCHEMA = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 # Sample files and the kind of artifact that each is.
-FILES = {"body": "body", "sprung": "body", "curves": "curves", "library": "library", "coupled": "library", "recording": "recording"}
+FILES = {"body": "body", "sprung": "body", "curved": "body", "curves": "curves", "library": "library", "coupled": "library", "recording": "recording"}
 
 
 def table_rows(page, columns):
@@ -28,15 +28,21 @@ def table_rows(page, columns):
             yield [cells[0].strip("`")] + cells[1:]
 
 
+def first_schema(meaning):
+    """The sample of a schema has all that the page knows up to that schema."""
+    told = re.match(r"schema (\d)", meaning)
+    return int(told[1]) if told else 1
+
+
 def documented_datasets(kind, schema):
     return {row[0]: row[1:4] for row in table_rows(f"{kind}.md", 5)
-            if schema > 1 or "schema 2 only" not in row[4]}
+            if schema >= first_schema(row[4])}
 
 
 def documented_attributes(kind, schema):
     pages = ("common.md", f"{kind}.md")
     return {row[0]: row[1] for page in pages for row in table_rows(page, 3)
-            if schema > 1 or "schema 2 only" not in row[2]}
+            if schema >= first_schema(row[2])}
 
 
 def datasets_of(file):
@@ -165,7 +171,7 @@ class FileFormat(unittest.TestCase):
                              {"CGAL": "5.5", "BLAS kernel": "Haswell", "empty": ""})
 
     def test_body_values(self):
-        for name, schema in (("body", 1), ("sprung", 2)):
+        for name, schema in (("body", 1), ("sprung", 2), ("curved", 3)):
             with self.subTest(name):
                 self.check_body_values(name, schema)
 
@@ -191,6 +197,11 @@ class FileFormat(unittest.TestCase):
             columns = zip(*springs) if springs else ()
             for name, column in zip(("facet", "normal_stiffness", "tangential_stiffness"), columns):
                 np.testing.assert_array_equal(file["foundation"][name][()], column)
+            curved = np.array(known.table())
+            self.assertEqual("curved_edges" in file, len(curved) > 0)
+            if len(curved):
+                np.testing.assert_array_equal(file["curved_edges/ends"][()], curved[0::2, :2])
+                np.testing.assert_array_equal(file["curved_edges/middle"][()], curved[1::2])
 
     def test_curves_values(self):
         known = Tokens(self.folder / "curves.txt")

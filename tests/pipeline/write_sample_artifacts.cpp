@@ -18,12 +18,14 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(folder);
     palpate::write_body(folder / "body.h5", samples::body(1));
     palpate::write_body(folder / "sprung.h5", samples::sprung_body(1));
+    palpate::write_body(folder / "curved.h5", samples::curved_body(1));
     palpate::write_curves(folder / "curves.h5", samples::curves(1));
     palpate::write_library(folder / "library.h5", samples::library(1));
     palpate::write_library(folder / "coupled.h5", samples::coupled_library(1));
     palpate::write_recording(folder / "recording.h5", samples::recording(1));
     palpate::write_file_crash_safely(folder / "body.txt", samples::dump(samples::body(1)));
     palpate::write_file_crash_safely(folder / "sprung.txt", samples::dump(samples::sprung_body(1)));
+    palpate::write_file_crash_safely(folder / "curved.txt", samples::dump(samples::curved_body(1)));
     palpate::write_file_crash_safely(folder / "curves.txt", samples::dump(samples::curves(1)));
     palpate::write_file_crash_safely(folder / "library.txt", samples::dump(samples::library(1)));
     palpate::write_file_crash_safely(folder / "coupled.txt",

@@ -29,4 +29,7 @@ Triangulation octant_of_sphere(int divisions);
 Body make_prisms(const Triangulation& base, int layers,
                  const std::function<Vec3(const Vec3& point, int layer)>& place);
 
+/// Curves the edges of the boundary with both ends at `radius` from the origin onto that sphere.
+void curve_onto_sphere(double radius, Body& body);
+
 }  // namespace palpate::test

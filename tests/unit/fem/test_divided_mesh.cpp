@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 #include "fem/at.hpp"
 #include "fem/divided_mesh.hpp"
@@ -162,6 +163,64 @@ TEST(DividedMesh, ProlongsQuadraticFieldsExactly) {
       value += made.N[a] * field(whole.X.col(whole.tetrahedra[at(made.parent)][a]));
     const Eigen::Vector3d X = divided.mesh.X.col(whole.nodes() + static_cast<int>(i));
     EXPECT_NEAR(value, field(X), 1e-12);
+  }
+}
+
+constexpr double kBend = 10;  // 1/m
+
+double paraboloid(double x, double y) {
+  return -kBend * (x * x + y * y);
+}
+
+/// A block under a paraboloid, z = -kBend (x^2 + y^2): quadratic over every facet.
+Body domed_block(int across) {
+  Body body = block_of(across);
+  const auto on_top = [&](std::int32_t node) {
+    const Vec3& x = body.nodes[at(node)];
+    return std::abs(x[2] - paraboloid(x[0], x[1])) < 1e-12;
+  };
+  for (Vec3& x : body.nodes) x[2] += paraboloid(x[0], x[1]);
+  std::set<Edge> edges;
+  for (const Triangle& t : body.boundary)
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [low, high] = std::minmax(t[i], t[(i + 1) % 3]);
+      edges.insert({low, high});
+    }
+  for (const Edge& ends : edges) {
+    if (!on_top(ends[0]) || !on_top(ends[1])) continue;
+    const Vec3 middle = 0.5 * (body.nodes[at(ends[0])] + body.nodes[at(ends[1])]);
+    body.curved_edges.push_back({ends, {middle[0], middle[1], paraboloid(middle[0], middle[1])}});
+  }
+  return body;
+}
+
+// Curved edges make the top the paraboloid itself; the children lie on it, too.
+TEST(DividedMesh, FollowsACurvedSkin) {
+  const QuadraticMesh whole = make_quadratic_mesh(domed_block(4));
+  const DividedMesh divided = divide(whole, elements_around(whole, 0.005));
+  int on_top = 0;
+  for (const QuadraticMesh* mesh : {&whole, &divided.mesh})
+    for (const Facet& f : mesh->facets) {
+      const auto corner_on_top = [&](int node) {
+        return std::abs(mesh->X(2, node) - paraboloid(mesh->X(0, node), mesh->X(1, node))) < 1e-12;
+      };
+      if (!std::all_of(f.begin(), f.begin() + 3, corner_on_top)) continue;
+      for (std::size_t m = 3; m < 6; ++m)
+        EXPECT_NEAR(mesh->X(2, f[m]), paraboloid(mesh->X(0, f[m]), mesh->X(1, f[m])), 1e-15);
+      ++on_top;
+    }
+  EXPECT_GT(on_top, 2 * 2 * 4 * 4);
+}
+
+TEST(DividedMesh, RefusesAnElementThatACurvedEdgeTurnsOver) {
+  Body body = domed_block(4);
+  for (CurvedEdge& edge : body.curved_edges) edge.middle[2] -= 0.02;
+  const QuadraticMesh whole = make_quadratic_mesh(body);
+  try {
+    divide(whole, all_elements(whole));
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("turn"));
   }
 }
 

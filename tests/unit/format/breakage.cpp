@@ -16,6 +16,8 @@ void write_sample(Kind kind, const Path& path) {
       return write_body(path, body(1));
     case Kind::SprungBody:
       return write_body(path, sprung_body(1));
+    case Kind::CurvedBody:
+      return write_body(path, curved_body(1));
     case Kind::Curves:
       return write_curves(path, curves(1));
     case Kind::Library:
@@ -40,6 +42,7 @@ void read_sample(Kind kind, const Path& path) {
   switch (kind) {
     case Kind::Body:
     case Kind::SprungBody:
+    case Kind::CurvedBody:
       static_cast<void>(read_body(path));
       return;
     case Kind::Curves:

@@ -29,8 +29,23 @@ std::vector<Case> body_cases() {
   const auto poke_u8 = [](const std::string& object, double value) {
     return poke(object, 0, value);
   };
-  constexpr auto kSprung = Kind::SprungBody;
+  constexpr auto kSprung = Kind::SprungBody, kCurved = Kind::CurvedBody;
   return {
+      {"BodyMiddlesMissing", kCurved, remove("/curved_edges/middle"), "/curved_edges/middle",
+       "is missing"},
+      {"BodyMiddlesTooFew", kCurved, replace("/curved_edges/middle", {3, 3}, H5T_IEEE_F64LE),
+       "/curved_edges/middle", "(3, 3)"},
+      {"BodyMiddleNaN", kCurved, poke("/curved_edges/middle", 4, kNaN), "/curved_edges/middle[1]",
+       "nan is not finite"},
+      {"BodyMiddleFarAway", kCurved, poke("/curved_edges/middle", 4, 0.5),
+       "/curved_edges/middle[1]", "a quarter of its length"},
+      {"BodyCurvedEdgeUnknown", kCurved, poke("/curved_edges/ends", 1, 63), "/curved_edges/ends[0]",
+       "is not an edge of the boundary"},
+      {"BodyCurvedEdgesTwice", kCurved, edit([](Hdf5Editor& e) {
+         for (const std::size_t i : {0U, 1U})
+           e.poke("/curved_edges/ends", 2 + i, curved_body(1).curved_edges[0].ends[i]);
+       }),
+       "/curved_edges/ends[1]", "is not above the row before it"},
       {"BodySpringsMissing", kSprung, remove("/foundation/facet"), "/foundation/facet",
        "is missing"},
       {"BodySprungFacetTooLarge", kSprung, poke("/foundation/facet", 3, 100000),

@@ -27,6 +27,10 @@ TEST(RoundTrip, Body) {
     write_body(folder / "sprung.h5", sprung);
     EXPECT_EQ(dump(read_body(folder / "sprung.h5")), dump(sprung));
     EXPECT_NE(dump(sprung), dump(body));
+    const Body curved = samples::curved_body(seed);
+    write_body(folder / "curved.h5", curved);
+    EXPECT_EQ(dump(read_body(folder / "curved.h5")), dump(curved));
+    EXPECT_NE(dump(curved), dump(sprung));
   }
 }
 

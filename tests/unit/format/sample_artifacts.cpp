@@ -213,6 +213,22 @@ Body sprung_body(unsigned seed) {
   return sprung;
 }
 
+Body curved_body(unsigned seed) {
+  Random random(seed);
+  Body curved = sprung_body(seed);
+  std::set<Edge> edges;
+  for (const Triangle& facet : curved.boundary) {
+    const auto [low, high] = std::minmax(facet[0], facet[1]);
+    edges.insert({low, high});
+  }
+  for (const Edge& ends : edges) {
+    const Vec3 a = curved.nodes[static_cast<std::size_t>(ends[0])];
+    const Vec3 b = curved.nodes[static_cast<std::size_t>(ends[1])];
+    curved.curved_edges.push_back({ends, 0.5 * (a + b) + random.vector(0.1 * norm(b - a))});
+  }
+  return curved;
+}
+
 Curves curves(unsigned seed) {
   Random random(seed);
   Curves curves;
@@ -310,11 +326,21 @@ static std::vector<Vec3> springs_of(const Body& body) {
   return rows;
 }
 
+static std::vector<Vec3> bulges_of(const Body& body) {
+  std::vector<Vec3> rows;
+  for (const CurvedEdge& e : body.curved_edges) {
+    rows.push_back({static_cast<double>(e.ends[0]), static_cast<double>(e.ends[1]), 0});
+    rows.push_back(e.middle);
+  }
+  return rows;
+}
+
 std::string dump(const Body& body) {
   const ResponseSurface& r = body.response;
   return (Dump() << body.name << body.nodes << body.tetrahedra << body.tetrahedron_region
                  << body.region_names << body.boundary << body.fixed_nodes << r.node << r.inward
-                 << r.triangles << r.is_site << springs_of(body) << body.provenance)
+                 << r.triangles << r.is_site << springs_of(body) << bulges_of(body)
+                 << body.provenance)
       .text();
 }
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "format/error.hpp"
+#include "mesher/curved_skin.hpp"
 #include "mesher/fill.hpp"
 #include "mesher/quality.hpp"
 #include "mesher/queries.hpp"
@@ -121,6 +122,54 @@ TEST(Remesh, AllPointsLieOnTheInputSurface) {
   const NestedSurface nested = remesh(input, {0.012, 4, 45}, "c", {});
   const SurfaceQuery query(input);
   for (const Vec3& x : nested.boundary.points) EXPECT_LT(norm(query.closest(x).point - x), 1e-9);
+}
+
+// The middles lie on the surface of the file, its rims included; a box has none.
+TEST(Remesh, MiddlesOfCurvedEdgesLieOnTheInputSurface) {
+  constexpr double kRadius = 0.04, kLength = 0.08;
+  const Surface input = test::cylinder(kRadius, kLength, 400);
+  const double chord = kRadius * (1 - std::cos(M_PI / 400));  // of the file
+  const NestedSurface nested = remesh(input, {0.012, 2, 45, true}, "c", {});
+  EXPECT_GT(nested.curved.size(), nested.boundary.triangles.size() / 2);
+  const SurfaceQuery query(input);
+  std::size_t on_rims = 0;
+  for (const CurvedEdge& edge : nested.curved) {
+    EXPECT_LT(norm(query.closest(edge.middle).point - edge.middle), 1e-9);
+    const auto end = [&](std::size_t i) {
+      return nested.boundary.points[static_cast<std::size_t>(edge.ends[i])];
+    };
+    EXPECT_NEAR(std::hypot(edge.middle[0], edge.middle[1]), kRadius, 1.1 * chord);
+    const double straight = std::hypot(0.5 * (end(0) + end(1))[0], 0.5 * (end(0) + end(1))[1]);
+    EXPECT_GT(std::hypot(edge.middle[0], edge.middle[1]), straight);
+    const bool rim = end(0)[2] == end(1)[2] && (end(0)[2] == 0 || end(0)[2] == kLength);
+    on_rims += rim && std::abs(edge.middle[2] - end(0)[2]) < 1e-12;
+  }
+  EXPECT_GT(on_rims, 2 * 2 * M_PI * kRadius / 0.0075);  // facets of 6 mm around both
+  EXPECT_TRUE(remesh(test::box({0, 0, 0}, {0.05, 0.04, 0.03}), {0.008, 3, 45, true}, "b", {})
+                  .curved.empty());
+}
+
+// A tetrahedron of height h over its face: by a bulge of more than a fraction of h inward, a part
+// of it would turn over.
+TEST(CurvedSkin, IsDrawnBackWhereAnElementWouldFold) {
+  Body body;
+  body.nodes = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0.002, 0.002, -0.001}};
+  body.tetrahedra = {{0, 2, 1, 3}};
+  body.boundary = {{0, 1, 2}};
+  const Vec3 straight{0.005, 0, 0};
+  for (const double bulge : {0.00005, -0.00005}) {
+    body.curved_edges = {{{0, 1}, straight + Vec3{0, 0, bulge}}};
+    EXPECT_EQ(draw_back_edges(body), 0U);
+    EXPECT_EQ(body.curved_edges[0].middle[2], bulge);
+  }
+  body.curved_edges = {{{0, 1}, straight + Vec3{0, 0, -0.0018}}};
+  EXPECT_EQ(draw_back_edges(body), 1U);
+  ASSERT_EQ(body.curved_edges.size(), 1U);
+  EXPECT_LT(body.curved_edges[0].middle[2], 0);
+  EXPECT_GE(body.curved_edges[0].middle[2], -0.0018 / 2);
+  body.curved_edges = {{{0, 1}, straight + Vec3{0, 0, -1}}};
+  EXPECT_EQ(draw_back_edges(body), 1U);
+  EXPECT_TRUE(body.curved_edges.empty());
 }
 
 TEST(Fill, RefinesToTheRequestedEdgeAndKeepsEveryTriangle) {

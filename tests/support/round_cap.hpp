@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The cap of a ball on a rigid core, pressed here and there: a ball is as stiff at one place of its
+// skin as at any other.
+#pragma once
+
+#include <vector>
+
+#include "fem/campaign.hpp"
+
+namespace palpate::test {
+
+/// Pole up at (0, 0, radius), soft from the core out.
+struct RoundCap {
+  double radius = 0.030, thickness = 0.015;  ///< m
+  double half_angle = 0.9;                   ///< rad, of the cap
+  double young = 10e3, poisson = 0.45;       ///< Pa, 1
+};
+
+/// Rings at ascending angles from the pole, layers at descending depths below the skin from the
+/// thickness to 0; flat facets, the inside held.
+Body cap_of(const RoundCap& cap, const std::vector<double>& angles, int sectors,
+            const std::vector<double>& depths);
+
+/// Elements of one size everywhere.
+Body even_cap(const RoundCap& cap, double size);
+
+struct Spread {
+  double mean = 0;       ///< N
+  double deviation = 0;  ///< of the places, standard, over the mean
+};
+
+/// Presses a tool along the radius onto the facets whose middles are within `near` of the pole: at
+/// the middle of each, of an edge and at a corner, each from the skin that is there. @return of the
+/// forces along the radius, at each of the `increments` down to `depth`.
+std::vector<Spread> spread_of_force(const RoundCap& cap, const Body& body,
+                                    const fem::IndentationSettings& press, double near);
+
+}  // namespace palpate::test
