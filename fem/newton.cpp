@@ -19,6 +19,9 @@ constexpr double kWeightNoise = 1e-8;
 /// Of the contact on the patch. A facet that flips costs one iteration.
 constexpr int kPatchIterations = 50;
 constexpr int kPatchHalvings = 10;
+/// Of the stiffening of the factor, where the model of the patch is not convex; with all of it it
+/// is.
+constexpr std::array<double, 5> kStiffeningShares{0, 0.003, 0.03, 0.3, 1};
 /// The residual that the patch may leave, over that allowed to the increment.
 constexpr double kPatchTolerance = 0.1;
 
@@ -59,42 +62,63 @@ void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& 
   factorized_ = false;
 }
 
-bool NewtonSolver::factorize(const Displacement& u) {
-  // Away from equilibrium a large pressure can make the stiffness indefinite. Raising its diagonal
-  // still gives a direction of descent.
-  constexpr std::array<double, 6> kShifts{0, 0.02, 0.1, 0.5, 2, 10};
-  factorized_ = false;
-  for (const double shift : kShifts) {
-    model_.stiffness(u, K_);
-    const auto& start = model_.pattern().start;
-    for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[at(start[i])] *= 1 + shift;
-    factorized_ = factor_->factorize(K_);
-    if (factorized_) break;
+void NewtonSolver::shifted_stiffness(const Displacement& u, double patch, double all) {
+  model_.stiffness(u, K_);
+  const auto& start = model_.pattern().start;
+  for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[at(start[i])] *= 1 + all;
+  const std::vector<int>& ours = patch_->unknowns();
+  stiffening_.resize(static_cast<Eigen::Index>(ours.size()));
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    double& diagonal = K_[at(start[at(ours[i])])];
+    stiffening_[static_cast<Eigen::Index>(i)] = patch * std::abs(diagonal);
+    diagonal += patch * std::abs(diagonal);
   }
+}
+
+bool NewtonSolver::factorize(const Displacement& u) {
+  // What is pressed is stable against the tool, not without it: A alone is often indefinite, but on
+  // the patch. Away from equilibrium a large pressure can make the rest indefinite, too; raising
+  // all of its diagonal still gives a direction of descent.
+  struct Shift {
+    double patch, all;
+  };
+  constexpr std::array<Shift, 7> kShifts{
+      {{1, 0}, {30, 0}, {30, 0.02}, {30, 0.1}, {30, 0.5}, {30, 2}, {30, 10}}};
+  factorized_ = std::any_of(kShifts.begin(), kShifts.end(), [&](const Shift& shift) {
+    shifted_stiffness(u, shift.patch, shift.all);
+    return factor_->factorize(K_);
+  });
   if (!factorized_) return false;
   root_ = factor_->last_block();
   Eigen::MatrixXd numbered(root_.rows(), root_.cols());
   for (Eigen::Index i = 0; i < root_.rows(); ++i) numbered.row(place(i)) = root_.row(i);
   schur_.noalias() = numbered * numbered.transpose();
+  schur_.diagonal() -= stiffening_;
   return true;
 }
 
-Eigen::VectorXd NewtonSolver::patch_minimum(const ToolContact& contact, const Eigen::VectorXd& x,
+Eigen::VectorXd NewtonSolver::patch_minimum(const ToolContact& contact, const Eigen::VectorXd& load,
                                             double tolerance) const {
-  Eigen::VectorXd d = Eigen::VectorXd::Zero(x.size()), contact_force, g;
-  Eigen::MatrixXd H;
+  Eigen::MatrixXd S = schur_, H;
+  Eigen::VectorXd d = Eigen::VectorXd::Zero(load.size()), contact_force;
+  Eigen::LLT<Eigen::MatrixXd> llt;
+  std::size_t share = 0;
   for (int iteration = 0; iteration < kPatchIterations; ++iteration) {
-    const Eigen::VectorXd pull = schur_ * (d - x);
-    const double energy =
-        0.5 * pull.dot(d - x) + patch_->derivatives(contact, d, true, contact_force, &H);
-    g = pull + contact_force;
+    const double pushed = patch_->derivatives(contact, d, true, contact_force, &H);
+    const Eigen::VectorXd pull = S * d, g = pull - load + contact_force;
     if (g.norm() <= tolerance) break;
-    Eigen::LLT<Eigen::MatrixXd> llt(H + schur_);
+    llt.compute(H + S);
     if (llt.info() != Eigen::Success) {
-      // Without the negative term of the contact the model is convex.
-      patch_->derivatives(contact, d, false, contact_force, &H);
-      llt.compute(H + schur_);
+      patch_->derivatives(contact, d, false, contact_force, &H);  // without what can be negative
+      llt.compute(H + S);
     }
+    if (llt.info() != Eigen::Success) {
+      if (++share == kStiffeningShares.size()) break;
+      S = schur_;
+      S.diagonal() += kStiffeningShares[share] * stiffening_;
+      continue;
+    }
+    const double energy = 0.5 * d.dot(pull) - load.dot(d) + pushed;
     const Eigen::VectorXd step = -llt.solve(g);
     const double slope = g.dot(step);
     double length = 1;
@@ -102,7 +126,7 @@ Eigen::VectorXd NewtonSolver::patch_minimum(const ToolContact& contact, const Ei
     for (int halvings = 0; halvings < kPatchHalvings; ++halvings, length *= 0.5) {
       trial = d + length * step;
       const double next =
-          0.5 * (trial - x).dot(schur_ * (trial - x)) + patch_->energy(contact, trial);
+          0.5 * trial.dot(S * trial) - load.dot(trial) + patch_->energy(contact, trial);
       if (next <= energy + 1e-4 * length * slope + kEnergyNoise * std::abs(energy)) break;
     }
     d = trial;
@@ -117,8 +141,7 @@ Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displa
   factor_->solve_forward(load.data(), y.data(), workspace_);
   if (const Eigen::Index count = root_.rows(); count > 0) {
     patch_->start_from(contact, u);
-    Eigen::VectorXd x(count), ordered = y.tail(count);
-    root_.transpose().triangularView<Eigen::Upper>().solveInPlace(ordered);
+    Eigen::VectorXd x(count), ordered = root_.triangularView<Eigen::Lower>() * y.tail(count);
     for (Eigen::Index i = 0; i < count; ++i) x[place(i)] = ordered[i];
     x = patch_minimum(contact, x, tolerance);
     for (Eigen::Index i = 0; i < count; ++i) ordered[i] = x[place(i)];

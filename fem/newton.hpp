@@ -43,10 +43,12 @@ Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const 
 ///   min over d of r . d + d A d / 2 + E_c(u + d),   r the internal forces.
 /// E_c sees the unknowns of the contact patch only. They are eliminated last, so that their Schur
 /// complement S stands at the end of the factor and the minimum is found by Newton's method on
-/// them, dense and small:  min (d_P - x_P) S (d_P - x_P) / 2 + E_c(d_P),  x = -A^-1 r. Facets that
-/// come into contact or leave it thus cost no factorization. Steps are shortened until det F > 0
-/// everywhere and the energy or the residual decreases. A failure is a return value: u is then the
-/// last admissible iterate.
+/// them, dense and small:  min r'_P . d_P + d_P S d_P / 2 + E_c(d_P),  r' the load condensed to P.
+/// Facets that come into contact or leave it thus cost no factorization. A solid under pressure is
+/// often stable against its tool alone, S indefinite: the diagonal of the patch is raised for the
+/// factor, which raises that of S by as much, and lowered again in S. Steps are shortened until
+/// det F > 0 everywhere and the energy or the residual decreases. A failure is a return value: u is
+/// then the last admissible iterate.
 class NewtonSolver {
  public:
   /// `permutation`: elimination order for the pattern of the model, see Cholesky.
@@ -58,10 +60,12 @@ class NewtonSolver {
  private:
   void choose_patch(const ToolContact& contact, const Displacement& u);
   bool factorize(const Displacement& u);
+  /// K_ = A(u), its diagonal raised by these parts of itself on the patch and everywhere.
+  void shifted_stiffness(const Displacement& u, double patch, double all);
   /// The minimum of the model above, contact residual left: `tolerance`, N.
   Eigen::VectorXd direction(const ToolContact& contact, const Displacement& u,
                             const Eigen::VectorXd& residual, double tolerance);
-  Eigen::VectorXd patch_minimum(const ToolContact& contact, const Eigen::VectorXd& x,
+  Eigen::VectorXd patch_minimum(const ToolContact& contact, const Eigen::VectorXd& load,
                                 double tolerance) const;
   /// Moves u along d; false when no admissible step is found.
   bool line_search(const ToolContact& contact, const Eigen::VectorXd& d, Equilibrium& now,
@@ -77,8 +81,9 @@ class NewtonSolver {
   SolveWorkspace workspace_;
   std::vector<double> K_;
   std::vector<int> last_place_;  ///< in the patch, of the last unknowns of the factor
-  Eigen::MatrixXd root_;         ///< lower triangular, of S in the order of the factor
-  Eigen::MatrixXd schur_;        ///< S, numbered as the patch
+  Eigen::VectorXd stiffening_;   ///< (patch) on the diagonal of A in the factor
+  Eigen::MatrixXd root_;         ///< lower triangular, of stiffened S in the order of the factor
+  Eigen::MatrixXd schur_;        ///< S itself, numbered as the patch
   bool factorized_ = false;
 };
 
