@@ -15,7 +15,6 @@ constexpr int kActivationPasses = 24;  // each gains at least a digit where the 
 constexpr int kRelaxedPasses = 8;
 constexpr double kRecoveryShare = 0.5;  // of the tip's travel: how fast the offset may return
 constexpr double kRounding = 1e-12;     // N; what the limit on the change of force overlooks
-constexpr double kNoWay = 1e-100;       // m; of a length to be divided by that can be zero
 constexpr int kShorterSlides = 5;       // tries, before the contact point is held
 
 bool finite(const Vec3& v) noexcept {
@@ -125,35 +124,46 @@ bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
 }
 
 void ContactState::touch(const Vec3& x, double travelled) noexcept {
-  Held held{{*model_, model_->deflection(x), {}, goal_, 0}, travelled};
+  Held held;
+  held.deflection = model_->deflection(x);
+  held.response = model_->respond(held.deflection, pieces_);
+  held.travelled = travelled;
   held.allowance = std::isinf(settings_.steepness) ? settings_.steepness  // also at rest
                                                    : settings_.steepness * travelled;
-  held.response = model_->respond(held.deflection);
-  held.excess = excess(held);
+  if (exceeds_friction(held.response, 0)) {
+    const double limit = slip_limit(*model_, held.deflection, held.response);
+    held.excess = std::max(held.deflection.lateral - limit, 0.0);
+  }
   const double energy_before = held.response.energy;  // E_{i-1}(x_i)
   seen_.absorbed += energy_before - seen_.energy;
   const Candidate next = choose(x, held);
   seen_.status |= next.status;
   if (release(next, x, energy_before)) return;
-  if (norm(next.model.contact_point() - model_->contact_point()) > 0) {
-    seen_.status |= PALPATE_SLIDING;
-  }
+  if (next.model.contact_point() != model_->contact_point()) seen_.status |= PALPATE_SLIDING;
   commit(next, energy_before);
 }
 
-/// Zero where friction holds. Out of normal contact the slip limit is 0.
-double ContactState::excess(const Candidate& at) const noexcept {
-  if (!(at.response.lateral_force > settings_.friction * at.response.grip)) return 0;
-  const double limit = at.model.slip_limit_below(at.deflection, at.response, settings_.friction);
-  return std::max(at.deflection.lateral - limit, 0.0);
+/// Is the lateral force above mu g by more than `tolerated` (N)? Out of normal contact mu g is 0.
+bool ContactState::exceeds_friction(const LocalResponse& r, double tolerated) const noexcept {
+  return r.lateral_force > settings_.friction * r.grip + tolerated;
+}
+
+/// Of a response that exceeds friction.
+double ContactState::slip_limit(const LocalModel& model, const Deflection& at,
+                                const LocalResponse& response) const noexcept {
+  return model.slip_limit_below(at, response, settings_.friction, pieces_);
+}
+
+/// Does the force change by no more than `allowed` (N, infinite if any may)?
+bool ContactState::may_change_to(const Candidate& c, double allowed) const noexcept {
+  const Vec3 change = c.response.force - seen_.force;
+  return dot(change, change) <= allowed * allowed;
 }
 
 /// The slide and the return of the offset as far as the force may change in this step.
 ContactState::Candidate ContactState::choose(const Vec3& x, const Held& held) const noexcept {
   const double allowed = held.allowance + kRounding;
-  const auto within = [&](const Candidate& c) {
-    return norm(c.response.force - seen_.force) <= allowed;
-  };
+  const auto within = [&](const Candidate& c) { return may_change_to(c, allowed); };
   Candidate next = move(x, held, {.recovery = kRecoveryShare * held.travelled});
   if (within(next)) return next;
   next = move(x, held, {});
@@ -172,10 +182,11 @@ ContactState::Candidate ContactState::hold_back(const Vec3& x, const Held& held,
                                                 const Candidate& asked,
                                                 double allowed) const noexcept {
   const auto change = [&](const Candidate& c) { return c.response.force - seen_.force; };
-  const auto within = [&](const Candidate& c) { return norm(change(c)) <= allowed; };
+  const auto within = [&](const Candidate& c) { return may_change_to(c, allowed); };
   const Candidate slipping = move(x, held, {.follow = 0});
   const bool may_follow = within(slipping);
-  const Candidate base = may_follow ? slipping : static_cast<const Candidate&>(held);
+  const Candidate base =
+      may_follow ? slipping : Candidate{*model_, held.deflection, held.response, goal_, 0};
   Candidate next = may_follow ? asked : slipping;
   double share = 1;
   for (int i = 0; i < kShorterSlides; ++i) {
@@ -205,9 +216,9 @@ ContactState::Candidate ContactState::move(const Vec3& x, const Held& held,
     next.deflection = next.model.deflection(x);
     recovery = 0;
   }
-  next.response = next.model.respond(next.deflection);
+  next.response = next.model.respond(next.deflection, pieces_);
   if (settings_.budget == EnergyBudget::Kept) keep_budget(next, x, held, recovery);
-  if (shares.slip == 1) keep_friction(next, x, held.allowance);
+  if (shares.slip == 1) keep_friction(next, held.allowance);
   return next;
 }
 
@@ -228,20 +239,19 @@ void ContactState::keep_budget(Candidate& moved, const Vec3& x, const Held& held
   respond(moved, x);
 }
 
-void ContactState::respond(Candidate& at, const Vec3& x) noexcept {
+void ContactState::respond(Candidate& at, const Vec3& x) const noexcept {
   at.deflection = at.model.deflection(x);
-  at.response = at.model.respond(at.deflection);
+  at.response = at.model.respond(at.deflection, pieces_);
 }
 
 /// What a slide or a change of the offset has left of the lateral force above mu g is let go at
 /// once: all of coupled responses, whose bound holds up to the slip limit. Of decoupled ones, whose
 /// bound holds everywhere, what is above that of one step of travel; the next slide of c takes the
 /// rest.
-void ContactState::keep_friction(Candidate& moved, const Vec3& x, double allowance) const noexcept {
-  const LocalResponse& r = moved.response;
-  const double tolerated = moved.model.coupled() ? 0 : allowance;
-  if (!(r.lateral_force > settings_.friction * r.grip + tolerated)) return;
-  moved.model.slip(excess(moved), x, moved.deflection, moved.response);
+void ContactState::keep_friction(Candidate& moved, double allowance) const noexcept {
+  if (!exceeds_friction(moved.response, moved.model.coupled() ? 0 : allowance)) return;
+  const double limit = slip_limit(moved.model, moved.deflection, moved.response);
+  moved.model.slip_to(limit, moved.deflection, moved.response, pieces_);
 }
 
 LocalModel ContactState::slide(const Vec3& x, const Held& held, const Shares& shares,
@@ -260,7 +270,7 @@ LocalModel ContactState::follow(const Held& held, double share, bool apart,
                                 std::uint32_t& status) const noexcept {
   const Vec3 way = lag(held);
   const double distance = apart ? norm(way) : held.excess;
-  const Vec3 direction = apart ? (1.0 / std::max(distance, kNoWay)) * way : held.deflection.tangent;
+  const Vec3 direction = apart ? way : held.deflection.tangent;
   const Walk moved = walk(*surface_, model_->point(), direction, share * distance, delivered_);
   if (moved.at_border) status |= PALPATE_AT_BORDER;
   if (moved.awaiting) status |= PALPATE_AWAITING;

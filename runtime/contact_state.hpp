@@ -104,14 +104,20 @@ class ContactState {
     double slip = 1;      ///< of the excess over the slip limit
     double recovery = 0;  ///< m, most that the offset may return
   };
-  struct Held : Candidate {
+  /// The model before the step at the tip position after it.
+  struct Held {
+    Deflection deflection;
+    LocalResponse response;
     double travelled = 0;  ///< m, by the tip in this step
     double allowance = 0;  ///< N, that the force may change by
     double excess = 0;     ///< m, of the lateral deflection over the slip limit
   };
 
   void touch(const Vec3& x, double travelled) noexcept;
-  double excess(const Candidate& at) const noexcept;
+  bool exceeds_friction(const LocalResponse& r, double tolerated) const noexcept;
+  bool may_change_to(const Candidate& c, double allowed) const noexcept;
+  double slip_limit(const LocalModel& model, const Deflection& at,
+                    const LocalResponse& response) const noexcept;
   Candidate choose(const Vec3& x, const Held& held) const noexcept;
   Candidate hold_back(const Vec3& x, const Held& held, const Candidate& asked,
                       double allowed) const noexcept;
@@ -123,10 +129,10 @@ class ContactState {
   Vec3 lag(const Held& held) const noexcept;
   LocalModel relax(const Vec3& x, std::uint32_t& status) const noexcept;
   LocalModel let_go(const Held& held, double share) const noexcept;
-  static void respond(Candidate& at, const Vec3& x) noexcept;
+  void respond(Candidate& at, const Vec3& x) const noexcept;
   void keep_budget(Candidate& moved, const Vec3& x, const Held& held,
                    double recovery) const noexcept;
-  void keep_friction(Candidate& moved, const Vec3& x, double allowance) const noexcept;
+  void keep_friction(Candidate& moved, double allowance) const noexcept;
   bool release(const Candidate& moved, const Vec3& x, double energy_before) noexcept;
   void commit(const Candidate& next, double energy_before) noexcept;
   void look_ahead(const Deflection& at) noexcept;
@@ -142,6 +148,7 @@ class ContactState {
   std::optional<SurfacePoint> approaching_;  ///< entered, not yet active
   std::optional<Vec3> last_;                 ///< last usable tip position
   double goal_ = 0;                          ///< offset the contact should return to, m
+  mutable PiecesInUse pieces_;       ///< of the last evaluation; its result does not depend on them
   std::int32_t ahead_ = kNoElement;  ///< element whose surroundings were asked for in the last step
   ContactObservation seen_;
 };

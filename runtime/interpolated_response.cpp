@@ -26,6 +26,34 @@ double solve_rising_quadratic(const MergedPiece& p, double target) noexcept {
   return denominator > 0.0 ? 2.0 * rise / denominator : kInfinity;
 }
 
+/// h from `start` on, where it is on these pieces.
+MergedPiece merged(const std::array<const PackedPiece*, 3>& pieces, const Vec3& weights,
+                   double start) noexcept {
+  MergedPiece sum;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const PackedPiece& p = *pieces[l];
+    const double slope = static_cast<double>(p.slope);
+    const double x = start - static_cast<double>(p.start);
+    sum.force += weights[l] * (p.force + x * (slope + x * p.curvature));
+    sum.slope += weights[l] * (slope + 2.0 * x * p.curvature);
+    sum.curvature += weights[l] * p.curvature;
+  }
+  return sum;
+}
+
+constexpr PackedPiece kNothing;  // of a response that is zero
+
+/// The piece that holds a deflection, and from where to where it does.
+struct Found {
+  const PackedPiece* piece = &kNothing;
+  double from = 0, to = kInfinity;
+};
+Found find(const CurveView& curve, double d) noexcept {
+  if (curve.size() == 0) return {};
+  const std::size_t k = curve.piece_at(d);
+  return {&curve.piece(k), curve.start(k), k + 1 < curve.size() ? curve.start(k + 1) : kInfinity};
+}
+
 /// Walks the three knot sequences in ascending order.
 class KnotMerge {
  public:
@@ -40,19 +68,12 @@ class KnotMerge {
 
   /// h from `start()` on, valid up to `end()`.
   MergedPiece piece() const noexcept {
-    MergedPiece merged;
+    std::array<const PackedPiece*, 3> pieces;
     for (std::size_t l = 0; l < 3; ++l) {
       const CurveView curve = response_.node(l).lateral();
-      if (curve.size() == 0) continue;
-      const PackedPiece& p = curve.piece(index_[l]);
-      const double slope = static_cast<double>(p.slope);
-      const double x = start_ - static_cast<double>(p.start);
-      const double weight = weights_[l];
-      merged.force += weight * (p.force + x * (slope + x * p.curvature));
-      merged.slope += weight * (slope + 2.0 * x * p.curvature);
-      merged.curvature += weight * p.curvature;
+      pieces[l] = curve.size() == 0 ? &kNothing : &curve.piece(index_[l]);
     }
-    return merged;
+    return merged(pieces, weights_, start_);
   }
 
   double start() const noexcept { return start_; }
@@ -121,9 +142,14 @@ double InterpolatedResponse::lateral_inverse(double force, const Vec3& weights) 
   }
 }
 
-double InterpolatedResponse::lateral_inverse_below(double force, double from,
-                                                   const Vec3& weights) const noexcept {
+double InterpolatedResponse::lateral_inverse_below(double force, double from, const Vec3& weights,
+                                                   PiecesInUse& pieces) const noexcept {
   if (!(force > 0.0)) return 0.0;
+  look_up_lateral(from, pieces);
+  const MergedPiece here = merged(pieces.lateral, weights, pieces.lateral_from);
+  if (here.force < force || !(pieces.lateral_from > 0)) {
+    return std::min(pieces.lateral_from + solve_rising_quadratic(here, force), from);
+  }
   KnotMerge merge(*this, weights, from);
   double end = from;
   while (true) {
@@ -136,9 +162,30 @@ double InterpolatedResponse::lateral_inverse_below(double force, double from,
   }
 }
 
-double InterpolatedResponse::deepest() const noexcept {
-  return std::min({nodes_[0]->normal().last_knot(), nodes_[1]->normal().last_knot(),
-                   nodes_[2]->normal().last_knot()});
+void InterpolatedResponse::find_depth(double z, PiecesInUse& pieces) const noexcept {
+  double from = 0, to = kInfinity;
+  for (std::size_t l = 0; l < 3; ++l) {
+    for (const bool coupling : {false, true}) {
+      const Found found = find(coupling ? nodes_[l]->coupling() : nodes_[l]->normal(), z);
+      (coupling ? pieces.coupling : pieces.normal)[l] = found.piece;
+      from = std::max(from, found.from);
+      to = std::min(to, found.to);
+    }
+  }
+  pieces.depth_from = from > 0 ? from : -kInfinity;  // out of contact all are on their first piece
+  pieces.depth_to = to;
+}
+
+void InterpolatedResponse::find_lateral(double rho, PiecesInUse& pieces) const noexcept {
+  double from = 0, to = kInfinity;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const Found found = find(nodes_[l]->lateral(), rho);
+    pieces.lateral[l] = found.piece;
+    from = std::max(from, found.from);
+    to = std::min(to, found.to);
+  }
+  pieces.lateral_from = from;
+  pieces.lateral_to = to;
 }
 
 }  // namespace palpate::runtime

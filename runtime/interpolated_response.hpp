@@ -2,12 +2,28 @@
 // The response between the nodes: response functions are interpolated, not forces.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 
 #include "format/vec3.hpp"
 #include "runtime/response_curve.hpp"
 
 namespace palpate::runtime {
+
+/// The pieces of the curves of three nodes that hold a depth and a lateral deflection, and how far
+/// both may change while they do: a memory of the search for them. The next evaluation mostly needs
+/// the same ones, and finds that out by a few comparisons that a processor foresees.
+struct PiecesInUse {
+  std::array<const NodeCurves*, 3> nodes{};  ///< whose they are; null: nobody's yet
+  std::array<const PackedPiece*, 3> normal{}, lateral{}, coupling{};
+  double depth_from = 0, depth_to = 0;      ///< m, of the normal responses and of w
+  double lateral_from = 0, lateral_to = 0;  ///< m
+
+  bool are_of(const std::array<const NodeCurves*, 3>& these) const noexcept {
+    return nodes[0] == these[0] && nodes[1] == these[1] && nodes[2] == these[2];
+  }
+};
 
 /// The responses at a point of a triangle, given by its natural coordinates n_l >= 0, sum 1:
 ///   g(z) = sum n_l f_l^z(z),   h(rho) = sum n_l f_l^r(rho)     [Mahvash & Hayward 2005, eq. 29]
@@ -51,34 +67,45 @@ class InterpolatedResponse {
     Vec3 weights{};     ///< n_l w_l
     Vec3 rates{};       ///< n_l w_l', 1/m
   };
-  AtDepth at_depth(double z) const noexcept {
+  AtDepth at_depth(double z, PiecesInUse& pieces) const noexcept {
+    look_up_depth(z, pieces);
     AtDepth at;
     for (std::size_t l = 0; l < 3; ++l) {
-      const CurveValue g = nodes_[l]->normal().evaluate(z);
-      const CurveValue w = nodes_[l]->coupling().evaluate_from_start(z);
+      const CurveValue g = z > 0 ? pieces.normal[l]->evaluate(z) : CurveValue{};
       at.grip += natural_[l] * g.force;
       at.energy += natural_[l] * g.energy;
+      const CurveValue w = pieces.coupling[l]->evaluate(std::max(z, 0.0));
       at.weights[l] = natural_[l] * w.force;
-      at.rates[l] = natural_[l] * w.slope;
+      at.rates[l] = z > 0 ? natural_[l] * w.slope : 0.0;
     }
     return at;
   }
 
-  /// Forces and energy of coupled responses, the gradient of one potential.
-  struct CoupledValue {
+  /// Forces and energy, the gradient of one potential.
+  struct Value {
     double normal = 0;   ///< dE/dz = g + sum n_l w_l' H_l, N
     double lateral = 0;  ///< dE/drho = sum n_l w_l h_l, N
     double energy = 0;   ///< J
   };
-  CoupledValue coupled_at(const AtDepth& at, double rho) const noexcept {
-    CoupledValue value{at.grip, 0, at.energy};
+  /// Of coupled responses.
+  Value coupled_at(const AtDepth& at, double rho, PiecesInUse& pieces) const noexcept {
+    look_up_lateral(rho, pieces);
+    Value value{at.grip, 0, at.energy};
     for (std::size_t l = 0; l < 3; ++l) {
-      const CurveValue h = nodes_[l]->lateral().evaluate(rho);
+      const CurveValue h = pieces.lateral[l]->evaluate(rho);
       value.normal += at.rates[l] * h.energy;
       value.lateral += at.weights[l] * h.force;
       value.energy += at.weights[l] * h.energy;
     }
     return value;
+  }
+  /// Of decoupled responses: g, h and the sum of their energies.
+  Value decoupled_at(double z, double rho, PiecesInUse& pieces) const noexcept {
+    look_up_depth(z, pieces);
+    look_up_lateral(rho, pieces);
+    const CurveValue g = z > 0 ? mix(pieces.normal, z) : CurveValue{};
+    const CurveValue h = mix(pieces.lateral, rho);
+    return {g.force, h.force, g.energy + h.energy};
   }
 
   /// Smallest rho >= 0 with h(rho) = force, in closed form: the knots of the three curves are
@@ -89,13 +116,18 @@ class InterpolatedResponse {
 
   /// The same for a force that h reaches at `from` or before: walks down from there, hence in one
   /// or two pieces when the answer is near.
-  double lateral_inverse_below(double force, double from, const Vec3& weights) const noexcept;
+  double lateral_inverse_below(double force, double from, const Vec3& weights,
+                               PiecesInUse& pieces) const noexcept;
   double lateral_inverse_below(double force, double from) const noexcept {
-    return lateral_inverse_below(force, from, natural_);
+    PiecesInUse pieces;
+    return lateral_inverse_below(force, from, natural_, pieces);
   }
 
   /// Depth beyond which at least one of the three normal responses is a continuation, m.
-  double deepest() const noexcept;
+  double deepest() const noexcept {
+    return std::min({nodes_[0]->normal().last_knot(), nodes_[1]->normal().last_knot(),
+                     nodes_[2]->normal().last_knot()});
+  }
 
   const NodeCurves& node(std::size_t l) const noexcept { return *nodes_[l]; }
   const Vec3& natural() const noexcept { return natural_; }
@@ -107,6 +139,21 @@ class InterpolatedResponse {
             n[0] * a.slope + n[1] * b.slope + n[2] * c.slope,
             n[0] * a.energy + n[1] * b.energy + n[2] * c.energy};
   }
+
+  CurveValue mix(const std::array<const PackedPiece*, 3>& p, double d) const noexcept {
+    return mix(p[0]->evaluate(d), p[1]->evaluate(d), p[2]->evaluate(d));
+  }
+
+  void look_up_depth(double z, PiecesInUse& pieces) const noexcept {
+    if (!pieces.are_of(nodes_)) pieces = {nodes_};
+    if (!(pieces.depth_from <= z && z < pieces.depth_to)) find_depth(z, pieces);
+  }
+  void look_up_lateral(double rho, PiecesInUse& pieces) const noexcept {
+    if (!pieces.are_of(nodes_)) pieces = {nodes_};
+    if (!(pieces.lateral_from <= rho && rho < pieces.lateral_to)) find_lateral(rho, pieces);
+  }
+  void find_depth(double z, PiecesInUse& pieces) const noexcept;
+  void find_lateral(double rho, PiecesInUse& pieces) const noexcept;
 
   std::array<const NodeCurves*, 3> nodes_;
   Vec3 natural_;

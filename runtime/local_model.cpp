@@ -9,20 +9,16 @@ double LocalModel::energy(const Deflection& d) const noexcept {
   return respond(d).energy;
 }
 
-LocalResponse LocalModel::respond_coupled(const Deflection& d,
-                                          const InterpolatedResponse::AtDepth& at) const noexcept {
-  const auto v = response_.coupled_at(at, d.lateral);
-  return {v.normal, v.lateral, v.energy, v.normal * n_ + v.lateral * d.tangent, at.grip, at};
-}
-
-LocalResponse LocalModel::respond_coupled(const Deflection& d) const noexcept {
-  return respond_coupled(d, response_.at_depth(d.depth));
-}
-
-void LocalModel::slip(double way, const Vec3& x, Deflection& d, LocalResponse& at) noexcept {
-  set_lateral_offset(lateral_offset_ + way * d.tangent);
-  d = deflection(x);
-  at = coupled() ? respond_coupled(d, at.at_depth) : respond(d);
+void LocalModel::slip_to(double rho, Deflection& d, LocalResponse& at,
+                         PiecesInUse& pieces) noexcept {
+  set_lateral_offset(lateral_offset_ + (d.lateral - rho) * d.tangent);
+  d.lateral = rho;
+  if (!(rho > 0)) d.tangent = {};
+  if (coupled()) {
+    respond_at_depth(d, pieces, at);
+  } else {
+    at = respond(d, pieces);
+  }
 }
 
 double LocalModel::slip_limit(const Deflection& d, double friction) const noexcept {

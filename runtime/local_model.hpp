@@ -56,27 +56,38 @@ class LocalModel {
     if (d.lateral > 0) d.tangent = (1.0 / d.lateral) * lateral;
     return d;
   }
+  /// `pieces` of the evaluation before this one, and then of this one.
+  LocalResponse respond(const Deflection& d, PiecesInUse& pieces) const noexcept {
+    LocalResponse r;
+    if (response_.coupled()) {
+      r.at_depth = response_.at_depth(d.depth, pieces);
+      respond_at_depth(d, pieces, r);
+      return r;
+    }
+    take(response_.decoupled_at(d.depth, d.lateral, pieces), d, r);
+    r.grip = r.normal_force;
+    return r;
+  }
   LocalResponse respond(const Deflection& d) const noexcept {
-    if (response_.coupled()) return respond_coupled(d);
-    const CurveValue g = response_.normal(d.depth);
-    const CurveValue h = response_.lateral(d.lateral);
-    return {g.force, h.force, g.energy + h.energy, g.force * n_ + h.force * d.tangent, g.force, {}};
+    PiecesInUse pieces;
+    return respond(d, pieces);
   }
   double energy(const Deflection& d) const noexcept;
   /// rho_s = h^{-1}(mu g(z)): the lateral deflection at which slip begins, m.
   double slip_limit(const Deflection& d, double friction) const noexcept;
 
   /// The same where the response is known and exceeds the limit: rho_s < rho.
-  double slip_limit_below(const Deflection& d, const LocalResponse& at,
-                          double friction) const noexcept {
+  double slip_limit_below(const Deflection& d, const LocalResponse& at, double friction,
+                          PiecesInUse& pieces) const noexcept {
     return response_.lateral_inverse_below(
         friction * at.grip, d.lateral,
-        response_.coupled() ? at.at_depth.weights : response_.natural());
+        response_.coupled() ? at.at_depth.weights : response_.natural(), pieces);
   }
 
-  /// Lets the tool slip while c is held: the lateral offset grows by `way` (m, no more than rho)
-  /// along t. The deflection and the response at x follow.
-  void slip(double way, const Vec3& x, Deflection& d, LocalResponse& at) noexcept;
+  /// Lets the tool slip along t while c is held, until `rho` (m, no more than it is) of the lateral
+  /// deflection is left: s takes the rest. t and the depth stay as they are; the deflection and the
+  /// response follow.
+  void slip_to(double rho, Deflection& d, LocalResponse& at, PiecesInUse& pieces) noexcept;
 
   /// Rate of change of E when c moves by unit length along d in its element and the anchor c + s by
   /// a', while x stays, J/m:
@@ -105,9 +116,18 @@ class LocalModel {
   }
 
  private:
-  LocalResponse respond_coupled(const Deflection& d) const noexcept;
-  LocalResponse respond_coupled(const Deflection& d,
-                                const InterpolatedResponse::AtDepth& at) const noexcept;
+  void take(const InterpolatedResponse::Value& value, const Deflection& d,
+            LocalResponse& r) const noexcept {
+    r.normal_force = value.normal;
+    r.lateral_force = value.lateral;
+    r.energy = value.energy;
+    r.force = value.normal * n_ + value.lateral * d.tangent;
+  }
+  /// Of coupled responses what depends on the lateral deflection.
+  void respond_at_depth(const Deflection& d, PiecesInUse& pieces, LocalResponse& r) const noexcept {
+    take(response_.coupled_at(r.at_depth, d.lateral, pieces), d, r);
+    r.grip = r.at_depth.grip;
+  }
 
   const Surface* surface_;
   SurfacePoint point_;

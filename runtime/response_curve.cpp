@@ -33,7 +33,7 @@ void check(const ResponseCurve& curve) {
 CurveValue on_piece(const CompiledCurve::Piece& p, double d) noexcept {
   const double x = d - p.start;
   return {p.force + x * (p.slope + x * p.curvature), p.slope + 2.0 * x * p.curvature,
-          p.energy + x * (p.force + x * (p.slope / 2.0 + x * p.curvature / 3.0))};
+          p.energy + x * (p.force + x * (p.slope / 2.0 + x * (p.curvature * kThird)))};
 }
 
 }  // namespace
@@ -92,7 +92,8 @@ NodeCurves::InUse NodeCurves::in_use(double depth, double lateral_deflection) co
   const auto line = [&](std::size_t first, const CurveView& curve, double at) {
     return knot_lines(sizes_) + (first + curve.piece_at(at)) / kPiecesALine;
   };
-  return {line(0, normal(), depth), line(sizes_.normal, lateral(), lateral_deflection),
+  return {knot_lines(sizes_), line(0, normal(), depth),
+          line(sizes_.normal, lateral(), lateral_deflection),
           coupled() ? line(std::size_t{sizes_.normal} + sizes_.lateral, coupling(), depth) : 0};
 }
 

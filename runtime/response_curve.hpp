@@ -65,6 +65,8 @@ class CompiledCurve {
   double max_slope_ = 0;
 };
 
+inline constexpr double kThird = 1.0 / 3.0;  ///< a product is ready long before a quotient
+
 /// A piece as the force loop reads it, two to a cache line. Start and slope are the stored numbers.
 struct alignas(32) PackedPiece {
   float start = 0;       ///< d_k, m
@@ -72,6 +74,13 @@ struct alignas(32) PackedPiece {
   double curvature = 0;  ///< c_k, N/m^2
   double force = 0;      ///< f_k, N
   double energy = 0;     ///< E_k, J
+
+  CurveValue evaluate(double d) const noexcept {
+    const double x = d - static_cast<double>(start);
+    const double s = static_cast<double>(slope);
+    return {force + x * (s + x * curvature), s + 2.0 * x * curvature,
+            energy + x * (force + x * (s / 2.0 + x * (curvature * kThird)))};
+  }
 };
 
 /// View of a packed curve, its knots beside its pieces: the same response as the CompiledCurve that
@@ -85,11 +94,7 @@ class CurveView {
 
   CurveValue evaluate(double d) const noexcept {
     if (count_ == 0 || !(d > 0.0)) return {};
-    const PackedPiece& p = pieces_[piece_at(d)];
-    const double x = d - static_cast<double>(p.start);
-    const double slope = static_cast<double>(p.slope);
-    return {p.force + x * (slope + x * p.curvature), slope + 2.0 * x * p.curvature,
-            p.energy + x * (p.force + x * (slope / 2.0 + x * p.curvature / 3.0))};
+    return pieces_[piece_at(d)].evaluate(d);
   }
 
   /// Of a curve that does not start at 0: at d <= 0 its first value, flat.
@@ -156,9 +161,10 @@ class NodeCurves {
   }
   bool coupled() const noexcept { return sizes_.coupling > 0; }
 
-  /// Lines from the first to those of the pieces at a deflection; 0 for w of decoupled responses.
+  /// How many lines the knots take, and lines from the first to those of the pieces at a
+  /// deflection; 0 for w of decoupled responses.
   struct InUse {
-    std::size_t normal = 0, lateral = 0, coupling = 0;
+    std::size_t knots = 0, normal = 0, lateral = 0, coupling = 0;
   };
   InUse in_use(double depth, double lateral_deflection) const noexcept;
 

@@ -13,14 +13,11 @@ constexpr int kMostEdges = 64;
 constexpr double kLeastProjection = 1e-9;  // of a unit vector: below it the direction is the normal
 constexpr std::size_t kNone = 3;
 
-/// Natural coordinates may leave [0, 1] by rounding only; put them back, summing to 1.
+/// Natural coordinates may leave [0, 1] by rounding only; put them back, summing to 1. The
+/// reciprocal of a sum so near to 1 is 2 - sum, to rounding, and does not wait for a quotient.
 Vec3 tidy(Vec3 natural) noexcept {
-  double sum = 0;
-  for (double& n : natural) {
-    n = std::max(n, 0.0);
-    sum += n;
-  }
-  return (1.0 / sum) * natural;
+  for (double& n : natural) n = std::max(n, 0.0);
+  return (2.0 - (natural[0] + natural[1] + natural[2])) * natural;
 }
 
 /// One walk in progress.
@@ -31,6 +28,7 @@ class Walker {
       : surface_(surface),
         delivered_(delivered),
         direction_(direction),
+        length_(norm(direction)),
         remaining_(distance),
         point_(from) {}
 
@@ -46,7 +44,6 @@ class Walker {
       if (exit == kNone) break;
       if (vertex_here() == kNone && !cross(exit) && !follow(exit)) break;
     }
-    point_.natural = tidy(point_.natural);
     return {point_, stopped_by_.border, stopped_by_.undelivered, followed_ || remaining_ > 0};
   }
 
@@ -79,11 +76,16 @@ class Walker {
   bool project_on(const Element& e, Vec3& in_plane) const noexcept {
     in_plane = direction_ - dot(direction_, e.facet_normal) * e.facet_normal;
     const double length = norm(in_plane);
-    if (!(length > kLeastProjection)) return false;
+    if (!(length > kLeastProjection * length_)) return false;
     in_plane = (1.0 / length) * in_plane;
     return true;
   }
-  bool project() noexcept { return project_on(element(), in_plane_); }
+  /// Of an element that was crossed into this is done.
+  bool project() noexcept {
+    const bool done = projected_;
+    projected_ = false;
+    return done || project_on(element(), in_plane_);
+  }
 
   /// Walks to the end of the distance (kNone) or to the edge opposite to the returned vertex.
   std::size_t advance() noexcept {
@@ -109,6 +111,11 @@ class Walker {
     for (std::size_t l = 0; l < 3; ++l) point_.natural[l] += length * dot(e.gradient[l], d);
   }
 
+  /// How much of the motion goes along an edge, of 1.
+  double share_along(const Vec3& edge) const noexcept {
+    return dot(direction_, edge) / (norm(edge) * length_);
+  }
+
   /// Steps over the edge opposite to vertex `exit` when the direction points into the neighbour.
   bool cross(std::size_t exit) noexcept {
     const std::int32_t next = across(point_.element, exit, stopped_by_);
@@ -116,27 +123,27 @@ class Walker {
     const Element& n = surface_.element(next);
     Vec3 d;
     if (!project_on(n, d)) return false;
-    const SurfacePoint there = seen_from(next);
-    std::size_t apex = 0;
-    for (std::size_t l = 0; l < 3; ++l) {
-      if (n.neighbour[l] == point_.element && there.natural[l] == 0) apex = l;
-    }
+    const std::size_t a = (exit + 1) % 3;
+    const std::size_t b = (exit + 2) % 3;
+    const std::size_t apex = vertex_besides(n, element().vertices[a], element().vertices[b]);
     if (!(dot(n.gradient[apex], d) > 0)) return false;
+    // Neighbours of one orientation go along their edge in opposite directions.
+    SurfacePoint there{next, {}};
+    there.natural[(apex + 1) % 3] = point_.natural[b];
+    there.natural[(apex + 2) % 3] = point_.natural[a];
     point_ = there;
+    in_plane_ = d;
+    projected_ = true;
     return true;
   }
 
-  /// The point, which lies on a shared edge or vertex, in the coordinates of the other element.
-  SurfacePoint seen_from(std::int32_t other) const noexcept {
-    SurfacePoint p{other, {}};
-    const Element& from = element();
-    const Element& to = surface_.element(other);
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 3; ++j) {
-        if (from.vertices[i] == to.vertices[j]) p.natural[j] = point_.natural[i];
-      }
-    }
-    return p;
+  /// The vertex of an element that is neither of two. Without branches: which one it is nobody can
+  /// foresee.
+  static std::size_t vertex_besides(const Element& e, std::int32_t a, std::int32_t b) noexcept {
+    const auto is = [&](std::size_t l) {
+      return static_cast<std::size_t>((e.vertices[l] != a) & (e.vertices[l] != b));
+    };
+    return is(1) + 2 * is(2);
   }
 
   /// Follows the edge opposite to `exit` by the component of the motion along it.
@@ -153,12 +160,13 @@ class Walker {
     const Element& e = element();
     const Vec3 edge = surface_.vertex(e, to) - surface_.vertex(e, from);
     const double length = norm(edge);
-    const double share = dot(direction_, edge) / length;
+    const double share = share_along(edge);
     if (!(share > kLeastProjection)) return false;
     const double to_end = point_.natural[from] * length;
     if (remaining_ * share < to_end) {
       move((1.0 / length) * edge, remaining_ * share);
       point_.natural[3 - from - to] = 0;
+      point_.natural = tidy(point_.natural);
       remaining_ = 0;
       return true;
     }
@@ -207,7 +215,7 @@ class Walker {
     }
     for (const std::size_t to : {a, b}) {
       const Vec3 edge = surface_.vertex(e, to) - surface_.vertex(e, v);
-      const double share = dot(direction_, edge) / norm(edge);
+      const double share = share_along(edge);
       if (share > spoke_.share) spoke_ = {m, v, to, share};
     }
     return false;
@@ -239,9 +247,11 @@ class Walker {
   const Surface& surface_;
   const Delivery* delivered_;
   Vec3 direction_;
+  double length_;  ///< of the direction
   double remaining_;
   SurfacePoint point_;
   Vec3 in_plane_{};
+  bool projected_ = false;  ///< is in_plane_ that of the element?
   Spoke spoke_;
   Obstacle stopped_by_;
   bool followed_ = false;  ///< an edge instead of the direction

@@ -15,12 +15,12 @@ struct Walk {
   bool hindered = false;   ///< it followed an edge, or did not go all the way
 };
 
-/// Moves a point over the surface by `distance` (m, >= 0) along the projection of `direction` on
-/// the plane of its element. At an edge the direction is projected anew on the neighbour, and the
-/// rest of the distance is walked there. Where there is no neighbour, or the new direction does not
-/// point into it, the point follows the edge by the component of the motion along it, or stays.
-/// A neighbour that is not among `delivered` (null: all are there) is none for now.
-/// noexcept, allocation-free, at most 64 edges.
+/// Moves a point over the surface by `distance` (m, >= 0) along the projection of `direction`, of
+/// any length, on the plane of its element. At an edge the direction is projected anew on the
+/// neighbour, and the rest of the distance is walked there. Where there is no neighbour, or the new
+/// direction does not point into it, the point follows the edge by the component of the motion
+/// along it, or stays. A neighbour that is not among `delivered` (null: all are there) is none for
+/// now. noexcept, allocation-free, at most 64 edges.
 Walk walk(const Surface& surface, const SurfacePoint& from, const Vec3& direction, double distance,
           const Delivery* delivered = nullptr) noexcept;
 

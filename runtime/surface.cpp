@@ -265,7 +265,7 @@ void Surface::prefetch_opposite(const Element& e, std::size_t l,
                           bits(e.vertices[(l + 1) % 3]) - bits(e.vertices[(l + 2) % 3]);
   const CacheLine* const record = &records_[v];
   __builtin_prefetch(record);
-  __builtin_prefetch(record + 1);  // the knots
+  for (std::size_t k = 0; k < in_use.knots; ++k) __builtin_prefetch(record + 1 + k);
   __builtin_prefetch(record + 1 + in_use.normal);
   __builtin_prefetch(record + 1 + in_use.lateral);
   if (in_use.coupling > 0) __builtin_prefetch(record + 1 + in_use.coupling);

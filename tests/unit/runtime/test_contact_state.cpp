@@ -383,5 +383,45 @@ TEST(Contact, NeverLosesATipThatIsInsideTheBody) {
   }
 }
 
+TEST(Contact, TheForceOfEveryStepIsThatOfTheStateItLeaves) {
+  // The step carries pieces, deflections and slip limits over from one evaluation to the next; what
+  // it reports must be what nobody's memory gives at its contact point and offsets.
+  const Responses varied = [](const Vec3& x) {
+    NodeResponse r;
+    r.status = ResponseStatus::Fitted;
+    const double s = 1 + 0.6 * std::sin(90 * x[0]) * std::cos(70 * x[1] + x[2]);
+    r.normal = stiffening_curve(0, 500 * s, 6, 0.0013);
+    r.lateral = stiffening_curve(150 * s, 300 * s, 5, 0.0017);
+    return r;
+  };
+  const Library decoupled = bumpy_sphere(3, 0.03, 0.2, varied);
+  for (const Library& library : {decoupled, coupled(decoupled)}) {
+    Rig rig(library, {.friction = 0.3, .tank_cap = 1e-4, .steepness = 4 * 500 * 1.6});
+    std::mt19937 random(11);
+    std::normal_distribution<double> any;
+    Vec3 x = 0.04 * random_unit(random);
+    Vec3 way{};
+    int in_contact = 0, sliding = 0;
+    for (int step = 0; step < 200000; ++step) {
+      const double r = norm(x);
+      way = 0.97 * way + 2e-5 * Vec3{any(random), any(random), any(random)} -
+            (2e-4 * (r - 0.028)) * ((1 / r) * x);
+      x = x + way;
+      const std::uint32_t status = rig.step(x);
+      if (!(status & PALPATE_CONTACT)) continue;
+      ++in_contact;
+      sliding += (status & PALPATE_SLIDING) != 0;
+      const runtime::ContactObservation& seen = rig.seen();
+      runtime::LocalModel model(rig.body.surface, seen.point, seen.offset);
+      model.set_lateral_offset(seen.lateral_offset);
+      const runtime::LocalResponse want = model.respond(model.deflection(x));
+      ASSERT_NEAR(norm(seen.force - want.force), 0, 1e-12 * (norm(want.force) + 1e-3));
+      ASSERT_NEAR(seen.energy, want.energy, 1e-12 * want.energy + 1e-18);
+    }
+    EXPECT_GT(in_contact, 50000);
+    EXPECT_GT(sliding, 10000);
+  }
+}
+
 }  // namespace
 }  // namespace palpate::test

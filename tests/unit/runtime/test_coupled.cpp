@@ -104,7 +104,9 @@ TEST_F(Coupled, SlipBeginsWhereTheLateralForceIsMuTimesTheGrip) {
     const double limit = model.slip_limit(there, mu);
     const LocalResponse r = at(model, tip(model, z, limit));
     EXPECT_NEAR(r.lateral_force, mu * r.grip, 1e-9);
-    EXPECT_NEAR(model.slip_limit_below(there, model.respond(there), mu), limit, 1e-12);
+    runtime::PiecesInUse pieces;
+    const LocalResponse pressed = model.respond(there, pieces);
+    EXPECT_NEAR(model.slip_limit_below(there, pressed, mu, pieces), limit, 1e-12);
   }
 }
 

@@ -35,14 +35,19 @@ struct Nodes {
         curves[l][kind] = CompiledCurve(random_curve(random, with_plateaus));
       }
       packed[l] = NodeCurves::write(memory[l].data(), curves[l][0], curves[l][1]);
+      curves[l][2] = CompiledCurve(random_curve(random, with_plateaus), 0.3);
+      coupled[l] = NodeCurves::write(more[l].data(), curves[l][0], curves[l][1], curves[l][2]);
     }
   }
   InterpolatedResponse at(const Vec3& natural) const {
     return {{&packed[0], &packed[1], &packed[2]}, natural};
   }
-  std::array<std::array<CompiledCurve, 2>, 3> curves;  // normal, lateral
-  std::array<std::array<CacheLine, 16>, 3> memory;
-  std::array<NodeCurves, 3> packed;
+  InterpolatedResponse coupled_at(const Vec3& natural) const {
+    return {{&coupled[0], &coupled[1], &coupled[2]}, natural};
+  }
+  std::array<std::array<CompiledCurve, 3>, 3> curves;  // normal, lateral, coupling
+  std::array<std::array<CacheLine, 24>, 3> memory, more;
+  std::array<NodeCurves, 3> packed, coupled;
 };
 
 Vec3 random_natural(std::mt19937& random) {
@@ -120,6 +125,74 @@ TEST(InterpolatedResponse, LateralInverseAgreesWithBisection) {
     if (force > 0 && r.lateral(rho).slope > 1) {
       EXPECT_NEAR(rho, bisect(r, force, reach + 1e-9), 1e-12);
     }
+  }
+}
+
+/// Sums of nodal curves as equations (29*) and (32*) write them.
+struct Sums {
+  double g = 0, G = 0, h = 0, H = 0;           // decoupled
+  double normal = 0, lateral = 0, energy = 0;  // coupled
+};
+Sums sums_of(const Nodes& nodes, const Vec3& n, double z, double rho) {
+  Sums s;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const CurveValue g = nodes.curves[l][0].evaluate(z);
+    const CurveValue h = nodes.curves[l][1].evaluate(rho);
+    const CurveValue w = nodes.curves[l][2].evaluate(std::max(z, 1e-300));
+    s.g += n[l] * g.force;
+    s.G += n[l] * g.energy;
+    s.h += n[l] * h.force;
+    s.H += n[l] * h.energy;
+    s.normal += n[l] * (g.force + (z > 0 ? w.slope * h.energy : 0));
+    s.lateral += n[l] * w.force * h.force;
+    s.energy += n[l] * (g.energy + w.force * h.energy);
+  }
+  return s;
+}
+
+TEST(InterpolatedResponse, RememberedPiecesGiveTheSumsOfTheCurvesFromWhateverStateTheyAreLeftIn) {
+  // One memory for walks over depths and deflections on the nodes of several triangles, with jumps
+  // from one end of the curves to the other, onto knots, out of contact and beyond the last knot.
+  std::mt19937 random(5);
+  std::vector<Nodes> triangles;
+  for (int k = 0; k < 6; ++k) triangles.emplace_back(random, k % 2 == 1);
+  for (Nodes& t : triangles) {  // copies: their curves lie elsewhere now
+    for (std::size_t l = 0; l < 3; ++l) {
+      t.packed[l] = NodeCurves::write(t.memory[l].data(), t.curves[l][0], t.curves[l][1]);
+      t.coupled[l] =
+          NodeCurves::write(t.more[l].data(), t.curves[l][0], t.curves[l][1], t.curves[l][2]);
+    }
+  }
+  std::uniform_real_distribution<double> any(0, 1);
+  PiecesInUse decoupled, coupled;
+  double z = 0.001, rho = 0.001;
+  const Nodes* nodes = &triangles[0];
+  Vec3 natural{0.2, 0.3, 0.5};
+  for (int trial = 0; trial < 200000; ++trial) {
+    if (trial % 5 == 0) nodes = &triangles[random() % triangles.size()];
+    if (trial % 3 == 0) natural = random_natural(random);
+    z += 1e-4 * (any(random) - 0.5);
+    rho = std::abs(rho + 1e-4 * (any(random) - 0.5));
+    if (trial % 11 == 0) z = 0.03 * any(random) - 0.005;
+    if (trial % 13 == 0) rho = 0.03 * any(random);
+    if (trial % 17 == 0) z = rho = 0;
+    const std::size_t corner = random() % 3;
+    if (trial % 7 == 0) z = nodes->curves[corner][0].pieces().back().start;
+    if (trial % 19 == 0) rho = nodes->curves[corner][1].pieces()[1].start;
+    const Sums want = sums_of(*nodes, natural, z, rho);
+    const auto a = nodes->at(natural).decoupled_at(z, rho, decoupled);
+    EXPECT_NEAR(a.normal, want.g, 1e-12 * want.g);
+    EXPECT_NEAR(a.lateral, want.h, 1e-12 * want.h);
+    EXPECT_NEAR(a.energy, want.G + want.H, 1e-12 * (want.G + want.H));
+    const InterpolatedResponse r = nodes->coupled_at(natural);
+    const auto at = r.at_depth(z, coupled);
+    const auto b = r.coupled_at(at, rho, coupled);
+    EXPECT_NEAR(b.normal, want.normal, 1e-12 * want.normal);
+    EXPECT_NEAR(b.lateral, want.lateral, 1e-12 * want.lateral);
+    EXPECT_NEAR(b.energy, want.energy, 1e-12 * want.energy);
+    const double force = b.lateral * any(random);
+    EXPECT_EQ(r.lateral_inverse_below(force, rho, at.weights, coupled),
+              r.lateral_inverse(force, at.weights));
   }
 }
 

@@ -252,5 +252,29 @@ TEST_F(LocalModelTest, SlipLimitIsWhereLateralForceReachesMuTimesNormalForce) {
   }
 }
 
+TEST_F(LocalModelTest, SlippingOverAHeldContactPointIsWhatTheNewOffsetGives) {
+  const Surface both[] = {Surface(bumpy_sphere(2, 0.03, 0.2, varied)),
+                          Surface(coupled(bumpy_sphere(2, 0.03, 0.2, varied)))};
+  std::uniform_real_distribution<double> any(0, 1);
+  for (int trial = 0; trial < 1000; ++trial) {
+    LocalModel model(both[trial % 2], random_point(), 0.0004);
+    const Vec3 x = random_tip(model);
+    model.set_lateral_offset(0.001 * Vec3{any(random_), any(random_), any(random_)});
+    Deflection d = model.deflection(x);
+    runtime::PiecesInUse pieces;
+    auto slipped = model.respond(d, pieces);
+    const double left = trial % 10 == 0 ? 0 : d.lateral * any(random_);
+    model.slip_to(left, d, slipped, pieces);
+    const Deflection fresh = model.deflection(x);
+    const auto want = model.respond(fresh);
+    EXPECT_EQ(d.lateral, left);
+    EXPECT_NEAR(fresh.lateral, left, 1e-17);
+    EXPECT_EQ(d.depth, fresh.depth);
+    EXPECT_NEAR(norm(slipped.force - want.force), 0, 1e-13);
+    EXPECT_NEAR(slipped.energy, want.energy, 1e-12 * want.energy);
+    EXPECT_NEAR(dot(model.lateral_offset(), model.normal()), 0, 1e-17);
+  }
+}
+
 }  // namespace
 }  // namespace palpate::test

@@ -72,6 +72,28 @@ TEST(Walk, GoesThroughVerticesAndAlongEdges) {
   }
 }
 
+TEST(Walk, DoesNotDependOnTheLengthOfTheDirection) {
+  for (const Surface& surface :
+       {Surface(bumpy_sphere(2, 0.03, 0.2, uniform)), Surface(cube(3, 0.03, uniform)),
+        Surface(plate(4, 0.03, uniform))}) {
+    std::mt19937 random(6);
+    std::normal_distribution<double> any;
+    for (int trial = 0; trial < 2000; ++trial) {
+      const SurfacePoint from = random_point(surface, random);
+      Vec3 direction{any(random), any(random), any(random)};
+      direction = (1.0 / norm(direction)) * direction;
+      const double distance = 0.01 * std::abs(any(random));
+      const Walk unit = walk(surface, from, direction, distance);
+      for (const double length : {1e-6, 1e-3, 1e3}) {
+        const Walk w = walk(surface, from, length * direction, distance);
+        EXPECT_NEAR(norm(surface.position(w.point) - surface.position(unit.point)), 0, 1e-13);
+        EXPECT_EQ(w.at_border, unit.at_border);
+        EXPECT_EQ(w.hindered, unit.hindered);
+      }
+    }
+  }
+}
+
 TEST(Walk, KeepsItsLengthOnACurvedSurface) {
   const double radius = 0.03;
   const Surface surface(sphere(4, radius, uniform));
