@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   double at[3], v[3], force[3];
   if (argc < 5 || palpate_library_load(argv[1], &library) ||
       palpate_state_create(library, NULL, &state))
-    return fprintf(stderr, "feel LIBRARY X Y Z: %s\n", palpate_last_error()), 1;
+    return fprintf(stderr, "feel: %s\n", argc < 5 ? "give LIBRARY X Y Z" : palpate_last_error()), 1;
   palpate_library_describe(library, &box);
   for (int k = 0; k < 3; ++k) v[k] = -0.1 * atof(argv[2 + k]);
   for (int i = -2000; i < 2000 && seen.depth < 0.003; ++i) { /* your force loop, 1 kHz */

@@ -14,11 +14,12 @@
 int main(int argc, char** argv) {
   palpate_library* library = nullptr;
   palpate_state* state = nullptr;
-  if (argc < 5) return std::puts("feel LIBRARY X Y Z");
-  if (palpate_library_load(argv[1], &library)) return std::puts(palpate_last_error());
+  const auto fail = [](const char* why) { return std::fprintf(stderr, "feel: %s\n", why), 1; };
+  if (argc < 5) return fail("give LIBRARY X Y Z");
+  if (palpate_library_load(argv[1], &library)) return fail(palpate_last_error());
   const std::unique_ptr<palpate_library, decltype(&palpate_library_destroy)> body(
       library, palpate_library_destroy);
-  if (palpate_state_create(library, nullptr, &state)) return std::puts(palpate_last_error());
+  if (palpate_state_create(library, nullptr, &state)) return fail(palpate_last_error());
   const std::unique_ptr<palpate_state, decltype(&palpate_state_destroy)> tool(
       state, palpate_state_destroy);
   palpate_library_info box{sizeof box};

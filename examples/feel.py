@@ -45,4 +45,6 @@ def main(path, library_file, *side):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 6:
+        sys.exit("feel.py: give LIBPALPATE LIBRARY X Y Z")
     main(*sys.argv[1:])

@@ -81,6 +81,17 @@ class MemoryFile {
   std::string path_;
 };
 
+/// The library in a file that the caller does not know: errors name the bytes in its place.
+palpate::Library read_from(const MemoryFile& file) {
+  try {
+    return palpate::read_library(file.path());
+  } catch (const palpate::Error& e) {
+    std::string where = e.where();
+    if (where.rfind(file.path(), 0) == 0) where.replace(0, file.path().size(), "library in memory");
+    throw palpate::Error(e.kind(), where, e.problem(), e.remedy());
+  }
+}
+
 void copy(const Vec3& from, double to[3]) noexcept {
   std::copy(from.begin(), from.end(), to);
 }
@@ -161,7 +172,8 @@ int palpate_library_load(const char* path, palpate_library** library) {
   if (library == nullptr)
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: library is null");
   *library = nullptr;
-  if (path == nullptr) return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: path is null");
+  if (path == nullptr || *path == '\0')
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: there is no path");
   return guarded(PALPATE_ERROR_FORMAT, [&] {
     if (!std::ifstream(path, std::ios::binary)) {
       const std::string text = std::string(path) + ": cannot be opened; check path and rights";
@@ -180,7 +192,7 @@ int palpate_library_load_memory(const void* bytes, size_t size, palpate_library*
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load_memory: there are no bytes");
   return guarded(PALPATE_ERROR_FORMAT, [&] {
     const MemoryFile file(bytes, size);
-    *library = new palpate_library(palpate::read_library(file.path()));
+    *library = new palpate_library(read_from(file));
     return static_cast<int>(PALPATE_OK);
   });
 }

@@ -200,9 +200,14 @@ TEST_F(PalpateApi, LoadsFromMemory) {
   palpate_library_destroy(copy);
   EXPECT_EQ(palpate_library_load_memory(bytes.data(), bytes.size() / 2, &copy),
             PALPATE_ERROR_FORMAT);
+  EXPECT_EQ(std::string(palpate_last_error()).rfind("library in memory: ", 0), 0U)
+      << palpate_last_error();
   EXPECT_EQ(palpate_library_load_memory("no library", 10, &copy), PALPATE_ERROR_FORMAT);
+  EXPECT_STREQ(palpate_last_error(),
+               "library in memory: is not an HDF5 file; make it again with 'palpate fit'");
   EXPECT_EQ(palpate_library_load_memory(bytes.data(), 0, &copy), PALPATE_ERROR_ARGUMENT);
   EXPECT_EQ(palpate_library_load_memory(nullptr, 10, &copy), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_library_load("", &copy), PALPATE_ERROR_ARGUMENT);
   EXPECT_EQ(copy, nullptr);
 }
 
