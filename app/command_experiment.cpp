@@ -31,7 +31,9 @@ void draw_figure_12(const std::filesystem::path& out) {
     say("  k = {:g} N/m: impact {:.3f} m/s, {} after {:.1f} s, {:.3f} m/s left", k, o.impact,
         o.decayed ? "at rest" : "a lasting swing", o.seconds, o.amplitude);
     write_phase_csv(out / fmt::format("phase_plane_{:g}.csv", k), o.path);
-    planes.push_back({fmt::format("k = {:g} N/m", k), o.path});
+    const std::string end = o.decayed ? fmt::format("at rest after {:.0f} s", o.seconds)
+                                      : fmt::format("swings on with {:.3f} m/s", o.amplitude);
+    planes.push_back({fmt::format("k = {:g} N/m: {}", k, end), o.path});
   }
   write_phase_planes(out / "phase_planes.svg", planes);
 }

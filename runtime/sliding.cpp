@@ -141,7 +141,8 @@ class Walker {
   /// foresee.
   static std::size_t vertex_besides(const Element& e, std::int32_t a, std::int32_t b) noexcept {
     const auto is = [&](std::size_t l) {
-      return static_cast<std::size_t>((e.vertices[l] != a) & (e.vertices[l] != b));
+      return static_cast<std::size_t>(e.vertices[l] != a) *
+             static_cast<std::size_t>(e.vertices[l] != b);
     };
     return is(1) + 2 * is(2);
   }

@@ -12,16 +12,17 @@
 namespace palpate::app {
 namespace {
 
-constexpr double kWidth = 420, kHeight = 340, kMargin = 50;  // of a panel, in units of the picture
-constexpr double kLowX = -0.035, kHighX = 0.035;             // m
-constexpr double kFastest = 1.2;                             // m/s
+constexpr double kWidth = 420, kHeight = 340;  // of a panel, in units of the picture
+constexpr double kLeft = 56, kRight = 10, kAbove = 34, kBelow = 46;  // beside its frame
+constexpr double kLowX = -0.035, kHighX = 0.035;                     // m
+constexpr double kFastest = 1.2;                                     // m/s
 constexpr std::size_t kMostPoints = 20000;
 
 double across(double position) {
-  return kMargin + (kWidth - 2 * kMargin) * (position - kLowX) / (kHighX - kLowX);
+  return kLeft + (kWidth - kLeft - kRight) * (position - kLowX) / (kHighX - kLowX);
 }
 double down(double velocity) {
-  return kHeight / 2 - (kHeight / 2 - kMargin) * velocity / kFastest;
+  return kAbove + (kHeight - kAbove - kBelow) * (1 - velocity / kFastest) / 2;
 }
 
 std::string line(double x1, double y1, double x2, double y2, std::string_view colour) {
@@ -29,23 +30,41 @@ std::string line(double x1, double y1, double x2, double y2, std::string_view co
                      y1, x2, y2, colour);
 }
 
-std::string label(double x, double y, const std::string& text) {
-  return fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="middle">{}</text>)", x, y, text);
+std::string label(double x, double y, const std::string& text, std::string_view more = "") {
+  return fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="middle"{}>{}</text>)", x, y, more,
+                     text);
 }
 
+std::string rectangle(double x1, double y1, double x2, double y2, std::string_view more) {
+  return fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" {}/>)", x1, y1,
+                     x2 - x1, y2 - y1, more);
+}
+
+/// The frame, numbers outside of it where no curve hides them, and where the body is.
 std::string axes() {
-  std::string svg = line(across(kLowX), down(0), across(kHighX), down(0), "#888");
-  svg += line(across(0), down(-kFastest), across(0), down(kFastest), "#888");
-  for (const double x : {-0.03, -0.02, -0.01, 0.01, 0.02, 0.03}) {
-    svg += line(across(x), down(0), across(x), down(0) + 4, "#888");
-    svg += label(across(x), down(0) + 16, fmt::format("{:g}", x));
+  const double left = across(kLowX), right = across(kHighX);
+  const double top = down(kFastest), bottom = down(-kFastest);
+  std::string svg = rectangle(across(0), top, right, bottom, R"(fill="#f3ead9")");
+  svg += label(across(kHighX) - 22, top + 16, "inside", R"( fill="#8a6d3b")");
+  svg +=
+      line(left, down(0), right, down(0), "#ccc") + line(across(0), top, across(0), bottom, "#ccc");
+  for (int mm = -30; mm <= 30; mm += 10) {
+    svg += line(across(1e-3 * mm), bottom, across(1e-3 * mm), bottom + 4, "#444");
+    svg += label(across(1e-3 * mm), bottom + 17, fmt::format("{}", mm));
   }
-  for (const double v : {-1.0, -0.5, 0.5, 1.0}) {
-    svg += line(across(0) - 4, down(v), across(0), down(v), "#888");
-    svg += label(across(0) - 20, down(v) + 4, fmt::format("{:g}", v));
+  for (const double v : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+    svg += line(left - 4, down(v), left, down(v), "#444");
+    svg += label(left - 18, down(v) + 4, fmt::format("{:.1f}", v));
   }
-  svg += label(kWidth / 2, kHeight - 12, "x (m)");
-  return svg + label(across(0), down(kFastest) - 8, "v (m/s)");
+  svg += label((left + right) / 2, bottom + 36, "position (mm)");
+  const double middle = (top + bottom) / 2;
+  return svg + label(14, middle, "velocity (m/s)",
+                     fmt::format(" transform=\"rotate(-90 14 {:.1f})\"", middle));
+}
+
+std::string frame() {
+  return rectangle(across(kLowX), down(kFastest), across(kHighX), down(-kFastest),
+                   R"(fill="none" stroke="#444")");
 }
 
 /// Thinned evenly where there are more points than a picture can show.
@@ -53,9 +72,9 @@ std::string curve(const std::vector<PhasePoint>& path) {
   const std::size_t stride = std::max<std::size_t>(1, path.size() / kMostPoints);
   std::string points;
   for (std::size_t i = 0; i < path.size(); i += stride) {
-    points += fmt::format("{:.1f},{:.1f} ", across(path[i].position), down(path[i].velocity));
+    points += fmt::format("{:.2f},{:.2f} ", across(path[i].position), down(path[i].velocity));
   }
-  return fmt::format(R"(<polyline points="{}" fill="none" stroke="#1f5fa8" stroke-width="0.4"/>)",
+  return fmt::format(R"(<polyline points="{}" fill="none" stroke="#1f5fa8" stroke-width="0.3"/>)",
                      points);
 }
 
@@ -66,9 +85,11 @@ void write_phase_planes(const std::filesystem::path& file, const std::vector<Pha
       "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" "
       "font-size=\"11\">\n",
       kWidth * static_cast<double>(planes.size()), kHeight);
+  svg += rectangle(0, 0, kWidth * static_cast<double>(planes.size()), kHeight, R"(fill="#fff")");
   for (std::size_t i = 0; i < planes.size(); ++i) {
     svg += fmt::format("<g transform=\"translate({},0)\">\n", kWidth * static_cast<double>(i));
-    svg += axes() + curve(planes[i].path) + label(kWidth / 2, 20, planes[i].title) + "\n</g>\n";
+    svg += axes() + curve(planes[i].path) + frame() +
+           label((across(kLowX) + across(kHighX)) / 2, 20, planes[i].title) + "\n</g>\n";
   }
   write_file_crash_safely(file, svg + "</svg>\n");
 }
