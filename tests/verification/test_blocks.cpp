@@ -321,29 +321,198 @@ TEST(Block, CompressibleNeoHookeanHasTheElongationThatCalculixPrints) {
                 "[P] CalculiX, test example beamnh", 0.005});
 }
 
-/// P = mu (l - l^-2) + 2 l k1 (l^2 - 1) exp(k2 (l^2 - 1)^2) along one family of aligned fibres.
+/// Neo-Hookean with mu = 1 and one family of fibres; E e^(k2 E^2) in terms of its k1 and k2.
+struct Fibred {
+  static constexpr double k1 = 2, k2 = 0.8;
+
+  static LawConstants law(double dispersion, double angle) {
+    FibreField field;
+    field.angle = angle;
+    return {
+        "holzapfel-gasser-ogden", {{"c", 1}, {"k1", k1}, {"k2", k2}, {"kappa", dispersion}}, field};
+  }
+  static double pull(double E) { return k1 * E * std::exp(k2 * E * E); }
+};
+constexpr double kAlong = 0, kAcross = M_PI / 2;  ///< angles of fibres from the direction of pull
+
+/// The fibres, aligned along the pull, add 2 l k1 E exp(k2 E^2), E = l^2 - 1, to a solid of mu = 1;
+/// shortened, they are slack.
 TEST(Block, FibresHaveTheStressOfTheClosedForm) {
-  LawConstants law("holzapfel-gasser-ogden", {{"c", 1}, {"k1", 2}, {"k2", 0.8}, {"kappa", 0}});
-  const double l = 1.3, E = l * l - 1;
-  check(law, Mode::Uniaxial, l, l - 1 / (l * l) + 4 * l * E * std::exp(0.8 * E * E));
+  check_all(Fibred::law(0, kAlong), [](Mode mode, double l) {
+    const double matrix = closed_form(
+        [](double, double) -> std::array<double, 2> {
+          return {0.5, 0};
+        },
+        mode, l);
+    return matrix + 2 * l * Fibred::pull(std::max(0.0, l * l - 1));
+  });
 }
 
-/// s12 = 2 g (W1 + W2); with s33 = 0 the traction normal to the sheared face is -2 g^2 W2.
-TEST(Block, SimpleShearHasTheStressesOfTheClosedForm) {
-  const double g = 0.4, C10 = 0.4, C01 = 0.1;
+constexpr double kShear = 0.4;
+
+/// Nominal tractions on the sheared face, whose normal is y, and along which it is moved is x.
+struct ShearTractions {
+  double along, normal;
+};
+
+/// u_x = g y on the faces across x and y; the body is free to thin or thicken along z.
+std::vector<Motion> simple_shear(double g) {
   std::vector<Motion> motions{at_rest(2, 0, 2)};
   for (const int face_axis : {0, 1})
     for (const double face : {0.0, 1.0}) {
       motions.push_back({face_axis, face, 0, [g](const Eigen::Vector3d& X) { return g * X[1]; }});
       motions.push_back(at_rest(face_axis, face, 1));
     }
-  const auto found =
-      incompressible({"mooney-rivlin", {{"C10", C10}, {"C01", C01}}}, motions, {{1, 0}, {1, 1}});
-  const std::string source = "[C] closed form, incompressible";
-  test::verify({kProblem, "mooney-rivlin, simple shear 0.4, along the face", "mu", found[0],
-                2 * g * (C10 + C01), source, 1e-5});
-  test::verify({kProblem, "mooney-rivlin, simple shear 0.4, normal to the face", "mu", found[1],
-                -2 * g * g * C01, source, 1e-5});
+  return motions;
+}
+const std::vector<Stress> kShearTractions{{1, 0}, {1, 1}};
+
+void verify_shear(const std::string& name, const std::string& unit,
+                  const std::vector<double>& found, const ShearTractions& expected,
+                  const std::string& source, double bound) {
+  const auto row = [&](const char* direction, double computed, double reference) {
+    // A traction that vanishes is compared with the one that does not.
+    const bool none = reference == 0;
+    test::verify({kProblem, name + ", simple shear 0.4, " + direction, unit, computed,
+                  none ? 0.0 : reference, source, none ? bound * std::abs(expected.along) : bound,
+                  none ? test::Error::Absolute : test::Error::Relative});
+  };
+  row("along the face", found[0], expected.along);
+  row("normal to the face", found[1], expected.normal);
+}
+
+void check_shear(const std::string& name, const LawConstants& law, const ShearTractions& expected,
+                 const std::string& unit = "mu") {
+  verify_shear(name, unit, incompressible(law, simple_shear(kShear), kShearTractions), expected,
+               "[C] closed form, incompressible", 1e-5);
+}
+
+/// s12 = 2 g (W1 + W2); with s33 = 0 the traction normal to the sheared face is -2 g^2 W2.
+ShearTractions sheared(const Slopes& slopes, double g) {
+  const double I = 3 + g * g;
+  const auto [W1, W2] = slopes(I, I);
+  return {2 * g * (W1 + W2), -2 * g * g * W2};
+}
+
+struct Sheared {
+  LawConstants law;
+  Slopes slopes;
+};
+
+/// The laws of the invariants, dW/dI1 and dW/dI2 written anew.
+std::vector<Sheared> laws_of_invariants() {
+  using Two = std::array<double, 2>;
+  const double n = 1.6 * 1.6;
+  const double at_rest = 1 + 3 / (5 * n) + 99 / (175 * n * n) + 513 / (875 * n * n * n) +
+                         42039 / (67375 * n * n * n * n);
+  return {{LawConstants("neo-hookean", {{"young", 3}}),
+           [](double, double) {
+             return Two{0.5, 0};
+           }},
+          {LawConstants("mooney-rivlin", {{"C10", 0.4}, {"C01", 0.1}}),
+           [](double, double) {
+             return Two{0.4, 0.1};
+           }},
+          {LawConstants("mooney-rivlin-5",
+                        {{"C10", 0.3}, {"C01", 0.2}, {"C20", 0.12}, {"C11", 0.06}, {"C02", 0.09}}),
+           [](double I1, double I2) {
+             return Two{0.3 + 0.24 * (I1 - 3) + 0.06 * (I2 - 3),
+                        0.2 + 0.06 * (I1 - 3) + 0.18 * (I2 - 3)};
+           }},
+          {LawConstants("yeoh", {{"C10", 0.5}, {"C20", -0.02}, {"C30", 0.003}}),
+           [](double I1, double) {
+             return Two{0.5 - 0.04 * (I1 - 3) + 0.009 * (I1 - 3) * (I1 - 3), 0};
+           }},
+          {LawConstants("demiray-fung", {{"mu", 1}, {"b", 3}}),
+           [](double I1, double) {
+             return Two{0.5 * std::exp(3 * (I1 - 3)), 0};
+           }},
+          {LawConstants("veronda-westmann", {{"C1", 0.25}, {"C2", 4}}),
+           [](double I1, double) {
+             return Two{std::exp(4 * (I1 - 3)), -0.5};
+           }},
+          {LawConstants("arruda-boyce", {{"mu", 1}, {"lambda_m", 1.6}}),
+           [n, at_rest](double I1, double) {
+             const double x = I1 / n;
+             return Two{(0.5 + x / 10 + 11 * x * x / 350 + 19 * x * x * x / 1750 +
+                         519 * x * x * x * x / 134750) /
+                            at_rest,
+                        0};
+           }}};
+}
+
+class ShearedBlocks : public testing::TestWithParam<Sheared> {};
+
+TEST_P(ShearedBlocks, HaveTheTractionsOfTheClosedForm) {
+  check_shear(GetParam().law.law, GetParam().law, sheared(GetParam().slopes, kShear));
+}
+
+INSTANTIATE_TEST_SUITE_P(Laws, ShearedBlocks, testing::ValuesIn(laws_of_invariants()),
+                         [](const auto& instance) {
+                           std::string name = instance.param.law.law;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+/// The principal stretches are l, 1 and 1/l with g = l - 1/l, and l lies at the angle atan(1/l)
+/// from the direction of shear [Ogden 1984]: with t_i = sum of 2 mu/alpha l_i^alpha,
+/// s12 = (t_1 - t_3) l/(1 + l^2) and s22 - s33 = (t_1 + l^2 t_3)/(1 + l^2) - t_2.
+ShearTractions sheared_ogden(const std::vector<std::array<double, 2>>& terms, double g) {
+  const double l = g / 2 + std::sqrt(1 + g * g / 4);
+  std::array<double, 3> t{};
+  for (const auto& [mu, alpha] : terms)
+    for (std::size_t i = 0; i < 3; ++i)
+      t[i] += 2 * mu / alpha * std::pow(l, alpha * (1 - static_cast<double>(i)));
+  return {(t[0] - t[2]) * l / (1 + l * l), (t[0] + l * l * t[2]) / (1 + l * l) - t[1]};
+}
+
+TEST(ShearedBlock, OgdenHasTheTractionsOfTheClosedForm) {
+  const auto check_terms = [](const std::vector<std::array<double, 2>>& terms,
+                              const std::string& unit = "mu") {
+    const std::string name = "ogden-" + std::to_string(terms.size());
+    std::vector<std::pair<std::string, double>> constants;
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      constants.emplace_back("mu_" + std::to_string(i + 1), terms[i][0]);
+      constants.emplace_back("alpha_" + std::to_string(i + 1), terms[i][1]);
+    }
+    check_shear(name, {name, constants}, sheared_ogden(terms, kShear), unit);
+  };
+  check_terms({{1, -4.7}});
+  check_terms({{0.6, 3.5}, {0.4, -6}});
+  check_terms({{0.4095, 1.3}, {0.003, 5}, {0.01, -2}}, "MPa");
+}
+
+/// Fibres across the plane of shear are lengthened, a = (g, 1, 0): with E = (1 - 2 kappa) g^2 and
+/// p = k1 E exp(k2 E^2), s12 = g (1 + 2 kappa p) + 2 g (1 - 3 kappa) p and s22 - s33 = 2 (1 - 3
+/// kappa) p [Gasser, Ogden & Holzapfel 2006]. Those along the direction of shear keep their length:
+/// only the dispersed part of them, E = kappa g^2, is drawn, and its mean direction (1, 0, 0) has
+/// no traction.
+TEST(ShearedBlock, FibresHaveTheTractionsOfTheClosedForm) {
+  const double g = kShear;
+  for (const double kappa : {0.0, 0.1}) {
+    const auto named = [kappa](const char* direction) {
+      char name[80];
+      std::snprintf(name, sizeof name, "holzapfel-gasser-ogden, kappa = %g, fibres %s", kappa,
+                    direction);
+      return std::string(name);
+    };
+    const double across = Fibred::pull((1 - 2 * kappa) * g * g),
+                 along = Fibred::pull(kappa * g * g);
+    check_shear(named("across"), Fibred::law(kappa, kAcross),
+                {g * (1 + 2 * kappa * across) + 2 * g * (1 - 3 * kappa) * across,
+                 2 * (1 - 3 * kappa) * across});
+    check_shear(named("along"), Fibred::law(kappa, kAlong), {g * (1 + 2 * kappa * along), 0});
+  }
+}
+
+/// E12 = g/2, E22 = g^2/2, S33 = 0: S12 = mu g, S22 = E22 young/(1 - nu^2), P = F S.
+TEST(ShearedBlock, SaintVenantKirchhoffHasTheTractionsOfTheClosedForm) {
+  const double nu = 0.3, g = kShear, S12 = g / (2 * (1 + nu)), S22 = g * g / 2 / (1 - nu * nu);
+  std::optional<Block> block;
+  const LawConstants law("saint-venant-kirchhoff", {{"young", 1}, {"poisson", nu}});
+  verify_shear("saint-venant-kirchhoff, nu = 0.3", "E",
+               stresses(law, simple_shear(g), kShearTractions, block), {S12 + g * S22, S22},
+               "[C] closed form", 1e-8);
 }
 
 class Patch : public testing::TestWithParam<Dilatation> {};
