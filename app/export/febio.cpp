@@ -38,7 +38,8 @@ FebioLaw febio_law(const fem::LawConstants& c) {
     return {"Mooney-Rivlin", {{"c1", c.at("C10")}, {"c2", c.at("C01")}}};
   }
   if (c.law == "yeoh") {
-    return {"Yeoh", {{"c1", c.at("C10")}, {"c2", c.at("C20")}, {"c3", c.at("C30")}}};
+    // Its stress is that of W = sum of c_i/i (I1 - 3)^i, although the energy it prints is not.
+    return {"Yeoh", {{"c1", c.at("C10")}, {"c2", 2 * c.at("C20")}, {"c3", 3 * c.at("C30")}}};
   }
   if (c.law == "ogden-1") return {"Ogden", ogden_parameters(c, 1)};
   if (c.law == "ogden-2") return {"Ogden", ogden_parameters(c, 2)};
