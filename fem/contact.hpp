@@ -37,6 +37,7 @@ class ToolContact {
               const ContactStiffness& stiffness);
 
   void move_to(const Tool& tool);
+  const Tool& tool() const { return tool_; }
 
   const std::vector<Facet>& facets() const { return facets_; }
 

@@ -1,11 +1,24 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/contact_patch.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <limits>
 #include <set>
 
 namespace palpate::fem {
+
+namespace {
+
+/// A facet that flips costs one iteration.
+constexpr int kPatchIterations = 50;
+constexpr int kPatchHalvings = 10;
+/// Of the stiffening, where the model of the patch is not convex; with all of it it is.
+constexpr std::array<double, 5> kStiffeningShares{0, 0.003, 0.03, 0.3, 1};
+
+}  // namespace
 
 ContactPatch::ContactPatch(const ToolContact& contact, const SolidModel& model,
                            const Displacement& u)
@@ -59,6 +72,13 @@ bool ContactPatch::covers(const ToolContact& contact, const Displacement& u) con
   const auto held = [&](const auto& tie) { return node_place_.contains(tie.node); };
   return std::all_of(contact.points_.begin(), contact.points_.end(), inside) &&
          std::all_of(contact.ties_.begin(), contact.ties_.end(), held);
+}
+
+Eigen::VectorXd ContactPatch::difference(const Displacement& from, const Displacement& to) const {
+  Eigen::VectorXd d(size());
+  for (const auto& [node, place] : node_place_)
+    if (place >= 0) d.segment<3>(place) = to.col(node) - from.col(node);
+  return d;
 }
 
 void ContactPatch::start_from(const ToolContact& contact, const Displacement& u) {
@@ -126,6 +146,55 @@ double ContactPatch::derivatives(const ToolContact& contact, const Eigen::Vector
     if (H) H->diagonal().segment<3>(tie.place).array() += contact.ties_[tie.index].stiffness;
   }
   return sum;
+}
+
+Eigen::Vector3d ContactPatch::tool_force(const ToolContact& contact,
+                                         const Eigen::VectorXd& d) const {
+  Eigen::Vector3d force = Eigen::Vector3d::Zero();
+  for (const Point& point : points_) {
+    const auto& source = contact.points_[point.index];
+    force -= source.area * contact.gradient_at(source, position(contact, point, d));
+  }
+  for (const Tie& tie : ties_) force -= contact.ties_[tie.index].stiffness * slip(contact, tie, d);
+  return force;
+}
+
+Eigen::VectorXd patch_minimum(const ContactPatch& patch, const ToolContact& contact,
+                              const PatchStiffness& stiffness, const Eigen::VectorXd& load,
+                              Eigen::VectorXd d, double tolerance) {
+  Eigen::MatrixXd S = stiffness.S, H;
+  Eigen::VectorXd contact_force;
+  Eigen::LLT<Eigen::MatrixXd> llt;
+  std::size_t share = 0;
+  for (int iteration = 0; iteration < kPatchIterations; ++iteration) {
+    const double pushed = patch.derivatives(contact, d, true, contact_force, &H);
+    const Eigen::VectorXd pull = S * d, g = pull - load + contact_force;
+    if (g.norm() <= tolerance) break;
+    llt.compute(H + S);
+    if (llt.info() != Eigen::Success) {
+      patch.derivatives(contact, d, false, contact_force, &H);  // without what can be negative
+      llt.compute(H + S);
+    }
+    if (llt.info() != Eigen::Success) {
+      if (++share == kStiffeningShares.size()) break;
+      S = stiffness.S;
+      S.diagonal() += kStiffeningShares[share] * stiffness.stiffening;
+      continue;
+    }
+    const double energy = 0.5 * d.dot(pull) - load.dot(d) + pushed;
+    const Eigen::VectorXd step = -llt.solve(g);
+    const double slope = g.dot(step);
+    double length = 1;
+    Eigen::VectorXd trial;
+    for (int halvings = 0; halvings < kPatchHalvings; ++halvings, length *= 0.5) {
+      trial = d + length * step;
+      const double next =
+          0.5 * trial.dot(S * trial) - load.dot(trial) + patch.energy(contact, trial);
+      if (next <= energy + 1e-4 * length * slope + kEnergyNoise * std::abs(energy)) break;
+    }
+    d = trial;
+  }
+  return d;
 }
 
 }  // namespace palpate::fem

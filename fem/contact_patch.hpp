@@ -10,6 +10,9 @@
 
 namespace palpate::fem {
 
+/// Round-off of an energy summed over the elements, relative.
+inline constexpr double kEnergyNoise = 1e-14;
+
 /// The facets in contact and those that share a node with them. Their free nodes are the unknowns
 /// of a small dense problem; d below is a change of these unknowns. Made for one contact, it serves
 /// its copies too, moved or bonded.
@@ -23,6 +26,10 @@ class ContactPatch {
 
   /// The unknowns of the model that belong to the patch, ascending; empty when it has none there.
   const std::vector<int>& unknowns() const { return unknowns_; }
+  Eigen::Index size() const { return static_cast<Eigen::Index>(unknowns_.size()); }
+
+  /// d from one displacement to another.
+  Eigen::VectorXd difference(const Displacement& from, const Displacement& to) const;
 
   /// The displacement that d is a change of.
   void start_from(const ToolContact& contact, const Displacement& u);
@@ -31,6 +38,8 @@ class ContactPatch {
   /// ToolContact::add_stiffness.
   double derivatives(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
                      Eigen::VectorXd& g, Eigen::MatrixXd* H) const;
+  /// N, of the tool on the body; the patch covers the contact.
+  Eigen::Vector3d tool_force(const ToolContact& contact, const Eigen::VectorXd& d) const;
 
  private:
   struct Point {
@@ -54,5 +63,18 @@ class ContactPatch {
   std::vector<Point> points_;
   std::vector<Tie> ties_;  ///< of the contact that the start was with
 };
+
+/// The solid as the patch feels it, N/m, numbered as the patch. Under pressure it is often stable
+/// against its tool alone and S indefinite; S with `stiffening` on its diagonal is not.
+struct PatchStiffness {
+  Eigen::MatrixXd S;
+  Eigen::VectorXd stiffening;
+};
+
+/// The minimum over d of d S d/2 - load . d + E_c(d), sought by Newton's method from `d` until the
+/// gradient is within `tolerance`, N.
+Eigen::VectorXd patch_minimum(const ContactPatch& patch, const ToolContact& contact,
+                              const PatchStiffness& stiffness, const Eigen::VectorXd& load,
+                              Eigen::VectorXd d, double tolerance);
 
 }  // namespace palpate::fem

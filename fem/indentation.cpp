@@ -200,6 +200,13 @@ class SiteEquilibrium {
     return result;
   }
 
+  /// As NewtonSolver::work_between.
+  std::optional<double> work_between(const ToolContact& contact, const Eigen::Vector3d& from,
+                                     const Displacement& before, const Displacement& after) {
+    if (shared_) return shared_->work_between(contact, from, before, after);
+    return direct_ ? direct_->work_between(contact, from, before, after) : std::nullopt;
+  }
+
   void restart() {
     if (shared_) shared_->restart();
   }
@@ -279,14 +286,16 @@ namespace {
 /// Drives one path: increments with predictor and cut-back.
 class PathDriver {
  public:
+  /// `follows_work`: where the contact grows, the work of the tool is followed within increments.
   PathDriver(const CampaignContext& context, const SolidModel& model, ToolContact& contact,
-             SiteEquilibrium& equilibrium, const SelfContact& watch,
+             SiteEquilibrium& equilibrium, const SelfContact& watch, bool follows_work,
              std::function<Tool(double)> tool_at)
       : context_(context),
         model_(model),
         contact_(contact),
         equilibrium_(equilibrium),
         watch_(watch),
+        follows_work_(follows_work),
         tool_at_(std::move(tool_at)) {
     equilibrium_.restart();
   }
@@ -295,6 +304,7 @@ class PathDriver {
   /// `sample` is filled but for the work.
   bool advance(double from, double to, History& history, Displacement& u, CurveSample& sample,
                std::string& reason) {
+    work_ = follows_work_ ? std::optional(0.0) : std::nullopt;
     // A tool that is moved by a large part of its size at once could pass the surface unnoticed.
     double at = from, step = std::min(to - from, kLargestStep * context_.indentation.tool.radius);
     int halvings = 0;
@@ -305,6 +315,7 @@ class PathDriver {
       Displacement trial = predict(model_, history, next);
       const Outcome outcome = equilibrate(next, halvings, trial, sample, failure);
       if (outcome == Outcome::Found) {
+        add_work(at, history.last(), trial);
         u = trial;
         history.add(next, u);
         at = next;
@@ -320,7 +331,16 @@ class PathDriver {
     return true;
   }
 
+  /// J, of the tool in the last advance(); nothing where it was not followed all the way.
+  std::optional<double> work() const { return work_; }
+
  private:
+  void add_work(double from, const Displacement& before, const Displacement& after) {
+    if (!work_) return;
+    const auto more = equilibrium_.work_between(contact_, tool_at_(from).tip, before, after);
+    work_ = more ? std::optional(*work_ + *more) : std::nullopt;
+  }
+
   enum class Outcome {
     Found,
     NotFound,    ///< a smaller step may help
@@ -383,7 +403,9 @@ class PathDriver {
   ToolContact& contact_;
   SiteEquilibrium& equilibrium_;
   const SelfContact& watch_;
+  bool follows_work_;
   std::function<Tool(double)> tool_at_;
+  std::optional<double> work_;
 };
 
 /// A path of the site stopped early; every path that did leaves its reason.
@@ -392,34 +414,28 @@ void stop_early(SiteCurves& curves, const std::string& reason) {
   curves.reason += (curves.reason.empty() ? "" : "; ") + reason;
 }
 
-/// Integral from 0 to s1 of the power law through (s1, f1) and (s2, f2): a contact that grows from
-/// a point starts like one (Hertz: 3/2), and no parabola follows it there. The parabolas'
-/// `otherwise` where the samples suggest no such law.
-double first_work(const std::vector<double>& s, const std::vector<double>& f, double otherwise) {
-  if (s.size() < 3 || !(f[1] > 0 && f[2] > f[1])) return otherwise;
-  const double exponent = std::log(f[2] / f[1]) / std::log(s[2] / s[1]);
-  return exponent < 1 || exponent > 2.5 ? otherwise : f[1] * s[1] / (1 + exponent);
-}
-
-/// Fill tool_work: the running integral of force . direction, on top of `start`.
-void fill_work(CurvePath& path, double start) {
+/// Fill tool_work, on top of `start`: of each increment what the solver found, one for each sample
+/// but the first, or else the integral of force . direction through the samples.
+void fill_work(CurvePath& path, double start, const std::vector<std::optional<double>>& found) {
   std::vector<double> s, f;
   for (const auto& sample : path.samples) {
     s.push_back(sample.displacement);
     f.push_back(dot(sample.force, path.direction));
   }
-  const auto work = running_integral(s, f);
-  const bool from_touch = path.kind == PathKind::Normal && work.size() > 1;
-  const double correction = from_touch ? first_work(s, f, work[1]) - work[1] : 0;
-  for (std::size_t i = 0; i < work.size(); ++i)
-    path.samples[i].tool_work = start + work[i] + (i > 0 ? correction : 0);
+  const auto through = running_integral(s, f);
+  path.samples.front().tool_work = start;
+  for (std::size_t i = 1; i < path.samples.size(); ++i) {
+    const auto known = i <= found.size() ? found[i - 1] : std::nullopt;
+    path.samples[i].tool_work =
+        path.samples[i - 1].tool_work + known.value_or(through[i] - through[i - 1]);
+  }
 }
 
 }  // namespace
 
 void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves) {
   const bool stuck = context_.indentation.friction == ToolFriction::Stuck;
-  PathDriver driver(context_, site.body.whole(), site.contact, site.equilibrium, site.watch,
+  PathDriver driver(context_, site.body.whole(), site.contact, site.equilibrium, site.watch, true,
                     [&](double depth) { return site.tool_at(depth); });
   CurvePath path;
   path.kind = PathKind::Normal;
@@ -436,6 +452,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
     site.contact.move_to(site.tool_at(0));
     site.contact.bond(u, kTouching * context_.indentation.tool.radius);
   }
+  std::vector<std::optional<double>> work;
   for (const double depth : normal_increments(context_.indentation, stops)) {
     CurveSample sample;
     std::string reason;
@@ -444,6 +461,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
       break;
     }
     path.samples.push_back(sample);
+    work.push_back(driver.work());
     if (observer_) observer_(site.contact, u, sample);
     if (stuck) site.contact.bond(u);
     for (const double held : stops)
@@ -452,7 +470,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
     from = depth;
   }
   pressed_ = u.leftCols(context_.model.mesh().nodes());
-  fill_work(path, 0);
+  fill_work(path, 0, work);
   for (auto& [depth, held] : site.held)
     for (const auto& sample : path.samples)
       if (std::abs(sample.displacement - depth) < 1e-9 * depth) held.work = sample.tool_work;
@@ -468,7 +486,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
   ToolContact contact = held.contact;
   Displacement u = held.u;
   contact.bond(u);
-  PathDriver driver(context_, site.body.whole(), contact, site.equilibrium, site.watch,
+  PathDriver driver(context_, site.body.whole(), contact, site.equilibrium, site.watch, false,
                     [&](double s) { return site.tool_at(held_depth, s * direction); });
   CurvePath path;
   path.kind = PathKind::Lateral;
@@ -493,7 +511,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
     if (lateral_observer_) lateral_observer_(plan, contact, u, sample);
     from = s;
   }
-  fill_work(path, held.work);
+  fill_work(path, held.work, {});
   curves.paths.push_back(std::move(path));
 }
 

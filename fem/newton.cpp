@@ -1,27 +1,19 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/newton.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "fem/increment_work.hpp"
 
 namespace palpate::fem {
 
 namespace {
 
-/// Round-off of an energy summed over the elements, relative.
-constexpr double kEnergyNoise = 1e-14;
-
 /// Forces that a sagged body may be left with, over its weight: ten times what it is left with.
 constexpr double kWeightNoise = 1e-8;
 
-/// Of the contact on the patch. A facet that flips costs one iteration.
-constexpr int kPatchIterations = 50;
-constexpr int kPatchHalvings = 10;
-/// Of the stiffening of the factor, where the model of the patch is not convex; with all of it it
-/// is.
-constexpr std::array<double, 5> kStiffeningShares{0, 0.003, 0.03, 0.3, 1};
 /// The residual that the patch may leave, over that allowed to the increment.
 constexpr double kPatchTolerance = 0.1;
 
@@ -97,43 +89,6 @@ bool NewtonSolver::factorize(const Displacement& u) {
   return true;
 }
 
-Eigen::VectorXd NewtonSolver::patch_minimum(const ToolContact& contact, const Eigen::VectorXd& load,
-                                            double tolerance) const {
-  Eigen::MatrixXd S = schur_, H;
-  Eigen::VectorXd d = Eigen::VectorXd::Zero(load.size()), contact_force;
-  Eigen::LLT<Eigen::MatrixXd> llt;
-  std::size_t share = 0;
-  for (int iteration = 0; iteration < kPatchIterations; ++iteration) {
-    const double pushed = patch_->derivatives(contact, d, true, contact_force, &H);
-    const Eigen::VectorXd pull = S * d, g = pull - load + contact_force;
-    if (g.norm() <= tolerance) break;
-    llt.compute(H + S);
-    if (llt.info() != Eigen::Success) {
-      patch_->derivatives(contact, d, false, contact_force, &H);  // without what can be negative
-      llt.compute(H + S);
-    }
-    if (llt.info() != Eigen::Success) {
-      if (++share == kStiffeningShares.size()) break;
-      S = schur_;
-      S.diagonal() += kStiffeningShares[share] * stiffening_;
-      continue;
-    }
-    const double energy = 0.5 * d.dot(pull) - load.dot(d) + pushed;
-    const Eigen::VectorXd step = -llt.solve(g);
-    const double slope = g.dot(step);
-    double length = 1;
-    Eigen::VectorXd trial;
-    for (int halvings = 0; halvings < kPatchHalvings; ++halvings, length *= 0.5) {
-      trial = d + length * step;
-      const double next =
-          0.5 * trial.dot(S * trial) - load.dot(trial) + patch_->energy(contact, trial);
-      if (next <= energy + 1e-4 * length * slope + kEnergyNoise * std::abs(energy)) break;
-    }
-    d = trial;
-  }
-  return d;
-}
-
 Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displacement& u,
                                         const Eigen::VectorXd& residual, double tolerance) {
   Eigen::VectorXd load = -residual, y(load.size()), d(load.size());
@@ -143,7 +98,8 @@ Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displa
     patch_->start_from(contact, u);
     Eigen::VectorXd x(count), ordered = root_.triangularView<Eigen::Lower>() * y.tail(count);
     for (Eigen::Index i = 0; i < count; ++i) x[place(i)] = ordered[i];
-    x = patch_minimum(contact, x, tolerance);
+    x = patch_minimum(*patch_, contact, {schur_, stiffening_}, x, Eigen::VectorXd::Zero(count),
+                      tolerance);
     for (Eigen::Index i = 0; i < count; ++i) ordered[i] = x[place(i)];
     y.tail(count) = root_.transpose().triangularView<Eigen::Upper>() * ordered;
   }
@@ -205,6 +161,14 @@ NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions
   }
   result.reason = "no convergence in " + std::to_string(options.max_iterations) + " iterations";
   return result;
+}
+
+std::optional<double> NewtonSolver::work_between(const ToolContact& contact,
+                                                 const Eigen::Vector3d& from,
+                                                 const Displacement& before,
+                                                 const Displacement& after) {
+  if (!factorized_) return std::nullopt;
+  return fem::work_between(*patch_, {schur_, stiffening_}, contact, from, before, after);
 }
 
 }  // namespace palpate::fem

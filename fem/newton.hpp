@@ -57,6 +57,10 @@ class NewtonSolver {
 
   NewtonResult solve(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
 
+  /// palpate::fem::work_between with S of the last factor; nothing where there is none.
+  std::optional<double> work_between(const ToolContact& contact, const Eigen::Vector3d& from,
+                                     const Displacement& before, const Displacement& after);
+
  private:
   void choose_patch(const ToolContact& contact, const Displacement& u);
   bool factorize(const Displacement& u);
@@ -65,8 +69,6 @@ class NewtonSolver {
   /// The minimum of the model above, contact residual left: `tolerance`, N.
   Eigen::VectorXd direction(const ToolContact& contact, const Displacement& u,
                             const Eigen::VectorXd& residual, double tolerance);
-  Eigen::VectorXd patch_minimum(const ToolContact& contact, const Eigen::VectorXd& load,
-                                double tolerance) const;
   /// Moves u along d; false when no admissible step is found.
   bool line_search(const ToolContact& contact, const Eigen::VectorXd& d, Equilibrium& now,
                    Displacement& u) const;

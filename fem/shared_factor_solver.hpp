@@ -35,6 +35,12 @@ class SharedFactorSolver {
   /// neighbours on a path.
   NewtonResult solve(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
 
+  /// As NewtonSolver::work_between, by the factor of the window.
+  std::optional<double> work_between(const ToolContact& contact, const Eigen::Vector3d& from,
+                                     const Displacement& before, const Displacement& after) {
+    return newton_.work_between(contact, from, before, after);
+  }
+
   /// Forget the curvature pairs, as at the start of a path.
   void restart() { pairs_.clear(); }
 

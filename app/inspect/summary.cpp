@@ -134,8 +134,8 @@ double imbalance_of(const CurvePath& path) {
                     : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// How well work and stored energy balance: what they differ by is the integration of the force
-/// over the increments of the case.
+/// How well work and stored energy balance: what they differ by is what the solver leaves and the
+/// integration of the force over the increments of the case.
 Json energy_of(const Curves& curves) {
   constexpr double kHalfAPercent = 0.005;
   Worst imbalance;

@@ -112,7 +112,8 @@ void PrintTo(const BalanceCase& c, std::ostream* out) {
 
 class Balance : public testing::TestWithParam<BalanceCase> {};
 
-/// Elements nearly as large as the tool, so that facets stick in part; deep presses.
+/// Elements nearly as large as the tool, so that facets stick in part; deep presses in increments
+/// of a fifth of the tool, and drags from the first of them on.
 TEST_P(Balance, WorkOfTheToolIsTheStoredEnergy) {
   const auto across = test::even(-0.03, 0.03, 15);
   const Body body =
@@ -122,10 +123,10 @@ TEST_P(Balance, WorkOfTheToolIsTheStoredEnergy) {
   settings.indentation.tool = GetParam().tool;
   settings.indentation.friction = GetParam().friction;
   settings.indentation.depth = 0.005;
-  settings.indentation.increments = 10;
-  settings.indentation.held_depths = {0.0015, 0.003, 0.005};
+  settings.indentation.increments = 5;
+  settings.indentation.held_depths = {0.001, 0.003, 0.005};
   settings.indentation.lateral_travel = 0.003;
-  settings.indentation.lateral_increments = 5;
+  settings.indentation.lateral_increments = 3;
   settings.indentation.azimuths = {0.0, 2.2};
   settings.points = {{{0.0027, 0.0013, 0}, {0, 0, -1}}};
   const CampaignContext context(body, settings, Engine::SharedFactor);
@@ -140,7 +141,8 @@ TEST_P(Balance, WorkOfTheToolIsTheStoredEnergy) {
     largest = std::max(largest, std::abs(end.tool_work / stored - 1));
   }
   const char* problem =
-      "Balance of energy: |work of the tool over stored energy - 1|, elements of 4 mm";
+      "Balance of energy: |work of the tool over stored energy - 1|, elements of 4 mm, increments "
+      "of 1 mm";
   test::verify({problem, text(GetParam()) + ", 5 mm deep", "1", worst[0], 0, "conservation", 0.005,
                 test::Error::Absolute});
   test::verify({problem, text(GetParam()) + ", worst of six drags of 3 mm", "1", worst[1], 0,
