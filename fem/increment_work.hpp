@@ -22,8 +22,7 @@ namespace palpate::fem {
 /// @param contact  at the second equilibrium; `from`: where the tip of the tool was at the first,
 ///   from where it moved in a straight line, m
 /// @return J; nothing where the patch does not cover the contact, is empty, or where the forces
-/// fell
-///   while the surface was moved (no stiffness has both ends).
+///   fell while the surface was moved (no stiffness has both ends).
 std::optional<double> work_between(ContactPatch& patch, const PatchStiffness& stiffness,
                                    const ToolContact& contact, const Eigen::Vector3d& from,
                                    const Displacement& before, const Displacement& after);

@@ -414,6 +414,15 @@ void stop_early(SiteCurves& curves, const std::string& reason) {
   curves.reason += (curves.reason.empty() ? "" : "; ") + reason;
 }
 
+/// Integral from 0 to s1 of the power law through (s1, f1) and (s2, f2): a contact that grows from
+/// a point starts like one (Hertz: 3/2), and no parabola follows it there. The parabolas'
+/// `otherwise` where the samples suggest no such law.
+double first_work(const std::vector<double>& s, const std::vector<double>& f, double otherwise) {
+  if (s.size() < 3 || !(f[1] > 0 && f[2] > f[1])) return otherwise;
+  const double exponent = std::log(f[2] / f[1]) / std::log(s[2] / s[1]);
+  return exponent < 1 || exponent > 2.5 ? otherwise : f[1] * s[1] / (1 + exponent);
+}
+
 /// Fill tool_work, on top of `start`: of each increment what the solver found, one for each sample
 /// but the first, or else the integral of force . direction through the samples.
 void fill_work(CurvePath& path, double start, const std::vector<std::optional<double>>& found) {
@@ -426,8 +435,9 @@ void fill_work(CurvePath& path, double start, const std::vector<std::optional<do
   path.samples.front().tool_work = start;
   for (std::size_t i = 1; i < path.samples.size(); ++i) {
     const auto known = i <= found.size() ? found[i - 1] : std::nullopt;
-    path.samples[i].tool_work =
-        path.samples[i - 1].tool_work + known.value_or(through[i] - through[i - 1]);
+    double between = through[i] - through[i - 1];
+    if (path.kind == PathKind::Normal && i == 1) between = first_work(s, f, between);
+    path.samples[i].tool_work = path.samples[i - 1].tool_work + known.value_or(between);
   }
 }
 

@@ -59,10 +59,10 @@ void NewtonSolver::shifted_stiffness(const Displacement& u, double patch, double
   const auto& start = model_.pattern().start;
   for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[at(start[i])] *= 1 + all;
   const std::vector<int>& ours = patch_->unknowns();
-  stiffening_.resize(static_cast<Eigen::Index>(ours.size()));
+  patch_stiffness_.stiffening.resize(static_cast<Eigen::Index>(ours.size()));
   for (std::size_t i = 0; i < ours.size(); ++i) {
     double& diagonal = K_[at(start[at(ours[i])])];
-    stiffening_[static_cast<Eigen::Index>(i)] = patch * std::abs(diagonal);
+    patch_stiffness_.stiffening[static_cast<Eigen::Index>(i)] = patch * std::abs(diagonal);
     diagonal += patch * std::abs(diagonal);
   }
 }
@@ -84,8 +84,8 @@ bool NewtonSolver::factorize(const Displacement& u) {
   root_ = factor_->last_block();
   Eigen::MatrixXd numbered(root_.rows(), root_.cols());
   for (Eigen::Index i = 0; i < root_.rows(); ++i) numbered.row(place(i)) = root_.row(i);
-  schur_.noalias() = numbered * numbered.transpose();
-  schur_.diagonal() -= stiffening_;
+  patch_stiffness_.S.noalias() = numbered * numbered.transpose();
+  patch_stiffness_.S.diagonal() -= patch_stiffness_.stiffening;
   return true;
 }
 
@@ -98,7 +98,7 @@ Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displa
     patch_->start_from(contact, u);
     Eigen::VectorXd x(count), ordered = root_.triangularView<Eigen::Lower>() * y.tail(count);
     for (Eigen::Index i = 0; i < count; ++i) x[place(i)] = ordered[i];
-    x = patch_minimum(*patch_, contact, {schur_, stiffening_}, x, Eigen::VectorXd::Zero(count),
+    x = patch_minimum(*patch_, contact, patch_stiffness_, x, Eigen::VectorXd::Zero(count),
                       tolerance);
     for (Eigen::Index i = 0; i < count; ++i) ordered[i] = x[place(i)];
     y.tail(count) = root_.transpose().triangularView<Eigen::Upper>() * ordered;
@@ -168,7 +168,7 @@ std::optional<double> NewtonSolver::work_between(const ToolContact& contact,
                                                  const Displacement& before,
                                                  const Displacement& after) {
   if (!factorized_) return std::nullopt;
-  return fem::work_between(*patch_, {schur_, stiffening_}, contact, from, before, after);
+  return fem::work_between(*patch_, patch_stiffness_, contact, from, before, after);
 }
 
 }  // namespace palpate::fem

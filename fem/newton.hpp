@@ -82,10 +82,9 @@ class NewtonSolver {
   std::optional<Cholesky> factor_;
   SolveWorkspace workspace_;
   std::vector<double> K_;
-  std::vector<int> last_place_;  ///< in the patch, of the last unknowns of the factor
-  Eigen::VectorXd stiffening_;   ///< (patch) on the diagonal of A in the factor
-  Eigen::MatrixXd root_;         ///< lower triangular, of stiffened S in the order of the factor
-  Eigen::MatrixXd schur_;        ///< S itself, numbered as the patch
+  std::vector<int> last_place_;     ///< in the patch, of the last unknowns of the factor
+  Eigen::MatrixXd root_;            ///< lower triangular, of stiffened S in the order of the factor
+  PatchStiffness patch_stiffness_;  ///< S itself, what the diagonal of A has in the factor
   bool factorized_ = false;
 };
 
