@@ -3,12 +3,15 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 #include <set>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "fitting/fitting.hpp"
 #include "fitting/slide_bound.hpp"
+#include "fitting/slide_search.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fitting {
@@ -19,7 +22,7 @@ constexpr double kReferencePeriod = 1e-3;  // s: the limits of a device are stat
 /// Bounds of one triangle with what they are made of, for the line that names the limit.
 struct TriangleBounds {
   TriangleCertificate certificate;
-  SlideBound slide;
+  SlideCauses causes;
 };
 
 const NodeResponse& response(const Library& library, std::int32_t vertex) {
@@ -49,25 +52,57 @@ CurveTriple couplings_of(const Library& library, const Triangle& triangle,
   return {{curve(0), curve(1), curve(2)}, frame.gradient};
 }
 
-TriangleBounds bound_triangle(const Library& library, std::size_t index, double depth,
-                              double friction) {
+ContactElement contact_element(const Library& library, std::size_t index, double depth,
+                               double friction) {
   const Triangle& triangle = library.triangles[index];
   const TriangleFrame frame = triangle_frame(library, index);
-  TriangleBounds bounds;
-  bounds.certificate.kappa = frame.kappa;
-  bounds.certificate.cos_theta = frame.cos_theta;
-  // Without a response at a vertex there is no local model: a border, nothing to bound.
-  if (has_hole(library, triangle)) return bounds;
   ContactElement element{frame, curves_of(library, triangle, frame, &NodeResponse::normal),
                          curves_of(library, triangle, frame, &NodeResponse::lateral), friction,
                          depth};
   if (library.kind == ResponseKind::Coupled)
     element.coupling = couplings_of(library, triangle, frame);
+  return element;
+}
+
+TriangleBounds bound_triangle(const Library& library, std::size_t index, double depth,
+                              double friction) {
+  const TriangleFrame frame = triangle_frame(library, index);
+  TriangleBounds bounds;
+  bounds.certificate.kappa = frame.kappa;
+  bounds.certificate.cos_theta = frame.cos_theta;
+  // Without a response at a vertex there is no local model: a border, nothing to bound.
+  if (has_hole(library, library.triangles[index])) return bounds;
+  const ContactElement element = contact_element(library, index, depth, friction);
+  const SlideBound slide = slide_bound(element);
+  bounds.causes = slide.causes;
   bounds.certificate.stick = stick_bound(element);
-  bounds.slide = slide_bound(element);
-  bounds.certificate.slip = bounds.slide.total;
+  bounds.certificate.slip = slide.total;
   bounds.certificate.sliding_passive = slide_lowers_energy(element);
   return bounds;
+}
+
+/// A closer look at the triangles whose slides would set the bound of the library, the worst first,
+/// until what is left is no larger than what a slide does reach. (Without friction the slide has no
+/// direction of its own, and (10) stands.)
+void tighten(const Library& library, double depth, double friction,
+             std::vector<TriangleBounds>& bounds) {
+  if (!(friction > 0)) return;
+  double reached = 0;
+  std::vector<std::size_t> order(bounds.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (const TriangleBounds& b : bounds) reached = std::max(reached, b.certificate.stick);
+  const auto slip = [&](std::size_t m) { return bounds[m].certificate.slip; };
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return slip(a) > slip(b); });
+  for (const std::size_t m : order) {
+    if (slip(m) <= reached) break;
+    const SteepestSlide steepest =
+        steepest_slide(contact_element(library, m, depth, friction), reached);
+    reached = std::max(reached, steepest.reached);
+    if (steepest.bound > slip(m)) continue;
+    bounds[m] = {bounds[m].certificate, steepest.causes};
+    bounds[m].certificate.slip = steepest.bound;
+  }
 }
 
 double deepest_knot(const Library& library) {
@@ -110,7 +145,7 @@ std::string cause(const TriangleBounds& bounds, double depth) {
     return "the stiffest response, with the contact point held";
   }
   if (std::isinf(bounds.certificate.slip)) return cause_unbounded(bounds.certificate, depth);
-  const SlideBound& slide = bounds.slide;
+  const SlideCauses& slide = bounds.causes;
   if (slide.stiffness >= std::max({slide.variation, slide.slant, slide.curvature})) {
     return "the stiffest response, while sliding";
   }
@@ -174,17 +209,21 @@ void certify(Library& library, const CertifySettings& settings) {
     throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
                 "no vertex has a response", "fit the curves first");
   }
+  std::vector<TriangleBounds> bounds;
+  for (std::size_t m = 0; m < library.triangles.size(); ++m)
+    bounds.push_back(bound_triangle(library, m, certificate.depth, settings.friction));
+  tighten(library, certificate.depth, settings.friction, bounds);
   double steepest = 0;
-  for (std::size_t m = 0; m < library.triangles.size(); ++m) {
-    const TriangleBounds bounds = bound_triangle(library, m, certificate.depth, settings.friction);
-    certificate.triangles.push_back(bounds.certificate);
-    certificate.stick = std::max(certificate.stick, bounds.certificate.stick);
-    certificate.slip = std::max(certificate.slip, bounds.certificate.slip);
-    const double both = std::max(bounds.certificate.stick, bounds.certificate.slip);
+  for (std::size_t m = 0; m < bounds.size(); ++m) {
+    const TriangleCertificate& triangle = bounds[m].certificate;
+    certificate.triangles.push_back(triangle);
+    certificate.stick = std::max(certificate.stick, triangle.stick);
+    certificate.slip = std::max(certificate.slip, triangle.slip);
+    const double both = std::max(triangle.stick, triangle.slip);
     if (both > steepest) {
       steepest = both;
       certificate.worst_triangle = static_cast<std::int32_t>(m);
-      certificate.limited_by = limit_line(library, m, bounds, certificate.depth);
+      certificate.limited_by = limit_line(library, m, bounds[m], certificate.depth);
     }
   }
   if (certificate.worst_triangle < 0) {

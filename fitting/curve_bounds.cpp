@@ -53,6 +53,27 @@ Range inverse_of(const runtime::CompiledCurve& curve, double force) {
 
 }  // namespace
 
+Range slope_range(const runtime::CompiledCurve& curve, const Range& range) {
+  const double first = slope_at(curve, range.low), last = slope_at(curve, range.high);
+  Range result{std::min(first, last), std::max(first, last)};
+  for (const auto& piece : curve.pieces()) {
+    if (piece.start > range.low && piece.start < range.high)
+      result = hull(result, {piece.slope, piece.slope});
+  }
+  return result;
+}
+
+Range curvature_range(const runtime::CompiledCurve& curve, const Range& range) {
+  Range result{kInfinity, -kInfinity};
+  const auto& pieces = curve.pieces();
+  for (std::size_t k = 0; k < pieces.size(); ++k) {
+    const double end = k + 1 < pieces.size() ? pieces[k + 1].start : kInfinity;
+    if (end < range.low || pieces[k].start > range.high) continue;
+    result = hull(result, {2 * pieces[k].curvature, 2 * pieces[k].curvature});
+  }
+  return result;
+}
+
 CurveTriple::CurveTriple(std::array<runtime::CompiledCurve, 3> curves,
                          const std::array<Vec3, 3>& gradient)
     : curves_(std::move(curves)), gradient_(gradient), first_knot_(kInfinity) {
@@ -79,31 +100,13 @@ double CurveTriple::greatest_force(double d) const {
 
 Range CurveTriple::slope(const Range& range) const {
   Range result{kInfinity, 0};
-  const auto include = [&](double value) {
-    result.low = std::min(result.low, value);
-    result.high = std::max(result.high, value);
-  };
-  for (const auto& curve : curves_) {
-    include(slope_at(curve, range.low));
-    include(slope_at(curve, range.high));
-    for (const auto& piece : curve.pieces()) {
-      if (piece.start > range.low && piece.start < range.high) include(piece.slope);
-    }
-  }
+  for (const auto& curve : curves_) result = hull(result, slope_range(curve, range));
   return result;
 }
 
 Range CurveTriple::curvature(const Range& range) const {
   Range result{kInfinity, -kInfinity};
-  for (const auto& curve : curves_) {
-    const auto& pieces = curve.pieces();
-    for (std::size_t k = 0; k < pieces.size(); ++k) {
-      const double end = k + 1 < pieces.size() ? pieces[k + 1].start : kInfinity;
-      if (end < range.low || pieces[k].start > range.high) continue;
-      result.low = std::min(result.low, 2 * pieces[k].curvature);
-      result.high = std::max(result.high, 2 * pieces[k].curvature);
-    }
-  }
+  for (const auto& curve : curves_) result = hull(result, curvature_range(curve, range));
   return result;
 }
 

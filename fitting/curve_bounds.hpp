@@ -5,14 +5,16 @@
 #include <array>
 #include <vector>
 
+#include "fitting/range.hpp"
 #include "format/vec3.hpp"
 #include "runtime/response_curve.hpp"
 
 namespace palpate::fitting {
 
-struct Range {
-  double low = 0, high = 0;
-};
+/// Slopes of a curve over a range of deflections, exact.
+Range slope_range(const runtime::CompiledCurve& curve, const Range& range);
+/// Second derivatives over the range; at a knot those of both its pieces.
+Range curvature_range(const runtime::CompiledCurve& curve, const Range& range);
 
 /// The curves of one kind at the three vertices of a triangle, interpolated as
 /// f_c(d) = sum n_l(c) f_l(d). A value is linear in the natural coordinates, so vertices bound it.

@@ -32,15 +32,6 @@ struct SlideState {
   double h_over_rho = 0;      ///< largest lateral force over rho
 };
 
-double middle(const Range& range) {
-  return 0.5 * (range.low + range.high);
-}
-
-/// w(z) of a vertex, from w(0) on.
-double coupling_at(const runtime::CompiledCurve& w, double z) {
-  return z > 0 ? w.force(z) : w.pieces().front().force;
-}
-
 std::array<double, 3> limits(const ContactElement& element, double z) {
   std::array<double, 3> force{};
   for (std::size_t l = 0; l < 3; ++l) {
@@ -208,11 +199,11 @@ double slide_rate(const ContactElement& element, const SlideState& state) {
 SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   const TriangleFrame& frame = element.frame;
   const double mu = element.friction;
-  if (state.rho.high == kInfinity) return {kInfinity, 0, 0, 0, 0, kInfinity};
+  if (state.rho.high == kInfinity) return {kInfinity, {0, kInfinity, 0, 0}};
 
-  SlideBound bound;
-  bound.stiffness = std::max(state.steep, state.h_over_rho);
-  bound.slide_rate = slide_rate(element, state);
+  SlideCauses causes;
+  causes.stiffness = std::max(state.steep, state.h_over_rho);
+  const double rate = slide_rate(element, state);
   // |v| <= the sum of its three causes; each keeps its share for the report.
   const double q_slant = frame.sin_theta;
   const double q_turn = state.rho.high * frame.kappa;
@@ -221,12 +212,11 @@ SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   const double slant = std::hypot(state.steep * q_slant, state.h_over_rho * lean);
   const double turned = std::hypot(state.normal, mu * state.grip) * frame.kappa;
   const double curvature = std::hypot(std::hypot(state.steep * q_turn, turned), across);
-  const auto scaled = [&](double part) { return part > 0 ? part * bound.slide_rate : 0.0; };
-  bound.variation = scaled(state.change);
-  bound.slant = scaled(slant);
-  bound.curvature = scaled(curvature);
-  bound.total = bound.stiffness + bound.variation + bound.slant + bound.curvature;
-  return bound;
+  const auto scaled = [&](double part) { return part > 0 ? part * rate : 0.0; };
+  causes.variation = scaled(state.change);
+  causes.slant = scaled(slant);
+  causes.curvature = scaled(curvature);
+  return {causes.stiffness + causes.variation + causes.slant + causes.curvature, causes};
 }
 
 /// Largest |eigenvalue| of the symmetric matrix with these entries.
@@ -275,7 +265,7 @@ bool energy_falls_in(const ContactElement& element, const Range& z, int halvings
   const auto state = slide_state(element, z);
   if (!state || energy_falls(element, *state)) return true;
   if (halvings_left == 0) return false;
-  const double half = middle(z);
+  const double half = z.middle();
   const auto point = slide_state(element, {half, half});
   if (point && !energy_falls(element, *point)) return false;
   return energy_falls_in(element, {z.low, half}, halvings_left - 1) &&
@@ -283,16 +273,6 @@ bool energy_falls_in(const ContactElement& element, const Range& z, int halvings
 }
 
 }  // namespace
-
-std::vector<double> ContactElement::depth_cells() const {
-  std::vector<double> ends = normal.cells({0, depth}, 1);
-  if (!coupling) return ends;
-  const std::vector<double> more = coupling->cells({0, depth}, 1);
-  ends.insert(ends.end(), more.begin(), more.end());
-  std::sort(ends.begin(), ends.end());
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  return ends;
-}
 
 double stick_bound(const ContactElement& element) {
   // The Jacobian at a fixed contact point is g' n n^T + h' t t^T + (h/rho) s s^T, its norm the
@@ -309,7 +289,7 @@ double stick_bound(const ContactElement& element) {
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) add({ends[k], ends[k + 1]});
   for (int i = 0; i < kMostHalvings; ++i) {
     const Part worst = parts.top();
-    const double half = middle(worst.z);
+    const double half = worst.z.middle();
     if (worst.bound <= kNearEnough * cell_stick(element, {half, half})) break;
     parts.pop();
     add({worst.z.low, half});
@@ -327,7 +307,7 @@ SlideBound slide_bound(const ContactElement& element) {
   }
   for (int i = 0; i < kMostHalvings; ++i) {
     const Cell worst = cells.top();
-    const double half = middle(worst.z);
+    const double half = worst.z.middle();
     const double reached = make_cell(element, {half, half}).bound.total;
     if (worst.bound.total <= kNearEnough * reached) break;
     cells.pop();

@@ -90,6 +90,8 @@ TriangleFrame triangle_frame(const Library& library, std::size_t index) {
   const Vec3 N = (-1 / twice_area) * outward;
 
   TriangleFrame frame;
+  frame.normal = N;
+  frame.inward = u;
   for (std::size_t l = 0; l < 3; ++l) {
     // Perpendicular to the opposite edge, pointing at vertex l, one over the height long.
     frame.gradient[l] = (1 / twice_area) * cross(x[(l + 2) % 3] - x[(l + 1) % 3], N);

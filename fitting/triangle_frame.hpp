@@ -12,6 +12,8 @@ namespace palpate::fitting {
 /// All bounds hold over the whole triangle. N is the inward facet normal, U(c) = sum n_l u_l, n =
 /// U/|U|.
 struct TriangleFrame {
+  Vec3 normal{};                   ///< N
+  std::array<Vec3, 3> inward{};    ///< u_l
   std::array<Vec3, 3> gradient{};  ///< grad n_l, 1/m; constant, in the plane, their sum is zero
   double least_length = 1;  ///< min |U(c)|, exact: distance of the origin from the triangle u_l
   double kappa = 0;         ///< 1/m, |dn/ds| <= kappa along any direction in the plane

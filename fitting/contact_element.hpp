@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A response triangle as the bounds of its forces see it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "fitting/curve_bounds.hpp"
+#include "fitting/triangle_frame.hpp"
+
+namespace palpate::fitting {
+
+/// A triangle with its responses and the friction the bounds are for.
+struct ContactElement {
+  TriangleFrame frame;
+  CurveTriple normal;
+  CurveTriple lateral;
+  double friction = 0;
+  double depth = 0;                                    ///< m, D: the bounds hold while z + d0 <= D
+  std::optional<CurveTriple> coupling = std::nullopt;  ///< w, of coupled responses
+
+  /// Ends of cells of depth without a knot of a normal response, or of w, inside.
+  std::vector<double> depth_cells() const;
+};
+
+/// w(z) of a vertex, from w(0) on.
+inline double coupling_at(const runtime::CompiledCurve& w, double z) {
+  return z > 0 ? w.force(z) : w.pieces().front().force;
+}
+
+}  // namespace palpate::fitting
