@@ -3,7 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
+#include <map>
+#include <queue>
 #include <set>
 #include <string>
 #include <string_view>
@@ -18,6 +19,10 @@ namespace palpate::fitting {
 namespace {
 
 constexpr double kReferencePeriod = 1e-3;  // s: the limits of a device are stated at 1 kHz
+// Of the sets of states of a search: at one look, for one triangle, and for a library, some
+// microseconds each.
+constexpr int kHalvingsALook = 1000, kMostHalvings = 30000;
+constexpr long kHalvings = 300000, kHalvingsATriangle = 200;
 
 /// Bounds of one triangle with what they are made of, for the line that names the limit.
 struct TriangleBounds {
@@ -81,27 +86,45 @@ TriangleBounds bound_triangle(const Library& library, std::size_t index, double 
   return bounds;
 }
 
-/// A closer look at the triangles whose slides would set the bound of the library, the worst first,
-/// until what is left is no larger than what a slide does reach. (Without friction the slide has no
-/// direction of its own, and (10) stands.)
+/// A closer look at the triangles whose slides would set the bound of the library, always at the
+/// worst, until what is left is near enough to what a slide does reach. (Without friction the slide
+/// has no direction of its own, and (10) stands.)
 void tighten(const Library& library, double depth, double friction,
              std::vector<TriangleBounds>& bounds) {
   if (!(friction > 0)) return;
+  struct Look {
+    double bound = 0;
+    std::size_t triangle = 0;
+    bool operator<(const Look& other) const {
+      return bound != other.bound ? bound < other.bound : triangle > other.triangle;
+    }
+  };
+  std::priority_queue<Look> worst;
   double reached = 0;
-  std::vector<std::size_t> order(bounds.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  for (const TriangleBounds& b : bounds) reached = std::max(reached, b.certificate.stick);
-  const auto slip = [&](std::size_t m) { return bounds[m].certificate.slip; };
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return slip(a) > slip(b); });
-  for (const std::size_t m : order) {
-    if (slip(m) <= reached) break;
-    const SteepestSlide steepest =
-        steepest_slide(contact_element(library, m, depth, friction), reached);
-    reached = std::max(reached, steepest.reached);
-    if (steepest.bound > slip(m)) continue;
-    bounds[m] = {bounds[m].certificate, steepest.causes};
-    bounds[m].certificate.slip = steepest.bound;
+  for (std::size_t m = 0; m < bounds.size(); ++m) {
+    reached = std::max(reached, bounds[m].certificate.stick);
+    worst.push({bounds[m].certificate.slip, m});
+  }
+  std::map<std::size_t, SlideSearch> searches;
+  long left = kHalvings + kHalvingsATriangle * static_cast<long>(bounds.size());
+  while (left > 0 && !worst.empty()) {
+    const auto [bound, m] = worst.top();
+    if (bound <= SlideSearch::kNearEnough * reached) return;
+    worst.pop();
+    SlideSearch& search =
+        searches.try_emplace(m, contact_element(library, m, depth, friction)).first->second;
+    const int before = search.spent();
+    search.advance(kHalvingsALook, reached);
+    left -= search.spent() - before;
+    if (search.bound() < bound) {
+      bounds[m].causes = search.causes();
+      bounds[m].certificate.slip = search.bound();
+    }
+    if (std::isinf(search.reached())) continue;  // a state without a bound: nothing to look for
+    reached = std::max(reached, search.reached());
+    // What does not come down is not looked at for ever.
+    if (search.spent() < kMostHalvings && search.spent() - before == kHalvingsALook)
+      worst.push({bounds[m].certificate.slip, m});
   }
 }
 

@@ -11,16 +11,7 @@
 namespace palpate::fitting {
 namespace {
 
-constexpr int kSectors = 8;           // of the azimuth, to begin with
-constexpr double kNearEnough = 1.05;  // bound over reached
-constexpr int kMostHalvings = 30000;
-
-struct Part {
-  SlideCell cell;
-  double bound = 0;
-  int halvings = 0;
-  bool operator<(const Part& other) const { return bound < other.bound; }
-};
+constexpr int kSectors = 8;  // of the azimuth, to begin with
 
 Range first_half(const Range& range) {
   return {range.low, range.middle()};
@@ -89,57 +80,58 @@ Halving by_turns(int halvings) {
   return kOrder[static_cast<std::size_t>(halvings) % kOrder.size()];
 }
 
-/// Along what makes the bound slack: where it falls most when only the middle is left.
-Halving best_halving(const SlideJacobian& jacobian, const Part& part) {
-  const SlideCell middle = state_in(part.cell, false);
-  SlideCell place = part.cell, azimuth = part.cell, depth = part.cell;
-  place.part = middle.part;
-  azimuth.azimuth = middle.azimuth;
-  depth.z = middle.z;
-  const double by_place = jacobian.bound(place), by_azimuth = jacobian.bound(azimuth),
-               by_depth = jacobian.bound(depth);
-  const double least = std::min({by_place, by_azimuth, by_depth});
-  if (!(least < part.bound)) return by_turns(part.halvings);
-  return least == by_place ? halve_part : least == by_azimuth ? halve_azimuth : halve_depth;
-}
-
-void reach_in(const SlideJacobian& jacobian, const SlideCell& cell, SteepestSlide& steepest) {
-  for (const bool offset : {false, true}) {
-    const SlideCell state = state_in(cell, offset);
-    const double norm = jacobian.bound(state);
-    if (norm <= steepest.reached) continue;
-    steepest.reached = norm;
-    steepest.causes = jacobian.causes(state);
-  }
-}
-
 }  // namespace
 
-SteepestSlide steepest_slide(const ContactElement& element, double enough) {
-  const SlideJacobian jacobian(element);
-  std::priority_queue<Part> parts;
-  const std::vector<double> depths = element.depth_cells();
+SlideSearch::SlideSearch(ContactElement element)
+    : element_(std::move(element)), jacobian_(element_) {
+  const std::vector<double> depths = element_.depth_cells();
   for (std::size_t k = 0; k + 1 < depths.size(); ++k) {
     for (int i = 0; i < kSectors; ++i) {
       SlideCell cell;
       cell.azimuth = {2 * M_PI * i / kSectors, 2 * M_PI * (i + 1) / kSectors};
       cell.z = {depths[k], depths[k + 1]};
-      cell.reach = {depths[k], element.depth};
-      parts.push({cell, jacobian.bound(cell), 0});
+      cell.reach = {depths[k], element_.depth};
+      parts_.push({cell, jacobian_.bound(cell), 0});
     }
   }
-  SteepestSlide result;
-  for (int i = 0; i < kMostHalvings; ++i) {
-    const Part worst = parts.top();
-    reach_in(jacobian, worst.cell, result);
-    if (worst.bound <= kNearEnough * std::max(result.reached, enough)) break;
-    parts.pop();
-    const auto [first, second] = best_halving(jacobian, worst)(worst.cell);
-    for (const SlideCell& cell : {first, second})
-      parts.push({cell, std::min(worst.bound, jacobian.bound(cell)), worst.halvings + 1});
+}
+
+/// Along what makes the bound slack: where it falls most when only the middle is left.
+std::pair<SlideCell, SlideCell> SlideSearch::halves(const Part& part) const {
+  const SlideCell middle = state_in(part.cell, false);
+  SlideCell place = part.cell, azimuth = part.cell, depth = part.cell;
+  place.part = middle.part;
+  azimuth.azimuth = middle.azimuth;
+  depth.z = middle.z;
+  const double by_place = jacobian_.bound(place), by_azimuth = jacobian_.bound(azimuth),
+               by_depth = jacobian_.bound(depth);
+  const double least = std::min({by_place, by_azimuth, by_depth});
+  if (!(least < part.bound)) return by_turns(part.halvings)(part.cell);
+  if (least == by_place) return halve_part(part.cell);
+  return least == by_azimuth ? halve_azimuth(part.cell) : halve_depth(part.cell);
+}
+
+void SlideSearch::reach_in(const SlideCell& cell) {
+  for (const bool offset : {false, true}) {
+    const SlideCell state = state_in(cell, offset);
+    const double norm = jacobian_.bound(state);
+    if (norm <= reached_) continue;
+    reached_ = norm;
+    causes_ = jacobian_.causes(state);
   }
-  result.bound = parts.top().bound;
-  return result;
+}
+
+void SlideSearch::advance(int halvings, double enough) {
+  for (int i = 0; i < halvings; ++i) {
+    const Part worst = parts_.top();
+    reach_in(worst.cell);
+    if (worst.bound <= kNearEnough * std::max(reached_, enough)) return;
+    parts_.pop();
+    ++spent_;
+    const auto [first, second] = halves(worst);
+    for (const SlideCell& cell : {first, second})
+      parts_.push({cell, std::min(worst.bound, jacobian_.bound(cell)), worst.halvings + 1});
+  }
 }
 
 }  // namespace palpate::fitting

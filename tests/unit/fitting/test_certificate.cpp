@@ -132,7 +132,7 @@ TEST(Certificate, ADeviceOfUnknownDampingIsNotCertifiedAndSaid) {
 
 TEST(Certificate, AHoleIsABorder) {
   Library library = sphere(0.04, 1);
-  set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
+  set_equal_responses(library, node_response(linear_curve(100, 0.001), linear_curve(80)));
   library.responses[7] = NodeResponse{};
   library.responses[9].status = ResponseStatus::Filled;
   certify(library, with_friction(0.3));

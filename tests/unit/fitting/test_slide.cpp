@@ -398,7 +398,7 @@ TEST(SlipBound, SlantedPlateHasAClosedForm) {
   EXPECT_NEAR(norm(difference) / norm(step), steepest, 1e-3 * steepest);
   EXPECT_GT(steepest, 1.05 * k * std::hypot(1.0, mu));  // steeper than the level plate
   EXPECT_GE(library.certificate.slip, steepest);
-  // Slides aslant are a little steeper than down the slope; sets of states are halved to 1.05.
+  // Slides aslant are a little steeper than down the slope; sets of states are halved to 1.1.
   const ContactElement element = element_of(library, mu, library.certificate.depth);
   std::mt19937 engine(29);
   double steepest_anywhere = steepest;
@@ -407,7 +407,7 @@ TEST(SlipBound, SlantedPlateHasAClosedForm) {
     steepest_anywhere =
         std::max(steepest_anywhere, steepest_step(engine, model, state.start, settings.friction));
   }
-  EXPECT_LE(library.certificate.slip, 1.06 * steepest_anywhere);
+  EXPECT_LE(library.certificate.slip, 1.11 * steepest_anywhere);
 }
 
 TEST(SlideJacobian, OfOneStateIsItsSteepestStep) {
