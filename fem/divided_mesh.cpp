@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "fem/at.hpp"
+#include "format/edge.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fem {
@@ -102,12 +103,7 @@ std::vector<Child> children_along(const std::vector<std::size_t>& edges) {
 /// A face in four, each joined to the corner opposite.
 std::vector<Child> children_of_face(std::size_t apex) {
   const auto& [i, j, k] = kFaces[apex];
-  const auto middle = [](std::size_t a, std::size_t b) {
-    for (std::size_t e = 0; e < 6; ++e)
-      if (kTetEdges[e] == std::array{a, b} || kTetEdges[e] == std::array{b, a}) return 4 + e;
-    return kTetNodes;
-  };
-  const std::size_t ij = middle(i, j), jk = middle(j, k), ki = middle(k, i);
+  const std::size_t ij = middle_node(i, j), jk = middle_node(j, k), ki = middle_node(k, i);
   return {{i, ij, ki, apex}, {ij, j, jk, apex}, {ki, jk, k, apex}, {ij, jk, ki, apex}};
 }
 
@@ -184,11 +180,9 @@ class Divider {
   /// The middle between two nodes of an element: one that is there if they are corners.
   std::int32_t middle(int element, std::size_t a, std::size_t b) {
     const Tetrahedron10& node = whole_.tetrahedra[at(element)];
-    for (std::size_t e = 0; e < 6; ++e)
-      if (kTetEdges[e] == std::array{a, b} || kTetEdges[e] == std::array{b, a}) return node[4 + e];
-    const auto [low, high] = std::minmax(node[a], node[b]);
+    if (a < 4 && b < 4) return node[middle_node(a, b)];
     const auto next = whole_.nodes() + static_cast<std::int32_t>(divided_.made.size());
-    const auto [entry, added] = middle_.try_emplace(Edge{low, high}, next);
+    const auto [entry, added] = middle_.try_emplace(edge_between(node[a], node[b]), next);
     if (!added) return entry->second;
     const Volume La = volume_coordinates(a), Lb = volume_coordinates(b);
     Volume L{};
@@ -257,8 +251,7 @@ class Divider {
 
   std::int32_t middle_of_facet(const Facet& facet, std::size_t a, std::size_t b) const {
     if (a < 3 && b < 3) return facet[3 + ((a + 1) % 3 == b ? a : b)];
-    const auto [low, high] = std::minmax(facet[a], facet[b]);
-    return middle_.at({low, high});
+    return middle_.at(edge_between(facet[a], facet[b]));
   }
 
   void place_nodes() {

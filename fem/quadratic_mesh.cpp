@@ -6,6 +6,7 @@
 #include <unordered_map>
 
 #include "fem/at.hpp"
+#include "format/edge.hpp"
 
 namespace palpate::fem {
 
@@ -17,23 +18,23 @@ class EdgeNodes {
   explicit EdgeNodes(std::int32_t first) : next_(first) {}
 
   std::int32_t of(std::int32_t a, std::int32_t b) {
-    const auto [low, high] = std::minmax(a, b);
+    const Edge ends = edge_between(a, b);
     const std::uint64_t key =
-        (static_cast<std::uint64_t>(low) << 32) | static_cast<std::uint32_t>(high);
+        (static_cast<std::uint64_t>(ends[0]) << 32) | static_cast<std::uint32_t>(ends[1]);
     const auto [entry, added] = node_.try_emplace(key, next_);
     if (added) {
       ++next_;
-      corners_.push_back({low, high});
+      corners_.push_back(ends);
     }
     return entry->second;
   }
 
-  const std::vector<std::array<std::int32_t, 2>>& corners() const { return corners_; }
+  const std::vector<Edge>& corners() const { return corners_; }
 
  private:
   std::int32_t next_;
   std::unordered_map<std::uint64_t, std::int32_t> node_;
-  std::vector<std::array<std::int32_t, 2>> corners_;
+  std::vector<Edge> corners_;
 };
 
 /// The middle of an edge is held where the edge is: on a facet with three held corners, or in a

@@ -14,6 +14,13 @@ inline constexpr std::size_t kTetPoints = 4;
 inline constexpr std::array<std::array<std::size_t, 2>, 6> kTetEdges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
+/// The node between corners a and b, which differ.
+constexpr std::size_t middle_node(std::size_t a, std::size_t b) {
+  std::size_t e = 0;
+  while (kTetEdges[e] != std::array{a, b} && kTetEdges[e] != std::array{b, a}) ++e;
+  return 4 + e;
+}
+
 /// Volume coordinates of the four Gauss points, exact to degree 2, each of weight 1/4
 /// [Zienkiewicz & Taylor 2000, table 9.2].
 inline constexpr double kTetNear = 0.5854101966249685, kTetFar = 0.1381966011250105;

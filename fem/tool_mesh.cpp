@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "fem/at.hpp"
+#include "format/edge.hpp"
 
 namespace palpate::fem {
 
@@ -141,7 +142,7 @@ class Mesher {
   }
 
   std::int32_t middle(std::int32_t a, std::int32_t b, const Vector3d& x) {
-    const auto [found, fresh] = middles_.try_emplace(std::minmax(a, b), 0);
+    const auto [found, fresh] = middles_.try_emplace(edge_between(a, b), 0);
     if (fresh) found->second = add(x);
     return found->second;
   }
@@ -177,7 +178,7 @@ class Mesher {
   std::vector<std::int32_t> first_;
   std::int32_t inside_ = 0;
   std::vector<Vector3d> points_;
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles_;
+  std::map<Edge, std::int32_t> middles_;
   std::vector<Tetrahedron10> tetrahedra_;
 };
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "format/artifact.hpp"
+#include "format/edge.hpp"
 
 namespace palpate {
 namespace {
@@ -28,17 +29,6 @@ void check_tetrahedra(const Checks& checks, const Body& body) {
   checks.require(!body.region_names.empty(), "/region_names", "is empty");
   checks.same_size("/tetrahedron_region", body.tetrahedron_region.size(), body.tetrahedra.size());
   checks.indices("/tetrahedron_region", body.tetrahedron_region, body.region_names.size());
-}
-
-std::vector<Edge> edges_of(const std::vector<Triangle>& facets) {
-  std::vector<Edge> edges;
-  for (const Triangle& facet : facets)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [low, high] = std::minmax(facet[i], facet[(i + 1) % 3]);
-      edges.push_back({low, high});
-    }
-  std::sort(edges.begin(), edges.end());
-  return edges;
 }
 
 void check_curved_edges(const Checks& checks, const Body& body) {

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "format/edge.hpp"
+
 namespace palpate::mesher {
 namespace {
 
@@ -67,11 +69,9 @@ class Bulges {
   }
 
  private:
-  static Edge ordered(std::int32_t a, std::int32_t b) { return {std::min(a, b), std::max(a, b)}; }
-
   Edge edge_of(std::size_t element, std::size_t e) const {
     const Tetrahedron& corners = body_.tetrahedra[element];
-    return ordered(corners[kEdges[e][0]], corners[kEdges[e][1]]);
+    return edge_between(corners[kEdges[e][0]], corners[kEdges[e][1]]);
   }
 
   Vec3 straight(const Edge& ends) const {

@@ -13,6 +13,7 @@
 #include <set>
 #include <utility>
 
+#include "format/edge.hpp"
 #include "format/error.hpp"
 #include "mesher/cgal_mesh.hpp"
 #include "mesher/queries.hpp"
@@ -128,11 +129,8 @@ class Subdivision {
 
   /// The middles of the edges between the facets of run(), put on the target.
   std::vector<CurvedEdge> curved_edges(const Surface& boundary) const {
-    std::set<Edge> edges;
-    for (const Triangle& facet : boundary.triangles)
-      for (std::size_t i = 0; i < 3; ++i) edges.insert(ordered(facet[i], facet[(i + 1) % 3]));
     std::vector<CurvedEdge> curved;
-    for (const Edge& ends : edges) {
+    for (const Edge& ends : edges_of(boundary.triangles)) {
       const Vec3 a = boundary.points[static_cast<std::size_t>(ends[0])];
       const Vec3 b = boundary.points[static_cast<std::size_t>(ends[1])];
       const Vec3 straight = 0.5 * (a + b);
@@ -156,8 +154,6 @@ class Subdivision {
   /// it.
   Mesh::Halfedge_index first_halfedge(Mesh::Edge_index e) const { return mesh_.halfedge(e, 0); }
 
-  static Edge ordered(std::int32_t a, std::int32_t b) { return {std::min(a, b), std::max(a, b)}; }
-
   void split_edge(Mesh::Edge_index e) {
     const auto h = first_halfedge(e);
     const Vec3 a = to_vec3(mesh_.point(mesh_.source(h)));
@@ -168,7 +164,7 @@ class Subdivision {
       add(sharp_[e] ? target_.on_feature(x) : target_.on_surface(x));
     }
     for (int k = 0; sharp_[e] && k < n_; ++k)
-      sharp_edges_.insert(ordered(on_halfedge(h, k), on_halfedge(h, k + 1)));
+      sharp_edges_.insert(edge_between(on_halfedge(h, k), on_halfedge(h, k + 1)));
   }
 
   /// Point k of 0..n on the halfedge, counted from its source.

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 
+#include "format/origin_distance.hpp"
+
 namespace palpate::mesher {
 namespace {
 
@@ -67,29 +69,6 @@ std::vector<Vec3> mean_inward(const Surface& boundary, std::size_t vertices,
   return touchable;
 }
 
-/// Distance of the origin from the segment ab.
-double distance_to_segment(const Vec3& a, const Vec3& b) {
-  const Vec3 ab = b - a;
-  const double length2 = dot(ab, ab);
-  const double s = length2 > 0 ? std::clamp(-dot(a, ab) / length2, 0.0, 1.0) : 0.0;
-  return norm(a + s * ab);
-}
-
-/// min |sum n_l u_l| over natural coordinates: the distance of the origin from the triangle of the
-/// three directions.
-double least_mean_norm(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double edges =
-      std::min({distance_to_segment(a, b), distance_to_segment(b, c), distance_to_segment(c, a)});
-  const Vec3 normal = cross(b - a, c - a);
-  const double size2 = dot(normal, normal);
-  if (size2 == 0) return edges;
-  const Vec3 foot = (dot(a, normal) / size2) * normal;
-  const bool inside = dot(cross(b - a, foot - a), normal) >= 0 &&
-                      dot(cross(c - b, foot - b), normal) >= 0 &&
-                      dot(cross(a - c, foot - c), normal) >= 0;
-  return inside ? norm(foot) : edges;
-}
-
 /// The triangles between which a tool may slide, with their unit inward normals.
 struct OpenTriangles {
   std::vector<Triangle> triangles;
@@ -123,7 +102,7 @@ std::vector<std::int32_t> sweep(const OpenTriangles& open, std::vector<Vec3>& in
       violating.push_back(open.triangles[m][k]);
       *u[k] = unit(*u[k] + (2 * kLeastCosine - cosine) * normal);
     }
-    if (least_mean_norm(*u[0], *u[1], *u[2]) >= kLeastMeanNorm) continue;
+    if (origin_to_triangle(*u[0], *u[1], *u[2]) >= kLeastMeanNorm) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       violating.push_back(open.triangles[m][k]);
       *u[k] = unit(*u[k] + 0.1 * normal);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "format/error.hpp"
+#include "format/origin_distance.hpp"
 
 namespace palpate::runtime {
 namespace {
@@ -59,27 +60,6 @@ CurveSizes sizes_of(const Library& library, std::size_t v) {
   }
   return {static_cast<std::uint16_t>(r.normal.knot.size()),
           static_cast<std::uint16_t>(r.lateral.knot.size()), static_cast<std::uint16_t>(coupling)};
-}
-
-/// Distance of the origin from the segment a b.
-double origin_to_segment(const Vec3& a, const Vec3& b) {
-  const Vec3 edge = b - a;
-  const double length2 = dot(edge, edge);
-  const double s = length2 > 0 ? std::clamp(-dot(a, edge) / length2, 0.0, 1.0) : 0.0;
-  return norm(a + s * edge);
-}
-
-/// Distance of the origin from the triangle a b c: the least |sum n_l u_l| over an element.
-double origin_to_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const double to_edges =
-      std::min({origin_to_segment(a, b), origin_to_segment(b, c), origin_to_segment(c, a)});
-  const Vec3 n = cross(b - a, c - a);
-  const double length2 = dot(n, n);
-  if (length2 <= 0) return to_edges;
-  const Vec3 foot = (dot(a, n) / length2) * n;
-  const bool inside = dot(cross(b - a, foot - a), n) >= 0 && dot(cross(c - b, foot - b), n) >= 0 &&
-                      dot(cross(a - c, foot - c), n) >= 0;
-  return inside ? norm(foot) : to_edges;
 }
 
 CompiledCurve coupling_of(const NodeResponse& response, std::size_t vertex) {

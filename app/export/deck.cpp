@@ -97,12 +97,7 @@ void check_pressing(const Body& body, const fem::IndentationSettings& press, std
 fem::Facet facet_of(const fem::Tetrahedron10& element, std::int32_t side) {
   // kTetSides go around as seen from within.
   const auto [c, b, a] = kTetSides[at(side)];
-  const auto middle = [&](std::size_t i, std::size_t j) {
-    for (std::size_t e = 0; e < fem::kTetEdges.size(); ++e)
-      if (std::minmax(fem::kTetEdges[e][0], fem::kTetEdges[e][1]) == std::minmax(i, j))
-        return element[4 + e];
-    return std::int32_t{-1};
-  };
+  const auto middle = [&](std::size_t i, std::size_t j) { return element[fem::middle_node(i, j)]; };
   return {element[a], element[b], element[c], middle(a, b), middle(b, c), middle(c, a)};
 }
 

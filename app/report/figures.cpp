@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "format/edge.hpp"
 #include "runtime/response_curve.hpp"
 
 namespace palpate::report {
@@ -110,15 +111,8 @@ double percentile(std::vector<double>& values, double fraction) {
 }
 
 double median_edge(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
-  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
-  for (const Triangle& t : triangles) {
-    for (std::size_t i = 0; i < 3; ++i) edges.emplace_back(std::minmax(t[i], t[(i + 1) % 3]));
-  }
-  std::sort(edges.begin(), edges.end());
-  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   std::vector<double> lengths;
-  lengths.reserve(edges.size());
-  for (const auto& [a, b] : edges)
+  for (const auto& [a, b] : edges_of(triangles))
     lengths.push_back(
         norm(points[static_cast<std::size_t>(a)] - points[static_cast<std::size_t>(b)]));
   return percentile(lengths, 0.5);

@@ -7,10 +7,10 @@
 #include <string>
 
 #include "app/simulate/hand_path.hpp"
+#include "app/simulate/simulated_device.hpp"
 #include "app/simulate/surface_path.hpp"
 #include "format/error.hpp"
 #include "format/sha256.hpp"
-#include "runtime/device_simulated.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/palpate.h"
 
@@ -46,16 +46,6 @@ SessionSettings settings_of(const palpate_library* library) {
   settings.tank_cap = defaults.tank_cap;
   settings.steepness = library->steepness;
   return settings;
-}
-
-runtime::SimulatedDevice device_of(const SimulateSection& script) {
-  runtime::SimulatedDeviceSettings settings;
-  settings.mass = script.mass;
-  settings.damping = script.damping;
-  settings.coulomb_friction = script.coulomb_friction;
-  settings.hand_stiffness = script.hand_stiffness;
-  settings.hand_damping = script.hand_damping;
-  return runtime::SimulatedDevice(settings);
 }
 
 void observe(const palpate_state* state, RecordedStep& step) {
@@ -101,7 +91,7 @@ struct ScriptedSession::State {
         handle(load(file)),
         state(create(handle.get(), file)),
         hand(hand_path_of(library, given)),
-        device(device_of(given)) {
+        device(simulated_device(given)) {
     heading.device = "simulated";
     heading.library_sha256 = sha256_of_file(file);
     heading.rate = script.rate;

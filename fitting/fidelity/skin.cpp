@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "format/edge.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fidelity {
@@ -47,8 +48,7 @@ Skin::Skin(const Body& body) : owner_("body '" + body.name + "'") {
     for (std::size_t i = 0; i < 3; ++i)
       facet.corner[i] = body.nodes[static_cast<std::size_t>(nodes[i])];
     for (std::size_t i = 0; i < 3; ++i) {
-      const auto [low, high] = std::minmax(nodes[i], nodes[(i + 1) % 3]);
-      const auto found = middle.find({low, high});
+      const auto found = middle.find(edge_between(nodes[i], nodes[(i + 1) % 3]));
       if (found == middle.end()) continue;
       facet.bulge[i] = found->second - 0.5 * (facet.corner[i] + facet.corner[(i + 1) % 3]);
       facet.curved = true;

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "fem/at.hpp"
+#include "format/edge.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::test {
@@ -101,13 +101,7 @@ Body make_prisms(const Triangulation& base, int layers,
 }
 
 void curve_onto_sphere(double radius, Body& body) {
-  std::set<Edge> edges;
-  for (const Triangle& facet : body.boundary)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [low, high] = std::minmax(facet[i], facet[(i + 1) % 3]);
-      edges.insert({low, high});
-    }
-  for (const Edge& ends : edges) {
+  for (const Edge& ends : edges_of(body.boundary)) {
     const Vec3 a = body.nodes[fem::at(ends[0])], b = body.nodes[fem::at(ends[1])];
     if (std::min(norm(a), norm(b)) < radius * (1 - 1e-9)) continue;
     const Vec3 middle = a + b;

@@ -9,11 +9,11 @@
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <set>
 
 #include "fem/at.hpp"
 #include "fem/divided_mesh.hpp"
 #include "fem/indentation.hpp"
+#include "format/edge.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -102,7 +102,7 @@ std::vector<int> elements_around(const QuadraticMesh& mesh, double radius) {
 /// middle of their edges, and elements that share an edge share its node.
 void expect_fit(const QuadraticMesh& mesh) {
   std::map<std::array<std::int32_t, 3>, int> owners;
-  std::map<std::array<std::int32_t, 2>, std::int32_t> middle_of;
+  std::map<Edge, std::int32_t> middle_of;
   for (const Tetrahedron10& t : mesh.tetrahedra) {
     EXPECT_GT(volume(mesh, t), 0);
     for (std::size_t without = 0; without < 4; ++without) {
@@ -113,9 +113,9 @@ void expect_fit(const QuadraticMesh& mesh) {
       ++owners[face];
     }
     for (std::size_t e = 0; e < 6; ++e) {
-      const auto [low, high] = std::minmax(t[kTetEdges[e][0]], t[kTetEdges[e][1]]);
-      EXPECT_EQ(middle_of.try_emplace({low, high}, t[4 + e]).first->second, t[4 + e]);
-      const Eigen::Vector3d middle = 0.5 * (mesh.X.col(low) + mesh.X.col(high));
+      const Edge ends = edge_between(t[kTetEdges[e][0]], t[kTetEdges[e][1]]);
+      EXPECT_EQ(middle_of.try_emplace(ends, t[4 + e]).first->second, t[4 + e]);
+      const Eigen::Vector3d middle = 0.5 * (mesh.X.col(ends[0]) + mesh.X.col(ends[1]));
       EXPECT_LT((mesh.X.col(t[4 + e]) - middle).norm(), 1e-15);
     }
   }
@@ -124,10 +124,8 @@ void expect_fit(const QuadraticMesh& mesh) {
     std::sort(face.begin(), face.end());
     EXPECT_EQ(owners[face], 1);
     ++owners[face];
-    for (std::size_t c = 0; c < 3; ++c) {
-      const auto [low, high] = std::minmax(f[c], f[(c + 1) % 3]);
-      EXPECT_EQ(middle_of.at({low, high}), f[3 + c]);
-    }
+    for (std::size_t c = 0; c < 3; ++c)
+      EXPECT_EQ(middle_of.at(edge_between(f[c], f[(c + 1) % 3])), f[3 + c]);
   }
   for (const auto& [face, count] : owners) EXPECT_EQ(count, 2);
 }
@@ -180,13 +178,7 @@ Body domed_block(int across) {
     return std::abs(x[2] - paraboloid(x[0], x[1])) < 1e-12;
   };
   for (Vec3& x : body.nodes) x[2] += paraboloid(x[0], x[1]);
-  std::set<Edge> edges;
-  for (const Triangle& t : body.boundary)
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [low, high] = std::minmax(t[i], t[(i + 1) % 3]);
-      edges.insert({low, high});
-    }
-  for (const Edge& ends : edges) {
+  for (const Edge& ends : edges_of(body.boundary)) {
     if (!on_top(ends[0]) || !on_top(ends[1])) continue;
     const Vec3 middle = 0.5 * (body.nodes[at(ends[0])] + body.nodes[at(ends[1])]);
     body.curved_edges.push_back({ends, {middle[0], middle[1], paraboloid(middle[0], middle[1])}});

@@ -8,6 +8,8 @@
 #include <set>
 #include <sstream>
 
+#include "format/edge.hpp"
+
 namespace palpate::samples {
 namespace {
 
@@ -217,10 +219,7 @@ Body curved_body(unsigned seed) {
   Random random(seed);
   Body curved = sprung_body(seed);
   std::set<Edge> edges;
-  for (const Triangle& facet : curved.boundary) {
-    const auto [low, high] = std::minmax(facet[0], facet[1]);
-    edges.insert({low, high});
-  }
+  for (const Triangle& facet : curved.boundary) edges.insert(edge_between(facet[0], facet[1]));
   for (const Edge& ends : edges) {
     const Vec3 a = curved.nodes[static_cast<std::size_t>(ends[0])];
     const Vec3 b = curved.nodes[static_cast<std::size_t>(ends[1])];

@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "format/edge.hpp"
+
 namespace palpate::mesher::test {
 namespace {
 
@@ -130,12 +132,8 @@ double boundary_area(const Body& body) {
 
 int euler_characteristic(const Body& body) {
   std::set<std::int32_t> nodes;
-  std::set<std::pair<std::int32_t, std::int32_t>> edges;
-  for (const Triangle& t : body.boundary) {
-    nodes.insert(t.begin(), t.end());
-    for (std::size_t k = 0; k < 3; ++k) edges.insert(std::minmax({t[k], t[(k + 1) % 3]}));
-  }
-  return static_cast<int>(nodes.size()) - static_cast<int>(edges.size()) +
+  for (const Triangle& t : body.boundary) nodes.insert(t.begin(), t.end());
+  return static_cast<int>(nodes.size()) - static_cast<int>(edges_of(body.boundary).size()) +
          static_cast<int>(body.boundary.size());
 }
 

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "format/edge.hpp"
 #include "runtime/palpate.h"
 
 namespace palpate::testing {
@@ -59,10 +60,10 @@ Mesh icosahedron() {
 
 /// Split each triangle in four; the new points go to the lump, the old ones keep their numbers.
 void split(Mesh& mesh) {
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middle;
+  std::map<Edge, std::int32_t> middle;
   const auto half = [&](std::int32_t a, std::int32_t b) {
     const auto [entry, fresh] =
-        middle.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.points.size()));
+        middle.try_emplace(edge_between(a, b), static_cast<std::int32_t>(mesh.points.size()));
     if (fresh) mesh.points.push_back(on_lump(mesh.points[at(a)] + mesh.points[at(b)]));
     return entry->second;
   };

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "format/edge.hpp"
+
 namespace palpate::test {
 namespace {
 
@@ -46,10 +48,10 @@ Shell icosahedron() {
 
 Shell subdivide(const Shell& coarse) {
   Shell fine{coarse.points, {}};
-  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middle;
+  std::map<Edge, std::int32_t> middle;
   const auto between = [&](std::int32_t a, std::int32_t b) {
     const auto [it, is_new] =
-        middle.emplace(std::minmax(a, b), static_cast<std::int32_t>(fine.points.size()));
+        middle.emplace(edge_between(a, b), static_cast<std::int32_t>(fine.points.size()));
     if (is_new) {
       fine.points.push_back(unit(fine.points[static_cast<std::size_t>(a)] +
                                  fine.points[static_cast<std::size_t>(b)]));
@@ -140,6 +142,19 @@ NodeResponse wall_response(double stiffness, double lateral_stiffness) {
   response.normal = wall_curve(stiffness);
   response.lateral = linear_curve(lateral_stiffness);
   return response;
+}
+
+NodeResponse uniform(const Vec3&) {
+  return wall_response(170, 100);
+}
+
+NodeResponse uneven(const Vec3& x) {
+  NodeResponse r;
+  r.status = ResponseStatus::Fitted;
+  const double s = 1 + 0.6 * std::sin(90 * x[0]) * std::cos(70 * x[1] + x[2]);
+  r.normal = stiffening_curve(0, 500 * s, 6, 0.0013);
+  r.lateral = stiffening_curve(150 * s, 300 * s, 5, 0.0017);
+  return r;
 }
 
 Library coupled(Library library) {

@@ -19,6 +19,11 @@ ResponseCurve stiffening_curve(double first, double last, int knots, double step
 /// The responses of a node at x.
 using Responses = std::function<NodeResponse(const Vec3& x)>;
 NodeResponse wall_response(double stiffness, double lateral_stiffness);
+/// The wall of the paper everywhere.
+NodeResponse uniform(const Vec3& x);
+/// Responses that differ from node to node; no slope of theirs is above kSteepestUneven, N/m.
+NodeResponse uneven(const Vec3& x);
+inline constexpr double kSteepestUneven = 500 * 1.6;
 
 /// The same library with lateral responses that grow with depth, not alike everywhere; w(0) > 0.
 Library coupled(Library library);

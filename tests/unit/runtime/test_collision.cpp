@@ -20,10 +20,6 @@ using runtime::LocalModel;
 using runtime::Surface;
 using runtime::SurfacePoint;
 
-NodeResponse uniform(const Vec3&) {
-  return wall_response(170, 100);
-}
-
 /// Position on the segment of the first crossing into the body, by signed volumes; 2 when none.
 double first_entry_by_volumes(const Surface& surface, const Vec3& p, const Vec3& q) {
   const auto volume = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {

@@ -19,10 +19,6 @@ namespace {
 using runtime::ContactSettings;
 using runtime::ContactState;
 
-NodeResponse uniform(const Vec3&) {
-  return wall_response(170, 100);
-}
-
 /// The stored knots are single precision, so this agrees to 1e-7 N.
 double wall_force(double z) {
   return z <= 0 ? 0 : z <= 0.005 ? 100 * 170 * z * z : 170 * (z - 0.0025);
@@ -386,17 +382,9 @@ TEST(Contact, NeverLosesATipThatIsInsideTheBody) {
 TEST(Contact, TheForceOfEveryStepIsThatOfTheStateItLeaves) {
   // The step carries pieces, deflections and slip limits over from one evaluation to the next; what
   // it reports must be what nobody's memory gives at its contact point and offsets.
-  const Responses varied = [](const Vec3& x) {
-    NodeResponse r;
-    r.status = ResponseStatus::Fitted;
-    const double s = 1 + 0.6 * std::sin(90 * x[0]) * std::cos(70 * x[1] + x[2]);
-    r.normal = stiffening_curve(0, 500 * s, 6, 0.0013);
-    r.lateral = stiffening_curve(150 * s, 300 * s, 5, 0.0017);
-    return r;
-  };
-  const Library decoupled = bumpy_sphere(3, 0.03, 0.2, varied);
+  const Library decoupled = bumpy_sphere(3, 0.03, 0.2, uneven);
   for (const Library& library : {decoupled, coupled(decoupled)}) {
-    Rig rig(library, {.friction = 0.3, .tank_cap = 1e-4, .steepness = 4 * 500 * 1.6});
+    Rig rig(library, {.friction = 0.3, .tank_cap = 1e-4, .steepness = 4 * kSteepestUneven});
     std::mt19937 random(11);
     std::normal_distribution<double> any;
     Vec3 x = 0.04 * random_unit(random);

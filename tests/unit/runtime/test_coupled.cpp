@@ -19,15 +19,6 @@ using runtime::LocalResponse;
 using runtime::Surface;
 using runtime::SurfacePoint;
 
-NodeResponse varied(const Vec3& x) {
-  NodeResponse r;
-  r.status = ResponseStatus::Fitted;
-  const double s = 1 + 0.5 * std::sin(90 * x[0]) * std::cos(70 * x[1] + x[2]);
-  r.normal = stiffening_curve(0, 500 * s, 6, 0.0013);
-  r.lateral = stiffening_curve(150 * s, 300 * s, 5, 0.0017);
-  return r;
-}
-
 class Coupled : public ::testing::Test {
  protected:
   SurfacePoint random_point() {
@@ -48,7 +39,7 @@ class Coupled : public ::testing::Test {
     return model.respond(model.deflection(x));
   }
 
-  const Library library_ = coupled(bumpy_sphere(2, 0.03, 0.2, varied));
+  const Library library_ = coupled(bumpy_sphere(2, 0.03, 0.2, uneven));
   const Surface surface_{library_};
   std::mt19937 random_{7};
 };

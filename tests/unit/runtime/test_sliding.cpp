@@ -20,10 +20,6 @@ using runtime::SurfacePoint;
 using runtime::walk;
 using runtime::Walk;
 
-NodeResponse uniform(const Vec3&) {
-  return wall_response(170, 100);
-}
-
 SurfacePoint random_point(const Surface& surface, std::mt19937& random) {
   std::uniform_real_distribution<double> any(0, 1);
   const Vec3 n{any(random), any(random), any(random)};

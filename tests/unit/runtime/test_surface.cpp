@@ -19,10 +19,6 @@ using runtime::Element;
 using runtime::kNoElement;
 using runtime::Surface;
 
-NodeResponse uniform(const Vec3&) {
-  return wall_response(170, 100);
-}
-
 TEST(Surface, NaturalCoordinatesHaveTheirGradients) {
   const Surface surface(bumpy_sphere(2, 0.03, 0.2, uniform));
   for (std::int32_t m = 0; m < surface.element_count(); ++m) {
