@@ -151,6 +151,7 @@ int run(RunOptions options) {
     throw Error(ErrorKind::Configuration, "run", "no library was given",
                 "name a library.h5, or --list the devices");
   }
+  require_known_device(options.device.name);
   const Library library = read_library(options.library);
   const palpate_library body(library);
   settle(options, library, body);

@@ -37,7 +37,7 @@ std::string duration_text(double seconds) {
 ProgressDisplay::ProgressDisplay(std::string label)
     : label_(std::move(label)), terminal_(isatty(STDOUT_FILENO) != 0) {}
 
-void ProgressDisplay::show(std::int64_t done, std::int64_t failed, std::int64_t running,
+void ProgressDisplay::show(std::int64_t done, std::int64_t incomplete, std::int64_t running,
                            std::int64_t total, std::int64_t known) {
   const Clock::time_point now = Clock::now();
   const double since_last = std::chrono::duration<double>(now - last_).count();
@@ -52,7 +52,7 @@ void ProgressDisplay::show(std::int64_t done, std::int64_t failed, std::int64_t 
                            : done > known ? duration_text(elapsed * (1 - work) / work) + " left"
                                           : std::string("time left unknown");
   const std::string text =
-      fmt::format("{}: {} of {} sites, {} failed, {}", label_, done, total, failed, time);
+      fmt::format("{}: {} of {} sites, {} incomplete, {}", label_, done, total, incomplete, time);
   if (!terminal_) return print_line(text);
   fmt::print("\r[{}] {}\x1b[K{}", bar(share), text, finished ? "\n" : "");
   std::fflush(stdout);

@@ -28,7 +28,7 @@ class ProgressDisplay {
   explicit ProgressDisplay(std::string label);
   /// `running` sites count half: the estimate of the time left would else wait for the first wave.
   /// `known` of those done took no time: they were there before.
-  void show(std::int64_t done, std::int64_t failed, std::int64_t running, std::int64_t total,
+  void show(std::int64_t done, std::int64_t incomplete, std::int64_t running, std::int64_t total,
             std::int64_t known);
 
  private:

@@ -33,7 +33,7 @@ Refusal refusal_of(int error_number) {
       return {ErrorKind::Configuration, "name a folder you may write to"};
     case ENOENT:
     case ENOTDIR:
-      return {ErrorKind::Configuration, "create the folder or name an existing one"};
+      return {ErrorKind::Configuration, "correct the path, or create its folder"};
     case ENAMETOOLONG:
       return {ErrorKind::Configuration, "choose a shorter file name"};
     default:

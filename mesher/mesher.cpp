@@ -46,8 +46,10 @@ void check_settings(const Settings& s) {
   if (!(s.feature_angle > 0 && s.feature_angle <= 180)) {
     refuse_setting(text("feature_angle is ", s.feature_angle, " degrees"), "give 0 .. 180");
   }
-  if (!positive(s.tool_radius) || !std::isfinite(s.depth) || s.depth < 0) {
-    refuse_setting("tool_radius must be positive and depth not negative", "correct the case");
+  const auto not_negative = [](double value) { return std::isfinite(value) && value >= 0; };
+  if (!positive(s.tool_radius) || !not_negative(s.depth) || !not_negative(s.lateral_travel)) {
+    refuse_setting("tool_radius must be positive, depth and lateral_travel not negative",
+                   "correct the case");
   }
   const auto check_unit = [&](const SurfaceFile& file) {
     if (!positive(file.unit)) {
@@ -348,8 +350,10 @@ void check_supports(const Body& body, const Settings& settings, const Surface& b
   const auto& site = body.response.is_site;
   if (std::find(site.begin(), site.end(), std::uint8_t{1}) == site.end()) {
     throw Error(ErrorKind::Geometry, where,
-                "the supports hold every response vertex, nothing can be touched",
-                "make the supports smaller: " + extent);
+                text("the supports hold every response vertex, or come within the radius of the "
+                     "tool, ",
+                     millimetres(settings.tool_radius), ", of it: nothing can be touched"),
+                "make the supports or the tool smaller: " + extent);
   }
 }
 
@@ -445,18 +449,33 @@ void check_volumes(const Quality& quality, const Surface& boundary, const std::s
   }
 }
 
+double largest_extent(const Surface& skin) {
+  const Bounds box = bounds(skin.points);
+  const Vec3 span = box.high - box.low;
+  return std::max({span[0], span[1], span[2]});
+}
+
 /// Refuse patches that leave nothing of the shape; usually the unit of the surface is wrong.
 void check_spacing(const Settings& settings, const Surface& skin) {
   constexpr double fewest = 3;  // patches along the largest extent
-  const Bounds box = bounds(skin.points);
-  const Vec3 span = box.high - box.low;
-  const double largest = std::max({span[0], span[1], span[2]});
+  const double largest = largest_extent(skin);
   if (fewest * settings.patch_spacing <= largest) return;
   throw Error(ErrorKind::Configuration, settings.surface.path.string(),
               text("the largest extent of the body is ", millimetres(largest),
                    ", too little for patches of ", millimetres(settings.patch_spacing)),
               text("check the unit of the surface, or reduce patch_spacing below ",
                    millimetres(largest / fewest)));
+}
+
+/// Refuse drags that leave the body wherever they start: each would end early, after a long time.
+void check_lateral_travel(const Settings& settings, const Surface& skin) {
+  const double largest = largest_extent(skin);
+  if (settings.lateral_travel <= largest) return;
+  throw Error(ErrorKind::Geometry, settings.surface.path.string(),
+              text("a lateral travel of ", millimetres(settings.lateral_travel),
+                   " is longer than the body, ", millimetres(largest)),
+              "reduce lateral_travel to what a tool slides before it slips, or check the unit of "
+              "the surface");
 }
 
 /// Refuse sizes that would fill the memory before anything is computed.
@@ -539,6 +558,7 @@ Body mesh(const Settings& settings) {
   }
   check_inclusions(settings, skin, inclusions);
   check_spacing(settings, skin);
+  check_lateral_travel(settings, skin);
   check_counts(settings, skin);
 
   const NestedSurface nested = remesh_skin(settings, skin);

@@ -63,6 +63,7 @@ struct Settings {
   bool curved_facets = true;            ///< Body::curved_edges, else the tool meets flat facets
   double tool_radius = 0.005;           ///< m, keeps sites clear of supports; depth check
   double depth = 0;                     ///< m, of the planned indentation; 0 skips the check
+  double lateral_travel = 0;            ///< m, of the planned drags; 0 skips the check
   std::function<void(std::string_view)> log;  ///< one line a step, may be empty
 };
 
@@ -77,8 +78,8 @@ struct Settings {
 /// @throws Error(Geometry) for a surface that is missing, empty, not closed, not orientable,
 ///   self-intersecting, in several parts, has non-finite coordinates, an implausible size for its
 ///   unit (the largest dimension must lie in 1 mm .. 10 m), an inclusion outside the skin, supports
-///   that hold nothing or everything, detail finer than the patches, or a depth of more than 0.8 of
-///   the thickness under a site.
+///   that hold nothing or everything, detail finer than the patches, a depth of more than 0.8 of
+///   the thickness under a site, or a drag farther than across the body.
 /// @throws Error(Configuration) for settings out of range.
 Body mesh(const Settings& settings);
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <sstream>
 #include <utility>
 
 #include "format/error.hpp"
@@ -34,16 +35,22 @@ std::string lower(std::string word) {
   return word;
 }
 
-/// Text readers stop at "nan" as at any other word; this tells which it was.
-std::size_t count_non_finite_words(const std::filesystem::path& path) {
+/// Text readers stop at "nan" as at any other word; this tells in which lines it stands.
+std::vector<std::size_t> lines_not_finite(const std::filesystem::path& path) {
   std::ifstream in(path);
-  std::size_t count = 0;
-  for (std::string word; in >> word;) {
-    word = lower(word);
-    if (word.front() == '-' || word.front() == '+') word.erase(0, 1);
-    if (word == "nan" || word == "inf" || word == "infinity") ++count;
+  std::vector<std::size_t> lines;
+  std::size_t number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    std::istringstream words(lower(line));
+    for (std::string word; words >> word;) {
+      if (word.front() == '-' || word.front() == '+') word.erase(0, 1);
+      if (word != "nan" && word != "inf" && word != "infinity") continue;
+      lines.push_back(number);
+      break;
+    }
   }
-  return count;
+  return lines;
 }
 
 void check_file(const std::filesystem::path& path) {
@@ -73,8 +80,10 @@ Soup read_soup(const std::filesystem::path& path) {
       refuse(where, "the file is empty or cannot be read as its ending says",
              "export the surface again");
     }
-    if (const std::size_t words = count_non_finite_words(path); words > 0) {
-      refuse(where, counted(words, "number") + " that are not finite (NaN or Inf)",
+    if (const auto lines = lines_not_finite(path); !lines.empty()) {
+      refuse(text(where, ":", lines.front()),
+             text("a coordinate that is not finite (NaN or Inf), in ",
+                  counted(lines.size(), "line"), " of the file"),
              "correct the coordinates or export the surface again");
     }
     refuse(where,

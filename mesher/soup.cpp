@@ -133,7 +133,7 @@ void check_entries(const Soup& soup, const std::string& where) {
   if (soup.polygons.empty()) {
     refuse(where, "the file holds no faces", "export the surface again as a triangulated surface");
   }
-  std::size_t short_faces = 0, bad_faces = 0, bad_points = 0;
+  std::size_t short_faces = 0, bad_faces = 0, bad_points = 0, first_bad_point = 0;
   for (const auto& corners : soup.polygons) {
     if (corners.size() < 3) ++short_faces;
     if (std::any_of(corners.begin(), corners.end(),
@@ -141,8 +141,10 @@ void check_entries(const Soup& soup, const std::string& where) {
       ++bad_faces;
     }
   }
-  for (const Vec3& x : soup.points) {
-    if (!std::isfinite(x[0]) || !std::isfinite(x[1]) || !std::isfinite(x[2])) ++bad_points;
+  for (std::size_t i = 0; i < soup.points.size(); ++i) {
+    const Vec3& x = soup.points[i];
+    if (std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2])) continue;
+    if (bad_points++ == 0) first_bad_point = i;
   }
   if (short_faces > 0) {
     refuse(where, counted(short_faces, "face") + " with fewer than three indices",
@@ -155,9 +157,12 @@ void check_entries(const Soup& soup, const std::string& where) {
            "the file is damaged: export the surface again");
   }
   if (bad_points > 0) {
-    refuse(where,
-           counted(bad_points, "vertex") + " with a coordinate that is not finite (NaN or Inf)",
-           "correct the coordinates or export the surface again");
+    refuse(
+        where,
+        text(counted(bad_points, "point"), " with a coordinate that is not finite (NaN or Inf), ",
+             bad_points > 1 ? "the first of them " : "", "number ", first_bad_point + 1,
+             " of the file"),
+        "correct the coordinates or export the surface again");
   }
 }
 

@@ -54,7 +54,8 @@ toml::table parse_toml(std::string_view text, const std::string& file_name) {
 toml::table read_toml(const std::filesystem::path& path, std::string_view what) {
   std::ifstream stream(path, std::ios::binary);
   std::ostringstream text;
-  if (!stream || !(text << stream.rdbuf())) {
+  const bool empty = stream && stream.peek() == std::ifstream::traits_type::eof();
+  if (stream.bad() || (!empty && !(text << stream.rdbuf()))) {
     fail(path.string(), fmt::format("{} cannot be read", what), "check the path and the rights");
   }
   return parse_toml(text.str(), path.string());

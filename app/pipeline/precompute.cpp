@@ -53,6 +53,14 @@ class Teller {
           journal.dropped_bytes());
   }
 
+  /// A body of another case, or of this one before it was changed, is pressed as asked.
+  void body(const std::filesystem::path& path, const std::string& stale_reason) {
+    if (telling_ == Telling::Text && !stale_reason.empty())
+      say("  WARNING: {} was not meshed by this case as it is now: {}; `palpate mesh` makes it "
+          "again",
+          path.string(), stale_reason);
+  }
+
   /// Forces that are for looks must not be taken for more.
   void element(fem::Dilatation dilatation) {
     if (telling_ == Telling::Text && fem::is_linear(dilatation))
@@ -210,6 +218,7 @@ SiteCounts run_precompute(const Workspace& space, Telling telling) {
   const Body body = read_input(space.body(), "mesh", read_body);
   prepare_output(space.out);
   Teller teller(telling);
+  teller.body(space.body(), stale_reason(space, Stage::Mesh, body.provenance));
   if (const auto counts = finished_part(space, teller)) return *counts;
   const std::string body_sha256 = sha256_of_file(space.body());
   fem::CampaignSettings settings = campaign_settings(space);

@@ -87,6 +87,7 @@ mesher::Settings mesh_settings(const Workspace& space) {
   settings.curved_facets = c.mesh.curved_facets;
   settings.tool_radius = tool_of(c.tool).extent();
   settings.depth = c.indentation.depth;
+  settings.lateral_travel = c.indentation.lateral_travel;
   return settings;
 }
 

@@ -196,6 +196,11 @@ void run_keep(const Workspace& space, const KeepOptions& options) {
   const Library library = read_input(space.library(), "fit", read_library);
   fitting::CertifySettings settings = certify_settings(space);
   if (!options.device.empty()) settings.devices = {read_device_profile(options.device)};
+  if (settings.devices.empty()) {
+    throw Error(ErrorKind::Configuration, "--rate",
+                "what may be kept depends on the damping of a device, and none is given",
+                "name its profile with --device, or in certify.devices of the case");
+  }
   Library certified = library;
   fitting::certify(certified, settings);
   say("certify: what may be kept at {} Hz, mu = {}", options.rate, settings.friction);

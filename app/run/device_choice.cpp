@@ -4,8 +4,8 @@
 #include <charconv>
 #include <string_view>
 
-#include "app/case/case.hpp"
 #include "app/case/nearest.hpp"
+#include "app/simulate/simulated_device.hpp"
 #include "format/error.hpp"
 #include "runtime/devices/force_dimension.hpp"
 #include "runtime/devices/haply.hpp"
@@ -25,14 +25,7 @@ int unit_number(const std::string& unit) {
 
 std::unique_ptr<runtime::Device> simulated(const DeviceChoice& choice,
                                            const std::function<runtime::HandTarget(double)>& hand) {
-  const SimulateSection script;
-  runtime::SimulatedDeviceSettings settings;
-  settings.mass = script.mass;
-  settings.damping = script.damping;
-  settings.coulomb_friction = script.coulomb_friction;
-  settings.hand_stiffness = script.hand_stiffness;
-  settings.hand_damping = script.hand_damping;
-  return std::make_unique<runtime::VirtualDevice>(settings, choice.rate, hand);
+  return std::make_unique<runtime::VirtualDevice>(simulated_device({}), choice.rate, hand);
 }
 
 }  // namespace
@@ -47,8 +40,19 @@ const std::vector<DeviceName>& device_names() {
   return names;
 }
 
+void require_known_device(const std::string& name) {
+  std::vector<std::string_view> known;
+  for (const DeviceName& device : device_names()) {
+    if (device.name == name) return;
+    known.push_back(device.name);
+  }
+  throw Error(ErrorKind::Configuration, "--device", "'" + name + "' is not known",
+              "the nearest is '" + std::string(nearest(name, known)) + "'; see palpate run --list");
+}
+
 std::unique_ptr<runtime::Device> make_device(
     const DeviceChoice& choice, const std::function<runtime::HandTarget(double)>& hand) {
+  require_known_device(choice.name);
   if (choice.name == "simulated") return simulated(choice, hand);
   if (choice.name == "force-dimension") {
     return std::make_unique<runtime::ForceDimensionDevice>(
@@ -62,12 +66,7 @@ std::unique_ptr<runtime::Device> make_device(
     return std::make_unique<runtime::HaplyDevice>(
         runtime::HaplySettings{choice.host, choice.port, choice.unit});
   }
-  if (choice.name == "lab") return read_lab_device(choice.lab_file, choice.driver);
-  std::vector<std::string_view> known;
-  for (const DeviceName& device : device_names()) known.push_back(device.name);
-  throw Error(
-      ErrorKind::Configuration, "--device", "'" + choice.name + "' is not known",
-      "the nearest is '" + std::string(nearest(choice.name, known)) + "'; see palpate run --list");
+  return read_lab_device(choice.lab_file, choice.driver);
 }
 
 }  // namespace palpate::app

@@ -28,6 +28,9 @@ struct DeviceName {
 };
 const std::vector<DeviceName>& device_names();
 
+/// @throws Error(Configuration) for a name that is not among them, with the nearest.
+void require_known_device(const std::string& name);
+
 /// Not opened yet. `hand`: of the simulated device. @throws Error(Configuration) for an unknown
 /// name, with the nearest, or a configuration that is no good.
 std::unique_ptr<runtime::Device> make_device(

@@ -73,6 +73,9 @@ class BadInput(unittest.TestCase):
     def test_case_file_is_missing(self):
         self.refuse(USAGE, ["none.toml", "cannot be read"], "build", self.root / "none.toml", "--out", self.out)
 
+    def test_case_file_is_empty(self):
+        self.refuse_case(USAGE, ["block.toml:1", "'surface' is missing"], case="")
+
     def test_patches_as_large_as_the_body(self):
         case = CASE.replace('patch_spacing = "12.5 mm"', 'patch_spacing = "40 mm"')
         self.refuse_case(USAGE, ["50 mm", "patches of 40 mm", "check the unit"], case)
@@ -114,6 +117,13 @@ class BadInput(unittest.TestCase):
     def test_tool_goes_deeper_than_the_body(self):
         self.refuse_case(GEOMETRY, ["depth", "25 mm"], CASE.replace('depth = "1.2 mm"', 'depth = "25 mm"'))
 
+    def test_tool_goes_farther_than_the_body(self):
+        self.refuse_case(GEOMETRY, ["lateral travel", "60 mm", "50 mm"],
+                         CASE.replace('lateral_travel = "0.6 mm"', 'lateral_travel = "60 mm"'))
+
+    def test_tool_is_larger_than_the_body(self):
+        self.refuse_case(GEOMETRY, ["radius of the tool", "80 mm"], CASE.replace('radius = "6 mm"', 'radius = "80 mm"'))
+
     def test_supports_hold_nothing(self):
         self.refuse_case(GEOMETRY, ["support"], NOTHING_HELD)
 
@@ -139,6 +149,7 @@ class BadInput(unittest.TestCase):
         self.refuse(USAGE, ["CASE"], "build")
         path = write_case(self.root)
         self.refuse(USAGE, ["--thread"], "build", path, "--thread", "many")
+        self.refuse(USAGE, ["none.journal", "correct the path"], "recover", self.root / "none.journal")
 
     def test_device_profile_is_wrong(self):
         path = write_case(self.root)

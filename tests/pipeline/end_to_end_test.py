@@ -297,6 +297,23 @@ class Pipeline(unittest.TestCase):
         refused = palpate("certify", self.case, "--out", self.out, "--soften", soft)
         self.assertEqual(refused.returncode, 2)
         self.assertIn("--rate", refused.stderr)
+        without = self.root / "without.toml"  # a device
+        without.write_text(CASE.replace('devices = ["device.toml"]\n', ""), encoding="utf-8")
+        refused = palpate("certify", without, "--out", self.out, "--rate", rate)
+        self.assertEqual((refused.returncode, refused.stdout), (2, ""))
+        self.assertIn("--device", refused.stderr)
+
+    def test_a_body_of_another_case_is_told(self):
+        other = self.root / "other-case"
+        other.mkdir()
+        (other / "body.h5").write_bytes((self.out / "body.h5").read_bytes())
+        changed = self.root / "coarser.toml"
+        changed.write_text(CASE.replace("interior_growth = 3.0", "interior_growth = 4.0"), encoding="utf-8")
+        for case, told in ((self.case, False), (changed, True)):
+            result = palpate("precompute", case, "--out", other, "--shard", "1/16")
+            self.assertIn(result.returncode, (0, SOME_SITES_FAILED), result.stderr)
+            self.assertEqual("body.h5 was not meshed by this case as it is now: the case has changed" in result.stdout,
+                             told, result.stdout)
 
     def test_threads_do_not_change_the_curves(self):
         other = self.root / "one-thread"

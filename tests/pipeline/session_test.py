@@ -273,6 +273,9 @@ class Session(unittest.TestCase):
         refused = palpate("run", self.library, "--duration", 1, "--out", out)
         self.assertEqual(refused.returncode, CONFIGURATION)
         self.assertIn("--uncertified", refused.stderr)
+        unknown = palpate("run", self.library, "--device", "simulatd", "--out", out)
+        self.assertEqual(unknown.returncode, CONFIGURATION)
+        self.assertIn("--device: 'simulatd' is not known; the nearest is 'simulated'", unknown.stderr)
         for device, missing in (("force-dimension", "libdhd"), ("openhaptics", "libHD"), ("haply", "localhost")):
             absent = palpate("run", self.library, "--device", device, "--port", 1, "--uncertified", "--out", out)
             self.assertEqual(absent.returncode, CONFIGURATION, device)

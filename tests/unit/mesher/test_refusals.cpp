@@ -65,9 +65,15 @@ TEST(Refusals, FileThatIsNotThereOrCannotBeRead) {
 
 TEST(Refusals, NumbersThatAreNotFiniteOrMissing) {
   expect_file_refused("nan.obj", "v 0 0 0\nv 1 0 0\nv 0 nan 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n",
-                      "1 vertex with a coordinate that is not finite", "coordinates");
-  expect_file_refused("inf.off", "OFF\n3 1 0\n0 0 0\n1 0 inf\n0 1 0\n3 0 1 2\n", "not finite",
+                      "1 point with a coordinate that is not finite (NaN or Inf), number 3 of",
                       "coordinates");
+  expect_file_refused("nans.obj", "v 0 0 0\nv 1 inf 0\nv 0 nan 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n",
+                      "2 points with a coordinate that is not finite (NaN or Inf), the first of "
+                      "them number 2 of",
+                      "coordinates");
+  const TemporaryFile inf("inf.off", "OFF\n3 1 0\n0 0 0\n1 -INF inf\n0 nan 0\n3 0 1 2\n");
+  expect_refused(settings_for(inf.path()), "inf.off:4", "not finite (NaN or Inf), in 2 lines",
+                 "coordinates");
   expect_file_refused("word.obj", "v 0 0 0\nv 1 zero 0\n", "line 2: a vertex without three numbers",
                       "export");
   expect_file_refused("range.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\nf 1 2 0\nf -1 -2 -4\n",
@@ -180,6 +186,9 @@ TEST(Refusals, SupportsThatHoldNothingOrEverything) {
   s.foundation.clear();
   s.supports = {BoxSupport{{-1, -1, -1}, {1, 1, 1}}};
   expect_refused(s, "held.off", "nothing can be touched", "smaller");
+  s.supports = {base};
+  s.tool_radius = 0.09;  // of a tool that would rest on the support from everywhere
+  expect_refused(s, "held.off", "the radius of the tool, 90 mm", "tool smaller");
 }
 
 TEST(Refusals, NamesThatNoFaceBears) {
@@ -203,6 +212,15 @@ TEST(Refusals, DepthBeyondTheThickness) {
   s.depth = 0.0045;
   expect_refused(s, "plate.off", "only 5 mm at (", "below 4 mm");
   s.depth = 0.0039;
+  EXPECT_NO_THROW(mesh(s));
+}
+
+TEST(Refusals, DragsLongerThanTheBody) {
+  const TemporaryFile file("short.off", off_text(cube()));
+  Settings s = settings_for(file.path());
+  s.lateral_travel = 0.0501;
+  expect_refused(s, "short.off", "50.1 mm is longer than the body, 50 mm", "reduce lateral_travel");
+  s.lateral_travel = 0.05;
   EXPECT_NO_THROW(mesh(s));
 }
 
@@ -237,6 +255,7 @@ TEST(Refusals, SettingsThatMakeNoSense) {
   expect(with([](Settings& s) { s.interior_growth = 0.5; }), "interior_growth is 0.5");
   expect(with([](Settings& s) { s.feature_angle = -3; }), "feature_angle is -3");
   expect(with([](Settings& s) { s.depth = -0.001; }), "depth");
+  expect(with([&](Settings& s) { s.lateral_travel = nan; }), "lateral_travel");
   expect(with([](Settings& s) { s.tool_radius = 0; }), "tool_radius");
   expect(with([](Settings& s) { s.surface.unit = 0; }), "unit");
   expect(with([](Settings& s) { s.supports = {PlaneSupport{}}; }), "normal");
