@@ -9,6 +9,7 @@
 #include "fem/indentation.hpp"
 #include "fem/stuck_patch.hpp"
 #include "tests/support/block_body.hpp"
+#include "tests/support/patch_work.hpp"
 #include "tests/support/sample_laws.hpp"
 
 namespace palpate::fem {
@@ -86,21 +87,12 @@ TEST_P(LawIndentation, WorksAsASkinOnAnotherLaw) {
   EXPECT_LT(layered, 0.95 * stiff);
 }
 
-/// Without the steps that a contact makes in the force, the work of the tool is the stored energy
-/// to the error of the integration over eight increments.
 TEST_P(LawIndentation, StoresTheWorkDoneOnAStuckPatch) {
   const Body body = layered_block();
   CampaignSettings settings = bearable(GetParam(), GetParam());
   settings.indentation.increments = 8;
   const PatchCurve curve = press_patch(body, settings, test::site_nearest(body), 0.0041);
-  ASSERT_EQ(curve.reason, "");
-  std::vector<double> depth, force;
-  for (const PatchForce& sample : curve.samples) {
-    depth.push_back(sample.depth);
-    force.push_back(-sample.force[2]);
-  }
-  const double work = running_integral(depth, force).back();
-  EXPECT_NEAR(work, curve.samples.back().strain_energy, 1e-3 * work);
+  test::expect_work_is_stored(curve);
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryLaw, LawIndentation, testing::ValuesIn(test::sample_laws(0.45)),

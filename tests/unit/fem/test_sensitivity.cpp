@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "fem/indentation.hpp"
@@ -40,13 +41,33 @@ CampaignSettings settings_of(const Body& body, double top, double base, double p
 
 const std::vector<double> kDepths{0.001, 0.003};
 
+const std::vector<RegionConstant> kConstants{
+    {"top", "young"}, {"base", "young"}, {"top", "poisson"}};
+constexpr double kTop = 8e3, kBase = 20e3, kPoisson = 0.45;
+
+/// A site with the derivatives by kConstants, and without them where one constant at a time is a
+/// little more and a little less.
+struct Differences {
+  SiteSensitivity exact;
+  std::array<std::array<SiteSensitivity, 2>, 3> varied;
+  std::array<double, 3> width;  ///< between the two
+};
+
+/// `run(top, base, poisson, constants)`; moduli differ by the share h, Poisson's ratio by k.
+template <typename Run>
+Differences by_differences(const Run& run, double h, double k) {
+  return {run(kTop, kBase, kPoisson, kConstants),
+          {{{run(kTop * (1 + h), kBase, kPoisson, {}), run(kTop * (1 - h), kBase, kPoisson, {})},
+            {run(kTop, kBase * (1 + h), kPoisson, {}), run(kTop, kBase * (1 - h), kPoisson, {})},
+            {run(kTop, kBase, kPoisson + k, {}), run(kTop, kBase, kPoisson - k, {})}}},
+          {2 * h * kTop, 2 * h * kBase, 2 * k}};
+}
+
 TEST(Sensitivity, IsTheDerivativeByDifferences) {
   const Body body = layered();
-  const std::vector<RegionConstant> constants{
-      {"top", "young"}, {"base", "young"}, {"top", "poisson"}};
-  const double top = 8e3, base = 20e3, nu = 0.45;
+  const double top = kTop, base = kBase, nu = kPoisson;
   const auto exact =
-      run_sensitivity(body, settings_of(body, top, base, nu), kDepths, constants).front();
+      run_sensitivity(body, settings_of(body, top, base, nu), kDepths, kConstants).front();
   ASSERT_EQ(exact.samples.size(), 2U);
   const auto force = [&](double a, double b, double c, std::size_t sample) {
     return run_sensitivity(body, settings_of(body, a, b, c), kDepths, {})
@@ -109,24 +130,16 @@ TEST(Sensitivity, ModuliObeyEulersTheorem) {
 /// differences tell.
 TEST(Sensitivity, OfALateralPathIsTheDerivativeByDifferences) {
   const Body body = layered();
-  const std::vector<RegionConstant> constants{
-      {"top", "young"}, {"base", "young"}, {"top", "poisson"}};
   const std::vector<std::vector<LateralPlan>> plans{
       {{0.002, {0.6, 0.8, 0}, {0.0005, 0.001}}, {0.003, {-1, 0, 0}, {0.001}}}};
-  const auto run = [&](double top, double base, double nu, bool differentiate) {
+  const auto run = [&](double top, double base, double nu,
+                       const std::vector<RegionConstant>& constants) {
     CampaignSettings settings = settings_of(body, top, base, nu);
     settings.indentation.force_tolerance = 1e-6;
-    return run_sensitivity(body, settings, {0.003},
-                           differentiate ? constants : std::vector<RegionConstant>{}, plans)
-        .front();
+    return run_sensitivity(body, settings, {0.003}, constants, plans).front();
   };
-  const double top = 8e3, base = 20e3, nu = 0.45, h = 1e-3, k = 1e-3;
-  const SiteSensitivity exact = run(top, base, nu, true);
-  const std::array<std::array<SiteSensitivity, 2>, 3> varied{
-      {{run(top * (1 + h), base, nu, false), run(top * (1 - h), base, nu, false)},
-       {run(top, base * (1 + h), nu, false), run(top, base * (1 - h), nu, false)},
-       {run(top, base, nu + k, false), run(top, base, nu - k, false)}}};
-  const std::array<double, 3> width{2 * h * top, 2 * h * base, 2 * k};
+  const Differences both = by_differences(run, 1e-3, 1e-3);
+  const SiteSensitivity& exact = both.exact;
   ASSERT_EQ(exact.lateral.size(), 2U) << exact.reason;
   ASSERT_EQ(exact.lateral[0].size(), 2U) << exact.reason;
   ASSERT_EQ(exact.lateral[1].size(), 1U) << exact.reason;
@@ -136,12 +149,13 @@ TEST(Sensitivity, OfALateralPathIsTheDerivativeByDifferences) {
       EXPECT_GT(s.force, 0);
       for (std::size_t c = 0; c < 3; ++c) {
         const double wanted =
-            (varied[c][0].lateral[path][i].force - varied[c][1].lateral[path][i].force) / width[c];
+            (both.varied[c][0].lateral[path][i].force - both.varied[c][1].lateral[path][i].force) /
+            both.width[c];
         // Beside the truncation: the forces are known to three tolerances of the solver.
-        const double noise = 2 * 3e-6 * s.force / width[c];
+        const double noise = 2 * 3e-6 * s.force / both.width[c];
         EXPECT_NEAR(s.slope[c], wanted, 2e-3 * std::abs(wanted) + noise) << path << i << c;
       }
-      EXPECT_NEAR(top * s.slope[0] + base * s.slope[1], s.force, 1e-4 * s.force);  // Euler
+      EXPECT_NEAR(kTop * s.slope[0] + kBase * s.slope[1], s.force, 1e-4 * s.force);  // Euler
     }
   }
 }
@@ -150,38 +164,32 @@ TEST(Sensitivity, OfALateralPathIsTheDerivativeByDifferences) {
 /// constants: the normal force, and the drags that start from it.
 TEST(Sensitivity, OfAStuckPathIsTheDerivativeByDifferences) {
   const Body body = layered();
-  const std::vector<RegionConstant> constants{
-      {"top", "young"}, {"base", "young"}, {"top", "poisson"}};
   const std::vector<std::vector<LateralPlan>> plans{{{0.002, {0.6, 0.8, 0}, {0.001}}}};
-  const auto run = [&](double top, double base, double nu, bool differentiate) {
+  const auto run = [&](double top, double base, double nu,
+                       const std::vector<RegionConstant>& constants) {
     CampaignSettings settings = settings_of(body, top, base, nu);
     settings.indentation.friction = ToolFriction::Stuck;
     settings.indentation.force_tolerance = 1e-7;
-    return run_sensitivity(body, settings, kDepths,
-                           differentiate ? constants : std::vector<RegionConstant>{}, plans)
-        .front();
+    return run_sensitivity(body, settings, kDepths, constants, plans).front();
   };
-  const double top = 8e3, base = 20e3, nu = 0.45, h = 1e-4, k = 1e-4;
-  const SiteSensitivity exact = run(top, base, nu, true);
-  const std::array<std::array<SiteSensitivity, 2>, 3> varied{
-      {{run(top * (1 + h), base, nu, false), run(top * (1 - h), base, nu, false)},
-       {run(top, base * (1 + h), nu, false), run(top, base * (1 - h), nu, false)},
-       {run(top, base, nu + k, false), run(top, base, nu - k, false)}}};
-  const std::array<double, 3> width{2 * h * top, 2 * h * base, 2 * k};
+  const Differences both = by_differences(run, 1e-4, 1e-4);
+  const SiteSensitivity& exact = both.exact;
   ASSERT_EQ(exact.samples.size(), 2U) << exact.reason;
   ASSERT_EQ(exact.lateral[0].size(), 1U) << exact.reason;
   for (std::size_t c = 0; c < 3; ++c) {
     const auto held = [&](const ForceSensitivity& s, double more, double less) {
-      const double wanted = (more - less) / width[c];
-      const double noise = 2 * 3e-7 * s.force / width[c];
+      const double wanted = (more - less) / both.width[c];
+      const double noise = 2 * 3e-7 * s.force / both.width[c];
       EXPECT_NEAR(s.slope[c], wanted, 2e-3 * std::abs(wanted) + noise) << c << ' ' << s.depth;
     };
     for (std::size_t i = 0; i < 2; ++i)
-      held(exact.samples[i], varied[c][0].samples[i].force, varied[c][1].samples[i].force);
-    held(exact.lateral[0][0], varied[c][0].lateral[0][0].force, varied[c][1].lateral[0][0].force);
+      held(exact.samples[i], both.varied[c][0].samples[i].force,
+           both.varied[c][1].samples[i].force);
+    held(exact.lateral[0][0], both.varied[c][0].lateral[0][0].force,
+         both.varied[c][1].lateral[0][0].force);
   }
   for (const ForceSensitivity& s : exact.samples)
-    EXPECT_NEAR(top * s.slope[0] + base * s.slope[1], s.force, 1e-4 * s.force);  // Euler
+    EXPECT_NEAR(kTop * s.slope[0] + kBase * s.slope[1], s.force, 1e-4 * s.force);  // Euler
 }
 
 /// At a deep press the tangent is far from that at rest: the solve that never factorizes it must

@@ -13,6 +13,7 @@
 #include "fem/preload.hpp"
 #include "fem/stuck_patch.hpp"
 #include "tests/support/block_body.hpp"
+#include "tests/support/patch_work.hpp"
 
 namespace palpate::fem {
 namespace {
@@ -104,14 +105,7 @@ TEST(Tet4, AColumnShortensUnderItsWeight) {
 TEST(Tet4, StoresTheWorkDoneOnAStuckPatch) {
   const PatchCurve curve =
       press_patch(block(), settings(kTet4, 0.49), test::site_nearest(block()), 0.0051);
-  ASSERT_EQ(curve.reason, "");
-  std::vector<double> depth, force;
-  for (const PatchForce& sample : curve.samples) {
-    depth.push_back(sample.depth);
-    force.push_back(-sample.force[2]);
-  }
-  const double work = running_integral(depth, force).back();
-  EXPECT_NEAR(work, curve.samples.back().strain_energy, 1e-3 * work);
+  test::expect_work_is_stored(curve);
 }
 
 /// Under a tool whose contact spans two elements: what is too much near nu = 1/2 is what is too
