@@ -75,7 +75,7 @@ Soup read_soup(const std::filesystem::path& path) {
   if (lower(path.extension().string()) == ".obj") return read_obj(path);
   std::vector<Point> points;
   std::vector<std::vector<std::size_t>> polygons;
-  if (!CGAL::IO::read_polygon_soup(where, points, polygons)) {
+  if (!CGAL::IO::read_polygon_soup(where, points, polygons, CGAL::parameters::verbose(false))) {
     if (polygons.empty() && points.empty()) {
       refuse(where, "the file is empty or cannot be read as its ending says",
              "export the surface again");

@@ -57,7 +57,10 @@ TEST(Refusals, FileThatIsNotThereOrCannotBeRead) {
   expect_file_refused("a.vtp", "x", "unknown kind of surface file '.vtp'", "convert");
   expect_file_refused("empty.off", "", "empty or cannot be read", "export");
   expect_file_refused("empty.obj", "# nothing\n", "no faces", "export");
+  testing::internal::CaptureStderr();
   expect_file_refused("prose.ply", "once upon a time", "empty or cannot be read", "export");
+  expect_file_refused("header.ply", "ply\nonce upon a time\n", "empty or cannot be read", "export");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // the error is the one line there is
   std::string cut = off_text(cube());
   cut.resize(cut.size() - 20);
   expect_file_refused("cut.off", cut, "malformed", "export");
