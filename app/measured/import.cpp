@@ -43,6 +43,7 @@ class Importer {
       : sidecar_file_(sidecar_file), body_file_(body_file), s_(read_sidecar(sidecar_file)) {
     if (!body_file.empty()) body_ = read_body(body_file);
     for (const auto& column : s_.declared) declared_.push_back({column.name, column.unit});
+    doubt_tool();
     place_frame();
   }
 
@@ -134,6 +135,14 @@ class Importer {
     add_account(press.file, table, vertex, distance, curve);
     sites_[vertex].presses.push_back(curve);
     add_file(file);
+  }
+
+  void doubt_tool() {
+    if (!body_ || s_.tool.radius <= extent_of(*body_)) return;
+    warn(
+        fmt::format("the radius of the tool, {:.4g} mm, is larger than the body, {:.4g} mm: check "
+                    "its unit",
+                    1e3 * s_.tool.radius, 1e3 * extent_of(*body_)));
   }
 
   /// A wrong unit shows in a tool that is deeper in the body than that is large, and a depth that

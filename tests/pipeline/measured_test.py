@@ -185,6 +185,14 @@ class Measured(unittest.TestCase):
         self.refuse(["this is a record", "TOML"], "Time,Load\n0,0\n", name="press.csv")
         self.refuse(["cannot be read"], text.replace("press-20-20-1.csv", "press-none.csv"))
 
+    def test_a_tool_larger_than_the_body_is_doubted(self):
+        sidecar = Path(self.folder.name) / "doubted.toml"
+        text = self.presses.read_text(encoding="utf-8").replace('file = "', f'file = "{self.presses.parent}/')
+        for radius, doubted in (("6 mm", False), ("6 m", True)):
+            sidecar.write_text(text.replace('radius = "6 mm"', f'radius = "{radius}"'), encoding="utf-8")
+            out = self.ok("import", sidecar, "--out", Path(self.folder.name) / "doubted", "--body", self.out / "body.h5")
+            self.assertEqual("the radius of the tool, 6000 mm, is larger than the body" in out, doubted, out)
+
     def test_bad_records_are_refused(self):
         """What laboratories get wrong: each is one line that names the file and the remedy."""
         record = (self.presses.parent / "press-20-20-1.csv").read_bytes().decode()
