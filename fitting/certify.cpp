@@ -148,19 +148,24 @@ void count_vertices(const Library& library, Certificate& certificate) {
   }
 }
 
-/// Why the slide itself has no bound.
+/// Why the slide itself has no bound, and what gives it one.
 std::string cause_unbounded(const TriangleCertificate& triangle, double depth) {
+  std::array<char, 256> text{};
+  const double lean = std::acos(triangle.cos_theta) * 57.29577951308232;
   if (depth * triangle.kappa < triangle.cos_theta) {
-    return "no bound of the slide: the lateral response is too flat at the slip limit for the "
-           "change of the responses and the lean of the directions there";
+    std::snprintf(text.data(), text.size(),
+                  "no bound of the slide: the lateral response is too flat at the slip limit for "
+                  "the change of the responses and directions that lean by %.0f degrees",
+                  lean);
+  } else {
+    std::snprintf(text.data(), text.size(),
+                  "no bound of the slide: pressed %.3g mm deep where the directions turn with a "
+                  "radius of %.3g mm and lean by %.0f degrees",
+                  1e3 * depth, 1e3 / triangle.kappa, lean);
   }
-  std::array<char, 160> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "no bound of the slide: pressed %.3g mm deep where the directions turn with a radius "
-      "of %.3g mm and lean by %.0f degrees",
-      1e3 * depth, 1e3 / triangle.kappa, std::acos(triangle.cos_theta) * 57.29577951308232);
-  return text.data();
+  return text.data() + std::string(
+                           " (smaller patches, a rounder edge, a shallower depth or "
+                           "coupled responses may give one)");
 }
 
 std::string cause(const TriangleBounds& bounds, double depth) {
@@ -188,10 +193,12 @@ std::string limit_line(const Library& library, std::size_t index, const Triangle
     centre = centre + (1.0 / 3) * library.positions[static_cast<std::size_t>(v)];
   }
   std::array<char, 160> place{};
-  std::snprintf(place.data(), place.size(), "%.4g N/m in triangle %zu near (%.4g, %.4g, %.4g) m: ",
-                std::max(bounds.certificate.stick, bounds.certificate.slip), index, centre[0],
-                centre[1], centre[2]);
-  return place.data() + cause(bounds, depth);
+  std::snprintf(place.data(), place.size(), "triangle %zu near (%.4g, %.4g, %.4g) m: ", index,
+                centre[0], centre[1], centre[2]);
+  const double bound = std::max(bounds.certificate.stick, bounds.certificate.slip);
+  std::array<char, 40> size{};
+  if (std::isfinite(bound)) std::snprintf(size.data(), size.size(), "%.4g N/m in ", bound);
+  return size.data() + (place.data() + cause(bounds, depth));
 }
 
 void add_devices(Certificate& certificate, const CertifySettings& settings) {
