@@ -192,9 +192,12 @@ void ToolContact::settle_beneath(const Displacement& u) {
   if (!tool_.has_sharp_edge()) return;
   for (Point& point : points_) {
     const Eigen::Vector3d x = position(point, u);
-    // What touches the plane of the end stays as it is: a change would cost energy.
-    if (tool_.beyond_end(x) >= 0) point.beneath = tool_.from_axis(x) < tool_.geometry.radius;
+    // What touches the plane of the end stays as it is: a change would cost energy. Not so at
+    // first, when rounding alone can have put the surface behind that plane.
+    if (settled_ && tool_.beyond_end(x) < 0) continue;
+    point.beneath = tool_.from_axis(x) < tool_.geometry.radius;
   }
+  settled_ = true;
 }
 
 void ToolContact::bond(const Displacement& u, double closeness) {

@@ -109,6 +109,7 @@ class ToolContact {
   const QuadraticMesh* mesh_;
   double eps_, young_;
   Tool tool_;
+  bool settled_ = false;  ///< what is beneath a sharp disc was told once
   std::vector<Facet> facets_;
   std::vector<Point> points_;
   std::vector<Tie> ties_;

@@ -165,6 +165,25 @@ TEST(Campaign, RefusesWhatDoesNotFit) {
   EXPECT_THAT(refusal(s), HasSubstr("poisson"));
 }
 
+TEST(Campaign, AStuckDiscFeelsNoRoundingOfTheSurface) {
+  // A flat end on a flat surface: whether that lies a femtometre before or behind it at rest must
+  // not decide what is beneath the end.
+  CampaignSettings s = quick();
+  s.indentation.tool = {ToolShape::Disc, 0.003, 0, 0};
+  s.indentation.friction = ToolFriction::Stuck;
+  s.points = {{{0.001, 0.002, 0}, {0, 0, -1}}};
+  const auto force = [&](double top) {
+    const Body body = test::make_block(test::even(-0.015, 0.015, 4), test::even(-0.015, 0.015, 4),
+                                       test::even(-0.015, top, 2));
+    CampaignReport report;
+    const Curves curves = run_campaign(body, s, report);
+    return norm(curves.sites.at(0).paths.at(0).samples.back().force);
+  };
+  const double exact = force(0);
+  for (const double top : {1e-15, -1e-15, 1e-12, -1e-12})
+    EXPECT_NEAR(force(top), exact, 1e-6 * exact) << "top at " << top;
+}
+
 TEST(Campaign, AFailedSiteKeepsItsPartialCurveAndReason) {
   CampaignSettings s = quick();
   s.indentation.depth = 0.03;  // the block is 15 mm thick
