@@ -3,130 +3,19 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <map>
-#include <queue>
 #include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "fitting/fitting.hpp"
-#include "fitting/slide_bound.hpp"
-#include "fitting/slide_search.hpp"
+#include "fitting/triangle_bounds.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fitting {
 namespace {
 
 constexpr double kReferencePeriod = 1e-3;  // s: the limits of a device are stated at 1 kHz
-// Of the sets of states of a search: at one look, for one triangle, and for a library, some
-// microseconds each.
-constexpr int kHalvingsALook = 1000, kMostHalvings = 30000;
-constexpr long kHalvings = 300000, kHalvingsATriangle = 200;
-
-/// Bounds of one triangle with what they are made of, for the line that names the limit.
-struct TriangleBounds {
-  TriangleCertificate certificate;
-  SlideCauses causes;
-};
-
-const NodeResponse& response(const Library& library, std::int32_t vertex) {
-  return library.responses[static_cast<std::size_t>(vertex)];
-}
-
-bool has_hole(const Library& library, const Triangle& triangle) {
-  return std::any_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
-    return response(library, v).status == ResponseStatus::Hole;
-  });
-}
-
-CurveTriple curves_of(const Library& library, const Triangle& triangle, const TriangleFrame& frame,
-                      ResponseCurve NodeResponse::*kind) {
-  return {{runtime::CompiledCurve(response(library, triangle[0]).*kind),
-           runtime::CompiledCurve(response(library, triangle[1]).*kind),
-           runtime::CompiledCurve(response(library, triangle[2]).*kind)},
-          frame.gradient};
-}
-
-CurveTriple couplings_of(const Library& library, const Triangle& triangle,
-                         const TriangleFrame& frame) {
-  const auto curve = [&](std::size_t l) {
-    const CouplingCurve& coupling = response(library, triangle[l]).coupling;
-    return runtime::CompiledCurve(coupling.curve, static_cast<double>(coupling.base));
-  };
-  return {{curve(0), curve(1), curve(2)}, frame.gradient};
-}
-
-ContactElement contact_element(const Library& library, std::size_t index, double depth,
-                               double friction) {
-  const Triangle& triangle = library.triangles[index];
-  const TriangleFrame frame = triangle_frame(library, index);
-  ContactElement element{frame, curves_of(library, triangle, frame, &NodeResponse::normal),
-                         curves_of(library, triangle, frame, &NodeResponse::lateral), friction,
-                         depth};
-  if (library.kind == ResponseKind::Coupled)
-    element.coupling = couplings_of(library, triangle, frame);
-  return element;
-}
-
-TriangleBounds bound_triangle(const Library& library, std::size_t index, double depth,
-                              double friction) {
-  const TriangleFrame frame = triangle_frame(library, index);
-  TriangleBounds bounds;
-  bounds.certificate.kappa = frame.kappa;
-  bounds.certificate.cos_theta = frame.cos_theta;
-  // Without a response at a vertex there is no local model: a border, nothing to bound.
-  if (has_hole(library, library.triangles[index])) return bounds;
-  const ContactElement element = contact_element(library, index, depth, friction);
-  const SlideBound slide = slide_bound(element);
-  bounds.causes = slide.causes;
-  bounds.certificate.stick = stick_bound(element);
-  bounds.certificate.slip = slide.total;
-  bounds.certificate.sliding_passive = slide_lowers_energy(element);
-  return bounds;
-}
-
-/// A closer look at the triangles whose slides would set the bound of the library, always at the
-/// worst, until what is left is near enough to what a slide does reach. (Without friction the slide
-/// has no direction of its own, and (10) stands.)
-void tighten(const Library& library, double depth, double friction,
-             std::vector<TriangleBounds>& bounds) {
-  if (!(friction > 0)) return;
-  struct Look {
-    double bound = 0;
-    std::size_t triangle = 0;
-    bool operator<(const Look& other) const {
-      return bound != other.bound ? bound < other.bound : triangle > other.triangle;
-    }
-  };
-  std::priority_queue<Look> worst;
-  double reached = 0;
-  for (std::size_t m = 0; m < bounds.size(); ++m) {
-    reached = std::max(reached, bounds[m].certificate.stick);
-    worst.push({bounds[m].certificate.slip, m});
-  }
-  std::map<std::size_t, SlideSearch> searches;
-  long left = kHalvings + kHalvingsATriangle * static_cast<long>(bounds.size());
-  while (left > 0 && !worst.empty()) {
-    const auto [bound, m] = worst.top();
-    if (bound <= SlideSearch::kNearEnough * reached) return;
-    worst.pop();
-    SlideSearch& search =
-        searches.try_emplace(m, contact_element(library, m, depth, friction)).first->second;
-    const int before = search.spent();
-    search.advance(kHalvingsALook, reached);
-    left -= search.spent() - before;
-    if (search.bound() < bound) {
-      bounds[m].causes = search.causes();
-      bounds[m].certificate.slip = search.bound();
-    }
-    if (std::isinf(search.reached())) continue;  // a state without a bound: nothing to look for
-    reached = std::max(reached, search.reached());
-    // What does not come down is not looked at for ever.
-    if (search.spent() < kMostHalvings && search.spent() - before == kHalvingsALook)
-      worst.push({bounds[m].certificate.slip, m});
-  }
-}
 
 double deepest_knot(const Library& library) {
   double depth = 0;
@@ -142,7 +31,7 @@ void count_vertices(const Library& library, Certificate& certificate) {
   std::set<std::int32_t> used;
   for (const Triangle& triangle : library.triangles) used.insert(triangle.begin(), triangle.end());
   for (const std::int32_t v : used) {
-    const ResponseStatus status = response(library, v).status;
+    const ResponseStatus status = library.responses[static_cast<std::size_t>(v)].status;
     if (status == ResponseStatus::Hole) ++certificate.holes;
     if (status == ResponseStatus::Filled) ++certificate.filled;
   }
@@ -239,10 +128,8 @@ void certify(Library& library, const CertifySettings& settings) {
     throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
                 "no vertex has a response", "fit the curves first");
   }
-  std::vector<TriangleBounds> bounds;
-  for (std::size_t m = 0; m < library.triangles.size(); ++m)
-    bounds.push_back(bound_triangle(library, m, certificate.depth, settings.friction));
-  tighten(library, certificate.depth, settings.friction, bounds);
+  const std::vector<TriangleBounds> bounds =
+      triangle_bounds(library, certificate.depth, settings.friction);
   double steepest = 0;
   for (std::size_t m = 0; m < bounds.size(); ++m) {
     const TriangleCertificate& triangle = bounds[m].certificate;

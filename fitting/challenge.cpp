@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "fitting/contact_element.hpp"
 #include "format/error.hpp"
 #include "runtime/local_model.hpp"
 #include "runtime/sliding.hpp"
@@ -133,12 +134,6 @@ struct Found {
   double quotient = 0, bound = 0;
 };
 
-bool has_response(const Library& library, const Triangle& triangle) {
-  return std::none_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
-    return library.responses[static_cast<std::size_t>(v)].status == ResponseStatus::Hole;
-  });
-}
-
 void keep_steepest(const Found& found, Steepest& steepest) {
   ++steepest.tries;
   steepest.nearest = std::max(steepest.nearest, found.quotient / found.bound);
@@ -167,7 +162,7 @@ Steepest search(const Library& library, Mode mode, const ChallengeSettings& sett
   Challenger challenger(library, settings.seed);
   std::vector<Found> best;  // of each triangle
   for (std::size_t m = 0; m < library.triangles.size(); ++m) {
-    if (!has_response(library, library.triangles[m])) continue;
+    if (!has_responses(library, library.triangles[m])) continue;
     const TriangleCertificate& triangle = library.certificate.triangles[m];
     // A slide may be as steep as what is held: Theorem 1 asks for the larger.
     const double bound = held ? triangle.stick : std::max(triangle.stick, triangle.slip);

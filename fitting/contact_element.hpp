@@ -2,11 +2,13 @@
 // A response triangle as the bounds of its forces see it.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
 #include "fitting/curve_bounds.hpp"
 #include "fitting/triangle_frame.hpp"
+#include "format/library.hpp"
 
 namespace palpate::fitting {
 
@@ -22,6 +24,13 @@ struct ContactElement {
   /// Ends of cells of depth without a knot of a normal response, or of w, inside.
   std::vector<double> depth_cells() const;
 };
+
+/// Whether all three vertices have a response: elsewhere there is no local model.
+bool has_responses(const Library& library, const Triangle& triangle);
+
+/// @throws Error(Geometry) where normals cannot be interpolated. @pre has_responses
+ContactElement contact_element(const Library& library, std::size_t triangle, double depth,
+                               double friction);
 
 /// w(z) of a vertex, from w(0) on.
 inline double coupling_at(const runtime::CompiledCurve& w, double z) {

@@ -298,25 +298,6 @@ TEST(SlipBound, NoCoupledSlidingPathIsSteeper) {
   EXPECT_GT(census.closest, 0.85);
 }
 
-/// The element of a library of one triangle, as the certificate has it.
-ContactElement element_of(const Library& library, double mu, double depth) {
-  const TriangleFrame frame = triangle_frame(library, 0);
-  const auto curves = [&](const auto& curve_of) {
-    return CurveTriple{{curve_of(library.responses[0]), curve_of(library.responses[1]),
-                        curve_of(library.responses[2])},
-                       frame.gradient};
-  };
-  using runtime::CompiledCurve;
-  ContactElement element{frame, curves([](const auto& r) { return CompiledCurve(r.normal); }),
-                         curves([](const auto& r) { return CompiledCurve(r.lateral); }), mu, depth};
-  if (library.kind == ResponseKind::Coupled) {
-    element.coupling = curves([](const auto& r) {
-      return CompiledCurve(r.coupling.curve, static_cast<double>(r.coupling.base));
-    });
-  }
-  return element;
-}
-
 /// A random state that slides, for both descriptions of it.
 struct SlidingState {
   Start start;
@@ -399,7 +380,7 @@ TEST(SlipBound, SlantedPlateHasAClosedForm) {
   EXPECT_GT(steepest, 1.05 * k * std::hypot(1.0, mu));  // steeper than the level plate
   EXPECT_GE(library.certificate.slip, steepest);
   // Slides aslant are a little steeper than down the slope; sets of states are halved to 1.1.
-  const ContactElement element = element_of(library, mu, library.certificate.depth);
+  const ContactElement element = contact_element(library, 0, library.certificate.depth, mu);
   std::mt19937 engine(29);
   double steepest_anywhere = steepest;
   for (int i = 0; i < 60; ++i) {
@@ -418,7 +399,7 @@ TEST(SlideJacobian, OfOneStateIsItsSteepestStep) {
       Library library = random_triangle(engine, 0.06, 0.2);
       if (coupled) couple(library, engine, 0.1);
       const double mu = 0.1 + 0.2 * (trial % 3);
-      const ContactElement element = element_of(library, mu, 0.008);
+      const ContactElement element = contact_element(library, 0, 0.008, mu);
       const PlainModel model(library, 0);
       const SlidingState state = random_slide(engine, model, element);
       const double expected = SlideJacobian(element).bound(state.cell);
@@ -440,7 +421,7 @@ TEST(SlideJacobian, NoStateOfACellIsSteeperThanItsBound) {
   for (int trial = 0; trial < 400; ++trial) {
     Library library = random_triangle(engine, 0.1, 0.3);
     if (trial % 2 == 1) couple(library, engine, 0.1);
-    const ContactElement element = element_of(library, 0.1 + 0.2 * (trial % 3), 0.008);
+    const ContactElement element = contact_element(library, 0, 0.008, 0.1 + 0.2 * (trial % 3));
     const SlideJacobian jacobian(element);
     SlideCell cell;
     for (SlideCell::Natural& n : cell.part) {
@@ -487,7 +468,8 @@ TEST(SteepestSlide, BoundsWhatTheClosedFormDoesNot) {
     settings.friction = 0.3;
     certify(library, settings);
     const double depth = library.certificate.depth;
-    if (std::isfinite(slide_bound(element_of(library, settings.friction, depth)).total)) continue;
+    if (std::isfinite(slide_bound(contact_element(library, 0, depth, settings.friction)).total))
+      continue;
     ++unbounded;
     if (std::isinf(library.certificate.slip)) continue;
     ++gained;
