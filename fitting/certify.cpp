@@ -52,9 +52,8 @@ std::string cause_unbounded(const TriangleCertificate& triangle, double depth) {
                   "radius of %.3g mm and lean by %.0f degrees",
                   1e3 * depth, 1e3 / triangle.kappa, lean);
   }
-  return text.data() + std::string(
-                           " (smaller patches, a rounder edge, a shallower depth or "
-                           "coupled responses may give one)");
+  return text.data() +
+         std::string(" (smaller patches, a rounder edge or a shallower depth may give one)");
 }
 
 std::string cause(const TriangleBounds& bounds, double depth) {
@@ -151,7 +150,8 @@ void certify(Library& library, const CertifySettings& settings) {
       std::count_if(certificate.triangles.begin(), certificate.triangles.end(),
                     [](const TriangleCertificate& t) { return std::isinf(t.slip); });
   if (unbounded > 1) {
-    certificate.limited_by += "; " + std::to_string(unbounded) + " triangles are unbounded";
+    certificate.limited_by += "; " + std::to_string(unbounded) + " of " +
+                              std::to_string(bounds.size()) + " triangles are unbounded";
   }
   certificate.basis = basis_of(library.provenance);
   count_vertices(library, certificate);
