@@ -50,6 +50,16 @@ Eigen::RowVectorXd kink_row(const Knots& knots, std::size_t k, double largest_to
   return row;
 }
 
+/// Row that makes the slopes of a piece even, where samples and kinks leave them open.
+Eigen::RowVectorXd even_row(const Knots& knots, std::size_t k, double largest_tolerance) {
+  Eigen::RowVectorXd row = Eigen::RowVectorXd::Zero(static_cast<Eigen::Index>(knots.size()));
+  const double scale = (knots[k + 1] - knots[k]) * kEvenWeight / largest_tolerance;
+  const auto i = static_cast<Eigen::Index>(k);
+  row[i] = -scale;
+  row[i + 1] = scale;
+  return row;
+}
+
 /// A piece with fewer samples could take any slope in its middle.
 constexpr std::size_t kSamplesPerPiece = 2;
 
@@ -230,8 +240,9 @@ std::vector<double> fit_slopes(const std::vector<ForceSample>& samples,
   for (const ForceSample& sample : samples)
     largest = std::max(largest, tolerance(sample, settings));
 
-  Eigen::MatrixXd A(rows + columns - 2, columns);
-  Eigen::VectorXd b = Eigen::VectorXd::Zero(rows + columns - 2);
+  const Eigen::Index kinks = columns - 2, pieces = columns - 1;
+  Eigen::MatrixXd A(rows + kinks + pieces, columns);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(A.rows());
   for (Eigen::Index i = 0; i < rows; ++i) {
     const ForceSample& sample = samples[static_cast<std::size_t>(i)];
     const double t = tolerance(sample, settings);
@@ -240,6 +251,9 @@ std::vector<double> fit_slopes(const std::vector<ForceSample>& samples,
   }
   for (Eigen::Index k = 1; k + 1 < columns; ++k) {
     A.row(rows + k - 1) = kink_row(knots, static_cast<std::size_t>(k), largest);
+  }
+  for (Eigen::Index k = 0; k < pieces; ++k) {
+    A.row(rows + kinks + k) = even_row(knots, static_cast<std::size_t>(k), largest);
   }
   const Eigen::Index pinned = settings.zero_first_slope ? 1 : 0;
   const Eigen::VectorXd free = nonnegative_least_squares(A.rightCols(columns - pinned), b);

@@ -29,6 +29,8 @@ struct CurveFit {
 
 /// Weight of the penalty on kinks of the slope, relative to a residual of one tolerance.
 inline constexpr double kKinkWeight = 1e-3;
+/// Weight of uneven slopes, which settles what even kinks leave open.
+inline constexpr double kEvenWeight = 1e-5;
 
 /// Slopes of the curve with the given knots nearest to the samples: the minimum over s >= 0 of
 ///   sum_i ((f(d_i; s) - f_i)/t_i)^2 + kKinkWeight^2 sum_k (q_k hbar_k^2/max t)^2,

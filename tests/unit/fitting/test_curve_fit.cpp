@@ -97,6 +97,13 @@ TEST(CurveFit, RecoversAnExactCurveOfTheModel) {
   EXPECT_NEAR(slopes[2], 90, 0.02);
 }
 
+TEST(CurveFit, MakesAStraightLineOfASingleSample) {
+  const CurveFit fit = fit_curve({{0.001, 0.2369}}, {0.01, 1e-3, 12, false}, "test");
+  ASSERT_EQ(fit.curve.slope.size(), 2u);
+  EXPECT_NEAR(fit.curve.slope[0], 236.9, 1e-2);
+  EXPECT_NEAR(fit.curve.slope[1], 236.9, 1e-2);
+}
+
 TEST(CurveFit, NeedsOnlyTwoKnotsForAParabola) {
   const Samples samples = sampled(10, kDepth, [](double d) { return 9000 * d * d; });
   const CurveFit fit = fit_curve(samples, {0.001, 1e-6, 12, true}, "test");
