@@ -136,7 +136,11 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
   }
   LiveSettings& live = options.live;
   if (live.contact.friction < 0) live.contact.friction = library.certificate.friction;
-  live.contact.steepness = body.steepness;
+  live.contact.steepness = steepness_for(library, profile, live.loop.rate);
+  if (live.contact.steepness < body.steepness) {
+    say("run: slides are held back to {:.1f} N/m, which is certified at this rate",
+        live.contact.steepness);
+  }
   if (profile.peak_force > 0) {
     live.safety.max_force = std::min(live.safety.max_force, profile.peak_force);
   }

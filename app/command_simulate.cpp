@@ -16,7 +16,7 @@ namespace {
 
 /// What is told of a session, gathered as it goes.
 struct Summary {
-  std::int64_t steps = 0, contact = 0, sliding = 0, limited = 0, beyond = 0;
+  std::int64_t steps = 0, contact = 0, sliding = 0, held_back = 0, limited = 0, beyond = 0;
   double deepest = 0, largest = 0, absorbed = 0;
   runtime::LatencyHistogram latency;
 
@@ -25,6 +25,7 @@ struct Summary {
     ++steps;
     contact += one_if(PALPATE_CONTACT);
     sliding += one_if(PALPATE_SLIDING);
+    held_back += one_if(PALPATE_FORCE_LIMITED);
     limited += one_if(PALPATE_ENERGY_LIMITED);
     beyond += one_if(PALPATE_BEYOND_DEPTH);
     deepest = std::max(deepest, step.depth);
@@ -37,13 +38,14 @@ struct Summary {
 void tell(const Summary& s, double rate, const std::filesystem::path& file) {
   say("simulate: {} steps at {} Hz, deepest {:.2f} mm, largest force {:.3f} N -> {}", s.steps, rate,
       s.deepest * 1e3, s.largest, file.string());
-  say("  contact in {} steps, sliding in {}, energy rule in {}, beyond the deepest sample in {}",
-      s.contact, s.sliding, s.limited, s.beyond);
+  say("  contact in {} steps, sliding in {}, held back in {}, energy rule in {}, "
+      "beyond the deepest sample in {}",
+      s.contact, s.sliding, s.held_back, s.limited, s.beyond);
   say("  absorbed by the body: {:.3f} mJ; force step: median {:.2f} us, 99 % within {:.2f} us",
       s.absorbed * 1e3, s.latency.quantile(0.5) * 1e-3, s.latency.quantile(0.99) * 1e-3);
 }
 
-int simulate(const CaseOptions& options, const std::string& library_option) {
+int simulate(const CaseOptions& options, const std::string& library_option, double steepness) {
   const Workspace space = open_workspace(options);
   const std::filesystem::path file =
       library_option.empty() ? space.library() : std::filesystem::path(library_option);
@@ -54,7 +56,7 @@ int simulate(const CaseOptions& options, const std::string& library_option) {
   const Library library = read_library(file);
   prepare_output(space.out);
   tell_what_was_left(space.recording());
-  ScriptedSession session(file, library, space.c.simulate);
+  ScriptedSession session(file, library, space.c.simulate, steepness);
   RecordingHeading heading = session.heading();
   heading.provenance = library.provenance;
   heading.provenance.steps.push_back(
@@ -83,8 +85,14 @@ void add_simulate_command(CLI::App& root, Action& action) {
   const auto options = add_case_options(*command);
   const auto library = std::make_shared<std::string>();
   command->add_option("--library", *library, "Response library (default: library.h5 of the case)");
-  command->callback([options, library, &action] {
-    action = [options, library] { return simulate(*options, *library); };
+  const auto steepness = std::make_shared<double>(0);
+  command
+      ->add_option("--steepness", *steepness,
+                   "N/m: hold the change of force to this times the travel of the tool, from the "
+                   "L_hold of the library on (default: the limit of the library)")
+      ->check(CLI::PositiveNumber);
+  command->callback([options, library, steepness, &action] {
+    action = [options, library, steepness] { return simulate(*options, *library, *steepness); };
   });
 }
 

@@ -90,7 +90,7 @@ std::string limit_line(const Library& library, std::size_t index, const Triangle
 }
 
 void add_devices(Certificate& certificate, const CertifySettings& settings) {
-  const double steepest = std::max(certificate.stick, certificate.slip);
+  const double steepest = certified_steepness(certificate);
   for (const DeviceProfile& device : settings.devices) {
     if (std::isinf(device.damping) || device.damping <= 0) {
       throw Error(ErrorKind::Configuration, "device profile '" + device.name + "'",
@@ -130,11 +130,13 @@ void certify(Library& library, const CertifySettings& settings) {
   const std::vector<TriangleBounds> bounds =
       triangle_bounds(library, certificate.depth, settings.friction);
   double steepest = 0;
+  certificate.hold = 0;
   for (std::size_t m = 0; m < bounds.size(); ++m) {
     const TriangleCertificate& triangle = bounds[m].certificate;
     certificate.triangles.push_back(triangle);
     certificate.stick = std::max(certificate.stick, triangle.stick);
     certificate.slip = std::max(certificate.slip, triangle.slip);
+    certificate.hold = std::max(certificate.hold, bounds[m].hold);
     const double both = std::max(triangle.stick, triangle.slip);
     if (both > steepest) {
       steepest = both;
@@ -155,6 +157,8 @@ void certify(Library& library, const CertifySettings& settings) {
   }
   certificate.basis = basis_of(library.provenance);
   count_vertices(library, certificate);
+  certificate.limit = settings.limit;
+  certificate.limit = steepness_limit(certificate);
   add_devices(certificate, settings);
   library.certificate = certificate;
 }

@@ -47,10 +47,10 @@ ContactElement contact_element(const Library& library, std::size_t index, double
   return element;
 }
 
-std::vector<double> ContactElement::depth_cells() const {
-  std::vector<double> ends = normal.cells({0, depth}, 1);
+std::vector<double> ContactElement::depth_cells(double deepest) const {
+  std::vector<double> ends = normal.cells({0, deepest}, 1);
   if (!coupling) return ends;
-  const std::vector<double> more = coupling->cells({0, depth}, 1);
+  const std::vector<double> more = coupling->cells({0, deepest}, 1);
   ends.insert(ends.end(), more.begin(), more.end());
   std::sort(ends.begin(), ends.end());
   ends.erase(std::unique(ends.begin(), ends.end()), ends.end());

@@ -21,8 +21,9 @@ struct ContactElement {
   double depth = 0;                                    ///< m, D: the bounds hold while z + d0 <= D
   std::optional<CurveTriple> coupling = std::nullopt;  ///< w, of coupled responses
 
-  /// Ends of cells of depth without a knot of a normal response, or of w, inside.
-  std::vector<double> depth_cells() const;
+  /// Ends of cells of depth, down to D, without a knot of a normal response, or of w, inside.
+  std::vector<double> depth_cells() const { return depth_cells(depth); }
+  std::vector<double> depth_cells(double deepest) const;
 };
 
 /// Whether all three vertices have a response: elsewhere there is no local model.

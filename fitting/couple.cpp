@@ -15,6 +15,8 @@ constexpr int kCouplingSamples = 16;
 constexpr double kCouplingTolerance = 0.01;  // of the local w: what the fit of w may add
 constexpr int kTurns = 3;                    // f^r and w by turns; a product of two settles at once
 constexpr double kSameDepth = 1e-9;
+constexpr float kBeyond = 1.25F;  // of the depth: where w has come to rest
+constexpr float kLevel = 0.05F;   // of the steepest slope of w: what is at rest, but for a mean
 
 /// The lateral paths of one held depth, all azimuths.
 struct Level {
@@ -89,10 +91,21 @@ CouplingCurve coupling_of(const std::vector<Level>& levels, double depth, int ma
   const double tolerance = kCouplingTolerance * weight_at(levels, 0.5 * depth);
   coupling.curve =
       fit_curve(samples, {1e-6, tolerance, max_knots, true}, where + ", coupling").curve;
+  level_off(coupling);
   return coupling;
 }
 
 }  // namespace
+
+void level_off(CouplingCurve& coupling) {
+  std::vector<float>&knot = coupling.curve.knot, &slope = coupling.curve.slope;
+  const float steepest = *std::max_element(slope.begin(), slope.end());
+  if (slope.back() > kLevel * steepest) {
+    knot.push_back(kBeyond * knot.back());
+    slope.push_back(0);
+  }
+  slope.back() = 0;
+}
 
 std::vector<double> held_depths(const SiteCurves& site) {
   std::vector<double> depths;

@@ -16,6 +16,10 @@ struct CoupledLateral {
   CouplingCurve coupling;
 };
 
+/// Beyond its last knot w stays where it is, which its slope reaches over a further quarter of the
+/// depth: a w that grows without end has no bound at every depth.
+void level_off(CouplingCurve& coupling);
+
 /// Held depths of the lateral paths of a site, ascending.
 std::vector<double> held_depths(const SiteCurves& site);
 

@@ -48,6 +48,8 @@ struct DeviceProfile {
 struct CertifySettings {
   double friction = 0.3;  ///< mu, >= 0
   std::vector<DeviceProfile> devices;
+  /// N/m, what the runtime is to hold the change of force to; unknown: steepness_limit.
+  double limit = kUnknown;
 };
 
 /// What responses with this history are made of: Certificate::basis.
@@ -55,9 +57,9 @@ std::string basis_of(const Provenance& provenance);
 
 /// Fill library.certificate: for each triangle the bounds of docs/theory-fitting.md, valid while
 /// z + d0 <= D, the deepest knot of the library. A slip bound is infinite where the slide of the
-/// contact point itself is not bounded. Triangles at a hole have zeros. Every device gets a row;
-/// all of it is NaN where the damping is unknown. @throws Error(Geometry) where normals cannot be
-/// interpolated
+/// contact point itself is not bounded. Triangles at a hole have zeros. Every device gets a row,
+/// for the limit of the certificate; all of it is NaN where the damping is unknown. @throws
+/// Error(Geometry) where normals cannot be interpolated
 /// (|sum n_l u_l| < 0.5 in a triangle, or u_l . facet normal >= 0 with the outward normal);
 /// Error(Configuration) for friction < 0, damping <= 0, or a library without a usable triangle. The
 /// library is unchanged then.
@@ -77,10 +79,11 @@ struct Softening {
   double median = 0, p95 = 0, worst = 0;
 };
 
-/// Certify, and where max(L_stick, L_slip) exceeds `bound`, cap the slopes of all curves at the
-/// highest value (by bisection) that brings it down to the bound. What is stiff is softened, the
-/// rest stays as it was. @throws Error(Configuration) when not even a hundredth of the steepest
-/// slope is certified; the library then keeps its responses.
+/// Certify for `bound`. Where max(L_stick, L_slip) exceeds it, it becomes the limit that the
+/// runtime holds slides back to; where L_hold exceeds it as well, the slopes of all curves are
+/// capped at the highest value (by bisection) that brings L_hold down to it. What is stiff is
+/// softened, the rest stays as it was. @throws Error(Configuration) when not even a hundredth of
+/// the steepest slope is certified; the library then keeps its responses.
 Softening soften(Library& library, const CertifySettings& settings, double bound);
 
 }  // namespace palpate::fitting

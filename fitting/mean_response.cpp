@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "fitting/couple.hpp"
 #include "fitting/curve_fit.hpp"
 #include "runtime/response_curve.hpp"
 
@@ -89,6 +90,7 @@ CouplingCurve mean_coupling(const std::vector<WeightedResponse>& sources, CurveF
   settings.absolute_tolerance = settings.relative_tolerance;  // of w, which is about 1
   const auto curves = curves_of(sources, [](const NodeResponse& r) { return r.coupling.curve; });
   mean.curve = mean_curve(curves, settings, where);
+  level_off(mean);
   return mean;
 }
 

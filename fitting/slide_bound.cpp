@@ -132,6 +132,24 @@ Range coupled_limit(const ContactElement& element, const Range& z) {
   return element.lateral.inverse(low, high);
 }
 
+/// |d(dE/dz, mu g)/dz| along the slip limit: with rho_s' = (mu g' - E_zrho)/E_rhorho the first is
+/// A = E_zz + r (mu g' - E_zrho), r = E_zrho/E_rhorho, no more than the largest (w'/w)(h/h') of a
+/// vertex.
+double along_limit(const ContactElement& element, const Hessian& E, const Range& z,
+                   const Range& rho) {
+  const double mu = element.friction;
+  const Range g_z = element.normal.slope(z);
+  if (!(mu > 0)) return std::max(std::abs(E.zz.low), std::abs(E.zz.high));
+  double growth = 0;
+  for (const runtime::CompiledCurve& w : element.coupling->curves())
+    growth = std::max(growth, slope_range(w, z).high / coupling_at(w, z.low));
+  const double ratio = growth > 0 ? growth * element.lateral.force_over_slope(rho) : 0;
+  if (ratio == kInfinity) return kInfinity;
+  const double low = E.zz.low + ratio * std::min(0.0, mu * g_z.low - E.zr.high);
+  const double high = E.zz.high + ratio * std::max(0.0, mu * g_z.high - E.zr.low);
+  return std::hypot(std::max(std::abs(low), std::abs(high)), mu * g_z.high);
+}
+
 std::optional<SlideState> coupled_state(const ContactElement& element, const Range& z) {
   const double mu = element.friction;
   SlideState state;
@@ -160,6 +178,8 @@ std::optional<SlideState> coupled_state(const ContactElement& element, const Ran
     state.grip = std::max(state.grip, grip[l].high);
     state.normal = std::max(state.normal, normal[l].high);
   }
+  state.steep = along_limit(element, E, z, state.rho);
+  state.h_over_rho = mu > 0 ? w_high * element.lateral.slope({0, state.rho.high}).high : 0;
   state.h_rho = E.rr.low;
   if (mu > 0 && !(state.h_rho > 0)) {
     state.change = kInfinity;  // nothing bounds the way of the slip limit
@@ -169,14 +189,10 @@ std::optional<SlideState> coupled_state(const ContactElement& element, const Ran
   const double low = mu > 0 ? (mu * g_z.low - E.zr.high) / E.rr.low : 0;
   const double high = mu > 0 ? (mu * g_z.high - E.zr.low) / E.rr.low : 0;
   state.limit_slope = std::max(std::abs(low), std::abs(high));
-  const double A_low = E.zz.low + std::min(0.0, low) * E.zr.high;
-  const double A_high = E.zz.high + std::max(0.0, high) * E.zr.high;
-  state.steep = std::hypot(std::max(std::abs(A_low), std::abs(A_high)), mu * g_z.high);
   state.limit_gradient = mu > 0 ? box_gradient(element, limit) : 0;
   const double along = mu > 0 ? E.zr.high * state.limit_gradient / state.h_rho : 0;
   state.change =
       std::hypot(box_gradient(element, normal) + along, mu * box_gradient(element, grip));
-  state.h_over_rho = mu > 0 ? w_high * element.lateral.slope({0, state.rho.high}).high : 0;
   return state;
 }
 
@@ -238,6 +254,49 @@ double cell_stick(const ContactElement& element, const Range& z) {
   return largest;
 }
 
+/// What holds for a cell of depths of coupled responses with the contact point held, also while the
+/// tool slips over it.
+double cell_hold(const ContactElement& element, const Range& z) {
+  const std::optional<SlideState> state = coupled_state(element, z);
+  const double stick = cell_stick(element, z);
+  if (!state) return stick;
+  if (state->rho.high == kInfinity) return kInfinity;
+  return std::max({stick, state->steep, state->h_over_rho});
+}
+
+/// Deeper than every knot the normal responses are straight and, if w has come to rest, nothing
+/// else depends on depth.
+double hold_beyond(const ContactElement& element, double depth) {
+  const Range beyond{depth, 2 * depth};
+  if (element.coupling->slope(beyond).high > 0) return kInfinity;
+  const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
+  return std::max(std::hypot(1.0, element.friction) * element.normal.slope(beyond).high, lateral);
+}
+
+using CellBound = double (*)(const ContactElement&, const Range&);
+
+/// The largest over all depths down to `deepest` of what is bounded over cells of them.
+double over_depths(const ContactElement& element, double deepest, CellBound bound) {
+  struct Part {
+    double bound;
+    Range z;
+    bool operator<(const Part& other) const { return bound < other.bound; }
+  };
+  std::priority_queue<Part> parts;
+  const auto add = [&](const Range& z) { parts.push({bound(element, z), z}); };
+  const std::vector<double> ends = element.depth_cells(deepest);
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) add({ends[k], ends[k + 1]});
+  for (int i = 0; i < kMostHalvings; ++i) {
+    const Part worst = parts.top();
+    const double half = worst.z.middle();
+    if (worst.bound <= kNearEnough * bound(element, {half, half})) break;
+    parts.pop();
+    add({worst.z.low, half});
+    add({half, worst.z.high});
+  }
+  return parts.top().bound;
+}
+
 struct Cell {
   Range z;
   SlideBound bound;
@@ -278,24 +337,17 @@ double stick_bound(const ContactElement& element) {
   // The Jacobian at a fixed contact point is g' n n^T + h' t t^T + (h/rho) s s^T, its norm the
   // largest of the three; h/rho <= max h', and no interpolated slope exceeds those at the vertices.
   if (!element.coupling) return std::max(element.normal.max_slope(), element.lateral.max_slope());
-  struct Part {
-    double bound;
-    Range z;
-    bool operator<(const Part& other) const { return bound < other.bound; }
-  };
-  std::priority_queue<Part> parts;
-  const auto add = [&](const Range& z) { parts.push({cell_stick(element, z), z}); };
-  const std::vector<double> ends = element.depth_cells();
-  for (std::size_t k = 0; k + 1 < ends.size(); ++k) add({ends[k], ends[k + 1]});
-  for (int i = 0; i < kMostHalvings; ++i) {
-    const Part worst = parts.top();
-    const double half = worst.z.middle();
-    if (worst.bound <= kNearEnough * cell_stick(element, {half, half})) break;
-    parts.pop();
-    add({worst.z.low, half});
-    add({half, worst.z.high});
+  return over_depths(element, element.depth, cell_stick);
+}
+
+double hold_bound(const ContactElement& element) {
+  // Decoupled, |M_0| is sqrt(1 + mu^2) g' across s; along s it is h/rho, no steeper than h.
+  if (!element.coupling) {
+    return std::max(stick_bound(element),
+                    std::hypot(1.0, element.friction) * element.normal.max_slope());
   }
-  return parts.top().bound;
+  const double deepest = std::max(element.normal.last_knot(), element.coupling->last_knot());
+  return std::max(over_depths(element, deepest, cell_hold), hold_beyond(element, deepest));
 }
 
 SlideBound slide_bound(const ContactElement& element) {

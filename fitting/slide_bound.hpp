@@ -11,6 +11,11 @@ namespace palpate::fitting {
 /// any deflection. Coupled: while the lateral deflection is within the slip limit.
 double stick_bound(const ContactElement& element);
 
+/// L_hold, (10e), N/m: how steep the force is at any depth with the contact point held, also while
+/// the tool slips over it. Infinite for coupled responses that are flat where slip begins, or whose
+/// w goes on growing beyond its knots.
+double hold_bound(const ContactElement& element);
+
 /// Lipschitz bound along the path while sliding, (10), in closed form for a cell of depths; N/m.
 struct SlideBound {
   double total = 0;      ///< the sum of its causes; infinite where no slide can be bounded by it

@@ -34,10 +34,6 @@ Library capped(const Library& library, double cap) {
   return soft;
 }
 
-double bound_of(const Certificate& certificate) {
-  return std::max(certificate.stick, certificate.slip);
-}
-
 /// Share of the force at its last knot that a curve has lost.
 double lost(const ResponseCurve& before, const ResponseCurve& after) {
   const runtime::CompiledCurve was(before), is(after);
@@ -72,9 +68,13 @@ double certified_bound(double damping, double rate) {
 }
 
 Softening soften(Library& library, const CertifySettings& settings, double bound) {
+  certify(library, settings);
+  if (certified_steepness(library.certificate) <= bound) return {};
+  CertifySettings held = settings;
+  held.limit = bound;
   const auto within = [&](Library& candidate) {
-    certify(candidate, settings);
-    return bound_of(candidate.certificate) <= bound;
+    certify(candidate, held);
+    return candidate.certificate.hold <= bound;
   };
   if (within(library)) return {};
   const double steepest = steepest_slope(library);
@@ -83,9 +83,9 @@ Softening soften(Library& library, const CertifySettings& settings, double bound
   if (!within(best)) {
     throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
                 "no softening certifies it for " + std::to_string(bound) +
-                    " N/m: " + best.certificate.limited_by,
-                "lower the depth, refine the response triangles there, raise the rate, or take a "
-                "device with more damping");
+                    " N/m: a hundredth of its slopes can be held to " +
+                    std::to_string(best.certificate.hold) + " N/m",
+                "raise the rate, or take a device with more damping");
   }
   for (int i = 0; i < kHalvings; ++i) {
     const double cap = 0.5 * (low + high);

@@ -30,6 +30,7 @@ TriangleBounds bound_triangle(const Library& library, std::size_t index, double 
   const SlideBound slide = slide_bound(element);
   bounds.causes = slide.causes;
   bounds.certificate.stick = stick_bound(element);
+  bounds.hold = hold_bound(element);
   bounds.certificate.slip = slide.total;
   bounds.certificate.sliding_passive = slide_lowers_energy(element);
   return bounds;

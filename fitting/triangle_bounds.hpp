@@ -12,6 +12,7 @@ namespace palpate::fitting {
 /// Bounds of one triangle, and what its slides are steep for.
 struct TriangleBounds {
   TriangleCertificate certificate;
+  double hold = 0;  ///< N/m, L_hold
   SlideCauses causes;
 };
 

@@ -38,7 +38,7 @@ constexpr auto kDeviceColumns = std::make_tuple(
     column("damping", &DeviceCertificate::damping, "N s/m",
            "Smallest damping singular value sigma_0(B).", rules::kKnownBound),
     column("lowest_rate", &DeviceCertificate::lowest_rate, "Hz",
-           "Lowest certified rate, 2 max(L_stick, L_slip)/sigma_0(B).", rules::kKnownBound),
+           "Lowest certified rate, 2 L/sigma_0(B).", rules::kKnownBound),
     column("linear_limit", &DeviceCertificate::linear_limit, "N/m",
            "Stiffest linear wall at 1 kHz with one sample of delay, 2 b/(3 T).",
            rules::kKnownBound),
@@ -171,12 +171,17 @@ void check_certificate(const Checks& checks, const Library& library) {
     const bool fits = value >= rule.low && value <= rule.high;
     if (!fits) checks.fail(std::string("/certificate@") + name, std::string("is not ") + rule.text);
   };
+  const auto check_if_known = [&](const char* name, double value) {
+    if (!std::isnan(value)) check(name, value, rules::kBound);
+  };
   const auto triangles = static_cast<double>(library.triangles.size());
   const auto vertices = static_cast<double>(library.positions.size());
   check("friction", certificate.friction, rules::kNonNegative);
   check("depth", certificate.depth, rules::kNonNegative);
   check("stick", certificate.stick, rules::kBound);
   check("slip", certificate.slip, rules::kBound);
+  check_if_known("hold", certificate.hold);
+  check_if_known("limit", certificate.limit);
   check("worst_triangle", certificate.worst_triangle,
         Rule{-1, triangles - 1, false, false, "-1 or a triangle"});
   check("holes", certificate.holes, rules::up_to(vertices, "a number of vertices"));
@@ -240,6 +245,8 @@ void write_certificate(hdf5::Writer& writer, const Certificate& certificate) {
   writer.set_real(group, "depth", certificate.depth);
   writer.set_real(group, "stick", certificate.stick);
   writer.set_real(group, "slip", certificate.slip);
+  if (!std::isnan(certificate.hold)) writer.set_real(group, "hold", certificate.hold);
+  if (!std::isnan(certificate.limit)) writer.set_real(group, "limit", certificate.limit);
   writer.set_integer(group, "worst_triangle", certificate.worst_triangle);
   writer.set_text(group, "limited_by", certificate.limited_by);
   writer.set_text(group, "basis", certificate.basis);
@@ -272,6 +279,8 @@ Certificate read_certificate(const hdf5::Reader& reader) {
   certificate.depth = reader.real(group, "depth");
   certificate.stick = reader.real(group, "stick");
   certificate.slip = reader.real(group, "slip");
+  if (reader.has_attribute(group, "hold")) certificate.hold = reader.real(group, "hold");
+  if (reader.has_attribute(group, "limit")) certificate.limit = reader.real(group, "limit");
   certificate.worst_triangle = read_int32(reader, group, "worst_triangle");
   certificate.limited_by = reader.text(group, "limited_by");
   if (reader.has_attribute(group, "basis")) certificate.basis = reader.text(group, "basis");
@@ -289,12 +298,37 @@ Certificate read_certificate(const hdf5::Reader& reader) {
 
 }  // namespace
 
-std::string verdict(const DeviceCertificate& device) {
+double steepness_limit(const Certificate& certificate) {
+  const Certificate& c = certificate;
+  if (c.triangles.empty()) return std::numeric_limits<double>::infinity();
+  if (!std::isnan(c.limit)) return c.limit;
+  const double slides = std::min(std::max(c.stick, c.slip), 4 * c.stick);
+  return std::isfinite(c.hold) ? std::max(slides, c.hold) : slides;
+}
+
+double certified_steepness(const Certificate& certificate) {
+  const double limit = steepness_limit(certificate);
+  const bool free = limit >= std::max(certificate.stick, certificate.slip);
+  return free || limit >= certificate.hold ? limit : std::numeric_limits<double>::infinity();
+}
+
+std::string steepness_text(double steepness) {
+  std::array<char, 40> text{};
+  std::snprintf(text.data(), text.size(), "%.1f N/m", std::ceil(10 * steepness) / 10);
+  return text.data();
+}
+
+std::string verdict(const Certificate& certificate, const DeviceCertificate& device) {
   if (std::isnan(device.lowest_rate)) return "damping unknown: not certified for this device";
   if (std::isinf(device.lowest_rate)) return "not certified: the slide has no bound";
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "certified passive from %.0f Hz", device.lowest_rate);
-  return text.data();
+  std::string said = text.data();
+  const double held_rate = 2 * certificate.hold / device.damping;
+  if (!(held_rate < 0.995 * device.lowest_rate)) return said;  // also when it is not known
+  std::snprintf(text.data(), text.size(), "; from %.0f Hz when slides are held back to ",
+                std::ceil(held_rate));
+  return said + text.data() + steepness_text(certificate.hold) + " (steepness)";
 }
 
 void write_library(const std::filesystem::path& path, const Library& library) {

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -71,20 +72,24 @@ struct TriangleCertificate {
 struct DeviceCertificate {
   std::string device;      ///< profile name
   double damping = 0;      ///< sigma_0(B), N s/m
-  double lowest_rate = 0;  ///< Hz, 2 max(L_stick, L_slip)/sigma_0(B); infinite: no rate will do
+  double lowest_rate = 0;  ///< Hz, 2 L/sigma_0(B), L the limit; infinite: no rate will do
   double linear_limit =
       0;  ///< N/m at 1 kHz, 2 b/(3 T): exact linear limit with one sample of delay
   double no_delay_limit = 0;  ///< N/m at 1 kHz, 2 b/T
 };
-
-/// In words, for people: the lowest certified rate, or that the device is not certified, and why.
-std::string verdict(const DeviceCertificate& device);
 
 struct Certificate {
   double friction = 0;  ///< mu the bounds were computed for
   double depth = 0;     ///< m, D: deepest depth the bounds hold for
   double stick = 0;     ///< N/m, over all triangles
   double slip = 0;      ///< N/m, over all triangles
+  /// N/m, L_hold: the least limit of the change of force for the travel of the tool that the
+  /// runtime can keep in every step and at every depth, by holding slides back, (R16). Infinite: it
+  /// cannot promise any; NaN: not known.
+  double hold = std::numeric_limits<double>::quiet_NaN();
+  /// N/m, L of Theorem 1: the limit that the runtime keeps unless it is given another one, and that
+  /// the rates are certified for. NaN: not chosen, see steepness_limit.
+  double limit = std::numeric_limits<double>::quiet_NaN();
   std::int32_t worst_triangle = -1;
   std::string limited_by;  ///< one line: what sets the bound in the worst triangle
   /// What the responses are made of: "simulated", "measured", "simulated shape, measured scale".
@@ -94,6 +99,22 @@ struct Certificate {
   std::vector<TriangleCertificate> triangles;  ///< (M)
   std::vector<DeviceCertificate> devices;
 };
+
+/// N/m: what the runtime keeps the change of force to, for the travel of the tool, unless it is
+/// given another limit: the one that was chosen, or else the bound of slides, at most 4 L_stick,
+/// but at least L_hold. Infinite without a certificate.
+double steepness_limit(const Certificate& certificate);
+
+/// N/m: the limit above where it is certain that it is kept, infinite where it is not: slides
+/// without a bound, of which no L_hold is known.
+double certified_steepness(const Certificate& certificate);
+
+/// N/m in words, to a tenth and upwards: what is said can be given as a steepness.
+std::string steepness_text(double steepness);
+
+/// In words, for people: the lowest certified rate, also with slides held back as far as possible;
+/// or that the device is not certified, and why.
+std::string verdict(const Certificate& certificate, const DeviceCertificate& device);
 
 struct Library {
   ResponseKind kind = ResponseKind::Decoupled;

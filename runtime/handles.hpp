@@ -19,7 +19,8 @@ struct palpate_library {
       : surface(library),
         tree(surface),
         info(describe(library, surface)),
-        steepness(limit_of(library)),
+        steepness(palpate::steepness_limit(library.certificate)),
+        least_steepness(std::isfinite(info.hold) ? info.hold : info.stick),
         certified(!library.certificate.triangles.empty()) {}
   palpate_library(const palpate_library&) = delete;  // the tree points into the surface
   palpate_library& operator=(const palpate_library&) = delete;
@@ -27,14 +28,11 @@ struct palpate_library {
   static palpate_library_info describe(const palpate::Library& library,
                                        const palpate::runtime::Surface& surface);
 
-  /// What the change of force is held to, N/m: the certified bound, at most 4 L_stick (a slide can
-  /// be unbounded, and follows well enough below that); none without a certificate.
-  static double limit_of(const palpate::Library& library);
-
   palpate::runtime::Surface surface;
   palpate::runtime::CollisionTree tree;
   palpate_library_info info;
-  double steepness;
+  double steepness;        ///< N/m, what the change of force is held to unless told otherwise
+  double least_steepness;  ///< N/m, that a state may be given
   bool certified;
 };
 

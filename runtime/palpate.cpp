@@ -40,7 +40,7 @@ thread_local char last_error[512] = "";
 // between is an older header, a larger one a newer.
 constexpr std::uint32_t kFirstSettings = 40;
 constexpr std::uint32_t kFirstObservation = offsetof(palpate_observation, lateral_offset);
-constexpr std::uint32_t kFirstInfo = sizeof(palpate_library_info);
+constexpr std::uint32_t kFirstInfo = offsetof(palpate_library_info, hold);
 static_assert(sizeof(palpate_settings) >= kFirstSettings);
 
 constexpr double kRigid = 1e-9;  // what rounding may leave of the rotation's orthonormality
@@ -128,17 +128,13 @@ palpate_library_info palpate_library::describe(const palpate::Library& library,
   info.triangles = static_cast<std::int32_t>(library.triangles.size());
   info.stick = library.certificate.stick;
   info.slip = library.certificate.slip;
+  info.hold = library.certificate.hold;
+  info.limit = steepness_limit(library.certificate);
   info.friction = library.certificate.friction;
   info.depth = surface.deepest();
   copy(surface.low(), info.low);
   copy(surface.high(), info.high);
   return info;
-}
-
-double palpate_library::limit_of(const palpate::Library& library) {
-  const palpate::Certificate& c = library.certificate;
-  if (c.triangles.empty()) return std::numeric_limits<double>::infinity();
-  return std::min(std::max(c.stick, c.slip), 4 * c.stick);
 }
 
 extern "C" {
@@ -242,9 +238,13 @@ int palpate_state_create(const palpate_library* library, const palpate_settings*
         "set settings.friction");
   }
   if (!(chosen.steepness >= 0) ||
-      (chosen.steepness > 0 && chosen.steepness < library->info.stick)) {
-    return fail(PALPATE_ERROR_ARGUMENT,
-                "palpate_state_create: steepness must be 0 or at least the L_stick of the library");
+      (chosen.steepness > 0 && chosen.steepness < library->least_steepness)) {
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "palpate_state_create: steepness must be 0, or at least what this library can be "
+                  "held to: %s",
+                  palpate::steepness_text(library->least_steepness).c_str());
+    return fail(PALPATE_ERROR_ARGUMENT, text);
   }
   if (!(chosen.search_rate >= 0 && chosen.search_rate <= kMostSearchRate)) {
     return fail(PALPATE_ERROR_ARGUMENT,

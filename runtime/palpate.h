@@ -67,8 +67,9 @@ typedef struct palpate_settings {
   double friction;    /* mu; negative = the value the library was certified for */
   double tank_cap;    /* J, cap of the energy tank; 0 = strict Theorem 2 */
   double steepness;   /* N/m: the force changes by at most this times the travel of the tip; 0 = the
-                         certified bound, or 4 L_stick when that is less; else at least L_stick.
-                         Without a certificate there is no limit but the one given here. */
+                         limit of the certificate; else at least its L_hold. On a device of smallest
+                         damping b at the period T, b/(2 T) is certified passive. Without a
+                         certificate there is no limit but the one given here. */
   double search_rate; /* Hz: a thread of its own looks for the triangles near the tool at this rate
                          (100 is plenty) and hands them to the step; 0 = no thread, the step
                          searches the whole body */
@@ -102,6 +103,8 @@ typedef struct palpate_library_info {
   double friction;        /* mu of the certificate */
   double depth;           /* deepest sample, m */
   double low[3], high[3]; /* bounding box, m */
+  double hold;            /* N/m, the least steepness that a state can keep; NaN: not known */
+  double limit;           /* N/m, the steepness that a state keeps unless it is given one */
 } palpate_library_info;
 
 PALPATE_API const char* palpate_version(void);

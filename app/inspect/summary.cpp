@@ -190,7 +190,7 @@ Json summary_of(const Certificate& certificate) {
   Json devices = Json::array();
   for (const DeviceCertificate& d : certificate.devices) {
     devices.push_back({{"device", d.device},
-                       {"verdict", verdict(d)},
+                       {"verdict", verdict(certificate, d)},
                        {"damping", with_unit(d.damping, "N s/m")},
                        {"lowest_certified_rate", with_unit(d.lowest_rate, "Hz")},
                        {"linear_limit_at_1_kHz", with_unit(d.linear_limit, "N/m")},
@@ -202,6 +202,8 @@ Json summary_of(const Certificate& certificate) {
           {"depth", with_unit(certificate.depth, "m")},
           {"L_stick", with_unit(certificate.stick, "N/m")},
           {"L_slip", with_unit(certificate.slip, "N/m")},
+          {"L_hold", with_unit(certificate.hold, "N/m")},
+          {"limit_of_the_runtime", with_unit(steepness_limit(certificate), "N/m")},
           {"worst_triangle", certificate.worst_triangle},
           {"limited_by", certificate.limited_by},
           {"basis", certificate.basis},

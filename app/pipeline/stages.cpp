@@ -27,9 +27,13 @@ std::string bound_text(double value, const char* unit) {
 void tell_certificate(const Certificate& certificate) {
   say("  L_stick: {}, L_slip: {} at mu = {}", bound_text(certificate.stick, "N/m"),
       bound_text(certificate.slip, "N/m"), certificate.friction);
+  say("  L_hold: {}; the runtime holds the force to {}",
+      std::isfinite(certificate.hold) ? steepness_text(certificate.hold)
+                                      : "not certified: no bound",
+      bound_text(certificate.limit, "N/m"));
   say("  limited by: {}", certificate.limited_by);
   for (const DeviceCertificate& device : certificate.devices) {
-    say("  {}: {}", device.device, verdict(device));
+    say("  {}: {}", device.device, verdict(certificate, device));
   }
 }
 
@@ -152,11 +156,17 @@ void tell_keep(const Library& library, const fitting::DeviceProfile& device, dou
   if (steepest <= bound)
     return say("    the library, {:.1f} N/m, is certified with room for {:.2f} times its forces",
                steepest, bound / steepest);
-  say("    the library has {}: {} of {} triangles are over, the worst is triangle {}",
+  say("    slides of the library need {}: {} of {} triangles are over, the worst is triangle {}",
       bound_text(steepest, "N/m"), over, c.triangles.size(), c.worst_triangle);
-  if (std::isfinite(steepest))
-    say("    {:.2f} times its forces would be certified; --soften caps the stiff slopes alone",
-        bound / steepest);
+  if (c.hold <= bound)
+    return say(
+        "    slides can be held back to {}: certified with a steepness of {:.1f} N/m, "
+        "which --soften writes as the limit of a library and `palpate run` takes by itself",
+        steepness_text(c.hold), std::floor(10 * bound) / 10);
+  if (std::isinf(c.hold)) return say("    and cannot be held back to any limit");
+  say("    held back they need {:.1f} N/m: {:.2f} times its forces would be certified; "
+      "--soften caps the stiff slopes alone",
+      c.hold, bound / c.hold);
 }
 
 void write_softened(const Workspace& space, const KeepOptions& options, Library library,
@@ -174,10 +184,12 @@ void write_softened(const Workspace& space, const KeepOptions& options, Library 
   ProvenanceStep step = make_stage_step(space, Stage::Certify, {});
   step.facts.emplace_back("softened_for_hz", fmt::format("{}", options.rate));
   step.facts.emplace_back("softened_slope_cap", fmt::format("{}", soft.cap));
+  step.facts.emplace_back("steepness_limit", fmt::format("{}", library.certificate.limit));
   library.provenance.steps.push_back(step);
   write_library(options.softened, library);
   if (soft.curves == 0) {
     say("certify: nothing had to be softened -> {}", options.softened.string());
+    tell_certificate(library.certificate);
     return;
   }
   say("certify: slopes capped at {:.1f} N/m, {} curves changed -> {}", soft.cap, soft.curves,

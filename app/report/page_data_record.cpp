@@ -49,7 +49,7 @@ json certificate_data(const Library& library) {
   json devices = json::array();
   for (const DeviceCertificate& d : c.devices) {
     devices.push_back({{"device", d.device},
-                       {"verdict", verdict(d)},
+                       {"verdict", verdict(c, d)},
                        {"damping", d.damping},
                        {"lowest_rate", d.lowest_rate},
                        {"linear_limit", d.linear_limit},
@@ -59,6 +59,8 @@ json certificate_data(const Library& library) {
           {"depth", c.depth},
           {"stick", c.stick},
           {"slip", c.slip},
+          {"hold", c.hold},
+          {"limit", certified_steepness(c)},
           {"worst_triangle", c.worst_triangle},
           {"limited_by", c.limited_by},
           {"basis", c.basis},

@@ -3,11 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "format/error.hpp"
-#include "runtime/handles.hpp"
 
 namespace palpate::app {
 namespace {
@@ -20,7 +20,13 @@ double certified_rate(const Library& library, const fitting::DeviceProfile& prof
   if (library.certificate.triangles.empty() || !(profile.damping > 0)) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  return 2 * palpate_library::limit_of(library) / profile.damping;
+  return 2 * certified_steepness(library.certificate) / profile.damping;
+}
+
+double steepness_for(const Library& library, const fitting::DeviceProfile& profile, double rate) {
+  const double limit = steepness_limit(library.certificate);
+  const double bound = fitting::certified_bound(profile.damping, rate);
+  return bound < limit && bound >= library.certificate.hold ? bound : limit;
 }
 
 void require_certified(const Library& library, const std::string& library_file,
@@ -36,13 +42,20 @@ void require_certified(const Library& library, const std::string& library_file,
     refuse(profile.name, "the damping of the device is not known, so no rate is certified",
            "measure it and give it in a profile with --profile");
   }
-  const double needed = certified_rate(library, profile);
+  const double hold = library.certificate.hold;
+  const double needed =
+      std::isnan(hold) ? certified_rate(library, profile)
+                       : std::min(certified_rate(library, profile), 2 * hold / profile.damping);
   if (rate >= needed) return;
+  if (std::isinf(needed)) {
+    refuse(profile.name, "no rate is certified: the slide has no bound",
+           "run `palpate certify` again, which says why");
+  }
   refuse(profile.name,
          fmt::format("{:g} Hz is not certified: a steepness of {:.1f} N/m on {:g} N s/m needs "
                      "{:.0f} Hz",
-                     rate, palpate_library::limit_of(library), profile.damping, needed),
-         "raise --rate, soften the body");
+                     rate, 0.5 * needed * profile.damping, profile.damping, needed),
+         "raise --rate, soften the body (palpate certify --rate --soften)");
 }
 
 }  // namespace palpate::app

@@ -32,19 +32,27 @@ LibraryHandle load(const std::filesystem::path& file) {
   return {library, &palpate_library_destroy};
 }
 
-StateHandle create(const palpate_library* library, const std::filesystem::path& file) {
+palpate_settings chosen_settings(double steepness) {
+  palpate_settings settings{};
+  palpate_settings_default(&settings);
+  settings.steepness = steepness;
+  return settings;
+}
+
+StateHandle create(const palpate_library* library, double steepness,
+                   const std::filesystem::path& file) {
+  const palpate_settings settings = chosen_settings(steepness);
   palpate_state* state = nullptr;
-  check(palpate_state_create(library, nullptr, &state), file);
+  check(palpate_state_create(library, &settings, &state), file);
   return {state, &palpate_state_destroy};
 }
 
-/// What palpate_state_create takes where no settings are given.
-SessionSettings settings_of(const palpate_library* library) {
-  palpate_settings defaults{};
-  palpate_settings_default(&defaults);
+/// What the state goes by.
+SessionSettings settings_of(const palpate_library* library, double steepness) {
+  const palpate_settings chosen = chosen_settings(steepness);
   SessionSettings settings;
-  settings.tank_cap = defaults.tank_cap;
-  settings.steepness = library->steepness;
+  settings.tank_cap = chosen.tank_cap;
+  settings.steepness = steepness > 0 ? steepness : library->steepness;
   return settings;
 }
 
@@ -86,17 +94,18 @@ HandPath hand_path_of(const Library& library, const SimulateSection& script) {
 }  // namespace
 
 struct ScriptedSession::State {
-  State(const std::filesystem::path& file, const Library& library, const SimulateSection& given)
+  State(const std::filesystem::path& file, const Library& library, const SimulateSection& given,
+        double steepness)
       : script(given),
         handle(load(file)),
-        state(create(handle.get(), file)),
+        state(create(handle.get(), steepness, file)),
         hand(hand_path_of(library, given)),
         device(simulated_device(given)) {
     heading.device = "simulated";
     heading.library_sha256 = sha256_of_file(file);
     heading.rate = script.rate;
     heading.friction = library.certificate.friction;
-    heading.settings = settings_of(handle.get());
+    heading.settings = settings_of(handle.get(), steepness);
   }
 
   SimulateSection script;
@@ -108,8 +117,8 @@ struct ScriptedSession::State {
 };
 
 ScriptedSession::ScriptedSession(const std::filesystem::path& library_file, const Library& library,
-                                 const SimulateSection& script)
-    : state_(std::make_unique<State>(library_file, library, script)) {}
+                                 const SimulateSection& script, double steepness)
+    : state_(std::make_unique<State>(library_file, library, script, steepness)) {}
 
 ScriptedSession::~ScriptedSession() = default;
 

@@ -278,22 +278,23 @@ class Pipeline(unittest.TestCase):
     def test_certify_tells_what_may_be_kept_and_softens_to_it(self):
         with h5py.File(self.out / "library.h5") as file:
             certificate = file["certificate"].attrs
-            bound = max(certificate["stick"], certificate["slip"])
+            bound, hold = max(certificate["stick"], certificate["slip"]), certificate["hold"]
         self.assertTrue(np.isfinite(bound))
         damping = 0.5
-        rate = 2 * 0.7 * bound / damping  # what certifies 0.7 of the library
+        rate = 2 * 0.7 * hold / damping  # what certifies 0.7 of the library, slides held back
         soft = self.root / "soft.h5"
         out = self.run_ok("certify", self.case, "--out", self.out, "--rate", rate, "--soften", soft)
         self.assertIn("0.70 times its forces would be certified", out)
         self.assertIn("force lost", out)
         with h5py.File(soft) as file:
-            certificate = file["certificate"].attrs
-            softened = max(certificate["stick"], certificate["slip"])
-        self.assertLessEqual(softened, 0.7 * bound * (1 + 1e-6))
-        self.assertGreater(softened, 0.6 * bound)
+            certificate = dict(file["certificate"].attrs)
+        self.assertLessEqual(certificate["hold"], 0.7 * hold * (1 + 1e-6))
+        self.assertGreater(certificate["hold"], 0.6 * hold)
+        self.assertAlmostEqual(certificate["limit"], 0.7 * hold, delta=1e-6 * hold)
         # The library of the case is as it was, and more than fast enough at twice the lowest rate.
         out = self.run_ok("certify", self.case, "--out", self.out, "--rate", 4 * bound / damping)
         self.assertIn("certified with room for 2.00 times its forces", out)
+        self.assert_slides_are_held_back(hold, bound, damping)
         refused = palpate("certify", self.case, "--out", self.out, "--soften", soft)
         self.assertEqual(refused.returncode, 2)
         self.assertIn("--rate", refused.stderr)
@@ -302,6 +303,20 @@ class Pipeline(unittest.TestCase):
         refused = palpate("certify", without, "--out", self.out, "--rate", rate)
         self.assertEqual((refused.returncode, refused.stdout), (2, ""))
         self.assertIn("--device", refused.stderr)
+
+    def assert_slides_are_held_back(self, hold, bound, damping):
+        """Between L_hold and the bound of slides the limit is lowered, and no response is."""
+        self.assertLess(1.001 * hold, bound)
+        limit, held = 0.5 * (hold + bound), self.root / "held.h5"
+        out = self.run_ok("certify", self.case, "--out", self.out, "--rate", 2 * limit / damping,
+                          "--soften", held)
+        self.assertIn("slides can be held back", out)
+        with h5py.File(held) as file, h5py.File(self.out / "library.h5") as original:
+            self.assertAlmostEqual(file["certificate"].attrs["limit"], limit, delta=1e-6 * limit)
+            self.assertAlmostEqual(file["certificate/device/lowest_rate"][0], 2 * limit / damping,
+                                   delta=1e-6 * limit / damping)
+            for name, values in original["response"].items():
+                self.assertTrue(np.array_equal(file["response"][name], values), name)
 
     def test_a_body_of_another_case_is_told(self):
         other = self.root / "other-case"

@@ -274,7 +274,7 @@ class FileFormat(unittest.TestCase):
                     self.assertEqual(response["coupling_base"][i], base)
                 check_curve("coupling", i, coupled)
             certificate = file["certificate"]
-            for name in ("friction", "depth", "stick", "slip", "worst_triangle"):
+            for name in ("friction", "depth", "stick", "slip", "hold", "limit", "worst_triangle"):
                 self.assertEqual(certificate.attrs[name], known.number())
             self.assertEqual(certificate.attrs["limited_by"], known.text())
             self.assertEqual(certificate.attrs["basis"], known.text())

@@ -106,7 +106,7 @@ TEST(Certificate, RateOfADeviceFollowsTheWorstBound) {
   EXPECT_NEAR(device.lowest_rate, 2 * 162 / 0.081, 1e-9);  // 4 kHz
   EXPECT_NEAR(device.linear_limit, 54, 1e-9);
   EXPECT_NEAR(device.no_delay_limit, 162, 1e-9);
-  EXPECT_EQ(verdict(device), "certified passive from 4000 Hz");
+  EXPECT_EQ(verdict(library.certificate, device), "certified passive from 4000 Hz");
   for (const double refused : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
     settings.devices[0].damping = refused;
     EXPECT_THROW(certify(library, settings), Error);
@@ -127,7 +127,7 @@ TEST(Certificate, ADeviceOfUnknownDampingIsNotCertifiedAndSaid) {
        {device.damping, device.lowest_rate, device.linear_limit, device.no_delay_limit}) {
     EXPECT_TRUE(std::isnan(value)) << value;
   }
-  EXPECT_EQ(verdict(device), "damping unknown: not certified for this device");
+  EXPECT_EQ(verdict(library.certificate, device), "damping unknown: not certified for this device");
 }
 
 TEST(Certificate, AHoleIsABorder) {
@@ -152,7 +152,13 @@ TEST(Certificate, TooDeepForTheCurvatureIsUnboundedAndSaid) {
   CertifySettings settings = with_friction(0.3);
   settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
   certify(library, settings);
-  EXPECT_EQ(verdict(library.certificate.devices.at(0)), "not certified: the slide has no bound");
+  // The runtime holds such slides back: to 4 L_stick of its own accord, to |M_0| when told.
+  EXPECT_NEAR(library.certificate.hold, 100 * std::hypot(1, 0.3), 1e-9);
+  EXPECT_DOUBLE_EQ(library.certificate.limit, 400);
+  EXPECT_DOUBLE_EQ(library.certificate.devices.at(0).lowest_rate, 2 * 400 / 0.081);
+  EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
+            "certified passive from 9877 Hz; from 2578 Hz when slides are held back to 104.5 N/m "
+            "(steepness)");
   EXPECT_TRUE(std::isinf(library.certificate.slip));
   const std::string& line = library.certificate.limited_by;
   EXPECT_NE(line.find("no bound of the slide: pressed 10 mm deep"), std::string::npos) << line;
@@ -173,6 +179,50 @@ TEST(Certificate, AFlatLateralResponseIsUnboundedWhereTheSurfaceVaries) {
   certify(library, with_friction(0.3));
   EXPECT_TRUE(std::isinf(library.certificate.slip));
   EXPECT_NE(library.certificate.limited_by.find("too flat"), std::string::npos);
+}
+
+TEST(Certificate, ACoupledResponseThatIsFlatWhereSlipBeginsCannotBeHeld) {
+  // On the plateau the slip limit jumps by 2 mm, and with it H(rho_s) in the normal force.
+  const ResponseCurve plateau{{0.0f, 0.001f, 0.002f, 0.003f, 0.004f}, {90, 0, 0, 90, 90}};
+  const ResponseCurve rising{{0.0f, 0.001f, 0.002f, 0.003f, 0.004f}, {90, 20, 20, 90, 90}};
+  CertifySettings settings = with_friction(0.3);
+  settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
+  for (const bool flat : {false, true}) {
+    Library library = flat_triangle();
+    library.kind = ResponseKind::Coupled;
+    set_equal_responses(library, node_response(linear_curve(100), flat ? plateau : rising));
+    for (NodeResponse& node : library.responses)
+      node.coupling = {0.5F, {{0.0F, 0.005F, 0.01F}, {0, 60, 0}}};
+    certify(library, settings);
+    EXPECT_EQ(std::isinf(library.certificate.hold), flat);
+    if (!flat) {
+      // A w that goes on growing lets the lateral stiffness grow with it: held at no depth.
+      Library growing = library;
+      for (NodeResponse& node : growing.responses) node.coupling.curve.slope.back() = 20;
+      certify(growing, settings);
+      EXPECT_TRUE(std::isinf(growing.certificate.hold));
+    }
+    EXPECT_LE(library.certificate.stick, library.certificate.hold);
+    EXPECT_LE(library.certificate.limit, 4 * library.certificate.hold);
+    EXPECT_EQ(std::isinf(library.certificate.devices.at(0).lowest_rate), flat);
+    if (flat) {
+      EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
+                "not certified: the slide has no bound");
+    }
+  }
+}
+
+TEST(Certificate, IsOfTheLimitThatWasChosen) {
+  Library library = sphere(0.005, 2);
+  set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
+  CertifySettings settings = with_friction(0.3);
+  settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
+  settings.limit = 110;  // above L_hold
+  certify(library, settings);
+  EXPECT_DOUBLE_EQ(library.certificate.devices.at(0).lowest_rate, 2 * 110 / 0.081);
+  settings.limit = 101;  // below: the runtime could not keep it
+  certify(library, settings);
+  EXPECT_TRUE(std::isinf(library.certificate.devices.at(0).lowest_rate));
 }
 
 TEST(Certificate, RefusesNormalsThatCannotBeInterpolated) {
@@ -253,9 +303,9 @@ TEST(Soften, MeetsTheBoundAndTakesOnlyWhatIsStiff) {
   EXPECT_EQ(same.responses[2].normal.slope, stiff.slope);
 
   const Softening cost = soften(library, settings, 150);
-  EXPECT_LE(std::max(library.certificate.stick, library.certificate.slip), 150);
-  EXPECT_GE(std::max(library.certificate.stick, library.certificate.slip),
-            145);  // no more than needed
+  EXPECT_LE(library.certificate.hold, 150);
+  EXPECT_GE(library.certificate.hold, 145);  // no more than needed
+  EXPECT_DOUBLE_EQ(library.certificate.limit, 150);
   EXPECT_EQ(cost.curves, 1u);
   EXPECT_EQ(library.responses[0].normal.slope, soft.slope);
   EXPECT_EQ(library.responses[2].normal.slope[1], 60.0F);
@@ -264,11 +314,26 @@ TEST(Soften, MeetsTheBoundAndTakesOnlyWhatIsStiff) {
   EXPECT_NEAR(cost.worst, 1 - (0.12 + 0.002 * (60 + cost.cap)) / (0.12 + 0.002 * 460), 1e-6);
 }
 
-TEST(Soften, SaysWhenNothingHelps) {
-  // Directions that turn within less than the depth: no bound, however soft.
+TEST(Soften, HoldsSlidesBackBeforeItSoftens) {
+  // Directions that turn within less than the depth: no bound of the slide, however soft.
   Library library = sphere(0.005, 1);
   set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
-  EXPECT_ANY_THROW(soften(library, {}, 1e6));
+  const Library before = library;
+  EXPECT_EQ(soften(library, with_friction(0.3), 120).curves, 0u);
+  EXPECT_TRUE(std::isinf(library.certificate.slip));
+  EXPECT_DOUBLE_EQ(library.certificate.limit, 120);
+  for (std::size_t v = 0; v < before.responses.size(); ++v)
+    EXPECT_EQ(library.responses[v].normal.slope, before.responses[v].normal.slope);
+  EXPECT_GT(soften(library, with_friction(0.3), 80).curves, 0u);
+  EXPECT_LE(library.certificate.hold, 80);
+  EXPECT_DOUBLE_EQ(library.certificate.limit, 80);
+}
+
+TEST(Soften, SaysWhenNothingHelps) {
+  // A bound below a hundredth of the slopes.
+  Library library = sphere(0.005, 1);
+  set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
+  EXPECT_ANY_THROW(soften(library, {}, 0.5));
   EXPECT_EQ(library.responses[0].normal.slope[0], 100.0F);
 }
 

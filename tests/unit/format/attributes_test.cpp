@@ -41,7 +41,7 @@ AttributeList attributes_of(const Path& path) {
 /// What a reader may do without: texts for people, and what later versions added.
 bool may_be_missing(const std::string& name) {
   for (const char* optional :
-       {"description", "creator", "basis", "tool_edge_radius", "tool_length"})
+       {"description", "creator", "basis", "hold", "limit", "tool_edge_radius", "tool_length"})
     if (name == optional) return true;
   return false;
 }

@@ -90,6 +90,8 @@ std::vector<Case> library_cases() {
       {"LibraryCertificateMissing", kind, remove("/certificate"), "/certificate", "is missing"},
       {"LibraryStickNaN", kind, real("/certificate", "stick", kNaN), "/certificate@stick",
        "not negative"},
+      {"LibraryHoldNegative", kind, real("/certificate", "hold", -1.0), "/certificate@hold",
+       "not negative"},
       {"LibraryFrictionInfinite", kind, real("/certificate", "friction", kInfinity),
        "/certificate@friction", "is not finite"},
       {"LibraryWorstTriangleOutOfRange", kind, edit([](Hdf5Editor& e) {

@@ -269,7 +269,8 @@ Library library(unsigned seed) {
   library.responses[3].status = ResponseStatus::Filled;
   library.responses[5] = NodeResponse{};
   Certificate& certificate = library.certificate;
-  certificate = {0.3, 0.006, 912.5, 1530.25, 7, "slope of vertex 12", "", 1, 1, {}, {}};
+  certificate = {0.3, 0.006, 912.5, 1530.25, 953.5, 1400.5, 7, "slope of vertex 12",
+                 "",  1,     1,     {},      {}};
   for (std::size_t i = 0; i < library.triangles.size(); ++i) {
     certificate.triangles.push_back({random.between(0, 900), random.between(0, 1500),
                                      random.between(0, 30), random.between(0.5, 1),
@@ -373,8 +374,8 @@ std::string dump(const Library& library) {
     out << static_cast<double>(r.coupling.base) << r.coupling.curve;
   }
   const Certificate& c = library.certificate;
-  out << c.friction << c.depth << c.stick << c.slip << c.worst_triangle << c.limited_by << c.basis
-      << c.holes << c.filled;
+  out << c.friction << c.depth << c.stick << c.slip << c.hold << c.limit << c.worst_triangle
+      << c.limited_by << c.basis << c.holes << c.filled;
   for (const TriangleCertificate& t : c.triangles) {
     out << t.stick << t.slip << t.kappa << t.cos_theta << t.sliding_passive;
   }

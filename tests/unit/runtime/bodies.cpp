@@ -164,7 +164,7 @@ Library coupled(Library library) {
     const double s = 1 + 0.3 * std::sin(130 * x[0] + 80 * x[2]) * std::cos(100 * x[1]);
     const auto f = [&](double value) { return static_cast<float>(s * value); };
     library.responses[v].coupling = {
-        f(0.25), {{0.0F, 0.001F, 0.003F, 0.006F}, {0.0F, f(300), f(150), f(80)}}};
+        f(0.25), {{0.0F, 0.001F, 0.003F, 0.006F, 0.0075F}, {0.0F, f(300), f(150), f(80), 0.0F}}};
   }
   return library;
 }

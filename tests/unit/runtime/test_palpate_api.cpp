@@ -279,6 +279,40 @@ TEST_F(PalpateApi, AProgramWithTheFirstHeaderGetsWhatItKnows) {
   EXPECT_EQ(seen.size, offsetof(palpate_observation, lateral_offset));
 }
 
+TEST_F(PalpateApi, HoldsAStateToNoLessThanWhatTheCertificateHolds) {
+  Library library = read_library(path_);
+  Certificate& c = library.certificate;
+  c.triangles.assign(library.triangles.size(), {200, 900, 0, 1, 1});
+  c.stick = 200;
+  c.slip = 900;
+  c.hold = 250.25;
+  c.friction = 0.3;
+  const std::string certified = (folder_ / "certified.h5").string();
+  write_library(certified, library);
+  palpate_library* held = nullptr;
+  ASSERT_EQ(palpate_library_load(certified.c_str(), &held), PALPATE_OK) << palpate_last_error();
+
+  palpate_library_info info{};
+  info.size = offsetof(palpate_library_info, hold);  // a program with the first header
+  info.hold = 42;
+  ASSERT_EQ(palpate_library_describe(held, &info), PALPATE_OK);
+  EXPECT_EQ(info.hold, 42);
+  info.size = sizeof info;
+  ASSERT_EQ(palpate_library_describe(held, &info), PALPATE_OK);
+  EXPECT_EQ(info.hold, 250.25);
+  EXPECT_EQ(info.limit, 800);  // 4 L_stick, where slides would need 900
+
+  palpate_state* state = nullptr;
+  palpate_settings settings = settings_;
+  settings.steepness = 250.2;
+  EXPECT_EQ(palpate_state_create(held, &settings, &state), PALPATE_ERROR_ARGUMENT);
+  EXPECT_NE(std::strstr(palpate_last_error(), "250.3 N/m"), nullptr) << palpate_last_error();
+  settings.steepness = 250.3;
+  EXPECT_EQ(palpate_state_create(held, &settings, &state), PALPATE_OK) << palpate_last_error();
+  palpate_state_destroy(state);
+  palpate_library_destroy(held);
+}
+
 TEST_F(PalpateApi, TellsHowFarTheToolHasSlippedOverABorder) {
   // What an observation says of itself: x = c + (z + d0) n + s + q, |q| = rho.
   step({0.07, 0.05, 0.0001});

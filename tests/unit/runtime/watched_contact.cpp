@@ -69,7 +69,7 @@ WatchedContact::WatchedContact(const Library& library, const palpate_library& bo
                                const runtime::ContactSettings& settings)
     : library_(library),
       contact_(body.surface, body.tree, settings),
-      bound_(std::min(settings.steepness, palpate_library::limit_of(library))),
+      bound_(std::min(settings.steepness, steepness_limit(library.certificate))),
       friction_(settings.friction) {}
 
 std::uint32_t WatchedContact::step(const Vec3& x) {

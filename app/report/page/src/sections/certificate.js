@@ -32,10 +32,12 @@ export function certificateSection(data) {
   if (!c) return el('section', { id: 'certificate' }, head, paragraph('This library has not been certified: nothing is promised about the rate at which a device renders it passively. Run palpate certify.'));
   const free = c.triangle_sliding_passive.reduce((n, x) => n + x, 0);
   return el('section', { id: 'certificate' }, head,
-    paragraph('The rendered body never returns more energy than it was given as long as max(L_stick, L_slip) \u2264 \u03c3\u2080(B) / 2T, with \u03c3\u2080(B) the smallest damping of the device and 1/T the rate of its loop.', 'lead'),
+    paragraph('The rendered body never returns more energy than it was given as long as the limit of the runtime \u2264 \u03c3\u2080(B) / 2T, with \u03c3\u2080(B) the smallest damping of the device and 1/T the rate of its loop.', 'lead'),
     definitions([
       ['L_stick', `${units.bound(c.stick)}; contact point held`],
       ['L_slip', `${units.bound(c.slip)}; while sliding, \u03bc = ${units.significant(c.friction)}`],
+      ['L_hold', Number.isFinite(c.hold) ? `${units.bound(c.hold)}; while the runtime holds slides back as far as it can` : 'not known'],
+      ['Limit of the runtime', `${units.bound(c.limit)}: in no step does the force change by more than this times the way of the tool`],
       ['Responses', c.basis],
       ['Holds to', `${units.length(c.depth)} of depth`],
       ['Worst triangle', c.worst_triangle < 0 ? 'none' : `${c.worst_triangle}: ${c.limited_by || 'cause not recorded'}`],
