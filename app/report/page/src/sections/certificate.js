@@ -8,7 +8,7 @@ const nodes = (n) => `${units.count(n)} ${n === 1 ? 'node' : 'nodes'}`;
 function notCovered(data) {
   const { certificate: c, session, key } = data;
   const list = [
-    `Depths beyond ${units.length(c.depth)}: there the curves continue in a straight line, outside the bounds.`,
+    `Depths beyond ${units.length(c.depth)}: there the curves continue in a straight line, outside ${c.limit >= c.hold ? 'L_stick and L_slip; the limit of the runtime holds there too' : 'the bounds'}.`,
     'Several contacts at once: their bounds add up and must be compared as a sum.',
     'What the device adds beside its damping: flexible links, backlash, amplifier limits, quantized positions, filtered velocities, missed samples.',
     'The truth of the curves: it bounds what is rendered, not how well that follows the real body.',
