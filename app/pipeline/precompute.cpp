@@ -35,13 +35,16 @@ class Teller {
  public:
   explicit Teller(Telling telling) : telling_(telling) {}
 
-  void journal(const SiteJournal& journal, const std::filesystem::path& path) {
+  /// A campaign begins: what decides its bits beside body and case, and what is known already.
+  void start(const SiteJournal& journal, const std::filesystem::path& path) {
     if (telling_ == Telling::Json) {
       return event({{"event", "start"},
+                    {"blas_kernel", fem::blas_kernel()},
                     {"kept_sites", journal.found().size()},
                     {"dropped_bytes", journal.dropped_bytes()},
                     {"moved_aside", journal.moved_aside()}});
     }
+    say("  BLAS kernel: {}", fem::blas_kernel());
     if (journal.moved_aside())
       say("  the sites in {} are of another campaign: moved to {}.old", path.string(),
           path.filename().string());
@@ -226,7 +229,7 @@ SiteCounts run_precompute(const Workspace& space, Telling telling) {
 
   const std::string key = campaign_key(space, body_sha256);
   SiteJournal journal(space.journal(), {key, static_cast<std::int64_t>(settings.sites.size())});
-  teller.journal(journal, space.journal());
+  teller.start(journal, space.journal());
   teller.element(settings.dilatation);
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) {

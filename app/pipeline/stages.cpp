@@ -183,12 +183,12 @@ void write_softened(const Workspace& space, const KeepOptions& options, Library 
   });
   ProvenanceStep step = make_stage_step(space, Stage::Certify, {});
   step.facts.emplace_back("softened_for_hz", fmt::format("{}", options.rate));
-  step.facts.emplace_back("softened_slope_cap", fmt::format("{}", soft.cap));
+  if (soft.curves > 0) step.facts.emplace_back("softened_slope_cap", fmt::format("{}", soft.cap));
   step.facts.emplace_back("steepness_limit", fmt::format("{}", library.certificate.limit));
   library.provenance.steps.push_back(step);
   write_library(options.softened, library);
   if (soft.curves == 0) {
-    say("certify: nothing had to be softened -> {}", options.softened.string());
+    say("certify: no response had to be softened -> {}", options.softened.string());
     tell_certificate(library.certificate);
     return;
   }

@@ -195,6 +195,20 @@ class Campaign(unittest.TestCase):
         self.assertEqual(len(vertices), self.expected["sites"])
         self.assertEqual(len(set(vertices)), len(vertices))
 
+    def test_the_kernel_is_the_fastest_of_the_processor_or_the_users_own_and_told(self):
+        flags = Path("/proc/cpuinfo").read_text(encoding="utf-8").split("flags", 2)[1].split("\n")[0].split()
+        environment = {k: v for k, v in os.environ.items() if not k.startswith("OPENBLAS_")}
+        own = {"avx512vl": "SkylakeX", "avx2": "Haswell"}
+        fastest = next((kernel for flag, kernel in own.items() if flag in flags), None)
+        for kernel, asked in ((fastest, {}), ("Nehalem", {"OPENBLAS_CORETYPE": "Nehalem"})):
+            if kernel is None:  # neither: OpenBLAS itself knows such processors
+                continue
+            out = self.fresh(f"kernel-{kernel}")
+            told = self.precompute(out, "--shard", "1/16", env=environment | asked).stdout
+            self.assertIn(f"BLAS kernel: {kernel}\n", told)
+            step = summary(out / "curves.1-of-16.h5")["provenance"][-1]
+            self.assertEqual(step["facts"]["blas_kernel"], kernel)
+
     def peak(self, out, *options):
         """Exit code and largest resident memory, bytes."""
         pid = os.posix_spawn(PALPATE, [PALPATE, "precompute", str(self.case), "--out", str(out), *options],
