@@ -182,7 +182,8 @@ void check_manifold(const Soup& soup, const std::string& where) {
   }
   if (border > 0) {
     refuse(where, "the surface is not closed: " + counted(border, "border edge"),
-           "close its holes in a mesh editor");
+           "close its holes in a mesh editor; where they are seams of points that differ by "
+           "rounding only, merge vertices there");
   }
   if (const std::size_t pinched = count_pinched_points(soup, edges); pinched > 0) {
     refuse(where,
