@@ -20,6 +20,7 @@
 #include "app/run/device_choice.hpp"
 #include "app/run/live_session.hpp"
 #include "app/simulate/hand_path.hpp"
+#include "app/simulate/simulated_device.hpp"
 #include "format/error.hpp"
 #include "format/sha256.hpp"
 
@@ -75,12 +76,16 @@ std::function<runtime::HandTarget(double)> scripted_hand(const Library& library,
   };
 }
 
+/// Without a file nothing is known but of the simulated device, which is what it is.
 fitting::DeviceProfile profile_of(const RunOptions& options) {
   if (!options.profile.empty()) return read_device_profile(options.profile);
-  fitting::DeviceProfile unknown;
-  unknown.name = options.device.name;
-  unknown.damping = unknown.peak_force = std::nan("");
-  return unknown;
+  fitting::DeviceProfile profile;
+  profile.name = options.device.name;
+  if (profile.name == kSimulatedDevice) {
+    profile.damping = simulated_device({}).damping;
+    profile.coulomb_friction = simulated_device({}).coulomb_friction;
+  }
+  return profile;
 }
 
 void say_quantiles(const char* what, const runtime::LatencyHistogram& h) {
@@ -175,7 +180,7 @@ int run(RunOptions options) {
 
 void add_device_options(CLI::App& command, RunOptions& o) {
   command.add_option("--device", o.device.name, "Which device; see --list")
-      ->default_val("simulated");
+      ->default_val(kSimulatedDevice);
   command.add_flag("--list", o.list, "List the devices and end");
   command.add_option("--driver", o.device.driver, "Library of the vendor, if not where usual");
   command.add_option("--unit", o.device.unit, "Which one of several: number, name or identity");

@@ -12,6 +12,8 @@ namespace {
 constexpr std::size_t kPairs = 6;
 /// Of the body as a whole, from where its stiffness at rest must be turned with it, |R - 1|.
 constexpr double kTurned = 5e-3;
+/// Of the sensitivity of the force that was seen, what is kept from step to step.
+constexpr double kFading = 0.5;
 
 /// On the first `count` unknowns.
 Eigen::VectorXd difference(const SolidModel& model, Eigen::Index count, const Displacement& a,
@@ -29,7 +31,7 @@ bool SharedFactorSolver::relax_window(const ToolContact& contact, const NewtonOp
                                       Displacement& u, NewtonResult& result) {
   NewtonOptions inner = options;
   // What is left inside must not be seen from outside; far from the end that is little to ask.
-  inner.tolerance = std::max(0.2 * options.tolerance, 0.03 * error_);
+  inner.tolerance = std::max(0.5 * options.tolerance, 0.03 * error_);
   inner.reuse_factor = true;
   const NewtonResult relaxed = newton_.solve(contact, inner, u);
   if (!relaxed.converged) result.reason = relaxed.reason;
@@ -102,10 +104,16 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
   turned_ = (turn_ - Eigen::Matrix3d::Identity()).norm() > kTurned;
   if (!relax_window(contact, options, u, result)) return result;
   Equilibrium now = evaluated(contact, u);
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
   for (; result.iterations < options.max_iterations; ++result.iterations) {
-    const double scale = std::max(contact.tool_force(u).norm(), 1e-12);
+    const Eigen::Vector3d force = contact.tool_force(u);
+    const double scale = std::max(force.norm(), 1e-12), last_error = error_;
     error_ = imbalance(whole_, now.residual) / scale;
-    if (error_ <= options.tolerance) {
+    if (result.iterations > 0)
+      sensitivity_ =
+          std::max((force - before).norm() / (scale * last_error), kFading * sensitivity_);
+    before = force;
+    if (std::max(1.0, sensitivity_) * error_ <= options.tolerance) {
       result.converged = true;
       result.reason.clear();
       return result;

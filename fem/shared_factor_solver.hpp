@@ -68,6 +68,9 @@ class SharedFactorSolver {
   std::deque<Pair> pairs_;
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  ///< R, of the whole body
   bool turned_ = false;                                 ///< whether R is worth the while
+  /// Change of the tool force that the last steps made, over the residual that they answered, both
+  /// over the tool force. A residual that is left is worth as much.
+  double sensitivity_ = 1;
   double error_ = 0;  ///< |residual| over |tool force| at the present iterate
 };
 

@@ -52,6 +52,49 @@ std::size_t merge_equal_points(Soup& soup) {
   return merged;
 }
 
+/// Points of edges that have one polygon.
+std::vector<std::size_t> border_points(const Soup& soup) {
+  std::vector<std::size_t> result;
+  for (const auto& [edge, polygons] : polygons_of_edges(soup))
+    if (polygons.size() == 1) result.insert(result.end(), {edge.first, edge.second});
+  std::sort(result.begin(), result.end());
+  result.erase(std::unique(result.begin(), result.end()), result.end());
+  return result;
+}
+
+/// What six printed digits, or a float, leave of the largest coordinate.
+double rounding(const Soup& soup) {
+  constexpr double kDigits = 2e-6;
+  double largest = 0;
+  for (const Vec3& x : soup.points)
+    for (const double coordinate : x) largest = std::max(largest, std::abs(coordinate));
+  return kDigits * largest;
+}
+
+/// Points of the border that differ by rounding become the first of them: a program that computes a
+/// corner twice, once for each side of a seam, need not print it alike. Points inside the surface
+/// are left alone, so that a surface without borders stays as it is to the last bit.
+std::size_t close_seams(Soup& soup) {
+  std::vector<std::size_t> border = border_points(soup);
+  const double apart = rounding(soup);
+  std::sort(border.begin(), border.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(soup.points[a][0], a) < std::pair(soup.points[b][0], b);
+  });
+  std::map<std::size_t, std::size_t> target;
+  for (std::size_t i = 0; i < border.size(); ++i) {
+    const Vec3& x = soup.points[border[i]];
+    if (target.contains(border[i])) continue;
+    for (std::size_t k = i + 1; k < border.size(); ++k) {
+      if (soup.points[border[k]][0] - x[0] > apart) break;
+      if (norm(soup.points[border[k]] - x) <= apart) target.emplace(border[k], border[i]);
+    }
+  }
+  for (auto& corners : soup.polygons)
+    for (std::size_t& v : corners)
+      if (const auto found = target.find(v); found != target.end()) v = found->second;
+  return target.size();
+}
+
 /// Equal corners in a row count once; a polygon left with fewer than three encloses nothing.
 std::size_t drop_collapsed_polygons(Soup& soup) {
   for (auto& corners : soup.polygons) {
@@ -120,6 +163,10 @@ void tidy(Soup& soup, const std::string& where, const Log& log) {
   if (const std::size_t n = merge_equal_points(soup); n > 0) {
     note(log, text(where, ": merged ", counted(n, "duplicate point"), " of equal coordinates"));
   }
+  if (const std::size_t n = close_seams(soup); n > 0) {
+    note(log, text(where, ": closed a seam: joined ", counted(n, "point"),
+                   " of its border to others at most ", millimetres(rounding(soup)), " away"));
+  }
   if (const std::size_t n = drop_collapsed_polygons(soup); n > 0) {
     note(log,
          text(where, ": dropped ", counted(n, "face"), " with fewer than three distinct corners"));
@@ -182,8 +229,8 @@ void check_manifold(const Soup& soup, const std::string& where) {
   }
   if (border > 0) {
     refuse(where, "the surface is not closed: " + counted(border, "border edge"),
-           "close its holes in a mesh editor; where they are seams of points that differ by "
-           "rounding only, merge vertices there");
+           "close its holes in a mesh editor; where they are seams whose points do not meet, merge "
+           "vertices there");
   }
   if (const std::size_t pinched = count_pinched_points(soup, edges); pinched > 0) {
     refuse(where,

@@ -20,7 +20,8 @@ struct Soup {
 };
 
 /// Harmless repair, each step logged when it does something: points with exactly equal coordinates
-/// become one (an STL file names every corner anew), polygons that thereby lose their third corner
+/// become one (an STL file names every corner anew), and so do points of a border that differ by
+/// 2e-6 of the largest coordinate or less; polygons that thereby lose their third corner
 /// and points of no polygon are dropped.
 void tidy(Soup& soup, const std::string& where, const Log& log);
 

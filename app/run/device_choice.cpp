@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/run/device_choice.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <string_view>
 
@@ -28,32 +30,53 @@ std::unique_ptr<runtime::Device> simulated(const DeviceChoice& choice,
   return std::make_unique<runtime::VirtualDevice>(simulated_device({}), choice.rate, hand);
 }
 
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// A product or maker where the name of a binding is asked for: "Falcon", "omega".
+const DeviceName* named_in_a_description(const std::string& word) {
+  constexpr std::size_t kShortest = 4;  // "no" is in "Novint"
+  if (word.size() < kShortest) return nullptr;
+  for (const DeviceName& device : device_names())
+    if (lower_case(device.about).find(lower_case(word)) != std::string::npos) return &device;
+  return nullptr;
+}
+
+std::string nearest_name(const std::string& name) {
+  std::vector<std::string_view> known;
+  for (const DeviceName& device : device_names()) known.push_back(device.name);
+  return std::string(nearest(name, known));
+}
+
 }  // namespace
 
 const std::vector<DeviceName>& device_names() {
   static const std::vector<DeviceName> names{
-      {"simulated", "a device and a hand in place of hardware"},
+      {kSimulatedDevice, "a device and a hand in place of hardware"},
       {"force-dimension", "omega, delta, sigma, lambda and the Novint Falcon (libdhd)"},
-      {"openhaptics", "3D Systems Touch and Phantom (libHD)"},
+      {"openhaptics", "3D Systems Touch and Phantom, once Sensable (libHD)"},
       {"haply", "Haply Inverse3, through its Inverse Service"},
       {"lab", "a lab-built device on a Comedi board, described by --lab FILE"}};
   return names;
 }
 
 void require_known_device(const std::string& name) {
-  std::vector<std::string_view> known;
-  for (const DeviceName& device : device_names()) {
+  for (const DeviceName& device : device_names())
     if (device.name == name) return;
-    known.push_back(device.name);
-  }
+  const DeviceName* named = named_in_a_description(name);
   throw Error(ErrorKind::Configuration, "--device", "'" + name + "' is not known",
-              "the nearest is '" + std::string(nearest(name, known)) + "'; see palpate run --list");
+              named != nullptr
+                  ? "it is one of '" + named->name + "': " + named->about
+                  : "the nearest is '" + nearest_name(name) + "'; see palpate run --list");
 }
 
 std::unique_ptr<runtime::Device> make_device(
     const DeviceChoice& choice, const std::function<runtime::HandTarget(double)>& hand) {
   require_known_device(choice.name);
-  if (choice.name == "simulated") return simulated(choice, hand);
+  if (choice.name == kSimulatedDevice) return simulated(choice, hand);
   if (choice.name == "force-dimension") {
     return std::make_unique<runtime::ForceDimensionDevice>(
         runtime::ForceDimensionSettings{choice.driver, unit_number(choice.unit)});

@@ -23,12 +23,16 @@ struct DeviceChoice {
   double rate = 1000;  ///< Hz, of the simulated device
 };
 
+/// A device and a hand in place of hardware, with the constants of an empty `[simulate]`.
+inline constexpr const char* kSimulatedDevice = "simulated";
+
 struct DeviceName {
   std::string name, about;
 };
 const std::vector<DeviceName>& device_names();
 
-/// @throws Error(Configuration) for a name that is not among them, with the nearest.
+/// @throws Error(Configuration) for a name that is not among them, with the one whose
+/// description names it, or else the nearest.
 void require_known_device(const std::string& name);
 
 /// Not opened yet. `hand`: of the simulated device. @throws Error(Configuration) for an unknown

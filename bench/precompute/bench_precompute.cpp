@@ -6,6 +6,7 @@
 //   newton [8|26]       against one site after another by Newton's method with a Cholesky
 //                       factorization of the whole body: same body, sites, increments, predictor,
 //                       tolerance and BLAS kernel, one thread
+//   errors [CELLS...]   of the force against the tolerance asked for
 //   growth [CELLS...]   time and memory against the size of the mesh, cells an edge
 //   elements [CELLS...] constant, nodal and no pressures
 //   sites               time against the number of sites
@@ -13,6 +14,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -60,13 +62,25 @@ double last_force(const SiteCurves& site) {
   return norm(site.paths.front().samples.back().force);
 }
 
-/// Largest difference of the force anywhere on the path, over the force at its end.
-double error(const SiteCurves& site, const SiteCurves& reference) {
+/// Largest difference of the force anywhere on a path, over the force there.
+double error(const CurvePath& path, const CurvePath& reference) {
+  if (path.samples.size() != reference.samples.size()) return 1;
   double worst = 0;
-  const auto &a = site.paths.front().samples, &b = reference.paths.front().samples;
-  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
-    worst = std::max(worst, norm(a[i].force - b[i].force));
-  return a.size() == b.size() ? worst / last_force(reference) : 1;
+  for (std::size_t i = 0; i < path.samples.size(); ++i) {
+    const Vec3 &ours = path.samples[i].force, &exact = reference.samples[i].force;
+    if (norm(exact) > 0) worst = std::max(worst, norm(ours - exact) / norm(exact));
+  }
+  return worst;
+}
+
+/// The largest of all sites: on the normal path and on the lateral one.
+std::array<double, 2> errors(const Curves& curves, const Curves& reference) {
+  std::array<double, 2> worst{};
+  for (std::size_t i = 0; i < reference.sites.size(); ++i)
+    for (std::size_t p = 0; p < worst.size(); ++p)
+      worst[p] =
+          std::max(worst[p], error(curves.sites[i].paths.at(p), reference.sites[i].paths.at(p)));
+  return worst;
 }
 
 SiteCurves direct(const Body& body, CampaignSettings s, double tolerance, std::int32_t vertex) {
@@ -95,7 +109,8 @@ void compare(int cells, double poisson) {
   const double mean = report.cpu_seconds / static_cast<double>(s.sites.size());
   std::printf("| %lld | %.2f | %.2f s | %.1e | %.3f s | %.1e | %.0f | %.4f N |\n",
               static_cast<long long>(report.unknowns / 3), poisson, newton.cpu_seconds,
-              error(newton, reference), mean, error(ours, reference), newton.cpu_seconds / mean,
+              error(newton.paths.front(), reference.paths.front()), mean,
+              error(ours.paths.front(), reference.paths.front()), newton.cpu_seconds / mean,
               last_force(reference));
   std::fflush(stdout);
 }
@@ -109,6 +124,56 @@ void against_newton(const std::vector<int>& cells) {
       blas_kernel().c_str());
   for (const int each : cells)
     for (const double poisson : {0.45, 0.49}) compare(each, poisson);
+}
+
+/// How a block is pressed.
+struct Press {
+  const char* name;
+  ToolShape shape;
+  ToolFriction friction;
+  bool divided;
+};
+
+constexpr Press kPresses[] = {
+    {"sphere", ToolShape::Sphere, ToolFriction::Frictionless, false},
+    {"sphere, divided", ToolShape::Sphere, ToolFriction::Frictionless, true},
+    {"stuck sphere", ToolShape::Sphere, ToolFriction::Stuck, false},
+    {"stuck disc", ToolShape::Disc, ToolFriction::Stuck, false},
+};
+
+/// What a force tolerance is worth: the same sites at several, against one that is as good as
+/// exact.
+void against_tolerance(int cells, const Press& press) {
+  const Body body = block(cells);
+  CampaignSettings s = settings(0.45);
+  s.indentation.tool.shape = press.shape;
+  s.indentation.friction = press.friction;
+  s.indentation.divide_under_tool = press.divided;
+  s.indentation.held_depths = {0.002};
+  s.sites = inner_sites(body, 16);
+  s.indentation.force_tolerance = 1e-8;
+  CampaignReport report;
+  const Curves exact = run_campaign(body, s, report);
+  const double exact_seconds = report.cpu_seconds;
+  for (const double tolerance : {1e-3, 1e-4, 1e-5}) {
+    s.indentation.force_tolerance = tolerance;
+    report = {};
+    const auto [normal, lateral] = errors(run_campaign(body, s, report), exact);
+    std::printf("| %lld | %s | %.0e | %.2f | %.1e | %.1e |\n",
+                static_cast<long long>(report.unknowns / 3), press.name, tolerance,
+                report.cpu_seconds / exact_seconds, normal, lateral);
+    std::fflush(stdout);
+  }
+}
+
+void against_tolerance(const std::vector<int>& cells) {
+  std::printf(
+      "nu = 0.45, normal path to 4 mm and lateral path of 3 mm; processor time over that of a "
+      "tolerance of 1e-8, and largest error of 16 sites against it\n"
+      "| free nodes | tool | tolerance | time | normal path | lateral path |\n"
+      "|---|---|---|---|---|---|\n");
+  for (const int each : cells)
+    for (const Press& press : kPresses) against_tolerance(each, press);
 }
 
 double peak_megabytes() {
@@ -204,7 +269,8 @@ void elements(const std::vector<int>& cells) {
 
 int usage() {
   std::fputs(
-      "usage: bench_precompute newton [8|26] | growth [CELLS...] | elements [CELLS...] | sites | "
+      "usage: bench_precompute newton [8|26] | errors [CELLS...] | growth [CELLS...] | elements "
+      "[CELLS...] | sites | "
       "threads\n",
       stderr);
   return 2;
@@ -215,6 +281,8 @@ int run(const std::string& part, const std::vector<int>& numbers) {
     std::vector<int> cells;
     for (const int thousands : numbers) cells.push_back(thousands == 8 ? 12 : 18);
     against_newton(cells.empty() ? std::vector<int>{12, 18} : cells);
+  } else if (part == "errors") {
+    against_tolerance(numbers.empty() ? std::vector<int>{12, 18} : numbers);
   } else if (part == "growth") {
     growth(numbers.empty() ? std::vector<int>{8, 12, 18, 24, 28} : numbers);
   } else if (part == "elements") {

@@ -219,6 +219,16 @@ TEST(DeviceChoice, KnowsEveryNameItLists) {
   } catch (const Error& error) {
     EXPECT_NE(error.remedy().find("'simulated'"), std::string::npos);
   }
+  for (const auto& [product, binding] :
+       {std::pair{"Falcon", "'force-dimension'"}, std::pair{"touch", "'openhaptics'"},
+        std::pair{"inverse3", "'haply'"}}) {
+    try {
+      require_known_device(product);
+      ADD_FAILURE() << product;
+    } catch (const Error& error) {
+      EXPECT_NE(error.remedy().find(binding), std::string::npos) << error.remedy();
+    }
+  }
   DeviceChoice number;
   number.name = "force-dimension";
   number.unit = "left";

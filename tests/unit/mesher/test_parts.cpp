@@ -3,8 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <type_traits>
 
 #include "format/error.hpp"
 #include "mesher/curved_skin.hpp"
@@ -67,6 +70,37 @@ TEST(ReadSurface, TurnsWhatPointsInwardAndSaysSo) {
   log.clear();
   EXPECT_NEAR(signed_volume(read_surface({b.path(), 1, ""}, collect)), 1.25e-4, 1e-15);
   EXPECT_THAT(log, testing::HasSubstr("turned 3 faces"));
+}
+
+/// A box whose lid has corners of its own, `gap` above those of the walls.
+std::string box_with_a_loose_lid(double gap) {
+  Surface s = test::box({0, 0, 0}, {0.05, 0.05, 0.05});
+  std::map<std::size_t, std::size_t> own;
+  for (Triangle& t : s.triangles) {
+    const auto of_lid = [&](auto v) { return s.points[static_cast<std::size_t>(v)][2] > 0.04; };
+    if (!std::all_of(t.begin(), t.end(), of_lid)) continue;
+    for (auto& v : t) {
+      const auto corner = static_cast<std::size_t>(v);
+      if (!own.contains(corner)) {
+        own[corner] = s.points.size();
+        s.points.push_back(s.points[corner] + Vec3{0, 0, gap});
+      }
+      v = static_cast<std::remove_reference_t<decltype(v)>>(own[corner]);
+    }
+  }
+  return off_text(s);
+}
+
+TEST(ReadSurface, SeamsThatDifferByRoundingAreClosedAndNoOthers) {
+  std::string log;
+  const Log collect = [&](std::string_view line) { log += std::string(line) + "\n"; };
+  const TemporaryFile rounded("rounded.off", box_with_a_loose_lid(5e-8));
+  const Surface closed = read_surface({rounded.path(), 1, ""}, collect);
+  EXPECT_EQ(closed.points.size(), 8U);
+  EXPECT_NEAR(signed_volume(closed), 0.05 * 0.05 * 0.05, 1e-9);
+  EXPECT_THAT(log, testing::HasSubstr("closed a seam: joined 4 points"));
+  const TemporaryFile open("open.off", box_with_a_loose_lid(5e-7));
+  EXPECT_THROW(read_surface({open.path(), 1, ""}, collect), Error);
 }
 
 TEST(ReadSurface, QuadsBecomeTrianglesOfTheSameVolume) {
