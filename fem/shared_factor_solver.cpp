@@ -31,7 +31,7 @@ bool SharedFactorSolver::relax_window(const ToolContact& contact, const NewtonOp
                                       Displacement& u, NewtonResult& result) {
   NewtonOptions inner = options;
   // What is left inside must not be seen from outside; far from the end that is little to ask.
-  inner.tolerance = std::max(0.5 * options.tolerance, 0.03 * error_);
+  inner.tolerance = std::max(0.2 * options.tolerance, 0.03 * error_);
   inner.reuse_factor = true;
   const NewtonResult relaxed = newton_.solve(contact, inner, u);
   if (!relaxed.converged) result.reason = relaxed.reason;
