@@ -6,6 +6,7 @@
 #include "fem/at.hpp"
 #include "fem/preload.hpp"
 #include "fem/region_laws.hpp"
+#include "fem/shared_factor_solver.hpp"
 #include "fem/site_body.hpp"
 #include "format/error.hpp"
 
@@ -90,15 +91,16 @@ SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site
 }
 
 double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
-  // Counted here and in the solvers: history, trials and line searches of a path; curvature pairs,
-  // residuals and directions; the factor of a window over its stiffness.
-  constexpr double kDisplacements = 12, kVectors = 20, kWindowFill = 8;
+  // Counted here and in the solvers: history, trials and line searches of a path; residuals and
+  // directions; the factor of a window over its stiffness.
+  constexpr double kDisplacements = 12, kVectors = 8, kWindowFill = 8;
+  constexpr double kPairs = 2.0 * SharedFactorSolver::kPairs * sizeof(float);
   const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
   const double held = static_cast<double>(context.indentation.held_depths.size());
   const double numbers = 3 * nodes * (kDisplacements + held) + unknowns * kVectors;
   const SiteBody site(context, to_eigen(context.place(vertex).position));
   return sizeof(double) * (numbers + kWindowFill * site.window().pattern().nonzeros()) +
-         site.bytes();
+         unknowns * kPairs + site.bytes();
 }
 
 PressPoint CampaignContext::place(std::int32_t vertex) const {

@@ -9,7 +9,6 @@ namespace palpate::fem {
 
 namespace {
 
-constexpr std::size_t kPairs = 6;
 /// Of the body as a whole, from where its stiffness at rest must be turned with it, |R - 1|.
 constexpr double kTurned = 5e-3;
 /// Of the sensitivity of the force that was seen, what is kept from step to step.
@@ -49,16 +48,19 @@ void SharedFactorSolver::moved(double length, const Eigen::VectorXd& d, Displace
 }
 
 Eigen::VectorXd SharedFactorSolver::direction(const Eigen::VectorXd& residual) {
-  Eigen::VectorXd q = residual, d;
-  std::vector<double> alpha(pairs_.size());
+  const double length = residual.norm();
+  Eigen::VectorXf q = (residual / length).cast<float>();
+  std::vector<float> alpha(pairs_.size());
   for (std::size_t i = pairs_.size(); i-- > 0;) {
     alpha[i] = pairs_[i].s.dot(q) / pairs_[i].sy;
     q -= alpha[i] * pairs_[i].y;
   }
-  solve_turned(q, d);
+  Eigen::VectorXd load = q.cast<double>(), answer;
+  solve_turned(load, answer);
+  Eigen::VectorXf d = answer.cast<float>();
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     d += (alpha[i] - pairs_[i].y.dot(d) / pairs_[i].sy) * pairs_[i].s;
-  return -d;
+  return -length * d.cast<double>();
 }
 
 void SharedFactorSolver::solve_turned(Eigen::VectorXd& q, Eigen::VectorXd& d) const {
@@ -70,6 +72,14 @@ void SharedFactorSolver::solve_turned(Eigen::VectorXd& q, Eigen::VectorXd& d) co
   turn(turn_.transpose(), q);
   rest_solve_(q, d);
   turn(turn_, d);
+}
+
+void SharedFactorSolver::remember(const Eigen::VectorXd& s, const Eigen::VectorXd& y) {
+  Pair pair{s.cast<float>(), y.cast<float>(), 0};
+  pair.sy = pair.s.dot(pair.y);
+  if (!(pair.sy > 1e-10f * pair.s.norm() * pair.y.norm())) return;
+  pairs_.push_back(std::move(pair));
+  if (pairs_.size() > kPairs) pairs_.pop_front();
 }
 
 bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& options,
@@ -85,10 +95,7 @@ bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& o
     if (!(next.min_J > 0)) continue;
     const bool lower = next.energy <= now.energy + 1e-4 * length * slope;
     if (!lower && next.residual.norm() > (1 - 0.1 * length) * now.residual.norm()) continue;
-    Pair pair{difference(whole_, d.size(), trial, u), next.residual - now.residual, 0};
-    pair.sy = pair.s.dot(pair.y);
-    if (pair.sy > 1e-10 * pair.s.norm() * pair.y.norm()) pairs_.push_back(std::move(pair));
-    if (pairs_.size() > kPairs) pairs_.pop_front();
+    remember(difference(whole_, d.size(), trial, u), next.residual - now.residual);
     u.swap(trial);
     now = std::move(next);
     return true;
