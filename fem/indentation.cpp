@@ -37,6 +37,9 @@ constexpr double kLargestStep = 0.25;  ///< of one increment, over the tool radi
 /// Residual at which the shared-factor solver stops, over the wanted error of the force. The force
 /// is off by up to twice that residual on a lateral path (bench_precompute errors).
 constexpr double kSharedTolerance = 0.5;
+/// Of that, on a normal path that sticks: the surface sticks where it is met, so that errors add
+/// up.
+constexpr double kStickingShare = 0.5;
 
 Eigen::Vector3d to_eigen(const Vec3& v) {
   return Eigen::Vector3d(v.data());
@@ -215,6 +218,7 @@ class SiteEquilibrium {
   NewtonResult solve_shared(const ToolContact& contact, Displacement& u) {
     NewtonOptions options;
     options.tolerance = kSharedTolerance * context_.indentation.force_tolerance;
+    if (context_.indentation.friction == ToolFriction::Stuck) options.tolerance *= kStickingShare;
     Displacement trial = u;
     NewtonResult result = shared_->solve(contact, options, trial);
     if (result.converged)
