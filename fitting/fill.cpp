@@ -2,26 +2,14 @@
 #include "fitting/fill.hpp"
 
 #include <algorithm>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "fitting/mean_response.hpp"
+#include "fitting/neighbours.hpp"
 
 namespace palpate::fitting {
 namespace {
-
-std::vector<std::set<std::size_t>> neighbours_of(const Library& library) {
-  std::vector<std::set<std::size_t>> neighbours(library.positions.size());
-  for (const Triangle& triangle : library.triangles) {
-    for (const std::int32_t a : triangle) {
-      for (const std::int32_t b : triangle) {
-        if (a != b) neighbours[static_cast<std::size_t>(a)].insert(static_cast<std::size_t>(b));
-      }
-    }
-  }
-  return neighbours;
-}
 
 NodeResponse mean_of_neighbours(const std::vector<const NodeResponse*>& neighbours,
                                 const FitSettings& settings, const std::string& where) {

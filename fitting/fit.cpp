@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "fitting/between_nodes.hpp"
 #include "fitting/couple.hpp"
 #include "fitting/curve_fit.hpp"
 #include "fitting/fill.hpp"
@@ -133,6 +134,44 @@ Library surface_library(const Body& body, const Curves& curves) {
   return library;
 }
 
+double normal_error(const NodeResponse& node, const SiteCurves& site) {
+  const runtime::CompiledCurve rendered(node.normal);
+  double largest = 0;
+  for (const ForceSample& sample : normal_samples(site))
+    largest = std::max(largest, std::abs(rendered.force(sample.displacement) - sample.force));
+  return largest;
+}
+
+double force_at_end(const runtime::CompiledCurve& curve) {
+  return curve.force(curve.last_knot());
+}
+
+void scale(NodeResponse& node, ResponseKind kind, double factor) {
+  // What has no samples of its own strays by as much as it is scaled.
+  double largest_weight = 1;
+  if (kind == ResponseKind::Coupled)
+    largest_weight = force_at_end({node.coupling.curve, static_cast<double>(node.coupling.base)});
+  const double share = std::abs(factor - 1);
+  node.normal_error += share * force_at_end(runtime::CompiledCurve(node.normal));
+  node.lateral_error += share * largest_weight * force_at_end(runtime::CompiledCurve(node.lateral));
+  for (ResponseCurve* curve : {&node.normal, &node.lateral})
+    for (float& slope : curve->slope) slope *= static_cast<float>(factor);
+}
+
+/// The stated errors stay those at the nodes, where the samples are.
+void scale_between_nodes(const Curves& curves, Library& library) {
+  const std::vector<double> factors = factors_between_nodes(library, 0.5 * curves.depth);
+  for (std::size_t v = 0; v < factors.size(); ++v)
+    if (library.responses[v].status != ResponseStatus::Hole)
+      scale(library.responses[v], library.kind, factors[v]);
+  for (const SiteCurves& site : curves.sites) {
+    NodeResponse& node = library.responses[static_cast<std::size_t>(site.vertex)];
+    if (node.status != ResponseStatus::Fitted) continue;
+    node.normal_error = normal_error(node, site);
+    node.lateral_error = lateral_error(node, library.kind, site);
+  }
+}
+
 std::vector<std::int32_t> vertices_of(const Curves& curves) {
   std::vector<std::int32_t> vertices;
   for (const SiteCurves& site : curves.sites) vertices.push_back(site.vertex);
@@ -164,6 +203,7 @@ Library fit(const Body& body, const Curves& curves, const FitSettings& settings)
   }
   if (settings.interpolate) interpolate_rest(body, vertices_of(curves), settings, library);
   if (settings.fill_holes) fill_holes(library, settings);
+  if (settings.between_nodes) scale_between_nodes(curves, library);
   return library;
 }
 

@@ -19,6 +19,8 @@ struct FitSettings {
   int max_knots = 12;                 ///< per curve
   bool fill_holes = false;            ///< responses of failed sites from their neighbours, marked
   bool interpolate = false;  ///< responses of sites that were not computed, from all around, marked
+  /// Right in the mean over the triangles instead of at their vertices (between_nodes.hpp).
+  bool between_nodes = false;
   ResponseKind kind = ResponseKind::Decoupled;
 };
 

@@ -107,6 +107,7 @@ struct FitSection {
   double absolute_tolerance = 0.005;  ///< N
   int max_knots = 12;
   bool fill_holes = false;
+  bool between_nodes = false;
   std::string responses = "decoupled";
   bool operator==(const FitSection&) const = default;
 };

@@ -299,6 +299,11 @@ void describe(V& v, FitSection& s) {
   v.flag(
       s.fill_holes,
       {"fill_holes", "give failed sites the mean response of their neighbours, marked as filled"});
+  v.flag(
+      s.between_nodes,
+      {"between_nodes",
+       "scale responses to be right in the mean between the nodes instead of at them, by how the "
+       "forces curve along the surface"});
   v.text(s.responses,
          {"responses",
           "coupled: the lateral response grows with depth, best from several held_depths"},

@@ -126,6 +126,7 @@ fitting::FitSettings fit_settings(const Workspace& space) {
   settings.max_knots = fit.max_knots;
   settings.fill_holes = fit.fill_holes;
   settings.interpolate = is_adaptive(space);
+  settings.between_nodes = fit.between_nodes;
   settings.kind = fit.responses == "coupled" ? ResponseKind::Coupled : ResponseKind::Decoupled;
   return settings;
 }

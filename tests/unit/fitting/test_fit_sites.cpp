@@ -285,5 +285,26 @@ TEST(Fit, RefusesSettingsOutOfRange) {
   EXPECT_NE(problem_of([&] { fit(body, curves, settings); }).find("tolerance"), std::string::npos);
 }
 
+/// A soft spot: the middle of a hexagon is softer than its rim, so that straight between them is
+/// too stiff.
+TEST(Fit, BetweenNodesScalesAndStatesTheErrorAtNodes) {
+  const Body body = hexagon();
+  Curves curves = complete_curves(body);
+  for (std::int32_t v = 1; v < 7; ++v)
+    curves.sites[static_cast<std::size_t>(v)] = complete_site(v, 1.2);
+  FitSettings settings;
+  const Library at_nodes = fit(body, curves, settings);
+  settings.between_nodes = true;
+  const Library between = fit(body, curves, settings);
+  const runtime::CompiledCurve was(at_nodes.responses[0].normal), is(between.responses[0].normal);
+  // f = f_0 (1 + 0.2 (r/R)^2): over each triangle the mean of e . H e / 24 is 3 R^2 (0.4/R^2)/24.
+  for (const double z : {0.001, 0.003, 0.006})
+    EXPECT_NEAR(is.force(z), 0.95 * was.force(z), 2e-3 * was.force(z));
+  EXPECT_EQ(between.responses[0].normal.knot, at_nodes.responses[0].normal.knot);
+  const double end = normal_law(kDepth);
+  EXPECT_NEAR(between.responses[0].normal_error, 0.05 * end, 0.012 * end);
+  EXPECT_GT(between.responses[0].lateral_error, at_nodes.responses[0].lateral_error);
+}
+
 }  // namespace
 }  // namespace palpate::fitting

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <vector>
+
+#include "format/library.hpp"
+
+namespace palpate::fitting {
+
+/// Of each vertex, those it shares a triangle with.
+std::vector<std::set<std::size_t>> neighbours_of(const Library& library);
+
+}  // namespace palpate::fitting
