@@ -94,7 +94,7 @@ double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
   // Counted here and in the solvers: history, trials and line searches of a path; residuals and
   // directions; the factor of a window over its stiffness.
   constexpr double kDisplacements = 12, kVectors = 8, kWindowFill = 8;
-  constexpr double kPairs = 2.0 * SharedFactorSolver::kPairs * sizeof(float);
+  constexpr double kPairs = 2.0 * SharedFactorSolver::kMostPairs * sizeof(float);
   const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
   const double held = static_cast<double>(context.indentation.held_depths.size());
   const double numbers = 3 * nodes * (kDisplacements + held) + unknowns * kVectors;

@@ -177,6 +177,12 @@ FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex) {
 
 namespace {
 
+std::size_t pairs_needed(const CampaignContext& context, const SolidModel& model) {
+  const bool sticks = context.indentation.friction == ToolFriction::Stuck;
+  return sticks || !model.mesh().sprung.empty() ? SharedFactorSolver::kMostPairs
+                                                : SharedFactorSolver::kFewPairs;
+}
+
 /// The solvers of one site: the shared factor first, the whole body by Newton where that fails.
 /// There is no factor of a body whose elements are divided: it has the first alone.
 class SiteEquilibrium {
@@ -187,7 +193,7 @@ class SiteEquilibrium {
     shared_ = std::make_unique<SharedFactorSolver>(
         body.whole(), body.window(),
         [batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch->solve(b, x); },
-        body.prolongation());
+        pairs_needed(context, body.whole()), body.prolongation());
   }
 
   /// The whole body is factorized only where `direct_allowed`, for it costs a hundred times more.

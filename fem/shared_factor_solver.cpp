@@ -79,7 +79,7 @@ void SharedFactorSolver::remember(const Eigen::VectorXd& s, const Eigen::VectorX
   pair.sy = pair.s.dot(pair.y);
   if (!(pair.sy > 1e-10f * pair.s.norm() * pair.y.norm())) return;
   pairs_.push_back(std::move(pair));
-  if (pairs_.size() > kPairs) pairs_.pop_front();
+  if (pairs_.size() > most_pairs_) pairs_.pop_front();
 }
 
 bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& options,

@@ -18,8 +18,12 @@ namespace palpate::fem {
 /// that starts from K0^-1, a solve with the one factor that all sites share.
 class SharedFactorSolver {
  public:
-  /// Curvature pairs kept. A press that sticks needs as many: with 6 it takes 1.4 times the steps.
-  static constexpr std::size_t kPairs = 30;
+  /// Curvature pairs kept at most. A press that sticks and a body on springs need as many: with 6
+  /// they take 1.4 and 2 times the steps.
+  static constexpr std::size_t kMostPairs = 30;
+  /// What is enough for a press without friction. More only cost memory traffic, of which two
+  /// threads have no more than one.
+  static constexpr std::size_t kFewPairs = 12;
 
   /// x = K0^-1 b on the unknowns of the whole body.
   using RestSolve = std::function<void(const Eigen::VectorXd& b, Eigen::VectorXd& x)>;
@@ -28,11 +32,12 @@ class SharedFactorSolver {
   /// their nodes follow its nodes; `whole` and `window` are then on the divided mesh. phi is a
   /// function of the body's own unknowns all the same. Null: one mesh.
   SharedFactorSolver(const SolidModel& whole, const SolidModel& window, RestSolve rest_solve,
-                     const Prolongation* prolongation = nullptr)
+                     std::size_t pairs, const Prolongation* prolongation = nullptr)
       : whole_(whole),
         newton_(window),
         rest_solve_(std::move(rest_solve)),
-        prolongation_(prolongation) {}
+        prolongation_(prolongation),
+        most_pairs_(pairs) {}
 
   /// The factor and curvature pairs of the last call are kept: successive calls should be
   /// neighbours on a path.
@@ -71,6 +76,7 @@ class SharedFactorSolver {
   NewtonSolver newton_;
   RestSolve rest_solve_;
   const Prolongation* prolongation_;
+  std::size_t most_pairs_;
   std::deque<Pair> pairs_;
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();  ///< R, of the whole body
   bool turned_ = false;                                 ///< whether R is worth the while
