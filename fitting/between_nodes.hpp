@@ -15,7 +15,7 @@ namespace palpate::fitting {
 /// projection in the mean square, where the interpolant is 2.4 times as far
 /// (docs/theory-fitting.md, section 2). H is that of the quadratic through f at the neighbours of
 /// the neighbours, least squares; 1 where these are too few or lie around a sharp edge, and where
-/// there is no response.
+/// there is no response. A response is scaled by a fifth at most.
 /// @param depth  at which forces are compared, m
 std::vector<double> factors_between_nodes(const Library& library, double depth);
 

@@ -119,6 +119,9 @@ void run_fit(const Workspace& space) {
   append(library.provenance, curves.provenance, make_stage_step(space, Stage::Fit, {}));
   write_library(space.library(), library);
   if (library.kind == ResponseKind::Coupled) tell_single_depths(curves);
+  if (space.c.fit.between_nodes)
+    say("fit: scaled to be right in the mean between the nodes; at the nodes the stated errors "
+        "count that");
   const auto with_status = [&](ResponseStatus status) {
     return std::count_if(library.responses.begin(), library.responses.end(),
                          [=](const NodeResponse& r) { return r.status == status; });
