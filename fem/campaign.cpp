@@ -129,6 +129,9 @@ void add_supports(const CampaignContext& context, const CampaignSettings& settin
 Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
                     KeptFactor* kept) {
   const auto start = std::chrono::steady_clock::now();
+  const auto passed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
   check_indentation(settings.indentation);
   Curves curves;
   const ToolGeometry& tool = settings.indentation.tool;
@@ -142,10 +145,11 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
   }
   const std::vector<std::size_t> open = take_over(settings.known, curves);
   const CampaignContext context(body, settings, Engine::SharedFactor, kept);
+  report.set_up_seconds = passed();
   if (!open.empty()) Crew(context, settings, open, curves).run();
 
   report.unknowns = context.model.pattern().n;
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = passed();
   for (const auto& site : curves.sites) report.cpu_seconds += site.cpu_seconds;
   report.facts = {
       {"element", name_of(settings.dilatation)},

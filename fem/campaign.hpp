@@ -74,7 +74,8 @@ struct CampaignSettings {
 /// What the campaign did, for the log and the provenance.
 struct CampaignReport {
   double seconds = 0;
-  double cpu_seconds = 0;
+  double set_up_seconds = 0;  ///< on the clock, before the first site
+  double cpu_seconds = 0;     ///< of the sites
   std::int64_t unknowns = 0;
   std::vector<std::pair<std::string, std::string>> facts;  ///< BLAS kernel, factor size, versions
 };

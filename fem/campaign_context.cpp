@@ -72,9 +72,11 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
   if (engine == Engine::Direct) return;
   std::vector<double> K;
   model.stiffness(rest, K);
-  rest_factor = kept != nullptr ? kept->factor_of(model.pattern(), K, body.name, settings.memory)
-                                : std::make_shared<RestFactor>(model.pattern(), permutation, K,
-                                                               body.name, settings.memory);
+  rest_factor =
+      kept != nullptr
+          ? kept->factor_of(model.pattern(), K, body.name, settings.memory, settings.threads)
+          : std::make_shared<RestFactor>(model.pattern(), permutation, K, body.name,
+                                         settings.memory, settings.threads);
 }
 
 Eigen::Vector3d CampaignContext::rest_position(const Vec3& X) const {

@@ -4,17 +4,29 @@
 #include <cblas.h>
 #include <malloc.h>
 #include <omp.h>
+#include <suitesparse/SuiteSparse_config.h>
 #include <suitesparse/cholmod.h>
 
 #include <algorithm>
 
-#include "format/error.hpp"
+#include "fem/large_pages.hpp"
+#include "fem/memory.hpp"
 
 namespace palpate::fem {
 
 namespace {
 
+/// The memory of CHOLMOD is one function for the whole process.
+void put_factors_in_large_pages() {
+  static const bool once = [] {
+    SuiteSparse_config.malloc_func = allocate_in_large_pages;
+    return true;
+  }();
+  static_cast<void>(once);
+}
+
 cholmod_common started_common() {
+  put_factors_in_large_pages();
   cholmod_common common;
   cholmod_start(&common);
   common.supernodal = CHOLMOD_SUPERNODAL;
@@ -25,12 +37,6 @@ cholmod_common started_common() {
   common.print = 0;
   common.quick_return_if_not_posdef = 1;
   return common;
-}
-
-[[noreturn]] void out_of_memory(int n) {
-  throw Error(ErrorKind::Internal, "stiffness factorization",
-              "not enough memory for " + std::to_string(n) + " unknowns",
-              "use a coarser mesh, fewer threads, or a machine with more memory");
 }
 
 }  // namespace

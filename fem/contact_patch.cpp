@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/contact_patch.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <set>
+
+#include "fem/dense_cholesky.hpp"
 
 namespace palpate::fem {
 
@@ -117,11 +118,10 @@ double ContactPatch::energy(const ToolContact& contact, const Eigen::VectorXd& d
   return sum;
 }
 
-double ContactPatch::derivatives(const ToolContact& contact, const Eigen::VectorXd& d,
-                                 bool geometric, Eigen::VectorXd& g, Eigen::MatrixXd* H) const {
+double ContactPatch::gradient(const ToolContact& contact, const Eigen::VectorXd& d,
+                              Eigen::VectorXd& g) const {
   double sum = 0;
   g.setZero(d.size());
-  if (H) H->setZero(d.size(), d.size());
   for (const Point& point : points_) {
     const auto& source = contact.points_[point.index];
     const Eigen::Vector3d x = position(contact, point, d);
@@ -130,22 +130,32 @@ double ContactPatch::derivatives(const ToolContact& contact, const Eigen::Vector
     sum += source.area * contact.energy_at(source, x);
     for (std::size_t a = 0; a < 6; ++a)
       if (point.place[a] >= 0) g.segment<3>(point.place[a]) += source.N[a] * force;
-    if (!H) continue;
+  }
+  for (const Tie& tie : ties_) {
+    const double stiffness = contact.ties_[tie.index].stiffness;
+    const Eigen::Vector3d s = slip(contact, tie, d);
+    sum += 0.5 * stiffness * s.squaredNorm();
+    if (tie.place >= 0) g.segment<3>(tie.place) += stiffness * s;
+  }
+  return sum;
+}
+
+void ContactPatch::add_hessian(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
+                               Eigen::MatrixXd& H) const {
+  for (const Point& point : points_) {
+    const auto& source = contact.points_[point.index];
+    const Eigen::Vector3d x = position(contact, point, d);
+    if (contact.gradient_at(source, x).isZero(0)) continue;
     const Eigen::Matrix3d h = source.area * contact.hessian_at(source, x, geometric);
     for (std::size_t a = 0; a < 6; ++a)
       for (std::size_t b = 0; b < 6; ++b) {
         if (point.place[b] < 0 || point.place[a] < point.place[b]) continue;
-        H->block<3, 3>(point.place[a], point.place[b]) += source.N[a] * source.N[b] * h;
+        H.block<3, 3>(point.place[a], point.place[b]) += source.N[a] * source.N[b] * h;
       }
   }
-  for (const Tie& tie : ties_) {
-    const Eigen::Vector3d s = slip(contact, tie, d);
-    sum += 0.5 * contact.ties_[tie.index].stiffness * s.squaredNorm();
-    if (tie.place < 0) continue;
-    g.segment<3>(tie.place) += contact.ties_[tie.index].stiffness * s;
-    if (H) H->diagonal().segment<3>(tie.place).array() += contact.ties_[tie.index].stiffness;
-  }
-  return sum;
+  for (const Tie& tie : ties_)
+    if (tie.place >= 0)
+      H.diagonal().segment<3>(tie.place).array() += contact.ties_[tie.index].stiffness;
 }
 
 Eigen::Vector3d ContactPatch::tool_force(const ToolContact& contact,
@@ -159,30 +169,40 @@ Eigen::Vector3d ContactPatch::tool_force(const ToolContact& contact,
   return force;
 }
 
+namespace {
+
+/// The factor in H of S and the contact; of the contact without what can be negative in it where
+/// the whole has none. False when that has none either.
+bool factorize_patch(const ContactPatch& patch, const ToolContact& contact,
+                     const Eigen::MatrixXd& S, const Eigen::VectorXd& d, Eigen::MatrixXd& H) {
+  for (const bool geometric : {true, false}) {
+    H = S;
+    patch.add_hessian(contact, d, geometric, H);
+    if (factorize_in_place(H)) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
 Eigen::VectorXd patch_minimum(const ContactPatch& patch, const ToolContact& contact,
                               const PatchStiffness& stiffness, const Eigen::VectorXd& load,
-                              Eigen::VectorXd d, double tolerance) {
-  Eigen::MatrixXd S = stiffness.S, H;
+                              Eigen::VectorXd d, double tolerance, Eigen::MatrixXd& scratch) {
+  Eigen::MatrixXd S = stiffness.S;
   Eigen::VectorXd contact_force;
-  Eigen::LLT<Eigen::MatrixXd> llt;
   std::size_t share = 0;
   for (int iteration = 0; iteration < kPatchIterations; ++iteration) {
-    const double pushed = patch.derivatives(contact, d, true, contact_force, &H);
+    const double pushed = patch.gradient(contact, d, contact_force);
     const Eigen::VectorXd pull = S * d, g = pull - load + contact_force;
     if (g.norm() <= tolerance) break;
-    llt.compute(H + S);
-    if (llt.info() != Eigen::Success) {
-      patch.derivatives(contact, d, false, contact_force, &H);  // without what can be negative
-      llt.compute(H + S);
-    }
-    if (llt.info() != Eigen::Success) {
+    if (!factorize_patch(patch, contact, S, d, scratch)) {
       if (++share == kStiffeningShares.size()) break;
       S = stiffness.S;
       S.diagonal() += kStiffeningShares[share] * stiffness.stiffening;
       continue;
     }
     const double energy = 0.5 * d.dot(pull) - load.dot(d) + pushed;
-    const Eigen::VectorXd step = -llt.solve(g);
+    const Eigen::VectorXd step = -solve_factorized(scratch, g);
     const double slope = g.dot(step);
     double length = 1;
     Eigen::VectorXd trial;

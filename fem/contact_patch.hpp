@@ -34,10 +34,11 @@ class ContactPatch {
   /// The displacement that d is a change of.
   void start_from(const ToolContact& contact, const Displacement& u);
   double energy(const ToolContact& contact, const Eigen::VectorXd& d) const;
-  /// Energy; g = dE/dd, and unless null H = d2E/dd2, its lower triangle. `geometric` as in
-  /// ToolContact::add_stiffness.
-  double derivatives(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
-                     Eigen::VectorXd& g, Eigen::MatrixXd* H) const;
+  /// Energy; g = dE/dd.
+  double gradient(const ToolContact& contact, const Eigen::VectorXd& d, Eigen::VectorXd& g) const;
+  /// H += d2E/dd2, in its lower triangle. `geometric` as in ToolContact::add_stiffness.
+  void add_hessian(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
+                   Eigen::MatrixXd& H) const;
   /// N, of the tool on the body; the patch covers the contact.
   Eigen::Vector3d tool_force(const ToolContact& contact, const Eigen::VectorXd& d) const;
 
@@ -72,9 +73,9 @@ struct PatchStiffness {
 };
 
 /// The minimum over d of d S d/2 - load . d + E_c(d), sought by Newton's method from `d` until the
-/// gradient is within `tolerance`, N.
+/// gradient is within `tolerance`, N. `scratch` is of any size: it keeps its memory between calls.
 Eigen::VectorXd patch_minimum(const ContactPatch& patch, const ToolContact& contact,
                               const PatchStiffness& stiffness, const Eigen::VectorXd& load,
-                              Eigen::VectorXd d, double tolerance);
+                              Eigen::VectorXd d, double tolerance, Eigen::MatrixXd& scratch);
 
 }  // namespace palpate::fem

@@ -33,9 +33,9 @@ void work_abreast(const RestFactor& factor, const CrewSize& size, std::size_t co
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::exception_ptr failure;
-  const auto serve = [&](SolveBatch& batch, int lane) {
+  const auto serve = [&](SolveBatch& batch) {
     use_one_thread_per_site();
-    SolveBatch::Member member(batch, lane);
+    SolveBatch::Member member(batch);
     try {
       for (std::size_t i = next++; i < count; i = next++) work(member, i);
     } catch (...) {
@@ -46,11 +46,10 @@ void work_abreast(const RestFactor& factor, const CrewSize& size, std::size_t co
   };
   std::deque<SolveBatch> batches;
   std::vector<std::thread> threads;
-  for (int core = 0; core < size.cores; ++core) {
-    SolveBatch& batch = batches.emplace_back(factor, size.lanes);
+  for (int core = 0; core < size.cores; ++core) batches.emplace_back(factor, size.lanes, &batches);
+  for (SolveBatch& batch : batches)
     for (int lane = 0; lane < size.lanes; ++lane)
-      threads.emplace_back([&serve, &batch, lane] { serve(batch, lane); });
-  }
+      threads.emplace_back([&serve, &batch] { serve(batch); });
   for (std::thread& thread : threads) thread.join();
   if (failure) std::rethrow_exception(failure);
 }

@@ -33,14 +33,14 @@ ToolContact with_tip_at(const ToolContact& contact, const Eigen::Vector3d& tip) 
 Eigen::VectorXd forces(ContactPatch& patch, const ToolContact& contact, const Displacement& u) {
   Eigen::VectorXd f;
   patch.start_from(contact, u);
-  patch.derivatives(contact, Eigen::VectorXd::Zero(patch.size()), true, f, nullptr);
+  patch.gradient(contact, Eigen::VectorXd::Zero(patch.size()), f);
   return f;
 }
 
 double unbalanced(const ContactPatch& patch, const ToolContact& contact, const Eigen::MatrixXd& S,
                   const Eigen::VectorXd& load, const Eigen::VectorXd& d) {
   Eigen::VectorXd pushed;
-  patch.derivatives(contact, d, true, pushed, nullptr);
+  patch.gradient(contact, d, pushed);
   return (S * d - load + pushed).norm();
 }
 
@@ -68,10 +68,11 @@ std::optional<double> work_between(ContactPatch& patch, const PatchStiffness& st
   if (!secant) return std::nullopt;
   const Eigen::Vector3d way = contact.tool().tip - from;
   Eigen::VectorXd d = Eigen::VectorXd::Zero(patch.size());
+  Eigen::MatrixXd scratch;
   double work = 0;
   for (const Node& node : kGauss) {
     moved = with_tip_at(contact, from + node.at * way);
-    d = patch_minimum(patch, moved, *secant, first, d, kSought * last.norm());
+    d = patch_minimum(patch, moved, *secant, first, d, kSought * last.norm(), scratch);
     if (unbalanced(patch, moved, secant->S, first, d) > kAllowed * last.norm()) return std::nullopt;
     work += node.weight * patch.tool_force(moved, d).dot(way);
   }

@@ -571,7 +571,7 @@ SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displ
   std::optional<SolveBatch::Member> member;
   if (context.rest_factor) {
     batch.emplace(*context.rest_factor, 1);
-    member.emplace(*batch, 0);
+    member.emplace(*batch);
   }
   SiteSolver solver(context, member ? &*member : nullptr);
   SiteCurves curves = solver.solve(vertex);

@@ -38,4 +38,10 @@ int fitting_times(double bound, double each, int wanted, const std::string& what
               "allow more, use fewer threads or a coarser mesh");
 }
 
+void out_of_memory(int unknowns) {
+  throw Error(ErrorKind::Internal, "stiffness factorization",
+              "not enough memory for " + std::to_string(unknowns) + " unknowns",
+              "use a coarser mesh, fewer threads, or a machine with more memory");
+}
+
 }  // namespace palpate::fem

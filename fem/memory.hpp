@@ -13,4 +13,7 @@ double resident_bytes();
 /// `bound`: bytes, 0 for none. @throws Error(Configuration) when it is not even once.
 int fitting_times(double bound, double each, int wanted, const std::string& what);
 
+/// @throws Error(Internal), always: there is none for the factor of so many unknowns.
+[[noreturn]] void out_of_memory(int unknowns);
+
 }  // namespace palpate::fem

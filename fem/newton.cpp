@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "fem/dense_cholesky.hpp"
 #include "fem/increment_work.hpp"
 
 namespace palpate::fem {
@@ -82,9 +83,12 @@ bool NewtonSolver::factorize(const Displacement& u) {
   });
   if (!factorized_) return false;
   root_ = factor_->last_block();
-  Eigen::MatrixXd numbered(root_.rows(), root_.cols());
-  for (Eigen::Index i = 0; i < root_.rows(); ++i) numbered.row(place(i)) = root_.row(i);
-  patch_stiffness_.S.noalias() = numbered * numbered.transpose();
+  const Eigen::MatrixXd ordered = product_with_transpose(root_);
+  patch_stiffness_.S.resize(root_.rows(), root_.cols());
+  for (Eigen::Index j = 0; j < root_.cols(); ++j)
+    for (Eigen::Index i = j; i < root_.rows(); ++i)
+      patch_stiffness_.S(place(i), place(j)) = patch_stiffness_.S(place(j), place(i)) =
+          ordered(i, j);
   patch_stiffness_.S.diagonal() -= patch_stiffness_.stiffening;
   return true;
 }
@@ -99,7 +103,7 @@ Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displa
     Eigen::VectorXd x(count), ordered = root_.triangularView<Eigen::Lower>() * y.tail(count);
     for (Eigen::Index i = 0; i < count; ++i) x[place(i)] = ordered[i];
     x = patch_minimum(*patch_, contact, patch_stiffness_, x, Eigen::VectorXd::Zero(count),
-                      tolerance);
+                      tolerance, patch_scratch_);
     for (Eigen::Index i = 0; i < count; ++i) ordered[i] = x[place(i)];
     y.tail(count) = root_.transpose().triangularView<Eigen::Upper>() * ordered;
   }

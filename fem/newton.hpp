@@ -85,6 +85,7 @@ class NewtonSolver {
   std::vector<int> last_place_;     ///< in the patch, of the last unknowns of the factor
   Eigen::MatrixXd root_;            ///< lower triangular, of stiffened S in the order of the factor
   PatchStiffness patch_stiffness_;  ///< S itself, what the diagonal of A has in the factor
+  Eigen::MatrixXd patch_scratch_;
   bool factorized_ = false;
 };
 

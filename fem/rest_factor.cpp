@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <new>
 
 #include "fem/at.hpp"
 #include "fem/memory.hpp"
+#include "fem/multifrontal.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fem {
@@ -106,17 +108,26 @@ void backward_panel(const float* panel, float* own, int inside, const int* rows,
 
 }  // namespace
 
+namespace {
+
+/// Of `wanted`, so many as need no more than `bound`, 0 for none, beside what is in use now.
+/// @throws Error(Configuration) when there is no room for one.
+template <class Bytes>
+int threads_that_fit(double bound, int wanted, Bytes&& bytes) {
+  int threads = std::max(1, wanted);
+  while (bound > 0 && threads > 1 && resident_bytes() + bytes(threads) > bound) --threads;
+  fitting_times(bound, bytes(threads), 1, "the factor of the stiffness");
+  return threads;
+}
+
+}  // namespace
+
 RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
-                       const std::vector<double>& values, const std::string& owner, double memory)
+                       const std::vector<double>& values, const std::string& owner, double memory,
+                       int threads)
     : n_(pattern.n) {
-  Cholesky factor(pattern, &permutation);
-  // In double precision as it is computed, and its copy.
-  fitting_times(memory, factor.bytes() * (1 + sizeof(float) / double{sizeof(double)}), 1,
-                "the factor of the stiffness");
-  if (!factor.factorize(values))
-    throw Error(ErrorKind::Geometry, owner, "the body at rest is not stiff in every direction",
-                "check the supports and that the mesh is in one piece");
-  const SupernodalView view = factor.view();
+  const Cholesky analysis(pattern, &permutation);
+  const SupernodalView view = analysis.view();
   permutation_.assign(view.permutation, view.permutation + n_);
   std::size_t total = 0;
   for (int k = 0; k < view.supernodes; ++k) {
@@ -127,16 +138,28 @@ RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& per
                  view.rows + view.row_start[k + 1]);
     total += panel_numbers(columns, rows - columns);
   }
-  values_.reserve(total);
-  for (int k = 0; k < view.supernodes; ++k) {
-    const int rows = view.row_start[k + 1] - view.row_start[k];
-    const double* x = view.values + view.value_start[k];
-    for_panels(supernodes_[at(k)].columns, [&]<int W>(int first) {
-      for (int i = first; i < rows; ++i)
-        for (int j = first; j < first + W; ++j)
-          values_.push_back(static_cast<float>(i >= j ? x[at(j) * at(rows) + at(i)] : 0));
-    });
+  const Multifrontal fronts(pattern, view);
+  const double own = static_cast<double>(total) * sizeof(float);
+  threads = threads_that_fit(memory, threads, [&](int t) { return own + fronts.working_bytes(t); });
+  try {
+    values_.resize(total);
+    if (!fronts.factorize(values, threads, [&](int k, const double* x) { store(k, x); }))
+      throw Error(ErrorKind::Geometry, owner, "the body at rest is not stiff in every direction",
+                  "check the supports and that the mesh is in one piece");
+  } catch (const std::bad_alloc&) {
+    out_of_memory(n_);
   }
+}
+
+void RestFactor::store(int supernode, const double* columns) {
+  const Supernode& node = supernodes_[at(supernode)];
+  const int rows = node.columns + node.rows_below;
+  float* to = values_.data() + node.values;
+  for_panels(node.columns, [&]<int W>(int first) {
+    for (int i = first; i < rows; ++i)
+      for (int j = first; j < first + W; ++j)
+        *to++ = static_cast<float>(i >= j ? columns[at(j) * at(rows) + at(i)] : 0);
+  });
 }
 
 void RestFactor::forward(float* y) const {
@@ -199,7 +222,8 @@ const std::vector<int>& KeptFactor::permutation(const SparsePattern& pattern) {
 
 std::shared_ptr<const RestFactor> KeptFactor::factor_of(const SparsePattern& pattern,
                                                         const std::vector<double>& values,
-                                                        const std::string& owner, double memory) {
+                                                        const std::string& owner, double memory,
+                                                        int threads) {
   std::vector<double> diagonal = diagonal_of(pattern, values);
   if (factor_ && diagonal.size() == diagonal_.size()) {
     double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -215,15 +239,16 @@ std::shared_ptr<const RestFactor> KeptFactor::factor_of(const SparsePattern& pat
     }
   }
   factor_.reset();  // its memory is needed
-  factor_ = std::make_shared<RestFactor>(pattern, permutation(pattern), values, owner, memory);
+  factor_ =
+      std::make_shared<RestFactor>(pattern, permutation(pattern), values, owner, memory, threads);
   diagonal_ = std::move(diagonal);
   scale_ = 1;
   ++factorizations_;
   return factor_;
 }
 
-SolveBatch::SolveBatch(const RestFactor& factor, int members)
-    : factor_(factor), members_(members), block_(at(factor.size()) * kBatch, 0.0f) {}
+SolveBatch::SolveBatch(const RestFactor& factor, int members, std::deque<SolveBatch>* crew)
+    : factor_(factor), crew_(crew), members_(members), block_(at(factor.size()) * kBatch, 0.0f) {}
 
 void SolveBatch::serve_if_all_wait() {
   if (waiting_ == 0 || waiting_ < members_) return;
@@ -233,12 +258,44 @@ void SolveBatch::serve_if_all_wait() {
   served_.notify_all();
 }
 
-SolveBatch::Member::Member(SolveBatch& batch, int lane)
-    : batch_(batch), lane_(lane), lock_(batch.mutex_) {}
+SolveBatch* SolveBatch::reserved_elsewhere() {
+  if (crew_ == nullptr) return nullptr;
+  for (SolveBatch& other : *crew_)
+    for (int there = other.members_; there + 2 <= members_;)
+      if (other.members_.compare_exchange_weak(there, there + 1)) return &other;
+  return nullptr;
+}
+
+SolveBatch::Member::Member(SolveBatch& batch) : batch_(&batch) {
+  join();
+}
 
 SolveBatch::Member::~Member() {
-  --batch_.members_;
-  batch_.serve_if_all_wait();
+  leave();
+}
+
+void SolveBatch::Member::join() {
+  lock_ = std::unique_lock(batch_->mutex_);
+  for (lane_ = 0; batch_->taken_[at(lane_)]; ++lane_) continue;
+  batch_->taken_.set(at(lane_));
+}
+
+void SolveBatch::Member::leave() {
+  // What an empty lane held would be solved for again and again, down to numbers that are slow.
+  for (std::size_t i = at(lane_); i < batch_->block_.size(); i += kBatch) batch_->block_[i] = 0;
+  batch_->taken_.reset(at(lane_));
+  --batch_->members_;
+  batch_->serve_if_all_wait();
+  lock_.unlock();
+}
+
+/// Lanes know nothing of one another: the solution is the same in any batch.
+void SolveBatch::Member::even_out() {
+  SolveBatch* other = batch_->reserved_elsewhere();
+  if (other == nullptr) return;
+  leave();
+  batch_ = other;
+  join();
 }
 
 void SolveBatch::Member::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
@@ -246,13 +303,14 @@ void SolveBatch::Member::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   const double length = b.norm();
   x.setZero(b.size());
   if (length == 0) return;
-  float* lane = batch_.block_.data() + lane_;
+  even_out();
+  float* lane = batch_->block_.data() + lane_;
   for (Eigen::Index i = 0; i < b.size(); ++i) lane[i * kBatch] = static_cast<float>(b[i] / length);
-  ++batch_.waiting_;
-  const std::uint64_t mine = batch_.generation_;
-  batch_.serve_if_all_wait();
-  batch_.served_.wait(lock_, [&] { return batch_.generation_ != mine; });
-  const double scale = length * batch_.factor_.inverse_scale();
+  ++batch_->waiting_;
+  const std::uint64_t mine = batch_->generation_;
+  batch_->serve_if_all_wait();
+  batch_->served_.wait(lock_, [&] { return batch_->generation_ != mine; });
+  const double scale = length * batch_->factor_.inverse_scale();
   for (Eigen::Index i = 0; i < b.size(); ++i) x[i] = scale * lane[i * kBatch];
 }
 

@@ -3,14 +3,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <atomic>
+#include <bitset>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
 #include "fem/cholesky.hpp"
+#include "fem/large_pages.hpp"
 
 namespace palpate::fem {
 
@@ -25,8 +29,11 @@ class RestFactor {
  public:
   /// @throws Error(Geometry) when the matrix is not positive definite; `owner` names the body.
   /// @throws Error(Configuration) when its making would pass `memory`, bytes; 0: no bound.
+  /// @throws Error(Internal) when memory runs out.
+  /// Made on up to `threads` threads, fewer where `memory` is short: the bits are the same.
   RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
-             const std::vector<double>& values, const std::string& owner, double memory = 0);
+             const std::vector<double>& values, const std::string& owner, double memory = 0,
+             int threads = 1);
 
   /// From now on the factor of `ratio` times the matrix: a body whose laws all became so much
   /// stiffer. Not while solves are under way.
@@ -47,6 +54,8 @@ class RestFactor {
     std::size_t values;    ///< into values_, where its panels start
   };
 
+  /// Takes the columns of L of a supernode over.
+  void store(int supernode, const double* columns);
   void forward(float* y) const;
   void backward(float* y) const;
 
@@ -54,7 +63,7 @@ class RestFactor {
   double inverse_scale_ = 1;
   std::vector<Supernode> supernodes_;
   std::vector<int> rows_, permutation_;
-  std::vector<float> values_;
+  LargeVector<float> values_;
 };
 
 /// The factors of campaigns on one body that differ in the constants of their laws alone, one
@@ -66,7 +75,7 @@ class KeptFactor {
   /// Of `values` on `pattern`, which is that of every call before. @throws Error as RestFactor.
   std::shared_ptr<const RestFactor> factor_of(const SparsePattern& pattern,
                                               const std::vector<double>& values,
-                                              const std::string& owner, double memory);
+                                              const std::string& owner, double memory, int threads);
   /// Made by the first call.
   const std::vector<int>& permutation(const SparsePattern& pattern);
 
@@ -85,13 +94,17 @@ class KeptFactor {
 /// runs at a time (they hold the lock of the batch), so that a batch occupies one core.
 class SolveBatch {
  public:
-  /// `members`: how many threads will take part; each leaves when its Member ends.
-  SolveBatch(const RestFactor& factor, int members);
+  /// `members`: how many threads will take part; each leaves when its Member ends. `crew`: batches
+  /// between which members move, so that none is left idle while another is full; this is one of
+  /// them, and no member joins before the last of them is made.
+  SolveBatch(const RestFactor& factor, int members, std::deque<SolveBatch>* crew = nullptr);
+
+  int members() const { return members_; }
 
   /// A site thread holds one of these while it runs.
   class Member {
    public:
-    Member(SolveBatch& batch, int lane);
+    explicit Member(SolveBatch& batch);
     ~Member();
     Member(const Member&) = delete;
     Member& operator=(const Member&) = delete;
@@ -100,19 +113,28 @@ class SolveBatch {
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
    private:
-    SolveBatch& batch_;
-    int lane_;
+    void join();
+    void leave();
+    void even_out();
+
+    SolveBatch* batch_;
+    int lane_ = 0;
     std::unique_lock<std::mutex> lock_;
   };
 
  private:
   void serve_if_all_wait();
+  /// A batch of the crew with two members less, the new member counted there; null: none.
+  SolveBatch* reserved_elsewhere();
 
   const RestFactor& factor_;
+  std::deque<SolveBatch>* crew_;
   std::mutex mutex_;
   std::condition_variable served_;
-  int members_, waiting_ = 0;
+  std::atomic<int> members_;  ///< those on their way counted
+  int waiting_ = 0;
   std::uint64_t generation_ = 0;
+  std::bitset<kBatch> taken_;  ///< lanes
   std::vector<float> block_, scratch_;
 };
 

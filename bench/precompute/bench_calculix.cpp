@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "app/blas_kernel.hpp"
 #include "app/export/deck.hpp"
 #include "fem/campaign.hpp"
 #include "fem/cholesky.hpp"
@@ -136,6 +137,7 @@ void compare(double fine) {
 }  // namespace palpate
 
 int main(int count, char** arguments) {
+  palpate::app::ensure_blas_kernel(arguments);
   std::vector<double> sizes;
   for (int i = 1; i < count; ++i) sizes.push_back(1e-3 * std::atof(arguments[i]));
   if (sizes.empty()) sizes = {2.5e-3, 1.5e-3};

@@ -17,6 +17,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "app/blas_kernel.hpp"
 #include "fem/sensitivity.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -169,6 +170,7 @@ void run(int cells, std::size_t sites) {
 }  // namespace palpate::fem
 
 int main(int argc, char** argv) {
+  palpate::app::ensure_blas_kernel(argv);
   const int cells = argc > 1 ? std::atoi(argv[1]) : 12;
   const int sites = argc > 2 ? std::atoi(argv[2]) : 8;
   if (cells < 2 || sites < 1) {

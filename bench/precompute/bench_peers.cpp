@@ -12,6 +12,7 @@
 #include <random>
 #include <vector>
 
+#include "app/blas_kernel.hpp"
 #include "fem/campaign.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -161,6 +162,7 @@ void run(const std::vector<int>& meshes) {
 }  // namespace palpate::fem
 
 int main(int count, char** arguments) {
+  palpate::app::ensure_blas_kernel(arguments);
   std::vector<int> cells;
   for (int i = 1; i < count; ++i) cells.push_back(std::atoi(arguments[i]));
   palpate::fem::run(cells.empty() ? std::vector<int>{8, 12, 19} : cells);

@@ -10,7 +10,7 @@
 //   growth [CELLS...]   time and memory against the size of the mesh, cells an edge
 //   elements [CELLS...] constant, nodal and no pressures
 //   sites               time against the number of sites
-//   threads             one thread against two
+//   threads [SITES...]  one thread against two
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -22,6 +22,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/blas_kernel.hpp"
 #include "fem/cholesky.hpp"
 #include "fem/indentation.hpp"
 #include "tests/support/block_body.hpp"
@@ -201,10 +202,10 @@ void growth(const std::vector<int>& cells) {
   for (const int each : cells) {
     const Body body = block(each);
     CampaignReport report;
-    const double seconds = campaign_seconds(body, 16, 1, report);
+    campaign_seconds(body, 16, 1, report);
     const int per_edge = 2 * each + 1;
     std::printf("| %d | %.3f s | %.2f s | %.0f MB | %.0f MB |\n", per_edge * per_edge * (each + 1),
-                report.cpu_seconds / 16, seconds - report.cpu_seconds,
+                report.cpu_seconds / 16, report.set_up_seconds,
                 1e-6 * std::stod(fact(report, "rest_factor_bytes")), peak_megabytes());
     std::fflush(stdout);
   }
@@ -224,16 +225,23 @@ void against_sites() {
   }
 }
 
-void against_threads() {
+void against_threads(const std::vector<int>& sites) {
   const Body body = block(18);
-  CampaignReport report;
-  const double one = campaign_seconds(body, 64, 1, report), set_up = one - report.cpu_seconds;
-  const double two = campaign_seconds(body, 64, 2, report);
   std::printf(
-      "26 011 nodes, 64 sites: 1 thread %.1f s, 2 threads %.1f s, ratio %.2f (without the set-up "
-      "of "
-      "%.1f s: %.2f)\n",
-      one, two, one / two, set_up, (one - set_up) / (two - set_up));
+      "26 011 nodes, nu = 0.49, normal and lateral path, BLAS kernel %s\n"
+      "| sites | 1 thread | of it set-up | 2 threads | of it set-up | ratio "
+      "|\n|---|---|---|---|---|---|\n",
+      blas_kernel().c_str());
+  CampaignReport report;
+  campaign_seconds(body, 16, 2, report);  // memory that the system has yet to find
+  for (const int each : sites) {
+    const auto count = static_cast<std::size_t>(each);
+    const double one = campaign_seconds(body, count, 1, report), one_set_up = report.set_up_seconds;
+    const double two = campaign_seconds(body, count, 2, report);
+    std::printf("| %d | %.1f s | %.1f s | %.1f s | %.1f s | %.2f |\n", each, one, one_set_up, two,
+                report.set_up_seconds, one / two);
+    std::fflush(stdout);
+  }
 }
 
 /// What an element costs: the same sites with each kind of it.
@@ -271,7 +279,7 @@ int usage() {
   std::fputs(
       "usage: bench_precompute newton [8|26] | errors [CELLS...] | growth [CELLS...] | elements "
       "[CELLS...] | sites | "
-      "threads\n",
+      "threads [SITES...]\n",
       stderr);
   return 2;
 }
@@ -290,7 +298,7 @@ int run(const std::string& part, const std::vector<int>& numbers) {
   } else if (part == "sites") {
     against_sites();
   } else if (part == "threads") {
-    against_threads();
+    against_threads(numbers.empty() ? std::vector<int>{64, 160} : numbers);
   } else {
     return usage();
   }
@@ -301,6 +309,7 @@ int run(const std::string& part, const std::vector<int>& numbers) {
 }  // namespace palpate::fem
 
 int main(int count, char** arguments) {
+  palpate::app::ensure_blas_kernel(arguments);
   std::vector<int> numbers;
   for (int i = 2; i < count; ++i) numbers.push_back(std::atoi(arguments[i]));
   return palpate::fem::run(count > 1 ? arguments[1] : "", numbers);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "app/blas_kernel.hpp"
 #include "tests/support/prism_body.hpp"
 #include "tests/support/round_cap.hpp"
 
@@ -51,7 +52,8 @@ void print_row(double h, const char* what, const std::vector<test::Spread>& foun
 
 /// Mean force over the places, its error and the standard deviation of the places, both over the
 /// force of the finest mesh; what the next coarser one differs from it says how far to trust it.
-int main() {
+int main(int, char** arguments) {
+  palpate::app::ensure_blas_kernel(arguments);
   const test::RoundCap cap;
   fem::IndentationSettings press;
   press.tool.radius = 0.005;

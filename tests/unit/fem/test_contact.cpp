@@ -96,8 +96,9 @@ TEST(ContactPatch, IsTheContactOnItsUnknowns) {
                 1e-12 * p.contact.energy(moved));
 
     Eigen::VectorXd g, full = Eigen::VectorXd::Zero(p.model.pattern().n);
-    Eigen::MatrixXd H;
-    patch.derivatives(p.contact, d, true, g, &H);
+    Eigen::MatrixXd H = Eigen::MatrixXd::Zero(count, count);
+    patch.gradient(p.contact, d, g);
+    patch.add_hessian(p.contact, d, true, H);
     p.contact.add_forces(p.model, moved, full);
     EXPECT_NEAR(g.norm(), full.norm(), 1e-10 * full.norm());  // no force outside the patch
     for (Eigen::Index i = 0; i < count; ++i)

@@ -66,9 +66,8 @@ Eigen::MatrixXd coupled_springs(Eigen::Index n) {
 Eigen::MatrixXd bedding(LinearSolid& solid, ContactPatch& patch) {
   solid.press(0.001);
   patch.start_from(solid.contact, solid.rest);
-  Eigen::VectorXd g;
-  Eigen::MatrixXd H;
-  patch.derivatives(solid.contact, Eigen::VectorXd::Zero(patch.size()), true, g, &H);
+  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(patch.size(), patch.size());
+  patch.add_hessian(solid.contact, Eigen::VectorXd::Zero(patch.size()), true, H);
   const Eigen::MatrixXd whole = H.selfadjointView<Eigen::Lower>();
   return 0.1 * whole + 1e-3 * Eigen::MatrixXd::Identity(patch.size(), patch.size());
 }
@@ -86,7 +85,8 @@ Step one_step(LinearSolid& solid, double from, double to, double seen = 1) {
   const auto equilibrium = [&](double depth) {
     solid.press(depth);
     patch.start_from(solid.contact, solid.rest);
-    return patch_minimum(patch, solid.contact, {S, zero}, zero, zero, 1e-12);
+    Eigen::MatrixXd scratch;
+    return patch_minimum(patch, solid.contact, {S, zero}, zero, zero, 1e-12, scratch);
   };
   const auto stored = [&](const Eigen::VectorXd& d) {
     return 0.5 * d.dot(S * d) + patch.energy(solid.contact, d);

@@ -201,7 +201,7 @@ TEST(TangentSolver, AgreesWithAFactorOfTheTangent) {
   settings.indentation.held_depths.clear();
   const CampaignContext context(body, settings, Engine::SharedFactor);
   SolveBatch batch(*context.rest_factor, 1);
-  SolveBatch::Member member(batch, 0);
+  SolveBatch::Member member(batch);
   const Vec3 site = context.place(settings.sites.front()).position;
   const SolidModel window = window_at(context, Eigen::Vector3d(site.data()));
   TangentSolver solver(context.model, window,

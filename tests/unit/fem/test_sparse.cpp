@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <deque>
 #include <thread>
 
 #include "fem/rest_factor.hpp"
@@ -136,13 +137,43 @@ TEST(SolveBatch, ServesAllMembersAndLetsThemLeave) {
   std::vector<std::thread> threads;
   for (int lane = 0; lane < 3; ++lane)
     threads.emplace_back([&, lane] {
-      SolveBatch::Member member(batch, lane);
+      SolveBatch::Member member(batch);
       Eigen::VectorXd x;
       for (int turn = 0; turn <= 2 * lane; ++turn) member.solve((lane + 1.0) * a.b, x);
       error[at(lane)] = (x - (lane + 1.0) * expected).norm() / expected.norm();
     });
   for (auto& thread : threads) thread.join();
   for (const double e : error) EXPECT_LT(e, 1e-3);
+}
+
+/// Seven sites in one batch, none in the other: some move, and nobody's solution changes.
+TEST(SolveBatch, MembersMoveToWhereFewerAre) {
+  const Assembled a;
+  const RestFactor factor(a.model.pattern(), nested_dissection(a.model.pattern()), a.K, "block");
+  Eigen::VectorXd alone;
+  {
+    SolveBatch batch(factor, 1);
+    SolveBatch::Member(batch).solve(a.b, alone);
+  }
+  std::deque<SolveBatch> crew;
+  for (const int members : {7, 0}) crew.emplace_back(factor, members, &crew);
+  std::vector<int> most(7, 0), wrong(7, 0);
+  std::vector<std::thread> threads;
+  for (int i = 0; i < 7; ++i)
+    threads.emplace_back([&, i] {
+      SolveBatch::Member member(crew[0]);
+      Eigen::VectorXd x;
+      for (int turn = 0; turn < 50; ++turn) {
+        member.solve(a.b, x);
+        if (x != alone) ++wrong[at(i)];
+        most[at(i)] = std::max(most[at(i)], crew[1].members());
+      }
+    });
+  for (auto& thread : threads) thread.join();
+  EXPECT_EQ(*std::max_element(wrong.begin(), wrong.end()), 0);
+  EXPECT_GE(*std::max_element(most.begin(), most.end()), 1);
+  EXPECT_LE(*std::max_element(most.begin(), most.end()), 3);  // a fourth would be one too many
+  for (const SolveBatch& batch : crew) EXPECT_EQ(batch.members(), 0);
 }
 
 }  // namespace

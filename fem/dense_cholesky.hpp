@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Dense Cholesky factors of some hundred unknowns, by BLAS.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace palpate::fem {
+
+/// A = L L^T in place: reads and writes the lower triangle of A, the upper one is not touched.
+/// False when A is not positive definite: A is then of no use.
+bool factorize_in_place(Eigen::MatrixXd& A);
+
+/// x = (L L^T)^-1 b with the lower triangle that factorize_in_place() left.
+Eigen::VectorXd solve_factorized(const Eigen::MatrixXd& L, Eigen::VectorXd b);
+
+/// Lower triangle of L L^T, of which nothing above the diagonal of L is read.
+Eigen::MatrixXd product_with_transpose(const Eigen::MatrixXd& L);
+
+}  // namespace palpate::fem

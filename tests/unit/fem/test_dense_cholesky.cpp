@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Dense factors by BLAS against matrices whose factors are known.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "fem/dense_cholesky.hpp"
+
+namespace palpate::fem {
+namespace {
+
+/// Sizes around the width of a panel, and a product of several.
+constexpr int kSizes[]{1, 3, 63, 64, 65, 200};
+
+/// What is not to be read is not a number.
+Eigen::MatrixXd lower_only(const Eigen::MatrixXd& A) {
+  Eigen::MatrixXd lower =
+      Eigen::MatrixXd::Constant(A.rows(), A.cols(), std::numeric_limits<double>::quiet_NaN());
+  lower.triangularView<Eigen::Lower>() = A;
+  return lower;
+}
+
+/// min(i, j), counted from one: every number of L is 1, so is every pivot.
+Eigen::MatrixXd of_ones(int n) {
+  return Eigen::MatrixXd::NullaryExpr(
+      n, n, [](Eigen::Index i, Eigen::Index j) { return static_cast<double>(std::min(i, j) + 1); });
+}
+
+TEST(DenseCholesky, OfAMatrixOfKnownFactor) {
+  for (const int n : kSizes) {
+    Eigen::MatrixXd A = lower_only(of_ones(n));
+    ASSERT_TRUE(factorize_in_place(A));
+    for (Eigen::Index j = 0; j < n; ++j)
+      for (Eigen::Index i = j; i < n; ++i) EXPECT_NEAR(A(i, j), 1, 1e-12);
+  }
+}
+
+TEST(DenseCholesky, SolvesWithTheLowerTriangleAlone) {
+  for (const int n : kSizes) {
+    // The inverse of min(i, j) is the second difference with a free end.
+    const Eigen::VectorXd b = Eigen::VectorXd::Random(n);
+    Eigen::MatrixXd A = lower_only(of_ones(n));
+    ASSERT_TRUE(factorize_in_place(A));
+    const Eigen::VectorXd x = solve_factorized(A, b);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double before = i > 0 ? b[i] - b[i - 1] : b[i];
+      const double after = i + 1 < n ? b[i + 1] - b[i] : 0;
+      EXPECT_NEAR(x[i], before - after, 1e-12);
+    }
+  }
+}
+
+TEST(DenseCholesky, ProductReadsNothingAboveTheDiagonal) {
+  for (const int n : kSizes) {
+    const Eigen::MatrixXd product =
+        product_with_transpose(lower_only(Eigen::MatrixXd::Constant(n, n, 1)));
+    for (Eigen::Index j = 0; j < n; ++j)
+      for (Eigen::Index i = j; i < n; ++i)
+        EXPECT_DOUBLE_EQ(product(i, j), static_cast<double>(j + 1));
+  }
+}
+
+TEST(DenseCholesky, SaysThatAMatrixIsNotPositiveDefinite) {
+  for (const int n : kSizes) {
+    Eigen::MatrixXd A = of_ones(n);
+    A(n - 1, n - 1) -= 1.5;  // the last pivot is 1
+    EXPECT_FALSE(factorize_in_place(A));
+  }
+}
+
+}  // namespace
+}  // namespace palpate::fem
