@@ -183,12 +183,25 @@ double peak_megabytes() {
   return 1e-3 * static_cast<double>(usage.ru_maxrss);
 }
 
+/// Of the upper face, at least a quarter of it from its border; evenly spread, however many
+/// (the sequence of the plastic number, M. Roberts 2018).
+std::vector<PressPoint> spread_points(std::size_t count) {
+  const auto coordinate = [](double step, std::size_t i) {
+    return 0.03 * (std::fmod(0.5 + step * static_cast<double>(i), 1.0) - 0.5);
+  };
+  std::vector<PressPoint> points;
+  for (std::size_t i = 0; i < count; ++i)
+    points.push_back(
+        {{coordinate(0.7548776662466927, i), coordinate(0.5698402909980532, i), 0}, {0, 0, -1}});
+  return points;
+}
+
 /// Normal and lateral path of each site. @return seconds on the clock.
 double campaign_seconds(const Body& body, std::size_t sites, int threads, CampaignReport& report) {
   CampaignSettings s = settings(0.49);
   s.indentation.held_depths = {0.002};
   s.threads = threads;
-  s.sites = inner_sites(body, sites);
+  s.points = spread_points(sites);
   run_campaign(body, s, report);
   return report.seconds;
 }
