@@ -13,13 +13,13 @@ namespace palpate::fem {
 namespace {
 
 /// The largest part is at most one over this of the work of a thread.
-constexpr double kPartsOfAThread = 8;
+constexpr double kPartsOfAThread = 2;
 
 double square_bytes(int rows) {
   return sizeof(double) * static_cast<double>(rows) * rows;
 }
 
-double column_bytes(const EliminationTree& tree, int k) {
+double bytes_of_columns(const EliminationTree& tree, int k) {
   return sizeof(double) * static_cast<double>(tree.columns[at(k)]) * tree.rows[at(k)];
 }
 
@@ -53,12 +53,12 @@ std::pair<std::vector<int>, std::vector<int>> opened(const EliminationTree& tree
   return {roots, top};
 }
 
-/// What one thread holds at most while it eliminates these.
+/// What one thread holds at most while it eliminates these, beside the columns of one.
 double peak_bytes(const EliminationTree& tree, const std::vector<int>& part) {
   double held = 0, peak = 0;
   for (const int k : part) {
     held += square_bytes(tree.below(k));
-    peak = std::max(peak, held + column_bytes(tree, k));
+    peak = std::max(peak, held);
     for (const int child : tree.children[at(k)]) held -= square_bytes(tree.below(child));
   }
   return peak;
@@ -98,6 +98,8 @@ double EliminationTree::work(int supernode) const {
 }
 
 EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
+  for (int k = 0; k < tree.supernodes(); ++k)
+    column_bytes = std::max(column_bytes, threads * bytes_of_columns(tree, k));
   const std::vector<double> work = work_of_subtrees(tree);
   double whole = 0;
   for (int k = 0; k < tree.supernodes(); ++k)
@@ -105,7 +107,7 @@ EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
   if (threads == 1) {
     parts.emplace_back(at(tree.supernodes()));
     std::iota(parts.back().begin(), parts.back().end(), 0);
-    bytes = peak_bytes(tree, parts.back());
+    update_bytes = peak_bytes(tree, parts.back());
     return;
   }
   std::vector<int> roots;
@@ -125,9 +127,9 @@ EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
   for (const auto& part : parts) peaks.push_back(peak_bytes(tree, part));
   std::sort(peaks.begin(), peaks.end(), std::greater<>());
   peaks.resize(std::min(peaks.size(), at(threads)));
-  bytes = std::accumulate(peaks.begin(), peaks.end(), 0.0);
-  for (const int root : roots) bytes += square_bytes(tree.below(root));
-  for (const int k : top) bytes += square_bytes(tree.below(k)) + column_bytes(tree, k);
+  update_bytes = std::accumulate(peaks.begin(), peaks.end(), 0.0);
+  for (const int root : roots) update_bytes += square_bytes(tree.below(root));
+  for (const int k : top) update_bytes += square_bytes(tree.below(k));
 }
 
 }  // namespace palpate::fem

@@ -30,7 +30,8 @@ struct EliminationPlan {
 
   std::vector<std::vector<int>> parts;  ///< supernodes, ascending; the part with most work first
   std::vector<int> top;                 ///< ascending
-  double bytes = 0;                     ///< of the fronts, at most
+  double update_bytes = 0;              ///< of what fronts leave to their parents, at most
+  double column_bytes = 0;              ///< of the columns that each thread works on, at most
 };
 
 }  // namespace palpate::fem

@@ -50,7 +50,6 @@ LargeVector<double> FrontMemory::zeros(std::size_t numbers) {
 
 void FrontMemory::give_back(LargeVector<double>&& memory) {
   LargeVector<double> mine = std::move(memory);
-  memory = {};
   if (mine.capacity() < kLarge) return;
   const std::lock_guard lock(mutex_);
   spare_.push_back(std::move(mine));

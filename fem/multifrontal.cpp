@@ -73,7 +73,7 @@ class Elimination {
         values_(values),
         finished_(finished),
         left_(plan.parts.size() + plan.top.size()),
-        memory_(plan.bytes),
+        memory_(plan.update_bytes),
         update_(tree_.parent.size()),
         awaited_(tree_.parent.size(), 0) {
     ready_.assign(plan.parts.begin(), plan.parts.end());
@@ -148,7 +148,9 @@ class Elimination {
   /// parent.
   bool eliminate(int k, Workplace& own) {
     const int columns = tree_.columns[at(k)], rows = tree_.rows[at(k)], below = tree_.below(k);
-    own.columns.assign(at(rows) * at(columns), 0.0);
+    const std::size_t numbers = at(rows) * at(columns);
+    if (own.columns.capacity() < numbers) own.columns = LargeVector<double>();  // never both
+    own.columns.assign(numbers, 0.0);
     update_[at(k)] = memory_.zeros(at(below) * at(below));
     const Block L{own.columns.data(), rows}, U{update_[at(k)].data(), below};
     assemble(k, L, U, own);

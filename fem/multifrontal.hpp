@@ -21,7 +21,10 @@ class Multifrontal {
   Multifrontal(const SparsePattern& pattern, const SupernodalView& view);
 
   /// Of the fronts, at most; the columns that are handed out are not counted.
-  double working_bytes(int threads) const { return EliminationPlan(tree_, threads).bytes; }
+  double working_bytes(int threads) const {
+    const EliminationPlan plan(tree_, threads);
+    return plan.update_bytes + plan.column_bytes;
+  }
 
   /// Takes the columns of L of a supernode, rows by columns, what is above the diagonal undefined.
   /// Called on any thread of the factorization, for several supernodes at once.

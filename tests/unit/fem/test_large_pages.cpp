@@ -4,10 +4,12 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <new>
 
 #include "fem/large_pages.hpp"
+#include "fem/memory.hpp"
 
 namespace palpate::fem {
 namespace {
@@ -37,6 +39,20 @@ TEST(LargePages, AreGivenBackAsAnyMemory) {
   EXPECT_EQ(static_cast<char*>(longer)[kLargePagesFrom - 1], 'x');
   std::free(longer);
   std::free(allocate_in_large_pages(1));
+}
+
+TEST(LargePages, MappedOnesAreTheSystemsAgainAtOnce) {
+  const std::size_t bytes = 2 * kLargePagesFrom + 1;
+  for (int i = 0; i < 3; ++i) {
+    void* memory = map_pages(bytes);
+    ASSERT_NE(memory, nullptr);
+    EXPECT_TRUE(starts_at_a_large_page(memory));
+    EXPECT_EQ(static_cast<char*>(memory)[bytes - 1], 0);
+    std::memset(memory, 'x', bytes);
+    const double with = resident_bytes();
+    unmap_pages(memory, bytes);
+    EXPECT_LT(resident_bytes(), with - static_cast<double>(kLargePagesFrom));
+  }
 }
 
 TEST(LargePages, RefuseMoreThanThereAreAddresses) {

@@ -134,12 +134,14 @@ TEST(EliminationPlan, HoldsWhatTheGroupsLeaveAndTheFrontOfThoseShared) {
   const EliminationPlan alone(tree, 1);
   const double update = 8.0 * kShared * kShared;
   const double last = 8.0 * (kShared + kOfGroup) * (kShared + kOfGroup);
-  EXPECT_DOUBLE_EQ(alone.bytes, (kGroups - 1) * update + last);
+  EXPECT_DOUBLE_EQ(alone.update_bytes, (kGroups - 1) * update);
+  EXPECT_DOUBLE_EQ(alone.column_bytes, last);
   EXPECT_EQ(alone.parts.size(), 1u);
   const EliminationPlan two(tree, 2);
   EXPECT_EQ(two.parts.size(), at(kGroups - 1));
   EXPECT_EQ(two.top, std::vector<int>{kGroups - 1});
-  EXPECT_GE(two.bytes, alone.bytes);
+  EXPECT_GE(two.update_bytes, alone.update_bytes);
+  EXPECT_DOUBLE_EQ(two.column_bytes, 2 * last);
 }
 
 }  // namespace
