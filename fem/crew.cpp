@@ -20,11 +20,11 @@ CrewSize crew_size(const RestFactor& factor, int threads, std::size_t sites, dou
   size.cores = std::max(1, threads);
   const std::size_t share = (sites + at(size.cores) - 1) / at(size.cores);
   const double fallback = 2 * factor.bytes();
-  const double bound = memory > 0 ? std::max(1.0, memory - fallback) : 0;
-  size.lanes = fitting_times(bound, size.cores * each,
-                             static_cast<int>(std::min<std::size_t>(kBatch, share)),
-                             "beside a factor for the site that needs its own, a site on each of " +
-                                 std::to_string(size.cores) + " cores");
+  size.lanes = fitting_times(
+      memory, size.cores * each, static_cast<int>(std::min<std::size_t>(kBatch, share)),
+      "a site on each of " + std::to_string(size.cores) +
+          " cores (memory is kept for the factor that one may need of its own)",
+      fallback);
   return size;
 }
 

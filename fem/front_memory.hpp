@@ -10,8 +10,8 @@
 namespace palpate::fem {
 
 /// What fronts that are done have left is taken again by those to come: the system clears every
-/// page that it hands out. Spare memory is given back before more than `bound` bytes are in use. Any
-/// thread may call it.
+/// page that it hands out. Spare memory is given back before more than `bound` bytes are in use.
+/// Any thread may call it.
 class FrontMemory {
  public:
   explicit FrontMemory(double bound) : bound_(bound) {}
