@@ -21,9 +21,13 @@ int size_of(const Eigen::MatrixXd& A) {
 }  // namespace
 
 bool factorize_in_place(Eigen::MatrixXd& A) {
+  return factorize_in_place(A.data(), size_of(A), size_of(A));
+}
+
+bool factorize_in_place(double* A, int n, int stride) {
   char lower = 'L';
-  blasint n = size_of(A), info = 0;
-  BLASFUNC(dpotrf)(&lower, &n, A.data(), &n, &info);
+  blasint info = 0;
+  BLASFUNC(dpotrf)(&lower, &n, A, &stride, &info);
   return info == 0;
 }
 

@@ -9,6 +9,8 @@ namespace palpate::fem {
 /// A = L L^T in place: reads and writes the lower triangle of A, the upper one is not touched.
 /// False when A is not positive definite: A is then of no use.
 bool factorize_in_place(Eigen::MatrixXd& A);
+/// The same of `n` rows and columns, stored by columns of `stride` numbers.
+bool factorize_in_place(double* A, int n, int stride);
 
 /// x = (L L^T)^-1 b with the lower triangle that factorize_in_place() left.
 Eigen::VectorXd solve_factorized(const Eigen::MatrixXd& L, Eigen::VectorXd b);

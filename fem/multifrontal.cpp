@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/multifrontal.hpp"
 
-#include <f77blas.h>
-
 #include <cblas.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 #include <utility>
 
 #include "fem/at.hpp"
+#include "fem/dense_cholesky.hpp"
 #include "fem/front_memory.hpp"
 
 namespace palpate::fem {
@@ -36,14 +35,6 @@ struct Block {
     return first + row + static_cast<std::ptrdiff_t>(column) * stride;
   }
 };
-
-/// False when the first `columns` rows are not positive definite.
-bool factorize_diagonal(const Block& L, int columns) {
-  char lower = 'L';
-  blasint n = columns, stride = L.stride, info = 0;
-  BLASFUNC(dpotrf)(&lower, &n, L.first, &stride, &info);
-  return info == 0;
-}
 
 /// Rows [first, last) below the diagonal: L21 = A21 L11^-T.
 void divide_rows(const Block& L, int columns, int first, int last) {
@@ -154,7 +145,7 @@ class Elimination {
     update_[at(k)] = memory_.zeros(at(below) * at(below));
     const Block L{own.columns.data(), rows}, U{update_[at(k)].data(), below};
     assemble(k, L, U, own);
-    if (!factorize_diagonal(L, columns)) return false;
+    if (!factorize_in_place(L.first, columns, rows)) return false;
     in_tiles(tiles_of(below), [&](int tile) {
       divide_rows(L, columns, columns + tile * kTile,
                   columns + std::min(below, (tile + 1) * kTile));

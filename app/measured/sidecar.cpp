@@ -177,7 +177,8 @@ void check_is_no_record(const std::filesystem::path& path) {
   constexpr std::array<std::string_view, 5> records{".csv", ".tsv", ".txt", ".dat", ".raw"};
   if (std::find(records.begin(), records.end(), path.extension().string()) == records.end()) return;
   refuse(path.string(), "this is a record, not its sidecar",
-         "describe it in a TOML file beside it (docs/measured.md) and give that file");
+         "describe it in a TOML file beside it, as data/measured/pad/presses.toml does "
+         "(docs/measured.md), and give that file");
 }
 
 }  // namespace
