@@ -8,8 +8,8 @@
 #include "app/export/deck.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/vtkhdf/grids.hpp"
-#include "fem/pressure_smoothness.hpp"
-#include "fem/stuck_patch.hpp"
+#include "fem/campaign/stuck_patch.hpp"
+#include "fem/solid/pressure_smoothness.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 

@@ -124,7 +124,7 @@ SAMPLES = {
     "mesher/inner.cpp": '#include "mesher/inner.hpp"\n',
     "fitting/good.cpp": '#include "runtime/palpate.h"\n',
     "fem/bad.cpp": '#include <vector>\n#include "mesher/mesher.hpp"\n',
-    "fitting/bad.cpp": ' # include "fem/campaign.hpp"\n',
+    "fitting/bad.cpp": ' # include "fem/campaign/campaign.hpp"\n',
     "runtime/bad.hpp": "#include <Eigen/Dense>\n",
     "format/bad.cpp": "#include <fmt/format.h>\n",
     "app/bad.cpp": '#include "mesher/inner.hpp"\n',

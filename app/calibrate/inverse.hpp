@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "fem/sensitivity.hpp"
+#include "fem/campaign/sensitivity.hpp"
 #include "fitting/calibrate/least_squares.hpp"
 #include "format/body.hpp"
 #include "format/curves.hpp"

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <map>
 
-#include "fem/at.hpp"
-#include "fem/indentation.hpp"
-#include "fem/stuck_patch.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/stuck_patch.hpp"
+#include "format/at.hpp"
 #include "format/error.hpp"
 
 namespace palpate::app {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "fem/campaign.hpp"
-#include "fem/quadratic_mesh.hpp"
-#include "fem/tool_mesh.hpp"
+#include "fem/campaign/campaign.hpp"
+#include "fem/contact/tool_mesh.hpp"
+#include "fem/mesh/quadratic_mesh.hpp"
 
 namespace palpate::app {
 

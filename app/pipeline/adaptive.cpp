@@ -12,7 +12,7 @@
 
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/settings.hpp"
-#include "fem/rest_factor.hpp"
+#include "fem/factor/rest_factor.hpp"
 #include "fitting/fidelity/fidelity.hpp"
 #include "fitting/fidelity/skin.hpp"
 #include "fitting/nearest_rank.hpp"

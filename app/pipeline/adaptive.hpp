@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "app/pipeline/workspace.hpp"
-#include "fem/campaign.hpp"
+#include "fem/campaign/campaign.hpp"
 #include "fitting/fidelity/fidelity.hpp"
 #include "format/body.hpp"
 

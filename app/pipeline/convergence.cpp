@@ -10,7 +10,7 @@
 #include "app/console.hpp"
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/settings.hpp"
-#include "fem/campaign.hpp"
+#include "fem/campaign/campaign.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 

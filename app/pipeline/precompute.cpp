@@ -11,7 +11,7 @@
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
 #include "app/pipeline/stages.hpp"
-#include "fem/cholesky.hpp"
+#include "fem/factor/cholesky.hpp"
 #include "format/body.hpp"
 #include "format/sha256.hpp"
 #include "format/site_journal.hpp"

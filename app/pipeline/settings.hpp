@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/pipeline/workspace.hpp"
-#include "fem/campaign.hpp"
+#include "fem/campaign/campaign.hpp"
 #include "fitting/fitting.hpp"
 #include "mesher/mesher.hpp"
 

@@ -20,8 +20,8 @@
 
 #include "app/blas_kernel.hpp"
 #include "app/export/deck.hpp"
-#include "fem/campaign.hpp"
-#include "fem/cholesky.hpp"
+#include "fem/campaign/campaign.hpp"
+#include "fem/factor/cholesky.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "app/blas_kernel.hpp"
-#include "fem/sensitivity.hpp"
+#include "fem/campaign/sensitivity.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

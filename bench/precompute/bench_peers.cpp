@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "app/blas_kernel.hpp"
-#include "fem/campaign.hpp"
+#include "fem/campaign/campaign.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

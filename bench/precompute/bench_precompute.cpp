@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "app/blas_kernel.hpp"
-#include "fem/cholesky.hpp"
-#include "fem/indentation.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/factor/cholesky.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

@@ -7,8 +7,8 @@
 
 #include <array>
 
+#include "fem/laws/material.hpp"
 #include "fem/laws/volumetric.hpp"
-#include "fem/material.hpp"
 
 namespace palpate::fem {
 

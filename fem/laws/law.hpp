@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "fem/laws/holzapfel_gasser_ogden.hpp"
-#include "fem/material.hpp"
+#include "fem/laws/material.hpp"
 
 namespace palpate::fem {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "fem/material.hpp"
+#include "fem/laws/material.hpp"
 
 namespace palpate::fem {
 

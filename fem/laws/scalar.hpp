@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "fem/lanes.hpp"
+#include "fem/laws/lanes.hpp"
 
 namespace palpate::fem {
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "fem/at.hpp"
+#include "format/at.hpp"
 
 namespace palpate::test {
 

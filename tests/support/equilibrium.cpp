@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <array>
 
-#include "fem/cholesky.hpp"
-#include "fem/newton.hpp"
+#include "fem/factor/cholesky.hpp"
+#include "fem/solve/newton.hpp"
 
 namespace palpate::test {
 

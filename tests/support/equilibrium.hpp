@@ -5,7 +5,7 @@
 #include <functional>
 #include <vector>
 
-#include "fem/solid_model.hpp"
+#include "fem/solid/solid_model.hpp"
 
 namespace palpate::test {
 

@@ -5,8 +5,8 @@
 
 #include <vector>
 
-#include "fem/indentation.hpp"
-#include "fem/stuck_patch.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/stuck_patch.hpp"
 
 namespace palpate::test {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fem/at.hpp"
+#include "format/at.hpp"
 #include "format/edge.hpp"
 #include "tests/support/block_body.hpp"
 

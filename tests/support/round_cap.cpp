@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "fem/at.hpp"
+#include "format/at.hpp"
 #include "tests/support/prism_body.hpp"
 
 namespace palpate::test {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "fem/campaign.hpp"
+#include "fem/campaign/campaign.hpp"
 
 namespace palpate::test {
 

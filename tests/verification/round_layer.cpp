@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fem/at.hpp"
+#include "format/at.hpp"
 #include "tests/support/prism_body.hpp"
 
 namespace palpate::test {

@@ -2,7 +2,7 @@
 // A round layer of prisms with its base held, refined towards a circle on the middle of its top.
 #pragma once
 
-#include "fem/indentation.hpp"
+#include "fem/campaign/indentation.hpp"
 
 namespace palpate::test {
 

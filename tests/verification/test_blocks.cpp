@@ -11,8 +11,8 @@
 #include <random>
 #include <utility>
 
-#include "fem/at.hpp"
 #include "fem/laws/law_table.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
 #include "tests/verification/record.hpp"

@@ -10,9 +10,9 @@
 #include <sstream>
 
 #include "app/export/deck.hpp"
-#include "fem/at.hpp"
-#include "fem/indentation.hpp"
-#include "fem/stuck_patch.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/stuck_patch.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
 #include "tests/verification/record.hpp"

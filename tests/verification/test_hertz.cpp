@@ -9,8 +9,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "fem/at.hpp"
-#include "fem/indentation.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/verification/record.hpp"
 

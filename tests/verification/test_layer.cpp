@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fem/indentation.hpp"
+#include "fem/campaign/indentation.hpp"
 #include "tests/verification/record.hpp"
 #include "tests/verification/round_layer.hpp"
 

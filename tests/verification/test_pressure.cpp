@@ -8,9 +8,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "fem/at.hpp"
-#include "fem/indentation.hpp"
-#include "fem/pressure_smoothness.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/solid/pressure_smoothness.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
 #include "tests/verification/record.hpp"

@@ -9,9 +9,9 @@
 #include <functional>
 #include <utility>
 
-#include "fem/at.hpp"
 #include "fem/laws/invariant_energies.hpp"
-#include "fem/solid_model.hpp"
+#include "fem/solid/solid_model.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
 #include "tests/support/prism_body.hpp"

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "fem/at.hpp"
+#include "format/at.hpp"
 #include "tests/support/prism_body.hpp"
 #include "tests/verification/record.hpp"
 #include "tests/verification/round_layer.hpp"

@@ -8,8 +8,8 @@
 #include <ostream>
 #include <string>
 
-#include "fem/at.hpp"
-#include "fem/indentation.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/verification/record.hpp"
 

@@ -12,8 +12,8 @@
 #include <set>
 
 #include "app/export/deck.hpp"
-#include "fem/at.hpp"
-#include "fem/tool_mesh.hpp"
+#include "fem/contact/tool_mesh.hpp"
+#include "format/at.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"

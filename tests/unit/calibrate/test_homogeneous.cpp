@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "fem/material.hpp"
+#include "fem/laws/material.hpp"
 #include "format/error.hpp"
 #include "tests/unit/calibrate/measured_tests.hpp"
 

@@ -8,12 +8,12 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "fem/at.hpp"
 #include "fem/laws/invariant_energies.hpp"
 #include "fem/laws/law_table.hpp"
 #include "fem/laws/ogden.hpp"
 #include "fem/laws/saint_venant_kirchhoff.hpp"
 #include "fitting/calibrate/dual.hpp"
+#include "format/at.hpp"
 #include "tests/support/sample_laws.hpp"
 
 namespace palpate::fem {

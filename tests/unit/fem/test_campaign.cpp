@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <iterator>
 
-#include "fem/at.hpp"
-#include "fem/campaign.hpp"
-#include "fem/rest_factor.hpp"
+#include "fem/campaign/campaign.hpp"
+#include "fem/factor/rest_factor.hpp"
+#include "format/at.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 

@@ -2,7 +2,7 @@
 // The work that a press in large increments says it did.
 #include <gtest/gtest.h>
 
-#include "fem/indentation.hpp"
+#include "fem/campaign/indentation.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

@@ -3,8 +3,8 @@
 
 #include <Eigen/Geometry>
 
-#include "fem/at.hpp"
-#include "fem/contact_patch.hpp"
+#include "fem/contact/contact_patch.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

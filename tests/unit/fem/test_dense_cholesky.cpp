@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "fem/dense_cholesky.hpp"
+#include "fem/factor/dense_cholesky.hpp"
 
 namespace palpate::fem {
 namespace {

@@ -10,9 +10,9 @@
 #include <map>
 #include <numeric>
 
-#include "fem/at.hpp"
-#include "fem/divided_mesh.hpp"
-#include "fem/indentation.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/mesh/divided_mesh.hpp"
+#include "format/at.hpp"
 #include "format/edge.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"

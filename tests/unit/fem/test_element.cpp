@@ -6,7 +6,7 @@
 #include <random>
 
 #include "fem/laws/law_table.hpp"
-#include "fem/solid_model.hpp"
+#include "fem/solid/solid_model.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
 

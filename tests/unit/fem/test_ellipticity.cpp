@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Strong ellipticity of the laws: states in closed form at which it is lost, a search over all
 // directions, and laws that never lose it.
-#include "fem/ellipticity.hpp"
+#include "fem/solid/ellipticity.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,11 +9,11 @@
 #include <numbers>
 #include <random>
 
-#include "fem/at.hpp"
-#include "fem/element.hpp"
 #include "fem/laws/law.hpp"
 #include "fem/laws/law_table.hpp"
-#include "fem/solid_model.hpp"
+#include "fem/solid/element.hpp"
+#include "fem/solid/solid_model.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
 

@@ -4,9 +4,9 @@
 
 #include <Eigen/Geometry>
 
-#include "fem/at.hpp"
 #include "fem/laws/law.hpp"
 #include "fem/laws/law_table.hpp"
+#include "format/at.hpp"
 
 namespace palpate::fem {
 namespace {

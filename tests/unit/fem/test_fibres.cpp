@@ -5,9 +5,9 @@
 #include <cmath>
 #include <random>
 
-#include "fem/at.hpp"
-#include "fem/fibre_potential.hpp"
-#include "fem/indentation.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/solid/fibre_potential.hpp"
+#include "format/at.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 

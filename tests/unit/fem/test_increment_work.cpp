@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "fem/at.hpp"
-#include "fem/increment_work.hpp"
+#include "fem/contact/increment_work.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

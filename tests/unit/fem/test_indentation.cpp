@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "fem/at.hpp"
-#include "fem/indentation.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

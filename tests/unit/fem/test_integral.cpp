@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "fem/indentation.hpp"
+#include "fem/campaign/indentation.hpp"
 
 namespace palpate::fem {
 namespace {

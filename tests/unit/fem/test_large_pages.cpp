@@ -8,8 +8,8 @@
 #include <memory>
 #include <new>
 
-#include "fem/large_pages.hpp"
-#include "fem/memory.hpp"
+#include "fem/factor/large_pages.hpp"
+#include "fem/factor/memory.hpp"
 
 namespace palpate::fem {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "fem/at.hpp"
-#include "fem/indentation.hpp"
-#include "fem/stuck_patch.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/stuck_patch.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/patch_work.hpp"
 #include "tests/support/sample_laws.hpp"

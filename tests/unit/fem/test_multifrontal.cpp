@@ -10,8 +10,8 @@
 #include <new>
 #include <numeric>
 
-#include "fem/at.hpp"
-#include "fem/multifrontal.hpp"
+#include "fem/factor/multifrontal.hpp"
+#include "format/at.hpp"
 
 namespace palpate::fem {
 namespace {

@@ -7,9 +7,9 @@
 #include <random>
 #include <tuple>
 
-#include "fem/at.hpp"
 #include "fem/laws/law_table.hpp"
-#include "fem/newton.hpp"
+#include "fem/solve/newton.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "fem/pressure_smoothness.hpp"
-#include "fem/solid_model.hpp"
+#include "fem/solid/pressure_smoothness.hpp"
+#include "fem/solid/solid_model.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

@@ -6,9 +6,9 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "fem/at.hpp"
-#include "fem/indentation.hpp"
-#include "fem/rigid_motion.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/solve/rigid_motion.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

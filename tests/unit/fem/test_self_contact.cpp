@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fem/self_contact.hpp"
+#include "fem/contact/self_contact.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "fem/indentation.hpp"
-#include "fem/sensitivity.hpp"
-#include "fem/tangent_solver.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/sensitivity.hpp"
+#include "fem/solve/tangent_solver.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 

@@ -6,8 +6,8 @@
 #include <deque>
 #include <thread>
 
-#include "fem/rest_factor.hpp"
-#include "fem/solid_model.hpp"
+#include "fem/factor/rest_factor.hpp"
+#include "fem/solid/solid_model.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

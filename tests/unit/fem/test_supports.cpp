@@ -6,10 +6,10 @@
 
 #include <cmath>
 
-#include "fem/at.hpp"
-#include "fem/indentation.hpp"
-#include "fem/preload.hpp"
-#include "fem/stuck_patch.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/stuck_patch.hpp"
+#include "fem/solve/preload.hpp"
+#include "format/at.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"

@@ -8,10 +8,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fem/at.hpp"
-#include "fem/indentation.hpp"
-#include "fem/preload.hpp"
-#include "fem/stuck_patch.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/stuck_patch.hpp"
+#include "fem/solve/preload.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/patch_work.hpp"
 

@@ -4,8 +4,8 @@
 
 #include <cstring>
 
-#include "fem/at.hpp"
-#include "fem/campaign.hpp"
+#include "fem/campaign/campaign.hpp"
+#include "format/at.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {

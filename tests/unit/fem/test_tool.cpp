@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fem/tool.hpp"
+#include "fem/contact/tool.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

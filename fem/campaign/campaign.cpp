@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign/campaign.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <mutex>
+#include <numeric>
+
+#include "fem/campaign/crew.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/region_laws.hpp"
+#include "fem/factor/cholesky.hpp"
+#include "fem/solid/pressure_smoothness.hpp"
+#include "format/at.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+std::vector<std::int32_t> chosen_sites(const Body& body, std::vector<std::int32_t> sites) {
+  const auto& surface = body.response;
+  const auto count = static_cast<std::int32_t>(surface.node.size());
+  if (sites.empty())
+    for (std::int32_t v = 0; v < count; ++v)
+      if (surface.is_site[at(v)]) sites.push_back(v);
+  std::sort(sites.begin(), sites.end());
+  sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
+  for (const auto v : sites)
+    if (v < 0 || v >= count || !surface.is_site[at(v)])
+      throw Error(ErrorKind::Configuration, body.name,
+                  "response vertex " + std::to_string(v) + " is not a site",
+                  "choose vertices outside the supports, from 0 to " + std::to_string(count - 1));
+  if (sites.empty())
+    throw Error(ErrorKind::Configuration, body.name, "the body has no site to press",
+                "shrink the supports so that some response vertices stay free");
+  return sites;
+}
+
+/// What the results are numbered by: the chosen response vertices, or the points by their index.
+std::vector<std::int32_t> chosen_places(const Body& body, const CampaignSettings& settings) {
+  if (settings.points.empty()) return chosen_sites(body, settings.sites);
+  std::vector<std::int32_t> index(settings.points.size());
+  std::iota(index.begin(), index.end(), 0);
+  for (const PressPoint& point : settings.points)
+    if (!(std::abs(norm(point.inward) - 1) < 1e-6))
+      throw Error(ErrorKind::Configuration, body.name,
+                  "a point to press has a direction that is not of unit length",
+                  "give unit directions into the body");
+  return index;
+}
+
+/// Puts known sites into their places. @return the places of the others.
+std::vector<std::size_t> take_over(const std::vector<SiteCurves>& known, Curves& curves) {
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < curves.sites.size(); ++i) {
+    const auto same = [&](const SiteCurves& site) { return site.vertex == curves.sites[i].vertex; };
+    const auto found = std::find_if(known.begin(), known.end(), same);
+    if (found == known.end())
+      open.push_back(i);
+    else
+      curves.sites[i] = *found;
+  }
+  return open;
+}
+
+/// Solves the sites that are open and tells of each as it finishes.
+class Crew {
+ public:
+  /// `open`: the places of `curves` that are to be solved.
+  Crew(const CampaignContext& context, const CampaignSettings& settings,
+       std::vector<std::size_t> open, Curves& curves)
+      : context_(context), settings_(settings), open_(std::move(open)), curves_(curves) {
+    progress_.total = static_cast<std::int64_t>(curves.sites.size());
+    progress_.done = progress_.total - static_cast<std::int64_t>(open_.size());
+    progress_.known = progress_.done;
+    for (const SiteCurves& site : settings.known)
+      if (site.status != SiteStatus::Complete) ++progress_.failed;
+  }
+
+  void run() {
+    const CrewSize size =
+        crew_size(*context_.rest_factor, settings_.threads, open_.size(), settings_.memory,
+                  bytes_of_site(context_, curves_.sites[open_.front()].vertex));
+    work_abreast(*context_.rest_factor, size, open_.size(),
+                 [this](SolveBatch::Member& member, std::size_t i) {
+                   solve(member, curves_.sites[open_[i]]);
+                 });
+  }
+
+ private:
+  void solve(SolveBatch::Member& member, SiteCurves& place) {
+    {
+      const std::lock_guard lock(mutex_);
+      ++progress_.running;
+    }
+    SiteCurves site = SiteSolver(context_, &member).solve(place.vertex);
+    const std::lock_guard lock(mutex_);
+    --progress_.running;
+    ++progress_.done;
+    if (site.status != SiteStatus::Complete) ++progress_.failed;
+    place = std::move(site);
+    if (settings_.finished) settings_.finished(place);
+    if (settings_.progress) settings_.progress(progress_);
+  }
+
+  const CampaignContext& context_;
+  const CampaignSettings& settings_;
+  std::vector<std::size_t> open_;
+  Curves& curves_;
+  std::mutex mutex_;
+  CampaignProgress progress_;
+};
+
+/// What else than held nodes carries the body, and how far it sags.
+void add_supports(const CampaignContext& context, const CampaignSettings& settings,
+                  CampaignReport& report) {
+  if (const auto& foundation = context.body.foundation; !foundation.empty())
+    report.facts.emplace_back("facets_on_springs", std::to_string(foundation.size()));
+  if (!settings.gravity.acts()) return;
+  const double sag = context.rest.colwise().norm().maxCoeff();
+  report.facts.emplace_back("largest_sag_m", std::to_string(sag));
+  report.facts.emplace_back("min_jacobian_before_touch", std::to_string(context.at_rest.min_J));
+}
+
+}  // namespace
+
+Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
+                    KeptFactor* kept) {
+  const auto start = std::chrono::steady_clock::now();
+  const auto passed = [&] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  check_indentation(settings.indentation);
+  Curves curves;
+  const ToolGeometry& tool = settings.indentation.tool;
+  curves.tool = {name_of(tool.shape), tool.radius, name_of(settings.indentation.friction),
+                 tool.edge_radius, tool.length};
+  curves.depth = settings.indentation.depth;
+  curves.lateral_travel = settings.indentation.lateral_travel;
+  for (const auto vertex : chosen_places(body, settings)) {
+    curves.sites.emplace_back();
+    curves.sites.back().vertex = vertex;
+  }
+  const std::vector<std::size_t> open = take_over(settings.known, curves);
+  const CampaignContext context(body, settings, Engine::SharedFactor, kept);
+  report.set_up_seconds = passed();
+  if (!open.empty()) Crew(context, settings, open, curves).run();
+
+  report.unknowns = context.model.pattern().n;
+  report.seconds = passed();
+  for (const auto& site : curves.sites) report.cpu_seconds += site.cpu_seconds;
+  report.facts = {
+      {"element", name_of(settings.dilatation)},
+      {"nodes", std::to_string(context.model.mesh().nodes())},
+      {"unknowns", std::to_string(report.unknowns)},
+      {"rest_factor_bytes", std::to_string(static_cast<long long>(context.rest_factor->bytes()))},
+      {"blas_kernel", blas_kernel()},
+      {"solver", solver_versions()}};
+  if (settings.indentation.divide_under_tool)
+    report.facts.emplace_back("under_the_tool", "elements divided in eight");
+  add_supports(context, settings, report);
+  return curves;
+}
+
+DeformedState deformed_state(const Body& body, const CampaignSettings& settings,
+                             std::int32_t vertex) {
+  check_indentation(settings.indentation);
+  chosen_sites(body, {vertex});
+  CampaignSettings normal_only = settings;
+  normal_only.indentation.held_depths.clear();
+  const CampaignContext context(body, normal_only, Engine::SharedFactor);
+  Displacement u;
+  const SiteCurves curves = solve_site(context, vertex, &u);
+  DeformedState state;
+  for (std::size_t i = 0; i < body.nodes.size(); ++i) {
+    const auto column = static_cast<Eigen::Index>(i);
+    state.displacement.push_back({u(0, column), u(1, column), u(2, column)});
+  }
+  context.model.element_fields(u, state.strain_energy_density, state.pressure);
+  SmoothPressure smooth = smooth_pressure(context.model.mesh(), state.pressure);
+  state.smooth_pressure = std::move(smooth.pressure);
+  state.pressure_alternation = smooth.alternation;
+  state.sample = curves.paths.front().samples.back();
+  return state;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign/crew.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "fem/factor/memory.hpp"
+#include "format/at.hpp"
+
+namespace palpate::fem {
+
+CrewSize crew_size(const RestFactor& factor, int threads, std::size_t sites, double memory,
+                   double each) {
+  CrewSize size;
+  size.cores = std::max(1, threads);
+  const std::size_t share = (sites + at(size.cores) - 1) / at(size.cores);
+  const double fallback = 2 * factor.bytes();
+  size.lanes = fitting_times(
+      memory, size.cores * each, static_cast<int>(std::min<std::size_t>(kBatch, share)),
+      "a site on each of " + std::to_string(size.cores) +
+          " cores (memory is kept for the factor that one may need of its own)",
+      fallback);
+  return size;
+}
+
+void work_abreast(const RestFactor& factor, const CrewSize& size, std::size_t count,
+                  const std::function<void(SolveBatch::Member&, std::size_t)>& work) {
+  std::atomic<std::size_t> next{0};
+  std::mutex mutex;
+  std::exception_ptr failure;
+  const auto serve = [&](SolveBatch& batch) {
+    use_one_thread_per_site();
+    SolveBatch::Member member(batch);
+    try {
+      for (std::size_t i = next++; i < count; i = next++) work(member, i);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!failure) failure = std::current_exception();
+      next = count;
+    }
+  };
+  std::deque<SolveBatch> batches;
+  std::vector<std::thread> threads;
+  for (int core = 0; core < size.cores; ++core) batches.emplace_back(factor, size.lanes, &batches);
+  for (SolveBatch& batch : batches)
+    for (int lane = 0; lane < size.lanes; ++lane)
+      threads.emplace_back([&serve, &batch] { serve(batch); });
+  for (std::thread& thread : threads) thread.join();
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign/region_laws.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fem/solid/fibre_potential.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const auto& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+[[noreturn]] void refuse(const std::string& where, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, where, problem, remedy);
+}
+
+void require_positive(const char* name, double value) {
+  if (!(std::isfinite(value) && value > 0))
+    refuse("indentation", std::string(name) + " = " + std::to_string(value) + " is out of range",
+           std::string("give a finite ") + name + " > 0");
+}
+
+}  // namespace
+
+LawConstants placed_on(const Body& body, std::int32_t region, const LawConstants& law) {
+  if (!law_entry(law.law).has_fibres) return law;
+  const std::string where =
+      "material of region '" + body.region_names[static_cast<std::size_t>(region)] + "'";
+  LawConstants placed = law;
+  if (law.fibres.kind == FibreField::Kind::Laplace) {
+    law.fibres.check(where);
+    placed.fibres = fibres_of_potential(body, region, law.fibres, where);
+  }
+  if (placed.fibres.kind == FibreField::Kind::Sampled && !placed.fibres.samples)
+    refuse(where, "the directions of its fibres are missing", "read them from their file first");
+  return placed;
+}
+
+std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMaterial>& materials) {
+  for (const auto& material : materials)
+    if (std::find(body.region_names.begin(), body.region_names.end(), material.region) ==
+        body.region_names.end())
+      refuse("material of region '" + material.region + "'", "the body has no such region",
+             "use one of: " + joined(body.region_names));
+  std::vector<Law> laws;
+  for (const auto& region : body.region_names) {
+    const auto is_it = [&](const RegionMaterial& m) { return m.region == region; };
+    const auto count = std::count_if(materials.begin(), materials.end(), is_it);
+    if (count != 1)
+      refuse("region '" + region + "'", std::to_string(count) + " materials are given for it",
+             "give exactly one");
+    const auto& law = std::find_if(materials.begin(), materials.end(), is_it)->law;
+    const std::string where = "material of region '" + region + "'";
+    check_law(law, where);
+    laws.push_back(make_law(placed_on(body, static_cast<std::int32_t>(laws.size()), law), where));
+  }
+  return laws;
+}
+
+void check_indentation(const IndentationSettings& settings) {
+  check_tool(settings.tool);
+  const ToolGeometry& tool = settings.tool;
+  if (tool.shape == ToolShape::Disc && tool.edge_radius == 0 &&
+      settings.friction == ToolFriction::Frictionless)
+    refuse("tool", "a disc with a sharp edge cannot be pressed without friction",
+           "give it an edge radius (a hundredth of its own is enough), or let it stick");
+  require_positive("depth", settings.depth);
+  require_positive("force_tolerance", settings.force_tolerance);
+  require_positive("increments", settings.increments);
+  for (const double held : settings.held_depths) {
+    require_positive("held_depths", held);
+    if (held > settings.depth * (1 + 1e-12))
+      refuse("indentation", "a held depth of " + std::to_string(held) + " m lies beyond the depth",
+             "keep held_depths at most " + std::to_string(settings.depth) + " m");
+  }
+  if (settings.held_depths.empty() || settings.azimuths.empty()) return;
+  require_positive("lateral_travel", settings.lateral_travel);
+  require_positive("lateral_increments", settings.lateral_increments);
+}
+
+}  // namespace palpate::fem

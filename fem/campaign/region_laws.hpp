@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "fem/campaign/campaign.hpp"
+#include "fem/laws/law.hpp"
+
+namespace palpate::fem {
+
+/// The law of each region of the body, in its order.
+/// @throws Error(Configuration) for a region without a law, a law without a region, a region named
+/// twice, or constants out of range.
+std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMaterial>& materials);
+
+/// The law of a region, its fibres where they depend on the body as samples of it.
+/// @throws Error(Configuration) as fibres_of_potential, and where a file of fibres was not read.
+LawConstants placed_on(const Body& body, std::int32_t region, const LawConstants& law);
+
+/// @throws Error(Configuration) when a length is not positive and finite, a held depth lies beyond
+/// the depth, a count is below one, or a disc with a sharp edge is pressed without friction.
+void check_indentation(const IndentationSettings& settings);
+
+}  // namespace palpate::fem

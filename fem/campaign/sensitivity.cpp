@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign/sensitivity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+
+#include "fem/campaign/crew.hpp"
+#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/region_laws.hpp"
+#include "fem/laws/law.hpp"
+#include "fem/solve/tangent_solver.hpp"
+#include "format/at.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fem {
+namespace {
+
+/// A constant as the tangent-linear model needs it: the body with a little more and a little less
+/// of it. The laws are smooth in their constants, so that central differences over 1e-5 are exact
+/// to about 1e-9.
+struct Varied {
+  SolidModel more, less;
+  double width;    ///< between the two values
+  double penalty;  ///< d(ln eps)/d(constant)
+
+  /// d(internal forces)/d(constant).
+  Eigen::VectorXd slope(const Displacement& u) const {
+    Eigen::VectorXd high, low;
+    more.forces(u, high);
+    less.forces(u, low);
+    return (high - low) / width;
+  }
+};
+
+/// With gravity, where the tool touches would depend on the constants through the sag.
+void refuse_what_is_not_differentiated(const CampaignSettings& settings) {
+  if (settings.indentation.divide_under_tool)
+    throw Error(ErrorKind::Configuration, "divide_under_tool",
+                "gradients are those of the elements of the body, not of divided ones",
+                "calibrate without solver.divide_under_tool, on a smaller mesh.element_size");
+  if (!settings.gravity.acts()) return;
+  throw Error(ErrorKind::Configuration, "gravity",
+              "the gradients by constants of a body that sags are not computed",
+              "calibrate without [gravity]");
+}
+
+double& value_of(CampaignSettings& settings, const RegionConstant& constant) {
+  for (RegionMaterial& material : settings.materials)
+    if (material.region == constant.region) return material.law.at(constant.name);
+  throw Error(ErrorKind::Configuration, "region '" + constant.region + "'", "it has no material",
+              "vary a constant of a region that the case describes");
+}
+
+std::vector<Law> unchecked_laws(const Body& body, const CampaignSettings& settings) {
+  std::vector<Law> laws;
+  for (const std::string& region : body.region_names)
+    for (const RegionMaterial& material : settings.materials)
+      if (material.region == region)
+        laws.push_back(
+            unchecked_law(placed_on(body, static_cast<std::int32_t>(laws.size()), material.law)));
+  return laws;
+}
+
+Varied varied(const Body& body, const CampaignSettings& settings, const RegionConstant& constant) {
+  constexpr double kStep = 1e-5;
+  CampaignSettings more = settings, less = settings;
+  const double value = value_of(more, constant);
+  // The bulk modulus goes as 1/(1 - 2 nu).
+  const double step = constant.name == "poisson" ? kStep * (0.5 - value)
+                      : value != 0               ? kStep * std::abs(value)
+                                                 : kStep;
+  value_of(more, constant) = value + step;
+  value_of(less, constant) = value - step;
+  Varied v{SolidModel(body, unchecked_laws(body, more), settings.dilatation),
+           SolidModel(body, unchecked_laws(body, less), settings.dilatation), 2 * step, 0};
+  v.penalty = std::log(contact_stiffness(body, more, v.more).contact /
+                       contact_stiffness(body, less, v.less).contact) /
+              v.width;
+  return v;
+}
+
+/// Differentiates at the equilibria of one site, by the adjoint of its tangent.
+class Differentiator {
+ public:
+  Differentiator(const CampaignContext& context, const std::vector<Varied>& constants,
+                 SolveBatch::Member& batch, const PressPoint& place)
+      : context_(context),
+        constants_(constants),
+        window_(window_at(context, Eigen::Vector3d(place.position.data()))),
+        solver_(context.model, window_,
+                [&batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch.solve(b, x); }) {}
+
+  /// Of the force along `direction`. False when the stiffness is not positive definite: the
+  /// equilibrium is at a limit point. `adjoint`: K^-1 dF/du.
+  bool differentiate(const ToolContact& contact, const Displacement& u,
+                     const Eigen::Vector3d& direction, std::vector<double>& slope,
+                     Eigen::VectorXd& adjoint) {
+    slope.assign(constants_.size(), 0.0);
+    if (constants_.empty()) return true;
+    Eigen::VectorXd by_u = Eigen::VectorXd::Zero(context_.model.pattern().n);
+    contact.add_tool_force_gradient(context_.model, u, direction, by_u);
+    if (!solve(contact, u, by_u, adjoint)) return false;
+    const double force = contact.tool_force(u).dot(direction);
+    const auto residuals = residual_slopes(contact, u);
+    for (std::size_t i = 0; i < constants_.size(); ++i)
+      slope[i] = constants_[i].penalty * force - adjoint.dot(residuals[i]);
+    return true;
+  }
+
+  /// Keep a state at which the surface is tied after it was observed, in the order of the path.
+  void keep(const ToolContact& contact, const Displacement& u) {
+    bonded_.push_back({contact, u, residual_slopes(contact, u)});
+  }
+  std::size_t kept() const { return bonded_.size(); }
+
+  /// Of a state whose ties were made at the first `count` of the states that were kept.
+  bool differentiate_tied(const ToolContact& contact, const Displacement& u, std::size_t count,
+                          const Eigen::Vector3d& direction, std::vector<double>& slope) {
+    Eigen::VectorXd adjoint;
+    if (!differentiate(contact, u, direction, slope, adjoint)) return false;
+    if (constants_.empty()) return true;
+    Displacement multiplier = Displacement::Zero(3, u.cols());
+    move(context_.model, 1, adjoint, multiplier);
+    const ToolContact* after = &contact;
+    for (std::size_t i = count; i-- > 0; after = &bonded_[i].contact) {
+      const Bonded& bonded = bonded_[i];
+      Eigen::VectorXd by_bond = Eigen::VectorXd::Zero(context_.model.pattern().n), m;
+      after->add_bond_gradient(context_.model, bonded.contact, multiplier, direction, by_bond);
+      if (by_bond.isZero(0)) continue;  // nothing was tied there
+      if (!solve(bonded.contact, bonded.u, by_bond, m)) return false;
+      for (std::size_t c = 0; c < constants_.size(); ++c) slope[c] -= m.dot(bonded.residuals[c]);
+      move(context_.model, 1, m, multiplier);
+    }
+    return true;
+  }
+
+ private:
+  /// An equilibrium, before the surface that is in contact there is tied to the tool.
+  struct Bonded {
+    ToolContact contact;
+    Displacement u;
+    std::vector<Eigen::VectorXd> residuals;
+  };
+
+  /// dR/dc at fixed displacement, of each constant.
+  std::vector<Eigen::VectorXd> residual_slopes(const ToolContact& contact, const Displacement& u) {
+    Eigen::VectorXd contact_forces = Eigen::VectorXd::Zero(context_.model.pattern().n);
+    contact.add_forces(context_.model, u, contact_forces);
+    std::vector<Eigen::VectorXd> slopes;
+    for (const Varied& constant : constants_)
+      slopes.push_back(constant.slope(u) + constant.penalty * contact_forces);
+    return slopes;
+  }
+
+  /// K x = b; by a factor of K itself where the shared one does not get there.
+  bool solve(const ToolContact& contact, const Displacement& u, const Eigen::VectorXd& b,
+             Eigen::VectorXd& x) {
+    if (solver_.linearize(contact, u) && solver_.solve(b, x)) return true;
+    const std::lock_guard lock(context_.direct_solve);
+    Cholesky factor(context_.model.pattern(), &context_.permutation);
+    if (!factor.factorize(solver_.values())) return false;
+    SolveWorkspace workspace;
+    x.resize(b.size());
+    factor.solve(b.data(), x.data(), workspace);
+    return true;
+  }
+
+  const CampaignContext& context_;
+  const std::vector<Varied>& constants_;
+  SolidModel window_;
+  TangentSolver solver_;
+  std::vector<Bonded> bonded_;
+};
+
+bool is_among(double depth, const std::vector<double>& depths) {
+  return std::any_of(depths.begin(), depths.end(),
+                     [&](double d) { return std::abs(d - depth) < 1e-9 * depth; });
+}
+
+/// Presses one site, moves the tool sideways where asked, and differentiates at the stops.
+class SiteDifferentiation {
+ public:
+  SiteDifferentiation(const CampaignContext& context, const std::vector<Varied>& constants,
+                      SolveBatch::Member& batch, std::int32_t vertex,
+                      const std::vector<LateralPlan>& lateral)
+      : place_(context.place(vertex)),
+        lateral_(lateral),
+        depths_(context.indentation.held_depths),
+        stuck_(context.indentation.friction == ToolFriction::Stuck),
+        differentiator_(context, constants, batch, place_),
+        solver_(context, &batch) {
+    result_.vertex = vertex;
+    result_.lateral.resize(lateral.size());
+  }
+
+  SiteSensitivity run() {
+    SitePlan plan{depths_, lateral_};
+    for (const LateralPlan& path : lateral_) plan.stops.push_back(path.held_depth);
+    solver_.observe([this](const auto&... state) { pressed(state...); });
+    solver_.observe_lateral([this](const auto&... state) { moved(state...); });
+    const SiteCurves curves = solver_.solve(result_.vertex, plan);
+    if (!curves.reason.empty()) result_.reason = curves.reason;
+    return std::move(result_);
+  }
+
+ private:
+  void pressed(const ToolContact& contact, const Displacement& u, const CurveSample& sample) {
+    if (is_among(sample.displacement, depths_)) {
+      ForceSensitivity s{sample.displacement, dot(sample.force, place_.inward), {}};
+      const Eigen::Vector3d inward(place_.inward.data());
+      keep(differentiator_.differentiate_tied(contact, u, differentiator_.kept(), inward, s.slope),
+           s, result_.samples);
+    }
+    bool held = false;
+    for (const LateralPlan& path : lateral_)
+      held = held || is_among(sample.displacement, {path.held_depth});
+    if (held || stuck_) differentiator_.keep(contact, u);
+    for (const LateralPlan& path : lateral_)
+      if (is_among(sample.displacement, {path.held_depth}))
+        tied_when_held_[path.held_depth] = differentiator_.kept();
+  }
+
+  void moved(const LateralPlan& path, const ToolContact& contact, const Displacement& u,
+             const CurveSample& sample) {
+    ForceSensitivity s{sample.displacement, dot(sample.force, path.direction), {}};
+    const auto index = static_cast<std::size_t>(
+        std::find_if(lateral_.begin(), lateral_.end(),
+                     [&](const LateralPlan& p) {
+                       return p.held_depth == path.held_depth && p.direction == path.direction;
+                     }) -
+        lateral_.begin());
+    const Eigen::Vector3d direction(path.direction.data());
+    keep(differentiator_.differentiate_tied(contact, u, tied_when_held_.at(path.held_depth),
+                                            direction, s.slope),
+         s, result_.lateral[index]);
+  }
+
+  void keep(bool found, const ForceSensitivity& s, std::vector<ForceSensitivity>& samples) {
+    if (found)
+      samples.push_back(s);
+    else if (result_.reason.empty())
+      result_.reason = "the stiffness is not positive definite at an equilibrium";
+  }
+
+  PressPoint place_;
+  const std::vector<LateralPlan>& lateral_;
+  const std::vector<double>& depths_;
+  bool stuck_;
+  std::map<double, std::size_t> tied_when_held_;  ///< states kept up to each held depth
+  Differentiator differentiator_;
+  SiteSolver solver_;
+  SiteSensitivity result_;
+};
+
+/// Of a site that is differentiated: beside what its paths need, the tangent of the whole body.
+double bytes_of(const CampaignContext& context, std::int32_t vertex) {
+  return bytes_of_site(context, vertex) +
+         static_cast<double>(sizeof(double)) * context.model.pattern().nonzeros();
+}
+
+}  // namespace
+
+std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSettings& settings,
+                                             const std::vector<double>& depths,
+                                             const std::vector<RegionConstant>& constants,
+                                             const std::vector<std::vector<LateralPlan>>& lateral,
+                                             KeptFactor* kept) {
+  refuse_what_is_not_differentiated(settings);
+  CampaignSettings normal = settings;
+  normal.indentation.held_depths = depths;  // the states that the path must pass
+  normal.indentation.depth = *std::max_element(depths.begin(), depths.end());
+  normal.indentation.azimuths.clear();  // no lateral paths
+  // An equilibrium without friction does not depend on the way there: the depths are steps enough.
+  if (normal.indentation.friction == ToolFriction::Frictionless) normal.indentation.increments = 1;
+  normal.indentation.lateral_travel = 0;  // only how far candidates of the contact reach
+  for (const auto& plans : lateral) {
+    for (const LateralPlan& plan : plans) {
+      normal.indentation.depth = std::max(normal.indentation.depth, plan.held_depth);
+      normal.indentation.lateral_travel =
+          std::max(normal.indentation.lateral_travel, plan.travels.back());
+    }
+  }
+  check_indentation(normal.indentation);
+  const std::vector<LateralPlan> none;
+  std::vector<SiteSensitivity> results(settings.sites.size());
+  if (results.empty()) return results;
+  const CampaignContext context(body, normal, Engine::SharedFactor, kept);
+  std::vector<Varied> derivatives;
+  for (const RegionConstant& constant : constants) {
+    derivatives.push_back(varied(body, normal, constant));
+  }
+  const CrewSize size = crew_size(*context.rest_factor, settings.threads, results.size(),
+                                  settings.memory, bytes_of(context, settings.sites.front()));
+  work_abreast(*context.rest_factor, size, results.size(),
+               [&](SolveBatch::Member& member, std::size_t i) {
+                 results[i] = SiteDifferentiation(context, derivatives, member, settings.sites[i],
+                                                  lateral.empty() ? none : lateral[i])
+                                  .run();
+               });
+  return results;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign/stuck_patch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "fem/campaign/region_laws.hpp"
+#include "fem/factor/cholesky.hpp"
+#include "fem/mesh/in_words.hpp"
+#include "fem/solve/newton.hpp"
+#include "format/at.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+[[noreturn]] void refuse(const Body& body, const std::string& problem, const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, body.name, problem, remedy);
+}
+
+/// The body with the corner nodes of the patch held as well.
+Body held_at_patch(const Body& body, std::int32_t vertex, double radius) {
+  const auto count = static_cast<std::int32_t>(body.response.node.size());
+  if (vertex < 0 || vertex >= count || body.response.is_site[at(vertex)] == 0)
+    refuse(body, "response vertex " + std::to_string(vertex) + " is not a site",
+           "choose a vertex outside the supports, from 0 to " + std::to_string(count - 1));
+  if (!(std::isfinite(radius) && radius > 0))
+    refuse(body, "the radius of the patch is " + std::to_string(radius) + " m",
+           "give a finite radius > 0");
+  const Vec3& site = body.nodes[at(body.response.node[at(vertex)])];
+  std::vector<bool> in_patch(body.nodes.size(), false);
+  for (const Triangle& facet : body.boundary)
+    for (const std::int32_t node : facet)
+      in_patch[at(node)] = norm(body.nodes[at(node)] - site) <= radius * (1 + 1e-9);
+  for (const std::int32_t node : body.fixed_nodes)
+    if (in_patch[at(node)])
+      refuse(body, "the patch reaches a support", "give a smaller radius or another site");
+  Body held = body;
+  for (std::size_t node = 0; node < in_patch.size(); ++node)
+    if (in_patch[node]) held.fixed_nodes.push_back(static_cast<std::int32_t>(node));
+  return held;
+}
+
+/// Nodes held in `mesh` that are free in `free`.
+std::vector<std::int32_t> newly_held(const QuadraticMesh& mesh, const QuadraticMesh& free) {
+  std::vector<std::int32_t> nodes;
+  for (int node = 0; node < mesh.nodes(); ++node)
+    if (free.is_free(node) && !mesh.is_free(node)) nodes.push_back(node);
+  return nodes;
+}
+
+/// Equilibria of the body as the patch goes down.
+class PatchPress {
+ public:
+  PatchPress(const Body& body, const CampaignSettings& settings, std::int32_t vertex, double radius)
+      : held_(held_at_patch(body, vertex, radius), laws_of_regions(body, settings.materials),
+              settings.dilatation),
+        free_(body, laws_of_regions(body, settings.materials), settings.dilatation),
+        patch_(newly_held(held_.mesh(), free_.mesh())),
+        inward_(body.response.inward[at(vertex)].data()),
+        no_contact_(held_.mesh(), Eigen::Vector3d::Constant(1e6), 1e-6, {1, 1}),
+        newton_(held_),
+        u_(Displacement::Zero(3, held_.mesh().nodes())),
+        before_(u_) {
+    double young = 0;
+    for (const RegionMaterial& m : settings.materials)
+      young = std::max(young, rest_moduli(m.law).young);
+    // Without contact the solver measures the residual against 1e-12 N.
+    options_.tolerance = 1e-7 * young * radius * settings.indentation.depth / 1e-12;
+  }
+
+  /// False with the reason where no equilibrium is found.
+  bool to(double depth, PatchForce& sample, std::string& reason) {
+    if (!advance(depth, 0, reason)) return false;
+    Eigen::VectorXd f;
+    sample = {depth, {}, free_.forces(u_, f).energy};
+    for (const std::int32_t node : patch_)
+      for (std::size_t i = 0; i < 3; ++i)
+        sample.force[i] += f[free_.equation(node) + static_cast<int>(i)];
+    return true;
+  }
+
+ private:
+  void put_patch(double depth, Displacement& u) const {
+    for (const std::int32_t node : patch_) u.col(node) = depth * inward_;
+    straighten(held_.mesh(), u);
+  }
+
+  bool advance(double depth, int halvings, std::string& reason) {
+    constexpr int kMaxHalvings = 8;
+    Displacement trial = u_;
+    if (depth_ > before_depth_)
+      trial += (depth - depth_) / (depth_ - before_depth_) * (u_ - before_);
+    put_patch(depth, trial);
+    if (!(held_.energy(trial).min_J > 0)) {
+      trial = u_;
+      put_patch(depth, trial);
+    }
+    const NewtonResult result = newton_.solve(no_contact_, options_, trial);
+    if (!result.converged) {
+      reason = result.reason;
+      return halvings < kMaxHalvings && advance(0.5 * (depth_ + depth), halvings + 1, reason) &&
+             advance(depth, halvings + 1, reason);
+    }
+    if (const auto loss = held_.ellipticity_loss(trial)) {
+      reason = "at " + in_millimetres(depth) + ": " + loss->reason();
+      return false;
+    }
+    before_.swap(u_);
+    before_depth_ = depth_;
+    u_.swap(trial);
+    depth_ = depth;
+    return true;
+  }
+
+  SolidModel held_, free_;
+  std::vector<std::int32_t> patch_;
+  Eigen::Vector3d inward_;
+  ToolContact no_contact_;
+  NewtonSolver newton_;
+  NewtonOptions options_;
+  Displacement u_, before_;
+  double depth_ = 0, before_depth_ = 0;
+};
+
+}  // namespace
+
+StuckPatch stuck_patch(const Body& body, std::int32_t vertex, double radius) {
+  StuckPatch patch;
+  patch.mesh = make_quadratic_mesh(body);
+  patch.nodes = newly_held(make_quadratic_mesh(held_at_patch(body, vertex, radius)), patch.mesh);
+  return patch;
+}
+
+PatchCurve press_patch(const Body& body, const CampaignSettings& settings, std::int32_t vertex,
+                       double radius) {
+  check_indentation(settings.indentation);
+  use_one_thread_per_site();
+  PatchPress press(body, settings, vertex, radius);
+  PatchCurve curve{{{}}, {}};
+  for (int i = 1; i <= settings.indentation.increments; ++i) {
+    PatchForce sample;
+    const double depth = settings.indentation.depth * i / settings.indentation.increments;
+    if (!press.to(depth, sample, curve.reason)) return curve;
+    curve.samples.push_back(sample);
+  }
+  curve.reason.clear();  // of an attempt that a cut-back has overcome
+  return curve;
+}
+
+}  // namespace palpate::fem

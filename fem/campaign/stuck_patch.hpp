@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A patch of the surface moved as a whole, as by a tool that it sticks to: the indentation without
+// contact, which any finite element program can repeat node by node.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "fem/campaign/campaign.hpp"
+#include "fem/mesh/quadratic_mesh.hpp"
+
+namespace palpate::fem {
+
+struct StuckPatch {
+  QuadraticMesh mesh;               ///< `held`: by the supports alone
+  std::vector<std::int32_t> nodes;  ///< of the mesh, moved together
+};
+
+/// The surface nodes within `radius` of a response vertex, with the mid-edge nodes of the facets
+/// between them.
+/// @throws Error(Configuration) for a vertex that is no site, a radius that is not positive, or a
+/// patch that reaches a support.
+StuckPatch stuck_patch(const Body& body, std::int32_t vertex, double radius);
+
+struct PatchForce {
+  double depth = 0;          ///< m, of the patch along the inward direction of the vertex
+  Vec3 force{};              ///< N, of the tool on the body
+  double strain_energy = 0;  ///< J
+};
+
+struct PatchCurve {
+  std::vector<PatchForce> samples;  ///< from rest to the depth, or to where it ended
+  std::string reason;               ///< why it ended early; empty when it did not
+};
+
+/// Moves the patch inward by the depth and the increments of `settings.indentation`, with its
+/// materials and element; Newton with a factorization of the whole body. The force is good to 1e-6.
+/// The curve ends where the law loses ellipticity.
+/// @throws Error(Configuration) as stuck_patch and run_campaign.
+PatchCurve press_patch(const Body& body, const CampaignSettings& settings, std::int32_t vertex,
+                       double radius);
+
+}  // namespace palpate::fem

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/contact/increment_work.hpp"
+
+#include <array>
+
+namespace palpate::fem {
+
+namespace {
+
+/// Gauss's rule on 0 .. 1.
+struct Node {
+  double at, weight;
+};
+constexpr std::array<Node, 5> kGauss{{{0.046910077030668, 0.118463442528095},
+                                      {0.230765344947158, 0.239314335249683},
+                                      {0.5, 0.284444444444444},
+                                      {0.769234655052842, 0.239314335249683},
+                                      {0.953089922969332, 0.118463442528095}}};
+
+/// What the forces at such a point are sought to be out of balance by, and may be, over those at
+/// the end.
+constexpr double kSought = 1e-3, kAllowed = 1e-2;
+
+ToolContact with_tip_at(const ToolContact& contact, const Eigen::Vector3d& tip) {
+  ToolContact moved = contact;
+  Tool tool = contact.tool();
+  tool.tip = tip;
+  moved.move_to(tool);
+  return moved;
+}
+
+/// N, of the contact on the patch.
+Eigen::VectorXd forces(ContactPatch& patch, const ToolContact& contact, const Displacement& u) {
+  Eigen::VectorXd f;
+  patch.start_from(contact, u);
+  patch.gradient(contact, Eigen::VectorXd::Zero(patch.size()), f);
+  return f;
+}
+
+double unbalanced(const ContactPatch& patch, const ToolContact& contact, const Eigen::MatrixXd& S,
+                  const Eigen::VectorXd& load, const Eigen::VectorXd& d) {
+  Eigen::VectorXd pushed;
+  patch.gradient(contact, d, pushed);
+  return (S * d - load + pushed).norm();
+}
+
+/// S with S step = y besides.
+std::optional<PatchStiffness> with_secant(const PatchStiffness& stiffness,
+                                          const Eigen::VectorXd& step, const Eigen::VectorXd& y) {
+  const Eigen::VectorXd Ss = stiffness.S * step;
+  if (!(y.dot(step) > 0 && Ss.dot(step) > 0)) return std::nullopt;
+  return PatchStiffness{
+      stiffness.S + y * y.transpose() / y.dot(step) - Ss * Ss.transpose() / Ss.dot(step),
+      stiffness.stiffening};
+}
+
+}  // namespace
+
+std::optional<double> work_between(ContactPatch& patch, const PatchStiffness& stiffness,
+                                   const ToolContact& contact, const Eigen::Vector3d& from,
+                                   const Displacement& before, const Displacement& after) {
+  ToolContact moved = with_tip_at(contact, from);
+  if (patch.size() == 0 || !patch.covers(contact, after) || !patch.covers(moved, before))
+    return std::nullopt;
+  const Eigen::VectorXd step = patch.difference(before, after);
+  const Eigen::VectorXd last = forces(patch, contact, after), first = forces(patch, moved, before);
+  const auto secant = with_secant(stiffness, step, first - last);
+  if (!secant) return std::nullopt;
+  const Eigen::Vector3d way = contact.tool().tip - from;
+  Eigen::VectorXd d = Eigen::VectorXd::Zero(patch.size());
+  Eigen::MatrixXd scratch;
+  double work = 0;
+  for (const Node& node : kGauss) {
+    moved = with_tip_at(contact, from + node.at * way);
+    d = patch_minimum(patch, moved, *secant, first, d, kSought * last.norm(), scratch);
+    if (unbalanced(patch, moved, secant->S, first, d) > kAllowed * last.norm()) return std::nullopt;
+    work += node.weight * patch.tool_force(moved, d).dot(way);
+  }
+  return work;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/factor/elimination_plan.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+#include <utility>
+
+#include "format/at.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+/// The largest part is at most one over this of the work of a thread.
+constexpr double kPartsOfAThread = 2;
+
+double square_bytes(int rows) {
+  return sizeof(double) * static_cast<double>(rows) * rows;
+}
+
+double bytes_of_columns(const EliminationTree& tree, int k) {
+  return sizeof(double) * static_cast<double>(tree.columns[at(k)]) * tree.rows[at(k)];
+}
+
+/// Of each supernode and all below it.
+std::vector<double> work_of_subtrees(const EliminationTree& tree) {
+  std::vector<double> work(tree.parent.size());
+  for (int k = 0; k < tree.supernodes(); ++k) {
+    work[at(k)] += tree.work(k);
+    if (const int parent = tree.parent[at(k)]; parent >= 0) work[at(parent)] += work[at(k)];
+  }
+  return work;
+}
+
+/// Roots of subtrees of at most `most` work, and those that were opened for it.
+std::pair<std::vector<int>, std::vector<int>> opened(const EliminationTree& tree,
+                                                     const std::vector<double>& work, double most) {
+  std::vector<int> open, roots, top;
+  for (int k = 0; k < tree.supernodes(); ++k)
+    if (tree.parent[at(k)] < 0) open.push_back(k);
+  while (!open.empty()) {
+    const int k = open.back();
+    open.pop_back();
+    if (work[at(k)] <= most || tree.children[at(k)].empty()) {
+      roots.push_back(k);
+      continue;
+    }
+    top.push_back(k);
+    open.insert(open.end(), tree.children[at(k)].begin(), tree.children[at(k)].end());
+  }
+  std::sort(top.begin(), top.end());
+  return {roots, top};
+}
+
+/// What one thread holds at most while it eliminates these, beside the columns of one.
+double peak_bytes(const EliminationTree& tree, const std::vector<int>& part) {
+  double held = 0, peak = 0;
+  for (const int k : part) {
+    held += square_bytes(tree.below(k));
+    peak = std::max(peak, held);
+    for (const int child : tree.children[at(k)]) held -= square_bytes(tree.below(child));
+  }
+  return peak;
+}
+
+}  // namespace
+
+EliminationTree::EliminationTree(const SupernodalView& view) {
+  const int count = view.supernodes;
+  std::vector<int> supernode_of_column;
+  for (int k = 0; k < count; ++k) {
+    columns.push_back(view.first_column[k + 1] - view.first_column[k]);
+    rows.push_back(view.row_start[k + 1] - view.row_start[k]);
+    supernode_of_column.insert(supernode_of_column.end(), at(columns.back()), k);
+  }
+  parent.assign(at(count), -1);
+  children.resize(at(count));
+  for (int k = 0; k < count; ++k) {
+    if (below(k) == 0) continue;
+    const int first_below = view.rows[view.row_start[k] + columns[at(k)]];
+    parent[at(k)] = supernode_of_column[at(first_below)];
+    children[at(parent[at(k)])].push_back(k);
+  }
+}
+
+int EliminationTree::below(int supernode) const {
+  return rows[at(supernode)] - columns[at(supernode)];
+}
+
+double EliminationTree::work(int supernode) const {
+  double sum = 0;
+  for (int j = 0; j < columns[at(supernode)]; ++j) {
+    const double left = rows[at(supernode)] - j;
+    sum += 0.5 * left * left;
+  }
+  return sum;
+}
+
+EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
+  for (int k = 0; k < tree.supernodes(); ++k)
+    column_bytes = std::max(column_bytes, threads * bytes_of_columns(tree, k));
+  const std::vector<double> work = work_of_subtrees(tree);
+  double whole = 0;
+  for (int k = 0; k < tree.supernodes(); ++k)
+    if (tree.parent[at(k)] < 0) whole += work[at(k)];
+  if (threads == 1) {
+    parts.emplace_back(at(tree.supernodes()));
+    std::iota(parts.back().begin(), parts.back().end(), 0);
+    update_bytes = peak_bytes(tree, parts.back());
+    return;
+  }
+  std::vector<int> roots;
+  std::tie(roots, top) = opened(tree, work, whole / (kPartsOfAThread * threads));
+  std::stable_sort(roots.begin(), roots.end(),
+                   [&](int a, int b) { return work[at(a)] > work[at(b)]; });
+  std::vector<int> part_of(tree.parent.size(), -1);
+  for (std::size_t i = 0; i < roots.size(); ++i) part_of[at(roots[i])] = static_cast<int>(i);
+  for (int k = tree.supernodes(); k-- > 0;)
+    if (part_of[at(k)] < 0 && tree.parent[at(k)] >= 0)
+      part_of[at(k)] = part_of[at(tree.parent[at(k)])];
+  parts.resize(roots.size());
+  for (int k = 0; k < tree.supernodes(); ++k)
+    if (part_of[at(k)] >= 0) parts[at(part_of[at(k)])].push_back(k);
+
+  std::vector<double> peaks;
+  for (const auto& part : parts) peaks.push_back(peak_bytes(tree, part));
+  std::sort(peaks.begin(), peaks.end(), std::greater<>());
+  peaks.resize(std::min(peaks.size(), at(threads)));
+  update_bytes = std::accumulate(peaks.begin(), peaks.end(), 0.0);
+  for (const int root : roots) update_bytes += square_bytes(tree.below(root));
+  for (const int k : top) update_bytes += square_bytes(tree.below(k));
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/factor/front_memory.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace palpate::fem {
+
+namespace {
+
+/// Smaller ones are kept by the allocator.
+constexpr std::size_t kLarge = std::size_t{1} << 17;
+/// Over what is asked for, of a spare that is taken for it.
+constexpr std::size_t kMostWaste = 2;
+
+double bytes_of(const LargeVector<double>& memory) {
+  return sizeof(double) * static_cast<double>(memory.capacity());
+}
+
+}  // namespace
+
+/// The smallest spare that is large enough and no waste; empty when there is none.
+LargeVector<double> FrontMemory::fitting(std::size_t numbers) {
+  const std::lock_guard lock(mutex_);
+  auto best = spare_.end();
+  for (auto each = spare_.begin(); each != spare_.end(); ++each)
+    if (each->capacity() >= numbers && each->capacity() <= kMostWaste * numbers &&
+        (best == spare_.end() || each->capacity() < best->capacity()))
+      best = each;
+  if (best != spare_.end()) {
+    LargeVector<double> found = std::move(*best);
+    spare_.erase(best);
+    return found;
+  }
+  const double needed = sizeof(double) * static_cast<double>(numbers);
+  while (!spare_.empty() && held_ + needed > bound_) {
+    held_ -= bytes_of(spare_.front());
+    spare_.pop_front();
+  }
+  held_ += needed;
+  return {};
+}
+
+LargeVector<double> FrontMemory::zeros(std::size_t numbers) {
+  LargeVector<double> memory;
+  if (numbers >= kLarge) memory = fitting(numbers);
+  memory.assign(numbers, 0.0);
+  return memory;
+}
+
+void FrontMemory::give_back(LargeVector<double>&& memory) {
+  LargeVector<double> mine = std::move(memory);
+  if (mine.capacity() < kLarge) return;
+  const std::lock_guard lock(mutex_);
+  spare_.push_back(std::move(mine));
+}
+
+}  // namespace palpate::fem

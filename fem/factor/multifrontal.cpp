@@ -1,0 +1,261 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/factor/multifrontal.hpp"
+
+#include <cblas.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "fem/factor/dense_cholesky.hpp"
+#include "fem/factor/front_memory.hpp"
+#include "format/at.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+/// Rows and columns of a front that are one piece of work: fixed, for the bits depend on it.
+constexpr int kTile = 256;
+
+int tiles_of(int rows) {
+  return (rows + kTile - 1) / kTile;
+}
+
+/// Dense, by columns, of which every `stride`-th number starts a column.
+struct Block {
+  double* first;
+  int stride;
+
+  double* operator()(int row, int column) const {
+    return first + row + static_cast<std::ptrdiff_t>(column) * stride;
+  }
+};
+
+/// Rows [first, last) below the diagonal: L21 = A21 L11^-T.
+void divide_rows(const Block& L, int columns, int first, int last) {
+  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, last - first,
+              columns, 1, L.first, L.stride, L(first, 0), L.stride);
+}
+
+/// Columns [first, last) of U -= L21 L21^T, lower triangle; `below` rows in all.
+void subtract_product(const Block& L, int columns, const Block& U, int below, int first, int last) {
+  const double* rows = L(columns + first, 0);
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, last - first, columns, -1, rows, L.stride, 1,
+              U(first, first), U.stride);
+  if (last == below) return;
+  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, below - last, last - first, columns, -1,
+              L(columns + last, 0), L.stride, rows, L.stride, 1, U(last, first), U.stride);
+}
+
+}  // namespace
+
+/// One factorization under way.
+class Elimination {
+ public:
+  Elimination(const Multifrontal& order, const std::vector<double>& values,
+              const EliminationPlan& plan, const Multifrontal::Finished& finished)
+      : order_(order),
+        tree_(order.tree_),
+        values_(values),
+        finished_(finished),
+        left_(plan.parts.size() + plan.top.size()),
+        memory_(plan.update_bytes),
+        update_(tree_.parent.size()),
+        awaited_(tree_.parent.size(), 0) {
+    ready_.assign(plan.parts.begin(), plan.parts.end());
+    for (const int k : plan.top) awaited_[at(k)] = static_cast<int>(tree_.children[at(k)].size());
+  }
+
+  bool run(int threads) {
+    std::vector<std::thread> others;
+    for (int i = 1; i < threads; ++i) others.emplace_back([this] { serve(); });
+    serve();
+    for (std::thread& thread : others) thread.join();
+    if (failure_) std::rethrow_exception(failure_);
+    return definite_;
+  }
+
+ private:
+  /// What a thread keeps from front to front.
+  struct Workplace {
+    std::vector<int> place;       ///< in the front, of the rows of the matrix
+    std::vector<int> target;      ///< in the front, of the rows of a child
+    LargeVector<double> columns;  ///< of L
+  };
+
+  /// Equal pieces of one front, for whoever has nothing else to do.
+  struct Tiles {
+    int count;
+    const std::function<void(int)>& work;
+    int next = 0, done = 0;
+  };
+
+  void serve() {
+    Workplace own;
+    std::unique_lock lock(mutex_);
+    while (left_ > 0 && definite_ && !failure_) {
+      if (Tiles* tiles = unfinished_tiles()) {
+        help(*tiles, lock);
+      } else if (!ready_.empty()) {
+        const std::vector<int> part = std::move(ready_.front());
+        ready_.pop_front();
+        lock.unlock();
+        const bool done = eliminate_safely(part, own);
+        lock.lock();
+        if (done) tell_parent(part.back());
+        --left_;
+        changed_.notify_all();
+      } else {
+        changed_.wait(lock);
+      }
+    }
+  }
+
+  /// That a child is done: the last supernode of a part, or one of the top.
+  void tell_parent(int child) {
+    const int parent = tree_.parent[at(child)];
+    if (parent >= 0 && --awaited_[at(parent)] == 0) ready_.push_front({parent});
+  }
+
+  bool eliminate_safely(const std::vector<int>& part, Workplace& own) {
+    try {
+      if (std::all_of(part.begin(), part.end(), [&](int k) { return eliminate(k, own); }))
+        return true;
+      const std::lock_guard lock(mutex_);
+      definite_ = false;
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!failure_) failure_ = std::current_exception();
+    }
+    return false;
+  }
+
+  /// The front of supernode k: assembled, eliminated, handed out; its update is kept for the
+  /// parent.
+  bool eliminate(int k, Workplace& own) {
+    const int columns = tree_.columns[at(k)], rows = tree_.rows[at(k)], below = tree_.below(k);
+    const std::size_t numbers = at(rows) * at(columns);
+    if (own.columns.capacity() < numbers) own.columns = LargeVector<double>();  // never both
+    own.columns.assign(numbers, 0.0);
+    update_[at(k)] = memory_.zeros(at(below) * at(below));
+    const Block L{own.columns.data(), rows}, U{update_[at(k)].data(), below};
+    assemble(k, L, U, own);
+    if (!factorize_in_place(L.first, columns, rows)) return false;
+    in_tiles(tiles_of(below), [&](int tile) {
+      divide_rows(L, columns, columns + tile * kTile,
+                  columns + std::min(below, (tile + 1) * kTile));
+    });
+    in_tiles(tiles_of(below), [&](int tile) {
+      subtract_product(L, columns, U, below, tile * kTile, std::min(below, (tile + 1) * kTile));
+    });
+    finished_(k, own.columns.data());
+    return true;
+  }
+
+  void assemble(int k, const Block& L, const Block& U, Workplace& own) {
+    const int* rows = order_.view_.rows + order_.view_.row_start[k];
+    own.place.resize(order_.entry_start_.size());
+    for (int i = 0; i < tree_.rows[at(k)]; ++i) own.place[at(rows[i])] = i;
+    for (int j = 0; j < tree_.columns[at(k)]; ++j) {
+      const std::size_t column = at(order_.view_.first_column[k] + j);
+      for (std::size_t e = order_.entry_start_[column]; e < order_.entry_start_[column + 1]; ++e) {
+        const auto& entry = order_.entries_[e];
+        *L(own.place[at(entry.row)], j) = values_[at(entry.value)];
+      }
+    }
+    for (const int child : tree_.children[at(k)])
+      add_update_of(child, L, U, tree_.columns[at(k)], own);
+  }
+
+  /// Both have their rows in ascending order: what is below a diagonal stays below it.
+  void add_update_of(int child, const Block& L, const Block& U, int columns, Workplace& own) {
+    const int below = tree_.below(child);
+    const int* rows = order_.view_.rows + order_.view_.row_start[child] + tree_.columns[at(child)];
+    own.target.resize(at(below));
+    for (int i = 0; i < below; ++i) own.target[at(i)] = own.place[at(rows[i])];
+    const int* target = own.target.data();
+    const double* source = update_[at(child)].data();
+    for (int j = 0; j < below; ++j, source += below) {
+      double* to = target[j] < columns ? L(0, target[j]) : U(0, target[j] - columns) - columns;
+      for (int i = j; i < below; ++i) to[target[i]] += source[i];
+    }
+    memory_.give_back(std::move(update_[at(child)]));
+  }
+
+  Tiles* unfinished_tiles() {
+    const auto open = std::find_if(tiles_.begin(), tiles_.end(),
+                                   [](const Tiles* t) { return t->next < t->count; });
+    return open == tiles_.end() ? nullptr : *open;
+  }
+
+  void help(Tiles& tiles, std::unique_lock<std::mutex>& lock) {
+    const int mine = tiles.next++;
+    lock.unlock();
+    tiles.work(mine);
+    lock.lock();
+    if (++tiles.done == tiles.count) changed_.notify_all();
+  }
+
+  /// Calls work for each of `count` tiles, on this thread and on those that wait.
+  void in_tiles(int count, const std::function<void(int)>& work) {
+    if (count < 2) {
+      if (count == 1) work(0);
+      return;
+    }
+    Tiles tiles{count, work};
+    std::unique_lock lock(mutex_);
+    tiles_.push_back(&tiles);
+    changed_.notify_all();
+    while (tiles.next < tiles.count) help(tiles, lock);
+    changed_.wait(lock, [&] { return tiles.done == tiles.count; });
+    std::erase(tiles_, &tiles);
+  }
+
+  const Multifrontal& order_;
+  const EliminationTree& tree_;
+  const std::vector<double>& values_;
+  const Multifrontal::Finished& finished_;
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::vector<int>> ready_;  ///< parts and supernodes whose children are done
+  std::size_t left_;                    ///< of parts and supernodes
+  std::vector<Tiles*> tiles_;
+  bool definite_ = true;
+  std::exception_ptr failure_;
+
+  FrontMemory memory_;
+  std::vector<LargeVector<double>> update_;  ///< of each supernode, until its parent has it
+  std::vector<int> awaited_;                 ///< children of a supernode of the top
+};
+
+Multifrontal::Multifrontal(const SparsePattern& pattern, const SupernodalView& view)
+    : view_(view), tree_(view), entry_start_(at(pattern.n) + 1, 0) {
+  std::vector<int> position(at(pattern.n));  // of the unknowns in the order of elimination
+  for (int i = 0; i < pattern.n; ++i) position[at(view.permutation[i])] = i;
+  const auto for_entries = [&](auto&& use) {
+    for (int column = 0; column < pattern.n; ++column)
+      for (int e = pattern.start[at(column)]; e < pattern.start[at(column) + 1]; ++e) {
+        const auto [first, last] =
+            std::minmax(position[at(column)], position[at(pattern.row[at(e)])]);
+        use(at(first), Entry{last, e});
+      }
+  };
+  for_entries([&](std::size_t column, Entry) { ++entry_start_[column + 1]; });
+  for (std::size_t i = 1; i < entry_start_.size(); ++i) entry_start_[i] += entry_start_[i - 1];
+  entries_.resize(at(pattern.nonzeros()));
+  std::vector<std::size_t> next(entry_start_.begin(), entry_start_.end() - 1);
+  for_entries([&](std::size_t column, Entry entry) { entries_[next[column]++] = entry; });
+}
+
+bool Multifrontal::factorize(const std::vector<double>& values, int threads,
+                             const Finished& finished) const {
+  return Elimination(*this, values, EliminationPlan(tree_, threads), finished).run(threads);
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/factor/rest_factor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <new>
+
+#include "fem/factor/memory.hpp"
+#include "fem/factor/multifrontal.hpp"
+#include "format/at.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+/// One right-hand side in each lane; the compiler splits it where registers are narrower.
+typedef float Pack __attribute__((vector_size(kBatch * sizeof(float)), aligned(4), may_alias));
+
+inline Pack& pack(float* y, int row) {
+  return *reinterpret_cast<Pack*>(y + at(row) * kBatch);
+}
+
+/// The unknowns of a panel, in registers.
+template <int W>
+struct Packs {
+  Pack of[at(W)];
+  Pack& operator[](int k) { return of[k]; }
+};
+
+// A supernode is stored as panels of up to sixteen columns, one after the other, each by rows: its
+// own triangle as a square, then every row of the supernode below that. Both sweeps thus read the
+// factor from end to end, and a row of the right-hand sides once for all columns of a panel.
+
+/// Calls work.operator()<W>(first column) for the panels of a supernode, widest first; backwards
+/// when asked.
+template <class Work>
+void for_panels(int columns, Work&& work) {
+  int first = 0;
+  for (; first + 16 <= columns; first += 16) work.template operator()<16>(first);
+  const int rest = columns - first;
+  if (rest & 8) work.template operator()<8>(first), first += 8;
+  if (rest & 4) work.template operator()<4>(first), first += 4;
+  if (rest & 2) work.template operator()<2>(first), first += 2;
+  if (rest & 1) work.template operator()<1>(first);
+}
+
+template <class Work>
+void for_panels_backward(int columns, Work&& work) {
+  int end = columns;
+  if (columns & 1) work.template operator()<1>(end -= 1);
+  if (columns & 2) work.template operator()<2>(end -= 2);
+  if (columns & 4) work.template operator()<4>(end -= 4);
+  if (columns & 8) work.template operator()<8>(end -= 8);
+  while (end > 0) work.template operator()<16>(end -= 16);
+}
+
+/// What the panels of a supernode with `rows` rows below hold, in numbers.
+std::size_t panel_numbers(int columns, int rows) {
+  std::size_t total = 0;
+  for_panels(columns, [&]<int W>(int first) { total += at(W) * at(columns - first + rows); });
+  return total;
+}
+
+/// L x = y for the columns of a panel, whose unknowns start at `own`; `inside` more unknowns of the
+/// supernode follow them, then those listed in `rows`.
+template <int W>
+void forward_panel(const float* panel, float* own, int inside, const int* rows, int below,
+                   float* y) {
+  Packs<W> x;
+  for (int k = 0; k < W; ++k, panel += W) {
+    x[k] = pack(own, k);
+    for (int j = 0; j < k; ++j) x[k] -= panel[j] * x[j];
+    x[k] *= 1.0f / panel[k];
+    pack(own, k) = x[k];
+  }
+  const auto subtract_from = [&](Pack& target) {
+    Pack sum = target;
+    for (int k = 0; k < W; ++k) sum -= panel[k] * x[k];
+    target = sum;
+    panel += W;
+  };
+  for (int r = 0; r < inside; ++r) subtract_from(pack(own, W + r));
+  for (int r = 0; r < below; ++r) subtract_from(pack(y, rows[r]));
+}
+
+/// The same for L^T x = y.
+template <int W>
+void backward_panel(const float* panel, float* own, int inside, const int* rows, int below,
+                    float* y) {
+  Packs<W> x;
+  for (int k = 0; k < W; ++k) x[k] = pack(own, k);
+  const float* row = panel + at(W) * at(W);
+  const auto subtract = [&](const Pack& value) {
+    for (int k = 0; k < W; ++k) x[k] -= row[k] * value;
+    row += W;
+  };
+  for (int r = 0; r < inside; ++r) subtract(pack(own, W + r));
+  for (int r = 0; r < below; ++r) subtract(pack(y, rows[r]));
+  for (int k = W; k-- > 0;) {
+    for (int j = k + 1; j < W; ++j) x[k] -= panel[j * W + k] * x[j];
+    x[k] *= 1.0f / panel[k * W + k];
+    pack(own, k) = x[k];
+  }
+}
+
+}  // namespace
+
+namespace {
+
+/// Of `wanted`, so many as need no more than `bound`, 0 for none, beside what is in use now.
+/// @throws Error(Configuration) when there is no room for one.
+template <class Bytes>
+int threads_that_fit(double bound, int wanted, Bytes&& bytes) {
+  int threads = std::max(1, wanted);
+  while (bound > 0 && threads > 1 && resident_bytes() + bytes(threads) > bound) --threads;
+  fitting_times(bound, bytes(threads), 1, "the factor of the stiffness");
+  return threads;
+}
+
+}  // namespace
+
+RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
+                       const std::vector<double>& values, const std::string& owner, double memory,
+                       int threads)
+    : n_(pattern.n) {
+  const Cholesky analysis(pattern, &permutation);
+  const SupernodalView view = analysis.view();
+  permutation_.assign(view.permutation, view.permutation + n_);
+  std::size_t total = 0;
+  for (int k = 0; k < view.supernodes; ++k) {
+    const int columns = view.first_column[k + 1] - view.first_column[k];
+    const int rows = view.row_start[k + 1] - view.row_start[k];
+    supernodes_.push_back({view.first_column[k], columns, rows - columns, rows_.size(), total});
+    rows_.insert(rows_.end(), view.rows + view.row_start[k] + columns,
+                 view.rows + view.row_start[k + 1]);
+    total += panel_numbers(columns, rows - columns);
+  }
+  const Multifrontal fronts(pattern, view);
+  const double own = static_cast<double>(total) * sizeof(float);
+  threads = threads_that_fit(memory, threads, [&](int t) { return own + fronts.working_bytes(t); });
+  try {
+    values_.resize(total);
+    if (!fronts.factorize(values, threads, [&](int k, const double* x) { store(k, x); }))
+      throw Error(ErrorKind::Geometry, owner, "the body at rest is not stiff in every direction",
+                  "check the supports and that the mesh is in one piece");
+  } catch (const std::bad_alloc&) {
+    out_of_memory(n_);
+  }
+}
+
+void RestFactor::store(int supernode, const double* columns) {
+  const Supernode& node = supernodes_[at(supernode)];
+  const int rows = node.columns + node.rows_below;
+  float* to = values_.data() + node.values;
+  for_panels(node.columns, [&]<int W>(int first) {
+    for (int i = first; i < rows; ++i)
+      for (int j = first; j < first + W; ++j)
+        *to++ = static_cast<float>(i >= j ? columns[at(j) * at(rows) + at(i)] : 0);
+  });
+}
+
+void RestFactor::forward(float* y) const {
+  for (const Supernode& node : supernodes_) {
+    float* x = y + at(node.first_column) * kBatch;
+    const float* panel = values_.data() + node.values;
+    for_panels(node.columns, [&]<int W>(int first) {
+      const int inside = node.columns - first - W;
+      forward_panel<W>(panel, x + at(first) * kBatch, inside, rows_.data() + node.row_list,
+                       node.rows_below, y);
+      panel += at(W) * at(W + inside + node.rows_below);
+    });
+  }
+}
+
+void RestFactor::backward(float* y) const {
+  for (auto node = supernodes_.rbegin(); node != supernodes_.rend(); ++node) {
+    float* x = y + at(node->first_column) * kBatch;
+    const float* panel =
+        values_.data() + node->values + panel_numbers(node->columns, node->rows_below);
+    for_panels_backward(node->columns, [&]<int W>(int first) {
+      const int inside = node->columns - first - W;
+      panel -= at(W) * at(W + inside + node->rows_below);
+      backward_panel<W>(panel, x + at(first) * kBatch, inside, rows_.data() + node->row_list,
+                        node->rows_below, y);
+    });
+  }
+}
+
+void RestFactor::solve(std::vector<float>& block, std::vector<float>& scratch) const {
+  scratch.resize(block.size());
+  constexpr std::size_t kRow = kBatch * sizeof(float);
+  for (int i = 0; i < n_; ++i)
+    std::memcpy(&scratch[at(i) * kBatch], &block[at(permutation_[at(i)]) * kBatch], kRow);
+  forward(scratch.data());
+  backward(scratch.data());
+  for (int i = 0; i < n_; ++i)
+    std::memcpy(&block[at(permutation_[at(i)]) * kBatch], &scratch[at(i) * kBatch], kRow);
+}
+
+namespace {
+
+/// Largest over smallest local stiffness, of the new matrix over the old, that a factor is kept
+/// for. The eigenvalues of what it preconditions are within about that ratio.
+constexpr double kMostSpread = 1.25;
+
+std::vector<double> diagonal_of(const SparsePattern& pattern, const std::vector<double>& values) {
+  std::vector<double> diagonal(at(pattern.n));
+  for (int column = 0; column < pattern.n; ++column)  // the first of the lower triangle
+    diagonal[at(column)] = values[at(pattern.start[at(column)])];
+  return diagonal;
+}
+
+}  // namespace
+
+const std::vector<int>& KeptFactor::permutation(const SparsePattern& pattern) {
+  if (permutation_.empty()) permutation_ = nested_dissection(pattern);
+  return permutation_;
+}
+
+std::shared_ptr<const RestFactor> KeptFactor::factor_of(const SparsePattern& pattern,
+                                                        const std::vector<double>& values,
+                                                        const std::string& owner, double memory,
+                                                        int threads) {
+  std::vector<double> diagonal = diagonal_of(pattern, values);
+  if (factor_ && diagonal.size() == diagonal_.size()) {
+    double least = std::numeric_limits<double>::infinity(), most = 0;
+    for (std::size_t i = 0; i < diagonal.size(); ++i) {
+      least = std::min(least, diagonal[i] / diagonal_[i]);
+      most = std::max(most, diagonal[i] / diagonal_[i]);
+    }
+    if (least > 0 && most <= kMostSpread * least) {
+      const double scale = std::sqrt(least * most);
+      factor_->scale(scale / scale_);
+      scale_ = scale;
+      return factor_;
+    }
+  }
+  factor_.reset();  // its memory is needed
+  factor_ =
+      std::make_shared<RestFactor>(pattern, permutation(pattern), values, owner, memory, threads);
+  diagonal_ = std::move(diagonal);
+  scale_ = 1;
+  ++factorizations_;
+  return factor_;
+}
+
+SolveBatch::SolveBatch(const RestFactor& factor, int members, std::deque<SolveBatch>* crew)
+    : factor_(factor), crew_(crew), members_(members), block_(at(factor.size()) * kBatch, 0.0f) {}
+
+void SolveBatch::serve_if_all_wait() {
+  if (waiting_ == 0 || waiting_ < members_) return;
+  factor_.solve(block_, scratch_);
+  waiting_ = 0;
+  ++generation_;
+  served_.notify_all();
+}
+
+SolveBatch* SolveBatch::reserved_elsewhere() {
+  if (crew_ == nullptr) return nullptr;
+  for (SolveBatch& other : *crew_)
+    for (int there = other.members_; there + 2 <= members_;)
+      if (other.members_.compare_exchange_weak(there, there + 1)) return &other;
+  return nullptr;
+}
+
+SolveBatch::Member::Member(SolveBatch& batch) : batch_(&batch) {
+  join();
+}
+
+SolveBatch::Member::~Member() {
+  leave();
+}
+
+void SolveBatch::Member::join() {
+  lock_ = std::unique_lock(batch_->mutex_);
+  for (lane_ = 0; batch_->taken_[at(lane_)]; ++lane_) continue;
+  batch_->taken_.set(at(lane_));
+}
+
+void SolveBatch::Member::leave() {
+  // What an empty lane held would be solved for again and again, down to numbers that are slow.
+  for (std::size_t i = at(lane_); i < batch_->block_.size(); i += kBatch) batch_->block_[i] = 0;
+  batch_->taken_.reset(at(lane_));
+  --batch_->members_;
+  batch_->serve_if_all_wait();
+  lock_.unlock();
+}
+
+/// Lanes know nothing of one another: the solution is the same in any batch.
+void SolveBatch::Member::even_out() {
+  SolveBatch* other = batch_->reserved_elsewhere();
+  if (other == nullptr) return;
+  leave();
+  batch_ = other;
+  join();
+}
+
+void SolveBatch::Member::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
+  // Scaled to unit length: residuals near convergence would lose bits to the range of a float.
+  const double length = b.norm();
+  x.setZero(b.size());
+  if (length == 0) return;
+  even_out();
+  float* lane = batch_->block_.data() + lane_;
+  for (Eigen::Index i = 0; i < b.size(); ++i) lane[i * kBatch] = static_cast<float>(b[i] / length);
+  ++batch_->waiting_;
+  const std::uint64_t mine = batch_->generation_;
+  batch_->serve_if_all_wait();
+  batch_->served_.wait(lock_, [&] { return batch_->generation_ != mine; });
+  const double scale = length * batch_->factor_.inverse_scale();
+  for (Eigen::Index i = 0; i < b.size(); ++i) x[i] = scale * lane[i * kBatch];
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The factor of the rest stiffness, shared by all sites, and solves with many right-hand sides.
+#pragma once
+
+#include <Eigen/Core>
+#include <atomic>
+#include <bitset>
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "fem/factor/cholesky.hpp"
+#include "fem/factor/large_pages.hpp"
+
+namespace palpate::fem {
+
+/// Right-hand sides solved at once. Sixteen floats fill one AVX-512 register.
+inline constexpr int kBatch = 16;
+
+/// A supernodal Cholesky factor in single precision, laid out for solves with kBatch right-hand
+/// sides. The solve is a preconditioner: single precision costs no accuracy and halves the traffic,
+/// which is what a solve consists of. Each right-hand side is one lane of every operation: its
+/// solution has the same bits whatever stands in the other lanes.
+class RestFactor {
+ public:
+  /// @throws Error(Geometry) when the matrix is not positive definite; `owner` names the body.
+  /// @throws Error(Configuration) when its making would pass `memory`, bytes; 0: no bound.
+  /// @throws Error(Internal) when memory runs out.
+  /// Made on up to `threads` threads, fewer where `memory` is short: the bits are the same.
+  RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
+             const std::vector<double>& values, const std::string& owner, double memory = 0,
+             int threads = 1);
+
+  /// From now on the factor of `ratio` times the matrix: a body whose laws all became so much
+  /// stiffer. Not while solves are under way.
+  void scale(double ratio) { inverse_scale_ /= ratio; }
+  /// K0^-1 b is this times the solution of solve().
+  double inverse_scale() const { return inverse_scale_; }
+
+  int size() const { return n_; }
+  double bytes() const { return static_cast<double>(values_.size()) * sizeof(float); }
+
+  /// In place: block[unknown * kBatch + lane]. `scratch` is resized as needed.
+  void solve(std::vector<float>& block, std::vector<float>& scratch) const;
+
+ private:
+  struct Supernode {
+    int first_column, columns, rows_below;
+    std::size_t row_list;  ///< into rows_
+    std::size_t values;    ///< into values_, where its panels start
+  };
+
+  /// Takes the columns of L of a supernode over.
+  void store(int supernode, const double* columns);
+  void forward(float* y) const;
+  void backward(float* y) const;
+
+  int n_ = 0;
+  double inverse_scale_ = 1;
+  std::vector<Supernode> supernodes_;
+  std::vector<int> rows_, permutation_;
+  LargeVector<float> values_;
+};
+
+/// The factors of campaigns on one body that differ in the constants of their laws alone, one
+/// after the other: of a calibration. A factor is a preconditioner and accuracy does not depend on
+/// it, so that it serves as long as the stiffness at rest is nearly a multiple of the one it was
+/// made of: exactly so when all laws scale together. The elimination order is made once.
+class KeptFactor {
+ public:
+  /// Of `values` on `pattern`, which is that of every call before. @throws Error as RestFactor.
+  std::shared_ptr<const RestFactor> factor_of(const SparsePattern& pattern,
+                                              const std::vector<double>& values,
+                                              const std::string& owner, double memory, int threads);
+  /// Made by the first call.
+  const std::vector<int>& permutation(const SparsePattern& pattern);
+
+  int factorizations() const { return factorizations_; }
+
+ private:
+  std::vector<int> permutation_;
+  std::vector<double> diagonal_;  ///< of the matrix that was factorized
+  double scale_ = 1;              ///< of what the factor stands for now
+  std::shared_ptr<RestFactor> factor_;
+  int factorizations_ = 0;
+};
+
+/// Gathers the requests of up to kBatch sites that run side by side, each on its own thread, and
+/// serves them by one block solve when every running site waits for it. Only one of the threads
+/// runs at a time (they hold the lock of the batch), so that a batch occupies one core.
+class SolveBatch {
+ public:
+  /// `members`: how many threads will take part; each leaves when its Member ends. `crew`: batches
+  /// between which members move, so that none is left idle while another is full; this is one of
+  /// them, and no member joins before the last of them is made.
+  SolveBatch(const RestFactor& factor, int members, std::deque<SolveBatch>* crew = nullptr);
+
+  int members() const { return members_; }
+
+  /// A site thread holds one of these while it runs.
+  class Member {
+   public:
+    explicit Member(SolveBatch& batch);
+    ~Member();
+    Member(const Member&) = delete;
+    Member& operator=(const Member&) = delete;
+
+    /// x = K0^-1 b. Waits for the other members.
+    void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
+
+   private:
+    void join();
+    void leave();
+    void even_out();
+
+    SolveBatch* batch_;
+    int lane_ = 0;
+    std::unique_lock<std::mutex> lock_;
+  };
+
+ private:
+  void serve_if_all_wait();
+  /// A batch of the crew with two members less, the new member counted there; null: none.
+  SolveBatch* reserved_elsewhere();
+
+  const RestFactor& factor_;
+  std::deque<SolveBatch>* crew_;
+  std::mutex mutex_;
+  std::condition_variable served_;
+  std::atomic<int> members_;  ///< those on their way counted
+  int waiting_ = 0;
+  std::uint64_t generation_ = 0;
+  std::bitset<kBatch> taken_;  ///< lanes
+  std::vector<float> block_, scratch_;
+};
+
+}  // namespace palpate::fem

@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/mesh/divided_mesh.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <string>
+#include <utility>
+
+#include "format/at.hpp"
+#include "format/edge.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+using Volume = std::array<double, 4>;  ///< volume coordinates
+
+/// The corners of the face opposite to each corner.
+constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{
+    {{1, 2, 3}, {0, 2, 3}, {0, 1, 3}, {0, 1, 2}}};
+
+std::array<double, kTetNodes> shape_functions(const Volume& L) {
+  std::array<double, kTetNodes> N{};
+  for (std::size_t c = 0; c < 4; ++c) N[c] = L[c] * (2 * L[c] - 1);
+  for (std::size_t e = 0; e < 6; ++e) N[4 + e] = 4 * L[kTetEdges[e][0]] * L[kTetEdges[e][1]];
+  return N;
+}
+
+/// Of a node of an element.
+Volume volume_coordinates(std::size_t node) {
+  Volume L{};
+  if (node < 4) {
+    L[node] = 1;
+  } else {
+    for (const std::size_t corner : kTetEdges[node - 4]) L[corner] = 0.5;
+  }
+  return L;
+}
+
+/// A child of an element, by four of its nodes.
+using Child = std::array<std::size_t, 4>;
+
+constexpr unsigned kAllEdges = 0b111111;
+/// The edges of each face, one bit an edge; faces opposite to the corners 0..3.
+constexpr std::array<unsigned, 4> kFaceEdges{0b110010, 0b101100, 0b011001, 0b000111};
+
+/// The least division that holds `edges` and fits together on every face with a neighbour's: no
+/// face has two divided edges.
+unsigned completed(unsigned edges) {
+  for (bool grown = true; grown;) {
+    grown = false;
+    for (const unsigned face : kFaceEdges)
+      if (std::popcount(edges & face) == 2) {
+        edges |= face;
+        grown = true;
+      }
+  }
+  const bool face = std::ranges::find(kFaceEdges, edges) != kFaceEdges.end();
+  return std::popcount(edges) >= 3 && !face ? kAllEdges : edges;
+}
+
+/// In eight: four at the corners, the octahedron between them in four along its shortest diagonal.
+std::vector<Child> children_in_eight(const QuadraticMesh& mesh, const Tetrahedron10& node) {
+  // Mid-edge nodes: 4 = 01, 5 = 12, 6 = 20, 7 = 03, 8 = 13, 9 = 23. Opposite ones span a diagonal
+  // of the octahedron; the other four go around it.
+  struct Diagonal {
+    std::size_t from, to;
+    std::array<std::size_t, 4> around;
+  };
+  constexpr std::array<Diagonal, 3> kDiagonals{
+      {{4, 9, {5, 8, 7, 6}}, {5, 7, {4, 6, 9, 8}}, {6, 8, {4, 7, 9, 5}}}};
+  const auto length = [&](const Diagonal& d) {
+    return (mesh.X.col(node[d.from]) - mesh.X.col(node[d.to])).squaredNorm();
+  };
+  const Diagonal* shortest = &kDiagonals[0];
+  for (const Diagonal& d : kDiagonals)
+    if (length(d) < (1 - 1e-9) * length(*shortest)) shortest = &d;
+  std::vector<Child> parts{{0, 4, 6, 7}, {4, 1, 5, 8}, {6, 5, 2, 9}, {7, 8, 9, 3}};
+  for (std::size_t i = 0; i < 4; ++i)
+    parts.push_back(
+        {shortest->from, shortest->to, shortest->around[i], shortest->around[(i + 1) % 4]});
+  return parts;
+}
+
+/// Along edges that share no corner: an end of each is in each child.
+std::vector<Child> children_along(const std::vector<std::size_t>& edges) {
+  std::vector<Child> parts{{0, 1, 2, 3}};
+  for (const std::size_t edge : edges) {
+    std::vector<Child> halves;
+    for (const Child& part : parts)
+      for (const std::size_t end : kTetEdges[edge]) {
+        halves.push_back(part);
+        std::ranges::replace(halves.back(), end, 4 + edge);
+      }
+    parts.swap(halves);
+  }
+  return parts;
+}
+
+/// A face in four, each joined to the corner opposite.
+std::vector<Child> children_of_face(std::size_t apex) {
+  const auto& [i, j, k] = kFaces[apex];
+  const std::size_t ij = middle_node(i, j), jk = middle_node(j, k), ki = middle_node(k, i);
+  return {{i, ij, ki, apex}, {ij, j, jk, apex}, {ki, jk, k, apex}, {ij, jk, ki, apex}};
+}
+
+std::vector<Child> children(const QuadraticMesh& mesh, const Tetrahedron10& node, unsigned edges) {
+  if (edges == kAllEdges) return children_in_eight(mesh, node);
+  for (std::size_t apex = 0; apex < 4; ++apex)
+    if (edges == kFaceEdges[apex]) return children_of_face(apex);
+  std::vector<std::size_t> apart;
+  for (std::size_t e = 0; e < 6; ++e)
+    if (edges >> e & 1U) apart.push_back(e);
+  return children_along(apart);
+}
+
+/// Volume of a child over that of its parent, if the parent had straight edges.
+double straight_volume(const Child& child) {
+  Eigen::Matrix4d corners;
+  for (int c = 0; c < 4; ++c)
+    corners.col(c) = Eigen::Vector4d(volume_coordinates(child[at(c)]).data());
+  return corners.determinant();
+}
+
+double six_volumes(const QuadraticMesh& mesh, const Tetrahedron10& node, const Child& child) {
+  Eigen::Matrix3d edges;
+  for (int c = 0; c < 3; ++c)
+    edges.col(c) = mesh.X.col(node[child[at(c + 1)]]) - mesh.X.col(node[child[0]]);
+  return edges.determinant();
+}
+
+/// Divides the elements one after another; an edge that two of them share gets one middle.
+class Divider {
+ public:
+  explicit Divider(const QuadraticMesh& whole)
+      : whole_(whole), edges_(whole.tetrahedra.size(), 0U) {}
+
+  DividedMesh run(const std::vector<int>& elements) && {
+    choose_edges(elements);
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      if (edges_[e] == 0) add_element(whole_.tetrahedra[e], whole_.region[e]);
+    for (std::size_t e = 0; e < edges_.size(); ++e)
+      if (edges_[e] != 0) divide_element(static_cast<int>(e));
+    for (std::size_t f = 0; f < whole_.facets.size(); ++f) divide_facet(f);
+    place_nodes();
+    return std::move(divided_);
+  }
+
+ private:
+  /// Which edges are divided, by their mid-edge nodes, until every element agrees.
+  void choose_edges(const std::vector<int>& elements) {
+    split_.assign(at(whole_.nodes()), false);
+    for (const int e : elements)
+      for (std::size_t edge = 0; edge < 6; ++edge)
+        split_[at(whole_.tetrahedra[at(e)][4 + edge])] = true;
+    for (bool grown = true; grown;) {
+      grown = false;
+      for (std::size_t e = 0; e < edges_.size(); ++e) {
+        const Tetrahedron10& node = whole_.tetrahedra[e];
+        unsigned edges = 0;
+        for (std::size_t edge = 0; edge < 6; ++edge)
+          if (split_[at(node[4 + edge])]) edges |= 1U << edge;
+        edges_[e] = completed(edges);
+        if (edges_[e] == edges) continue;
+        grown = true;
+        for (std::size_t edge = 0; edge < 6; ++edge)
+          if (edges_[e] >> edge & 1U) split_[at(node[4 + edge])] = true;
+      }
+    }
+  }
+
+  void add_element(const Tetrahedron10& node, std::int32_t region) {
+    divided_.mesh.tetrahedra.push_back(node);
+    divided_.mesh.region.push_back(region);
+  }
+
+  /// The middle between two nodes of an element: one that is there if they are corners.
+  std::int32_t middle(int element, std::size_t a, std::size_t b) {
+    const Tetrahedron10& node = whole_.tetrahedra[at(element)];
+    if (a < 4 && b < 4) return node[middle_node(a, b)];
+    const auto next = whole_.nodes() + static_cast<std::int32_t>(divided_.made.size());
+    const auto [entry, added] = middle_.try_emplace(edge_between(node[a], node[b]), next);
+    if (!added) return entry->second;
+    const Volume La = volume_coordinates(a), Lb = volume_coordinates(b);
+    Volume L{};
+    for (std::size_t c = 0; c < 4; ++c) L[c] = 0.5 * (La[c] + Lb[c]);
+    divided_.made.push_back({element, shape_functions(L)});
+    held_.push_back(all_held_around(node, L));
+    return next;
+  }
+
+  /// Whether every node of the edge, face or element is held that a point lies on.
+  bool all_held_around(const Tetrahedron10& node, const Volume& L) const {
+    for (std::size_t a = 0; a < kTetNodes; ++a) {
+      const Volume of = volume_coordinates(a);
+      bool on = true;
+      for (std::size_t c = 0; c < 4; ++c) on = on && (of[c] == 0 || L[c] > 0);
+      if (on && !whole_.held[at(node[a])]) return false;
+    }
+    return true;
+  }
+
+  void divide_element(int element) {
+    const Tetrahedron10& node = whole_.tetrahedra[at(element)];
+    for (Child child : children(whole_, node, edges_[at(element)])) {
+      if (straight_volume(child) < 0) std::swap(child[2], child[3]);
+      if (!(six_volumes(whole_, node, child) > 0)) refuse(element);
+      Tetrahedron10 nodes{};
+      for (std::size_t c = 0; c < 4; ++c) nodes[c] = node[child[c]];
+      for (std::size_t e = 0; e < 6; ++e)
+        nodes[4 + e] = middle(element, child[kTetEdges[e][0]], child[kTetEdges[e][1]]);
+      add_element(nodes, whole_.region[at(element)]);
+    }
+  }
+
+  [[noreturn]] static void refuse(int element) {
+    throw Error(
+        ErrorKind::Geometry, "element " + std::to_string(element) + " of the body",
+        "cannot be divided: its curved edges turn a part of it over",
+        "mesh the body again, or take smaller elements instead of solver.divide_under_tool");
+  }
+
+  /// After the elements: all middles are known.
+  void divide_facet(std::size_t index) {
+    const Facet& facet = whole_.facets[index];  // corners 0..2, then the edges 01, 12, 20
+    std::vector<std::array<std::size_t, 3>> parts;
+    std::vector<std::size_t> split;
+    for (std::size_t edge = 0; edge < 3; ++edge)
+      if (split_[at(facet[3 + edge])]) split.push_back(edge);
+    if (split.empty()) {
+      parts = {{0, 1, 2}};
+    } else if (split.size() == 1) {
+      const std::size_t from = split[0], to = (from + 1) % 3, across = (from + 2) % 3;
+      parts = {{from, 3 + from, across}, {3 + from, to, across}};
+    } else {
+      parts = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
+    }
+    for (const auto& part : parts) {
+      Facet nodes{};
+      for (std::size_t c = 0; c < 3; ++c) {
+        nodes[c] = facet[part[c]];
+        nodes[3 + c] = middle_of_facet(facet, part[c], part[(c + 1) % 3]);
+      }
+      divided_.mesh.facets.push_back(nodes);
+      divided_.mesh.facet_region.push_back(whole_.facet_region[index]);
+    }
+  }
+
+  std::int32_t middle_of_facet(const Facet& facet, std::size_t a, std::size_t b) const {
+    if (a < 3 && b < 3) return facet[3 + ((a + 1) % 3 == b ? a : b)];
+    return middle_.at(edge_between(facet[a], facet[b]));
+  }
+
+  void place_nodes() {
+    const auto made = static_cast<Eigen::Index>(divided_.made.size());
+    divided_.mesh.X.resize(3, whole_.X.cols() + made);
+    divided_.mesh.X.leftCols(whole_.X.cols()) = whole_.X;
+    for (Eigen::Index i = 0; i < made; ++i) {
+      const auto& [parent, N] = divided_.made[at(static_cast<int>(i))];
+      auto x = divided_.mesh.X.col(whole_.X.cols() + i);
+      x.setZero();
+      for (std::size_t a = 0; a < kTetNodes; ++a)
+        x += N[a] * whole_.X.col(whole_.tetrahedra[at(parent)][a]);
+    }
+    divided_.mesh.held = whole_.held;
+    divided_.mesh.held.insert(divided_.mesh.held.end(), held_.begin(), held_.end());
+  }
+
+  const QuadraticMesh& whole_;
+  DividedMesh divided_;
+  std::vector<unsigned> edges_;          ///< of each element, those that are divided, one bit each
+  std::vector<bool> split_;              ///< of each mid-edge node, whether its edge is divided
+  std::vector<bool> held_;               ///< of each new node
+  std::map<Edge, std::int32_t> middle_;  ///< of two old nodes
+};
+
+}  // namespace
+
+DividedMesh divide(const QuadraticMesh& mesh, const std::vector<int>& elements) {
+  return Divider(mesh).run(elements);
+}
+
+Prolongation::Prolongation(const DividedMesh& divided, const std::vector<Tetrahedron10>& elements,
+                           const SolidModel& whole)
+    : all_(whole.pattern().n) {
+  const int old_nodes = whole.mesh().nodes() - static_cast<int>(divided.made.size());
+  for (int node = 0; node < old_nodes; ++node)
+    if (whole.equation(node) >= 0) old_ += 3;
+  for (std::size_t i = 0; i < divided.made.size(); ++i) {
+    const int first = whole.equation(old_nodes + static_cast<int>(i));
+    if (first < 0) continue;
+    const DividedMesh::Made& made = divided.made[i];
+    for (std::size_t a = 0; a < kTetNodes; ++a) {
+      const int parent = whole.equation(elements[at(made.parent)][a]);
+      if (parent >= 0 && made.N[a] != 0) shares_.push_back({first, parent, made.N[a]});
+    }
+  }
+}
+
+Eigen::VectorXd Prolongation::extended(const Eigen::VectorXd& d) const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(all_);
+  all.head(old_) = d;
+  for (const Share& share : shares_)
+    all.segment<3>(share.node) += share.N * d.segment<3>(share.parent);
+  return all;
+}
+
+Eigen::VectorXd Prolongation::reduced(const Eigen::VectorXd& f) const {
+  Eigen::VectorXd old = f.head(old_);
+  for (const Share& share : shares_)
+    old.segment<3>(share.parent) += share.N * f.segment<3>(share.node);
+  return old;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/solid/nodal_pressure.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "format/at.hpp"
+
+namespace palpate::fem {
+
+double volume_of(const QuadraticMesh& mesh, int element) {
+  const auto& node = mesh.tetrahedra[at(element)];
+  const auto edge = [&](std::size_t c) -> Eigen::Vector3d {
+    return mesh.X.col(node[c]) - mesh.X.col(node[0]);
+  };
+  return edge(1).cross(edge(2)).dot(edge(3)) / 6;
+}
+
+NodalPressure::NodalPressure(const QuadraticMesh& mesh, const std::vector<int>& elements,
+                             const std::vector<int>& equation)
+    : regions_(1 + *std::max_element(mesh.region.begin(), mesh.region.end())) {
+  std::int32_t last_corner = 0;
+  for (const Tetrahedron10& t : mesh.tetrahedra)
+    last_corner = std::max(last_corner, *std::max_element(t.begin(), t.begin() + 4));
+  point_at_.assign((at(last_corner) + 1) * at(regions_), -1);
+  for (const int e : elements)
+    for (std::size_t c = 0; c < 4; ++c) {
+      int& point = point_at_[key(mesh, e, c)];
+      if (point >= 0) continue;
+      point = static_cast<int>(points_.size());
+      points_.push_back({mesh.region[at(e)], 0, {}});
+    }
+  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
+    const std::array<int, 4> mine = points_of(mesh, e);
+    if (std::ranges::all_of(mine, [](int point) { return point < 0; })) continue;
+    elements_.push_back(e);
+    for (const int point : mine) {
+      if (point < 0) continue;
+      points_[at(point)].volume += 0.25 * volume_of(mesh, e);
+      for (const auto node : mesh.tetrahedra[at(e)])
+        if (equation[at(node)] >= 0) points_[at(point)].nodes.push_back(node);
+    }
+  }
+  for (Point& point : points_) {
+    std::sort(point.nodes.begin(), point.nodes.end());
+    point.nodes.erase(std::unique(point.nodes.begin(), point.nodes.end()), point.nodes.end());
+  }
+}
+
+std::size_t NodalPressure::key(const QuadraticMesh& mesh, int element, std::size_t corner) const {
+  return at(mesh.tetrahedra[at(element)][corner]) * at(regions_) + at(mesh.region[at(element)]);
+}
+
+std::size_t NodalPressure::bytes() const {
+  std::size_t nodes = 0;
+  for (const Point& point : points_) nodes += point.nodes.size();
+  return sizeof(int) * (nodes + point_at_.size() + elements_.size()) +
+         sizeof(Point) * points_.size();
+}
+
+std::array<int, 4> NodalPressure::points_of(const QuadraticMesh& mesh, int element) const {
+  std::array<int, 4> mine{};
+  for (std::size_t c = 0; c < 4; ++c) mine[c] = point_at_[key(mesh, element, c)];
+  return mine;
+}
+
+}  // namespace palpate::fem

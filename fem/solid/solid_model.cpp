@@ -1,0 +1,460 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/solid/solid_model.hpp"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "fem/mesh/in_words.hpp"
+#include "fem/solid/ellipticity.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+constexpr std::size_t kElementEntries = std::tuple_size_v<ElementMatrix<double>>;
+
+/// Volume and gradients of the volume coordinates of one straight tetrahedron.
+ElementGeometry<double> geometry_of(const QuadraticMesh& mesh, int element) {
+  const auto& node = mesh.tetrahedra[at(element)];
+  Eigen::Matrix3d edges;
+  for (int c = 0; c < 3; ++c) edges.col(c) = mesh.X.col(node[at(c + 1)]) - mesh.X.col(node[0]);
+  const Eigen::Matrix3d inverse = edges.inverse();  // rows: gradients of L_1, L_2, L_3
+  ElementGeometry<double> geometry;
+  geometry.volume = volume_of(mesh, element);
+  for (int j = 0; j < 3; ++j) {
+    for (int c = 0; c < 3; ++c) geometry.gradient[at(c + 1)][at(j)] = inverse(c, j);
+    geometry.gradient[0][at(j)] = -inverse.col(j).sum();
+  }
+  return geometry;
+}
+
+Vec3 centroid(const QuadraticMesh& mesh, int element) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t c = 0; c < 4; ++c) sum += mesh.X.col(mesh.tetrahedra[at(element)][c]);
+  return {sum[0] / 4, sum[1] / 4, sum[2] / 4};
+}
+
+/// Integral of N_a over an element of volume 1.
+double shape_integral(std::size_t a, bool linear) {
+  if (linear) return a < 4 ? 0.25 : 0;
+  return a < 4 ? -0.05 : 0.2;
+}
+
+Eigen::Matrix3Xd nodal_weight(const QuadraticMesh& mesh, const Gravity& gravity) {
+  if (!gravity.acts()) return {};
+  Eigen::Matrix3Xd weight = Eigen::Matrix3Xd::Zero(3, mesh.nodes());
+  const Eigen::Vector3d per_volume = gravity.density * Eigen::Vector3d(gravity.acceleration.data());
+  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e)
+    for (std::size_t a = 0; a < kTetNodes; ++a)
+      weight.col(mesh.tetrahedra[at(e)][a]) +=
+          volume_of(mesh, e) * shape_integral(a, mesh.linear) * per_volume;
+  return weight;
+}
+
+std::shared_ptr<const Solid> make_solid(const Body& body, std::vector<Law> laws,
+                                        Dilatation dilatation, const Gravity& gravity) {
+  auto solid = std::make_shared<Solid>(
+      Solid{make_quadratic_mesh(body, is_linear(dilatation)), std::move(laws), dilatation, {}});
+  solid->weight = nodal_weight(solid->mesh, gravity);
+  return solid;
+}
+
+}  // namespace
+
+SolidModel::SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation,
+                       const Gravity& gravity)
+    : solid_(make_solid(body, std::move(laws), dilatation, gravity)) {
+  std::vector<bool> free(at(mesh().nodes()));
+  for (int node = 0; node < mesh().nodes(); ++node) free[at(node)] = mesh().is_free(node);
+  number_unknowns(free);
+  std::vector<int> elements(mesh().tetrahedra.size());
+  std::iota(elements.begin(), elements.end(), 0);
+  take_elements(elements);
+}
+
+std::vector<bool> nodes_within(const QuadraticMesh& mesh, const Eigen::Vector3d& centre,
+                               double radius) {
+  std::vector<bool> within(at(mesh.nodes()));
+  for (int node = 0; node < mesh.nodes(); ++node)
+    within[at(node)] = (mesh.X.col(node) - centre).squaredNorm() <= radius * radius;
+  return within;
+}
+
+SolidModel::SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, double radius)
+    : SolidModel(whole, nodes_within(whole.mesh(), centre, radius)) {}
+
+SolidModel::SolidModel(const SolidModel& whole, std::vector<bool> free) : solid_(whole.solid_) {
+  for (std::size_t node = 0; node < free.size(); ++node)
+    free[node] = free[node] && mesh().is_free(static_cast<int>(node));
+  number_unknowns(free);
+  std::vector<int> elements;
+  for (int e = 0; e < static_cast<int>(mesh().tetrahedra.size()); ++e)
+    if (std::ranges::any_of(mesh().tetrahedra[at(e)],
+                            [&](int node) { return equation(node) >= 0; }))
+      elements.push_back(e);
+  take_elements(elements);
+}
+
+SolidModel SolidModel::without_stiffness(const SolidModel& whole, QuadraticMesh mesh) {
+  SolidModel model(std::make_shared<const Solid>(
+      Solid{std::move(mesh), whole.solid_->laws, whole.solid_->dilatation, {}}));
+  std::vector<bool> free = model.mesh().held;
+  free.flip();
+  model.number_unknowns(free);
+  std::vector<int> elements(model.mesh().tetrahedra.size());
+  std::iota(elements.begin(), elements.end(), 0);
+  model.make_blocks(elements);
+  model.pattern_.n = model.unknowns_;
+  return model;
+}
+
+double SolidModel::bytes() const {
+  return static_cast<double>(blocks_.size() * sizeof(Block) +
+                             sizeof(int) * (scatter_.size() + equation_.size() +
+                                            pattern_.row.size() + pattern_.start.size()) +
+                             nodal_.bytes() + foundation_.bytes());
+}
+
+void SolidModel::number_unknowns(const std::vector<bool>& free) {
+  equation_.assign(at(mesh().nodes()), -1);
+  for (int node = 0; node < mesh().nodes(); ++node) {
+    if (!free[at(node)]) continue;
+    equation_[at(node)] = unknowns_;
+    unknowns_ += 3;
+  }
+}
+
+void SolidModel::take_elements(const std::vector<int>& elements) {
+  std::vector<std::span<const std::int32_t>> coupled;
+  if (has_nodal_pressure(solid_->dilatation)) {
+    nodal_ = NodalPressure(mesh(), elements, equation_);
+    for (const NodalPressure::Point& point : nodal_.points()) coupled.emplace_back(point.nodes);
+    make_blocks(nodal_.elements());
+  } else {
+    for (const int e : elements) coupled.emplace_back(mesh().tetrahedra[at(e)]);
+    make_blocks(elements);
+  }
+  foundation_ = Foundation(mesh(), equation_);
+  pattern_ = stiffness_pattern(coupled, equation_, unknowns_);
+  make_scatter();
+}
+
+void SolidModel::make_blocks(const std::vector<int>& elements) {
+  for (int region = 0; region < static_cast<int>(solid_->laws.size()); ++region) {
+    std::vector<int> members;
+    for (const int e : elements)
+      if (mesh().region[at(e)] == region) members.push_back(e);
+    for (std::size_t first = 0; first < members.size(); first += kLanes) {
+      blocks_.push_back(make_block(members, first, region));
+    }
+  }
+}
+
+SolidModel::Block SolidModel::make_block(const std::vector<int>& elements, std::size_t first,
+                                         int region) const {
+  Block block;
+  block.region = region;
+  block.count = static_cast<int>(std::min<std::size_t>(kLanes, elements.size() - first));
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const int element = elements[std::min(first + at(lane), elements.size() - 1)];
+    const ElementGeometry<double> one = geometry_of(mesh(), element);
+    block.element[at(lane)] = element;
+    if (has_nodal_pressure(solid_->dilatation))
+      block.pressure_point[at(lane)] = nodal_.points_of(mesh(), element);
+    block.geometry.volume[lane] = one.volume;
+    const auto fibres = solid_->laws[at(region)].fibres_at(centroid(mesh(), element));
+    for (std::size_t family = 0; family < fibres.size(); ++family)
+      for (std::size_t j = 0; j < 3; ++j)
+        block.geometry.fibres[family][j][lane] = fibres[family][j];
+    for (std::size_t c = 0; c < 4; ++c)
+      for (std::size_t j = 0; j < 3; ++j) block.geometry.gradient[c][j][lane] = one.gradient[c][j];
+  }
+  return block;
+}
+
+int SolidModel::unknown(const Tetrahedron10& node, std::size_t row) const {
+  const int first = equation(node[row / 3]);
+  return first < 0 ? -1 : first + static_cast<int>(row % 3);
+}
+
+void SolidModel::make_scatter() {
+  scatter_.assign(blocks_.size() * kElementEntries * kLanes, -1);
+  int* place = scatter_.data();
+  for (const Block& block : blocks_)
+    for (std::size_t row = 0; row < 3 * kTetNodes; ++row)
+      for (std::size_t column = 0; column <= row; ++column, place += kLanes)
+        for (int lane = 0; lane < block.count; ++lane) {
+          const auto& node = mesh().tetrahedra[at(block.element[at(lane)])];
+          const int i = unknown(node, row), j = unknown(node, column);
+          if (i >= 0 && j >= 0) place[lane] = pattern_.position(i, j);
+        }
+}
+
+ElementVector<Lanes> SolidModel::gather(const Block& block, const Displacement& u) const {
+  ElementVector<Lanes> local;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const auto& node = mesh().tetrahedra[at(block.element[at(lane)])];
+    for (std::size_t a = 0; a < kTetNodes; ++a)
+      for (int i = 0; i < 3; ++i) local[a][at(i)][lane] = u(i, node[a]);
+  }
+  return local;
+}
+
+void SolidModel::scatter(const Block& block, const ElementVector<Lanes>& forces,
+                         Eigen::VectorXd& f) const {
+  for (int lane = 0; lane < block.count; ++lane) {
+    const auto& node = mesh().tetrahedra[at(block.element[at(lane)])];
+    for (std::size_t a = 0; a < kTetNodes; ++a) {
+      const int first = equation(node[a]);
+      if (first < 0) continue;
+      for (int i = 0; i < 3; ++i) f[first + i] += forces[a][at(i)][lane];
+    }
+  }
+}
+
+ElementKinematics<Lanes> SolidModel::kinematics_of(const Block& block,
+                                                   const Displacement& u) const {
+  const ElementVector<Lanes> local = gather(block, u);
+  return is_linear(solid_->dilatation) ? linear_kinematics(block.geometry, local)
+                                       : kinematics(block.geometry, local);
+}
+
+namespace {
+
+double smallest(const ElementKinematics<Lanes>& k) {
+  return std::min({k.J[0].minCoeff(), k.J[1].minCoeff(), k.J[2].minCoeff(), k.J[3].minCoeff()});
+}
+
+/// Exponential laws overflow long before an element inverts: such a state is as inadmissible.
+SolidModel::State checked(SolidModel::State state) {
+  if (!std::isfinite(state.energy)) state.min_J = 0;
+  return state;
+}
+
+/// Mean over the element of tr(sigma)/3 = p + P:F/(3 J).
+Lanes mean_stress(const Law& law, const PointPressures<Lanes>& pressure,
+                  const ElementGeometry<Lanes>& geometry, const ElementKinematics<Lanes>& k) {
+  Lanes mean = Lanes::Zero();
+  for (std::size_t q = 0; q < kTetPoints; ++q) {
+    const Tensor2<Lanes> P = law.piola(k.F[q], k.cof[q], k.J[q], geometry.fibres);
+    mean += 0.25 * (pressure[q] + double_contraction(P, k.F[q]) / (3.0 * k.J[q]));
+  }
+  return mean;
+}
+
+}  // namespace
+
+SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
+  PointState state;
+  const auto& points = nodal_.points();
+  std::vector<double> mean(points.size(), 0.0);
+  for (const Block& block : blocks_) {
+    if (points.empty()) break;
+    const auto k = kinematics_of(block, u);
+    const auto& J = k.J;
+    const Lanes all = kTetFar * (J[0] + J[1] + J[2] + J[3]);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const Lanes share = 0.25 * block.geometry.volume * (all + (kTetNear - kTetFar) * J[c]);
+      for (int lane = 0; lane < block.count; ++lane)
+        if (const int point = block.pressure_point[at(lane)][c]; point >= 0)
+          mean[at(point)] += share[lane];
+    }
+  }
+  for (std::size_t n = 0; n < points.size(); ++n) {
+    const Law& law = solid_->laws[at(points[n].region)];
+    const Lanes J = Lanes::Constant(mean[n] / points[n].volume);
+    state.pressure.push_back(law.pressure(J)[0]);
+    state.slope.push_back(law.pressure_slope(J)[0]);
+    state.energy += points[n].volume * law.volumetric_energy(J)[0];
+  }
+  return state;
+}
+
+PointPressures<Lanes> SolidModel::pressures(const Block& block, const ElementKinematics<Lanes>& k,
+                                            const PointState& points) const {
+  if (!has_nodal_pressure(solid_->dilatation))
+    return own_pressures(solid_->laws[at(block.region)], solid_->dilatation, k);
+  std::array<Lanes, 4> corner;
+  for (std::size_t c = 0; c < 4; ++c)
+    for (int lane = 0; lane < kLanes; ++lane) {
+      const int point = block.pressure_point[at(lane)][c];
+      corner[c][lane] = point >= 0 ? points.pressure[at(point)] : 0.0;
+    }
+  return is_linear(solid_->dilatation) ? mean_pressure(corner) : interpolated_pressures(corner);
+}
+
+/// (U''/V_n) g g^T with g = d(V_n Jbar_n)/du.
+void SolidModel::add_point_stiffness(const Displacement& u, const PointState& state,
+                                     std::vector<double>& values) const {
+  const auto& points = nodal_.points();
+  std::vector<Eigen::Matrix3Xd> slope;
+  for (const auto& point : points)
+    slope.emplace_back(Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(point.nodes.size())));
+  for (const Block& block : blocks_) {
+    if (points.empty()) break;
+    const auto k = kinematics_of(block, u);
+    for (std::size_t c = 0; c < 4; ++c) {
+      const auto g = dilatation_forces(solid_->dilatation, block.geometry, k, c);
+      for (int lane = 0; lane < block.count; ++lane) {
+        const int point = block.pressure_point[at(lane)][c];
+        if (point < 0) continue;
+        const auto& nodes = points[at(point)].nodes;
+        const auto& node = mesh().tetrahedra[at(block.element[at(lane)])];
+        for (std::size_t a = 0; a < kTetNodes; ++a) {
+          if (equation(node[a]) < 0) continue;
+          const auto place = std::lower_bound(nodes.begin(), nodes.end(), node[a]) - nodes.begin();
+          for (int i = 0; i < 3; ++i) slope[at(point)](i, place) += g[a][at(i)][lane];
+        }
+      }
+    }
+  }
+  for (std::size_t n = 0; n < points.size(); ++n)
+    add_rank_one(pattern_, equation_, points[n].nodes, state.slope[n] / points[n].volume,
+                 slope[n].data(), values);
+}
+
+Eigen::VectorXd SolidModel::weight() const {
+  Eigen::VectorXd load = Eigen::VectorXd::Zero(unknowns_);
+  if (solid_->weight.cols() == 0) return load;
+  for (int node = 0; node < mesh().nodes(); ++node)
+    if (equation(node) >= 0) load.segment<3>(equation(node)) = solid_->weight.col(node);
+  return load;
+}
+
+double SolidModel::work_of_gravity(const Displacement& u) const {
+  double work = 0;
+  for (int node = 0; node < static_cast<int>(solid_->weight.cols()); ++node)
+    if (equation(node) >= 0) work += solid_->weight.col(node).dot(u.col(node));
+  return work;
+}
+
+SolidModel::State SolidModel::energy(const Displacement& u) const {
+  State state;
+  for (const Block& block : blocks_) {
+    const auto k = kinematics_of(block, u);
+    state.min_J = std::min(state.min_J, smallest(k));
+    if (!(state.min_J > 0)) return state;
+    const Lanes energy =
+        element_energy(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k);
+    state.energy += energy.head(block.count).sum();
+  }
+  state.energy += point_state(u).energy + foundation_.energy(u) - work_of_gravity(u);
+  return checked(state);
+}
+
+SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) const {
+  State state;
+  f.setZero(pattern_.n);
+  const PointState points = point_state(u);
+  for (const Block& block : blocks_) {
+    const auto k = kinematics_of(block, u);
+    state.min_J = std::min(state.min_J, smallest(k));
+    if (!(state.min_J > 0)) return state;
+    const Law& law = solid_->laws[at(block.region)];
+    const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
+    state.energy += energy.head(block.count).sum();
+    scatter(block,
+            element_forces(law, solid_->dilatation, block.geometry, k, pressures(block, k, points)),
+            f);
+  }
+  state.energy += points.energy + foundation_.energy(u) - work_of_gravity(u);
+  foundation_.add_forces(equation_, u, f);
+  for (int node = 0; node < static_cast<int>(solid_->weight.cols()); ++node)
+    if (equation(node) >= 0) f.segment<3>(equation(node)) -= solid_->weight.col(node);
+  return checked(state);
+}
+
+void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) const {
+  values.assign(at(pattern_.nonzeros()), 0.0);
+  ElementMatrix<Lanes> K;
+  const int* place = scatter_.data();
+  const PointState points = point_state(u);
+  for (const Block& block : blocks_) {
+    const auto k = kinematics_of(block, u);
+    element_stiffness(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k,
+                      pressures(block, k, points), K);
+    for (std::size_t entry = 0; entry < kElementEntries; ++entry, place += kLanes)
+      for (int lane = 0; lane < block.count; ++lane)
+        if (place[lane] >= 0) values[at(place[lane])] += K[entry][lane];
+  }
+  add_point_stiffness(u, points, values);
+  foundation_.add_stiffness(equation_, pattern_, values);
+}
+
+SolidModel::Compressed SolidModel::most_compressed(const Displacement& u) const {
+  Compressed worst{1, Eigen::Vector3d::Zero()};
+  int element = -1;
+  for (const Block& block : blocks_) {
+    const auto k = kinematics_of(block, u);
+    const Lanes J = k.J[0].min(k.J[1]).min(k.J[2]).min(k.J[3]);
+    for (int lane = 0; lane < block.count; ++lane)
+      if (element < 0 || J[lane] < worst.J) {
+        worst.J = J[lane];
+        element = block.element[at(lane)];
+      }
+  }
+  if (element < 0) return worst;
+  for (std::size_t c = 0; c < 4; ++c)
+    worst.X += 0.25 * mesh().X.col(mesh().tetrahedra[at(element)][c]);
+  return worst;
+}
+
+Lanes SolidModel::weakest_waves(const Block& block, const ElementKinematics<Lanes>& k) const {
+  const Law& law = solid_->laws[at(block.region)];
+  const bool own = solid_->dilatation == Dilatation::Pointwise;
+  Lanes weakest = Lanes::Constant(std::numeric_limits<double>::infinity());
+  for (std::size_t q = 0; q < points_of(solid_->dilatation); ++q) {
+    Tensor4<Lanes> A;
+    for (auto& row : A) row.fill(Lanes::Zero());
+    law.add_tangent(k.F[q], k.cof[q], k.J[q], block.geometry.fibres, A);
+    add_dilatation_tangent(k.cof[q], law.pressure_slope(own ? k.J[q] : k.mean_J), A);
+    weakest = weakest.min(weakest_wave(k.F[q], A));
+  }
+  return weakest;
+}
+
+std::string SolidModel::EllipticityLoss::reason() const {
+  return "the law loses ellipticity in the element at " + point_in_millimetres(X) +
+         ": what follows would depend on the mesh";
+}
+
+std::optional<SolidModel::EllipticityLoss> SolidModel::ellipticity_loss(
+    const Displacement& u) const {
+  double weakest = std::numeric_limits<double>::min();
+  int element = -1;
+  for (const Block& block : blocks_) {
+    if (solid_->laws[at(block.region)].polyconvex()) continue;
+    const Lanes stiffness = weakest_waves(block, kinematics_of(block, u));
+    for (int lane = 0; lane < block.count; ++lane) {
+      if (stiffness[lane] >= weakest) continue;
+      weakest = stiffness[lane];
+      element = block.element[at(lane)];
+    }
+  }
+  if (element < 0) return std::nullopt;
+  const Vec3 X = centroid(mesh(), element);
+  return EllipticityLoss{weakest, Eigen::Vector3d(X.data())};
+}
+
+void SolidModel::element_fields(const Displacement& u, std::vector<double>& energy_density,
+                                std::vector<double>& pressure) const {
+  energy_density.resize(mesh().tetrahedra.size());
+  pressure.resize(mesh().tetrahedra.size());
+  const PointState points = point_state(u);
+  for (const Block& block : blocks_) {
+    const Law& law = solid_->laws[at(block.region)];
+    const auto k = kinematics_of(block, u);
+    const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
+    const Lanes density = energy / block.geometry.volume;
+    const Lanes p = mean_stress(law, pressures(block, k, points), block.geometry, k);
+    for (int lane = 0; lane < block.count; ++lane) {
+      energy_density[at(block.element[at(lane)])] = density[lane];
+      pressure[at(block.element[at(lane)])] = p[lane];
+    }
+  }
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "fem/factor/sparse_pattern.hpp"
+#include "fem/laws/law.hpp"
+#include "fem/laws/material.hpp"
+#include "fem/mesh/quadratic_mesh.hpp"
+#include "fem/solid/element.hpp"
+#include "fem/solid/foundation.hpp"
+#include "fem/solid/gravity.hpp"
+#include "fem/solid/nodal_pressure.hpp"
+#include "format/at.hpp"
+
+namespace palpate::fem {
+
+/// Displacement of every node, (3, nodes), m; zero at held nodes.
+using Displacement = Eigen::Matrix3Xd;
+
+/// A mesh and the law of each of its regions, shared by the models made of it.
+struct Solid {
+  QuadraticMesh mesh;
+  std::vector<Law> laws;
+  Dilatation dilatation;
+  Eigen::Matrix3Xd weight;  ///< (nodes), N; no columns where there is none
+};
+
+/// One flag for each node: whether it lies within `radius` of `centre` at rest.
+std::vector<bool> nodes_within(const QuadraticMesh& mesh, const Eigen::Vector3d& centre,
+                               double radius);
+
+/// The body without the tool, or a part of it, with the springs that it rests on: energy, internal
+/// forces and stiffness as functions of the displacement, on a chosen set of free nodes. Immutable
+/// after construction; every method may be called from several threads.
+class SolidModel {
+ public:
+  /// The whole body. One law for each region, in the order of Body::region_names.
+  SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation = Dilatation::Mean,
+             const Gravity& gravity = {});
+
+  /// The part of `whole` that feels its nodes within `radius` of `centre` move: those nodes are
+  /// free, the elements at them are kept, all other nodes stay where the displacement puts them.
+  SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, double radius);
+  /// The same with any choice of nodes; those that are held stay so.
+  SolidModel(const SolidModel& whole, std::vector<bool> free);
+
+  /// The laws of `whole` on another mesh of the body, for energies and forces alone: it has no
+  /// stiffness, and its pattern() nothing but the number of unknowns. No weight, no springs.
+  static SolidModel without_stiffness(const SolidModel& whole, QuadraticMesh mesh);
+
+  struct State {
+    double energy = 0;  ///< J, strain energy, what the foundation stores, less the work of gravity
+    /// Smallest det F at the Gauss points; 0 where the energy has no finite value. The rest is
+    /// void when it is not positive.
+    double min_J = 1;
+  };
+
+  State energy(const Displacement& u) const;
+  /// Internal forces on the unknowns, N, those of the foundation counted, less the weight.
+  State forces(const Displacement& u, Eigen::VectorXd& f) const;
+  /// Values of pattern(), N/m.
+  void stiffness(const Displacement& u, std::vector<double>& values) const;
+
+  /// Element means: strain energy density, J/m^3, and the mean of the Cauchy stress, Pa (tension
+  /// positive), which for a law with a volumetric part is its dU/dJ.
+  void element_fields(const Displacement& u, std::vector<double>& energy_density,
+                      std::vector<double>& pressure) const;
+
+  /// The weight on the unknowns, N; 0 without gravity.
+  Eigen::VectorXd weight() const;
+  /// The norm of the weight on all nodes of the body, N.
+  double weight_norm() const { return solid_->weight.norm(); }
+
+  /// The element with the smallest det F at a Gauss point: that value, and its centre at rest, m.
+  struct Compressed {
+    double J;
+    Eigen::Vector3d X;
+  };
+  Compressed most_compressed(const Displacement& u) const;
+
+  /// A point where the law lets a plane wave of no speed stand: its acoustic tensor has an
+  /// eigenvalue that is not positive. `X` is the centre of its element at rest, m; the stiffness is
+  /// that eigenvalue, Pa, the smallest of all points.
+  struct EllipticityLoss {
+    double stiffness;
+    Eigen::Vector3d X;
+    std::string reason() const;  ///< why a path ends there
+  };
+  /// None where every Gauss point is elliptic; laws that are polyconvex are not looked at.
+  std::optional<EllipticityLoss> ellipticity_loss(const Displacement& u) const;
+
+  const QuadraticMesh& mesh() const { return solid_->mesh; }
+  /// First of the three unknowns of a node, -1 where it is not free.
+  int equation(int node) const { return equation_[at(node)]; }
+  const SparsePattern& pattern() const { return pattern_; }
+  double bytes() const;  ///< of its own tables, without the mesh that it shares
+
+ private:
+  struct Block {
+    int count = 0;  ///< lanes in use; the others repeat the last element
+    int region = 0;
+    std::array<int, kLanes> element{};
+    std::array<std::array<int, 4>, kLanes> pressure_point{};  ///< where pressures are nodal: or -1
+    ElementGeometry<Lanes> geometry;
+  };
+  /// Where pressures are nodal: Jbar_n, and what it makes of U there.
+  struct PointState {
+    std::vector<double> pressure, slope;  ///< dU/dJ and d2U/dJ2, Pa
+    double energy = 0;                    ///< sum of V_n U(Jbar_n), J
+  };
+
+  explicit SolidModel(std::shared_ptr<const Solid> solid) : solid_(std::move(solid)) {}
+  void number_unknowns(const std::vector<bool>& free);
+  void take_elements(const std::vector<int>& elements);
+  void make_blocks(const std::vector<int>& elements);
+  Block make_block(const std::vector<int>& elements, std::size_t first, int region) const;
+  /// The unknown of a row of an element, -1 where it is not free.
+  int unknown(const Tetrahedron10& node, std::size_t row) const;
+  void make_scatter();
+  ElementVector<Lanes> gather(const Block& block, const Displacement& u) const;
+  ElementKinematics<Lanes> kinematics_of(const Block& block, const Displacement& u) const;
+  void scatter(const Block& block, const ElementVector<Lanes>& forces, Eigen::VectorXd& f) const;
+  double work_of_gravity(const Displacement& u) const;  ///< on the free nodes, J
+  PointState point_state(const Displacement& u) const;
+  /// The smallest stiffness of a wave at each element of a block, Pa; no more than positive where
+  /// it is known to be that.
+  Lanes weakest_waves(const Block& block, const ElementKinematics<Lanes>& k) const;
+  PointPressures<Lanes> pressures(const Block& block, const ElementKinematics<Lanes>& k,
+                                  const PointState& points) const;
+  void add_point_stiffness(const Displacement& u, const PointState& points,
+                           std::vector<double>& values) const;
+
+  std::shared_ptr<const Solid> solid_;
+  std::vector<int> equation_;  ///< (nodes)
+  int unknowns_ = 0;
+  SparsePattern pattern_;
+  NodalPressure nodal_;
+  Foundation foundation_;
+  std::vector<Block> blocks_;
+  std::vector<int>
+      scatter_;  ///< place in the values of each entry, by block, entry and lane; -1: none
+};
+
+}  // namespace palpate::fem

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/solve/newton.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "fem/contact/increment_work.hpp"
+#include "fem/factor/dense_cholesky.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+/// Forces that a sagged body may be left with, over its weight: ten times what it is left with.
+constexpr double kWeightNoise = 1e-8;
+
+/// The residual that the patch may leave, over that allowed to the increment.
+constexpr double kPatchTolerance = 0.1;
+
+}  // namespace
+
+void move(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacement& u) {
+  for (int node = 0; node < model.mesh().nodes(); ++node)
+    if (model.equation(node) >= 0) u.col(node) += s * d.segment<3>(model.equation(node));
+  straighten(model.mesh(), u);
+}
+
+double imbalance(const SolidModel& model, const Eigen::VectorXd& residual) {
+  if (residual.norm() <= kWeightNoise * model.weight_norm()) return 0;
+  if (model.mesh().sprung.empty()) return residual.norm();
+  const Eigen::Vector3d sum =
+      Eigen::Map<const Eigen::Matrix3Xd>(residual.data(), 3, residual.size() / 3).rowwise().sum();
+  return std::max(residual.norm(), sum.norm());
+}
+
+Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u) {
+  Equilibrium now;
+  const SolidModel::State state = model.forces(u, now.residual);
+  now.energy = state.energy + contact.energy(u);
+  now.min_J = state.min_J;
+  contact.add_forces(model, u, now.residual);
+  return now;
+}
+
+void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& u) {
+  if (patch_ && patch_->covers(contact, u)) return;
+  patch_.emplace(contact, model_, u);
+  factor_.emplace(model_.pattern(), permutation_, patch_->unknowns());
+  const std::vector<int>& ours = patch_->unknowns();
+  last_place_.clear();
+  for (const int unknown : factor_->last_unknowns())
+    last_place_.push_back(
+        static_cast<int>(std::lower_bound(ours.begin(), ours.end(), unknown) - ours.begin()));
+  factorized_ = false;
+}
+
+void NewtonSolver::shifted_stiffness(const Displacement& u, double patch, double all) {
+  model_.stiffness(u, K_);
+  const auto& start = model_.pattern().start;
+  for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[at(start[i])] *= 1 + all;
+  const std::vector<int>& ours = patch_->unknowns();
+  patch_stiffness_.stiffening.resize(static_cast<Eigen::Index>(ours.size()));
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    double& diagonal = K_[at(start[at(ours[i])])];
+    patch_stiffness_.stiffening[static_cast<Eigen::Index>(i)] = patch * std::abs(diagonal);
+    diagonal += patch * std::abs(diagonal);
+  }
+}
+
+bool NewtonSolver::factorize(const Displacement& u) {
+  // What is pressed is stable against the tool, not without it: A alone is often indefinite, but on
+  // the patch. Away from equilibrium a large pressure can make the rest indefinite, too; raising
+  // all of its diagonal still gives a direction of descent.
+  struct Shift {
+    double patch, all;
+  };
+  constexpr std::array<Shift, 7> kShifts{
+      {{1, 0}, {30, 0}, {30, 0.02}, {30, 0.1}, {30, 0.5}, {30, 2}, {30, 10}}};
+  factorized_ = std::any_of(kShifts.begin(), kShifts.end(), [&](const Shift& shift) {
+    shifted_stiffness(u, shift.patch, shift.all);
+    return factor_->factorize(K_);
+  });
+  if (!factorized_) return false;
+  root_ = factor_->last_block();
+  const Eigen::MatrixXd ordered = product_with_transpose(root_);
+  patch_stiffness_.S.resize(root_.rows(), root_.cols());
+  for (Eigen::Index j = 0; j < root_.cols(); ++j)
+    for (Eigen::Index i = j; i < root_.rows(); ++i)
+      patch_stiffness_.S(place(i), place(j)) = patch_stiffness_.S(place(j), place(i)) =
+          ordered(i, j);
+  patch_stiffness_.S.diagonal() -= patch_stiffness_.stiffening;
+  return true;
+}
+
+Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displacement& u,
+                                        const Eigen::VectorXd& residual, double tolerance) {
+  Eigen::VectorXd load = -residual, y(load.size()), d(load.size());
+  contact.add_forces(model_, u, load);  // what is left are the internal forces
+  factor_->solve_forward(load.data(), y.data(), workspace_);
+  if (const Eigen::Index count = root_.rows(); count > 0) {
+    patch_->start_from(contact, u);
+    Eigen::VectorXd x(count), ordered = root_.triangularView<Eigen::Lower>() * y.tail(count);
+    for (Eigen::Index i = 0; i < count; ++i) x[place(i)] = ordered[i];
+    x = patch_minimum(*patch_, contact, patch_stiffness_, x, Eigen::VectorXd::Zero(count),
+                      tolerance, patch_scratch_);
+    for (Eigen::Index i = 0; i < count; ++i) ordered[i] = x[place(i)];
+    y.tail(count) = root_.transpose().triangularView<Eigen::Upper>() * ordered;
+  }
+  factor_->solve_backward(y.data(), d.data(), workspace_);
+  return d;
+}
+
+bool NewtonSolver::line_search(const ToolContact& contact, const Eigen::VectorXd& d,
+                               Equilibrium& now, Displacement& u) const {
+  const double slope = now.residual.dot(d);
+  const double norm = now.residual.norm();
+  double step = 1;
+  for (int halvings = 0; halvings < 12; ++halvings, step *= 0.5) {
+    Displacement trial = u;
+    move(model_, step, d, trial);
+    Equilibrium next = evaluate(model_, contact, trial);
+    if (!(next.min_J > 0)) continue;
+    const bool lower =
+        next.energy <= now.energy + 1e-4 * step * slope + kEnergyNoise * std::abs(now.energy);
+    // Close to the minimum the energy is at its round-off: judge by the gradient as well.
+    if (!lower && next.residual.norm() > (1 - 0.1 * step) * norm) continue;
+    u.swap(trial);
+    now = std::move(next);
+    return true;
+  }
+  return false;
+}
+
+NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions& options,
+                                 Displacement& u) {
+  constexpr double kGoodContraction = 0.3;
+  NewtonResult result;
+  Equilibrium now = evaluate(model_, contact, u);
+  if (!(now.min_J > 0)) {
+    result.reason = "an element is inverted at the start of the increment";
+    return result;
+  }
+  bool stale = options.reuse_factor;
+  for (; result.iterations < options.max_iterations; ++result.iterations) {
+    const double before = now.residual.norm();
+    const double allowed = options.tolerance * std::max(contact.tool_force(u).norm(), 1e-12);
+    if (imbalance(model_, now.residual) <= allowed) {
+      result.converged = true;
+      return result;
+    }
+    choose_patch(contact, u);
+    stale = stale && factorized_;
+    if (!stale && !factorize(u)) {
+      result.reason = "the stiffness is not positive definite (loss of stability or ellipticity)";
+      return result;
+    }
+    const Eigen::VectorXd d = direction(contact, u, now.residual, kPatchTolerance * allowed);
+    const bool moved = line_search(contact, d, now, u);
+    if (!moved && !stale) {
+      result.reason = "no step along the Newton direction keeps det F > 0 and lowers the energy";
+      return result;
+    }
+    stale = options.reuse_factor && moved && now.residual.norm() < kGoodContraction * before;
+  }
+  result.reason = "no convergence in " + std::to_string(options.max_iterations) + " iterations";
+  return result;
+}
+
+std::optional<double> NewtonSolver::work_between(const ToolContact& contact,
+                                                 const Eigen::Vector3d& from,
+                                                 const Displacement& before,
+                                                 const Displacement& after) {
+  if (!factorized_) return std::nullopt;
+  return fem::work_between(*patch_, patch_stiffness_, contact, from, before, after);
+}
+
+}  // namespace palpate::fem

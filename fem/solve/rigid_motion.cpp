@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/solve/rigid_motion.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+
+#include "fem/solve/newton.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Of a step, rad, from where a turn is made as one: below, its second order is round-off beside
+/// the strains that a tool makes.
+constexpr double kLeastTurn = 2e-3;
+
+/// The middle, now, of the nodes that are held or rest on springs.
+Vector3d middle_of_support(const QuadraticMesh& mesh, const Displacement& u) {
+  Vector3d sum = Vector3d::Zero();
+  int count = 0;
+  const auto add = [&](int node) {
+    sum += mesh.X.col(node) + u.col(node);
+    ++count;
+  };
+  for (int node = 0; node < mesh.nodes(); ++node)
+    if (mesh.held[at(node)]) add(node);
+  for (const SprungFacet& sprung : mesh.sprung)
+    for (const auto node : mesh.facets[at(sprung.facet)]) add(node);
+  return count > 0 ? Vector3d(sum / count) : sum;
+}
+
+/// The w of the fit of v + w x x to the steps d of the free nodes.
+Vector3d mean_turn(const SolidModel& model, const Eigen::VectorXd& d, const Displacement& u) {
+  const QuadraticMesh& mesh = model.mesh();
+  Vector3d x_mean = Vector3d::Zero(), d_mean = Vector3d::Zero();
+  int count = 0;
+  for (int node = 0; node < mesh.nodes(); ++node) {
+    if (model.equation(node) < 0) continue;
+    x_mean += mesh.X.col(node) + u.col(node);
+    d_mean += d.segment<3>(model.equation(node));
+    ++count;
+  }
+  x_mean /= count;
+  d_mean /= count;
+  Matrix3d inertia = Matrix3d::Zero();
+  Vector3d moment = Vector3d::Zero();
+  for (int node = 0; node < mesh.nodes(); ++node) {
+    if (model.equation(node) < 0) continue;
+    const Vector3d r = mesh.X.col(node) + u.col(node) - x_mean;
+    inertia += r.squaredNorm() * Matrix3d::Identity() - r * r.transpose();
+    moment += r.cross(d.segment<3>(model.equation(node)) - d_mean);
+  }
+  return inertia.ldlt().solve(moment);
+}
+
+}  // namespace
+
+Matrix3d mean_rotation(const QuadraticMesh& mesh, const Displacement& u) {
+  const Vector3d X_mean = mesh.X.rowwise().mean(), u_mean = u.rowwise().mean();
+  Matrix3d covariance = Matrix3d::Zero();
+  for (int node = 0; node < mesh.nodes(); ++node) {
+    const Vector3d R = mesh.X.col(node) - X_mean;
+    covariance += (R + u.col(node) - u_mean) * R.transpose();
+  }
+  const Eigen::JacobiSVD<Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
+void move_turning(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacement& u) {
+  const QuadraticMesh& mesh = model.mesh();
+  const Vector3d w = s * mean_turn(model, d, u);
+  const double angle = w.norm();
+  if (angle < kLeastTurn) return move(model, s, d, u);
+  const Matrix3d turn = Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+  const Vector3d c = middle_of_support(mesh, u);
+  for (int node = 0; node < mesh.nodes(); ++node) {
+    if (model.equation(node) < 0) continue;
+    const Vector3d r = mesh.X.col(node) + u.col(node) - c;
+    const Vector3d step = s * d.segment<3>(model.equation(node)), along = w.cross(r);
+    u.col(node) += step - along + turn * r - r;
+  }
+  straighten(mesh, u);
+}
+
+}  // namespace palpate::fem

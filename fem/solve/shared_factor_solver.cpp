@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/solve/shared_factor_solver.hpp"
+
+#include <algorithm>
+
+#include "fem/solve/rigid_motion.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+/// Of the body as a whole, from where its stiffness at rest must be turned with it, |R - 1|.
+constexpr double kTurned = 5e-3;
+/// Of the sensitivity of the force that was seen, what is kept from step to step.
+constexpr double kFading = 0.5;
+
+/// On the first `count` unknowns.
+Eigen::VectorXd difference(const SolidModel& model, Eigen::Index count, const Displacement& a,
+                           const Displacement& b) {
+  Eigen::VectorXd d(count);
+  for (int node = 0; node < model.mesh().nodes(); ++node)
+    if (const int first = model.equation(node); first >= 0 && first < count)
+      d.segment<3>(first) = a.col(node) - b.col(node);
+  return d;
+}
+
+}  // namespace
+
+bool SharedFactorSolver::relax_window(const ToolContact& contact, const NewtonOptions& options,
+                                      Displacement& u, NewtonResult& result) {
+  NewtonOptions inner = options;
+  // What is left inside must not be seen from outside; far from the end that is little to ask.
+  inner.tolerance = std::max(0.2 * options.tolerance, 0.03 * error_);
+  inner.reuse_factor = true;
+  const NewtonResult relaxed = newton_.solve(contact, inner, u);
+  if (!relaxed.converged) result.reason = relaxed.reason;
+  return relaxed.converged;
+}
+
+Equilibrium SharedFactorSolver::evaluated(const ToolContact& contact, const Displacement& u) const {
+  Equilibrium now = evaluate(whole_, contact, u);
+  if (prolongation_ != nullptr) now.residual = prolongation_->reduced(now.residual);
+  return now;
+}
+
+void SharedFactorSolver::moved(double length, const Eigen::VectorXd& d, Displacement& u) const {
+  move_turning(whole_, length, prolongation_ != nullptr ? prolongation_->extended(d) : d, u);
+}
+
+Eigen::VectorXd SharedFactorSolver::direction(const Eigen::VectorXd& residual) {
+  const double length = residual.norm();
+  Eigen::VectorXf q = (residual / length).cast<float>();
+  std::vector<float> alpha(pairs_.size());
+  for (std::size_t i = pairs_.size(); i-- > 0;) {
+    alpha[i] = pairs_[i].s.dot(q) / pairs_[i].sy;
+    q -= alpha[i] * pairs_[i].y;
+  }
+  Eigen::VectorXd load = q.cast<double>(), answer;
+  solve_turned(load, answer);
+  Eigen::VectorXf d = answer.cast<float>();
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    d += (alpha[i] - pairs_[i].y.dot(d) / pairs_[i].sy) * pairs_[i].s;
+  return -length * d.cast<double>();
+}
+
+void SharedFactorSolver::solve_turned(Eigen::VectorXd& q, Eigen::VectorXd& d) const {
+  if (!turned_) return rest_solve_(q, d);
+  const auto turn = [](const Eigen::Matrix3d& R, Eigen::VectorXd& v) {
+    Eigen::Map<Eigen::Matrix3Xd> nodes(v.data(), 3, v.size() / 3);
+    nodes = (R * nodes).eval();
+  };
+  turn(turn_.transpose(), q);
+  rest_solve_(q, d);
+  turn(turn_, d);
+}
+
+void SharedFactorSolver::remember(const Eigen::VectorXd& s, const Eigen::VectorXd& y) {
+  Pair pair{s.cast<float>(), y.cast<float>(), 0};
+  pair.sy = pair.s.dot(pair.y);
+  if (!(pair.sy > 1e-10f * pair.s.norm() * pair.y.norm())) return;
+  pairs_.push_back(std::move(pair));
+  if (pairs_.size() > most_pairs_) pairs_.pop_front();
+}
+
+bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& options,
+                              const Eigen::VectorXd& d, Equilibrium& now, Displacement& u,
+                              NewtonResult& result) {
+  const double slope = now.residual.dot(d);
+  double length = 1;
+  for (int halvings = 0; halvings < 6; ++halvings, length *= 0.5) {
+    Displacement trial = u;
+    moved(length, d, trial);
+    if (!relax_window(contact, options, trial, result)) continue;
+    Equilibrium next = evaluated(contact, trial);
+    if (!(next.min_J > 0)) continue;
+    const bool lower = next.energy <= now.energy + 1e-4 * length * slope;
+    if (!lower && next.residual.norm() > (1 - 0.1 * length) * now.residual.norm()) continue;
+    remember(difference(whole_, d.size(), trial, u), next.residual - now.residual);
+    u.swap(trial);
+    now = std::move(next);
+    return true;
+  }
+  return false;
+}
+
+NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonOptions& options,
+                                       Displacement& u) {
+  NewtonResult result;
+  error_ = 0.1;
+  turn_ = mean_rotation(whole_.mesh(), u);
+  turned_ = (turn_ - Eigen::Matrix3d::Identity()).norm() > kTurned;
+  if (!relax_window(contact, options, u, result)) return result;
+  Equilibrium now = evaluated(contact, u);
+  Eigen::Vector3d before = Eigen::Vector3d::Zero();
+  for (; result.iterations < options.max_iterations; ++result.iterations) {
+    const Eigen::Vector3d force = contact.tool_force(u);
+    const double scale = std::max(force.norm(), 1e-12), last_error = error_;
+    error_ = imbalance(whole_, now.residual) / scale;
+    if (result.iterations > 0)
+      sensitivity_ =
+          std::max((force - before).norm() / (scale * last_error), kFading * sensitivity_);
+    before = force;
+    if (std::max(1.0, sensitivity_) * error_ <= options.tolerance) {
+      result.converged = true;
+      result.reason.clear();
+      return result;
+    }
+    Eigen::VectorXd d = direction(now.residual);
+    if (now.residual.dot(d) >= 0) {
+      restart();
+      d = direction(now.residual);
+    }
+    if (step(contact, options, d, now, u, result)) continue;
+    if (pairs_.empty()) {
+      result.reason = "no admissible step: " + result.reason;
+      return result;
+    }
+    restart();
+  }
+  result.reason = "no convergence in " + std::to_string(options.max_iterations) + " iterations";
+  return result;
+}
+
+}  // namespace palpate::fem
