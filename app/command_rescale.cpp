@@ -4,7 +4,7 @@
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/pipeline/workspace.hpp"
-#include "fitting/compare/rescale.hpp"
+#include "fitting/measurement/compare/rescale.hpp"
 #include "format/provenance.hpp"
 
 namespace palpate::app {

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "fitting/calibrate/homogeneous_fit.hpp"
+#include "fitting/measurement/calibrate/homogeneous_fit.hpp"
 
 namespace palpate::app {
 

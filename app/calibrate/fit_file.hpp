@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/calibrate/homogeneous_fit.hpp"
+#include "fitting/measurement/calibrate/homogeneous_fit.hpp"
 
 namespace palpate::app {
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <map>
 
-#include "fitting/compare/compare.hpp"
+#include "fitting/measurement/compare/compare.hpp"
 #include "format/error.hpp"
 
 namespace palpate::app {

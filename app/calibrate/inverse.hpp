@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "fem/campaign/sensitivity.hpp"
-#include "fitting/calibrate/least_squares.hpp"
+#include "fitting/measurement/calibrate/least_squares.hpp"
 #include "format/body.hpp"
 #include "format/curves.hpp"
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "fitting/compare/compare.hpp"
+#include "fitting/measurement/compare/compare.hpp"
 
 namespace palpate::app {
 

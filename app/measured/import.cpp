@@ -11,10 +11,10 @@
 #include <optional>
 #include <sstream>
 
-#include "fitting/measured/csv_table.hpp"
-#include "fitting/measured/placement.hpp"
-#include "fitting/measured/repeats.hpp"
-#include "fitting/measured/robot.hpp"
+#include "fitting/measurement/records/csv_table.hpp"
+#include "fitting/measurement/records/placement.hpp"
+#include "fitting/measurement/records/repeats.hpp"
+#include "fitting/measurement/records/robot.hpp"
 #include "format/error.hpp"
 #include "format/sha256.hpp"
 

@@ -15,7 +15,7 @@
 #include "fem/factor/rest_factor.hpp"
 #include "fitting/fidelity/fidelity.hpp"
 #include "fitting/fidelity/skin.hpp"
-#include "fitting/nearest_rank.hpp"
+#include "fitting/measurement/nearest_rank.hpp"
 #include "fitting/sampling/site_choice.hpp"
 #include "format/sha256.hpp"
 #include "format/site_journal.hpp"

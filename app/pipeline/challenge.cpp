@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fitting/challenge.hpp"
+#include "fitting/certificate/challenge.hpp"
 
 #include <cmath>
 #include <string>

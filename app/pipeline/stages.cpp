@@ -12,7 +12,7 @@
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
-#include "fitting/couple.hpp"
+#include "fitting/response/couple.hpp"
 #include "format/body.hpp"
 #include "format/error.hpp"
 #include "format/library.hpp"

@@ -9,8 +9,8 @@
 #include <optional>
 #include <utility>
 
-#include "fitting/compare/compare.hpp"
-#include "fitting/nearest_rank.hpp"
+#include "fitting/measurement/compare/compare.hpp"
+#include "fitting/measurement/nearest_rank.hpp"
 
 namespace palpate::fidelity {
 namespace {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "fitting/mean_response.hpp"
+#include "fitting/response/mean_response.hpp"
 #include "fitting/sampling/surface_interpolation.hpp"
 #include "runtime/response_curve.hpp"
 

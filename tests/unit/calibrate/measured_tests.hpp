@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "fitting/calibrate/homogeneous_fit.hpp"
-#include "fitting/measured/csv_table.hpp"
+#include "fitting/measurement/calibrate/homogeneous_fit.hpp"
+#include "fitting/measurement/records/csv_table.hpp"
 
 namespace palpate::calibrate {
 

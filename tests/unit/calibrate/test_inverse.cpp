@@ -6,7 +6,7 @@
 #include <random>
 
 #include "app/calibrate/inverse.hpp"
-#include "fitting/compare/compare.hpp"
+#include "fitting/measurement/compare/compare.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 

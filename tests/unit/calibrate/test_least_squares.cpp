@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "fitting/calibrate/correlated_noise.hpp"
-#include "fitting/calibrate/least_squares.hpp"
+#include "fitting/measurement/calibrate/correlated_noise.hpp"
+#include "fitting/measurement/calibrate/least_squares.hpp"
 
 namespace palpate::calibrate {
 namespace {

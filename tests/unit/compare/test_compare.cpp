@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "fitting/compare/compare.hpp"
+#include "fitting/measurement/compare/compare.hpp"
 #include "format/error.hpp"
 
 namespace palpate::compare {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "fitting/compare/rescale.hpp"
+#include "fitting/measurement/compare/rescale.hpp"
 #include "format/error.hpp"
 
 namespace palpate::compare {

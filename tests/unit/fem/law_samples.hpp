@@ -12,7 +12,7 @@
 #include "fem/laws/law_table.hpp"
 #include "fem/laws/ogden.hpp"
 #include "fem/laws/saint_venant_kirchhoff.hpp"
-#include "fitting/calibrate/dual.hpp"
+#include "fitting/measurement/calibrate/dual.hpp"
 #include "format/at.hpp"
 #include "tests/support/sample_laws.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fitting/between_nodes.hpp"
+#include "fitting/response/between_nodes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "fitting/certificate/triangle_frame.hpp"
 #include "fitting/fitting.hpp"
-#include "fitting/triangle_frame.hpp"
 #include "format/error.hpp"
 #include "tests/unit/fitting/surfaces.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A search for what the certificate forbids must come near its bounds, and find what exceeds them.
-#include "fitting/challenge.hpp"
+#include "fitting/certificate/challenge.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "fitting/curve_fit.hpp"
+#include "fitting/response/curve_fit.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
 

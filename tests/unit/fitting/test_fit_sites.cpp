@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "fitting/fitting.hpp"
-#include "fitting/site_samples.hpp"
+#include "fitting/response/site_samples.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <random>
 
-#include "fitting/nnls.hpp"
+#include "fitting/response/nnls.hpp"
 
 namespace palpate::fitting {
 namespace {

@@ -10,10 +10,10 @@
 #include <optional>
 #include <random>
 
+#include "fitting/certificate/slide_bound.hpp"
+#include "fitting/certificate/slide_jacobian.hpp"
+#include "fitting/certificate/triangle_frame.hpp"
 #include "fitting/fitting.hpp"
-#include "fitting/slide_bound.hpp"
-#include "fitting/slide_jacobian.hpp"
-#include "fitting/triangle_frame.hpp"
 #include "runtime/response_curve.hpp"
 #include "tests/unit/fitting/surfaces.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "fitting/measured/press.hpp"
+#include "fitting/measurement/records/press.hpp"
 
 namespace palpate::measured {
 

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-#include "fitting/measured/csv_table.hpp"
+#include "fitting/measurement/records/csv_table.hpp"
 #include "format/error.hpp"
 
 namespace palpate::measured {

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "fitting/measured/repeats.hpp"
-#include "fitting/measured/statistics.hpp"
+#include "fitting/measurement/records/repeats.hpp"
+#include "fitting/measurement/records/statistics.hpp"
 #include "format/error.hpp"
 #include "tests/unit/measured/bench.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "fitting/measured/repeats.hpp"
-#include "fitting/measured/robot.hpp"
+#include "fitting/measurement/records/repeats.hpp"
+#include "fitting/measurement/records/robot.hpp"
 #include "format/error.hpp"
 #include "tests/unit/measured/bench.hpp"
 

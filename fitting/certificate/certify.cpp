@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "fitting/certificate/triangle_bounds.hpp"
+#include "fitting/fitting.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fitting {
+namespace {
+
+constexpr double kReferencePeriod = 1e-3;  // s: the limits of a device are stated at 1 kHz
+
+double deepest_knot(const Library& library) {
+  double depth = 0;
+  for (const NodeResponse& node : library.responses) {
+    if (node.status != ResponseStatus::Hole) {
+      depth = std::max(depth, static_cast<double>(node.normal.knot.back()));
+    }
+  }
+  return depth;
+}
+
+void count_vertices(const Library& library, Certificate& certificate) {
+  std::set<std::int32_t> used;
+  for (const Triangle& triangle : library.triangles) used.insert(triangle.begin(), triangle.end());
+  for (const std::int32_t v : used) {
+    const ResponseStatus status = library.responses[static_cast<std::size_t>(v)].status;
+    if (status == ResponseStatus::Hole) ++certificate.holes;
+    if (status == ResponseStatus::Filled) ++certificate.filled;
+  }
+}
+
+/// Why the slide itself has no bound, and what gives it one.
+std::string cause_unbounded(const TriangleCertificate& triangle, double depth) {
+  std::array<char, 256> text{};
+  const double lean = std::acos(triangle.cos_theta) * 57.29577951308232;
+  if (depth * triangle.kappa < triangle.cos_theta) {
+    std::snprintf(text.data(), text.size(),
+                  "no bound of the slide: the lateral response is too flat at the slip limit for "
+                  "the change of the responses and directions that lean by %.0f degrees",
+                  lean);
+  } else {
+    std::snprintf(text.data(), text.size(),
+                  "no bound of the slide: pressed %.3g mm deep where the directions turn with a "
+                  "radius of %.3g mm and lean by %.0f degrees",
+                  1e3 * depth, 1e3 / triangle.kappa, lean);
+  }
+  return text.data() +
+         std::string(" (smaller patches, a rounder edge or a shallower depth may give one)");
+}
+
+std::string cause(const TriangleBounds& bounds, double depth) {
+  if (bounds.certificate.stick >= bounds.certificate.slip) {
+    return "the stiffest response, with the contact point held";
+  }
+  if (std::isinf(bounds.certificate.slip)) return cause_unbounded(bounds.certificate, depth);
+  const SlideCauses& slide = bounds.causes;
+  if (slide.stiffness >= std::max({slide.variation, slide.slant, slide.curvature})) {
+    return "the stiffest response, while sliding";
+  }
+  if (slide.variation >= std::max(slide.slant, slide.curvature)) {
+    return "the change of the responses over the surface, while sliding";
+  }
+  return slide.slant >= slide.curvature
+             ? "inward directions that lean against the facet, while sliding"
+             : "the curvature of the normals, while sliding";
+}
+
+std::string limit_line(const Library& library, std::size_t index, const TriangleBounds& bounds,
+                       double depth) {
+  const Triangle& triangle = library.triangles[index];
+  Vec3 centre{};
+  for (const std::int32_t v : triangle) {
+    centre = centre + (1.0 / 3) * library.positions[static_cast<std::size_t>(v)];
+  }
+  std::array<char, 160> place{};
+  std::snprintf(place.data(), place.size(), "triangle %zu near (%.4g, %.4g, %.4g) m: ", index,
+                centre[0], centre[1], centre[2]);
+  const double bound = std::max(bounds.certificate.stick, bounds.certificate.slip);
+  std::array<char, 40> size{};
+  if (std::isfinite(bound)) std::snprintf(size.data(), size.size(), "%.4g N/m in ", bound);
+  return size.data() + (place.data() + cause(bounds, depth));
+}
+
+void add_devices(Certificate& certificate, const CertifySettings& settings) {
+  const double steepest = certified_steepness(certificate);
+  for (const DeviceProfile& device : settings.devices) {
+    if (std::isinf(device.damping) || device.damping <= 0) {
+      throw Error(ErrorKind::Configuration, "device profile '" + device.name + "'",
+                  "damping is not above zero",
+                  "give the smallest damping in N s/m or leave it out");
+    }
+    // An unknown damping (NaN) makes the whole row unknown.
+    certificate.devices.push_back({device.name, device.damping, 2 * steepest / device.damping,
+                                   2 * device.damping / (3 * kReferencePeriod),
+                                   2 * device.damping / kReferencePeriod});
+  }
+}
+
+}  // namespace
+
+std::string basis_of(const Provenance& provenance) {
+  const auto has = [&](std::string_view stage) {
+    return std::any_of(provenance.steps.begin(), provenance.steps.end(),
+                       [&](const ProvenanceStep& step) { return step.stage == stage; });
+  };
+  if (has("rescale")) return "simulated shape, measured scale";
+  return has("import") ? "measured" : "simulated";
+}
+
+void certify(Library& library, const CertifySettings& settings) {
+  if (!std::isfinite(settings.friction) || settings.friction < 0) {
+    throw Error(ErrorKind::Configuration, "certify settings", "friction is not a number >= 0",
+                "give a friction coefficient, for example 0.3");
+  }
+  Certificate certificate;
+  certificate.friction = settings.friction;
+  certificate.depth = deepest_knot(library);
+  if (!(certificate.depth > 0)) {
+    throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
+                "no vertex has a response", "fit the curves first");
+  }
+  const std::vector<TriangleBounds> bounds =
+      triangle_bounds(library, certificate.depth, settings.friction);
+  double steepest = 0;
+  certificate.hold = 0;
+  for (std::size_t m = 0; m < bounds.size(); ++m) {
+    const TriangleCertificate& triangle = bounds[m].certificate;
+    certificate.triangles.push_back(triangle);
+    certificate.stick = std::max(certificate.stick, triangle.stick);
+    certificate.slip = std::max(certificate.slip, triangle.slip);
+    certificate.hold = std::max(certificate.hold, bounds[m].hold);
+    const double both = std::max(triangle.stick, triangle.slip);
+    if (both > steepest) {
+      steepest = both;
+      certificate.worst_triangle = static_cast<std::int32_t>(m);
+      certificate.limited_by = limit_line(library, m, bounds[m], certificate.depth);
+    }
+  }
+  if (certificate.worst_triangle < 0) {
+    throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
+                "every triangle touches a hole", "fill the holes or compute more sites");
+  }
+  const auto unbounded =
+      std::count_if(certificate.triangles.begin(), certificate.triangles.end(),
+                    [](const TriangleCertificate& t) { return std::isinf(t.slip); });
+  if (unbounded > 1) {
+    certificate.limited_by += "; " + std::to_string(unbounded) + " of " +
+                              std::to_string(bounds.size()) + " triangles are unbounded";
+  }
+  certificate.basis = basis_of(library.provenance);
+  count_vertices(library, certificate);
+  certificate.limit = settings.limit;
+  certificate.limit = steepness_limit(certificate);
+  add_devices(certificate, settings);
+  library.certificate = certificate;
+}
+
+}  // namespace palpate::fitting

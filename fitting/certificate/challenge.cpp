@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/certificate/challenge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <vector>
+
+#include "fitting/certificate/contact_element.hpp"
+#include "format/error.hpp"
+#include "runtime/local_model.hpp"
+#include "runtime/sliding.hpp"
+#include "runtime/surface.hpp"
+
+namespace palpate::fitting {
+namespace {
+
+using runtime::LocalModel;
+using runtime::SurfacePoint;
+
+constexpr double kStep = 1e-7;   // m, of the tool
+constexpr double kRest = 1e-16;  // m, of a slide that has come to rest
+constexpr int kSlideSteps = 400;
+/// Round-off and curvature in a difference of forces over kStep, relative to the bound.
+constexpr double kDifference = 1e-4;
+constexpr double kFirstStride = 0.2, kLastStride = 1e-3;  // of a climb
+
+enum class Mode { Held, Sliding };
+
+/// Where and how the tool is pressed: numbers in [0, 1], and the direction of its next move.
+struct Attempt {
+  std::int32_t triangle = 0;
+  double a = 0, b = 0;  ///< place in the triangle
+  double depth = 0;     ///< z over the certified depth
+  double offset = 0;    ///< d0 over what is left of it
+  double lateral = 0;   ///< Held: rho over the slip limit
+  double azimuth = 0;   ///< of the lateral deflection, turns
+  Vec3 move{};          ///< not zero
+};
+
+class Challenger {
+ public:
+  Challenger(const Library& library, unsigned seed)
+      : library_(library), surface_(library), engine_(seed) {}
+
+  Attempt draw(std::int32_t triangle) {
+    Attempt attempt{triangle, uniform(), uniform(), uniform(), 0, uniform(), uniform(), {}};
+    attempt.offset = uniform() < 0.5 ? 0 : uniform();
+    attempt.move = {normal(), normal(), normal()};
+    return attempt;
+  }
+
+  Attempt near(const Attempt& from, double stride) {
+    Attempt attempt = from;
+    for (double* x : {&attempt.a, &attempt.b, &attempt.depth, &attempt.offset, &attempt.lateral})
+      *x = std::clamp(*x + stride * normal(), 0.0, 1.0);
+    attempt.azimuth += 0.5 * stride * normal();
+    const double length = norm(from.move);
+    attempt.move = from.move + (stride * length) * Vec3{normal(), normal(), normal()};
+    return attempt;
+  }
+
+  /// |df|/|dx|; none when the attempt leaves the triangle, sticks, or nothing slips there.
+  std::optional<double> quotient(const Attempt& attempt, Mode mode) const {
+    const SurfacePoint point = place(attempt);
+    const double deepest = library_.certificate.depth;
+    const double z = std::max(1e-3, attempt.depth) * deepest;
+    const double d0 = attempt.offset * (deepest - z);
+    const LocalModel model(surface_, point, d0);
+    const Vec3& n = model.normal();
+    runtime::Deflection pressed;
+    pressed.geometric = z + d0;
+    pressed.depth = z;
+    const double limit = model.slip_limit(pressed, library_.certificate.friction);
+    if (!std::isfinite(limit)) return std::nullopt;
+    const double rho = mode == Mode::Held ? attempt.lateral * limit : limit;
+    const Vec3 x = model.contact_point() + (z + d0) * n + rho * sideways(n, attempt.azimuth);
+    const Vec3 dx = (kStep / norm(attempt.move)) * attempt.move;
+    const Vec3 before = model.respond(model.deflection(x)).force;
+    if (mode == Mode::Held)
+      return norm(model.respond(model.deflection(x + dx)).force - before) / kStep;
+    const auto after = slide(x + dx, point, d0);
+    if (!after) return std::nullopt;
+    return norm(*after - before) / kStep;
+  }
+
+ private:
+  double uniform() { return std::uniform_real_distribution<double>(0, 1)(engine_); }
+  double normal() { return std::normal_distribution<double>(0, 1)(engine_); }
+
+  static SurfacePoint place(const Attempt& attempt) {
+    const bool fold = attempt.a + attempt.b > 1;
+    const double a = fold ? 1 - attempt.a : attempt.a, b = fold ? 1 - attempt.b : attempt.b;
+    return {attempt.triangle, {a, b, 1 - a - b}};
+  }
+
+  static Vec3 sideways(const Vec3& n, double turns) {
+    const std::size_t axis = std::abs(n[0]) < 0.6 ? 0 : 1;
+    Vec3 e{};
+    e[axis] = 1;
+    const Vec3 crossed = cross(n, e);
+    const Vec3 first = (1 / norm(crossed)) * crossed;
+    return std::cos(2 * M_PI * turns) * first + std::sin(2 * M_PI * turns) * cross(n, first);
+  }
+
+  /// The force once the contact point has come to rest inside its triangle, having moved.
+  std::optional<Vec3> slide(const Vec3& x, SurfacePoint point, double d0) const {
+    const Vec3 start = surface_.position(point);
+    const std::int32_t triangle = point.element;
+    for (int i = 0; i < kSlideSteps; ++i) {
+      const LocalModel model(surface_, point, d0);
+      const runtime::Deflection d = model.deflection(x);
+      const double excess = d.lateral - model.slip_limit(d, library_.certificate.friction);
+      if (!(excess > kRest)) {
+        if (norm(model.contact_point() - start) < 1e-3 * kStep) return std::nullopt;
+        return model.respond(d).force;
+      }
+      const runtime::Walk walked = runtime::walk(surface_, point, d.tangent, excess);
+      if (walked.at_border || walked.point.element != triangle) return std::nullopt;
+      point = walked.point;
+    }
+    return std::nullopt;
+  }
+
+  const Library& library_;
+  runtime::Surface surface_;
+  std::mt19937 engine_;
+};
+
+struct Found {
+  Attempt attempt;
+  double quotient = 0, bound = 0;
+};
+
+void keep_steepest(const Found& found, Steepest& steepest) {
+  ++steepest.tries;
+  steepest.nearest = std::max(steepest.nearest, found.quotient / found.bound);
+  if (found.quotient <= steepest.quotient) return;
+  steepest.quotient = found.quotient;
+  steepest.triangle = found.attempt.triangle;
+}
+
+/// Uphill by random moves that grow shorter.
+void climb(Challenger& challenger, Mode mode, int steps, Found found, Steepest& steepest) {
+  const double shrink = std::pow(kLastStride / kFirstStride, 1.0 / std::max(1, steps));
+  double stride = kFirstStride;
+  for (int i = 0; i < steps; ++i, stride *= shrink) {
+    const Attempt next = challenger.near(found.attempt, stride);
+    const auto quotient = challenger.quotient(next, mode);
+    if (!quotient) continue;
+    keep_steepest({next, *quotient, found.bound}, steepest);
+    if (*quotient > found.quotient) found = {next, *quotient, found.bound};
+  }
+}
+
+Steepest search(const Library& library, Mode mode, const ChallengeSettings& settings) {
+  const bool held = mode == Mode::Held;
+  Steepest steepest;
+  steepest.bound = held ? library.certificate.stick : library.certificate.slip;
+  Challenger challenger(library, settings.seed);
+  std::vector<Found> best;  // of each triangle
+  for (std::size_t m = 0; m < library.triangles.size(); ++m) {
+    if (!has_responses(library, library.triangles[m])) continue;
+    const TriangleCertificate& triangle = library.certificate.triangles[m];
+    // A slide may be as steep as what is held: Theorem 1 asks for the larger.
+    const double bound = held ? triangle.stick : std::max(triangle.stick, triangle.slip);
+    if (!std::isfinite(bound)) continue;
+    Found top;
+    for (int i = 0; i < settings.tries; ++i) {
+      const Attempt attempt = challenger.draw(static_cast<std::int32_t>(m));
+      const auto quotient = challenger.quotient(attempt, mode);
+      if (!quotient) continue;
+      const Found found{attempt, *quotient, bound};
+      keep_steepest(found, steepest);
+      if (found.quotient > top.quotient) top = found;
+    }
+    if (top.quotient > 0) best.push_back(top);
+  }
+  std::sort(best.begin(), best.end(),
+            [](const Found& x, const Found& y) { return x.quotient > y.quotient; });
+  if (best.size() > static_cast<std::size_t>(settings.climbs))
+    best.resize(static_cast<std::size_t>(settings.climbs));
+  for (const Found& found : best) climb(challenger, mode, settings.steps, found, steepest);
+  return steepest;
+}
+
+}  // namespace
+
+bool ChallengeResult::stands() const {
+  return held.nearest <= 1 + kDifference && sliding.nearest <= 1 + kDifference;
+}
+
+ChallengeResult challenge(const Library& library, const ChallengeSettings& settings) {
+  if (library.certificate.triangles.size() != library.triangles.size() ||
+      library.triangles.empty()) {
+    throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
+                "it has no certificate that could be challenged", "certify it first");
+  }
+  return {search(library, Mode::Held, settings), search(library, Mode::Sliding, settings)};
+}
+
+}  // namespace palpate::fitting

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A response triangle as the bounds of its forces see it.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "fitting/certificate/curve_bounds.hpp"
+#include "fitting/certificate/triangle_frame.hpp"
+#include "format/library.hpp"
+
+namespace palpate::fitting {
+
+/// A triangle with its responses and the friction the bounds are for.
+struct ContactElement {
+  TriangleFrame frame;
+  CurveTriple normal;
+  CurveTriple lateral;
+  double friction = 0;
+  double depth = 0;                                    ///< m, D: the bounds hold while z + d0 <= D
+  std::optional<CurveTriple> coupling = std::nullopt;  ///< w, of coupled responses
+
+  /// Ends of cells of depth, down to D, without a knot of a normal response, or of w, inside.
+  std::vector<double> depth_cells() const { return depth_cells(depth); }
+  std::vector<double> depth_cells(double deepest) const;
+};
+
+/// Whether all three vertices have a response: elsewhere there is no local model.
+bool has_responses(const Library& library, const Triangle& triangle);
+
+/// @throws Error(Geometry) where normals cannot be interpolated. @pre has_responses
+ContactElement contact_element(const Library& library, std::size_t triangle, double depth,
+                               double friction);
+
+/// w(z) of a vertex, from w(0) on.
+inline double coupling_at(const runtime::CompiledCurve& w, double z) {
+  return z > 0 ? w.force(z) : w.pieces().front().force;
+}
+
+}  // namespace palpate::fitting

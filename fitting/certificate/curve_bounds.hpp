@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Suprema over a triangle and a range of deflection of what is interpolated from three curves.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fitting/certificate/range.hpp"
+#include "format/vec3.hpp"
+#include "runtime/response_curve.hpp"
+
+namespace palpate::fitting {
+
+/// Slopes of a curve over a range of deflections, exact.
+Range slope_range(const runtime::CompiledCurve& curve, const Range& range);
+/// Second derivatives over the range; at a knot those of both its pieces.
+Range curvature_range(const runtime::CompiledCurve& curve, const Range& range);
+
+/// The curves of one kind at the three vertices of a triangle, interpolated as
+/// f_c(d) = sum n_l(c) f_l(d). A value is linear in the natural coordinates, so vertices bound it.
+/// In the deflection, bounds are over pieces without a knot inside, where force and energy are
+/// polynomials: they lie in the hull of their Bernstein coefficients, and a norm over a hull is
+/// largest at a corner. Nothing is sampled.
+class CurveTriple {
+ public:
+  CurveTriple(std::array<runtime::CompiledCurve, 3> curves, const std::array<Vec3, 3>& gradient);
+
+  const std::array<runtime::CompiledCurve, 3>& curves() const { return curves_; }
+  double last_knot() const;  ///< the deepest of the three
+  double max_slope() const;  ///< over all deflections
+
+  double least_force(double d) const;     ///< over the triangle
+  double greatest_force(double d) const;  ///< over the triangle
+  Range slope(const Range& range) const;  ///< over the triangle and the range, exact
+  /// Second derivative over the triangle and the range; at a knot that of both its pieces.
+  Range curvature(const Range& range) const;
+  /// sup f/f' of the three curves over the range, m; infinite where one is flat after it has risen.
+  double force_over_slope(const Range& range) const;
+  /// sup |grad_c f_c(d)|, N/m
+  double force_gradient(const Range& range) const;
+  /// sup |grad_c E_c(d)| / f_c(d), 1; finite down to d = 0. Infinite where the force is zero.
+  double energy_ratio(const Range& range) const;
+  /// The deflections rho with f_c(rho) = force_l interpolated, over the triangle, for force_l
+  /// between low[l] and high[l]. The upper end is infinite where a curve never reaches its force.
+  Range inverse(const std::array<double, 3>& low, const std::array<double, 3>& high) const;
+  /// Ends of cells that cover the range, none with a knot inside, each piece cut in `parts`.
+  std::vector<double> cells(const Range& range, int parts) const;
+
+ private:
+  double cell_force_gradient(double low, double high) const;
+  double cell_energy_gradient(double low, double high) const;
+  double first_piece_ratio(double high) const;
+
+  std::array<runtime::CompiledCurve, 3> curves_;
+  std::array<Vec3, 3> gradient_;
+  double first_knot_ = 0;  ///< end of the piece that all three share at 0
+};
+
+}  // namespace palpate::fitting

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The derivation is in docs/theory-fitting.md, section "Sliding"; symbols and numbers are its own.
+#include "fitting/certificate/slide_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <queue>
+#include <vector>
+
+namespace palpate::fitting {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Cells of depth are halved until the bound over the worst one is this near to the bound at a
+// single depth inside it, or until so many halvings were spent. The bound holds at every stage.
+constexpr double kNearEnough = 1.02;
+constexpr int kMostHalvings = 300;
+
+/// What holds for all contact points of the triangle, depths in a cell, at limiting friction.
+struct SlideState {
+  Range z;
+  Range rho;                  ///< the slip limit rho_s
+  double grip = 0;            ///< largest g
+  double normal = 0;          ///< largest normal force, dE/dz
+  double steep = 0;           ///< largest |d(dE/dz, mu g)/dz| along the slip limit
+  double change = 0;          ///< largest |grad_c (dE/dz, mu g)| along the slip limit
+  double h_rho = 0;           ///< least d(dE/drho)/drho
+  double limit_slope = 0;     ///< largest |d rho_s/dz|
+  double limit_gradient = 0;  ///< largest |grad_c (mu g - dE/drho)|
+  double h_over_rho = 0;      ///< largest lateral force over rho
+};
+
+std::array<double, 3> limits(const ContactElement& element, double z) {
+  std::array<double, 3> force{};
+  for (std::size_t l = 0; l < 3; ++l) {
+    force[l] = element.friction * element.normal.curves()[l].force(z);
+  }
+  return force;
+}
+
+using Box = std::array<Range, 3>;  // of a value at the three vertices
+
+/// sup |grad_c v| for vertex values v in a box: a norm is largest at a corner.
+double box_gradient(const ContactElement& element, const Box& box) {
+  double largest = 0;
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    std::array<double, 3> v{};
+    for (std::size_t l = 0; l < 3; ++l) {
+      v[l] = ((corner >> l) & 1u) != 0 ? box[l].high : box[l].low;
+    }
+    largest = std::max(largest, gradient_norm(element.frame.gradient, v[0], v[1], v[2]));
+  }
+  return largest;
+}
+
+/// sup |grad_c (mu g - h)| at fixed z and rho: over the box of vertex values; and no larger than
+/// the sum of both gradients.
+double limit_gradient(const ContactElement& element, const SlideState& state, double grad_g) {
+  const double apart = element.friction * grad_g + element.lateral.force_gradient(state.rho);
+  const std::array<double, 3> low = limits(element, state.z.low);
+  const std::array<double, 3> high = limits(element, state.z.high);
+  Box box;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const runtime::CompiledCurve& h = element.lateral.curves()[l];
+    box[l] = {low[l] - h.force(state.rho.high), high[l] - h.force(state.rho.low)};
+  }
+  return std::min(apart, box_gradient(element, box));
+}
+
+/// Absent when the contact sticks in the whole cell: the lateral response never reaches mu g.
+std::optional<SlideState> decoupled_state(const ContactElement& element, const Range& z) {
+  const double mu = element.friction;
+  SlideState state;
+  state.z = z;
+  if (mu > 0) {
+    state.rho = element.lateral.inverse(limits(element, z.low), limits(element, z.high));
+    if (state.rho.low == kInfinity) return std::nullopt;
+  }
+  const double oblique = std::hypot(1.0, mu);
+  const double g_z = element.normal.slope(z).high;
+  const double grad_g = element.normal.force_gradient(z);
+  state.grip = state.normal = element.normal.greatest_force(z.high);
+  state.steep = oblique * g_z;
+  state.change = oblique * grad_g;
+  if (mu == 0 || state.rho.high == kInfinity) return state;
+  state.h_rho = element.lateral.slope(state.rho).low;
+  // h/rho <= the largest slope up to rho. Without friction there is no lateral force at all.
+  state.h_over_rho = element.lateral.slope({0, state.rho.high}).high;
+  state.limit_slope = state.h_rho > 0 ? mu * g_z / state.h_rho : kInfinity;
+  state.limit_gradient = limit_gradient(element, state, grad_g);
+  return state;
+}
+
+/// Second derivatives of E(z, rho) at fixed c over a box of z and rho; each is interpolated from
+/// its vertex values.
+struct Hessian {
+  Range zz, zr, rr;
+};
+
+Hessian hessian(const ContactElement& element, const Range& z, const Range& rho) {
+  double h_low = kInfinity, h_high = 0, H = 0, w_low = kInfinity, w_high = 0;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const runtime::CompiledCurve& lateral = element.lateral.curves()[l];
+    const runtime::CompiledCurve& w = element.coupling->curves()[l];
+    h_low = std::min(h_low, lateral.force(rho.low));
+    h_high = std::max(h_high, lateral.force(rho.high));
+    H = std::max(H, lateral.energy(rho.high));
+    w_low = std::min(w_low, coupling_at(w, z.low));
+    w_high = std::max(w_high, coupling_at(w, z.high));
+  }
+  const Range g_z = element.normal.slope(z);
+  const Range w_z = element.coupling->slope(z);
+  const Range w_zz = element.coupling->curvature(z);
+  const Range h_r = element.lateral.slope(rho);
+  return {{g_z.low + std::min(0.0, w_zz.low) * H, g_z.high + std::max(0.0, w_zz.high) * H},
+          {w_z.low * h_low, w_z.high * h_high},
+          {w_low * h_r.low, w_high * h_r.high}};
+}
+
+/// Where w_l h_l = mu g_l at the vertices: between the least and the largest of these lies the slip
+/// limit of every contact point.
+Range coupled_limit(const ContactElement& element, const Range& z) {
+  std::array<double, 3> low = limits(element, z.low);
+  std::array<double, 3> high = limits(element, z.high);
+  for (std::size_t l = 0; l < 3; ++l) {
+    const runtime::CompiledCurve& w = element.coupling->curves()[l];
+    low[l] /= coupling_at(w, z.high);
+    high[l] /= coupling_at(w, z.low);
+  }
+  return element.lateral.inverse(low, high);
+}
+
+/// |d(dE/dz, mu g)/dz| along the slip limit: with rho_s' = (mu g' - E_zrho)/E_rhorho the first is
+/// A = E_zz + r (mu g' - E_zrho), r = E_zrho/E_rhorho, no more than the largest (w'/w)(h/h') of a
+/// vertex.
+double along_limit(const ContactElement& element, const Hessian& E, const Range& z,
+                   const Range& rho) {
+  const double mu = element.friction;
+  const Range g_z = element.normal.slope(z);
+  if (!(mu > 0)) return std::max(std::abs(E.zz.low), std::abs(E.zz.high));
+  double growth = 0;
+  for (const runtime::CompiledCurve& w : element.coupling->curves())
+    growth = std::max(growth, slope_range(w, z).high / coupling_at(w, z.low));
+  const double ratio = growth > 0 ? growth * element.lateral.force_over_slope(rho) : 0;
+  if (ratio == kInfinity) return kInfinity;
+  const double low = E.zz.low + ratio * std::min(0.0, mu * g_z.low - E.zr.high);
+  const double high = E.zz.high + ratio * std::max(0.0, mu * g_z.high - E.zr.low);
+  return std::hypot(std::max(std::abs(low), std::abs(high)), mu * g_z.high);
+}
+
+std::optional<SlideState> coupled_state(const ContactElement& element, const Range& z) {
+  const double mu = element.friction;
+  SlideState state;
+  state.z = z;
+  if (mu > 0) {
+    state.rho = coupled_limit(element, z);
+    if (state.rho.low == kInfinity) return std::nullopt;
+    if (state.rho.high == kInfinity) return state;
+  }
+  const Hessian E = hessian(element, z, state.rho);
+  const Range g_z = element.normal.slope(z);
+  const Range w_z = element.coupling->slope(z);
+  Box grip, normal, limit;
+  double w_high = 0;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const runtime::CompiledCurve& g = element.normal.curves()[l];
+    const runtime::CompiledCurve& h = element.lateral.curves()[l];
+    const runtime::CompiledCurve& w = element.coupling->curves()[l];
+    const Range w_l{coupling_at(w, z.low), coupling_at(w, z.high)};
+    w_high = std::max(w_high, w_l.high);
+    grip[l] = {g.force(z.low), g.force(z.high)};
+    normal[l] = {grip[l].low + w_z.low * h.energy(state.rho.low),
+                 grip[l].high + w_z.high * h.energy(state.rho.high)};
+    limit[l] = {w_l.low * h.force(state.rho.low) - mu * grip[l].high,
+                w_l.high * h.force(state.rho.high) - mu * grip[l].low};
+    state.grip = std::max(state.grip, grip[l].high);
+    state.normal = std::max(state.normal, normal[l].high);
+  }
+  state.steep = along_limit(element, E, z, state.rho);
+  state.h_over_rho = mu > 0 ? w_high * element.lateral.slope({0, state.rho.high}).high : 0;
+  state.h_rho = E.rr.low;
+  if (mu > 0 && !(state.h_rho > 0)) {
+    state.change = kInfinity;  // nothing bounds the way of the slip limit
+    return state;
+  }
+  // rho_s' = (mu g' - w' h)/(w h')
+  const double low = mu > 0 ? (mu * g_z.low - E.zr.high) / E.rr.low : 0;
+  const double high = mu > 0 ? (mu * g_z.high - E.zr.low) / E.rr.low : 0;
+  state.limit_slope = std::max(std::abs(low), std::abs(high));
+  state.limit_gradient = mu > 0 ? box_gradient(element, limit) : 0;
+  const double along = mu > 0 ? E.zr.high * state.limit_gradient / state.h_rho : 0;
+  state.change =
+      std::hypot(box_gradient(element, normal) + along, mu * box_gradient(element, grip));
+  return state;
+}
+
+std::optional<SlideState> slide_state(const ContactElement& element, const Range& z) {
+  return element.coupling ? coupled_state(element, z) : decoupled_state(element, z);
+}
+
+/// Largest path of c for a unit path of the tool: |w| of the theory page.
+double slide_rate(const ContactElement& element, const SlideState& state) {
+  const TriangleFrame& frame = element.frame;
+  double margin = frame.cos_theta - element.depth * frame.kappa;
+  if (element.friction > 0) {
+    if (!(state.h_rho > 0)) return kInfinity;
+    margin -= state.limit_gradient / state.h_rho;
+    margin -= state.limit_slope * (frame.sin_theta + state.rho.high * frame.kappa);
+  }
+  return margin > 0 ? std::hypot(1.0, state.limit_slope) / margin : kInfinity;
+}
+
+SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
+  const TriangleFrame& frame = element.frame;
+  const double mu = element.friction;
+  if (state.rho.high == kInfinity) return {kInfinity, {0, kInfinity, 0, 0}};
+
+  SlideCauses causes;
+  causes.stiffness = std::max(state.steep, state.h_over_rho);
+  const double rate = slide_rate(element, state);
+  // |v| <= the sum of its three causes; each keeps its share for the report.
+  const double q_slant = frame.sin_theta;
+  const double q_turn = state.rho.high * frame.kappa;
+  const double lean = frame.sin_theta * frame.sin_theta / (2 * frame.cos_theta);
+  const double across = frame.twist * std::max(state.normal, state.h_over_rho * element.depth);
+  const double slant = std::hypot(state.steep * q_slant, state.h_over_rho * lean);
+  const double turned = std::hypot(state.normal, mu * state.grip) * frame.kappa;
+  const double curvature = std::hypot(std::hypot(state.steep * q_turn, turned), across);
+  const auto scaled = [&](double part) { return part > 0 ? part * rate : 0.0; };
+  causes.variation = scaled(state.change);
+  causes.slant = scaled(slant);
+  causes.curvature = scaled(curvature);
+  return {causes.stiffness + causes.variation + causes.slant + causes.curvature, causes};
+}
+
+/// Largest |eigenvalue| of the symmetric matrix with these entries.
+double spectral_norm(double a, double b, double d) {
+  return 0.5 * std::abs(a + d) + std::hypot(0.5 * (a - d), b);
+}
+
+/// Norm of the Jacobian at fixed c over a cell of depths, rho up to the slip limit: convex in its
+/// entries, so a corner of their box bounds it.
+double cell_stick(const ContactElement& element, const Range& z) {
+  double rho = element.friction > 0 ? coupled_limit(element, z).high : 0;
+  if (rho == kInfinity) return kInfinity;
+  const Hessian E = hessian(element, z, {0, rho});
+  double largest = E.rr.high;  // also of the lateral force over rho
+  for (const double a : {E.zz.low, E.zz.high})
+    for (const double b : {E.zr.low, E.zr.high})
+      for (const double d : {E.rr.low, E.rr.high})
+        largest = std::max(largest, spectral_norm(a, b, d));
+  return largest;
+}
+
+/// What holds for a cell of depths of coupled responses with the contact point held, also while the
+/// tool slips over it.
+double cell_hold(const ContactElement& element, const Range& z) {
+  const std::optional<SlideState> state = coupled_state(element, z);
+  const double stick = cell_stick(element, z);
+  if (!state) return stick;
+  if (state->rho.high == kInfinity) return kInfinity;
+  return std::max({stick, state->steep, state->h_over_rho});
+}
+
+/// Deeper than every knot the normal responses are straight and, if w has come to rest, nothing
+/// else depends on depth.
+double hold_beyond(const ContactElement& element, double depth) {
+  const Range beyond{depth, 2 * depth};
+  if (element.coupling->slope(beyond).high > 0) return kInfinity;
+  const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
+  return std::max(std::hypot(1.0, element.friction) * element.normal.slope(beyond).high, lateral);
+}
+
+using CellBound = double (*)(const ContactElement&, const Range&);
+
+/// The largest over all depths down to `deepest` of what is bounded over cells of them.
+double over_depths(const ContactElement& element, double deepest, CellBound bound) {
+  struct Part {
+    double bound;
+    Range z;
+    bool operator<(const Part& other) const { return bound < other.bound; }
+  };
+  std::priority_queue<Part> parts;
+  const auto add = [&](const Range& z) { parts.push({bound(element, z), z}); };
+  const std::vector<double> ends = element.depth_cells(deepest);
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) add({ends[k], ends[k + 1]});
+  for (int i = 0; i < kMostHalvings; ++i) {
+    const Part worst = parts.top();
+    const double half = worst.z.middle();
+    if (worst.bound <= kNearEnough * bound(element, {half, half})) break;
+    parts.pop();
+    add({worst.z.low, half});
+    add({half, worst.z.high});
+  }
+  return parts.top().bound;
+}
+
+struct Cell {
+  Range z;
+  SlideBound bound;
+};
+
+/// The bound over a cell of depths; no slide, no bound to keep.
+Cell make_cell(const ContactElement& element, const Range& z) {
+  const auto state = slide_state(element, z);
+  return {z, state ? cell_bound(element, *state) : SlideBound{}};
+}
+
+bool energy_falls(const ContactElement& element, const SlideState& state) {
+  const TriangleFrame& frame = element.frame;
+  const double mu = element.friction;
+  if (state.rho.high == kInfinity) return false;
+  const double ratio = element.normal.energy_ratio(state.z) +
+                       (mu > 0 ? mu * element.lateral.energy_ratio(state.rho) : 0.0);
+  const double arm = std::max(std::abs(state.rho.high - mu * state.z.low),
+                              std::abs(state.rho.low - mu * element.depth));
+  return mu * frame.cos_theta - frame.sin_theta >= ratio + frame.kappa * arm;
+}
+
+/// Over a cell, halved while the condition holds at its middle but not over all of it.
+bool energy_falls_in(const ContactElement& element, const Range& z, int halvings_left) {
+  const auto state = slide_state(element, z);
+  if (!state || energy_falls(element, *state)) return true;
+  if (halvings_left == 0) return false;
+  const double half = z.middle();
+  const auto point = slide_state(element, {half, half});
+  if (point && !energy_falls(element, *point)) return false;
+  return energy_falls_in(element, {z.low, half}, halvings_left - 1) &&
+         energy_falls_in(element, {half, z.high}, halvings_left - 1);
+}
+
+}  // namespace
+
+double stick_bound(const ContactElement& element) {
+  // The Jacobian at a fixed contact point is g' n n^T + h' t t^T + (h/rho) s s^T, its norm the
+  // largest of the three; h/rho <= max h', and no interpolated slope exceeds those at the vertices.
+  if (!element.coupling) return std::max(element.normal.max_slope(), element.lateral.max_slope());
+  return over_depths(element, element.depth, cell_stick);
+}
+
+double hold_bound(const ContactElement& element) {
+  // Decoupled, |M_0| is sqrt(1 + mu^2) g' across s; along s it is h/rho, no steeper than h.
+  if (!element.coupling) {
+    return std::max(stick_bound(element),
+                    std::hypot(1.0, element.friction) * element.normal.max_slope());
+  }
+  const double deepest = std::max(element.normal.last_knot(), element.coupling->last_knot());
+  return std::max(over_depths(element, deepest, cell_hold), hold_beyond(element, deepest));
+}
+
+SlideBound slide_bound(const ContactElement& element) {
+  const auto less = [](const Cell& a, const Cell& b) { return a.bound.total < b.bound.total; };
+  std::priority_queue<Cell, std::vector<Cell>, decltype(less)> cells(less);
+  const std::vector<double> ends = element.depth_cells();
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    cells.push(make_cell(element, {ends[k], ends[k + 1]}));
+  }
+  for (int i = 0; i < kMostHalvings; ++i) {
+    const Cell worst = cells.top();
+    const double half = worst.z.middle();
+    const double reached = make_cell(element, {half, half}).bound.total;
+    if (worst.bound.total <= kNearEnough * reached) break;
+    cells.pop();
+    cells.push(make_cell(element, {worst.z.low, half}));
+    cells.push(make_cell(element, {half, worst.z.high}));
+  }
+  return cells.top().bound;
+}
+
+bool slide_lowers_energy(const ContactElement& element) {
+  if (element.coupling) return false;
+  const std::vector<double> ends = element.normal.cells({0, element.depth}, 1);
+  for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
+    if (!energy_falls_in(element, {ends[k], ends[k + 1]}, 6)) return false;
+  }
+  return true;
+}
+
+}  // namespace palpate::fitting

@@ -1,0 +1,339 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The symbols are those of docs/theory-fitting.md, section "Sliding".
+#include "fitting/certificate/slide_jacobian.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace palpate::fitting {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+using Natural = SlideCell::Natural;
+using Values = std::array<Range, 3>;
+
+/// Of a quantity interpolated from ranges at the vertices, over a part of the triangle.
+Range over(const std::array<Natural, 3>& part, const Values& value) {
+  Range result{kInfinity, -kInfinity};
+  for (const Natural& n : part)
+    result = hull(result, n[0] * value[0] + n[1] * value[1] + n[2] * value[2]);
+  return result;
+}
+
+/// Values at the vertices, weighted as at one place.
+double at(const Natural& n, const std::array<double, 3>& value) {
+  return n[0] * value[0] + n[1] * value[1] + n[2] * value[2];
+}
+
+/// Mean slope of a curve from 0 to a deflection.
+Range mean_slope(const runtime::CompiledCurve& curve, const Range& d) {
+  const Range steepness = slope_range(curve, {0, d.high});
+  if (!(d.low > 0)) return steepness;
+  return common(steepness, {curve.force(d.low) / d.high, curve.force(d.high) / d.low});
+}
+
+/// No smaller than the norm of any matrix with entries in these ranges: that of the middle, and of
+/// what they may be off it.
+double norm_bound(const std::array<std::array<Range, 3>, 3>& entry) {
+  Eigen::Matrix3d middle, off;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      middle(static_cast<int>(i), static_cast<int>(j)) = entry[i][j].middle();
+      off(static_cast<int>(i), static_cast<int>(j)) = entry[i][j].radius();
+    }
+  }
+  if (!middle.allFinite() || !off.allFinite()) return kInfinity;
+  const Eigen::Matrix3d squared = middle.transpose() * middle;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squared, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2])) + off.norm();
+}
+
+bool is_zero(const Range& a) {
+  return a.low == 0 && a.high == 0;
+}
+
+/// x >= 0 with slope x + curvature x^2 = rise, on a piece that rises so far.
+double solve_piece(double slope, double curvature, double rise) {
+  if (!(rise > 0)) return 0;
+  return 2 * rise / (slope + std::sqrt(std::max(0.0, slope * slope + 4 * curvature * rise)));
+}
+
+}  // namespace
+
+struct SlideJacobian::Facet {
+  Range cosine, sine;      ///< of the azimuth from that of the axes x, y
+  double turn = 0;         ///< azimuth of x
+  Range t_tau, n_tau;      ///< t . tau, n . tau
+  Range s_tau;             ///< s . tau
+  Range kappa_t, kappa_s;  ///< t . dn/ds and s . dn/ds along tau, 1/m
+};
+
+struct SlideJacobian::AtVertex {
+  Range g, g_z;  ///< mu is not in them
+  Range E_z, E_zz, E_zr, E_rr;
+  Range excess;      ///< Phi = w h - mu g
+  Range h_over_rho;  ///< w h/rho
+};
+
+struct SlideJacobian::Response {
+  Values g{}, E_z{}, excess{};  ///< at the vertices, for gradients
+  Range g_here, g_z, E_z_here, E_zz, E_zr, E_rr, h_over_rho;
+};
+
+struct SlideJacobian::Terms {
+  Facet f;
+  Response r;
+  Range m;           ///< of rho_s by z
+  Range A, B;        ///< of dE/dz along the slip limit: by z, and along tau
+  Range grip;        ///< mu g
+  Range grip_slope;  ///< by z
+  Range grip_rate;   ///< along tau
+  Range limit_rate;  ///< what rho_s loses along tau
+  Range q;
+  Range rate;       ///< what a unit of the way of c takes of rho - rho_s
+  double held = 0;  ///< |M_0|
+};
+
+SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element) {
+  const TriangleFrame& frame = element.frame;
+  const Vec3 x = (1 / norm(frame.gradient[0])) * frame.gradient[0];
+  const Vec3 y = cross(frame.normal, x);
+  for (std::size_t l = 0; l < 3; ++l) {
+    direction_[l] = {dot(frame.inward[l], frame.normal), dot(frame.inward[l], x),
+                     dot(frame.inward[l], y)};
+    gradient_[l] = {dot(frame.gradient[l], x), dot(frame.gradient[l], y)};
+  }
+  for (const double start : element.lateral.cells({0, element.lateral.last_knot()}, 1)) {
+    LateralPiece piece{start};
+    for (std::size_t l = 0; l < 3; ++l) {
+      const runtime::CompiledCurve& h = element.lateral.curves()[l];
+      const auto after = std::upper_bound(
+          h.pieces().begin() + 1, h.pieces().end(), start,
+          [](double d, const runtime::CompiledCurve::Piece& p) { return d < p.start; });
+      const runtime::CompiledCurve::Piece& held = *(after - 1);
+      const double beyond = start - held.start;
+      piece.force[l] = held.force + beyond * (held.slope + beyond * held.curvature);
+      piece.slope[l] = held.slope + 2 * beyond * held.curvature;
+      piece.curvature[l] = held.curvature;
+    }
+    lateral_.push_back(piece);
+  }
+}
+
+/// tau is the axis x turned by an azimuth; b = N x tau; t is the unit vector across n that lies
+/// over tau, s = n x t.
+SlideJacobian::Facet SlideJacobian::facet(const SlideCell& cell) const {
+  // With the axes turned to the middle of the range, cosines are near 1 and sines small.
+  const double turn = cell.azimuth.middle(), half = cell.azimuth.radius();
+  const double c0 = std::cos(turn), s0 = std::sin(turn);
+  Facet f;
+  f.turn = turn;
+  f.cosine = {std::cos(half), 1};
+  f.sine = {-std::sin(half), std::sin(half)};
+
+  Values U_N, U_x, U_y;
+  std::array<double, 3> along_N{}, along_x{}, along_y{};
+  for (std::size_t l = 0; l < 3; ++l) {
+    along_N[l] = direction_[l][0];
+    along_x[l] = c0 * direction_[l][1] + s0 * direction_[l][2];
+    along_y[l] = -s0 * direction_[l][1] + c0 * direction_[l][2];
+    U_N[l] = {along_N[l], along_N[l]};
+    U_x[l] = {along_x[l], along_x[l]};
+    U_y[l] = {along_y[l], along_y[l]};
+  }
+  const Range N = over(cell.part, U_N), x = over(cell.part, U_x), y = over(cell.part, U_y);
+  const Range length = root(square(N) + square(x) + square(y));
+  const Range n_N = N / length, n_x = x / length, n_y = y / length;
+  f.n_tau = n_x * f.cosine + n_y * f.sine;
+  const Range n_b = n_y * f.cosine - n_x * f.sine;
+  const Range r = root(square(n_N) + square(f.n_tau));
+  f.t_tau = n_N / r;
+  f.s_tau = (-1) * (n_b * f.n_tau) / r;
+
+  // dU/ds along tau, of which t and s see the part across n.
+  const auto rate = [&](const std::array<double, 3>& u) {
+    double by_x = 0, by_y = 0;
+    for (std::size_t l = 1; l < 3; ++l) {  // differences: equal directions turn by exactly 0
+      by_x += (u[l] - u[0]) * (c0 * gradient_[l][0] + s0 * gradient_[l][1]);
+      by_y += (u[l] - u[0]) * (-s0 * gradient_[l][0] + c0 * gradient_[l][1]);
+    }
+    return (by_x * f.cosine + by_y * f.sine) / length;
+  };
+  const Range d_N = rate(along_N), d_x = rate(along_x), d_y = rate(along_y);
+  const Range d_tau = d_x * f.cosine + d_y * f.sine, d_b = d_y * f.cosine - d_x * f.sine;
+  f.kappa_t = (n_N * d_tau - f.n_tau * d_N) / r;
+  f.kappa_s = r * d_b - n_b * (n_N * d_N + f.n_tau * d_tau) / r;
+  return f;
+}
+
+Range SlideJacobian::along(const Facet& facet, const Values& value) const {
+  const double c0 = std::cos(facet.turn), s0 = std::sin(facet.turn);
+  const Range first = value[1] - value[0], second = value[2] - value[0];
+  const Range by_x = gradient_[1][0] * first + gradient_[2][0] * second;
+  const Range by_y = gradient_[1][1] * first + gradient_[2][1] * second;
+  const Range x = c0 * by_x + s0 * by_y, y = c0 * by_y - s0 * by_x;
+  return x * facet.cosine + y * facet.sine;
+}
+
+/// The least (or the largest) rho at which the lateral force of a place is `limit`; infinite where
+/// it is not reached.
+double SlideJacobian::slip_at(const std::array<double, 3>& weight, double limit,
+                              bool largest) const {
+  const auto beyond = [&](double force) { return largest ? force > limit : force >= limit; };
+  for (std::size_t k = 0; k < lateral_.size(); ++k) {
+    const bool last = k + 1 == lateral_.size();
+    if (!last && !beyond(at(weight, lateral_[k + 1].force))) continue;
+    const double rise = limit - at(weight, lateral_[k].force);
+    const double slope = at(weight, lateral_[k].slope);
+    const double curvature = at(weight, lateral_[k].curvature);
+    if (last && !(slope > 0) && (rise > 0 || largest)) return kInfinity;
+    return lateral_[k].start + solve_piece(slope, curvature, rise);
+  }
+  return kInfinity;
+}
+
+/// Between the least and the largest at the corners, and at the ends of the depths, lies the slip
+/// limit of every state: w_l h_l - mu g_l is linear in the natural coordinates.
+Range SlideJacobian::slip_limit(const SlideCell& cell) const {
+  const ContactElement& e = *element_;
+  Range rho{kInfinity, 0};
+  for (const Natural& n : cell.part) {
+    std::array<double, 3> firm{}, soft{}, less{}, more{};
+    for (std::size_t l = 0; l < 3; ++l) {
+      const runtime::CompiledCurve& g = e.normal.curves()[l];
+      soft[l] = firm[l] = n[l];
+      if (e.coupling) {
+        soft[l] *= coupling_at(e.coupling->curves()[l], cell.z.low);
+        firm[l] *= coupling_at(e.coupling->curves()[l], cell.z.high);
+      }
+      less[l] = e.friction * g.force(cell.z.low);
+      more[l] = e.friction * g.force(cell.z.high);
+    }
+    rho.low = std::min(rho.low, slip_at(firm, at(n, less), false));
+    rho.high = std::max(rho.high, slip_at(soft, at(n, more), true));
+  }
+  return rho;
+}
+
+SlideJacobian::AtVertex SlideJacobian::at_vertex(std::size_t vertex, const Range& z,
+                                                 const Range& rho) const {
+  const ContactElement& e = *element_;
+  const runtime::CompiledCurve& normal = e.normal.curves()[vertex];
+  const runtime::CompiledCurve& lateral = e.lateral.curves()[vertex];
+  const Range h{lateral.force(rho.low), lateral.force(rho.high)};
+  const Range h_r = slope_range(lateral, rho);
+  AtVertex v;
+  v.g = {normal.force(z.low), normal.force(z.high)};
+  v.g_z = slope_range(normal, z);
+  v.E_z = v.g;
+  v.E_zz = v.g_z;
+  v.E_rr = h_r;
+  v.h_over_rho = mean_slope(lateral, rho);
+  Range lateral_force = h;
+  if (e.coupling) {
+    const runtime::CompiledCurve& coupling = e.coupling->curves()[vertex];
+    const Range w{coupling_at(coupling, z.low), coupling_at(coupling, z.high)};
+    const Range w_z = slope_range(coupling, z);
+    const Range H{lateral.energy(rho.low), lateral.energy(rho.high)};
+    v.E_z = v.E_z + w_z * H;
+    v.E_zz = v.E_zz + curvature_range(coupling, z) * H;
+    v.E_zr = w_z * h;
+    v.E_rr = w * h_r;
+    v.h_over_rho = w * v.h_over_rho;
+    lateral_force = w * h;
+  }
+  v.excess = lateral_force - e.friction * v.g;
+  return v;
+}
+
+SlideJacobian::Response SlideJacobian::response(const SlideCell& cell, const Range& rho) const {
+  Response r;
+  Values g_z, E_zz, E_zr, E_rr, h_over_rho;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const AtVertex v = at_vertex(l, cell.z, rho);
+    r.g[l] = v.g;
+    r.E_z[l] = v.E_z;
+    r.excess[l] = v.excess;
+    g_z[l] = v.g_z;
+    E_zz[l] = v.E_zz;
+    E_zr[l] = v.E_zr;
+    E_rr[l] = v.E_rr;
+    h_over_rho[l] = v.h_over_rho;
+  }
+  r.g_here = over(cell.part, r.g);
+  r.E_z_here = over(cell.part, r.E_z);
+  r.g_z = over(cell.part, g_z);
+  r.E_zz = over(cell.part, E_zz);
+  r.E_zr = over(cell.part, E_zr);
+  r.E_rr = over(cell.part, E_rr);
+  r.h_over_rho = over(cell.part, h_over_rho);
+  return r;
+}
+
+/// Without those that need the lateral response to rise, where it may be flat.
+SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rho) const {
+  const double mu = element_->friction;
+  Terms x;
+  x.f = facet(cell);
+  x.r = response(cell, rho);
+  if (!(x.r.E_rr.low > 0)) return x;
+  x.m = (mu * x.r.g_z - x.r.E_zr) / x.r.E_rr;
+  x.A = x.r.E_zz + x.m * x.r.E_zr;
+  x.grip = mu * x.r.g_here;
+  x.grip_slope = mu * x.r.g_z;
+  x.limit_rate = along(x.f, x.r.excess) / x.r.E_rr;
+  x.B = along(x.f, x.r.E_z) - x.r.E_zr * x.limit_rate;
+  x.grip_rate = mu * along(x.f, x.r.g);
+  x.q = x.f.n_tau - rho * x.f.kappa_t;
+  x.rate = x.f.t_tau + cell.reach * x.f.kappa_t - x.m * x.q - x.limit_rate;
+  x.held =
+      std::max(std::hypot(x.A.magnitude(), x.grip_slope.magnitude()), x.r.h_over_rho.magnitude());
+  return x;
+}
+
+double SlideJacobian::bound(const SlideCell& cell) const {
+  const Range rho = slip_limit(cell);
+  if (rho.low == kInfinity) return 0;
+  if (rho.high == kInfinity) return kInfinity;
+  const Terms x = terms(cell, rho);
+  if (!(x.r.E_rr.low > 0)) return kInfinity;
+  const Range v_n = x.B - x.A * x.q - x.grip * x.f.kappa_t;
+  const Range v_t = x.grip_rate - x.grip_slope * x.q + x.r.E_z_here * x.f.kappa_t;
+  const Range v_s =
+      x.r.E_z_here * x.f.kappa_s - x.r.h_over_rho * (x.f.s_tau + cell.reach * x.f.kappa_s);
+  if (is_zero(v_n) && is_zero(v_t) && is_zero(v_s)) return x.held;  // a jump of c is harmless
+  if (!(x.rate.low > 0)) return kInfinity;
+  const Range w_t = Range{1, 1} / x.rate, w_n = (-1) * x.m / x.rate;
+  const Range zero{};
+  double norm = std::max(x.held, norm_bound({{{x.A + v_n * w_n, v_n * w_t, zero},
+                                              {x.grip_slope + v_t * w_n, v_t * w_t, zero},
+                                              {v_s * w_n, v_s * w_t, x.r.h_over_rho}}}));
+  if (x.rate.high <= 1) return norm;
+  // The rule of the runtime takes c as far as rho - rho_s where less would do: (9a).
+  const Range over{std::max(0.0, x.rate.low - 1), x.rate.high - 1};
+  const Range u_n = v_n - over * x.r.E_zr, u_t = v_t - over * x.r.E_rr;
+  return std::max(norm, norm_bound({{{x.A - u_n * x.m, u_n, zero},
+                                     {x.grip_slope - u_t * x.m, u_t, zero},
+                                     {(-1) * v_s * x.m, v_s, x.r.h_over_rho}}}));
+}
+
+SlideCauses SlideJacobian::causes(const SlideCell& state) const {
+  const Range rho = slip_limit(state);
+  if (!(rho.high < kInfinity)) return {0, kInfinity, kInfinity, kInfinity};
+  const Terms x = terms(state, rho);
+  if (!(x.r.E_rr.low > 0 && x.rate.low > 0)) return {x.held, kInfinity, kInfinity, kInfinity};
+  const double way = std::hypot(1.0, x.m.magnitude()) / x.rate.low;  // |w|
+  const auto length = [&](const Range& n, const Range& t, const Range& s) {
+    return way * std::hypot(n.magnitude(), t.magnitude(), s.magnitude());
+  };
+  const Range run = rho * x.f.kappa_t;
+  return {x.held, length(x.B, x.grip_rate, {}),
+          length(x.A * x.f.n_tau, x.grip_slope * x.f.n_tau, x.r.h_over_rho * x.f.s_tau),
+          length(x.A * run - x.grip * x.f.kappa_t, x.grip_slope * run + x.r.E_z_here * x.f.kappa_t,
+                 (x.r.E_z_here - x.r.h_over_rho * state.reach) * x.f.kappa_s)};
+}
+
+}  // namespace palpate::fitting

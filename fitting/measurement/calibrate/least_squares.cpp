@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/measurement/calibrate/least_squares.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+
+#include "fitting/measurement/calibrate/descent.hpp"
+#include "fitting/measurement/calibrate/intervals.hpp"
+#include "format/error.hpp"
+
+namespace palpate::calibrate {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+constexpr double kStrongCorrelation = 0.95;
+/// Costs closer than this, relatively, are the same.
+constexpr double kSameCost = 1e-6;
+/// Distance to a bound, relative to its size, that counts as being there.
+constexpr double kAtBound = 1e-8;
+
+[[noreturn]] void refuse(const std::string& where, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, where, problem, remedy);
+}
+
+bool is_at(double value, double bound) {
+  return std::isfinite(bound) &&
+         std::abs(value - bound) <= kAtBound * std::max(1e-12, std::abs(bound));
+}
+
+std::string text_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+void add_warnings(Calibration& result) {
+  const auto warn = [&](const std::string& text) { result.warnings.push_back(text); };
+  for (std::size_t i = 0; i < result.estimates.size(); ++i) {
+    const Estimate& e = result.estimates[i];
+    if (e.at_bound) {
+      warn(e.name + " is at its bound " + text_of(e.value) +
+           ": the interval says nothing there; widen the bound or choose another law");
+      continue;
+    }
+    if (!(0.5 * (e.high - e.low) < std::abs(e.value))) {
+      warn(e.name + " is not determined: its interval is wider than its value");
+    }
+    for (std::size_t j = 0; j < i; ++j) {
+      const double c = result.correlation[i][j];
+      if (!(std::abs(c) > kStrongCorrelation)) continue;
+      warn(result.estimates[j].name + " and " + e.name + " are correlated by " + text_of(c) +
+           ": the data hardly tell them apart");
+    }
+  }
+  if (result.widened) {
+    warn("the residuals are " + text_of(result.scatter) +
+         " times the stated uncertainty: the model does not describe the data within it; the "
+         "intervals are widened by that factor, as if the misfit were noise");
+  }
+  if (result.correlated) {
+    warn("the residuals of neighbouring points are alike (correlation " + text_of(result.lag_one) +
+         " after the fit, " + text_of(result.autocorrelation) + " before it, Durbin-Watson " +
+         text_of(result.durbin_watson) +
+         "): the model misses the shape of the data; the intervals are up to " +
+         text_of(result.correlation_widening) +
+         " times as wide for it, as if the misfit were correlated noise");
+  }
+  if (!result.converged) warn("the iteration did not converge");
+}
+
+void check_problem(const LeastSquares& problem, const std::string& where) {
+  if (problem.residuals < problem.constants.size()) {
+    refuse(where,
+           std::to_string(problem.residuals) + " values cannot determine " +
+               std::to_string(problem.constants.size()) + " constants",
+           "give more data or a law with fewer constants");
+  }
+  for (const Constant& c : problem.constants) {
+    if (c.start >= c.low && c.start <= c.high) continue;
+    refuse(where,
+           "the start " + text_of(c.start) + " of " + c.name + " is not within " + text_of(c.low) +
+               " .. " + text_of(c.high),
+           "choose a start within the bounds");
+  }
+}
+
+std::optional<Calibration> try_minimise(const LeastSquares& problem) {
+  const std::size_t n = problem.constants.size();
+  const auto found = descend(problem);
+  if (!found) return std::nullopt;
+  std::vector<double> r(problem.residuals), J(problem.residuals * n);
+  if (!problem.model(found->at.data(), r.data(), J.data())) return std::nullopt;
+  Calibration result;
+  result.converged = found->converged;
+  result.iterations = found->iterations;
+  result.cost = found->cost;
+  for (std::size_t i = 0; i < n; ++i) {
+    const Constant& c = problem.constants[i];
+    const double value = found->at[i];
+    Estimate& e = result.estimates.emplace_back();
+    e.name = c.name;
+    e.unit = c.unit;
+    e.value = value;
+    e.standard_error = e.low = e.high = kUnknown;
+    e.at_bound = is_at(value, c.low) || is_at(value, c.high);
+  }
+  add_intervals(problem, J, r, result);
+  add_warnings(result);
+  return result;
+}
+
+/// Two sets of constants that fit alike but are not alike.
+void warn_of_other_minimum(const std::vector<Calibration>& found, Calibration& best) {
+  for (const Calibration& other : found) {
+    if (!other.converged || other.cost > best.cost * (1 + kSameCost)) continue;
+    bool apart = false;
+    std::string text;
+    for (std::size_t i = 0; i < other.estimates.size(); ++i) {
+      const double a = best.estimates[i].value, b = other.estimates[i].value;
+      apart = apart || std::abs(a - b) > 0.01 * (std::abs(a) + std::abs(b));
+      text += (text.empty() ? "" : ", ") + other.estimates[i].name + " = " + text_of(b);
+    }
+    if (!apart) continue;
+    best.warnings.push_back("another set of constants fits as well: " + text);
+    return;
+  }
+}
+
+}  // namespace
+
+Calibration minimise(const LeastSquares& problem, const std::string& where) {
+  check_problem(problem, where);
+  const auto result = try_minimise(problem);
+  if (result) return *result;
+  refuse(where, "the model has no value near the start", "choose another start");
+}
+
+Calibration minimise(LeastSquares problem, const std::vector<std::vector<double>>& starts,
+                     const std::string& where) {
+  std::optional<Calibration> best;
+  std::vector<Calibration> found;
+  for (const std::vector<double>& start : starts) {
+    for (std::size_t i = 0; i < start.size(); ++i) problem.constants[i].start = start[i];
+    check_problem(problem, where);
+    const auto result = try_minimise(problem);
+    if (!result) continue;
+    found.push_back(*result);
+    if (!best || result->cost < best->cost * (1 - kSameCost)) best = result;
+  }
+  if (best) {
+    warn_of_other_minimum(found, *best);
+    return *best;
+  }
+  refuse(where, "the model has no value near any start", "give starts of the constants");
+}
+
+}  // namespace palpate::calibrate

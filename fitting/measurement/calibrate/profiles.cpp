@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "fitting/measurement/calibrate/descent.hpp"
+#include "fitting/measurement/calibrate/least_squares.hpp"
+
+namespace palpate::calibrate {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+std::string text_of(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g", value);
+  return text;
+}
+
+/// The problem with one constant held.
+class Held {
+ public:
+  Held(const LeastSquares& problem, std::size_t held)
+      : problem_(problem), held_(held), all_(problem.constants.size()) {
+    reduced_ = problem;
+    reduced_.constants.erase(reduced_.constants.begin() + static_cast<std::ptrdiff_t>(held));
+    reduced_.model = [this](const double* c, double* r, double* J) { return evaluate(c, r, J); };
+  }
+  Held(const Held&) = delete;
+  Held& operator=(const Held&) = delete;
+
+  /// Cost of the best fit near `others`, which moves there; infinite where the model has no value.
+  double cost(double value, std::vector<double>& others) {
+    all_[held_] = value;
+    for (std::size_t i = 0; i < others.size(); ++i) reduced_.constants[i].start = others[i];
+    const auto found = descend(reduced_);
+    if (!found) return std::numeric_limits<double>::infinity();
+    others = found->at;
+    return found->cost;
+  }
+
+ private:
+  bool evaluate(const double* c, double* r, double* J) {
+    const std::size_t n = all_.size();
+    for (std::size_t i = 0, j = 0; i < n; ++i)
+      if (i != held_) all_[i] = c[j++];
+    std::vector<double> whole(J == nullptr ? 0 : problem_.residuals * n);
+    if (!problem_.model(all_.data(), r, J == nullptr ? nullptr : whole.data())) return false;
+    if (J == nullptr) return true;
+    for (std::size_t row = 0; row < problem_.residuals; ++row)
+      for (std::size_t i = 0, j = 0; i < n; ++i)
+        if (i != held_) J[row * (n - 1) + j++] = whole[row * n + i];
+    return true;
+  }
+
+  const LeastSquares& problem_;
+  std::size_t held_;
+  std::vector<double> all_;
+  LeastSquares reduced_;
+};
+
+/// One end of a profile: from the best fit outwards until the cost has risen by `rise`. Followed is
+/// the root of the rise, less its root at the end: -1 at the best fit, 0 at the end, and a straight
+/// line between them where the model is linear.
+class ProfileEnd {
+ public:
+  ProfileEnd(const LeastSquares& problem, const Calibration& best, std::size_t constant,
+             double rise, double closeness)
+      : constant_(problem.constants[constant]),
+        held_(problem, constant),
+        value_(best.estimates[constant].value),
+        cost_(best.cost),
+        rise_(rise),
+        closeness_(closeness) {
+    const Estimate& e = best.estimates[constant];
+    for (std::size_t i = 0; i < best.estimates.size(); ++i) {
+      if (i == constant) continue;
+      const Estimate& other = best.estimates[i];
+      const double c = best.correlation[i][constant];
+      others_.push_back(other.value);
+      bounds_.push_back(problem.constants[i]);
+      slope_.push_back(std::isfinite(c) && e.standard_error > 0
+                           ? c * other.standard_error / e.standard_error
+                           : 0);
+    }
+    inside_ = value_;
+  }
+
+  /// `step`: where the end is expected, from the value. The bound, or infinity, when the profile
+  /// has not got there at 4096 times the step.
+  double find(double step) {
+    constexpr double kFar = 4096;
+    const double bound = step > 0 ? constant_.high : constant_.low;
+    for (double reach = step; std::abs(reach) <= kFar * std::abs(step);) {
+      const bool past = step > 0 ? value_ + reach >= bound : value_ + reach <= bound;
+      const double outside = past ? bound : value_ + reach;
+      const double excess = excess_at(outside);
+      if (std::abs(excess) <= closeness_) return outside;
+      if (excess > 0) return between(outside, excess);
+      if (past) return bound;
+      // A straight line would end there; a little more is likely to be outside.
+      reach *= std::clamp(1.1 / (1 + excess), 1.1, 2.0);
+    }
+    return step > 0 ? kInfinity : -kInfinity;
+  }
+
+  bool met_better_fit() const { return better_; }
+  bool ended_without_a_model() const { return no_model_; }
+
+ private:
+  /// Of the best fit at this value; the state moves there while it is inside.
+  double excess_at(double value) {
+    constexpr double kSame = 0.01;  // of the rise: a fit that is better by less does not matter
+    std::vector<double> others = predicted(value);
+    const double cost = held_.cost(value, others);
+    const double risen = cost - cost_;
+    better_ = better_ || risen < -kSame * rise_;
+    const double excess = std::sqrt(std::max(0.0, risen) / rise_) - 1;
+    if (excess > 0) return excess;
+    const double moved = value - inside_;
+    for (std::size_t i = 0; i < others_.size() && moved != 0; ++i)
+      slope_[i] = (others[i] - others_[i]) / moved;
+    others_ = others;
+    inside_ = value;
+    inside_excess_ = excess;
+    return excess;
+  }
+
+  /// Where the other constants go, along the line through the last two fits.
+  std::vector<double> predicted(double value) const {
+    std::vector<double> out = others_;
+    for (std::size_t i = 0; i < out.size(); ++i)
+      out[i] = std::clamp(out[i] + slope_[i] * (value - inside_), bounds_[i].low, bounds_[i].high);
+    return out;
+  }
+
+  /// Regula falsi with halved weights [Dahlquist & Bjorck 1974, sec. 6.4].
+  double between(double outside, double excess) {
+    constexpr int kMost = 40;
+    double inside_weight = inside_excess_, weight = excess;
+    for (int i = 0; i < kMost; ++i) {
+      no_model_ = !std::isfinite(weight);
+      if (std::abs(outside - inside_) <= closeness_ * std::abs(outside - value_)) break;
+      const double middle = no_model_
+                                ? 0.5 * (inside_ + outside)
+                                : outside - weight * (outside - inside_) / (weight - inside_weight);
+      const double found = excess_at(middle);
+      if (std::abs(found) <= closeness_) return middle;
+      if (found > 0) {
+        outside = middle;
+        weight = found;
+        inside_weight *= 0.5;
+      } else {
+        inside_weight = found;
+        if (!no_model_) weight *= 0.5;
+      }
+    }
+    return 0.5 * (inside_ + outside);
+  }
+
+  const Constant& constant_;
+  Held held_;
+  double value_, cost_, rise_, closeness_;
+  std::vector<double> others_, slope_;  ///< of the last fit inside, and by the value
+  std::vector<Constant> bounds_;        ///< of the others
+  double inside_ = 0, inside_excess_ = -1;
+  bool better_ = false, no_model_ = false;
+};
+
+/// What to say of the two ends of a constant.
+void warn_of_profile(const Estimate& e, const ProfileEnd& below, const ProfileEnd& above,
+                     std::vector<std::string>& warnings) {
+  constexpr double kFar = 0.25;  // of the half width: how far an end is from the linearised one
+  const double half = e.high - e.value;
+  const std::string ends = text_of(e.profile_low) + " to " + text_of(e.profile_high);
+  const double apart = std::max(std::abs(e.profile_low - e.low), std::abs(e.profile_high - e.high));
+  if (below.met_better_fit() || above.met_better_fit()) {
+    warnings.push_back("away from the best " + e.name +
+                       " there is a better fit: choose other starts");
+  } else if (!std::isfinite(e.profile_high - e.profile_low)) {
+    warnings.push_back(e.name + " is not bounded by the data: its profile goes from " + ends);
+  } else if (below.ended_without_a_model() || above.ended_without_a_model()) {
+    warnings.push_back("the profile of " + e.name + ", " + ends +
+                       ", ends where the model has no value: the data may allow more");
+  } else if (apart > kFar * half) {
+    warnings.push_back("the interval of " + e.name + " is not symmetric: its profile goes from " +
+                       ends);
+  }
+}
+
+}  // namespace
+
+void add_profiles(const LeastSquares& problem, Calibration& result,
+                  const ProfileSettings& settings) {
+  if (result.freedom <= 0) return;
+  std::vector<std::size_t> of = settings.of;
+  if (of.empty()) {
+    for (std::size_t i = 0; i < result.estimates.size(); ++i) of.push_back(i);
+  }
+  for (const std::size_t i : of) {
+    Estimate& e = result.estimates[i];
+    const double half = e.high - e.value;
+    if (e.at_bound || !(half > 0) || !std::isfinite(half)) continue;
+    const double width = half / e.unit_error, rise = 0.5 * width * width;
+    ProfileEnd below(problem, result, i, rise, settings.closeness);
+    ProfileEnd above(problem, result, i, rise, settings.closeness);
+    // Of a constant that is not determined the linearised interval can be any size.
+    const double step = e.value != 0 ? std::min(half, std::abs(e.value)) : half;
+    e.profile_low = below.find(-step);
+    e.profile_high = above.find(step);
+    warn_of_profile(e, below, above, result.warnings);
+  }
+}
+
+}  // namespace palpate::calibrate

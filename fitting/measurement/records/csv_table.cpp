@@ -1,0 +1,502 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/measurement/records/csv_table.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <system_error>
+#include <utility>
+
+#include "format/error.hpp"
+
+namespace palpate::measured {
+namespace {
+
+/// Fewer rows of numbers than this are a table of results, not a record.
+constexpr std::size_t kFewestRows = 3;
+constexpr char kBlanks = ' ';
+
+[[noreturn]] void refuse(const std::string& where, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, where, problem, remedy);
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r";
+  const auto first = text.find_first_not_of(blanks);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+void append_utf8(std::string& out, unsigned code) {
+  if (code < 0x80) {
+    out += static_cast<char>(code);
+  } else if (code < 0x800) {
+    out += static_cast<char>(0xC0 | (code >> 6));
+    out += static_cast<char>(0x80 | (code & 0x3F));
+  } else {
+    out += static_cast<char>(0xE0 | (code >> 12));
+    out += static_cast<char>(0x80 | ((code >> 6) & 0x3F));
+    out += static_cast<char>(0x80 | (code & 0x3F));
+  }
+}
+
+unsigned byte_at(std::string_view text, std::size_t i) {
+  return static_cast<unsigned char>(text[i]);
+}
+
+/// Whether every byte beyond ASCII belongs to a sequence of its length.
+bool is_utf8(std::string_view text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const unsigned lead = byte_at(text, i);
+    const std::size_t length = lead < 0x80                   ? 1
+                               : lead >= 0xC2 && lead < 0xE0 ? 2
+                               : lead >= 0xE0 && lead < 0xF0 ? 3
+                               : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                             : 0;
+    if (length == 0 || i + length > text.size()) return false;
+    for (std::size_t k = 1; k < length; ++k) {
+      if ((byte_at(text, i + k) & 0xC0) != 0x80) return false;
+    }
+    i += length;
+  }
+  return true;
+}
+
+/// What spreadsheets save: UTF-16 by its mark (names of the plane of all living scripts), else
+/// UTF-8, else Latin-1.
+std::string as_utf8(std::string_view text) {
+  const bool little = text.starts_with("\xFF\xFE"), big = text.starts_with("\xFE\xFF");
+  std::string out;
+  if (little || big) {
+    for (std::size_t i = 2; i + 1 < text.size(); i += 2) {
+      append_utf8(out,
+                  byte_at(text, i + (little ? 1 : 0)) << 8 | byte_at(text, i + (little ? 0 : 1)));
+    }
+    return out;
+  }
+  constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+  if (text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+  if (is_utf8(text)) return std::string(text);
+  for (std::size_t i = 0; i < text.size(); ++i) append_utf8(out, byte_at(text, i));
+  return out;
+}
+
+struct Line {
+  std::size_t number = 0;  ///< counted from 1
+  std::string_view text;
+};
+
+/// The lines that hold something.
+std::vector<Line> lines_of(std::string_view text) {
+  std::vector<Line> lines;
+  for (std::size_t number = 1; !text.empty(); ++number) {
+    const auto end = text.find('\n');
+    const std::string_view line = text.substr(0, end);
+    if (!trimmed(line).empty()) lines.push_back({number, line});
+    if (end == std::string_view::npos) break;
+    text.remove_prefix(end + 1);
+  }
+  return lines;
+}
+
+std::vector<std::string> split_at_blanks(std::string_view line) {
+  std::vector<std::string> fields;
+  std::istringstream stream{std::string(line)};
+  for (std::string field; stream >> field;) fields.push_back(field);
+  return fields;
+}
+
+/// Fields of a line; a quoted field may hold the separator.
+std::vector<std::string> split(std::string_view line, char separator) {
+  if (separator == kBlanks) return split_at_blanks(line);
+  std::vector<std::string> fields{""};
+  bool quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      quoted = !quoted;
+    } else if (c == separator && !quoted) {
+      fields.emplace_back();
+    } else {
+      fields.back() += c;
+    }
+  }
+  for (std::string& field : fields) field = std::string(trimmed(field));
+  // Many programs end every line with a separator.
+  if (fields.size() > 1 && fields.back().empty()) fields.pop_back();
+  return fields;
+}
+
+/// Without the marks that group its digits by three: blanks and apostrophes, and the other one of
+/// point and comma where the decimal sign follows ("1,234" alone could be either). The field itself
+/// where it is not grouped so.
+std::string ungrouped(const std::string& field, char decimal) {
+  std::string digits;
+  char mark = 0;
+  std::size_t in_group = 0;
+  bool grouped = false;
+  std::size_t i = field.starts_with('-') || field.starts_with('+') ? 1 : 0;
+  digits.append(field, 0, i);
+  for (; i < field.size() && field[i] != decimal; ++i) {
+    const char c = field[i];
+    if (c >= '0' && c <= '9') {
+      digits += c;
+      ++in_group;
+      continue;
+    }
+    // No-break spaces, wide and narrow, in UTF-8.
+    const std::string_view rest = std::string_view(field).substr(i);
+    const std::size_t wide = rest.starts_with("\xC2\xA0")       ? 2
+                             : rest.starts_with("\xE2\x80\xAF") ? 3
+                                                                : 1;
+    const char kind = wide > 1 ? ' ' : c;
+    const bool known = kind == ' ' || kind == '\'' || kind == (decimal == '.' ? ',' : '.');
+    const bool fits = grouped ? kind == mark && in_group == 3 : in_group >= 1 && in_group <= 3;
+    if (!known || !fits) return field;
+    grouped = true;
+    mark = kind;
+    in_group = 0;
+    i += wide - 1;
+  }
+  const bool ambiguous = (mark == ',' || mark == '.') && i == field.size();
+  if (!grouped || in_group != 3 || ambiguous) return field;
+  return digits + field.substr(i);
+}
+
+std::optional<double> number_of(std::string field, char decimal) {
+  field = ungrouped(field, decimal);
+  if (decimal == ',') {
+    if (field.find('.') != std::string::npos) return std::nullopt;
+    std::replace(field.begin(), field.end(), ',', '.');
+  }
+  std::string_view text = field;
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double value = 0;
+  const auto [end, failure] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (failure != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+struct Dialect {
+  char separator;
+  char decimal;
+};
+constexpr Dialect kDialects[] = {{'\t', '.'}, {';', '.'}, {',', '.'},    {'\t', ','},
+                                 {';', ','},  {',', ','}, {kBlanks, '.'}};
+
+/// A run of lines that are all numbers, equally many on each.
+struct Run {
+  std::size_t begin = 0, end = 0;
+  std::size_t width = 0;
+  std::size_t rows() const { return end - begin; }
+};
+
+/// A row that was cut off in the middle of a number would otherwise pass for a shorter number.
+bool ends_within_quotes(const Line& line) {
+  return std::count(line.text.begin(), line.text.end(), '"') % 2 != 0;
+}
+
+std::size_t width_if_numbers(const Line& line, const Dialect& dialect) {
+  if (ends_within_quotes(line)) return 0;
+  const auto fields = split(line.text, dialect.separator);
+  for (const std::string& field : fields) {
+    if (!number_of(field, dialect.decimal)) return 0;
+  }
+  return fields.size();
+}
+
+/// The first run at or after a line; empty when there is none.
+Run next_run(const std::vector<Line>& lines, std::size_t from, const Dialect& dialect) {
+  Run run{from, from, 0};
+  for (std::size_t i = from; i < lines.size(); ++i) {
+    const std::size_t width = width_if_numbers(lines[i], dialect);
+    if (run.rows() > 0 && width != run.width) break;
+    if (width < 2) continue;
+    if (run.rows() == 0) run = {i, i, width};
+    run.end = i + 1;
+  }
+  return run;
+}
+
+Run longest_run(const std::vector<Line>& lines, const Dialect& dialect) {
+  Run longest;
+  for (Run run = next_run(lines, 0, dialect); run.rows() > 0;
+       run = next_run(lines, run.end, dialect)) {
+    if (run.rows() > longest.rows()) longest = run;
+  }
+  return longest;
+}
+
+std::string at_line(const std::string& file, const Line& line) {
+  return file + ":" + std::to_string(line.number);
+}
+
+/// A row that breaks off the numbers, told by its first field that is none.
+[[noreturn]] void refuse_row(const std::string& file, const Line& line, const Dialect& dialect,
+                             std::size_t width) {
+  if (ends_within_quotes(line)) {
+    refuse(at_line(file, line), "the row ends within quotes",
+           "the file was cut off: copy it again");
+  }
+  const auto fields = split(line.text, dialect.separator);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (number_of(fields[i], dialect.decimal)) continue;
+    refuse(at_line(file, line),
+           "field " + std::to_string(i + 1) + " ('" + fields[i] + "') is not a number",
+           "mend or remove the row; another table needs a header of its own");
+  }
+  const std::string_view row = trimmed(line.text);
+  if (fields.size() + 1 == width && (row.ends_with(dialect.separator) || row.ends_with("\"\""))) {
+    refuse(at_line(file, line), "field " + std::to_string(width) + " is empty",
+           "mend or remove the row");
+  }
+  refuse(at_line(file, line),
+         "the row has " + std::to_string(fields.size()) + " fields, " + std::to_string(width) +
+             " expected",
+         "mend or remove the row; another table needs a header of its own");
+}
+
+std::string without_brackets(std::string_view text) {
+  text = trimmed(text);
+  const bool round = text.starts_with('(') && text.ends_with(')');
+  const bool square = text.starts_with('[') && text.ends_with(']');
+  if (text.size() >= 2 && (round || square)) text = trimmed(text.substr(1, text.size() - 2));
+  return std::string(text);
+}
+
+bool is_bracketed(std::string_view text) {
+  return without_brackets(text) != trimmed(text);
+}
+
+/// A row of units: every field that is not empty is one, or stands in brackets.
+bool is_unit_row(const std::vector<std::string>& fields) {
+  bool any = false;
+  for (const std::string& field : fields) {
+    if (field.empty()) continue;
+    if (!is_bracketed(field) && !is_lab_unit(field)) return false;
+    any = true;
+  }
+  return any;
+}
+
+/// "Load (N)", "Load [N]", "Load / N", "Load in N", "Load_N" -> name and unit. What follows must be
+/// a known unit, except in brackets at the end.
+CsvColumn name_and_unit(const std::string& field) {
+  for (const auto& [open, close] : {std::pair{'(', ')'}, std::pair{'[', ']'}}) {
+    const auto at = field.rfind(open);
+    if (at == std::string::npos || at == 0 || !field.ends_with(close)) continue;
+    return {std::string(trimmed(std::string_view(field).substr(0, at))),
+            without_brackets(field.substr(at)),
+            {}};
+  }
+  for (const std::string_view mark : {" / ", "/", " in ", ", ", "_"}) {
+    const auto at = field.rfind(mark);
+    if (at == std::string::npos || at == 0) continue;
+    const std::string unit(trimmed(std::string_view(field).substr(at + mark.size())));
+    if (!is_lab_unit(unit)) continue;
+    return {std::string(trimmed(std::string_view(field).substr(0, at))), unit, {}};
+  }
+  return {field, "", {}};
+}
+
+std::vector<CsvColumn> header_columns(const std::string& file, const std::vector<Line>& lines,
+                                      const Run& run, const Dialect& dialect,
+                                      std::size_t& header_begin) {
+  const std::string remedy = "declare the columns with [[column]] in the sidecar";
+  if (run.begin == 0) refuse(file, "the table has no header", remedy);
+  std::size_t names_at = run.begin - 1;
+  auto names = split(lines[names_at].text, dialect.separator);
+  std::vector<std::string> units;
+  if (is_unit_row(names) && names_at > 0) {
+    units = std::exchange(names, split(lines[--names_at].text, dialect.separator));
+    units.resize(run.width);
+  }
+  if (names.size() != run.width) {
+    refuse(at_line(file, lines[names_at]),
+           "the header has " + std::to_string(names.size()) + " names for " +
+               std::to_string(run.width) + " columns of numbers",
+           remedy);
+  }
+  std::vector<CsvColumn> columns;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (number_of(names[i], dialect.decimal)) refuse_row(file, lines[names_at], dialect, run.width);
+    columns.push_back(units.empty() ? name_and_unit(names[i])
+                                    : CsvColumn{names[i], without_brackets(units[i]), {}});
+  }
+  header_begin = names_at;
+  return columns;
+}
+
+std::vector<CsvColumn> declared_columns(const std::string& file, const Run& run,
+                                        const std::vector<DeclaredColumn>& declared) {
+  if (declared.size() != run.width) {
+    refuse(file,
+           std::to_string(declared.size()) + " columns are declared, the table has " +
+               std::to_string(run.width),
+           "declare each column of the file, in order");
+  }
+  std::vector<CsvColumn> columns;
+  for (const DeclaredColumn& column : declared) columns.push_back({column.name, column.unit, {}});
+  return columns;
+}
+
+void read_rows(const std::vector<Line>& lines, const Run& run, const Dialect& dialect,
+               std::vector<CsvColumn>& columns) {
+  for (std::size_t row = run.begin; row < run.end; ++row) {
+    const auto fields = split(lines[row].text, dialect.separator);
+    for (std::size_t i = 0; i < run.width; ++i) {
+      columns[i].values.push_back(*number_of(fields[i], dialect.decimal));
+    }
+  }
+}
+
+}  // namespace
+
+namespace {
+
+/// Whether the lines before a run end in a header of its own: names for all its columns, none of
+/// them a number.
+bool has_header(const std::vector<Line>& lines, std::size_t begin, const Run& run,
+                const Dialect& dialect) {
+  if (run.begin <= begin) return false;
+  std::size_t names_at = run.begin - 1;
+  auto names = split(lines[names_at].text, dialect.separator);
+  if (is_unit_row(names) && names_at > begin)
+    names = split(lines[--names_at].text, dialect.separator);
+  return names.size() == run.width &&
+         std::none_of(names.begin(), names.end(), [&](const auto& name) {
+           return name.empty() || number_of(name, dialect.decimal);
+         });
+}
+
+/// The tables of a file: the first run that is long enough, and every later one under a header.
+std::vector<Run> tables_of(const std::vector<Line>& lines, const std::string& file,
+                           const Run& longest, const Dialect& dialect) {
+  std::vector<Run> tables;
+  std::size_t from = 0;
+  while (from < lines.size()) {
+    Run run = next_run(lines, from, dialect);
+    if (run.rows() == 0) break;
+    const bool is_first = tables.empty();
+    const bool is_table =
+        run.rows() >= kFewestRows &&
+        (is_first ? run.width == longest.width || has_header(lines, from, run, dialect)
+                  : has_header(lines, from, run, dialect));
+    if (is_table) tables.push_back(run);
+    if (!is_table && !is_first) break;
+    from = run.end;
+  }
+  // What follows the last table is neither a table nor numbers of one.
+  const std::size_t end = tables.empty() ? lines.size() : tables.back().end;
+  if (end < lines.size()) refuse_row(file, lines[end], dialect, tables.back().width);
+  return tables;
+}
+
+const Run& chosen(const std::vector<Run>& tables, int table, const std::string& file) {
+  const std::string count = std::to_string(tables.size());
+  if (table == 0 && tables.size() > 1) {
+    refuse(file, "it holds " + count + " tables", "choose one with `table` = 1 to " + count);
+  }
+  if (table < 0 || static_cast<std::size_t>(table) > tables.size()) {
+    refuse(file, "there is no table " + std::to_string(table) + ", the file has " + count,
+           "choose one with `table` = 1 to " + count);
+  }
+  return tables[table == 0 ? 0 : static_cast<std::size_t>(table - 1)];
+}
+
+}  // namespace
+
+CsvTable parse_csv(std::string_view text, const std::string& file,
+                   const std::vector<DeclaredColumn>& declared, int table_number) {
+  const std::string utf8 = as_utf8(text);
+  const std::vector<Line> lines = lines_of(utf8);
+  Run longest;
+  Dialect dialect = kDialects[0];
+  for (const Dialect& candidate : kDialects) {
+    const Run found = longest_run(lines, candidate);
+    if (found.rows() <= longest.rows()) continue;
+    longest = found;
+    dialect = candidate;
+  }
+  if (longest.rows() < kFewestRows) {
+    refuse(file, "no table of numbers in it",
+           "give a text file with columns separated by tabs, semicolons, commas or blanks");
+  }
+  const std::vector<Run> tables = tables_of(lines, file, longest, dialect);
+  const Run& run = chosen(tables, table_number, file);
+  CsvTable table;
+  table.file = file;
+  table.first_data_line = lines[run.begin].number;
+  std::size_t header_begin = run.begin;
+  table.columns = declared.empty() ? header_columns(file, lines, run, dialect, header_begin)
+                                   : declared_columns(file, run, declared);
+  // Of a later table: what stands between it and the one before.
+  std::size_t first = 0;
+  for (const Run& other : tables) {
+    if (other.end <= header_begin) first = other.end;
+  }
+  for (std::size_t i = first; i < header_begin; ++i) {
+    table.preamble.emplace_back(trimmed(lines[i].text));
+  }
+  read_rows(lines, run, dialect, table.columns);
+  return table;
+}
+
+CsvTable read_csv(const std::filesystem::path& path, const std::vector<DeclaredColumn>& declared,
+                  int table) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  std::error_code none;
+  if (stream && std::filesystem::is_regular_file(path, none) &&
+      std::filesystem::is_empty(path, none)) {
+    refuse(path.string(), "the file is empty", "copy or record it again");
+  }
+  if (!stream || !(text << stream.rdbuf())) {
+    refuse(path.string(), "the record cannot be read", "check the path and the rights");
+  }
+  return parse_csv(text.str(), path.string(), declared, table);
+}
+
+std::vector<double> column_in_si(const CsvTable& table, const std::string& name, Quantity quantity,
+                                 const std::string& declared_unit) {
+  const auto is_it = [&](const CsvColumn& column) { return column.name == name; };
+  const auto count = std::count_if(table.columns.begin(), table.columns.end(), is_it);
+  if (count != 1) {
+    std::string names;
+    for (const CsvColumn& column : table.columns) {
+      names += (names.empty() ? "'" : ", '") + column.name + "'";
+    }
+    refuse(table.file,
+           count == 0 ? "no column is named '" + name + "'"
+                      : "several columns are named '" + name + "'",
+           "the columns are " + names);
+  }
+  const CsvColumn& column = *std::find_if(table.columns.begin(), table.columns.end(), is_it);
+  const std::string where = table.file + ", column '" + name + "'";
+  const std::string units =
+      "units of " + std::string(quantity_name(quantity)) + " are " + lab_unit_list(quantity);
+  if (column.unit.empty() && declared_unit.empty()) {
+    refuse(where, "its unit is not given, neither in the file nor in the sidecar",
+           "declare it in the sidecar; " + units);
+  }
+  const std::string& symbol = column.unit.empty() ? declared_unit : column.unit;
+  const auto si = unit_in_si(symbol, quantity);
+  if (!si) {
+    refuse(where, "'" + symbol + "' is not a unit of " + std::string(quantity_name(quantity)),
+           units);
+  }
+  if (!column.unit.empty() && !declared_unit.empty() && unit_in_si(declared_unit, quantity) != si) {
+    refuse(where, "the file says '" + column.unit + "', the sidecar says '" + declared_unit + "'",
+           "correct the one that is wrong");
+  }
+  std::vector<double> values = column.values;
+  for (double& value : values) value *= *si;
+  return values;
+}
+
+}  // namespace palpate::measured

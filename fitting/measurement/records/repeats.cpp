@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/measurement/records/repeats.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting/measurement/records/statistics.hpp"
+#include "format/error.hpp"
+
+namespace palpate::measured {
+namespace {
+
+/// Between the reaches of presses that repeat each other.
+constexpr double kLargestRatio = 5;
+
+double deepest(const PressCurve& press) {
+  double depth = 0;
+  for (const DepthForce& sample : press.loading) depth = std::max(depth, sample.depth);
+  return depth;
+}
+
+/// Slope of the force over the grid, by differences of neighbours.
+std::vector<double> slopes(const std::vector<double>& x, const std::vector<double>& y) {
+  std::vector<double> slope(x.size(), 0.0);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const std::size_t a = i > 0 ? i - 1 : i, b = i + 1 < x.size() ? i + 1 : i;
+    slope[i] = (y[b] - y[a]) / (x[b] - x[a]);
+  }
+  return slope;
+}
+
+/// Mean and scatter of the presses at one depth, with the uncertainties that belong to it.
+void join(const std::vector<GriddedPress>& presses, const std::vector<PressCurve>& curves,
+          std::size_t at, double slope, const RepeatSettings& settings, double& force,
+          CurveSample& sample) {
+  const auto n = static_cast<double>(presses.size());
+  std::vector<double> forces;
+  double known = 0;  // variance of one press that its own record explains
+  for (std::size_t r = 0; r < presses.size(); ++r) {
+    forces.push_back(presses[r].force[at]);
+    const double shift = slope * curves[r].contact.uncertainty;
+    known += (presses[r].uncertainty[at] * presses[r].uncertainty[at] + shift * shift) / n;
+  }
+  force = mean(forces);
+  const double scatter = deviation(forces);
+  sample.force_scatter = presses.size() > 1 ? scatter : kUnknown;
+  const double common = std::hypot(settings.force_calibration * force,
+                                   slope * force * settings.compliance_uncertainty);
+  sample.force_uncertainty = std::sqrt(std::max(scatter * scatter, known) / n + common * common);
+}
+
+}  // namespace
+
+CurveSample measured_sample() {
+  CurveSample sample;
+  sample.strain_energy = sample.min_jacobian = kUnknown;
+  sample.penetration = sample.contact_area = kUnknown;
+  return sample;
+}
+
+GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<double>& depths,
+                     const std::string& where) {
+  GriddedPress press;
+  const double half = 0.5 * (depths.size() > 1 ? depths[1] - depths[0] : depths[0]);
+  for (const double depth : depths) {
+    std::vector<double> x, f;
+    for (const DepthForce& sample : branch) {
+      if (std::abs(sample.depth - depth) > half) continue;
+      x.push_back(sample.depth - depth);
+      f.push_back(sample.force);
+    }
+    if (x.size() < 2) {
+      throw Error(ErrorKind::Configuration, where,
+                  "no samples around a depth of " + std::to_string(1e3 * depth) + " mm",
+                  "ask for fewer samples of the path, or record more densely");
+    }
+    const LineFit line = fit_line(x, f);
+    // At the end of the branch the samples lie on one side: the line, not the mean, is unbiased.
+    const double centre = mean(x);
+    double spread = 0;
+    for (const double value : x) spread += (value - centre) * (value - centre);
+    const double lever = spread > 0 ? centre * centre / spread : 0;
+    press.force.push_back(line.offset);
+    press.uncertainty.push_back(line.residual *
+                                std::sqrt(1 / static_cast<double>(x.size()) + lever));
+  }
+  return press;
+}
+
+CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
+                    const RepeatSettings& settings, const std::string& where) {
+  double reach = deepest(presses.front()), farthest = reach;
+  for (const PressCurve& press : presses) {
+    reach = std::min(reach, deepest(press));
+    farthest = std::max(farthest, deepest(press));
+  }
+  if (farthest > kLargestRatio * reach) {
+    throw Error(ErrorKind::Configuration, where,
+                "one of its presses reaches " + std::to_string(1e3 * reach) + " mm, another " +
+                    std::to_string(1e3 * farthest) + " mm",
+                "check their units of length; leave out a press that ended early");
+  }
+  std::vector<double> depths;
+  for (int i = 1; i <= settings.samples; ++i) depths.push_back(reach * i / settings.samples);
+  std::vector<GriddedPress> gridded;
+  for (const PressCurve& press : presses) gridded.push_back(on_grid(press.loading, depths, where));
+
+  std::vector<double> mean_force;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    double sum = 0;
+    for (const GriddedPress& press : gridded) sum += press.force[i];
+    mean_force.push_back(sum / static_cast<double>(gridded.size()));
+  }
+  const std::vector<double> slope = slopes(depths, mean_force);
+
+  CurvePath path;
+  path.kind = PathKind::Normal;
+  path.direction = inward;
+  path.repeats = static_cast<std::int32_t>(presses.size());
+  double squares = 0;
+  for (const PressCurve& press : presses) {
+    squares += press.contact.uncertainty * press.contact.uncertainty;
+  }
+  path.contact_uncertainty = std::sqrt(squares) / static_cast<double>(presses.size());
+  path.samples.push_back(measured_sample());
+  path.samples.back().force_uncertainty = 0;
+  double work = 0, last_force = 0;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    CurveSample sample = measured_sample();
+    double force = 0;
+    join(gridded, presses, i, slope[i], settings, force, sample);
+    sample.displacement = depths[i];
+    sample.force = force * inward;
+    work += 0.5 * (force + last_force) * (depths[i] - (i > 0 ? depths[i - 1] : 0));
+    sample.tool_work = work;
+    last_force = force;
+    path.samples.push_back(sample);
+  }
+  return path;
+}
+
+CurvePath lateral_from_normal(const CurvePath& normal, double ratio) {
+  const std::size_t middle = std::max<std::size_t>(1, normal.samples.size() / 2);
+  const CurveSample& held = normal.samples[middle];
+  const CurveSample &before = normal.samples[middle - 1],
+                    &after = normal.samples[std::min(middle + 1, normal.samples.size() - 1)];
+  const double stiffness = dot(after.force - before.force, normal.direction) /
+                           (after.displacement - before.displacement);
+  CurvePath path;
+  path.kind = PathKind::Lateral;
+  path.held_depth = held.displacement;
+  const Vec3& n = normal.direction;
+  const Vec3 axis = std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
+  const Vec3 across = cross(n, axis);
+  path.direction = (1 / norm(across)) * across;
+  constexpr int steps = 4;
+  for (int i = 0; i <= steps; ++i) {
+    CurveSample sample = measured_sample();
+    sample.displacement = 0.5 * held.displacement * i / steps;
+    const double f = ratio * stiffness * sample.displacement;
+    sample.force = held.force + f * path.direction;
+    sample.tool_work = held.tool_work + 0.5 * f * sample.displacement;
+    path.samples.push_back(sample);
+  }
+  return path;
+}
+
+}  // namespace palpate::measured

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/measurement/records/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace palpate::measured {
+namespace {
+
+/// Gaussian elimination with pivoting of an n x (n + 1) system; false when singular.
+template <std::size_t N>
+bool eliminate(std::array<std::array<double, N + 1>, N> m, std::array<double, N>& x) {
+  for (std::size_t k = 0; k < N; ++k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k + 1; i < N; ++i) {
+      if (std::abs(m[i][k]) > std::abs(m[pivot][k])) pivot = i;
+    }
+    if (!(std::abs(m[pivot][k]) > 1e-300)) return false;
+    std::swap(m[k], m[pivot]);
+    for (std::size_t i = k + 1; i < N; ++i) {
+      const double factor = m[i][k] / m[k][k];
+      for (std::size_t j = k; j <= N; ++j) m[i][j] -= factor * m[k][j];
+    }
+  }
+  for (std::size_t i = N; i-- > 0;) {
+    x[i] = m[i][N];
+    for (std::size_t j = i + 1; j < N; ++j) x[i] -= m[i][j] * x[j];
+    x[i] /= m[i][i];
+  }
+  return true;
+}
+
+/// Continued fraction of the incomplete beta function [Abramowitz & Stegun 1964, 26.5.8].
+double beta_fraction(double a, double b, double x) {
+  constexpr double tiny = 1e-300;
+  const auto away = [](double v) { return std::abs(v) < tiny ? tiny : v; };
+  double c = 1, d = 1 / away(1 - (a + b) * x / (a + 1)), fraction = d;
+  for (int m = 1; m < 500; ++m) {
+    const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
+    const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
+    double change = 1;
+    for (const double term : {even, odd}) {
+      d = 1 / away(1 + term * d);
+      c = away(1 + term / c);
+      change = c * d;
+      fraction *= change;
+    }
+    if (std::abs(change - 1) < 1e-14) break;
+  }
+  return fraction;
+}
+
+double incomplete_beta(double a, double b, double x) {
+  if (x <= 0) return 0;
+  if (x >= 1) return 1;
+  const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) +
+                                a * std::log(x) + b * std::log1p(-x));
+  if (x < (a + 1) / (a + b + 2)) return front * beta_fraction(a, b, x) / a;
+  return 1 - front * beta_fraction(b, a, 1 - x) / b;
+}
+
+}  // namespace
+
+double mean(const std::vector<double>& values) {
+  if (values.empty()) return 0;
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return 0.5 * (*middle + *std::max_element(values.begin(), middle));
+}
+
+double deviation(const std::vector<double>& values) {
+  if (values.size() < 2) return 0;
+  const double centre = mean(values);
+  double squares = 0;
+  for (const double value : values) squares += (value - centre) * (value - centre);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+LineFit fit_line(const std::vector<double>& x, const std::vector<double>& y) {
+  const double x0 = mean(x), y0 = mean(y);
+  double xx = 0, xy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - x0) * (x[i] - x0);
+    xy += (x[i] - x0) * (y[i] - y0);
+  }
+  LineFit fit;
+  fit.slope = xx > 0 ? xy / xx : 0;
+  fit.offset = y0 - fit.slope * x0;
+  double squares = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double r = y[i] - fit.offset - fit.slope * x[i];
+    squares += r * r;
+  }
+  if (x.size() > 2) fit.residual = std::sqrt(squares / static_cast<double>(x.size() - 2));
+  if (xx > 0) fit.slope_uncertainty = fit.residual / std::sqrt(xx);
+  return fit;
+}
+
+double correlation_factor(const std::vector<double>& residual) {
+  double squares = 0, products = 0;
+  for (std::size_t i = 0; i < residual.size(); ++i) {
+    squares += residual[i] * residual[i];
+    if (i > 0) products += residual[i] * residual[i - 1];
+  }
+  const double r = squares > 0 ? std::min(products / squares, 0.98) : 0;
+  return std::max(1.0, (1 + r) / (1 - r));
+}
+
+double minimise_scan(const std::function<double(double)>& value, double low, double high,
+                     int cells) {
+  const double width = (high - low) / cells;
+  double best = low, least = value(low);
+  for (int i = 1; i <= cells; ++i) {
+    const double x = low + i * width, here = value(x);
+    if (here < least) {
+      least = here;
+      best = x;
+    }
+  }
+  const double golden = 0.5 * (std::sqrt(5.0) - 1);
+  double a = std::max(low, best - width), b = std::min(high, best + width);
+  double c = b - golden * (b - a), d = a + golden * (b - a);
+  double at_c = value(c), at_d = value(d);
+  for (int i = 0; i < 60; ++i) {
+    if (at_c < at_d) {
+      b = d;
+      d = c;
+      at_d = at_c;
+      c = b - golden * (b - a);
+      at_c = value(c);
+    } else {
+      a = c;
+      c = d;
+      at_c = at_d;
+      d = a + golden * (b - a);
+      at_d = value(d);
+    }
+  }
+  const double found = 0.5 * (a + b);
+  return value(found) <= least ? found : best;
+}
+
+void Symmetric3::add(const std::array<double, 3>& row, double right) {
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) m_[i][j] += row[i] * row[j];
+    m_[i][3] += row[i] * right;
+  }
+}
+
+bool Symmetric3::solve(std::array<double, 3>& x) const {
+  return eliminate<3>(m_, x);
+}
+
+void Symmetric4::add(const std::array<double, 4>& row) {
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t j = 0; j < 4; ++j) m_[i][j] += row[i] * row[j];
+  }
+}
+
+double Symmetric4::inverse_first() const {
+  std::array<std::array<double, 5>, 4> system{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    std::copy(m_[i].begin(), m_[i].end(), system[i].begin());
+  }
+  system[0][4] = 1;
+  std::array<double, 4> x{};
+  return eliminate<4>(system, x) ? x[0] : std::numeric_limits<double>::infinity();
+}
+
+double student_quantile(double probability, double freedom) {
+  // P(|T| <= t) = 1 - I_{v/(v + t^2)}(v/2, 1/2), by bisection.
+  double low = 0, high = 1e6;
+  for (int i = 0; i < 200; ++i) {
+    const double t = 0.5 * (low + high);
+    const double inside = 1 - incomplete_beta(0.5 * freedom, 0.5, freedom / (freedom + t * t));
+    (inside < probability ? low : high) = t;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace palpate::measured

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/response/couple.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "fitting/response/site_samples.hpp"
+#include "runtime/response_curve.hpp"
+
+namespace palpate::fitting {
+namespace {
+
+constexpr double kLeastShare = 0.05;  // of the depth: below it w is constant
+constexpr int kCouplingSamples = 16;
+constexpr double kCouplingTolerance = 0.01;  // of the local w: what the fit of w may add
+constexpr int kTurns = 3;                    // f^r and w by turns; a product of two settles at once
+constexpr double kSameDepth = 1e-9;
+constexpr float kBeyond = 1.25F;  // of the depth: where w has come to rest
+constexpr float kLevel = 0.05F;   // of the steepest slope of w: what is at rest, but for a mean
+
+/// The lateral paths of one held depth, all azimuths.
+struct Level {
+  double depth = 0;
+  double weight = 1;  ///< w at this depth
+  std::vector<std::vector<ForceSample>> paths;
+};
+
+std::vector<Level> levels_of(const SiteCurves& site) {
+  std::vector<Level> levels;
+  for (const double depth : held_depths(site)) {
+    SiteCurves held;
+    for (const CurvePath& path : site.paths) {
+      if (std::abs(path.held_depth - depth) <= kSameDepth * depth) held.paths.push_back(path);
+    }
+    Level level{depth, 1, lateral_paths(held)};
+    if (!level.paths.empty()) levels.push_back(std::move(level));
+  }
+  return levels;
+}
+
+/// The one w of a level with which w f^r is nearest to its samples.
+double weight_of(const Level& level, const runtime::CompiledCurve& lateral) {
+  double above = 0, below = 0;
+  for (const auto& path : level.paths) {
+    for (const ForceSample& sample : path) {
+      const double f = lateral.force(sample.displacement);
+      above += f * sample.force;
+      below += f * f;
+    }
+  }
+  // A level that is pushed back, or an f^r of nothing, couples nothing.
+  return below > 0 && above > 0 ? above / below : 1;
+}
+
+ResponseCurve pooled_lateral(const std::vector<Level>& levels, const CurveFitSettings& settings,
+                             const std::string& where) {
+  std::vector<std::vector<ForceSample>> scaled;
+  for (const Level& level : levels) {
+    for (auto path : level.paths) {
+      for (ForceSample& sample : path) sample.force /= level.weight;
+      scaled.push_back(std::move(path));
+    }
+  }
+  return fit_curve(mean_lateral(scaled), settings, where + ", lateral response").curve;
+}
+
+/// Straight in the logarithms, sqrt outside.
+double weight_at(const std::vector<Level>& levels, double z) {
+  const auto root = [&](const Level& from) { return from.weight * std::sqrt(z / from.depth); };
+  if (z <= levels.front().depth) return root(levels.front());
+  for (std::size_t j = 1; j < levels.size(); ++j) {
+    const Level& low = levels[j - 1];
+    const Level& high = levels[j];
+    if (z > high.depth) continue;
+    const double share = std::log(z / low.depth) / std::log(high.depth / low.depth);
+    return std::exp((1 - share) * std::log(low.weight) + share * std::log(high.weight));
+  }
+  return root(levels.back());
+}
+
+CouplingCurve coupling_of(const std::vector<Level>& levels, double depth, int max_knots,
+                          const std::string& where) {
+  CouplingCurve coupling;
+  const double first = kLeastShare * depth;
+  coupling.base = static_cast<float>(weight_at(levels, first));
+  std::vector<ForceSample> samples;
+  for (int i = 1; i <= kCouplingSamples; ++i) {
+    const double z = first * std::pow(depth / first, static_cast<double>(i) / kCouplingSamples);
+    samples.push_back({z, weight_at(levels, z) - static_cast<double>(coupling.base)});
+  }
+  const double tolerance = kCouplingTolerance * weight_at(levels, 0.5 * depth);
+  coupling.curve =
+      fit_curve(samples, {1e-6, tolerance, max_knots, true}, where + ", coupling").curve;
+  level_off(coupling);
+  return coupling;
+}
+
+}  // namespace
+
+void level_off(CouplingCurve& coupling) {
+  std::vector<float>&knot = coupling.curve.knot, &slope = coupling.curve.slope;
+  const float steepest = *std::max_element(slope.begin(), slope.end());
+  if (slope.back() > kLevel * steepest) {
+    knot.push_back(kBeyond * knot.back());
+    slope.push_back(0);
+  }
+  slope.back() = 0;
+}
+
+std::vector<double> held_depths(const SiteCurves& site) {
+  std::vector<double> depths;
+  for (const CurvePath& path : site.paths) {
+    if (path.kind == PathKind::Lateral && path.held_depth > 0) depths.push_back(path.held_depth);
+  }
+  std::sort(depths.begin(), depths.end());
+  const auto same = [](double a, double b) { return b - a <= kSameDepth * b; };
+  depths.erase(std::unique(depths.begin(), depths.end(), same), depths.end());
+  return depths;
+}
+
+CoupledLateral fit_coupled(const SiteCurves& site, double depth, const CurveFitSettings& settings,
+                           const std::string& where) {
+  std::vector<Level> levels = levels_of(site);
+  const Level& middle = levels[levels.size() / 2];
+  CoupledLateral result;
+  result.lateral = fit_curve(mean_lateral(middle.paths), settings, where).curve;
+  for (int turn = 0; turn < kTurns; ++turn) {
+    const runtime::CompiledCurve lateral(result.lateral);
+    for (Level& level : levels) level.weight = weight_of(level, lateral);
+    const double unit = middle.weight;
+    for (Level& level : levels) level.weight /= unit;
+    result.lateral = pooled_lateral(levels, settings, where);
+  }
+  result.coupling = coupling_of(levels, depth, settings.max_knots, where);
+  return result;
+}
+
+}  // namespace palpate::fitting

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "fitting/fitting.hpp"
+#include "fitting/response/between_nodes.hpp"
+#include "fitting/response/couple.hpp"
+#include "fitting/response/curve_fit.hpp"
+#include "fitting/response/fill.hpp"
+#include "fitting/response/site_samples.hpp"
+#include "fitting/sampling/site_choice.hpp"
+#include "format/error.hpp"
+#include "runtime/response_curve.hpp"
+
+namespace palpate::fitting {
+namespace {
+
+std::string site_name(std::int32_t vertex) {
+  return "site at vertex " + std::to_string(vertex);
+}
+
+[[noreturn]] void refuse(const std::string& where, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, where, problem, remedy);
+}
+
+void check_site(const Body& body, const SiteCurves& site) {
+  const std::string where = site_name(site.vertex);
+  const std::string remedy = "fit the curves with the body they were computed on";
+  const auto count = static_cast<std::int64_t>(body.response.node.size());
+  if (site.vertex < 0 || site.vertex >= count) {
+    refuse(where, "the body has only " + std::to_string(count) + " response vertices", remedy);
+  }
+  const auto vertex = static_cast<std::size_t>(site.vertex);
+  if (body.response.is_site[vertex] == 0) refuse(where, "the body is held there", remedy);
+  for (const CurvePath& path : site.paths) {
+    if (path.kind == PathKind::Normal &&
+        norm(path.direction - body.response.inward[vertex]) > 1e-3) {
+      refuse(where, "the normal path does not run along the inward direction of the vertex",
+             remedy);
+    }
+  }
+}
+
+void check_curves(const Body& body, const Curves& curves) {
+  std::vector<char> seen(body.response.node.size(), 0);
+  for (const SiteCurves& site : curves.sites) {
+    check_site(body, site);
+    char& mark = seen[static_cast<std::size_t>(site.vertex)];
+    if (mark != 0) {
+      refuse(site_name(site.vertex), "it appears twice in the curves", "merge the shards once");
+    }
+    mark = 1;
+  }
+}
+
+void check_settings(const FitSettings& settings) {
+  const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
+  if (!positive(settings.relative_tolerance) || !positive(settings.absolute_tolerance)) {
+    refuse("fit settings", "a tolerance is not above zero", "give tolerances above zero");
+  }
+  if (settings.max_knots < 2) {
+    refuse("fit settings", "max_knots = " + std::to_string(settings.max_knots), "allow at least 2");
+  }
+}
+
+/// A node needs a normal response over half of the requested depth at least, and a lateral one.
+bool usable(const SiteCurves& site, double depth) {
+  if (site.status == SiteStatus::Failed) return false;
+  return normal_reach(site) >= 0.5 * depth * (1 - 1e-9) && normal_reach(site) > 0 &&
+         !lateral_paths(site).empty();
+}
+
+/// Largest distance of the lateral response from every single path, so that what the mean over
+/// azimuths, and over depths when decoupled, loses is part of the stated error.
+double lateral_error(const NodeResponse& node, ResponseKind kind, const SiteCurves& site) {
+  const runtime::CompiledCurve rendered(node.lateral);
+  runtime::CompiledCurve weight;
+  if (kind == ResponseKind::Coupled)
+    weight = {node.coupling.curve, static_cast<double>(node.coupling.base)};
+  double largest = 0;
+  for (const CurvePath& path : site.paths) {
+    SiteCurves one;
+    one.paths.push_back(path);
+    const double w = kind == ResponseKind::Coupled ? weight.force(path.held_depth) : 1;
+    for (const auto& samples : lateral_paths(one)) {
+      for (const ForceSample& sample : samples) {
+        const double error = w * rendered.force(sample.displacement) - sample.force;
+        largest = std::max(largest, std::abs(error));
+      }
+    }
+  }
+  return largest;
+}
+
+NodeResponse fit_site(const SiteCurves& site, const FitSettings& settings) {
+  const std::string where = site_name(site.vertex);
+  CurveFitSettings curve{settings.relative_tolerance, settings.absolute_tolerance,
+                         settings.max_knots, true};
+  const CurveFit normal = fit_curve(normal_samples(site), curve, where + ", normal response");
+  curve.zero_first_slope = false;
+  NodeResponse node{ResponseStatus::Fitted, normal.curve, {}, normal.largest_error, 0, {}};
+  if (settings.kind == ResponseKind::Coupled) {
+    CoupledLateral coupled = fit_coupled(site, normal_reach(site), curve, where);
+    node.lateral = std::move(coupled.lateral);
+    node.coupling = std::move(coupled.coupling);
+  } else {
+    const auto mean = mean_lateral(lateral_paths(site));
+    node.lateral = fit_curve(mean, curve, where + ", lateral response").curve;
+  }
+  node.lateral_error = lateral_error(node, settings.kind, site);
+  return node;
+}
+
+/// The response surface without the triangles that touch a support. Vertices keep their numbers.
+Library surface_library(const Body& body, const Curves& curves) {
+  Library library;
+  library.name = body.name;
+  library.tool_shape = curves.tool.shape;
+  library.tool_radius = curves.tool.radius;
+  library.inward = body.response.inward;
+  for (const std::int32_t node : body.response.node) {
+    library.positions.push_back(body.nodes[static_cast<std::size_t>(node)]);
+  }
+  for (const Triangle& triangle : body.response.triangles) {
+    const bool touchable = std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
+      return body.response.is_site[static_cast<std::size_t>(v)] != 0;
+    });
+    if (touchable) library.triangles.push_back(triangle);
+  }
+  library.responses.resize(library.positions.size());
+  library.provenance = curves.provenance;
+  return library;
+}
+
+double normal_error(const NodeResponse& node, const SiteCurves& site) {
+  const runtime::CompiledCurve rendered(node.normal);
+  double largest = 0;
+  for (const ForceSample& sample : normal_samples(site))
+    largest = std::max(largest, std::abs(rendered.force(sample.displacement) - sample.force));
+  return largest;
+}
+
+double force_at_end(const runtime::CompiledCurve& curve) {
+  return curve.force(curve.last_knot());
+}
+
+void scale(NodeResponse& node, ResponseKind kind, double factor) {
+  // What has no samples of its own strays by as much as it is scaled.
+  double largest_weight = 1;
+  if (kind == ResponseKind::Coupled)
+    largest_weight = force_at_end({node.coupling.curve, static_cast<double>(node.coupling.base)});
+  const double share = std::abs(factor - 1);
+  node.normal_error += share * force_at_end(runtime::CompiledCurve(node.normal));
+  node.lateral_error += share * largest_weight * force_at_end(runtime::CompiledCurve(node.lateral));
+  for (ResponseCurve* curve : {&node.normal, &node.lateral})
+    for (float& slope : curve->slope) slope *= static_cast<float>(factor);
+}
+
+/// The stated errors stay those at the nodes, where the samples are.
+void scale_between_nodes(const Curves& curves, Library& library) {
+  const std::vector<double> factors = factors_between_nodes(library, 0.5 * curves.depth);
+  for (std::size_t v = 0; v < factors.size(); ++v)
+    if (library.responses[v].status != ResponseStatus::Hole)
+      scale(library.responses[v], library.kind, factors[v]);
+  for (const SiteCurves& site : curves.sites) {
+    NodeResponse& node = library.responses[static_cast<std::size_t>(site.vertex)];
+    if (node.status != ResponseStatus::Fitted) continue;
+    node.normal_error = normal_error(node, site);
+    node.lateral_error = lateral_error(node, library.kind, site);
+  }
+}
+
+std::vector<std::int32_t> vertices_of(const Curves& curves) {
+  std::vector<std::int32_t> vertices;
+  for (const SiteCurves& site : curves.sites) vertices.push_back(site.vertex);
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
+}  // namespace
+
+Library fit(const Body& body, const Curves& curves, const FitSettings& settings) {
+  check_settings(settings);
+  check_curves(body, curves);
+  Library library = surface_library(body, curves);
+  library.kind = settings.kind;
+  std::size_t fitted = 0;
+  for (const SiteCurves& site : curves.sites) {
+    if (!usable(site, curves.depth)) continue;
+    library.responses[static_cast<std::size_t>(site.vertex)] = fit_site(site, settings);
+    ++fitted;
+  }
+  if (fitted == 0) {
+    refuse("curves of body '" + body.name + "'",
+           "no site has a normal response over half of the depth and a lateral response",
+           "see the reasons recorded with the sites; precompute with held depths and azimuths");
+  }
+  if (library.triangles.empty()) {
+    refuse("body '" + body.name + "'", "every response triangle touches a support",
+           "hold a smaller part of the surface");
+  }
+  if (settings.interpolate) interpolate_rest(body, vertices_of(curves), settings, library);
+  if (settings.fill_holes) fill_holes(library, settings);
+  if (settings.between_nodes) scale_between_nodes(curves, library);
+  return library;
+}
+
+}  // namespace palpate::fitting
