@@ -7,7 +7,7 @@
 
 #include "app/experiment/line_of_touch.hpp"
 #include "format/error.hpp"
-#include "runtime/device_simulated.hpp"
+#include "runtime/devices/device_simulated.hpp"
 
 namespace palpate::app {
 

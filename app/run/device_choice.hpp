@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "runtime/device.hpp"
-#include "runtime/device_virtual.hpp"
+#include "runtime/devices/device_virtual.hpp"
 
 namespace palpate::app {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/case/case.hpp"
-#include "runtime/device_simulated.hpp"
+#include "runtime/devices/device_simulated.hpp"
 
 namespace palpate::app {
 

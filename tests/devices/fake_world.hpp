@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "format/vec3.hpp"
-#include "runtime/device_simulated.hpp"
+#include "runtime/devices/device_simulated.hpp"
 
 namespace palpate::test {
 

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "ride.hpp"
-#include "runtime/device_virtual.hpp"
+#include "runtime/devices/device_virtual.hpp"
 #include "runtime/force_loop.hpp"
 #include "runtime/realtime.hpp"
 

@@ -14,7 +14,7 @@
 #include "bodies.hpp"
 #include "fitting/fitting.hpp"
 #include "format/error.hpp"
-#include "runtime/device_virtual.hpp"
+#include "runtime/devices/device_virtual.hpp"
 #include "runtime/palpate.h"
 #include "tests/unit/app/live_play.hpp"
 #include "tests/unit/format/small_disk.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The simulated device against mechanics: closed forms, energy, an independent integrator, and the
 // published passivity margin of a discrete wall.
-#include "runtime/device_simulated.hpp"
+#include "runtime/devices/device_simulated.hpp"
 
 #include <gtest/gtest.h>
 
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "format/error.hpp"
-#include "runtime/axis_motion.hpp"
+#include "runtime/devices/axis_motion.hpp"
 
 namespace palpate::runtime {
 namespace {

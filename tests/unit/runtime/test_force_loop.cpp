@@ -12,7 +12,7 @@
 
 #include "bodies.hpp"
 #include "format/error.hpp"
-#include "runtime/device_virtual.hpp"
+#include "runtime/devices/device_virtual.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/palpate.h"
 #include "runtime/realtime.hpp"

@@ -14,7 +14,7 @@
 
 #include "bodies.hpp"
 #include "runtime/contact_state.hpp"
-#include "runtime/device_simulated.hpp"
+#include "runtime/devices/device_simulated.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/palpate.h"
 

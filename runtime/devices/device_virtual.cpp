@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/device_virtual.hpp"
+#include "runtime/devices/device_virtual.hpp"
 
 #include <utility>
 

@@ -6,7 +6,7 @@
 #include <functional>
 
 #include "runtime/device.hpp"
-#include "runtime/device_simulated.hpp"
+#include "runtime/devices/device_simulated.hpp"
 
 namespace palpate::runtime {
 

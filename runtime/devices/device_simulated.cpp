@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/device_simulated.hpp"
+#include "runtime/devices/device_simulated.hpp"
 
 #include <cmath>
 #include <cstddef>
 #include <string>
 
 #include "format/error.hpp"
-#include "runtime/axis_motion.hpp"
+#include "runtime/devices/axis_motion.hpp"
 
 namespace palpate::runtime {
 namespace {

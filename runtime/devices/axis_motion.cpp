@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "runtime/axis_motion.hpp"
+#include "runtime/devices/axis_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
