@@ -8,14 +8,13 @@
 
 #include "fem/campaign/indentation.hpp"
 #include "fem/campaign/stuck_patch.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::app {
 
 namespace {
 
-using fem::at;
 using Corners = std::array<std::int32_t, 3>;
 
 Corners sorted(Corners corners) {
@@ -72,7 +71,7 @@ Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int
     fem::check_law(found->law, "material of region '" + region + "'");
     deck.laws.push_back(found->law);
   }
-  deck.direction = body.response.inward[at(vertex)];
+  deck.direction = body.response.inward[to_index(vertex)];
   deck.depth = settings.indentation.depth;
   deck.increments = settings.indentation.increments;
   return deck;
@@ -80,7 +79,7 @@ Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int
 
 void check_pressing(const Body& body, const fem::IndentationSettings& press, std::int32_t vertex) {
   const auto count = static_cast<std::int32_t>(body.response.node.size());
-  if (vertex < 0 || vertex >= count || body.response.is_site[at(vertex)] == 0)
+  if (vertex < 0 || vertex >= count || body.response.is_site[to_index(vertex)] == 0)
     throw Error(ErrorKind::Configuration, body.name,
                 fmt::format("response vertex {} is not a site", vertex),
                 fmt::format("choose a vertex outside the supports, from 0 to {}", count - 1));
@@ -96,7 +95,7 @@ void check_pressing(const Body& body, const fem::IndentationSettings& press, std
 
 fem::Facet facet_of(const fem::Tetrahedron10& element, std::int32_t side) {
   // kTetSides go around as seen from within.
-  const auto [c, b, a] = kTetSides[at(side)];
+  const auto [c, b, a] = kTetSides[to_index(side)];
   const auto middle = [&](std::size_t i, std::size_t j) { return element[fem::middle_node(i, j)]; };
   return {element[a], element[b], element[c], middle(a, b), middle(b, c), middle(c, a)};
 }

@@ -9,16 +9,13 @@
 #include "app/report/figures.hpp"
 #include "app/report/surface_map.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::report {
 
 namespace {
 
 using nlohmann::json;
-
-std::size_t at(std::int32_t index) {
-  return static_cast<std::size_t>(index);
-}
 
 void append(std::vector<float>& out, const Vec3& v) {
   for (const double x : v) out.push_back(static_cast<float>(x));
@@ -47,7 +44,7 @@ void check_together(const ReportInput& input) {
   require(body.response.inward.size() == vertices && body.response.is_site.size() == vertices,
           "the response surface of the body is incomplete");
   for (const SiteCurves& site : input.curves->sites)
-    require(site.vertex >= 0 && at(site.vertex) < vertices,
+    require(site.vertex >= 0 && to_index(site.vertex) < vertices,
             "the curves name a vertex that the body does not have");
   const auto& certificates = library.certificate.triangles;
   require(certificates.empty() || certificates.size() == library.triangles.size(),
@@ -56,12 +53,12 @@ void check_together(const ReportInput& input) {
 
 json body_data(const Body& body) {
   std::vector<std::int64_t> count(body.region_names.size(), 0);
-  for (const std::int32_t region : body.tetrahedron_region) ++count.at(at(region));
+  for (const std::int32_t region : body.tetrahedron_region) ++count.at(to_index(region));
   json regions = json::array();
   for (std::size_t r = 0; r < count.size(); ++r)
     regions.push_back({{"name", body.region_names[r]}, {"tetrahedra", count[r]}});
   std::vector<Vec3> vertices;
-  for (const std::int32_t n : body.response.node) vertices.push_back(body.nodes[at(n)]);
+  for (const std::int32_t n : body.response.node) vertices.push_back(body.nodes[to_index(n)]);
   return {{"name", body.name},
           {"nodes", body.nodes.size()},
           {"tetrahedra", body.tetrahedra.size()},
@@ -99,16 +96,18 @@ std::vector<std::uint8_t> facet_kinds(const Body& body, const Library& library,
                                       const SurfaceMap& map,
                                       const std::vector<std::int32_t>& in_library) {
   std::vector<std::uint8_t> fixed(body.nodes.size(), 0);
-  for (const std::int32_t n : body.fixed_nodes) fixed.at(at(n)) = 1;
+  for (const std::int32_t n : body.fixed_nodes) fixed.at(to_index(n)) = 1;
   std::vector<std::uint8_t> kinds;
   for (std::size_t f = 0; f < map.facets.size(); ++f) {
     const std::int32_t m = map.facet_triangle[f];
-    bool touchable = m >= 0 && in_library[at(m)] >= 0;
+    bool touchable = m >= 0 && in_library[to_index(m)] >= 0;
     if (touchable) {
-      for (const std::int32_t v : body.response.triangles[at(m)])
-        touchable = touchable && library.responses[at(v)].status != ResponseStatus::Hole;
+      for (const std::int32_t v : body.response.triangles[to_index(m)])
+        touchable = touchable && library.responses[to_index(v)].status != ResponseStatus::Hole;
     }
-    const auto is_fixed = [&](std::int32_t p) { return fixed[at(map.node[at(p)])] != 0; };
+    const auto is_fixed = [&](std::int32_t p) {
+      return fixed[to_index(map.node[to_index(p)])] != 0;
+    };
     const bool held = std::all_of(map.facets[f].begin(), map.facets[f].end(), is_fixed);
     kinds.push_back(touchable ? Touchable : held ? Fixed : NoResponse);
   }
@@ -120,7 +119,7 @@ json surface_data(const Body& body, const Library& library) {
   const std::vector<std::int32_t> in_library = library_triangles(body, library);
   std::vector<float> points;
   std::vector<double> natural;  // the first two of each point; the third is what is left to 1
-  for (const std::int32_t n : map.node) append(points, body.nodes[at(n)]);
+  for (const std::int32_t n : map.node) append(points, body.nodes[to_index(n)]);
   for (const Vec3& n : map.natural) natural.insert(natural.end(), {n[0], n[1]});
   return {{"points", column(points)},
           {"facets", index_column(flat(map.facets))},
@@ -157,8 +156,8 @@ json vertex_data(const ReportInput& input, const std::vector<PeakForce>& peaks) 
   std::vector<float> cpu(size, 0);
   json reasons = json::object();
   for (const SiteCurves& site : input.curves->sites) {
-    site_status[at(site.vertex)] = static_cast<std::uint8_t>(site.status);
-    cpu[at(site.vertex)] = static_cast<float>(site.cpu_seconds);
+    site_status[to_index(site.vertex)] = static_cast<std::uint8_t>(site.status);
+    cpu[to_index(site.vertex)] = static_cast<float>(site.cpu_seconds);
     if (!site.reason.empty()) reasons[std::to_string(site.vertex)] = site.reason;
   }
   for (std::size_t v = 0; v < size; ++v) {
@@ -200,7 +199,7 @@ json sample_data(const Curves& curves, const Library& library) {
       kind.push_back(static_cast<std::uint8_t>(path.kind));
       held.push_back(static_cast<float>(path.held_depth));
       const Vec3& axis =
-          path.kind == PathKind::Normal ? library.inward[at(site.vertex)] : path.direction;
+          path.kind == PathKind::Normal ? library.inward[to_index(site.vertex)] : path.direction;
       for (const CurveSample& sample : path.samples) {
         displacement.push_back(static_cast<float>(sample.displacement));
         force.push_back(static_cast<float>(dot(sample.force, axis)));
@@ -262,7 +261,7 @@ json page_data(const ReportInput& input) {
   const Library& library = *input.library;
   std::vector<PeakForce> peaks(library.responses.size());
   for (const SiteCurves& site : input.curves->sites)
-    peaks[at(site.vertex)] = peak_force(site, library.inward[at(site.vertex)]);
+    peaks[to_index(site.vertex)] = peak_force(site, library.inward[to_index(site.vertex)]);
   const ChosenVertices chosen = choose_vertices(library, peaks, input.curves->depth);
   return {{"title", input.title.empty() ? library.name : input.title},
           {"body", body_data(*input.body)},

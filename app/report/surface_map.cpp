@@ -7,14 +7,11 @@
 #include <limits>
 
 #include "app/report/figures.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::report {
 
 namespace {
-
-std::size_t at(std::int32_t index) {
-  return static_cast<std::size_t>(index);
-}
 
 NearestPoint nearest_on_edge(const Vec3& p, const std::array<Vec3, 3>& corner, std::size_t i) {
   const std::size_t j = (i + 1) % 3;
@@ -47,7 +44,7 @@ class TriangleGrid {
     cell_ = std::max({median_edge(points_, triangles_), longest / 64, 1e-12});
     for (std::size_t k = 0; k < 3; ++k)
       count_[k] = 1 + static_cast<std::int32_t>((high_[k] - low_[k]) / cell_);
-    bins_.resize(at(count_[0]) * at(count_[1]) * at(count_[2]));
+    bins_.resize(to_index(count_[0]) * to_index(count_[1]) * to_index(count_[2]));
     for (std::size_t m = 0; m < triangles_.size(); ++m) insert(static_cast<std::int32_t>(m));
   }
 
@@ -68,15 +65,15 @@ class TriangleGrid {
     return cell;
   }
   std::size_t bin(std::int32_t i, std::int32_t j, std::int32_t k) const {
-    return (at(i) * at(count_[1]) + at(j)) * at(count_[2]) + at(k);
+    return (to_index(i) * to_index(count_[1]) + to_index(j)) * to_index(count_[2]) + to_index(k);
   }
   void insert(std::int32_t m) {
-    const Triangle& t = triangles_[at(m)];
-    Vec3 low = points_[at(t[0])], high = low;
+    const Triangle& t = triangles_[to_index(m)];
+    Vec3 low = points_[to_index(t[0])], high = low;
     for (const std::int32_t v : t) {
       for (std::size_t k = 0; k < 3; ++k) {
-        low[k] = std::min(low[k], points_[at(v)][k]);
-        high[k] = std::max(high[k], points_[at(v)][k]);
+        low[k] = std::min(low[k], points_[to_index(v)][k]);
+        high[k] = std::max(high[k], points_[to_index(v)][k]);
       }
     }
     const Cell a = cell_of(low), b = cell_of(high);
@@ -120,8 +117,9 @@ class TriangleGrid {
 
   void consider(std::int32_t m, const Vec3& p, const Vec3* normal,
                 std::pair<std::int32_t, NearestPoint>& best) const {
-    const Triangle& t = triangles_[at(m)];
-    const Vec3 &a = points_[at(t[0])], &b = points_[at(t[1])], &c = points_[at(t[2])];
+    const Triangle& t = triangles_[to_index(m)];
+    const Vec3 &a = points_[to_index(t[0])], &b = points_[to_index(t[1])],
+               &c = points_[to_index(t[2])];
     if (normal != nullptr && !(dot(cross(b - a, c - a), *normal) > 0)) return;
     const NearestPoint candidate = nearest_on_triangle(p, a, b, c);
     const bool tie = candidate.distance2 == best.second.distance2 && m < best.first;
@@ -141,7 +139,7 @@ void number_boundary(const Body& body, SurfaceMap& map) {
   for (const Triangle& facet : body.boundary) {
     Triangle renumbered{};
     for (std::size_t i = 0; i < 3; ++i) {
-      std::int32_t& number = own[at(facet[i])];
+      std::int32_t& number = own[to_index(facet[i])];
       if (number < 0) {
         number = static_cast<std::int32_t>(map.node.size());
         map.node.push_back(facet[i]);
@@ -182,7 +180,7 @@ SurfaceMap map_boundary(const Body& body) {
   SurfaceMap map;
   number_boundary(body, map);
   std::vector<Vec3> vertices;
-  for (const std::int32_t n : body.response.node) vertices.push_back(body.nodes[at(n)]);
+  for (const std::int32_t n : body.response.node) vertices.push_back(body.nodes[to_index(n)]);
   if (body.response.triangles.empty()) {
     map.facet_triangle.assign(map.facets.size(), -1);
     map.triangle.assign(map.node.size(), -1);
@@ -192,14 +190,14 @@ SurfaceMap map_boundary(const Body& body) {
   const TriangleGrid grid(vertices, body.response.triangles);
   std::vector<Vec3> point_normal(map.node.size(), Vec3{});
   for (const Triangle& f : map.facets) {
-    const auto x = [&](std::size_t i) { return body.nodes[at(map.node[at(f[i])])]; };
+    const auto x = [&](std::size_t i) { return body.nodes[to_index(map.node[to_index(f[i])])]; };
     const Vec3 normal = cross(x(1) - x(0), x(2) - x(0));
-    for (const std::int32_t p : f) point_normal[at(p)] = point_normal[at(p)] + normal;
+    for (const std::int32_t p : f) point_normal[to_index(p)] = point_normal[to_index(p)] + normal;
     const Vec3 centroid = (1.0 / 3) * (x(0) + x(1) + x(2));
     map.facet_triangle.push_back(grid.nearest(centroid, normal).first);
   }
   for (std::size_t p = 0; p < map.node.size(); ++p) {
-    const auto [triangle, point] = grid.nearest(body.nodes[at(map.node[p])], point_normal[p]);
+    const auto [triangle, point] = grid.nearest(body.nodes[to_index(map.node[p])], point_normal[p]);
     map.triangle.push_back(triangle);
     map.natural.push_back(point.natural);
   }

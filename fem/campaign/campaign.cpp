@@ -12,8 +12,8 @@
 #include "fem/campaign/region_laws.hpp"
 #include "fem/factor/cholesky.hpp"
 #include "fem/solid/pressure_smoothness.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -24,11 +24,11 @@ std::vector<std::int32_t> chosen_sites(const Body& body, std::vector<std::int32_
   const auto count = static_cast<std::int32_t>(surface.node.size());
   if (sites.empty())
     for (std::int32_t v = 0; v < count; ++v)
-      if (surface.is_site[at(v)]) sites.push_back(v);
+      if (surface.is_site[to_index(v)]) sites.push_back(v);
   std::sort(sites.begin(), sites.end());
   sites.erase(std::unique(sites.begin(), sites.end()), sites.end());
   for (const auto v : sites)
-    if (v < 0 || v >= count || !surface.is_site[at(v)])
+    if (v < 0 || v >= count || !surface.is_site[to_index(v)])
       throw Error(ErrorKind::Configuration, body.name,
                   "response vertex " + std::to_string(v) + " is not a site",
                   "choose vertices outside the supports, from 0 to " + std::to_string(count - 1));

@@ -7,8 +7,8 @@
 #include "fem/campaign/site_body.hpp"
 #include "fem/solve/preload.hpp"
 #include "fem/solve/shared_factor_solver.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -32,7 +32,7 @@ ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& set
   double stiffest = 0;
   for (const auto region : model.mesh().facet_region)
     for (const auto& material : settings.materials)
-      if (material.region == body.region_names[at(region)])
+      if (material.region == body.region_names[to_index(region)])
         stiffest = std::max(stiffest, rest_moduli(material.law).young);
   return {kContactStiffness * stiffest / settings.indentation.tool.radius, stiffest};
 }
@@ -106,8 +106,9 @@ double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
 }
 
 PressPoint CampaignContext::place(std::int32_t vertex) const {
-  if (!points.empty()) return points[at(vertex)];
-  return {body.nodes[at(body.response.node[at(vertex)])], body.response.inward[at(vertex)]};
+  if (!points.empty()) return points[to_index(vertex)];
+  return {body.nodes[to_index(body.response.node[to_index(vertex)])],
+          body.response.inward[to_index(vertex)]};
 }
 
 }  // namespace palpate::fem

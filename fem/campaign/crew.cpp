@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "fem/factor/memory.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -18,7 +18,7 @@ CrewSize crew_size(const RestFactor& factor, int threads, std::size_t sites, dou
                    double each) {
   CrewSize size;
   size.cores = std::max(1, threads);
-  const std::size_t share = (sites + at(size.cores) - 1) / at(size.cores);
+  const std::size_t share = (sites + to_index(size.cores) - 1) / to_index(size.cores);
   const double fallback = 2 * factor.bytes();
   size.lanes = fitting_times(
       memory, size.cores * each, static_cast<int>(std::min<std::size_t>(kBatch, share)),

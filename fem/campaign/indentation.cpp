@@ -16,8 +16,8 @@
 #include "fem/mesh/in_words.hpp"
 #include "fem/solve/preload.hpp"
 #include "fem/solve/shared_factor_solver.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 

@@ -11,8 +11,8 @@
 #include "fem/campaign/region_laws.hpp"
 #include "fem/laws/law.hpp"
 #include "fem/solve/tangent_solver.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -34,14 +34,14 @@ double distance(const Eigen::Vector3d& x, const std::array<Eigen::Vector3d, 3>& 
 /// corners with these facets.
 std::vector<int> elements_near(const QuadraticMesh& mesh, const Eigen::Vector3d& site,
                                double reach) {
-  std::vector<bool> corner_of_near(at(mesh.nodes()), false);
+  std::vector<bool> corner_of_near(to_index(mesh.nodes()), false);
   for (const Facet& f : mesh.facets)
     if (distance(site, {mesh.X.col(f[0]), mesh.X.col(f[1]), mesh.X.col(f[2])}) <= reach)
-      for (std::size_t c = 0; c < 3; ++c) corner_of_near[at(f[c])] = true;
+      for (std::size_t c = 0; c < 3; ++c) corner_of_near[to_index(f[c])] = true;
   std::vector<int> elements;
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
-    const Tetrahedron10& t = mesh.tetrahedra[at(e)];
-    const auto near = [&](int node) { return corner_of_near[at(node)]; };
+    const Tetrahedron10& t = mesh.tetrahedra[to_index(e)];
+    const auto near = [&](int node) { return corner_of_near[to_index(node)]; };
     if (std::count_if(t.begin(), t.begin() + 4, near) >= 3) elements.push_back(e);
   }
   return elements;
@@ -63,7 +63,7 @@ SiteBody::SiteBody(const CampaignContext& context, const Eigen::Vector3d& site)
   DividedMesh divided = divide(mesh, elements_near(mesh, site, reach));
   std::vector<bool> free = nodes_within(mesh, site, window_radius(context));
   for (const DividedMesh::Made& made : divided.made)
-    for (const int node : mesh.tetrahedra[at(made.parent)]) free[at(node)] = true;
+    for (const int node : mesh.tetrahedra[to_index(made.parent)]) free[to_index(node)] = true;
   free.resize(free.size() + divided.made.size(), true);
   divided_.emplace(SolidModel::without_stiffness(context.model, std::move(divided.mesh)));
   window_.emplace(*divided_, std::move(free));

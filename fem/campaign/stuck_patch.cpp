@@ -9,8 +9,8 @@
 #include "fem/factor/cholesky.hpp"
 #include "fem/mesh/in_words.hpp"
 #include "fem/solve/newton.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -23,19 +23,19 @@ namespace {
 /// The body with the corner nodes of the patch held as well.
 Body held_at_patch(const Body& body, std::int32_t vertex, double radius) {
   const auto count = static_cast<std::int32_t>(body.response.node.size());
-  if (vertex < 0 || vertex >= count || body.response.is_site[at(vertex)] == 0)
+  if (vertex < 0 || vertex >= count || body.response.is_site[to_index(vertex)] == 0)
     refuse(body, "response vertex " + std::to_string(vertex) + " is not a site",
            "choose a vertex outside the supports, from 0 to " + std::to_string(count - 1));
   if (!(std::isfinite(radius) && radius > 0))
     refuse(body, "the radius of the patch is " + std::to_string(radius) + " m",
            "give a finite radius > 0");
-  const Vec3& site = body.nodes[at(body.response.node[at(vertex)])];
+  const Vec3& site = body.nodes[to_index(body.response.node[to_index(vertex)])];
   std::vector<bool> in_patch(body.nodes.size(), false);
   for (const Triangle& facet : body.boundary)
     for (const std::int32_t node : facet)
-      in_patch[at(node)] = norm(body.nodes[at(node)] - site) <= radius * (1 + 1e-9);
+      in_patch[to_index(node)] = norm(body.nodes[to_index(node)] - site) <= radius * (1 + 1e-9);
   for (const std::int32_t node : body.fixed_nodes)
-    if (in_patch[at(node)])
+    if (in_patch[to_index(node)])
       refuse(body, "the patch reaches a support", "give a smaller radius or another site");
   Body held = body;
   for (std::size_t node = 0; node < in_patch.size(); ++node)
@@ -59,7 +59,7 @@ class PatchPress {
               settings.dilatation),
         free_(body, laws_of_regions(body, settings.materials), settings.dilatation),
         patch_(newly_held(held_.mesh(), free_.mesh())),
-        inward_(body.response.inward[at(vertex)].data()),
+        inward_(body.response.inward[to_index(vertex)].data()),
         no_contact_(held_.mesh(), Eigen::Vector3d::Constant(1e6), 1e-6, {1, 1}),
         newton_(held_),
         u_(Displacement::Zero(3, held_.mesh().nodes())),

@@ -80,7 +80,7 @@ void ToolContact::move_to(const Tool& tool) {
 }
 
 Eigen::Vector3d ToolContact::position(const Point& point, const Displacement& u) const {
-  const Facet& facet = facets_[at(point.facet)];
+  const Facet& facet = facets_[to_index(point.facet)];
   const auto& X = mesh_->X;
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
   for (std::size_t a = 0; a < 6; ++a) x += point.N[a] * (X.col(facet[a]) + u.col(facet[a]));
@@ -130,7 +130,7 @@ void ToolContact::add_forces(const SolidModel& model, const Displacement& u,
   for (const Point& point : points_) {
     const Eigen::Vector3d g = point.area * gradient_at(point, position(point, u));
     if (g.isZero(0)) continue;
-    const Facet& facet = facets_[at(point.facet)];
+    const Facet& facet = facets_[to_index(point.facet)];
     for (std::size_t a = 0; a < 6; ++a) {
       const int first = model.equation(facet[a]);
       if (first >= 0) f.segment<3>(first) += point.N[a] * g;
@@ -147,7 +147,7 @@ void ToolContact::add_stiffness(const SolidModel& model, const Displacement& u, 
   for (const Point& point : points_) {
     const Eigen::Matrix3d H = point.area * hessian_at(point, position(point, u), geometric);
     if (H.isZero(0)) continue;
-    const Facet& facet = facets_[at(point.facet)];
+    const Facet& facet = facets_[to_index(point.facet)];
     for (std::size_t a = 0; a < 6; ++a)
       for (std::size_t b = 0; b < 6; ++b) {
         const int row = model.equation(facet[a]), column = model.equation(facet[b]);
@@ -155,13 +155,14 @@ void ToolContact::add_stiffness(const SolidModel& model, const Displacement& u, 
         for (int i = 0; i < 3; ++i)
           for (int k = 0; k < 3; ++k)
             if (row + i >= column + k)
-              values[at(pattern.position(row + i, column + k))] +=
+              values[to_index(pattern.position(row + i, column + k))] +=
                   point.N[a] * point.N[b] * H(i, k);
       }
   }
   for (const Tie& tie : ties_)
     if (const int first = model.equation(tie.node); first >= 0)
-      for (int i = first; i < first + 3; ++i) values[at(pattern.position(i, i))] += tie.stiffness;
+      for (int i = first; i < first + 3; ++i)
+        values[to_index(pattern.position(i, i))] += tie.stiffness;
 }
 
 std::map<int, double> ToolContact::tie_stiffnesses(const Displacement& u, double closeness) const {
@@ -171,7 +172,7 @@ std::map<int, double> ToolContact::tie_stiffnesses(const Displacement& u, double
   std::map<int, Around> around;
   for (const Point& point : points_) {
     const bool in_contact = gap(point, position(point, u)) < closeness;
-    const Facet& facet = facets_[at(point.facet)];
+    const Facet& facet = facets_[to_index(point.facet)];
     for (std::size_t a = 0; a < 6; ++a) {
       if (point.N[a] <= 0) continue;
       const double area = point.area * point.N[a];
@@ -223,7 +224,7 @@ void ToolContact::add_tool_force_gradient(const SolidModel& model, const Displac
     const Eigen::Matrix3d H = hessian_at(point, position(point, u), true);
     if (H.isZero(0)) continue;
     const Eigen::Vector3d pull = point.area * H * direction;
-    const Facet& facet = facets_[at(point.facet)];
+    const Facet& facet = facets_[to_index(point.facet)];
     for (std::size_t a = 0; a < 6; ++a) {
       const int first = model.equation(facet[a]);
       if (first >= 0) g.segment<3>(first) -= point.N[a] * pull;
@@ -261,7 +262,8 @@ std::vector<double> ToolContact::facet_pressures(const Displacement& u) const {
   std::vector<double> pushed(facets_.size(), 0);
   for (const Point& point : points_) {
     const Eigen::Vector3d x = position(point, u);
-    pushed[at(point.facet)] -= point.area * gradient_at(point, x).dot(gap_derivatives(x).normal);
+    pushed[to_index(point.facet)] -=
+        point.area * gradient_at(point, x).dot(gap_derivatives(x).normal);
   }
   std::map<int, std::vector<std::size_t>> facets_of;
   for (const Tie& tie : ties_) facets_of[tie.node];

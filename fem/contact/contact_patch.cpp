@@ -35,13 +35,13 @@ ContactPatch::ContactPatch(const ToolContact& contact, const SolidModel& model,
       nearest_facet = point.facet;
     }
     if (gap < 0)
-      touched.insert(contact.facets_[at(point.facet)].begin(),
-                     contact.facets_[at(point.facet)].end());
+      touched.insert(contact.facets_[to_index(point.facet)].begin(),
+                     contact.facets_[to_index(point.facet)].end());
   }
   for (const auto& tie : contact.ties_) touched.insert(tie.node);
   if (touched.empty() && nearest_facet >= 0)
-    touched.insert(contact.facets_[at(nearest_facet)].begin(),
-                   contact.facets_[at(nearest_facet)].end());
+    touched.insert(contact.facets_[to_index(nearest_facet)].begin(),
+                   contact.facets_[to_index(nearest_facet)].end());
   for (std::size_t f = 0; f < near_.size(); ++f) {
     const Facet& facet = contact.facets_[f];
     if (std::none_of(facet.begin(), facet.end(), [&](int n) { return touched.contains(n); }))
@@ -58,17 +58,17 @@ ContactPatch::ContactPatch(const ToolContact& contact, const SolidModel& model,
   }
   for (std::size_t i = 0; i < contact.points_.size(); ++i) {
     const auto& point = contact.points_[i];
-    if (near_[at(point.facet)] == 0) continue;
+    if (near_[to_index(point.facet)] == 0) continue;
     Point mine{i, {}, Eigen::Vector3d::Zero()};
     for (std::size_t a = 0; a < 6; ++a)
-      mine.place[a] = node_place_.at(contact.facets_[at(point.facet)][a]);
+      mine.place[a] = node_place_.at(contact.facets_[to_index(point.facet)][a]);
     points_.push_back(mine);
   }
 }
 
 bool ContactPatch::covers(const ToolContact& contact, const Displacement& u) const {
   const auto inside = [&](const auto& point) {
-    return near_[at(point.facet)] != 0 || contact.gap(point, contact.position(point, u)) >= 0;
+    return near_[to_index(point.facet)] != 0 || contact.gap(point, contact.position(point, u)) >= 0;
   };
   const auto held = [&](const auto& tie) { return node_place_.contains(tie.node); };
   return std::all_of(contact.points_.begin(), contact.points_.end(), inside) &&

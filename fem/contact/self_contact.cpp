@@ -23,7 +23,7 @@ Cell cell_of(const Eigen::Vector3d& x, double size) {
 Eigen::Matrix<double, 3, 4> corners(const QuadraticMesh& mesh, int element, const Displacement& u) {
   Eigen::Matrix<double, 3, 4> x;
   for (int c = 0; c < 4; ++c) {
-    const int node = mesh.tetrahedra[at(element)][at(c)];
+    const int node = mesh.tetrahedra[to_index(element)][to_index(c)];
     x.col(c) = mesh.X.col(node) + u.col(node);
   }
   return x;
@@ -47,7 +47,7 @@ SelfContact::SelfContact(const QuadraticMesh& mesh, const Eigen::Vector3d& centr
     for (std::size_t c = 0; c < 3; ++c)
       if (near(facet[c])) rings[facet[c]];
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
-    const auto& node = mesh.tetrahedra[at(e)];
+    const auto& node = mesh.tetrahedra[to_index(e)];
     if (!std::any_of(node.begin(), node.begin() + 4, near)) continue;
     tetrahedra_.push_back(e);
     for (std::size_t c = 0; c < 4; ++c) {
@@ -78,7 +78,7 @@ int SelfContact::entering_node(const Displacement& u) const {
     const auto here = grid.find(cell_of(point, size));
     if (here == grid.end()) continue;
     for (const int e : here->second) {
-      const auto& node = mesh_->tetrahedra[at(e)];
+      const auto& node = mesh_->tetrahedra[to_index(e)];
       const bool neighbour = std::any_of(node.begin(), node.begin() + 4, [&](int other) {
         return std::binary_search(watched.ring.begin(), watched.ring.end(), other);
       });

@@ -9,8 +9,8 @@
 #include <map>
 #include <utility>
 
-#include "format/at.hpp"
 #include "format/edge.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -123,11 +123,11 @@ class Mesher {
     int ring, i;
   };
 
-  int intervals(int ring) const { return rings_.intervals[at(ring)]; }
+  int intervals(int ring) const { return rings_.intervals[to_index(ring)]; }
   double phi(const Corner& c) const { return rings_.span * c.i / std::max(intervals(c.ring), 1); }
   std::int32_t node(const Corner& c) const {
     const int n = intervals(c.ring);
-    return first_[at(c.ring)] + (rings_.closed() && n > 0 ? c.i % n : c.i);
+    return first_[to_index(c.ring)] + (rings_.closed() && n > 0 ? c.i % n : c.i);
   }
   std::int32_t add(const Vector3d& x) {
     points_.push_back(x);
@@ -161,7 +161,7 @@ class Mesher {
   }
 
   void facet(std::array<Corner, 3> c) {
-    const auto x = [&](std::size_t i) { return points_[at(node(c[i]))]; };
+    const auto x = [&](std::size_t i) { return points_[to_index(node(c[i]))]; };
     // Node 3 lies within: seen from there the corners go around the other way than from outside.
     if ((x(1) - x(0)).cross(x(2) - x(0)).dot(rings_.inside - x(0)) < 0) std::swap(c[1], c[2]);
     Tetrahedron10 tetrahedron{node(c[0]), node(c[1]), node(c[2]), inside_};

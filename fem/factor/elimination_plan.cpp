@@ -6,7 +6,7 @@
 #include <numeric>
 #include <utility>
 
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -20,15 +20,16 @@ double square_bytes(int rows) {
 }
 
 double bytes_of_columns(const EliminationTree& tree, int k) {
-  return sizeof(double) * static_cast<double>(tree.columns[at(k)]) * tree.rows[at(k)];
+  return sizeof(double) * static_cast<double>(tree.columns[to_index(k)]) * tree.rows[to_index(k)];
 }
 
 /// Of each supernode and all below it.
 std::vector<double> work_of_subtrees(const EliminationTree& tree) {
   std::vector<double> work(tree.parent.size());
   for (int k = 0; k < tree.supernodes(); ++k) {
-    work[at(k)] += tree.work(k);
-    if (const int parent = tree.parent[at(k)]; parent >= 0) work[at(parent)] += work[at(k)];
+    work[to_index(k)] += tree.work(k);
+    if (const int parent = tree.parent[to_index(k)]; parent >= 0)
+      work[to_index(parent)] += work[to_index(k)];
   }
   return work;
 }
@@ -38,16 +39,16 @@ std::pair<std::vector<int>, std::vector<int>> opened(const EliminationTree& tree
                                                      const std::vector<double>& work, double most) {
   std::vector<int> open, roots, top;
   for (int k = 0; k < tree.supernodes(); ++k)
-    if (tree.parent[at(k)] < 0) open.push_back(k);
+    if (tree.parent[to_index(k)] < 0) open.push_back(k);
   while (!open.empty()) {
     const int k = open.back();
     open.pop_back();
-    if (work[at(k)] <= most || tree.children[at(k)].empty()) {
+    if (work[to_index(k)] <= most || tree.children[to_index(k)].empty()) {
       roots.push_back(k);
       continue;
     }
     top.push_back(k);
-    open.insert(open.end(), tree.children[at(k)].begin(), tree.children[at(k)].end());
+    open.insert(open.end(), tree.children[to_index(k)].begin(), tree.children[to_index(k)].end());
   }
   std::sort(top.begin(), top.end());
   return {roots, top};
@@ -59,7 +60,7 @@ double peak_bytes(const EliminationTree& tree, const std::vector<int>& part) {
   for (const int k : part) {
     held += square_bytes(tree.below(k));
     peak = std::max(peak, held);
-    for (const int child : tree.children[at(k)]) held -= square_bytes(tree.below(child));
+    for (const int child : tree.children[to_index(k)]) held -= square_bytes(tree.below(child));
   }
   return peak;
 }
@@ -72,26 +73,26 @@ EliminationTree::EliminationTree(const SupernodalView& view) {
   for (int k = 0; k < count; ++k) {
     columns.push_back(view.first_column[k + 1] - view.first_column[k]);
     rows.push_back(view.row_start[k + 1] - view.row_start[k]);
-    supernode_of_column.insert(supernode_of_column.end(), at(columns.back()), k);
+    supernode_of_column.insert(supernode_of_column.end(), to_index(columns.back()), k);
   }
-  parent.assign(at(count), -1);
-  children.resize(at(count));
+  parent.assign(to_index(count), -1);
+  children.resize(to_index(count));
   for (int k = 0; k < count; ++k) {
     if (below(k) == 0) continue;
-    const int first_below = view.rows[view.row_start[k] + columns[at(k)]];
-    parent[at(k)] = supernode_of_column[at(first_below)];
-    children[at(parent[at(k)])].push_back(k);
+    const int first_below = view.rows[view.row_start[k] + columns[to_index(k)]];
+    parent[to_index(k)] = supernode_of_column[to_index(first_below)];
+    children[to_index(parent[to_index(k)])].push_back(k);
   }
 }
 
 int EliminationTree::below(int supernode) const {
-  return rows[at(supernode)] - columns[at(supernode)];
+  return rows[to_index(supernode)] - columns[to_index(supernode)];
 }
 
 double EliminationTree::work(int supernode) const {
   double sum = 0;
-  for (int j = 0; j < columns[at(supernode)]; ++j) {
-    const double left = rows[at(supernode)] - j;
+  for (int j = 0; j < columns[to_index(supernode)]; ++j) {
+    const double left = rows[to_index(supernode)] - j;
     sum += 0.5 * left * left;
   }
   return sum;
@@ -103,9 +104,9 @@ EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
   const std::vector<double> work = work_of_subtrees(tree);
   double whole = 0;
   for (int k = 0; k < tree.supernodes(); ++k)
-    if (tree.parent[at(k)] < 0) whole += work[at(k)];
+    if (tree.parent[to_index(k)] < 0) whole += work[to_index(k)];
   if (threads == 1) {
-    parts.emplace_back(at(tree.supernodes()));
+    parts.emplace_back(to_index(tree.supernodes()));
     std::iota(parts.back().begin(), parts.back().end(), 0);
     update_bytes = peak_bytes(tree, parts.back());
     return;
@@ -113,20 +114,20 @@ EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
   std::vector<int> roots;
   std::tie(roots, top) = opened(tree, work, whole / (kPartsOfAThread * threads));
   std::stable_sort(roots.begin(), roots.end(),
-                   [&](int a, int b) { return work[at(a)] > work[at(b)]; });
+                   [&](int a, int b) { return work[to_index(a)] > work[to_index(b)]; });
   std::vector<int> part_of(tree.parent.size(), -1);
-  for (std::size_t i = 0; i < roots.size(); ++i) part_of[at(roots[i])] = static_cast<int>(i);
+  for (std::size_t i = 0; i < roots.size(); ++i) part_of[to_index(roots[i])] = static_cast<int>(i);
   for (int k = tree.supernodes(); k-- > 0;)
-    if (part_of[at(k)] < 0 && tree.parent[at(k)] >= 0)
-      part_of[at(k)] = part_of[at(tree.parent[at(k)])];
+    if (part_of[to_index(k)] < 0 && tree.parent[to_index(k)] >= 0)
+      part_of[to_index(k)] = part_of[to_index(tree.parent[to_index(k)])];
   parts.resize(roots.size());
   for (int k = 0; k < tree.supernodes(); ++k)
-    if (part_of[at(k)] >= 0) parts[at(part_of[at(k)])].push_back(k);
+    if (part_of[to_index(k)] >= 0) parts[to_index(part_of[to_index(k)])].push_back(k);
 
   std::vector<double> peaks;
   for (const auto& part : parts) peaks.push_back(peak_bytes(tree, part));
   std::sort(peaks.begin(), peaks.end(), std::greater<>());
-  peaks.resize(std::min(peaks.size(), at(threads)));
+  peaks.resize(std::min(peaks.size(), to_index(threads)));
   update_bytes = std::accumulate(peaks.begin(), peaks.end(), 0.0);
   for (const int root : roots) update_bytes += square_bytes(tree.below(root));
   for (const int k : top) update_bytes += square_bytes(tree.below(k));

@@ -13,7 +13,7 @@
 
 #include "fem/factor/dense_cholesky.hpp"
 #include "fem/factor/front_memory.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -68,7 +68,8 @@ class Elimination {
         update_(tree_.parent.size()),
         awaited_(tree_.parent.size(), 0) {
     ready_.assign(plan.parts.begin(), plan.parts.end());
-    for (const int k : plan.top) awaited_[at(k)] = static_cast<int>(tree_.children[at(k)].size());
+    for (const int k : plan.top)
+      awaited_[to_index(k)] = static_cast<int>(tree_.children[to_index(k)].size());
   }
 
   bool run(int threads) {
@@ -118,8 +119,8 @@ class Elimination {
 
   /// That a child is done: the last supernode of a part, or one of the top.
   void tell_parent(int child) {
-    const int parent = tree_.parent[at(child)];
-    if (parent >= 0 && --awaited_[at(parent)] == 0) ready_.push_front({parent});
+    const int parent = tree_.parent[to_index(child)];
+    if (parent >= 0 && --awaited_[to_index(parent)] == 0) ready_.push_front({parent});
   }
 
   bool eliminate_safely(const std::vector<int>& part, Workplace& own) {
@@ -138,12 +139,13 @@ class Elimination {
   /// The front of supernode k: assembled, eliminated, handed out; its update is kept for the
   /// parent.
   bool eliminate(int k, Workplace& own) {
-    const int columns = tree_.columns[at(k)], rows = tree_.rows[at(k)], below = tree_.below(k);
-    const std::size_t numbers = at(rows) * at(columns);
+    const int columns = tree_.columns[to_index(k)], rows = tree_.rows[to_index(k)],
+              below = tree_.below(k);
+    const std::size_t numbers = to_index(rows) * to_index(columns);
     if (own.columns.capacity() < numbers) own.columns = LargeVector<double>();  // never both
     own.columns.assign(numbers, 0.0);
-    update_[at(k)] = memory_.zeros(at(below) * at(below));
-    const Block L{own.columns.data(), rows}, U{update_[at(k)].data(), below};
+    update_[to_index(k)] = memory_.zeros(to_index(below) * to_index(below));
+    const Block L{own.columns.data(), rows}, U{update_[to_index(k)].data(), below};
     assemble(k, L, U, own);
     if (!factorize_in_place(L.first, columns, rows)) return false;
     in_tiles(tiles_of(below), [&](int tile) {
@@ -160,31 +162,32 @@ class Elimination {
   void assemble(int k, const Block& L, const Block& U, Workplace& own) {
     const int* rows = order_.view_.rows + order_.view_.row_start[k];
     own.place.resize(order_.entry_start_.size());
-    for (int i = 0; i < tree_.rows[at(k)]; ++i) own.place[at(rows[i])] = i;
-    for (int j = 0; j < tree_.columns[at(k)]; ++j) {
-      const std::size_t column = at(order_.view_.first_column[k] + j);
+    for (int i = 0; i < tree_.rows[to_index(k)]; ++i) own.place[to_index(rows[i])] = i;
+    for (int j = 0; j < tree_.columns[to_index(k)]; ++j) {
+      const std::size_t column = to_index(order_.view_.first_column[k] + j);
       for (std::size_t e = order_.entry_start_[column]; e < order_.entry_start_[column + 1]; ++e) {
         const auto& entry = order_.entries_[e];
-        *L(own.place[at(entry.row)], j) = values_[at(entry.value)];
+        *L(own.place[to_index(entry.row)], j) = values_[to_index(entry.value)];
       }
     }
-    for (const int child : tree_.children[at(k)])
-      add_update_of(child, L, U, tree_.columns[at(k)], own);
+    for (const int child : tree_.children[to_index(k)])
+      add_update_of(child, L, U, tree_.columns[to_index(k)], own);
   }
 
   /// Both have their rows in ascending order: what is below a diagonal stays below it.
   void add_update_of(int child, const Block& L, const Block& U, int columns, Workplace& own) {
     const int below = tree_.below(child);
-    const int* rows = order_.view_.rows + order_.view_.row_start[child] + tree_.columns[at(child)];
-    own.target.resize(at(below));
-    for (int i = 0; i < below; ++i) own.target[at(i)] = own.place[at(rows[i])];
+    const int* rows =
+        order_.view_.rows + order_.view_.row_start[child] + tree_.columns[to_index(child)];
+    own.target.resize(to_index(below));
+    for (int i = 0; i < below; ++i) own.target[to_index(i)] = own.place[to_index(rows[i])];
     const int* target = own.target.data();
-    const double* source = update_[at(child)].data();
+    const double* source = update_[to_index(child)].data();
     for (int j = 0; j < below; ++j, source += below) {
       double* to = target[j] < columns ? L(0, target[j]) : U(0, target[j] - columns) - columns;
       for (int i = j; i < below; ++i) to[target[i]] += source[i];
     }
-    memory_.give_back(std::move(update_[at(child)]));
+    memory_.give_back(std::move(update_[to_index(child)]));
   }
 
   Tiles* unfinished_tiles() {
@@ -235,20 +238,20 @@ class Elimination {
 };
 
 Multifrontal::Multifrontal(const SparsePattern& pattern, const SupernodalView& view)
-    : view_(view), tree_(view), entry_start_(at(pattern.n) + 1, 0) {
-  std::vector<int> position(at(pattern.n));  // of the unknowns in the order of elimination
-  for (int i = 0; i < pattern.n; ++i) position[at(view.permutation[i])] = i;
+    : view_(view), tree_(view), entry_start_(to_index(pattern.n) + 1, 0) {
+  std::vector<int> position(to_index(pattern.n));  // of the unknowns in the order of elimination
+  for (int i = 0; i < pattern.n; ++i) position[to_index(view.permutation[i])] = i;
   const auto for_entries = [&](auto&& use) {
     for (int column = 0; column < pattern.n; ++column)
-      for (int e = pattern.start[at(column)]; e < pattern.start[at(column) + 1]; ++e) {
+      for (int e = pattern.start[to_index(column)]; e < pattern.start[to_index(column) + 1]; ++e) {
         const auto [first, last] =
-            std::minmax(position[at(column)], position[at(pattern.row[at(e)])]);
-        use(at(first), Entry{last, e});
+            std::minmax(position[to_index(column)], position[to_index(pattern.row[to_index(e)])]);
+        use(to_index(first), Entry{last, e});
       }
   };
   for_entries([&](std::size_t column, Entry) { ++entry_start_[column + 1]; });
   for (std::size_t i = 1; i < entry_start_.size(); ++i) entry_start_[i] += entry_start_[i - 1];
-  entries_.resize(at(pattern.nonzeros()));
+  entries_.resize(to_index(pattern.nonzeros()));
   std::vector<std::size_t> next(entry_start_.begin(), entry_start_.end() - 1);
   for_entries([&](std::size_t column, Entry entry) { entries_[next[column]++] = entry; });
 }

@@ -9,8 +9,8 @@
 
 #include "fem/factor/memory.hpp"
 #include "fem/factor/multifrontal.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -20,13 +20,13 @@ namespace {
 typedef float Pack __attribute__((vector_size(kBatch * sizeof(float)), aligned(4), may_alias));
 
 inline Pack& pack(float* y, int row) {
-  return *reinterpret_cast<Pack*>(y + at(row) * kBatch);
+  return *reinterpret_cast<Pack*>(y + to_index(row) * kBatch);
 }
 
 /// The unknowns of a panel, in registers.
 template <int W>
 struct Packs {
-  Pack of[at(W)];
+  Pack of[to_index(W)];
   Pack& operator[](int k) { return of[k]; }
 };
 
@@ -60,7 +60,8 @@ void for_panels_backward(int columns, Work&& work) {
 /// What the panels of a supernode with `rows` rows below hold, in numbers.
 std::size_t panel_numbers(int columns, int rows) {
   std::size_t total = 0;
-  for_panels(columns, [&]<int W>(int first) { total += at(W) * at(columns - first + rows); });
+  for_panels(columns,
+             [&]<int W>(int first) { total += to_index(W) * to_index(columns - first + rows); });
   return total;
 }
 
@@ -92,7 +93,7 @@ void backward_panel(const float* panel, float* own, int inside, const int* rows,
                     float* y) {
   Packs<W> x;
   for (int k = 0; k < W; ++k) x[k] = pack(own, k);
-  const float* row = panel + at(W) * at(W);
+  const float* row = panel + to_index(W) * to_index(W);
   const auto subtract = [&](const Pack& value) {
     for (int k = 0; k < W; ++k) x[k] -= row[k] * value;
     row += W;
@@ -152,38 +153,39 @@ RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& per
 }
 
 void RestFactor::store(int supernode, const double* columns) {
-  const Supernode& node = supernodes_[at(supernode)];
+  const Supernode& node = supernodes_[to_index(supernode)];
   const int rows = node.columns + node.rows_below;
   float* to = values_.data() + node.values;
   for_panels(node.columns, [&]<int W>(int first) {
     for (int i = first; i < rows; ++i)
       for (int j = first; j < first + W; ++j)
-        *to++ = static_cast<float>(i >= j ? columns[at(j) * at(rows) + at(i)] : 0);
+        *to++ =
+            static_cast<float>(i >= j ? columns[to_index(j) * to_index(rows) + to_index(i)] : 0);
   });
 }
 
 void RestFactor::forward(float* y) const {
   for (const Supernode& node : supernodes_) {
-    float* x = y + at(node.first_column) * kBatch;
+    float* x = y + to_index(node.first_column) * kBatch;
     const float* panel = values_.data() + node.values;
     for_panels(node.columns, [&]<int W>(int first) {
       const int inside = node.columns - first - W;
-      forward_panel<W>(panel, x + at(first) * kBatch, inside, rows_.data() + node.row_list,
+      forward_panel<W>(panel, x + to_index(first) * kBatch, inside, rows_.data() + node.row_list,
                        node.rows_below, y);
-      panel += at(W) * at(W + inside + node.rows_below);
+      panel += to_index(W) * to_index(W + inside + node.rows_below);
     });
   }
 }
 
 void RestFactor::backward(float* y) const {
   for (auto node = supernodes_.rbegin(); node != supernodes_.rend(); ++node) {
-    float* x = y + at(node->first_column) * kBatch;
+    float* x = y + to_index(node->first_column) * kBatch;
     const float* panel =
         values_.data() + node->values + panel_numbers(node->columns, node->rows_below);
     for_panels_backward(node->columns, [&]<int W>(int first) {
       const int inside = node->columns - first - W;
-      panel -= at(W) * at(W + inside + node->rows_below);
-      backward_panel<W>(panel, x + at(first) * kBatch, inside, rows_.data() + node->row_list,
+      panel -= to_index(W) * to_index(W + inside + node->rows_below);
+      backward_panel<W>(panel, x + to_index(first) * kBatch, inside, rows_.data() + node->row_list,
                         node->rows_below, y);
     });
   }
@@ -193,11 +195,13 @@ void RestFactor::solve(std::vector<float>& block, std::vector<float>& scratch) c
   scratch.resize(block.size());
   constexpr std::size_t kRow = kBatch * sizeof(float);
   for (int i = 0; i < n_; ++i)
-    std::memcpy(&scratch[at(i) * kBatch], &block[at(permutation_[at(i)]) * kBatch], kRow);
+    std::memcpy(&scratch[to_index(i) * kBatch],
+                &block[to_index(permutation_[to_index(i)]) * kBatch], kRow);
   forward(scratch.data());
   backward(scratch.data());
   for (int i = 0; i < n_; ++i)
-    std::memcpy(&block[at(permutation_[at(i)]) * kBatch], &scratch[at(i) * kBatch], kRow);
+    std::memcpy(&block[to_index(permutation_[to_index(i)]) * kBatch],
+                &scratch[to_index(i) * kBatch], kRow);
 }
 
 namespace {
@@ -207,9 +211,9 @@ namespace {
 constexpr double kMostSpread = 1.25;
 
 std::vector<double> diagonal_of(const SparsePattern& pattern, const std::vector<double>& values) {
-  std::vector<double> diagonal(at(pattern.n));
+  std::vector<double> diagonal(to_index(pattern.n));
   for (int column = 0; column < pattern.n; ++column)  // the first of the lower triangle
-    diagonal[at(column)] = values[at(pattern.start[at(column)])];
+    diagonal[to_index(column)] = values[to_index(pattern.start[to_index(column)])];
   return diagonal;
 }
 
@@ -248,7 +252,10 @@ std::shared_ptr<const RestFactor> KeptFactor::factor_of(const SparsePattern& pat
 }
 
 SolveBatch::SolveBatch(const RestFactor& factor, int members, std::deque<SolveBatch>* crew)
-    : factor_(factor), crew_(crew), members_(members), block_(at(factor.size()) * kBatch, 0.0f) {}
+    : factor_(factor),
+      crew_(crew),
+      members_(members),
+      block_(to_index(factor.size()) * kBatch, 0.0f) {}
 
 void SolveBatch::serve_if_all_wait() {
   if (waiting_ == 0 || waiting_ < members_) return;
@@ -276,14 +283,15 @@ SolveBatch::Member::~Member() {
 
 void SolveBatch::Member::join() {
   lock_ = std::unique_lock(batch_->mutex_);
-  for (lane_ = 0; batch_->taken_[at(lane_)]; ++lane_) continue;
-  batch_->taken_.set(at(lane_));
+  for (lane_ = 0; batch_->taken_[to_index(lane_)]; ++lane_) continue;
+  batch_->taken_.set(to_index(lane_));
 }
 
 void SolveBatch::Member::leave() {
   // What an empty lane held would be solved for again and again, down to numbers that are slow.
-  for (std::size_t i = at(lane_); i < batch_->block_.size(); i += kBatch) batch_->block_[i] = 0;
-  batch_->taken_.reset(at(lane_));
+  for (std::size_t i = to_index(lane_); i < batch_->block_.size(); i += kBatch)
+    batch_->block_[i] = 0;
+  batch_->taken_.reset(to_index(lane_));
   --batch_->members_;
   batch_->serve_if_all_wait();
   lock_.unlock();

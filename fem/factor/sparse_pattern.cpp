@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -16,9 +16,9 @@ std::vector<std::vector<std::int32_t>> upper_neighbours(
   std::vector<std::vector<std::int32_t>> neighbours(equation.size());
   for (const auto group : groups)
     for (const auto a : group) {
-      if (equation[at(a)] < 0) continue;
+      if (equation[to_index(a)] < 0) continue;
       for (const auto b : group)
-        if (b >= a && equation[at(b)] >= 0) neighbours[at(a)].push_back(b);
+        if (b >= a && equation[to_index(b)] >= 0) neighbours[to_index(a)].push_back(b);
     }
   for (auto& list : neighbours) {
     std::sort(list.begin(), list.end());
@@ -31,7 +31,8 @@ std::vector<std::vector<std::int32_t>> upper_neighbours(
 
 int SparsePattern::position(int i, int j) const {
   const auto [column, target] = std::minmax(i, j);
-  const auto first = row.begin() + start[at(column)], last = row.begin() + start[at(column) + 1];
+  const auto first = row.begin() + start[to_index(column)],
+             last = row.begin() + start[to_index(column) + 1];
   const auto found = std::lower_bound(first, last, target);
   assert(found != last && *found == target);
   return static_cast<int>(found - row.begin());
@@ -49,7 +50,8 @@ SparsePattern stiffness_pattern(const std::vector<std::span<const std::int32_t>>
     for (int i = 0; i < 3; ++i) {
       for (const auto other : neighbours[node])
         for (int k = 0; k < 3; ++k)
-          if (equation[at(other)] + k >= first + i) pattern.row.push_back(equation[at(other)] + k);
+          if (equation[to_index(other)] + k >= first + i)
+            pattern.row.push_back(equation[to_index(other)] + k);
       pattern.start.push_back(static_cast<int>(pattern.row.size()));
     }
   }
@@ -60,15 +62,15 @@ void add_rank_one(const SparsePattern& pattern, const std::vector<int>& equation
                   std::span<const std::int32_t> nodes, double scale, const double* g,
                   std::vector<double>& values) {
   for (std::size_t b = 0; b < nodes.size(); ++b) {
-    const int column = equation[at(nodes[b])];
+    const int column = equation[to_index(nodes[b])];
     for (std::size_t a = b; a < nodes.size(); ++a) {
-      const int row = equation[at(nodes[a])];
+      const int row = equation[to_index(nodes[a])];
       // The three rows of a node follow one another; each column starts one row below the last.
-      const int below = pattern.position(row, column) - pattern.start[at(column)];
+      const int below = pattern.position(row, column) - pattern.start[to_index(column)];
       for (int k = 0; k < 3; ++k) {
-        double* value = values.data() + pattern.start[at(column + k)] + below - k;
+        double* value = values.data() + pattern.start[to_index(column + k)] + below - k;
         for (int i = a == b ? k : 0; i < 3; ++i)
-          value[i] += scale * g[3 * a + at(i)] * g[3 * b + at(k)];
+          value[i] += scale * g[3 * a + to_index(i)] * g[3 * b + to_index(k)];
       }
     }
   }
@@ -78,8 +80,8 @@ void symmetric_multiply(const SparsePattern& pattern, const std::vector<double>&
                         const double* x, double* y) {
   std::fill(y, y + pattern.n, 0.0);
   for (int column = 0; column < pattern.n; ++column) {
-    std::size_t k = at(pattern.start[at(column)]);
-    const std::size_t end = at(pattern.start[at(column) + 1]);
+    std::size_t k = to_index(pattern.start[to_index(column)]);
+    const std::size_t end = to_index(pattern.start[to_index(column) + 1]);
     const double xc = x[column];
     double sum = values[k] * xc;
     for (++k; k < end; ++k) {

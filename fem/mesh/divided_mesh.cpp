@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "format/at.hpp"
 #include "format/edge.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -121,14 +121,14 @@ std::vector<Child> children(const QuadraticMesh& mesh, const Tetrahedron10& node
 double straight_volume(const Child& child) {
   Eigen::Matrix4d corners;
   for (int c = 0; c < 4; ++c)
-    corners.col(c) = Eigen::Vector4d(volume_coordinates(child[at(c)]).data());
+    corners.col(c) = Eigen::Vector4d(volume_coordinates(child[to_index(c)]).data());
   return corners.determinant();
 }
 
 double six_volumes(const QuadraticMesh& mesh, const Tetrahedron10& node, const Child& child) {
   Eigen::Matrix3d edges;
   for (int c = 0; c < 3; ++c)
-    edges.col(c) = mesh.X.col(node[child[at(c + 1)]]) - mesh.X.col(node[child[0]]);
+    edges.col(c) = mesh.X.col(node[child[to_index(c + 1)]]) - mesh.X.col(node[child[0]]);
   return edges.determinant();
 }
 
@@ -152,22 +152,22 @@ class Divider {
  private:
   /// Which edges are divided, by their mid-edge nodes, until every element agrees.
   void choose_edges(const std::vector<int>& elements) {
-    split_.assign(at(whole_.nodes()), false);
+    split_.assign(to_index(whole_.nodes()), false);
     for (const int e : elements)
       for (std::size_t edge = 0; edge < 6; ++edge)
-        split_[at(whole_.tetrahedra[at(e)][4 + edge])] = true;
+        split_[to_index(whole_.tetrahedra[to_index(e)][4 + edge])] = true;
     for (bool grown = true; grown;) {
       grown = false;
       for (std::size_t e = 0; e < edges_.size(); ++e) {
         const Tetrahedron10& node = whole_.tetrahedra[e];
         unsigned edges = 0;
         for (std::size_t edge = 0; edge < 6; ++edge)
-          if (split_[at(node[4 + edge])]) edges |= 1U << edge;
+          if (split_[to_index(node[4 + edge])]) edges |= 1U << edge;
         edges_[e] = completed(edges);
         if (edges_[e] == edges) continue;
         grown = true;
         for (std::size_t edge = 0; edge < 6; ++edge)
-          if (edges_[e] >> edge & 1U) split_[at(node[4 + edge])] = true;
+          if (edges_[e] >> edge & 1U) split_[to_index(node[4 + edge])] = true;
       }
     }
   }
@@ -179,7 +179,7 @@ class Divider {
 
   /// The middle between two nodes of an element: one that is there if they are corners.
   std::int32_t middle(int element, std::size_t a, std::size_t b) {
-    const Tetrahedron10& node = whole_.tetrahedra[at(element)];
+    const Tetrahedron10& node = whole_.tetrahedra[to_index(element)];
     if (a < 4 && b < 4) return node[middle_node(a, b)];
     const auto next = whole_.nodes() + static_cast<std::int32_t>(divided_.made.size());
     const auto [entry, added] = middle_.try_emplace(edge_between(node[a], node[b]), next);
@@ -198,21 +198,21 @@ class Divider {
       const Volume of = volume_coordinates(a);
       bool on = true;
       for (std::size_t c = 0; c < 4; ++c) on = on && (of[c] == 0 || L[c] > 0);
-      if (on && !whole_.held[at(node[a])]) return false;
+      if (on && !whole_.held[to_index(node[a])]) return false;
     }
     return true;
   }
 
   void divide_element(int element) {
-    const Tetrahedron10& node = whole_.tetrahedra[at(element)];
-    for (Child child : children(whole_, node, edges_[at(element)])) {
+    const Tetrahedron10& node = whole_.tetrahedra[to_index(element)];
+    for (Child child : children(whole_, node, edges_[to_index(element)])) {
       if (straight_volume(child) < 0) std::swap(child[2], child[3]);
       if (!(six_volumes(whole_, node, child) > 0)) refuse(element);
       Tetrahedron10 nodes{};
       for (std::size_t c = 0; c < 4; ++c) nodes[c] = node[child[c]];
       for (std::size_t e = 0; e < 6; ++e)
         nodes[4 + e] = middle(element, child[kTetEdges[e][0]], child[kTetEdges[e][1]]);
-      add_element(nodes, whole_.region[at(element)]);
+      add_element(nodes, whole_.region[to_index(element)]);
     }
   }
 
@@ -229,7 +229,7 @@ class Divider {
     std::vector<std::array<std::size_t, 3>> parts;
     std::vector<std::size_t> split;
     for (std::size_t edge = 0; edge < 3; ++edge)
-      if (split_[at(facet[3 + edge])]) split.push_back(edge);
+      if (split_[to_index(facet[3 + edge])]) split.push_back(edge);
     if (split.empty()) {
       parts = {{0, 1, 2}};
     } else if (split.size() == 1) {
@@ -259,11 +259,11 @@ class Divider {
     divided_.mesh.X.resize(3, whole_.X.cols() + made);
     divided_.mesh.X.leftCols(whole_.X.cols()) = whole_.X;
     for (Eigen::Index i = 0; i < made; ++i) {
-      const auto& [parent, N] = divided_.made[at(static_cast<int>(i))];
+      const auto& [parent, N] = divided_.made[to_index(static_cast<int>(i))];
       auto x = divided_.mesh.X.col(whole_.X.cols() + i);
       x.setZero();
       for (std::size_t a = 0; a < kTetNodes; ++a)
-        x += N[a] * whole_.X.col(whole_.tetrahedra[at(parent)][a]);
+        x += N[a] * whole_.X.col(whole_.tetrahedra[to_index(parent)][a]);
     }
     divided_.mesh.held = whole_.held;
     divided_.mesh.held.insert(divided_.mesh.held.end(), held_.begin(), held_.end());
@@ -294,7 +294,7 @@ Prolongation::Prolongation(const DividedMesh& divided, const std::vector<Tetrahe
     if (first < 0) continue;
     const DividedMesh::Made& made = divided.made[i];
     for (std::size_t a = 0; a < kTetNodes; ++a) {
-      const int parent = whole.equation(elements[at(made.parent)][a]);
+      const int parent = whole.equation(elements[to_index(made.parent)][a]);
       if (parent >= 0 && made.N[a] != 0) shares_.push_back({first, parent, made.N[a]});
     }
   }

@@ -5,8 +5,8 @@
 #include <map>
 #include <unordered_map>
 
-#include "format/at.hpp"
 #include "format/edge.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -41,20 +41,21 @@ class EdgeNodes {
 /// volume that is held, of which at least one end lies inside. An edge that runs through the body
 /// from one held face to another is free between them.
 void mark_held_nodes(const Body& body, const EdgeNodes& edges, QuadraticMesh& mesh) {
-  mesh.held.assign(at(mesh.nodes()), false);
-  for (const auto node : body.fixed_nodes) mesh.held[at(node)] = true;
+  mesh.held.assign(to_index(mesh.nodes()), false);
+  for (const auto node : body.fixed_nodes) mesh.held[to_index(node)] = true;
   std::vector<bool> on_boundary(body.nodes.size(), false);
   for (const Triangle& facet : body.boundary)
-    for (const auto corner : facet) on_boundary[at(corner)] = true;
+    for (const auto corner : facet) on_boundary[to_index(corner)] = true;
   const auto corner_count = body.nodes.size();
   for (std::size_t e = 0; e < edges.corners().size(); ++e) {
     const auto [a, b] = edges.corners()[e];
-    const bool across = on_boundary[at(a)] && on_boundary[at(b)];
-    mesh.held[corner_count + e] = mesh.held[at(a)] && mesh.held[at(b)] && !across;
+    const bool across = on_boundary[to_index(a)] && on_boundary[to_index(b)];
+    mesh.held[corner_count + e] = mesh.held[to_index(a)] && mesh.held[to_index(b)] && !across;
   }
   for (const Facet& facet : mesh.facets)
-    if (mesh.held[at(facet[0])] && mesh.held[at(facet[1])] && mesh.held[at(facet[2])])
-      for (std::size_t edge = 3; edge < 6; ++edge) mesh.held[at(facet[edge])] = true;
+    if (mesh.held[to_index(facet[0])] && mesh.held[to_index(facet[1])] &&
+        mesh.held[to_index(facet[2])])
+      for (std::size_t edge = 3; edge < 6; ++edge) mesh.held[to_index(facet[edge])] = true;
 }
 
 using Corners = std::array<std::int32_t, 3>;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "fem/mesh/tet10.hpp"
-#include "format/at.hpp"
 #include "format/body.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -37,7 +37,7 @@ struct QuadraticMesh {
   int nodes() const { return static_cast<int>(X.cols()); }
   int corners() const { return nodes() - static_cast<int>(edges.size()); }
   /// Whether a node has displacements of its own: it is not held, nor does it follow its corners.
-  bool is_free(int node) const { return !held[at(node)] && (!linear || node < corners()); }
+  bool is_free(int node) const { return !held[to_index(node)] && (!linear || node < corners()); }
 };
 
 QuadraticMesh make_quadratic_mesh(const Body& body, bool linear = false);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "fem/solid/element.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -45,7 +45,8 @@ Matrix3d acoustic_tensor(const Tensor4<double>& A, const Vector3d& n) {
   for (int i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k)
       for (int j = 0; j < 3; ++j)
-        for (int l = 0; l < 3; ++l) Q(i, k) += A[at(3 * i + j)][at(3 * k + l)] * n[j] * n[l];
+        for (int l = 0; l < 3; ++l)
+          Q(i, k) += A[to_index(3 * i + j)][to_index(3 * k + l)] * n[j] * n[l];
   return Q;
 }
 
@@ -55,7 +56,8 @@ Matrix3d transposed_tensor(const Tensor4<double>& A, const Vector3d& m) {
   for (int j = 0; j < 3; ++j)
     for (int l = 0; l < 3; ++l)
       for (int i = 0; i < 3; ++i)
-        for (int k = 0; k < 3; ++k) Q(j, l) += A[at(3 * i + j)][at(3 * k + l)] * m[i] * m[k];
+        for (int k = 0; k < 3; ++k)
+          Q(j, l) += A[to_index(3 * i + j)][to_index(3 * k + l)] * m[i] * m[k];
   return Q;
 }
 
@@ -176,8 +178,8 @@ double weakest_wave(const Tensor4<double>& A) {
   // Two minima may be nearer to each other than the rough values are to them.
   double weakest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kCandidates; ++i)
-    weakest =
-        std::min(weakest, sharpen(A, descend(A, found[at(i)].n, kNearly, kNearSteps)).stiffness);
+    weakest = std::min(weakest,
+                       sharpen(A, descend(A, found[to_index(i)].n, kNearly, kNearSteps)).stiffness);
   return weakest;
 }
 

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -30,7 +30,7 @@ struct Element {
 
 Element element_of(const Body& body, const Tetrahedron& nodes) {
   std::array<Vector3d, 4> X;
-  for (std::size_t i = 0; i < 4; ++i) X[i] = Vector3d(body.nodes[at(nodes[i])].data());
+  for (std::size_t i = 0; i < 4; ++i) X[i] = Vector3d(body.nodes[to_index(nodes[i])].data());
   const Vector3d a = X[1] - X[0], b = X[2] - X[0], c = X[3] - X[0];
   const double six_volumes = a.dot(b.cross(c));
   Element e{nodes, six_volumes / 6, 0.25 * (X[0] + X[1] + X[2] + X[3]), {}};
@@ -62,7 +62,7 @@ std::vector<bool> surface_nodes(const Body& body, const std::vector<Element>& el
   std::vector<bool> on_surface(body.nodes.size(), false);
   for (const auto& [facet, elements_at] : count)
     if (elements_at == 1)
-      for (const std::int32_t node : facet) on_surface[at(node)] = true;
+      for (const std::int32_t node : facet) on_surface[to_index(node)] = true;
   return on_surface;
 }
 
@@ -101,18 +101,19 @@ void solve(const std::vector<Element>& elements, std::vector<double>& phi,
   int n = 0;
   for (const Element& e : elements)
     for (const std::int32_t node : e.nodes)
-      if (phi[at(node)] == kFree && equation[at(node)] < 0) equation[at(node)] = n++;
+      if (phi[to_index(node)] == kFree && equation[to_index(node)] < 0)
+        equation[to_index(node)] = n++;
   if (n == 0) return;
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd b = Eigen::VectorXd::Zero(n);
   for (const Element& e : elements)
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j) {
-        const int row = equation[at(e.nodes[i])], column = equation[at(e.nodes[j])];
+        const int row = equation[to_index(e.nodes[i])], column = equation[to_index(e.nodes[j])];
         if (row < 0) continue;
         const double k = e.volume * e.gradient[i].dot(e.gradient[j]);
         if (column < 0)
-          b[row] -= k * phi[at(e.nodes[j])];
+          b[row] -= k * phi[to_index(e.nodes[j])];
         else
           entries.emplace_back(row, column, k);
       }
@@ -143,7 +144,7 @@ FibreField fibres_of_potential(const Body& body, std::int32_t region, const Fibr
   std::vector<FibreSample> samples;
   for (const Element& e : elements) {
     Vector3d slope = Vector3d::Zero();
-    for (std::size_t i = 0; i < 4; ++i) slope += phi[at(e.nodes[i])] * e.gradient[i];
+    for (std::size_t i = 0; i < 4; ++i) slope += phi[to_index(e.nodes[i])] * e.gradient[i];
     // Against the steepest that four nodes of this size could make.
     const bool flat = slope.norm() * std::cbrt(e.volume) < 1e-9;
     if (!flat)

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -36,8 +36,9 @@ FacetMass linear_mass() {
 Foundation::Foundation(const QuadraticMesh& mesh, const std::vector<int>& equation)
     : mass_(mesh.linear ? linear_mass() : quadratic_mass()) {
   for (const SprungFacet& sprung : mesh.sprung) {
-    const Facet& nodes = mesh.facets[at(sprung.facet)];
-    if (std::ranges::all_of(nodes, [&](int node) { return equation[at(node)] < 0; })) continue;
+    const Facet& nodes = mesh.facets[to_index(sprung.facet)];
+    if (std::ranges::all_of(nodes, [&](int node) { return equation[to_index(node)] < 0; }))
+      continue;
     const Eigen::Vector3d a = mesh.X.col(nodes[1]) - mesh.X.col(nodes[0]),
                           b = mesh.X.col(nodes[2]) - mesh.X.col(nodes[0]);
     const Eigen::Vector3d N = a.cross(b).normalized();
@@ -52,7 +53,7 @@ double Foundation::energy(const Eigen::Matrix3Xd& u) const {
   double sum = 0;
   for (const Spring& spring : springs_) {
     Eigen::Matrix<double, 3, 6> local;
-    for (int a = 0; a < 6; ++a) local.col(a) = u.col(spring.nodes[at(a)]);
+    for (int a = 0; a < 6; ++a) local.col(a) = u.col(spring.nodes[to_index(a)]);
     sum += 0.5 * spring.area * (spring.per_area * local * mass_).cwiseProduct(local).sum();
   }
   return sum;
@@ -62,10 +63,10 @@ void Foundation::add_forces(const std::vector<int>& equation, const Eigen::Matri
                             Eigen::VectorXd& f) const {
   for (const Spring& spring : springs_) {
     Eigen::Matrix<double, 3, 6> local;
-    for (int a = 0; a < 6; ++a) local.col(a) = u.col(spring.nodes[at(a)]);
+    for (int a = 0; a < 6; ++a) local.col(a) = u.col(spring.nodes[to_index(a)]);
     const Eigen::Matrix<double, 3, 6> forces = spring.area * (spring.per_area * local * mass_);
     for (int a = 0; a < 6; ++a)
-      if (const int first = equation[at(spring.nodes[at(a)])]; first >= 0)
+      if (const int first = equation[to_index(spring.nodes[to_index(a)])]; first >= 0)
         f.segment<3>(first) += forces.col(a);
   }
 }
@@ -75,13 +76,13 @@ void Foundation::add_stiffness(const std::vector<int>& equation, const SparsePat
   for (const Spring& spring : springs_)
     for (int a = 0; a < 6; ++a)
       for (int b = 0; b < 6; ++b) {
-        const int row = equation[at(spring.nodes[at(a)])],
-                  column = equation[at(spring.nodes[at(b)])];
+        const int row = equation[to_index(spring.nodes[to_index(a)])],
+                  column = equation[to_index(spring.nodes[to_index(b)])];
         if (row < 0 || column < 0 || mass_(a, b) == 0) continue;
         for (int i = 0; i < 3; ++i)
           for (int k = 0; k < 3; ++k)
             if (row + i >= column + k)
-              values[at(pattern.position(row + i, column + k))] +=
+              values[to_index(pattern.position(row + i, column + k))] +=
                   spring.area * mass_(a, b) * spring.per_area(i, k);
       }
 }

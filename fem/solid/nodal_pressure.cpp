@@ -4,12 +4,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
 double volume_of(const QuadraticMesh& mesh, int element) {
-  const auto& node = mesh.tetrahedra[at(element)];
+  const auto& node = mesh.tetrahedra[to_index(element)];
   const auto edge = [&](std::size_t c) -> Eigen::Vector3d {
     return mesh.X.col(node[c]) - mesh.X.col(node[0]);
   };
@@ -22,13 +22,13 @@ NodalPressure::NodalPressure(const QuadraticMesh& mesh, const std::vector<int>& 
   std::int32_t last_corner = 0;
   for (const Tetrahedron10& t : mesh.tetrahedra)
     last_corner = std::max(last_corner, *std::max_element(t.begin(), t.begin() + 4));
-  point_at_.assign((at(last_corner) + 1) * at(regions_), -1);
+  point_at_.assign((to_index(last_corner) + 1) * to_index(regions_), -1);
   for (const int e : elements)
     for (std::size_t c = 0; c < 4; ++c) {
       int& point = point_at_[key(mesh, e, c)];
       if (point >= 0) continue;
       point = static_cast<int>(points_.size());
-      points_.push_back({mesh.region[at(e)], 0, {}});
+      points_.push_back({mesh.region[to_index(e)], 0, {}});
     }
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
     const std::array<int, 4> mine = points_of(mesh, e);
@@ -36,9 +36,9 @@ NodalPressure::NodalPressure(const QuadraticMesh& mesh, const std::vector<int>& 
     elements_.push_back(e);
     for (const int point : mine) {
       if (point < 0) continue;
-      points_[at(point)].volume += 0.25 * volume_of(mesh, e);
-      for (const auto node : mesh.tetrahedra[at(e)])
-        if (equation[at(node)] >= 0) points_[at(point)].nodes.push_back(node);
+      points_[to_index(point)].volume += 0.25 * volume_of(mesh, e);
+      for (const auto node : mesh.tetrahedra[to_index(e)])
+        if (equation[to_index(node)] >= 0) points_[to_index(point)].nodes.push_back(node);
     }
   }
   for (Point& point : points_) {
@@ -48,7 +48,8 @@ NodalPressure::NodalPressure(const QuadraticMesh& mesh, const std::vector<int>& 
 }
 
 std::size_t NodalPressure::key(const QuadraticMesh& mesh, int element, std::size_t corner) const {
-  return at(mesh.tetrahedra[at(element)][corner]) * at(regions_) + at(mesh.region[at(element)]);
+  return to_index(mesh.tetrahedra[to_index(element)][corner]) * to_index(regions_) +
+         to_index(mesh.region[to_index(element)]);
 }
 
 std::size_t NodalPressure::bytes() const {

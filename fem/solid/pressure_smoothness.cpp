@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "fem/solid/nodal_pressure.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -19,18 +19,19 @@ SmoothPressure project(const QuadraticMesh& mesh, const NodalPressure& nodal,
   for (const int e : nodal.elements()) {
     const double V = volume_of(mesh, e);
     volume += V;
-    mean += V * pressure[at(e)];
+    mean += V * pressure[to_index(e)];
     for (const int point : nodal.points_of(mesh, e))
-      at_point[at(point)] += 0.25 * V * pressure[at(e)] / nodal.points()[at(point)].volume;
+      at_point[to_index(point)] +=
+          0.25 * V * pressure[to_index(e)] / nodal.points()[to_index(point)].volume;
   }
   mean /= volume;
   SmoothPressure smooth;
   double changed = 0, spread = 0;
   for (const int e : nodal.elements()) {
     double sum = 0;
-    for (const int point : nodal.points_of(mesh, e)) sum += 0.25 * at_point[at(point)];
+    for (const int point : nodal.points_of(mesh, e)) sum += 0.25 * at_point[to_index(point)];
     smooth.pressure.push_back(sum);
-    const double V = volume_of(mesh, e), p = pressure[at(e)];
+    const double V = volume_of(mesh, e), p = pressure[to_index(e)];
     changed += V * (p - sum) * (p - sum);
     spread += V * (p - mean) * (p - mean);
   }
@@ -43,7 +44,7 @@ SmoothPressure project(const QuadraticMesh& mesh, const NodalPressure& nodal,
 SmoothPressure smooth_pressure(const QuadraticMesh& mesh, const std::vector<double>& pressure) {
   std::vector<int> all(mesh.tetrahedra.size());
   std::iota(all.begin(), all.end(), 0);
-  const NodalPressure nodal(mesh, all, std::vector<int>(at(mesh.nodes()), -1));
+  const NodalPressure nodal(mesh, all, std::vector<int>(to_index(mesh.nodes()), -1));
   SmoothPressure smooth = project(mesh, nodal, pressure);
   const double unresolved = project(mesh, nodal, smooth.pressure).roughness;
   smooth.alternation = unresolved > 0 ? smooth.roughness / unresolved : 0;

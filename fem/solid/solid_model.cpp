@@ -18,22 +18,23 @@ constexpr std::size_t kElementEntries = std::tuple_size_v<ElementMatrix<double>>
 
 /// Volume and gradients of the volume coordinates of one straight tetrahedron.
 ElementGeometry<double> geometry_of(const QuadraticMesh& mesh, int element) {
-  const auto& node = mesh.tetrahedra[at(element)];
+  const auto& node = mesh.tetrahedra[to_index(element)];
   Eigen::Matrix3d edges;
-  for (int c = 0; c < 3; ++c) edges.col(c) = mesh.X.col(node[at(c + 1)]) - mesh.X.col(node[0]);
+  for (int c = 0; c < 3; ++c)
+    edges.col(c) = mesh.X.col(node[to_index(c + 1)]) - mesh.X.col(node[0]);
   const Eigen::Matrix3d inverse = edges.inverse();  // rows: gradients of L_1, L_2, L_3
   ElementGeometry<double> geometry;
   geometry.volume = volume_of(mesh, element);
   for (int j = 0; j < 3; ++j) {
-    for (int c = 0; c < 3; ++c) geometry.gradient[at(c + 1)][at(j)] = inverse(c, j);
-    geometry.gradient[0][at(j)] = -inverse.col(j).sum();
+    for (int c = 0; c < 3; ++c) geometry.gradient[to_index(c + 1)][to_index(j)] = inverse(c, j);
+    geometry.gradient[0][to_index(j)] = -inverse.col(j).sum();
   }
   return geometry;
 }
 
 Vec3 centroid(const QuadraticMesh& mesh, int element) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t c = 0; c < 4; ++c) sum += mesh.X.col(mesh.tetrahedra[at(element)][c]);
+  for (std::size_t c = 0; c < 4; ++c) sum += mesh.X.col(mesh.tetrahedra[to_index(element)][c]);
   return {sum[0] / 4, sum[1] / 4, sum[2] / 4};
 }
 
@@ -49,7 +50,7 @@ Eigen::Matrix3Xd nodal_weight(const QuadraticMesh& mesh, const Gravity& gravity)
   const Eigen::Vector3d per_volume = gravity.density * Eigen::Vector3d(gravity.acceleration.data());
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e)
     for (std::size_t a = 0; a < kTetNodes; ++a)
-      weight.col(mesh.tetrahedra[at(e)][a]) +=
+      weight.col(mesh.tetrahedra[to_index(e)][a]) +=
           volume_of(mesh, e) * shape_integral(a, mesh.linear) * per_volume;
   return weight;
 }
@@ -67,8 +68,8 @@ std::shared_ptr<const Solid> make_solid(const Body& body, std::vector<Law> laws,
 SolidModel::SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation,
                        const Gravity& gravity)
     : solid_(make_solid(body, std::move(laws), dilatation, gravity)) {
-  std::vector<bool> free(at(mesh().nodes()));
-  for (int node = 0; node < mesh().nodes(); ++node) free[at(node)] = mesh().is_free(node);
+  std::vector<bool> free(to_index(mesh().nodes()));
+  for (int node = 0; node < mesh().nodes(); ++node) free[to_index(node)] = mesh().is_free(node);
   number_unknowns(free);
   std::vector<int> elements(mesh().tetrahedra.size());
   std::iota(elements.begin(), elements.end(), 0);
@@ -77,9 +78,9 @@ SolidModel::SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilat
 
 std::vector<bool> nodes_within(const QuadraticMesh& mesh, const Eigen::Vector3d& centre,
                                double radius) {
-  std::vector<bool> within(at(mesh.nodes()));
+  std::vector<bool> within(to_index(mesh.nodes()));
   for (int node = 0; node < mesh.nodes(); ++node)
-    within[at(node)] = (mesh.X.col(node) - centre).squaredNorm() <= radius * radius;
+    within[to_index(node)] = (mesh.X.col(node) - centre).squaredNorm() <= radius * radius;
   return within;
 }
 
@@ -92,7 +93,7 @@ SolidModel::SolidModel(const SolidModel& whole, std::vector<bool> free) : solid_
   number_unknowns(free);
   std::vector<int> elements;
   for (int e = 0; e < static_cast<int>(mesh().tetrahedra.size()); ++e)
-    if (std::ranges::any_of(mesh().tetrahedra[at(e)],
+    if (std::ranges::any_of(mesh().tetrahedra[to_index(e)],
                             [&](int node) { return equation(node) >= 0; }))
       elements.push_back(e);
   take_elements(elements);
@@ -119,10 +120,10 @@ double SolidModel::bytes() const {
 }
 
 void SolidModel::number_unknowns(const std::vector<bool>& free) {
-  equation_.assign(at(mesh().nodes()), -1);
+  equation_.assign(to_index(mesh().nodes()), -1);
   for (int node = 0; node < mesh().nodes(); ++node) {
-    if (!free[at(node)]) continue;
-    equation_[at(node)] = unknowns_;
+    if (!free[to_index(node)]) continue;
+    equation_[to_index(node)] = unknowns_;
     unknowns_ += 3;
   }
 }
@@ -134,7 +135,7 @@ void SolidModel::take_elements(const std::vector<int>& elements) {
     for (const NodalPressure::Point& point : nodal_.points()) coupled.emplace_back(point.nodes);
     make_blocks(nodal_.elements());
   } else {
-    for (const int e : elements) coupled.emplace_back(mesh().tetrahedra[at(e)]);
+    for (const int e : elements) coupled.emplace_back(mesh().tetrahedra[to_index(e)]);
     make_blocks(elements);
   }
   foundation_ = Foundation(mesh(), equation_);
@@ -146,7 +147,7 @@ void SolidModel::make_blocks(const std::vector<int>& elements) {
   for (int region = 0; region < static_cast<int>(solid_->laws.size()); ++region) {
     std::vector<int> members;
     for (const int e : elements)
-      if (mesh().region[at(e)] == region) members.push_back(e);
+      if (mesh().region[to_index(e)] == region) members.push_back(e);
     for (std::size_t first = 0; first < members.size(); first += kLanes) {
       blocks_.push_back(make_block(members, first, region));
     }
@@ -159,13 +160,13 @@ SolidModel::Block SolidModel::make_block(const std::vector<int>& elements, std::
   block.region = region;
   block.count = static_cast<int>(std::min<std::size_t>(kLanes, elements.size() - first));
   for (int lane = 0; lane < kLanes; ++lane) {
-    const int element = elements[std::min(first + at(lane), elements.size() - 1)];
+    const int element = elements[std::min(first + to_index(lane), elements.size() - 1)];
     const ElementGeometry<double> one = geometry_of(mesh(), element);
-    block.element[at(lane)] = element;
+    block.element[to_index(lane)] = element;
     if (has_nodal_pressure(solid_->dilatation))
-      block.pressure_point[at(lane)] = nodal_.points_of(mesh(), element);
+      block.pressure_point[to_index(lane)] = nodal_.points_of(mesh(), element);
     block.geometry.volume[lane] = one.volume;
-    const auto fibres = solid_->laws[at(region)].fibres_at(centroid(mesh(), element));
+    const auto fibres = solid_->laws[to_index(region)].fibres_at(centroid(mesh(), element));
     for (std::size_t family = 0; family < fibres.size(); ++family)
       for (std::size_t j = 0; j < 3; ++j)
         block.geometry.fibres[family][j][lane] = fibres[family][j];
@@ -187,7 +188,7 @@ void SolidModel::make_scatter() {
     for (std::size_t row = 0; row < 3 * kTetNodes; ++row)
       for (std::size_t column = 0; column <= row; ++column, place += kLanes)
         for (int lane = 0; lane < block.count; ++lane) {
-          const auto& node = mesh().tetrahedra[at(block.element[at(lane)])];
+          const auto& node = mesh().tetrahedra[to_index(block.element[to_index(lane)])];
           const int i = unknown(node, row), j = unknown(node, column);
           if (i >= 0 && j >= 0) place[lane] = pattern_.position(i, j);
         }
@@ -196,9 +197,9 @@ void SolidModel::make_scatter() {
 ElementVector<Lanes> SolidModel::gather(const Block& block, const Displacement& u) const {
   ElementVector<Lanes> local;
   for (int lane = 0; lane < kLanes; ++lane) {
-    const auto& node = mesh().tetrahedra[at(block.element[at(lane)])];
+    const auto& node = mesh().tetrahedra[to_index(block.element[to_index(lane)])];
     for (std::size_t a = 0; a < kTetNodes; ++a)
-      for (int i = 0; i < 3; ++i) local[a][at(i)][lane] = u(i, node[a]);
+      for (int i = 0; i < 3; ++i) local[a][to_index(i)][lane] = u(i, node[a]);
   }
   return local;
 }
@@ -206,11 +207,11 @@ ElementVector<Lanes> SolidModel::gather(const Block& block, const Displacement& 
 void SolidModel::scatter(const Block& block, const ElementVector<Lanes>& forces,
                          Eigen::VectorXd& f) const {
   for (int lane = 0; lane < block.count; ++lane) {
-    const auto& node = mesh().tetrahedra[at(block.element[at(lane)])];
+    const auto& node = mesh().tetrahedra[to_index(block.element[to_index(lane)])];
     for (std::size_t a = 0; a < kTetNodes; ++a) {
       const int first = equation(node[a]);
       if (first < 0) continue;
-      for (int i = 0; i < 3; ++i) f[first + i] += forces[a][at(i)][lane];
+      for (int i = 0; i < 3; ++i) f[first + i] += forces[a][to_index(i)][lane];
     }
   }
 }
@@ -259,12 +260,12 @@ SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
     for (std::size_t c = 0; c < 4; ++c) {
       const Lanes share = 0.25 * block.geometry.volume * (all + (kTetNear - kTetFar) * J[c]);
       for (int lane = 0; lane < block.count; ++lane)
-        if (const int point = block.pressure_point[at(lane)][c]; point >= 0)
-          mean[at(point)] += share[lane];
+        if (const int point = block.pressure_point[to_index(lane)][c]; point >= 0)
+          mean[to_index(point)] += share[lane];
     }
   }
   for (std::size_t n = 0; n < points.size(); ++n) {
-    const Law& law = solid_->laws[at(points[n].region)];
+    const Law& law = solid_->laws[to_index(points[n].region)];
     const Lanes J = Lanes::Constant(mean[n] / points[n].volume);
     state.pressure.push_back(law.pressure(J)[0]);
     state.slope.push_back(law.pressure_slope(J)[0]);
@@ -276,12 +277,12 @@ SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
 PointPressures<Lanes> SolidModel::pressures(const Block& block, const ElementKinematics<Lanes>& k,
                                             const PointState& points) const {
   if (!has_nodal_pressure(solid_->dilatation))
-    return own_pressures(solid_->laws[at(block.region)], solid_->dilatation, k);
+    return own_pressures(solid_->laws[to_index(block.region)], solid_->dilatation, k);
   std::array<Lanes, 4> corner;
   for (std::size_t c = 0; c < 4; ++c)
     for (int lane = 0; lane < kLanes; ++lane) {
-      const int point = block.pressure_point[at(lane)][c];
-      corner[c][lane] = point >= 0 ? points.pressure[at(point)] : 0.0;
+      const int point = block.pressure_point[to_index(lane)][c];
+      corner[c][lane] = point >= 0 ? points.pressure[to_index(point)] : 0.0;
     }
   return is_linear(solid_->dilatation) ? mean_pressure(corner) : interpolated_pressures(corner);
 }
@@ -299,14 +300,14 @@ void SolidModel::add_point_stiffness(const Displacement& u, const PointState& st
     for (std::size_t c = 0; c < 4; ++c) {
       const auto g = dilatation_forces(solid_->dilatation, block.geometry, k, c);
       for (int lane = 0; lane < block.count; ++lane) {
-        const int point = block.pressure_point[at(lane)][c];
+        const int point = block.pressure_point[to_index(lane)][c];
         if (point < 0) continue;
-        const auto& nodes = points[at(point)].nodes;
-        const auto& node = mesh().tetrahedra[at(block.element[at(lane)])];
+        const auto& nodes = points[to_index(point)].nodes;
+        const auto& node = mesh().tetrahedra[to_index(block.element[to_index(lane)])];
         for (std::size_t a = 0; a < kTetNodes; ++a) {
           if (equation(node[a]) < 0) continue;
           const auto place = std::lower_bound(nodes.begin(), nodes.end(), node[a]) - nodes.begin();
-          for (int i = 0; i < 3; ++i) slope[at(point)](i, place) += g[a][at(i)][lane];
+          for (int i = 0; i < 3; ++i) slope[to_index(point)](i, place) += g[a][to_index(i)][lane];
         }
       }
     }
@@ -338,7 +339,7 @@ SolidModel::State SolidModel::energy(const Displacement& u) const {
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
     const Lanes energy =
-        element_energy(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k);
+        element_energy(solid_->laws[to_index(block.region)], solid_->dilatation, block.geometry, k);
     state.energy += energy.head(block.count).sum();
   }
   state.energy += point_state(u).energy + foundation_.energy(u) - work_of_gravity(u);
@@ -353,7 +354,7 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) 
     const auto k = kinematics_of(block, u);
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
-    const Law& law = solid_->laws[at(block.region)];
+    const Law& law = solid_->laws[to_index(block.region)];
     const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
     state.energy += energy.head(block.count).sum();
     scatter(block,
@@ -368,17 +369,17 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) 
 }
 
 void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) const {
-  values.assign(at(pattern_.nonzeros()), 0.0);
+  values.assign(to_index(pattern_.nonzeros()), 0.0);
   ElementMatrix<Lanes> K;
   const int* place = scatter_.data();
   const PointState points = point_state(u);
   for (const Block& block : blocks_) {
     const auto k = kinematics_of(block, u);
-    element_stiffness(solid_->laws[at(block.region)], solid_->dilatation, block.geometry, k,
+    element_stiffness(solid_->laws[to_index(block.region)], solid_->dilatation, block.geometry, k,
                       pressures(block, k, points), K);
     for (std::size_t entry = 0; entry < kElementEntries; ++entry, place += kLanes)
       for (int lane = 0; lane < block.count; ++lane)
-        if (place[lane] >= 0) values[at(place[lane])] += K[entry][lane];
+        if (place[lane] >= 0) values[to_index(place[lane])] += K[entry][lane];
   }
   add_point_stiffness(u, points, values);
   foundation_.add_stiffness(equation_, pattern_, values);
@@ -393,17 +394,17 @@ SolidModel::Compressed SolidModel::most_compressed(const Displacement& u) const 
     for (int lane = 0; lane < block.count; ++lane)
       if (element < 0 || J[lane] < worst.J) {
         worst.J = J[lane];
-        element = block.element[at(lane)];
+        element = block.element[to_index(lane)];
       }
   }
   if (element < 0) return worst;
   for (std::size_t c = 0; c < 4; ++c)
-    worst.X += 0.25 * mesh().X.col(mesh().tetrahedra[at(element)][c]);
+    worst.X += 0.25 * mesh().X.col(mesh().tetrahedra[to_index(element)][c]);
   return worst;
 }
 
 Lanes SolidModel::weakest_waves(const Block& block, const ElementKinematics<Lanes>& k) const {
-  const Law& law = solid_->laws[at(block.region)];
+  const Law& law = solid_->laws[to_index(block.region)];
   const bool own = solid_->dilatation == Dilatation::Pointwise;
   Lanes weakest = Lanes::Constant(std::numeric_limits<double>::infinity());
   for (std::size_t q = 0; q < points_of(solid_->dilatation); ++q) {
@@ -426,12 +427,12 @@ std::optional<SolidModel::EllipticityLoss> SolidModel::ellipticity_loss(
   double weakest = std::numeric_limits<double>::min();
   int element = -1;
   for (const Block& block : blocks_) {
-    if (solid_->laws[at(block.region)].polyconvex()) continue;
+    if (solid_->laws[to_index(block.region)].polyconvex()) continue;
     const Lanes stiffness = weakest_waves(block, kinematics_of(block, u));
     for (int lane = 0; lane < block.count; ++lane) {
       if (stiffness[lane] >= weakest) continue;
       weakest = stiffness[lane];
-      element = block.element[at(lane)];
+      element = block.element[to_index(lane)];
     }
   }
   if (element < 0) return std::nullopt;
@@ -445,14 +446,14 @@ void SolidModel::element_fields(const Displacement& u, std::vector<double>& ener
   pressure.resize(mesh().tetrahedra.size());
   const PointState points = point_state(u);
   for (const Block& block : blocks_) {
-    const Law& law = solid_->laws[at(block.region)];
+    const Law& law = solid_->laws[to_index(block.region)];
     const auto k = kinematics_of(block, u);
     const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
     const Lanes density = energy / block.geometry.volume;
     const Lanes p = mean_stress(law, pressures(block, k, points), block.geometry, k);
     for (int lane = 0; lane < block.count; ++lane) {
-      energy_density[at(block.element[at(lane)])] = density[lane];
-      pressure[at(block.element[at(lane)])] = p[lane];
+      energy_density[to_index(block.element[to_index(lane)])] = density[lane];
+      pressure[to_index(block.element[to_index(lane)])] = p[lane];
     }
   }
 }

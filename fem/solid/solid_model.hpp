@@ -15,7 +15,7 @@
 #include "fem/solid/foundation.hpp"
 #include "fem/solid/gravity.hpp"
 #include "fem/solid/nodal_pressure.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -96,7 +96,7 @@ class SolidModel {
 
   const QuadraticMesh& mesh() const { return solid_->mesh; }
   /// First of the three unknowns of a node, -1 where it is not free.
-  int equation(int node) const { return equation_[at(node)]; }
+  int equation(int node) const { return equation_[to_index(node)]; }
   const SparsePattern& pattern() const { return pattern_; }
   double bytes() const;  ///< of its own tables, without the mesh that it shares
 

@@ -58,11 +58,11 @@ void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& 
 void NewtonSolver::shifted_stiffness(const Displacement& u, double patch, double all) {
   model_.stiffness(u, K_);
   const auto& start = model_.pattern().start;
-  for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[at(start[i])] *= 1 + all;
+  for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[to_index(start[i])] *= 1 + all;
   const std::vector<int>& ours = patch_->unknowns();
   patch_stiffness_.stiffening.resize(static_cast<Eigen::Index>(ours.size()));
   for (std::size_t i = 0; i < ours.size(); ++i) {
-    double& diagonal = K_[at(start[at(ours[i])])];
+    double& diagonal = K_[to_index(start[to_index(ours[i])])];
     patch_stiffness_.stiffening[static_cast<Eigen::Index>(i)] = patch * std::abs(diagonal);
     diagonal += patch * std::abs(diagonal);
   }

@@ -9,8 +9,8 @@
 
 #include "fem/factor/cholesky.hpp"
 #include "fem/solve/newton.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 
@@ -152,8 +152,8 @@ Eigen::Vector3d displacement_at(const QuadraticMesh& mesh, const Displacement& u
     nearest = distance;
     displacement.setZero();
     for (int i = 0; i < 3; ++i) {
-      displacement += L[i] * (2 * L[i] - 1) * u.col(facet[at(i)]);
-      displacement += 4 * L[i] * L[(i + 1) % 3] * u.col(facet[at(3 + i)]);
+      displacement += L[i] * (2 * L[i] - 1) * u.col(facet[to_index(i)]);
+      displacement += 4 * L[i] * L[(i + 1) % 3] * u.col(facet[to_index(3 + i)]);
     }
   }
   return displacement;

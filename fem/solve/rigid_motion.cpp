@@ -27,9 +27,9 @@ Vector3d middle_of_support(const QuadraticMesh& mesh, const Displacement& u) {
     ++count;
   };
   for (int node = 0; node < mesh.nodes(); ++node)
-    if (mesh.held[at(node)]) add(node);
+    if (mesh.held[to_index(node)]) add(node);
   for (const SprungFacet& sprung : mesh.sprung)
-    for (const auto node : mesh.facets[at(sprung.facet)]) add(node);
+    for (const auto node : mesh.facets[to_index(sprung.facet)]) add(node);
   return count > 0 ? Vector3d(sum / count) : sum;
 }
 

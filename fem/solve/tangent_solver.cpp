@@ -16,23 +16,25 @@ TangentSolver::TangentSolver(const SolidModel& whole, const SolidModel& window,
       window_(window),
       rest_solve_(std::move(rest_solve)),
       factor_(window.pattern()),
-      unknown_(at(window.pattern().n)) {
+      unknown_(to_index(window.pattern().n)) {
   for (int node = 0; node < window.mesh().nodes(); ++node)
     for (int i = 0; i < 3 && window.equation(node) >= 0; ++i)
-      unknown_[at(window.equation(node) + i)] = whole.equation(node) + i;
+      unknown_[to_index(window.equation(node) + i)] = whole.equation(node) + i;
   find_couplings();
 }
 
 void TangentSolver::find_couplings() {
   const SparsePattern& pattern = whole_.pattern();
-  std::vector<int> inside(at(pattern.n), -1);
-  for (std::size_t i = 0; i < unknown_.size(); ++i) inside[at(unknown_[i])] = static_cast<int>(i);
+  std::vector<int> inside(to_index(pattern.n), -1);
+  for (std::size_t i = 0; i < unknown_.size(); ++i)
+    inside[to_index(unknown_[i])] = static_cast<int>(i);
   for (int column = 0; column < pattern.n; ++column)
-    for (int k = pattern.start[at(column)]; k < pattern.start[at(column) + 1]; ++k) {
-      const int row = pattern.row[at(k)];
-      if ((inside[at(row)] < 0) == (inside[at(column)] < 0)) continue;
-      const auto [in, out] = inside[at(row)] < 0 ? std::pair(column, row) : std::pair(row, column);
-      couplings_.push_back({inside[at(in)], out, k});
+    for (int k = pattern.start[to_index(column)]; k < pattern.start[to_index(column) + 1]; ++k) {
+      const int row = pattern.row[to_index(k)];
+      if ((inside[to_index(row)] < 0) == (inside[to_index(column)] < 0)) continue;
+      const auto [in, out] =
+          inside[to_index(row)] < 0 ? std::pair(column, row) : std::pair(row, column);
+      couplings_.push_back({inside[to_index(in)], out, k});
     }
 }
 
@@ -61,7 +63,7 @@ Eigen::VectorXd TangentSolver::preconditioned(const Eigen::VectorXd& r) {
   Eigen::VectorXd z;
   rest_solve_(r, z);
   Eigen::VectorXd load = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknown_.size()));
-  for (const Coupling& c : couplings_) load[c.inside] -= K_[at(c.place)] * z[c.outside];
+  for (const Coupling& c : couplings_) load[c.inside] -= K_[to_index(c.place)] * z[c.outside];
   put_inside(load, z);
   return z;
 }

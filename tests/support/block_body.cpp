@@ -6,7 +6,7 @@
 #include <limits>
 #include <map>
 
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::test {
 
@@ -43,7 +43,7 @@ void add_cell(const std::function<std::int32_t(int, int, int)>& node, int i, int
 void add_response_surface(Body& body, double top) {
   std::vector<std::int32_t> response(body.nodes.size(), -1);
   const auto on_top = [&](std::int32_t node) {
-    return body.nodes[fem::at(node)][2] >= top - 1e-12;
+    return body.nodes[to_index(node)][2] >= top - 1e-12;
   };
   std::array<double, 4> extent{1e300, -1e300, 1e300, -1e300};
   for (const auto& node : body.nodes)
@@ -53,10 +53,10 @@ void add_response_surface(Body& body, double top) {
     if (!on_top(t[0]) || !on_top(t[1]) || !on_top(t[2])) continue;
     Triangle local{};
     for (std::size_t c = 0; c < 3; ++c) {
-      auto& index = response[fem::at(t[c])];
+      auto& index = response[to_index(t[c])];
       if (index < 0) {
         index = static_cast<std::int32_t>(body.response.node.size());
-        const Vec3& x = body.nodes[fem::at(t[c])];
+        const Vec3& x = body.nodes[to_index(t[c])];
         const bool rim =
             x[0] == extent[0] || x[0] == extent[1] || x[1] == extent[2] || x[1] == extent[3];
         body.response.node.push_back(t[c]);

@@ -52,11 +52,11 @@ void for_each_volume_point(const fem::QuadraticMesh& mesh,
     const auto& node = mesh.tetrahedra[e];
     Eigen::Matrix3d edges;
     for (int c = 0; c < 3; ++c)
-      edges.col(c) = mesh.X.col(node[fem::at(c + 1)]) - mesh.X.col(node[0]);
+      edges.col(c) = mesh.X.col(node[to_index(c + 1)]) - mesh.X.col(node[0]);
     const Eigen::Matrix3d inverse = edges.inverse();
     std::array<Vector3d, 4> dL;
     dL[0] = -inverse.colwise().sum().transpose();
-    for (int c = 0; c < 3; ++c) dL[fem::at(c + 1)] = inverse.row(c).transpose();
+    for (int c = 0; c < 3; ++c) dL[to_index(c + 1)] = inverse.row(c).transpose();
     // The cube collapsed to a tetrahedron [Stroud 1971, sec. 2.4].
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j)
@@ -105,10 +105,10 @@ namespace {
 
 /// Each unknown's place in the array of displacements.
 std::vector<double*> places(const fem::SolidModel& model, fem::Displacement& u) {
-  std::vector<double*> place(fem::at(model.pattern().n));
+  std::vector<double*> place(to_index(model.pattern().n));
   for (int node = 0; node < model.mesh().nodes(); ++node)
     for (int i = 0; i < 3 && model.equation(node) >= 0; ++i)
-      place[fem::at(model.equation(node) + i)] = &u(i, node);
+      place[to_index(model.equation(node) + i)] = &u(i, node);
   return place;
 }
 
@@ -133,8 +133,8 @@ void equilibrate(const fem::SolidModel& model, const Loads& loads,
     double missing = 0;
     const auto place = places(model, u);
     for (const auto& [i, value] : prescribed) {
-      const double gap = value - *place[fem::at(i)];
-      double& diagonal = K[fem::at(pattern.start[fem::at(i)])];
+      const double gap = value - *place[to_index(i)];
+      double& diagonal = K[to_index(pattern.start[to_index(i)])];
       missing = std::max(missing, std::abs(gap));
       diagonal *= 1e10;
       residual[i] = diagonal * gap;
@@ -148,7 +148,7 @@ void equilibrate(const fem::SolidModel& model, const Loads& loads,
       if (definite) break;
       std::vector<double> raised = K;
       for (std::size_t i = 0; i + 1 < pattern.start.size(); ++i)
-        raised[fem::at(pattern.start[i])] *= 1 + shift;
+        raised[to_index(pattern.start[i])] *= 1 + shift;
       definite = factor.factorize(raised);
     }
     ASSERT_TRUE(definite) << "the stiffness is not positive definite";

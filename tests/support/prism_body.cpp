@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "format/at.hpp"
 #include "format/edge.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::test {
@@ -13,7 +13,7 @@ namespace palpate::test {
 namespace {
 
 double volume6(const Body& body, const Tetrahedron& t) {
-  const auto x = [&](std::size_t c) { return body.nodes[fem::at(t[c])]; };
+  const auto x = [&](std::size_t c) { return body.nodes[to_index(t[c])]; };
   return dot(cross(x(1) - x(0), x(2) - x(0)), x(3) - x(0));
 }
 
@@ -77,7 +77,7 @@ Triangulation octant_of_sphere(int divisions) {
   }
   for (int i = 0; i < divisions; ++i)
     for (int j = 0; i + j < divisions; ++j) {
-      const std::int32_t a = first[fem::at(i)] + j, b = first[fem::at(i + 1)] + j;
+      const std::int32_t a = first[to_index(i)] + j, b = first[to_index(i + 1)] + j;
       mesh.triangles.push_back({a, b, a + 1});
       if (i + j + 1 < divisions) mesh.triangles.push_back({b, b + 1, a + 1});
     }
@@ -102,7 +102,7 @@ Body make_prisms(const Triangulation& base, int layers,
 
 void curve_onto_sphere(double radius, Body& body) {
   for (const Edge& ends : edges_of(body.boundary)) {
-    const Vec3 a = body.nodes[fem::at(ends[0])], b = body.nodes[fem::at(ends[1])];
+    const Vec3 a = body.nodes[to_index(ends[0])], b = body.nodes[to_index(ends[1])];
     if (std::min(norm(a), norm(b)) < radius * (1 - 1e-9)) continue;
     const Vec3 middle = a + b;
     body.curved_edges.push_back({ends, (radius / norm(middle)) * middle});

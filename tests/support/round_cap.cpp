@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/prism_body.hpp"
 
 namespace palpate::test {
@@ -22,7 +22,7 @@ std::vector<fem::PressPoint> places(const RoundCap& cap, const Body& body, doubl
   std::vector<fem::PressPoint> points;
   for (const Triangle& facet : body.boundary) {
     std::array<Vec3, 3> x{};
-    for (std::size_t c = 0; c < 3; ++c) x[c] = body.nodes[fem::at(facet[c])];
+    for (std::size_t c = 0; c < 3; ++c) x[c] = body.nodes[to_index(facet[c])];
     const Vec3 centroid = (1.0 / 3) * (x[0] + x[1] + x[2]);
     if (norm(centroid - Vec3{0, 0, cap.radius}) > near) continue;
     for (const Vec3& flat : {x[0], 0.5 * (x[0] + x[1]), centroid})
@@ -38,7 +38,7 @@ Body cap_of(const RoundCap& cap, const std::vector<double>& angles, int sectors,
   const int layers = static_cast<int>(depths.size()) - 1;
   const Triangulation base = rings(angles, sectors);
   Body body = make_prisms(base, layers, [&](const Vec3& x, int layer) {
-    const double angle = norm(x), r = cap.radius - depths[fem::at(layer)];
+    const double angle = norm(x), r = cap.radius - depths[to_index(layer)];
     const double across = angle > 0 ? r * std::sin(angle) / angle : 0;
     return Vec3{across * x[0], across * x[1], r * std::cos(angle)};
   });
@@ -67,14 +67,14 @@ std::vector<Spread> spread_of_force(const RoundCap& cap, const Body& body,
   settings.points = places(cap, body, near);
   fem::CampaignReport report;
   const Curves curves = fem::run_campaign(body, settings, report);
-  std::vector<Spread> spread(fem::at(press.increments));
+  std::vector<Spread> spread(to_index(press.increments));
   const auto count = static_cast<double>(curves.sites.size());
   for (std::size_t i = 0; i < spread.size(); ++i) {
     double sum = 0, squares = 0;
     for (const SiteCurves& site : curves.sites) {
       if (site.status != SiteStatus::Complete) throw std::runtime_error(site.reason);
       const double force = -dot(site.paths[0].samples[i + 1].force,
-                                unit(settings.points[fem::at(site.vertex)].position));
+                                unit(settings.points[to_index(site.vertex)].position));
       sum += force;
       squares += force * force;
     }

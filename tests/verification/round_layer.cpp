@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/prism_body.hpp"
 
 namespace palpate::test {
@@ -52,7 +52,7 @@ Body make_round_layer(const RoundLayer& layer) {
   const int layers = static_cast<int>(depths.size()) - 1;
   const Triangulation top = rings(ring_radii(layer), kSectors);
   Body body = make_prisms(top, layers, [&](const Vec3& x, int level) {
-    return Vec3{x[0], x[1], -depths[fem::at(layers - level)]};
+    return Vec3{x[0], x[1], -depths[to_index(layers - level)]};
   });
   const auto count = static_cast<std::int32_t>(top.points.size());
   for (std::int32_t i = 0; i < count; ++i) body.fixed_nodes.push_back(i);

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "fem/laws/law_table.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
 #include "tests/verification/record.hpp"
@@ -53,8 +53,8 @@ class Block {
       const Eigen::Vector3d X = model_.mesh().X.col(node);
       std::array<bool, 3> given{};
       for (const Motion& m : motions) {
-        if (X[m.face_axis] != m.face || given[at(m.axis)]) continue;
-        given[at(m.axis)] = true;
+        if (X[m.face_axis] != m.face || given[to_index(m.axis)]) continue;
+        given[to_index(m.axis)] = true;
         prescribed.push_back({model_.equation(node) + m.axis, share * m.by(X)});
       }
     }

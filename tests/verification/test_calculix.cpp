@@ -12,7 +12,7 @@
 #include "app/export/deck.hpp"
 #include "fem/campaign/indentation.hpp"
 #include "fem/campaign/stuck_patch.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
 #include "tests/verification/record.hpp"
@@ -31,7 +31,7 @@ Body block(int cells) {
   body.region_names = {"upper", "lower"};
   for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
     double z = 0;
-    for (const std::int32_t n : body.tetrahedra[t]) z += 0.25 * body.nodes[fem::at(n)][2];
+    for (const std::int32_t n : body.tetrahedra[t]) z += 0.25 * body.nodes[to_index(n)][2];
     body.tetrahedron_region[t] = z < -0.0075 ? 1 : 0;
   }
   return body;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "fem/campaign/indentation.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/verification/record.hpp"
 
@@ -39,7 +39,7 @@ Press press(const Grid& grid, double poisson, double depth, int increments) {
   const Body body = test::make_block(across, across, down);
   std::int32_t centre = 0;
   for (std::size_t v = 0; v < body.response.node.size(); ++v) {
-    const Vec3& x = body.nodes[at(body.response.node[v])];
+    const Vec3& x = body.nodes[to_index(body.response.node[v])];
     if (x[0] == 0 && x[1] == 0) centre = static_cast<std::int32_t>(v);
   }
   CampaignSettings settings;

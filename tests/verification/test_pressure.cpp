@@ -10,7 +10,7 @@
 
 #include "fem/campaign/indentation.hpp"
 #include "fem/solid/pressure_smoothness.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
 #include "tests/verification/record.hpp"
@@ -34,8 +34,8 @@ Eigen::MatrixXd bulk_stiffness(const Body& body, Dilatation dilatation, const So
     model.stiffness(Displacement::Zero(3, model.mesh().nodes()), K);
     const SparsePattern& pattern = model.pattern();
     for (int column = 0; column < n; ++column)
-      for (int k = pattern.start[at(column)]; k < pattern.start[at(column + 1)]; ++k)
-        dense(pattern.row[at(k)], column) += (kappa > 1 ? 1 : -1) * K[at(k)];
+      for (int k = pattern.start[to_index(column)]; k < pattern.start[to_index(column + 1)]; ++k)
+        dense(pattern.row[to_index(k)], column) += (kappa > 1 ? 1 : -1) * K[to_index(k)];
   }
   return dense.selfadjointView<Eigen::Lower>();
 }
@@ -109,7 +109,7 @@ Confined press_confined(Dilatation dilatation, double poisson, int cells) {
   }
   std::int32_t centre = 0;
   for (std::size_t v = 0; v < body.response.node.size(); ++v) {
-    const Vec3& x = body.nodes[at(body.response.node[v])];
+    const Vec3& x = body.nodes[to_index(body.response.node[v])];
     if (std::hypot(x[0], x[1]) < 1e-9) centre = static_cast<std::int32_t>(v);
   }
   CampaignSettings s;

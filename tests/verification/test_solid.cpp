@@ -11,7 +11,7 @@
 
 #include "fem/laws/invariant_energies.hpp"
 #include "fem/solid/solid_model.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
 #include "tests/support/prism_body.hpp"
@@ -120,16 +120,16 @@ class OctantOfSphere {
  private:
   void find_wall(const SolidModel& model) {
     const QuadraticMesh& mesh = model.mesh();
-    std::vector<bool> known(at(mesh.nodes()), false);
+    std::vector<bool> known(to_index(mesh.nodes()), false);
     for (const Facet& f : mesh.facets) {
       const bool inside = std::ranges::all_of(
           f, [&](int node) { return node >= corners() || mesh.X.col(node).norm() < 1 + 1e-9; });
       if (!inside) continue;
       hollow_ -= mesh.X.col(f[0]).dot(mesh.X.col(f[1]).cross(mesh.X.col(f[2]))) / 6;
       for (const auto node : f) {
-        for (int i = 0; i < 3 && model.equation(node) >= 0 && !known[at(node)]; ++i)
+        for (int i = 0; i < 3 && model.equation(node) >= 0 && !known[to_index(node)]; ++i)
           wall_.push_back({model.equation(node) + i, mesh.X(i, node)});
-        known[at(node)] = true;
+        known[to_index(node)] = true;
       }
     }
   }
@@ -262,7 +262,7 @@ Norms manufactured_errors(const Manufactured& exact, Dilatation dilatation, int 
   body.fixed_nodes.clear();
   std::vector<bool> outside(body.nodes.size(), false);
   for (const auto& t : body.boundary)
-    for (const auto node : t) outside[at(node)] = true;
+    for (const auto node : t) outside[to_index(node)] = true;
   for (std::size_t i = 0; i < outside.size(); ++i)
     if (outside[i]) body.fixed_nodes.push_back(static_cast<std::int32_t>(i));
   const SolidModel model(body, {NeoHookean::from_moduli(exact.mu, exact.kappa)}, dilatation);

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/prism_body.hpp"
 #include "tests/verification/record.hpp"
 #include "tests/verification/round_layer.hpp"
@@ -50,7 +50,7 @@ Body half_ball(double fine) {
   const int layers = static_cast<int>(below.size()) - 1;
   Body body = test::make_prisms(disc, layers, [&](const Vec3& x, int layer) {
     const double arc = std::hypot(x[0], x[1]), angle = arc / kRadius;
-    const double down = below[at(layers - layer)];
+    const double down = below[to_index(layers - layer)];
     const double out = down * arc / kRim + (1 - down) * kRadius * std::sin(angle);
     const double scale = arc > 0 ? out / arc : 0;
     return Vec3{scale * x[0], scale * x[1], (1 - down) * kRadius * std::cos(angle)};

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "fem/campaign/indentation.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/verification/record.hpp"
 

@@ -13,8 +13,8 @@
 
 #include "app/export/deck.hpp"
 #include "fem/contact/tool_mesh.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
 
@@ -228,7 +228,7 @@ TEST(Decks, PressTheToolAgainstTheSkinThatItMayMeet) {
     EXPECT_NEAR(lowest, 0.01, 1e-9);
     double top = 0;
     for (const ElementSide& s : deck.tool->skin) {
-      const fem::Facet facet = facet_of(deck.mesh.tetrahedra[fem::at(s.element)], s.side);
+      const fem::Facet facet = facet_of(deck.mesh.tetrahedra[to_index(s.element)], s.side);
       const Eigen::Vector3d area = corner_normal(deck.mesh.X, facet);
       if (area[2] > 0.9 * area.norm()) top += area[2];
       for (std::size_t m = 0; m < 3; ++m) {

@@ -13,7 +13,7 @@
 #include "fem/laws/ogden.hpp"
 #include "fem/laws/saint_venant_kirchhoff.hpp"
 #include "fitting/measurement/calibrate/dual.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/sample_laws.hpp"
 
 namespace palpate::fem {
@@ -134,7 +134,7 @@ struct Sample<HolzapfelGasserOgden> {
 template <class T>
 Tensor2<T> to_tensor(const Matrix& m) {
   Tensor2<T> t;
-  for (int i = 0; i < 9; ++i) t[at(i)] = T(m(i / 3, i % 3));
+  for (int i = 0; i < 9; ++i) t[to_index(i)] = T(m(i / 3, i % 3));
   return t;
 }
 inline Tensor2<double> to_tensor(const Matrix& m) {
@@ -197,7 +197,7 @@ Tensor4<double> isochoric_tangent(const L& law, const Matrix& F,
 
 inline Tensor2<Varied> varied(const Matrix& F) {
   Tensor2<Varied> t;
-  for (int i = 0; i < 9; ++i) t[at(i)] = Varied(F(i / 3, i % 3), i);
+  for (int i = 0; i < 9; ++i) t[to_index(i)] = Varied(F(i / 3, i % 3), i);
   return t;
 }
 

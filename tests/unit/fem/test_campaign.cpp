@@ -9,8 +9,8 @@
 
 #include "fem/campaign/campaign.hpp"
 #include "fem/factor/rest_factor.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -84,7 +84,7 @@ TEST(Campaign, SymmetricSitesRespondAlike) {
   const Curves curves = run_campaign(body, quick(), report);
   const auto site_at = [&](double x, double y) -> const SiteCurves& {
     for (const auto& site : curves.sites) {
-      const Vec3& p = body.nodes[at(body.response.node[at(site.vertex)])];
+      const Vec3& p = body.nodes[to_index(body.response.node[to_index(site.vertex)])];
       if (std::abs(p[0] - x) + std::abs(p[1] - y) < 1e-9) return site;
     }
     throw std::logic_error("no such site");
@@ -119,7 +119,7 @@ TEST(Campaign, TellsItsProgress) {
   const Body body = small_block();
   std::vector<std::int32_t> sites;
   for (std::int32_t v = 0; v < 25; ++v)
-    if (body.response.is_site[at(v)]) sites.push_back(v);
+    if (body.response.is_site[to_index(v)]) sites.push_back(v);
   settings.sites = {sites[2], sites[0]};
   std::vector<std::int64_t> seen;
   settings.progress = [&](const CampaignProgress& p) { seen.push_back(p.done * 100 + p.total); };
@@ -190,7 +190,7 @@ TEST(Campaign, AFailedSiteKeepsItsPartialCurveAndReason) {
   s.indentation.held_depths.clear();
   const Body body = small_block();
   for (std::int32_t v = 0; v < 25 && s.sites.empty(); ++v)
-    if (body.response.is_site[at(v)]) s.sites = {v};
+    if (body.response.is_site[to_index(v)]) s.sites = {v};
   CampaignReport report;
   const Curves curves = run_campaign(body, s, report);
   EXPECT_NE(curves.sites[0].status, SiteStatus::Complete);
@@ -206,7 +206,7 @@ TEST(Campaign, EveryFailedPathOfASiteLeavesItsReason) {
   s.indentation.azimuths = {3.0, 3.3};
   const Body body = small_block();
   for (std::int32_t v = 0; v < 25 && s.sites.empty(); ++v)
-    if (body.response.is_site[at(v)]) s.sites = {v};
+    if (body.response.is_site[to_index(v)]) s.sites = {v};
   CampaignReport report;
   const SiteCurves site = run_campaign(body, s, report).sites.at(0);
   EXPECT_EQ(site.status, SiteStatus::Partial);

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 
 #include "fem/contact/contact_patch.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -32,7 +32,7 @@ void expect_derivatives(const SolidModel& model, const ToolContact& contact, Dis
   const int n = model.pattern().n;
   Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
   contact.add_forces(model, u, f);
-  std::vector<double> K(at(model.pattern().nonzeros()), 0.0);
+  std::vector<double> K(to_index(model.pattern().nonzeros()), 0.0);
   contact.add_stiffness(model, u, true, K);
   const double h = 1e-8;
   int compared = 0;
@@ -104,14 +104,14 @@ TEST(ContactPatch, IsTheContactOnItsUnknowns) {
     for (Eigen::Index i = 0; i < count; ++i)
       EXPECT_NEAR(g[i], full[patch.unknowns()[static_cast<std::size_t>(i)]], 1e-10 * full.norm());
 
-    std::vector<double> K(at(p.model.pattern().nonzeros()), 0.0);
+    std::vector<double> K(to_index(p.model.pattern().nonzeros()), 0.0);
     p.contact.add_stiffness(p.model, moved, true, K);
     for (Eigen::Index i = 0; i < count; ++i)
       for (Eigen::Index j = 0; j <= i; ++j) {
         if (H(i, j) == 0) continue;
         const int row = patch.unknowns()[static_cast<std::size_t>(i)];
         const int column = patch.unknowns()[static_cast<std::size_t>(j)];
-        EXPECT_NEAR(H(i, j), K[at(p.model.pattern().position(row, column))], 1e-9 * H.norm());
+        EXPECT_NEAR(H(i, j), K[to_index(p.model.pattern().position(row, column))], 1e-9 * H.norm());
       }
   }
 }

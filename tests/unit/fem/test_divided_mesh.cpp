@@ -12,9 +12,9 @@
 
 #include "fem/campaign/indentation.hpp"
 #include "fem/mesh/divided_mesh.hpp"
-#include "format/at.hpp"
 #include "format/edge.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -42,7 +42,7 @@ Body divided_body(const Body& body) {
   fine.region_names = body.region_names;
   for (int node = 0; node < mesh.nodes(); ++node) {
     fine.nodes.push_back({mesh.X(0, node), mesh.X(1, node), mesh.X(2, node)});
-    if (mesh.held[at(node)]) fine.fixed_nodes.push_back(node);
+    if (mesh.held[to_index(node)]) fine.fixed_nodes.push_back(node);
   }
   for (const Tetrahedron10& t : divided.mesh.tetrahedra)
     fine.tetrahedra.push_back({t[0], t[1], t[2], t[3]});
@@ -92,7 +92,7 @@ double area(const QuadraticMesh& mesh) {
 std::vector<int> elements_around(const QuadraticMesh& mesh, double radius) {
   std::vector<int> elements;
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e)
-    if (std::ranges::any_of(mesh.tetrahedra[at(e)],
+    if (std::ranges::any_of(mesh.tetrahedra[to_index(e)],
                             [&](int node) { return mesh.X.col(node).norm() < radius; }))
       elements.push_back(e);
   return elements;
@@ -158,7 +158,7 @@ TEST(DividedMesh, ProlongsQuadraticFieldsExactly) {
     const DividedMesh::Made& made = divided.made[i];
     double value = 0;
     for (std::size_t a = 0; a < kTetNodes; ++a)
-      value += made.N[a] * field(whole.X.col(whole.tetrahedra[at(made.parent)][a]));
+      value += made.N[a] * field(whole.X.col(whole.tetrahedra[to_index(made.parent)][a]));
     const Eigen::Vector3d X = divided.mesh.X.col(whole.nodes() + static_cast<int>(i));
     EXPECT_NEAR(value, field(X), 1e-12);
   }
@@ -174,13 +174,13 @@ double paraboloid(double x, double y) {
 Body domed_block(int across) {
   Body body = block_of(across);
   const auto on_top = [&](std::int32_t node) {
-    const Vec3& x = body.nodes[at(node)];
+    const Vec3& x = body.nodes[to_index(node)];
     return std::abs(x[2] - paraboloid(x[0], x[1])) < 1e-12;
   };
   for (Vec3& x : body.nodes) x[2] += paraboloid(x[0], x[1]);
   for (const Edge& ends : edges_of(body.boundary)) {
     if (!on_top(ends[0]) || !on_top(ends[1])) continue;
-    const Vec3 middle = 0.5 * (body.nodes[at(ends[0])] + body.nodes[at(ends[1])]);
+    const Vec3 middle = 0.5 * (body.nodes[to_index(ends[0])] + body.nodes[to_index(ends[1])]);
     body.curved_edges.push_back({ends, {middle[0], middle[1], paraboloid(middle[0], middle[1])}});
   }
   return body;

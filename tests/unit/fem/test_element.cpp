@@ -72,7 +72,7 @@ TEST(SolidModel, FibresRunAroundTheirAxisElementByElement) {
   const Lanes J = Lanes::Constant(stretch.prod());
   double sum = 0;
   for (const Tetrahedron& t : body.tetrahedra) {
-    const auto corner = [&](int c) -> const Vec3& { return body.nodes[at(t[at(c)])]; };
+    const auto corner = [&](int c) -> const Vec3& { return body.nodes[to_index(t[to_index(c)])]; };
     const Vec3 a = corner(1) - corner(0), b = corner(2) - corner(0), c = corner(3) - corner(0);
     const auto directions =
         constants.fibres.at(0.25 * (corner(0) + corner(1) + corner(2) + corner(3)));

@@ -13,7 +13,7 @@
 #include "fem/laws/law_table.hpp"
 #include "fem/solid/element.hpp"
 #include "fem/solid/solid_model.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
 
@@ -30,7 +30,7 @@ struct PointOfLaw {
 /// dP/dF of a law at F, in every lane; the pressure is left out, as it adds nothing.
 PointOfLaw point_of(const Law& law, const Matrix& F) {
   PointOfLaw point;
-  for (int i = 0; i < 9; ++i) point.F[at(i)] = Lanes::Constant(F.data()[i]);
+  for (int i = 0; i < 9; ++i) point.F[to_index(i)] = Lanes::Constant(F.data()[i]);
   const Tensor2<Lanes> cof = cofactor(point.F);
   const Lanes J = determinant(point.F, cof);
   Fibres<Lanes> fibres;
@@ -125,7 +125,7 @@ TEST(Ellipticity, TheWeakestWaveIsWeakerThanOnAnyGrid) {
           Eigen::Matrix3d Q = Eigen::Matrix3d::Zero();
           for (int entry = 0; entry < 81; ++entry) {
             const int iJ = entry / 9, kL = entry % 9;
-            Q(iJ / 3, kL / 3) += A[at(iJ)][at(kL)] * n[iJ % 3] * n[kL % 3];
+            Q(iJ / 3, kL / 3) += A[to_index(iJ)][to_index(kL)] * n[iJ % 3] * n[kL % 3];
           }
           grid = std::min(grid, eigen.compute(Q).eigenvalues()[0]);
         }

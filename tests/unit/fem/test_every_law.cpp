@@ -86,7 +86,7 @@ TYPED_TEST(EveryLaw, TangentHoldsWhereStretchesAreEqual) {
       const auto high = isochoric_stress(law, to_tensor(plus));
       const auto low = isochoric_stress(law, to_tensor(minus));
       for (std::size_t i = 0; i < 9; ++i)
-        EXPECT_NEAR(A[i][at(k)], (high[i] - low[i]) / (2 * h), 2e-8 * scale);
+        EXPECT_NEAR(A[i][to_index(k)], (high[i] - low[i]) / (2 * h), 2e-8 * scale);
     }
   }
 }
@@ -173,8 +173,8 @@ TYPED_TEST(EveryLaw, OfTheTableEqualsTheScalarOneInEveryLane) {
   for (std::size_t f = 0; f < 2; ++f)
     for (std::size_t i = 0; i < 3; ++i) a[f][i] = Lanes::Constant(kFibres[f][i]);
   for (int lane = 0; lane < kLanes; ++lane) {
-    single[at(lane)] = random_gradient(random);
-    for (int i = 0; i < 9; ++i) F[at(i)][lane] = single[at(lane)](i / 3, i % 3);
+    single[to_index(lane)] = random_gradient(random);
+    for (int i = 0; i < 9; ++i) F[to_index(i)][lane] = single[to_index(lane)](i / 3, i % 3);
   }
   const auto cof = cofactor(F);
   const Lanes J = determinant(F, cof);
@@ -184,7 +184,7 @@ TYPED_TEST(EveryLaw, OfTheTableEqualsTheScalarOneInEveryLane) {
   for (auto& row : A) row.fill(Lanes::Zero());
   made->add_tangent(F, cof, J, a, A);
   for (int lane = 0; lane < kLanes; ++lane) {
-    const Matrix& one = single[at(lane)];
+    const Matrix& one = single[to_index(lane)];
     const double size = energy(law, to_tensor(one));
     EXPECT_NEAR(W[lane] + U[lane], size, 1e-10 * size);
     const auto expected = isochoric_stress(law, to_tensor(one));

@@ -6,7 +6,7 @@
 
 #include "fem/laws/law.hpp"
 #include "fem/laws/law_table.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 namespace {

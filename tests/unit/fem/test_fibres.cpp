@@ -7,8 +7,8 @@
 
 #include "fem/campaign/indentation.hpp"
 #include "fem/solid/fibre_potential.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -80,7 +80,7 @@ double pressed_force(const Body& body, const FibreField& field) {
   s.indentation.held_depths.clear();
   const CampaignContext context(body, s, Engine::Direct);
   std::int32_t site = 0;
-  while (body.response.is_site[at(site)] == 0) ++site;
+  while (body.response.is_site[to_index(site)] == 0) ++site;
   const SiteCurves curves = solve_site(context, site, nullptr);
   EXPECT_EQ(curves.status, SiteStatus::Complete) << curves.reason;
   return norm(curves.paths.front().samples.back().force);
@@ -131,7 +131,7 @@ TEST(FibreField, OfAPotentialRunsAroundABentBar) {
     double worst = 0;
     for (const Tetrahedron& t : body.tetrahedra) {
       Vec3 X{};
-      for (const std::int32_t node : t) X = X + 0.25 * body.nodes[at(node)];
+      for (const std::int32_t node : t) X = X + 0.25 * body.nodes[to_index(node)];
       const Vec3 around = (1 / std::hypot(X[0], X[1])) * Vec3{X[1], -X[0], 0};
       worst = std::max(worst, 1 - dot(field.at(X)[0], around));
     }
@@ -182,7 +182,7 @@ TEST(FibreField, OfAPotentialReachesEveryPartOfTheRegion) {
   std::vector<Tetrahedron> kept;
   for (const Tetrahedron& t : body.tetrahedra) {
     double x = 0;
-    for (const std::int32_t node : t) x += 0.25 * body.nodes[at(node)][0];
+    for (const std::int32_t node : t) x += 0.25 * body.nodes[to_index(node)][0];
     if (x < 0.01 || x > 0.02) kept.push_back(t);
   }
   body.tetrahedra = kept;

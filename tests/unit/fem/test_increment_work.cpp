@@ -8,7 +8,7 @@
 #include <random>
 
 #include "fem/contact/increment_work.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -49,7 +49,7 @@ struct LinearSolid {
     Displacement u = rest;
     for (int node = 0; node < model.mesh().nodes(); ++node)
       for (Eigen::Index i = 0; i < d.size(); i += 3)
-        if (patch.unknowns()[at(static_cast<int>(i))] == model.equation(node))
+        if (patch.unknowns()[to_index(static_cast<int>(i))] == model.equation(node))
           u.col(node) = d.segment<3>(i);
     return u;
   }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "fem/campaign/indentation.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -20,7 +20,7 @@ std::int32_t centre_vertex(const Body& body) {
   std::int32_t best = 0;
   for (std::size_t v = 0; v < body.response.node.size(); ++v) {
     const auto r = [&](std::size_t i) {
-      const Vec3& x = body.nodes[at(body.response.node[i])];
+      const Vec3& x = body.nodes[to_index(body.response.node[i])];
       return std::hypot(x[0], x[1]);
     };
     if (r(v) < r(static_cast<std::size_t>(best))) best = static_cast<std::int32_t>(v);
@@ -66,14 +66,14 @@ TEST_F(Indentation, CompletesBothPaths) {
 
 TEST_F(Indentation, PressesAnyPointOfTheSurface) {
   const std::int32_t centre = centre_vertex(*body_);
-  const Vec3 at_centre = body_->nodes[at(body_->response.node[at(centre)])];
+  const Vec3 at_centre = body_->nodes[to_index(body_->response.node[to_index(centre)])];
   CampaignSettings s = settings();
   s.indentation.held_depths.clear();
   s.indentation.depth = 0.002;  // in the same steps
   s.indentation.increments = 4;
   // A third of an element off the node, on a block that is the same there but for its far sides.
-  s.points = {{at_centre, body_->response.inward[at(centre)]},
-              {at_centre + Vec3{0.0008, 0.0005, 0}, body_->response.inward[at(centre)]}};
+  s.points = {{at_centre, body_->response.inward[to_index(centre)]},
+              {at_centre + Vec3{0.0008, 0.0005, 0}, body_->response.inward[to_index(centre)]}};
   CampaignReport report;
   const Curves curves = run_campaign(*body_, s, report);
   ASSERT_EQ(curves.sites.size(), 2u);

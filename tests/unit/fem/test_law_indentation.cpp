@@ -7,7 +7,7 @@
 
 #include "fem/campaign/indentation.hpp"
 #include "fem/campaign/stuck_patch.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/patch_work.hpp"
 #include "tests/support/sample_laws.hpp"
@@ -22,7 +22,7 @@ Body layered_block() {
   body.region_names = {"tissue", "skin"};
   for (std::size_t t = 0; t < body.tetrahedra.size(); ++t) {
     double z = 0;
-    for (const std::int32_t n : body.tetrahedra[t]) z += 0.25 * body.nodes[at(n)][2];
+    for (const std::int32_t n : body.tetrahedra[t]) z += 0.25 * body.nodes[to_index(n)][2];
     body.tetrahedron_region[t] = z > -0.004 ? 1 : 0;
   }
   return body;

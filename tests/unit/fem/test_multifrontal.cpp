@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "fem/factor/multifrontal.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::fem {
 namespace {
@@ -38,13 +38,13 @@ struct Star {
     }
     dense = Eigen::MatrixXd::Zero(pattern.n, pattern.n);
     for (int j = 0; j < pattern.n; ++j)
-      for (int e = pattern.start[at(j)]; e < pattern.start[at(j) + 1]; ++e) {
-        const int i = pattern.row[at(e)];
+      for (int e = pattern.start[to_index(j)]; e < pattern.start[to_index(j) + 1]; ++e) {
+        const int i = pattern.row[to_index(e)];
         const double value = i == j ? pattern.n : std::sin(1.0 + 3.0 * i + 7.0 * j);
         values.push_back(value);
         dense(i, j) = dense(j, i) = value;
       }
-    order.resize(at(pattern.n));
+    order.resize(to_index(pattern.n));
     std::iota(order.begin(), order.end(), 0);
   }
 };
@@ -58,14 +58,14 @@ struct Columns {
 Columns columns_of(const Star& star, const Cholesky& analysis, int threads) {
   const SupernodalView view = analysis.view();
   Columns columns;
-  columns.of.resize(at(view.supernodes));
+  columns.of.resize(to_index(view.supernodes));
   std::mutex mutex;
   columns.definite =
       Multifrontal(star.pattern, view).factorize(star.values, threads, [&](int k, const double* x) {
         const int rows = view.row_start[k + 1] - view.row_start[k];
         const int width = view.first_column[k + 1] - view.first_column[k];
         const std::lock_guard lock(mutex);
-        columns.of[at(k)].assign(x, x + std::ptrdiff_t{rows} * width);
+        columns.of[to_index(k)].assign(x, x + std::ptrdiff_t{rows} * width);
       });
   return columns;
 }
@@ -84,7 +84,7 @@ TEST(Multifrontal, HandsOutTheFactorOfTheDenseMatrix) {
     const int rows = view.row_start[k + 1] - view.row_start[k], first = view.first_column[k];
     for (int j = 0; j < view.first_column[k + 1] - first; ++j)
       for (int i = j; i < rows; ++i, ++compared)
-        ASSERT_NEAR(columns.of[at(k)][at(j) * at(rows) + at(i)],
+        ASSERT_NEAR(columns.of[to_index(k)][to_index(j) * to_index(rows) + to_index(i)],
                     L(view.rows[view.row_start[k] + i], first + j), 1e-10);
   }
   EXPECT_GE(compared, star.pattern.nonzeros());
@@ -110,7 +110,7 @@ TEST(Multifrontal, SaysThatAMatrixIsNotPositiveDefinite) {
   for (const int unknown : {3, kGroups * kOfGroup + kShared - 1})
     for (const int threads : {1, 4}) {
       Star star;
-      star.values[at(star.pattern.start[at(unknown)])] = -1;
+      star.values[to_index(star.pattern.start[to_index(unknown)])] = -1;
       const Cholesky analysis(star.pattern, &star.order);
       EXPECT_FALSE(columns_of(star, analysis, threads).definite) << unknown << " " << threads;
     }
@@ -138,7 +138,7 @@ TEST(EliminationPlan, HoldsWhatTheGroupsLeaveAndTheFrontOfThoseShared) {
   EXPECT_DOUBLE_EQ(alone.column_bytes, last);
   EXPECT_EQ(alone.parts.size(), 1u);
   const EliminationPlan two(tree, 2);
-  EXPECT_EQ(two.parts.size(), at(kGroups - 1));
+  EXPECT_EQ(two.parts.size(), to_index(kGroups - 1));
   EXPECT_EQ(two.top, std::vector<int>{kGroups - 1});
   EXPECT_GE(two.update_bytes, alone.update_bytes);
   EXPECT_DOUBLE_EQ(two.column_bytes, 2 * last);

@@ -9,7 +9,7 @@
 
 #include "fem/laws/law_table.hpp"
 #include "fem/solve/newton.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
 
@@ -23,7 +23,7 @@ Body held_all_around() {
   std::uniform_real_distribution<double> shift(-2e-3, 2e-3);
   std::vector<bool> outside(body.nodes.size(), false);
   for (const auto& t : body.boundary)
-    for (const auto node : t) outside[at(node)] = true;
+    for (const auto node : t) outside[to_index(node)] = true;
   body.fixed_nodes.clear();
   for (std::size_t i = 0; i < body.nodes.size(); ++i) {
     if (outside[i])
@@ -60,7 +60,7 @@ TEST_P(PatchTest, AnAffineBoundaryGivesAnAffineInterior) {
   EXPECT_LT((u - affine).lpNorm<Eigen::Infinity>(), 1e-11);
 
   Tensor2<Lanes> t;
-  for (int i = 0; i < 9; ++i) t[at(i)] = Lanes::Constant(F(i / 3, i % 3));
+  for (int i = 0; i < 9; ++i) t[to_index(i)] = Lanes::Constant(F(i / 3, i % 3));
   Fibres<Lanes> a;
   const auto fibres = law.fibres_at({});
   for (std::size_t f = 0; f < 2; ++f)

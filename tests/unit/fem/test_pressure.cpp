@@ -48,8 +48,8 @@ TEST_P(NodalPressures, OfAWindowHaveTheForcesAndTheStiffnessOfTheWhole) {
     if (own < 0) continue;
     for (int i = 0; i < 3; ++i) {
       EXPECT_NEAR(part[own + i], all[same + i], 1e-9 * all.norm());
-      EXPECT_NEAR(K_part[at(window.pattern().position(own + i, own))],
-                  K_all[at(whole.pattern().position(same + i, same))], 1e-9 * largest);
+      EXPECT_NEAR(K_part[to_index(window.pattern().position(own + i, own))],
+                  K_all[to_index(whole.pattern().position(same + i, same))], 1e-9 * largest);
     }
   }
 }

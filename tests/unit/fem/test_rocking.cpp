@@ -8,14 +8,14 @@
 
 #include "fem/campaign/indentation.hpp"
 #include "fem/solve/rigid_motion.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
 namespace {
 
 bool at_base(const Body& body, std::int32_t node) {
-  return body.nodes[at(node)][2] < -0.0159;
+  return body.nodes[to_index(node)][2] < -0.0159;
 }
 
 Body block() {
@@ -38,7 +38,7 @@ Body on_a_stump() {
   Body body = block();
   body.fixed_nodes.clear();
   for (std::int32_t node = 0; node < static_cast<std::int32_t>(body.nodes.size()); ++node) {
-    const Vec3& x = body.nodes[at(node)];
+    const Vec3& x = body.nodes[to_index(node)];
     if (at_base(body, node) && std::hypot(x[0], x[1]) < 0.0051) body.fixed_nodes.push_back(node);
   }
   return body;

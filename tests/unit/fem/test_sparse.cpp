@@ -26,7 +26,8 @@ struct Assembled {
     model.stiffness(Displacement::Zero(3, model.mesh().nodes()), K);
     dense = Eigen::MatrixXd::Zero(pattern.n, pattern.n);
     for (int c = 0; c < pattern.n; ++c)
-      for (std::size_t k = at(pattern.start[at(c)]); k < at(pattern.start[at(c) + 1]); ++k)
+      for (std::size_t k = to_index(pattern.start[to_index(c)]);
+           k < to_index(pattern.start[to_index(c) + 1]); ++k)
         dense(pattern.row[k], c) = dense(c, pattern.row[k]) = K[k];
     b = Eigen::VectorXd::Random(pattern.n);
   }
@@ -52,7 +53,7 @@ TEST(Cholesky, SolvesAsADenseFactorizationDoes) {
 
 TEST(Cholesky, SaysWhenTheMatrixIsIndefinite) {
   Assembled a;
-  a.K[at(a.model.pattern().start[5])] = -1;
+  a.K[to_index(a.model.pattern().start[5])] = -1;
   Cholesky factor(a.model.pattern());
   EXPECT_FALSE(factor.factorize(a.K));
 }
@@ -106,12 +107,12 @@ TEST(RestFactor, SolvesEveryLaneInSinglePrecision) {
   std::vector<float> block(static_cast<std::size_t>(n) * kBatch), scratch;
   for (int i = 0; i < n; ++i)
     for (int lane = 0; lane < kBatch; ++lane)
-      block[at(i * kBatch + lane)] = static_cast<float>(B(i, lane));
+      block[to_index(i * kBatch + lane)] = static_cast<float>(B(i, lane));
   factor.solve(block, scratch);
   const Eigen::MatrixXd X = a.dense.ldlt().solve(B);
   for (int i = 0; i < n; ++i)
     for (int lane = 0; lane < kBatch; ++lane)
-      EXPECT_NEAR(block[at(i * kBatch + lane)], X(i, lane), 1e-4 * X.col(lane).norm());
+      EXPECT_NEAR(block[to_index(i * kBatch + lane)], X(i, lane), 1e-4 * X.col(lane).norm());
 }
 
 TEST(RestFactor, ALaneHasTheSameBitsWhateverStandsBesideIt) {
@@ -121,11 +122,12 @@ TEST(RestFactor, ALaneHasTheSameBitsWhateverStandsBesideIt) {
   std::vector<float> alone(static_cast<std::size_t>(n) * kBatch, 0.0f), crowd = alone, scratch;
   for (int i = 0; i < n; ++i)
     for (int lane = 0; lane < kBatch; ++lane)
-      crowd[at(i * kBatch + lane)] = static_cast<float>(a.b[(i * (lane + 1)) % n]);
-  for (int i = 0; i < n; ++i) alone[at(i * kBatch + 5)] = crowd[at(i * kBatch + 5)];
+      crowd[to_index(i * kBatch + lane)] = static_cast<float>(a.b[(i * (lane + 1)) % n]);
+  for (int i = 0; i < n; ++i) alone[to_index(i * kBatch + 5)] = crowd[to_index(i * kBatch + 5)];
   factor.solve(alone, scratch);
   factor.solve(crowd, scratch);
-  for (int i = 0; i < n; ++i) ASSERT_EQ(alone[at(i * kBatch + 5)], crowd[at(i * kBatch + 5)]);
+  for (int i = 0; i < n; ++i)
+    ASSERT_EQ(alone[to_index(i * kBatch + 5)], crowd[to_index(i * kBatch + 5)]);
 }
 
 TEST(SolveBatch, ServesAllMembersAndLetsThemLeave) {
@@ -140,7 +142,7 @@ TEST(SolveBatch, ServesAllMembersAndLetsThemLeave) {
       SolveBatch::Member member(batch);
       Eigen::VectorXd x;
       for (int turn = 0; turn <= 2 * lane; ++turn) member.solve((lane + 1.0) * a.b, x);
-      error[at(lane)] = (x - (lane + 1.0) * expected).norm() / expected.norm();
+      error[to_index(lane)] = (x - (lane + 1.0) * expected).norm() / expected.norm();
     });
   for (auto& thread : threads) thread.join();
   for (const double e : error) EXPECT_LT(e, 1e-3);
@@ -165,8 +167,8 @@ TEST(SolveBatch, MembersMoveToWhereFewerAre) {
       Eigen::VectorXd x;
       for (int turn = 0; turn < 50; ++turn) {
         member.solve(a.b, x);
-        if (x != alone) ++wrong[at(i)];
-        most[at(i)] = std::max(most[at(i)], crew[1].members());
+        if (x != alone) ++wrong[to_index(i)];
+        most[to_index(i)] = std::max(most[to_index(i)], crew[1].members());
       }
     });
   for (auto& thread : threads) thread.join();

@@ -9,8 +9,8 @@
 #include "fem/campaign/indentation.hpp"
 #include "fem/campaign/stuck_patch.hpp"
 #include "fem/solve/preload.hpp"
-#include "format/at.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
 
@@ -58,7 +58,9 @@ Body sprung_column(double height, double normal_stiffness, double tangential_sti
   body.fixed_nodes.clear();
   for (std::size_t f = 0; f < body.boundary.size(); ++f) {
     const Triangle& facet = body.boundary[f];
-    if (body.nodes[at(facet[0])][2] + body.nodes[at(facet[1])][2] + body.nodes[at(facet[2])][2] > 0)
+    if (body.nodes[to_index(facet[0])][2] + body.nodes[to_index(facet[1])][2] +
+            body.nodes[to_index(facet[2])][2] >
+        0)
       continue;
     body.foundation.push_back(
         {static_cast<std::int32_t>(f), normal_stiffness, tangential_stiffness});
@@ -142,7 +144,7 @@ Body sprung_block(double stiffness) {
   body.fixed_nodes.clear();
   for (std::size_t f = 0; f < body.boundary.size(); ++f) {
     const Triangle& facet = body.boundary[f];
-    const auto z = [&](std::size_t c) { return body.nodes[at(facet[c])][2]; };
+    const auto z = [&](std::size_t c) { return body.nodes[to_index(facet[c])][2]; };
     if (z(0) + z(1) + z(2) > -0.0359) continue;
     body.foundation.push_back({static_cast<std::int32_t>(f), stiffness, stiffness});
   }
@@ -188,7 +190,7 @@ TEST(Foundation, CarriesTheWholeForceOfTheToolAndStoresItsPartOfTheWork) {
   const QuadraticMesh mesh = make_quadratic_mesh(body);
   double carried = 0, stored = 0;
   for (const SprungFacet& sprung : body.foundation) {
-    const Facet& facet = mesh.facets[at(sprung.facet)];
+    const Facet& facet = mesh.facets[to_index(sprung.facet)];
     constexpr double kFacet = 0.008 * 0.008 / 2;
     for (const std::size_t m : {3u, 4u, 5u}) {
       carried -= kStiffness * kFacet / 3 * u(2, facet[m]);

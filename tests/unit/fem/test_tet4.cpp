@@ -11,7 +11,7 @@
 #include "fem/campaign/indentation.hpp"
 #include "fem/campaign/stuck_patch.hpp"
 #include "fem/solve/preload.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/patch_work.hpp"
 
@@ -64,7 +64,9 @@ TEST(Tet4, BothEnginesFindTheSameBalancedForces) {
   sprung.fixed_nodes.clear();
   for (std::size_t f = 0; f < sprung.boundary.size(); ++f) {
     const Triangle& facet = sprung.boundary[f];
-    const auto at_base = [&](std::int32_t node) { return sprung.nodes[at(node)][2] < -0.0199; };
+    const auto at_base = [&](std::int32_t node) {
+      return sprung.nodes[to_index(node)][2] < -0.0199;
+    };
     if (std::ranges::all_of(facet, at_base))
       sprung.foundation.push_back({static_cast<std::int32_t>(f), 1e6, 1e6});
   }

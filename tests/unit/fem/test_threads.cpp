@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "fem/campaign/campaign.hpp"
-#include "format/at.hpp"
+#include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -22,7 +22,7 @@ TEST(CampaignThreads, TwoGiveTheBitsOfOne) {
   settings.indentation.lateral_travel = 0.0005;
   settings.indentation.lateral_increments = 1;
   for (std::int32_t v = 0; v < 25 && settings.sites.size() < 4; ++v)
-    if (body.response.is_site[at(v)]) settings.sites.push_back(v);
+    if (body.response.is_site[to_index(v)]) settings.sites.push_back(v);
   std::int64_t told = 0;
   settings.progress = [&](const CampaignProgress& progress) { told += progress.done; };
   CampaignReport report;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "format/edge.hpp"
+#include "format/to_index.hpp"
 #include "runtime/palpate.h"
 
 namespace palpate::testing {
@@ -19,9 +20,6 @@ constexpr Vec3 kSpot{0.027, -0.026, 0.018};
 constexpr double kSpotWidth = 0.012;
 constexpr double kLateralShare = 0.6;
 
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 Vec3 unit(const Vec3& v) {
   return (1 / norm(v)) * v;
 }
@@ -47,7 +45,8 @@ Mesh icosahedron() {
   for (std::int32_t a = 0; a < 12; ++a) {
     for (std::int32_t b = a + 1; b < 12; ++b) {
       for (std::int32_t c = b + 1; c < 12; ++c) {
-        const Vec3 &p = mesh.points[at(a)], &q = mesh.points[at(b)], &r = mesh.points[at(c)];
+        const Vec3 &p = mesh.points[to_index(a)], &q = mesh.points[to_index(b)],
+                   &r = mesh.points[to_index(c)];
         if (std::max({norm(p - q), norm(q - r), norm(r - p)}) > 2.1) continue;
         const bool outward = dot(cross(q - p, r - p), p) > 0;
         mesh.triangles.push_back(outward ? Triangle{a, b, c} : Triangle{a, c, b});
@@ -64,7 +63,7 @@ void split(Mesh& mesh) {
   const auto half = [&](std::int32_t a, std::int32_t b) {
     const auto [entry, fresh] =
         middle.try_emplace(edge_between(a, b), static_cast<std::int32_t>(mesh.points.size()));
-    if (fresh) mesh.points.push_back(on_lump(mesh.points[at(a)] + mesh.points[at(b)]));
+    if (fresh) mesh.points.push_back(on_lump(mesh.points[to_index(a)] + mesh.points[to_index(b)]));
     return entry->second;
   };
   std::vector<Triangle> finer;
@@ -78,9 +77,9 @@ void split(Mesh& mesh) {
 std::vector<Vec3> inward_normals(const Mesh& mesh) {
   std::vector<Vec3> inward(mesh.points.size(), Vec3{});
   for (const auto& [a, b, c] : mesh.triangles) {
-    const Vec3 n =
-        cross(mesh.points[at(b)] - mesh.points[at(a)], mesh.points[at(c)] - mesh.points[at(a)]);
-    for (const std::int32_t v : {a, b, c}) inward[at(v)] = inward[at(v)] - n;
+    const Vec3 n = cross(mesh.points[to_index(b)] - mesh.points[to_index(a)],
+                         mesh.points[to_index(c)] - mesh.points[to_index(a)]);
+    for (const std::int32_t v : {a, b, c}) inward[to_index(v)] = inward[to_index(v)] - n;
   }
   for (Vec3& n : inward) n = unit(n);
   return inward;
@@ -126,7 +125,7 @@ Body make_body(int patches, int refinements) {
   body.region_names = {"matrix", "nodule"};
   for (const auto& [a, b, c] : body.boundary) {
     body.tetrahedra.push_back({centre, a, b, c});
-    body.tetrahedron_region.push_back(norm(body.nodes[at(a)] - kSpot) < kSpotWidth ? 1 : 0);
+    body.tetrahedron_region.push_back(norm(body.nodes[to_index(a)] - kSpot) < kSpotWidth ? 1 : 0);
   }
   body.provenance.steps = {step("mesh", "2026-01-31T12:00:00Z", "lump.off")};
   return body;
@@ -181,8 +180,8 @@ bool is_hole(const Vec3& x) {
 }
 
 SiteCurves make_site(const Body& body, std::int32_t vertex) {
-  const Vec3& x = body.nodes[at(body.response.node[at(vertex)])];
-  const Vec3& inward = body.response.inward[at(vertex)];
+  const Vec3& x = body.nodes[to_index(body.response.node[to_index(vertex)])];
+  const Vec3& inward = body.response.inward[to_index(vertex)];
   SiteCurves site;
   site.vertex = vertex;
   site.cpu_seconds = 0.4 + 0.25 * std::abs(std::sin(1.7 * vertex)) + 4 * norm(x);
@@ -257,7 +256,7 @@ void make_certificate(Library& library) {
     TriangleCertificate t;
     double soft = 1e9;
     for (const std::int32_t v : library.triangles[m]) {
-      const NodeResponse& r = library.responses[at(v)];
+      const NodeResponse& r = library.responses[to_index(v)];
       if (r.status == ResponseStatus::Hole) continue;
       t.stick = std::max(t.stick, static_cast<double>(r.normal.slope.back()));
       soft = std::min(soft, static_cast<double>(r.normal.slope.back()));
@@ -285,26 +284,27 @@ Library make_library(const Body& body, const Curves& curves) {
   library.tool_shape = "sphere";
   library.tool_radius = 0.005;
   library.inward = body.response.inward;
-  for (const std::int32_t n : body.response.node) library.positions.push_back(body.nodes[at(n)]);
+  for (const std::int32_t n : body.response.node)
+    library.positions.push_back(body.nodes[to_index(n)]);
   library.responses.resize(library.positions.size());
   bool filled = false;
   for (const SiteCurves& site : curves.sites) {
-    NodeResponse& response = library.responses[at(site.vertex)];
+    NodeResponse& response = library.responses[to_index(site.vertex)];
     if (site.status == SiteStatus::Failed && filled) continue;
-    response = make_response(library.positions[at(site.vertex)]);
+    response = make_response(library.positions[to_index(site.vertex)]);
     if (site.status == SiteStatus::Failed) {
       response.status = ResponseStatus::Filled;
       filled = true;
       continue;
     }
-    set_errors(response, site, library.inward[at(site.vertex)]);
+    set_errors(response, site, library.inward[to_index(site.vertex)]);
   }
   for (const Triangle& t : body.response.triangles) {
-    const auto is_site = [&](std::int32_t v) { return body.response.is_site[at(v)] != 0; };
+    const auto is_site = [&](std::int32_t v) { return body.response.is_site[to_index(v)] != 0; };
     if (std::all_of(t.begin(), t.end(), is_site)) library.triangles.push_back(t);
   }
   for (const SiteCurves& site : curves.sites) {
-    const ResponseStatus status = library.responses[at(site.vertex)].status;
+    const ResponseStatus status = library.responses[to_index(site.vertex)].status;
     library.certificate.holes += status == ResponseStatus::Hole ? 1 : 0;
     library.certificate.filled += status == ResponseStatus::Filled ? 1 : 0;
   }

@@ -19,6 +19,7 @@
 #include "app/report/report.hpp"
 #include "app/report/surface_map.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 #include "synthetic.hpp"
 
 namespace palpate {
@@ -27,10 +28,6 @@ namespace {
 using nlohmann::json;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-std::size_t at(std::int32_t i) {
-  return static_cast<std::size_t>(i);
-}
 
 std::string file_text(const std::filesystem::path& path) {
   std::ifstream in(path, std::ios::binary);
@@ -148,7 +145,7 @@ TEST_F(Report, TheStiffestNodeIsTheOneWithTheLargestClosedForm) {
 
 TEST_F(Report, AtMostHalfOfTheNodesAreSofterThanTheMedianAndAtMostHalfStiffer) {
   const auto median = embedded(input())["chosen"]["median"].get<std::int32_t>();
-  const double own = testing::hertz_factor(all_.library.positions[at(median)]);
+  const double own = testing::hertz_factor(all_.library.positions[to_index(median)]);
   int softer = 0, stiffer = 0, size = 0;
   for (std::size_t v = 0; v < all_.library.responses.size(); ++v) {
     if (all_.library.responses[v].status == ResponseStatus::Hole) continue;
@@ -187,8 +184,9 @@ TEST_F(Report, CountsTheSitesAndTheDeepestPress) {
   double largest = 0;  // the Hertz force of the stiffest complete site, at full depth
   for (const SiteCurves& site : all_.curves.sites) {
     if (site.status != SiteStatus::Complete) continue;
-    largest = std::max(largest, testing::hertz_factor(all_.library.positions[at(site.vertex)]) *
-                                    std::pow(testing::kDepth, 1.5));
+    largest =
+        std::max(largest, testing::hertz_factor(all_.library.positions[to_index(site.vertex)]) *
+                              std::pow(testing::kDepth, 1.5));
   }
   EXPECT_NEAR(key["max_force"].get<double>(), largest, 1e-9 * largest);
 }
@@ -216,11 +214,11 @@ TEST_F(Report, ColoursTheFineBoundaryFromTheTrianglesItRefines) {
   for (std::size_t p = 0; p < map.node.size(); ++p) {
     const auto& natural = map.natural[p];
     EXPECT_NEAR(natural[0] + natural[1] + natural[2], 1, 1e-12);
-    if (at(map.node[p]) >= all_.library.positions.size()) continue;
+    if (to_index(map.node[p]) >= all_.library.positions.size()) continue;
     // A point that is a response vertex takes the value of that vertex alone.
     const auto l = std::max_element(natural.begin(), natural.end()) - natural.begin();
     EXPECT_NEAR(natural[static_cast<std::size_t>(l)], 1, 1e-9);
-    EXPECT_EQ(all_.body.response.triangles[at(map.triangle[p])][static_cast<std::size_t>(l)],
+    EXPECT_EQ(all_.body.response.triangles[to_index(map.triangle[p])][static_cast<std::size_t>(l)],
               map.node[p]);
   }
 }
@@ -252,11 +250,11 @@ TEST_F(Report, GreysWhatCannotBeTouched) {
   for (std::size_t f = 0; f < kind.size(); ++f) {
     bool touchable = true;
     for (const std::int32_t v : all_.body.response.triangles[f / 4])
-      touchable = touchable && all_.library.responses[at(v)].status != ResponseStatus::Hole;
+      touchable = touchable && all_.library.responses[to_index(v)].status != ResponseStatus::Hole;
     EXPECT_EQ(kind[f] == 0, touchable) << f;
     bool held = true;
     for (const std::int32_t n : all_.body.boundary[f])
-      held = held && all_.body.nodes[at(n)][2] <= -0.018;
+      held = held && all_.body.nodes[to_index(n)][2] <= -0.018;
     EXPECT_EQ(kind[f] == 2, held && !touchable) << f;
   }
 }
