@@ -24,8 +24,8 @@
 #include "format/error.hpp"
 #include "format/library.hpp"
 #include "runtime/handles.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/format/hdf5_editor.hpp"
-#include "tests/unit/format/temporary_folder.hpp"
 
 namespace palpate {
 namespace {

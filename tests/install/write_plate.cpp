@@ -3,8 +3,8 @@
 // certificate for that friction.
 #include <cstdlib>
 
-#include "bodies.hpp"
 #include "fitting/fitting.hpp"
+#include "tests/support/bodies.hpp"
 
 int main(int argc, char** argv) {
   using namespace palpate;

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "format/crash_safe_file.hpp"
-#include "tests/unit/format/sample_artifacts.hpp"
+#include "tests/support/sample_artifacts.hpp"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -7,7 +7,7 @@
 
 #include "app/vtkhdf/grids.hpp"
 #include "format/error.hpp"
-#include "tests/unit/format/sample_artifacts.hpp"
+#include "tests/support/sample_artifacts.hpp"
 
 namespace {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "ride.hpp"
+#include "tests/realtime/ride.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "bodies.hpp"
 #include "runtime/palpate.h"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <mutex>
 
-#include "ride.hpp"
+#include "tests/realtime/ride.hpp"
 
 extern "C" {
 void __rtsan_realtime_enter();

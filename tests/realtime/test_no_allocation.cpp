@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <memory>
 
-#include "ride.hpp"
 #include "runtime/devices/device_virtual.hpp"
 #include "runtime/force_loop.hpp"
 #include "runtime/realtime.hpp"
+#include "tests/realtime/ride.hpp"
 
 namespace {
 thread_local bool counting = false;

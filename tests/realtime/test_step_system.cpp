@@ -14,7 +14,7 @@
 #include <csignal>
 #include <cstddef>
 
-#include "ride.hpp"
+#include "tests/realtime/ride.hpp"
 
 namespace palpate::test {
 namespace {

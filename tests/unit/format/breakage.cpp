@@ -4,8 +4,8 @@
 #include <fstream>
 #include <utility>
 
-#include "tests/unit/format/sample_artifacts.hpp"
-#include "tests/unit/format/temporary_folder.hpp"
+#include "tests/support/sample_artifacts.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace palpate::samples {
 namespace {

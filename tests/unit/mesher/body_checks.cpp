@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "body_checks.hpp"
+#include "tests/unit/mesher/body_checks.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "shapes.hpp"
+#include "tests/unit/mesher/shapes.hpp"
 
 #include <unistd.h>
 

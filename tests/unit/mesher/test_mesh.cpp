@@ -7,12 +7,12 @@
 #include <set>
 #include <sstream>
 
-#include "body_checks.hpp"
 #include "format/error.hpp"
 #include "mesher/mesher.hpp"
 #include "mesher/queries.hpp"
 #include "mesher/read_surface.hpp"
-#include "shapes.hpp"
+#include "tests/unit/mesher/body_checks.hpp"
+#include "tests/unit/mesher/shapes.hpp"
 
 namespace palpate::mesher {
 namespace {

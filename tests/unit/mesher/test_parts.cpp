@@ -18,7 +18,7 @@
 #include "mesher/remesh.hpp"
 #include "mesher/response.hpp"
 #include "mesher/thickness.hpp"
-#include "shapes.hpp"
+#include "tests/unit/mesher/shapes.hpp"
 
 namespace palpate::mesher {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "body_checks.hpp"
 #include "format/error.hpp"
 #include "mesher/mesher.hpp"
+#include "tests/unit/mesher/body_checks.hpp"
 
 namespace palpate::mesher {
 namespace {

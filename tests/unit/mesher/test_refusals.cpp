@@ -8,7 +8,7 @@
 
 #include "format/error.hpp"
 #include "mesher/mesher.hpp"
-#include "shapes.hpp"
+#include "tests/unit/mesher/shapes.hpp"
 
 namespace palpate::mesher {
 namespace {

@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "bodies.hpp"
 #include "fitting/fitting.hpp"
 #include "runtime/palpate.h"
 #include "runtime/search.hpp"
-#include "watched_contact.hpp"
+#include "tests/support/bodies.hpp"
+#include "tests/unit/runtime/watched_contact.hpp"
 
 namespace palpate::test {
 namespace {

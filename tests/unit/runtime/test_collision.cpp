@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "bodies.hpp"
 #include "runtime/local_model.hpp"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 namespace {

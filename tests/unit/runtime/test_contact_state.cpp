@@ -9,9 +9,9 @@
 #include <memory>
 #include <random>
 
-#include "bodies.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/palpate.h"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 namespace {

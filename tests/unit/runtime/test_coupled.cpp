@@ -6,9 +6,9 @@
 #include <cmath>
 #include <random>
 
-#include "bodies.hpp"
 #include "runtime/local_model.hpp"
 #include "runtime/sliding.hpp"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <random>
 
-#include "bodies.hpp"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 namespace {

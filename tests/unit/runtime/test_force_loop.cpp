@@ -10,13 +10,13 @@
 #include <limits>
 #include <thread>
 
-#include "bodies.hpp"
 #include "format/error.hpp"
 #include "runtime/devices/device_virtual.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/palpate.h"
 #include "runtime/realtime.hpp"
-#include "scripted_device.hpp"
+#include "tests/support/bodies.hpp"
+#include "tests/unit/runtime/scripted_device.hpp"
 
 namespace palpate::test {
 namespace {

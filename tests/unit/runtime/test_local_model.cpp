@@ -10,8 +10,8 @@
 #include <cmath>
 #include <random>
 
-#include "bodies.hpp"
 #include "runtime/sliding.hpp"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 namespace {

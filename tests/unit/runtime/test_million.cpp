@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "bodies.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/lockstep_search.hpp"
 #include "runtime/palpate.h"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 namespace {

@@ -17,8 +17,8 @@
 #include <thread>
 #include <vector>
 
-#include "bodies.hpp"
 #include "runtime/palpate.h"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 namespace {

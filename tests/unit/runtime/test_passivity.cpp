@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "bodies.hpp"
 #include "runtime/contact_state.hpp"
 #include "runtime/devices/device_simulated.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/palpate.h"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 namespace {

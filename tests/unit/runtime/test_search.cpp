@@ -12,11 +12,11 @@
 #include <set>
 #include <thread>
 
-#include "bodies.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/lockstep_search.hpp"
 #include "runtime/palpate.h"
 #include "runtime/search_thread.hpp"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 namespace {

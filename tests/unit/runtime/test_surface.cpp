@@ -9,8 +9,8 @@
 #include <functional>
 #include <string>
 
-#include "bodies.hpp"
 #include "format/error.hpp"
+#include "tests/support/bodies.hpp"
 
 namespace palpate::test {
 namespace {

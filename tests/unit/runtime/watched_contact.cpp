@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "watched_contact.hpp"
+#include "tests/unit/runtime/watched_contact.hpp"
 
 #include <algorithm>
 #include <cmath>

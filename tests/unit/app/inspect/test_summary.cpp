@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/inspect/summary.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/sample_artifacts.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace palpate::app {
+namespace {
+
+using ::testing::ContainsRegex;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+nlohmann::ordered_json summary_of(const Library& library) {
+  const samples::TemporaryFolder folder;
+  write_library(folder / "library.h5", library);
+  return summarize_artifact(folder / "library.h5");
+}
+
+TEST(Inspect, SaysWhichDeviceIsCertifiedAndWhichIsNot) {
+  const auto summary = summary_of(samples::library(4));
+  const auto& devices = summary["certificate"]["devices"];
+  ASSERT_EQ(devices.size(), 2u);
+  EXPECT_EQ(devices[0]["verdict"], "certified passive from 638 Hz");
+  EXPECT_EQ(devices[0]["lowest_certified_rate"]["value"], 637.5);
+  EXPECT_EQ(devices[1]["verdict"], "damping unknown: not certified for this device");
+  EXPECT_TRUE(devices[1]["damping"]["value"].is_null());
+  const std::string text = summary_text(summary);
+  EXPECT_THAT(text, HasSubstr("lowest certified rate: 637.5 Hz\n"));
+  EXPECT_THAT(text, HasSubstr("damping: unknown\n"));
+}
+
+TEST(Inspect, CallsAnInfiniteBoundNotCertified) {
+  Library library = samples::library(4);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  library.certificate.slip = kInfinity;
+  library.certificate.devices[0].lowest_rate = kInfinity;
+  const auto summary = summary_of(library);
+  EXPECT_TRUE(summary["certificate"]["L_slip"]["value"].is_null());
+  const std::string text = summary_text(summary);
+  EXPECT_THAT(text, HasSubstr("L slip: not certified: no bound\n"));
+  EXPECT_THAT(text, HasSubstr("verdict: not certified: the slide has no bound\n"));
+  EXPECT_THAT(text, HasSubstr("lowest certified rate: not certified: no bound\n"));
+  EXPECT_THAT(text, Not(ContainsRegex("[^a-z](inf|nan)[^a-z]")));
+}
+
+TEST(Inspect, NamesTheSiteWhereContactIsKeptWorst) {
+  Curves curves;
+  curves.tool = {"sphere", 0.005, "frictionless"};
+  for (std::int32_t vertex = 3; vertex < 6; ++vertex) {
+    SiteCurves site{vertex, SiteStatus::Complete, "", 1, {}};
+    CurveSample sample;
+    sample.force = {0, 0, -2};
+    sample.strain_energy = 1e-3;
+    sample.penetration = vertex == 4 ? 2e-5 : 1e-5;
+    sample.contact_energy = vertex == 5 ? 4e-6 : 1e-6;
+    sample.tension = vertex == 3 ? 0.5 : std::numeric_limits<double>::quiet_NaN();
+    site.paths.push_back({PathKind::Normal, 0, {0, 0, -1}, {sample}});
+    curves.sites.push_back(site);
+  }
+  const samples::TemporaryFolder folder;
+  write_curves(folder / "curves.h5", curves);
+  const auto contact = summarize_artifact(folder / "curves.h5")["contact"];
+  EXPECT_EQ(contact["largest_penetration"]["value"], 2e-5);
+  EXPECT_EQ(contact["at_site"], 4);
+  EXPECT_EQ(contact["largest_energy_in_springs_over_stored"], 4e-3);
+  EXPECT_EQ(contact["at_site_of_the_springs"], 5);
+  EXPECT_EQ(contact["largest_pull_over_force"], 0.25);
+  EXPECT_EQ(contact["at_site_of_the_pull"], 3);
+}
+
+TEST(Inspect, CountsThePathsWhoseEnergyDoesNotBalance) {
+  Curves curves;
+  curves.tool = {"sphere", 0.005, "frictionless"};
+  for (std::int32_t vertex = 3; vertex < 7; ++vertex) {
+    SiteCurves site{vertex, SiteStatus::Complete, "", 1, {}};
+    CurveSample sample;
+    sample.strain_energy = 0.9e-3;
+    sample.contact_energy = vertex == 6 ? std::numeric_limits<double>::quiet_NaN() : 0.1e-3;
+    sample.tool_work = vertex == 3 ? 1.004e-3 : vertex == 4 ? 0.98e-3 : 1.006e-3;
+    site.paths.push_back({PathKind::Normal, 0, {0, 0, -1}, {sample}});
+    curves.sites.push_back(site);
+  }
+  const samples::TemporaryFolder folder;
+  write_curves(folder / "curves.h5", curves);
+  const auto energy = summarize_artifact(folder / "curves.h5")["energy"];
+  EXPECT_NEAR(energy["largest_imbalance"].get<double>(), 0.02, 1e-12);
+  EXPECT_EQ(energy["at_site"], 4);
+  EXPECT_EQ(energy["paths_with_a_balance"], 3);
+  EXPECT_EQ(energy["paths_out_by_more_than_half_a_percent"], 2);
+}
+
+}  // namespace
+}  // namespace palpate::app

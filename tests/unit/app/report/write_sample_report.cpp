@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// write_sample_report <folder>: the reports that test_report_page.py opens in a browser.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "app/report/report.hpp"
+#include "tests/unit/app/report/synthetic.hpp"
+
+namespace {
+
+using palpate::operator-;
+
+struct ComparedNode {
+  std::int32_t vertex;
+  double error;  ///< over that of a model 10 % too stiff
+};
+
+nlohmann::json comparison_of(const std::string& model) {
+  using nlohmann::json;
+  return {{"artifact", "palpate.comparison"},
+          {"schema", 1},
+          {"reference", "measured/curves.h5"},
+          {"model", model},
+          {"jnd", 0.07},
+          {"jnd_floor_N", 0.005},
+          {"summaries", json::array()},
+          {"unmatched", {"site 3 of measured has no partner"}},
+          {"curves", json::array()}};
+}
+
+/// What `palpate compare` writes of nodes: a normal curve 10 % too stiff with known uncertainty, a
+/// lateral one about which nothing is known.
+std::string comparison_of(const std::vector<ComparedNode>& nodes, const std::string& model) {
+  using nlohmann::json;
+  json all = comparison_of(model);
+  for (const char* kind : {"normal", "lateral"}) {
+    const bool known = std::string(kind) == "normal";
+    json points = json::array();
+    for (int i = 1; i <= 10; ++i) {
+      points.push_back({{"displacement_m", 4e-4 * i},
+                        {"reference_N", 0.1 * i},
+                        {"model_N", 0.11 * i},
+                        {"uncertainty_N", known ? json(0.02) : json(nullptr)},
+                        {"scatter_N", known ? json(0.03) : json(nullptr)},
+                        {"jnd", 0.1 / 0.07}});
+    }
+    json common = {{"kind", kind},
+                   {"rmse_N", 0.062},
+                   {"normalised_rmse", 0.062},
+                   {"bias_N", 0.055},
+                   {"rms_jnd", 1.43},
+                   {"noticeable_share", 1.0},
+                   {"within_uncertainty_share", known ? json(0.4) : json(nullptr)},
+                   {"scatter_N", known ? json(0.03) : json(nullptr)},
+                   {"worst", points.back()}};
+    json summary = common;
+    summary.update({{"curves", nodes.size()},
+                    {"points", 10 * nodes.size()},
+                    {"agreement_low_N", 0.0},
+                    {"agreement_high_N", 0.11},
+                    {"worst_vertex", nodes.front().vertex}});
+    all["summaries"].push_back(summary);
+    for (const ComparedNode& node : nodes) {
+      json curve = common;
+      curve.update({{"vertex", node.vertex},
+                    {"rmse_N", 0.062 * node.error},
+                    {"rms_jnd", 1.43 * node.error},
+                    {"held_depth_m", known ? 0.0 : 0.003},
+                    {"r2", 0.95},
+                    {"uncertainty_N", known ? json(0.02) : json(nullptr)},
+                    {"points", points}});
+      all["curves"].push_back(curve);
+    }
+  }
+  return all.dump();
+}
+
+bool is_fitted(const palpate::Library& library, std::int32_t v) {
+  return library.responses[static_cast<std::size_t>(v)].status == palpate::ResponseStatus::Fitted;
+}
+
+/// What a few measured sites make: the stiffest node alone (the page faces it) with the largest
+/// error, and the corners of a triangle apart from it.
+std::vector<ComparedNode> sparse_nodes(const palpate::Library& library) {
+  const auto place = [&](std::int32_t v) { return library.positions[static_cast<std::size_t>(v)]; };
+  std::int32_t stiffest = library.triangles.front()[0];
+  for (const auto& triangle : library.triangles) {
+    for (const std::int32_t v : triangle) {
+      if (is_fitted(library, v) && palpate::testing::hertz_factor(place(v)) >
+                                       palpate::testing::hertz_factor(place(stiffest)))
+        stiffest = v;
+    }
+  }
+  for (const auto& triangle : library.triangles) {
+    const bool apart = std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
+      const double away = palpate::norm(place(v) - place(stiffest));
+      return is_fitted(library, v) && away > 0.015 && away < 0.03;
+    });
+    if (apart) return {{stiffest, 2}, {triangle[0], 0.9}, {triangle[1], 1.0}, {triangle[2], 1.1}};
+  }
+  throw std::logic_error("the sample body has no triangle beside its stiffest node");
+}
+
+std::string judgement_of(const std::string& library) {
+  using nlohmann::json;
+  const json row{{"what", "normal press, off node"},
+                 {"part", "total"},
+                 {"states", 40},
+                 {"median", 0.021},
+                 {"p95", 0.049},
+                 {"worst", 0.123}};
+  return json({{"kind", "palpate.fidelity"},
+               {"floor_N", 0.02},
+               {"friction", 0.3},
+               {"points", {{{"at_node", false}}, {{"at_node", false}}, {{"at_node", true}}}},
+               {"libraries", {{{"sha256", library}, {"rows", {row}}}}}})
+      .dump();
+}
+
+palpate::ProvenanceStep sampling_step() {
+  palpate::ProvenanceStep step;
+  step.stage = "precompute";
+  step.utc = "2026-01-01T00:00:00Z";
+  step.facts = {{"sampling", "adaptive"},
+                {"sampling_rounds", "4"},
+                {"sites_computed", "87 of 1340"},
+                {"held_out_points", "40"},
+                {"held_out_error_along_press", "median 0.018, p95 0.046, worst 0.31"},
+                {"held_out_error_of_vector", "median 0.02, p95 0.05, worst 0.32"},
+                {"sampling_ended", "the points held out are met within the tolerance"}};
+  return step;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: write_sample_report <folder>\n";
+    return 2;
+  }
+  const std::filesystem::path folder = argv[1];
+  std::filesystem::create_directories(folder);
+  auto all = palpate::testing::synthetic(3, 2);
+  const auto session = palpate::report::digest(all.recording);
+  palpate::ReportInput input{&all.body, &all.curves,          &all.library,
+                             &session,  "Lump with a nodule", 356129};
+  palpate::write_report(input, folder / "full.html");
+
+  input.comparison = comparison_of({{all.curves.sites.front().vertex, 1.0}}, "<b>curves</b>.h5");
+  palpate::write_report(input, folder / "compared.html");
+  input.comparison = comparison_of(sparse_nodes(all.library), "curves.h5");
+  palpate::write_report(input, folder / "sparse.html");
+  input.comparison.clear();
+
+  const palpate::Provenance before = all.curves.provenance;
+  all.curves.provenance.steps.push_back(sampling_step());
+  input.library_sha256 = "cafe";
+  input.fidelity = judgement_of(input.library_sha256);
+  palpate::write_report(input, folder / "judged.html");
+  input.fidelity = judgement_of("beef");
+  palpate::write_report(input, folder / "judged-other.html");
+  input.fidelity.clear();
+  all.curves.provenance = before;
+
+  // A rim too sharp for the slide to be bounded: on one triangle, and so for the body.
+  auto& certificate = all.library.certificate;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  certificate.slip = certificate.triangles[0].slip = kInfinity;
+  certificate.worst_triangle = 0;
+  for (auto& device : certificate.devices) {
+    if (!std::isnan(device.damping)) device.lowest_rate = kInfinity;
+  }
+  palpate::write_report(input, folder / "unbounded.html");
+
+  // Everything that may be missing is missing, and every name is hostile.
+  const std::string hostile =
+      "</script><script>document.title='owned'</script><img src=x onerror=boom()> & \"'";
+  all.body.name = all.library.name = all.curves.tool.shape = hostile;
+  all.library.certificate = {};
+  all.library.provenance.steps[0].stage = all.library.provenance.steps[0].facts[0].second = hostile;
+  all.curves.provenance = all.body.provenance = {};
+  for (auto& site : all.curves.sites) site.cpu_seconds = 0;
+  input.title = hostile;
+  input.session = nullptr;
+  input.library_bytes = 0;
+  palpate::write_report(input, folder / "bare.html");
+}

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What is written is what is read, to the last bit.
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "format/sha256.hpp"
+#include "palpate_version.hpp"
+#include "tests/support/sample_artifacts.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace palpate {
+namespace {
+
+using samples::dump;
+using samples::TemporaryFolder;
+
+constexpr unsigned kSeeds = 5;
+
+TEST(RoundTrip, Body) {
+  const TemporaryFolder folder;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    const Body body = samples::body(seed);
+    write_body(folder / "body.h5", body);
+    EXPECT_EQ(dump(read_body(folder / "body.h5")), dump(body));
+    const Body sprung = samples::sprung_body(seed);
+    write_body(folder / "sprung.h5", sprung);
+    EXPECT_EQ(dump(read_body(folder / "sprung.h5")), dump(sprung));
+    EXPECT_NE(dump(sprung), dump(body));
+    const Body curved = samples::curved_body(seed);
+    write_body(folder / "curved.h5", curved);
+    EXPECT_EQ(dump(read_body(folder / "curved.h5")), dump(curved));
+    EXPECT_NE(dump(curved), dump(sprung));
+  }
+}
+
+TEST(RoundTrip, Curves) {
+  const TemporaryFolder folder;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    const Curves curves = samples::curves(seed);
+    write_curves(folder / "curves.h5", curves);
+    EXPECT_EQ(dump(read_curves(folder / "curves.h5")), dump(curves));
+  }
+}
+
+TEST(RoundTrip, Library) {
+  const TemporaryFolder folder;
+  for (unsigned seed = 0; seed < kSeeds; ++seed) {
+    const Library library = samples::library(seed);
+    write_library(folder / "library.h5", library);
+    EXPECT_EQ(dump(read_library(folder / "library.h5")), dump(library));
+    const Library coupled = samples::coupled_library(seed);
+    write_library(folder / "coupled.h5", coupled);
+    EXPECT_EQ(dump(read_library(folder / "coupled.h5")), dump(coupled));
+    EXPECT_NE(dump(coupled), dump(library));
+  }
+}
+
+TEST(RoundTrip, LibraryBeforeCertification) {
+  const TemporaryFolder folder;
+  Library library = samples::library(1);
+  library.certificate = Certificate{};
+  write_library(folder / "library.h5", library);
+  EXPECT_EQ(dump(read_library(folder / "library.h5")), dump(library));
+}
+
+TEST(RoundTrip, Recording) {
+  const TemporaryFolder folder;
+  const Recording recording = samples::recording(3);
+  write_recording(folder / "recording.h5", recording);
+  EXPECT_EQ(dump(read_recording(folder / "recording.h5")), dump(recording));
+}
+
+TEST(RoundTrip, EmptyTablesSurvive) {
+  const TemporaryFolder folder;
+  Recording recording = samples::recording(1);
+  recording.steps.clear();
+  recording.provenance.steps.clear();
+  write_recording(folder / "recording.h5", recording);
+  EXPECT_EQ(dump(read_recording(folder / "recording.h5")), dump(recording));
+  Curves curves = samples::curves(1);
+  curves.sites.clear();
+  write_curves(folder / "curves.h5", curves);
+  EXPECT_EQ(dump(read_curves(folder / "curves.h5")), dump(curves));
+}
+
+// Merging shards and skipping what is up to date compare digests of files.
+TEST(RoundTrip, SameContentGivesSameBytes) {
+  const TemporaryFolder folder;
+  write_library(folder / "a.h5", samples::library(2));
+  write_library(folder / "b.h5", read_library(folder / "a.h5"));
+  EXPECT_EQ(sha256_of_file(folder / "a.h5"), sha256_of_file(folder / "b.h5"));
+}
+
+// A resolved case longer than the 64 KiB HDF5 grants to an attribute.
+TEST(RoundTrip, LongProvenance) {
+  const TemporaryFolder folder;
+  Body body = samples::body(1);
+  body.provenance.steps[0].resolved_case = std::string(300000, 'x');
+  for (int i = 0; i < 60; ++i) body.provenance.steps.push_back(body.provenance.steps[0]);
+  write_body(folder / "body.h5", body);
+  EXPECT_EQ(dump(read_body(folder / "body.h5")), dump(body));
+}
+
+TEST(Provenance, StepTellsBuildTimeAndInputs) {
+  const TemporaryFolder folder;
+  write_body(folder / "body.h5", samples::body(1));
+  const ProvenanceStep step =
+      make_provenance_step("fit", "a = 1\n", {folder / "body.h5"}, {{"Ceres", "2.1"}});
+  EXPECT_EQ(step.stage, "fit");
+  EXPECT_EQ(step.version, PALPATE_VERSION);
+  EXPECT_EQ(step.git_revision, PALPATE_GIT_REVISION);
+  EXPECT_TRUE(std::regex_match(step.utc, std::regex(R"(20\d\d-\d\d-\d\dT\d\d:\d\d:\d\dZ)")));
+  ASSERT_EQ(step.inputs.size(), 1U);
+  EXPECT_EQ(step.inputs[0].name, "body.h5");
+  EXPECT_EQ(step.inputs[0].sha256, sha256_of_file(folder / "body.h5"));
+  EXPECT_EQ(step.facts.at(0).second, "2.1");
+}
+
+}  // namespace
+}  // namespace palpate
