@@ -132,7 +132,7 @@ Json inverse_account(const InverseFit& fit, double confidence) {
     const bool normal = path.kind == PathKind::Normal;
     paths.push_back({{"vertex", path.vertex},
                      {"kind", normal ? "normal" : "lateral"},
-                     {"held_depth_m", normal ? Json(nullptr) : Json(path.held_depth)},
+                     {"lateral_depth_m", normal ? Json(nullptr) : Json(path.lateral_depth)},
                      {"contact_shift_m", path.contact_shift},
                      {"displacement_m", path.depth},
                      {"measured_N", path.measured},

@@ -45,7 +45,7 @@ void wall_margins(double tolerance) {
     SlingshotSetup setup;
     setup.rate = rate;
     say("  {:>5g} Hz {:>10.1f} {:>16.1f}", rate, passivity_margin(setup, 20, 800, tolerance),
-        stuck_margin_by_energy_balance(rate, 0));
+        bonded_margin_by_energy_balance(rate, 0));
   }
 }
 
@@ -67,7 +67,7 @@ void cylinder_margins(double tolerance) {
   }
   constexpr double kOffAxis = 0.01, kRadius = 0.04;  // m
   say("  {:>5g} mm stuck, in closed form {:>27.1f}", 1e3 * kOffAxis,
-      stuck_margin_by_energy_balance(2000, std::asin(kOffAxis / kRadius)));
+      bonded_margin_by_energy_balance(2000, std::asin(kOffAxis / kRadius)));
 }
 
 int experiment(const ExperimentOptions& options) {

@@ -8,7 +8,7 @@
 #include "app/export/deck.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/vtkhdf/grids.hpp"
-#include "fem/campaign/stuck_patch.hpp"
+#include "fem/campaign/bonded_patch.hpp"
 #include "fem/solid/pressure_smoothness.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
@@ -70,7 +70,7 @@ OwnSolution press_patch(const Body& body, const fem::CampaignSettings& settings,
 
 OwnSolution press_tool(const Body& body, fem::CampaignSettings settings, std::int32_t vertex) {
   settings.sites = {vertex};
-  settings.indentation.held_depths.clear();
+  settings.indentation.lateral_depths.clear();
   fem::CampaignReport report;
   const Curves curves = fem::run_campaign(body, settings, report);
   const SiteCurves& site = curves.sites.front();

@@ -30,7 +30,7 @@ int import_records(const Options& options) {
     for (const auto& drag : site["lateral_paths"]) {
       if (drag["repeats"] == 0) continue;  // made from the normal path, not measured
       say("    drag at {:.2f} mm: {} repeats to {:.2f} mm, {:.4f} N +- {:.4f} N",
-          1e3 * drag["held_depth_m"].get<double>(), drag["repeats"].get<int>(),
+          1e3 * drag["lateral_depth_m"].get<double>(), drag["repeats"].get<int>(),
           1e3 * drag["travel_m"].get<double>(), drag["force_N"].get<double>(),
           drag["force_uncertainty_N"].get<double>());
     }

@@ -141,10 +141,10 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
   }
   LiveSettings& live = options.live;
   if (live.contact.friction < 0) live.contact.friction = library.certificate.friction;
-  live.contact.steepness = steepness_for(library, profile, live.loop.rate);
-  if (live.contact.steepness < body.steepness) {
+  live.contact.lipschitz_bound = lipschitz_bound_for(library, profile, live.loop.rate);
+  if (live.contact.lipschitz_bound < body.lipschitz_bound) {
     say("run: slides are held back to {:.1f} N/m, which is certified at this rate",
-        live.contact.steepness);
+        live.contact.lipschitz_bound);
   }
   if (profile.peak_force > 0) {
     live.safety.max_force = std::min(live.safety.max_force, profile.peak_force);

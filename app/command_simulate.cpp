@@ -45,7 +45,8 @@ void tell(const Summary& s, double rate, const std::filesystem::path& file) {
       s.absorbed * 1e3, s.latency.quantile(0.5) * 1e-3, s.latency.quantile(0.99) * 1e-3);
 }
 
-int simulate(const CaseOptions& options, const std::string& library_option, double steepness) {
+int simulate(const CaseOptions& options, const std::string& library_option,
+             double lipschitz_bound) {
   const Workspace space = open_workspace(options);
   const std::filesystem::path file =
       library_option.empty() ? space.library() : std::filesystem::path(library_option);
@@ -56,7 +57,7 @@ int simulate(const CaseOptions& options, const std::string& library_option, doub
   const Library library = read_library(file);
   prepare_output(space.out);
   tell_what_was_left(space.recording());
-  ScriptedSession session(file, library, space.c.simulate, steepness);
+  ScriptedSession session(file, library, space.c.simulate, lipschitz_bound);
   RecordingHeading heading = session.heading();
   heading.provenance = library.provenance;
   heading.provenance.steps.push_back(
@@ -85,14 +86,16 @@ void add_simulate_command(CLI::App& root, Action& action) {
   const auto options = add_case_options(*command);
   const auto library = std::make_shared<std::string>();
   command->add_option("--library", *library, "Response library (default: library.h5 of the case)");
-  const auto steepness = std::make_shared<double>(0);
+  const auto lipschitz_bound = std::make_shared<double>(0);
   command
-      ->add_option("--steepness", *steepness,
+      ->add_option("--lipschitz_bound", *lipschitz_bound,
                    "N/m: hold the change of force to this times the travel of the tool, from the "
                    "L_hold of the library on (default: the limit of the library)")
       ->check(CLI::PositiveNumber);
-  command->callback([options, library, steepness, &action] {
-    action = [options, library, steepness] { return simulate(*options, *library, *steepness); };
+  command->callback([options, library, lipschitz_bound, &action] {
+    action = [options, library, lipschitz_bound] {
+      return simulate(*options, *library, *lipschitz_bound);
+    };
   });
 }
 

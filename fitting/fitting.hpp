@@ -50,7 +50,7 @@ struct DeviceProfile {
 struct CertifySettings {
   double friction = 0.3;  ///< mu, >= 0
   std::vector<DeviceProfile> devices;
-  /// N/m, what the runtime is to hold the change of force to; unknown: steepness_limit.
+  /// N/m, what the runtime is to hold the change of force to; unknown: enforced_lipschitz_bound.
   double limit = kUnknown;
 };
 

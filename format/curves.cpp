@@ -22,7 +22,7 @@ struct SiteRow {
 };
 struct PathRow {
   PathKind kind = PathKind::Normal;
-  double held_depth = 0;
+  double lateral_depth = 0;
   Vec3 direction{};
   std::int64_t first_sample = 0;
   std::int64_t sample_count = 0;
@@ -45,7 +45,7 @@ constexpr auto kSiteColumns =
 constexpr auto kPathColumns = std::make_tuple(
     column("kind", &PathRow::kind, "1", "0 normal, 1 lateral.",
            rules::up_to(1, "a kind of path (0 or 1)")),
-    column("held_depth", &PathRow::held_depth, "m",
+    column("lateral_depth", &PathRow::lateral_depth, "m",
            "Depth at which a lateral path was run; 0 for a normal path.", rules::kNonNegative),
     column("direction", &PathRow::direction, "1", "Unit direction of the travel of the tool.",
            rules::kUnit),
@@ -104,7 +104,7 @@ Flat flatten(const Curves& curves) {
                           static_cast<std::int64_t>(site.paths.size())});
     flat.reasons.push_back(site.reason);
     for (const CurvePath& path : site.paths) {
-      flat.paths.push_back({path.kind, path.held_depth, path.direction,
+      flat.paths.push_back({path.kind, path.lateral_depth, path.direction,
                             static_cast<std::int64_t>(flat.samples.size()),
                             static_cast<std::int64_t>(path.samples.size()), path.repeats,
                             path.contact_uncertainty});
@@ -189,7 +189,7 @@ void unflatten(const Flat& flat, Curves& curves) {
       const PathRow& path = flat.paths[static_cast<std::size_t>(p)];
       const auto first = flat.samples.begin() + path.first_sample;
       site.paths.push_back({path.kind,
-                            path.held_depth,
+                            path.lateral_depth,
                             path.direction,
                             {first, first + path.sample_count},
                             path.repeats,

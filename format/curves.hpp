@@ -55,8 +55,8 @@ struct CurveSample {
 /// The displacement of its samples begins at 0 and never decreases.
 struct CurvePath {
   PathKind kind = PathKind::Normal;
-  double held_depth = 0;  ///< m, depth at which a lateral path was run; 0 for a normal path
-  Vec3 direction{};       ///< unit; inward for a normal path, tangential for a lateral one
+  double lateral_depth = 0;  ///< m, depth at which a lateral path was run; 0 for a normal path
+  Vec3 direction{};          ///< unit; inward for a normal path, tangential for a lateral one
   std::vector<CurveSample> samples;
   std::int32_t repeats = 0;  ///< presses that were averaged; 0 for a simulated path
   /// m, standard uncertainty of where the displacement begins; NaN when it is exact.
@@ -76,7 +76,7 @@ struct SiteCurves {
 struct ToolDescription {
   std::string shape;       ///< "sphere", "disc" or "cylinder"
   double radius = 0;       ///< m
-  std::string friction;    ///< of the normal path: "frictionless" or "stuck"
+  std::string friction;    ///< of the normal path: "frictionless" or "no-slip"
   double edge_radius = 0;  ///< m, fillet of the edge of a disc
   double length = 0;       ///< m, of a cylinder, between the centres of its rounded ends
 };

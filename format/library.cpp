@@ -298,7 +298,7 @@ Certificate read_certificate(const hdf5::Reader& reader) {
 
 }  // namespace
 
-double steepness_limit(const Certificate& certificate) {
+double enforced_lipschitz_bound(const Certificate& certificate) {
   const Certificate& c = certificate;
   if (c.triangles.empty()) return std::numeric_limits<double>::infinity();
   if (!std::isnan(c.limit)) return c.limit;
@@ -306,15 +306,15 @@ double steepness_limit(const Certificate& certificate) {
   return std::isfinite(c.hold) ? std::max(slides, c.hold) : slides;
 }
 
-double certified_steepness(const Certificate& certificate) {
-  const double limit = steepness_limit(certificate);
+double certified_lipschitz_bound(const Certificate& certificate) {
+  const double limit = enforced_lipschitz_bound(certificate);
   const bool free = limit >= std::max(certificate.stick, certificate.slip);
   return free || limit >= certificate.hold ? limit : std::numeric_limits<double>::infinity();
 }
 
-std::string steepness_text(double steepness) {
+std::string lipschitz_bound_text(double lipschitz_bound) {
   std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.1f N/m", std::ceil(10 * steepness) / 10);
+  std::snprintf(text.data(), text.size(), "%.1f N/m", std::ceil(10 * lipschitz_bound) / 10);
   return text.data();
 }
 
@@ -328,7 +328,7 @@ std::string verdict(const Certificate& certificate, const DeviceCertificate& dev
   if (!(held_rate < 0.995 * device.lowest_rate)) return said;  // also when it is not known
   std::snprintf(text.data(), text.size(), "; from %.0f Hz when slides are held back to ",
                 std::ceil(held_rate));
-  return said + text.data() + steepness_text(certificate.hold) + " (steepness)";
+  return said + text.data() + lipschitz_bound_text(certificate.hold) + " (lipschitz_bound)";
 }
 
 void write_library(const std::filesystem::path& path, const Library& library) {

@@ -88,7 +88,7 @@ struct Certificate {
   /// cannot promise any; NaN: not known.
   double hold = std::numeric_limits<double>::quiet_NaN();
   /// N/m, L of Theorem 1: the limit that the runtime keeps unless it is given another one, and that
-  /// the rates are certified for. NaN: not chosen, see steepness_limit.
+  /// the rates are certified for. NaN: not chosen, see enforced_lipschitz_bound.
   double limit = std::numeric_limits<double>::quiet_NaN();
   std::int32_t worst_triangle = -1;
   std::string limited_by;  ///< one line: what sets the bound in the worst triangle
@@ -103,14 +103,14 @@ struct Certificate {
 /// N/m: what the runtime keeps the change of force to, for the travel of the tool, unless it is
 /// given another limit: the one that was chosen, or else the bound of slides, at most 4 L_stick,
 /// but at least L_hold. Infinite without a certificate.
-double steepness_limit(const Certificate& certificate);
+double enforced_lipschitz_bound(const Certificate& certificate);
 
 /// N/m: the limit above where it is certain that it is kept, infinite where it is not: slides
 /// without a bound, of which no L_hold is known.
-double certified_steepness(const Certificate& certificate);
+double certified_lipschitz_bound(const Certificate& certificate);
 
-/// N/m in words, to a tenth and upwards: what is said can be given as a steepness.
-std::string steepness_text(double steepness);
+/// N/m in words, to a tenth and upwards: what is said can be given as a Lipschitz bound.
+std::string lipschitz_bound_text(double lipschitz_bound);
 
 /// In words, for people: the lowest certified rate, also with slides held back as far as possible;
 /// or that the device is not certified, and why.

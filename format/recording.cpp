@@ -48,7 +48,7 @@ constexpr std::array<const char*, 3> kAxes{"body_x", "body_y", "body_z"};
 template <class Settings, class Visit>
 void visit_numbers(Settings& s, Visit&& visit) {
   visit("tank_cap", s.tank_cap);
-  visit("steepness", s.steepness);
+  visit("lipschitz_bound", s.lipschitz_bound);
   visit("search_rate", s.search_rate);
   visit("ramp", s.ramp);
   visit("watchdog", s.watchdog);

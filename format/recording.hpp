@@ -35,7 +35,7 @@ struct RecordedStep {
 /// What the forces of a session depend on besides the library and the motion.
 struct SessionSettings {
   double tank_cap = 0;                  ///< J
-  double steepness = 0;                 ///< N/m, may be infinite
+  double lipschitz_bound = 0;           ///< N/m, may be infinite
   double search_rate = 0;               ///< Hz; 0 = each step searched the body itself
   Vec3 body_position{};                 ///< m, of the origin of the body in the frame of the device
   bool guarded = false;                 ///< the forces passed through the safety of a force loop:

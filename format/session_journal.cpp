@@ -22,7 +22,7 @@ constexpr std::size_t kLargestRecord = 1U << 30;  // bytes: a length beyond it i
 
 void put(ByteWriter& out, const SessionSettings& s) {
   for (const double value :
-       {s.tank_cap, s.steepness, s.search_rate, s.ramp, s.watchdog, s.max_force, s.max_speed})
+       {s.tank_cap, s.lipschitz_bound, s.search_rate, s.ramp, s.watchdog, s.max_force, s.max_speed})
     out.put(value);
   out.put(s.body_position);
   out.put(static_cast<std::uint8_t>(s.guarded ? 1 : 0));
@@ -30,7 +30,7 @@ void put(ByteWriter& out, const SessionSettings& s) {
 
 SessionSettings settings_of(ByteReader& in) {
   SessionSettings s;
-  for (double* value : {&s.tank_cap, &s.steepness, &s.search_rate, &s.ramp, &s.watchdog,
+  for (double* value : {&s.tank_cap, &s.lipschitz_bound, &s.search_rate, &s.ramp, &s.watchdog,
                         &s.max_force, &s.max_speed})
     *value = in.get<double>();
   s.body_position = in.vector();

@@ -43,7 +43,7 @@ CurveSample sample_of(ByteReader& in) {
 
 void put(ByteWriter& out, const CurvePath& path) {
   out.put(static_cast<std::uint8_t>(path.kind));
-  out.put(path.held_depth);
+  out.put(path.lateral_depth);
   out.put(path.direction);
   out.put(path.repeats);
   out.put(path.contact_uncertainty);
@@ -54,7 +54,7 @@ void put(ByteWriter& out, const CurvePath& path) {
 CurvePath path_of(ByteReader& in) {
   CurvePath path;
   path.kind = in.one_of(PathKind::Lateral);
-  path.held_depth = in.get<double>();
+  path.lateral_depth = in.get<double>();
   path.direction = in.vector();
   path.repeats = in.get<std::int32_t>();
   path.contact_uncertainty = in.get<double>();

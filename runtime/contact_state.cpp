@@ -128,8 +128,9 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
   held.deflection = model_->deflection(x);
   held.response = model_->respond(held.deflection, pieces_);
   held.travelled = travelled;
-  held.allowance = std::isinf(settings_.steepness) ? settings_.steepness  // also at rest
-                                                   : settings_.steepness * travelled;
+  held.allowance = std::isinf(settings_.lipschitz_bound)
+                       ? settings_.lipschitz_bound  // also at rest
+                       : settings_.lipschitz_bound * travelled;
   if (exceeds_friction(held.response, 0)) {
     const double limit = slip_limit(*model_, held.deflection, held.response);
     held.excess = std::max(held.deflection.lateral - limit, 0.0);

@@ -25,7 +25,7 @@ struct ContactSettings {
   EnergyBudget budget = EnergyBudget::Kept;
   /// N/m, >= L_stick: between two steps the force changes by no more than this times the travel of
   /// the tip, whatever slides or offsets change (see ContactState).
-  double steepness = std::numeric_limits<double>::infinity();
+  double lipschitz_bound = std::numeric_limits<double>::infinity();
 };
 
 /// What a step left behind; the fields are those of palpate_observation.
@@ -54,11 +54,11 @@ struct ContactObservation {
 ///
 /// At every instant absorbed >= tank + E >= 0.
 ///
-/// Between two steps |f_i(x_i) - f_{i-1}(x_{i-1})| <= steepness |x_i - x_{i-1}|, unless DROPPED
-/// says otherwise. With the contact point held this is so for any steepness that is certified; a
-/// slide, or a change of the offset, that would exceed it is made in part, and the rest in later
-/// steps. So the condition of Theorem 1 [Mahvash & Hayward 2005, eq. 33] is met in every sample,
-/// also at edges, at borders and by the energy rule.
+/// Between two steps |f_i(x_i) - f_{i-1}(x_{i-1})| <= Lipschitz bound |x_i - x_{i-1}|, unless
+/// DROPPED says otherwise. With the contact point held this is so for any Lipschitz bound that is
+/// certified; a slide, or a change of the offset, that would exceed it is made in part, and the
+/// rest in later steps. So the condition of Theorem 1 [Mahvash & Hayward 2005, eq. 33] is met in
+/// every sample, also at edges, at borders and by the energy rule.
 ///
 /// Where friction lets go but c cannot follow (a border, an edge whose neighbour has not come, a
 /// slide that is held back) the lateral offset s takes what c does not, so that the lateral force

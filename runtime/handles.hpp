@@ -19,8 +19,8 @@ struct palpate_library {
       : surface(library),
         tree(surface),
         info(describe(library, surface)),
-        steepness(palpate::steepness_limit(library.certificate)),
-        least_steepness(std::isfinite(info.hold) ? info.hold : info.stick),
+        lipschitz_bound(palpate::enforced_lipschitz_bound(library.certificate)),
+        min_lipschitz_bound(std::isfinite(info.hold) ? info.hold : info.stick),
         certified(!library.certificate.triangles.empty()) {}
   palpate_library(const palpate_library&) = delete;  // the tree points into the surface
   palpate_library& operator=(const palpate_library&) = delete;
@@ -31,8 +31,8 @@ struct palpate_library {
   palpate::runtime::Surface surface;
   palpate::runtime::CollisionTree tree;
   palpate_library_info info;
-  double steepness;        ///< N/m, what the change of force is held to unless told otherwise
-  double least_steepness;  ///< N/m, that a state may be given
+  double lipschitz_bound;      ///< N/m, what the change of force is held to unless told otherwise
+  double min_lipschitz_bound;  ///< N/m, that a state may be given
   bool certified;
 };
 

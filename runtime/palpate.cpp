@@ -129,7 +129,7 @@ palpate_library_info palpate_library::describe(const palpate::Library& library,
   info.stick = library.certificate.stick;
   info.slip = library.certificate.slip;
   info.hold = library.certificate.hold;
-  info.limit = steepness_limit(library.certificate);
+  info.limit = enforced_lipschitz_bound(library.certificate);
   info.friction = library.certificate.friction;
   info.depth = surface.deepest();
   copy(surface.low(), info.low);
@@ -237,13 +237,14 @@ int palpate_state_create(const palpate_library* library, const palpate_settings*
         "palpate_state_create: the library has no certificate and thus no friction of its own; "
         "set settings.friction");
   }
-  if (!(chosen.steepness >= 0) ||
-      (chosen.steepness > 0 && chosen.steepness < library->least_steepness)) {
+  if (!(chosen.lipschitz_bound >= 0) ||
+      (chosen.lipschitz_bound > 0 && chosen.lipschitz_bound < library->min_lipschitz_bound)) {
     char text[160];
-    std::snprintf(text, sizeof text,
-                  "palpate_state_create: steepness must be 0, or at least what this library can be "
-                  "held to: %s",
-                  palpate::steepness_text(library->least_steepness).c_str());
+    std::snprintf(
+        text, sizeof text,
+        "palpate_state_create: lipschitz_bound must be 0, or at least what this library can be "
+        "held to: %s",
+        palpate::lipschitz_bound_text(library->min_lipschitz_bound).c_str());
     return fail(PALPATE_ERROR_ARGUMENT, text);
   }
   if (!(chosen.search_rate >= 0 && chosen.search_rate <= kMostSearchRate)) {
@@ -253,7 +254,8 @@ int palpate_state_create(const palpate_library* library, const palpate_settings*
   ContactSettings contact;
   contact.friction = chosen.friction < 0 ? library->info.friction : chosen.friction;
   contact.tank_cap = chosen.tank_cap;
-  contact.steepness = chosen.steepness > 0 ? chosen.steepness : library->steepness;
+  contact.lipschitz_bound =
+      chosen.lipschitz_bound > 0 ? chosen.lipschitz_bound : library->lipschitz_bound;
   return guarded(PALPATE_ERROR_FORMAT, [&] {
     *state = new palpate_state(*library, contact, chosen.search_rate);
     return static_cast<int>(PALPATE_OK);

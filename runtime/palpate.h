@@ -48,8 +48,9 @@ enum {
   PALPATE_BAD_INPUT = 1u << 7,      /* NaN, infinity, dt <= 0, or a step longer than the diagonal of
                                        the body: zero force, the contact is dropped */
   PALPATE_DROPPED = 1u << 8,        /* the contact was dropped, what it stored discarded */
-  PALPATE_FORCE_LIMITED = 1u << 9,  /* a slide or a return of d0 was made in part only, so that the
-                                       force changes by no more than steepness times the travel */
+  PALPATE_FORCE_LIMITED =
+      1u << 9,                      /* a slide or a return of d0 was made in part only, so that the
+                                       force changes by no more than lipschitz_bound times the travel */
   PALPATE_AWAITING = 1u << 10,      /* the contact point waits at an edge for triangles that the
                                        search thread has not delivered yet */
   PALPATE_LOOP_RAMPING = 1u << 16,  /* the force is scaled while it is let in */
@@ -63,13 +64,13 @@ enum {
 };
 
 typedef struct palpate_settings {
-  uint32_t size;      /* sizeof(palpate_settings), set by palpate_settings_default */
-  double friction;    /* mu; negative = the value the library was certified for */
-  double tank_cap;    /* J, cap of the energy tank; 0 = strict Theorem 2 */
-  double steepness;   /* N/m: the force changes by at most this times the travel of the tip; 0 = the
-                         limit of the certificate; else at least its L_hold. On a device of smallest
-                         damping b at the period T, b/(2 T) is certified passive. Without a
-                         certificate there is no limit but the one given here. */
+  uint32_t size;          /* sizeof(palpate_settings), set by palpate_settings_default */
+  double friction;        /* mu; negative = the value the library was certified for */
+  double tank_cap;        /* J, cap of the energy tank; 0 = strict Theorem 2 */
+  double lipschitz_bound; /* N/m: the force changes by at most this times the travel of the tip; 0 =
+                       the limit of the certificate; else at least its L_hold. On a device of
+                       smallest damping b at the period T, b/(2 T) is certified passive. Without a
+                       certificate there is no limit but the one given here. */
   double search_rate; /* Hz: a thread of its own looks for the triangles near the tool at this rate
                          (100 is plenty) and hands them to the step; 0 = no thread, the step
                          searches the whole body */
@@ -103,8 +104,8 @@ typedef struct palpate_library_info {
   double friction;        /* mu of the certificate */
   double depth;           /* deepest sample, m */
   double low[3], high[3]; /* bounding box, m */
-  double hold;            /* N/m, the least steepness that a state can keep; NaN: not known */
-  double limit;           /* N/m, the steepness that a state keeps unless it is given one */
+  double hold;            /* N/m, the least lipschitz_bound that a state can keep; NaN: not known */
+  double limit;           /* N/m, the lipschitz_bound that a state keeps unless it is given one */
 } palpate_library_info;
 
 PALPATE_API const char* palpate_version(void);

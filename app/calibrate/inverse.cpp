@@ -68,7 +68,7 @@ struct Target {
   std::size_t site = 0;  ///< among those that are solved
   std::size_t plan = 0;  ///< of a lateral path, among those of its site
   PathKind kind = PathKind::Normal;
-  double held_depth = 0;  ///< m, of a lateral path
+  double lateral_depth = 0;  ///< m, of a lateral path
   std::vector<double> depth, force, uncertainty;
   std::vector<double> slope;  ///< N/m, of the force; from the model, for a measured one is noisy
   double contact_uncertainty = kUnknown;
@@ -88,7 +88,7 @@ Target target_of(const SiteCurves& site, const CurvePath& path, const std::vecto
   Target target;
   target.vertex = site.vertex;
   target.kind = path.kind;
-  target.held_depth = path.held_depth;
+  target.lateral_depth = path.lateral_depth;
   target.contact_uncertainty = path.contact_uncertainty;
   for (const double depth : depths) {
     if (depth > x.back() * (1 + 1e-9)) break;
@@ -103,8 +103,8 @@ std::string shift_name(const Target& target) {
   if (target.kind == PathKind::Normal) {
     return fmt::format("contact shift of site {}", target.vertex);
   }
-  return fmt::format("contact shift of the drag at {:.2f} mm of site {}", 1e3 * target.held_depth,
-                     target.vertex);
+  return fmt::format("contact shift of the drag at {:.2f} mm of site {}",
+                     1e3 * target.lateral_depth, target.vertex);
 }
 
 class Inverse {
@@ -223,7 +223,7 @@ class Inverse {
       if (target.depth.empty()) continue;
       target.site = vertices_.size();
       target.plan = plans.size();
-      if (!normal) plans.push_back({path.held_depth, path.direction, target.depth});
+      if (!normal) plans.push_back({path.lateral_depth, path.direction, target.depth});
       has_normal = has_normal || normal;
       targets.push_back(std::move(target));
     }
@@ -237,7 +237,7 @@ class Inverse {
   /// A path without repeats was computed, not measured.
   bool is_measured_drag(const CurvePath& path) const {
     return settings_.drags && path.kind == PathKind::Lateral && path.repeats > 0 &&
-           path.held_depth > 0;
+           path.lateral_depth > 0;
   }
 
   std::vector<double> travels_of(const CurvePath& path) const {
@@ -272,7 +272,7 @@ class Inverse {
         // The lateral force of a stuck sphere goes as the root of its depth, see lateral_paths().
         target.slope.push_back(scale * (target.kind == PathKind::Normal
                                             ? curve.slope(target.depth[i])
-                                            : model[i].force / (2 * target.held_depth)));
+                                            : model[i].force / (2 * target.lateral_depth)));
       }
     }
   }
@@ -369,7 +369,7 @@ class Inverse {
       InversePath path;
       path.vertex = target.vertex;
       path.kind = target.kind;
-      path.held_depth = target.held_depth;
+      path.lateral_depth = target.lateral_depth;
       path.depth = target.depth;
       path.measured = target.force;
       path.uncertainty = target.uncertainty;
@@ -414,7 +414,7 @@ class Inverse {
   Evaluation before_;
   std::string failure_;
   std::vector<fem::SiteSensitivity> model_;
-  fem::KeptFactor kept_;
+  fem::FactorCache kept_;
   int evaluations_ = 0;
 };
 

@@ -39,7 +39,7 @@ struct InverseSettings {
 struct InversePath {
   std::int32_t vertex = -1;
   PathKind kind = PathKind::Normal;
-  double held_depth = 0;                                     ///< m, of a lateral path
+  double lateral_depth = 0;                                  ///< m, of a lateral path
   std::vector<double> depth, measured, fitted, uncertainty;  ///< m, N, N, N (NaN unknown)
   double contact_shift = 0;                                  ///< m, found with the constants
 };

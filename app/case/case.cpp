@@ -79,9 +79,9 @@ void check_materials(const Case& c, const SourceMap& sources) {
 
 /// Held depths that the case leaves open follow its depth.
 void choose_depths(Case& c, const SourceMap& sources) {
-  if (sources.has("indentation.held_depths")) return;
+  if (sources.has("indentation.lateral_depths")) return;
   const double depth = c.indentation.depth;
-  c.indentation.held_depths = {depth / 3, 2 * depth / 3, depth};
+  c.indentation.lateral_depths = {depth / 3, 2 * depth / 3, depth};
 }
 
 void check_tool(const Case& c, const SourceMap& sources) {
@@ -94,10 +94,10 @@ void check_tool(const Case& c, const SourceMap& sources) {
 }
 
 void check_depths(const Case& c, const SourceMap& sources) {
-  for (const double held : c.indentation.held_depths) {
+  for (const double held : c.indentation.lateral_depths) {
     if (held <= c.indentation.depth) continue;
-    fail(sources.where("indentation.held_depths"),
-         fmt::format("indentation.held_depths holds {}, deeper than indentation.depth = {}",
+    fail(sources.where("indentation.lateral_depths"),
+         fmt::format("indentation.lateral_depths holds {}, deeper than indentation.depth = {}",
                      print_quantity(held, Dimension::Length),
                      print_quantity(c.indentation.depth, Dimension::Length)),
          "keep every held depth within the depth");
@@ -120,9 +120,9 @@ void check_supports(const Case& c, const SourceMap& sources) {
 /// The gap to a flat end jumps at its edge: what is pressed there can neither slide off nor come
 /// back.
 void check_edge(const Case& c, const SourceMap& sources) {
-  if (c.tool.shape != "disc" || c.tool.edge_radius > 0 || c.tool.friction == "stuck") return;
+  if (c.tool.shape != "disc" || c.tool.edge_radius > 0 || c.tool.friction == "no-slip") return;
   fail(sources.where("tool.shape"), "a disc with a sharp edge cannot be pressed without friction",
-       "give tool.edge_radius (a hundredth of the radius is enough), or friction = \"stuck\"");
+       "give tool.edge_radius (a hundredth of the radius is enough), or friction = \"no-slip\"");
 }
 
 void check_sizes(const Case& c, const SourceMap& sources) {

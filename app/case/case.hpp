@@ -85,9 +85,9 @@ struct IndentationSection {
   int increments = 12;
   double lateral_travel = 0.003;  ///< m
   int lateral_increments = 6;
-  std::vector<double> held_depths{0.002, 0.004,
-                                  0.006};  ///< m; not given: a third of depth, two, all
-  std::vector<double> azimuths{0.0};       ///< rad
+  std::vector<double> lateral_depths{0.002, 0.004,
+                                     0.006};  ///< m; not given: a third of depth, two, all
+  std::vector<double> azimuths{0.0};          ///< rad
   double force_tolerance = 1e-4;
   bool operator==(const IndentationSection&) const = default;
 };
@@ -97,7 +97,7 @@ struct SamplingSection {
   std::string method = "spacing";
   double start_spacing = 0.030;  ///< m, adaptive
   double tolerance = 0.05;       ///< of the force, adaptive
-  int held_out = 40;             ///< points, adaptive
+  int hold_out = 40;             ///< points, adaptive
   int most_sites = 100000;       ///< adaptive
   bool operator==(const SamplingSection&) const = default;
 };
@@ -135,7 +135,7 @@ struct SimulateSection {
 
 struct SolverSection {
   std::string element = "tet10-pressure";
-  bool divide_under_tool = false;
+  bool refine_under_tool = false;
   bool operator==(const SolverSection&) const = default;
 };
 

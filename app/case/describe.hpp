@@ -219,7 +219,7 @@ void describe(V& v, ToolSection& s) {
   v.text(
       s.friction,
       {"friction", "while pressing: the surface slides along the tool, or sticks where it touches"},
-      {"frictionless", "stuck"});
+      {"frictionless", "no-slip"});
   if (v.when("shape", s.shape, "disc")) {
     v.quantity(s.edge_radius, Dimension::Length,
                {"edge_radius", "fillet of the edge, 0 when sharp; at most `radius`", kOptional,
@@ -243,8 +243,8 @@ void describe(V& v, IndentationSection& s) {
   v.integer(
       s.lateral_increments,
       {"lateral_increments", "steps of each lateral path", kOptional, {.low = 2, .high = 1000}});
-  v.quantities(s.held_depths, Dimension::Length,
-               {"held_depths",
+  v.quantities(s.lateral_depths, Dimension::Length,
+               {"lateral_depths",
                 "depths where lateral paths start, each at most `depth`; by default a third, two "
                 "thirds and all of it",
                 kOptional, kPositive});
@@ -273,7 +273,7 @@ void describe(V& v, SamplingSection& s) {
               "relative to the local force",
               kOptional,
               {.low = 0, .high = 1, .low_open = true, .high_open = true}});
-    v.integer(s.held_out, {"held_out",
+    v.integer(s.hold_out, {"hold_out",
                            "random points of the surface, pressed but never fitted",
                            kOptional,
                            {.low = 10, .high = 10000}});
@@ -306,7 +306,7 @@ void describe(V& v, FitSection& s) {
        "forces curve along the surface"});
   v.text(s.responses,
          {"responses",
-          "coupled: the lateral response grows with depth, best from several held_depths"},
+          "coupled: the lateral response grows with depth, best from several lateral_depths"},
          {"decoupled", "coupled"});
 }
 
@@ -354,8 +354,8 @@ void describe(V& v, SolverSection& s) {
        "at "
        "a case, with forces too high by tens of percent"},
       {"tet10-pressure", "tet10-nodal-pressure", "tet10-displacement", "tet4"});
-  v.flag(s.divide_under_tool,
-         {"divide_under_tool",
+  v.flag(s.refine_under_tool,
+         {"refine_under_tool",
           "divide the elements around the tool in eight, for each site anew: for contacts smaller "
           "than a facet"});
 }

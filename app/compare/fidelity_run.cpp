@@ -30,16 +30,16 @@ constexpr int kLeastIncrements = 6;
 
 /// The direct solutions: along the paths of the case, at depths and directions of their own.
 fem::CampaignSettings direct_settings(const Workspace& space,
-                                      const std::vector<fidelity::HeldOutPoint>& points) {
+                                      const std::vector<fidelity::HoldOutPoint>& points) {
   fem::CampaignSettings settings = campaign_settings(space);
-  for (const fidelity::HeldOutPoint& p : points)
+  for (const fidelity::HoldOutPoint& p : points)
     settings.points.push_back({p.position + p.skin * p.inward, p.inward});
   fem::IndentationSettings& indentation = settings.indentation;
   for (const double share : kHeldShares)
-    indentation.held_depths.push_back(share * indentation.depth);
-  std::sort(indentation.held_depths.begin(), indentation.held_depths.end());
+    indentation.lateral_depths.push_back(share * indentation.depth);
+  std::sort(indentation.lateral_depths.begin(), indentation.lateral_depths.end());
   const auto close = [](double a, double b) { return b - a < 1e-9; };
-  auto& held = indentation.held_depths;
+  auto& held = indentation.lateral_depths;
   held.erase(std::unique(held.begin(), held.end(), close), held.end());
   indentation.azimuths.clear();
   for (const double degrees : kAzimuths)
@@ -74,7 +74,7 @@ std::string direct_key(const Workspace& space, const fem::CampaignSettings& sett
   for (const fem::PressPoint& p : settings.points)
     text += fmt::format("{} {} {} {} {} {}\n", p.position[0], p.position[1], p.position[2],
                         p.inward[0], p.inward[1], p.inward[2]);
-  for (const double depth : settings.indentation.held_depths) text += fmt::format("{} ", depth);
+  for (const double depth : settings.indentation.lateral_depths) text += fmt::format("{} ", depth);
   for (const double azimuth : settings.indentation.azimuths) text += fmt::format("{} ", azimuth);
   return sha256(text);
 }

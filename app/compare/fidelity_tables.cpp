@@ -50,9 +50,9 @@ std::string fidelity_states_csv(const std::string& file, const fidelity::Fidelit
 }
 
 Json fidelity_heading(const FidelityOptions& options, double friction,
-                      const std::vector<fidelity::HeldOutPoint>& points) {
+                      const std::vector<fidelity::HoldOutPoint>& points) {
   Json list = Json::array();
-  for (const fidelity::HeldOutPoint& p : points) {
+  for (const fidelity::HoldOutPoint& p : points) {
     list.push_back({{"triangle", p.triangle},
                     {"natural", p.natural},
                     {"position_m", p.position},

@@ -26,7 +26,7 @@ std::string fidelity_states_csv(const std::string& file, const fidelity::Fidelit
                                 bool heading);
 /// What all libraries share: settings and points.
 nlohmann::ordered_json fidelity_heading(const FidelityOptions& options, double friction,
-                                        const std::vector<fidelity::HeldOutPoint>& points);
+                                        const std::vector<fidelity::HoldOutPoint>& points);
 nlohmann::ordered_json fidelity_json(const std::filesystem::path& file,
                                      const fidelity::Fidelity& fidelity, const LibrarySize& size);
 

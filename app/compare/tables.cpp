@@ -47,7 +47,7 @@ Json curve_json(const compare::CurveComparison& c) {
           {"model_vertex", c.model_vertex},
           {"distance_m", c.distance},
           {"kind", kind_name(c.kind)},
-          {"held_depth_m", c.held_depth},
+          {"lateral_depth_m", c.lateral_depth},
           {"range_m", c.range},
           {"rmse_N", c.rmse},
           {"normalised_rmse", number(c.normalised_rmse)},
@@ -86,13 +86,13 @@ Json summary_json(const compare::Summary& s) {
 
 std::string comparison_csv(const compare::Comparison& comparison) {
   std::string out =
-      "vertex,model_vertex,kind,held_depth_m,range_m,rmse_N,normalised_rmse,r2,bias_N,"
+      "vertex,model_vertex,kind,lateral_depth_m,range_m,rmse_N,normalised_rmse,r2,bias_N,"
       "worst_difference_N,worst_at_m,rms_jnd,noticeable_share,within_uncertainty_share,"
       "uncertainty_N,scatter_N,energy_reference_J,energy_model_J\n";
   for (const compare::CurveComparison& c : comparison.curves) {
     fmt::format_to(
         std::back_inserter(out), "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-        c.vertex, c.model_vertex, kind_name(c.kind), c.held_depth, c.range, c.rmse,
+        c.vertex, c.model_vertex, kind_name(c.kind), c.lateral_depth, c.range, c.rmse,
         field(c.normalised_rmse), field(c.r2), c.bias, c.worst.model - c.worst.reference,
         c.worst.displacement, c.jnd_rms, c.noticeable, field(c.within_uncertainty),
         field(c.mean_uncertainty), field(c.mean_scatter), c.energy_reference, c.energy_model);
@@ -102,12 +102,12 @@ std::string comparison_csv(const compare::Comparison& comparison) {
 
 std::string comparison_points_csv(const compare::Comparison& comparison) {
   std::string out =
-      "vertex,kind,held_depth_m,displacement_m,reference_N,model_N,difference_N,uncertainty_N,"
+      "vertex,kind,lateral_depth_m,displacement_m,reference_N,model_N,difference_N,uncertainty_N,"
       "scatter_N,difference_jnd\n";
   for (const compare::CurveComparison& c : comparison.curves) {
     for (const compare::ComparedPoint& p : c.points) {
       fmt::format_to(std::back_inserter(out), "{},{},{},{},{},{},{},{},{},{}\n", c.vertex,
-                     kind_name(c.kind), c.held_depth, p.displacement, p.reference, p.model,
+                     kind_name(c.kind), c.lateral_depth, p.displacement, p.reference, p.model,
                      p.model - p.reference, field(p.uncertainty), field(p.scatter), p.jnd);
     }
   }

@@ -28,9 +28,9 @@ Response response_at(double k, double d) {
 
 /// A body held at its contact point, felt along a line at an angle to its normal: two springs, and
 /// the band.
-class StuckBody {
+class BondedBody {
  public:
-  StuckBody(double k, double angle) : k_(k), cos_(std::cos(angle)), sin_(std::sin(angle)) {
+  BondedBody(double k, double angle) : k_(k), cos_(std::cos(angle)), sin_(std::sin(angle)) {
     double low = 0, high = kAnchor;
     for (int i = 0; i < 60; ++i) {
       const double middle = (low + high) / 2;
@@ -62,7 +62,7 @@ class StuckBody {
 };
 
 /// Energy that one swing gains, J: the conservative orbit that turns back at depth `turn`.
-double StuckBody::gain_of_swing(double period, double turn) const {
+double BondedBody::gain_of_swing(double period, double turn) const {
   constexpr int kPoints = 2000;
   const double energy = potential(turn);
   double low = kRelease, high = rest_;  // the other turning point lies between
@@ -88,9 +88,9 @@ double StuckBody::gain_of_swing(double period, double turn) const {
 
 }  // namespace
 
-double stuck_margin_by_energy_balance(double rate, double angle) {
+double bonded_margin_by_energy_balance(double rate, double angle) {
   const auto best_gain = [&](double k) {
-    const StuckBody body(k, angle);
+    const BondedBody body(k, angle);
     double best = -1;
     for (double turn = body.rest() + 5e-4; body.within_release(turn); turn += 1e-4) {
       best = std::max(best, body.gain_of_swing(1 / rate, turn));

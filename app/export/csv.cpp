@@ -28,7 +28,7 @@ void add_rows(const SiteCurves& site, std::size_t index, std::string& out) {
   for (const CurveSample& s : path.samples) {
     fmt::format_to(std::back_inserter(out),
                    "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-                   site.vertex, status_name(site.status), index, kind, path.held_depth,
+                   site.vertex, status_name(site.status), index, kind, path.lateral_depth,
                    path.direction[0], path.direction[1], path.direction[2], s.displacement,
                    s.force[0], s.force[1], s.force[2], s.strain_energy, s.tool_work, s.min_jacobian,
                    s.penetration, s.contact_area, s.iterations, s.force_scatter,
@@ -40,7 +40,7 @@ void add_rows(const SiteCurves& site, std::size_t index, std::string& out) {
 
 std::string curves_csv(const Curves& curves) {
   std::string out =
-      "vertex,status,path,kind,held_depth_m,direction_x,direction_y,direction_z,displacement_m,"
+      "vertex,status,path,kind,lateral_depth_m,direction_x,direction_y,direction_z,displacement_m,"
       "force_x_N,force_y_N,force_z_N,strain_energy_J,tool_work_J,min_jacobian,penetration_m,"
       "contact_area_m2,iterations,force_scatter_N,force_uncertainty_N,contact_energy_J,tension_N\n";
   for (const SiteCurves& site : curves.sites) {

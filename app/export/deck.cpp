@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <map>
 
+#include "fem/campaign/bonded_patch.hpp"
 #include "fem/campaign/indentation.hpp"
-#include "fem/campaign/stuck_patch.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 
@@ -52,11 +52,11 @@ Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int
                 "other programs have no tetrahedron of four nodes with pressures around its nodes",
                 "export with element = \"tet10-displacement\", which they have");
   }
-  if (settings.indentation.divide_under_tool) {
+  if (settings.indentation.refine_under_tool) {
     throw Error(ErrorKind::Configuration, body.name,
                 "decks for other programs hold the mesh of the body, not what is divided under the "
                 "tool",
-                "export a case without solver.divide_under_tool, on a smaller mesh.element_size");
+                "export a case without solver.refine_under_tool, on a smaller mesh.element_size");
   }
   Deck deck;
   deck.region_names = body.region_names;
@@ -84,7 +84,7 @@ void check_pressing(const Body& body, const fem::IndentationSettings& press, std
                 fmt::format("response vertex {} is not a site", vertex),
                 fmt::format("choose a vertex outside the supports, from 0 to {}", count - 1));
   fem::check_tool(press.tool);
-  if (press.friction == fem::ToolFriction::Stuck || (fem::Tool{press.tool}).has_sharp_edge())
+  if (press.friction == fem::ToolFriction::NoSlip || (fem::Tool{press.tool}).has_sharp_edge())
     throw Error(ErrorKind::Configuration, "tool",
                 "it is stuck or has a sharp edge, which other programs hold to the surface in ways "
                 "of their own",
@@ -102,7 +102,7 @@ fem::Facet facet_of(const fem::Tetrahedron10& element, std::int32_t side) {
 
 Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
                      double radius) {
-  fem::StuckPatch patch = fem::stuck_patch(body, vertex, radius);
+  fem::BondedPatch patch = fem::bonded_patch(body, vertex, radius);
   Deck deck = body_deck(body, settings, vertex);
   deck.title = fmt::format("{}: site {}, surface nodes within {:.6g} m moved inward by {:.6g} m",
                            body.name, vertex, radius, deck.depth);

@@ -46,7 +46,8 @@ struct Deck {
 
 /// The surface nodes within `radius` of a site moved inward together: no contact, which any program
 /// can repeat node by node.
-/// @throws Error(Configuration) for linear elements, and as fem::stuck_patch and fem::run_campaign.
+/// @throws Error(Configuration) for linear elements, and as fem::bonded_patch and
+/// fem::run_campaign.
 Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
                      double radius);
 

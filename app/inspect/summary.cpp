@@ -203,7 +203,7 @@ Json summary_of(const Certificate& certificate) {
           {"L_stick", with_unit(certificate.stick, "N/m")},
           {"L_slip", with_unit(certificate.slip, "N/m")},
           {"L_hold", with_unit(certificate.hold, "N/m")},
-          {"limit_of_the_runtime", with_unit(steepness_limit(certificate), "N/m")},
+          {"limit_of_the_runtime", with_unit(enforced_lipschitz_bound(certificate), "N/m")},
           {"worst_triangle", certificate.worst_triangle},
           {"limited_by", certificate.limited_by},
           {"basis", certificate.basis},

@@ -223,7 +223,7 @@ class Importer {
     records_.back()["tilt_rad"] = curves.tilt;
     records_.back()["touch_m"] = curves.touch;
     if (curves.drag) {
-      records_.back()["drag"] = {{"held_depth_m", curves.drag->held_depth},
+      records_.back()["drag"] = {{"lateral_depth_m", curves.drag->lateral_depth},
                                  {"travel_m", curves.drag->travel.back()},
                                  {"slip_at_m", number(curves.drag->slip)}};
       sites_[curves.site.vertex].drags.push_back(*curves.drag);
@@ -337,7 +337,7 @@ class Importer {
       Json lateral = Json::array();
       for (std::size_t i = 1; i < site.paths.size(); ++i) {
         const CurvePath& path = site.paths[i];
-        Json entry = {{"held_depth_m", path.held_depth},
+        Json entry = {{"lateral_depth_m", path.lateral_depth},
                       {"travel_m", path.samples.back().displacement},
                       {"direction", path.direction}};
         entry.update(end_account(path));

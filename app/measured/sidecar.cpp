@@ -20,7 +20,7 @@ template <class V>
 void describe(V& v, MeasuredToolSection& s) {
   v.text(s.shape, {"shape", "shape of the rigid tool"}, {"sphere"});
   v.quantity(s.radius, Dimension::Length, {"radius", "radius of the tool", kRequired, kPositive});
-  v.text(s.friction, {"friction", "of the press", kRequired}, {"frictionless", "stuck"});
+  v.text(s.friction, {"friction", "of the press", kRequired}, {"frictionless", "no-slip"});
   v.text(s.reference, {"reference", "point of the tool that a robot logs"}, {"tip", "centre"});
 }
 

@@ -17,7 +17,7 @@ inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 struct MeasuredToolSection {
   std::string shape = "sphere";
   double radius = 0;              ///< m
-  std::string friction;           ///< "frictionless" or "stuck"
+  std::string friction;           ///< "frictionless" or "no-slip"
   std::string reference = "tip";  ///< what a robot logs: "tip" or "centre"
 };
 

@@ -32,17 +32,17 @@ constexpr std::size_t kFewestAdded = 8;    // sites of a round: each costs a fac
 constexpr std::size_t kLeastGrowth = 4;    // a quarter as many again, at most half
 constexpr double kLeastTarget = 1.0 / 64;  // of the tolerance
 
-fs::path held_out_journal(const Workspace& space) {
+fs::path hold_out_journal(const Workspace& space) {
   return space.out / "held-out.journal";
 }
 
 /// Removed when done, also after an error: a file that only the runtime was to read.
-class PassingFile {
+class TemporaryFile {
  public:
-  explicit PassingFile(fs::path path) : path_(std::move(path)) {}
-  PassingFile(const PassingFile&) = delete;
-  PassingFile& operator=(const PassingFile&) = delete;
-  ~PassingFile() {
+  explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
     std::error_code none;
     fs::remove(path_, none);
   }
@@ -53,18 +53,18 @@ class PassingFile {
 };
 
 /// Random points of the surface and the forces of direct presses there.
-class HeldOut {
+class HoldOut {
  public:
-  HeldOut(const Workspace& space, const Body& body, const Library& library, fem::KeptFactor& kept,
+  HoldOut(const Workspace& space, const Body& body, const Library& library, fem::FactorCache& kept,
           fem::CampaignSettings settings, const std::string& key)
       : space_(space) {
-    points_ = fidelity::draw_points(library, space.c.sampling.held_out, 0, kSeed);
+    points_ = fidelity::draw_points(library, space.c.sampling.hold_out, 0, kSeed);
     fidelity::find_skin(body, points_);
     settings.sites.clear();
-    for (const fidelity::HeldOutPoint& p : points_)
+    for (const fidelity::HoldOutPoint& p : points_)
       settings.points.push_back({p.position + p.skin * p.inward, p.inward});
-    settings.indentation.held_depths.clear();  // sampling has no part in how directions couple
-    SiteJournal journal(held_out_journal(space),
+    settings.indentation.lateral_depths.clear();  // sampling has no part in how directions couple
+    SiteJournal journal(hold_out_journal(space),
                         {sha256("held out\n" + key), static_cast<std::int64_t>(points_.size())});
     settings.known = journal.found();
     settings.finished = [&](const SiteCurves& site) { journal.append(site); };
@@ -75,7 +75,7 @@ class HeldOut {
   const fem::CampaignReport& report() const { return report_; }
 
   void judge(const Library& library, const Curves& curves, SamplingRound& round) const {
-    const PassingFile file(space_.out / ".library.held-out.h5");
+    const TemporaryFile file(space_.out / ".library.held-out.h5");
     write_library(file.path(), library);
     const fidelity::Fidelity result =
         fidelity::measure(library, fidelity::RenderedBody(file.path()), points_, direct_, curves,
@@ -90,7 +90,7 @@ class HeldOut {
 
  private:
   const Workspace& space_;
-  std::vector<fidelity::HeldOutPoint> points_;
+  std::vector<fidelity::HoldOutPoint> points_;
   Curves direct_;
   fem::CampaignReport report_;
 };
@@ -152,12 +152,12 @@ std::vector<std::pair<std::string, std::string>> facts_of(const SamplingRound& l
   return {{"sampling", "adaptive"},
           {"sampling_rounds", std::to_string(last.number)},
           {"sites_computed", fmt::format("{} of {}", last.sites, last.of_sites)},
-          {"held_out_points", std::to_string(sampling.held_out)},
-          {"held_out_points_failed", std::to_string(last.points_failed)},
-          {"held_out_states", std::to_string(last.along.states)},
-          {"held_out_tolerance", fmt::format("{:.6g}", sampling.tolerance)},
-          {"held_out_error_along_press", distribution(last.along)},
-          {"held_out_error_of_vector", distribution(last.whole)},
+          {"hold_out_points", std::to_string(sampling.hold_out)},
+          {"hold_out_points_failed", std::to_string(last.points_failed)},
+          {"hold_out_states", std::to_string(last.along.states)},
+          {"hold_out_tolerance", fmt::format("{:.6g}", sampling.tolerance)},
+          {"hold_out_error_along_press", distribution(last.along)},
+          {"hold_out_error_of_vector", distribution(last.whole)},
           {"sampling_ended", words(end)}};
 }
 
@@ -205,18 +205,18 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
   const std::size_t of_sites = sites_of(body).size();
   KnownSites known(settings.known);
   AdaptiveCampaign result;
-  std::optional<HeldOut> held_out;
+  std::optional<HoldOut> hold_out;
   std::vector<SamplingRound> rounds;
   settings.sites = fitting::spread_sites(body, sampling.start_spacing);
   const auto start = std::chrono::steady_clock::now();
-  fem::KeptFactor kept;
+  fem::FactorCache kept;
   for (bool open = true; open;) {
     settings.known = known.among(settings.sites);
     result.report = {};
     result.curves = fem::run_campaign(body, settings, result.report, &kept);
     known.add(result.curves.sites);
     const Library library = fitting::fit(body, result.curves, fit_settings(space));
-    if (!held_out) held_out.emplace(space, body, library, kept, settings, key);
+    if (!hold_out) hold_out.emplace(space, body, library, kept, settings, key);
     rounds.push_back({static_cast<int>(rounds.size()) + 1,
                       settings.sites.size(),
                       of_sites,
@@ -224,7 +224,7 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
                       {},
                       {},
                       0});
-    held_out->judge(library, result.curves, rounds.back());
+    hold_out->judge(library, result.curves, rounds.back());
     tell(rounds.back());
     const auto more = sites_to_add(space, body, settings.sites, library);
     const auto end = end_of(rounds, more, sampling);
@@ -235,14 +235,14 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
   }
   result.report.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  result.report.cpu_seconds += held_out->report().cpu_seconds;
+  result.report.cpu_seconds += hold_out->report().cpu_seconds;
   result.facts = facts_of(rounds.back(), result.end, sampling);
   return result;
 }
 
-void forget_held_out(const Workspace& space) {
+void forget_hold_out(const Workspace& space) {
   std::error_code none;
-  fs::remove(held_out_journal(space), none);
+  fs::remove(hold_out_journal(space), none);
 }
 
 }  // namespace palpate::app

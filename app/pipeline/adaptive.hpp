@@ -55,6 +55,6 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
                                    const std::function<void(const SamplingRound&)>& tell);
 
 /// The direct solutions at the points held out, of a campaign whose curves are written.
-void forget_held_out(const Workspace& space);
+void forget_hold_out(const Workspace& space);
 
 }  // namespace palpate::app

@@ -52,9 +52,9 @@ void add_forces(const SiteCurves& site, const fem::IndentationSettings& settings
     if (path.kind == PathKind::Lateral) lateral = last_force(path, settings.lateral_travel);
   }
   add(fmt::format("normal force at {:.3g} mm", 1e3 * settings.depth), normal);
-  if (settings.held_depths.empty()) return;
+  if (settings.lateral_depths.empty()) return;
   add(fmt::format("lateral force after {:.3g} mm at {:.3g} mm", 1e3 * settings.lateral_travel,
-                  1e3 * settings.held_depths.back()),
+                  1e3 * settings.lateral_depths.back()),
       lateral);
 }
 
@@ -122,8 +122,9 @@ ConvergenceTable run_convergence(const Workspace& space, int levels,
   mesher::Settings meshing = mesh_settings(space);
   fem::CampaignSettings campaign = campaign_settings(space);
   fem::IndentationSettings& paths = campaign.indentation;
-  if (paths.held_depths.size() > 1)
-    paths.held_depths = {*std::max_element(paths.held_depths.begin(), paths.held_depths.end())};
+  if (paths.lateral_depths.size() > 1)
+    paths.lateral_depths = {
+        *std::max_element(paths.lateral_depths.begin(), paths.lateral_depths.end())};
   if (paths.azimuths.size() > 1) paths.azimuths = {paths.azimuths.front()};
 
   ConvergenceTable table;

@@ -31,9 +31,9 @@ std::string campaign_key(const Workspace& space, const std::string& body_sha256)
 }
 
 /// What the user, or a program that watches, is told while the sites are computed.
-class Teller {
+class ProgressReporter {
  public:
-  explicit Teller(Telling telling) : telling_(telling) {}
+  explicit ProgressReporter(Telling telling) : telling_(telling) {}
 
   /// A campaign begins: what decides its bits beside body and case, and what is known already.
   void start(const SiteJournal& journal, const std::filesystem::path& path) {
@@ -104,8 +104,8 @@ class Teller {
            {"sites", r.sites},
            {"of_sites", r.of_sites},
            {"leave_one_out_error_p95", r.leave_one_out},
-           {"held_out_states", r.along.states},
-           {"held_out_points_failed", r.points_failed},
+           {"hold_out_states", r.along.states},
+           {"hold_out_points_failed", r.points_failed},
            {"error_along_press", error_of(r.along)},
            {"error_of_vector", error_of(r.whole)}});
   }
@@ -170,15 +170,15 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Workspace& space
 /// A part of a campaign that is done already: whoever starts all parts again, because some were
 /// killed, does not compute the others twice. (A whole campaign is started again by those who mean
 /// it.)
-std::optional<SiteCounts> finished_part(const Workspace& space, Teller& teller) {
+std::optional<SiteCounts> finished_part(const Workspace& space, ProgressReporter& reporter) {
   if (space.shard.count == 1 || !std::filesystem::exists(space.precomputed())) return {};
   const Curves curves = read_curves(space.precomputed());
   if (!stale_reason(space, Stage::Precompute, curves.provenance).empty()) return {};
   const SiteCounts counts = count_sites(curves);
-  if (teller.tells_text())
+  if (reporter.tells_text())
     say("precompute: {} is up to date", space.precomputed().string());
   else
-    teller.end(space.precomputed(), counts, 0, 0);
+    reporter.end(space.precomputed(), counts, 0, 0);
   return counts;
 }
 
@@ -197,10 +197,10 @@ Campaign press_all(const Body& body, const fem::CampaignSettings& settings) {
 
 Campaign press_by_need(const Workspace& space, const Body& body,
                        const fem::CampaignSettings& settings, const std::string& key,
-                       Teller& teller) {
+                       ProgressReporter& reporter) {
   AdaptiveCampaign adaptive = sample_adaptively(
-      space, body, settings, key, [&](const SamplingRound& round) { teller.round(round); });
-  if (teller.tells_text())
+      space, body, settings, key, [&](const SamplingRound& round) { reporter.round(round); });
+  if (reporter.tells_text())
     say("  {}{}",
         adaptive.end == SamplingEnd::ToleranceMet ? "" : "WARNING: ", words(adaptive.end));
   return {std::move(adaptive.curves), std::move(adaptive.report), std::move(adaptive.facts)};
@@ -220,26 +220,26 @@ SiteCounts run_precompute(const Workspace& space, Telling telling) {
   require_whole(space);
   const Body body = read_input(space.body(), "mesh", read_body);
   prepare_output(space.out);
-  Teller teller(telling);
-  teller.body(space.body(), stale_reason(space, Stage::Mesh, body.provenance));
-  if (const auto counts = finished_part(space, teller)) return *counts;
+  ProgressReporter reporter(telling);
+  reporter.body(space.body(), stale_reason(space, Stage::Mesh, body.provenance));
+  if (const auto counts = finished_part(space, reporter)) return *counts;
   const std::string body_sha256 = sha256_of_file(space.body());
   fem::CampaignSettings settings = campaign_settings(space);
   settings.sites = sites_of_shard(body, space.shard);
 
   const std::string key = campaign_key(space, body_sha256);
   SiteJournal journal(space.journal(), {key, static_cast<std::int64_t>(settings.sites.size())});
-  teller.start(journal, space.journal());
-  teller.element(settings.dilatation);
+  reporter.start(journal, space.journal());
+  reporter.element(settings.dilatation);
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) {
     journal.append(site);
-    teller.site(site);
+    reporter.site(site);
   };
-  settings.progress = [&](const fem::CampaignProgress& p) { teller.progress(p); };
+  settings.progress = [&](const fem::CampaignProgress& p) { reporter.progress(p); };
 
   auto [curves, report, facts] = is_adaptive(space)
-                                     ? press_by_need(space, body, settings, key, teller)
+                                     ? press_by_need(space, body, settings, key, reporter)
                                      : press_all(body, settings);
   curves.body_sha256 = body_sha256;
   const auto general = facts_of(space, report, settings.known.size());
@@ -247,10 +247,10 @@ SiteCounts run_precompute(const Workspace& space, Telling telling) {
   append(curves.provenance, body.provenance, make_stage_step(space, Stage::Precompute, facts));
   write_curves(space.precomputed(), curves);
   journal.remove();
-  forget_held_out(space);
+  forget_hold_out(space);
   const SiteCounts counts = count_sites(curves);
-  teller.end(space.precomputed(), counts, report.seconds, report.cpu_seconds);
-  if (teller.tells_text()) tell_failures(curves);
+  reporter.end(space.precomputed(), counts, report.seconds, report.cpu_seconds);
+  if (reporter.tells_text()) tell_failures(curves);
   return counts;
 }
 

@@ -104,15 +104,15 @@ fem::CampaignSettings campaign_settings(const Workspace& space) {
   fem::IndentationSettings& indentation = settings.indentation;
   indentation.tool = tool_of(c.tool);
   indentation.tool_azimuth = c.tool.azimuth;
-  if (c.tool.friction == "stuck") indentation.friction = fem::ToolFriction::Stuck;
+  if (c.tool.friction == "no-slip") indentation.friction = fem::ToolFriction::NoSlip;
   indentation.depth = c.indentation.depth;
   indentation.increments = c.indentation.increments;
   indentation.lateral_travel = c.indentation.lateral_travel;
   indentation.lateral_increments = c.indentation.lateral_increments;
-  indentation.held_depths = c.indentation.held_depths;
+  indentation.lateral_depths = c.indentation.lateral_depths;
   indentation.azimuths = c.indentation.azimuths;
   indentation.force_tolerance = c.indentation.force_tolerance;
-  indentation.divide_under_tool = c.solver.divide_under_tool;
+  indentation.refine_under_tool = c.solver.refine_under_tool;
   settings.threads = space.threads;
   settings.memory = space.memory;
   return settings;

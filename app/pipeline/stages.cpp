@@ -28,7 +28,7 @@ void tell_certificate(const Certificate& certificate) {
   say("  L_stick: {}, L_slip: {} at mu = {}", bound_text(certificate.stick, "N/m"),
       bound_text(certificate.slip, "N/m"), certificate.friction);
   say("  L_hold: {}; the runtime holds the force to {}",
-      std::isfinite(certificate.hold) ? steepness_text(certificate.hold)
+      std::isfinite(certificate.hold) ? lipschitz_bound_text(certificate.hold)
                                       : "not certified: no bound",
       bound_text(certificate.limit, "N/m"));
   say("  limited by: {}", certificate.limited_by);
@@ -101,9 +101,9 @@ namespace {
 
 /// Where the depths of the lateral paths do not say how the response grows, the tool's shape does.
 void tell_single_depths(const Curves& curves) {
-  const auto single =
-      std::count_if(curves.sites.begin(), curves.sites.end(),
-                    [](const SiteCurves& site) { return fitting::held_depths(site).size() == 1; });
+  const auto single = std::count_if(
+      curves.sites.begin(), curves.sites.end(),
+      [](const SiteCurves& site) { return fitting::lateral_depths(site).size() == 1; });
   if (single > 0)
     say("fit: {} sites have lateral paths at one depth: coupled like the square root of depth",
         single);
@@ -163,9 +163,9 @@ void tell_keep(const Library& library, const fitting::DeviceProfile& device, dou
       bound_text(steepest, "N/m"), over, c.triangles.size(), c.worst_triangle);
   if (c.hold <= bound)
     return say(
-        "    slides can be held back to {}: certified with a steepness of {:.1f} N/m, "
+        "    slides can be held back to {}: certified with a lipschitz_bound of {:.1f} N/m, "
         "which --soften writes as the limit of a library and `palpate run` takes by itself",
-        steepness_text(c.hold), std::floor(10 * bound) / 10);
+        lipschitz_bound_text(c.hold), std::floor(10 * bound) / 10);
   if (std::isinf(c.hold)) return say("    and cannot be held back to any limit");
   say("    held back they need {:.1f} N/m: {:.2f} times its forces would be certified; "
       "--soften caps the stiff slopes alone",
@@ -187,7 +187,7 @@ void write_softened(const Workspace& space, const KeepOptions& options, Library 
   ProvenanceStep step = make_stage_step(space, Stage::Certify, {});
   step.facts.emplace_back("softened_for_hz", fmt::format("{}", options.rate));
   if (soft.curves > 0) step.facts.emplace_back("softened_slope_cap", fmt::format("{}", soft.cap));
-  step.facts.emplace_back("steepness_limit", fmt::format("{}", library.certificate.limit));
+  step.facts.emplace_back("enforced_lipschitz_bound", fmt::format("{}", library.certificate.limit));
   library.provenance.steps.push_back(step);
   write_library(options.softened, library);
   if (soft.curves == 0) {

@@ -21,7 +21,7 @@ runtime::ContactSettings contact_settings(const RecordingHeading& recording) {
   runtime::ContactSettings settings;
   settings.friction = recording.friction;
   settings.tank_cap = recording.settings.tank_cap;
-  settings.steepness = recording.settings.steepness;
+  settings.lipschitz_bound = recording.settings.lipschitz_bound;
   return settings;
 }
 

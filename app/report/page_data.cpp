@@ -197,7 +197,7 @@ json sample_data(const Curves& curves, const Library& library) {
     for (const CurvePath& path : site.paths) {
       vertex.push_back(site.vertex);
       kind.push_back(static_cast<std::uint8_t>(path.kind));
-      held.push_back(static_cast<float>(path.held_depth));
+      held.push_back(static_cast<float>(path.lateral_depth));
       const Vec3& axis =
           path.kind == PathKind::Normal ? library.inward[to_index(site.vertex)] : path.direction;
       for (const CurveSample& sample : path.samples) {
@@ -209,7 +209,7 @@ json sample_data(const Curves& curves, const Library& library) {
   }
   return {{"vertex", column(vertex)},
           {"kind", column(kind)},
-          {"held_depth", column(held)},
+          {"lateral_depth", column(held)},
           {"offset", column(offset)},
           {"displacement", column(displacement)},
           {"force", column(force)}};

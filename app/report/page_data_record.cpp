@@ -60,7 +60,7 @@ json certificate_data(const Library& library) {
           {"stick", c.stick},
           {"slip", c.slip},
           {"hold", c.hold},
-          {"limit", certified_steepness(c)},
+          {"limit", certified_lipschitz_bound(c)},
           {"worst_triangle", c.worst_triangle},
           {"limited_by", c.limited_by},
           {"basis", c.basis},

@@ -20,11 +20,12 @@ double certified_rate(const Library& library, const fitting::DeviceProfile& prof
   if (library.certificate.triangles.empty() || !(profile.damping > 0)) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  return 2 * certified_steepness(library.certificate) / profile.damping;
+  return 2 * certified_lipschitz_bound(library.certificate) / profile.damping;
 }
 
-double steepness_for(const Library& library, const fitting::DeviceProfile& profile, double rate) {
-  const double limit = steepness_limit(library.certificate);
+double lipschitz_bound_for(const Library& library, const fitting::DeviceProfile& profile,
+                           double rate) {
+  const double limit = enforced_lipschitz_bound(library.certificate);
   const double bound = fitting::certified_bound(profile.damping, rate);
   return bound < limit && bound >= library.certificate.hold ? bound : limit;
 }
@@ -51,11 +52,12 @@ void require_certified(const Library& library, const std::string& library_file,
     refuse(profile.name, "no rate is certified: the slide has no bound",
            "run `palpate certify` again, which says why");
   }
-  refuse(profile.name,
-         fmt::format("{:g} Hz is not certified: a steepness of {:.1f} N/m on {:g} N s/m needs "
-                     "{:.0f} Hz",
-                     rate, 0.5 * needed * profile.damping, profile.damping, needed),
-         "raise --rate, soften the body (palpate certify --rate --soften)");
+  refuse(
+      profile.name,
+      fmt::format("{:g} Hz is not certified: a lipschitz_bound of {:.1f} N/m on {:g} N s/m needs "
+                  "{:.0f} Hz",
+                  rate, 0.5 * needed * profile.damping, profile.damping, needed),
+      "raise --rate, soften the body (palpate certify --rate --soften)");
 }
 
 }  // namespace palpate::app

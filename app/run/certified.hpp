@@ -16,7 +16,8 @@ double certified_rate(const Library& library, const fitting::DeviceProfile& prof
 
 /// What to hold the change of force to, N/m: the limit of the certificate; or, where that is not
 /// certified at this rate, what is, as long as slides can be held back to it.
-double steepness_for(const Library& library, const fitting::DeviceProfile& profile, double rate);
+double lipschitz_bound_for(const Library& library, const fitting::DeviceProfile& profile,
+                           double rate);
 
 /// @throws Error(Configuration) when the rate is not certified: what is missing and what to do.
 void require_certified(const Library& library, const std::string& library_file,

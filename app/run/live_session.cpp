@@ -73,7 +73,7 @@ void wait_for_the_end(const runtime::LoopThread& loop, const RecordingThread& re
 SessionSettings session_settings(const LiveSettings& live) {
   SessionSettings settings;
   settings.tank_cap = live.contact.tank_cap;
-  settings.steepness = live.contact.steepness;
+  settings.lipschitz_bound = live.contact.lipschitz_bound;
   settings.search_rate = live.search_rate;
   settings.body_position = live.pose.position;
   settings.guarded = true;

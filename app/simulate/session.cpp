@@ -32,27 +32,27 @@ LibraryHandle load(const std::filesystem::path& file) {
   return {library, &palpate_library_destroy};
 }
 
-palpate_settings chosen_settings(double steepness) {
+palpate_settings chosen_settings(double lipschitz_bound) {
   palpate_settings settings{};
   palpate_settings_default(&settings);
-  settings.steepness = steepness;
+  settings.lipschitz_bound = lipschitz_bound;
   return settings;
 }
 
-StateHandle create(const palpate_library* library, double steepness,
+StateHandle create(const palpate_library* library, double lipschitz_bound,
                    const std::filesystem::path& file) {
-  const palpate_settings settings = chosen_settings(steepness);
+  const palpate_settings settings = chosen_settings(lipschitz_bound);
   palpate_state* state = nullptr;
   check(palpate_state_create(library, &settings, &state), file);
   return {state, &palpate_state_destroy};
 }
 
 /// What the state goes by.
-SessionSettings settings_of(const palpate_library* library, double steepness) {
-  const palpate_settings chosen = chosen_settings(steepness);
+SessionSettings settings_of(const palpate_library* library, double lipschitz_bound) {
+  const palpate_settings chosen = chosen_settings(lipschitz_bound);
   SessionSettings settings;
   settings.tank_cap = chosen.tank_cap;
-  settings.steepness = steepness > 0 ? steepness : library->steepness;
+  settings.lipschitz_bound = lipschitz_bound > 0 ? lipschitz_bound : library->lipschitz_bound;
   return settings;
 }
 
@@ -95,17 +95,17 @@ HandPath hand_path_of(const Library& library, const SimulateSection& script) {
 
 struct ScriptedSession::State {
   State(const std::filesystem::path& file, const Library& library, const SimulateSection& given,
-        double steepness)
+        double lipschitz_bound)
       : script(given),
         handle(load(file)),
-        state(create(handle.get(), steepness, file)),
+        state(create(handle.get(), lipschitz_bound, file)),
         hand(hand_path_of(library, given)),
         device(simulated_device(given)) {
     heading.device = "simulated";
     heading.library_sha256 = sha256_of_file(file);
     heading.rate = script.rate;
     heading.friction = library.certificate.friction;
-    heading.settings = settings_of(handle.get(), steepness);
+    heading.settings = settings_of(handle.get(), lipschitz_bound);
   }
 
   SimulateSection script;
@@ -117,8 +117,8 @@ struct ScriptedSession::State {
 };
 
 ScriptedSession::ScriptedSession(const std::filesystem::path& library_file, const Library& library,
-                                 const SimulateSection& script, double steepness)
-    : state_(std::make_unique<State>(library_file, library, script, steepness)) {}
+                                 const SimulateSection& script, double lipschitz_bound)
+    : state_(std::make_unique<State>(library_file, library, script, lipschitz_bound)) {}
 
 ScriptedSession::~ScriptedSession() = default;
 

@@ -45,10 +45,10 @@ fem::CampaignSettings settings() {
   s.materials = {{"tissue", {10e3, 0.49}}};
   s.dilatation = fem::Dilatation::Pointwise;
   s.indentation.tool = {fem::ToolShape::Disc, kRadius, 0, 0};
-  s.indentation.friction = fem::ToolFriction::Stuck;
+  s.indentation.friction = fem::ToolFriction::NoSlip;
   s.indentation.depth = 0.003;
   s.indentation.increments = 10;
-  s.indentation.held_depths.clear();
+  s.indentation.lateral_depths.clear();
   s.threads = 1;
   return s;
 }

@@ -51,7 +51,7 @@ CampaignSettings settings_of(const Body& body, const Constants& c, std::size_t s
   s.materials = {{"top", {c.top, c.top_poisson}}, {"base", {c.base, c.base_poisson}}};
   s.indentation.tool.radius = 0.005;
   s.indentation.depth = kDepth;
-  s.indentation.held_depths.clear();
+  s.indentation.lateral_depths.clear();
   s.indentation.azimuths.clear();
   s.threads = 1;
   for (std::size_t v = 0; v < body.response.node.size() && s.sites.size() < sites; ++v) {
@@ -100,7 +100,7 @@ void run(int cells, std::size_t sites) {
     std::printf("%-52s %8.2f s %6.2f of a campaign\n", what, spent, spent / campaign);
   };
 
-  KeptFactor kept;
+  FactorCache kept;
   Sites adjoint;
   const double by_adjoint =
       seconds([&] { adjoint = run_sensitivity(body, settings, depths, constants, {}, &kept); });

@@ -30,7 +30,7 @@ struct Press {
 Press disc() {
   Press press{"stuck disc, r = 3 mm, to 3 mm", {}};
   press.settings.indentation.tool = {ToolShape::Disc, 0.003, 0, 0};
-  press.settings.indentation.friction = ToolFriction::Stuck;
+  press.settings.indentation.friction = ToolFriction::NoSlip;
   press.settings.indentation.depth = 0.003;
   return press;
 }
@@ -85,10 +85,10 @@ CampaignSettings with(const Press& press, std::vector<PressPoint> where, bool di
   CampaignSettings s = press.settings;
   s.materials = {{"tissue", {10e3, 0.49}}};
   s.indentation.increments = 10;
-  s.indentation.divide_under_tool = divided;
+  s.indentation.refine_under_tool = divided;
   s.indentation.force_tolerance = kForceTolerance;
-  s.indentation.held_depths.clear();
-  if (lateral) s.indentation.held_depths = {0.002};
+  s.indentation.lateral_depths.clear();
+  if (lateral) s.indentation.lateral_depths = {0.002};
   s.points = std::move(where);
   return s;
 }

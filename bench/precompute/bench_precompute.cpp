@@ -43,7 +43,7 @@ CampaignSettings settings(double poisson) {
   s.indentation.tool.radius = 0.005;
   s.indentation.depth = 0.004;
   s.indentation.increments = 10;
-  s.indentation.held_depths.clear();
+  s.indentation.lateral_depths.clear();
   s.threads = 1;
   return s;
 }
@@ -138,8 +138,8 @@ struct Press {
 constexpr Press kPresses[] = {
     {"sphere", ToolShape::Sphere, ToolFriction::Frictionless, false},
     {"sphere, divided", ToolShape::Sphere, ToolFriction::Frictionless, true},
-    {"stuck sphere", ToolShape::Sphere, ToolFriction::Stuck, false},
-    {"stuck disc", ToolShape::Disc, ToolFriction::Stuck, false},
+    {"stuck sphere", ToolShape::Sphere, ToolFriction::NoSlip, false},
+    {"stuck disc", ToolShape::Disc, ToolFriction::NoSlip, false},
 };
 
 /// What a force tolerance is worth: the same sites at several, against one that is as good as
@@ -149,8 +149,8 @@ void against_tolerance(int cells, const Press& press) {
   CampaignSettings s = settings(0.45);
   s.indentation.tool.shape = press.shape;
   s.indentation.friction = press.friction;
-  s.indentation.divide_under_tool = press.divided;
-  s.indentation.held_depths = {0.002};
+  s.indentation.refine_under_tool = press.divided;
+  s.indentation.lateral_depths = {0.002};
   s.sites = inner_sites(body, 16);
   s.indentation.force_tolerance = 1e-8;
   CampaignReport report;
@@ -199,7 +199,7 @@ std::vector<PressPoint> spread_points(std::size_t count) {
 /// Normal and lateral path of each site. @return seconds on the clock.
 double campaign_seconds(const Body& body, std::size_t sites, int threads, CampaignReport& report) {
   CampaignSettings s = settings(0.49);
-  s.indentation.held_depths = {0.002};
+  s.indentation.lateral_depths = {0.002};
   s.threads = threads;
   s.points = spread_points(sites);
   run_campaign(body, s, report);

@@ -76,7 +76,7 @@ int main(int, char** arguments) {
       for (const bool curved : {false, true}) {
         Body body = test::even_cap(cap, h);
         if (curved) test::curve_onto_sphere(cap.radius, body);
-        press.divide_under_tool = divided;
+        press.refine_under_tool = divided;
         const char* what =
             divided ? (curved ? "curved, divided" : "flat, divided") : (curved ? "curved" : "flat");
         print_row(h, what, test::spread_of_force(cap, body, press, kNear), reference);

@@ -174,7 +174,7 @@ void step_on_sphere(benchmark::State& state) {
   };
   const Pass pass = time_passes(state, [&] {
     tool = std::make_unique<palpate_state>(
-        body, runtime::ContactSettings{.friction = 0.3, .tank_cap = 5e-3, .steepness = 1200});
+        body, runtime::ContactSettings{.friction = 0.3, .tank_cap = 5e-3, .lipschitz_bound = 1200});
     step((0.052 / norm(tip(0))) * tip(0));  // from outside
     return step;
   });

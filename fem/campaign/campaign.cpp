@@ -7,8 +7,8 @@
 #include <mutex>
 #include <numeric>
 
-#include "fem/campaign/crew.hpp"
 #include "fem/campaign/indentation.hpp"
+#include "fem/campaign/parallel_sites.hpp"
 #include "fem/campaign/region_laws.hpp"
 #include "fem/factor/cholesky.hpp"
 #include "fem/solid/pressure_smoothness.hpp"
@@ -80,13 +80,13 @@ class Crew {
   }
 
   void run() {
-    const CrewSize size =
-        crew_size(*context_.rest_factor, settings_.threads, open_.size(), settings_.memory,
-                  bytes_of_site(context_, curves_.sites[open_.front()].vertex));
-    work_abreast(*context_.rest_factor, size, open_.size(),
-                 [this](SolveBatch::Member& member, std::size_t i) {
-                   solve(member, curves_.sites[open_[i]]);
-                 });
+    const SiteThreads size =
+        site_threads(*context_.rest_factor, settings_.threads, open_.size(), settings_.memory,
+                     bytes_of_site(context_, curves_.sites[open_.front()].vertex));
+    parallel_for_sites(*context_.rest_factor, size, open_.size(),
+                       [this](SolveBatch::Member& member, std::size_t i) {
+                         solve(member, curves_.sites[open_[i]]);
+                       });
   }
 
  private:
@@ -120,14 +120,14 @@ void add_supports(const CampaignContext& context, const CampaignSettings& settin
     report.facts.emplace_back("facets_on_springs", std::to_string(foundation.size()));
   if (!settings.gravity.acts()) return;
   const double sag = context.rest.colwise().norm().maxCoeff();
-  report.facts.emplace_back("largest_sag_m", std::to_string(sag));
+  report.facts.emplace_back("max_gravity_displacement_m", std::to_string(sag));
   report.facts.emplace_back("min_jacobian_before_touch", std::to_string(context.at_rest.min_J));
 }
 
 }  // namespace
 
 Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
-                    KeptFactor* kept) {
+                    FactorCache* kept) {
   const auto start = std::chrono::steady_clock::now();
   const auto passed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -158,7 +158,7 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
       {"rest_factor_bytes", std::to_string(static_cast<long long>(context.rest_factor->bytes()))},
       {"blas_kernel", blas_kernel()},
       {"solver", solver_versions()}};
-  if (settings.indentation.divide_under_tool)
+  if (settings.indentation.refine_under_tool)
     report.facts.emplace_back("under_the_tool", "elements divided in eight");
   add_supports(context, settings, report);
   return curves;
@@ -169,7 +169,7 @@ DeformedState deformed_state(const Body& body, const CampaignSettings& settings,
   check_indentation(settings.indentation);
   chosen_sites(body, {vertex});
   CampaignSettings normal_only = settings;
-  normal_only.indentation.held_depths.clear();
+  normal_only.indentation.lateral_depths.clear();
   const CampaignContext context(body, normal_only, Engine::SharedFactor);
   Displacement u;
   const SiteCurves curves = solve_site(context, vertex, &u);

@@ -30,13 +30,13 @@ struct IndentationSettings {
   int increments = 12;      ///< of the normal path
   double lateral_travel = 0.003;  ///< m, end of each lateral path
   int lateral_increments = 6;
-  std::vector<double> held_depths{0.002, 0.004,
-                                  0.006};  ///< m, where lateral paths start; each at most `depth`
-  std::vector<double> azimuths{0.0};       ///< rad, from the first tangent direction of the site
-  double force_tolerance = 1e-4;  ///< relative error of the tool force allowed to the solver
+  std::vector<double> lateral_depths{
+      0.002, 0.004, 0.006};           ///< m, where lateral paths start; each at most `depth`
+  std::vector<double> azimuths{0.0};  ///< rad, from the first tangent direction of the site
+  double force_tolerance = 1e-4;      ///< relative error of the tool force allowed to the solver
   /// Elements around the tool are divided in eight, for each site anew: a contact that is smaller
   /// than a facet is met where elements of half the size meet it.
-  bool divide_under_tool = false;
+  bool refine_under_tool = false;
 };
 
 /// Where the tool is pressed: any point of the boundary, and the direction of its normal path.
@@ -80,7 +80,7 @@ struct CampaignReport {
   std::vector<std::pair<std::string, std::string>> facts;  ///< BLAS kernel, factor size, versions
 };
 
-class KeptFactor;
+class FactorCache;
 
 /// The sites come back in ascending order of vertex whatever the number of threads. A site whose
 /// solve failed is data: its status, reason and partial curve are kept.
@@ -92,7 +92,7 @@ class KeptFactor;
 ///   without a law, a law without a region, a held depth beyond the depth, a vertex that is no
 ///   site.
 Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
-                    KeptFactor* kept = nullptr);
+                    FactorCache* kept = nullptr);
 
 /// Displacement of the nodes of the body (corner nodes, same order as Body::nodes) for one site at
 /// the end of its normal path: for pictures and exports.

@@ -41,11 +41,11 @@ namespace {
 
 /// What is divided under the tool knows the energy of the elements alone.
 void check_division(const Body& body, const CampaignSettings& settings, Engine engine) {
-  if (!settings.indentation.divide_under_tool) return;
+  if (!settings.indentation.refine_under_tool) return;
   const auto refuse = [&](const char* with) {
     throw Error(ErrorKind::Configuration, body.name,
                 std::string("elements cannot be divided under the tool ") + with,
-                "leave solver.divide_under_tool out, and choose a smaller mesh.element_size");
+                "leave solver.refine_under_tool out, and choose a smaller mesh.element_size");
   };
   if (has_nodal_pressure(settings.dilatation)) refuse("where pressures are nodal");
   if (!body.foundation.empty()) refuse("of a body on springs");
@@ -56,7 +56,7 @@ void check_division(const Body& body, const CampaignSettings& settings, Engine e
 }  // namespace
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
-                                 KeptFactor* kept)
+                                 FactorCache* kept)
     : body(b),
       points(settings.points),
       indentation(settings.indentation),
@@ -98,7 +98,7 @@ double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
   constexpr double kDisplacements = 12, kVectors = 8, kWindowFill = 8;
   constexpr double kPairs = 2.0 * SharedFactorSolver::kMostPairs * sizeof(float);
   const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
-  const double held = static_cast<double>(context.indentation.held_depths.size());
+  const double held = static_cast<double>(context.indentation.lateral_depths.size());
   const double numbers = 3 * nodes * (kDisplacements + held) + unknowns * kVectors;
   const SiteBody site(context, to_eigen(context.place(vertex).position));
   return sizeof(double) * (numbers + kWindowFill * site.window().pattern().nonzeros()) +

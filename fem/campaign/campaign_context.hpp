@@ -22,7 +22,7 @@ enum class Engine {
 struct CampaignContext {
   /// `kept`: shared with earlier campaigns on the body; may be null.
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
-                  KeptFactor* kept = nullptr);
+                  FactorCache* kept = nullptr);
 
   /// Of a response vertex, or of a point of the settings by its index when there are any.
   PressPoint place(std::int32_t vertex) const;

@@ -178,7 +178,7 @@ FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex) {
 namespace {
 
 std::size_t pairs_needed(const CampaignContext& context, const SolidModel& model) {
-  const bool sticks = context.indentation.friction == ToolFriction::Stuck;
+  const bool sticks = context.indentation.friction == ToolFriction::NoSlip;
   return sticks || !model.mesh().sprung.empty() ? SharedFactorSolver::kMostPairs
                                                 : SharedFactorSolver::kFewPairs;
 }
@@ -224,7 +224,7 @@ class SiteEquilibrium {
   NewtonResult solve_shared(const ToolContact& contact, Displacement& u) {
     NewtonOptions options;
     options.tolerance = kSharedTolerance * context_.indentation.force_tolerance;
-    if (context_.indentation.friction == ToolFriction::Stuck) options.tolerance *= kStickingShare;
+    if (context_.indentation.friction == ToolFriction::NoSlip) options.tolerance *= kStickingShare;
     Displacement trial = u;
     NewtonResult result = shared_->solve(contact, options, trial);
     if (result.converged)
@@ -454,7 +454,7 @@ void fill_work(CurvePath& path, double start, const std::vector<std::optional<do
 }  // namespace
 
 void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves) {
-  const bool stuck = context_.indentation.friction == ToolFriction::Stuck;
+  const bool stuck = context_.indentation.friction == ToolFriction::NoSlip;
   PathDriver driver(context_, site.body.whole(), site.contact, site.equilibrium, site.watch, true,
                     [&](double depth) { return site.tool_at(depth); });
   CurvePath path;
@@ -498,8 +498,8 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
 }
 
 void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurves& curves) {
-  const double held_depth = plan.held_depth;
-  const auto found = site.held.find(held_depth);
+  const double lateral_depth = plan.lateral_depth;
+  const auto found = site.held.find(lateral_depth);
   if (found == site.held.end()) return;  // the normal path ended before: already recorded
   const Site::Held& held = found->second;
   const Eigen::Vector3d direction = to_eigen(plan.direction);
@@ -507,16 +507,16 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
   Displacement u = held.u;
   contact.bond(u);
   PathDriver driver(context_, site.body.whole(), contact, site.equilibrium, site.watch, false,
-                    [&](double s) { return site.tool_at(held_depth, s * direction); });
+                    [&](double s) { return site.tool_at(lateral_depth, s * direction); });
   CurvePath path;
   path.kind = PathKind::Lateral;
-  path.held_depth = held_depth;
+  path.lateral_depth = lateral_depth;
   path.direction = plan.direction;
   History history;
   history.add(0, u);
   path.samples.push_back(curves.paths.front().samples.front());
   for (const auto& pressed : curves.paths.front().samples)
-    if (std::abs(pressed.displacement - held_depth) < 1e-9 * held_depth)
+    if (std::abs(pressed.displacement - lateral_depth) < 1e-9 * lateral_depth)
       path.samples.back() = pressed;
   path.samples.back().displacement = 0;
   double from = 0;
@@ -524,7 +524,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
     CurveSample sample;
     std::string reason;
     if (!driver.advance(from, s, history, u, sample, reason)) {
-      stop_early(curves, "lateral path at depth " + in_millimetres(held_depth) + " " + reason);
+      stop_early(curves, "lateral path at depth " + in_millimetres(lateral_depth) + " " + reason);
       break;
     }
     path.samples.push_back(sample);
@@ -537,15 +537,16 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
 
 SitePlan SiteSolver::plan_of_settings(const Vec3& inward) const {
   const IndentationSettings& settings = context_.indentation;
-  SitePlan plan{settings.held_depths, {}};
+  SitePlan plan{settings.lateral_depths, {}};
   std::vector<double> travels;
   for (int i = 1; i <= settings.lateral_increments; ++i)
     travels.push_back(settings.lateral_travel * i / settings.lateral_increments);
   const auto [first, second] = tangents(to_eigen(inward));
-  for (const double held_depth : settings.held_depths)
+  for (const double lateral_depth : settings.lateral_depths)
     for (const double azimuth : settings.azimuths)
-      plan.lateral.push_back(
-          {held_depth, to_vec3(std::cos(azimuth) * first + std::sin(azimuth) * second), travels});
+      plan.lateral.push_back({lateral_depth,
+                              to_vec3(std::cos(azimuth) * first + std::sin(azimuth) * second),
+                              travels});
   return plan;
 }
 

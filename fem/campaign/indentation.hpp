@@ -23,7 +23,7 @@ FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex);
 
 /// The tool held at a depth and moved sideways, the contact stuck.
 struct LateralPlan {
-  double held_depth = 0;        ///< m
+  double lateral_depth = 0;     ///< m
   Vec3 direction{};             ///< unit, across inward
   std::vector<double> travels;  ///< m, ascending, without the 0 of the start
 };

@@ -75,13 +75,13 @@ void check_indentation(const IndentationSettings& settings) {
   require_positive("depth", settings.depth);
   require_positive("force_tolerance", settings.force_tolerance);
   require_positive("increments", settings.increments);
-  for (const double held : settings.held_depths) {
-    require_positive("held_depths", held);
+  for (const double held : settings.lateral_depths) {
+    require_positive("lateral_depths", held);
     if (held > settings.depth * (1 + 1e-12))
       refuse("indentation", "a held depth of " + std::to_string(held) + " m lies beyond the depth",
-             "keep held_depths at most " + std::to_string(settings.depth) + " m");
+             "keep lateral_depths at most " + std::to_string(settings.depth) + " m");
   }
-  if (settings.held_depths.empty() || settings.azimuths.empty()) return;
+  if (settings.lateral_depths.empty() || settings.azimuths.empty()) return;
   require_positive("lateral_travel", settings.lateral_travel);
   require_positive("lateral_increments", settings.lateral_increments);
 }

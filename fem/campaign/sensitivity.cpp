@@ -6,8 +6,8 @@
 #include <map>
 #include <mutex>
 
-#include "fem/campaign/crew.hpp"
 #include "fem/campaign/indentation.hpp"
+#include "fem/campaign/parallel_sites.hpp"
 #include "fem/campaign/region_laws.hpp"
 #include "fem/laws/law.hpp"
 #include "fem/solve/tangent_solver.hpp"
@@ -36,10 +36,10 @@ struct Varied {
 
 /// With gravity, where the tool touches would depend on the constants through the sag.
 void refuse_what_is_not_differentiated(const CampaignSettings& settings) {
-  if (settings.indentation.divide_under_tool)
-    throw Error(ErrorKind::Configuration, "divide_under_tool",
+  if (settings.indentation.refine_under_tool)
+    throw Error(ErrorKind::Configuration, "refine_under_tool",
                 "gradients are those of the elements of the body, not of divided ones",
-                "calibrate without solver.divide_under_tool, on a smaller mesh.element_size");
+                "calibrate without solver.refine_under_tool, on a smaller mesh.element_size");
   if (!settings.gravity.acts()) return;
   throw Error(ErrorKind::Configuration, "gravity",
               "the gradients by constants of a body that sags are not computed",
@@ -187,8 +187,8 @@ class SiteDifferentiation {
                       const std::vector<LateralPlan>& lateral)
       : place_(context.place(vertex)),
         lateral_(lateral),
-        depths_(context.indentation.held_depths),
-        stuck_(context.indentation.friction == ToolFriction::Stuck),
+        depths_(context.indentation.lateral_depths),
+        stuck_(context.indentation.friction == ToolFriction::NoSlip),
         differentiator_(context, constants, batch, place_),
         solver_(context, &batch) {
     result_.vertex = vertex;
@@ -197,7 +197,7 @@ class SiteDifferentiation {
 
   SiteSensitivity run() {
     SitePlan plan{depths_, lateral_};
-    for (const LateralPlan& path : lateral_) plan.stops.push_back(path.held_depth);
+    for (const LateralPlan& path : lateral_) plan.stops.push_back(path.lateral_depth);
     solver_.observe([this](const auto&... state) { pressed(state...); });
     solver_.observe_lateral([this](const auto&... state) { moved(state...); });
     const SiteCurves curves = solver_.solve(result_.vertex, plan);
@@ -215,24 +215,25 @@ class SiteDifferentiation {
     }
     bool held = false;
     for (const LateralPlan& path : lateral_)
-      held = held || is_among(sample.displacement, {path.held_depth});
+      held = held || is_among(sample.displacement, {path.lateral_depth});
     if (held || stuck_) differentiator_.keep(contact, u);
     for (const LateralPlan& path : lateral_)
-      if (is_among(sample.displacement, {path.held_depth}))
-        tied_when_held_[path.held_depth] = differentiator_.kept();
+      if (is_among(sample.displacement, {path.lateral_depth}))
+        tied_when_held_[path.lateral_depth] = differentiator_.kept();
   }
 
   void moved(const LateralPlan& path, const ToolContact& contact, const Displacement& u,
              const CurveSample& sample) {
     ForceSensitivity s{sample.displacement, dot(sample.force, path.direction), {}};
-    const auto index = static_cast<std::size_t>(
-        std::find_if(lateral_.begin(), lateral_.end(),
-                     [&](const LateralPlan& p) {
-                       return p.held_depth == path.held_depth && p.direction == path.direction;
-                     }) -
-        lateral_.begin());
+    const auto index =
+        static_cast<std::size_t>(std::find_if(lateral_.begin(), lateral_.end(),
+                                              [&](const LateralPlan& p) {
+                                                return p.lateral_depth == path.lateral_depth &&
+                                                       p.direction == path.direction;
+                                              }) -
+                                 lateral_.begin());
     const Eigen::Vector3d direction(path.direction.data());
-    keep(differentiator_.differentiate_tied(contact, u, tied_when_held_.at(path.held_depth),
+    keep(differentiator_.differentiate_tied(contact, u, tied_when_held_.at(path.lateral_depth),
                                             direction, s.slope),
          s, result_.lateral[index]);
   }
@@ -266,10 +267,10 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
                                              const std::vector<double>& depths,
                                              const std::vector<RegionConstant>& constants,
                                              const std::vector<std::vector<LateralPlan>>& lateral,
-                                             KeptFactor* kept) {
+                                             FactorCache* kept) {
   refuse_what_is_not_differentiated(settings);
   CampaignSettings normal = settings;
-  normal.indentation.held_depths = depths;  // the states that the path must pass
+  normal.indentation.lateral_depths = depths;  // the states that the path must pass
   normal.indentation.depth = *std::max_element(depths.begin(), depths.end());
   normal.indentation.azimuths.clear();  // no lateral paths
   // An equilibrium without friction does not depend on the way there: the depths are steps enough.
@@ -277,7 +278,7 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
   normal.indentation.lateral_travel = 0;  // only how far candidates of the contact reach
   for (const auto& plans : lateral) {
     for (const LateralPlan& plan : plans) {
-      normal.indentation.depth = std::max(normal.indentation.depth, plan.held_depth);
+      normal.indentation.depth = std::max(normal.indentation.depth, plan.lateral_depth);
       normal.indentation.lateral_travel =
           std::max(normal.indentation.lateral_travel, plan.travels.back());
     }
@@ -291,14 +292,14 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
   for (const RegionConstant& constant : constants) {
     derivatives.push_back(varied(body, normal, constant));
   }
-  const CrewSize size = crew_size(*context.rest_factor, settings.threads, results.size(),
-                                  settings.memory, bytes_of(context, settings.sites.front()));
-  work_abreast(*context.rest_factor, size, results.size(),
-               [&](SolveBatch::Member& member, std::size_t i) {
-                 results[i] = SiteDifferentiation(context, derivatives, member, settings.sites[i],
-                                                  lateral.empty() ? none : lateral[i])
-                                  .run();
-               });
+  const SiteThreads size = site_threads(*context.rest_factor, settings.threads, results.size(),
+                                        settings.memory, bytes_of(context, settings.sites.front()));
+  parallel_for_sites(
+      *context.rest_factor, size, results.size(), [&](SolveBatch::Member& member, std::size_t i) {
+        results[i] = SiteDifferentiation(context, derivatives, member, settings.sites[i],
+                                         lateral.empty() ? none : lateral[i])
+                         .run();
+      });
   return results;
 }
 

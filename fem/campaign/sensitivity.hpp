@@ -43,7 +43,7 @@ struct SiteSensitivity {
 /// but that at rest, and that one not again where a factor that was kept will do.
 /// What sticks is tied where it is at the end of an increment, u_b, so that a force also depends on
 /// the states u_b at which its ties were made: those of all increments of a normal path that sticks
-/// (ToolFriction::Stuck), and the one from which a lateral path starts. Backwards through them,
+/// (ToolFriction::NoSlip), and the one from which a lateral path starts. Backwards through them,
 /// with v the derivative of F - l . R by u_b (k (l + direction) at a tied node), K_b m = v adds
 /// - m . dR_b/dc, and m is added to l for the ties that were made before: a solve an increment.
 /// How firmly a node is tied follows the share of the surface around it that is in contact, a count
@@ -55,6 +55,6 @@ struct SiteSensitivity {
 std::vector<SiteSensitivity> run_sensitivity(
     const Body& body, const CampaignSettings& settings, const std::vector<double>& depths,
     const std::vector<RegionConstant>& constants,
-    const std::vector<std::vector<LateralPlan>>& lateral = {}, KeptFactor* kept = nullptr);
+    const std::vector<std::vector<LateralPlan>>& lateral = {}, FactorCache* kept = nullptr);
 
 }  // namespace palpate::fem

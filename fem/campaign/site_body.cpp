@@ -52,7 +52,7 @@ std::vector<int> elements_near(const QuadraticMesh& mesh, const Eigen::Vector3d&
 SiteBody::SiteBody(const CampaignContext& context, const Eigen::Vector3d& site)
     : whole_(&context.model), rest_(context.rest) {
   if (context.engine == Engine::Direct) return;
-  if (!context.indentation.divide_under_tool) {
+  if (!context.indentation.refine_under_tool) {
     window_.emplace(window_at(context, site));
     return;
   }
@@ -60,20 +60,20 @@ SiteBody::SiteBody(const CampaignContext& context, const Eigen::Vector3d& site)
   // window, the body at rest is then still nearly the one that was factorized.
   const QuadraticMesh& mesh = context.model.mesh();
   const double reach = context.indentation.tool.extent();
-  DividedMesh divided = divide(mesh, elements_near(mesh, site, reach));
+  RefinedMesh divided = divide(mesh, elements_near(mesh, site, reach));
   std::vector<bool> free = nodes_within(mesh, site, window_radius(context));
-  for (const DividedMesh::Made& made : divided.made)
+  for (const RefinedMesh::Made& made : divided.made)
     for (const int node : mesh.tetrahedra[to_index(made.parent)]) free[to_index(node)] = true;
   free.resize(free.size() + divided.made.size(), true);
-  divided_.emplace(SolidModel::without_stiffness(context.model, std::move(divided.mesh)));
-  window_.emplace(*divided_, std::move(free));
-  prolongation_.emplace(divided, mesh.tetrahedra, *divided_);
-  rest_.conservativeResize(Eigen::NoChange, divided_->mesh().nodes());
-  rest_.rightCols(divided_->mesh().nodes() - mesh.nodes()).setZero();
+  refined_.emplace(SolidModel::without_stiffness(context.model, std::move(divided.mesh)));
+  window_.emplace(*refined_, std::move(free));
+  prolongation_.emplace(divided, mesh.tetrahedra, *refined_);
+  rest_.conservativeResize(Eigen::NoChange, refined_->mesh().nodes());
+  rest_.rightCols(refined_->mesh().nodes() - mesh.nodes()).setZero();
 }
 
 double SiteBody::bytes() const {
-  return (window_ ? window_->bytes() : 0) + (divided_ ? divided_->bytes() : 0);
+  return (window_ ? window_->bytes() : 0) + (refined_ ? refined_->bytes() : 0);
 }
 
 }  // namespace palpate::fem

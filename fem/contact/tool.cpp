@@ -93,7 +93,7 @@ std::string name_of(ToolShape shape) {
 }
 
 std::string name_of(ToolFriction friction) {
-  return friction == ToolFriction::Stuck ? "stuck" : "frictionless";
+  return friction == ToolFriction::NoSlip ? "no-slip" : "frictionless";
 }
 
 void check_tool(const ToolGeometry& g) {

@@ -14,7 +14,7 @@ enum class ToolShape {
 };
 
 /// Whether the surface may slide along the tool while it is pressed.
-enum class ToolFriction { Frictionless, Stuck };
+enum class ToolFriction { Frictionless, NoSlip };
 
 /// Size and shape of a tool, m.
 struct ToolGeometry {
@@ -29,7 +29,7 @@ struct ToolGeometry {
 
 /// The name of a shape in cases and files: "sphere", "disc", "cylinder".
 std::string name_of(ToolShape shape);
-/// "frictionless", "stuck".
+/// "frictionless", "no-slip".
 std::string name_of(ToolFriction friction);
 
 /// @throws Error(Configuration) naming the size, its value and range: radius > 0; edge_radius of a

@@ -219,15 +219,15 @@ std::vector<double> diagonal_of(const SparsePattern& pattern, const std::vector<
 
 }  // namespace
 
-const std::vector<int>& KeptFactor::permutation(const SparsePattern& pattern) {
+const std::vector<int>& FactorCache::permutation(const SparsePattern& pattern) {
   if (permutation_.empty()) permutation_ = nested_dissection(pattern);
   return permutation_;
 }
 
-std::shared_ptr<const RestFactor> KeptFactor::factor_of(const SparsePattern& pattern,
-                                                        const std::vector<double>& values,
-                                                        const std::string& owner, double memory,
-                                                        int threads) {
+std::shared_ptr<const RestFactor> FactorCache::factor_of(const SparsePattern& pattern,
+                                                         const std::vector<double>& values,
+                                                         const std::string& owner, double memory,
+                                                         int threads) {
   std::vector<double> diagonal = diagonal_of(pattern, values);
   if (factor_ && diagonal.size() == diagonal_.size()) {
     double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -298,7 +298,7 @@ void SolveBatch::Member::leave() {
 }
 
 /// Lanes know nothing of one another: the solution is the same in any batch.
-void SolveBatch::Member::even_out() {
+void SolveBatch::Member::rebalance() {
   SolveBatch* other = batch_->reserved_elsewhere();
   if (other == nullptr) return;
   leave();
@@ -311,7 +311,7 @@ void SolveBatch::Member::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   const double length = b.norm();
   x.setZero(b.size());
   if (length == 0) return;
-  even_out();
+  rebalance();
   float* lane = batch_->block_.data() + lane_;
   for (Eigen::Index i = 0; i < b.size(); ++i) lane[i * kBatch] = static_cast<float>(b[i] / length);
   ++batch_->waiting_;

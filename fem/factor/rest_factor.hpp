@@ -70,7 +70,7 @@ class RestFactor {
 /// after the other: of a calibration. A factor is a preconditioner and accuracy does not depend on
 /// it, so that it serves as long as the stiffness at rest is nearly a multiple of the one it was
 /// made of: exactly so when all laws scale together. The elimination order is made once.
-class KeptFactor {
+class FactorCache {
  public:
   /// Of `values` on `pattern`, which is that of every call before. @throws Error as RestFactor.
   std::shared_ptr<const RestFactor> factor_of(const SparsePattern& pattern,
@@ -115,7 +115,7 @@ class SolveBatch {
    private:
     void join();
     void leave();
-    void even_out();
+    void rebalance();
 
     SolveBatch* batch_;
     int lane_ = 0;

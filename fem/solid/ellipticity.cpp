@@ -168,7 +168,7 @@ Descent sharpen(const Tensor4<double>& A, Descent now) {
 
 }  // namespace
 
-double weakest_wave(const Tensor4<double>& A) {
+double min_acoustic_eigenvalue(const Tensor4<double>& A) {
   static const std::vector<Vector3d> directions = half_sphere();
   std::vector<Descent> found;
   for (const Vector3d& start : directions)
@@ -183,7 +183,7 @@ double weakest_wave(const Tensor4<double>& A) {
   return weakest;
 }
 
-Lanes weakest_wave(const Tensor2<Lanes>& F, const Tensor4<Lanes>& A) {
+Lanes min_acoustic_eigenvalue(const Tensor2<Lanes>& F, const Tensor4<Lanes>& A) {
   const Tensor4<Lanes> D = cofactor_tangent(F);
   const Lanes p = neutral_pressure(F, A, D);
   Tensor4<Lanes> shifted = A;
@@ -193,7 +193,8 @@ Lanes weakest_wave(const Tensor2<Lanes>& F, const Tensor4<Lanes>& A) {
   for (std::size_t i = 0; i < 9; ++i) size = size.max(A[i][i].abs());
   Lanes weakest = smallest_pivot(shifted);
   for (int lane = 0; lane < kLanes; ++lane)
-    if (!(weakest[lane] > kSurely * size[lane])) weakest[lane] = weakest_wave(lane_of(A, lane));
+    if (!(weakest[lane] > kSurely * size[lane]))
+      weakest[lane] = min_acoustic_eigenvalue(lane_of(A, lane));
   return weakest;
 }
 

@@ -14,10 +14,10 @@ namespace palpate::fem {
 /// and n. A pressure times dcof F/dF adds nothing to it and may be left out of A. Found by
 /// alternating between m and n, each step an eigenvalue problem, from directions spread over the
 /// half sphere.
-double weakest_wave(const Tensor4<double>& A);
+double min_acoustic_eigenvalue(const Tensor4<double>& A);
 
 /// The same for eight points; a positive number below it where a check that suffices shows that it
 /// is positive: A plus some multiple of dcof F/dF is positive definite.
-Lanes weakest_wave(const Tensor2<Lanes>& F, const Tensor4<Lanes>& A);
+Lanes min_acoustic_eigenvalue(const Tensor2<Lanes>& F, const Tensor4<Lanes>& A);
 
 }  // namespace palpate::fem

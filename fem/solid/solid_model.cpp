@@ -403,7 +403,8 @@ SolidModel::Compressed SolidModel::most_compressed(const Displacement& u) const 
   return worst;
 }
 
-Lanes SolidModel::weakest_waves(const Block& block, const ElementKinematics<Lanes>& k) const {
+Lanes SolidModel::min_acoustic_eigenvalues(const Block& block,
+                                           const ElementKinematics<Lanes>& k) const {
   const Law& law = solid_->laws[to_index(block.region)];
   const bool own = solid_->dilatation == Dilatation::Pointwise;
   Lanes weakest = Lanes::Constant(std::numeric_limits<double>::infinity());
@@ -412,7 +413,7 @@ Lanes SolidModel::weakest_waves(const Block& block, const ElementKinematics<Lane
     for (auto& row : A) row.fill(Lanes::Zero());
     law.add_tangent(k.F[q], k.cof[q], k.J[q], block.geometry.fibres, A);
     add_dilatation_tangent(k.cof[q], law.pressure_slope(own ? k.J[q] : k.mean_J), A);
-    weakest = weakest.min(weakest_wave(k.F[q], A));
+    weakest = weakest.min(min_acoustic_eigenvalue(k.F[q], A));
   }
   return weakest;
 }
@@ -428,7 +429,7 @@ std::optional<SolidModel::EllipticityLoss> SolidModel::ellipticity_loss(
   int element = -1;
   for (const Block& block : blocks_) {
     if (solid_->laws[to_index(block.region)].polyconvex()) continue;
-    const Lanes stiffness = weakest_waves(block, kinematics_of(block, u));
+    const Lanes stiffness = min_acoustic_eigenvalues(block, kinematics_of(block, u));
     for (int lane = 0; lane < block.count; ++lane) {
       if (stiffness[lane] >= weakest) continue;
       weakest = stiffness[lane];

@@ -129,7 +129,7 @@ class SolidModel {
   PointState point_state(const Displacement& u) const;
   /// The smallest stiffness of a wave at each element of a block, Pa; no more than positive where
   /// it is known to be that.
-  Lanes weakest_waves(const Block& block, const ElementKinematics<Lanes>& k) const;
+  Lanes min_acoustic_eigenvalues(const Block& block, const ElementKinematics<Lanes>& k) const;
   PointPressures<Lanes> pressures(const Block& block, const ElementKinematics<Lanes>& k,
                                   const PointState& points) const;
   void add_point_stiffness(const Displacement& u, const PointState& points,

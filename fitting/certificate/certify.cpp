@@ -90,7 +90,7 @@ std::string limit_line(const Library& library, std::size_t index, const Triangle
 }
 
 void add_devices(Certificate& certificate, const CertifySettings& settings) {
-  const double steepest = certified_steepness(certificate);
+  const double steepest = certified_lipschitz_bound(certificate);
   for (const DeviceProfile& device : settings.devices) {
     if (std::isinf(device.damping) || device.damping <= 0) {
       throw Error(ErrorKind::Configuration, "device profile '" + device.name + "'",
@@ -158,7 +158,7 @@ void certify(Library& library, const CertifySettings& settings) {
   certificate.basis = basis_of(library.provenance);
   count_vertices(library, certificate);
   certificate.limit = settings.limit;
-  certificate.limit = steepness_limit(certificate);
+  certificate.limit = enforced_lipschitz_bound(certificate);
   add_devices(certificate, settings);
   library.certificate = certificate;
 }

@@ -30,9 +30,9 @@ double at(const Natural& n, const std::array<double, 3>& value) {
 
 /// Mean slope of a curve from 0 to a deflection.
 Range mean_slope(const runtime::CompiledCurve& curve, const Range& d) {
-  const Range steepness = slope_range(curve, {0, d.high});
-  if (!(d.low > 0)) return steepness;
-  return common(steepness, {curve.force(d.low) / d.high, curve.force(d.high) / d.low});
+  const Range lipschitz_bound = slope_range(curve, {0, d.high});
+  if (!(d.low > 0)) return lipschitz_bound;
+  return common(lipschitz_bound, {curve.force(d.low) / d.high, curve.force(d.high) / d.low});
 }
 
 /// No smaller than the norm of any matrix with entries in these ranges: that of the middle, and of

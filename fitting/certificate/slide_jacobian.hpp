@@ -22,7 +22,7 @@ struct SlideCell {
 
 /// What makes a slide steep, N/m: |M_0|, and |v_i| |w| of the causes i that v is the sum of.
 struct SlideCauses {
-  double stiffness = 0;  ///< steepness of the responses at a fixed contact point
+  double stiffness = 0;  ///< Lipschitz bound of the responses at a fixed contact point
   double variation = 0;  ///< change of the responses over the surface
   double slant = 0;      ///< directions u_l that lean against the facet
   double curvature = 0;  ///< turning of n

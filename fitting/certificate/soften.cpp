@@ -69,7 +69,7 @@ double certified_bound(double damping, double rate) {
 
 Softening soften(Library& library, const CertifySettings& settings, double bound) {
   certify(library, settings);
-  if (certified_steepness(library.certificate) <= bound) return {};
+  if (certified_lipschitz_bound(library.certificate) <= bound) return {};
   CertifySettings held = settings;
   held.limit = bound;
   const auto within = [&](Library& candidate) {

@@ -44,17 +44,17 @@ ErrorRow row_of(std::string what, std::string part, std::vector<Sampled> errors)
 /// Compares state by state.
 class Presses {
  public:
-  Presses(const RenderedBody& body, const std::vector<HeldOutPoint>& points,
+  Presses(const RenderedBody& body, const std::vector<HoldOutPoint>& points,
           const FidelitySettings& settings, Fidelity& result)
       : body_(body), points_(points), settings_(settings), result_(result) {}
 
   void compare(const SiteCurves& site) {
-    const HeldOutPoint& point = points_[static_cast<std::size_t>(site.vertex)];
+    const HoldOutPoint& point = points_[static_cast<std::size_t>(site.vertex)];
     for (const CurvePath& path : site.paths) compare(site, point, path);
   }
 
  private:
-  void compare(const SiteCurves& site, const HeldOutPoint& point, const CurvePath& path) {
+  void compare(const SiteCurves& site, const HoldOutPoint& point, const CurvePath& path) {
     std::vector<ComparedState> states;
     std::vector<RenderedBody::Deflection> deflections;
     for (const CurveSample& sample : path.samples) {
@@ -63,7 +63,7 @@ class Presses {
       ComparedState state;
       state.point = static_cast<std::size_t>(site.vertex);
       state.kind = path.kind;
-      state.depth = normal ? sample.displacement : path.held_depth;
+      state.depth = normal ? sample.displacement : path.lateral_depth;
       state.lateral = normal ? 0 : sample.displacement;
       if (!normal) state.tangent = path.direction;
       state.direct = sample.force;
@@ -82,7 +82,7 @@ class Presses {
   }
 
   const RenderedBody& body_;
-  const std::vector<HeldOutPoint>& points_;
+  const std::vector<HoldOutPoint>& points_;
   FidelitySettings settings_;
   Fidelity& result_;
 };
@@ -108,7 +108,7 @@ double whole(const ComparedState& s, const Vec3&) {
 /// Fills the rows made of rendered states.
 class Rows {
  public:
-  Rows(const std::vector<HeldOutPoint>& points, Fidelity& result)
+  Rows(const std::vector<HoldOutPoint>& points, Fidelity& result)
       : points_(points), result_(result) {}
 
   void add(const std::string& what, const std::string& part, const Chosen& chosen,
@@ -130,7 +130,7 @@ class Rows {
   }
 
  private:
-  const std::vector<HeldOutPoint>& points_;
+  const std::vector<HoldOutPoint>& points_;
   Fidelity& result_;
 };
 
@@ -163,7 +163,7 @@ std::optional<PressForce> sampled_force(const SiteCurves& site, double depth) {
 
 /// Of a point in a triangle, by the samples of its three vertices; absent where one has none.
 std::optional<PressForce> interpolated_force(
-    const Library& library, const HeldOutPoint& point, double depth,
+    const Library& library, const HoldOutPoint& point, double depth,
     const std::map<std::int32_t, const SiteCurves*>& site_at) {
   const Triangle& triangle = library.triangles[static_cast<std::size_t>(point.triangle)];
   PressForce sum;
@@ -181,13 +181,13 @@ std::optional<PressForce> interpolated_force(
 
 /// The samples of the three vertices, interpolated, against the direct force: no fit. Across the
 /// press this is what a model would err by that rendered those forces, too.
-void add_interpolation_rows(const Library& library, const std::vector<HeldOutPoint>& points,
+void add_interpolation_rows(const Library& library, const std::vector<HoldOutPoint>& points,
                             const Curves& sampled, Fidelity& result) {
   std::map<std::int32_t, const SiteCurves*> site_at;
   for (const SiteCurves& site : sampled.sites) site_at[site.vertex] = &site;
   std::vector<Sampled> along, across;
   for (const ComparedState& s : result.states) {
-    const HeldOutPoint& point = points[s.point];
+    const HoldOutPoint& point = points[s.point];
     if (s.kind != PathKind::Normal || point.node) continue;
     const std::optional<PressForce> force = interpolated_force(library, point, s.depth, site_at);
     if (!force) continue;
@@ -203,14 +203,14 @@ void add_interpolation_rows(const Library& library, const std::vector<HeldOutPoi
   result.rows.push_back(row_of(what, "direction", std::move(across)));
 }
 
-std::vector<double> held_depths(const Curves& curves) {
+std::vector<double> lateral_depths(const Curves& curves) {
   std::vector<double> depths;
   for (const SiteCurves& site : curves.sites) {
     for (const CurvePath& path : site.paths) {
-      const auto known = [&](double d) { return same(d, path.held_depth); };
+      const auto known = [&](double d) { return same(d, path.lateral_depth); };
       if (path.kind != PathKind::Lateral || std::any_of(depths.begin(), depths.end(), known))
         continue;
-      depths.push_back(path.held_depth);
+      depths.push_back(path.lateral_depth);
     }
   }
   return depths;
@@ -220,7 +220,7 @@ std::vector<double> held_depths(const Curves& curves) {
 /// normal force on the lateral deflection, neither of which the decoupled model (28) has.
 class Decoupling {
  public:
-  Decoupling(const std::vector<HeldOutPoint>& points, const FidelitySettings& settings,
+  Decoupling(const std::vector<HoldOutPoint>& points, const FidelitySettings& settings,
              std::vector<double> references)
       : points_(points), settings_(settings), references_(std::move(references)) {}
 
@@ -258,7 +258,7 @@ class Decoupling {
     std::size_t count = 0;
     for (const CurvePath& path : site.paths) {
       if (path.kind != PathKind::Lateral || norm(path.direction - of.direction) > 1e-6) continue;
-      const auto is_held = [&](double d) { return same(d, path.held_depth); };
+      const auto is_held = [&](double d) { return same(d, path.lateral_depth); };
       if (std::none_of(references_.begin(), references_.end(), is_held)) continue;
       for (const CurveSample& sample : path.samples) {
         if (!same(sample.displacement, displacement)) continue;
@@ -270,7 +270,7 @@ class Decoupling {
     return sum / static_cast<double>(count);
   }
 
-  const std::vector<HeldOutPoint>& points_;
+  const std::vector<HoldOutPoint>& points_;
   FidelitySettings settings_;
   std::vector<double> references_;
   std::vector<Sampled> lateral_, normal_;
@@ -279,11 +279,11 @@ class Decoupling {
 }  // namespace
 
 Fidelity measure(const Library& library, const RenderedBody& body,
-                 const std::vector<HeldOutPoint>& points, const Curves& direct,
+                 const std::vector<HoldOutPoint>& points, const Curves& direct,
                  const Curves& sampled, const FidelitySettings& settings) {
   Fidelity result;
   Presses presses(body, points, settings, result);
-  Decoupling decoupling(points, settings, held_depths(sampled));
+  Decoupling decoupling(points, settings, lateral_depths(sampled));
   for (const SiteCurves& site : direct.sites) {
     if (site.status != SiteStatus::Complete)
       result.left_out.push_back("point " + std::to_string(site.vertex) + ": " + site.reason);

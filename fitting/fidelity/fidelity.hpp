@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/fidelity/held_out.hpp"
+#include "fitting/fidelity/hold_out.hpp"
 #include "fitting/fidelity/rendered_press.hpp"
 #include "format/curves.hpp"
 
@@ -56,7 +56,7 @@ inline constexpr const char* kNormalOffNode = "normal press, off node";
 /// `sampled` are the curves that the library was fitted to: they separate what interpolation costs
 /// from what the fit costs, and their held depths are those that the decoupling is judged from.
 Fidelity measure(const Library& library, const RenderedBody& body,
-                 const std::vector<HeldOutPoint>& points, const Curves& direct,
+                 const std::vector<HoldOutPoint>& points, const Curves& direct,
                  const Curves& sampled, const FidelitySettings& settings);
 
 }  // namespace palpate::fidelity

@@ -89,10 +89,10 @@ double Skin::beside(const Vec3& position, const Vec3& inward) const {
   return nearest;
 }
 
-std::vector<double> find_skin(const Body& body, std::vector<HeldOutPoint>& points) {
+std::vector<double> find_skin(const Body& body, std::vector<HoldOutPoint>& points) {
   const Skin skin(body);
   std::vector<double> distances;
-  for (HeldOutPoint& point : points) {
+  for (HoldOutPoint& point : points) {
     if (point.node) continue;
     point.skin = skin.beside(point.position, point.inward);
     distances.push_back(std::abs(point.skin));

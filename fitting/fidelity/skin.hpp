@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/fidelity/held_out.hpp"
+#include "fitting/fidelity/hold_out.hpp"
 #include "format/body.hpp"
 
 namespace palpate::fidelity {
@@ -33,8 +33,8 @@ class Skin {
   std::vector<Facet> facets_;
 };
 
-/// Sets HeldOutPoint::skin of the points that are at no node. @return how far the skin is from
+/// Sets HoldOutPoint::skin of the points that are at no node. @return how far the skin is from
 /// them, m, ascending. @throws as Skin::beside.
-std::vector<double> find_skin(const Body& body, std::vector<HeldOutPoint>& points);
+std::vector<double> find_skin(const Body& body, std::vector<HoldOutPoint>& points);
 
 }  // namespace palpate::fidelity

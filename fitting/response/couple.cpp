@@ -27,10 +27,10 @@ struct Level {
 
 std::vector<Level> levels_of(const SiteCurves& site) {
   std::vector<Level> levels;
-  for (const double depth : held_depths(site)) {
+  for (const double depth : lateral_depths(site)) {
     SiteCurves held;
     for (const CurvePath& path : site.paths) {
-      if (std::abs(path.held_depth - depth) <= kSameDepth * depth) held.paths.push_back(path);
+      if (std::abs(path.lateral_depth - depth) <= kSameDepth * depth) held.paths.push_back(path);
     }
     Level level{depth, 1, lateral_paths(held)};
     if (!level.paths.empty()) levels.push_back(std::move(level));
@@ -107,10 +107,11 @@ void level_off(CouplingCurve& coupling) {
   slope.back() = 0;
 }
 
-std::vector<double> held_depths(const SiteCurves& site) {
+std::vector<double> lateral_depths(const SiteCurves& site) {
   std::vector<double> depths;
   for (const CurvePath& path : site.paths) {
-    if (path.kind == PathKind::Lateral && path.held_depth > 0) depths.push_back(path.held_depth);
+    if (path.kind == PathKind::Lateral && path.lateral_depth > 0)
+      depths.push_back(path.lateral_depth);
   }
   std::sort(depths.begin(), depths.end());
   const auto same = [](double a, double b) { return b - a <= kSameDepth * b; };

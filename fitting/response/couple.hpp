@@ -21,7 +21,7 @@ struct CoupledLateral {
 void level_off(CouplingCurve& coupling);
 
 /// Held depths of the lateral paths of a site, ascending.
-std::vector<double> held_depths(const SiteCurves& site);
+std::vector<double> lateral_depths(const SiteCurves& site);
 
 /// Least squares for f_j(rho) = w_j f^r(rho) over the held depths z_j, by turns in f^r and w_j; w
 /// is 1 at the middle one. Then w(z): straight in the logarithms between the held depths, beyond

@@ -83,7 +83,7 @@ double lateral_error(const NodeResponse& node, ResponseKind kind, const SiteCurv
   for (const CurvePath& path : site.paths) {
     SiteCurves one;
     one.paths.push_back(path);
-    const double w = kind == ResponseKind::Coupled ? weight.force(path.held_depth) : 1;
+    const double w = kind == ResponseKind::Coupled ? weight.force(path.lateral_depth) : 1;
     for (const auto& samples : lateral_paths(one)) {
       for (const ForceSample& sample : samples) {
         const double error = w * rendered.force(sample.displacement) - sample.force;

@@ -172,7 +172,7 @@ void feel(const Library& library, const palpate_library& body) {
   runtime::ContactSettings settings;
   settings.friction =
       std::isfinite(library.certificate.friction) ? library.certificate.friction : 0.3;
-  settings.steepness = body.steepness;
+  settings.lipschitz_bound = body.lipschitz_bound;
   palpate_state state(body, settings);
   Vec3 centre{}, span{};
   for (std::size_t i = 0; i < 3; ++i) {

@@ -94,7 +94,7 @@ radius = "6 mm"
 [indentation]
 depth = "1.2 mm"
 increments = 4
-held_depths = ["0.6 mm"]
+lateral_depths = ["0.6 mm"]
 lateral_travel = "0.6 mm"
 lateral_increments = 2
 

@@ -30,7 +30,7 @@ SAMPLING = f"""
 method = "adaptive"
 start_spacing = "16 mm"
 tolerance = {TOLERANCE}
-held_out = 16
+hold_out = 16
 """
 FITTED, FILLED = 0, 1
 
@@ -42,7 +42,7 @@ FINER = {
     'element_size = "4.2 mm"': 'element_size = "3.5 mm"',
     'radius = "6 mm"': 'radius = "9 mm"',
     'depth = "1.2 mm"': 'depth = "4 mm"',
-    'held_depths = ["0.6 mm"]': 'held_depths = ["2 mm"]',
+    'lateral_depths = ["0.6 mm"]': 'lateral_depths = ["2 mm"]',
     'lateral_travel = "0.6 mm"': 'lateral_travel = "1 mm"',
 }
 
@@ -118,7 +118,7 @@ class AdaptiveSampling(unittest.TestCase):
         self.assertEqual(summary(self.out / "curves.h5")["sites"], last["sites"])
         stated = facts(self.out / "curves.h5")
         self.assertEqual(stated["sites_computed"], f"{last['sites']} of {last['of_sites']}")
-        self.assertIn(f"p95 {last['error_along_press']['p95']:.6g}", stated["held_out_error_along_press"])
+        self.assertIn(f"p95 {last['error_along_press']['p95']:.6g}", stated["hold_out_error_along_press"])
         self.assertFalse((self.out / "held-out.journal").exists())
 
     def test_what_was_not_computed_is_as_it_would_have_been(self):

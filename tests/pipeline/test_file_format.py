@@ -228,7 +228,7 @@ class FileFormat(unittest.TestCase):
 
     def check_path(self, known, path, sample, j):
         self.assertEqual(path["kind"][j], known.number())
-        self.assertEqual(path["held_depth"][j], known.number())
+        self.assertEqual(path["lateral_depth"][j], known.number())
         self.assertEqual(list(path["direction"][j]), known.numbers())
         self.assertEqual(path["sample_count"][j], known.number())
         self.assertEqual(path["repeats"][j], known.number())
@@ -293,7 +293,7 @@ class FileFormat(unittest.TestCase):
             self.assertEqual(file.attrs["rate"], known.number())
             self.assertEqual(file.attrs["friction"], known.number())
             settings = file["settings"].attrs
-            for name in ("tank_cap", "steepness", "search_rate"):
+            for name in ("tank_cap", "lipschitz_bound", "search_rate"):
                 self.assertEqual(settings[name], known.number())
             self.assertEqual([settings[f"body_{axis}"] for axis in "xyz"], known.numbers())
             for name in ("guarded", "ramp", "watchdog", "max_force", "max_speed"):

@@ -114,7 +114,7 @@ class Measured(unittest.TestCase):
         self.ok("import", SOURCE / "data/measured/pad/robot.toml", "--body", self.out / "body.h5", "--out", out)
         record = json.loads((out / "import.json").read_text())["records"][0]
         self.assertEqual(record["vertex"], self.repeated_vertex())
-        self.assertAlmostEqual(record["drag"]["held_depth_m"], 1.4e-3, delta=5e-5)
+        self.assertAlmostEqual(record["drag"]["lateral_depth_m"], 1.4e-3, delta=5e-5)
         with h5py.File(out / "curves.h5", "r") as file:
             self.assertEqual(list(file["path/kind"][()]), [0, 1])
             rows = slice(file["path/first_sample"][1], None)
@@ -149,7 +149,7 @@ class Measured(unittest.TestCase):
         self.assertIn("intervals are widened", text)
         found = json.loads((self.out / "calibration.json").read_text())
         self.assertEqual([p["kind"] for p in found["paths"]], ["normal", "lateral"])
-        self.assertAlmostEqual(found["paths"][1]["held_depth_m"], 1.4e-3, delta=5e-5)
+        self.assertAlmostEqual(found["paths"][1]["lateral_depth_m"], 1.4e-3, delta=5e-5)
         (scaled / "body.h5").write_bytes((self.out / "body.h5").read_bytes())
         self.ok("fit", self.case, "--out", scaled)
         self.ok("certify", self.case, "--out", scaled)

@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "fem/campaign/bonded_patch.hpp"
 #include "fem/campaign/indentation.hpp"
-#include "fem/campaign/stuck_patch.hpp"
 
 namespace palpate::test {
 

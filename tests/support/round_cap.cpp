@@ -61,7 +61,7 @@ std::vector<Spread> spread_of_force(const RoundCap& cap, const Body& body,
   fem::CampaignSettings settings;
   settings.materials = {{"tissue", {cap.young, cap.poisson}}};
   settings.indentation = press;
-  settings.indentation.held_depths.clear();
+  settings.indentation.lateral_depths.clear();
   settings.indentation.lateral_travel = 0;
   settings.threads = 2;
   settings.points = places(cap, body, near);

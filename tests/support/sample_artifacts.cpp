@@ -352,8 +352,8 @@ std::string dump(const Curves& curves) {
     out << site.vertex << static_cast<int>(site.status) << site.reason << site.cpu_seconds
         << site.paths.size();
     for (const CurvePath& path : site.paths) {
-      out << static_cast<int>(path.kind) << path.held_depth << path.direction << path.samples.size()
-          << path.repeats << path.contact_uncertainty;
+      out << static_cast<int>(path.kind) << path.lateral_depth << path.direction
+          << path.samples.size() << path.repeats << path.contact_uncertainty;
       for (const CurveSample& s : path.samples) {
         out << s.displacement << s.force << s.strain_energy << s.tool_work << s.min_jacobian
             << s.penetration << s.contact_area << s.iterations << s.force_scatter
@@ -389,8 +389,8 @@ std::string dump(const Recording& recording) {
   Dump out;
   out << recording.device << recording.library_sha256 << recording.rate << recording.friction;
   const SessionSettings& set = recording.settings;
-  out << set.tank_cap << set.steepness << set.search_rate << set.body_position << int{set.guarded}
-      << set.ramp << set.watchdog << set.max_force << set.max_speed;
+  out << set.tank_cap << set.lipschitz_bound << set.search_rate << set.body_position
+      << int{set.guarded} << set.ramp << set.watchdog << set.max_force << set.max_speed;
   for (const RecordedStep& s : recording.steps) {
     out << s.time_ns << s.position << s.velocity << s.force << s.contact_point << s.depth
         << s.lateral << s.offset << s.energy << s.tank << s.absorbed << s.element << s.status

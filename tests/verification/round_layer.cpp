@@ -69,7 +69,7 @@ Pressed press(const Body& body, double young, double poisson, const fem::ToolGeo
   s.indentation.tool = tool;
   s.indentation.depth = depth;
   s.indentation.increments = increments;
-  s.indentation.held_depths.clear();
+  s.indentation.lateral_depths.clear();
   s.indentation.lateral_travel = 0;
   s.indentation.force_tolerance = 3e-5;
   const fem::CampaignContext context(body, s, fem::Engine::SharedFactor);

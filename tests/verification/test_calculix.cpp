@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "app/export/deck.hpp"
+#include "fem/campaign/bonded_patch.hpp"
 #include "fem/campaign/indentation.hpp"
-#include "fem/campaign/stuck_patch.hpp"
 #include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
@@ -43,7 +43,7 @@ fem::CampaignSettings settings_of(const fem::LawConstants& law, fem::Dilatation 
   settings.dilatation = dilatation;
   settings.indentation.depth = 0.003;
   settings.indentation.increments = 3;
-  settings.indentation.held_depths.clear();
+  settings.indentation.lateral_depths.clear();
   return settings;
 }
 

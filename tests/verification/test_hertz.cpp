@@ -47,7 +47,7 @@ Press press(const Grid& grid, double poisson, double depth, int increments) {
   settings.indentation.tool.radius = kRadius;
   settings.indentation.depth = depth;
   settings.indentation.increments = increments;
-  settings.indentation.held_depths.clear();
+  settings.indentation.lateral_depths.clear();
   settings.indentation.lateral_travel = 0;
   const CampaignContext context(body, settings, Engine::SharedFactor);
   const SiteCurves curves = solve_site(context, centre, nullptr);

@@ -32,7 +32,7 @@ TEST(PassivityMargin, TheWallIsThatOfTheEnergyBalanceAtEveryRate) {
     setup.rate = rate;
     const double simulated = passivity_margin(setup, 20, 800, 0.2);
     EXPECT_NEAR(simulated, expected, kTolerance) << rate << " Hz";
-    EXPECT_NEAR(simulated, stuck_margin_by_energy_balance(rate, 0), kTolerance) << rate << " Hz";
+    EXPECT_NEAR(simulated, bonded_margin_by_energy_balance(rate, 0), kTolerance) << rate << " Hz";
   }
   EXPECT_NEAR(passivity_margin({}, 100, 300, 0.2), 170, kTolerance);  // published
 }
@@ -45,7 +45,7 @@ TEST(PassivityMargin, TheCylinderIsAsStableAsTheWall) {
 TEST(PassivityMargin, StuckOffTheAxisItIsThatOfTwoSprings) {
   // Friction holds the contact point: the line crosses the surface at asin(10 mm / 40 mm).
   const SlingshotSetup stuck{VirtualBody::Cylinder, 0.01, 0.3, 2000, 0};
-  const double balance = stuck_margin_by_energy_balance(2000, std::asin(0.25));
+  const double balance = bonded_margin_by_energy_balance(2000, std::asin(0.25));
   EXPECT_GT(balance, 175);  // so that it is not that of the axis
   EXPECT_NEAR(passivity_margin(stuck, 160, 200, 0.2), balance, kTolerance);
 }

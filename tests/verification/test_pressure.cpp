@@ -117,7 +117,7 @@ Confined press_confined(Dilatation dilatation, double poisson, int cells) {
   s.dilatation = dilatation;
   s.indentation.depth = 0.002;
   s.indentation.increments = 2;
-  s.indentation.held_depths.clear();
+  s.indentation.lateral_depths.clear();
   const CampaignContext context(body, s, Engine::SharedFactor);
   Displacement u;
   const SiteCurves curves = solve_site(context, centre, &u);

@@ -12,17 +12,17 @@
 namespace palpate::compare {
 namespace {
 
-std::string path_name(PathKind kind, double held_depth) {
+std::string path_name(PathKind kind, double lateral_depth) {
   if (kind == PathKind::Normal) return "normal path";
   char text[48];
-  std::snprintf(text, sizeof text, "lateral path at %.2f mm", 1e3 * held_depth);
+  std::snprintf(text, sizeof text, "lateral path at %.2f mm", 1e3 * lateral_depth);
   return text;
 }
 
 ComparedCurve curve_of(const CurvePath& path) {
   ComparedCurve curve;
   curve.kind = path.kind;
-  curve.held_depth = path.held_depth;
+  curve.lateral_depth = path.lateral_depth;
   curve.direction = path.direction;
   curve.contact_uncertainty = path.contact_uncertainty;
   const Vec3 held = path.kind == PathKind::Lateral ? path.samples.front().force : Vec3{};
@@ -57,8 +57,8 @@ bool same_path(const ComparedCurve& a, const ComparedCurve& b, const CompareSett
   if (a.kind == PathKind::Normal) return true;
   const bool any = norm(a.direction) == 0 || norm(b.direction) == 0;
   if (any) return true;
-  const double deeper = std::max(a.held_depth, b.held_depth);
-  if (std::abs(a.held_depth - b.held_depth) > settings.depth_tolerance * deeper) return false;
+  const double deeper = std::max(a.lateral_depth, b.lateral_depth);
+  if (std::abs(a.lateral_depth - b.lateral_depth) > settings.depth_tolerance * deeper) return false;
   return dot(a.direction, b.direction) > std::cos(settings.direction_tolerance);
 }
 
@@ -195,7 +195,7 @@ CurveComparison compare_curves(const ComparedSite& site, const ComparedSite& oth
   out.distance = std::isfinite(distance) ? distance : 0;
   out.position = std::isfinite(site.position[0]) ? site.position : other.position;
   out.kind = pair.reference.kind;
-  out.held_depth = pair.reference.held_depth;
+  out.lateral_depth = pair.reference.lateral_depth;
   out.range = pair.range;
   for (const double x : pair.reference.displacement) {
     // The first sample is the touch, or the held state: no force on either side, nothing to tell.
@@ -377,7 +377,7 @@ Comparison compare(const ComparedSet& reference, const ComparedSet& model,
         break;
       }
       if (!found) {
-        out.unmatched.push_back(where + ": its " + path_name(curve.kind, curve.held_depth) +
+        out.unmatched.push_back(where + ": its " + path_name(curve.kind, curve.lateral_depth) +
                                 " has no partner");
       }
     }

@@ -17,7 +17,7 @@ inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// One curve: force along its path over displacement, with what is known of its doubt.
 struct ComparedCurve {
   PathKind kind = PathKind::Normal;
-  double held_depth = 0;                  ///< m, lateral only
+  double lateral_depth = 0;               ///< m, lateral only
   Vec3 direction{};                       ///< lateral only
   std::vector<double> displacement;       ///< m, ascending
   std::vector<double> force;              ///< N
@@ -75,7 +75,7 @@ struct CurveComparison {
   double distance = 0;  ///< m, between the two sites
   Vec3 position{kUnknown, kUnknown, kUnknown};
   PathKind kind = PathKind::Normal;
-  double held_depth = 0;
+  double lateral_depth = 0;
   double range = 0;  ///< m, common to both
   std::vector<ComparedPoint> points;
   double rmse = 0;             ///< N

@@ -46,8 +46,8 @@ std::size_t slip_step(const std::vector<double>& force, double step) {
 }
 
 bool repeat_each_other(const DragCurve& a, const DragCurve& b) {
-  return std::abs(a.held_depth - b.held_depth) <=
-             kSameDepth * std::max(a.held_depth, b.held_depth) &&
+  return std::abs(a.lateral_depth - b.lateral_depth) <=
+             kSameDepth * std::max(a.lateral_depth, b.lateral_depth) &&
          dot(a.direction, b.direction) >= kSameDirection;
 }
 
@@ -74,7 +74,7 @@ CurvePath frame_of(const std::vector<DragCurve>& group, const Vec3& inward) {
   Vec3 way{};
   double squares = 0;
   for (const DragCurve& drag : group) {
-    path.held_depth += drag.held_depth / n;
+    path.lateral_depth += drag.lateral_depth / n;
     way = way + drag.direction;
     squares += drag.contact_uncertainty * drag.contact_uncertainty;
   }
@@ -116,7 +116,7 @@ CurvePath mean_of(const std::vector<DragCurve>& group, const Vec3& inward,
     double own = 0;
     for (std::size_t r = 0; r < group.size(); ++r) {
       const double of_depth =
-          forces[0][r] * group[r].contact_uncertainty / (2 * group[r].held_depth);
+          forces[0][r] * group[r].contact_uncertainty / (2 * group[r].lateral_depth);
       const double noise = parts[0][r].uncertainty[i];
       own += (noise * noise + of_depth * of_depth) / static_cast<double>(group.size());
     }

@@ -13,7 +13,7 @@ namespace palpate::measured {
 
 /// One drag at a held depth, while the contact stuck.
 struct DragCurve {
-  double held_depth = 0;           ///< m
+  double lateral_depth = 0;        ///< m
   double contact_uncertainty = 0;  ///< m, standard: of the depth
   double work_before = 0;          ///< J, of the press that led to it
   Vec3 direction{};                ///< unit, across inward

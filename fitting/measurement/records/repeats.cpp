@@ -148,7 +148,7 @@ CurvePath lateral_from_normal(const CurvePath& normal, double ratio) {
                            (after.displacement - before.displacement);
   CurvePath path;
   path.kind = PathKind::Lateral;
-  path.held_depth = held.displacement;
+  path.lateral_depth = held.displacement;
   const Vec3& n = normal.direction;
   const Vec3 axis = std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 across = cross(n, axis);

@@ -121,7 +121,7 @@ DragCurve drag_curve(const RobotLog& log, const Parts& parts, const DragSpan& sp
     depth += parts.along[i] - press.contact.displacement -
              settings.press.compliance * dot(drag.force.back(), inward);
   }
-  drag.held_depth = std::max(0.0, depth / static_cast<double>(drag.travel.size()));
+  drag.lateral_depth = std::max(0.0, depth / static_cast<double>(drag.travel.size()));
   return drag;
 }
 

@@ -57,8 +57,8 @@ TEST(GoldenLibrary, KeepsItsCertificateAndProvenance) {
   EXPECT_TRUE(std::isinf(c.slip));
   // From before L_hold was known: the runtime keeps 4 L_stick, and nothing is certified for it.
   EXPECT_TRUE(std::isnan(c.hold));
-  EXPECT_EQ(steepness_limit(c), 960);
-  EXPECT_TRUE(std::isinf(certified_steepness(c)));
+  EXPECT_EQ(enforced_lipschitz_bound(c), 960);
+  EXPECT_TRUE(std::isinf(certified_lipschitz_bound(c)));
   EXPECT_EQ(c.worst_triangle, 1);
   EXPECT_EQ(c.limited_by, "written by hand: no bound of the slide");
   EXPECT_EQ(c.basis, "simulated shape, measured scale");

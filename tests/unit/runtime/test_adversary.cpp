@@ -308,15 +308,15 @@ class Adversary : public ::testing::TestWithParam<Case> {
  protected:
   Adversary()
       : library_(certified(body_named(GetParam().body), GetParam().friction)), body_(library_) {}
-  ContactSettings settings(double steepness) const {
-    return {GetParam().friction, GetParam().tank_cap, EnergyBudget::Kept, steepness};
+  ContactSettings settings(double lipschitz_bound) const {
+    return {GetParam().friction, GetParam().tank_cap, EnergyBudget::Kept, lipschitz_bound};
   }
 
-  void run(const char* name, const Mover& mover, double steepness) {
+  void run(const char* name, const Mover& mover, double lipschitz_bound) {
     constexpr int kSteps = 100000;
     SCOPED_TRACE(name);
     Random random(2005);
-    WatchedContact contact(library_, body_, settings(steepness));
+    WatchedContact contact(library_, body_, settings(lipschitz_bound));
     mover(contact, library_, random, kSteps);
     expect_sound(contact);
     expect_no_jump(contact);
@@ -329,13 +329,13 @@ class Adversary : public ::testing::TestWithParam<Case> {
     force_limited_ += contact.force_limited;
   }
 
-  void run_all(double steepness) {
-    run("wander", wander, steepness);
-    run("tremble", tremble, steepness);
-    run("follow_edges", follow_edges, steepness);
-    run("pass_through", pass_through, steepness);
-    run("break_input", break_input, steepness);
-    run("starve", starve, steepness);
+  void run_all(double lipschitz_bound) {
+    run("wander", wander, lipschitz_bound);
+    run("tremble", tremble, lipschitz_bound);
+    run("follow_edges", follow_edges, lipschitz_bound);
+    run("pass_through", pass_through, lipschitz_bound);
+    run("break_input", break_input, lipschitz_bound);
+    run("starve", starve, lipschitz_bound);
   }
 
   long limited_ = 0, force_limited_ = 0, apart_ = 0;
@@ -344,8 +344,8 @@ class Adversary : public ::testing::TestWithParam<Case> {
 };
 
 TEST_P(Adversary, GetsNoEnergyNoJumpAndNoNonsense) {
-  ASSERT_TRUE(std::isfinite(body_.steepness));
-  run_all(body_.steepness);
+  ASSERT_TRUE(std::isfinite(body_.lipschitz_bound));
+  run_all(body_.lipschitz_bound);
   // The limits were met, not just kept away from. (On a plane without friction a slide is exact and
   // its force changes by less than the limit allows.)
   EXPECT_GT(limited_, 0);
@@ -358,13 +358,13 @@ TEST_P(Adversary, GetsNoEnergyNoJumpAndNoNonsense) {
 TEST_P(Adversary, GetsNoneOfThemWhereSlidesAreHeldBackAsFarAsCertified) {
   const double hold = library_.certificate.hold;
   ASSERT_GE(hold, library_.certificate.stick);
-  ASSERT_LE(hold, body_.steepness);
+  ASSERT_LE(hold, body_.lipschitz_bound);
   run_all(hold);
-  RecordProperty("limit_over_hold", std::to_string(body_.steepness / hold));
+  RecordProperty("limit_over_hold", std::to_string(body_.lipschitz_bound / hold));
 }
 
 TEST_P(Adversary, AnOptimiserFindsNoCycleThatReturnsEnergy) {
-  const Bargain bargain = search_for_energy(library_, body_, settings(body_.steepness), 120,
+  const Bargain bargain = search_for_energy(library_, body_, settings(body_.lipschitz_bound), 120,
                                             [&](const WatchedContact& contact) {
                                               expect_sound(contact);
                                               expect_no_jump(contact);

@@ -271,15 +271,15 @@ TEST(Contact, AHoleLetsTheTipThrough) {
   }
 }
 
-TEST(Contact, TheForceChangesNoFasterThanTheSteepnessUntilItHasGone) {
+TEST(Contact, TheForceChangesNoFasterThanTheLipschitzBoundUntilItHasGone) {
   // Lifted while slipping, the force of a plate of springs k falls by sqrt(1 + mu^2) k for each
   // metre. Held to k, the lateral part lags behind, follows, and still ends in a proper release.
   const double k = 170;
   const double mu = 0.6;
   const double unlimited = std::sqrt(1 + mu * mu) * k;
-  for (const double steepness : {k, 1.001 * unlimited}) {
+  for (const double lipschitz_bound : {k, 1.001 * unlimited}) {
     Rig rig(plate(10, 0.1, [&](const Vec3&) { return wall_response(k, k); }),
-            {mu, 5e-3, runtime::EnergyBudget::Kept, steepness});
+            {mu, 5e-3, runtime::EnergyBudget::Kept, lipschitz_bound});
     rig.step({0.02, 0.03, 0.0001});
     for (int i = 0; i <= 140; ++i) rig.step({0.02, 0.03, -5e-5 * i});
     for (int i = 0; i <= 500; ++i) rig.step({0.02 + 2e-5 * i, 0.03, -0.007});
@@ -290,9 +290,9 @@ TEST(Contact, TheForceChangesNoFasterThanTheSteepnessUntilItHasGone) {
       status |= rig.step({0.03, 0.03, -0.007 + 1e-5 * i});
       steepest = std::max(steepest, norm(rig.seen().force - before) / 1e-5);
     }
-    EXPECT_LE(steepest, steepness * (1 + 1e-6));
-    EXPECT_GT(steepest, 0.98 * std::min(steepness, unlimited));
-    EXPECT_EQ((status & PALPATE_FORCE_LIMITED) != 0, steepness < unlimited);
+    EXPECT_LE(steepest, lipschitz_bound * (1 + 1e-6));
+    EXPECT_GT(steepest, 0.98 * std::min(lipschitz_bound, unlimited));
+    EXPECT_EQ((status & PALPATE_FORCE_LIMITED) != 0, lipschitz_bound < unlimited);
     EXPECT_EQ(norm(rig.seen().force), 0);
     EXPECT_TRUE(status & PALPATE_RELEASED);
     EXPECT_FALSE(status & PALPATE_DROPPED);
@@ -305,9 +305,9 @@ TEST(Contact, ASlideThatTheLimitHoldsBackIsFeltAsFrictionAndMadeUpFor) {
   const Responses seam = [](const Vec3& x) {
     return x[0] < 0.05 ? wall_response(40, 100) : wall_response(160, 100);
   };
-  const double steepness = 160;
+  const double lipschitz_bound = 160;
   for (const double step : {1e-5, 1e-4, 4e-4}) {
-    Rig rig(plate(200, 0.1, seam), {kMu, 5e-3, runtime::EnergyBudget::Kept, steepness});
+    Rig rig(plate(200, 0.1, seam), {kMu, 5e-3, runtime::EnergyBudget::Kept, lipschitz_bound});
     rig.step({0.03, 0.05, 1e-4});
     for (int i = 0; i <= 50; ++i) rig.step({0.03, 0.05, -1e-4 * i});
     double furthest = 0;
@@ -316,8 +316,8 @@ TEST(Contact, ASlideThatTheLimitHoldsBackIsFeltAsFrictionAndMadeUpFor) {
       const Vec3 before = rig.seen().force;
       status |= rig.step({0.03 + way, 0.05, -0.005});
       const Vec3 f = rig.seen().force;
-      ASSERT_LE(norm(f - before), steepness * step + 1e-9);
-      ASSERT_LE(f[0], kMu * -f[2] + (1 + kMu) * steepness * step);
+      ASSERT_LE(norm(f - before), lipschitz_bound * step + 1e-9);
+      ASSERT_LE(f[0], kMu * -f[2] + (1 + kMu) * lipschitz_bound * step);
       furthest = std::max(furthest, norm(rig.seen().lateral_offset));
     }
     EXPECT_TRUE(status & PALPATE_FORCE_LIMITED) << step;
@@ -384,7 +384,7 @@ TEST(Contact, TheForceOfEveryStepIsThatOfTheStateItLeaves) {
   // it reports must be what nobody's memory gives at its contact point and offsets.
   const Library decoupled = bumpy_sphere(3, 0.03, 0.2, uneven);
   for (const Library& library : {decoupled, coupled(decoupled)}) {
-    Rig rig(library, {.friction = 0.3, .tank_cap = 1e-4, .steepness = 4 * kSteepestUneven});
+    Rig rig(library, {.friction = 0.3, .tank_cap = 1e-4, .lipschitz_bound = 4 * kSteepestUneven});
     std::mt19937 random(11);
     std::normal_distribution<double> any;
     Vec3 x = 0.04 * random_unit(random);

@@ -177,9 +177,9 @@ TEST_F(PalpateApi, RefusesSettingsOutOfRange) {
   bad.friction = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(palpate_state_create(library_, &bad, &none), PALPATE_ERROR_ARGUMENT);
   bad = settings_;
-  bad.steepness = -1;
+  bad.lipschitz_bound = -1;
   EXPECT_EQ(palpate_state_create(library_, &bad, &none), PALPATE_ERROR_ARGUMENT);
-  bad.steepness = std::numeric_limits<double>::quiet_NaN();
+  bad.lipschitz_bound = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(palpate_state_create(library_, &bad, &none), PALPATE_ERROR_ARGUMENT);
   // This library was never certified, so it has no friction of its own to fall back to.
   EXPECT_EQ(palpate_state_create(library_, nullptr, &none), PALPATE_ERROR_ARGUMENT);
@@ -304,10 +304,10 @@ TEST_F(PalpateApi, HoldsAStateToNoLessThanWhatTheCertificateHolds) {
 
   palpate_state* state = nullptr;
   palpate_settings settings = settings_;
-  settings.steepness = 250.2;
+  settings.lipschitz_bound = 250.2;
   EXPECT_EQ(palpate_state_create(held, &settings, &state), PALPATE_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(palpate_last_error(), "250.3 N/m"), nullptr) << palpate_last_error();
-  settings.steepness = 250.3;
+  settings.lipschitz_bound = 250.3;
   EXPECT_EQ(palpate_state_create(held, &settings, &state), PALPATE_OK) << palpate_last_error();
   palpate_state_destroy(state);
   palpate_library_destroy(held);

@@ -69,7 +69,7 @@ WatchedContact::WatchedContact(const Library& library, const palpate_library& bo
                                const runtime::ContactSettings& settings)
     : library_(library),
       contact_(body.surface, body.tree, settings),
-      bound_(std::min(settings.steepness, steepness_limit(library.certificate))),
+      bound_(std::min(settings.lipschitz_bound, enforced_lipschitz_bound(library.certificate))),
       friction_(settings.friction) {}
 
 std::uint32_t WatchedContact::step(const Vec3& x) {

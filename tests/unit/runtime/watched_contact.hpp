@@ -34,12 +34,12 @@ class WatchedContact {
   double largest_gain = 0;  ///< J, of tank + E at an activation: passive means none
   /// J, runtime's account against work(); of more than a joule, the relative difference.
   double largest_disagreement = 0;
-  /// Largest |f_i(x_i) - f_{i-1}(x_{i-1})| over steepness |x_i - x_{i-1}|, of the steps with
+  /// Largest |f_i(x_i) - f_{i-1}(x_{i-1})| over Lipschitz bound |x_i - x_{i-1}|, of the steps with
   /// good input.
   double steepest_step = 0;
   /// Largest excess of the lateral force over mu g; of decoupled responses over what one step of
-  /// travel can give, (1 + mu) steepness times the longest of the contact, of coupled ones over
-  /// nothing but rounding.
+  /// travel can give, (1 + mu) Lipschitz bound times the longest of the contact, of coupled ones
+  /// over nothing but rounding.
   double largest_overdraft = 0;
   long apart = 0;  ///< steps in which the lateral offset was not zero
 

@@ -106,7 +106,7 @@ TEST(Inverse, DragsTellPoissonsRatioFromTheModulus) {
   fem::CampaignSettings truth = campaign(kTop, kBase);
   truth.sites = {sites_of(body).front()};
   truth.indentation.increments = 4;
-  truth.indentation.held_depths = {0.002};
+  truth.indentation.lateral_depths = {0.002};
   truth.indentation.lateral_travel = 0.0008;
   truth.indentation.lateral_increments = 4;
   truth.indentation.azimuths = {0.4};

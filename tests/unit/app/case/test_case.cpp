@@ -64,7 +64,7 @@ poisson = 0.45
 
 [indentation]
 depth = "4 mm"
-held_depths = ["1 mm", "3.3 mm"]
+lateral_depths = ["1 mm", "3.3 mm"]
 azimuths = ["0 deg", "33.3 deg"]
 )";
 
@@ -102,7 +102,7 @@ TEST(Case, ReadsQuantitiesInSiAndFillsDefaults) {
   EXPECT_DOUBLE_EQ(c.supports[0].point[2], -0.015);
   EXPECT_DOUBLE_EQ(c.supports[1].centre[1], 0.02);
   EXPECT_DOUBLE_EQ(law_of(c.materials[1]).at("young"), 1e5);
-  EXPECT_DOUBLE_EQ(c.indentation.held_depths[1], 0.0033);
+  EXPECT_DOUBLE_EQ(c.indentation.lateral_depths[1], 0.0033);
   EXPECT_EQ(c.indentation.increments, IndentationSection{}.increments);
   EXPECT_EQ(c.fit, FitSection{});
 }
@@ -134,11 +134,11 @@ TEST(Case, KeysOfAdaptiveSamplingBelongToIt) {
       with_sampling("method = \"adaptive\"\nstart_spacing = \"2 cm\"\ntolerance = 0.08"), "a");
   EXPECT_DOUBLE_EQ(c.sampling.start_spacing, 0.02);
   EXPECT_DOUBLE_EQ(c.sampling.tolerance, 0.08);
-  EXPECT_EQ(c.sampling.held_out, SamplingSection{}.held_out);
+  EXPECT_EQ(c.sampling.hold_out, SamplingSection{}.hold_out);
   EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
   EXPECT_ANY_THROW(parse_case(with_sampling("tolerance = 0.08"), "a"));
   EXPECT_ANY_THROW(parse_case(with_sampling("method = \"adaptive\"\ntolerance = 5"), "a"));
-  EXPECT_ANY_THROW(parse_case(with_sampling("method = \"adaptive\"\nheld_out = 3"), "a"));
+  EXPECT_ANY_THROW(parse_case(with_sampling("method = \"adaptive\"\nhold_out = 3"), "a"));
 }
 
 TEST(Case, ReadsASupportByTheNameOfFaces) {
@@ -182,10 +182,10 @@ std::string with_tool(const std::string& tool) {
 TEST(Case, ToolsHaveTheSizesOfTheirShape) {
   const Case disc = parse_case(
       with_tool(
-          "shape = \"disc\"\nradius = \"3 mm\"\nedge_radius = \"500 um\"\nfriction = \"stuck\""),
+          "shape = \"disc\"\nradius = \"3 mm\"\nedge_radius = \"500 um\"\nfriction = \"no-slip\""),
       "ball.toml");
   EXPECT_DOUBLE_EQ(disc.tool.edge_radius, 0.0005);
-  EXPECT_EQ(disc.tool.friction, "stuck");
+  EXPECT_EQ(disc.tool.friction, "no-slip");
   const Case rod = parse_case(
       with_tool("shape = \"cylinder\"\nlength = \"12 mm\"\nazimuth = \"90 deg\""), "ball.toml");
   EXPECT_DOUBLE_EQ(rod.tool.length, 0.012);
@@ -204,10 +204,10 @@ TEST(Case, RejectsToolsOfImpossibleSize) {
 
 TEST(Case, LateralPathsStartAtThreeDepthsUnlessTheCaseSaysOtherwise) {
   const Case c =
-      parse_case(replaced(kGood, "held_depths = [\"1 mm\", \"3.3 mm\"]\n", ""), "b.toml");
-  ASSERT_EQ(c.indentation.held_depths.size(), 3U);
-  EXPECT_DOUBLE_EQ(c.indentation.held_depths[0], 0.004 / 3);
-  EXPECT_DOUBLE_EQ(c.indentation.held_depths[2], 0.004);
+      parse_case(replaced(kGood, "lateral_depths = [\"1 mm\", \"3.3 mm\"]\n", ""), "b.toml");
+  ASSERT_EQ(c.indentation.lateral_depths.size(), 3U);
+  EXPECT_DOUBLE_EQ(c.indentation.lateral_depths[0], 0.004 / 3);
+  EXPECT_DOUBLE_EQ(c.indentation.lateral_depths[2], 0.004);
   EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
 }
 
@@ -372,7 +372,7 @@ TEST(Case, ChecksThatPartsFitTogether) {
 TEST(Case, RejectsASharpEdgeWithoutFriction) {
   const std::string disc = "shape = \"disc\"\nradius = \"3 mm\"\n";
   EXPECT_THAT(message_of(with_tool(disc)), HasSubstr("sharp edge"));
-  EXPECT_EQ(parse_case(with_tool(disc + "friction = \"stuck\"\n"), "x.toml").tool.edge_radius, 0);
+  EXPECT_EQ(parse_case(with_tool(disc + "friction = \"no-slip\"\n"), "x.toml").tool.edge_radius, 0);
   EXPECT_EQ(parse_case(with_tool(disc + "edge_radius = \"0.03 mm\"\n"), "x.toml").tool.shape,
             "disc");
 }

@@ -265,7 +265,7 @@ TEST(Decks, RefuseToolsThatOtherProgramsHoldInTheirOwnWay) {
   fem::CampaignSettings settings = pressed_by({fem::ToolShape::Disc, 0.004, 0, 0});
   EXPECT_THROW(make_tool_deck(body, settings, test::site_nearest(body, 0.01, 0.01)), Error);
   settings = pressed_by(kTools[0]);
-  settings.indentation.friction = fem::ToolFriction::Stuck;
+  settings.indentation.friction = fem::ToolFriction::NoSlip;
   EXPECT_THROW(make_tool_deck(body, settings, test::site_nearest(body, 0.01, 0.01)), Error);
   EXPECT_THROW(make_tool_deck(body, pressed_by(kTools[0]), -1), Error);
 }

@@ -38,7 +38,7 @@ class Replay : public testing::Test {
     });
     LiveSettings settings;
     settings.contact.friction = 0.3;
-    settings.contact.steepness = body_.steepness;
+    settings.contact.lipschitz_bound = body_.lipschitz_bound;
     settings.pose.position = {0.5, -0.25, 1};
     settings.search_rate = 0;
     settings.loop.rate = 1000;

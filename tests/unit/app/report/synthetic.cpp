@@ -159,10 +159,10 @@ CurvePath normal_path(std::int32_t vertex, const Vec3& x, const Vec3& inward, do
 CurvePath lateral_path(std::int32_t vertex, const Vec3& x, const Vec3& inward) {
   CurvePath path;
   path.kind = PathKind::Lateral;
-  path.held_depth = kDepth / 2;
+  path.lateral_depth = kDepth / 2;
   path.direction = tangent(inward);
   const double k = lateral_stiffness(x);
-  const double held = hertz_factor(x) * std::pow(path.held_depth, 2.5) / 2.5;
+  const double held = hertz_factor(x) * std::pow(path.lateral_depth, 2.5) / 2.5;
   for (int i = 0; i <= 6; ++i) {
     CurveSample s;
     s.displacement = 0.003 * i / 6;

@@ -72,7 +72,7 @@ std::string comparison_of(const std::vector<ComparedNode>& nodes, const std::str
       curve.update({{"vertex", node.vertex},
                     {"rmse_N", 0.062 * node.error},
                     {"rms_jnd", 1.43 * node.error},
-                    {"held_depth_m", known ? 0.0 : 0.003},
+                    {"lateral_depth_m", known ? 0.0 : 0.003},
                     {"r2", 0.95},
                     {"uncertainty_N", known ? json(0.02) : json(nullptr)},
                     {"points", points}});
@@ -131,9 +131,9 @@ palpate::ProvenanceStep sampling_step() {
   step.facts = {{"sampling", "adaptive"},
                 {"sampling_rounds", "4"},
                 {"sites_computed", "87 of 1340"},
-                {"held_out_points", "40"},
-                {"held_out_error_along_press", "median 0.018, p95 0.046, worst 0.31"},
-                {"held_out_error_of_vector", "median 0.02, p95 0.05, worst 0.32"},
+                {"hold_out_points", "40"},
+                {"hold_out_error_along_press", "median 0.018, p95 0.046, worst 0.31"},
+                {"hold_out_error_of_vector", "median 0.02, p95 0.05, worst 0.32"},
                 {"sampling_ended", "the points held out are met within the tolerance"}};
   return step;
 }

@@ -47,7 +47,7 @@ std::string refusal(const Library& library, double damping, double rate) {
   return "";
 }
 
-TEST(Certified, TheRateIsTwiceTheSteepnessOverTheDamping) {
+TEST(Certified, TheRateIsTwiceTheLipschitzBoundOverTheDamping) {
   const Library library = certified_plate();
   // On a plane L = max(L_stick, L_slip), both in the certificate; below 4 L_stick it is that.
   const double steepest = std::max(library.certificate.stick, library.certificate.slip);
@@ -67,15 +67,15 @@ TEST(Certified, SlidesAreHeldBackAsFarAsTheRateAsks) {
   const Certificate& c = library.certificate;
   ASSERT_LT(1.01 * c.hold, c.limit);
   const fitting::DeviceProfile device = device_with(0.5);
-  EXPECT_DOUBLE_EQ(steepness_for(library, device, 2 * c.limit / 0.5 + 1), c.limit);
+  EXPECT_DOUBLE_EQ(lipschitz_bound_for(library, device, 2 * c.limit / 0.5 + 1), c.limit);
   const double between = 2 * 0.5 * (c.hold + c.limit) / 0.5;
-  EXPECT_NEAR(steepness_for(library, device, between), 0.5 * (c.hold + c.limit), 1e-9);
+  EXPECT_NEAR(lipschitz_bound_for(library, device, between), 0.5 * (c.hold + c.limit), 1e-9);
   EXPECT_EQ(refusal(library, 0.5, between), "");
   // Below what can be held nothing is certified, and nothing is gained by holding back.
   const double below = 2 * 0.99 * c.hold / 0.5;
-  EXPECT_DOUBLE_EQ(steepness_for(library, device, below), c.limit);
+  EXPECT_DOUBLE_EQ(lipschitz_bound_for(library, device, below), c.limit);
   EXPECT_NE(refusal(library, 0.5, below).find("is not certified"), std::string::npos);
-  EXPECT_DOUBLE_EQ(steepness_for(library, device_with(std::nan("")), 1e5), c.limit);
+  EXPECT_DOUBLE_EQ(lipschitz_bound_for(library, device_with(std::nan("")), 1e5), c.limit);
   library.certificate.hold = library.certificate.slip = std::numeric_limits<double>::infinity();
   EXPECT_NE(refusal(library, 0.5, 1e7).find("no rate is certified"), std::string::npos);
 }

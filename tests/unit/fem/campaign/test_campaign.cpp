@@ -28,7 +28,7 @@ CampaignSettings quick() {
   s.materials = {{"tissue", {10e3, 0.45}}};
   s.indentation.depth = 0.002;
   s.indentation.increments = 3;
-  s.indentation.held_depths = {0.002};
+  s.indentation.lateral_depths = {0.002};
   s.indentation.lateral_increments = 2;
   s.indentation.lateral_travel = 0.001;
   return s;
@@ -67,9 +67,9 @@ TEST(Campaign, CampaignsThatShareAFactorKnowNothingOfOneAnother) {
   const auto first = std::find(is_site.begin(), is_site.end(), std::uint8_t{1});
   some.sites = {static_cast<std::int32_t>(first - is_site.begin())};
   points.points = {{{0.002, 0.001, 0}, {0, 0, -1}}};
-  points.indentation.held_depths.clear();
+  points.indentation.lateral_depths.clear();
   CampaignReport report;
-  KeptFactor kept;
+  FactorCache kept;
   run_campaign(body, points, report, &kept);
   const Curves after = run_campaign(body, some, report, &kept);
   EXPECT_EQ(kept.factorizations(), 1);
@@ -149,7 +149,7 @@ TEST(Campaign, RefusesWhatDoesNotFit) {
   s.materials.clear();
   EXPECT_THAT(refusal(s), HasSubstr("region 'tissue'"));
   s = quick();
-  s.indentation.held_depths = {0.003};
+  s.indentation.lateral_depths = {0.003};
   EXPECT_THAT(refusal(s), HasSubstr("beyond the depth"));
   s = quick();
   s.indentation.tool.radius = std::nan("");
@@ -170,7 +170,7 @@ TEST(Campaign, AStuckDiscFeelsNoRoundingOfTheSurface) {
   // not decide what is beneath the end.
   CampaignSettings s = quick();
   s.indentation.tool = {ToolShape::Disc, 0.003, 0, 0};
-  s.indentation.friction = ToolFriction::Stuck;
+  s.indentation.friction = ToolFriction::NoSlip;
   s.points = {{{0.001, 0.002, 0}, {0, 0, -1}}};
   const auto force = [&](double top) {
     const Body body = test::make_block(test::even(-0.015, 0.015, 4), test::even(-0.015, 0.015, 4),
@@ -187,7 +187,7 @@ TEST(Campaign, AStuckDiscFeelsNoRoundingOfTheSurface) {
 TEST(Campaign, AFailedSiteKeepsItsPartialCurveAndReason) {
   CampaignSettings s = quick();
   s.indentation.depth = 0.03;  // the block is 15 mm thick
-  s.indentation.held_depths.clear();
+  s.indentation.lateral_depths.clear();
   const Body body = small_block();
   for (std::int32_t v = 0; v < 25 && s.sites.empty(); ++v)
     if (body.response.is_site[to_index(v)]) s.sites = {v};

@@ -23,7 +23,7 @@ TEST_P(CoarsePress, DoesTheWorkOfAFineOneAtEverySample) {
     settings.indentation.tool.radius = kRadius;
     settings.indentation.depth = 0.003;
     settings.indentation.increments = increments;
-    settings.indentation.held_depths.clear();
+    settings.indentation.lateral_depths.clear();
     settings.points = {{{0.0013, 0.0007, 0}, {0, 0, -1}}};
     const CampaignContext context(body, settings, engine);
     return solve_site(context, 0, nullptr).paths.front().samples;

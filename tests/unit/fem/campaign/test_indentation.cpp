@@ -33,7 +33,7 @@ CampaignSettings settings() {
   s.materials = {{"tissue", {10e3, 0.49}}};
   s.indentation.depth = 0.004;
   s.indentation.increments = 8;
-  s.indentation.held_depths = {0.002};
+  s.indentation.lateral_depths = {0.002};
   s.indentation.lateral_travel = 0.002;
   s.indentation.lateral_increments = 4;
   return s;
@@ -68,7 +68,7 @@ TEST_F(Indentation, PressesAnyPointOfTheSurface) {
   const std::int32_t centre = centre_vertex(*body_);
   const Vec3 at_centre = body_->nodes[to_index(body_->response.node[to_index(centre)])];
   CampaignSettings s = settings();
-  s.indentation.held_depths.clear();
+  s.indentation.lateral_depths.clear();
   s.indentation.depth = 0.002;  // in the same steps
   s.indentation.increments = 4;
   // A third of an element off the node, on a block that is the same there but for its far sides.

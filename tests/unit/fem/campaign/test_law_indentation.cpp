@@ -5,8 +5,8 @@
 
 #include <cmath>
 
+#include "fem/campaign/bonded_patch.hpp"
 #include "fem/campaign/indentation.hpp"
-#include "fem/campaign/stuck_patch.hpp"
 #include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/patch_work.hpp"
@@ -34,7 +34,7 @@ CampaignSettings settings_of(const LawConstants& tissue, const LawConstants& ski
   settings.indentation.tool.radius = 0.008;
   settings.indentation.depth = 0.002;
   settings.indentation.increments = 4;
-  settings.indentation.held_depths = {0.001};
+  settings.indentation.lateral_depths = {0.001};
   settings.indentation.lateral_travel = 0.001;
   settings.indentation.lateral_increments = 2;
   return settings;
@@ -77,7 +77,7 @@ TEST_P(LawIndentation, WorksAsASkinOnAnotherLaw) {
   const Body body = layered_block();
   const LawConstants soft(4e3, 0.45);
   CampaignSettings settings = bearable(soft, GetParam());
-  settings.indentation.held_depths.clear();
+  settings.indentation.lateral_depths.clear();
   const double layered = end_force(press(body, settings, Engine::SharedFactor));
   settings.materials[0].law = GetParam();
   const double stiff = end_force(press(body, settings, Engine::SharedFactor));

@@ -168,7 +168,7 @@ TEST(Sensitivity, OfAStuckPathIsTheDerivativeByDifferences) {
   const auto run = [&](double top, double base, double nu,
                        const std::vector<RegionConstant>& constants) {
     CampaignSettings settings = settings_of(body, top, base, nu);
-    settings.indentation.friction = ToolFriction::Stuck;
+    settings.indentation.friction = ToolFriction::NoSlip;
     settings.indentation.force_tolerance = 1e-7;
     return run_sensitivity(body, settings, kDepths, constants, plans).front();
   };
@@ -198,7 +198,7 @@ TEST(TangentSolver, AgreesWithAFactorOfTheTangent) {
   const Body body = layered();
   CampaignSettings settings = settings_of(body, 8e3, 20e3, 0.49);
   settings.indentation.azimuths.clear();
-  settings.indentation.held_depths.clear();
+  settings.indentation.lateral_depths.clear();
   const CampaignContext context(body, settings, Engine::SharedFactor);
   SolveBatch batch(*context.rest_factor, 1);
   SolveBatch::Member member(batch);
@@ -234,7 +234,7 @@ TEST(Sensitivity, KeepsAFactorWhileItServes) {
     double top, base, poisson;
     int factorizations;
   };
-  KeptFactor kept;
+  FactorCache kept;
   for (const Trial& t :
        {Trial{8e3, 20e3, 0.45, 1}, Trial{24e3, 60e3, 0.45, 1}, Trial{24e3, 70e3, 0.45, 1},
         Trial{24e3, 70e3, 0.49, 2}, Trial{6e3, 70e3, 0.49, 3}, Trial{0.6e3, 7e3, 0.49, 3}}) {

@@ -6,8 +6,8 @@
 
 #include <cmath>
 
+#include "fem/campaign/bonded_patch.hpp"
 #include "fem/campaign/indentation.hpp"
-#include "fem/campaign/stuck_patch.hpp"
 #include "fem/solve/preload.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
@@ -157,7 +157,7 @@ CampaignSettings pressing(const LawConstants& law) {
   settings.indentation.tool.radius = 0.008;
   settings.indentation.depth = 0.002;
   settings.indentation.increments = 20;
-  settings.indentation.held_depths = {0.001};
+  settings.indentation.lateral_depths = {0.001};
   settings.indentation.lateral_travel = 0.001;
   settings.indentation.lateral_increments = 10;
   return settings;
@@ -211,7 +211,7 @@ TEST(Foundation, UnderAStiffBodyIsTheOnlySpring) {
   constexpr double kStiffness = 2e4, kArea = 0.032 * 0.032;
   CampaignSettings settings = pressing({1e6, 0.45});
   settings.indentation.increments = 5;
-  settings.indentation.held_depths.clear();
+  settings.indentation.lateral_depths.clear();
   const SiteCurves site = press(sprung_block(kStiffness), settings, Engine::SharedFactor);
   ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
   // The tool passes 20 um before a point of the coarse facets meets it: slopes, not the first
@@ -354,7 +354,7 @@ TEST(Gravity, AToolThatMeetsNothingYetHasNoForce) {
   settings.gravity = {{0, 0, -9.81}, 1000};
   settings.indentation.depth = 5e-6;
   settings.indentation.increments = 2;
-  settings.indentation.held_depths.clear();
+  settings.indentation.lateral_depths.clear();
   for (const Engine engine : {Engine::Direct, Engine::SharedFactor}) {
     const SiteCurves site = press(body, settings, engine);
     ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
@@ -370,7 +370,7 @@ TEST(Indentation, EndsWhereTheLawLosesEllipticity) {
   CampaignSettings settings =
       pressing({"yeoh", {{"C10", 1.5e3}, {"C20", -2.5e3}, {"C30", 1.6e3}, {"poisson", 0.45}}});
   settings.indentation.depth = 0.005;
-  settings.indentation.held_depths.clear();
+  settings.indentation.lateral_depths.clear();
   const SiteCurves softening = press(body, settings, Engine::SharedFactor);
   EXPECT_EQ(softening.status, SiteStatus::Partial);
   EXPECT_THAT(softening.reason, HasSubstr("loses ellipticity in the element at ("));

@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fem/campaign/bonded_patch.hpp"
 #include "fem/campaign/indentation.hpp"
-#include "fem/campaign/stuck_patch.hpp"
 #include "fem/solve/preload.hpp"
 #include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
@@ -32,7 +32,7 @@ CampaignSettings settings(Dilatation dilatation, double poisson) {
   s.indentation.tool.radius = 0.01;
   s.indentation.depth = 0.003;
   s.indentation.increments = 20;
-  s.indentation.held_depths = {0.002};
+  s.indentation.lateral_depths = {0.002};
   s.indentation.lateral_travel = 0.001;
   s.indentation.lateral_increments = 6;
   return s;
@@ -117,7 +117,7 @@ TEST(Tet4, IsStifferThanQuadraticElementsButNoMoreSoNearIncompressibility) {
   const auto force = [](Dilatation dilatation, double poisson, int cells) {
     CampaignSettings s = settings(dilatation, poisson);
     s.indentation.increments = 4;
-    s.indentation.held_depths.clear();
+    s.indentation.lateral_depths.clear();
     return norm(press(block(cells), s).paths.front().samples.back().force);
   };
   const auto excess = [&](double poisson, int cells) {
@@ -135,7 +135,7 @@ TEST(Tet4, IsStifferThanQuadraticElementsButNoMoreSoNearIncompressibility) {
 TEST(Tet4, IsNamedInWhatACampaignReports) {
   CampaignSettings s = settings(kTet4, 0.45);
   s.indentation.increments = 1;
-  s.indentation.held_depths.clear();
+  s.indentation.lateral_depths.clear();
   s.sites = {test::site_nearest(block())};
   CampaignReport report;
   run_campaign(block(), s, report);

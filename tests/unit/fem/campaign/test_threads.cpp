@@ -18,7 +18,7 @@ TEST(CampaignThreads, TwoGiveTheBitsOfOne) {
   settings.materials = {{"tissue", {10e3, 0.45}}};
   settings.indentation.depth = 0.001;
   settings.indentation.increments = 2;
-  settings.indentation.held_depths = {0.001};
+  settings.indentation.lateral_depths = {0.001};
   settings.indentation.lateral_travel = 0.0005;
   settings.indentation.lateral_increments = 1;
   for (std::int32_t v = 0; v < 25 && settings.sites.size() < 4; ++v)

@@ -51,7 +51,7 @@ Tensor4<double> first_lane(const Tensor4<Lanes>& A) {
 }
 
 double weakest_of(const Law& law, const Matrix& F) {
-  return weakest_wave(first_lane(point_of(law, F).A));
+  return min_acoustic_eigenvalue(first_lane(point_of(law, F).A));
 }
 
 /// Stretches from 0.4 to 2.5 between two random rotations, det F from 0.6 to 1.6.
@@ -129,7 +129,7 @@ TEST(Ellipticity, TheWeakestWaveIsWeakerThanOnAnyGrid) {
           }
           grid = std::min(grid, eigen.compute(Q).eigenvalues()[0]);
         }
-      const double found = weakest_wave(A);
+      const double found = min_acoustic_eigenvalue(A);
       double size = 0;
       for (std::size_t i = 0; i < 9; ++i) size = std::max(size, std::abs(A[i][i]));
       EXPECT_LE(found, grid + 1e-9 * size) << constants.law;
@@ -147,7 +147,8 @@ TEST(Ellipticity, TheCheckThatSufficesIsRight) {
   for (const LawConstants& constants : sound_and_softening_laws())
     for (int trial = 0; trial < 40; ++trial) {
       const PointOfLaw point = point_of(make_law(constants, "t"), random_gradient(random));
-      EXPECT_EQ(weakest_wave(point.F, point.A)[3] > 0, weakest_wave(first_lane(point.A)) > 0)
+      EXPECT_EQ(min_acoustic_eigenvalue(point.F, point.A)[3] > 0,
+                min_acoustic_eigenvalue(first_lane(point.A)) > 0)
           << constants.law;
     }
 }

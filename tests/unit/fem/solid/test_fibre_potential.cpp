@@ -77,7 +77,7 @@ double pressed_force(const Body& body, const FibreField& field) {
   s.materials = {{"tissue", muscle(field)}};
   s.indentation.depth = 0.001;
   s.indentation.increments = 2;
-  s.indentation.held_depths.clear();
+  s.indentation.lateral_depths.clear();
   const CampaignContext context(body, s, Engine::Direct);
   std::int32_t site = 0;
   while (body.response.is_site[to_index(site)] == 0) ++site;

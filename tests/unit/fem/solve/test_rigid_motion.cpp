@@ -50,7 +50,7 @@ CampaignSettings settings(double young) {
   s.indentation.tool.radius = 0.005;
   s.indentation.depth = 0.003;
   s.indentation.increments = 10;
-  s.indentation.held_depths = {0.002};
+  s.indentation.lateral_depths = {0.002};
   s.indentation.lateral_travel = 0.002;
   s.indentation.lateral_increments = 5;
   s.points = {{{0.0121, 0.0083, 0}, {0, 0, -1}}};

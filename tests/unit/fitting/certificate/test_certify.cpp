@@ -158,7 +158,7 @@ TEST(Certificate, TooDeepForTheCurvatureIsUnboundedAndSaid) {
   EXPECT_DOUBLE_EQ(library.certificate.devices.at(0).lowest_rate, 2 * 400 / 0.081);
   EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
             "certified passive from 9877 Hz; from 2578 Hz when slides are held back to 104.5 N/m "
-            "(steepness)");
+            "(lipschitz_bound)");
   EXPECT_TRUE(std::isinf(library.certificate.slip));
   const std::string& line = library.certificate.limited_by;
   EXPECT_NE(line.find("no bound of the slide: pressed 10 mm deep"), std::string::npos) << line;

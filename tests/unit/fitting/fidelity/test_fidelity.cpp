@@ -39,7 +39,7 @@ Library even_plate() {
 
 /// Direct solutions from a closed form: force at depth z, lateral displacement rho.
 template <class Force>
-Curves direct_of(const std::vector<HeldOutPoint>& points, const std::vector<double>& held,
+Curves direct_of(const std::vector<HoldOutPoint>& points, const std::vector<double>& held,
                  Force force) {
   Curves curves;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -80,7 +80,7 @@ Curves sampled_of(const std::vector<double>& stiffness, double held) {
   return curves;
 }
 
-Fidelity measure_on(const Library& library, const std::vector<HeldOutPoint>& points,
+Fidelity measure_on(const Library& library, const std::vector<HoldOutPoint>& points,
                     const Curves& direct, const Curves& sampled) {
   const samples::TemporaryFolder folder;
   const auto file = folder / "library.h5";
@@ -104,7 +104,7 @@ TEST(Fidelity, IsExactWhereTheSolidIsTheModel) {
   const Library library = even_plate();
   const auto points = draw_points(library, 12, 3, 7);
   const auto direct =
-      direct_of(points, {0.002, 0.004}, [](const HeldOutPoint&, double z, double rho) {
+      direct_of(points, {0.002, 0.004}, [](const HoldOutPoint&, double z, double rho) {
         return linear(kNormal * z, kLateral * rho);
       });
   const Fidelity fidelity =
@@ -117,7 +117,7 @@ TEST(Fidelity, IsExactWhereTheSolidIsTheModel) {
 TEST(Fidelity, TellsAStiffnessErrorAsItIs) {
   const Library library = even_plate();
   const auto points = draw_points(library, 5, 2, 7);
-  const auto direct = direct_of(points, {0.004}, [](const HeldOutPoint&, double z, double rho) {
+  const auto direct = direct_of(points, {0.004}, [](const HoldOutPoint&, double z, double rho) {
     return linear(1.25 * kNormal * z, kLateral * rho);
   });
   const Fidelity fidelity =
@@ -139,7 +139,7 @@ TEST(Fidelity, SeparatesAForceThatNoModelOfThisKindHas) {
   const Library library = even_plate();
   const auto points = draw_points(library, 4, 0, 7);
   const Vec3 across{-0.8, 0.6, 0};
-  const auto direct = direct_of(points, {0.003}, [&](const HeldOutPoint&, double z, double rho) {
+  const auto direct = direct_of(points, {0.003}, [&](const HoldOutPoint&, double z, double rho) {
     return linear(kNormal * z, kLateral * rho) + 0.05 * across;
   });
   const Fidelity fidelity =
@@ -157,7 +157,7 @@ TEST(Fidelity, TellsWhatForcesAcrossThePressWouldMend) {
   const Library library = even_plate();
   const auto points = draw_points(library, 4, 0, 7);
   const Vec3 across{-0.8, 0.6, 0};
-  const auto direct = direct_of(points, {}, [&](const HeldOutPoint&, double z, double) {
+  const auto direct = direct_of(points, {}, [&](const HoldOutPoint&, double z, double) {
     return linear(kNormal * z, 0) + 20 * z * across;
   });
   Curves sampled = sampled_of({120, 120, 120, 120}, 0.003);
@@ -178,7 +178,7 @@ TEST(Fidelity, TellsWhatOneLateralResponseForAllDepthsCosts) {
   const Library library = even_plate();
   const auto points = draw_points(library, 3, 0, 7);
   const auto direct =
-      direct_of(points, {0.001, reference}, [&](const HeldOutPoint&, double z, double rho) {
+      direct_of(points, {0.001, reference}, [&](const HoldOutPoint&, double z, double rho) {
         return linear(kNormal * z, kLateral * rho * std::sqrt(z / reference));
       });
   const Fidelity fidelity =
@@ -202,7 +202,7 @@ TEST(Fidelity, SeparatesInterpolationFromTheFit) {
   const std::vector<double> k{100, 120, 140, 160};
   const Library library = plate({110, 132, 154, 176});
   const auto points = draw_points(library, 6, 0, 3);
-  const auto between = [&](const HeldOutPoint& p) {
+  const auto between = [&](const HoldOutPoint& p) {
     double sum = 0;
     for (std::size_t l = 0; l < 3; ++l) {
       const std::int32_t v = library.triangles[static_cast<std::size_t>(p.triangle)][l];
@@ -210,7 +210,7 @@ TEST(Fidelity, SeparatesInterpolationFromTheFit) {
     }
     return sum;
   };
-  const auto direct = direct_of(points, {}, [&](const HeldOutPoint& p, double z, double) {
+  const auto direct = direct_of(points, {}, [&](const HoldOutPoint& p, double z, double) {
     return linear(1.05 * between(p) * z, 0);
   });
   const Fidelity fidelity = measure_on(library, points, direct, sampled_of(k, 0.003));
@@ -224,7 +224,7 @@ TEST(Fidelity, LeavesOutAPressThatFailedAndSaysSo) {
   const Library library = even_plate();
   const auto points = draw_points(library, 2, 0, 7);
   auto direct = direct_of(
-      points, {}, [](const HeldOutPoint&, double z, double) { return linear(kNormal * z, 0); });
+      points, {}, [](const HoldOutPoint&, double z, double) { return linear(kNormal * z, 0); });
   direct.sites[1].status = SiteStatus::Failed;
   direct.sites[1].reason = "did not converge";
   direct.sites[1].paths.clear();
@@ -240,7 +240,7 @@ TEST(DrawPoints, CoversTheSurfaceEvenlyAndNoHole) {
   const auto points = draw_points(library, 6000, 4, 1);
   ASSERT_EQ(points.size(), 6004u);
   const auto in_large = std::count_if(points.begin(), points.begin() + 6000,
-                                      [](const HeldOutPoint& p) { return p.triangle == 1; });
+                                      [](const HoldOutPoint& p) { return p.triangle == 1; });
   EXPECT_NEAR(static_cast<double>(in_large) / 6000, 2.0 / 3, 4 * std::sqrt(2.0 / 9 / 6000));
   // The mean of points spread evenly over the two triangles is their centroid.
   Vec3 mean{};
@@ -256,7 +256,7 @@ TEST(DrawPoints, CoversTheSurfaceEvenlyAndNoHole) {
   }
   EXPECT_EQ(nodes.size(), 4u);
   library.responses[1] = {};
-  for (const HeldOutPoint& p : draw_points(library, 50, 0, 1)) EXPECT_EQ(p.triangle, 1);
+  for (const HoldOutPoint& p : draw_points(library, 50, 0, 1)) EXPECT_EQ(p.triangle, 1);
   library.responses[0] = {};
   EXPECT_ANY_THROW(draw_points(library, 1, 0, 1));
 }

@@ -54,10 +54,10 @@ CurvePath normal_path(double reach, double scale) {
 }
 
 /// A stuck contact held at some depth: the normal force of the held state is no lateral response.
-CurvePath lateral_path(const Vec3& direction, double held_depth, double stiffness,
+CurvePath lateral_path(const Vec3& direction, double lateral_depth, double stiffness,
                        double reach = kTravel) {
-  CurvePath path{PathKind::Lateral, held_depth, direction, {}};
-  const Vec3 held{0.004, -0.003, -normal_law(held_depth)};
+  CurvePath path{PathKind::Lateral, lateral_depth, direction, {}};
+  const Vec3 held{0.004, -0.003, -normal_law(lateral_depth)};
   for (int i = 0; i <= 6; ++i) {
     CurveSample sample;
     sample.displacement = reach * i / 6;

@@ -30,7 +30,7 @@ export function errorsAt(data, vertex) {
     + (c.scatter_N === null ? '' : `, scatter ${units.force(c.scatter_N)}`));
 }
 
-const pathName = (curve) => (curve.kind === 'lateral' ? `lateral at ${units.length(curve.held_depth_m)}` : curve.kind);
+const pathName = (curve) => (curve.kind === 'lateral' ? `lateral at ${units.length(curve.lateral_depth_m)}` : curve.kind);
 
 function overlay(curve) {
   const x = curve.points.map((p) => p.displacement_m * 1e3);

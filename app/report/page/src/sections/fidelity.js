@@ -15,7 +15,7 @@ const distribution = (text) => text.replace('p95', '95 % below')
 function sampling(facts) {
   return [
     el('h3', {}, 'Sites chosen by need'),
-    paragraph(`${facts.get('sites_computed')} sites were computed in ${facts.get('sampling_rounds')} rounds; the other responses are interpolated. At ${facts.get('held_out_points')} random points of the surface, never fitted, the error of the force is along the press: ${distribution(facts.get('held_out_error_along_press'))}; as a vector: ${distribution(facts.get('held_out_error_of_vector'))}. Sampling ended because ${facts.get('sampling_ended')}.`),
+    paragraph(`${facts.get('sites_computed')} sites were computed in ${facts.get('sampling_rounds')} rounds; the other responses are interpolated. At ${facts.get('hold_out_points')} random points of the surface, never fitted, the error of the force is along the press: ${distribution(facts.get('hold_out_error_along_press'))}; as a vector: ${distribution(facts.get('hold_out_error_of_vector'))}. Sampling ended because ${facts.get('sampling_ended')}.`),
   ];
 }
 

@@ -26,7 +26,7 @@ CurvePath path_of(double scale, double offset, int samples, PathKind kind = Path
   CurvePath path;
   path.kind = kind;
   path.direction = kind == PathKind::Normal ? kInward : Vec3{1, 0, 0};
-  path.held_depth = kind == PathKind::Normal ? 0 : 0.003;
+  path.lateral_depth = kind == PathKind::Normal ? 0 : 0.003;
   for (int i = 0; i <= samples; ++i) {
     CurveSample sample;
     sample.displacement = kDepth * i / samples;
@@ -160,7 +160,7 @@ TEST(Compare, JustNoticeableDifferencesHaveAFloor) {
 TEST(Compare, WhatHasNoPartnerIsNamed) {
   Curves model = curves_of(1);
   model.sites.erase(model.sites.begin());
-  model.sites[0].paths[1].held_depth = 0.005;
+  model.sites[0].paths[1].lateral_depth = 0.005;
   const Comparison c = compared(curves_of(1), model);
   EXPECT_EQ(c.curves.size(), 3U);
   EXPECT_THAT(c.unmatched, Contains(HasSubstr("site 3 of measured has no partner")));

@@ -263,7 +263,7 @@ TEST(Repeats, ALateralPathIsMadeFromTheNormalStiffness) {
   EXPECT_EQ(lateral.kind, PathKind::Lateral);
   EXPECT_EQ(lateral.repeats, 0);
   EXPECT_NEAR(dot(lateral.direction, kInward), 0, 1e-12);
-  const double h = lateral.held_depth, e = 1e-5;
+  const double h = lateral.lateral_depth, e = 1e-5;
   const Bench bench;
   const double k = (sneddon_force(h + e, bench.radius, bench.modulus) -
                     sneddon_force(h - e, bench.radius, bench.modulus)) /

@@ -86,7 +86,7 @@ TEST(Robot, PressAndDragAreToldApart) {
   const CurvePath lateral = lateral_paths({*curves.drag}, kInward, {24}, "log").front();
   EXPECT_EQ(lateral.kind, PathKind::Lateral);
   EXPECT_EQ(lateral.repeats, 1);
-  EXPECT_NEAR(lateral.held_depth, drag.depth, 0.02 * drag.depth);
+  EXPECT_NEAR(lateral.lateral_depth, drag.depth, 0.02 * drag.depth);
   EXPECT_NEAR(dot(lateral.direction, drag.direction), 1, 1e-3);
   EXPECT_NEAR(dot(lateral.direction, kInward), 0, 1e-12);
   EXPECT_EQ(lateral.samples.front().displacement, 0);
@@ -167,7 +167,7 @@ TEST(Drags, OtherDepthsAndDirectionsStayApart) {
   ASSERT_EQ(paths.size(), 3U);
   EXPECT_EQ(paths[0].repeats, 2);
   EXPECT_EQ(paths[1].repeats, 1);
-  EXPECT_NEAR(paths[1].held_depth, 0.003, 0.0001);
+  EXPECT_NEAR(paths[1].lateral_depth, 0.003, 0.0001);
   EXPECT_LT(dot(paths[2].direction, paths[0].direction), -0.99);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fem/mesh/divided_mesh.hpp"
+#include "fem/mesh/refined_mesh.hpp"
 
 #include <Eigen/LU>
 #include <algorithm>
@@ -133,20 +133,20 @@ double six_volumes(const QuadraticMesh& mesh, const Tetrahedron10& node, const C
 }
 
 /// Divides the elements one after another; an edge that two of them share gets one middle.
-class Divider {
+class Refiner {
  public:
-  explicit Divider(const QuadraticMesh& whole)
+  explicit Refiner(const QuadraticMesh& whole)
       : whole_(whole), edges_(whole.tetrahedra.size(), 0U) {}
 
-  DividedMesh run(const std::vector<int>& elements) && {
+  RefinedMesh run(const std::vector<int>& elements) && {
     choose_edges(elements);
     for (std::size_t e = 0; e < edges_.size(); ++e)
       if (edges_[e] == 0) add_element(whole_.tetrahedra[e], whole_.region[e]);
     for (std::size_t e = 0; e < edges_.size(); ++e)
-      if (edges_[e] != 0) divide_element(static_cast<int>(e));
-    for (std::size_t f = 0; f < whole_.facets.size(); ++f) divide_facet(f);
+      if (edges_[e] != 0) refine_element(static_cast<int>(e));
+    for (std::size_t f = 0; f < whole_.facets.size(); ++f) refine_facet(f);
     place_nodes();
-    return std::move(divided_);
+    return std::move(refined_);
   }
 
  private:
@@ -173,21 +173,21 @@ class Divider {
   }
 
   void add_element(const Tetrahedron10& node, std::int32_t region) {
-    divided_.mesh.tetrahedra.push_back(node);
-    divided_.mesh.region.push_back(region);
+    refined_.mesh.tetrahedra.push_back(node);
+    refined_.mesh.region.push_back(region);
   }
 
   /// The middle between two nodes of an element: one that is there if they are corners.
   std::int32_t middle(int element, std::size_t a, std::size_t b) {
     const Tetrahedron10& node = whole_.tetrahedra[to_index(element)];
     if (a < 4 && b < 4) return node[middle_node(a, b)];
-    const auto next = whole_.nodes() + static_cast<std::int32_t>(divided_.made.size());
+    const auto next = whole_.nodes() + static_cast<std::int32_t>(refined_.made.size());
     const auto [entry, added] = middle_.try_emplace(edge_between(node[a], node[b]), next);
     if (!added) return entry->second;
     const Volume La = volume_coordinates(a), Lb = volume_coordinates(b);
     Volume L{};
     for (std::size_t c = 0; c < 4; ++c) L[c] = 0.5 * (La[c] + Lb[c]);
-    divided_.made.push_back({element, shape_functions(L)});
+    refined_.made.push_back({element, shape_functions(L)});
     held_.push_back(all_held_around(node, L));
     return next;
   }
@@ -203,7 +203,7 @@ class Divider {
     return true;
   }
 
-  void divide_element(int element) {
+  void refine_element(int element) {
     const Tetrahedron10& node = whole_.tetrahedra[to_index(element)];
     for (Child child : children(whole_, node, edges_[to_index(element)])) {
       if (straight_volume(child) < 0) std::swap(child[2], child[3]);
@@ -220,11 +220,11 @@ class Divider {
     throw Error(
         ErrorKind::Geometry, "element " + std::to_string(element) + " of the body",
         "cannot be divided: its curved edges turn a part of it over",
-        "mesh the body again, or take smaller elements instead of solver.divide_under_tool");
+        "mesh the body again, or take smaller elements instead of solver.refine_under_tool");
   }
 
   /// After the elements: all middles are known.
-  void divide_facet(std::size_t index) {
+  void refine_facet(std::size_t index) {
     const Facet& facet = whole_.facets[index];  // corners 0..2, then the edges 01, 12, 20
     std::vector<std::array<std::size_t, 3>> parts;
     std::vector<std::size_t> split;
@@ -244,8 +244,8 @@ class Divider {
         nodes[c] = facet[part[c]];
         nodes[3 + c] = middle_of_facet(facet, part[c], part[(c + 1) % 3]);
       }
-      divided_.mesh.facets.push_back(nodes);
-      divided_.mesh.facet_region.push_back(whole_.facet_region[index]);
+      refined_.mesh.facets.push_back(nodes);
+      refined_.mesh.facet_region.push_back(whole_.facet_region[index]);
     }
   }
 
@@ -255,22 +255,22 @@ class Divider {
   }
 
   void place_nodes() {
-    const auto made = static_cast<Eigen::Index>(divided_.made.size());
-    divided_.mesh.X.resize(3, whole_.X.cols() + made);
-    divided_.mesh.X.leftCols(whole_.X.cols()) = whole_.X;
+    const auto made = static_cast<Eigen::Index>(refined_.made.size());
+    refined_.mesh.X.resize(3, whole_.X.cols() + made);
+    refined_.mesh.X.leftCols(whole_.X.cols()) = whole_.X;
     for (Eigen::Index i = 0; i < made; ++i) {
-      const auto& [parent, N] = divided_.made[to_index(static_cast<int>(i))];
-      auto x = divided_.mesh.X.col(whole_.X.cols() + i);
+      const auto& [parent, N] = refined_.made[to_index(static_cast<int>(i))];
+      auto x = refined_.mesh.X.col(whole_.X.cols() + i);
       x.setZero();
       for (std::size_t a = 0; a < kTetNodes; ++a)
         x += N[a] * whole_.X.col(whole_.tetrahedra[to_index(parent)][a]);
     }
-    divided_.mesh.held = whole_.held;
-    divided_.mesh.held.insert(divided_.mesh.held.end(), held_.begin(), held_.end());
+    refined_.mesh.held = whole_.held;
+    refined_.mesh.held.insert(refined_.mesh.held.end(), held_.begin(), held_.end());
   }
 
   const QuadraticMesh& whole_;
-  DividedMesh divided_;
+  RefinedMesh refined_;
   std::vector<unsigned> edges_;          ///< of each element, those that are divided, one bit each
   std::vector<bool> split_;              ///< of each mid-edge node, whether its edge is divided
   std::vector<bool> held_;               ///< of each new node
@@ -279,11 +279,11 @@ class Divider {
 
 }  // namespace
 
-DividedMesh divide(const QuadraticMesh& mesh, const std::vector<int>& elements) {
-  return Divider(mesh).run(elements);
+RefinedMesh divide(const QuadraticMesh& mesh, const std::vector<int>& elements) {
+  return Refiner(mesh).run(elements);
 }
 
-Prolongation::Prolongation(const DividedMesh& divided, const std::vector<Tetrahedron10>& elements,
+Prolongation::Prolongation(const RefinedMesh& divided, const std::vector<Tetrahedron10>& elements,
                            const SolidModel& whole)
     : all_(whole.pattern().n) {
   const int old_nodes = whole.mesh().nodes() - static_cast<int>(divided.made.size());
@@ -292,7 +292,7 @@ Prolongation::Prolongation(const DividedMesh& divided, const std::vector<Tetrahe
   for (std::size_t i = 0; i < divided.made.size(); ++i) {
     const int first = whole.equation(old_nodes + static_cast<int>(i));
     if (first < 0) continue;
-    const DividedMesh::Made& made = divided.made[i];
+    const RefinedMesh::Made& made = divided.made[i];
     for (std::size_t a = 0; a < kTetNodes; ++a) {
       const int parent = whole.equation(elements[to_index(made.parent)][a]);
       if (parent >= 0 && made.N[a] != 0) shares_.push_back({first, parent, made.N[a]});

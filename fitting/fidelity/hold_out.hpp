@@ -10,7 +10,7 @@
 namespace palpate::fidelity {
 
 /// A point of the response surface and the direction in which the runtime presses it.
-struct HeldOutPoint {
+struct HoldOutPoint {
   std::int32_t triangle = -1;
   Vec3 natural{};     ///< natural coordinates in the triangle
   Vec3 position{};    ///< m
@@ -23,7 +23,7 @@ struct HeldOutPoint {
 /// vertices, then up to `at_node` different vertices of such triangles whose responses were
 /// computed (Fitted). The same seed draws the same points. @throws Error(Configuration) when no
 /// triangle has responses.
-std::vector<HeldOutPoint> draw_points(const Library& library, int off_node, int at_node,
+std::vector<HoldOutPoint> draw_points(const Library& library, int off_node, int at_node,
                                       std::uint32_t seed);
 
 }  // namespace palpate::fidelity

@@ -12,7 +12,7 @@
 
 namespace palpate::fem {
 
-struct StuckPatch {
+struct BondedPatch {
   QuadraticMesh mesh;               ///< `held`: by the supports alone
   std::vector<std::int32_t> nodes;  ///< of the mesh, moved together
 };
@@ -21,7 +21,7 @@ struct StuckPatch {
 /// between them.
 /// @throws Error(Configuration) for a vertex that is no site, a radius that is not positive, or a
 /// patch that reaches a support.
-StuckPatch stuck_patch(const Body& body, std::int32_t vertex, double radius);
+BondedPatch bonded_patch(const Body& body, std::int32_t vertex, double radius);
 
 struct PatchForce {
   double depth = 0;          ///< m, of the patch along the inward direction of the vertex
@@ -37,7 +37,7 @@ struct PatchCurve {
 /// Moves the patch inward by the depth and the increments of `settings.indentation`, with its
 /// materials and element; Newton with a factorization of the whole body. The force is good to 1e-6.
 /// The curve ends where the law loses ellipticity.
-/// @throws Error(Configuration) as stuck_patch and run_campaign.
+/// @throws Error(Configuration) as bonded_patch and run_campaign.
 PatchCurve press_patch(const Body& body, const CampaignSettings& settings, std::int32_t vertex,
                        double radius);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fem/campaign/stuck_patch.hpp"
+#include "fem/campaign/bonded_patch.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -127,8 +127,8 @@ class PatchPress {
 
 }  // namespace
 
-StuckPatch stuck_patch(const Body& body, std::int32_t vertex, double radius) {
-  StuckPatch patch;
+BondedPatch bonded_patch(const Body& body, std::int32_t vertex, double radius) {
+  BondedPatch patch;
   patch.mesh = make_quadratic_mesh(body);
   patch.nodes = newly_held(make_quadratic_mesh(held_at_patch(body, vertex, radius)), patch.mesh);
   return patch;

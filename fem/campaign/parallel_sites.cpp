@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fem/campaign/crew.hpp"
+#include "fem/campaign/parallel_sites.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -14,9 +14,9 @@
 
 namespace palpate::fem {
 
-CrewSize crew_size(const RestFactor& factor, int threads, std::size_t sites, double memory,
-                   double each) {
-  CrewSize size;
+SiteThreads site_threads(const RestFactor& factor, int threads, std::size_t sites, double memory,
+                         double each) {
+  SiteThreads size;
   size.cores = std::max(1, threads);
   const std::size_t share = (sites + to_index(size.cores) - 1) / to_index(size.cores);
   const double fallback = 2 * factor.bytes();
@@ -28,8 +28,8 @@ CrewSize crew_size(const RestFactor& factor, int threads, std::size_t sites, dou
   return size;
 }
 
-void work_abreast(const RestFactor& factor, const CrewSize& size, std::size_t count,
-                  const std::function<void(SolveBatch::Member&, std::size_t)>& work) {
+void parallel_for_sites(const RestFactor& factor, const SiteThreads& size, std::size_t count,
+                        const std::function<void(SolveBatch::Member&, std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::exception_ptr failure;

@@ -40,7 +40,7 @@ double lateral_over_normal(double element, double poisson, int places) {
   settings.indentation.tool.radius = radius;
   settings.indentation.depth = 1.1 * depth;
   settings.indentation.increments = 1;
-  settings.indentation.held_depths = {0.9 * depth, depth};
+  settings.indentation.lateral_depths = {0.9 * depth, depth};
   settings.indentation.lateral_travel = 0.02 * depth;
   settings.indentation.lateral_increments = 1;
   settings.indentation.azimuths = {0, M_PI / 2};
@@ -58,7 +58,7 @@ double lateral_over_normal(double element, double poisson, int places) {
     const double normal =
         (force_at(pressed, 1.1 * depth) - force_at(pressed, 0.9 * depth)) / (0.2 * depth);
     for (const CurvePath& path : curves.paths) {
-      if (path.kind != PathKind::Lateral || path.held_depth < 0.95 * depth) continue;
+      if (path.kind != PathKind::Lateral || path.lateral_depth < 0.95 * depth) continue;
       const Vec3 change = path.samples.back().force - path.samples.front().force;
       sum += dot(change, path.direction) / settings.indentation.lateral_travel / normal;
       ++count;
@@ -126,7 +126,7 @@ TEST_P(Balance, WorkOfTheToolIsTheStoredEnergy) {
   settings.indentation.increments = 5;
   // At 1e-4 what the solver leaves moves the balance by as much as the integration is off.
   settings.indentation.force_tolerance = 1e-6;
-  settings.indentation.held_depths = {0.001, 0.003, 0.005};
+  settings.indentation.lateral_depths = {0.001, 0.003, 0.005};
   settings.indentation.lateral_travel = 0.003;
   settings.indentation.lateral_increments = 3;
   settings.indentation.azimuths = {0.0, 2.2};
@@ -157,11 +157,11 @@ constexpr ToolGeometry kSphere{ToolShape::Sphere, 0.005, 0, 0},
 
 INSTANTIATE_TEST_SUITE_P(Tools, Balance,
                          testing::Values(BalanceCase{kSphere, ToolFriction::Frictionless},
-                                         BalanceCase{kSphere, ToolFriction::Stuck},
-                                         BalanceCase{kSharpDisc, ToolFriction::Stuck},
+                                         BalanceCase{kSphere, ToolFriction::NoSlip},
+                                         BalanceCase{kSharpDisc, ToolFriction::NoSlip},
                                          BalanceCase{kRoundedDisc, ToolFriction::Frictionless},
                                          BalanceCase{kCylinder, ToolFriction::Frictionless},
-                                         BalanceCase{kCylinder, ToolFriction::Stuck}));
+                                         BalanceCase{kCylinder, ToolFriction::NoSlip}));
 
 }  // namespace
 }  // namespace palpate::fem

@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "fem/campaign/indentation.hpp"
-#include "fem/mesh/divided_mesh.hpp"
+#include "fem/mesh/refined_mesh.hpp"
 #include "format/edge.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
@@ -34,9 +34,9 @@ std::vector<int> all_elements(const QuadraticMesh& mesh) {
 }
 
 /// A body whose elements are the children of all elements of another, with its sites.
-Body divided_body(const Body& body) {
+Body refined_body(const Body& body) {
   const QuadraticMesh mesh = make_quadratic_mesh(body);
-  const DividedMesh divided = divide(mesh, all_elements(mesh));
+  const RefinedMesh divided = divide(mesh, all_elements(mesh));
   Body fine;
   fine.name = "divided";
   fine.region_names = body.region_names;
@@ -58,7 +58,7 @@ CampaignSettings pressed_by(double radius, double depth) {
   s.indentation.tool.radius = radius;
   s.indentation.depth = depth;
   s.indentation.increments = 4;
-  s.indentation.held_depths = {depth};
+  s.indentation.lateral_depths = {depth};
   s.indentation.lateral_travel = 0.5 * depth;
   s.indentation.lateral_increments = 4;
   s.threads = 2;
@@ -67,7 +67,7 @@ CampaignSettings pressed_by(double radius, double depth) {
 
 SiteCurves press(const Body& body, CampaignSettings settings, bool divide, double x = 0,
                  double y = 0) {
-  settings.indentation.divide_under_tool = divide;
+  settings.indentation.refine_under_tool = divide;
   settings.points = {{{x, y, 0}, {0, 0, -1}}};
   CampaignReport report;
   return run_campaign(body, settings, report).sites.front();
@@ -130,11 +130,11 @@ void expect_fit(const QuadraticMesh& mesh) {
   for (const auto& [face, count] : owners) EXPECT_EQ(count, 2);
 }
 
-TEST(DividedMesh, FitsTogetherAndKeepsVolumeAndSurface) {
+TEST(RefinedMesh, FitsTogetherAndKeepsVolumeAndSurface) {
   const QuadraticMesh whole = make_quadratic_mesh(block_of(6));
   for (const double radius : {0.001, 0.004, 0.009}) {
     const std::vector<int> some = elements_around(whole, radius);
-    const DividedMesh divided = divide(whole, some);
+    const RefinedMesh divided = divide(whole, some);
     expect_fit(divided.mesh);
     EXPECT_GT(divided.mesh.tetrahedra.size(), whole.tetrahedra.size() + 7 * some.size());
     double sum = 0;
@@ -142,20 +142,20 @@ TEST(DividedMesh, FitsTogetherAndKeepsVolumeAndSurface) {
     EXPECT_NEAR(sum, 0.03 * 0.03 * 0.015, 1e-12);
     EXPECT_NEAR(area(divided.mesh), area(whole), 1e-12);
   }
-  const DividedMesh all = divide(whole, all_elements(whole));
+  const RefinedMesh all = divide(whole, all_elements(whole));
   expect_fit(all.mesh);
   EXPECT_EQ(all.mesh.tetrahedra.size(), 8 * whole.tetrahedra.size());
 }
 
 // Any field that is quadratic in space is met by one element and by its children alike.
-TEST(DividedMesh, ProlongsQuadraticFieldsExactly) {
+TEST(RefinedMesh, ProlongsQuadraticFieldsExactly) {
   const QuadraticMesh whole = make_quadratic_mesh(block_of(4));
-  const DividedMesh divided = divide(whole, elements_around(whole, 0.005));
+  const RefinedMesh divided = divide(whole, elements_around(whole, 0.005));
   const auto field = [](const Eigen::Vector3d& X) {
     return 3 + 2 * X[0] - X[2] + 40 * X[0] * X[1] - 7 * X[2] * X[2];
   };
   for (std::size_t i = 0; i < divided.made.size(); ++i) {
-    const DividedMesh::Made& made = divided.made[i];
+    const RefinedMesh::Made& made = divided.made[i];
     double value = 0;
     for (std::size_t a = 0; a < kTetNodes; ++a)
       value += made.N[a] * field(whole.X.col(whole.tetrahedra[to_index(made.parent)][a]));
@@ -187,9 +187,9 @@ Body domed_block(int across) {
 }
 
 // Curved edges make the top the paraboloid itself; the children lie on it, too.
-TEST(DividedMesh, FollowsACurvedSkin) {
+TEST(RefinedMesh, FollowsACurvedSkin) {
   const QuadraticMesh whole = make_quadratic_mesh(domed_block(4));
-  const DividedMesh divided = divide(whole, elements_around(whole, 0.005));
+  const RefinedMesh divided = divide(whole, elements_around(whole, 0.005));
   int on_top = 0;
   for (const QuadraticMesh* mesh : {&whole, &divided.mesh})
     for (const Facet& f : mesh->facets) {
@@ -204,7 +204,7 @@ TEST(DividedMesh, FollowsACurvedSkin) {
   EXPECT_GT(on_top, 2 * 2 * 4 * 4);
 }
 
-TEST(DividedMesh, RefusesAnElementThatACurvedEdgeTurnsOver) {
+TEST(RefinedMesh, RefusesAnElementThatACurvedEdgeTurnsOver) {
   Body body = domed_block(4);
   for (CurvedEdge& edge : body.curved_edges) edge.middle[2] -= 0.02;
   const QuadraticMesh whole = make_quadratic_mesh(body);
@@ -217,8 +217,8 @@ TEST(DividedMesh, RefusesAnElementThatACurvedEdgeTurnsOver) {
 }
 
 // A tool as large as the body: what the site divides is the body divided beforehand.
-TEST(DivideUnderTool, IsTheDividedBodyWhereTheToolSpansItAll) {
-  const Body coarse = block_of(4), fine = divided_body(coarse);
+TEST(RefineUnderTool, IsTheDividedBodyWhereTheToolSpansItAll) {
+  const Body coarse = block_of(4), fine = refined_body(coarse);
   const CampaignSettings settings = pressed_by(0.027, 0.003);
   const SiteCurves ours = press(coarse, settings, true), reference = press(fine, settings, false);
   ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
@@ -232,23 +232,23 @@ TEST(DivideUnderTool, IsTheDividedBodyWhereTheToolSpansItAll) {
 }
 
 // A contact smaller than a facet, beside the nodes: what division leaves of the error of the mesh.
-TEST(DivideUnderTool, MeetsSmallContactsLikeTheDividedBody) {
-  const Body coarse = block_of(6), fine = divided_body(coarse);
+TEST(RefineUnderTool, MeetsSmallContactsLikeTheDividedBody) {
+  const Body coarse = block_of(6), fine = refined_body(coarse);
   const CampaignSettings settings = pressed_by(0.004, 0.0016);
   const double x = 0.0012, y = 0.0021;
   const SiteCurves ours = press(coarse, settings, true, x, y),
                    reference = press(fine, settings, false, x, y),
-                   undivided = press(coarse, settings, false, x, y);
+                   unrefined = press(coarse, settings, false, x, y);
   ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
   for (std::size_t i = 1; i < reference.paths[0].samples.size(); ++i) {
     const Vec3& exact = reference.paths[0].samples[i].force;
     EXPECT_LT(norm(ours.paths[0].samples[i].force - exact), 0.01 * norm(exact));
   }
   const Vec3& first = reference.paths[0].samples[1].force;
-  EXPECT_GT(norm(undivided.paths[0].samples[1].force - first), 0.05 * norm(first));
+  EXPECT_GT(norm(unrefined.paths[0].samples[1].force - first), 0.05 * norm(first));
 }
 
-TEST(DivideUnderTool, LosesNoEnergyWhereSmallElementsMeetLargeOnes) {
+TEST(RefineUnderTool, LosesNoEnergyWhereSmallElementsMeetLargeOnes) {
   const SiteCurves site = press(block_of(6), pressed_by(0.005, 0.003), true, 0.0012, 0.0021);
   ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
   for (const CurvePath& path : site.paths) {
@@ -257,7 +257,7 @@ TEST(DivideUnderTool, LosesNoEnergyWhereSmallElementsMeetLargeOnes) {
   }
 }
 
-TEST(DivideUnderTool, IsRefusedWhereItIsNotThoughtThrough) {
+TEST(RefineUnderTool, IsRefusedWhereItIsNotThoughtThrough) {
   const Body body = block_of(4);
   CampaignSettings settings = pressed_by(0.005, 0.002);
   settings.dilatation = Dilatation::Nodal;

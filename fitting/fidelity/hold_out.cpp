@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fitting/fidelity/held_out.hpp"
+#include "fitting/fidelity/hold_out.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -31,9 +31,9 @@ bool is_computed(const Library& library, std::int32_t vertex) {
   return library.responses[static_cast<std::size_t>(vertex)].status == ResponseStatus::Fitted;
 }
 
-HeldOutPoint point_of(const Library& library, std::size_t triangle, const Vec3& natural) {
+HoldOutPoint point_of(const Library& library, std::size_t triangle, const Vec3& natural) {
   const Triangle& t = library.triangles[triangle];
-  HeldOutPoint point{static_cast<std::int32_t>(triangle), natural, {}, {}, false, 0};
+  HoldOutPoint point{static_cast<std::int32_t>(triangle), natural, {}, {}, false, 0};
   for (std::size_t l = 0; l < 3; ++l) {
     point.position = point.position + natural[l] * at_vertex(library.positions, t[l]);
     point.inward = point.inward + natural[l] * at_vertex(library.inward, t[l]);
@@ -56,7 +56,7 @@ Vec3 even_natural(std::mt19937& engine) {
 
 }  // namespace
 
-std::vector<HeldOutPoint> draw_points(const Library& library, int off_node, int at_node,
+std::vector<HoldOutPoint> draw_points(const Library& library, int off_node, int at_node,
                                       std::uint32_t seed) {
   std::vector<std::size_t> usable;
   std::vector<double> sum;  // of the areas up to and with each
@@ -70,7 +70,7 @@ std::vector<HeldOutPoint> draw_points(const Library& library, int off_node, int 
                 "every triangle touches a hole", "fill the holes or compute more sites");
   }
   std::mt19937 engine(seed);
-  std::vector<HeldOutPoint> points;
+  std::vector<HoldOutPoint> points;
   for (int i = 0; i < off_node; ++i) {
     const auto chosen =
         std::lower_bound(sum.begin(), sum.end(), unit_interval(engine) * sum.back());

@@ -13,32 +13,32 @@ namespace palpate::fem {
 /// A mesh, some of its elements divided in eight: four at the corners, the octahedron between them
 /// in four along its shortest diagonal [Bey 1995]. Their neighbours are divided as far as the mesh
 /// has to fit together: along one edge, along two opposite ones, or along those of one face; in
-/// eight where that is not enough. The nodes of the undivided mesh come first, in its order. The
+/// eight where that is not enough. The nodes of the unrefined mesh come first, in its order. The
 /// new ones are the middles of the new edges. All lie on the quadratic through the nodes of their
 /// parents, so that the children of elements under a curved skin follow it.
-struct DividedMesh {
+struct RefinedMesh {
   /// Where a new node lies: its displacement, were the parent still one quadratic element, is
   /// sum N_a u_a over the nodes of the parent.
   struct Made {
-    std::int32_t parent;  ///< element of the undivided mesh
+    std::int32_t parent;  ///< element of the unrefined mesh
     std::array<double, kTetNodes> N;
   };
 
-  QuadraticMesh mesh;  ///< undivided elements in their order, then the children; without springs
+  QuadraticMesh mesh;  ///< unrefined elements in their order, then the children; without springs
   std::vector<Made> made;
 };
 
 /// `elements`: to be divided in eight. @throws Error(Geometry) where a curved edge turns a child
 /// over.
-DividedMesh divide(const QuadraticMesh& mesh, const std::vector<int>& elements);
+RefinedMesh divide(const QuadraticMesh& mesh, const std::vector<int>& elements);
 
-/// The new unknowns of a divided mesh as functions of those of the undivided one. Both numbered by
+/// The new unknowns of a divided mesh as functions of those of the unrefined one. Both numbered by
 /// node, the old ones first.
 class Prolongation {
  public:
-  /// `whole`: the divided body, all nodes free that are not held. `elements`: of the undivided
+  /// `whole`: the divided body, all nodes free that are not held. `elements`: of the unrefined
   /// mesh.
-  Prolongation(const DividedMesh& divided, const std::vector<Tetrahedron10>& elements,
+  Prolongation(const RefinedMesh& divided, const std::vector<Tetrahedron10>& elements,
                const SolidModel& whole);
 
   /// (d, P d): new nodes move as their parents would.

@@ -20,10 +20,10 @@ TEST(StuckDisc, IsAsStiffAlongAndAcrossAsInClosedForm) {
   CampaignSettings s;
   s.materials = {{"tissue", {kYoung, kPoisson}}};
   s.indentation.tool = {ToolShape::Disc, kRadius, 0, 0};
-  s.indentation.friction = ToolFriction::Stuck;
+  s.indentation.friction = ToolFriction::NoSlip;
   s.indentation.depth = kDepth;
   s.indentation.increments = 1;
-  s.indentation.held_depths = {kDepth};
+  s.indentation.lateral_depths = {kDepth};
   s.indentation.lateral_travel = kDepth;
   s.indentation.lateral_increments = 1;
   s.indentation.azimuths = {0.3};
