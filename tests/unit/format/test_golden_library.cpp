@@ -10,12 +10,12 @@
 
 #include "format/library.hpp"
 #include "runtime/palpate.h"
+#include "tests/support/source_folder.hpp"
 
 namespace palpate {
 namespace {
 
-const std::filesystem::path kGolden =
-    std::filesystem::path(PALPATE_SOURCE_DIR) / "tests/golden/library-1.h5";
+const std::filesystem::path kGolden = test::source_folder() / "tests/golden/library-1.h5";
 
 TEST(GoldenLibrary, KeepsItsSurface) {
   const Library library = read_library(kGolden);

@@ -11,6 +11,7 @@
 #include "mesher/mesher.hpp"
 #include "mesher/queries.hpp"
 #include "mesher/read_surface.hpp"
+#include "tests/support/source_folder.hpp"
 #include "tests/unit/mesher/body_checks.hpp"
 #include "tests/unit/mesher/shapes.hpp"
 
@@ -60,7 +61,8 @@ TEST(Mesh, CylinderHasItsClosedFormVolumeAndAreaToSecondOrder) {
 
 TEST(Mesh, CylinderSitesAreItsLateralSurfaceAndPointRadially) {
   const Body body = mesh([] {
-    Settings s = cylinder_settings(PALPATE_SOURCE_DIR "/data/bodies/cylinder.off", 0.010, 0.005);
+    Settings s = cylinder_settings(palpate::test::source_folder() / "data/bodies/cylinder.off",
+                                   0.010, 0.005);
     s.surface.unit = 0.001;
     return s;
   }());
@@ -247,7 +249,7 @@ TEST(Mesh, InclusionIsItsOwnRegionAndVolumesAddUp) {
 }
 
 TEST(Mesh, OrganCarriesItsNoduleUnderSixMillimetres) {
-  const std::string folder = PALPATE_SOURCE_DIR "/data/bodies/";
+  const std::string folder = (palpate::test::source_folder() / "data/bodies/").string();
   Settings s;
   s.surface = {folder + "organ.off", 0.001, "parenchyma"};
   s.inclusions = {{folder + "nodule.off", 0.001, "nodule"}};

@@ -9,13 +9,14 @@
 
 #include "format/error.hpp"
 #include "mesher/mesher.hpp"
+#include "tests/support/source_folder.hpp"
 #include "tests/unit/mesher/body_checks.hpp"
 
 namespace palpate::mesher {
 namespace {
 
 std::filesystem::path shared_surface(const std::string& name) {
-  return std::filesystem::path(PALPATE_SHARED_DATA) / "surfaces" / name;
+  return palpate::test::source_folder().parent_path() / "shared/data/surfaces" / name;
 }
 
 struct Broken {

@@ -9,6 +9,7 @@
 #include "app/case/case.hpp"
 #include "app/case/material.hpp"
 #include "format/error.hpp"
+#include "tests/support/source_folder.hpp"
 
 namespace palpate::app {
 namespace {
@@ -420,7 +421,8 @@ TEST(Case, UnreadableFileIsAnError) {
 
 TEST(Case, ShippedCasesAreValid) {
   int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(PALPATE_SOURCE_DIR "/data/cases")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(test::source_folder() / "data/cases")) {
     if (entry.path().extension() != ".toml") continue;
     ++count;
     const Case c = read_case(entry.path());
@@ -431,7 +433,7 @@ TEST(Case, ShippedCasesAreValid) {
 
 /// Set PALPATE_UPDATE_DOCS=1 to rewrite the tables of the page from the parser.
 TEST(Case, ReferencePageListsWhatTheReaderAccepts) {
-  const std::string path = PALPATE_SOURCE_DIR "/docs/cases.md";
+  const std::string path = (test::source_folder() / "docs/cases.md").string();
   std::ostringstream page;
   page << std::ifstream(path).rdbuf();
   const std::string begin = "<!-- keys: begin -->\n";

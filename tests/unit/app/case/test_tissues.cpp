@@ -14,6 +14,7 @@
 #include "app/case/material.hpp"
 #include "app/case/quantity.hpp"
 #include "fem/laws/law.hpp"
+#include "tests/support/source_folder.hpp"
 
 namespace palpate::app {
 namespace {
@@ -90,7 +91,8 @@ double nominal_stress(const fem::LawConstants& constants, double l) {
 }
 
 TEST(Tissues, AreMaterialsOfACaseAndHaveTheStressOfTheirConstants) {
-  const toml::table file = toml::parse_file(PALPATE_SOURCE_DIR "/data/materials.toml");
+  const toml::table file =
+      toml::parse_file((test::source_folder() / "data/materials.toml").string());
   const toml::array& tissues = *file["tissue"].as_array();
   EXPECT_GE(tissues.size(), 9u);
   for (const toml::node& node : tissues) {

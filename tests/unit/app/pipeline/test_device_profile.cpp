@@ -10,6 +10,7 @@
 
 #include "app/pipeline/device_profile.hpp"
 #include "format/error.hpp"
+#include "tests/support/source_folder.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace palpate::app {
@@ -17,7 +18,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-const std::filesystem::path kDevices = std::filesystem::path(PALPATE_SOURCE_DIR) / "data/devices";
+const std::filesystem::path kDevices = test::source_folder() / "data/devices";
 
 struct Published {
   double damping, peak_force;  ///< NaN where the table has a dash

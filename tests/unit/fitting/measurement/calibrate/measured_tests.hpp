@@ -7,11 +7,12 @@
 
 #include "fitting/measurement/calibrate/homogeneous_fit.hpp"
 #include "fitting/measurement/records/csv_table.hpp"
+#include "tests/support/source_folder.hpp"
 
 namespace palpate::calibrate {
 
 inline HomogeneousTest measured_test(const std::string& file, Mode mode) {
-  const auto table = measured::read_csv(std::string(PALPATE_SOURCE_DIR) + "/data/measured/" + file);
+  const auto table = measured::read_csv(test::source_folder() / "data/measured" / file);
   HomogeneousTest test;
   test.name = file;
   test.mode = mode;

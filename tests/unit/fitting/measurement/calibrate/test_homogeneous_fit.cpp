@@ -10,6 +10,7 @@
 
 #include "fem/laws/material.hpp"
 #include "format/error.hpp"
+#include "tests/support/source_folder.hpp"
 #include "tests/unit/fitting/measurement/calibrate/measured_tests.hpp"
 
 namespace palpate::calibrate {
@@ -146,8 +147,8 @@ TEST(Homogeneous, FitsRecoverTheConstantsThatMadeTheData) {
 
 /// Published fit of a blood clot in pure shear: 40 x 10 x 3 mm, Cauchy stress, unweighted.
 TEST(Homogeneous, BloodClotFitIsThePublishedOne) {
-  const auto table = measured::read_csv(std::string(PALPATE_SOURCE_DIR) +
-                                        "/data/measured/clot-2021/pure-shear.csv");
+  const auto table =
+      measured::read_csv(test::source_folder() / "data/measured/clot-2021/pure-shear.csv");
   const auto x = measured::column_in_si(table, "displacement", measured::Quantity::Length);
   const auto f = measured::column_in_si(table, "force", measured::Quantity::Force);
   constexpr double height = 0.010, area = 0.040 * 0.003;
