@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """Each source file states its licence: Apache-2.0 in format/, runtime/ and examples/, AGPL elsewhere.
 
+A file of somebody else stands unchanged in a folder vendor/, with its licence in FILE.license beside it.
+
 Usage: check_spdx.py [ROOT] | --self-test
 """
 import subprocess
@@ -40,6 +42,10 @@ def files_of(root):
 def fault_of(root, name):
     if not is_source(root / name):
         return None
+    if "vendor" in name.parts:
+        beside = root / name.with_name(name.name + ".license")
+        stated = beside.is_file() and TAG in beside.read_text(encoding="utf-8")
+        return None if stated else f"{name}: expected {TAG}... in {name.name}.license"
     expected = "Apache-2.0" if name.parts[0] in APACHE_ROOMS else "AGPL-3.0-or-later"
     head = (root / name).read_text(encoding="utf-8").splitlines()[:LINES_SEARCHED]
     stated = [line.split(TAG)[1].split()[0] for line in head if TAG in line]
@@ -57,13 +63,16 @@ SAMPLES = {
     "format/good.hpp": "// SPDX-License-Identifier: Apache-2.0\n",
     "app/good.cpp": "// SPDX-License-Identifier: AGPL-3.0-or-later\n",
     "scripts/good": "#!/bin/sh\n# SPDX-License-Identifier: AGPL-3.0-or-later\n",
+    "app/vendor/good.js": "// somebody else's\n",
+    "app/vendor/good.js.license": "SPDX-License-Identifier: MIT\n",
+    "app/vendor/bad.js": "// somebody else's\n",
     "docs/page.md": "no licence line is asked of texts\n",
     "runtime/bad.cpp": "// SPDX-License-Identifier: AGPL-3.0-or-later\n",
     "app/bad.cpp": "// SPDX-License-Identifier: Apache-2.0\n",
     "fem/bad.cpp": "int main() {}\n",
     "scripts/bad": "#!/bin/sh\necho\n",
 }
-FAULTY = ["app/bad.cpp", "fem/bad.cpp", "runtime/bad.cpp", "scripts/bad"]
+FAULTY = ["app/bad.cpp", "app/vendor/bad.js", "fem/bad.cpp", "runtime/bad.cpp", "scripts/bad"]
 
 if __name__ == "__main__":
     sys.exit(main(sys.argv[1:], faults, SAMPLES, FAULTY))

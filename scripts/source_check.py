@@ -9,7 +9,7 @@ def self_test(faults, files, expected):
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
         for name, text in files.items():
-            (root / name).parent.mkdir(exist_ok=True)
+            (root / name).parent.mkdir(parents=True, exist_ok=True)
             (root / name).write_text(text, encoding="utf-8")
         found = sorted(fault.split(": ", 1)[0] for fault in faults(root))
     if found != expected:

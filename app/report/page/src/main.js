@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-import 'uplot/dist/uPlot.min.css';
+import '../vendor/uplot/uPlot.min.css';
 import './style.css';
 import { readData } from './data.js';
 import { el } from './dom.js';

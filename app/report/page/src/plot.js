@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The three kinds of plot of the report on uPlot: curves with markers, histograms, time series.
-import uPlot from 'uplot';
+import uPlot from '../vendor/uplot/uPlot.esm.js';
 import { el } from './dom.js';
 import { colour, onThemeChange } from './theme.js';
 
