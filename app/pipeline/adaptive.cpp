@@ -16,6 +16,8 @@
 #include "fitting/fidelity/fidelity.hpp"
 #include "fitting/fidelity/skin.hpp"
 #include "fitting/measurement/nearest_rank.hpp"
+#include "fitting/response/fit.hpp"
+#include "fitting/response/interpolate.hpp"
 #include "fitting/sampling/site_choice.hpp"
 #include "format/sha256.hpp"
 #include "format/site_journal.hpp"
@@ -118,10 +120,10 @@ class KnownSites {
   std::map<std::int32_t, SiteCurves> sites_;
 };
 
-double p95_of(const std::vector<fitting::Miss>& misses) {
+double p95_of(const std::vector<fitting::LeaveOneOutError>& misses) {
   if (misses.empty()) return 0;
   std::vector<double> relative;
-  for (const fitting::Miss& miss : misses) relative.push_back(miss.relative);
+  for (const fitting::LeaveOneOutError& miss : misses) relative.push_back(miss.relative);
   std::sort(relative.begin(), relative.end());
   return relative[fitting::nearest_rank(relative.size(), 0.95)];
 }

@@ -13,14 +13,14 @@
 namespace palpate::app {
 namespace {
 
-void tell(const char* how, const char* name, const fitting::Steepest& found) {
-  if (found.triangle < 0) return say("  {}: nothing to try", how);
-  const std::string share = std::isfinite(found.bound)
+void report(const char* how, const char* name, const fitting::Steepest& found) {
+  if (found.triangle < 0) return say("  {}: no state to try", how);
+  const std::string ratio = std::isfinite(found.bound)
                                 ? fmt::format("{:.2f} of {}", found.quotient / found.bound, name)
                                 : fmt::format("{} has no bound", name);
-  say("  {}: {:.1f} N/m in triangle {}, {}; nearest to the bound of its own triangle: {:.4f} ({} "
+  say("  {}: {:.1f} N/m in triangle {}, {}; largest ratio to the bound of its triangle: {:.4f} ({} "
       "tries)",
-      how, found.quotient, found.triangle, share, found.nearest, found.tries);
+      how, found.quotient, found.triangle, ratio, found.max_ratio, found.tries);
 }
 
 }  // namespace
@@ -30,16 +30,16 @@ void run_challenge(const Workspace& space, int tries) {
   fitting::ChallengeSettings settings;
   settings.tries = tries;
   const fitting::ChallengeResult result = fitting::challenge(library, settings);
-  say("certify: steepest forces found by {} tries in each of {} triangles, mu = {}", tries,
+  say("certify: largest force gradients found by {} tries in each of {} triangles, mu = {}", tries,
       library.triangles.size(), library.certificate.friction);
-  tell("contact point held", "L_stick", result.held);
-  tell("sliding", "L_slip", result.sliding);
-  if (!result.stands()) {
+  report("fixed contact point", "L_stick", result.sticking);
+  report("sliding", "L_slip", result.sliding);
+  if (!result.confirms()) {
     throw Error(ErrorKind::Geometry, space.library().string(),
-                "a force was found that is steeper than its certificate allows",
-                "do not use this certificate, and report the library: it is a fault of palpate");
+                "a force gradient exceeds the bound of the certificate",
+                "do not use this certificate; report the library, this is a defect of palpate");
   }
-  say("  the certificate stands");
+  say("  the certificate is confirmed");
 }
 
 }  // namespace palpate::app

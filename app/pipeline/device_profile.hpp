@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "fitting/fitting.hpp"
+#include "fitting/certificate/device_profile.hpp"
 
 namespace palpate::app {
 

@@ -8,7 +8,8 @@
 
 #include "app/pipeline/workspace.hpp"
 #include "fem/campaign/campaign.hpp"
-#include "fitting/fitting.hpp"
+#include "fitting/certificate/certify.hpp"
+#include "fitting/response/fit_settings.hpp"
 #include "mesher/mesher.hpp"
 
 namespace palpate::app {

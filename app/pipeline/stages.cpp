@@ -12,7 +12,10 @@
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
+#include "fitting/certificate/certify.hpp"
+#include "fitting/certificate/soften.hpp"
 #include "fitting/response/couple.hpp"
+#include "fitting/response/fit.hpp"
 #include "format/body.hpp"
 #include "format/error.hpp"
 #include "format/library.hpp"
@@ -151,7 +154,7 @@ void tell_keep(const Library& library, const fitting::DeviceProfile& device, dou
   if (std::isnan(device.damping))
     return say("  {}: damping unknown: nothing is certified for this device", device.name);
   const Certificate& c = library.certificate;
-  const double bound = fitting::certified_bound(device.damping, rate);
+  const double bound = fitting::certifiable_stiffness(device.damping, rate);
   const double steepest = std::max(c.stick, c.slip);
   const auto over = std::count_if(c.triangles.begin(), c.triangles.end(),
                                   [&](const auto& t) { return std::max(t.stick, t.slip) > bound; });
@@ -179,14 +182,15 @@ void write_softened(const Workspace& space, const KeepOptions& options, Library 
     throw Error(ErrorKind::Configuration, "--soften", "it takes one device of known damping",
                 "name its profile with --device");
   }
-  const double bound = fitting::certified_bound(settings.devices[0].damping, options.rate);
+  const double bound = fitting::certifiable_stiffness(settings.devices[0].damping, options.rate);
   const fitting::Softening soft = fitting::soften(library, settings, bound);
   std::erase_if(library.provenance.steps, [](const ProvenanceStep& step) {
     return step.stage == stage_name(Stage::Certify);
   });
   ProvenanceStep step = make_stage_step(space, Stage::Certify, {});
   step.facts.emplace_back("softened_for_hz", fmt::format("{}", options.rate));
-  if (soft.curves > 0) step.facts.emplace_back("softened_slope_cap", fmt::format("{}", soft.cap));
+  if (soft.curves > 0)
+    step.facts.emplace_back("softened_max_slope", fmt::format("{}", soft.max_slope));
   step.facts.emplace_back("enforced_lipschitz_bound", fmt::format("{}", library.certificate.limit));
   library.provenance.steps.push_back(step);
   write_library(options.softened, library);
@@ -195,7 +199,7 @@ void write_softened(const Workspace& space, const KeepOptions& options, Library 
     tell_certificate(library.certificate);
     return;
   }
-  say("certify: slopes capped at {:.1f} N/m, {} curves changed -> {}", soft.cap, soft.curves,
+  say("certify: slopes limited to {:.1f} N/m, {} curves changed -> {}", soft.max_slope, soft.curves,
       options.softened.string());
   say("  force lost at full deflection: median {:.1f} %, 95 % of the curves {:.1f} %, worst {:.1f} "
       "%",

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fitting/certificate/soften.hpp"
 #include "format/error.hpp"
 
 namespace palpate::app {
@@ -26,7 +27,7 @@ double certified_rate(const Library& library, const fitting::DeviceProfile& prof
 double lipschitz_bound_for(const Library& library, const fitting::DeviceProfile& profile,
                            double rate) {
   const double limit = enforced_lipschitz_bound(library.certificate);
-  const double bound = fitting::certified_bound(profile.damping, rate);
+  const double bound = fitting::certifiable_stiffness(profile.damping, rate);
   return bound < limit && bound >= library.certificate.hold ? bound : limit;
 }
 

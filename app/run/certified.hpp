@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "fitting/fitting.hpp"
+#include "fitting/certificate/device_profile.hpp"
 #include "format/library.hpp"
 
 namespace palpate::app {

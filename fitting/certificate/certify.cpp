@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/certificate/certify.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,13 +11,12 @@
 #include <vector>
 
 #include "fitting/certificate/triangle_bounds.hpp"
-#include "fitting/fitting.hpp"
 #include "format/error.hpp"
 
 namespace palpate::fitting {
 namespace {
 
-constexpr double kReferencePeriod = 1e-3;  // s: the limits of a device are stated at 1 kHz
+constexpr double kReferencePeriod = 1e-3;  // s: stiffness limits of a device are stated at 1 kHz
 
 double deepest_knot(const Library& library) {
   double depth = 0;
@@ -37,28 +38,31 @@ void count_vertices(const Library& library, Certificate& certificate) {
   }
 }
 
-/// Why the slide itself has no bound, and what gives it one.
+/// Reason why the slide has no bound, with a remedy.
 std::string cause_unbounded(const TriangleCertificate& triangle, double depth) {
   std::array<char, 256> text{};
-  const double lean = std::acos(triangle.cos_theta) * 57.29577951308232;
+  const double tilt = std::acos(triangle.cos_theta) * 57.29577951308232;
   if (depth * triangle.kappa < triangle.cos_theta) {
-    std::snprintf(text.data(), text.size(),
-                  "no bound of the slide: the lateral response is too flat at the slip limit for "
-                  "the change of the responses and directions that lean by %.0f degrees",
-                  lean);
+    std::snprintf(
+        text.data(), text.size(),
+        "no bound of the slide: the lateral response is too flat at the slip limit for the "
+        "change of the responses and inward directions up to %.0f degrees off the facet "
+        "normal",
+        tilt);
   } else {
-    std::snprintf(text.data(), text.size(),
-                  "no bound of the slide: pressed %.3g mm deep where the directions turn with a "
-                  "radius of %.3g mm and lean by %.0f degrees",
-                  1e3 * depth, 1e3 / triangle.kappa, lean);
+    std::snprintf(
+        text.data(), text.size(),
+        "no bound of the slide: pressed %.3g mm deep where the inward directions turn with "
+        "a radius of %.3g mm, up to %.0f degrees off the facet normal",
+        1e3 * depth, 1e3 / triangle.kappa, tilt);
   }
   return text.data() +
-         std::string(" (smaller patches, a rounder edge or a shallower depth may give one)");
+         std::string(" (try a smaller patch spacing, a rounder edge or a smaller depth)");
 }
 
 std::string cause(const TriangleBounds& bounds, double depth) {
   if (bounds.certificate.stick >= bounds.certificate.slip) {
-    return "the stiffest response, with the contact point held";
+    return "the stiffest response, at a fixed contact point";
   }
   if (std::isinf(bounds.certificate.slip)) return cause_unbounded(bounds.certificate, depth);
   const SlideCauses& slide = bounds.causes;
@@ -68,37 +72,36 @@ std::string cause(const TriangleBounds& bounds, double depth) {
   if (slide.variation >= std::max(slide.slant, slide.curvature)) {
     return "the change of the responses over the surface, while sliding";
   }
-  return slide.slant >= slide.curvature
-             ? "inward directions that lean against the facet, while sliding"
-             : "the curvature of the normals, while sliding";
+  return slide.slant >= slide.curvature ? "inward directions oblique to the facet, while sliding"
+                                        : "the curvature of the normals, while sliding";
 }
 
-std::string limit_line(const Library& library, std::size_t index, const TriangleBounds& bounds,
-                       double depth) {
+std::string largest_bound_text(const Library& library, std::size_t index,
+                               const TriangleBounds& bounds, double depth) {
   const Triangle& triangle = library.triangles[index];
   Vec3 centre{};
   for (const std::int32_t v : triangle) {
     centre = centre + (1.0 / 3) * library.positions[static_cast<std::size_t>(v)];
   }
-  std::array<char, 160> place{};
-  std::snprintf(place.data(), place.size(), "triangle %zu near (%.4g, %.4g, %.4g) m: ", index,
+  std::array<char, 160> where{};
+  std::snprintf(where.data(), where.size(), "triangle %zu near (%.4g, %.4g, %.4g) m: ", index,
                 centre[0], centre[1], centre[2]);
   const double bound = std::max(bounds.certificate.stick, bounds.certificate.slip);
   std::array<char, 40> size{};
   if (std::isfinite(bound)) std::snprintf(size.data(), size.size(), "%.4g N/m in ", bound);
-  return size.data() + (place.data() + cause(bounds, depth));
+  return size.data() + (where.data() + cause(bounds, depth));
 }
 
 void add_devices(Certificate& certificate, const CertifySettings& settings) {
-  const double steepest = certified_lipschitz_bound(certificate);
+  const double bound = certified_lipschitz_bound(certificate);
   for (const DeviceProfile& device : settings.devices) {
     if (std::isinf(device.damping) || device.damping <= 0) {
       throw Error(ErrorKind::Configuration, "device profile '" + device.name + "'",
-                  "damping is not above zero",
-                  "give the smallest damping in N s/m or leave it out");
+                  "the damping is not positive",
+                  "give the smallest damping in N s/m, or omit it if unknown");
     }
     // An unknown damping (NaN) makes the whole row unknown.
-    certificate.devices.push_back({device.name, device.damping, 2 * steepest / device.damping,
+    certificate.devices.push_back({device.name, device.damping, 2 * bound / device.damping,
                                    2 * device.damping / (3 * kReferencePeriod),
                                    2 * device.damping / kReferencePeriod});
   }
@@ -117,7 +120,8 @@ std::string basis_of(const Provenance& provenance) {
 
 void certify(Library& library, const CertifySettings& settings) {
   if (!std::isfinite(settings.friction) || settings.friction < 0) {
-    throw Error(ErrorKind::Configuration, "certify settings", "friction is not a number >= 0",
+    throw Error(ErrorKind::Configuration, "certify settings",
+                "the friction coefficient is not a number >= 0",
                 "give a friction coefficient, for example 0.3");
   }
   Certificate certificate;
@@ -129,19 +133,19 @@ void certify(Library& library, const CertifySettings& settings) {
   }
   const std::vector<TriangleBounds> bounds =
       triangle_bounds(library, certificate.depth, settings.friction);
-  double steepest = 0;
+  double largest = 0;
   certificate.hold = 0;
   for (std::size_t m = 0; m < bounds.size(); ++m) {
     const TriangleCertificate& triangle = bounds[m].certificate;
     certificate.triangles.push_back(triangle);
     certificate.stick = std::max(certificate.stick, triangle.stick);
     certificate.slip = std::max(certificate.slip, triangle.slip);
-    certificate.hold = std::max(certificate.hold, bounds[m].hold);
+    certificate.hold = std::max(certificate.hold, bounds[m].min_lipschitz_bound);
     const double both = std::max(triangle.stick, triangle.slip);
-    if (both > steepest) {
-      steepest = both;
+    if (both > largest) {
+      largest = both;
       certificate.worst_triangle = static_cast<std::int32_t>(m);
-      certificate.limited_by = limit_line(library, m, bounds[m], certificate.depth);
+      certificate.limited_by = largest_bound_text(library, m, bounds[m], certificate.depth);
     }
   }
   if (certificate.worst_triangle < 0) {
@@ -153,11 +157,11 @@ void certify(Library& library, const CertifySettings& settings) {
                     [](const TriangleCertificate& t) { return std::isinf(t.slip); });
   if (unbounded > 1) {
     certificate.limited_by += "; " + std::to_string(unbounded) + " of " +
-                              std::to_string(bounds.size()) + " triangles are unbounded";
+                              std::to_string(bounds.size()) + " triangles have no bound";
   }
   certificate.basis = basis_of(library.provenance);
   count_vertices(library, certificate);
-  certificate.limit = settings.limit;
+  certificate.limit = settings.enforced_bound;
   certificate.limit = enforced_lipschitz_bound(certificate);
   add_devices(certificate, settings);
   library.certificate = certificate;

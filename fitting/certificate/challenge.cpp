@@ -21,21 +21,21 @@ using runtime::LocalModel;
 using runtime::SurfacePoint;
 
 constexpr double kStep = 1e-7;   // m, of the tool
-constexpr double kRest = 1e-16;  // m, of a slide that has come to rest
+constexpr double kRest = 1e-16;  // m, excess over the slip limit at which a slide has ended
 constexpr int kSlideSteps = 400;
 /// Round-off and curvature in a difference of forces over kStep, relative to the bound.
 constexpr double kDifference = 1e-4;
-constexpr double kFirstStride = 0.2, kLastStride = 1e-3;  // of a climb
+constexpr double kFirstStride = 0.2, kLastStride = 1e-3;  // of a hill climb
 
-enum class Mode { Held, Sliding };
+enum class Mode { Sticking, Sliding };
 
-/// Where and how the tool is pressed: numbers in [0, 1], and the direction of its next move.
+/// A state of the contact in coordinates from 0 to 1, and the direction in which the tool moves.
 struct Attempt {
   std::int32_t triangle = 0;
-  double a = 0, b = 0;  ///< place in the triangle
-  double depth = 0;     ///< z over the certified depth
-  double offset = 0;    ///< d0 over what is left of it
-  double lateral = 0;   ///< Held: rho over the slip limit
+  double a = 0, b = 0;  ///< position in the triangle
+  double depth = 0;     ///< z over the certified depth D
+  double offset = 0;    ///< d0 over D - z
+  double lateral = 0;   ///< Sticking: rho over the slip limit
   double azimuth = 0;   ///< of the lateral deflection, turns
   Vec3 move{};          ///< not zero
 };
@@ -62,9 +62,9 @@ class Challenger {
     return attempt;
   }
 
-  /// |df|/|dx|; none when the attempt leaves the triangle, sticks, or nothing slips there.
+  /// |df|/|dx|; absent when the slide leaves the triangle, sticks, or there is no slip limit.
   std::optional<double> quotient(const Attempt& attempt, Mode mode) const {
-    const SurfacePoint point = place(attempt);
+    const SurfacePoint point = point_of(attempt);
     const double deepest = library_.certificate.depth;
     const double z = std::max(1e-3, attempt.depth) * deepest;
     const double d0 = attempt.offset * (deepest - z);
@@ -75,11 +75,11 @@ class Challenger {
     pressed.depth = z;
     const double limit = model.slip_limit(pressed, library_.certificate.friction);
     if (!std::isfinite(limit)) return std::nullopt;
-    const double rho = mode == Mode::Held ? attempt.lateral * limit : limit;
+    const double rho = mode == Mode::Sticking ? attempt.lateral * limit : limit;
     const Vec3 x = model.contact_point() + (z + d0) * n + rho * sideways(n, attempt.azimuth);
     const Vec3 dx = (kStep / norm(attempt.move)) * attempt.move;
     const Vec3 before = model.respond(model.deflection(x)).force;
-    if (mode == Mode::Held)
+    if (mode == Mode::Sticking)
       return norm(model.respond(model.deflection(x + dx)).force - before) / kStep;
     const auto after = slide(x + dx, point, d0);
     if (!after) return std::nullopt;
@@ -90,7 +90,7 @@ class Challenger {
   double uniform() { return std::uniform_real_distribution<double>(0, 1)(engine_); }
   double normal() { return std::normal_distribution<double>(0, 1)(engine_); }
 
-  static SurfacePoint place(const Attempt& attempt) {
+  static SurfacePoint point_of(const Attempt& attempt) {
     const bool fold = attempt.a + attempt.b > 1;
     const double a = fold ? 1 - attempt.a : attempt.a, b = fold ? 1 - attempt.b : attempt.b;
     return {attempt.triangle, {a, b, 1 - a - b}};
@@ -105,7 +105,7 @@ class Challenger {
     return std::cos(2 * M_PI * turns) * first + std::sin(2 * M_PI * turns) * cross(n, first);
   }
 
-  /// The force once the contact point has come to rest inside its triangle, having moved.
+  /// Force after the contact point has moved and come to rest inside its triangle.
   std::optional<Vec3> slide(const Vec3& x, SurfacePoint point, double d0) const {
     const Vec3 start = surface_.position(point);
     const std::int32_t triangle = point.element;
@@ -134,15 +134,15 @@ struct Found {
   double quotient = 0, bound = 0;
 };
 
-void keep_steepest(const Found& found, Steepest& steepest) {
+void update(const Found& found, Steepest& steepest) {
   ++steepest.tries;
-  steepest.nearest = std::max(steepest.nearest, found.quotient / found.bound);
+  steepest.max_ratio = std::max(steepest.max_ratio, found.quotient / found.bound);
   if (found.quotient <= steepest.quotient) return;
   steepest.quotient = found.quotient;
   steepest.triangle = found.attempt.triangle;
 }
 
-/// Uphill by random moves that grow shorter.
+/// Hill climb by random steps of decreasing length.
 void climb(Challenger& challenger, Mode mode, int steps, Found found, Steepest& steepest) {
   const double shrink = std::pow(kLastStride / kFirstStride, 1.0 / std::max(1, steps));
   double stride = kFirstStride;
@@ -150,22 +150,22 @@ void climb(Challenger& challenger, Mode mode, int steps, Found found, Steepest& 
     const Attempt next = challenger.near(found.attempt, stride);
     const auto quotient = challenger.quotient(next, mode);
     if (!quotient) continue;
-    keep_steepest({next, *quotient, found.bound}, steepest);
+    update({next, *quotient, found.bound}, steepest);
     if (*quotient > found.quotient) found = {next, *quotient, found.bound};
   }
 }
 
 Steepest search(const Library& library, Mode mode, const ChallengeSettings& settings) {
-  const bool held = mode == Mode::Held;
+  const bool sticking = mode == Mode::Sticking;
   Steepest steepest;
-  steepest.bound = held ? library.certificate.stick : library.certificate.slip;
+  steepest.bound = sticking ? library.certificate.stick : library.certificate.slip;
   Challenger challenger(library, settings.seed);
   std::vector<Found> best;  // of each triangle
   for (std::size_t m = 0; m < library.triangles.size(); ++m) {
     if (!has_responses(library, library.triangles[m])) continue;
     const TriangleCertificate& triangle = library.certificate.triangles[m];
-    // A slide may be as steep as what is held: Theorem 1 asks for the larger.
-    const double bound = held ? triangle.stick : std::max(triangle.stick, triangle.slip);
+    // Theorem 1 takes the larger of both bounds, so a slide may be as steep as the stick bound.
+    const double bound = sticking ? triangle.stick : std::max(triangle.stick, triangle.slip);
     if (!std::isfinite(bound)) continue;
     Found top;
     for (int i = 0; i < settings.tries; ++i) {
@@ -173,7 +173,7 @@ Steepest search(const Library& library, Mode mode, const ChallengeSettings& sett
       const auto quotient = challenger.quotient(attempt, mode);
       if (!quotient) continue;
       const Found found{attempt, *quotient, bound};
-      keep_steepest(found, steepest);
+      update(found, steepest);
       if (found.quotient > top.quotient) top = found;
     }
     if (top.quotient > 0) best.push_back(top);
@@ -188,17 +188,17 @@ Steepest search(const Library& library, Mode mode, const ChallengeSettings& sett
 
 }  // namespace
 
-bool ChallengeResult::stands() const {
-  return held.nearest <= 1 + kDifference && sliding.nearest <= 1 + kDifference;
+bool ChallengeResult::confirms() const {
+  return sticking.max_ratio <= 1 + kDifference && sliding.max_ratio <= 1 + kDifference;
 }
 
 ChallengeResult challenge(const Library& library, const ChallengeSettings& settings) {
   if (library.certificate.triangles.size() != library.triangles.size() ||
       library.triangles.empty()) {
-    throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
-                "it has no certificate that could be challenged", "certify it first");
+    throw Error(ErrorKind::Configuration, "library '" + library.name + "'", "it has no certificate",
+                "certify it first");
   }
-  return {search(library, Mode::Held, settings), search(library, Mode::Sliding, settings)};
+  return {search(library, Mode::Sticking, settings), search(library, Mode::Sliding, settings)};
 }
 
 }  // namespace palpate::fitting

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A response triangle as the bounds of its forces see it.
+// A response triangle with all that the bounds of its forces depend on.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace palpate::fitting {
 
-/// A triangle with its responses and the friction the bounds are for.
+/// A triangle with its responses, the friction and the depth of its bounds.
 struct ContactElement {
   TriangleFrame frame;
   CurveTriple normal;
@@ -21,14 +21,16 @@ struct ContactElement {
   double depth = 0;                                    ///< m, D: the bounds hold while z + d0 <= D
   std::optional<CurveTriple> coupling = std::nullopt;  ///< w, of coupled responses
 
-  /// Ends of cells of depth, down to D, without a knot of a normal response, or of w, inside.
+  /// Ends of intervals of depth from 0 to D, or to `deepest`, that have no knot of a normal
+  /// response or of w inside.
   std::vector<double> depth_cells() const { return depth_cells(depth); }
   std::vector<double> depth_cells(double deepest) const;
 };
 
-/// Whether all three vertices have a response: elsewhere there is no local model.
+/// Whether all three vertices have a response. Without them there is no local model.
 bool has_responses(const Library& library, const Triangle& triangle);
 
+/// @param depth  D, m
 /// @throws Error(Geometry) where normals cannot be interpolated. @pre has_responses
 ContactElement contact_element(const Library& library, std::size_t triangle, double depth,
                                double friction);

@@ -27,7 +27,7 @@ double invert_piece(const runtime::CompiledCurve::Piece& piece, double force) {
   return sum > 0 ? 2 * rise / sum : kInfinity;
 }
 
-/// All d with f(d) = force: one value, or the length of a plateau.
+/// All d with f(d) = force: one value, or a plateau.
 Range inverse_of(const runtime::CompiledCurve& curve, double force) {
   const auto& pieces = curve.pieces();
   if (force <= 0) {
@@ -158,8 +158,8 @@ double CurveTriple::cell_energy_gradient(double low, double high) const {
   return largest;
 }
 
-/// On the first piece f = s d + c d^2 and E = s d^2/2 + c d^3/3, so a power of d cancels in the
-/// ratio, which would be 0/0 at d = 0 otherwise.
+/// On the first piece f = s d + c d^2 and E = s d^2/2 + c d^3/3. A power of d cancels in the ratio,
+/// which would otherwise be 0/0 at d = 0.
 double CurveTriple::first_piece_ratio(double high) const {
   std::array<double, 3> s{};
   std::array<double, 3> c{};
@@ -174,7 +174,7 @@ double CurveTriple::first_piece_ratio(double high) const {
     const double least = std::min({c[0], c[1], c[2]});
     return grad_c == 0 ? 0 : grad_c * high / 3 / std::max(0.0, least);
   }
-  // f/d is linear in d: its least value is at an end.
+  // f/d is linear in d, so its smallest value is at an end.
   double least = kInfinity;
   for (std::size_t l = 0; l < 3; ++l) least = std::min({least, s[l], s[l] + c[l] * high});
   return above == 0 ? 0 : above / std::max(0.0, least);
@@ -185,7 +185,7 @@ double CurveTriple::force_over_slope(const Range& range) const {
   for (const auto& curve : curves_) {
     const double least = slope_range(curve, range).low;
     double ratio = least > 0 ? curve.force(range.high) / least : kInfinity;
-    // f <= d f' as long as the slope has only risen, also where both are zero.
+    // f <= d f' while the slope has not decreased, also where both are zero.
     if (curvature_range(curve, {0, range.high}).low >= 0) ratio = std::min(ratio, range.high);
     largest = std::max(largest, ratio);
   }

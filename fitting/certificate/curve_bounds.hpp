@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Suprema over a triangle and a range of deflection of what is interpolated from three curves.
+// Suprema of interpolated curves over a triangle and a range of deflections.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@ namespace palpate::fitting {
 
 /// Slopes of a curve over a range of deflections, exact.
 Range slope_range(const runtime::CompiledCurve& curve, const Range& range);
-/// Second derivatives over the range; at a knot those of both its pieces.
+/// Second derivatives over the range; at a knot, those of both adjacent pieces.
 Range curvature_range(const runtime::CompiledCurve& curve, const Range& range);
 
 /// The curves of one kind at the three vertices of a triangle, interpolated as
-/// f_c(d) = sum n_l(c) f_l(d). A value is linear in the natural coordinates, so vertices bound it.
-/// In the deflection, bounds are over pieces without a knot inside, where force and energy are
-/// polynomials: they lie in the hull of their Bernstein coefficients, and a norm over a hull is
-/// largest at a corner. Nothing is sampled.
+/// f_c(d) = sum n_l(c) f_l(d). The value is linear in the natural coordinates, so its extrema are
+/// at vertices. In the deflection, bounds are taken over pieces without a knot inside, where force
+/// and energy are polynomials: they lie in the convex hull of their Bernstein coefficients, and a
+/// norm is largest at a corner of the hull. No bound relies on sampling.
 class CurveTriple {
  public:
   CurveTriple(std::array<runtime::CompiledCurve, 3> curves, const std::array<Vec3, 3>& gradient);
@@ -32,18 +32,19 @@ class CurveTriple {
   double least_force(double d) const;     ///< over the triangle
   double greatest_force(double d) const;  ///< over the triangle
   Range slope(const Range& range) const;  ///< over the triangle and the range, exact
-  /// Second derivative over the triangle and the range; at a knot that of both its pieces.
+  /// Second derivative over the triangle and the range; at a knot, of both adjacent pieces.
   Range curvature(const Range& range) const;
-  /// sup f/f' of the three curves over the range, m; infinite where one is flat after it has risen.
+  /// sup f/f' of the three curves over the range, m; infinite where one is flat at a force above 0.
   double force_over_slope(const Range& range) const;
   /// sup |grad_c f_c(d)|, N/m
   double force_gradient(const Range& range) const;
   /// sup |grad_c E_c(d)| / f_c(d), 1; finite down to d = 0. Infinite where the force is zero.
   double energy_ratio(const Range& range) const;
-  /// The deflections rho with f_c(rho) = force_l interpolated, over the triangle, for force_l
-  /// between low[l] and high[l]. The upper end is infinite where a curve never reaches its force.
+  /// Deflections rho with f_c(rho) equal to the interpolated force, over the triangle, for vertex
+  /// forces between low[l] and high[l]. The upper end is infinite where a curve stays below its
+  /// force.
   Range inverse(const std::array<double, 3>& low, const std::array<double, 3>& high) const;
-  /// Ends of cells that cover the range, none with a knot inside, each piece cut in `parts`.
+  /// Ends of cells that cover the range without a knot inside; each piece is divided into `parts`.
   std::vector<double> cells(const Range& range, int parts) const;
 
  private:
@@ -53,7 +54,7 @@ class CurveTriple {
 
   std::array<runtime::CompiledCurve, 3> curves_;
   std::array<Vec3, 3> gradient_;
-  double first_knot_ = 0;  ///< end of the piece that all three share at 0
+  double first_knot_ = 0;  ///< end of the piece at 0 that all three have in common
 };
 
 }  // namespace palpate::fitting

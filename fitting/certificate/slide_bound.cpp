@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The derivation is in docs/theory-fitting.md, section "Sliding"; symbols and numbers are its own.
+// The derivation is in docs/theory-fitting.md, section "Sliding"; symbols and equation numbers are
+// the same.
 #include "fitting/certificate/slide_bound.hpp"
 
 #include <algorithm>
@@ -13,20 +14,20 @@ namespace palpate::fitting {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Cells of depth are halved until the bound over the worst one is this near to the bound at a
-// single depth inside it, or until so many halvings were spent. The bound holds at every stage.
+// Intervals of depth are halved until the largest bound is within this factor of the bound at a
+// single depth inside its interval, or the halvings are used up. The bound is valid at every stage.
 constexpr double kNearEnough = 1.02;
-constexpr int kMostHalvings = 300;
+constexpr int kMaxHalvings = 300;
 
-/// What holds for all contact points of the triangle, depths in a cell, at limiting friction.
+/// Bounds for all contact points of the triangle and depths of a cell, at limiting friction.
 struct SlideState {
   Range z;
   Range rho;                  ///< the slip limit rho_s
-  double grip = 0;            ///< largest g
-  double normal = 0;          ///< largest normal force, dE/dz
-  double steep = 0;           ///< largest |d(dE/dz, mu g)/dz| along the slip limit
-  double change = 0;          ///< largest |grad_c (dE/dz, mu g)| along the slip limit
-  double h_rho = 0;           ///< least d(dE/drho)/drho
+  double max_g = 0;           ///< largest g
+  double max_E_z = 0;         ///< largest normal force dE/dz
+  double depth_slope = 0;     ///< largest |d(dE/dz, mu g)/dz| along the slip limit
+  double variation = 0;       ///< largest |grad_c (dE/dz, mu g)| along the slip limit
+  double h_rho = 0;           ///< smallest d(dE/drho)/drho
   double limit_slope = 0;     ///< largest |d rho_s/dz|
   double limit_gradient = 0;  ///< largest |grad_c (mu g - dE/drho)|
   double h_over_rho = 0;      ///< largest lateral force over rho
@@ -55,8 +56,8 @@ double box_gradient(const ContactElement& element, const Box& box) {
   return largest;
 }
 
-/// sup |grad_c (mu g - h)| at fixed z and rho: over the box of vertex values; and no larger than
-/// the sum of both gradients.
+/// sup |grad_c (mu g - h)| at fixed z and rho: the smaller of the bound over the box of vertex
+/// values and the sum of both gradients.
 double limit_gradient(const ContactElement& element, const SlideState& state, double grad_g) {
   const double apart = element.friction * grad_g + element.lateral.force_gradient(state.rho);
   const std::array<double, 3> low = limits(element, state.z.low);
@@ -69,7 +70,7 @@ double limit_gradient(const ContactElement& element, const SlideState& state, do
   return std::min(apart, box_gradient(element, box));
 }
 
-/// Absent when the contact sticks in the whole cell: the lateral response never reaches mu g.
+/// Absent when the contact sticks in the whole cell: no lateral response reaches mu g.
 std::optional<SlideState> decoupled_state(const ContactElement& element, const Range& z) {
   const double mu = element.friction;
   SlideState state;
@@ -81,9 +82,9 @@ std::optional<SlideState> decoupled_state(const ContactElement& element, const R
   const double oblique = std::hypot(1.0, mu);
   const double g_z = element.normal.slope(z).high;
   const double grad_g = element.normal.force_gradient(z);
-  state.grip = state.normal = element.normal.greatest_force(z.high);
-  state.steep = oblique * g_z;
-  state.change = oblique * grad_g;
+  state.max_g = state.max_E_z = element.normal.greatest_force(z.high);
+  state.depth_slope = oblique * g_z;
+  state.variation = oblique * grad_g;
   if (mu == 0 || state.rho.high == kInfinity) return state;
   state.h_rho = element.lateral.slope(state.rho).low;
   // h/rho <= the largest slope up to rho. Without friction there is no lateral force at all.
@@ -119,8 +120,8 @@ Hessian hessian(const ContactElement& element, const Range& z, const Range& rho)
           {w_low * h_r.low, w_high * h_r.high}};
 }
 
-/// Where w_l h_l = mu g_l at the vertices: between the least and the largest of these lies the slip
-/// limit of every contact point.
+/// The slip limit of every contact point lies between the smallest and the largest deflection at
+/// which w_l h_l = mu g_l at a vertex.
 Range coupled_limit(const ContactElement& element, const Range& z) {
   std::array<double, 3> low = limits(element, z.low);
   std::array<double, 3> high = limits(element, z.high);
@@ -132,9 +133,9 @@ Range coupled_limit(const ContactElement& element, const Range& z) {
   return element.lateral.inverse(low, high);
 }
 
-/// |d(dE/dz, mu g)/dz| along the slip limit: with rho_s' = (mu g' - E_zrho)/E_rhorho the first is
-/// A = E_zz + r (mu g' - E_zrho), r = E_zrho/E_rhorho, no more than the largest (w'/w)(h/h') of a
-/// vertex.
+/// sup |d(dE/dz, mu g)/dz| along the slip limit. With rho_s' = (mu g' - E_zrho)/E_rhorho the first
+/// component is A = E_zz + r (mu g' - E_zrho), where r = E_zrho/E_rhorho is at most the largest
+/// (w'/w)(h/h') of a vertex.
 double along_limit(const ContactElement& element, const Hessian& E, const Range& z,
                    const Range& rho) {
   const double mu = element.friction;
@@ -162,27 +163,27 @@ std::optional<SlideState> coupled_state(const ContactElement& element, const Ran
   const Hessian E = hessian(element, z, state.rho);
   const Range g_z = element.normal.slope(z);
   const Range w_z = element.coupling->slope(z);
-  Box grip, normal, limit;
+  Box g, E_z, limit;
   double w_high = 0;
   for (std::size_t l = 0; l < 3; ++l) {
-    const runtime::CompiledCurve& g = element.normal.curves()[l];
+    const runtime::CompiledCurve& normal = element.normal.curves()[l];
     const runtime::CompiledCurve& h = element.lateral.curves()[l];
     const runtime::CompiledCurve& w = element.coupling->curves()[l];
     const Range w_l{coupling_at(w, z.low), coupling_at(w, z.high)};
     w_high = std::max(w_high, w_l.high);
-    grip[l] = {g.force(z.low), g.force(z.high)};
-    normal[l] = {grip[l].low + w_z.low * h.energy(state.rho.low),
-                 grip[l].high + w_z.high * h.energy(state.rho.high)};
-    limit[l] = {w_l.low * h.force(state.rho.low) - mu * grip[l].high,
-                w_l.high * h.force(state.rho.high) - mu * grip[l].low};
-    state.grip = std::max(state.grip, grip[l].high);
-    state.normal = std::max(state.normal, normal[l].high);
+    g[l] = {normal.force(z.low), normal.force(z.high)};
+    E_z[l] = {g[l].low + w_z.low * h.energy(state.rho.low),
+              g[l].high + w_z.high * h.energy(state.rho.high)};
+    limit[l] = {w_l.low * h.force(state.rho.low) - mu * g[l].high,
+                w_l.high * h.force(state.rho.high) - mu * g[l].low};
+    state.max_g = std::max(state.max_g, g[l].high);
+    state.max_E_z = std::max(state.max_E_z, E_z[l].high);
   }
-  state.steep = along_limit(element, E, z, state.rho);
+  state.depth_slope = along_limit(element, E, z, state.rho);
   state.h_over_rho = mu > 0 ? w_high * element.lateral.slope({0, state.rho.high}).high : 0;
   state.h_rho = E.rr.low;
   if (mu > 0 && !(state.h_rho > 0)) {
-    state.change = kInfinity;  // nothing bounds the way of the slip limit
+    state.variation = kInfinity;  // the slip limit moves without bound
     return state;
   }
   // rho_s' = (mu g' - w' h)/(w h')
@@ -191,8 +192,7 @@ std::optional<SlideState> coupled_state(const ContactElement& element, const Ran
   state.limit_slope = std::max(std::abs(low), std::abs(high));
   state.limit_gradient = mu > 0 ? box_gradient(element, limit) : 0;
   const double along = mu > 0 ? E.zr.high * state.limit_gradient / state.h_rho : 0;
-  state.change =
-      std::hypot(box_gradient(element, normal) + along, mu * box_gradient(element, grip));
+  state.variation = std::hypot(box_gradient(element, E_z) + along, mu * box_gradient(element, g));
   return state;
 }
 
@@ -200,7 +200,7 @@ std::optional<SlideState> slide_state(const ContactElement& element, const Range
   return element.coupling ? coupled_state(element, z) : decoupled_state(element, z);
 }
 
-/// Largest path of c for a unit path of the tool: |w| of the theory page.
+/// Largest motion of c for a unit motion of the tool: |w| of the theory page.
 double slide_rate(const ContactElement& element, const SlideState& state) {
   const TriangleFrame& frame = element.frame;
   double margin = frame.cos_theta - element.depth * frame.kappa;
@@ -218,18 +218,18 @@ SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   if (state.rho.high == kInfinity) return {kInfinity, {0, kInfinity, 0, 0}};
 
   SlideCauses causes;
-  causes.stiffness = std::max(state.steep, state.h_over_rho);
+  causes.stiffness = std::max(state.depth_slope, state.h_over_rho);
   const double rate = slide_rate(element, state);
-  // |v| <= the sum of its three causes; each keeps its share for the report.
+  // |v| is at most the sum of its causes, which are reported separately.
   const double q_slant = frame.sin_theta;
   const double q_turn = state.rho.high * frame.kappa;
-  const double lean = frame.sin_theta * frame.sin_theta / (2 * frame.cos_theta);
-  const double across = frame.twist * std::max(state.normal, state.h_over_rho * element.depth);
-  const double slant = std::hypot(state.steep * q_slant, state.h_over_rho * lean);
-  const double turned = std::hypot(state.normal, mu * state.grip) * frame.kappa;
-  const double curvature = std::hypot(std::hypot(state.steep * q_turn, turned), across);
+  const double oblique = frame.sin_theta * frame.sin_theta / (2 * frame.cos_theta);
+  const double across = frame.twist * std::max(state.max_E_z, state.h_over_rho * element.depth);
+  const double slant = std::hypot(state.depth_slope * q_slant, state.h_over_rho * oblique);
+  const double turned = std::hypot(state.max_E_z, mu * state.max_g) * frame.kappa;
+  const double curvature = std::hypot(std::hypot(state.depth_slope * q_turn, turned), across);
   const auto scaled = [&](double part) { return part > 0 ? part * rate : 0.0; };
-  causes.variation = scaled(state.change);
+  causes.variation = scaled(state.variation);
   causes.slant = scaled(slant);
   causes.curvature = scaled(curvature);
   return {causes.stiffness + causes.variation + causes.slant + causes.curvature, causes};
@@ -240,13 +240,13 @@ double spectral_norm(double a, double b, double d) {
   return 0.5 * std::abs(a + d) + std::hypot(0.5 * (a - d), b);
 }
 
-/// Norm of the Jacobian at fixed c over a cell of depths, rho up to the slip limit: convex in its
-/// entries, so a corner of their box bounds it.
+/// Norm of the Jacobian at fixed c over a cell of depths, rho up to the slip limit. The norm is
+/// convex in the entries, so it is largest at a corner of their box.
 double cell_stick(const ContactElement& element, const Range& z) {
   double rho = element.friction > 0 ? coupled_limit(element, z).high : 0;
   if (rho == kInfinity) return kInfinity;
   const Hessian E = hessian(element, z, {0, rho});
-  double largest = E.rr.high;  // also of the lateral force over rho
+  double largest = E.rr.high;  // also bounds the lateral force over rho
   for (const double a : {E.zz.low, E.zz.high})
     for (const double b : {E.zr.low, E.zr.high})
       for (const double d : {E.rr.low, E.rr.high})
@@ -254,19 +254,19 @@ double cell_stick(const ContactElement& element, const Range& z) {
   return largest;
 }
 
-/// What holds for a cell of depths of coupled responses with the contact point held, also while the
-/// tool slips over it.
-double cell_hold(const ContactElement& element, const Range& z) {
+/// Bound of a cell of depths of coupled responses at a fixed contact point, with slip over that
+/// point included.
+double cell_min_bound(const ContactElement& element, const Range& z) {
   const std::optional<SlideState> state = coupled_state(element, z);
   const double stick = cell_stick(element, z);
   if (!state) return stick;
   if (state->rho.high == kInfinity) return kInfinity;
-  return std::max({stick, state->steep, state->h_over_rho});
+  return std::max({stick, state->depth_slope, state->h_over_rho});
 }
 
-/// Deeper than every knot the normal responses are straight and, if w has come to rest, nothing
-/// else depends on depth.
-double hold_beyond(const ContactElement& element, double depth) {
+/// Below every knot the normal responses are linear. If w is constant there, nothing else depends
+/// on depth.
+double min_bound_beyond(const ContactElement& element, double depth) {
   const Range beyond{depth, 2 * depth};
   if (element.coupling->slope(beyond).high > 0) return kInfinity;
   const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
@@ -275,7 +275,7 @@ double hold_beyond(const ContactElement& element, double depth) {
 
 using CellBound = double (*)(const ContactElement&, const Range&);
 
-/// The largest over all depths down to `deepest` of what is bounded over cells of them.
+/// Upper bound over all depths down to `deepest` from bounds over cells of depth.
 double over_depths(const ContactElement& element, double deepest, CellBound bound) {
   struct Part {
     double bound;
@@ -286,7 +286,7 @@ double over_depths(const ContactElement& element, double deepest, CellBound boun
   const auto add = [&](const Range& z) { parts.push({bound(element, z), z}); };
   const std::vector<double> ends = element.depth_cells(deepest);
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) add({ends[k], ends[k + 1]});
-  for (int i = 0; i < kMostHalvings; ++i) {
+  for (int i = 0; i < kMaxHalvings; ++i) {
     const Part worst = parts.top();
     const double half = worst.z.middle();
     if (worst.bound <= kNearEnough * bound(element, {half, half})) break;
@@ -302,7 +302,7 @@ struct Cell {
   SlideBound bound;
 };
 
-/// The bound over a cell of depths; no slide, no bound to keep.
+/// The bound over a cell of depths; zero without a slide.
 Cell make_cell(const ContactElement& element, const Range& z) {
   const auto state = slide_state(element, z);
   return {z, state ? cell_bound(element, *state) : SlideBound{}};
@@ -319,7 +319,7 @@ bool energy_falls(const ContactElement& element, const SlideState& state) {
   return mu * frame.cos_theta - frame.sin_theta >= ratio + frame.kappa * arm;
 }
 
-/// Over a cell, halved while the condition holds at its middle but not over all of it.
+/// Whether energy_falls holds over a cell, which is halved while it holds at the middle only.
 bool energy_falls_in(const ContactElement& element, const Range& z, int halvings_left) {
   const auto state = slide_state(element, z);
   if (!state || energy_falls(element, *state)) return true;
@@ -334,20 +334,22 @@ bool energy_falls_in(const ContactElement& element, const Range& z, int halvings
 }  // namespace
 
 double stick_bound(const ContactElement& element) {
-  // The Jacobian at a fixed contact point is g' n n^T + h' t t^T + (h/rho) s s^T, its norm the
-  // largest of the three; h/rho <= max h', and no interpolated slope exceeds those at the vertices.
+  // The Jacobian at a fixed contact point is g' n n^T + h' t t^T + (h/rho) s s^T, its norm is
+  // the largest of the three; h/rho <= max h', and interpolated slopes do not exceed those at the
+  // vertices.
   if (!element.coupling) return std::max(element.normal.max_slope(), element.lateral.max_slope());
   return over_depths(element, element.depth, cell_stick);
 }
 
-double hold_bound(const ContactElement& element) {
-  // Decoupled, |M_0| is sqrt(1 + mu^2) g' across s; along s it is h/rho, no steeper than h.
+double min_lipschitz_bound(const ContactElement& element) {
+  // Decoupled, |M_0| is sqrt(1 + mu^2) g' across s; along s it is h/rho <= max h'.
   if (!element.coupling) {
     return std::max(stick_bound(element),
                     std::hypot(1.0, element.friction) * element.normal.max_slope());
   }
   const double deepest = std::max(element.normal.last_knot(), element.coupling->last_knot());
-  return std::max(over_depths(element, deepest, cell_hold), hold_beyond(element, deepest));
+  return std::max(over_depths(element, deepest, cell_min_bound),
+                  min_bound_beyond(element, deepest));
 }
 
 SlideBound slide_bound(const ContactElement& element) {
@@ -357,7 +359,7 @@ SlideBound slide_bound(const ContactElement& element) {
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
     cells.push(make_cell(element, {ends[k], ends[k + 1]}));
   }
-  for (int i = 0; i < kMostHalvings; ++i) {
+  for (int i = 0; i < kMaxHalvings; ++i) {
     const Cell worst = cells.top();
     const double half = worst.z.middle();
     const double reached = make_cell(element, {half, half}).bound.total;

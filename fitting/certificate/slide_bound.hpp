@@ -7,28 +7,28 @@
 
 namespace palpate::fitting {
 
-/// Largest norm of the Jacobian with the contact point held, N/m. Decoupled: the steepest slope, at
-/// any deflection. Coupled: while the lateral deflection is within the slip limit.
+/// L_stick, N/m: largest norm of the Jacobian at a fixed contact point. Decoupled: the largest
+/// slope at any deflection. Coupled: while the lateral deflection is within the slip limit.
 double stick_bound(const ContactElement& element);
 
-/// L_hold, (10e), N/m: how steep the force is at any depth with the contact point held, also while
-/// the tool slips over it. Infinite for coupled responses that are flat where slip begins, or whose
-/// w goes on growing beyond its knots.
-double hold_bound(const ContactElement& element);
+/// L_min, (10e), N/m: Lipschitz bound of the force at a fixed contact point at any depth, with slip
+/// over that point included. The runtime can enforce it by throttling slides. Infinite for coupled
+/// responses that are flat where slip begins, or whose w grows beyond its last knot.
+double min_lipschitz_bound(const ContactElement& element);
 
-/// Lipschitz bound along the path while sliding, (10), in closed form for a cell of depths; N/m.
+/// L_slip, N/m: Lipschitz bound while sliding, (10), in closed form for intervals of depth.
 struct SlideBound {
-  double total = 0;      ///< the sum of its causes; infinite where no slide can be bounded by it
-  SlideCauses causes{};  ///< each at its largest
+  double total = 0;      ///< sum of the causes; infinite where (10) gives no bound
+  SlideCauses causes{};  ///< at the interval of depth with the largest bound
 };
 
-/// Quick, for every triangle; slide_search.hpp looks closer.
+/// Fast enough for every triangle. SlideSearch gives tighter bounds.
 SlideBound slide_bound(const ContactElement& element);
 
-/// True when a slide along the surface at limiting friction never raises the stored energy:
+/// Whether a slide at limiting friction never raises the stored energy:
 ///   mu cos(theta) - sin(theta) >= |grad_c E|/g + kappa |rho_s - mu (z + d0)|
-/// for all z >= 0, z + d0 <= D, over the whole triangle. Sufficient, not necessary; never claimed
-/// of coupled responses.
+/// for all z >= 0, z + d0 <= D, over the whole triangle. The condition is sufficient, not
+/// necessary. Always false for coupled responses.
 bool slide_lowers_energy(const ContactElement& element);
 
 }  // namespace palpate::fitting

@@ -15,7 +15,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Natural = SlideCell::Natural;
 using Values = std::array<Range, 3>;
 
-/// Of a quantity interpolated from ranges at the vertices, over a part of the triangle.
+/// Range of a quantity interpolated from ranges at the vertices, over a part of the triangle.
 Range over(const std::array<Natural, 3>& part, const Values& value) {
   Range result{kInfinity, -kInfinity};
   for (const Natural& n : part)
@@ -23,39 +23,39 @@ Range over(const std::array<Natural, 3>& part, const Values& value) {
   return result;
 }
 
-/// Values at the vertices, weighted as at one place.
-double at(const Natural& n, const std::array<double, 3>& value) {
+/// Weighted sum of values at the vertices.
+double weighted(const Natural& n, const std::array<double, 3>& value) {
   return n[0] * value[0] + n[1] * value[1] + n[2] * value[2];
 }
 
 /// Mean slope of a curve from 0 to a deflection.
 Range mean_slope(const runtime::CompiledCurve& curve, const Range& d) {
-  const Range lipschitz_bound = slope_range(curve, {0, d.high});
-  if (!(d.low > 0)) return lipschitz_bound;
-  return common(lipschitz_bound, {curve.force(d.low) / d.high, curve.force(d.high) / d.low});
+  const Range slopes = slope_range(curve, {0, d.high});
+  if (!(d.low > 0)) return slopes;
+  return common(slopes, {curve.force(d.low) / d.high, curve.force(d.high) / d.low});
 }
 
-/// No smaller than the norm of any matrix with entries in these ranges: that of the middle, and of
-/// what they may be off it.
+/// Upper bound of the spectral norm of all matrices with entries in these ranges: the norm of the
+/// middle plus the Frobenius norm of the radii.
 double norm_bound(const std::array<std::array<Range, 3>, 3>& entry) {
-  Eigen::Matrix3d middle, off;
+  Eigen::Matrix3d middle, radius;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       middle(static_cast<int>(i), static_cast<int>(j)) = entry[i][j].middle();
-      off(static_cast<int>(i), static_cast<int>(j)) = entry[i][j].radius();
+      radius(static_cast<int>(i), static_cast<int>(j)) = entry[i][j].radius();
     }
   }
-  if (!middle.allFinite() || !off.allFinite()) return kInfinity;
+  if (!middle.allFinite() || !radius.allFinite()) return kInfinity;
   const Eigen::Matrix3d squared = middle.transpose() * middle;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squared, Eigen::EigenvaluesOnly);
-  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2])) + off.norm();
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2])) + radius.norm();
 }
 
 bool is_zero(const Range& a) {
   return a.low == 0 && a.high == 0;
 }
 
-/// x >= 0 with slope x + curvature x^2 = rise, on a piece that rises so far.
+/// x >= 0 with slope x + curvature x^2 = rise, on a piece whose force rises by at least `rise`.
 double solve_piece(double slope, double curvature, double rise) {
   if (!(rise > 0)) return 0;
   return 2 * rise / (slope + std::sqrt(std::max(0.0, slope * slope + 4 * curvature * rise)));
@@ -64,15 +64,15 @@ double solve_piece(double slope, double curvature, double rise) {
 }  // namespace
 
 struct SlideJacobian::Facet {
-  Range cosine, sine;      ///< of the azimuth from that of the axes x, y
-  double turn = 0;         ///< azimuth of x
+  Range cosine, sine;      ///< of the azimuth relative to `turn`
+  double turn = 0;         ///< azimuth of the middle of the cell
   Range t_tau, n_tau;      ///< t . tau, n . tau
   Range s_tau;             ///< s . tau
   Range kappa_t, kappa_s;  ///< t . dn/ds and s . dn/ds along tau, 1/m
 };
 
 struct SlideJacobian::AtVertex {
-  Range g, g_z;  ///< mu is not in them
+  Range g, g_z;  ///< without the factor mu
   Range E_z, E_zz, E_zr, E_rr;
   Range excess;      ///< Phi = w h - mu g
   Range h_over_rho;  ///< w h/rho
@@ -86,15 +86,15 @@ struct SlideJacobian::Response {
 struct SlideJacobian::Terms {
   Facet f;
   Response r;
-  Range m;           ///< of rho_s by z
-  Range A, B;        ///< of dE/dz along the slip limit: by z, and along tau
-  Range grip;        ///< mu g
-  Range grip_slope;  ///< by z
-  Range grip_rate;   ///< along tau
-  Range limit_rate;  ///< what rho_s loses along tau
+  Range m;           ///< derivative of rho_s by z
+  Range A, B;        ///< derivatives of dE/dz along the slip limit: by z, and along tau
+  Range mu_g;        ///< mu g
+  Range mu_g_z;      ///< derivative of mu g by z
+  Range mu_g_tau;    ///< derivative of mu g along tau
+  Range limit_rate;  ///< decrease of rho_s along tau
   Range q;
-  Range rate;       ///< what a unit of the way of c takes of rho - rho_s
-  double held = 0;  ///< |M_0|
+  Range rate;          ///< decrease of rho - rho_s per unit motion of c
+  double norm_M0 = 0;  ///< |M_0|
 };
 
 SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element) {
@@ -113,20 +113,20 @@ SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element)
       const auto after = std::upper_bound(
           h.pieces().begin() + 1, h.pieces().end(), start,
           [](double d, const runtime::CompiledCurve::Piece& p) { return d < p.start; });
-      const runtime::CompiledCurve::Piece& held = *(after - 1);
-      const double beyond = start - held.start;
-      piece.force[l] = held.force + beyond * (held.slope + beyond * held.curvature);
-      piece.slope[l] = held.slope + 2 * beyond * held.curvature;
-      piece.curvature[l] = held.curvature;
+      const runtime::CompiledCurve::Piece& from = *(after - 1);
+      const double beyond = start - from.start;
+      piece.force[l] = from.force + beyond * (from.slope + beyond * from.curvature);
+      piece.slope[l] = from.slope + 2 * beyond * from.curvature;
+      piece.curvature[l] = from.curvature;
     }
     lateral_.push_back(piece);
   }
 }
 
-/// tau is the axis x turned by an azimuth; b = N x tau; t is the unit vector across n that lies
-/// over tau, s = n x t.
+/// tau is the axis x turned by the azimuth; b = N x tau; t is the unit vector normal to n in the
+/// plane of N and tau, s = n x t.
 SlideJacobian::Facet SlideJacobian::facet(const SlideCell& cell) const {
-  // With the axes turned to the middle of the range, cosines are near 1 and sines small.
+  // Relative to the middle of the range, cosines are near 1 and sines are small.
   const double turn = cell.azimuth.middle(), half = cell.azimuth.radius();
   const double c0 = std::cos(turn), s0 = std::sin(turn);
   Facet f;
@@ -153,10 +153,10 @@ SlideJacobian::Facet SlideJacobian::facet(const SlideCell& cell) const {
   f.t_tau = n_N / r;
   f.s_tau = (-1) * (n_b * f.n_tau) / r;
 
-  // dU/ds along tau, of which t and s see the part across n.
+  // dU/ds along tau; t and s take its part normal to n.
   const auto rate = [&](const std::array<double, 3>& u) {
     double by_x = 0, by_y = 0;
-    for (std::size_t l = 1; l < 3; ++l) {  // differences: equal directions turn by exactly 0
+    for (std::size_t l = 1; l < 3; ++l) {  // differences, so that equal directions give exactly 0
       by_x += (u[l] - u[0]) * (c0 * gradient_[l][0] + s0 * gradient_[l][1]);
       by_y += (u[l] - u[0]) * (-s0 * gradient_[l][0] + c0 * gradient_[l][1]);
     }
@@ -178,42 +178,42 @@ Range SlideJacobian::along(const Facet& facet, const Values& value) const {
   return x * facet.cosine + y * facet.sine;
 }
 
-/// The least (or the largest) rho at which the lateral force of a place is `limit`; infinite where
-/// it is not reached.
+/// Smallest (or largest) rho at which the lateral force at a position is `limit`; infinite where it
+/// stays below.
 double SlideJacobian::slip_at(const std::array<double, 3>& weight, double limit,
                               bool largest) const {
   const auto beyond = [&](double force) { return largest ? force > limit : force >= limit; };
   for (std::size_t k = 0; k < lateral_.size(); ++k) {
     const bool last = k + 1 == lateral_.size();
-    if (!last && !beyond(at(weight, lateral_[k + 1].force))) continue;
-    const double rise = limit - at(weight, lateral_[k].force);
-    const double slope = at(weight, lateral_[k].slope);
-    const double curvature = at(weight, lateral_[k].curvature);
+    if (!last && !beyond(weighted(weight, lateral_[k + 1].force))) continue;
+    const double rise = limit - weighted(weight, lateral_[k].force);
+    const double slope = weighted(weight, lateral_[k].slope);
+    const double curvature = weighted(weight, lateral_[k].curvature);
     if (last && !(slope > 0) && (rise > 0 || largest)) return kInfinity;
     return lateral_[k].start + solve_piece(slope, curvature, rise);
   }
   return kInfinity;
 }
 
-/// Between the least and the largest at the corners, and at the ends of the depths, lies the slip
-/// limit of every state: w_l h_l - mu g_l is linear in the natural coordinates.
+/// The slip limit of every state lies between the smallest and the largest at the corners and the
+/// ends of the depths, since w_l h_l - mu g_l is linear in the natural coordinates.
 Range SlideJacobian::slip_limit(const SlideCell& cell) const {
   const ContactElement& e = *element_;
   Range rho{kInfinity, 0};
   for (const Natural& n : cell.part) {
-    std::array<double, 3> firm{}, soft{}, less{}, more{};
+    std::array<double, 3> w_high{}, w_low{}, force_low{}, force_high{};
     for (std::size_t l = 0; l < 3; ++l) {
       const runtime::CompiledCurve& g = e.normal.curves()[l];
-      soft[l] = firm[l] = n[l];
+      w_low[l] = w_high[l] = n[l];
       if (e.coupling) {
-        soft[l] *= coupling_at(e.coupling->curves()[l], cell.z.low);
-        firm[l] *= coupling_at(e.coupling->curves()[l], cell.z.high);
+        w_low[l] *= coupling_at(e.coupling->curves()[l], cell.z.low);
+        w_high[l] *= coupling_at(e.coupling->curves()[l], cell.z.high);
       }
-      less[l] = e.friction * g.force(cell.z.low);
-      more[l] = e.friction * g.force(cell.z.high);
+      force_low[l] = e.friction * g.force(cell.z.low);
+      force_high[l] = e.friction * g.force(cell.z.high);
     }
-    rho.low = std::min(rho.low, slip_at(firm, at(n, less), false));
-    rho.high = std::max(rho.high, slip_at(soft, at(n, more), true));
+    rho.low = std::min(rho.low, slip_at(w_high, weighted(n, force_low), false));
+    rho.high = std::max(rho.high, slip_at(w_low, weighted(n, force_high), true));
   }
   return rho;
 }
@@ -273,7 +273,7 @@ SlideJacobian::Response SlideJacobian::response(const SlideCell& cell, const Ran
   return r;
 }
 
-/// Without those that need the lateral response to rise, where it may be flat.
+/// The terms that divide by E_rr are left out where it may be zero.
 SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rho) const {
   const double mu = element_->friction;
   Terms x;
@@ -282,15 +282,15 @@ SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rh
   if (!(x.r.E_rr.low > 0)) return x;
   x.m = (mu * x.r.g_z - x.r.E_zr) / x.r.E_rr;
   x.A = x.r.E_zz + x.m * x.r.E_zr;
-  x.grip = mu * x.r.g_here;
-  x.grip_slope = mu * x.r.g_z;
+  x.mu_g = mu * x.r.g_here;
+  x.mu_g_z = mu * x.r.g_z;
   x.limit_rate = along(x.f, x.r.excess) / x.r.E_rr;
   x.B = along(x.f, x.r.E_z) - x.r.E_zr * x.limit_rate;
-  x.grip_rate = mu * along(x.f, x.r.g);
+  x.mu_g_tau = mu * along(x.f, x.r.g);
   x.q = x.f.n_tau - rho * x.f.kappa_t;
   x.rate = x.f.t_tau + cell.reach * x.f.kappa_t - x.m * x.q - x.limit_rate;
-  x.held =
-      std::max(std::hypot(x.A.magnitude(), x.grip_slope.magnitude()), x.r.h_over_rho.magnitude());
+  x.norm_M0 =
+      std::max(std::hypot(x.A.magnitude(), x.mu_g_z.magnitude()), x.r.h_over_rho.magnitude());
   return x;
 }
 
@@ -300,23 +300,24 @@ double SlideJacobian::bound(const SlideCell& cell) const {
   if (rho.high == kInfinity) return kInfinity;
   const Terms x = terms(cell, rho);
   if (!(x.r.E_rr.low > 0)) return kInfinity;
-  const Range v_n = x.B - x.A * x.q - x.grip * x.f.kappa_t;
-  const Range v_t = x.grip_rate - x.grip_slope * x.q + x.r.E_z_here * x.f.kappa_t;
+  const Range v_n = x.B - x.A * x.q - x.mu_g * x.f.kappa_t;
+  const Range v_t = x.mu_g_tau - x.mu_g_z * x.q + x.r.E_z_here * x.f.kappa_t;
   const Range v_s =
       x.r.E_z_here * x.f.kappa_s - x.r.h_over_rho * (x.f.s_tau + cell.reach * x.f.kappa_s);
-  if (is_zero(v_n) && is_zero(v_t) && is_zero(v_s)) return x.held;  // a jump of c is harmless
+  if (is_zero(v_n) && is_zero(v_t) && is_zero(v_s))
+    return x.norm_M0;  // the force does not depend on c
   if (!(x.rate.low > 0)) return kInfinity;
   const Range w_t = Range{1, 1} / x.rate, w_n = (-1) * x.m / x.rate;
   const Range zero{};
-  double norm = std::max(x.held, norm_bound({{{x.A + v_n * w_n, v_n * w_t, zero},
-                                              {x.grip_slope + v_t * w_n, v_t * w_t, zero},
-                                              {v_s * w_n, v_s * w_t, x.r.h_over_rho}}}));
+  double norm = std::max(x.norm_M0, norm_bound({{{x.A + v_n * w_n, v_n * w_t, zero},
+                                                 {x.mu_g_z + v_t * w_n, v_t * w_t, zero},
+                                                 {v_s * w_n, v_s * w_t, x.r.h_over_rho}}}));
   if (x.rate.high <= 1) return norm;
-  // The rule of the runtime takes c as far as rho - rho_s where less would do: (9a).
+  // The runtime moves c by rho - rho_s, which is more than needed: (9a).
   const Range over{std::max(0.0, x.rate.low - 1), x.rate.high - 1};
   const Range u_n = v_n - over * x.r.E_zr, u_t = v_t - over * x.r.E_rr;
   return std::max(norm, norm_bound({{{x.A - u_n * x.m, u_n, zero},
-                                     {x.grip_slope - u_t * x.m, u_t, zero},
+                                     {x.mu_g_z - u_t * x.m, u_t, zero},
                                      {(-1) * v_s * x.m, v_s, x.r.h_over_rho}}}));
 }
 
@@ -324,16 +325,17 @@ SlideCauses SlideJacobian::causes(const SlideCell& state) const {
   const Range rho = slip_limit(state);
   if (!(rho.high < kInfinity)) return {0, kInfinity, kInfinity, kInfinity};
   const Terms x = terms(state, rho);
-  if (!(x.r.E_rr.low > 0 && x.rate.low > 0)) return {x.held, kInfinity, kInfinity, kInfinity};
-  const double way = std::hypot(1.0, x.m.magnitude()) / x.rate.low;  // |w|
+  if (!(x.r.E_rr.low > 0 && x.rate.low > 0)) return {x.norm_M0, kInfinity, kInfinity, kInfinity};
+  const double motion = std::hypot(1.0, x.m.magnitude()) / x.rate.low;  // |w|
   const auto length = [&](const Range& n, const Range& t, const Range& s) {
-    return way * std::hypot(n.magnitude(), t.magnitude(), s.magnitude());
+    return motion * std::hypot(n.magnitude(), t.magnitude(), s.magnitude());
   };
-  const Range run = rho * x.f.kappa_t;
-  return {x.held, length(x.B, x.grip_rate, {}),
-          length(x.A * x.f.n_tau, x.grip_slope * x.f.n_tau, x.r.h_over_rho * x.f.s_tau),
-          length(x.A * run - x.grip * x.f.kappa_t, x.grip_slope * run + x.r.E_z_here * x.f.kappa_t,
-                 (x.r.E_z_here - x.r.h_over_rho * state.reach) * x.f.kappa_s)};
+  const Range turned = rho * x.f.kappa_t;
+  return {
+      x.norm_M0, length(x.B, x.mu_g_tau, {}),
+      length(x.A * x.f.n_tau, x.mu_g_z * x.f.n_tau, x.r.h_over_rho * x.f.s_tau),
+      length(x.A * turned - x.mu_g * x.f.kappa_t, x.mu_g_z * turned + x.r.E_z_here * x.f.kappa_t,
+             (x.r.E_z_here - x.r.h_over_rho * state.reach) * x.f.kappa_s)};
 }
 
 }  // namespace palpate::fitting

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The derivative of the force by the place of a tool that slides, bounded over sets of states.
+// Bounds of the derivative of the force by the position of a sliding tool, over sets of states.
 #pragma once
 
 #include <array>
@@ -11,20 +11,21 @@
 
 namespace palpate::fitting {
 
-/// A set of states at limiting friction. One state has all corners alike and ranges of one number.
+/// A set of states at limiting friction. A single state has equal corners and ranges of one number.
 struct SlideCell {
   using Natural = std::array<double, 3>;
-  std::array<Natural, 3> part{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< of the triangle, its corners
+  std::array<Natural, 3> part{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< corners, in the triangle
   Range azimuth;  ///< of tau in the plane of the facet, rad
-  Range z;        ///< m, without a knot of a normal response or of w inside
+  Range z;        ///< m; no knot of a normal response or of w inside
   Range reach;    ///< m, z + d0
 };
 
-/// What makes a slide steep, N/m: |M_0|, and |v_i| |w| of the causes i that v is the sum of.
+/// Contributions to the force gradient of a slide, N/m: |M_0|, and |v_i| |w| for each term v_i of
+/// v.
 struct SlideCauses {
   double stiffness = 0;  ///< Lipschitz bound of the responses at a fixed contact point
   double variation = 0;  ///< change of the responses over the surface
-  double slant = 0;      ///< directions u_l that lean against the facet
+  double slant = 0;      ///< directions u_l oblique to the facet
   double curvature = 0;  ///< turning of n
 };
 
@@ -35,17 +36,17 @@ class SlideJacobian {
   /// @pre element.friction > 0; the element outlives this
   explicit SlideJacobian(const ContactElement& element);
 
-  /// No smaller than the norm of df/dx', N/m, at every state of the cell, nor than that of a slide
-  /// held back in part or altogether; of one state, the largest of these. Infinite where the slide
-  /// is not bounded; 0 where nothing slips.
+  /// Upper bound of the norm of df/dx', N/m, at every state of the cell, for complete slides and
+  /// for slides that are throttled in part or altogether. For a single state, the largest of these
+  /// norms. Infinite where the slide is not bounded; 0 where the contact sticks.
   double bound(const SlideCell& cell) const;
 
-  /// Of one state. Infinite where its slide is not bounded.
+  /// Contributions at a single state. Infinite where its slide is not bounded.
   SlideCauses causes(const SlideCell& state) const;
 
  private:
-  struct Facet;     // what the place and the azimuth give
-  struct Response;  // what the curves give
+  struct Facet;     // depends on the position and the azimuth
+  struct Response;  // depends on the curves
   struct AtVertex;
   struct Terms;  // of (8) and (9)
 
@@ -55,10 +56,10 @@ class SlideJacobian {
   AtVertex at_vertex(std::size_t vertex, const Range& z, const Range& rho) const;
   Response response(const SlideCell& cell, const Range& rho) const;
   Terms terms(const SlideCell& cell, const Range& rho) const;
-  /// The part of the gradient along tau of a quantity with these values at the vertices.
+  /// Derivative along tau of a quantity with these values at the vertices.
   Range along(const Facet& facet, const std::array<Range, 3>& values) const;
 
-  /// The lateral responses of the three vertices from a knot of any of them to the next.
+  /// The lateral responses of the three vertices between two consecutive knots of any of them.
   struct LateralPiece {
     double start = 0;
     std::array<double, 3> force{}, slope{}, curvature{};

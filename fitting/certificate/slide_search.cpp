@@ -11,7 +11,7 @@
 namespace palpate::fitting {
 namespace {
 
-constexpr int kSectors = 8;  // of the azimuth, to begin with
+constexpr int kSectors = 8;  // of the azimuth, initially
 
 Range first_half(const Range& range) {
   return {range.low, range.middle()};
@@ -28,7 +28,7 @@ double apart(const SlideCell::Natural& a, const SlideCell::Natural& b) {
   return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
 }
 
-/// Across the longest side, in natural coordinates.
+/// Divides the longest side, in natural coordinates.
 std::pair<SlideCell, SlideCell> halve_part(const SlideCell& cell) {
   std::size_t longest = 0;
   for (std::size_t k = 1; k < 3; ++k) {
@@ -59,7 +59,7 @@ std::pair<SlideCell, SlideCell> halve_depth(const SlideCell& cell) {
   return halves;
 }
 
-/// The state in the middle of a cell, with the largest offset or none.
+/// The state in the middle of a cell, with the largest depth offset or with none.
 SlideCell state_in(const SlideCell& cell, bool offset) {
   SlideCell::Natural centre{};
   for (const SlideCell::Natural& n : cell.part)
@@ -71,10 +71,9 @@ SlideCell state_in(const SlideCell& cell, bool offset) {
 
 using Halving = std::pair<SlideCell, SlideCell> (*)(const SlideCell&);
 
-/// By turns, while no bound tells the ways apart. A part is halved in each of its two dimensions as
-/// often as the others, and once more: bounds grow slack with the place sooner than with depth or
-/// azimuth.
-Halving by_turns(int halvings) {
+/// Cyclic order, used while no trial lowers the bound. The part of the triangle has two dimensions
+/// and is halved three times a cycle: bounds depend more on position than on depth or azimuth.
+Halving cyclic(int halvings) {
   constexpr std::array<Halving, 5> kOrder{halve_depth, halve_part, halve_part, halve_azimuth,
                                           halve_part};
   return kOrder[static_cast<std::size_t>(halvings) % kOrder.size()];
@@ -96,27 +95,28 @@ SlideSearch::SlideSearch(ContactElement element)
   }
 }
 
-/// Along what makes the bound slack: where it falls most when only the middle is left.
+/// Halves along the coordinate that loosens the bound most: the one whose restriction to its middle
+/// lowers the bound most.
 std::pair<SlideCell, SlideCell> SlideSearch::halves(const Part& part) const {
   const SlideCell middle = state_in(part.cell, false);
-  SlideCell place = part.cell, azimuth = part.cell, depth = part.cell;
-  place.part = middle.part;
+  SlideCell position = part.cell, azimuth = part.cell, depth = part.cell;
+  position.part = middle.part;
   azimuth.azimuth = middle.azimuth;
   depth.z = middle.z;
-  const double by_place = jacobian_.bound(place), by_azimuth = jacobian_.bound(azimuth),
+  const double by_position = jacobian_.bound(position), by_azimuth = jacobian_.bound(azimuth),
                by_depth = jacobian_.bound(depth);
-  const double least = std::min({by_place, by_azimuth, by_depth});
-  if (!(least < part.bound)) return by_turns(part.halvings)(part.cell);
-  if (least == by_place) return halve_part(part.cell);
+  const double least = std::min({by_position, by_azimuth, by_depth});
+  if (!(least < part.bound)) return cyclic(part.halvings)(part.cell);
+  if (least == by_position) return halve_part(part.cell);
   return least == by_azimuth ? halve_azimuth(part.cell) : halve_depth(part.cell);
 }
 
-void SlideSearch::reach_in(const SlideCell& cell) {
+void SlideSearch::evaluate_middle(const SlideCell& cell) {
   for (const bool offset : {false, true}) {
     const SlideCell state = state_in(cell, offset);
     const double norm = jacobian_.bound(state);
-    if (norm <= reached_) continue;
-    reached_ = norm;
+    if (norm <= attained_) continue;
+    attained_ = norm;
     causes_ = jacobian_.causes(state);
   }
 }
@@ -124,8 +124,8 @@ void SlideSearch::reach_in(const SlideCell& cell) {
 void SlideSearch::advance(int halvings, double enough) {
   for (int i = 0; i < halvings; ++i) {
     const Part worst = parts_.top();
-    reach_in(worst.cell);
-    if (worst.bound <= kNearEnough * std::max(reached_, enough)) return;
+    evaluate_middle(worst.cell);
+    if (worst.bound <= kNearEnough * std::max(attained_, enough)) return;
     parts_.pop();
     ++spent_;
     const auto [first, second] = halves(worst);

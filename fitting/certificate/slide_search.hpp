@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The steepest slide over a triangle, enclosed from both sides.
+// Upper and lower bound of the force gradient of the slides over a triangle.
 #pragma once
 
 #include <queue>
@@ -10,10 +10,10 @@
 
 namespace palpate::fitting {
 
-/// The largest norm of df/dx' over a triangle lies between `reached`, that of one state, and
-/// `bound`: sets of states are halved where their bound is the largest. The bound holds at every
-/// stage; an infinite one says only that none was found yet, unless a state without a bound was
-/// reached. Deterministic.
+/// Branch and bound for the largest norm of df/dx' over a triangle. It lies between `attained`, the
+/// norm at one state, and `bound`: the set of states with the largest bound is halved in each step.
+/// The bound is valid at every stage. While it is infinite, no bound has been found yet, unless a
+/// state without a bound was evaluated. Deterministic.
 class SlideSearch {
  public:
   /// @pre element.friction > 0
@@ -21,14 +21,14 @@ class SlideSearch {
   SlideSearch(const SlideSearch&) = delete;
   SlideSearch& operator=(const SlideSearch&) = delete;
 
-  /// Halves sets until the bound is no larger than what is near enough to `enough` or to what is
-  /// reached, or `halvings` are spent.
+  /// Halves sets until the bound is at most kNearEnough max(attained, enough), or `halvings` are
+  /// used up.
   void advance(int halvings, double enough);
 
   double bound() const { return parts_.top().bound; }    ///< N/m
-  double reached() const { return reached_; }            ///< N/m
-  const SlideCauses& causes() const { return causes_; }  ///< of the state that was reached
-  int spent() const { return spent_; }                   ///< halvings
+  double attained() const { return attained_; }          ///< N/m
+  const SlideCauses& causes() const { return causes_; }  ///< of the state of `attained`
+  int spent() const { return spent_; }                   ///< number of halvings so far
 
   static constexpr double kNearEnough = 1.1;
 
@@ -41,12 +41,12 @@ class SlideSearch {
   };
 
   std::pair<SlideCell, SlideCell> halves(const Part& part) const;
-  void reach_in(const SlideCell& cell);
+  void evaluate_middle(const SlideCell& cell);
 
   ContactElement element_;
   SlideJacobian jacobian_;  // of element_
   std::priority_queue<Part> parts_;
-  double reached_ = 0;
+  double attained_ = 0;
   SlideCauses causes_;
   int spent_ = 0;
 };

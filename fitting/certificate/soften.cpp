@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/certificate/soften.hpp"
+
 #include <algorithm>
 #include <string>
+#include <utility>
+#include <vector>
 
-#include "fitting/fitting.hpp"
 #include "fitting/measurement/nearest_rank.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
@@ -10,22 +13,22 @@
 namespace palpate::fitting {
 namespace {
 
-constexpr int kHalvings = 14;         // of the cap: to a ten-thousandth
-constexpr double kLeastShare = 0.01;  // of the steepest slope: a softer body is no likeness
+constexpr int kBisections = 14;        // relative resolution of the slope limit: 1e-4
+constexpr double kMinFraction = 0.01;  // of the largest slope; below it the body is unrecognisable
 
-double steepest_slope(const Library& library) {
-  float steepest = 0;
+double largest_slope(const Library& library) {
+  float largest = 0;
   for (const NodeResponse& node : library.responses) {
     for (const ResponseCurve* curve : {&node.normal, &node.lateral}) {
-      for (const float slope : curve->slope) steepest = std::max(steepest, slope);
+      for (const float slope : curve->slope) largest = std::max(largest, slope);
     }
   }
-  return static_cast<double>(steepest);
+  return static_cast<double>(largest);
 }
 
-Library capped(const Library& library, double cap) {
+Library with_slopes_limited(const Library& library, double max_slope) {
   Library soft = library;
-  const auto limit = static_cast<float>(cap);
+  const auto limit = static_cast<float>(max_slope);
   for (NodeResponse& node : soft.responses) {
     for (ResponseCurve* curve : {&node.normal, &node.lateral}) {
       for (float& slope : curve->slope) slope = std::min(slope, limit);
@@ -34,23 +37,23 @@ Library capped(const Library& library, double cap) {
   return soft;
 }
 
-/// Share of the force at its last knot that a curve has lost.
-double lost(const ResponseCurve& before, const ResponseCurve& after) {
-  const runtime::CompiledCurve was(before), is(after);
-  const double end = was.last_knot();
-  return was.force(end) > 0 ? 1 - is.force(end) / was.force(end) : 0;
+/// Fraction of the force at its last knot that a curve has lost.
+double force_loss(const ResponseCurve& before, const ResponseCurve& after) {
+  const runtime::CompiledCurve original(before), softened(after);
+  const double end = original.last_knot();
+  return original.force(end) > 0 ? 1 - softened.force(end) / original.force(end) : 0;
 }
 
-Softening cost(const Library& before, const Library& after, double cap) {
+Softening summarize(const Library& before, const Library& after, double max_slope) {
   Softening result;
-  result.cap = cap;
+  result.max_slope = max_slope;
   std::vector<double> losses;
   for (std::size_t v = 0; v < before.responses.size(); ++v) {
-    const NodeResponse& was = before.responses[v];
-    const NodeResponse& is = after.responses[v];
-    if (was.status == ResponseStatus::Hole) continue;
-    losses.push_back(lost(was.normal, is.normal));
-    losses.push_back(lost(was.lateral, is.lateral));
+    const NodeResponse& original = before.responses[v];
+    const NodeResponse& softened = after.responses[v];
+    if (original.status == ResponseStatus::Hole) continue;
+    losses.push_back(force_loss(original.normal, softened.normal));
+    losses.push_back(force_loss(original.lateral, softened.lateral));
   }
   std::sort(losses.begin(), losses.end());
   result.curves = static_cast<std::size_t>(
@@ -63,41 +66,42 @@ Softening cost(const Library& before, const Library& after, double cap) {
 
 }  // namespace
 
-double certified_bound(double damping, double rate) {
+double certifiable_stiffness(double damping, double rate) {
   return 0.5 * damping * rate;
 }
 
 Softening soften(Library& library, const CertifySettings& settings, double bound) {
   certify(library, settings);
   if (certified_lipschitz_bound(library.certificate) <= bound) return {};
-  CertifySettings held = settings;
-  held.limit = bound;
-  const auto within = [&](Library& candidate) {
-    certify(candidate, held);
+  CertifySettings enforcing = settings;
+  enforcing.enforced_bound = bound;
+  const auto is_certified = [&](Library& candidate) {
+    certify(candidate, enforcing);
     return candidate.certificate.hold <= bound;
   };
-  if (within(library)) return {};
-  const double steepest = steepest_slope(library);
-  double low = kLeastShare * steepest, high = steepest;
-  Library best = capped(library, low);
-  if (!within(best)) {
+  if (is_certified(library)) return {};
+  const double steepest = largest_slope(library);
+  double low = kMinFraction * steepest, high = steepest;
+  Library best = with_slopes_limited(library, low);
+  if (!is_certified(best)) {
     throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
                 "no softening certifies it for " + std::to_string(bound) +
-                    " N/m: a hundredth of its slopes can be held to " +
+                    " N/m: with its slopes limited to a hundredth of the largest, the smallest "
+                    "enforceable bound is " +
                     std::to_string(best.certificate.hold) + " N/m",
-                "raise the rate, or take a device with more damping");
+                "raise the rate, or choose a device with more damping");
   }
-  for (int i = 0; i < kHalvings; ++i) {
-    const double cap = 0.5 * (low + high);
-    Library candidate = capped(library, cap);
-    if (within(candidate)) {
-      low = cap;
+  for (int i = 0; i < kBisections; ++i) {
+    const double max_slope = 0.5 * (low + high);
+    Library candidate = with_slopes_limited(library, max_slope);
+    if (is_certified(candidate)) {
+      low = max_slope;
       best = std::move(candidate);
     } else {
-      high = cap;
+      high = max_slope;
     }
   }
-  const Softening result = cost(library, best, low);
+  const Softening result = summarize(library, best, low);
   library = std::move(best);
   return result;
 }

@@ -13,10 +13,10 @@
 namespace palpate::fitting {
 namespace {
 
-// Of the sets of states of a search: at one look, for one triangle, and for a library, some
-// microseconds each.
-constexpr int kHalvingsALook = 1000, kMostHalvings = 30000;
-constexpr long kHalvings = 300000, kHalvingsATriangle = 200;
+// Budgets of the searches, in halvings of sets of states, some microseconds each.
+constexpr int kHalvingsPerVisit = 1000, kMaxHalvings = 30000;  // of one triangle
+// For a library: a constant, and more for each of its triangles.
+constexpr long kHalvings = 300000, kHalvingsPerTriangle = 200;
 
 TriangleBounds bound_triangle(const Library& library, std::size_t index, double depth,
                               double friction) {
@@ -24,19 +24,19 @@ TriangleBounds bound_triangle(const Library& library, std::size_t index, double 
   TriangleBounds bounds;
   bounds.certificate.kappa = frame.kappa;
   bounds.certificate.cos_theta = frame.cos_theta;
-  // Without a response at a vertex there is no local model: a border, nothing to bound.
+  // Without a response at a vertex there is no local model, hence nothing to bound.
   if (!has_responses(library, library.triangles[index])) return bounds;
   const ContactElement element = contact_element(library, index, depth, friction);
   const SlideBound slide = slide_bound(element);
   bounds.causes = slide.causes;
   bounds.certificate.stick = stick_bound(element);
-  bounds.hold = hold_bound(element);
+  bounds.min_lipschitz_bound = min_lipschitz_bound(element);
   bounds.certificate.slip = slide.total;
   bounds.certificate.sliding_passive = slide_lowers_energy(element);
   return bounds;
 }
 
-/// The triangles by their bounds, the worst first; of equal ones the first.
+/// Triangles in descending order of their bounds, then ascending order of their numbers.
 class WorstFirst {
  public:
   struct Entry {
@@ -71,34 +71,34 @@ double largest_stick(const std::vector<TriangleBounds>& bounds) {
   return largest;
 }
 
-/// A closer look at the triangles whose slides would set the bound of the library, always at the
-/// worst, until what is left is near enough to what a slide does reach. (Without friction the slide
-/// has no direction of its own, and (10) stands.)
+/// Tightens the slip bounds that determine the bound of the library, the largest first, until the
+/// largest is within SlideSearch::kNearEnough of a value that a slide attains. Without friction the
+/// direction of a slide is undetermined and (10) remains.
 void tighten(const Library& library, double depth, double friction,
              std::vector<TriangleBounds>& bounds) {
   if (!(friction > 0)) return;
   WorstFirst worst(bounds);
-  double reached = largest_stick(bounds);
+  double attained = largest_stick(bounds);
   std::map<std::size_t, SlideSearch> searches;
-  long left = kHalvings + kHalvingsATriangle * static_cast<long>(bounds.size());
-  while (left > 0 && !worst.empty() && worst.bound() > SlideSearch::kNearEnough * reached) {
+  long left = kHalvings + kHalvingsPerTriangle * static_cast<long>(bounds.size());
+  while (left > 0 && !worst.empty() && worst.bound() > SlideSearch::kNearEnough * attained) {
     const std::size_t m = worst.take();
     auto found = searches.find(m);
     if (found == searches.end())
       found = searches.try_emplace(m, contact_element(library, m, depth, friction)).first;
     SlideSearch& search = found->second;
     const int before = search.spent();
-    search.advance(kHalvingsALook, reached);
+    search.advance(kHalvingsPerVisit, attained);
     const int spent = search.spent() - before;
     left -= spent;
     if (search.bound() < bounds[m].certificate.slip) {
       bounds[m].causes = search.causes();
       bounds[m].certificate.slip = search.bound();
     }
-    if (std::isinf(search.reached())) continue;  // a state without a bound: nothing to look for
-    reached = std::max(reached, search.reached());
-    // What does not come down is not looked at for ever.
-    if (spent == kHalvingsALook && search.spent() < kMostHalvings) worst.put(bounds, m);
+    if (std::isinf(search.attained())) continue;  // a state without a bound: no search helps
+    attained = std::max(attained, search.attained());
+    // A bound that does not converge is given up after kMaxHalvings.
+    if (spent == kHalvingsPerVisit && search.spent() < kMaxHalvings) worst.put(bounds, m);
   }
 }
 

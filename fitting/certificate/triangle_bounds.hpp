@@ -9,16 +9,16 @@
 
 namespace palpate::fitting {
 
-/// Bounds of one triangle, and what its slides are steep for.
+/// Bounds of one triangle, and the causes of its slip bound.
 struct TriangleBounds {
   TriangleCertificate certificate;
-  double hold = 0;  ///< N/m, L_hold
+  double min_lipschitz_bound = 0;  ///< N/m, L_min: the smallest enforceable bound
   SlideCauses causes;
 };
 
 /// In the order of the triangles, while z + d0 <= depth (m). L_slip is (10) of
-/// docs/theory-fitting.md, or the closer bound of a search where (10) would set that of the
-/// library. A triangle with a hole has bounds of 0: it is a border. Deterministic.
+/// docs/theory-fitting.md, or the tighter bound of SlideSearch where (10) would determine the bound
+/// of the library. A triangle with a hole is a border and has bounds of 0. Deterministic.
 /// @throws Error(Geometry) where normals cannot be interpolated.
 std::vector<TriangleBounds> triangle_bounds(const Library& library, double depth, double friction);
 

@@ -35,8 +35,8 @@ double distance_to_triangle(const Corners& u) {
                            distance_to_segment(u[2], u[0])});
   const Vec3 normal = cross(u[1] - u[0], u[2] - u[0]);
   const double length = norm(normal);
-  if (length < 1e-12) return least;  // nearly one point or one line: the edges say it
-  // The foot of the perpendicular counts when it lies inside: same side of all edges.
+  if (length < 1e-12) return least;  // nearly a point or a line: the edges determine it
+  // The foot of the perpendicular counts if it lies inside, on the same side of all edges.
   const Vec3 foot = (dot(u[0], normal) / (length * length)) * normal;
   for (std::size_t l = 0; l < 3; ++l) {
     const Vec3 edge = u[(l + 1) % 3] - u[l];
@@ -55,7 +55,7 @@ Turning turning(const Corners& u, const Corners& gradient, const Vec3& N) {
   const Vec3 e1 = (1 / norm(gradient[0])) * gradient[0];
   const Vec3 e2 = cross(N, e1);
   const auto column = [&](const Vec3& e) {
-    // u_0 is subtracted because the gradients sum to zero: equal directions then turn by exactly 0.
+    // The gradients sum to zero, so subtracting u_0 makes equal directions give exactly 0.
     return dot(gradient[1], e) * (u[1] - u[0]) + dot(gradient[2], e) * (u[2] - u[0]);
   };
   const Vec3 m1 = column(e1);
@@ -93,7 +93,7 @@ TriangleFrame triangle_frame(const Library& library, std::size_t index) {
   frame.normal = N;
   frame.inward = u;
   for (std::size_t l = 0; l < 3; ++l) {
-    // Perpendicular to the opposite edge, pointing at vertex l, one over the height long.
+    // Perpendicular to the opposite edge, towards vertex l, of length one over the height.
     frame.gradient[l] = (1 / twice_area) * cross(x[(l + 2) % 3] - x[(l + 1) % 3], N);
     if (dot(frame.gradient[l], x[l] - x[(l + 1) % 3]) < 0) {
       frame.gradient[l] = -frame.gradient[l];
@@ -115,7 +115,7 @@ TriangleFrame triangle_frame(const Library& library, std::size_t index) {
 
   const Turning turn = turning(u, frame.gradient, N);
   frame.kappa = turn.rate / frame.least_length;
-  // The slide frame (n, t, s) is tilted against the facet frame by theta at most.
+  // The slide frame (n, t, s) is tilted against the facet frame by at most theta.
   const double tilt = std::sqrt(2 * (1 - frame.cos_theta));  // 2 sin(theta/2)
   frame.twist = std::min(frame.kappa, turn.across / frame.least_length + tilt * frame.kappa);
   return frame;

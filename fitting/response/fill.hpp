@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include "fitting/fitting.hpp"
+#include "fitting/response/fit_settings.hpp"
 
 namespace palpate::fitting {
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/response/fit.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "fitting/fitting.hpp"
 #include "fitting/response/between_nodes.hpp"
 #include "fitting/response/couple.hpp"
 #include "fitting/response/curve_fit.hpp"
 #include "fitting/response/fill.hpp"
+#include "fitting/response/interpolate.hpp"
 #include "fitting/response/site_samples.hpp"
-#include "fitting/sampling/site_choice.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
 

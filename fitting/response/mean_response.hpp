@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/fitting.hpp"
+#include "fitting/response/fit_settings.hpp"
 
 namespace palpate::fitting {
 

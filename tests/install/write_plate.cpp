@@ -3,7 +3,7 @@
 // certificate for that friction.
 #include <cstdlib>
 
-#include "fitting/fitting.hpp"
+#include "fitting/certificate/certify.hpp"
 #include "tests/support/bodies.hpp"
 
 int main(int argc, char** argv) {

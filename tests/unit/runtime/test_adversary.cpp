@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "fitting/fitting.hpp"
+#include "fitting/certificate/certify.hpp"
 #include "runtime/palpate.h"
 #include "runtime/search.hpp"
 #include "tests/support/bodies.hpp"

@@ -7,7 +7,7 @@
 
 #include "app/replay/replay.hpp"
 #include "app/run/live_session.hpp"
-#include "fitting/fitting.hpp"
+#include "fitting/certificate/certify.hpp"
 #include "format/error.hpp"
 #include "runtime/devices/device_virtual.hpp"
 #include "runtime/palpate.h"

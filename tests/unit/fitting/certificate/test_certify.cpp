@@ -4,8 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "fitting/certificate/certify.hpp"
+#include "fitting/certificate/soften.hpp"
 #include "fitting/certificate/triangle_frame.hpp"
-#include "fitting/fitting.hpp"
 #include "format/error.hpp"
 #include "tests/support/surfaces.hpp"
 
@@ -145,7 +146,7 @@ TEST(Certificate, AHoleIsABorder) {
   }
 }
 
-TEST(Certificate, TooDeepForTheCurvatureIsUnboundedAndSaid) {
+TEST(Certificate, DepthBeyondTheRadiusOfCurvatureHasNoBoundAndAReason) {
   // Slides outrun the tool where D kappa reaches cos theta: R = 5 mm pressed by 10 mm.
   Library library = sphere(0.005, 2);
   set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
@@ -162,9 +163,9 @@ TEST(Certificate, TooDeepForTheCurvatureIsUnboundedAndSaid) {
   EXPECT_TRUE(std::isinf(library.certificate.slip));
   const std::string& line = library.certificate.limited_by;
   EXPECT_NE(line.find("no bound of the slide: pressed 10 mm deep"), std::string::npos) << line;
-  EXPECT_NE(line.find("(smaller patches, a rounder edge"), std::string::npos) << line;
+  EXPECT_NE(line.find("(try a smaller patch spacing, a rounder edge"), std::string::npos) << line;
   EXPECT_EQ(line.find("inf"), std::string::npos) << line;
-  EXPECT_NE(line.find("320 of 320 triangles are unbounded"), std::string::npos) << line;
+  EXPECT_NE(line.find("320 of 320 triangles have no bound"), std::string::npos) << line;
 }
 
 TEST(Certificate, AFlatLateralResponseIsUnboundedWhereTheSurfaceVaries) {
@@ -217,10 +218,10 @@ TEST(Certificate, IsOfTheLimitThatWasChosen) {
   set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
   CertifySettings settings = with_friction(0.3);
   settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
-  settings.limit = 110;  // above L_hold
+  settings.enforced_bound = 110;  // above L_hold
   certify(library, settings);
   EXPECT_DOUBLE_EQ(library.certificate.devices.at(0).lowest_rate, 2 * 110 / 0.081);
-  settings.limit = 101;  // below: the runtime could not keep it
+  settings.enforced_bound = 101;  // below: the runtime could not keep it
   certify(library, settings);
   EXPECT_TRUE(std::isinf(library.certificate.devices.at(0).lowest_rate));
 }
@@ -286,8 +287,9 @@ TEST(Soften, ScalesWithTheForces) {
   ASSERT_TRUE(std::isfinite(library.certificate.slip));
   EXPECT_NEAR(half.certificate.stick, 0.5 * library.certificate.stick, 1e-6);
   EXPECT_NEAR(half.certificate.slip, 0.5 * library.certificate.slip,
-              0.03 * library.certificate.slip);        // cells are halved to 2 %
-  EXPECT_DOUBLE_EQ(certified_bound(0.081, 2000), 81);  // b/(2T), [Mahvash & Hayward 2005, eq. 5]
+              0.03 * library.certificate.slip);  // cells are halved to 2 %
+  EXPECT_DOUBLE_EQ(certifiable_stiffness(0.081, 2000),
+                   81);  // b/(2T), [Mahvash & Hayward 2005, eq. 5]
 }
 
 TEST(Soften, MeetsTheBoundAndTakesOnlyWhatIsStiff) {
@@ -309,9 +311,9 @@ TEST(Soften, MeetsTheBoundAndTakesOnlyWhatIsStiff) {
   EXPECT_EQ(cost.curves, 1u);
   EXPECT_EQ(library.responses[0].normal.slope, soft.slope);
   EXPECT_EQ(library.responses[2].normal.slope[1], 60.0F);
-  EXPECT_EQ(library.responses[2].normal.slope[2], static_cast<float>(cost.cap));
+  EXPECT_EQ(library.responses[2].normal.slope[2], static_cast<float>(cost.max_slope));
   // f(8 mm) = 0.12 + 0.004 (60 + s)/2 N
-  EXPECT_NEAR(cost.worst, 1 - (0.12 + 0.002 * (60 + cost.cap)) / (0.12 + 0.002 * 460), 1e-6);
+  EXPECT_NEAR(cost.worst, 1 - (0.12 + 0.002 * (60 + cost.max_slope)) / (0.12 + 0.002 * 460), 1e-6);
 }
 
 TEST(Soften, HoldsSlidesBackBeforeItSoftens) {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "fitting/fitting.hpp"
+#include "fitting/certificate/certify.hpp"
 #include "runtime/local_model.hpp"
 #include "runtime/sliding.hpp"
 #include "runtime/surface.hpp"

@@ -10,10 +10,10 @@
 #include <optional>
 #include <random>
 
+#include "fitting/certificate/certify.hpp"
 #include "fitting/certificate/slide_bound.hpp"
 #include "fitting/certificate/slide_jacobian.hpp"
 #include "fitting/certificate/triangle_frame.hpp"
-#include "fitting/fitting.hpp"
 #include "runtime/response_curve.hpp"
 #include "tests/support/surfaces.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "fitting/certificate/certify.hpp"
 #include "fitting/fidelity/fidelity.hpp"
-#include "fitting/fitting.hpp"
 #include "tests/support/surfaces.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 
-#include "fitting/fitting.hpp"
+#include "fitting/response/fit.hpp"
 #include "fitting/response/site_samples.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"

@@ -6,8 +6,10 @@
 #include <functional>
 #include <set>
 
+#include "fitting/response/fit.hpp"
+#include "fitting/response/interpolate.hpp"
+#include "fitting/response/surface_interpolation.hpp"
 #include "fitting/sampling/site_choice.hpp"
-#include "fitting/sampling/surface_interpolation.hpp"
 #include "runtime/response_curve.hpp"
 
 namespace palpate::fitting {
@@ -210,7 +212,7 @@ TEST(SiteChoice, LeavingOutTellsTheErrorOfTheNeighbours) {
   ASSERT_EQ(misses.size(), sites.size());
   // Independently: without its curves the site is interpolated by the fit.
   for (std::size_t i = 0; i < misses.size(); i += 5) {
-    const Miss& miss = misses[i];
+    const LeaveOneOutError& miss = misses[i];
     auto others = sites;
     others.erase(std::find(others.begin(), others.end(), miss.vertex));
     const Library without = fit(body, press_all(body, others, bump), interpolating());

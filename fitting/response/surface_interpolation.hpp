@@ -18,8 +18,8 @@ struct Donor {
 /// How far apart two vertices are for what they feel like, m: their distance, up to three times as
 /// much where their inward directions part (an edge), and infinite for directions more than 78
 /// degrees apart (the other side of a thin body).
-double felt_distance(const std::vector<Vec3>& positions, const std::vector<Vec3>& inward,
-                     std::size_t a, std::size_t b);
+double interpolation_distance(const std::vector<Vec3>& positions, const std::vector<Vec3>& inward,
+                              std::size_t a, std::size_t b);
 
 /// Interpolates by thin plate splines [Duchon 1977] through the nearest donors of a vertex, laid
 /// out in its tangent plane at their true distances: exact at donors, exact for linear fields on a

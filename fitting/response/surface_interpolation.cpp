@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fitting/sampling/surface_interpolation.hpp"
+#include "fitting/response/surface_interpolation.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -78,8 +78,8 @@ std::vector<Donor> inverse_square_weights(std::vector<Donor> donors) {
 
 }  // namespace
 
-double felt_distance(const std::vector<Vec3>& positions, const std::vector<Vec3>& inward,
-                     std::size_t a, std::size_t b) {
+double interpolation_distance(const std::vector<Vec3>& positions, const std::vector<Vec3>& inward,
+                              std::size_t a, std::size_t b) {
   const double cosine = dot(inward[a], inward[b]);
   if (cosine < kLeastCosine) return std::numeric_limits<double>::infinity();
   return norm(positions[a] - positions[b]) * (3 - 2 * std::min(cosine, 1.0));
@@ -93,7 +93,7 @@ SurfaceInterpolation::SurfaceInterpolation(const std::vector<Vec3>& positions,
 std::vector<Donor> SurfaceInterpolation::nearest(std::size_t vertex, std::size_t count) const {
   std::vector<Donor> seen;
   for (const std::size_t donor : donors_) {
-    const double distance = felt_distance(positions_, inward_, vertex, donor);
+    const double distance = interpolation_distance(positions_, inward_, vertex, donor);
     if (donor != vertex && distance < std::numeric_limits<double>::infinity())
       seen.push_back({donor, distance});
   }
