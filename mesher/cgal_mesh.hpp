@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The CGAL side of `Surface`. Included by the few .cpp files that use CGAL, by nothing else.
+// Conversions between Surface and CGAL meshes. Only the .cpp files that use CGAL include this.
 #pragma once
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>

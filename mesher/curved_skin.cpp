@@ -8,18 +8,19 @@
 #include <vector>
 
 #include "format/edge.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::mesher {
 namespace {
 
-constexpr double kLeastShare = 1.0 / 3;  ///< of the volume that a part has under straight edges
-constexpr int kMostHalvings = 6;         ///< after them an edge is straight
+constexpr double kLeastVolume = 1.0 / 3;  ///< of the volume of a part under straight edges
+constexpr int kMostHalvings = 6;          ///< after them an edge is straight
 
 /// Nodes of an element: corners 0..3, then the middles of these edges.
 constexpr std::array<std::array<std::size_t, 2>, 6> kEdges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
-/// A part of an element, by four of its nodes.
+/// A part of an element: a tetrahedron of four of its nodes.
 using Part = std::array<std::size_t, 4>;
 using Nodes = std::array<Vec3, 10>;
 
@@ -27,8 +28,8 @@ double six_volumes(const Nodes& x, const Part& part) {
   return dot(cross(x[part[1]] - x[part[0]], x[part[2]] - x[part[0]]), x[part[3]] - x[part[0]]);
 }
 
-/// Every four nodes that do not lie in one plane when the edges are straight: all that a division
-/// can make, and more.
+/// Every four nodes that do not lie in one plane when the edges are straight. They include all
+/// parts that a division of the element can make.
 std::vector<Part> parts_with_volume() {
   Nodes unit{Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
   for (std::size_t e = 0; e < 6; ++e) unit[4 + e] = 0.5 * (unit[kEdges[e][0]] + unit[kEdges[e][1]]);
@@ -44,7 +45,7 @@ std::vector<Part> parts_with_volume() {
   return parts;
 }
 
-/// The skin over the elements while edges are drawn back.
+/// The bulges of the curved edges while they are reduced.
 class Bulges {
  public:
   explicit Bulges(Body& body) : body_(body), halvings_(body.curved_edges.size(), 0) {
@@ -55,15 +56,12 @@ class Bulges {
     }
   }
 
-  std::size_t draw_back() {
+  std::size_t reduce() {
     const std::vector<std::size_t> touched = curved_elements();
     for (bool changed = true; changed;) {
       changed = false;
       for (const std::size_t element : touched)
-        if (!keeps_its_parts(element)) {
-          halve_around(element);
-          changed = true;
-        }
+        if (!has_valid_parts(element) && halve_around(element)) changed = true;
     }
     return write_back();
   }
@@ -75,8 +73,7 @@ class Bulges {
   }
 
   Vec3 straight(const Edge& ends) const {
-    return 0.5 * (body_.nodes[static_cast<std::size_t>(ends[0])] +
-                  body_.nodes[static_cast<std::size_t>(ends[1])]);
+    return 0.5 * (body_.nodes[to_index(ends[0])] + body_.nodes[to_index(ends[1])]);
   }
 
   Vec3 bulge(std::size_t edge) const {
@@ -95,10 +92,10 @@ class Bulges {
     return elements;
   }
 
-  bool keeps_its_parts(std::size_t element) const {
+  bool has_valid_parts(std::size_t element) const {
     Nodes flat{}, curved{};
     for (std::size_t c = 0; c < 4; ++c)
-      flat[c] = curved[c] = body_.nodes[static_cast<std::size_t>(body_.tetrahedra[element][c])];
+      flat[c] = curved[c] = body_.nodes[to_index(body_.tetrahedra[element][c])];
     for (std::size_t e = 0; e < 6; ++e) {
       const Edge ends = edge_of(element, e);
       flat[4 + e] = curved[4 + e] = straight(ends);
@@ -106,25 +103,30 @@ class Bulges {
       if (found != index_.end()) curved[4 + e] = flat[4 + e] + bulge(found->second);
     }
     return std::all_of(parts_.begin(), parts_.end(), [&](const Part& part) {
-      return six_volumes(curved, part) >= kLeastShare * six_volumes(flat, part);
+      return six_volumes(curved, part) >= kLeastVolume * six_volumes(flat, part);
     });
   }
 
-  void halve_around(std::size_t element) {
+  /// @return false when all edges of the element are straight
+  bool halve_around(std::size_t element) {
+    bool halved = false;
     for (std::size_t e = 0; e < 6; ++e) {
       const auto found = index_.find(edge_of(element, e));
-      if (found != index_.end()) ++halvings_[found->second];
+      if (found == index_.end() || halvings_[found->second] >= kMostHalvings) continue;
+      ++halvings_[found->second];
+      halved = true;
     }
+    return halved;
   }
 
-  /// Straight edges are no longer named.
+  /// Removes straight edges.
   std::size_t write_back() {
-    std::vector<CurvedEdge> kept;
+    std::vector<CurvedEdge> curved;
     for (std::size_t e = 0; e < halvings_.size(); ++e) {
       const Edge ends = body_.curved_edges[e].ends;
-      if (halvings_[e] < kMostHalvings) kept.push_back({ends, straight(ends) + bulge(e)});
+      if (halvings_[e] < kMostHalvings) curved.push_back({ends, straight(ends) + bulge(e)});
     }
-    body_.curved_edges = std::move(kept);
+    body_.curved_edges = std::move(curved);
     return halvings_.size() -
            static_cast<std::size_t>(std::count(halvings_.begin(), halvings_.end(), 0));
   }
@@ -132,14 +134,14 @@ class Bulges {
   Body& body_;
   const std::vector<Part> parts_ = parts_with_volume();
   std::vector<int> halvings_;  ///< of each curved edge
-  std::vector<Vec3> bulge_;    ///< of each, as it came
+  std::vector<Vec3> bulge_;    ///< of each, before reduction
   std::map<Edge, std::size_t> index_;
 };
 
 }  // namespace
 
-std::size_t draw_back_edges(Body& body) {
-  return Bulges(body).draw_back();
+std::size_t reduce_bulges(Body& body) {
+  return Bulges(body).reduce();
 }
 
 }  // namespace palpate::mesher

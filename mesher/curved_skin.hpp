@@ -6,9 +6,11 @@
 
 namespace palpate::mesher {
 
-/// Halves the bulge of the curved edges of every element of which a part would turn over, or shrink
-/// to less than a third, when the element is divided at the middles of some of its edges.
-/// @return how many edges bulge less than before.
-std::size_t draw_back_edges(Body& body);
+/// Halves the bulge of the curved edges of an element until every part that the element is divided
+/// into at the middles of its edges has at least a third of its volume under straight edges. After
+/// six halvings an edge is straight and leaves Body::curved_edges.
+/// An element that is degenerate under straight edges stays as it is: check_elements refuses it.
+/// @return the number of edges whose bulge was reduced
+std::size_t reduce_bulges(Body& body);
 
 }  // namespace palpate::mesher

@@ -40,7 +40,7 @@ bool too_large(REAL* a, REAL* b, REAL* c, REAL* d, REAL*, REAL) {
 }
 
 /// TetGen frees its arrays with delete[]; the facets own theirs.
-void give(tetgenio& in, const Surface& shells) {
+void copy_to(tetgenio& in, const Surface& shells) {
   in.firstnumber = 0;
   in.numberofpoints = static_cast<int>(shells.points.size());
   in.pointlist = new REAL[3 * shells.points.size()];
@@ -75,7 +75,7 @@ double signed_volume6(const std::vector<Vec3>& x, const Tetrahedron& t) {
   return dot(cross(at(1) - at(0), at(2) - at(0)), at(3) - at(0));
 }
 
-Filling take(const tetgenio& out) {
+Filling filling_of(const tetgenio& out) {
   Filling filling;
   for (std::ptrdiff_t i = 0; i < out.numberofpoints; ++i) {
     const REAL* x = out.pointlist + 3 * i;
@@ -112,14 +112,14 @@ bool receive(std::FILE* pipe, std::vector<Record>& records) {
 
 [[noreturn]] void fill_as_child(const Surface& shells, std::string switches, int pipe_end) {
   tetgenio in, out;
-  give(in, shells);
+  copy_to(in, shells);
   in.tetunsuitable = too_large;
   try {
     tetrahedralize(switches.data(), &in, &out);
   } catch (int code) {
     _exit(code);
   }
-  const Filling filling = take(out);
+  const Filling filling = filling_of(out);
   std::FILE* pipe = fdopen(pipe_end, "wb");
   send(pipe, filling.nodes);
   send(pipe, filling.tetrahedra);
@@ -127,8 +127,8 @@ bool receive(std::FILE* pipe, std::vector<Record>& records) {
   _exit(std::fclose(pipe) == 0 ? EXIT_SUCCESS : EXIT_FAILURE);
 }
 
-/// TetGen 1.5.0 frees its memory twice when it throws and thereby crashes: a process of its own
-/// turns that into an error of this one.
+/// TetGen 1.5.0 frees its memory twice when it throws, which crashes the process: the child
+/// contains the crash.
 Filling fill_in_child(const Surface& shells, const std::string& switches,
                       const std::string& where) {
   int ends[2];
@@ -155,8 +155,8 @@ Triangle sorted(Triangle t) {
   return t;
 }
 
-/// The promise to the caller: given points first and every given triangle a face.
-void check_kept(const Filling& filling, const Surface& shells, const std::string& where) {
+/// Checks that the points of the shells come first and that their triangles are faces.
+void check_conforming(const Filling& filling, const Surface& shells, const std::string& where) {
   std::set<Triangle> faces;
   for (const Tetrahedron& t : filling.tetrahedra) {
     faces.insert({sorted({t[1], t[2], t[3]}), sorted({t[0], t[2], t[3]}),
@@ -169,13 +169,13 @@ void check_kept(const Filling& filling, const Surface& shells, const std::string
                                   [&](const Triangle& t) { return !faces.contains(sorted(t)); });
   if (!same_points || lost > 0) {
     throw Error(ErrorKind::Internal, where,
-                text("TetGen did not keep ", lost, " of ", shells.triangles.size(), " facets"),
+                text("TetGen changed ", lost, " of ", shells.triangles.size(), " facets"),
                 "change element_size or patch_spacing a little and report the case");
   }
 }
 
-/// Uniform filling with edges h takes about 1.5 V/h^3 points; twenty times that is no longer
-/// refinement towards a size but a geometry on which it does not end.
+/// A uniform filling with edges h takes about 1.5 V/h^3 points. Refinement that needs twenty times
+/// as many does not converge.
 std::size_t most_interior_points(const Surface& shells, double longest_edge) {
   const double uniform = 1.5 * std::abs(signed_volume(shells)) / std::pow(longest_edge, 3);
   return shells.points.size() * 20 + static_cast<std::size_t>(std::min(20 * uniform, 5e7));
@@ -185,12 +185,12 @@ std::size_t most_interior_points(const Surface& shells, double longest_edge) {
 
 Filling fill(const Surface& shells, double longest_edge, const std::string& where) {
   longest_edge_squared = longest_edge * longest_edge;
-  // p: from a surface; Y: keep its triangles; M: do not merge coplanar ones; q: radius-edge ratio
-  // and least dihedral angle; o: improve dihedral angles above 150 degrees; A: number the closed
-  // cells; S: at most so many points of its own, a bound on the time; Q: print nothing.
+  // p: from a surface; Y: preserve its triangles; M: do not merge coplanar ones; q: radius-edge
+  // ratio and least dihedral angle; o: improve dihedral angles above 150 degrees; A: number the
+  // closed cells; S: bound on the points it adds, and so on the time; Q: print nothing.
   const std::size_t most = most_interior_points(shells, longest_edge);
   Filling filling = fill_in_child(shells, text("pYMq1.3/12o/150AQS", most), where);
-  check_kept(filling, shells, where);
+  check_conforming(filling, shells, where);
   filling.cut_short = filling.nodes.size() >= shells.points.size() + most;
   return filling;
 }

@@ -16,13 +16,13 @@ struct Filling {
   bool cut_short = false;               ///< refinement was stopped before sizes and angles were met
 };
 
-/// Fill the outermost of `shells` with tetrahedra whose faces contain every triangle of every shell
-/// unchanged. Radius-edge ratio at most 1.3 away from the given triangles; tetrahedra with an edge
-/// longer than `longest_edge` (m) are refined, except where a point would come too close to a given
-/// triangle: edges next to the surfaces may exceed it by a fifth.
-/// TetGen runs in a child process.
-/// @throws Error(Geometry) when TetGen refuses the shells or breaks down, Error(Internal) when it
-///   does not keep them.
+/// Fills the outermost of `shells` with tetrahedra. Every triangle of every shell is a face of a
+/// tetrahedron. The radius-edge ratio is at most 1.3 away from the shells. Tetrahedra with an edge
+/// longer than `longest_edge` (m) are refined, except where a new point would come too close to a
+/// shell: edges beside the shells may be a fifth longer.
+/// TetGen runs in a child process, because TetGen 1.5.0 crashes when it reports an error.
+/// @throws Error(Geometry) when TetGen refuses the shells or crashes, Error(Internal) when its
+///   result lacks a triangle of the shells.
 Filling fill(const Surface& shells, double longest_edge, const std::string& where);
 
 }  // namespace palpate::mesher

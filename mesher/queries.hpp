@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Questions to a closed surface that need exact predicates.
+// Queries of closed surfaces by exact predicates.
 #pragma once
 
 #include <memory>
@@ -15,10 +15,10 @@ std::size_t count_self_intersections(const Surface& surface);
 /// Triangles whose corners lie exactly on one line.
 std::size_t count_degenerate_triangles(const Surface& surface);
 
-/// True when the two surfaces touch or cross.
+/// Whether the two surfaces touch or cross.
 bool surfaces_meet(const Surface& a, const Surface& b);
 
-/// Search tree over a closed, outward surface, which must outlive nothing: it is copied.
+/// A search tree over a copy of a closed surface that is oriented outward.
 class SurfaceQuery {
  public:
   struct Foot {
@@ -31,7 +31,7 @@ class SurfaceQuery {
   SurfaceQuery(SurfaceQuery&&) noexcept;
   SurfaceQuery& operator=(SurfaceQuery&&) noexcept;
 
-  /// True for points strictly inside.
+  /// Whether the point is strictly inside.
   bool contains(const Vec3& point) const;
 
   /// The nearest point of the surface.

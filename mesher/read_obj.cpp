@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto kOutOfRange = std::numeric_limits<std::size_t>::max();
 
-/// The number a word begins with; "nan" and "inf" are numbers here.
+/// The number at the start of a word; "nan" and "inf" count as numbers.
 template <typename Number>
 std::optional<Number> leading_number(const std::string& word) {
   Number value{};
@@ -53,11 +53,11 @@ std::optional<std::vector<std::size_t>> parse_face(std::istringstream& words,
   return corners;
 }
 
-/// What `o`, `g` and `usemtl` say of the faces that follow.
+/// The names that `o`, `g` and `usemtl` give to the faces after them.
 class CurrentNames {
  public:
   /// Other keywords change nothing.
-  void take(const std::string& keyword, std::istringstream& words) {
+  void update(const std::string& keyword, std::istringstream& words) {
     Names* const target = keyword == "o"        ? &object_
                           : keyword == "g"      ? &groups_
                           : keyword == "usemtl" ? &material_
@@ -67,15 +67,15 @@ class CurrentNames {
     for (std::string word; words >> word && word.front() != '#';) target->push_back(word);
   }
 
-  /// Place among the known names; they are added where they are new.
-  std::size_t place_in(std::vector<Names>& known) const {
+  /// Index into `known`, to which new names are appended.
+  std::size_t index_in(std::vector<Names>& known) const {
     Names all = object_;
     all.insert(all.end(), groups_.begin(), groups_.end());
     all.insert(all.end(), material_.begin(), material_.end());
     const auto found = std::find(known.begin(), known.end(), all);
-    const auto place = static_cast<std::size_t>(found - known.begin());
+    const auto index = static_cast<std::size_t>(found - known.begin());
     if (found == known.end()) known.push_back(all);
-    return place;
+    return index;
   }
 
  private:
@@ -113,9 +113,9 @@ Soup read_obj(const std::filesystem::path& path) {
       auto face = parse_face(words, soup.points.size());
       if (!face) refuse("a face with an index that is no number");
       soup.polygons.push_back(std::move(*face));
-      soup.names.push_back(names.place_in(soup.known_names));
+      soup.names.push_back(names.index_in(soup.known_names));
     } else {
-      names.take(keyword, words);
+      names.update(keyword, words);
     }
   }
   return soup;

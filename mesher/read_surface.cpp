@@ -35,7 +35,7 @@ std::string lower(std::string word) {
   return word;
 }
 
-/// Text readers stop at "nan" as at any other word; this tells in which lines it stands.
+/// The lines with a number that is not finite: text readers stop there without naming the line.
 std::vector<std::size_t> lines_not_finite(const std::filesystem::path& path) {
   std::ifstream in(path);
   std::vector<std::size_t> lines;
@@ -97,15 +97,15 @@ Soup read_soup(const std::filesystem::path& path) {
   return soup;
 }
 
-/// The unit with which the largest dimension is nearest to that of an organ or a limb.
+/// The unit with which the largest dimension is nearest to 150 mm, the size of an organ.
 std::string likely_unit(double file_dimension) {
   const std::pair<const char*, double> units[] = {
       {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}};
-  const auto oddness = [&](const auto& unit) {
+  const auto deviation = [&](const auto& unit) {
     return std::abs(std::log10(file_dimension * unit.second / 0.15));
   };
   return std::min_element(std::begin(units), std::end(units),
-                          [&](const auto& a, const auto& b) { return oddness(a) < oddness(b); })
+                          [&](const auto& a, const auto& b) { return deviation(a) < deviation(b); })
       ->first;
 }
 
@@ -122,7 +122,7 @@ void scale_to_metres(Soup& soup, const SurfaceFile& file) {
   for (Vec3& x : soup.points) x = file.unit * x;
 }
 
-/// Hands the names of a polygon on to the triangles made of it.
+/// Copies the names of a polygon to the triangles it is split into.
 struct NamesOfParts : pmp::Triangulate_faces::Default_visitor<Mesh> {
   explicit NamesOfParts(std::vector<std::size_t>& n) : names(&n) {}
   void before_subface_creations(Mesh::Face_index face) { whole = (*names)[face.idx()]; }
@@ -159,8 +159,7 @@ void check_geometry(const Surface& surface, const std::string& where) {
            "remove degenerate faces in a mesh editor");
   }
   if (const std::size_t pairs = count_self_intersections(surface); pairs > 0) {
-    refuse(where,
-           text("the surface cuts itself: ", counted(pairs, "pair"), " of triangles intersect"),
+    refuse(where, text("the surface self-intersects: ", counted(pairs, "pair"), " of triangles"),
            "resolve the self-intersections in a mesh editor");
   }
 }
@@ -168,7 +167,7 @@ void check_geometry(const Surface& surface, const std::string& where) {
 void turn_outward(Surface& surface, const std::string& where, const Log& log) {
   if (signed_volume(surface) >= 0) return;
   for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
-  note(log, where + ": the faces pointed inward; all were turned");
+  note(log, where + ": the faces were oriented inward; all were reversed");
 }
 
 }  // namespace
@@ -187,7 +186,7 @@ Surface read_surface(const SurfaceFile& file, const Log& log) {
   turn_outward(surface, where, log);
   const Bounds box = bounds(surface.points);
   note(log, text(where, ": ", surface.points.size(), " points, ", surface.triangles.size(),
-                 " triangles, closed, ", millimetres(box.low), " to ", millimetres(box.high)));
+                 " triangles, watertight, ", millimetres(box.low), " to ", millimetres(box.high)));
   return surface;
 }
 

@@ -236,13 +236,13 @@ void check_nesting(const NestedSurface& nested, double spacing, const std::strin
   }
   if (inverted > 0) {
     throw Error(ErrorKind::Geometry, where,
-                "remeshing turned " + counted(inverted, "boundary facet") + " over", remedy);
+                "remeshing inverted " + counted(inverted, "boundary facet"), remedy);
   }
   for (const Surface* surface : {&nested.response, &nested.boundary}) {
     if (const std::size_t pairs = count_self_intersections(*surface); pairs > 0) {
       throw Error(
           ErrorKind::Geometry, where,
-          text("remeshing made the surface cut itself (", counted(pairs, "pair"), " of triangles)"),
+          text("the remeshed surface self-intersects: ", counted(pairs, "pair"), " of triangles"),
           remedy);
     }
   }
@@ -258,7 +258,7 @@ NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const
   const std::size_t dropped = drop_short_features(mesh, sharp, kShortestFeature * settings.spacing);
   if (dropped > 0) {
     note(log, text(where, ": ", counted(dropped, "sharp edge"), " in fragments shorter than ",
-                   kShortestFeature, " patches are not kept"));
+                   kShortestFeature, " patches are smoothed"));
   }
   const Target target(input, mesh, sharp);
   for (unsigned round = 0; round < kRounds; ++round) {

@@ -24,10 +24,11 @@ struct RemeshSettings {
   bool curved = false;       ///< put the middles of boundary edges on the input surface
 };
 
-/// Remesh `input` isotropically to the spacing, keep its sharp edges, and subdivide each triangle;
-/// the new vertices, and the middles of curved edges, are put on the input surface, those of sharp
-/// edges on the sharp edges.
-/// @throws Error(Geometry) when the result folds over or cuts itself: the spacing is too coarse.
+/// Remeshes `input` isotropically to the spacing, preserves its sharp edges, and subdivides each
+/// triangle. The new vertices and the middles of curved edges are projected onto the input surface,
+/// those of sharp edges onto the sharp edges.
+/// @throws Error(Geometry) when the result has inverted facets or self-intersects, that is, when
+///   the spacing is too coarse.
 NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const std::string& where,
                      const Log& log);
 

@@ -1,41 +1,43 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the response surface carries: supports, inward directions.
+// The response surface of a body: inward directions and sites.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
-#include "mesher/mesher.hpp"
-#include "mesher/queries.hpp"
+#include "format/body.hpp"
+#include "mesher/remesh.hpp"
+#include "mesher/settings.hpp"
+#include "mesher/supports.hpp"
 #include "mesher/surface.hpp"
 
 namespace palpate::mesher {
 
-/// True where any support but a SurfaceSupport or a LabelSupport holds the point; `tolerance` (m)
-/// widens each support so that nodes lying on its border but for rounding are held.
-bool is_held(const std::vector<Support>& supports, const Vec3& point, double tolerance);
-
-/// Whether all corners are marked.
-bool all_held(const Triangle& t, const std::vector<std::uint8_t>& held);
-
-/// True for points inside a closed surface or within `distance` of it.
-bool is_near(const SurfaceQuery& surface, const Vec3& point, double distance);
-
 struct InwardDirections {
   std::vector<Vec3> inward;              ///< unit, one for each response vertex
-  std::size_t adjusted = 0;              ///< directions turned away from the mean normal
-  double largest_turn = 0;               ///< rad, of the one that was turned most
-  std::size_t turned_most = 0;           ///< its response vertex
+  std::size_t adjusted = 0;              ///< number of directions that differ from the mean normal
+  double largest_turn = 0;               ///< rad, largest angle to the mean normal
+  std::size_t turned_most = 0;           ///< response vertex with the largest angle
   std::vector<std::int32_t> unresolved;  ///< response vertices of triangles that break a condition
 };
 
-/// The negated angle-weighted mean of the facet normals around each response vertex, turned as far
-/// as the runtime needs it on every triangle with a site:
+/// The negated angle-weighted mean of the facet normals around each response vertex
+/// [Thuermer & Wuthrich 1998], turned until the conditions of the runtime are met on every triangle
+/// with a site:
 ///   |sum n_l u_l| >= 0.5 for all natural coordinates n, and u_l . outward normal < 0.
-/// Facets wholly held by a support do not count where others are there, so that next to a support
-/// the direction is that of the touchable side.
-/// @param held one entry for each boundary point, which begin with those of the response surface
+/// Facets whose nodes are all constrained do not count where others meet at the vertex, so that
+/// beside a support the direction is that of the free side.
+/// @param constrained one entry for each point of `boundary`, whose first points are the response
+///   vertices: fixed or on springs
 InwardDirections inward_directions(const Surface& response, const Surface& boundary,
-                                   const std::vector<std::uint8_t>& held);
+                                   const Marks& constrained);
+
+/// Writes Body::response and logs which vertices are no sites: those that are constrained, those
+/// within tool_radius of a constrained point, where the tool would press on the support instead of
+/// the body, and those without an inward direction.
+void set_response(Body& body, const NestedSurface& nested, const Marks& constrained,
+                  const Settings& settings);
+
+/// @throws Error(Geometry) when no response vertex is a site.
+void check_sites(const Body& body, const Settings& settings, const Surface& boundary);
 
 }  // namespace palpate::mesher

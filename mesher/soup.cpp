@@ -38,17 +38,17 @@ bool runs_along(const std::vector<std::size_t>& corners, const Edge& edge) {
 std::size_t merge_equal_points(Soup& soup) {
   std::map<Vec3, std::size_t> first;
   std::vector<std::size_t> target(soup.points.size());
-  std::vector<Vec3> kept;
+  std::vector<Vec3> points;
   for (std::size_t i = 0; i < soup.points.size(); ++i) {
-    const auto [entry, is_new] = first.try_emplace(soup.points[i], kept.size());
-    if (is_new) kept.push_back(soup.points[i]);
+    const auto [entry, is_new] = first.try_emplace(soup.points[i], points.size());
+    if (is_new) points.push_back(soup.points[i]);
     target[i] = entry->second;
   }
-  const std::size_t merged = soup.points.size() - kept.size();
+  const std::size_t merged = soup.points.size() - points.size();
   for (auto& corners : soup.polygons) {
     for (std::size_t& v : corners) v = target[v];
   }
-  soup.points = std::move(kept);
+  soup.points = std::move(points);
   return merged;
 }
 
@@ -62,7 +62,7 @@ std::vector<std::size_t> border_points(const Soup& soup) {
   return result;
 }
 
-/// What six printed digits, or a float, leave of the largest coordinate.
+/// The rounding error of coordinates printed with six digits or stored as floats.
 double rounding(const Soup& soup) {
   constexpr double kDigits = 2e-6;
   double largest = 0;
@@ -102,10 +102,10 @@ std::size_t drop_collapsed_polygons(Soup& soup) {
     while (corners.size() > 1 && corners.front() == corners.back()) corners.pop_back();
   }
   if (!soup.names.empty()) {
-    std::size_t kept = 0;
+    std::size_t count = 0;
     for (std::size_t p = 0; p < soup.polygons.size(); ++p)
-      if (soup.polygons[p].size() >= 3) soup.names[kept++] = soup.names[p];
-    soup.names.resize(kept);
+      if (soup.polygons[p].size() >= 3) soup.names[count++] = soup.names[p];
+    soup.names.resize(count);
   }
   return std::erase_if(soup.polygons, [](const auto& corners) { return corners.size() < 3; });
 }
@@ -113,18 +113,18 @@ std::size_t drop_collapsed_polygons(Soup& soup) {
 std::size_t drop_unused_points(Soup& soup) {
   constexpr auto unused = static_cast<std::size_t>(-1);
   std::vector<std::size_t> target(soup.points.size(), unused);
-  std::vector<Vec3> kept;
+  std::vector<Vec3> points;
   for (auto& corners : soup.polygons) {
     for (std::size_t& v : corners) {
       if (target[v] == unused) {
-        target[v] = kept.size();
-        kept.push_back(soup.points[v]);
+        target[v] = points.size();
+        points.push_back(soup.points[v]);
       }
       v = target[v];
     }
   }
-  const std::size_t dropped = soup.points.size() - kept.size();
-  soup.points = std::move(kept);
+  const std::size_t dropped = soup.points.size() - points.size();
+  soup.points = std::move(points);
   return dropped;
 }
 
@@ -132,7 +132,7 @@ std::size_t drop_unused_points(Soup& soup) {
   throw Error(ErrorKind::Geometry, where, std::move(problem), std::move(remedy));
 }
 
-/// Points whose polygons do not form a single fan: sheets that touch in a point only.
+/// Points whose polygons do not form a single fan: sheets that meet in a point only.
 std::size_t count_pinched_points(const Soup& soup,
                                  const std::map<Edge, std::vector<std::size_t>>& edges) {
   std::vector<std::vector<std::size_t>> around(soup.points.size());
@@ -164,8 +164,8 @@ void tidy(Soup& soup, const std::string& where, const Log& log) {
     note(log, text(where, ": merged ", counted(n, "duplicate point"), " of equal coordinates"));
   }
   if (const std::size_t n = close_seams(soup); n > 0) {
-    note(log, text(where, ": closed a seam: joined ", counted(n, "point"),
-                   " of its border to others at most ", millimetres(rounding(soup)), " away"));
+    note(log, text(where, ": closed a seam: merged ", counted(n, "point"),
+                   " of its border with others at most ", millimetres(rounding(soup)), " away"));
   }
   if (const std::size_t n = drop_collapsed_polygons(soup); n > 0) {
     note(log,
@@ -178,7 +178,7 @@ void tidy(Soup& soup, const std::string& where, const Log& log) {
 
 void check_entries(const Soup& soup, const std::string& where) {
   if (soup.polygons.empty()) {
-    refuse(where, "the file holds no faces", "export the surface again as a triangulated surface");
+    refuse(where, "the file has no faces", "export the surface again as a triangulated surface");
   }
   std::size_t short_faces = 0, bad_faces = 0, bad_points = 0, first_bad_point = 0;
   for (const auto& corners : soup.polygons) {
@@ -228,20 +228,20 @@ void check_manifold(const Soup& soup, const std::string& where) {
         "remove duplicate and inner faces in a mesh editor");
   }
   if (border > 0) {
-    refuse(where, "the surface is not closed: " + counted(border, "border edge"),
+    refuse(where, "the surface is not watertight: " + counted(border, "border edge"),
            "close its holes in a mesh editor; where they are seams whose points do not meet, merge "
            "vertices there");
   }
   if (const std::size_t pinched = count_pinched_points(soup, edges); pinched > 0) {
     refuse(where,
-           text("the surface is not manifold: sheets touch only in ", counted(pinched, "point")),
+           text("the surface is not manifold: sheets meet only in ", counted(pinched, "point")),
            "separate the sheets or join them along an edge in a mesh editor");
   }
 }
 
 void orient(Soup& soup, const std::string& where, const Log& log) {
   const auto edges = polygons_of_edges(soup);
-  std::vector<int> side(soup.polygons.size(), 0);  // +1 as listed, -1 to be turned
+  std::vector<int> side(soup.polygons.size(), 0);  // +1 as listed, -1 to be reversed
   std::size_t parts = 0, turned = 0;
   for (std::size_t seed = 0; seed < side.size(); ++seed) {
     if (side[seed] != 0) continue;
@@ -278,7 +278,7 @@ void orient(Soup& soup, const std::string& where, const Log& log) {
     if (side[p] < 0) std::reverse(soup.polygons[p].begin(), soup.polygons[p].end());
   }
   if (turned > 0) {
-    note(log, text(where, ": turned ", counted(turned, "face"), " that disagreed with the others"));
+    note(log, text(where, ": reoriented ", counted(turned, "face"), " to match the others"));
   }
 }
 

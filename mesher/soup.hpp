@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Polygons as a file lists them, and the checks that need no geometry: indices, finite numbers,
+// Polygons as listed in a file, and the checks that need no geometry: indices, finite numbers,
 // edges, orientation, parts.
 #pragma once
 
@@ -19,10 +19,10 @@ struct Soup {
   std::vector<Names> known_names;
 };
 
-/// Harmless repair, each step logged when it does something: points with exactly equal coordinates
-/// become one (an STL file names every corner anew), and so do points of a border that differ by
-/// 2e-6 of the largest coordinate or less; polygons that thereby lose their third corner
-/// and points of no polygon are dropped.
+/// Repairs what can be repaired without a choice, and logs each step that changes something.
+/// Points with equal coordinates are merged (an STL file repeats every corner), and so are points
+/// of a border that differ by at most 2e-6 of the largest coordinate. Polygons that are left with
+/// fewer than three corners and points of no polygon are dropped.
 void tidy(Soup& soup, const std::string& where, const Log& log);
 
 /// @throws Error(Geometry) when a polygon has fewer than three corners or an index out of range, a
@@ -30,10 +30,10 @@ void tidy(Soup& soup, const std::string& where, const Log& log);
 void check_entries(const Soup& soup, const std::string& where);
 
 /// @throws Error(Geometry) with the counts when an edge does not have exactly two polygons or a
-///   point joins several sheets.
+///   point connects several sheets.
 void check_manifold(const Soup& soup, const std::string& where);
 
-/// Turn the polygons so that neighbours agree; those turned are logged.
+/// Reverses polygons until neighbours are oriented alike, and logs how many.
 /// @pre check_manifold passed.
 /// @throws Error(Geometry) when no consistent orientation exists or there are several parts.
 void orient(Soup& soup, const std::string& where, const Log& log);

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "mesher/text.hpp"
+
 namespace palpate::mesher {
 
 Bounds bounds(const std::vector<Vec3>& points) {
@@ -14,6 +16,11 @@ Bounds bounds(const std::vector<Vec3>& points) {
     }
   }
   return box;
+}
+
+std::string extent_of(const std::vector<Vec3>& points) {
+  const Bounds box = bounds(points);
+  return text(millimetres(box.low), " to ", millimetres(box.high));
 }
 
 double largest_dimension(const std::vector<Vec3>& points) {

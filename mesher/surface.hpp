@@ -9,14 +9,14 @@
 
 namespace palpate::mesher {
 
-/// The names a face bears in its file: of its object, its groups, its material.
+/// The names of a face in its file: those of its object, its groups and its material.
 using Names = std::vector<std::string>;
 
 /// Closed and oriented outward once it has passed `read_surface`.
 struct Surface {
   std::vector<Vec3> points;  ///< m
   std::vector<Triangle> triangles;
-  std::vector<std::size_t> names;  ///< of each triangle, an index into known_names; may be empty
+  std::vector<std::size_t> names;  ///< of each triangle, index into known_names; may be empty
   std::vector<Names> known_names;
 };
 
@@ -27,6 +27,9 @@ struct Bounds {
 };
 
 Bounds bounds(const std::vector<Vec3>& points);
+
+/// "(0, 0, -3) mm to (50, 50, 20) mm": the corners of the bounds.
+std::string extent_of(const std::vector<Vec3>& points);
 double largest_dimension(const std::vector<Vec3>& points);
 
 /// (b - a) x (c - a): twice the area times the unit normal.

@@ -13,7 +13,7 @@ namespace palpate::mesher {
 
 using Log = std::function<void(std::string_view)>;
 
-/// The parts one after the other, numbers with up to six significant digits.
+/// Joins its arguments; numbers have up to six significant digits.
 template <typename... Part>
 std::string text(const Part&... parts) {
   std::ostringstream out;
@@ -31,11 +31,17 @@ inline std::string millimetres(const Vec3& x) {
   return text("(", 1e3 * x[0], ", ", 1e3 * x[1], ", ", 1e3 * x[2], ") mm");
 }
 
-/// "1 edge", "2 edges"
-inline std::string counted(std::size_t count, std::string_view noun) {
-  return text(count, " ", noun, count == 1 ? "" : "s");
+/// "1 vertex", "2 vertices"
+inline std::string counted(std::size_t count, std::string_view one, std::string_view many) {
+  return text(count, " ", count == 1 ? one : many);
 }
 
+/// "1 edge", "2 edges"
+inline std::string counted(std::size_t count, std::string_view noun) {
+  return counted(count, noun, text(noun, "s"));
+}
+
+/// Passes the line to the log, if there is one.
 inline void note(const Log& log, const std::string& line) {
   if (log) log(line);
 }

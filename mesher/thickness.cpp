@@ -40,7 +40,7 @@ double largest_on_ring(const Surface& boundary, const SurfaceQuery& query, const
   return largest;
 }
 
-/// Least cosine between the inward direction and the inward normals of the facets around a vertex.
+/// Smallest cosine between the inward direction and the inward normals of the facets at a vertex.
 std::vector<double> least_cosines(const Surface& boundary, const std::vector<Vec3>& inward) {
   std::vector<double> least(inward.size(), 1);
   for (const Triangle& t : boundary.triangles) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Surfaces others made, kept beside the checkout: broken ones are refused for the right reason,
+// Surfaces of other projects (tests/data/surfaces): broken ones are refused with the right reason,
 // clean ones become sound bodies.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 namespace palpate::mesher {
 namespace {
 
-std::filesystem::path shared_surface(const std::string& name) {
-  return palpate::test::source_folder().parent_path() / "shared/data/surfaces" / name;
+std::filesystem::path surface(const std::string& name) {
+  return palpate::test::source_folder() / "tests/data/surfaces" / name;
 }
 
 struct Broken {
@@ -32,8 +32,7 @@ void PrintTo(const Broken& broken, std::ostream* out) {
 class BrokenSurface : public testing::TestWithParam<Broken> {};
 
 TEST_P(BrokenSurface, IsRefusedForItsDefect) {
-  const auto path = shared_surface(GetParam().file);
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "not available: " << path;
+  const auto path = surface(GetParam().file);
   Settings s;
   s.surface = {path, GetParam().unit, ""};
   s.supports = {PlaneSupport{{0, 0, 0}, {0, 0, -1}}};
@@ -49,25 +48,25 @@ TEST_P(BrokenSurface, IsRefusedForItsDefect) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Shared, BrokenSurface,
+    Files, BrokenSurface,
     testing::Values(
-        Broken{"sofa_head.obj", 0.01, "not closed: 40 border edges"},
-        Broken{"sofa_dragon.obj", 0.01, "102 edges with more than two faces"},
-        Broken{"surfice_cortex_5124.obj", 0.001, "2 separate parts"},
-        Broken{"trimesh_empty.stl", 0.001, "no faces"},
-        Broken{"trimesh_joined_tetrahedra.obj", 0.1, "3 edges with more than two faces"},
-        Broken{"trimesh_multibody.stl", 0.1, "2 separate parts"},
-        Broken{"trimesh_not_convex.obj", 0.1, "12 edges with more than two faces"},
-        Broken{"trimesh_notenoughindices.obj", 0.001, "1 face with fewer than three indices"},
-        Broken{"trimesh_soup.stl", 0.1, "not closed: 300 border edges"},
-        Broken{"sofa_pelvis_f.obj", 10, "outside 1 mm .. 10 m"}));
+        Broken{"sofa/head.obj", 0.01, "not watertight: 40 border edges"},
+        Broken{"sofa/dragon.obj", 0.01, "102 edges with more than two faces"},
+        Broken{"surfice/cortex_5124.obj", 0.001, "2 separate parts"},
+        Broken{"trimesh/empty.stl", 0.001, "no faces"},
+        Broken{"trimesh/joined_tetrahedra.obj", 0.1, "3 edges with more than two faces"},
+        Broken{"trimesh/multibody.stl", 0.1, "2 separate parts"},
+        Broken{"trimesh/not_convex.obj", 0.1, "12 edges with more than two faces"},
+        Broken{"trimesh/notenoughindices.obj", 0.001, "1 face with fewer than three indices"},
+        Broken{"trimesh/soup.stl", 0.1, "not watertight: 300 border edges"},
+        Broken{"sofa/pelvis_f.obj", 10, "outside 1 mm .. 10 m"}));
 
 struct Clean {
   std::string file;
   double unit;  // m
   double patch, element;
-  double held_below;  // m, height of the plane support
-  int euler;          // V - E + F of its boundary: 2 - 2 genus
+  double fixed_below;  // m, height of the plane support
+  int euler;           // V - E + F of its boundary: 2 - 2 genus
 };
 
 void PrintTo(const Clean& clean, std::ostream* out) {
@@ -78,13 +77,12 @@ class CleanSurface : public testing::TestWithParam<Clean> {};
 
 TEST_P(CleanSurface, BecomesASoundBody) {
   const Clean& clean = GetParam();
-  const auto path = shared_surface(clean.file);
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "not available: " << path;
+  const auto path = surface(clean.file);
   Settings s;
   s.surface = {path, clean.unit, ""};
   s.patch_spacing = clean.patch;
   s.element_size = clean.element;
-  s.supports = {PlaneSupport{{0, 0, clean.held_below}, {0, 0, -1}}};
+  s.supports = {PlaneSupport{{0, 0, clean.fixed_below}, {0, 0, -1}}};
   const Body body = mesh(s);
   test::expect_sound(body);
   test::expect_nested(body, static_cast<int>(std::lround(clean.patch / clean.element)));
@@ -92,18 +90,17 @@ TEST_P(CleanSurface, BecomesASoundBody) {
 }
 
 INSTANTIATE_TEST_SUITE_P(
-    Shared, CleanSurface,
-    testing::Values(Clean{"sofa_liver2.obj", 0.1, 0.010, 0.005, 1.455, 2},
-                    Clean{"sofa_tongue.obj", 0.02, 0.006, 0.003, -0.058, 2},
-                    Clean{"sofa_pelvis_f.obj", 0.1, 0.006, 0.003, -0.006, 0},
-                    Clean{"trimesh_ballA.off", 0.01, 0.010, 0.010, -0.055, 2},
-                    Clean{"trimesh_nancolor.obj", 0.1, 0.010, 0.010, -0.045, 2},
-                    Clean{"trimesh_negative_indices.obj", 0.05, 0.010, 0.010, -0.045, 2},
-                    Clean{"trimesh_quadknot.obj", 0.001, 0.006, 0.006, -0.150, 0}));
+    Files, CleanSurface,
+    testing::Values(Clean{"sofa/liver2.obj", 0.1, 0.010, 0.005, 1.455, 2},
+                    Clean{"sofa/tongue.obj", 0.02, 0.006, 0.003, -0.058, 2},
+                    Clean{"sofa/pelvis_f.obj", 0.1, 0.006, 0.003, -0.006, 0},
+                    Clean{"trimesh/ball_a.off", 0.01, 0.010, 0.010, -0.055, 2},
+                    Clean{"trimesh/nancolor.obj", 0.1, 0.010, 0.010, -0.045, 2},
+                    Clean{"trimesh/negative_indices.obj", 0.05, 0.010, 0.010, -0.045, 2},
+                    Clean{"trimesh/quadknot.obj", 0.001, 0.006, 0.006, -0.150, 0}));
 
 TEST(ThinBowl, IsRefusedForADepthBeyondItsWall) {
-  const auto path = shared_surface("sofa_SaladBowl.obj");
-  if (!std::filesystem::exists(path)) GTEST_SKIP() << "not available: " << path;
+  const auto path = surface("sofa/salad_bowl.obj");
   Settings s;
   s.surface = {path, 0.4, ""};  // 250 mm wide, its wall about 6 mm
   s.supports = {PlaneSupport{{0, 0, 0.01}, {0, 0, -1}}};
@@ -115,6 +112,23 @@ TEST(ThinBowl, IsRefusedForADepthBeyondItsWall) {
   } catch (const Error& error) {
     EXPECT_THAT(error.problem(), testing::HasSubstr("a depth of 10 mm is more than 0.8 of the"));
     EXPECT_THAT(error.remedy(), testing::HasSubstr("reduce the depth below"));
+  }
+}
+
+// TetGen leaves a tetrahedron without volume under the facets of this surface at this spacing.
+TEST(Aneurysm, IsRefusedForADegenerateTetrahedron) {
+  Settings s;
+  s.surface = {surface("sofa/aneurysm3d_1.off"), 0.01, ""};
+  s.supports = {PlaneSupport{{0, 0, -0.132661}, {0, 0, -1}}};
+  s.patch_spacing = s.element_size = 0.013833;
+  s.tool_radius = 0.0166;
+  try {
+    mesh(s);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Geometry);
+    EXPECT_THAT(error.problem(), testing::HasSubstr("is degenerate"));
+    EXPECT_THAT(error.remedy(), testing::HasSubstr("change patch_spacing or element_size"));
   }
 }
 

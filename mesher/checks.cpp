@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "format/error.hpp"
+#include "format/to_index.hpp"
+#include "mesher/text.hpp"
+#include "mesher/thickness.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+constexpr double kDeepestFraction = 0.8;  // of the thickness under the tool
+constexpr double kFewestPatches = 3;      // along the largest extent of the body
+constexpr double kMostNodes = 2e6;
+
+// Of the volume of a regular tetrahedron with the same longest edge.
+constexpr double kSmallestVolume = 1e-9;
+
+[[noreturn]] void refuse_setting(const std::string& problem, const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, "mesh", problem, remedy);
+}
+
+bool positive(double value) {
+  return std::isfinite(value) && value > 0;
+}
+
+bool not_negative(double value) {
+  return std::isfinite(value) && value >= 0;
+}
+
+void check_lengths(const Settings& s) {
+  if (!positive(s.patch_spacing) || !positive(s.element_size)) {
+    refuse_setting("patch_spacing and element_size must be positive lengths", "correct the case");
+  }
+  if (!std::isfinite(s.interior_growth) || s.interior_growth < 1) {
+    refuse_setting(text("interior_growth is ", s.interior_growth, ", below 1"),
+                   "give 1 for a uniform mesh or more for a coarser interior");
+  }
+  if (!(s.feature_angle > 0 && s.feature_angle <= 180)) {
+    refuse_setting(text("feature_angle is ", s.feature_angle, " degrees"), "give 0 .. 180");
+  }
+  if (!positive(s.tool_radius) || !not_negative(s.depth) || !not_negative(s.lateral_travel)) {
+    refuse_setting("tool_radius must be positive, depth and lateral_travel not negative",
+                   "correct the case");
+  }
+}
+
+void check_unit(const SurfaceFile& file) {
+  if (positive(file.unit)) return;
+  refuse_setting(text("the unit of ", file.path.string(), " is ", file.unit, " m"),
+                 "give a positive length, 0.001 for millimetres");
+}
+
+void check_springs(const Springs& springs) {
+  if (not_negative(springs.normal_stiffness) && not_negative(springs.tangential_stiffness) &&
+      springs.normal_stiffness + springs.tangential_stiffness != 0) {
+    return;
+  }
+  refuse_setting(text("springs of ", springs.normal_stiffness, " and ",
+                      springs.tangential_stiffness, " N/m^3"),
+                 "give stiffnesses that are not negative, one of them positive");
+}
+
+void check_support(const Support& support) {
+  const auto* plane = std::get_if<PlaneSupport>(&support);
+  if (plane && !positive(norm(plane->normal))) {
+    refuse_setting("the normal of a plane support has no direction", "correct the case");
+  }
+  const auto* near = std::get_if<SurfaceSupport>(&support);
+  if (near == nullptr) return;
+  check_unit(near->surface);
+  if (!not_negative(near->distance)) {
+    refuse_setting(text("the distance of a surface support is ", near->distance, " m"),
+                   "give 0 or more");
+  }
+}
+
+double largest_extent(const Surface& skin) {
+  const Bounds box = bounds(skin.points);
+  const Vec3 span = box.high - box.low;
+  return std::max({span[0], span[1], span[2]});
+}
+
+void check_spacing(const Settings& settings, double largest) {
+  if (kFewestPatches * settings.patch_spacing <= largest) return;
+  throw Error(ErrorKind::Configuration, settings.surface.path.string(),
+              text("the largest extent of the body is ", millimetres(largest),
+                   ", too little for patches of ", millimetres(settings.patch_spacing)),
+              text("check the unit of the surface, or reduce patch_spacing below ",
+                   millimetres(largest / kFewestPatches)));
+}
+
+void check_lateral_travel(const Settings& settings, double largest) {
+  if (settings.lateral_travel <= largest) return;
+  throw Error(ErrorKind::Geometry, settings.surface.path.string(),
+              text("a lateral travel of ", millimetres(settings.lateral_travel),
+                   " is longer than the body, ", millimetres(largest)),
+              "reduce lateral_travel to what a tool slides before it slips, or check the unit of "
+              "the surface");
+}
+
+void check_counts(const Settings& settings, const Surface& skin) {
+  const double h = settings.element_size;
+  const double facets = area(skin) / (0.43 * h * h);  // equilateral triangles of edge h
+  const double interior = 1.5 * signed_volume(skin) / std::pow(settings.interior_growth * h, 3);
+  if (facets > kMostNodes || interior > kMostNodes) {
+    throw Error(ErrorKind::Configuration, settings.surface.path.string(),
+                text("an element_size of ", millimetres(h), " needs about ", facets,
+                     " boundary facets and ", interior, " interior nodes, more than ", kMostNodes),
+                "increase element_size or interior_growth, or check the unit of the surface");
+  }
+}
+
+}  // namespace
+
+void check_settings(const Settings& settings) {
+  check_lengths(settings);
+  for (const Springs& springs : settings.foundation) check_springs(springs);
+  for (const Support& support : settings.supports) check_support(support);
+  for (const Springs& springs : settings.foundation) check_support(springs.where);
+  check_unit(settings.surface);
+  for (const SurfaceFile& inclusion : settings.inclusions) check_unit(inclusion);
+}
+
+void check_sizes(const Settings& settings, const Surface& skin) {
+  const double largest = largest_extent(skin);
+  check_spacing(settings, largest);
+  check_lateral_travel(settings, largest);
+  check_counts(settings, skin);
+}
+
+void check_depth(const Body& body, const Settings& settings, const Surface& boundary) {
+  if (settings.depth <= 0) return;
+  const auto thickness = thickness_under_tool(boundary, body.response.inward, settings.tool_radius);
+  std::size_t thin = 0, thinnest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < thickness.size(); ++v) {
+    if (body.response.is_site[v] == 0) continue;
+    if (settings.depth > kDeepestFraction * thickness[v]) ++thin;
+    if (thickness[v] < least) {
+      least = thickness[v];
+      thinnest = v;
+    }
+  }
+  if (thin > 0) {
+    throw Error(ErrorKind::Geometry, settings.surface.path.string(),
+                text("a depth of ", millimetres(settings.depth), " is more than ", kDeepestFraction,
+                     " of the thickness at ", counted(thin, "site"), ": only ", millimetres(least),
+                     " at ", millimetres(boundary.points[thinnest])),
+                text("reduce the depth below ", millimetres(kDeepestFraction * least),
+                     " or fix the thin part by a support"));
+  }
+  note(settings.log, text("depth: ", millimetres(settings.depth), " of at least ",
+                          millimetres(least), " under every site"));
+}
+
+void check_elements(const Body& body, const std::string& where) {
+  for (const Tetrahedron& element : body.tetrahedra) {
+    const auto corner = [&](std::size_t k) { return body.nodes[to_index(element[k])]; };
+    double longest = 0;
+    for (std::size_t i = 0; i < 4; ++i)
+      for (std::size_t j = 0; j < i; ++j) longest = std::max(longest, norm(corner(i) - corner(j)));
+    const double regular = longest * longest * longest / (6 * std::numbers::sqrt2);
+    const double fraction = volume(body.nodes, element) / regular;
+    if (fraction > kSmallestVolume) continue;
+    const Vec3 centroid = 0.25 * (corner(0) + corner(1) + corner(2) + corner(3));
+    throw Error(ErrorKind::Geometry, where,
+                text("a tetrahedron near ", millimetres(centroid), " is degenerate: its volume is ",
+                     fraction, " of that of a regular one with the same longest edge, ",
+                     millimetres(longest)),
+                "change patch_spacing or element_size a little, or smooth the surface there");
+  }
+}
+
+void check_volumes(const Quality& quality, const Surface& boundary, const std::string& where) {
+  const double enclosed = signed_volume(boundary);
+  if (!(std::abs(quality.volume - enclosed) <= 1e-9 * enclosed)) {
+    throw Error(ErrorKind::Internal, where,
+                text("the tetrahedra fill ", quality.volume, " m^3 of the ", enclosed,
+                     " m^3 enclosed by the boundary"),
+                "change element_size or patch_spacing a little and report the case");
+  }
+}
+
+}  // namespace palpate::mesher

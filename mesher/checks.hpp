@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Checks of the settings before meshing and of the body after it.
+#pragma once
+
+#include <string>
+
+#include "format/body.hpp"
+#include "mesher/quality.hpp"
+#include "mesher/settings.hpp"
+#include "mesher/surface.hpp"
+
+namespace palpate::mesher {
+
+/// @throws Error(Configuration) for a setting out of range.
+void check_settings(const Settings& settings);
+
+/// Compares the settings with the size of the skin before anything is computed.
+/// @throws Error(Configuration) for patches larger than a third of the body, which usually means a
+///   wrong unit, or elements so small that the mesh would have more than two million nodes;
+///   Error(Geometry) for a lateral travel longer than the body, which every drag would leave.
+void check_sizes(const Settings& settings, const Surface& skin);
+
+/// @throws Error(Geometry) when the depth is more than 0.8 of the thickness under a site: nominal
+///   strains beyond -0.8 are outside the range of the laws and of a mesh of this kind.
+void check_depth(const Body& body, const Settings& settings, const Surface& boundary);
+
+/// @throws Error(Geometry) when a tetrahedron has no volume to speak of: TetGen leaves such slivers
+///   under facets that it may not change.
+void check_elements(const Body& body, const std::string& where);
+
+/// @throws Error(Internal) when the tetrahedra do not fill the boundary.
+void check_volumes(const Quality& quality, const Surface& boundary, const std::string& where);
+
+}  // namespace palpate::mesher

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the mesher is asked to make.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "format/vec3.hpp"
+
+namespace palpate::mesher {
+
+/// A closed triangulated surface on disk (OFF, OBJ, PLY, STL) and the length of its unit.
+struct SurfaceFile {
+  std::filesystem::path path;
+  double unit = 1.0;        ///< m per unit of the file
+  std::string region_name;  ///< material region of its interior
+};
+
+/// Contains the nodes on the side of the plane to which `normal` points.
+struct PlaneSupport {
+  Vec3 point{};   ///< m
+  Vec3 normal{};  ///< unit
+};
+/// Contains the nodes inside an axis-aligned box.
+struct BoxSupport {
+  Vec3 low{}, high{};  ///< m
+};
+/// Contains the nodes inside a sphere.
+struct SphereSupport {
+  Vec3 centre{};      ///< m
+  double radius = 0;  ///< m
+};
+/// Contains the nodes inside a second closed surface (a bone) or nearer to it than `distance`.
+struct SurfaceSupport {
+  SurfaceFile surface;
+  double distance = 0;  ///< m
+};
+/// Contains the nodes on the faces of the skin that have this name in its file.
+struct LabelSupport {
+  std::string label;
+};
+using Support = std::variant<PlaneSupport, BoxSupport, SphereSupport, SurfaceSupport, LabelSupport>;
+
+/// An elastic foundation under the boundary facets whose nodes all lie inside `where`.
+struct Springs {
+  Support where;
+  double normal_stiffness = 0;      ///< N/m^3, along the normal of the facet
+  double tangential_stiffness = 0;  ///< N/m^3, across it
+};
+
+struct Settings {
+  std::string name;
+  SurfaceFile surface;                  ///< the outer skin
+  std::vector<SurfaceFile> inclusions;  ///< disjoint closed surfaces strictly inside the skin
+  std::vector<Support> supports;        ///< surface nodes inside any of them are fixed
+  std::vector<Springs> foundation;      ///< stiffnesses add where foundations overlap
+  double patch_spacing = 0.010;         ///< m, edge length of the response surface
+  double element_size = 0.005;          ///< m, edge length of the boundary facets
+  double interior_growth = 1.5;         ///< target of the largest interior edge over element_size
+  double feature_angle = 45;            ///< degrees; sharper edges of the input are kept
+  bool curved_facets = true;            ///< writes Body::curved_edges; without, facets are flat
+  double tool_radius = 0.005;           ///< m, smallest distance of sites from supports
+  double depth = 0;                     ///< m, of the planned indentation; 0 skips the check
+  double lateral_travel = 0;            ///< m, of the planned drags; 0 skips the check
+  std::function<void(std::string_view)> log;  ///< receives one line for each step; may be empty
+};
+
+}  // namespace palpate::mesher

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "mesher/mesher.hpp"
+#include "tests/unit/mesher/body_checks.hpp"
+#include "tests/unit/mesher/refusals.hpp"
+#include "tests/unit/mesher/shapes.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+using std::numbers::pi;
+using test::cube;
+using test::expect_refused;
+using test::off_text;
+using test::settings_for;
+using test::TemporaryFile;
+
+TEST(Inclusions, AreTheirOwnRegionAndVolumesAddUp) {
+  constexpr double radius = 0.012;
+  const test::TemporaryFile skin("skin.off",
+                                 test::off_text(test::box({-0.03, -0.03, 0}, {0.03, 0.03, 0.04})));
+  const test::TemporaryFile ball("ball.off",
+                                 test::off_text(test::sphere({0, 0, 0.022}, radius, 120)));
+  Settings s;
+  s.surface = {skin.path(), 1.0, "fat"};
+  s.inclusions = {{ball.path(), 1.0, "nodule"}};
+  s.supports = {BoxSupport{{-1, -1, -1}, {1, 1, 0}}};
+  s.patch_spacing = 0.006;
+  s.element_size = 0.003;
+  const Body body = mesh(s);
+  test::expect_sound(body);
+  EXPECT_EQ(body.region_names, (std::vector<std::string>{"fat", "nodule"}));
+  EXPECT_NEAR(test::volume_of_region(body, -1) / (0.06 * 0.06 * 0.04), 1, 1e-9);
+  // Short by 3 h^2/8r^2 = 2.3 % at h = 3 mm or a little less; no triangle lies outside.
+  const double part = test::volume_of_region(body, 1) / (4 * pi / 3 * std::pow(radius, 3));
+  EXPECT_GT(part, 0.97);
+  EXPECT_LT(part, 1);
+  EXPECT_NEAR(test::volume_of_region(body, 0) + test::volume_of_region(body, 1),
+              test::volume_of_region(body, -1), 1e-15);
+}
+
+TEST(Inclusions, AreRefusedWhereTheyIntersectNestOrLieOutside) {
+  const TemporaryFile skin("skin.off", off_text(cube()));
+  const auto with = [&](const TemporaryFile& inclusion) {
+    Settings s = settings_for(skin.path());
+    s.inclusions = {{inclusion.path(), 1, "nodule"}};
+    return s;
+  };
+  const TemporaryFile outside("outside.off", off_text(test::sphere({0.2, 0, 0}, 0.01, 16)));
+  expect_refused(with(outside), "outside.off", "outside the skin", "unit");
+  const TemporaryFile across("across.off", off_text(test::sphere({0, 0.02, 0.02}, 0.01, 16)));
+  expect_refused(with(across), "across.off", "intersects the skin", "move");
+
+  const TemporaryFile inner("inner.off", off_text(test::sphere({0.025, 0.025, 0.025}, 0.005, 16)));
+  const TemporaryFile outer("outer.off", off_text(test::sphere({0.025, 0.025, 0.025}, 0.015, 16)));
+  const TemporaryFile beside("beside.off", off_text(test::sphere({0.03, 0.025, 0.025}, 0.005, 16)));
+  Settings nested = with(outer);
+  nested.inclusions.push_back({inner.path(), 1, "core"});
+  expect_refused(nested, "outer.off", "contains", "nested inclusions");
+  Settings crossed = with(inner);
+  crossed.inclusions.push_back({beside.path(), 1, "core"});
+  expect_refused(crossed, "inner.off", "intersects", "apart");
+}
+
+}  // namespace
+}  // namespace palpate::mesher
