@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """test_report_page.py <write_sample_report> <chromium>
 
-Write the sample reports, open them in a browser without a network or a GPU, and hold what the page
-shows against the same figures computed here from the embedded data.
+Writes the sample reports, opens them in a browser without a network or a GPU, and compares what the
+page shows with the same figures computed here from the embedded data.
 """
 import base64
 import html.parser
@@ -16,6 +16,8 @@ import tempfile
 import unittest
 
 WRITER, BROWSER = sys.argv[1:3]
+if BROWSER.endswith("-NOTFOUND"):
+    sys.exit("Chromium not found: install the Debian package chromium")
 FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run",
          "--disable-background-networking", "--disable-component-update", "--disable-sync",
          "--hide-scrollbars"]
