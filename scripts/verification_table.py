@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Makes docs/VERIFICATION.md from the rows that the tests of the label `verification` leave.
+"""Makes docs/VERIFICATION.md from the rows that the tests of the label `verification` write.
 
 usage: verification_table.py [--check] FOLDER    (FOLDER: build/release/verification)
 
---check compares with the committed page instead. Problems, quantities, references, sources and
-bounds must be the same; what was computed may differ by a twentieth of its bound, which other
-processors and compilers make of a solver that stops at a tolerance. Rows of a problem that was
-skipped on this machine, with its reason, are not missed."""
+--check compares with the committed page instead. Problems, quantities, references, kinds, sources
+and bounds must be equal. Computed values may differ by a twentieth of their bound, because a solver
+that stops at a tolerance depends on processor and compiler to that extent."""
 import json
 import sys
 from pathlib import Path
@@ -17,32 +16,41 @@ DRIFT = 0.05  # of the bound
 ROUNDING = 6e-6  # of six printed digits
 HEAD = """# Verification
 
-Made by `scripts/verification_table.py build/release/verification` from the rows that
-`ctest --preset release -L verification` leaves; not written by hand, and held to them by the last of these tests
-(`verification_page`). Marks of the sources: [P] printed in a public source, [C] computed for this project
-independently of the solver, [R] recalled from the literature. A test fails when an error exceeds its bound.
+`scripts/verification_table.py build/release/verification` makes this page from the rows that
+`ctest --preset release -L verification` writes.
+The last of these tests, `verification_page`, compares the page with the rows.
+A test fails when an error exceeds its bound.
+
+The column *compared with* says what the reference is:
+
+| compared with | meaning | independent of the solver |
+|---|---|---|
+| closed form | a formula of the theory, evaluated in the test | yes |
+| theory | a rate or an identity that the theory demands | yes |
+| published value | a number printed in a public source | yes |
+| recalled value | a number or trend recalled from the literature, not checked against it | yes, if recalled correctly |
+| other solver | a program that shares no code with the solver | yes |
+| same solver | the same program on another mesh, element or setting | no: it shows consistency |
+| calibration | a value that a constant of the solver was chosen to meet | no: it detects changes |
 """
 
 
 def read_rows(folder):
-    """Rows by (problem, quantity), and the reasons of skipped problems."""
-    rows, skipped = {}, {}
+    """Rows by (problem, quantity)."""
+    rows = {}
     for file in sorted(folder.glob("*.jsonl")):
         for line in file.read_text(encoding="utf-8").splitlines():
             row = json.loads(line)
-            if "skipped" in row:
-                skipped[row["problem"]] = row["skipped"]
-                continue
             key = (row["problem"], row["quantity"])
             if key in rows:
                 sys.exit(f"{file}: a second row {key}; remove {folder} and run the tests again")
             rows[key] = row
     if not rows:
         sys.exit(f"{folder}: no rows; run `ctest --preset release -L verification` first")
-    return rows, skipped
+    return rows
 
 
-def share(row, value):
+def with_unit(row, value):
     """An error or a bound, with its unit."""
     if row["relative"]:
         return f"{100 * value:.2g} %"
@@ -52,7 +60,7 @@ def share(row, value):
 def cells_of(row):
     unit = "" if row["unit"] == "1" else " " + row["unit"]
     return (row["quantity"], f"{row['computed']:.6g}{unit}", f"{row['reference']:.6g}{unit}",
-            row["source"], share(row, row["error"]), share(row, row["bound"]))
+            row["kind"], row["source"], with_unit(row, row["error"]), with_unit(row, row["bound"]))
 
 
 def page_of(rows):
@@ -61,8 +69,8 @@ def page_of(rows):
     for key in sorted(rows):
         if key[0] != problem:
             problem = key[0]
-            text += (f"\n## {problem}\n\n| quantity | computed | reference | source | error | bound |\n"
-                     "|---|---|---|---|---|---|\n")
+            text += (f"\n## {problem}\n\n| quantity | computed | reference | compared with | source | error | bound |\n"
+                     "|---|---|---|---|---|---|---|\n")
         text += "| " + " | ".join(cells_of(rows[key])) + " |\n"
     return text
 
@@ -78,11 +86,10 @@ def committed_cells():
     return cells
 
 
-def differences(rows, skipped, committed):
-    """One line for each way in which the committed page is not what the tests give."""
+def differences(rows, committed):
+    """One line for each difference between the committed page and the rows."""
     for key in sorted(set(committed) - set(rows)):
-        if key[0] not in skipped:
-            yield f"{key[0]}: {key[1]}: on the page, but no test gave it"
+        yield f"{key[0]}: {key[1]}: on the page, but no test wrote it"
     for key in sorted(rows):
         row, now = rows[key], cells_of(rows[key])
         where = f"{key[0]}: {key[1]}"
@@ -90,7 +97,7 @@ def differences(rows, skipped, committed):
             yield f"{where}: not on the page"
             continue
         page = committed[key]
-        for name, column in (("reference", 2), ("source", 3), ("bound", 5)):
+        for name, column in (("reference", 2), ("kind", 3), ("source", 4), ("bound", 6)):
             if now[column] != page[column]:
                 yield f"{where}: {name} {now[column]}, on the page {page[column]}"
         printed = float(page[1].split()[0])
@@ -104,19 +111,17 @@ def main(arguments):
     folders = [argument for argument in arguments if argument != "--check"]
     if len(folders) != 1:
         sys.exit(__doc__)
-    rows, skipped = read_rows(Path(folders[0]))
+    rows = read_rows(Path(folders[0]))
     if not check:
-        if skipped:
-            sys.exit("not made: " + "; ".join(f"{p} was skipped, {why}" for p, why in skipped.items()))
         PAGE.write_text(page_of(rows), encoding="utf-8")
         return 0
     if not PAGE.exists():
         sys.exit(f"{PAGE} is missing; make it: scripts/verification_table.py {folders[0]}")
-    found = list(differences(rows, skipped, committed_cells()))
+    found = list(differences(rows, committed_cells()))
     for line in found:
         print(line)
     if found:
-        print(f"docs/VERIFICATION.md is not what the tests give; make it anew: "
+        print(f"docs/VERIFICATION.md differs from the rows; make it again: "
               f"scripts/verification_table.py {folders[0]}")
     return 1 if found else 0
 

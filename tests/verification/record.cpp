@@ -14,7 +14,27 @@ namespace palpate::test {
 
 namespace {
 
-/// Appends to the file of the running test, emptied when it is asked for the first time.
+std::string text(Reference kind) {
+  switch (kind) {
+    case Reference::ClosedForm:
+      return "closed form";
+    case Reference::Theory:
+      return "theory";
+    case Reference::Published:
+      return "published value";
+    case Reference::Recalled:
+      return "recalled value";
+    case Reference::OtherSolver:
+      return "other solver";
+    case Reference::SameSolver:
+      return "same solver";
+    case Reference::Calibration:
+      return "calibration";
+  }
+  return "";
+}
+
+/// Appends to the file of the running test; the first call truncates it.
 void append(const nlohmann::ordered_json& row) {
   static std::set<std::string> begun;
   const auto* info = testing::UnitTest::GetInstance()->current_test_info();
@@ -25,7 +45,7 @@ void append(const nlohmann::ordered_json& row) {
   const bool first = begun.insert(name).second;
   std::ofstream out(folder / name, first ? std::ios::trunc : std::ios::app);
   out << row.dump() << "\n" << std::flush;
-  ASSERT_TRUE(out.good()) << "the row cannot be written to " << folder / name;
+  ASSERT_TRUE(out.good()) << "cannot write the row to " << folder / name;
 }
 
 }  // namespace
@@ -40,14 +60,11 @@ void verify(const Comparison& c) {
           {"unit", c.unit},
           {"computed", c.computed},
           {"reference", c.reference},
+          {"kind", text(c.kind)},
           {"source", c.source},
           {"error", error},
           {"bound", c.bound},
           {"relative", relative}});
-}
-
-void record_skipped(const std::string& problem, const std::string& reason) {
-  append({{"problem", problem}, {"skipped", reason}});
 }
 
 }  // namespace palpate::test

@@ -1,36 +1,43 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A verification test says what it compares with what, and leaves it as a row of a table from which
-// scripts/verification_table.py makes docs/VERIFICATION.md.
+// Each comparison of a verification test becomes a row of docs/VERIFICATION.md, which
+// scripts/verification_table.py makes.
 #pragma once
 
 #include <string>
 
 namespace palpate::test {
 
-/// What an error is measured in, and with it its bound.
+/// What the reference is, and so what the comparison shows.
+enum class Reference {
+  ClosedForm,   ///< a formula of the theory, evaluated in the test
+  Theory,       ///< a rate or an identity that the theory demands
+  Published,    ///< a number printed in a public source
+  Recalled,     ///< a number or trend remembered from the literature and not checked against it
+  OtherSolver,  ///< computed by a program that shares no code with this one
+  SameSolver,   ///< the same program on another mesh, element or setting
+  Calibration   ///< a value that a constant of the solver was chosen to meet
+};
+
+/// The unit of an error and of its bound.
 enum class Error {
   Relative,  ///< to the reference
   Absolute   ///< in the unit of the quantity
 };
 
 struct Comparison {
-  std::string problem;   ///< heading under which the row stands, "Hertz"
+  std::string problem;   ///< heading of the table, "Hertz"
   std::string quantity;  ///< "force at nu = 0.3, 12 600 nodes"
   std::string unit;      ///< of both numbers; "1" when dimensionless
   double computed;
   double reference;
-  /// Where the reference comes from, after its mark: [P] printed in a public source, [C] computed
-  /// for this project independently of the solver, [R] recalled from the literature.
-  std::string source;
-  double bound;  ///< of the error
+  Reference kind;
+  std::string source;  ///< of the reference
+  double bound;        ///< of the error
   Error error = Error::Relative;
 };
 
 /// Expects the error to be within the bound, and appends the row, one line of JSON, to the file of
-/// the running test; the first row of a test begins its file anew.
+/// the running test. The first row of a test truncates the file.
 void verify(const Comparison& comparison);
-
-/// Leaves a row that says why the running test compared nothing, so that its rows are not missed.
-void record_skipped(const std::string& problem, const std::string& reason);
 
 }  // namespace palpate::test

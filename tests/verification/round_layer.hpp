@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A round layer of prisms with its base held, refined towards a circle on the middle of its top.
+// A round layer of prisms with its base fixed, refined towards a circle on the middle of its top.
 #pragma once
 
 #include "fem/campaign/indentation.hpp"

@@ -69,10 +69,11 @@ TEST_P(Hertz, ForceConvergesToTheHalfSpace) {
     char name[96];
     std::snprintf(name, sizeof name, "force at nu = %.2f, %s", nu, what);
     test::verify({"Hertz: a sphere on a half-space, d/R = 0.01, base 100 contact radii away", name,
-                  "mN", 1e3 * press.force(), 1e3 * exact, "[C] Hertz 1882", bound});
+                  "mN", 1e3 * press.force(), 1e3 * exact, test::Reference::ClosedForm, "Hertz 1882",
+                  bound});
   };
-  row("0.8 elements a contact radius", coarse, 0.04);
-  row("1.7 elements a contact radius", fine, 0.01);
+  row("0.8 elements per contact radius", coarse, 0.04);
+  row("1.7 elements per contact radius", fine, 0.01);
   EXPECT_LT(std::abs(fine.force() / exact - 1), std::abs(coarse.force() / exact - 1));
   // An area counted in quadrature points is known to about a third of an element.
   EXPECT_NEAR(fine.contact_radius(), std::sqrt(kRadius * depth), 0.2e-3);
@@ -94,23 +95,22 @@ double sneddon(double poisson, double depth) {
   return 0.5 * plane * ((low * low + R * R) * log_of(low) - 2 * low * R);
 }
 
-/// Deep presses, where the sphere is no paraboloid any more (Sneddon) and strains are large:
-/// F = 16/9 E0 sqrt(R) d^1.5 (1 - 0.15 d/R), incompressible neo-Hookean: a trend, recalled.
+/// At d/R = 0.2 strains are small enough for Sneddon's sphere. At d/R = 0.4 they are large:
+/// F = 16/9 E0 sqrt(R) d^1.5 (1 - 0.15 d/R) for an incompressible neo-Hookean solid [Zhang et al.
+/// 2014], recalled from the literature.
 TEST(LargeStrain, DeepSphereOnNeoHookeanFollowsSneddonAndTheTrendOfZhang) {
-  const double nu = 0.499, share = 0.4, depth = share * kRadius;
+  const double nu = 0.499, ratio = 0.4, depth = ratio * kRadius;
   const Press deep = press({0.6, 0.0075, 2.5e-3, 3}, nu, depth, 4);
   test::verify({"Large strain: a sphere on a neo-Hookean half-space",
-                "force over Hertz at d/R = 0.4, nu = 0.499, 2.5 elements a contact radius", "1",
-                deep.force() / hertz(nu, depth), 1 - 0.15 * share,
-                "[R] Zhang et al. 2014: 1 - 0.15 d/R", 0.05});
-  const auto row = [&](std::size_t increment, const char* what, double bound) {
-    const double d = depth * static_cast<double>(increment) / 4;
-    test::verify({"Large strain: a sphere on a neo-Hookean half-space", what, "1",
-                  deep.force(increment) / hertz(nu, d), sneddon(nu, d) / hertz(nu, d),
-                  "[C] Sneddon 1965, small strains", bound});
-  };
-  row(2, "force over Hertz at d/R = 0.2, nu = 0.499, 1.7 elements a contact radius", 0.03);
-  row(4, "force over Hertz at d/R = 0.4, nu = 0.499, 2.4 elements a contact radius", 0.04);
+                "force over Hertz at d/R = 0.4, nu = 0.499, 2.4 elements per contact radius", "1",
+                deep.force() / hertz(nu, depth), 1 - 0.15 * ratio, test::Reference::Recalled,
+                "Zhang et al. 2014: 1 - 0.15 d/R", 0.05});
+  const double half = 0.5 * depth;
+  test::verify({"Large strain: a sphere on a neo-Hookean half-space",
+                "force over Hertz at d/R = 0.2, nu = 0.499, 1.7 elements per contact radius", "1",
+                deep.force(2) / hertz(nu, half), sneddon(nu, half) / hertz(nu, half),
+                test::Reference::ClosedForm, "Sneddon 1965, small strains", 0.03});
+  EXPECT_NEAR(deep.force(4) / sneddon(nu, depth), 1, 0.04);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The published experiment [Mahvash & Hayward 2005, VI-B] against its publication, against a
-// balance of energy that simulates nothing, and between one rate and two.
+// The experiment of [Mahvash & Hayward 2005, VI-B]: compared with its publication, with an energy
+// balance without simulation, and between one rate and two.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTolerance = 1;  // N/m, of the margins
 
-TEST(PassivityMargin, TheWallDecaysAt168AndSwingsAt179AsPublished) {
+TEST(PassivityMargin, WallDecaysAt168AndOscillatesAt179AsPublished) {
   const SlingshotOutcome below = sling({}, 168);
   const SlingshotOutcome above = sling({}, 179);
   EXPECT_TRUE(below.decayed);
@@ -23,7 +23,7 @@ TEST(PassivityMargin, TheWallDecaysAt168AndSwingsAt179AsPublished) {
   EXPECT_NEAR(below.impact, 1, 0.01);  // "hit it with v = 1 m/s"
 }
 
-TEST(PassivityMargin, TheWallIsThatOfTheEnergyBalanceAtEveryRate) {
+TEST(PassivityMargin, OfTheWallEqualsTheEnergyBalanceAtEveryRate) {
   struct Case {
     double rate, expected;  // Hz, N/m
   };
@@ -37,17 +37,17 @@ TEST(PassivityMargin, TheWallIsThatOfTheEnergyBalanceAtEveryRate) {
   EXPECT_NEAR(passivity_margin({}, 100, 300, 0.2), 170, kTolerance);  // published
 }
 
-TEST(PassivityMargin, TheCylinderIsAsStableAsTheWall) {
+TEST(PassivityMargin, OfTheCylinderEqualsThatOfTheWall) {
   const SlingshotSetup one{VirtualBody::Cylinder, 0, 0.3, 2000, 0};
   EXPECT_NEAR(passivity_margin(one, 160, 180, 0.2), 170.6, kTolerance);
 }
 
-TEST(PassivityMargin, StuckOffTheAxisItIsThatOfTwoSprings) {
-  // Friction holds the contact point: the line crosses the surface at asin(10 mm / 40 mm).
-  const SlingshotSetup stuck{VirtualBody::Cylinder, 0.01, 0.3, 2000, 0};
+TEST(PassivityMargin, WithoutSlipOffTheAxisIsThatOfTwoSprings) {
+  // The contact point is fixed by friction: the line crosses the surface at asin(10 mm / 40 mm).
+  const SlingshotSetup no_slip{VirtualBody::Cylinder, 0.01, 0.3, 2000, 0};
   const double balance = bonded_margin_by_energy_balance(2000, std::asin(0.25));
-  EXPECT_GT(balance, 175);  // so that it is not that of the axis
-  EXPECT_NEAR(passivity_margin(stuck, 160, 200, 0.2), balance, kTolerance);
+  EXPECT_GT(balance, 175);  // it differs from the margin on the axis
+  EXPECT_NEAR(passivity_margin(no_slip, 160, 200, 0.2), balance, kTolerance);
 }
 
 class PlayedSwings : public ::testing::TestWithParam<SlingshotSetup> {};

@@ -38,7 +38,7 @@ std::vector<test::Prescribed> at_rest_along(const SolidModel& model, int axis) {
 
 /// Cook's membrane in plane strain: millimetres and megapascals, one layer of cells 1 mm thick.
 /// Deflection of the middle of the loaded edge, (48, 52), which is the point that the published
-/// table is for (its program evaluates it there since 2021; before, at the corner (48, 60)).
+/// table is for.
 double cook_deflection(int cells) {
   Body body = test::make_block(test::even(0, 1, cells), test::even(0, 1, cells), {0, 1});
   test::deform(body, [](const Vec3& x) {
@@ -53,8 +53,8 @@ double cook_deflection(int cells) {
   const test::Loads loads = test::traction_loads(
       model.mesh(), Vector3d(0, 1.0 / 16, 0), [](const Vector3d& X) { return X[0] > 48 - 1e-9; });
   Displacement u = Displacement::Zero(3, model.mesh().nodes());
-  for (const double share : {0.25, 0.5, 0.75, 1.0})
-    test::equilibrate(model, share * loads, at_rest_along(model, 2), u);
+  for (const double fraction : {0.25, 0.5, 0.75, 1.0})
+    test::equilibrate(model, fraction * loads, at_rest_along(model, 2), u);
   double deflection = 0;
   for (int node = 0; node < model.mesh().nodes(); ++node)
     if ((model.mesh().X.col(node) - Vector3d(48, 52, 0)).norm() < 1e-9) deflection = u(1, node);
@@ -66,7 +66,7 @@ TEST(Solid, CookMembraneBendsWithoutLocking) {
   EXPECT_LT(std::abs(fine - 14.74), std::abs(coarse - 14.74));
   test::verify({"Cook's membrane, nu = 0.3, plane strain",
                 "deflection of the middle of the loaded edge, 12 x 12 cells", "mm", fine, 14.74,
-                "[P] deal.II code gallery, doi 10.5281/zenodo.1228964: 64 x 64 quadratic elements",
+                test::Reference::Published, "deal.II code gallery, doi 10.5281/zenodo.1228964",
                 0.005});
 }
 
@@ -79,7 +79,7 @@ double inflation(double inner) {
 }
 
 /// An octant of a shell of radii 1 and 2 between its planes of symmetry, the nodes of its inner
-/// wall moved outwards in proportion to their place.
+/// wall moved outwards in proportion to their position.
 class OctantOfSphere {
  public:
   using LawOf = std::function<Law(double bulk_modulus)>;
@@ -179,19 +179,19 @@ TEST(Solid, ThickSphereInflates) {
   OctantOfSphere sphere(8, 6, [](double kappa) { return NeoHookean::from_moduli(1, kappa); });
   for (const double stretch : {1.25, 1.5, 2.0})
     test::verify({kThickSphere, at_stretch(stretch), "1", sphere.pressure(stretch),
-                  inflation(stretch), "[C] closed form, neo-Hookean", 0.003});
+                  inflation(stretch), test::Reference::ClosedForm, "neo-Hookean", 0.003});
 }
 
-/// Linear displacements alone would lock: they leave no more than one way to move for each
-/// element's volume to keep.
+/// Linear displacements alone would lock: they have about one free displacement for each element
+/// whose volume is constrained.
 TEST(Solid, ThickSphereOfLinearElementsInflatesWithoutLocking) {
   OctantOfSphere sphere(
       8, 6, [](double kappa) { return NeoHookean::from_moduli(1, kappa); },
       Dilatation::LinearNodal);
   for (const double stretch : {1.25, 1.5})
     test::verify({kThickSphere, at_stretch(stretch) + ", Tet4, nodal pressure", "1",
-                  sphere.pressure(stretch), inflation(stretch), "[C] closed form, neo-Hookean",
-                  0.05});
+                  sphere.pressure(stretch), inflation(stretch), test::Reference::ClosedForm,
+                  "neo-Hookean", 0.05});
 }
 
 TEST(Solid, ThickSphereOfMooneyRivlinInflates) {
@@ -200,7 +200,8 @@ TEST(Solid, ThickSphereOfMooneyRivlinInflates) {
   for (const auto& [stretch, expected] :
        {std::pair{1.25, 0.583743}, std::pair{1.5, 0.847427}, std::pair{2.0, 1.033830}})
     test::verify({kThickSphere, at_stretch(stretch) + ", Mooney-Rivlin, C01/C10 = 1/4", "1",
-                  sphere.pressure(stretch), expected, "[C] closed form, six digits", 0.003});
+                  sphere.pressure(stretch), expected, test::Reference::ClosedForm,
+                  "Mooney-Rivlin, six digits", 0.003});
 }
 
 /// A smooth finite deformation of the unit cube. The isochoric one has no pressure for the law to
@@ -288,9 +289,10 @@ Norms manufactured_errors(const Manufactured& exact, Dilatation dilatation, int 
 }
 
 constexpr auto kRates = "Rates of convergence to a manufactured solution, 4 to 8 cells unless said";
-constexpr auto kTheory = "[C] theory of the element [Brezzi & Fortin 1991]";
+constexpr auto kTheory = "order of the element [Brezzi & Fortin 1991]";
 
-/// Of the displacement (L2) and of its gradient (H1), from a number of cells to twice as many.
+/// Orders of convergence of the displacement (L2) and of its gradient (H1) from a number of cells
+/// to twice as many.
 Norms rates(const Manufactured& exact, Dilatation dilatation, int cells = 4) {
   const Norms a = manufactured_errors(exact, dilatation, cells),
               b = manufactured_errors(exact, dilatation, 2 * cells);
@@ -298,8 +300,8 @@ Norms rates(const Manufactured& exact, Dilatation dilatation, int cells = 4) {
 }
 
 void verify_rate(const std::string& norm, const std::string& name, double rate, double expected) {
-  test::verify(
-      {kRates, norm + ", " + name, "1", rate, expected, kTheory, 0.15, test::Error::Absolute});
+  test::verify({kRates, norm + ", " + name, "1", rate, expected, test::Reference::Theory, kTheory,
+                0.15, test::Error::Absolute});
 }
 
 Manufactured pressing(double nu) {
@@ -331,15 +333,13 @@ TEST(Solid, LinearDisplacementsConvergeAsSuch) {
   }
 }
 
-/// Near nu = 1/2 on this regular mesh constant pressures fall short of their theory, for the
-/// displacements do not hold them (test_pressure.cpp); nodal ones do not.
+/// Near nu = 1/2 on this regular mesh element-constant pressures converge more slowly than their
+/// order, because they are not inf-sup stable (test_pressure.cpp); nodal pressures are.
 TEST(Solid, PressuresLimitTheRates) {
   verify_rate("displacement (L2)", "element-constant pressure, compressing deformation, nu = 0.3",
               rates(pressing(0.3), Dilatation::Mean).displacement, 2);
   const Norms constant = rates(pressing(0.49), Dilatation::Mean);
   const Norms nodal = rates(pressing(0.49), Dilatation::Nodal, 5);
-  std::printf("nu 0.49, L2 and H1: constant pressure %.2f %.2f, nodal %.2f %.2f\n",
-              constant.displacement, constant.gradient, nodal.displacement, nodal.gradient);
   verify_rate("gradient (H1)", "nodal pressure, compressing deformation, nu = 0.49, 5 to 10 cells",
               nodal.gradient, 2);
   EXPECT_LT(constant.gradient, nodal.gradient - 0.5);

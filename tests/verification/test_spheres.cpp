@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Two elastic spheres pressed together (code_aster SSNV104): R = 50 mm, E = 20 GPa, nu = 0.3, an
 // approach of 4 mm: a = 10 mm, p0 = 2798.3 MPa. By symmetry each of them meets a rigid plane
-// half-way, which is here the flat end of a disc. The published case has the small strains that
-// Hertz supposes by decree; in the solid they would reach a seventh. So it is pressed a hundredth
-// as far: by a = sqrt(R d) and p0 = 2 E*/pi sqrt(d/R) both are a tenth.
+// half-way, which is here the flat end of a disc. The published case is computed with small
+// strains, which Hertz's theory assumes; the strains of the solid would reach a seventh. The test
+// presses a hundredth as far: by a = sqrt(R d) and p0 = 2 E*/pi sqrt(d/R) both are a tenth.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,17 +33,17 @@ std::vector<double> arcs(double fine) {
 }
 
 std::vector<double> depths(double fine) {
-  std::vector<double> share{0};
+  std::vector<double> depth{0};
   double step = fine / kRadius;
   for (double next = step; next < 1 - 0.5 * step; next += step) {
-    share.push_back(next);
+    depth.push_back(next);
     if (next > 0.015) step *= 2;
   }
-  share.push_back(1);
-  return share;
+  depth.push_back(1);
+  return depth;
 }
 
-/// The upper half of a ball, its equator held.
+/// The upper half of a ball, its equator fixed.
 Body half_ball(double fine) {
   const test::Triangulation disc = test::rings(arcs(fine), 3);
   const std::vector<double> below = depths(fine);
@@ -69,17 +69,18 @@ TEST(TwoSpheres, HaveThePressureAndTheRadiusOfHertz) {
   const test::Pressed pressed = test::press(body, kYoung, kPoisson, plane, kDepth, 2);
   ASSERT_EQ(pressed.curves.status, SiteStatus::Complete);
   const CurveSample& end = pressed.curves.paths.front().samples.back();
-  // Force and area give the peak of Hertz's pressure: 3 F/(2 pi a^2).
   const std::string problem =
       "Two spheres of R = 50 mm, E = 20 GPa, nu = 0.3, a hundredth of an approach of 4 mm";
-  const std::string source = "[P] code_aster SSNV104, a tenth of what is printed";
   test::verify({problem, "radius of contact", "mm", 1e3 * std::sqrt(end.contact_area / M_PI), 1,
-                source, 0.02});
-  test::verify({problem, "largest pressure, of force and radius", "MPa",
-                1.5e-6 * pressed.force() / end.contact_area, 279.83, source, 0.02});
+                test::Reference::Published,
+                "code_aster SSNV104: 10 mm at an approach of 4 mm, times sqrt(1/100)", 0.02});
+  // The peak of Hertz's pressure follows from force and area, p0 = 3 F/(2 pi a^2): no row of its
+  // own.
+  EXPECT_NEAR(1.5e-6 * pressed.force() / end.contact_area, 279.83, 0.02 * 279.83);
   const double hertz =
       4.0 / 3 * kYoung / (1 - kPoisson * kPoisson) * std::sqrt(kRadius) * std::pow(kDepth, 1.5);
-  test::verify({problem, "force", "N", pressed.force(), hertz, "[C] Hertz 1882", 0.02});
+  test::verify({problem, "force", "N", pressed.force(), hertz, test::Reference::ClosedForm,
+                "Hertz 1882", 0.02});
 }
 
 }  // namespace
