@@ -23,50 +23,50 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of the depth of the case: between the depths at which lateral paths are usually sampled.
-constexpr double kHeldShares[] = {0.2, 0.6, 0.9};
-constexpr double kAzimuths[] = {50, 185};  // degrees; no campaign samples these
-constexpr int kLeastIncrements = 6;
+/// Lateral depths over the depth of the case, between the usual depths of a campaign.
+constexpr double kLateralDepths[] = {0.2, 0.6, 0.9};
+constexpr double kAzimuths[] = {50, 185};  // degrees; unusual in campaigns
+constexpr int kMinIncrements = 6;
 
-/// The direct solutions: along the paths of the case, at depths and directions of their own.
+/// Direct solutions: the paths of the case, at additional depths and other directions.
 fem::CampaignSettings direct_settings(const Workspace& space,
                                       const std::vector<fidelity::HoldOutPoint>& points) {
   fem::CampaignSettings settings = campaign_settings(space);
   for (const fidelity::HoldOutPoint& p : points)
     settings.points.push_back({p.position + p.skin * p.inward, p.inward});
   fem::IndentationSettings& indentation = settings.indentation;
-  for (const double share : kHeldShares)
-    indentation.lateral_depths.push_back(share * indentation.depth);
+  for (const double fraction : kLateralDepths)
+    indentation.lateral_depths.push_back(fraction * indentation.depth);
   std::sort(indentation.lateral_depths.begin(), indentation.lateral_depths.end());
   const auto close = [](double a, double b) { return b - a < 1e-9; };
-  auto& held = indentation.lateral_depths;
-  held.erase(std::unique(held.begin(), held.end(), close), held.end());
+  auto& depths = indentation.lateral_depths;
+  depths.erase(std::unique(depths.begin(), depths.end(), close), depths.end());
   indentation.azimuths.clear();
   for (const double degrees : kAzimuths)
     indentation.azimuths.push_back(degrees * std::numbers::pi / 180);
-  indentation.lateral_increments = std::max(indentation.lateral_increments, kLeastIncrements);
+  indentation.lateral_increments = std::max(indentation.lateral_increments, kMinIncrements);
   return settings;
 }
 
 void require_same_body(const Curves& curves, const fs::path& body_file) {
   if (curves.body_sha256.empty() || curves.body_sha256 == sha256_of_file(body_file)) return;
   throw Error(ErrorKind::Configuration, body_file.string(),
-              "it is not the body that the curves were made with (another digest)",
+              "the curves were computed on another body (its digest differs)",
               "run 'palpate build' again");
 }
 
-/// A library of another surface would be pressed beside its points.
+/// The points must lie on the surface of every library.
 void require_same_surface(const Library& library, const Body& body, const fs::path& file) {
   bool same = library.positions.size() == body.response.node.size();
   for (std::size_t v = 0; same && v < library.positions.size(); ++v)
     same = library.positions[v] == body.nodes[static_cast<std::size_t>(body.response.node[v])];
   if (same) return;
   throw Error(ErrorKind::Configuration, file.string(),
-              "its surface is not that of the body of the case",
-              "judge a library that was fitted on this body");
+              "its surface differs from that of the body of the case",
+              "compare a library that was fitted on this body");
 }
 
-/// All that decides the direct solutions.
+/// Digest of everything that the direct solutions depend on.
 std::string direct_key(const Workspace& space, const fem::CampaignSettings& settings) {
   std::string text = fmt::format("fidelity\n{}\n{}\n{}\n{}\n", sha256_of_file(space.body()),
                                  stage_case(space, Stage::Precompute), PALPATE_VERSION,
@@ -79,8 +79,8 @@ std::string direct_key(const Workspace& space, const fem::CampaignSettings& sett
   return sha256(text);
 }
 
-/// The direct solutions, those of an earlier run taken over: they cost minutes, and every library
-/// of the body is judged on the same.
+/// Direct solutions. Those of an earlier run are reused: they take minutes, and every library of
+/// the body is compared with the same.
 Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSettings settings) {
   SiteJournal journal(
       space.out / "fidelity.journal",
@@ -93,19 +93,19 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
   };
   fem::CampaignReport report;
   Curves direct = fem::run_campaign(body, settings, report);
-  say("compare: {} direct presses, {} of them known, in {} ({} on the processors)",
+  say("compare: {} direct presses, {} of them from an earlier run, in {} ({} of processor time)",
       settings.points.size(), settings.known.size(), duration_text(report.seconds),
       duration_text(report.cpu_seconds));
   return direct;
 }
 
-/// Depths count from the skin, on either side: what lies between it and the flat triangles is an
-/// error of shape, told apart from that of the force.
-std::string tell_skin(const std::vector<double>& distances) {
+/// Depths are measured from the skin. Its distance from the flat triangles is an error of geometry,
+/// reported apart from that of the force.
+std::string skin_text(const std::vector<double>& distances) {
   if (distances.empty()) return {};
   return fmt::format(
       "the skin is {:.2f} mm (median), {:.2f} mm (worst) from the response triangles at the points "
-      "off node; depths count from it\n",
+      "off node; depths are measured from it\n",
       1e3 * distances[distances.size() / 2], 1e3 * distances.back());
 }
 
@@ -137,7 +137,7 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
   }
   auto points =
       fidelity::draw_points(libraries.front(), options.off_node, options.at_node, options.seed);
-  std::string text = tell_skin(fidelity::find_skin(body, points)), states;
+  std::string text = skin_text(fidelity::find_skin(body, points)), states;
   const Curves direct = solve_direct(space, body, direct_settings(space, points));
 
   nlohmann::ordered_json json = fidelity_heading(options, space.c.certify.friction, points);
@@ -146,7 +146,7 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
     const fs::path& file = files[i];
     const Library& library = libraries[i];
     const fidelity::Fidelity result =
-        fidelity::measure(library, fidelity::RenderedBody(file), points, direct, sampled,
+        fidelity::measure({library, fidelity::RenderedBody(file), points, direct, sampled},
                           {options.floor, space.c.certify.friction});
     complete = complete && result.left_out.empty();
     std::error_code none;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// `palpate compare --fem`: a library against direct solutions where no site is.
+// `palpate compare --fem`: a library against direct solutions at hold-out points.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct FidelityOptions {
   int off_node = 24, at_node = 8;
   std::uint32_t seed = 1;
   double floor = 0.02;  ///< N
-  /// Judged on the same direct solutions; empty: the library of the case.
+  /// Libraries compared with the same direct solutions; empty: the library of the case.
   std::vector<std::filesystem::path> libraries;
 };
 

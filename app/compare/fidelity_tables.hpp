@@ -18,13 +18,13 @@ struct LibrarySize {
   std::uintmax_t file = 0;     ///< bytes
 };
 
-/// For people: one line a row.
+/// Plain text, one line per row.
 std::string fidelity_text(const std::string& file, const fidelity::Fidelity& fidelity,
                           const LibrarySize& size);
-/// One line a state; the column names first when `heading`.
+/// One line per state; starts with the column names when `heading`.
 std::string fidelity_states_csv(const std::string& file, const fidelity::Fidelity& fidelity,
                                 bool heading);
-/// What all libraries share: settings and points.
+/// Common to all libraries: settings and points.
 nlohmann::ordered_json fidelity_heading(const FidelityOptions& options, double friction,
                                         const std::vector<fidelity::HoldOutPoint>& points);
 nlohmann::ordered_json fidelity_json(const std::filesystem::path& file,

@@ -55,8 +55,8 @@ Json curve_json(const compare::CurveComparison& c) {
           {"bias_N", c.bias},
           {"worst", point_json(c.worst)},
           {"rms_jnd", c.jnd_rms},
-          {"noticeable_share", c.noticeable},
-          {"within_uncertainty_share", number(c.within_uncertainty)},
+          {"noticeable_fraction", c.noticeable},
+          {"within_uncertainty_fraction", number(c.within_uncertainty)},
           {"uncertainty_N", number(c.mean_uncertainty)},
           {"scatter_N", number(c.mean_scatter)},
           {"energy_reference_J", c.energy_reference},
@@ -75,8 +75,8 @@ Json summary_json(const compare::Summary& s) {
           {"agreement_low_N", s.agreement_low},
           {"agreement_high_N", s.agreement_high},
           {"rms_jnd", s.jnd_rms},
-          {"noticeable_share", s.noticeable},
-          {"within_uncertainty_share", number(s.within_uncertainty)},
+          {"noticeable_fraction", s.noticeable},
+          {"within_uncertainty_fraction", number(s.within_uncertainty)},
           {"scatter_N", number(s.mean_scatter)},
           {"worst_vertex", s.worst_vertex},
           {"worst", point_json(s.worst)}};
@@ -87,7 +87,7 @@ Json summary_json(const compare::Summary& s) {
 std::string comparison_csv(const compare::Comparison& comparison) {
   std::string out =
       "vertex,model_vertex,kind,lateral_depth_m,range_m,rmse_N,normalised_rmse,r2,bias_N,"
-      "worst_difference_N,worst_at_m,rms_jnd,noticeable_share,within_uncertainty_share,"
+      "worst_difference_N,worst_at_m,rms_jnd,noticeable_fraction,within_uncertainty_fraction,"
       "uncertainty_N,scatter_N,energy_reference_J,energy_model_J\n";
   for (const compare::CurveComparison& c : comparison.curves) {
     fmt::format_to(

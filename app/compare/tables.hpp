@@ -9,11 +9,11 @@
 
 namespace palpate::app {
 
-/// One row per curve: the figures.
+/// One row per curve: its measures.
 std::string comparison_csv(const compare::Comparison& comparison);
 /// One row per point: the aligned curves.
 std::string comparison_points_csv(const compare::Comparison& comparison);
-/// All of it; unknown values are null.
+/// The complete comparison; unknown values are null.
 nlohmann::ordered_json comparison_json(const compare::Comparison& comparison,
                                        const compare::CompareSettings& settings);
 

@@ -27,18 +27,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Not the seed of `palpate compare --fem`: what that judges stays unseen by the sampling as well.
+/// Differs from the seed of `palpate compare --fem`, so that sampling has not used its points.
 constexpr std::uint32_t kSeed = 20051031;
 
-constexpr std::size_t kFewestAdded = 8;    // sites of a round: each costs a factorization
-constexpr std::size_t kLeastGrowth = 4;    // a quarter as many again, at most half
-constexpr double kLeastTarget = 1.0 / 64;  // of the tolerance
+constexpr std::size_t kMinAdded = 8;     // sites in a round
+constexpr std::size_t kGrowth = 4;       // adds a quarter to a half of the present number
+constexpr double kMinTarget = 1.0 / 64;  // of the tolerance
 
 fs::path hold_out_journal(const Workspace& space) {
-  return space.out / "held-out.journal";
+  return space.out / "hold-out.journal";
 }
 
-/// Removed when done, also after an error: a file that only the runtime was to read.
+/// A file that is removed at the end of its scope, also after an error.
 class TemporaryFile {
  public:
   explicit TemporaryFile(fs::path path) : path_(std::move(path)) {}
@@ -54,33 +54,33 @@ class TemporaryFile {
   fs::path path_;
 };
 
-/// Random points of the surface and the forces of direct presses there.
+/// Random points of the surface and the direct solutions there.
 class HoldOut {
  public:
-  HoldOut(const Workspace& space, const Body& body, const Library& library, fem::FactorCache& kept,
-          fem::CampaignSettings settings, const std::string& key)
+  HoldOut(const Workspace& space, const Body& body, const Library& library,
+          fem::FactorCache& factors, fem::CampaignSettings settings, const std::string& key)
       : space_(space) {
     points_ = fidelity::draw_points(library, space.c.sampling.hold_out, 0, kSeed);
     fidelity::find_skin(body, points_);
     settings.sites.clear();
     for (const fidelity::HoldOutPoint& p : points_)
       settings.points.push_back({p.position + p.skin * p.inward, p.inward});
-    settings.indentation.lateral_depths.clear();  // sampling has no part in how directions couple
+    settings.indentation.lateral_depths.clear();  // lateral paths are not judged
     SiteJournal journal(hold_out_journal(space),
-                        {sha256("held out\n" + key), static_cast<std::int64_t>(points_.size())});
+                        {sha256("hold-out\n" + key), static_cast<std::int64_t>(points_.size())});
     settings.known = journal.found();
     settings.finished = [&](const SiteCurves& site) { journal.append(site); };
     settings.progress = nullptr;
-    direct_ = fem::run_campaign(body, settings, report_, &kept);
+    direct_ = fem::run_campaign(body, settings, report_, &factors);
   }
 
   const fem::CampaignReport& report() const { return report_; }
 
-  void judge(const Library& library, const Curves& curves, SamplingRound& round) const {
-    const TemporaryFile file(space_.out / ".library.held-out.h5");
+  void evaluate(const Library& library, const Curves& curves, SamplingRound& round) const {
+    const TemporaryFile file(space_.out / ".library.hold-out.h5");
     write_library(file.path(), library);
     const fidelity::Fidelity result =
-        fidelity::measure(library, fidelity::RenderedBody(file.path()), points_, direct_, curves,
+        fidelity::measure({library, fidelity::RenderedBody(file.path()), points_, direct_, curves},
                           {0.02, space_.c.certify.friction});
     round.points_failed = result.left_out.size();
     for (const fidelity::ErrorRow& row : result.rows) {
@@ -97,7 +97,7 @@ class HoldOut {
   fem::CampaignReport report_;
 };
 
-/// Sites solved in this run or an interrupted one, by vertex: of the latter some are for later
+/// Solved sites by vertex, from this run or an interrupted one. Some of the latter belong to later
 /// rounds.
 class KnownSites {
  public:
@@ -120,26 +120,26 @@ class KnownSites {
   std::map<std::int32_t, SiteCurves> sites_;
 };
 
-double p95_of(const std::vector<fitting::LeaveOneOutError>& misses) {
-  if (misses.empty()) return 0;
+double p95_of(const std::vector<fitting::LeaveOneOutError>& errors) {
+  if (errors.empty()) return 0;
   std::vector<double> relative;
-  for (const fitting::LeaveOneOutError& miss : misses) relative.push_back(miss.relative);
+  for (const fitting::LeaveOneOutError& error : errors) relative.push_back(error.relative);
   std::sort(relative.begin(), relative.end());
   return relative[fitting::nearest_rank(relative.size(), 0.95)];
 }
 
-/// Sites to add; the worst ones by a target that is lowered until there are enough of them, since
-/// the points held out say that the present one will not do.
+/// Sites to add, those of the largest expected error first. The target is lowered until there are
+/// enough of them, since the hold-out points show that the present one is insufficient.
 std::vector<std::int32_t> sites_to_add(const Workspace& space, const Body& body,
                                        const std::vector<std::int32_t>& computed,
                                        const Library& library) {
   const SamplingSection& sampling = space.c.sampling;
   const auto most_sites = static_cast<std::size_t>(sampling.most_sites);
   if (computed.size() >= most_sites) return {};
-  const std::size_t fewest = std::max(kFewestAdded, computed.size() / kLeastGrowth);
+  const std::size_t fewest = std::max(kMinAdded, computed.size() / kGrowth);
   const std::size_t most = std::min(2 * fewest, most_sites - computed.size());
   std::vector<std::int32_t> sites;
-  for (double part = 1; part >= kLeastTarget && sites.size() < std::min(fewest, most); part /= 2)
+  for (double part = 1; part >= kMinTarget && sites.size() < std::min(fewest, most); part /= 2)
     sites = fitting::next_sites(body, computed, library, part * sampling.tolerance, most);
   return sites;
 }
@@ -163,7 +163,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const SamplingRound& l
           {"sampling_ended", words(end)}};
 }
 
-/// Twice as many sites have not made the error less by a tenth.
+/// Whether doubling the sites has reduced the error by less than a tenth.
 bool no_longer_helps(const std::vector<SamplingRound>& rounds) {
   const SamplingRound& last = rounds.back();
   for (const SamplingRound& before : rounds)
@@ -171,7 +171,7 @@ bool no_longer_helps(const std::vector<SamplingRound>& rounds) {
   return false;
 }
 
-/// Why to stop, if so.
+/// Reason to stop, if any.
 std::optional<SamplingEnd> end_of(const std::vector<SamplingRound>& rounds,
                                   const std::vector<std::int32_t>& more,
                                   const SamplingSection& sampling) {
@@ -189,11 +189,11 @@ std::optional<SamplingEnd> end_of(const std::vector<SamplingRound>& rounds,
 std::string words(SamplingEnd end) {
   switch (end) {
     case SamplingEnd::ToleranceMet:
-      return "the points held out are met within the tolerance";
+      return "the error at the hold-out points is within the tolerance";
     case SamplingEnd::NoLongerHelps:
-      return "more sites no longer help: finer elements or patches might";
+      return "more sites do not reduce the error; smaller elements or patches may";
     case SamplingEnd::AllSites:
-      return "every response point is a site: a finer mesh.patch_spacing offers more";
+      return "all sites are computed; a smaller mesh.patch_spacing gives more";
     case SamplingEnd::MostSites:
       return "sampling.most_sites is reached";
   }
@@ -211,14 +211,14 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
   std::vector<SamplingRound> rounds;
   settings.sites = fitting::spread_sites(body, sampling.start_spacing);
   const auto start = std::chrono::steady_clock::now();
-  fem::FactorCache kept;
+  fem::FactorCache factors;
   for (bool open = true; open;) {
     settings.known = known.among(settings.sites);
     result.report = {};
-    result.curves = fem::run_campaign(body, settings, result.report, &kept);
+    result.curves = fem::run_campaign(body, settings, result.report, &factors);
     known.add(result.curves.sites);
     const Library library = fitting::fit(body, result.curves, fit_settings(space));
-    if (!hold_out) hold_out.emplace(space, body, library, kept, settings, key);
+    if (!hold_out) hold_out.emplace(space, body, library, factors, settings, key);
     rounds.push_back({static_cast<int>(rounds.size()) + 1,
                       settings.sites.size(),
                       of_sites,
@@ -226,7 +226,7 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
                       {},
                       {},
                       0});
-    hold_out->judge(library, result.curves, rounds.back());
+    hold_out->evaluate(library, result.curves, rounds.back());
     tell(rounds.back());
     const auto more = sites_to_add(space, body, settings.sites, library);
     const auto end = end_of(rounds, more, sampling);
@@ -242,7 +242,7 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
   return result;
 }
 
-void forget_hold_out(const Workspace& space) {
+void remove_hold_out(const Workspace& space) {
   std::error_code none;
   fs::remove(hold_out_journal(space), none);
 }

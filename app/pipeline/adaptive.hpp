@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Sampling by need: sites are added until forces elsewhere are met.
+// Adaptive sampling: sites are added until the forces at hold-out points are within the tolerance.
 #pragma once
 
 #include <cstddef>
@@ -15,46 +15,45 @@
 
 namespace palpate::app {
 
-/// Where sampling stands after a round.
+/// State of the sampling after a round.
 struct SamplingRound {
   int number = 0;
-  std::size_t sites = 0, of_sites = 0;  ///< computed, and response points where the tool may press
-  double leave_one_out = 0;  ///< 95th percentile of what neighbours miss at a computed site
-  /// Relative error of the forces of normal presses at the points held out: along the press, which
-  /// is what responses carry, and as vectors.
+  std::size_t sites = 0, of_sites = 0;  ///< computed sites, and all sites of the body
+  double leave_one_out = 0;             ///< 95th percentile of the relative leave-one-out errors
+  /// Relative errors of the forces of normal presses at the hold-out points: of the component along
+  /// the press, which responses represent, and of the vector.
   fidelity::ErrorRow along, whole;
-  std::size_t points_failed = 0;  ///< held out, but not solved to the end
+  std::size_t points_failed = 0;  ///< hold-out points whose direct solution is not complete
 };
 
 enum class SamplingEnd { ToleranceMet, NoLongerHelps, AllSites, MostSites };
 
-/// For people: why sampling ended, and what to do about an error that is left.
+/// Message: why sampling ended, and what may reduce a remaining error.
 std::string words(SamplingEnd end);
 
 struct AdaptiveCampaign {
-  Curves curves;  ///< of the sites computed
+  Curves curves;  ///< of the computed sites
   fem::CampaignReport report;
-  std::vector<std::pair<std::string, std::string>> facts;  ///< how it went, for the provenance
+  std::vector<std::pair<std::string, std::string>> facts;  ///< for the provenance
   SamplingEnd end = SamplingEnd::AllSites;
 };
 
-/// Presses sites `[sampling] start_spacing` apart, then, round by round, those at which neighbours
-/// are expected to miss (fitting::next_sites), at most half as many again as there are. After each
-/// round the library that the case would make is pressed at random points of the surface through
-/// the runtime, against direct solutions there that no fit has seen. It ends when 95 % of
-/// these presses are met along their direction within the tolerance, when twice as many sites
-/// have not lowered that error by a tenth (what is left is then not interpolation's), or when
-/// nothing is left to add.
-/// Deterministic. The direct solutions are kept in `held-out.journal` until the curves are written.
-/// @param settings of the campaign; `known` sites are not computed again, `finished` and
-///   `progress` are told of every other.
-/// @param key identifies the campaign.
+/// Computes sites `[sampling] start_spacing` apart, then adds in each round the sites of the
+/// largest expected interpolation error (fitting::next_sites), at most half of the present number.
+/// After each round the library of the case is rendered at random hold-out points of the surface
+/// and compared with direct solutions there. Sampling ends when the 95th-percentile error along the
+/// press is within the tolerance, when doubling the sites has reduced it by less than a tenth (the
+/// rest is then not an error of interpolation), or when no site is left.
+/// Deterministic. `hold-out.journal` contains the direct solutions until the curves are written.
+/// @param settings  of the campaign; `known` sites are not computed again, and are not reported to
+///   `finished` and `progress`
+/// @param key  identifies the campaign
 /// @throws as fem::run_campaign and fitting::fit.
 AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
                                    fem::CampaignSettings settings, const std::string& key,
                                    const std::function<void(const SamplingRound&)>& tell);
 
-/// The direct solutions at the points held out, of a campaign whose curves are written.
-void forget_hold_out(const Workspace& space);
+/// Removes the journal of the hold-out points, once the curves of the campaign are written.
+void remove_hold_out(const Workspace& space);
 
 }  // namespace palpate::app

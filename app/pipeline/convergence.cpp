@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kRefinement = 1.4;
 
-/// First, middle and last but one part of all sites: spread over the body as its numbering is.
+/// Three sites spread over the body as far as its numbering is.
 std::vector<std::int32_t> three_of(const std::vector<std::int32_t>& all) {
   std::vector<std::int32_t> some;
   for (const std::size_t sixth : {std::size_t{1}, std::size_t{3}, std::size_t{5}})
@@ -35,7 +35,7 @@ double last_force(const CurvePath& path, double end) {
   return dot(sample.force - path.samples.front().force, path.direction);
 }
 
-/// The forces of a site that are followed: at the end of the normal path, and of the lateral one.
+/// Appends the forces of a site at the ends of the normal and of the lateral path.
 void add_forces(const SiteCurves& site, const fem::IndentationSettings& settings,
                 std::vector<ConvergenceRow>& rows) {
   const auto add = [&](const std::string& quantity, double force) {
@@ -58,7 +58,7 @@ void add_forces(const SiteCurves& site, const fem::IndentationSettings& settings
       lateral);
 }
 
-/// The response surfaces of all meshes are one: only what lies between them is finer.
+/// All meshes must have the same response surface; only the elements are finer.
 void check_same_sites(const Body& first, const Body& finer, const std::string& where) {
   bool same = first.response.node.size() == finer.response.node.size();
   for (std::size_t v = 0; same && v < first.response.node.size(); ++v) {
@@ -68,21 +68,21 @@ void check_same_sites(const Body& first, const Body& finer, const std::string& w
     same = norm(at(first) - at(finer)) == 0;
   }
   if (same) return;
-  throw Error(ErrorKind::Internal, where, "the finer mesh has another response surface",
+  throw Error(ErrorKind::Internal, where, "the finer mesh has a different response surface",
               "change patch_spacing a little and report the case");
 }
 
-void tell(const ConvergenceTable& table) {
+void report(const ConvergenceTable& table) {
   for (const ConvergenceRow& row : table.rows) {
     std::string forces;
     for (const double f : row.forces) forces += fmt::format(" {:.2f}", 1e3 * f);
     if (row.limit.trusted) {
-      say("  site {}, {}:{} -> {:.2f} mN, order {:.2f}; the case's mesh is {:+.1f} % off",
+      say("  site {}, {}:{} -> {:.2f} mN, order {:.2f}; error of the mesh of the case {:+.1f} %",
           row.vertex, row.quantity, forces, 1e3 * row.limit.value, row.limit.order,
           100 * row.limit.error);
     } else {
-      say("  site {}, {}:{} mN follow no power of the element size; they span {:.1f} %", row.vertex,
-          row.quantity, forces, 100 * row.limit.error);
+      say("  site {}, {}:{} mN follow no power of the element size; their range is {:.1f} %",
+          row.vertex, row.quantity, forces, 100 * row.limit.error);
     }
   }
 }
@@ -116,7 +116,7 @@ ConvergenceTable run_convergence(const Workspace& space, int levels,
                                  std::vector<std::int32_t> sites) {
   if (levels < 3) {
     throw Error(ErrorKind::Configuration, fmt::format("--convergence {}", levels),
-                "an order and a limit need at least three meshes", "give 3 or more");
+                "an order of convergence needs at least three meshes", "give 3 or more");
   }
   prepare_output(space.out);
   mesher::Settings meshing = mesh_settings(space);
@@ -147,7 +147,7 @@ ConvergenceTable run_convergence(const Workspace& space, int levels,
         duration_text(report.cpu_seconds / static_cast<double>(curves.sites.size())));
   }
   for (ConvergenceRow& row : table.rows) row.limit = extrapolate(table.element_sizes, row.forces);
-  tell(table);
+  report(table);
   const auto file = space.out / "convergence.csv";
   write_file_crash_safely(file, convergence_csv(table));
   say("convergence: {}", file.string());

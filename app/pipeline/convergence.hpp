@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far the forces of a case are from those of an infinitely fine mesh.
+// Discretisation error of the forces of a case, by mesh refinement.
 #pragma once
 
 #include <cstdint>
@@ -12,27 +12,27 @@
 
 namespace palpate::app {
 
-/// One force on all meshes, the case's first.
+/// One force on all meshes, that of the case first.
 struct ConvergenceRow {
   std::int32_t vertex = -1;
   std::string quantity;        ///< "normal force at 6 mm"
-  std::vector<double> forces;  ///< N; NaN where a path did not get there
+  std::vector<double> forces;  ///< N; NaN where a path is not complete
   Extrapolation limit;
 };
 
 struct ConvergenceTable {
   std::vector<double> element_sizes;  ///< m, of the boundary facets, descending
-  std::vector<std::int64_t> nodes;    ///< of the bodies, corner nodes
+  std::vector<std::int64_t> nodes;    ///< corner nodes of the bodies
   std::vector<ConvergenceRow> rows;
 };
 
-/// The element sizes of `levels` meshes: the case's, and each about 1.4 times finer than the one
-/// before, such that a patch is divided into whole numbers of facets.
+/// Element sizes of `levels` meshes, m: that of the case, then each about 1.4 times finer, such
+/// that a patch is divided into a whole number of facets.
 std::vector<double> finer_element_sizes(double patch_spacing, double element_size, int levels);
 
-/// Mesh and press `sites` (empty: three, spread over all) on `levels` meshes, print the table and
-/// write it to `convergence.csv` beside the artifacts, which are left alone.
-/// @throws Error(Configuration) for fewer than three levels or a vertex that is no site.
+/// Meshes the case on `levels` meshes, presses `sites` (empty: three sites, spread over all),
+/// prints the table and writes it to `convergence.csv`. The artifacts are unchanged.
+/// @throws Error(Configuration) for fewer than three levels or a vertex that is not a site.
 ConvergenceTable run_convergence(const Workspace& space, int levels,
                                  std::vector<std::int32_t> sites);
 

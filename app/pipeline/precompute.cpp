@@ -247,7 +247,7 @@ SiteCounts run_precompute(const Workspace& space, Telling telling) {
   append(curves.provenance, body.provenance, make_stage_step(space, Stage::Precompute, facts));
   write_curves(space.precomputed(), curves);
   journal.remove();
-  forget_hold_out(space);
+  remove_hold_out(space);
   const SiteCounts counts = count_sites(curves);
   reporter.end(space.precomputed(), counts, report.seconds, report.cpu_seconds);
   if (reporter.tells_text()) tell_failures(curves);

@@ -21,9 +21,9 @@ bool same(double a, double b) {
   return std::abs(a - b) <= kSameDepth * std::max(std::abs(a), std::abs(b));
 }
 
-/// Where an error was made and how large it is.
+/// An error and the point where it occurs.
 struct Sampled {
-  double relative = 0;  ///< over the scale of its state
+  double relative = 0;  ///< divided by the scale of its state
   double newton = 0;
   std::size_t point = 0;
 };
@@ -41,7 +41,7 @@ ErrorRow row_of(std::string what, std::string part, std::vector<Sampled> errors)
   return row;
 }
 
-/// Compares state by state.
+/// Appends the states of one press after the other.
 class Presses {
  public:
   Presses(const RenderedBody& body, const std::vector<HoldOutPoint>& points,
@@ -96,7 +96,7 @@ double along_normal(const ComparedState& s, const Vec3& n) {
 double along_tangent(const ComparedState& s, const Vec3&) {
   return dot(s.rendered - s.direct, s.tangent);
 }
-/// What is left: no model of this kind has a force there.
+/// Component normal to the plane of n and the tangent, where the local model has no force.
 double off_plane(const ComparedState& s, const Vec3& n) {
   const Vec3 error = s.rendered - s.direct;
   return norm(error - dot(error, n) * n - dot(error, s.tangent) * s.tangent);
@@ -105,7 +105,7 @@ double whole(const ComparedState& s, const Vec3&) {
   return norm(s.rendered - s.direct);
 }
 
-/// Fills the rows made of rendered states.
+/// Appends the rows of rendered states.
 class Rows {
  public:
   Rows(const std::vector<HoldOutPoint>& points, Fidelity& result)
@@ -134,13 +134,13 @@ class Rows {
   Fidelity& result_;
 };
 
-/// What a tool feels at a depth of a normal press: along it, and across it.
+/// Force of a normal press at a depth: along the press and normal to it.
 struct PressForce {
   double along = 0;
   Vec3 across{};
 };
 
-/// Of a vertex as sampled; absent beyond the samples.
+/// Sampled force of a vertex; absent beyond its samples.
 std::optional<PressForce> sampled_force(const SiteCurves& site, double depth) {
   const auto path = std::find_if(site.paths.begin(), site.paths.end(),
                                  [](const CurvePath& p) { return p.kind == PathKind::Normal; });
@@ -161,7 +161,7 @@ std::optional<PressForce> sampled_force(const SiteCurves& site, double depth) {
   return force;
 }
 
-/// Of a point in a triangle, by the samples of its three vertices; absent where one has none.
+/// Force at a point interpolated from the samples of the three vertices; absent where one has none.
 std::optional<PressForce> interpolated_force(
     const Library& library, const HoldOutPoint& point, double depth,
     const std::map<std::int32_t, const SiteCurves*>& site_at) {
@@ -179,8 +179,8 @@ std::optional<PressForce> interpolated_force(
   return sum;
 }
 
-/// The samples of the three vertices, interpolated, against the direct force: no fit. Across the
-/// press this is what a model would err by that rendered those forces, too.
+/// Interpolated samples of the three vertices against the direct force, without a fit. The part
+/// normal to the press is the error of a model that would render those components as well.
 void add_interpolation_rows(const Library& library, const std::vector<HoldOutPoint>& points,
                             const Curves& sampled, Fidelity& result) {
   std::map<std::int32_t, const SiteCurves*> site_at;
@@ -216,8 +216,8 @@ std::vector<double> lateral_depths(const Curves& curves) {
   return depths;
 }
 
-/// Direct solutions alone: how the force of a lateral deflection depends on the depth, and the
-/// normal force on the lateral deflection, neither of which the decoupled model (28) has.
+/// From direct solutions alone: the dependence of the lateral force on depth, and of the normal
+/// force on the lateral deflection. The decoupled model (28) has neither.
 class Decoupling {
  public:
   Decoupling(const std::vector<HoldOutPoint>& points, const FidelitySettings& settings,
@@ -250,16 +250,16 @@ class Decoupling {
   }
 
  private:
-  /// Mean lateral force over the reference depths, same place, direction and displacement: the best
-  /// that one f^r for all depths can be.
+  /// Mean lateral force over the reference depths at the same point, direction and displacement:
+  /// the best value of one f^r for all depths.
   std::optional<double> mean_rise(const SiteCurves& site, const CurvePath& of,
                                   double displacement) const {
     double sum = 0;
     std::size_t count = 0;
     for (const CurvePath& path : site.paths) {
       if (path.kind != PathKind::Lateral || norm(path.direction - of.direction) > 1e-6) continue;
-      const auto is_held = [&](double d) { return same(d, path.lateral_depth); };
-      if (std::none_of(references_.begin(), references_.end(), is_held)) continue;
+      const auto is_at = [&](double d) { return same(d, path.lateral_depth); };
+      if (std::none_of(references_.begin(), references_.end(), is_at)) continue;
       for (const CurveSample& sample : path.samples) {
         if (!same(sample.displacement, displacement)) continue;
         sum += dot(sample.force - path.samples.front().force, path.direction);
@@ -278,13 +278,12 @@ class Decoupling {
 
 }  // namespace
 
-Fidelity measure(const Library& library, const RenderedBody& body,
-                 const std::vector<HoldOutPoint>& points, const Curves& direct,
-                 const Curves& sampled, const FidelitySettings& settings) {
+Fidelity measure(const FidelityInput& input, const FidelitySettings& settings) {
+  const std::vector<HoldOutPoint>& points = input.points;
   Fidelity result;
-  Presses presses(body, points, settings, result);
-  Decoupling decoupling(points, settings, lateral_depths(sampled));
-  for (const SiteCurves& site : direct.sites) {
+  Presses presses(input.rendered, points, settings, result);
+  Decoupling decoupling(points, settings, lateral_depths(input.sampled));
+  for (const SiteCurves& site : input.direct.sites) {
     if (site.status != SiteStatus::Complete)
       result.left_out.push_back("point " + std::to_string(site.vertex) + ": " + site.reason);
     if (site.status == SiteStatus::Failed) continue;
@@ -314,7 +313,7 @@ Fidelity measure(const Library& library, const RenderedBody& body,
         return s.kind == PathKind::Lateral && s.within_friction && !points[s.point].node;
       },
       true);
-  add_interpolation_rows(library, points, sampled, result);
+  add_interpolation_rows(input.library, points, input.sampled, result);
   decoupling.write(result);
   return result;
 }

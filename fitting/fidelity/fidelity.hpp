@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// How far the rendered force is from the solid that it stands for. Definitions: docs/fidelity.md.
+// Errors of rendered forces against direct solutions. Definitions: docs/fidelity.md.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@
 namespace palpate::fidelity {
 
 struct FidelitySettings {
-  double floor = 0.02;  ///< N: an error is relative to the local direct force, or to this if larger
-  double friction = 0.3;  ///< mu that tells which deflections a tool reaches without slipping
+  double floor = 0.02;    ///< N: errors are relative to the local direct force or this, if larger
+  double friction = 0.3;  ///< mu: within its cone a tool reaches a deflection without slip
 };
 
 /// Rendered and direct force at one state.
 struct ComparedState {
-  std::size_t point = 0;  ///< of the held-out points
+  std::size_t point = 0;  ///< index of the hold-out point
   PathKind kind = PathKind::Normal;
   double depth = 0;             ///< m
   double lateral = 0;           ///< m
@@ -45,18 +45,26 @@ struct ErrorRow {
 struct Fidelity {
   std::vector<ComparedState> states;
   std::vector<ErrorRow> rows;
-  std::vector<std::string> left_out;  ///< presses that could not be used, and why
+  std::vector<std::string> left_out;  ///< unusable presses, with the reason
 };
 
-/// ErrorRow::what of the presses along the inward direction where no node is.
+/// ErrorRow::what of the presses along the inward direction off the nodes.
 inline constexpr const char* kNormalOffNode = "normal press, off node";
 
-/// Presses of the library at the points against direct solutions `direct` (its `vertex` counts the
-/// points; normal paths along the inward direction, lateral paths with the contact stuck).
-/// `sampled` are the curves that the library was fitted to: they separate what interpolation costs
-/// from what the fit costs, and their held depths are those that the decoupling is judged from.
-Fidelity measure(const Library& library, const RenderedBody& body,
-                 const std::vector<HoldOutPoint>& points, const Curves& direct,
-                 const Curves& sampled, const FidelitySettings& settings);
+/// A library and the direct solutions it is compared with.
+struct FidelityInput {
+  const Library& library;
+  const RenderedBody& rendered;  ///< the same library in the runtime
+  const std::vector<HoldOutPoint>& points;
+  /// SiteCurves::vertex is the index of the point. Normal paths run along its inward direction,
+  /// lateral paths without slip.
+  const Curves& direct;
+  /// The curves that the library was fitted to. They separate the error of interpolation from that
+  /// of the fit; their lateral depths are the reference of the decoupling rows.
+  const Curves& sampled;
+};
+
+/// Presses the library at the points and compares the forces with the direct solutions.
+Fidelity measure(const FidelityInput& input, const FidelitySettings& settings);
 
 }  // namespace palpate::fidelity

@@ -42,16 +42,16 @@ HoldOutPoint point_of(const Library& library, std::size_t triangle, const Vec3& 
   return point;
 }
 
-/// Not from <random>'s distributions, which differ between standard libraries.
+/// The distributions of <random> differ between standard libraries, so they are not used.
 double unit_interval(std::mt19937& engine) {
   return (static_cast<double>(engine()) + 0.5) / 4294967296.0;
 }
 
-/// Evenly over the triangle [Turk 1990].
+/// Uniform over the triangle [Turk 1990].
 Vec3 even_natural(std::mt19937& engine) {
   const double root = std::sqrt(unit_interval(engine));
-  const double share = unit_interval(engine);
-  return {1 - root, root * (1 - share), root * share};
+  const double t = unit_interval(engine);
+  return {1 - root, root * (1 - t), root * t};
 }
 
 }  // namespace
@@ -59,7 +59,7 @@ Vec3 even_natural(std::mt19937& engine) {
 std::vector<HoldOutPoint> draw_points(const Library& library, int off_node, int at_node,
                                       std::uint32_t seed) {
   std::vector<std::size_t> usable;
-  std::vector<double> sum;  // of the areas up to and with each
+  std::vector<double> sum;  // cumulative areas
   for (std::size_t m = 0; m < library.triangles.size(); ++m) {
     if (!has_responses(library, library.triangles[m])) continue;
     usable.push_back(m);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Places at which a library is judged: anywhere on its surface, none of them a site but on request.
+// Hold-out points of a library: random points of its surface that are not sites, except on request.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@ struct HoldOutPoint {
   Vec3 natural{};     ///< natural coordinates in the triangle
   Vec3 position{};    ///< m
   Vec3 inward{};      ///< unit, n(c) of the interpolation
-  bool node = false;  ///< at a vertex: what the fit alone costs, without interpolation
+  bool node = false;  ///< at a vertex: the error of the fit alone, without interpolation
   double skin = 0;    ///< m, along `inward` to the skin of the body, where direct presses start
 };
 
-/// `off_node` points drawn evenly over the area of the triangles that have responses at all three
-/// vertices, then up to `at_node` different vertices of such triangles whose responses were
-/// computed (Fitted). The same seed draws the same points. @throws Error(Configuration) when no
-/// triangle has responses.
+/// `off_node` points distributed uniformly over the area of the triangles with responses at all
+/// three vertices, then up to `at_node` different vertices of such triangles with status Fitted.
+/// The same seed draws the same points. @throws Error(Configuration) when no triangle has
+/// responses.
 std::vector<HoldOutPoint> draw_points(const Library& library, int off_node, int at_node,
                                       std::uint32_t seed);
 

@@ -11,11 +11,12 @@
 namespace palpate::fidelity {
 namespace {
 
-constexpr double kApproach = 1e-6;  // m outside and inside of the surface: the offset at touch
-constexpr double kNear = 1e-5;      // m and rad, that the contact may be off
-constexpr double kExact = 1e-9;     // m, that a deflection may be off
-constexpr double kNoSlip = 1e9;     // a friction coefficient that nothing exceeds
-constexpr double kPeriod = 1e-3;    // s
+constexpr double kApproach =
+    1e-6;                        // m outside and inside of the surface, on either side of the touch
+constexpr double kNear = 1e-5;   // m and rad, tolerance of the contact point and direction
+constexpr double kExact = 1e-9;  // m, tolerance of a deflection
+constexpr double kNoSlip = 1e9;  // friction coefficient without slip
+constexpr double kPeriod = 1e-3;  // s
 
 void check(int status, const std::string& where) {
   if (status == PALPATE_OK) return;
@@ -33,7 +34,7 @@ struct DestroyState {
   void operator()(palpate_state* state) const { palpate_state_destroy(state); }
 };
 
-/// One tip.
+/// One tip of the runtime.
 class Tip {
  public:
   explicit Tip(const palpate_library* library) {
@@ -90,13 +91,13 @@ std::vector<Vec3> RenderedBody::press(const Vec3& contact, const Vec3& inward,
   const Vec3 c = vector_of(touch.contact_point);
   const Vec3 n = vector_of(touch.normal);
   if (norm(c - contact) > kNear || norm(n - inward) > kNear)
-    disagree(contact, "the runtime takes another contact point or direction");
+    disagree(contact, "the runtime uses another contact point or direction");
   std::vector<Vec3> forces;
   for (const Deflection& d : deflections) {
     forces.push_back(tip.move_to(c + (d.depth + touch.offset) * n + d.lateral * d.tangent));
     const palpate_observation seen = tip.observe();
     if (std::abs(seen.depth - d.depth) > kExact || std::abs(seen.lateral - d.lateral) > kExact)
-      disagree(contact, "the contact point did not stick");
+      disagree(contact, "the contact point moved");
   }
   return forces;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a program that embeds the runtime is given, through the C interface.
+// Forces that an embedding program receives through the C interface.
 #pragma once
 
 #include <filesystem>
@@ -18,16 +18,16 @@ class RenderedBody {
   /// @throws Error(Configuration) when the runtime refuses the file.
   explicit RenderedBody(const std::filesystem::path& library);
 
-  /// Deflections of the tip from the contact point in the frame of the contact.
+  /// Deflection of the tip from the contact point, in the frame of the contact.
   struct Deflection {
     double depth = 0;    ///< m along n
     double lateral = 0;  ///< m along the tangent, >= 0
     Vec3 tangent{};      ///< unit, normal to n
   };
 
-  /// The tip enters at `contact` along `inward`, sticks there (friction without limit), and visits
-  /// the deflections in turn. Forces on the body, N. @throws Error(Internal) when the runtime takes
-  /// another contact point or direction: the comparison would be of two different things.
+  /// The tip enters at `contact` along `inward`, sticks there (unlimited friction) and moves to
+  /// each deflection in order. @return forces on the body, N. @throws Error(Internal) when the
+  /// runtime chooses another contact point or direction, so that the forces are not comparable.
   std::vector<Vec3> press(const Vec3& contact, const Vec3& inward,
                           const std::vector<Deflection>& deflections) const;
 

@@ -13,9 +13,9 @@
 namespace palpate::fidelity {
 namespace {
 
-/// Of edges, so that no line slips through between two facets.
+/// Tolerance at edges, so that no line passes between two facets.
 constexpr double kRounding = 1e-9;
-/// Each step leaves a part of the error that is the slope of the bulge, a tenth or so.
+/// Each step multiplies the error by about the slope of the bulge, a tenth.
 constexpr int kSteps = 12;
 
 /// Where a line meets the plane of a triangle.
@@ -57,9 +57,9 @@ Skin::Skin(const Body& body) : owner_("body '" + body.name + "'") {
   }
 }
 
-/// Where the line position + s inward enters the body through a facet; NaN where it does not. On a
-/// curved facet sum_i L_i x_i + sum_ij 4 L_i L_j b_ij, with b the bulges, the line that is moved
-/// back by the second sum meets the flat one: a fixed point.
+/// The s at which the line position + s inward enters the body through a facet; NaN where it does
+/// not. A curved facet is sum_i L_i x_i + sum_ij 4 L_i L_j b_ij with the edge offsets b. The fixed
+/// point iteration intersects the flat facet with the line shifted back by the second sum.
 double Skin::entry(const Facet& facet, const Vec3& position, const Vec3& inward) {
   std::optional<Crossing> at = crossing(facet.corner, position, inward);
   const auto inside = [&] {
@@ -75,7 +75,7 @@ double Skin::entry(const Facet& facet, const Vec3& position, const Vec3& inward)
   return at->s;
 }
 
-double Skin::beside(const Vec3& position, const Vec3& inward) const {
+double Skin::distance(const Vec3& position, const Vec3& inward) const {
   double nearest = std::numeric_limits<double>::infinity();
   for (const Facet& facet : facets_) {
     const double s = entry(facet, position, inward);
@@ -83,8 +83,8 @@ double Skin::beside(const Vec3& position, const Vec3& inward) const {
   }
   if (std::isinf(nearest)) {
     throw Error(ErrorKind::Geometry, owner_,
-                "the skin is nowhere below a point of the response surface",
-                "mesh the body again: its response surface is not that of its boundary");
+                "no skin is found along the inward direction of a point of the response surface",
+                "mesh the body again: its response surface does not belong to its boundary");
   }
   return nearest;
 }
@@ -94,7 +94,7 @@ std::vector<double> find_skin(const Body& body, std::vector<HoldOutPoint>& point
   std::vector<double> distances;
   for (HoldOutPoint& point : points) {
     if (point.node) continue;
-    point.skin = skin.beside(point.position, point.inward);
+    point.skin = skin.distance(point.position, point.inward);
     distances.push_back(std::abs(point.skin));
   }
   std::sort(distances.begin(), distances.end());

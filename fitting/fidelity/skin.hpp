@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where the skin of the body lies beside the flat triangles that carry the responses.
+// The skin: the boundary of the body, which is curved, relative to the flat response triangles.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@ class Skin {
  public:
   explicit Skin(const Body& body);
 
-  /// How far the skin is from a point of the response surface along the unit vector `inward`, m:
-  /// positive where the skin lies below, negative where it bulges out. Of several crossings the
-  /// nearest. @throws Error(Geometry) where there is none.
-  double beside(const Vec3& position, const Vec3& inward) const;
+  /// Distance from a point of the response surface to the skin along the unit vector `inward`, m:
+  /// positive where the skin lies below, negative where it bulges out. The nearest of several
+  /// crossings. @throws Error(Geometry) where there is none.
+  double distance(const Vec3& position, const Vec3& inward) const;
 
  private:
-  /// Corners, then bulges of the edges 01, 12, 20 over the straight ones.
+  /// Corners, and offsets of the middles of the curved edges 01, 12, 20 from the straight ones.
   struct Facet {
     std::array<Vec3, 3> corner{}, bulge{};
     bool curved = false;
@@ -33,8 +33,8 @@ class Skin {
   std::vector<Facet> facets_;
 };
 
-/// Sets HoldOutPoint::skin of the points that are at no node. @return how far the skin is from
-/// them, m, ascending. @throws as Skin::beside.
+/// Sets HoldOutPoint::skin of the points off the nodes. @return their distances, m, ascending.
+/// @throws as Skin::distance.
 std::vector<double> find_skin(const Body& body, std::vector<HoldOutPoint>& points);
 
 }  // namespace palpate::fidelity

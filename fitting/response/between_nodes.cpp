@@ -11,9 +11,9 @@
 namespace palpate::fitting {
 namespace {
 
-constexpr Eigen::Index kTerms = 6;     // of a quadratic on a plane
-constexpr double kSameSide = 0.5;      // cosine between directions of vertices seen as one side
-constexpr double kLargestShare = 0.2;  // of a force: patches with more are too coarse to mend
+constexpr Eigen::Index kTerms = 6;      // of a quadratic on a plane
+constexpr double kSameSide = 0.5;       // cosine between inward directions on one side of an edge
+constexpr double kMaxCorrection = 0.2;  // relative; patches that need more are too coarse
 
 Eigen::Vector3d to_eigen(const Vec3& v) {
   return Eigen::Vector3d(v.data());
@@ -21,18 +21,18 @@ Eigen::Vector3d to_eigen(const Vec3& v) {
 
 using Rings = std::vector<std::set<std::size_t>>;
 
-/// Two rings around a vertex, on its side of sharp edges, as far as there are forces.
+/// Vertices with a force in two rings around a vertex, on its side of sharp edges.
 std::vector<std::size_t> around(const Library& library, const Rings& rings,
                                 const std::vector<double>& force, std::size_t vertex) {
   std::set<std::size_t> found;
   for (const std::size_t near : rings[vertex])
-    for (const std::size_t other : rings[near])  // the vertex among them
+    for (const std::size_t other : rings[near])  // includes the vertex
       if (force[other] > 0 && dot(library.inward[other], library.inward[vertex]) > kSameSide)
         found.insert(other);
   return {found.begin(), found.end()};
 }
 
-/// Of the force along the surface, N/m^2; zero where the neighbours do not tell.
+/// Hessian of the force along the surface, N/m^2; zero where it cannot be determined.
 Eigen::Matrix3d hessian(const Library& library, const Rings& rings,
                         const std::vector<double>& force, std::size_t vertex) {
   const std::vector<std::size_t> near = around(library, rings, force, vertex);
@@ -49,7 +49,7 @@ Eigen::Matrix3d hessian(const Library& library, const Rings& rings,
     const std::size_t j = near[static_cast<std::size_t>(row)];
     const Eigen::Vector3d d = to_eigen(library.positions[j] - library.positions[vertex]) / reach;
     Eigen::Vector2d flat(d.dot(e1), d.dot(e2));
-    if (flat.norm() > 0) flat *= d.norm() / flat.norm();  // unrolled: the way along the surface
+    if (flat.norm() > 0) flat *= d.norm() / flat.norm();  // unrolled: keeps the distance
     const double weight = 1 / std::max(d.norm(), 0.25);
     A.row(row) << 1, flat[0], flat[1], 0.5 * flat[0] * flat[0], flat[0] * flat[1],
         0.5 * flat[1] * flat[1];
@@ -63,7 +63,7 @@ Eigen::Matrix3d hessian(const Library& library, const Rings& rings,
          c[5] * e2 * e2.transpose();
 }
 
-/// m of a triangle.
+/// m of a triangle: mean excess of linear interpolation, N.
 double mean_excess(const Library& library, const Triangle& triangle,
                    const std::vector<Eigen::Matrix3d>& hessians) {
   double sum = 0;
@@ -107,7 +107,7 @@ std::vector<double> factors_between_nodes(const Library& library, double depth) 
   std::vector<double> factors(vertices, 1.0);
   for (std::size_t v = 0; v < vertices; ++v)
     if (force[v] > 0 && around[v] > 0)
-      factors[v] -= std::clamp(excess[v] / around[v] / force[v], -kLargestShare, kLargestShare);
+      factors[v] -= std::clamp(excess[v] / around[v] / force[v], -kMaxCorrection, kMaxCorrection);
   return factors;
 }
 

@@ -10,15 +10,15 @@
 namespace palpate::fitting {
 namespace {
 
-constexpr double kLeastShare = 0.05;  // of the depth: below it w is constant
+constexpr double kMinDepthFraction = 0.05;  // of the depth: below it w is constant
 constexpr int kCouplingSamples = 16;
-constexpr double kCouplingTolerance = 0.01;  // of the local w: what the fit of w may add
-constexpr int kTurns = 3;                    // f^r and w by turns; a product of two settles at once
+constexpr double kCouplingTolerance = 0.01;  // of the local w: tolerance of its fit
+constexpr int kAlternations = 3;  // of f^r and w; the product of two factors converges at once
 constexpr double kSameDepth = 1e-9;
-constexpr float kBeyond = 1.25F;  // of the depth: where w has come to rest
-constexpr float kLevel = 0.05F;   // of the steepest slope of w: what is at rest, but for a mean
+constexpr float kBeyond = 1.25F;  // of the depth: beyond it w is constant
+constexpr float kLevel = 0.05F;   // of the largest slope of w: treated as constant
 
-/// The lateral paths of one held depth, all azimuths.
+/// The lateral paths at one depth, all azimuths.
 struct Level {
   double depth = 0;
   double weight = 1;  ///< w at this depth
@@ -28,17 +28,18 @@ struct Level {
 std::vector<Level> levels_of(const SiteCurves& site) {
   std::vector<Level> levels;
   for (const double depth : lateral_depths(site)) {
-    SiteCurves held;
+    SiteCurves at_depth;
     for (const CurvePath& path : site.paths) {
-      if (std::abs(path.lateral_depth - depth) <= kSameDepth * depth) held.paths.push_back(path);
+      if (std::abs(path.lateral_depth - depth) <= kSameDepth * depth)
+        at_depth.paths.push_back(path);
     }
-    Level level{depth, 1, lateral_paths(held)};
+    Level level{depth, 1, lateral_paths(at_depth)};
     if (!level.paths.empty()) levels.push_back(std::move(level));
   }
   return levels;
 }
 
-/// The one w of a level with which w f^r is nearest to its samples.
+/// The w of a level that brings w f^r closest to its samples, by least squares.
 double weight_of(const Level& level, const runtime::CompiledCurve& lateral) {
   double above = 0, below = 0;
   for (const auto& path : level.paths) {
@@ -48,7 +49,7 @@ double weight_of(const Level& level, const runtime::CompiledCurve& lateral) {
       below += f * f;
     }
   }
-  // A level that is pushed back, or an f^r of nothing, couples nothing.
+  // Without a positive projection there is no coupling.
   return below > 0 && above > 0 ? above / below : 1;
 }
 
@@ -64,7 +65,7 @@ ResponseCurve pooled_lateral(const std::vector<Level>& levels, const CurveFitSet
   return fit_curve(mean_lateral(scaled), settings, where + ", lateral response").curve;
 }
 
-/// Straight in the logarithms, sqrt outside.
+/// Linear in the logarithms between the depths, proportional to sqrt(z) outside.
 double weight_at(const std::vector<Level>& levels, double z) {
   const auto root = [&](const Level& from) { return from.weight * std::sqrt(z / from.depth); };
   if (z <= levels.front().depth) return root(levels.front());
@@ -72,8 +73,8 @@ double weight_at(const std::vector<Level>& levels, double z) {
     const Level& low = levels[j - 1];
     const Level& high = levels[j];
     if (z > high.depth) continue;
-    const double share = std::log(z / low.depth) / std::log(high.depth / low.depth);
-    return std::exp((1 - share) * std::log(low.weight) + share * std::log(high.weight));
+    const double t = std::log(z / low.depth) / std::log(high.depth / low.depth);
+    return std::exp((1 - t) * std::log(low.weight) + t * std::log(high.weight));
   }
   return root(levels.back());
 }
@@ -81,7 +82,7 @@ double weight_at(const std::vector<Level>& levels, double z) {
 CouplingCurve coupling_of(const std::vector<Level>& levels, double depth, int max_knots,
                           const std::string& where) {
   CouplingCurve coupling;
-  const double first = kLeastShare * depth;
+  const double first = kMinDepthFraction * depth;
   coupling.base = static_cast<float>(weight_at(levels, first));
   std::vector<ForceSample> samples;
   for (int i = 1; i <= kCouplingSamples; ++i) {
@@ -125,7 +126,7 @@ CoupledLateral fit_coupled(const SiteCurves& site, double depth, const CurveFitS
   const Level& middle = levels[levels.size() / 2];
   CoupledLateral result;
   result.lateral = fit_curve(mean_lateral(middle.paths), settings, where).curve;
-  for (int turn = 0; turn < kTurns; ++turn) {
+  for (int i = 0; i < kAlternations; ++i) {
     const runtime::CompiledCurve lateral(result.lateral);
     for (Level& level : levels) level.weight = weight_of(level, lateral);
     const double unit = middle.weight;

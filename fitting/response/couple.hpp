@@ -16,20 +16,21 @@ struct CoupledLateral {
   CouplingCurve coupling;
 };
 
-/// Beyond its last knot w stays where it is, which its slope reaches over a further quarter of the
-/// depth: a w that grows without end has no bound at every depth.
+/// Makes w constant beyond its last knot; where it still rises there, over a further quarter of the
+/// depth. A w that grows without limit would have no bound valid at every depth.
 void level_off(CouplingCurve& coupling);
 
-/// Held depths of the lateral paths of a site, ascending.
+/// Depths of the lateral paths of a site, m, ascending.
 std::vector<double> lateral_depths(const SiteCurves& site);
 
-/// Least squares for f_j(rho) = w_j f^r(rho) over the held depths z_j, by turns in f^r and w_j; w
-/// is 1 at the middle one. Then w(z): straight in the logarithms between the held depths, beyond
-/// them like the radius of contact of a round tool, sqrt(z) [Hertz; Mindlin 1949: a stuck contact
-/// is laterally as stiff as it is wide], from a twentieth of `depth` on, below which it is
-/// constant; made a non-decreasing C1 curve by the same fit as every response. With a single held
-/// depth the square root is all there is.
-/// @param depth of the normal response, m. @param where names the site in errors.
+/// Fits f_j(rho) = w_j f^r(rho) over the lateral depths z_j by alternating least squares in f^r and
+/// w_j, with w = 1 at the middle depth. Then w(z) is interpolated in the logarithms between the
+/// lateral depths and extrapolated like sqrt(z), the contact radius of a round tool [Hertz; Mindlin
+/// 1949: the lateral stiffness of a bonded contact is proportional to its radius]. Below a
+/// twentieth of `depth` it is constant. The fit of the responses makes it a non-decreasing C1
+/// curve. With a single lateral depth only the square root remains.
+/// @param depth  depth of the normal response, m
+/// @param where  name of the site in errors
 CoupledLateral fit_coupled(const SiteCurves& site, double depth, const CurveFitSettings& settings,
                            const std::string& where);
 

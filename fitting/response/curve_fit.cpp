@@ -89,7 +89,7 @@ class KnotSearch {
       if (!finer) break;
       tried.push_back(shift_knots(*finer));
     }
-    return tried.back().worst <= 1 ? drop_knots(tried.back()) : most_sensible(tried);
+    return tried.back().worst <= 1 ? drop_knots(tried.back()) : by_schwarz_criterion(tried);
   }
 
  private:
@@ -111,10 +111,10 @@ class KnotSearch {
         2, std::min(static_cast<std::size_t>(settings_.max_knots), supported));
   }
 
-  /// When no candidate is within tolerance, the samples scatter by more than it, or the knots are
-  /// used up. Then a knot must earn its two numbers, by the criterion n ln(S/n) + p ln n
-  /// [Schwarz 1978]: one that does not only follows the noise.
-  Candidate most_sensible(const std::vector<Candidate>& tried) const {
+  /// For samples that scatter by more than the tolerance, or when the knots are used up: the
+  /// candidate of the smallest n ln(S/n) + p ln n [Schwarz 1978], S the sum of squares and p two
+  /// numbers a knot. More knots would follow the noise.
+  Candidate by_schwarz_criterion(const std::vector<Candidate>& tried) const {
     const auto n = static_cast<double>(samples_.size());
     std::size_t chosen = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -138,16 +138,16 @@ class KnotSearch {
         return sample.displacement > knots[k] && sample.displacement <= knots[k + 1];
       };
       const auto count = std::count_if(samples_.begin(), samples_.end(), inside);
-      // The slope of zero at touch holds the first piece of a normal response: it may be short, and
-      // has to be, for the square root in the slope of a round tool.
-      const std::size_t held = k == 0 && settings_.zero_first_slope ? kSamplesPerPiece : 0;
-      if (static_cast<std::size_t>(count) + held < kSamplesPerPiece) return false;
+      // Zero slope at touch constrains the first piece of a normal response. It has to be short to
+      // represent the square root in the slope of a round tool.
+      const std::size_t constraints = k == 0 && settings_.zero_first_slope ? kSamplesPerPiece : 0;
+      if (static_cast<std::size_t>(count) + constraints < kSamplesPerPiece) return false;
     }
     return true;
   }
 
-  /// One knot more, at the sample, or before the first, where it lowers the worst error most;
-  /// nothing when no piece has samples enough to be split.
+  /// Adds one knot, at a sample or before the first, where it lowers the largest error most. Absent
+  /// when no piece has enough samples to be split.
   std::optional<Candidate> split(const Candidate& candidate) const {
     std::optional<Candidate> best;
     std::vector<double> positions{0.5 * samples_.front().displacement};
@@ -162,7 +162,7 @@ class KnotSearch {
     return best;
   }
 
-  /// Move interior knots, one at a time, while that lowers the worst error.
+  /// Moves interior knots, one at a time, while that lowers the largest error.
   Candidate shift_knots(Candidate best) const {
     for (int sweep = 0; sweep < 6 && best.worst > 1; ++sweep) {
       const double before = best.worst;
@@ -184,7 +184,7 @@ class KnotSearch {
     return best;
   }
 
-  /// Drop the knot that is missed least, as long as all samples stay within tolerance.
+  /// Removes the least important knots while all samples stay within tolerance.
   Candidate drop_knots(Candidate best) const {
     while (best.worst <= 1 && best.knots.size() > 2) {
       std::optional<Candidate> without;
@@ -200,8 +200,8 @@ class KnotSearch {
     return best;
   }
 
-  /// Closest two knots may come: not far below the spacing of the samples, and far above that of
-  /// single precision.
+  /// Smallest distance between knots: about the spacing of the samples, and far above single
+  /// precision.
   double gap() const {
     return std::max(1e-3 * depth_, 0.25 * std::min(samples_.front().displacement,
                                                    depth_ / static_cast<double>(samples_.size())));
@@ -218,7 +218,7 @@ Samples checked(Samples samples, const std::string& where) {
     throw Error(ErrorKind::Configuration, where, "a sample is not a finite number",
                 "check the file the curves come from");
   }
-  // The response is 0 at 0 by definition: a sample there has nothing to say.
+  // The response is 0 at 0 by definition, so a sample there is redundant.
   std::erase_if(samples, [](const ForceSample& sample) { return !(sample.displacement > 0); });
   std::sort(samples.begin(), samples.end(), [](const ForceSample& a, const ForceSample& b) {
     return a.displacement < b.displacement;

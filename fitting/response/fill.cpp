@@ -31,7 +31,7 @@ void fill_holes(Library& library, const FitSettings& settings) {
   const auto neighbours = neighbours_of(library);
   for (bool progress = true; progress;) {
     progress = false;
-    // One ring at a time, from the state before the ring: the order of vertices must not matter.
+    // Each ring is filled from the state before it, so the order of vertices does not matter.
     const std::vector<NodeResponse> before = library.responses;
     for (std::size_t v = 0; v < before.size(); ++v) {
       if (before[v].status != ResponseStatus::Hole) continue;

@@ -5,9 +5,8 @@
 
 namespace palpate::fitting {
 
-/// Give every hole of the triangulation the mean response of its neighbours, nearest rings first,
-/// and mark it Filled. Its errors are the largest difference to a neighbour: the honest doubt about
-/// a response that was never solved.
+/// Gives every hole of the triangulation the mean response of its neighbours, ring by ring, with
+/// status Filled. Its errors are the largest differences from a neighbour.
 void fill_holes(Library& library, const FitSettings& settings);
 
 }  // namespace palpate::fitting

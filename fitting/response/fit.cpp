@@ -34,7 +34,7 @@ void check_site(const Body& body, const SiteCurves& site) {
     refuse(where, "the body has only " + std::to_string(count) + " response vertices", remedy);
   }
   const auto vertex = static_cast<std::size_t>(site.vertex);
-  if (body.response.is_site[vertex] == 0) refuse(where, "the body is held there", remedy);
+  if (body.response.is_site[vertex] == 0) refuse(where, "the vertex is fixed by a support", remedy);
   for (const CurvePath& path : site.paths) {
     if (path.kind == PathKind::Normal &&
         norm(path.direction - body.response.inward[vertex]) > 1e-3) {
@@ -59,22 +59,23 @@ void check_curves(const Body& body, const Curves& curves) {
 void check_settings(const FitSettings& settings) {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
   if (!positive(settings.relative_tolerance) || !positive(settings.absolute_tolerance)) {
-    refuse("fit settings", "a tolerance is not above zero", "give tolerances above zero");
+    refuse("fit settings", "a tolerance is not positive", "give positive tolerances");
   }
   if (settings.max_knots < 2) {
     refuse("fit settings", "max_knots = " + std::to_string(settings.max_knots), "allow at least 2");
   }
 }
 
-/// A node needs a normal response over half of the requested depth at least, and a lateral one.
+/// Whether a site has a normal response over at least half of the requested depth, and a lateral
+/// one.
 bool usable(const SiteCurves& site, double depth) {
   if (site.status == SiteStatus::Failed) return false;
   return normal_reach(site) >= 0.5 * depth * (1 - 1e-9) && normal_reach(site) > 0 &&
          !lateral_paths(site).empty();
 }
 
-/// Largest distance of the lateral response from every single path, so that what the mean over
-/// azimuths, and over depths when decoupled, loses is part of the stated error.
+/// Largest distance of the lateral response from any single path. It includes the loss by averaging
+/// over azimuths and, when decoupled, over depths.
 double lateral_error(const NodeResponse& node, ResponseKind kind, const SiteCurves& site) {
   const runtime::CompiledCurve rendered(node.lateral);
   runtime::CompiledCurve weight;
@@ -125,10 +126,10 @@ Library surface_library(const Body& body, const Curves& curves) {
     library.positions.push_back(body.nodes[static_cast<std::size_t>(node)]);
   }
   for (const Triangle& triangle : body.response.triangles) {
-    const bool touchable = std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
+    const bool pressable = std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
       return body.response.is_site[static_cast<std::size_t>(v)] != 0;
     });
-    if (touchable) library.triangles.push_back(triangle);
+    if (pressable) library.triangles.push_back(triangle);
   }
   library.responses.resize(library.positions.size());
   library.provenance = curves.provenance;
@@ -148,18 +149,19 @@ double force_at_end(const runtime::CompiledCurve& curve) {
 }
 
 void scale(NodeResponse& node, ResponseKind kind, double factor) {
-  // What has no samples of its own strays by as much as it is scaled.
+  // Responses without samples of their own get the change as an additional error.
   double largest_weight = 1;
   if (kind == ResponseKind::Coupled)
     largest_weight = force_at_end({node.coupling.curve, static_cast<double>(node.coupling.base)});
-  const double share = std::abs(factor - 1);
-  node.normal_error += share * force_at_end(runtime::CompiledCurve(node.normal));
-  node.lateral_error += share * largest_weight * force_at_end(runtime::CompiledCurve(node.lateral));
+  const double change = std::abs(factor - 1);
+  node.normal_error += change * force_at_end(runtime::CompiledCurve(node.normal));
+  node.lateral_error +=
+      change * largest_weight * force_at_end(runtime::CompiledCurve(node.lateral));
   for (ResponseCurve* curve : {&node.normal, &node.lateral})
     for (float& slope : curve->slope) slope *= static_cast<float>(factor);
 }
 
-/// The stated errors stay those at the nodes, where the samples are.
+/// The stated errors remain those at the nodes, where the samples are.
 void scale_between_nodes(const Curves& curves, Library& library) {
   const std::vector<double> factors = factors_between_nodes(library, 0.5 * curves.depth);
   for (std::size_t v = 0; v < factors.size(); ++v)
@@ -196,11 +198,11 @@ Library fit(const Body& body, const Curves& curves, const FitSettings& settings)
   if (fitted == 0) {
     refuse("curves of body '" + body.name + "'",
            "no site has a normal response over half of the depth and a lateral response",
-           "see the reasons recorded with the sites; precompute with held depths and azimuths");
+           "see the reasons recorded with the sites; precompute with lateral depths and azimuths");
   }
   if (library.triangles.empty()) {
     refuse("body '" + body.name + "'", "every response triangle touches a support",
-           "hold a smaller part of the surface");
+           "support a smaller part of the surface");
   }
   if (settings.interpolate) interpolate_rest(body, vertices_of(curves), settings, library);
   if (settings.fill_holes) fill_holes(library, settings);

@@ -32,15 +32,15 @@ double mean_force(const CurveList& curves, double d) {
   return sum;
 }
 
-/// The one that counts most, the first of equals.
+/// The curve with the largest weight; the first of equal ones.
 const WeightedCurve& heaviest(const CurveList& curves) {
   return *std::max_element(
       curves.begin(), curves.end(),
       [](const WeightedCurve& a, const WeightedCurve& b) { return a.weight < b.weight; });
 }
 
-/// Several in each piece of the heaviest curve: the others, responses of the same body under the
-/// same tool, are as smooth.
+/// Samples in each piece of the heaviest curve. The others belong to the same body and tool and are
+/// as smooth.
 std::vector<ForceSample> mean_samples(const CurveList& curves) {
   constexpr int kPerPiece = 4;
   const auto& pieces = heaviest(curves).curve.pieces();
@@ -65,7 +65,7 @@ bool within_tolerance(const ResponseCurve& curve, const std::vector<ForceSample>
   });
 }
 
-/// On the knots of the heaviest curve, which mostly will do; else on knots of its own.
+/// On the knots of the heaviest curve if that is within tolerance, else on knots of its own.
 ResponseCurve mean_curve(const CurveList& curves, const CurveFitSettings& settings,
                          const std::string& where) {
   const std::vector<ForceSample> samples = mean_samples(curves);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A response made of others: where none was computed.
+// Weighted means of responses.
 #pragma once
 
 #include <string>
@@ -14,14 +14,13 @@ struct WeightedResponse {
   double weight = 0;
 };
 
-/// The weighted mean of the responses at equal deflections, fitted like any curve (hence monotone
-/// and passive whatever the weights) and marked Filled. Weights sum to 1; single ones may be
-/// negative. The errors are left at 0 for the caller to state.
+/// Weighted mean of the responses at equal deflections, with status Filled. It is fitted like any
+/// curve, hence monotone and passive for any weights. The weights sum to 1 and may be negative. The
+/// errors are 0; the caller sets them.
 NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
                            const FitSettings& settings, const std::string& where);
 
-/// Largest difference of the two over the deflections up to their last knots, N, of the normal and
-/// of the lateral response.
+/// Largest differences over the deflections up to the last knots, N.
 struct ResponseDifference {
   double normal = 0, lateral = 0;
 };

@@ -9,7 +9,7 @@
 
 namespace palpate::fitting {
 
-/// Of each vertex, those it shares a triangle with.
+/// For each vertex, the vertices with which it has a triangle in common.
 std::vector<std::set<std::size_t>> neighbours_of(const Library& library);
 
 }  // namespace palpate::fitting

@@ -6,17 +6,17 @@
 namespace palpate::fitting {
 namespace {
 
-/// Displacements closer than this, relatively, are one: they differ by rounding.
+/// Relative distance below which two displacements differ only by rounding.
 constexpr double kSame = 1e-9;
 
-/// Force of a path at d, straight between its samples and from the origin. d <= its last sample.
+/// Force of a path at d, linear between its samples and from the origin. @pre d <= its last sample
 double interpolate(const std::vector<ForceSample>& path, double d) {
   ForceSample low{0, 0};
   for (const ForceSample& high : path) {
     if (d <= high.displacement) {
       const double length = high.displacement - low.displacement;
-      const double share = length > 0 ? (d - low.displacement) / length : 1;
-      return low.force + share * (high.force - low.force);
+      const double t = length > 0 ? (d - low.displacement) / length : 1;
+      return low.force + t * (high.force - low.force);
     }
     low = high;
   }
@@ -50,11 +50,11 @@ std::vector<std::vector<ForceSample>> lateral_paths(const SiteCurves& site) {
   std::vector<std::vector<ForceSample>> paths;
   for (const CurvePath& path : site.paths) {
     if (path.kind != PathKind::Lateral || path.samples.empty()) continue;
-    const Vec3 held = path.samples.front().force;
+    const Vec3 first = path.samples.front().force;
     std::vector<ForceSample> samples;
     for (const CurveSample& sample : path.samples) {
       if (sample.displacement > 0) {
-        samples.push_back({sample.displacement, dot(sample.force - held, path.direction)});
+        samples.push_back({sample.displacement, dot(sample.force - first, path.direction)});
       }
     }
     std::sort(samples.begin(), samples.end(), [](const ForceSample& a, const ForceSample& b) {
@@ -78,13 +78,13 @@ std::vector<ForceSample> mean_lateral(const std::vector<std::vector<ForceSample>
   ForceSample last{0, 0};
   for (const double d : displacements) {
     double rise = 0;
-    int alive = 0;
+    int count = 0;
     for (const auto& path : paths) {
       if (path.back().displacement < (1 - kSame) * d) continue;
       rise += interpolate(path, d) - interpolate(path, last.displacement);
-      ++alive;
+      ++count;
     }
-    last = {d, last.force + rise / alive};
+    last = {d, last.force + rise / count};
     mean.push_back(last);
   }
   return mean;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the paths of one site say about the two responses of its node.
+// Samples of the normal and the lateral response from the paths of one site.
 #pragma once
 
 #include <vector>
@@ -12,17 +12,15 @@ namespace palpate::fitting {
 /// f^z: (displacement, force . inward) of every sample of every normal path.
 std::vector<ForceSample> normal_samples(const SiteCurves& site);
 
-/// Deepest displacement of the normal paths, m; 0 without any.
+/// Largest displacement of the normal paths, m; 0 without any.
 double normal_reach(const SiteCurves& site);
 
-/// f^r of each lateral path by itself: (displacement, (force - force at the held state) .
-/// direction).
+/// f^r of each lateral path: (displacement, (force - force at its first sample) . direction).
 std::vector<std::vector<ForceSample>> lateral_paths(const SiteCurves& site);
 
-/// One f^r for the node: the mean over azimuths and held depths. The decoupled model of the local
-/// contact (28)-(29) has no dependence of f^r on depth or direction; the raw curves keep it. Paths
-/// of different length are averaged in their slopes: where a path has ended, the mean slope of the
-/// others continues the curve, so that it never jumps.
+/// f^r of the node: the mean over azimuths and lateral depths, since in the decoupled local model
+/// (28)-(29) f^r depends on neither. Paths of different length are averaged in their slopes: beyond
+/// the end of a path the mean slope of the others continues the curve without a jump.
 std::vector<ForceSample> mean_lateral(const std::vector<std::vector<ForceSample>>& paths);
 
 }  // namespace palpate::fitting

@@ -11,11 +11,13 @@
 namespace palpate::fitting {
 namespace {
 
-constexpr double kLeastCosine = 0.2;  // of two inward directions that still see one another
-constexpr std::size_t kDonors = 12;   // of one spline: two rings of neighbours
-constexpr std::size_t kFewest = 5;    // a spline of fewer follows noise
+constexpr double kLeastCosine =
+    0.2;  // between inward directions of vertices that may interpolate each other
+constexpr std::size_t kDonors = 12;  // per spline: about two rings of neighbours
+constexpr std::size_t kFewest = 5;   // fewer donors do not determine a spline
 
-// A spline between its donors has weights of about this sum at most; beyond them it grows.
+// The absolute weights of an interpolating spline have about this sum at most; those of an
+// extrapolating one exceed it.
 constexpr double kLargestWeights = 2.0;
 
 struct Planar {
@@ -26,7 +28,7 @@ Vec3 direction_of(const Vec3& v) {
   return (1 / norm(v)) * v;
 }
 
-/// Two unit vectors across n.
+/// Two unit vectors normal to n.
 std::array<Vec3, 2> tangents(const Vec3& n) {
   const Vec3 least = std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 first = direction_of(cross(n, least));
@@ -38,19 +40,19 @@ double kernel(const Planar& a, const Planar& b) {
   return r2 > 0 ? 0.5 * r2 * std::log(r2) : 0;
 }
 
-/// Weights of the spline through the places for its value at the origin; empty when the places do
+/// Weights of the spline through the points for its value at the origin; empty when the points do
 /// not span a plane. Unknowns of the dual problem: [K P; P^T 0] [w; c] = [k(0); 1, 0, 0].
-std::vector<double> spline_weights(const std::vector<Planar>& places) {
-  const auto n = static_cast<Eigen::Index>(places.size());
+std::vector<double> spline_weights(const std::vector<Planar>& points) {
+  const auto n = static_cast<Eigen::Index>(points.size());
   Eigen::MatrixXd system = Eigen::MatrixXd::Zero(n + 3, n + 3);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(n + 3);
   for (Eigen::Index i = 0; i < n; ++i) {
-    const Planar& place = places[static_cast<std::size_t>(i)];
+    const Planar& point = points[static_cast<std::size_t>(i)];
     for (Eigen::Index j = 0; j < n; ++j)
-      system(i, j) = kernel(place, places[static_cast<std::size_t>(j)]);
-    system.row(i).tail<3>() << 1, place.x, place.y;
-    system.col(i).tail<3>() << 1, place.x, place.y;
-    right(i) = kernel(place, {});
+      system(i, j) = kernel(point, points[static_cast<std::size_t>(j)]);
+    system.row(i).tail<3>() << 1, point.x, point.y;
+    system.col(i).tail<3>() << 1, point.x, point.y;
+    right(i) = kernel(point, {});
   }
   right(n) = 1;
   Eigen::FullPivLU<Eigen::MatrixXd> factors(system);
@@ -67,7 +69,7 @@ bool is_between(const std::vector<double>& weights) {
   return sum <= kLargestWeights;  // false for NaN
 }
 
-/// Of the distances that the donors have as weights; the nearest four.
+/// Inverse squared distances of the nearest four donors, whose `weight` is their distance.
 std::vector<Donor> inverse_square_weights(std::vector<Donor> donors) {
   donors.resize(std::min<std::size_t>(4, donors.size()));
   double sum = 0;
@@ -112,15 +114,15 @@ std::vector<Donor> SurfaceInterpolation::weights(std::size_t vertex) const {
   if (donors.size() < kFewest) return inverse_square_weights(std::move(donors));
   const auto [e1, e2] = tangents(inward_[vertex]);
   const double unit_length = donors.back().weight;
-  std::vector<Planar> places;
+  std::vector<Planar> points;
   for (const Donor& donor : donors) {
     const Vec3 offset = positions_[donor.vertex] - positions_[vertex];
     const Planar flat{dot(offset, e1), dot(offset, e2)};
     const double length = std::hypot(flat.x, flat.y);
     const double stretch = length > 0 ? donor.weight / (length * unit_length) : 0;
-    places.push_back({flat.x * stretch, flat.y * stretch});
+    points.push_back({flat.x * stretch, flat.y * stretch});
   }
-  const std::vector<double> weights = spline_weights(places);
+  const std::vector<double> weights = spline_weights(points);
   if (!is_between(weights)) return inverse_square_weights(std::move(donors));
   for (std::size_t i = 0; i < donors.size(); ++i) donors[i].weight = weights[i];
   return donors;

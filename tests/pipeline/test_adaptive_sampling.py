@@ -119,7 +119,7 @@ class AdaptiveSampling(unittest.TestCase):
         stated = facts(self.out / "curves.h5")
         self.assertEqual(stated["sites_computed"], f"{last['sites']} of {last['of_sites']}")
         self.assertIn(f"p95 {last['error_along_press']['p95']:.6g}", stated["hold_out_error_along_press"])
-        self.assertFalse((self.out / "held-out.journal").exists())
+        self.assertFalse((self.out / "hold-out.journal").exists())
 
     def test_what_was_not_computed_is_as_it_would_have_been(self):
         self.assertEqual(palpate("fit", self.case, "--out", self.out).returncode, DONE)

@@ -56,8 +56,8 @@ std::string comparison_of(const std::vector<ComparedNode>& nodes, const std::str
                    {"normalised_rmse", 0.062},
                    {"bias_N", 0.055},
                    {"rms_jnd", 1.43},
-                   {"noticeable_share", 1.0},
-                   {"within_uncertainty_share", known ? json(0.4) : json(nullptr)},
+                   {"noticeable_fraction", 1.0},
+                   {"within_uncertainty_fraction", known ? json(0.4) : json(nullptr)},
                    {"scatter_N", known ? json(0.03) : json(nullptr)},
                    {"worst", points.back()}};
     json summary = common;
@@ -134,7 +134,7 @@ palpate::ProvenanceStep sampling_step() {
                 {"hold_out_points", "40"},
                 {"hold_out_error_along_press", "median 0.018, p95 0.046, worst 0.31"},
                 {"hold_out_error_of_vector", "median 0.02, p95 0.05, worst 0.32"},
-                {"sampling_ended", "the points held out are met within the tolerance"}};
+                {"sampling_ended", "the error at the hold-out points is within the tolerance"}};
   return step;
 }
 

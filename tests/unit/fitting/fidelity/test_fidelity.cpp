@@ -85,7 +85,7 @@ Fidelity measure_on(const Library& library, const std::vector<HoldOutPoint>& poi
   const samples::TemporaryFolder folder;
   const auto file = folder / "library.h5";
   write_library(file, library);
-  return measure(library, RenderedBody(file), points, direct, sampled, {1e-6, 0.3});
+  return measure({library, RenderedBody(file), points, direct, sampled}, {1e-6, 0.3});
 }
 
 const ErrorRow& row(const Fidelity& fidelity, const std::string& what, const std::string& part) {

@@ -23,28 +23,28 @@ Body slab(double top, double bottom, double slope) {
 
 TEST(Skin, IsWhereTheLineEntersTheBody) {
   const Body body = slab(0.002, -1, 0);
-  EXPECT_NEAR(Skin(body).beside({0.1, 0.2, 0}, {0, 0, -1}), -0.002, 1e-15);     // bulges out
-  EXPECT_NEAR(Skin(body).beside({0.1, 0.2, 0.005}, {0, 0, -1}), 0.003, 1e-15);  // lies below
+  EXPECT_NEAR(Skin(body).distance({0.1, 0.2, 0}, {0, 0, -1}), -0.002, 1e-15);     // bulges out
+  EXPECT_NEAR(Skin(body).distance({0.1, 0.2, 0.005}, {0, 0, -1}), 0.003, 1e-15);  // lies below
 }
 
 TEST(Skin, IsFoundAlongALeaningDirection) {
   const Body body = slab(0.002, -1, 0);
   const Vec3 inward{0.6, 0, -0.8};
-  EXPECT_NEAR(Skin(body).beside({0, 0, 0.004}, inward), 0.002 / 0.8, 1e-15);
+  EXPECT_NEAR(Skin(body).distance({0, 0, 0.004}, inward), 0.002 / 0.8, 1e-15);
 }
 
 TEST(Skin, IsFoundOnTheEdgeBetweenTwoFacets) {
   const Body body = slab(0.002, -1, 0);
   for (const double x : {-0.9, -0.3, 0.0, 0.25, 0.7})
-    EXPECT_NEAR(Skin(body).beside({x, x, 0}, {0, 0, -1}), -0.002, 1e-15);
+    EXPECT_NEAR(Skin(body).distance({x, x, 0}, {0, 0, -1}), -0.002, 1e-15);
 }
 
 TEST(Skin, IsNotWhereTheLineLeavesTheBody) {
   // The lower side is nearer to the point, but the line leaves the body there.
   const Body body = slab(0.002, -0.001, 0.0005);
-  EXPECT_NEAR(Skin(body).beside({0.5, 0.1, -0.0008}, {0, 0, -1}), -0.0028, 1e-15);
+  EXPECT_NEAR(Skin(body).distance({0.5, 0.1, -0.0008}, {0, 0, -1}), -0.0028, 1e-15);
   // From below it enters there: z = -0.001 + 0.0005 * 0.5.
-  EXPECT_NEAR(Skin(body).beside({0.5, 0.1, -0.0008}, {0, 0, 1}), 0.00005, 1e-15);
+  EXPECT_NEAR(Skin(body).distance({0.5, 0.1, -0.0008}, {0, 0, 1}), 0.00005, 1e-15);
 }
 
 // A paraboloid is quadratic over every facet, so curved edges make it whole.
@@ -68,17 +68,17 @@ TEST(Skin, IsTheCurvedOneWhereEdgesAreCurved) {
       for (const double y : {-0.004, 0.001, 0.006}) {
         const Vec3 inward{lean, 0.5 * lean, -std::sqrt(1 - 1.25 * lean * lean)};
         const Vec3 position{x, y, -0.0002};
-        const Vec3 at = position + skin.beside(position, inward) * inward;
+        const Vec3 at = position + skin.distance(position, inward) * inward;
         EXPECT_NEAR(at[2], on_paraboloid(at[0], at[1])[2], 1e-13);
       }
   body.curved_edges.clear();
-  EXPECT_GT(std::abs(Skin(body).beside({0, 0.004, 0}, {0, 0, -1}) -
-                     skin.beside({0, 0.004, 0}, {0, 0, -1})),
+  EXPECT_GT(std::abs(Skin(body).distance({0, 0.004, 0}, {0, 0, -1}) -
+                     skin.distance({0, 0.004, 0}, {0, 0, -1})),
             1e-4);
 }
 
 TEST(Skin, MustBeSomewhere) {
-  EXPECT_THROW(Skin(slab(0.002, -1, 0)).beside({3, 0, 0}, {0, 0, -1}), Error);
+  EXPECT_THROW(Skin(slab(0.002, -1, 0)).distance({3, 0, 0}, {0, 0, -1}), Error);
 }
 
 }  // namespace

@@ -81,8 +81,8 @@ function summaryOf(s) {
     ['Compared', `${units.count(s.curves)} ${s.kind} curves, ${units.count(s.points)} points`],
     ['RMSE', `${units.force(s.rmse_N)}, ${percentOf(s.normalised_rmse)} of the largest force; scatter of the reference: ${forceOf(s.scatter_N)}`],
     ['Bias', `${units.force(s.bias_N)}; limits of agreement ${units.force(s.agreement_low_N)} to ${units.force(s.agreement_high_N)}`],
-    ['Felt', `${units.significant(s.rms_jnd)} just noticeable differences (root mean square); noticeable at ${percentOf(s.noticeable_share)} of the points`],
-    ['Within the uncertainty', `${percentOf(s.within_uncertainty_share)} of the points`],
+    ['Felt', `${units.significant(s.rms_jnd)} just noticeable differences (root mean square); noticeable at ${percentOf(s.noticeable_fraction)} of the points`],
+    ['Within the uncertainty', `${percentOf(s.within_uncertainty_fraction)} of the points`],
     ['Worst', `node ${s.worst_vertex} at ${units.length(s.worst.displacement_m)}: ${units.force(s.worst.model_N)} for ${units.force(s.worst.reference_N)}`],
   ], 'facts');
 }
