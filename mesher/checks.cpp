@@ -18,7 +18,7 @@ constexpr double kDeepestFraction = 0.8;  // of the thickness under the tool
 constexpr double kFewestPatches = 3;      // along the largest extent of the body
 constexpr double kMostNodes = 2e6;
 
-// Of the volume of a regular tetrahedron with the same longest edge.
+// Smallest volume of an element relative to a regular one with the same longest edge.
 constexpr double kSmallestVolume = 1e-9;
 
 [[noreturn]] void refuse_setting(const std::string& problem, const std::string& remedy) {

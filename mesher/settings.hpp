@@ -61,7 +61,7 @@ struct Settings {
   double patch_spacing = 0.010;         ///< m, edge length of the response surface
   double element_size = 0.005;          ///< m, edge length of the boundary facets
   double interior_growth = 1.5;         ///< target of the largest interior edge over element_size
-  double feature_angle = 45;            ///< degrees; sharper edges of the input are kept
+  double feature_angle = 45;            ///< degrees; sharper edges of the input stay sharp
   bool curved_facets = true;            ///< writes Body::curved_edges; without, facets are flat
   double tool_radius = 0.005;           ///< m, smallest distance of sites from supports
   double depth = 0;                     ///< m, of the planned indentation; 0 skips the check

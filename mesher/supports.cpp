@@ -18,7 +18,7 @@ namespace {
 // element_size.
 constexpr double kSupportTolerance = 1e-3;
 
-/// Of each entry of Surface::known_names, whether it has the label.
+/// For each entry of Surface::known_names, whether it has the label.
 std::vector<bool> entries_with(const std::string& label, const Surface& skin,
                                const std::string& where) {
   std::vector<bool> has_label;

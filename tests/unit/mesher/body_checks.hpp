@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What must hold of every body, computed here from its records alone.
+// Conditions that every body meets, computed from its records alone.
 #pragma once
 
 #include "format/body.hpp"
