@@ -33,7 +33,7 @@ std::vector<double> ring_radii(const RoundLayer& layer) {
   return radii;
 }
 
-/// From the top down.
+/// Coordinates of the layers, from the top down.
 std::vector<double> layer_depths(const RoundLayer& layer) {
   std::vector<double> depths{0};
   double step = layer.circle * std::pow(1.0 / layer.rings, layer.crowding);

@@ -15,8 +15,8 @@ struct RoundLayer {
   double extent;     ///< m, outer radius
 };
 
-/// The layer lies below z = 0; its only response vertex is the origin. Points on the circle are the
-/// corners of a polygon of the area of the circle.
+/// The layer lies below z = 0; its only response vertex is the origin. The points on the circle are
+/// the corners of a polygon with the area of the circle.
 Body make_round_layer(const RoundLayer& layer);
 
 /// One press at the only vertex, without lateral paths: neo-Hookean, `young` and `poisson`.

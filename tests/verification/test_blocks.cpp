@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Homogeneous deformations of a block of distorted elements between planes of symmetry: the solver
-// against the closed forms of the incompressible solid, P over the rest area.
+// Homogeneous deformations of a block of distorted elements between planes of symmetry, compared
+// with the closed forms of the nominal stress P of the incompressible solid.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -22,7 +22,7 @@ namespace {
 
 using test::Prescribed;
 
-/// The unit cube in 2 x 2 x 2 cells, the node within moved.
+/// The unit cube in 2 x 2 x 2 cells with its inner node displaced.
 Body unit_cube() {
   Body body = test::make_block(test::even(0, 1, 2), test::even(0, 1, 2), test::even(0, 1, 2));
   body.fixed_nodes.clear();
@@ -39,7 +39,7 @@ struct Motion {
   std::function<double(const Eigen::Vector3d& X)> by;
 };
 
-/// A block and where it is.
+/// A block with its displacements.
 class Block {
  public:
   explicit Block(const LawConstants& law)
@@ -62,14 +62,14 @@ class Block {
   }
   void start_from(const Block& other) { u_ = other.u_; }
 
-  /// Of an edge of the cube, where its face stays plane.
+  /// The stretch along an axis; the faces across it stay plane.
   double stretch(int axis) const {
     for (int node = 0; node < model_.mesh().nodes(); ++node)
       if (model_.mesh().X(axis, node) == 1) return 1 + u_(axis, node);
     return 0;
   }
 
-  /// Force on a face at 1 over its rest area.
+  /// Force on a face at 1 over its reference area.
   double nominal_stress(int face_axis, int axis) const {
     Eigen::VectorXd f;
     model_.forces(u_, f);
@@ -89,7 +89,7 @@ struct Stress {
   int face_axis, axis;
 };
 
-/// Stresses of a law of its own Poisson's ratio, in ten steps from rest.
+/// Stresses of a law with its own Poisson's ratio, in ten steps from rest.
 std::vector<double> stresses(const LawConstants& law, const std::vector<Motion>& motions,
                              const std::vector<Stress>& wanted, std::optional<Block>& block) {
   if (!block) {
@@ -106,8 +106,9 @@ std::vector<double> stresses(const LawConstants& law, const std::vector<Motion>&
   return found;
 }
 
-/// Of the incompressible solid: the bulk modulus grows threefold, each state starting from the one
-/// before, until the error of compression, which goes as its inverse, can be extrapolated away.
+/// Stresses of the incompressible solid. The bulk modulus grows threefold from state to state until
+/// the error of the compressibility, which is proportional to its inverse, can be extrapolated to
+/// 0.
 std::vector<double> incompressible(LawConstants law, const std::vector<Motion>& motions,
                                    const std::vector<Stress>& wanted) {
   law.values.emplace_back("poisson", 0.45);
@@ -166,7 +167,7 @@ struct Printed {
   double compressed, uniaxial, equibiaxial, pure_shear;
 };
 
-/// Moduli in units of mu. Printed with six decimals.
+/// Moduli in units of mu; stresses with six decimals.
 std::vector<Printed> printed() {
   return {{LawConstants("neo-hookean", {{"young", 3}}), -0.334568, 0.708284, 1.030671, 0.844834},
           {LawConstants("mooney-rivlin", {{"C10", 0.4}, {"C01", 0.1}}), -0.342003, 0.675594,
@@ -232,7 +233,7 @@ TEST(Block, MooneyRivlinOfFiveConstantsHasTheStressOfTheClosedForm) {
   });
 }
 
-/// W' and the modulus at rest of the series as it is commonly printed, term by term.
+/// W' and the modulus at rest of the series in its common form, term by term.
 TEST(Block, ArrudaBoyceHasTheStressOfTheClosedForm) {
   const double n = 1.6 * 1.6;
   const double at_rest = 1 + 3 / (5 * n) + 99 / (175 * n * n) + 513 / (875 * n * n * n) +
@@ -292,7 +293,7 @@ TEST(Block, OgdenRubberHasTheStressOfTheClosedForm) {
   row(Mode::PureShear, 0.68562);
 }
 
-/// S = E* E11 with the modulus of each mode: a law of its own compressibility.
+/// S = E* E11 with the modulus of each mode; the law is compressible.
 TEST(Block, SaintVenantKirchhoffHasTheStressOfTheClosedForm) {
   const double nu = 0.3, l = 1.2, uniaxial = l * (l * l - 1) / 2;
   const auto row = [&](Mode mode, double expected) {
@@ -307,8 +308,8 @@ TEST(Block, SaintVenantKirchhoffHasTheStressOfTheClosedForm) {
   row(Mode::PureShear, uniaxial / (1 - nu * nu));
 }
 
-/// A beam of 8 under a Cauchy stress of 2, C10 = 1.92505, D1 = 0.026: stretched as printed it must
-/// have that stress. CalculiX has kappa/2 (J - 1)^2 where J is 1.01 here.
+/// A beam of length 8 under a Cauchy stress of 2, C10 = 1.92505, D1 = 0.026. At the printed
+/// elongation the stress must be 2. CalculiX has kappa/2 (J - 1)^2; J is 1.01 here.
 TEST(Block, CompressibleNeoHookeanHasTheElongationThatCalculixPrints) {
   const double mu = 2 * 1.92505, kappa = 2 / 0.026;
   const double nu = (3 * kappa - 2 * mu) / (2 * (3 * kappa + mu));
@@ -321,7 +322,7 @@ TEST(Block, CompressibleNeoHookeanHasTheElongationThatCalculixPrints) {
                 test::Reference::Published, "CalculiX, test example beamnh", 0.005});
 }
 
-/// Neo-Hookean with mu = 1 and one family of fibres; E e^(k2 E^2) in terms of its k1 and k2.
+/// Neo-Hookean with mu = 1 and one family of fibres with k1 E exp(k2 E^2).
 struct Fibred {
   static constexpr double k1 = 2, k2 = 0.8;
 
@@ -335,8 +336,8 @@ struct Fibred {
 };
 constexpr double kAlong = 0, kAcross = M_PI / 2;  ///< angles of fibres from the direction of pull
 
-/// The fibres, aligned along the pull, add 2 l k1 E exp(k2 E^2), E = l^2 - 1, to a solid of mu = 1;
-/// shortened, they are slack.
+/// Fibres along the loading direction add 2 l k1 E exp(k2 E^2), E = l^2 - 1, to a solid of mu = 1;
+/// fibres in compression carry no stress.
 TEST(Block, FibresHaveTheStressOfTheClosedForm) {
   check_all(Fibred::law(0, kAlong), [](Mode mode, double l) {
     const double matrix = closed_form(
@@ -350,7 +351,7 @@ TEST(Block, FibresHaveTheStressOfTheClosedForm) {
 
 constexpr double kShear = 0.4;
 
-/// Nominal tractions on the sheared face, whose normal is y, and along which it is moved is x.
+/// Nominal tractions on the sheared face with normal y, which is moved along x.
 struct ShearTractions {
   double along, normal;
 };
@@ -371,7 +372,7 @@ void verify_shear(const std::string& name, const std::string& unit,
                   const std::vector<double>& found, const ShearTractions& expected,
                   const std::string& source, double bound) {
   const auto row = [&](const char* direction, double computed, double reference) {
-    // A traction that vanishes is compared with the one that does not.
+    // The bound of a traction that vanishes is relative to the other one.
     const bool none = reference == 0;
     test::verify({kProblem, name + ", simple shear 0.4, " + direction, unit, computed,
                   none ? 0.0 : reference, test::Reference::ClosedForm, source,
@@ -400,7 +401,7 @@ struct Sheared {
   Slopes slopes;
 };
 
-/// The laws of the invariants, dW/dI1 and dW/dI2 written anew.
+/// The laws of the invariants, with dW/dI1 and dW/dI2 independent of the implementation.
 std::vector<Sheared> laws_of_invariants() {
   using Two = std::array<double, 2>;
   const double n = 1.6 * 1.6;
@@ -518,7 +519,8 @@ TEST(ShearedBlock, SaintVenantKirchhoffHasTheTractionsOfTheClosedForm) {
 
 class Patch : public testing::TestWithParam<Dilatation> {};
 
-/// The faces of a cube of 3 x 3 x 3 distorted cells are moved affinely: so must all within be.
+/// An affine displacement of the faces of a cube of 3 x 3 x 3 distorted cells must be affine
+/// inside.
 TEST_P(Patch, AnAffineBoundaryGivesAnAffineInterior) {
   Body body = test::make_block(test::even(0, 1, 3), test::even(0, 1, 3), test::even(0, 1, 3));
   std::mt19937 random(5);

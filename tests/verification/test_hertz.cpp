@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A sphere pressed lightly into a large block, against the half-space of Hertz:
+// A sphere pressed lightly into a large block, compared with the half-space of Hertz:
 //   F = 4/3 E/(1 - nu^2) sqrt(R) d^(3/2),   contact radius a = sqrt(R d).
 // R = 10 mm and d = 0.1 mm give a = 1 mm: large strains change the force by about 0.15 d/R = 0.15 %
 // [Zhang et al. 2014], the base of the block, 100 a away, by about 1.13 a/h = 1.1 % at nu = 1/2.
@@ -75,7 +75,7 @@ TEST_P(Hertz, ForceConvergesToTheHalfSpace) {
   row("0.8 elements per contact radius", coarse, 0.04);
   row("1.7 elements per contact radius", fine, 0.01);
   EXPECT_LT(std::abs(fine.force() / exact - 1), std::abs(coarse.force() / exact - 1));
-  // An area counted in quadrature points is known to about a third of an element.
+  // A contact area counted in quadrature points has an error of about a third of an element.
   EXPECT_NEAR(fine.contact_radius(), std::sqrt(kRadius * depth), 0.2e-3);
 }
 

@@ -28,7 +28,7 @@ double bulk_modulus(double mu, double nu) {
   return 2 * mu * (1 + nu) / (3 * (1 - 2 * nu));
 }
 
-/// Nothing moves in one direction.
+/// Fixes every node along one axis.
 std::vector<test::Prescribed> at_rest_along(const SolidModel& model, int axis) {
   std::vector<test::Prescribed> list;
   for (int node = 0; node < model.mesh().nodes(); ++node)
@@ -37,8 +37,7 @@ std::vector<test::Prescribed> at_rest_along(const SolidModel& model, int axis) {
 }
 
 /// Cook's membrane in plane strain: millimetres and megapascals, one layer of cells 1 mm thick.
-/// Deflection of the middle of the loaded edge, (48, 52), which is the point that the published
-/// table is for.
+/// The deflection is that of the middle of the loaded edge, (48, 52), as in the published table.
 double cook_deflection(int cells) {
   Body body = test::make_block(test::even(0, 1, cells), test::even(0, 1, cells), {0, 1});
   test::deform(body, [](const Vec3& x) {
@@ -84,7 +83,7 @@ class OctantOfSphere {
  public:
   using LawOf = std::function<Law(double bulk_modulus)>;
 
-  /// `law_of`: of a shear modulus of 1.
+  /// @param law_of a law with a shear modulus of 1 and the given bulk modulus
   OctantOfSphere(int divisions, int layers, LawOf law_of, Dilatation dilatation = Dilatation::Mean)
       : law_of_(std::move(law_of)),
         dilatation_(dilatation),
@@ -102,8 +101,8 @@ class OctantOfSphere {
     return {body_, {law_of_(bulk_modulus(1, nu))}, dilatation_};
   }
 
-  /// Pressure over mu in the limit of no compression: the error is that of the compressibility,
-  /// proportional to mu/kappa, and two small ones give the limit. Stretches must ascend.
+  /// Pressure over mu in the incompressible limit, extrapolated from two values of mu/kappa, to
+  /// which the error is proportional. Stretches must ascend.
   double pressure(double stretch) {
     const SolidModel soft = with_poisson(0.49), stiff = with_poisson(0.499),
                      stiffest = with_poisson(0.4999);
@@ -204,8 +203,8 @@ TEST(Solid, ThickSphereOfMooneyRivlinInflates) {
                   "Mooney-Rivlin, six digits", 0.003});
 }
 
-/// A smooth finite deformation of the unit cube. The isochoric one has no pressure for the law to
-/// resist with; the other has one that varies.
+/// A smooth finite deformation of the unit cube. The isochoric one has no pressure from the law;
+/// the other has a pressure that varies.
 struct Manufactured {
   double mu = 1, kappa = bulk_modulus(1, 0.3);
   bool isochoric = true;

@@ -11,7 +11,7 @@
 namespace palpate::mesher::test {
 namespace {
 
-/// Circles of equal numbers of points, joined from the south pole or cap centre to the north.
+/// Circles with equal numbers of points, joined from the south pole or cap centre to the north.
 Surface lathe(const std::vector<std::vector<Vec3>>& circles, const Vec3& south, const Vec3& north) {
   Surface s;
   const auto around = static_cast<std::int32_t>(circles.front().size());

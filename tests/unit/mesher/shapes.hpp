@@ -31,7 +31,7 @@ class TemporaryFile {
   std::filesystem::path path_;
 };
 
-/// OFF text with every digit, so that the file is the shape.
+/// OFF text with every digit, so that the file has exactly the shape.
 std::string off_text(const Surface& surface);
 
 }  // namespace palpate::mesher::test

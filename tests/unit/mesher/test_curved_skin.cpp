@@ -29,7 +29,7 @@ TEST(CurvedSkin, BulgesAreReducedWhereAnElementWouldBeInverted) {
   EXPECT_TRUE(body.curved_edges.empty());
 }
 
-// No reduction makes it valid; the loop over elements must end all the same.
+// No reduction makes the element valid; the loop must end nevertheless.
 TEST(CurvedSkin, ReductionEndsOnADegenerateElement) {
   Body body;
   body.nodes = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0.004, 0.004, 1e-19}};

@@ -35,7 +35,7 @@ TEST(Inclusions, AreTheirOwnRegionAndVolumesAddUp) {
   test::expect_sound(body);
   EXPECT_EQ(body.region_names, (std::vector<std::string>{"fat", "nodule"}));
   EXPECT_NEAR(test::volume_of_region(body, -1) / (0.06 * 0.06 * 0.04), 1, 1e-9);
-  // Short by 3 h^2/8r^2 = 2.3 % at h = 3 mm or a little less; no triangle lies outside.
+  // Chords remove 3 h^2/8r^2 = 2.3 % of the volume at h = 3 mm; no triangle lies outside.
   const double part = test::volume_of_region(body, 1) / (4 * pi / 3 * std::pow(radius, 3));
   EXPECT_GT(part, 0.97);
   EXPECT_LT(part, 1);

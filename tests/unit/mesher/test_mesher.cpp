@@ -29,7 +29,7 @@ Settings cylinder_settings(const std::filesystem::path& path, double patch, doub
   return s;
 }
 
-/// 2 at second order: the error falls by the square of the ratio of sizes.
+/// The observed order of convergence of two errors on meshes with this ratio of sizes.
 double observed_order(double coarse_error, double fine_error, double ratio) {
   return std::log(coarse_error / fine_error) / std::log(ratio);
 }

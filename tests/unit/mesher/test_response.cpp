@@ -32,13 +32,13 @@ TEST(InwardDirections, FollowTheFreeSideBesideASupport) {
 }
 
 TEST(InwardDirections, ReportASpikeThatIsTooSharp) {
-  // A needle: at its tip the sides are nearly opposite to one another, the mean still points in.
+  // At the tip of a needle the sides nearly face away from one another; the mean still points in.
   Surface needle;
   needle.points = {{0, 0, 1}, {0.02, 0, 0}, {-0.01, 0.017, 0}, {-0.01, -0.017, 0}};
   needle.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}, {1, 3, 2}};
   ASSERT_GT(signed_volume(needle), 0);
   const auto directions = inward_directions(needle, needle, {0, 0, 0, 1});
-  // No direction is 0.1 inside all three sides of so thin a tip.
+  // No direction has a cosine of 0.1 with the normals of all three sides.
   EXPECT_THAT(directions.unresolved, testing::Contains(0));
 }
 

@@ -22,7 +22,7 @@ using test::off_text;
 using test::settings_for;
 using test::TemporaryFile;
 
-/// A box whose lid has corners of its own, `gap` above those of the walls.
+/// A box whose lid has its own corners, `gap` above those of the walls.
 std::string box_with_a_loose_lid(double gap) {
   Surface s = test::box({0, 0, 0}, {0.05, 0.05, 0.05});
   std::map<std::size_t, std::size_t> own;
@@ -90,7 +90,7 @@ TEST(Soup, RefusesBadTopologyWithItsCounts) {
 }
 
 TEST(Soup, RefusesAOneSidedSurface) {
-  // A closed one-sided surface: the torus grid whose second direction is glued in reverse.
+  // A Klein bottle: the grid of a torus whose second direction is joined in reverse.
   constexpr int n = 8;
   Surface klein;
   for (int i = 0; i < n; ++i) {

@@ -63,7 +63,7 @@ TEST(Supports, NodesNearASecondSurfaceAreFixed) {
   EXPECT_GT(inside, 0);  // the bone reaches through the skin
 }
 
-/// A box of quadrilaterals, each side a group of its own; one of them of a material too.
+/// A box of quadrilaterals. Each side is a group; one side also has a material.
 std::string labelled_box(const Vec3& size) {
   std::ostringstream obj;
   obj << "o tissue\n";
@@ -97,7 +97,7 @@ TEST(Supports, NodesOnNamedFacesAreFixed) {
   expect_fixed("base", [&](const Vec3& x) { return x[2] < 1e-9; });
   expect_fixed("outside", [&](const Vec3& x) { return x[2] < 1e-9 || x[2] > size[2] - 1e-9; });
   expect_fixed("glue", [&](const Vec3& x) { return x[0] < 1e-9; });
-  // Springs go by the same faces.
+  // Foundations use the same faces.
   s.supports.clear();
   s.foundation = {{LabelSupport{"base"}, 1e6, 1e6}};
   EXPECT_GT(mesh(s).foundation.size(), 50u);
