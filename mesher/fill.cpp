@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 #include "mesher/text.hpp"
 
 namespace palpate::mesher {
@@ -71,7 +72,7 @@ void copy_to(tetgenio& in, const Surface& shells) {
 }
 
 double signed_volume6(const std::vector<Vec3>& x, const Tetrahedron& t) {
-  const auto at = [&](std::size_t k) { return x[static_cast<std::size_t>(t[k])]; };
+  const auto at = [&](std::size_t k) { return x[to_index(t[k])]; };
   return dot(cross(at(1) - at(0), at(2) - at(0)), at(3) - at(0));
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "format/to_index.hpp"
 #include "mesher/text.hpp"
 
 namespace palpate::mesher {
@@ -24,7 +25,7 @@ double dihedral(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
 }  // namespace
 
 double volume(const std::vector<Vec3>& nodes, const Tetrahedron& t) {
-  const auto at = [&](std::size_t k) { return nodes[static_cast<std::size_t>(t[k])]; };
+  const auto at = [&](std::size_t k) { return nodes[to_index(t[k])]; };
   return dot(cross(at(1) - at(0), at(2) - at(0)), at(3) - at(0)) / 6;
 }
 
@@ -32,7 +33,7 @@ Quality measure_quality(const std::vector<Vec3>& nodes,
                         const std::vector<Tetrahedron>& tetrahedra) {
   Quality quality;
   for (const Tetrahedron& t : tetrahedra) {
-    const auto at = [&](std::size_t k) { return nodes[static_cast<std::size_t>(t[k])]; };
+    const auto at = [&](std::size_t k) { return nodes[to_index(t[k])]; };
     double shortest = norm(at(1) - at(0)), longest = shortest;
     for (const auto& [a, b, c, d] : kEdgeAndOpposite) {
       const double angle = dihedral(at(a), at(b), at(c), at(d));

@@ -11,6 +11,7 @@
 #include <iterator>
 #include <utility>
 
+#include "format/to_index.hpp"
 #include "mesher/cgal_mesh.hpp"
 
 namespace palpate::mesher {
@@ -26,9 +27,7 @@ std::size_t count_self_intersections(const Surface& surface) {
 std::size_t count_degenerate_triangles(const Surface& surface) {
   std::size_t count = 0;
   for (const Triangle& t : surface.triangles) {
-    const auto corner = [&](std::size_t k) {
-      return to_point(surface.points[static_cast<std::size_t>(t[k])]);
-    };
+    const auto corner = [&](std::size_t k) { return to_point(surface.points[to_index(t[k])]); };
     if (CGAL::collinear(corner(0), corner(1), corner(2))) ++count;
   }
   return count;

@@ -15,6 +15,7 @@
 
 #include "format/edge.hpp"
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 #include "mesher/cgal_mesh.hpp"
 #include "mesher/queries.hpp"
 
@@ -131,8 +132,8 @@ class Subdivision {
   std::vector<CurvedEdge> curved_edges(const Surface& boundary) const {
     std::vector<CurvedEdge> curved;
     for (const Edge& ends : edges_of(boundary.triangles)) {
-      const Vec3 a = boundary.points[static_cast<std::size_t>(ends[0])];
-      const Vec3 b = boundary.points[static_cast<std::size_t>(ends[1])];
+      const Vec3 a = boundary.points[to_index(ends[0])];
+      const Vec3 b = boundary.points[to_index(ends[1])];
       const Vec3 straight = 0.5 * (a + b);
       const Vec3 middle =
           sharp_edges_.contains(ends) ? target_.on_feature(straight) : target_.on_surface(straight);
@@ -184,10 +185,10 @@ class Subdivision {
     const Vec3 a = to_vec3(mesh_.point(mesh_.source(ab)));
     const Vec3 b = to_vec3(mesh_.point(mesh_.source(bc)));
     const Vec3 c = to_vec3(mesh_.point(mesh_.source(ca)));
-    std::vector<std::vector<std::int32_t>> row(static_cast<std::size_t>(n_) + 1);
+    std::vector<std::vector<std::int32_t>> row(to_index(n_) + 1);
     for (int i = 0; i <= n_; ++i) {
       for (int j = 0; i + j <= n_; ++j) {
-        auto& points_of_row = row[static_cast<std::size_t>(i)];
+        auto& points_of_row = row[to_index(i)];
         if (i == 0) {
           points_of_row.push_back(on_halfedge(ab, j));
         } else if (i + j == n_) {
@@ -230,7 +231,7 @@ void check_nesting(const NestedSurface& nested, double spacing, const std::strin
            ": reduce the spacing or smooth the surface");
   std::size_t inverted = 0;
   for (std::size_t f = 0; f < nested.parent.size(); ++f) {
-    const Triangle& patch = nested.response.triangles[static_cast<std::size_t>(nested.parent[f])];
+    const Triangle& patch = nested.response.triangles[to_index(nested.parent[f])];
     const Vec3 facet_normal = area_vector(nested.boundary.points, nested.boundary.triangles[f]);
     if (dot(facet_normal, area_vector(nested.response.points, patch)) <= 0) ++inverted;
   }

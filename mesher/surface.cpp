@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "format/to_index.hpp"
 #include "mesher/text.hpp"
 
 namespace palpate::mesher {
@@ -30,9 +31,9 @@ double largest_dimension(const std::vector<Vec3>& points) {
 }
 
 Vec3 area_vector(const std::vector<Vec3>& points, const Triangle& triangle) {
-  const Vec3& a = points[static_cast<std::size_t>(triangle[0])];
-  const Vec3& b = points[static_cast<std::size_t>(triangle[1])];
-  const Vec3& c = points[static_cast<std::size_t>(triangle[2])];
+  const Vec3& a = points[to_index(triangle[0])];
+  const Vec3& b = points[to_index(triangle[1])];
+  const Vec3& c = points[to_index(triangle[2])];
   return cross(b - a, c - a);
 }
 
@@ -47,8 +48,7 @@ double signed_volume(const Surface& surface) {
   const Vec3& origin = surface.points.front();
   double sum = 0;
   for (const Triangle& t : surface.triangles) {
-    sum += dot(surface.points[static_cast<std::size_t>(t[0])] - origin,
-               area_vector(surface.points, t));
+    sum += dot(surface.points[to_index(t[0])] - origin, area_vector(surface.points, t));
   }
   return sum / 6;
 }
@@ -66,7 +66,7 @@ std::vector<std::vector<std::int32_t>> incident_triangles(std::size_t points,
   std::vector<std::vector<std::int32_t>> around(points);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (const std::int32_t v : triangles[t]) {
-      around[static_cast<std::size_t>(v)].push_back(static_cast<std::int32_t>(t));
+      around[to_index(v)].push_back(static_cast<std::int32_t>(t));
     }
   }
   return around;

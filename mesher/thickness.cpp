@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "format/to_index.hpp"
 #include "mesher/queries.hpp"
 
 namespace palpate::mesher {
@@ -28,8 +29,8 @@ double largest_on_ring(const Surface& boundary, const SurfaceQuery& query, const
     const double angle = 2 * std::numbers::pi * k / kRing;
     const Vec3 around = centre + radius * (std::cos(angle) * e1 + std::sin(angle) * e2);
     const auto foot = query.closest(around);
-    const Vec3 outward = unit(
-        area_vector(boundary.points, boundary.triangles[static_cast<std::size_t>(foot.triangle)]));
+    const Vec3 outward =
+        unit(area_vector(boundary.points, boundary.triangles[to_index(foot.triangle)]));
     if (-dot(outward, inward) < kFacesTool) continue;
     // A step below the surface, so that the first triangle hit is the far side.
     const double step = 1e-3 * radius;
@@ -46,7 +47,7 @@ std::vector<double> least_cosines(const Surface& boundary, const std::vector<Vec
   for (const Triangle& t : boundary.triangles) {
     const Vec3 outward = unit(area_vector(boundary.points, t));
     for (const std::int32_t corner : t) {
-      const auto v = static_cast<std::size_t>(corner);
+      const auto v = to_index(corner);
       if (v < inward.size()) least[v] = std::min(least[v], -dot(outward, inward[v]));
     }
   }
