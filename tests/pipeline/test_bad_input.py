@@ -122,7 +122,7 @@ class BadInput(unittest.TestCase):
                          CASE.replace('lateral_travel = "0.6 mm"', 'lateral_travel = "60 mm"'))
 
     def test_tool_is_larger_than_the_body(self):
-        self.refuse_case(GEOMETRY, ["radius of the tool", "80 mm"], CASE.replace('radius = "6 mm"', 'radius = "80 mm"'))
+        self.refuse_case(GEOMETRY, ["tool radius", "80 mm"], CASE.replace('radius = "6 mm"', 'radius = "80 mm"'))
 
     def test_supports_hold_nothing(self):
         self.refuse_case(GEOMETRY, ["support"], NOTHING_HELD)
