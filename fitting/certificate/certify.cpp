@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "fitting/certificate/range.hpp"
 #include "fitting/certificate/triangle_bounds.hpp"
 #include "format/error.hpp"
 
@@ -61,7 +62,7 @@ std::string cause_unbounded(const TriangleCertificate& triangle, double depth) {
 }
 
 std::string cause(const TriangleBounds& bounds, double depth) {
-  if (bounds.certificate.stick >= bounds.certificate.slip) {
+  if (kRoundingFactor * bounds.certificate.stick >= bounds.certificate.slip) {
     return "the stiffest response, at a fixed contact point";
   }
   if (std::isinf(bounds.certificate.slip)) return cause_unbounded(bounds.certificate, depth);

@@ -10,6 +10,8 @@
 #include <queue>
 #include <vector>
 
+#include "fitting/certificate/range.hpp"
+
 namespace palpate::fitting {
 namespace {
 
@@ -203,7 +205,8 @@ std::optional<SlideState> slide_state(const ContactElement& element, const Range
 /// Largest motion of c for a unit motion of the tool: |w| of the theory page.
 double slide_rate(const ContactElement& element, const SlideState& state) {
   const TriangleFrame& frame = element.frame;
-  double margin = frame.cos_theta - element.depth * frame.kappa;
+  // Terms of order 1 cancel here, so the rounding margin is absolute.
+  double margin = frame.cos_theta - element.depth * frame.kappa - (kRoundingFactor - 1);
   if (element.friction > 0) {
     if (!(state.h_rho > 0)) return kInfinity;
     margin -= state.limit_gradient / state.h_rho;
@@ -232,7 +235,10 @@ SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   causes.variation = scaled(state.variation);
   causes.slant = scaled(slant);
   causes.curvature = scaled(curvature);
-  return {causes.stiffness + causes.variation + causes.slant + causes.curvature, causes};
+  const double moving = causes.variation + causes.slant + causes.curvature;
+  // Without friction and motion the bound is a stored slope, which is exact.
+  const double rounding = mu > 0 || moving > 0 ? kRoundingFactor : 1;
+  return {rounding * (causes.stiffness + moving), causes};
 }
 
 /// Largest |eigenvalue| of the symmetric matrix with these entries.
@@ -270,7 +276,8 @@ double min_bound_beyond(const ContactElement& element, double depth) {
   const Range beyond{depth, 2 * depth};
   if (element.coupling->slope(beyond).high > 0) return kInfinity;
   const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
-  return std::max(std::hypot(1.0, element.friction) * element.normal.slope(beyond).high, lateral);
+  return kRoundingFactor *
+         std::max(std::hypot(1.0, element.friction) * element.normal.slope(beyond).high, lateral);
 }
 
 using CellBound = double (*)(const ContactElement&, const Range&);
@@ -294,7 +301,7 @@ double over_depths(const ContactElement& element, double deepest, CellBound boun
     add({worst.z.low, half});
     add({half, worst.z.high});
   }
-  return parts.top().bound;
+  return kRoundingFactor * parts.top().bound;
 }
 
 struct Cell {
@@ -316,7 +323,7 @@ bool energy_falls(const ContactElement& element, const SlideState& state) {
                        (mu > 0 ? mu * element.lateral.energy_ratio(state.rho) : 0.0);
   const double arm = std::max(std::abs(state.rho.high - mu * state.z.low),
                               std::abs(state.rho.low - mu * element.depth));
-  return mu * frame.cos_theta - frame.sin_theta >= ratio + frame.kappa * arm;
+  return mu * frame.cos_theta >= kRoundingFactor * (frame.sin_theta + ratio + frame.kappa * arm);
 }
 
 /// Whether energy_falls holds over a cell, which is halved while it holds at the middle only.
@@ -344,8 +351,9 @@ double stick_bound(const ContactElement& element) {
 double min_lipschitz_bound(const ContactElement& element) {
   // Decoupled, |M_0| is sqrt(1 + mu^2) g' across s; along s it is h/rho <= max h'.
   if (!element.coupling) {
-    return std::max(stick_bound(element),
-                    std::hypot(1.0, element.friction) * element.normal.max_slope());
+    const double oblique =
+        element.friction > 0 ? kRoundingFactor * std::hypot(1.0, element.friction) : 1.0;
+    return std::max(stick_bound(element), oblique * element.normal.max_slope());
   }
   const double deepest = std::max(element.normal.last_knot(), element.coupling->last_knot());
   return std::max(over_depths(element, deepest, cell_min_bound),

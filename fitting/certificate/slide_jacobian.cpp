@@ -32,7 +32,7 @@ double weighted(const Natural& n, const std::array<double, 3>& value) {
 Range mean_slope(const runtime::CompiledCurve& curve, const Range& d) {
   const Range slopes = slope_range(curve, {0, d.high});
   if (!(d.low > 0)) return slopes;
-  return common(slopes, {curve.force(d.low) / d.high, curve.force(d.high) / d.low});
+  return common(slopes, Range::outward(curve.force(d.low) / d.high, curve.force(d.high) / d.low));
 }
 
 /// Upper bound of the spectral norm of all matrices with entries in these ranges: the norm of the
@@ -305,20 +305,20 @@ double SlideJacobian::bound(const SlideCell& cell) const {
   const Range v_s =
       x.r.E_z_here * x.f.kappa_s - x.r.h_over_rho * (x.f.s_tau + cell.reach * x.f.kappa_s);
   if (is_zero(v_n) && is_zero(v_t) && is_zero(v_s))
-    return x.norm_M0;  // the force does not depend on c
+    return kRoundingFactor * x.norm_M0;  // the force does not depend on c
   if (!(x.rate.low > 0)) return kInfinity;
   const Range w_t = Range{1, 1} / x.rate, w_n = (-1) * x.m / x.rate;
   const Range zero{};
   double norm = std::max(x.norm_M0, norm_bound({{{x.A + v_n * w_n, v_n * w_t, zero},
                                                  {x.mu_g_z + v_t * w_n, v_t * w_t, zero},
                                                  {v_s * w_n, v_s * w_t, x.r.h_over_rho}}}));
-  if (x.rate.high <= 1) return norm;
+  if (x.rate.high <= 1) return kRoundingFactor * norm;
   // The runtime moves c by rho - rho_s, which is more than needed: (9a).
   const Range over{std::max(0.0, x.rate.low - 1), x.rate.high - 1};
   const Range u_n = v_n - over * x.r.E_zr, u_t = v_t - over * x.r.E_rr;
-  return std::max(norm, norm_bound({{{x.A - u_n * x.m, u_n, zero},
-                                     {x.mu_g_z - u_t * x.m, u_t, zero},
-                                     {(-1) * v_s * x.m, v_s, x.r.h_over_rho}}}));
+  return kRoundingFactor * std::max(norm, norm_bound({{{x.A - u_n * x.m, u_n, zero},
+                                                       {x.mu_g_z - u_t * x.m, u_t, zero},
+                                                       {(-1) * v_s * x.m, v_s, x.r.h_over_rho}}}));
 }
 
 SlideCauses SlideJacobian::causes(const SlideCell& state) const {
