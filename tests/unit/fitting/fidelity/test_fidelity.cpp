@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The measure itself, on solids whose forces are known in closed form.
+// Errors of solids whose forces are known in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "fitting/certificate/certify.hpp"
 #include "fitting/fidelity/fidelity.hpp"
@@ -39,7 +38,7 @@ Library even_plate() {
 
 /// Direct solutions from a closed form: force at depth z, lateral displacement rho.
 template <class Force>
-Curves direct_of(const std::vector<HoldOutPoint>& points, const std::vector<double>& held,
+Curves direct_of(const std::vector<HoldOutPoint>& points, const std::vector<double>& lateral_depths,
                  Force force) {
   Curves curves;
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -57,13 +56,13 @@ Curves direct_of(const std::vector<HoldOutPoint>& points, const std::vector<doub
       site.paths.push_back(path);
     };
     add(PathKind::Normal, 0, kDown);
-    for (const double depth : held) add(PathKind::Lateral, depth, kTangent);
+    for (const double depth : lateral_depths) add(PathKind::Lateral, depth, kTangent);
     curves.sites.push_back(site);
   }
   return curves;
 }
 
-Curves sampled_of(const std::vector<double>& stiffness, double held) {
+Curves sampled_of(const std::vector<double>& stiffness, double lateral_depth) {
   Curves curves;
   for (std::size_t v = 0; v < stiffness.size(); ++v) {
     SiteCurves site{static_cast<std::int32_t>(v), SiteStatus::Complete, "", 0, {}};
@@ -74,7 +73,7 @@ Curves sampled_of(const std::vector<double>& stiffness, double held) {
       sample.force = stiffness[v] * sample.displacement * kDown;
       normal.samples.push_back(sample);
     }
-    site.paths = {normal, {PathKind::Lateral, held, kTangent, {}, 0, 0}};
+    site.paths = {normal, {PathKind::Lateral, lateral_depth, kTangent, {}, 0, 0}};
     curves.sites.push_back(site);
   }
   return curves;
@@ -100,7 +99,7 @@ Vec3 linear(double normal, double lateral) {
   return normal * kDown + lateral * kTangent;
 }
 
-TEST(Fidelity, IsExactWhereTheSolidIsTheModel) {
+TEST(Fidelity, IsZeroWhereTheSolidIsTheModel) {
   const Library library = even_plate();
   const auto points = draw_points(library, 12, 3, 7);
   const auto direct =
@@ -114,7 +113,7 @@ TEST(Fidelity, IsExactWhereTheSolidIsTheModel) {
   for (const ErrorRow& r : fidelity.rows) EXPECT_LT(r.worst, 1e-6) << r.what << ", " << r.part;
 }
 
-TEST(Fidelity, TellsAStiffnessErrorAsItIs) {
+TEST(Fidelity, AStiffnessErrorAppearsInTheNormalPart) {
   const Library library = even_plate();
   const auto points = draw_points(library, 5, 2, 7);
   const auto direct = direct_of(points, {0.004}, [](const HoldOutPoint&, double z, double rho) {
@@ -127,7 +126,7 @@ TEST(Fidelity, TellsAStiffnessErrorAsItIs) {
     EXPECT_NEAR(row(fidelity, what, "normal").worst, 0.2, 1e-6);
     EXPECT_NEAR(row(fidelity, what, "direction").worst, 0, 1e-6);
   }
-  // Held at 4 mm: 0.12 N are missing of sqrt(0.6^2 + (80 * 1 to 4 mm)^2) N.
+  // At a depth of 4 mm, 0.12 N are missing of sqrt(0.6^2 + (80 * 1 to 4 mm)^2) N.
   const ErrorRow& oblique = row(fidelity, "oblique press, off node", "normal");
   EXPECT_NEAR(oblique.worst, 0.12 / std::hypot(0.6, 0.08), 1e-6);
   EXPECT_NEAR(oblique.worst_newton, 0.12, 1e-6);
@@ -135,7 +134,7 @@ TEST(Fidelity, TellsAStiffnessErrorAsItIs) {
   EXPECT_NEAR(row(fidelity, "interpolation of the samples, off node", "normal").worst, 0.2, 1e-6);
 }
 
-TEST(Fidelity, SeparatesAForceThatNoModelOfThisKindHas) {
+TEST(Fidelity, AForceNormalToThePlaneOfTheModelAppearsInTheDirectionPart) {
   const Library library = even_plate();
   const auto points = draw_points(library, 4, 0, 7);
   const Vec3 across{-0.8, 0.6, 0};
@@ -152,8 +151,8 @@ TEST(Fidelity, SeparatesAForceThatNoModelOfThisKindHas) {
               0.05, 1e-9);
 }
 
-TEST(Fidelity, TellsWhatForcesAcrossThePressWouldMend) {
-  // Pulls aside in proportion to the depth, half as large at the vertices as between them.
+TEST(Fidelity, InterpolatedTransverseForcesHaveARowOfTheirOwn) {
+  // A transverse force proportional to the depth, half as large at the vertices as between them.
   const Library library = even_plate();
   const auto points = draw_points(library, 4, 0, 7);
   const Vec3 across{-0.8, 0.6, 0};
@@ -172,8 +171,8 @@ TEST(Fidelity, TellsWhatForcesAcrossThePressWouldMend) {
               20 / std::hypot(120.0, 20.0), 1e-6);
 }
 
-TEST(Fidelity, TellsWhatOneLateralResponseForAllDepthsCosts) {
-  // A stuck contact stiffens with the radius of contact, so with the square root of the depth.
+TEST(Fidelity, TheDecouplingRowIsTheErrorOfOneLateralResponseForAllDepths) {
+  // The stiffness of a bonded contact is proportional to the contact radius, hence to sqrt(depth).
   const double reference = 0.004;
   const Library library = even_plate();
   const auto points = draw_points(library, 3, 0, 7);
@@ -189,7 +188,7 @@ TEST(Fidelity, TellsWhatOneLateralResponseForAllDepthsCosts) {
   EXPECT_NEAR(lateral.worst_newton, 0.5 * kLateral * 0.004, 1e-6);
   EXPECT_NEAR(lateral.worst, 0.16 / std::hypot(kNormal * 0.001, 0.16), 1e-6);
   EXPECT_NEAR(row(fidelity, "decoupling of f^z from lateral", "normal").worst, 0, 1e-9);
-  // The library has the response of the reference depth: what is rendered errs by the same.
+  // The library has the response of the reference depth, so the rendered force has the same error.
   EXPECT_NEAR(row(fidelity, "oblique press, off node", "lateral").worst, lateral.worst, 1e-6);
   // Within friction is 1 mm at the reference depth alone.
   EXPECT_EQ(row(fidelity, "oblique within friction, off node", "lateral").states, 3u);
@@ -220,7 +219,7 @@ TEST(Fidelity, SeparatesInterpolationFromTheFit) {
   EXPECT_NEAR(row(fidelity, "normal press, off node", "normal").median, 0.05 / 1.05, 1e-6);
 }
 
-TEST(Fidelity, LeavesOutAPressThatFailedAndSaysSo) {
+TEST(Fidelity, AFailedPressIsReportedAndLeftOut) {
   const Library library = even_plate();
   const auto points = draw_points(library, 2, 0, 7);
   auto direct = direct_of(
@@ -233,32 +232,6 @@ TEST(Fidelity, LeavesOutAPressThatFailedAndSaysSo) {
   ASSERT_EQ(fidelity.left_out.size(), 1u);
   EXPECT_EQ(fidelity.left_out[0], "point 1: did not converge");
   EXPECT_EQ(fidelity.states.size(), 4u);
-}
-
-TEST(DrawPoints, CoversTheSurfaceEvenlyAndNoHole) {
-  Library library = even_plate();
-  const auto points = draw_points(library, 6000, 4, 1);
-  ASSERT_EQ(points.size(), 6004u);
-  const auto in_large = std::count_if(points.begin(), points.begin() + 6000,
-                                      [](const HoldOutPoint& p) { return p.triangle == 1; });
-  EXPECT_NEAR(static_cast<double>(in_large) / 6000, 2.0 / 3, 4 * std::sqrt(2.0 / 9 / 6000));
-  // The mean of points spread evenly over the two triangles is their centroid.
-  Vec3 mean{};
-  for (int i = 0; i < 6000; ++i)
-    mean = mean + (1.0 / 6000) * points[static_cast<std::size_t>(i)].position;
-  const Vec3 centroid = (1.0 / 3) * ((1.0 / 3) * Vec3{0.02, 0.02, 0}) +
-                        (2.0 / 3) * ((1.0 / 3) * Vec3{-0.04, 0.02, 0});
-  EXPECT_LT(norm(mean - centroid), 6e-4);
-  std::set<Vec3> nodes;
-  for (std::size_t i = 6000; i < points.size(); ++i) {
-    EXPECT_TRUE(points[i].node);
-    nodes.insert(points[i].position);
-  }
-  EXPECT_EQ(nodes.size(), 4u);
-  library.responses[1] = {};
-  for (const HoldOutPoint& p : draw_points(library, 50, 0, 1)) EXPECT_EQ(p.triangle, 1);
-  library.responses[0] = {};
-  EXPECT_ANY_THROW(draw_points(library, 1, 0, 1));
 }
 
 }  // namespace

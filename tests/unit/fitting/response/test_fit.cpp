@@ -5,7 +5,6 @@
 #include <functional>
 
 #include "fitting/response/fit.hpp"
-#include "fitting/response/site_samples.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
 
@@ -53,15 +52,15 @@ CurvePath normal_path(double reach, double scale) {
   return path;
 }
 
-/// A stuck contact held at some depth: the normal force of the held state is no lateral response.
+/// A lateral path of a bonded contact at a depth; its normal force is not part of the response.
 CurvePath lateral_path(const Vec3& direction, double lateral_depth, double stiffness,
                        double reach = kTravel) {
   CurvePath path{PathKind::Lateral, lateral_depth, direction, {}};
-  const Vec3 held{0.004, -0.003, -normal_law(lateral_depth)};
+  const Vec3 first{0.004, -0.003, -normal_law(lateral_depth)};
   for (int i = 0; i <= 6; ++i) {
     CurveSample sample;
     sample.displacement = reach * i / 6;
-    sample.force = held + (stiffness * sample.displacement) * direction;
+    sample.force = first + (stiffness * sample.displacement) * direction;
     path.samples.push_back(sample);
   }
   return path;
@@ -97,7 +96,7 @@ std::string problem_of(const std::function<void()>& action) {
   return "no error";
 }
 
-TEST(Fit, EveryCompleteSiteCarriesItsResponses) {
+TEST(Fit, EveryCompleteSiteHasItsResponses) {
   const Body body = hexagon();
   const Library library = fit(body, complete_curves(body), {});
   EXPECT_EQ(library.name, "plate");
@@ -120,11 +119,10 @@ TEST(Fit, EveryCompleteSiteCarriesItsResponses) {
     EXPECT_LE(node.lateral_error, 0.005);
     floats += 2 * (node.normal.knot.size() + node.lateral.knot.size());
   }
-  std::printf("bytes of the two curves of a node: %zu\n", 4 * floats / 7);
   EXPECT_LE(4 * floats / 7, 64u);
 }
 
-/// A stuck contact that stiffens like the radius of contact of a sphere.
+/// Lateral stiffness of a bonded contact, proportional to the contact radius of a sphere.
 double contact_width(double depth) {
   return std::sqrt(depth / 0.003);
 }
@@ -149,20 +147,19 @@ TEST(Fit, CoupledResponsesFollowTheDepth) {
     EXPECT_NEAR(w.force(z), contact_width(z), 0.02) << z;
   EXPECT_EQ(node.coupling.curve.slope[0], 0.0F);  // the normal force is continuous at touch
   EXPECT_LT(node.lateral_error, 0.004);
-  // One response for all depths misses by what it cannot have.
+  // A single response for all depths cannot represent the dependence on depth.
   const Library decoupled = fit(body, curves, {});
   EXPECT_GT(decoupled.responses[0].lateral_error, 10 * node.lateral_error);
   const std::size_t bytes = 4 + 8 * (node.normal.knot.size() + node.lateral.knot.size() +
                                      node.coupling.curve.knot.size());
-  std::printf("bytes of the coupled curves of a node: %zu\n", bytes);
   EXPECT_LE(bytes, 160u);
 }
 
-TEST(Fit, CoupledResponsesOfASingleDepthWidenLikeTheContactOfARoundTool) {
+TEST(Fit, CoupledResponsesOfASingleDepthGrowLikeTheContactRadiusOfASphere) {
   const Body body = hexagon();
   FitSettings settings;
   settings.kind = ResponseKind::Coupled;
-  const Library library = fit(body, complete_curves(body), settings);  // held at 3 mm
+  const Library library = fit(body, complete_curves(body), settings);  // lateral depth 3 mm
   const NodeResponse& node = library.responses[0];
   const runtime::CompiledCurve w(node.coupling.curve, static_cast<double>(node.coupling.base));
   for (const double z : {0.0004, 0.001, 0.003, 0.006})
@@ -178,16 +175,8 @@ TEST(Fit, TheLateralResponseIsTheMeanOverAzimuthsAndDepths) {
   const Library library = fit(body, curves, {});
   const NodeResponse& node = library.responses[0];
   EXPECT_NEAR(runtime::CompiledCurve(node.lateral).force(kTravel), 60 * kTravel, 1e-6);
-  // What the mean loses is stated: 20 N/m over 3 mm.
+  // The stated error is the loss by averaging: 20 N/m over 3 mm.
   EXPECT_NEAR(node.lateral_error, 20 * kTravel, 1e-6);
-}
-
-TEST(Fit, AShortLateralPathBendsTheMeanWithoutAJump) {
-  const auto samples =
-      mean_lateral({{{0.001, 0.04}, {0.002, 0.08}}, {{0.001, 0.08}, {0.002, 0.16}, {0.003, 0.24}}});
-  ASSERT_EQ(samples.size(), 3u);
-  EXPECT_NEAR(samples[1].force, 0.12, 1e-12);
-  EXPECT_NEAR(samples[2].force, 0.12 + 0.08, 1e-12);  // goes on with the slope of the longer one
 }
 
 TEST(Fit, AFailedSiteIsAHole) {
@@ -205,7 +194,7 @@ TEST(Fit, AFailedSiteIsAHole) {
   EXPECT_EQ(library.triangles.size(), 6u);  // a hole is a border, its triangles stay
 }
 
-TEST(Fit, APartialSiteCountsFromHalfOfTheDepth) {
+TEST(Fit, APartialSiteIsUsableFromHalfOfTheDepth) {
   const Body body = hexagon();
   Curves curves = complete_curves(body);
   for (const std::size_t v : {1u, 2u}) curves.sites[v].status = SiteStatus::Partial;
@@ -233,11 +222,11 @@ TEST(Fit, FillingAHoleTakesTheMeanOfItsNeighbours) {
   const runtime::CompiledCurve normal(node.normal);
   EXPECT_NEAR(normal.force(kDepth), normal_law(kDepth), 0.02 * normal_law(kDepth));
   EXPECT_NEAR(runtime::CompiledCurve(node.lateral).force(kTravel), 60 * kTravel, 0.005);
-  // The doubt is the distance to a neighbour: half of the law.
+  // The error is the distance to a neighbour: half of the law.
   EXPECT_NEAR(node.normal_error, 0.5 * normal_law(kDepth), 0.03 * normal_law(kDepth));
 }
 
-TEST(Fit, TrianglesAtASupportAreLeftOut) {
+TEST(Fit, TrianglesAtASupportAreOmitted) {
   Body body = hexagon();
   body.response.is_site[4] = 0;
   Curves curves = complete_curves(body);
@@ -261,13 +250,13 @@ TEST(Fit, RefusesCurvesOfAnotherBody) {
   Curves twice = complete_curves(body);
   twice.sites[2].vertex = 1;
   EXPECT_NE(problem_of([&] { fit(body, twice, {}); }).find("twice"), std::string::npos);
-  Body held = body;
-  held.response.is_site[6] = 0;
-  EXPECT_NE(problem_of([&] { fit(held, complete_curves(body), {}); }).find("vertex 6"),
+  Body supported = body;
+  supported.response.is_site[6] = 0;
+  EXPECT_NE(problem_of([&] { fit(supported, complete_curves(body), {}); }).find("vertex 6"),
             std::string::npos);
 }
 
-TEST(Fit, RefusesWhenNothingIsUsable) {
+TEST(Fit, RefusesCurvesWithoutAUsableSite) {
   const Body body = hexagon();
   Curves curves = complete_curves(body);
   for (SiteCurves& site : curves.sites) site.status = SiteStatus::Failed;
@@ -285,8 +274,7 @@ TEST(Fit, RefusesSettingsOutOfRange) {
   EXPECT_NE(problem_of([&] { fit(body, curves, settings); }).find("tolerance"), std::string::npos);
 }
 
-/// A soft spot: the middle of a hexagon is softer than its rim, so that straight between them is
-/// too stiff.
+/// The middle of the hexagon is softer than its rim, so linear interpolation is too stiff.
 TEST(Fit, BetweenNodesScalesAndStatesTheErrorAtNodes) {
   const Body body = hexagon();
   Curves curves = complete_curves(body);
@@ -296,10 +284,11 @@ TEST(Fit, BetweenNodesScalesAndStatesTheErrorAtNodes) {
   const Library at_nodes = fit(body, curves, settings);
   settings.between_nodes = true;
   const Library between = fit(body, curves, settings);
-  const runtime::CompiledCurve was(at_nodes.responses[0].normal), is(between.responses[0].normal);
+  const runtime::CompiledCurve before(at_nodes.responses[0].normal);
+  const runtime::CompiledCurve after(between.responses[0].normal);
   // f = f_0 (1 + 0.2 (r/R)^2): over each triangle the mean of e . H e / 24 is 3 R^2 (0.4/R^2)/24.
   for (const double z : {0.001, 0.003, 0.006})
-    EXPECT_NEAR(is.force(z), 0.95 * was.force(z), 2e-3 * was.force(z));
+    EXPECT_NEAR(after.force(z), 0.95 * before.force(z), 2e-3 * before.force(z));
   EXPECT_EQ(between.responses[0].normal.knot, at_nodes.responses[0].normal.knot);
   const double end = normal_law(kDepth);
   EXPECT_NEAR(between.responses[0].normal_error, 0.05 * end, 0.012 * end);

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/fidelity/rendered_press.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fitting/certificate/certify.hpp"
+#include "format/error.hpp"
+#include "tests/support/surfaces.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace palpate::fidelity {
+namespace {
+
+constexpr double kNormal = 120, kLateral = 80;  // N/m
+const Vec3 kDown{0, 0, -1};
+
+/// A flat plate of equal springs in a file.
+class RenderedPress : public testing::Test {
+ protected:
+  RenderedPress() : file_(folder_ / "library.h5") {
+    Library library = fitting::flat_triangle();
+    fitting::set_equal_responses(library, fitting::node_response(fitting::linear_curve(kNormal),
+                                                                 fitting::linear_curve(kLateral)));
+    fitting::certify(library, {});
+    write_library(file_, library);
+  }
+
+  samples::TemporaryFolder folder_;
+  std::filesystem::path file_;
+};
+
+TEST_F(RenderedPress, ForcesOfSpringsAreTheirClosedForm) {
+  const Vec3 t{0.6, 0.8, 0};
+  const auto forces =
+      RenderedBody(file_).press({0.003, 0.003, 0}, kDown, {{0.002, 0, t}, {0.004, 0.001, t}});
+  ASSERT_EQ(forces.size(), 2u);
+  EXPECT_LT(norm(forces[0] - kNormal * 0.002 * kDown), 1e-6);
+  EXPECT_LT(norm(forces[1] - (kNormal * 0.004 * kDown + kLateral * 0.001 * t)), 1e-6);
+}
+
+TEST_F(RenderedPress, LargeLateralDeflectionsDoNotSlip) {
+  const Vec3 t{1, 0, 0};
+  const auto forces = RenderedBody(file_).press({0.003, 0.003, 0}, kDown, {{0.001, 0.005, t}});
+  EXPECT_NEAR(dot(forces.at(0), t), kLateral * 0.005, 1e-6);  // far beyond any friction cone
+}
+
+TEST_F(RenderedPress, RefusesAPointBesideTheSurfaceAndAMissingFile) {
+  EXPECT_THROW(RenderedBody(file_).press({0.1, 0.1, 0}, kDown, {{0.001, 0, {1, 0, 0}}}), Error);
+  EXPECT_THROW(RenderedBody(folder_ / "none.h5"), Error);
+}
+
+}  // namespace
+}  // namespace palpate::fidelity

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/response/site_samples.hpp"
+
+#include <gtest/gtest.h>
+
+namespace palpate::fitting {
+namespace {
+
+SiteCurves site_with_two_paths() {
+  SiteCurves site;
+  CurvePath normal{PathKind::Normal, 0, {0, 0, -1}, {}};
+  CurvePath lateral{PathKind::Lateral, 0.002, {1, 0, 0}, {}};
+  for (int i = 0; i <= 3; ++i) {
+    CurveSample sample;
+    sample.displacement = 0.001 * i;
+    sample.force = {0.5, 0.25, -200 * sample.displacement};
+    normal.samples.push_back(sample);
+    sample.force = {0.5 + 60 * sample.displacement, 0.25, -0.4};
+    lateral.samples.push_back(sample);
+  }
+  site.paths = {normal, lateral};
+  return site;
+}
+
+TEST(SiteSamples, NormalSamplesAreTheForceAlongThePath) {
+  const auto samples = normal_samples(site_with_two_paths());
+  ASSERT_EQ(samples.size(), 3u);  // the response is zero at zero
+  for (const ForceSample& sample : samples)
+    EXPECT_NEAR(sample.force, 200 * sample.displacement, 1e-15);
+  EXPECT_DOUBLE_EQ(normal_reach(site_with_two_paths()), 0.003);
+  EXPECT_EQ(normal_reach(SiteCurves{}), 0);
+}
+
+TEST(SiteSamples, LateralSamplesAreTheRiseOfTheForceAlongThePath) {
+  const auto paths = lateral_paths(site_with_two_paths());
+  ASSERT_EQ(paths.size(), 1u);
+  ASSERT_EQ(paths[0].size(), 3u);
+  for (const ForceSample& sample : paths[0])
+    EXPECT_NEAR(sample.force, 60 * sample.displacement, 1e-15);
+}
+
+TEST(SiteSamples, TheMeanOfEqualPathsIsThePath) {
+  const std::vector<ForceSample> path{{0.001, 0.05}, {0.002, 0.12}, {0.004, 0.2}};
+  const auto mean = mean_lateral({path, path, path});
+  ASSERT_EQ(mean.size(), path.size());
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    EXPECT_DOUBLE_EQ(mean[i].displacement, path[i].displacement);
+    EXPECT_NEAR(mean[i].force, path[i].force, 1e-15);
+  }
+}
+
+TEST(SiteSamples, AShortLateralPathDoesNotMakeTheMeanJump) {
+  const auto samples =
+      mean_lateral({{{0.001, 0.04}, {0.002, 0.08}}, {{0.001, 0.08}, {0.002, 0.16}, {0.003, 0.24}}});
+  ASSERT_EQ(samples.size(), 3u);
+  EXPECT_NEAR(samples[1].force, 0.12, 1e-12);
+  EXPECT_NEAR(samples[2].force, 0.12 + 0.08, 1e-12);  // continues with the slope of the longer one
+}
+
+}  // namespace
+}  // namespace palpate::fitting
