@@ -85,7 +85,7 @@ nlohmann::json index_column(const std::vector<std::int32_t>& values) {
   return column(narrow);
 }
 
-nlohmann::json share_column(const std::vector<double>& values) {
+nlohmann::json fraction_column(const std::vector<double>& values) {
   std::vector<std::uint16_t> steps;
   steps.reserve(values.size());
   for (const double value : values)

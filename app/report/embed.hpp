@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Data that is safe to place inside an HTML file.
+// Data in a form that is safe inside an HTML file.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace palpate::report {
 
-/// JSON for a <script type="application/json"> element: no '<', '>' or '&' survives, so nothing in
-/// the data can end the element; bytes that are not UTF-8 become U+FFFD; NaN and infinity null.
+/// JSON for a <script type="application/json"> element: '<', '>' and '&' are escaped, so the data
+/// cannot end the element; bytes that are not UTF-8 become U+FFFD; NaN and infinity null.
 std::string script_json(const nlohmann::json& value);
 
 std::string base64(std::string_view bytes);  ///< RFC 4648, padded
@@ -27,6 +27,6 @@ nlohmann::json column(const std::vector<std::uint8_t>& values);
 /// The same in the narrowest type that holds every value: u2, u4, or i4 when one is negative.
 nlohmann::json index_column(const std::vector<std::int32_t>& values);
 /// Numbers in 0..1 in steps of 1/65535, for pictures.
-nlohmann::json share_column(const std::vector<double>& values);
+nlohmann::json fraction_column(const std::vector<double>& values);
 
 }  // namespace palpate::report

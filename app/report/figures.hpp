@@ -10,7 +10,7 @@
 
 namespace palpate::report {
 
-/// f^z(d)/d of the response as it will be rendered, N/m; NaN where the vertex has no response.
+/// f^z(d)/d of the rendered response, N/m; NaN where the vertex has no response.
 double secant_stiffness(const NodeResponse& response, double d);
 
 /// Largest fit error over the largest sampled force of the same coordinate; NaN without samples.

@@ -40,15 +40,15 @@ void check_together(const ReportInput& input) {
   const Library& library = *input.library;
   const std::size_t vertices = body.response.node.size();
   require(library.responses.size() == vertices && library.positions.size() == vertices,
-          "the library has another number of vertices than the response surface of the body");
+          "the numbers of vertices of the library and of the response surface differ");
   require(body.response.inward.size() == vertices && body.response.is_site.size() == vertices,
           "the response surface of the body is incomplete");
   for (const SiteCurves& site : input.curves->sites)
     require(site.vertex >= 0 && to_index(site.vertex) < vertices,
-            "the curves name a vertex that the body does not have");
+            "a vertex of the curves is not in the body");
   const auto& certificates = library.certificate.triangles;
   require(certificates.empty() || certificates.size() == library.triangles.size(),
-          "the certificate has another number of triangles than the library");
+          "the numbers of triangles of the certificate and of the library differ");
 }
 
 json body_data(const Body& body) {
@@ -118,7 +118,7 @@ json surface_data(const Body& body, const Library& library) {
   const SurfaceMap map = map_boundary(body);
   const std::vector<std::int32_t> in_library = library_triangles(body, library);
   std::vector<float> points;
-  std::vector<double> natural;  // the first two of each point; the third is what is left to 1
+  std::vector<double> natural;  // the first two of each point; they sum to 1
   for (const std::int32_t n : map.node) append(points, body.nodes[to_index(n)]);
   for (const Vec3& n : map.natural) natural.insert(natural.end(), {n[0], n[1]});
   return {{"points", column(points)},
@@ -126,12 +126,12 @@ json surface_data(const Body& body, const Library& library) {
           {"facet_triangle", index_column(map.facet_triangle)},
           {"facet_kind", column(facet_kinds(body, library, map, in_library))},
           {"point_triangle", index_column(map.triangle)},
-          {"point_natural", share_column(natural)},
+          {"point_natural", fraction_column(natural)},
           {"triangles", index_column(flat(body.response.triangles))},
           {"library_triangle", column(in_library)}};
 }
 
-/// Curves of all vertices back to back; the offsets delimit them.
+/// Curves of all vertices in sequence, delimited by offsets.
 json response_columns(const Library& library, bool normal) {
   std::vector<std::uint32_t> offset{0};
   std::vector<float> knot, slope;

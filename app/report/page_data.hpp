@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Everything the page shows, as one JSON value. SI throughout; the page scales for the reader.
+// The data of the page as one JSON value, in SI units.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,16 +11,16 @@ namespace palpate::report {
 /// @throws Error(Configuration) when the artifacts do not fit together.
 nlohmann::json page_data(const ReportInput& input);
 
-/// Parts of it, one for each section of the page.
+/// Data of the sections of the page.
 nlohmann::json session_data(const SessionDigest& session);
 nlohmann::json certificate_data(const Library& library);
-/// @throws Error(Configuration) when the text is no comparison of these vertices.
+/// @throws Error(Configuration) when the text is not a comparison of these vertices.
 nlohmann::json comparison_data(const std::string& text, std::size_t vertices);
-/// What a judgement says of the library of this digest; {"other_library": true} when it says
-/// nothing of it. @throws Error(Configuration) when the text is no judgement.
+/// Fidelity of the library of this digest; {"other_library": true} when the text is of another one.
+/// @throws Error(Configuration) when the text is not a fidelity.json.
 nlohmann::json fidelity_data(const std::string& text, const std::string& library_sha256);
 nlohmann::json provenance_data(const ReportInput& input);
-/// The [[material]] tables of a resolved case, each a list of [key, value], as written there.
+/// The [[material]] tables of a resolved case, each a list of [key, value].
 nlohmann::json materials(const std::string& resolved_case);
 
 }  // namespace palpate::report

@@ -9,7 +9,7 @@ using nlohmann::json;
 
 [[noreturn]] void refuse(const char* problem) {
   throw Error(ErrorKind::Configuration, "fidelity.json", problem,
-              "make it again with `palpate compare --fem`, or remove it from the folder");
+              "write it again with `palpate compare --fem`, or remove it from the folder");
 }
 
 bool is_row(const json& row) {
@@ -29,21 +29,21 @@ std::size_t points_at_nodes(const json& points) {
 
 json fidelity_data(const std::string& text, const std::string& library_sha256) {
   if (text.empty()) return nullptr;
-  const json judged = json::parse(text, nullptr, false);
-  if (judged.is_discarded() || !judged.is_object() ||
-      judged.value("kind", json()) != "palpate.fidelity" || !judged.contains("points") ||
-      !judged.contains("libraries") || !judged["libraries"].is_array()) {
-    refuse("it is not a judgement that this version reads");
+  const json fidelity = json::parse(text, nullptr, false);
+  if (fidelity.is_discarded() || !fidelity.is_object() ||
+      fidelity.value("kind", json()) != "palpate.fidelity" || !fidelity.contains("points") ||
+      !fidelity.contains("libraries") || !fidelity["libraries"].is_array()) {
+    refuse("this version cannot read it");
   }
-  for (const json& library : judged["libraries"]) {
+  for (const json& library : fidelity["libraries"]) {
     if (library.value("sha256", "") != library_sha256) continue;
     const json rows = library.value("rows", json::array());
     for (const json& row : rows)
-      if (!is_row(row)) refuse("a row of it is not complete");
-    const std::size_t at_nodes = points_at_nodes(judged["points"]);
-    return {{"floor", judged.value("floor_N", 0.0)},
-            {"friction", judged.value("friction", 0.0)},
-            {"off_node", judged["points"].size() - at_nodes},
+      if (!is_row(row)) refuse("a row is incomplete");
+    const std::size_t at_nodes = points_at_nodes(fidelity["points"]);
+    return {{"floor", fidelity.value("floor_N", 0.0)},
+            {"friction", fidelity.value("friction", 0.0)},
+            {"off_node", fidelity["points"].size() - at_nodes},
             {"at_node", at_nodes},
             {"rows", rows}};
   }

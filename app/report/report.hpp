@@ -19,22 +19,22 @@ struct ReportInput {
   const Body* body = nullptr;
   const Curves* curves = nullptr;
   const Library* library = nullptr;
-  const report::SessionDigest* session = nullptr;  ///< may be null: the section then says so
-  std::string title;                               ///< any text; empty = the name of the library
-  std::uintmax_t library_bytes = 0;                ///< size of library.h5 on disk; 0 = not told
-  /// Text of comparison.json (`palpate compare`); empty: there is none. Its vertices are those of
-  /// the library.
+  const report::SessionDigest* session = nullptr;  ///< may be null
+  std::string title;                               ///< empty: the name of the library
+  std::uintmax_t library_bytes = 0;                ///< size of library.h5; 0: unknown
+  /// Text of comparison.json (`palpate compare`); empty: none. Its vertices are those of the
+  /// library.
   std::string comparison{};
-  /// Text of fidelity.json (`palpate compare --fem`); empty: there is none. Shown when it judges
+  /// Text of fidelity.json (`palpate compare --fem`); empty: none. Shown when it contains
   /// the library of this digest.
   std::string fidelity{};
   std::string library_sha256{};
 };
 
-/// Write one self-contained HTML file: no network, no WebGL, opens from disk in any browser with
-/// JavaScript. Text from the artifacts is data for the page, never markup. Written crash-safe.
-/// @throws Error(Configuration) when the artifacts do not fit together, Error(Internal) when the
-///   disk refuses. Not for the real-time thread.
+/// Writes one self-contained HTML file, which needs JavaScript but neither network nor WebGL. Text
+/// from the artifacts is data for the page, never markup. The file is complete or absent.
+/// @throws Error(Configuration) when the artifacts do not belong together, Error(Internal) when the
+///   file cannot be written. Not real-time safe.
 void write_report(const ReportInput& input, const std::filesystem::path& path);
 
 }  // namespace palpate

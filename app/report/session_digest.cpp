@@ -29,21 +29,21 @@ void SessionDigest::add(const RecordedStep& step) {
   }
   const bool changed = count_ > 0 && (step.element >= 0) != (last_.element >= 0);
   if (changed && changes_ < most_changes_) {
-    kept_.emplace_back(count_ - 1, last_);
-    kept_.emplace_back(count_, step);
+    drawn_.emplace_back(count_ - 1, last_);
+    drawn_.emplace_back(count_, step);
     ++changes_;
   }
   note_extremes(step);
   last_ = step;
   ++count_;
   if (++in_bucket_ < length_) return;
-  close_bucket(kept_);
+  close_bucket(drawn_);
   in_bucket_ = 0;
 }
 
 void SessionDigest::note_extremes(const RecordedStep& step) {
   if (in_bucket_ == 0) {
-    kept_.emplace_back(count_, step);
+    drawn_.emplace_back(count_, step);
     lowest_.fill({count_, step});
     highest_ = lowest_;
     return;
@@ -55,11 +55,11 @@ void SessionDigest::note_extremes(const RecordedStep& step) {
   }
 }
 
-/// The last step of a bucket is drawn as the first is.
-void SessionDigest::close_bucket(std::vector<Numbered>& kept) const {
-  kept.emplace_back(count_ - 1, last_);
-  kept.insert(kept.end(), lowest_.begin(), lowest_.end());
-  kept.insert(kept.end(), highest_.begin(), highest_.end());
+/// The first and the last step of a bucket are drawn.
+void SessionDigest::close_bucket(std::vector<Numbered>& drawn) const {
+  drawn.emplace_back(count_ - 1, last_);
+  drawn.insert(drawn.end(), lowest_.begin(), lowest_.end());
+  drawn.insert(drawn.end(), highest_.begin(), highest_.end());
 }
 
 std::size_t SessionDigest::count(std::uint32_t bit) const {
@@ -67,7 +67,7 @@ std::size_t SessionDigest::count(std::uint32_t bit) const {
 }
 
 std::vector<RecordedStep> SessionDigest::drawn() const {
-  std::vector<Numbered> all = kept_;
+  std::vector<Numbered> all = drawn_;
   if (in_bucket_ > 0) close_bucket(all);
   const auto before = [](const Numbered& a, const Numbered& b) { return a.first < b.first; };
   const auto same = [](const Numbered& a, const Numbered& b) { return a.first == b.first; };

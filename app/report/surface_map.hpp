@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Where each boundary node and facet of a body lies on the response surface: the picture draws the
-// fine boundary and colours it with values of the coarse response vertices.
+// Position of boundary nodes and facets of a body on the response surface. The picture draws the
+// boundary in the colours of the response vertices.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct NearestPoint {
 };
 NearestPoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
 
-/// The boundary with its own numbering (only nodes that bear a facet), and its place on the
+/// The boundary with its own numbering (only nodes that bear a facet), and its position on the
 /// response surface.
 struct SurfaceMap {
   std::vector<std::int32_t> node;            ///< (P) index into Body::nodes
@@ -27,8 +27,8 @@ struct SurfaceMap {
   std::vector<Vec3> natural;                 ///< (P) natural coordinates in it
 };
 
-/// Nearest in distance among the triangles that face the same way, so that thin bodies do not
-/// take values from their far side.
+/// Uses the nearest of the triangles with the same orientation, so that the two sides of thin
+/// bodies do not mix.
 SurfaceMap map_boundary(const Body& body);
 
 }  // namespace palpate::report

@@ -106,7 +106,7 @@ TEST(Columns, TakeTheNarrowestTypeThatHoldsTheValues) {
   EXPECT_EQ(numbers<std::uint16_t>(report::index_column({0, 65535}), "u2").at(1), 65535);
   EXPECT_EQ(numbers<std::uint32_t>(report::index_column({0, 65536}), "u4").at(1), 65536U);
   EXPECT_EQ(numbers<std::int32_t>(report::index_column({-1, 70000}), "i4").at(0), -1);
-  EXPECT_EQ(numbers<std::uint16_t>(report::share_column({0, 0.5, 1, 1 + 1e-9}), "u2"),
+  EXPECT_EQ(numbers<std::uint16_t>(report::fraction_column({0, 0.5, 1, 1 + 1e-9}), "u2"),
             (std::vector<std::uint16_t>{0, 32768, 65535, 65535}));
 }
 

@@ -165,7 +165,7 @@ class ReportPage(unittest.TestCase):
     def test_the_fidelity_is_shown_where_it_is_known(self):
         self.assertNotIn("fidelity", self.full.by_id)
         said = self.judged.by_id["fidelity"]
-        for words in ("87 of 1340 sites were computed in 4 rounds", "95 % below 4.6\u00a0%, worst 31\u00a0%",
+        for words in ("87 of 1340 sites were computed in 4 rounds", "95th percentile 4.6\u00a0%, worst 31\u00a0%",
                       "2 random points and 1 nodes", "20.0\u00a0mN", "normal press, off node", "4.9\u00a0%"):
             self.assertIn(words, said)
         other = self.judged_other.by_id["fidelity"]
@@ -287,12 +287,12 @@ class ReportPage(unittest.TestCase):
             self.assertLess(said[kind]["coloured"], 0.05 * said[kind]["body"])
         self.assertGreater(said["stiffness"]["coloured"], 0.5 * said["stiffness"]["body"])
         self.assertIn(f"node {worst}", said["tip"], said)
-        self.assertIn("normal: off by 124\u00a0mN (2.86\u00a0JND), scatter 30.0\u00a0mN", said["tip"])
+        self.assertIn("normal: root mean square error 124\u00a0mN (2.86\u00a0JND), scatter 30.0\u00a0mN", said["tip"])
 
     def test_what_is_missing_is_said(self):
         self.assertIn("No recording was given", self.bare.by_id["session"])
         self.assertIn("has not been certified", self.bare.by_id["certificate"])
-        self.assertIn("carry no computing time", self.bare.by_id["record"])
+        self.assertIn("have no computing times", self.bare.by_id["record"])
 
     def test_hostile_names_are_shown_as_text(self):
         hostile = "</script><script>document.title='owned'</script><img src=x onerror=boom()> & \"'"

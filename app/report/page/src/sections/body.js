@@ -53,7 +53,7 @@ function extent(values) {
 function rangeText(field, depth, span, unbounded) {
   const at = field.deep ? ` at d = ${units.length(depth)}` : '';
   const values = span ? `${units.significant(span[0])} to ${units.significant(span[1])} ${field.unit}` : 'no value';
-  const grey = unbounded ? ` ${units.count(unbounded)} ${unbounded === 1 ? 'triangle is' : 'triangles are'} not certified: no bound, in grey.` : '';
+  const grey = unbounded ? ` ${units.count(unbounded)} ${unbounded === 1 ? 'triangle is' : 'triangles are'} not certified: no bound (grey).` : '';
   return `${field.label}${at}: ${values}.${grey}`;
 }
 
@@ -132,8 +132,8 @@ export function bodySection(data, nodes, curves) {
   refresh();
 
   return el('section', { id: 'body' },
-    el('h2', {}, 'The body under the fingertip'),
-    paragraph('Colour is what the tool feels at each node of the response surface, drawn on the boundary of the body. Drag to turn, click a node to see its curves.', 'lead'),
+    el('h2', {}, 'The body'),
+    paragraph('The colour shows a property of the responses on the boundary of the body. Drag to turn, click a node to see its curves.', 'lead'),
     el('div', { class: 'split' },
       el('div', {}, controls(options, view, depthControl, (n) => { name = n; refresh(); }),
         el('div', { class: 'view' }, view.element, bar.element), range, keys(data)),
@@ -163,8 +163,8 @@ function keys(data) {
   };
   const kinds = new Set(data.surface.facet_kind);
   return el('div', { class: 'keys' },
-    kinds.has(FIXED) ? key('body-fixed', 'held by a support') : null,
-    kinds.has(1) ? key('body-hole', 'no response (a hole, or beside a hole or a support)') : null,
+    kinds.has(FIXED) ? key('body-fixed', 'fixed by a support') : null,
+    kinds.has(1) ? key('body-hole', 'no response (at a hole or a support)') : null,
     data.session?.drawn ? el('span', {}, 'white line: path of the contact point') : null);
 }
 
@@ -175,7 +175,7 @@ function describe(data, { vertex, triangle, facet }, depth) {
   const k = secantStiffness(data.normal, vertex, depth);
   if (Number.isFinite(k)) {
     lines.push(`f(d)/d = ${units.stiffness(k)}`, `f(${units.length(depth)}) = ${units.force(responseForce(data.normal, vertex, depth))}`);
-  } else if (surface.facet_kind[facet] === FIXED) lines.push('held by a support');
+  } else if (surface.facet_kind[facet] === FIXED) lines.push('fixed by a support');
   lines.push(`site ${SITE[vertices.site_status[vertex]]}; response ${RESPONSE[vertices.response_status[vertex]]}`);
   const m = surface.library_triangle[triangle];
   if (certificate && m >= 0) lines.push(`triangle ${m}: L_slip ${units.bound(certificate.triangle_slip[m])}`);

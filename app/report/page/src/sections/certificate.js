@@ -4,24 +4,24 @@ import * as units from '../units.js';
 
 const nodes = (n) => `${units.count(n)} ${n === 1 ? 'node' : 'nodes'}`;
 
-/** What the certificate does not say; the general limits first, then those of this library. */
+/** What the certificate does not cover: general limits, then those of this library. */
 function notCovered(data) {
   const { certificate: c, session, key } = data;
   const list = [
-    `Depths beyond ${units.length(c.depth)}: there the curves continue in a straight line, outside ${c.limit >= c.hold ? 'L_stick and L_slip; the limit of the runtime holds there too' : 'the bounds'}.`,
-    'Several contacts at once: their bounds add up and must be compared as a sum.',
-    'What the device adds beside its damping: flexible links, backlash, amplifier limits, quantized positions, filtered velocities, missed samples.',
-    'The truth of the curves: it bounds what is rendered, not how well that follows the real body.',
+    `Depths beyond ${units.length(c.depth)}: the curves are extrapolated linearly there, outside of ${c.limit >= c.hold ? 'L_stick and L_slip; the runtime enforces its bound there too' : 'the bounds'}.`,
+    'Several simultaneous contacts: their bounds add up.',
+    'Effects of the device other than its damping: flexible links, backlash, amplifier limits, quantized positions, filtered velocities, missed samples.',
+    'Accuracy: the bounds are those of the rendered force, not of its error against the real body.',
   ];
-  if (c.holes > 0) list.push(`${nodes(c.holes)} without a response: their triangles are a border, and are not bounded.`);
-  if (c.filled > 0) list.push(`${nodes(c.filled)} filled from neighbours: bounded like the others, but never computed.`);
+  if (c.holes > 0) list.push(`${nodes(c.holes)} without a response: their triangles form a border and have no bounds.`);
+  if (c.filled > 0) list.push(`${nodes(c.filled)} filled from neighbours: bounded like the others, but not computed.`);
   if (key.deepest > c.depth * (1 + 1e-6)) list.push(`Presses between ${units.length(c.depth)} and ${units.length(key.deepest)}, which were computed but lie deeper than the bounds.`);
   if (session && Math.abs(session.friction - c.friction) > 1e-9) list.push(`The friction of the session, \u03bc = ${units.significant(session.friction)}: the bounds were computed for ${units.significant(c.friction)}.`);
   return list;
 }
 
 function devices(c) {
-  if (c.devices.length === 0) return paragraph('No device profile was given: the bounds hold, but no rate is certified for a device.');
+  if (c.devices.length === 0) return paragraph('No device profile was given: the bounds are valid, but no rate is certified.');
   return table(['Device', 'Damping, N\u00b7s/m', 'Verdict', 'Linear limit at 1 kHz, N/m', 'Without delay, N/m'],
     c.devices.map((d) => [d.device, units.significant(d.damping), d.verdict, units.significant(d.linear_limit), units.significant(d.no_delay_limit)]), [1, 3, 4]);
 }
@@ -29,17 +29,17 @@ function devices(c) {
 export function certificateSection(data) {
   const c = data.certificate;
   const head = el('h2', {}, 'Passivity certificate');
-  if (!c) return el('section', { id: 'certificate' }, head, paragraph('This library has not been certified: nothing is promised about the rate at which a device renders it passively. Run palpate certify.'));
+  if (!c) return el('section', { id: 'certificate' }, head, paragraph('This library has not been certified: it is unknown at which rate a device renders it passively. Run palpate certify.'));
   const free = c.triangle_sliding_passive.reduce((n, x) => n + x, 0);
   return el('section', { id: 'certificate' }, head,
-    paragraph('The rendered body never returns more energy than it was given as long as the limit of the runtime \u2264 \u03c3\u2080(B) / 2T, with \u03c3\u2080(B) the smallest damping of the device and 1/T the rate of its loop.', 'lead'),
+    paragraph('The rendered body never returns more energy than it absorbed if the enforced bound \u2264 \u03c3\u2080(B) / 2T, with \u03c3\u2080(B) the smallest damping of the device and 1/T the rate of its force loop.', 'lead'),
     definitions([
-      ['L_stick', `${units.bound(c.stick)}; contact point held`],
+      ['L_stick', `${units.bound(c.stick)}; fixed contact point`],
       ['L_slip', `${units.bound(c.slip)}; while sliding, \u03bc = ${units.significant(c.friction)}`],
-      ['L_hold', Number.isFinite(c.hold) ? `${units.bound(c.hold)}; while the runtime holds slides back as far as it can` : 'not known'],
-      ['Limit of the runtime', `${units.bound(c.limit)}: in no step does the force change by more than this times the way of the tool`],
+      ['L_min', Number.isFinite(c.hold) ? `${units.bound(c.hold)}; smallest enforceable bound, with throttled slides` : 'unknown'],
+      ['Enforced bound', `${units.bound(c.limit)}: in each step the force changes by at most this times the travel of the tool`],
       ['Responses', c.basis],
-      ['Holds to', `${units.length(c.depth)} of depth`],
+      ['Valid to', `a depth of ${units.length(c.depth)}`],
       ['Worst triangle', c.worst_triangle < 0 ? 'none' : `${c.worst_triangle}: ${c.limited_by || 'cause not recorded'}`],
       ['Sliding', `${units.count(free)} of ${units.count(c.triangle_slip.length)} triangles need no energy correction while sliding`],
     ], 'facts'),

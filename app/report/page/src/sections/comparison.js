@@ -26,7 +26,7 @@ export function errorOfVertices(data, kind) {
 /** Lines of the tip: what the curves of a vertex are off by. */
 export function errorsAt(data, vertex) {
   return (data.comparison?.curves ?? []).filter((c) => c.vertex === vertex).map((c) =>
-    `${pathName(c)}: off by ${units.force(c.rmse_N)} (${units.significant(c.rms_jnd)}\u00a0JND)`
+    `${pathName(c)}: root mean square error ${units.force(c.rmse_N)} (${units.significant(c.rms_jnd)}\u00a0JND)`
     + (c.scatter_N === null ? '' : `, scatter ${units.force(c.scatter_N)}`));
 }
 
@@ -81,7 +81,7 @@ function summaryOf(s) {
     ['Compared', `${units.count(s.curves)} ${s.kind} curves, ${units.count(s.points)} points`],
     ['RMSE', `${units.force(s.rmse_N)}, ${percentOf(s.normalised_rmse)} of the largest force; scatter of the reference: ${forceOf(s.scatter_N)}`],
     ['Bias', `${units.force(s.bias_N)}; limits of agreement ${units.force(s.agreement_low_N)} to ${units.force(s.agreement_high_N)}`],
-    ['Felt', `${units.significant(s.rms_jnd)} just noticeable differences (root mean square); noticeable at ${percentOf(s.noticeable_fraction)} of the points`],
+    ['Perception', `${units.significant(s.rms_jnd)} just noticeable differences (root mean square); noticeable at ${percentOf(s.noticeable_fraction)} of the points`],
     ['Within the uncertainty', `${percentOf(s.within_uncertainty_fraction)} of the points`],
     ['Worst', `node ${s.worst_vertex} at ${units.length(s.worst.displacement_m)}: ${units.force(s.worst.model_N)} for ${units.force(s.worst.reference_N)}`],
   ], 'facts');
@@ -105,15 +105,15 @@ export function comparisonSection(data) {
     const figure = curvePlot(`Difference over mean, ${s.kind} curves (Bland\u2013Altman)`, 'Mean force (N)', 'Model less reference (N)', 240, { signed: true });
     figure.set(blandAltman(data, s.kind, s));
     return el('div', {}, figure.element,
-      paragraph('Line: bias. Dashed: limits of agreement, 1.96 standard deviations of the differences to either side.', 'note'),
+      paragraph('Line: bias. Dashed: limits of agreement, bias \u00b1 1.96 standard deviations of the differences.', 'note'),
       summaryOf(s));
   });
   return el('section', { id: 'comparison' },
     el('h2', {}, 'Against the reference'),
     paragraph(`Model: ${c.model}. Reference: ${c.reference}. A difference of ${percentOf(c.jnd)} of the force, or of ${units.force(c.jnd_floor_N)} where that is more, counts as just noticeable.`, 'lead'),
     el('div', { class: 'controls' }, el('label', {}, 'Curve', select)), plot.element,
-    paragraph('Markers: the reference, between dashed lines at two of its standard uncertainties where they are known. Line: the model. The map of the error is a colour of the body above.', 'note'),
+    paragraph('Markers: the reference. Dashed: two standard uncertainties of it, where known. Line: the model. The error is also a colour of the body above.', 'note'),
     agreement,
     table(['Node', 'Path', 'RMSE', 'of largest', 'R\u00b2', 'Bias', 'JND', 'Uncertainty', 'Scatter'], curveRows(c.curves), [0, 2, 3, 4, 5, 6, 7, 8]),
-    c.unmatched.length ? paragraph(`Without a partner: ${someOf(c.unmatched)}.`, 'note') : null);
+    c.unmatched.length ? paragraph(`Unmatched: ${someOf(c.unmatched)}.`, 'note') : null);
 }

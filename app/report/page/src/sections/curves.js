@@ -41,10 +41,10 @@ export class Curves {
     this.nodes = nodes;
     this.depth = data.key.depth;
     this.normal = curvePlot('Normal response: along the inward direction', 'Depth (mm)', 'Force (N)', 230);
-    this.lateral = curvePlot('Lateral response: along the travel, at a held depth', 'Lateral deflection (mm)', 'Force (N)', 210);
+    this.lateral = curvePlot('Lateral response: along the travel, at a lateral depth', 'Lateral deflection (mm)', 'Force (N)', 210);
     this.legend = el('div', {});
     this.element = el('div', { id: 'curves' }, this.normal.element, this.lateral.element, this.legend,
-      paragraph('Markers: states computed by the finite element method. Lines: the fitted response that will be rendered. Dashed: the depth of the picture.', 'note'),
+      paragraph('Markers: computed states. Lines: the fitted, rendered response. Dashed: the depth of the picture.', 'note'),
       this.chooser());
     nodes.onChange(() => this.refresh());
     this.refresh();

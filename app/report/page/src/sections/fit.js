@@ -12,7 +12,7 @@ const quantile = (values, q) => {
 
 function fitPanel(v) {
   const normal = relative(v.normal_error, v.normal_peak), lateral = relative(v.lateral_error, v.lateral_peak);
-  if (normal.length + lateral.length === 0) return el('div', {}, el('h3', {}, 'Fit error'), paragraph('No node was fitted from curves of its own.'));
+  if (normal.length + lateral.length === 0) return el('div', {}, el('h3', {}, 'Fit error'), paragraph('No node has a response from its own curves.'));
   const summary = (name, x) => (x.length ? `${name}: median ${units.percent(quantile(x, 0.5) / 100)}, worst ${units.percent(quantile(x, 1) / 100)}` : `${name}: none`);
   return el('div', {},
     histogram('Fit error', 'Largest deviation (% of the largest force of the node)', 'Nodes',
@@ -21,7 +21,7 @@ function fitPanel(v) {
 }
 
 function balancePanel(balance) {
-  if (!balance.worst) return el('div', {}, el('h3', {}, 'Energy balance'), paragraph('No curve stores energy: there is nothing to balance.'));
+  if (!balance.worst) return el('div', {}, el('h3', {}, 'Energy balance'), paragraph('The curves have no stored energy.'));
   const of = (kind) => Array.from(balance.difference).filter((_, i) => balance.kind[i] === kind).map((x) => 100 * x);
   const w = balance.worst;
   return el('div', {},
@@ -33,7 +33,7 @@ function balancePanel(balance) {
 
 export function fitSection(data) {
   return el('section', { id: 'fit' },
-    el('h2', {}, 'Can the curves be trusted?'),
-    paragraph('The fit must follow the computed states, and the work of the tool at the end of each path must be the energy stored in the body and its contact.', 'lead'),
+    el('h2', {}, 'Errors of the curves'),
+    paragraph('The distance of the fit from the computed states, and the difference between the work of the tool and the energy stored in the body and its contact.', 'lead'),
     el('div', { class: 'pair' }, fitPanel(data.vertices), balancePanel(data.balance)));
 }

@@ -61,7 +61,7 @@ export function headerSection(data, nodes) {
     definitions([
       ['Tool', `${key.tool_shape}, radius ${units.length(key.tool_radius)}, normal path ${key.tool_friction}; lateral travel ${units.length(key.lateral_travel)}`],
       ['Mesh', `${units.count(body.tetrahedra)} tetrahedra, ${units.count(body.nodes)} nodes; boundary edge ${units.length(body.facet_edge)}, patch edge ${units.length(body.patch_edge)} (medians)`],
-      ['Held', `${units.count(body.fixed_nodes)} fixed nodes; ${units.count(body.sites)} of ${units.count(body.vertices)} response nodes may be pressed`],
+      ['Supports', `${units.count(body.fixed_nodes)} fixed nodes; ${units.count(body.sites)} of ${units.count(body.vertices)} response nodes may be pressed`],
       ['Regions', body.regions.map((r) => `${r.name} (${units.count(r.tetrahedra)} tetrahedra)`).join(', ')],
       ['Materials', lines(materialLines(data))],
     ], 'facts'));

@@ -7,7 +7,7 @@ import * as units from '../units.js';
 
 function sitePanel(data) {
   const seconds = Array.from(data.vertices.cpu_seconds).filter((_, v) => data.vertices.site_status[v] !== 255);
-  if (!seconds.some((s) => s > 0)) return el('div', {}, el('h3', {}, 'Time to compute a site'), paragraph('The curves carry no computing time.'));
+  if (!seconds.some((s) => s > 0)) return el('div', {}, el('h3', {}, 'Time to compute a site'), paragraph('The curves have no computing times.'));
   return el('div', {},
     histogram('Time to compute a site', 'Processor time (s)', 'Sites', [{ label: 'sites', colour: 'series-1', values: seconds }]),
     paragraph(`${units.count(seconds.length)} sites, ${units.duration(data.key.cpu_seconds)} of processor time in all.`, 'note'));
@@ -16,7 +16,7 @@ function sitePanel(data) {
 function latencyPanel(session) {
   const head = el('h3', {}, 'Time to compute a step of the force loop');
   if (!session) return el('div', {}, head, paragraph('No recording was given.'));
-  if (!session.latency) return el('div', {}, head, paragraph('The recording carries no step times.'));
+  if (!session.latency) return el('div', {}, head, paragraph('The recording has no step times.'));
   const l = session.latency;
   return el('div', {}, head,
     table(['Percentile', 'Time'], [['50 %', units.time(l.p50)], ['99 %', units.time(l.p99)], ['99.9 %', units.time(l.p999)], ['largest', units.time(l.max)]], [1]),
@@ -27,7 +27,7 @@ function failures(data) {
   const { vertices } = data;
   const rows = Object.entries(vertices.reasons).map(([v, reason]) => [v, SITE[vertices.site_status[v]], reason]);
   if (rows.length === 0) return null;
-  return el('details', {}, el('summary', {}, `${units.count(rows.length)} sites that did not finish, and why`), table(['Node', 'Site', 'Reason'], rows, [0]));
+  return el('details', {}, el('summary', {}, `${units.count(rows.length)} incomplete sites and their reasons`), table(['Node', 'Site', 'Reason'], rows, [0]));
 }
 
 function stage(step) {
@@ -38,7 +38,7 @@ function stage(step) {
 
 function resolvedCases(chain) {
   return chain.filter((s) => s.resolved_case).map((s) =>
-    el('details', {}, el('summary', {}, `Case of \u201c${s.stage}\u201d as understood, defaults filled in`), el('pre', {}, s.resolved_case)));
+    el('details', {}, el('summary', {}, `Case of \u201c${s.stage}\u201d as resolved, with defaults`), el('pre', {}, s.resolved_case)));
 }
 
 function hashes(chain) {
@@ -52,6 +52,6 @@ export function recordSection(data) {
     el('h2', {}, 'Timings'),
     el('div', { class: 'pair' }, sitePanel(data), latencyPanel(data.session)), failures(data),
     el('h2', {}, 'Provenance'),
-    chain.length === 0 ? paragraph('The artifacts carry no provenance.')
+    chain.length === 0 ? paragraph('The artifacts have no provenance.')
       : [table(['Stage', 'Version', 'Revision', 'UTC', 'Inputs (SHA-256)', 'Facts'], chain.map(stage)), hashes(chain), resolvedCases(chain)]);
 }

@@ -9,26 +9,26 @@ function accountSentence(session) {
   const { least, time } = session.margin;
   const holds = least >= -1e-12;
   return el('p', { id: 'account', class: holds ? undefined : 'warn' }, holds
-    ? `At every step the energy absorbed covered what was stored: absorbed \u2212 (stored + tank) was never below ${units.energy(Math.max(0, least))}. The session was passive.`
-    : `The account was NOT kept: absorbed \u2212 (stored + tank) fell to ${units.energy(least)} at ${units.significant(time)} s. The session was not passive.`);
+    ? `In every step the absorbed energy covered the stored energy: absorbed \u2212 (stored + tank) was at least ${units.energy(Math.max(0, least))}. The session was passive.`
+    : `The energy account was violated: absorbed \u2212 (stored + tank) fell to ${units.energy(least)} at ${units.significant(time)} s. The session was not passive.`);
 }
 
 function countsSentence(counts, steps) {
-  const share = (n) => `${units.count(n)} (${units.percent(n / steps)})`;
+  const fraction = (n) => `${units.count(n)} (${units.percent(n / steps)})`;
   const warnings = [['beyond_depth', 'beyond the deepest sample'], ['bad_input', 'with bad input'], ['dropped', 'that dropped a contact'], ['at_border', 'at a border']]
     .filter(([k]) => counts[k] > 0).map(([k, text]) => `${units.count(counts[k])} ${text}`);
-  return `Steps in contact: ${share(counts.contact)}; collisions accepted: ${units.count(counts.activated)}; sliding: ${share(counts.sliding)}; ` +
-    `held back by the energy rule: ${units.count(counts.energy_limited)}${warnings.length ? `; ${warnings.join(', ')}` : ''}.`;
+  return `Steps in contact: ${fraction(counts.contact)}; collisions accepted: ${units.count(counts.activated)}; sliding: ${fraction(counts.sliding)}; ` +
+    `limited by the energy rule: ${units.count(counts.energy_limited)}${warnings.length ? `; ${warnings.join(', ')}` : ''}.`;
 }
 
 export function sessionSection(data) {
   const { session } = data;
   const head = [el('h2', {}, 'The session')];
-  if (!session) return el('section', { id: 'session' }, head, paragraph('No recording was given to this report: make one with palpate simulate.'));
-  if (!session.drawn) return el('section', { id: 'session' }, head, paragraph('The recording holds no step.'));
+  if (!session) return el('section', { id: 'session' }, head, paragraph('No recording was given. palpate simulate makes one.'));
+  if (!session.drawn) return el('section', { id: 'session' }, head, paragraph('The recording has no steps.'));
   const d = session.drawn;
   const magnitude = Float64Array.from(d.fx, (x, i) => Math.hypot(x, d.fy[i], d.fz[i]));
-  const drawn = d.time.length < session.steps ? ` Drawn: ${units.count(d.time.length)} of ${units.count(session.steps)} steps, among them every extreme; the figures count all.` : '';
+  const drawn = d.time.length < session.steps ? ` Drawn: ${units.count(d.time.length)} of ${units.count(session.steps)} steps, including all extremes; the numbers are of all steps.` : '';
   return el('section', { id: 'session' }, head,
     paragraph(`${session.device || 'Unnamed device'}, ${units.frequency(session.rate)}, \u03bc = ${units.significant(session.friction)}, ${units.duration(session.duration)}, ${units.count(session.steps)} steps; largest force ${units.force(session.max_force)}.${drawn}`, 'lead'),
     accountSentence(session),
@@ -38,7 +38,7 @@ export function sessionSection(data) {
     timePlot('Deflection', 'Length (mm)', d.time, [
       { label: 'depth', colour: 'series-1', values: scale(d.depth, 1e3) }, { label: 'lateral', colour: 'series-3', values: scale(d.lateral, 1e3) }], 160),
     timePlot('Energy account', 'Energy (mJ)', d.time, [
-      { label: 'absorbed from the hand', colour: 'series-5', values: scale(d.absorbed, 1e3) },
+      { label: 'absorbed', colour: 'series-5', values: scale(d.absorbed, 1e3) },
       { label: 'stored in the local model', colour: 'series-1', values: scale(d.energy, 1e3) },
       { label: 'tank', colour: 'series-3', values: scale(d.tank, 1e3) }], 180),
     paragraph(countsSentence(session.counts, session.steps), 'note'));
