@@ -2,44 +2,14 @@
 // Quantities of the case file: text with a unit outside, SI inside.
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "format/units.hpp"
 
 namespace palpate::app {
 
-/// What a dimensional key of the case file measures.
-enum class Dimension {
-  Length,
-  Pressure,
-  Angle,
-  Force,
-  Frequency,
-  Mass,
-  Damping,
-  Stiffness,
-  Speed,
-  Time,
-  Compliance,
-  FoundationStiffness,
-  Acceleration,
-  Density
-};
-
-struct Unit {
-  std::string_view symbol;
-  double si;  ///< value of one unit in SI
-};
-
-std::string_view dimension_name(Dimension dimension);  ///< "length", ...
-/// Accepted units. The first is the one used to print, the last is the SI unit.
-std::span<const Unit> units_of(Dimension dimension);
-std::vector<std::string_view> unit_symbols(Dimension dimension);
-std::string unit_list(Dimension dimension);  ///< "N/m, ...", for messages
-
-/// Outcome of parse_quantity: why a text is not a quantity is told to the user by the caller, who
-/// knows the key and the line.
+/// Outcome of parse_quantity. The caller, who knows the key and the line, makes the message of it.
 enum class QuantityFault { None, NoNumber, NoUnit, WrongUnit };
 
 struct ParsedQuantity {

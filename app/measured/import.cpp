@@ -63,13 +63,13 @@ class Importer {
   fs::path path_of(const std::string& file) const { return sidecar_file_.parent_path() / file; }
 
   std::vector<double> column(const m::CsvTable& table, const std::string& name,
-                             m::Quantity quantity) const {
+                             Dimension dimension) const {
     const ColumnsSection& c = s_.columns;
-    const std::string& unit = quantity == m::Quantity::Time     ? c.time_unit
-                              : quantity == m::Quantity::Length ? c.length_unit
-                                                                : c.force_unit;
+    const std::string& unit = dimension == Dimension::Time     ? c.time_unit
+                              : dimension == Dimension::Length ? c.length_unit
+                                                               : c.force_unit;
     if (name.empty()) return {};
-    return m::column_in_si(table, name, quantity, unit);
+    return m::column_in_si(table, name, dimension, unit);
   }
 
   m::PressSettings press_settings(int cycle) const {
@@ -124,9 +124,9 @@ class Importer {
   void read_press(const PressFileSection& press) {
     const fs::path file = path_of(press.file);
     const m::CsvTable table = m::read_csv(file, declared_, press.table);
-    m::PressRecord record{file.string(), column(table, s_.columns.time, m::Quantity::Time),
-                          column(table, s_.columns.displacement, m::Quantity::Length),
-                          column(table, s_.columns.force, m::Quantity::Force)};
+    m::PressRecord record{file.string(), column(table, s_.columns.time, Dimension::Time),
+                          column(table, s_.columns.displacement, Dimension::Length),
+                          column(table, s_.columns.force, Dimension::Force)};
     m::orient(record);
     double distance = 0;
     const int vertex = vertex_of(press, distance);
@@ -146,7 +146,7 @@ class Importer {
   }
 
   /// A wrong unit shows in a tool that is deeper in the body than that is large, and a depth that
-  /// is many times the tool where there is no body to tell.
+  /// is many times the tool where there is no body to compare with.
   void check_depth(const std::string& where, const m::PressCurve& curve) {
     const double depth = curve.loading.back().depth;
     if (body_ && depth > extent_of(*body_)) {
@@ -194,13 +194,13 @@ class Importer {
     const ColumnsSection& c = s_.columns;
     m::RobotLog log;
     log.name = file.string();
-    log.time = column(table, c.time, m::Quantity::Time);
-    const auto x = column(table, c.x, m::Quantity::Length);
-    const auto y = column(table, c.y, m::Quantity::Length);
-    const auto z = column(table, c.z, m::Quantity::Length);
-    const auto fx = column(table, c.fx, m::Quantity::Force);
-    const auto fy = column(table, c.fy, m::Quantity::Force);
-    const auto fz = column(table, c.fz, m::Quantity::Force);
+    log.time = column(table, c.time, Dimension::Time);
+    const auto x = column(table, c.x, Dimension::Length);
+    const auto y = column(table, c.y, Dimension::Length);
+    const auto z = column(table, c.z, Dimension::Length);
+    const auto fx = column(table, c.fx, Dimension::Force);
+    const auto fy = column(table, c.fy, Dimension::Force);
+    const auto fz = column(table, c.fz, Dimension::Force);
     const double sign = s_.placement.force_is == "on body" ? 1 : -1;
     for (std::size_t i = 0; i < x.size(); ++i) {
       log.tip.push_back(registration_.motion({x[i], y[i], z[i]}));
@@ -252,7 +252,7 @@ class Importer {
                         {"deepest_m", curve.loading.back().depth},
                         {"largest_force_N", curve.loading.back().force},
                         {"work_loading_J", curve.work_loading},
-                        {"returned_share", number(returned)}});
+                        {"returned_fraction", number(returned)}});
   }
 
   Vec3 inward_of(int vertex) const {

@@ -18,7 +18,7 @@ struct Import {
   nlohmann::ordered_json account;
 };
 
-/// Read all records of a sidecar and place them on the body. Presses of one site are repeats: they
+/// Read all records of a sidecar and locate them on the body. Presses of one site are repeats: they
 /// become one path with their scatter; so do drags of one site, depth and direction stay apart.
 /// @param body_file  body.h5, or empty: the vertices of the sidecar are taken as they are, the
 ///   presses run along -z, and the curves refer to no body.

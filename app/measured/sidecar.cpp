@@ -11,7 +11,7 @@
 namespace palpate::app {
 namespace {
 
-constexpr Range kShare{.low = 0, .high = 1};
+constexpr Range kFraction{.low = 0, .high = 1};
 constexpr Range kCount{.low = 2, .high = 1000};
 
 }  // namespace
@@ -30,9 +30,9 @@ void describe(V& v, MachineSection& s) {
              {"compliance", "of machine and load cell together", kOptional, kNotNegative});
   v.quantity(s.compliance_uncertainty, Dimension::Compliance,
              {"compliance_uncertainty", "standard", kOptional, kNotNegative});
-  v.number(
-      s.force_calibration,
-      {"force_calibration", "relative standard uncertainty of the load cell", kOptional, kShare});
+  v.number(s.force_calibration,
+           {"force_calibration", "relative standard uncertainty of the load cell", kOptional,
+            kFraction});
 }
 
 template <class V>

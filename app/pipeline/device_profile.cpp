@@ -9,7 +9,7 @@ namespace palpate::fitting {
 /// The keys of a device profile (found by argument-dependent lookup, so in this namespace).
 template <class V>
 void describe(V& v, DeviceProfile& p) {
-  using app::Dimension;
+  using palpate::Dimension;
   v.text(p.name, {"name", "of the device", app::kRequired});
   v.quantity(
       p.damping, Dimension::Damping,

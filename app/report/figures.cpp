@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "fitting/measurement/nearest_rank.hpp"
 #include "format/edge.hpp"
 #include "runtime/response_curve.hpp"
 
@@ -104,8 +105,7 @@ CampaignFigures campaign_figures(const Curves& curves) {
 
 double percentile(std::vector<double>& values, double fraction) {
   if (values.empty()) return 0;
-  const auto size = static_cast<double>(values.size());
-  const auto rank = static_cast<std::ptrdiff_t>(std::max(1.0, std::ceil(fraction * size))) - 1;
+  const auto rank = static_cast<std::ptrdiff_t>(fitting::nearest_rank(values.size(), fraction));
   std::nth_element(values.begin(), values.begin() + rank, values.end());
   return values[static_cast<std::size_t>(rank)];
 }

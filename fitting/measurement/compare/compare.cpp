@@ -25,11 +25,11 @@ ComparedCurve curve_of(const CurvePath& path) {
   curve.lateral_depth = path.lateral_depth;
   curve.direction = path.direction;
   curve.contact_uncertainty = path.contact_uncertainty;
-  const Vec3 held = path.kind == PathKind::Lateral ? path.samples.front().force : Vec3{};
+  const Vec3 start = path.kind == PathKind::Lateral ? path.samples.front().force : Vec3{};
   for (const CurveSample& sample : path.samples) {
     if (!curve.displacement.empty() && sample.displacement <= curve.displacement.back()) continue;
     curve.displacement.push_back(sample.displacement);
-    curve.force.push_back(dot(sample.force - held, path.direction));
+    curve.force.push_back(dot(sample.force - start, path.direction));
     curve.uncertainty.push_back(sample.force_uncertainty);
     curve.scatter.push_back(sample.force_scatter);
   }
@@ -101,11 +101,6 @@ double interpolated(const ComparedCurve& curve, const std::vector<double>& value
   return (1 - t) * values[i - 1] + t * values[i];
 }
 
-/// Quantile of the normal distribution for a two-sided probability.
-double normal_quantile(double probability) {
-  return measured::student_quantile(probability, 1e7);
-}
-
 struct Pair {
   const ComparedCurve& reference;
   const ComparedCurve& model;
@@ -150,7 +145,7 @@ void add_stiffness(const Pair& pair, const CompareSettings& settings, CurveCompa
 }
 
 void add_figures(const CompareSettings& settings, CurveComparison& out) {
-  const double q = normal_quantile(settings.confidence);
+  const double q = measured::normal_quantile(settings.confidence);
   const auto n = static_cast<double>(out.points.size());
   double squares = 0, mean = 0, total = 0, largest = 0, jnd = 0, scatter = 0, doubt = 0;
   std::size_t noticeable = 0, within = 0, with_doubt = 0, with_scatter = 0;
@@ -198,7 +193,7 @@ CurveComparison compare_curves(const ComparedSite& site, const ComparedSite& oth
   out.lateral_depth = pair.reference.lateral_depth;
   out.range = pair.range;
   for (const double x : pair.reference.displacement) {
-    // The first sample is the touch, or the held state: no force on either side, nothing to tell.
+    // The first sample is the touch, or the start of a lateral path: no force on either side.
     if (x > 0 && x <= pair.range * (1 + 1e-9)) out.points.push_back(point_at(pair, x, settings));
   }
   if (out.points.empty()) out.points.push_back(point_at(pair, pair.range, settings));
@@ -383,9 +378,10 @@ Comparison compare(const ComparedSet& reference, const ComparedSet& model,
     }
   }
   if (out.curves.empty()) {
-    throw Error(ErrorKind::Configuration, reference.name + " and " + model.name,
-                "they have no curve in common",
-                "check that sites, held depths and directions are the same within the tolerances");
+    throw Error(
+        ErrorKind::Configuration, reference.name + " and " + model.name,
+        "they have no curve in common",
+        "check that sites, lateral depths and directions are the same within the tolerances");
   }
   for (const PathKind kind : {PathKind::Normal, PathKind::Lateral}) {
     const Summary summary = summarize(out.curves, kind);

@@ -39,7 +39,8 @@ struct ComparedSet {
   std::vector<ComparedSite> sites;
 };
 
-/// The curves of a campaign or of a measurement; of a lateral path the force less that held.
+/// The curves of a campaign or of a measurement; of a lateral path the force less that at its
+/// start.
 ComparedSet set_of(const Curves& curves, std::string name);
 /// The responses of a library on `steps` even steps up to their last knot. Holes are left out.
 ComparedSet set_of(const Library& library, std::string name, int steps = 48);
@@ -49,9 +50,9 @@ struct CompareSettings {
   double jnd_floor = 0.005;  ///< N, least noticeable difference near zero force
   double confidence = 0.95;  ///< of the limits of agreement and of "within the uncertainty"
   double site_tolerance = 0.002;      ///< m, sites of different bodies are one within it
-  double depth_tolerance = 0.1;       ///< relative, of held depths
+  double depth_tolerance = 0.1;       ///< relative, of lateral depths
   double direction_tolerance = 0.26;  ///< rad, of lateral directions
-  std::vector<double> depths;         ///< m, where stiffness is told; empty: thirds of the range
+  std::vector<double> depths;  ///< m, where the stiffness is compared; empty: thirds of the range
 };
 
 /// Force and difference at one displacement of the reference.
@@ -84,8 +85,8 @@ struct CurveComparison {
   double bias = 0;             ///< N, mean of model less reference
   ComparedPoint worst;
   double jnd_rms = 0;                    ///< root mean square, in just noticeable differences
-  double noticeable = 0;                 ///< share of points beyond one of them
-  double within_uncertainty = kUnknown;  ///< share of points within the confidence interval
+  double noticeable = 0;                 ///< fraction of points beyond one of them
+  double within_uncertainty = kUnknown;  ///< fraction of points within the confidence interval
   double mean_scatter = kUnknown;        ///< N, root mean square scatter of the reference
   double mean_uncertainty = kUnknown;    ///< N
   double energy_reference = 0, energy_model = 0;  ///< J, integral over the range

@@ -27,7 +27,7 @@ struct Rescaling {
 
 /// Least squares factor s of measured = s * simulated over the normal paths of the common sites,
 /// each site with the same weight. Exact for a body of one law whose stress scale alone is unknown:
-/// the force of an indentation is proportional to it. What differs in shape is told by the misfits.
+/// the force of an indentation is proportional to it. The misfits measure a difference in shape.
 /// @throws Error(Configuration) when no site is common, or a factor is not positive.
 Rescaling rescale(const Curves& simulated, const Curves& measured, const CompareSettings& settings);
 

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "format/error.hpp"
+#include "format/text.hpp"
 
 namespace palpate::measured {
 namespace {
@@ -22,13 +23,6 @@ constexpr char kBlanks = ' ';
 [[noreturn]] void refuse(const std::string& where, const std::string& problem,
                          const std::string& remedy) {
   throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r";
-  const auto first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
 }
 
 void append_utf8(std::string& out, unsigned code) {
@@ -236,7 +230,7 @@ std::string at_line(const std::string& file, const Line& line) {
   return file + ":" + std::to_string(line.number);
 }
 
-/// A row that breaks off the numbers, told by its first field that is none.
+/// Refuses a row that interrupts the numbers, by its first field that is no number.
 [[noreturn]] void refuse_row(const std::string& file, const Line& line, const Dialect& dialect,
                              std::size_t width) {
   if (ends_within_quotes(line)) {
@@ -278,7 +272,7 @@ bool is_unit_row(const std::vector<std::string>& fields) {
   bool any = false;
   for (const std::string& field : fields) {
     if (field.empty()) continue;
-    if (!is_bracketed(field) && !is_lab_unit(field)) return false;
+    if (!is_bracketed(field) && !is_record_unit(field)) return false;
     any = true;
   }
   return any;
@@ -294,11 +288,11 @@ CsvColumn name_and_unit(const std::string& field) {
             without_brackets(field.substr(at)),
             {}};
   }
-  for (const std::string_view mark : {" / ", "/", " in ", ", ", "_"}) {
+  for (const std::string_view mark : {" / ", "/", " in ", "_"}) {
     const auto at = field.rfind(mark);
     if (at == std::string::npos || at == 0) continue;
     const std::string unit(trimmed(std::string_view(field).substr(at + mark.size())));
-    if (!is_lab_unit(unit)) continue;
+    if (!is_record_unit(unit)) continue;
     return {std::string(trimmed(std::string_view(field).substr(0, at))), unit, {}};
   }
   return {field, "", {}};
@@ -435,7 +429,7 @@ CsvTable parse_csv(std::string_view text, const std::string& file,
   std::size_t header_begin = run.begin;
   table.columns = declared.empty() ? header_columns(file, lines, run, dialect, header_begin)
                                    : declared_columns(file, run, declared);
-  // Of a later table: what stands between it and the one before.
+  // The preamble of a later table starts after the table before it.
   std::size_t first = 0;
   for (const Run& other : tables) {
     if (other.end <= header_begin) first = other.end;
@@ -462,8 +456,8 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<DeclaredC
   return parse_csv(text.str(), path.string(), declared, table);
 }
 
-std::vector<double> column_in_si(const CsvTable& table, const std::string& name, Quantity quantity,
-                                 const std::string& declared_unit) {
+std::vector<double> column_in_si(const CsvTable& table, const std::string& name,
+                                 Dimension dimension, const std::string& declared_unit) {
   const auto is_it = [&](const CsvColumn& column) { return column.name == name; };
   const auto count = std::count_if(table.columns.begin(), table.columns.end(), is_it);
   if (count != 1) {
@@ -479,18 +473,19 @@ std::vector<double> column_in_si(const CsvTable& table, const std::string& name,
   const CsvColumn& column = *std::find_if(table.columns.begin(), table.columns.end(), is_it);
   const std::string where = table.file + ", column '" + name + "'";
   const std::string units =
-      "units of " + std::string(quantity_name(quantity)) + " are " + lab_unit_list(quantity);
+      "units of " + std::string(dimension_name(dimension)) + " are " + record_unit_list(dimension);
   if (column.unit.empty() && declared_unit.empty()) {
     refuse(where, "its unit is not given, neither in the file nor in the sidecar",
            "declare it in the sidecar; " + units);
   }
   const std::string& symbol = column.unit.empty() ? declared_unit : column.unit;
-  const auto si = unit_in_si(symbol, quantity);
+  const auto si = unit_in_si(symbol, dimension);
   if (!si) {
-    refuse(where, "'" + symbol + "' is not a unit of " + std::string(quantity_name(quantity)),
+    refuse(where, "'" + symbol + "' is not a unit of " + std::string(dimension_name(dimension)),
            units);
   }
-  if (!column.unit.empty() && !declared_unit.empty() && unit_in_si(declared_unit, quantity) != si) {
+  if (!column.unit.empty() && !declared_unit.empty() &&
+      unit_in_si(declared_unit, dimension) != si) {
     refuse(where, "the file says '" + column.unit + "', the sidecar says '" + declared_unit + "'",
            "correct the one that is wrong");
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Tables as testing machines write them: a preamble of any kind, a row of names, a row of units or
 // units beside the names, then numbers. Instron Bluehill, MTS TestSuite and plain files differ in
-// the separator, the decimal sign and where the units stand; the numbers tell where they begin.
+// the separator, the decimal sign and where the units stand; the numbers show where they begin.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "fitting/measurement/records/lab_units.hpp"
+#include "fitting/measurement/records/record_units.hpp"
 
 namespace palpate::measured {
 
@@ -38,7 +38,7 @@ struct CsvTable {
 /// "1,234.5", "1.234,5", "1 234", "1'234", but "1,234" is the decimal 1.234 or refused. Text is
 /// UTF-8, UTF-16 with its mark, or else taken as Latin-1. A file may hold several tables, each
 /// under its own full header; any other row that is not of numbers is an error, never skipped.
-/// @param declared  columns in order, in place of a header; empty to read the header.
+/// @param declared  columns in order, instead of a header; empty to read the header.
 /// @param table     counted from 1; 0: the only one.
 /// @throws Error(Configuration) with file and line: no table of numbers, a broken row, a header of
 ///   another length, no such table, several and none chosen.
@@ -50,8 +50,8 @@ CsvTable read_csv(const std::filesystem::path& path,
 /// The column with this name, in SI. `declared_unit` serves a column for which the file gives none;
 /// where both are given they must agree.
 /// @throws Error(Configuration) for an unknown name (the present ones are listed), a column without
-///   a unit, a unit that is not one of the quantity.
-std::vector<double> column_in_si(const CsvTable& table, const std::string& name, Quantity quantity,
-                                 const std::string& declared_unit = {});
+///   a unit, a unit that is not one of the dimension.
+std::vector<double> column_in_si(const CsvTable& table, const std::string& name,
+                                 Dimension dimension, const std::string& declared_unit = {});
 
 }  // namespace palpate::measured

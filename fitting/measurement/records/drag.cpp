@@ -65,7 +65,7 @@ std::vector<std::vector<DragCurve>> groups_of(const std::vector<DragCurve>& drag
   return groups;
 }
 
-/// Held depth, direction and uncertainty of the depth, of the mean of a group.
+/// Lateral depth, direction and uncertainty of the depth, of the mean of a group.
 CurvePath frame_of(const std::vector<DragCurve>& group, const Vec3& inward) {
   const double n = static_cast<double>(group.size());
   CurvePath path;
@@ -138,12 +138,12 @@ CurvePath mean_of(const std::vector<DragCurve>& group, const Vec3& inward,
 
 bool cut_at_slip(DragCurve& drag, int steps, const std::string& where) {
   const std::vector<double> grid = even_steps(drag.travel.back(), steps);
-  const std::size_t kept = slip_step(along(drag, drag.direction, grid, where).force, grid[1]);
-  if (kept < grid.size()) drag.slip = grid[kept - 1];
-  const auto end = std::upper_bound(drag.travel.begin(), drag.travel.end(), grid[kept - 1]);
+  const std::size_t count = slip_step(along(drag, drag.direction, grid, where).force, grid[1]);
+  if (count < grid.size()) drag.slip = grid[count - 1];
+  const auto end = std::upper_bound(drag.travel.begin(), drag.travel.end(), grid[count - 1]);
   drag.force.resize(static_cast<std::size_t>(end - drag.travel.begin()));
   drag.travel.erase(end, drag.travel.end());
-  return kept >= 3;
+  return count >= 3;
 }
 
 std::vector<CurvePath> lateral_paths(const std::vector<DragCurve>& drags, const Vec3& inward,

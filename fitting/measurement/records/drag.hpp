@@ -11,7 +11,7 @@
 
 namespace palpate::measured {
 
-/// One drag at a held depth, while the contact stuck.
+/// One drag at a constant depth, up to slip.
 struct DragCurve {
   double lateral_depth = 0;        ///< m
   double contact_uncertainty = 0;  ///< m, standard: of the depth
@@ -32,12 +32,12 @@ struct DragSettings {
   double force_calibration = 0;  ///< relative standard uncertainty of the force sensor
 };
 
-/// Drags whose held depths differ by less than a tenth and whose directions by less than 10 degrees
+/// Drags whose depths differ by less than a tenth and whose directions by less than 10 degrees
 /// repeat each other. Their mean goes to the travel that all of them reach. With n drags, scatter s
-/// between them along the path, force f, noise, held depth d and its u_c:
+/// between them along the path, force f, noise, depth d and its u_c:
 ///   force_uncertainty  u^2 = max(s^2, mean(noise^2 + (f u_c/(2 d))^2))/n + (r f)^2.
-/// The lateral stiffness of a stuck contact grows as its radius [Mindlin 1949], that of a sphere as
-/// the root of the depth [Hertz 1881]: hence f/(2 d).
+/// The lateral stiffness of a contact without slip grows as its radius [Mindlin 1949], that of a
+/// sphere as the root of the depth [Hertz 1881]: hence f/(2 d).
 std::vector<CurvePath> lateral_paths(const std::vector<DragCurve>& drags, const Vec3& inward,
                                      const DragSettings& settings, const std::string& where);
 

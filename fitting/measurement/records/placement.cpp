@@ -42,7 +42,7 @@ Registration register_fiducials(const std::vector<Fiducial>& fiducials, const st
   if (svd.singularValues()[1] < 1e-6 * svd.singularValues()[0]) {
     refuse("the fiducials lie on one line");
   }
-  // Of the two nearest orthogonal matrices the one that is no reflection.
+  // The nearest orthogonal matrix that is no reflection.
   Eigen::Vector3d sign(1, 1,
                        (svd.matrixV() * svd.matrixU().transpose()).determinant() < 0 ? -1 : 1);
   const Eigen::Matrix3d R = svd.matrixV() * sign.asDiagonal() * svd.matrixU().transpose();

@@ -12,12 +12,12 @@
 namespace palpate::measured {
 namespace {
 
-/// A turn of the displacement counts when it comes back by this share of the whole range.
+/// A turn of the displacement counts when it comes back by this fraction of the whole range.
 constexpr double kTurn = 0.3;
 /// Force over the noise that is taken for contact, and how many samples in a row must show it.
 constexpr double kOnset = 5;
 constexpr std::size_t kOnsetRun = 5;
-/// Fewest samples out of contact that tell baseline and noise.
+/// Fewest samples out of contact that determine baseline and noise.
 constexpr std::size_t kFewestFree = 8;
 constexpr std::size_t kFewestInContact = 8;
 
@@ -54,8 +54,8 @@ double noise_of(const std::vector<double>& x) {
   return median_to_deviation * median(second) / std::sqrt(6.0);
 }
 
-/// Deep points and, between them, shallow ones, by a zigzag that ignores turns below a share of the
-/// range.
+/// Deep points and, between them, shallow ones, by a zigzag that ignores turns below a fraction of
+/// the range.
 std::vector<Cycle> cycles_of(const std::vector<double>& x) {
   const auto [low, high] = std::minmax_element(x.begin(), x.end());
   const double turn = kTurn * (*high - *low);
@@ -237,7 +237,7 @@ OnsetFit fit_onset(const std::vector<double>& x, const std::vector<double>& f, d
   return fit;
 }
 
-/// Contact and standard uncertainty from the samples up to one share of the force.
+/// Contact and standard uncertainty from the samples up to one fraction of the force.
 ContactPoint fit_range(const std::vector<double>& x, const std::vector<double>& f, double p) {
   const auto squares = [&](double c) { return fit_onset(x, f, c, p).squares; };
   const double c = minimise_scan(squares, x.front(), x[x.size() - x.size() / 8 - 1], 240);

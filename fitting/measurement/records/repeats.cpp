@@ -141,14 +141,14 @@ CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
 
 CurvePath lateral_from_normal(const CurvePath& normal, double ratio) {
   const std::size_t middle = std::max<std::size_t>(1, normal.samples.size() / 2);
-  const CurveSample& held = normal.samples[middle];
+  const CurveSample& start = normal.samples[middle];
   const CurveSample &before = normal.samples[middle - 1],
                     &after = normal.samples[std::min(middle + 1, normal.samples.size() - 1)];
   const double stiffness = dot(after.force - before.force, normal.direction) /
                            (after.displacement - before.displacement);
   CurvePath path;
   path.kind = PathKind::Lateral;
-  path.lateral_depth = held.displacement;
+  path.lateral_depth = start.displacement;
   const Vec3& n = normal.direction;
   const Vec3 axis = std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
   const Vec3 across = cross(n, axis);
@@ -156,10 +156,10 @@ CurvePath lateral_from_normal(const CurvePath& normal, double ratio) {
   constexpr int steps = 4;
   for (int i = 0; i <= steps; ++i) {
     CurveSample sample = measured_sample();
-    sample.displacement = 0.5 * held.displacement * i / steps;
+    sample.displacement = 0.5 * start.displacement * i / steps;
     const double f = ratio * stiffness * sample.displacement;
-    sample.force = held.force + f * path.direction;
-    sample.tool_work = held.tool_work + 0.5 * f * sample.displacement;
+    sample.force = start.force + f * path.direction;
+    sample.tool_work = start.tool_work + 0.5 * f * sample.displacement;
     path.samples.push_back(sample);
   }
   return path;

@@ -17,7 +17,7 @@ struct RepeatSettings {
   double compliance_uncertainty = 0;  ///< m/N, standard
 };
 
-/// A sample that knows nothing of what only a solver knows.
+/// A sample whose energies and checks, which only a solver has, are unknown.
 CurveSample measured_sample();
 
 /// A press on a common grid of depths.
@@ -42,7 +42,7 @@ CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
                     const RepeatSettings& settings, const std::string& where);
 
 /// A lateral path that nobody measured: the stiffness of the normal path at half its depth times
-/// `ratio`, over half of that depth, in a direction across inward. For a stuck contact of an
+/// `ratio`, over half of that depth, in a direction across inward. For a contact without slip of an
 /// elastic body the ratio is 2 (1 - nu)/(2 - nu) [Mindlin 1949]: 2/3 for an incompressible one.
 /// `repeats` is 0, for it is computed.
 CurvePath lateral_from_normal(const CurvePath& normal, double ratio);

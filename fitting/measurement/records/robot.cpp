@@ -73,7 +73,7 @@ Parts parts_of(const RobotLog& log, const Vec3& inward) {
   return parts;
 }
 
-/// Samples begin .. end drag the tool at a held depth.
+/// Samples begin .. end drag the tool at a constant depth.
 struct DragSpan {
   std::size_t begin = 0, end = 0;
 };
@@ -133,7 +133,7 @@ RobotCurves analyse_robot_log(const RobotLog& log, const Body& body,
   const std::size_t touch = touch_of(log);
   RobotCurves curves;
   // The tip of a sphere depends on the direction of the press, which is that of the site: the site
-  // nearest to the centre tells it.
+  // nearest to the centre determines it.
   Vec3 tip = log.tip[touch];
   if (settings.centre_to_tip > 0) {
     const NearestSite near =
@@ -164,7 +164,7 @@ RobotCurves analyse_robot_log(const RobotLog& log, const Body& body,
   const Vec3 pull =
       log.force[first_deep] - median_of(log.force, std::max<std::size_t>(8, touch / 2));
   if (dot(pull, inward) < 0) {
-    refuse(log.name, "where the tool is deepest the force pulls the body outwards",
+    refuse(log.name, "the force points out of the body where the tool is deepest",
            "check placement.force_is: \"on body\" or \"on tool\"");
   }
   const std::optional<DragSpan> drag = drag_of(parts, touch, first_deep);
@@ -180,7 +180,7 @@ RobotCurves analyse_robot_log(const RobotLog& log, const Body& body,
   if (drag) {
     const std::size_t head = std::max<std::size_t>(8, touch / 2);
     const Vec3 idle = median_of(log.force, head);
-    // Along inward the press knows the offset better.
+    // Along inward the press determines the offset better.
     const Vec3 rest = idle + (curves.press.baseline.offset - dot(idle, inward)) * inward;
     curves.drag = drag_curve(log, parts, *drag, inward, rest, settings, curves.press);
     if (!cut_at_slip(*curves.drag, settings.lateral_samples, log.name)) curves.drag.reset();

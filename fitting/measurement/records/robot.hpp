@@ -34,15 +34,15 @@ struct RobotCurves {
   Vec3 touch{};                   ///< where the tip was at the contact point
   PressCurve press;               ///< normal parts
   double tilt = 0;                ///< rad, of the direction of the press against inward
-  std::optional<DragCurve> drag;  ///< empty when the log has no drag at a held depth
+  std::optional<DragCurve> drag;  ///< empty when the log has no drag at a constant depth
 };
 
 /// Find the site by the first touch, turn displacement and force into their parts along inward and
 /// across it, and sort out press and drag. A drag begins where the tip leaves the line of the press
 /// sideways at a depth that stays within a tenth; it ends where the tool slips (cut_at_slip), for a
-/// lateral path is stuck.
+/// lateral path has no slip.
 /// @throws Error(Configuration) as analyse_press and nearest_site; for a press tilted by more than
-///   30 degrees, a force that pulls.
+///   30 degrees, a force that points out of the body.
 RobotCurves analyse_robot_log(const RobotLog& log, const Body& body, const RobotSettings& settings);
 
 }  // namespace palpate::measured

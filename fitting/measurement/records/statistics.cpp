@@ -2,6 +2,8 @@
 #include "fitting/measurement/records/statistics.hpp"
 
 #include <algorithm>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -30,35 +32,6 @@ bool eliminate(std::array<std::array<double, N + 1>, N> m, std::array<double, N>
     x[i] /= m[i][i];
   }
   return true;
-}
-
-/// Continued fraction of the incomplete beta function [Abramowitz & Stegun 1964, 26.5.8].
-double beta_fraction(double a, double b, double x) {
-  constexpr double tiny = 1e-300;
-  const auto away = [](double v) { return std::abs(v) < tiny ? tiny : v; };
-  double c = 1, d = 1 / away(1 - (a + b) * x / (a + 1)), fraction = d;
-  for (int m = 1; m < 500; ++m) {
-    const double even = m * (b - m) * x / ((a + 2 * m - 1) * (a + 2 * m));
-    const double odd = -(a + m) * (a + b + m) * x / ((a + 2 * m) * (a + 2 * m + 1));
-    double change = 1;
-    for (const double term : {even, odd}) {
-      d = 1 / away(1 + term * d);
-      c = away(1 + term / c);
-      change = c * d;
-      fraction *= change;
-    }
-    if (std::abs(change - 1) < 1e-14) break;
-  }
-  return fraction;
-}
-
-double incomplete_beta(double a, double b, double x) {
-  if (x <= 0) return 0;
-  if (x >= 1) return 1;
-  const double front = std::exp(std::lgamma(a + b) - std::lgamma(a) - std::lgamma(b) +
-                                a * std::log(x) + b * std::log1p(-x));
-  if (x < (a + 1) / (a + b + 2)) return front * beta_fraction(a, b, x) / a;
-  return 1 - front * beta_fraction(b, a, 1 - x) / b;
 }
 
 }  // namespace
@@ -176,14 +149,11 @@ double Symmetric4::inverse_first() const {
 }
 
 double student_quantile(double probability, double freedom) {
-  // P(|T| <= t) = 1 - I_{v/(v + t^2)}(v/2, 1/2), by bisection.
-  double low = 0, high = 1e6;
-  for (int i = 0; i < 200; ++i) {
-    const double t = 0.5 * (low + high);
-    const double inside = 1 - incomplete_beta(0.5 * freedom, 0.5, freedom / (freedom + t * t));
-    (inside < probability ? low : high) = t;
-  }
-  return 0.5 * (low + high);
+  return quantile(boost::math::students_t(freedom), 0.5 * (1 + probability));
+}
+
+double normal_quantile(double probability) {
+  return quantile(boost::math::normal(), 0.5 * (1 + probability));
 }
 
 }  // namespace palpate::measured

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The little statistics that measured curves need.
+// Statistics of measured curves.
 #pragma once
 
 #include <array>
@@ -51,5 +51,7 @@ class Symmetric4 {
 
 /// The t for which a variable of Student's distribution lies in [-t, t] with this probability.
 double student_quantile(double probability, double freedom);
+/// The same of a standard normal variable.
+double normal_quantile(double probability);
 
 }  // namespace palpate::measured

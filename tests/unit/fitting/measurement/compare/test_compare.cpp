@@ -30,9 +30,9 @@ CurvePath path_of(double scale, double offset, int samples, PathKind kind = Path
   for (int i = 0; i <= samples; ++i) {
     CurveSample sample;
     sample.displacement = kDepth * i / samples;
-    const double held = kind == PathKind::Normal ? 0 : 0.3;
-    sample.force =
-        (scale * law(sample.displacement) + (i > 0 ? offset : 0)) * path.direction + held * kInward;
+    const double start = kind == PathKind::Normal ? 0 : 0.3;
+    sample.force = (scale * law(sample.displacement) + (i > 0 ? offset : 0)) * path.direction +
+                   start * kInward;
     path.samples.push_back(sample);
   }
   return path;
@@ -64,17 +64,17 @@ TEST(Compare, ACurveAgainstItselfIsZero) {
   }
 }
 
-/// A model that is stiffer by a share: every figure has a closed form.
+/// A model that is stiffer by a constant fraction: every figure has a closed form.
 TEST(Compare, AStifferModelIsToldInClosedForm) {
-  const double share = 0.1;
-  const Comparison c = compared(curves_of(1), curves_of(1 + share));
+  const double more = 0.1;
+  const Comparison c = compared(curves_of(1), curves_of(1 + more));
   const CurveComparison& curve = c.curves.front();
   double squares = 0, sum = 0, mean = 0, total = 0;
   const int n = 24;
   for (int i = 1; i <= n; ++i) {
     const double f = law(kDepth * i / n);
-    squares += share * share * f * f / n;
-    sum += share * f / n;
+    squares += more * more * f * f / n;
+    sum += more * f / n;
     mean += f / n;
   }
   for (int i = 1; i <= n; ++i) total += std::pow(law(kDepth * i / n) - mean, 2) / n;
@@ -83,7 +83,7 @@ TEST(Compare, AStifferModelIsToldInClosedForm) {
   EXPECT_NEAR(curve.bias, sum, 1e-12);
   EXPECT_NEAR(curve.r2, 1 - squares / total, 1e-12);
   EXPECT_NEAR(curve.worst.displacement, kDepth, 1e-12);
-  EXPECT_NEAR(curve.worst.jnd, share / 0.07, 1e-9);
+  EXPECT_NEAR(curve.worst.jnd, more / 0.07, 1e-9);
   const double energy = 1200 * std::pow(kDepth, 2.5) / 2.5;
   EXPECT_NEAR(curve.energy_reference, energy, 1e-3 * energy);
   EXPECT_NEAR(curve.energy_model, 1.1 * energy, 1.1e-3 * energy);
@@ -94,7 +94,7 @@ TEST(Compare, AStifferModelIsToldInClosedForm) {
   }
 }
 
-/// The held force of a lateral path is no lateral response.
+/// The normal force of a lateral path is no lateral response.
 TEST(Compare, LateralPathsAreComparedAlongTheirDirection) {
   Curves model = curves_of(1);
   for (CurveSample& s : model.sites[0].paths[1].samples) s.force[2] += 5;

@@ -29,7 +29,7 @@ Curves curves_of(const std::vector<std::int32_t>& vertices, double scale, double
   return curves;
 }
 
-/// Few sites are measured; all of the simulation takes their scale, energies too.
+/// A few measured sites set the scale of the whole simulation, energies included.
 TEST(Rescale, TheMeasuredScaleReachesEverySite) {
   const Rescaling r = rescale(curves_of({0, 1, 2, 3, 4}, 1), curves_of({1, 3}, 1.4), {});
   EXPECT_NEAR(r.factor, 1.4, 1e-12);

@@ -23,7 +23,7 @@ inline double sneddon_force(double depth, double radius, double modulus) {
          ((a * a + radius * radius) * std::log((radius + a) / (radius - a)) - 2 * a * radius);
 }
 
-/// What is true of a synthetic record, so that the analysis can be held to it.
+/// The truth behind a synthetic record, to compare the analysis with.
 struct Bench {
   double contact = 0.0023;  ///< m, of the specimen, in machine coordinates without compliance
   double modulus = 30e3;    ///< Pa, E* = E/(1 - nu^2)

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/measured/sidecar.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "format/error.hpp"
+#include "tests/support/source_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace palpate::app {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kHead =
+    "name = \"a\"\nspecimen = \"b\"\nsource = \"c\"\nlicence = \"d\"\n"
+    "[tool]\nradius = \"6 mm\"\nfriction = \"no-slip\"\n";
+const std::string kColumns = "[columns]\ndisplacement = \"x\"\nforce = \"f\"\n";
+const std::string kPress = "[[press]]\nfile = \"a.csv\"\nvertex = 3\n";
+
+std::string refusal(const std::string& text, const std::string& name = "a.toml") {
+  const samples::TemporaryFolder folder;
+  std::ofstream(folder / name) << text;
+  try {
+    read_sidecar(folder / name);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Configuration);
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Sidecar, OfTheShippedPadIsReadInSi) {
+  const auto folder = test::source_folder() / "data/measured/pad";
+  const Sidecar presses = read_sidecar(folder / "presses.toml");
+  EXPECT_EQ(presses.tool.radius, 0.006);
+  EXPECT_EQ(presses.machine.compliance, 0.05e-3);
+  EXPECT_EQ(presses.presses.size(), 18U);
+  EXPECT_EQ(presses.presses[0].vertex, -1);
+  EXPECT_EQ(presses.presses[0].site[2], 0.020);
+  EXPECT_EQ(presses.path.samples, 12);
+  EXPECT_FALSE(read_sidecar(folder / "robot.toml").robot_logs.empty());
+}
+
+TEST(Sidecar, RefusesWhatItCannotUse) {
+  EXPECT_EQ(refusal(kHead + kColumns + kPress), "accepted");
+  EXPECT_THAT(refusal(kHead + kColumns), HasSubstr("it names no record"));
+  EXPECT_THAT(refusal(kHead + "[columns]\nforce = \"f\"\n" + kPress),
+              HasSubstr("key 'columns.displacement' is missing"));
+  EXPECT_THAT(refusal(kHead + kColumns + "[[press]]\nfile = \"a.csv\"\n"),
+              HasSubstr("neither vertex nor site is given"));
+  EXPECT_THAT(refusal(kHead + kColumns + kPress + "site = [\"1 mm\", \"1 mm\", \"1 mm\"]\n"),
+              HasSubstr("both vertex and site are given"));
+  EXPECT_THAT(refusal(kHead + kColumns + "[contact]\nmethod = \"threshold\"\n" + kPress),
+              HasSubstr("key 'contact.threshold' is missing"));
+  EXPECT_THAT(refusal(kHead + kColumns + "[[robot]]\nfile = \"a.csv\"\n"),
+              HasSubstr("key 'columns.x' is missing"));
+  EXPECT_THAT(refusal("0,1\n", "a.csv"), HasSubstr("this is a record, not its sidecar"));
+}
+
+}  // namespace
+}  // namespace palpate::app
