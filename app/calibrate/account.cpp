@@ -2,7 +2,10 @@
 #include "app/calibrate/account.hpp"
 
 #include <cmath>
+#include <sstream>
+#include <string>
 
+#include "app/case/material.hpp"
 #include "app/console.hpp"
 
 namespace palpate::app {
@@ -12,20 +15,6 @@ using Json = nlohmann::ordered_json;
 
 Json number(double value) {
   return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-const char* mode_name(calibrate::Mode mode) {
-  switch (mode) {
-    case calibrate::Mode::Uniaxial:
-      return "uniaxial";
-    case calibrate::Mode::Equibiaxial:
-      return "equibiaxial";
-    case calibrate::Mode::PureShear:
-      return "pure shear";
-    case calibrate::Mode::SimpleShear:
-      return "simple shear";
-  }
-  return "";
 }
 
 }  // namespace
@@ -68,14 +57,16 @@ Json calibration_account(const calibrate::Calibration& calibration, double confi
 Json homogeneous_account(const calibrate::HomogeneousFit& fit,
                          const calibrate::HomogeneousSettings& settings,
                          const std::vector<calibrate::HomogeneousTest>& tests) {
-  Json account = {{"law", settings.law}, {"shear_modulus_Pa", fit.shear_modulus}};
+  Json account = {{"law", settings.law},
+                  {"shear_modulus_Pa", fit.shear_modulus},
+                  {"case_material", material_keys(fit.law)}};
   account.update(calibration_account(fit.calibration, settings.confidence));
   Json errors = Json::array();
   for (std::size_t i = 0; i < tests.size(); ++i) {
     const calibrate::TestError& e = fit.errors[i];
     const calibrate::StabilityLimit& limit = fit.stability[i];
     errors.push_back({{"test", e.name},
-                      {"mode", mode_name(tests[i].mode)},
+                      {"mode", calibrate::mode_name(tests[i].mode)},
                       {"rms_Pa", e.rms},
                       {"relative_rms", e.relative},
                       {"r2", number(e.r2)},
@@ -114,6 +105,9 @@ void say_calibration(const calibrate::Calibration& calibration, double confidenc
 }
 
 void say_homogeneous(const calibrate::HomogeneousFit& fit) {
+  say("  as the [[material]] of a case:");
+  std::istringstream keys(material_keys(fit.law));
+  for (std::string line; std::getline(keys, line);) say("    {}", line);
   say("  shear modulus at rest: {:.4g} Pa", fit.shear_modulus);
   for (const calibrate::TestError& e : fit.errors) {
     say("  {}: rms {:.4g} Pa ({:.2g} %), R2 {:.5f}, worst {:.4g} Pa at {:.4g}", e.name, e.rms,

@@ -12,11 +12,9 @@
 namespace palpate::app {
 namespace {
 
-using measured::Quantity;
-
 struct LawSection {
   std::string law, weighting = "per test", residual = "nominal";
-  double confidence = 0.95;
+  double poisson = calibrate::kCasePoisson, confidence = 0.95;
 };
 
 struct ConstantSection {
@@ -43,8 +41,14 @@ struct FitDocument {
 
 template <class V>
 void describe(V& v, LawSection& s) {
-  v.text(s.law, {"law", "hyperelastic law", kRequired}, calibrate::homogeneous_laws());
-  v.text(s.weighting, {"weighting", "what residuals are divided by"},
+  Choices laws;
+  for (const fem::LawEntry& law : fem::law_table()) laws.push_back(law.name);
+  v.text(s.law, {"law", "hyperelastic law", kRequired}, laws);
+  v.number(s.poisson, {"poisson",
+                       "Poisson's ratio of the case that receives the constants; not fitted",
+                       kOptional,
+                       {.low = 0, .high = 0.5, .high_open = true}});
+  v.text(s.weighting, {"weighting", "scale of the residuals"},
          {"per test", "absolute", "relative", "uncertainty"});
   v.text(s.residual, {"residual", "stress in which misfit is measured"}, {"nominal", "cauchy"});
   v.number(s.confidence,
@@ -67,8 +71,8 @@ void describe(V& v, TestSection& s) {
   v.text(s.measure, {"measure", "which stress the record holds"}, {"nominal", "cauchy"});
   v.text(s.deformation, {"deformation", "column of the stretch, or of the amount of shear"});
   v.text(s.stress, {"stress", "column"});
-  v.text(s.displacement, {"displacement", "column, in place of the deformation"});
-  v.text(s.force, {"force", "column, in place of the stress"});
+  v.text(s.displacement, {"displacement", "column, instead of the deformation"});
+  v.text(s.force, {"force", "column, instead of the stress"});
   v.text(s.uncertainty, {"uncertainty", "column: standard uncertainty of stress or force"});
   v.quantity(s.height, Dimension::Length,
              {"height", "of the specimen along the displacement", kOptional, kPositive});
@@ -108,7 +112,10 @@ double bound_of(const std::string& text, bool is_stress, const std::string& wher
 
 calibrate::ConstantInfo constant_of(const ConstantSection& s, const std::string& law,
                                     const std::string& where) {
-  for (calibrate::ConstantInfo info : calibrate::constants_of(law, 1)) {
+  std::string names;
+  for (calibrate::ConstantInfo info :
+       calibrate::default_constants(calibrate::IncompressibleLaw(law), 1)) {
+    names += (names.empty() ? "" : ", ") + info.name;
     if (info.name != s.name) continue;
     info.start = bound_of(s.start, info.is_stress, where);
     const double low = bound_of(s.low, info.is_stress, where);
@@ -117,7 +124,7 @@ calibrate::ConstantInfo constant_of(const ConstantSection& s, const std::string&
     return info;
   }
   refuse(where, "the law " + law + " has no constant '" + s.name + "'",
-         "its constants are listed in docs/measured.md");
+         "its constants are " + names);
 }
 
 calibrate::Mode mode_of(const std::string& text) {
@@ -156,16 +163,16 @@ calibrate::HomogeneousTest test_of(const TestSection& s, const std::filesystem::
   double area = 1;
   if (!s.force.empty()) {
     area = s.width * s.thickness;
-    test.deformation = measured::column_in_si(table, s.displacement, Quantity::Length);
+    test.deformation = measured::column_in_si(table, s.displacement, Dimension::Length);
     for (double& x : test.deformation) x = rest + x / s.height;
-    test.nominal = measured::column_in_si(table, s.force, Quantity::Force);
+    test.nominal = measured::column_in_si(table, s.force, Dimension::Force);
   } else {
-    test.deformation = measured::column_in_si(table, s.deformation, Quantity::Ratio);
-    test.nominal = measured::column_in_si(table, s.stress, Quantity::Stress);
+    test.deformation = measured::column_in_si(table, s.deformation, Dimension::Ratio);
+    test.nominal = measured::column_in_si(table, s.stress, Dimension::Pressure);
   }
   if (!s.uncertainty.empty()) {
-    test.uncertainty = measured::column_in_si(table, s.uncertainty,
-                                              s.force.empty() ? Quantity::Stress : Quantity::Force);
+    test.uncertainty = measured::column_in_si(
+        table, s.uncertainty, s.force.empty() ? Dimension::Pressure : Dimension::Force);
   }
   for (std::size_t i = 0; i < test.nominal.size(); ++i) {
     const double ratio = s.measure == "cauchy" && s.force.empty()
@@ -187,7 +194,8 @@ FitFile read_fit_file(const std::filesystem::path& path) {
   describe(reader, document);
   reader.finish();
   FitFile fit{document.name, document.source, document.licence, {}, {}, {}};
-  fit.settings.law = document.law.law;
+  fit.settings.law = calibrate::IncompressibleLaw(document.law.law).name();
+  fit.settings.poisson = document.law.poisson;
   fit.settings.weighting = weighting_of(document.law.weighting);
   fit.settings.residual = document.law.residual == "cauchy" ? calibrate::Residual::Cauchy
                                                             : calibrate::Residual::Nominal;

@@ -17,10 +17,10 @@ namespace {
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// What is left of the uncertainty of a force beside the contact point, at least: the difference of
 /// two uncertainties is itself uncertain, and one that is too small makes intervals too narrow.
-constexpr double kLeastOwnShare = 0.5;
+constexpr double kLeastOwnPart = 0.5;
 /// Ends of profiles, relative to their distance from the best fit.
 constexpr double kProfileCloseness = 0.01;
-/// Linearised intervals of a half width below this share of the value, of a constant that is
+/// Linearised intervals of a half width below this fraction of the value, of a constant that is
 /// correlated with no other beyond this, are not in doubt.
 constexpr double kPreciseEnough = 0.1, kInDoubt = 0.95;
 
@@ -156,7 +156,7 @@ class Inverse {
   }
 
  private:
-  /// The constants whose profiles are asked for, see Profiles.
+  /// The constants whose profiles are wanted, see Profiles.
   std::vector<std::size_t> profiled(const calibrate::Calibration& calibration) const {
     std::vector<std::size_t> of;
     for (std::size_t i = 0; i < settings_.sought.size(); ++i) {
@@ -269,7 +269,8 @@ class Inverse {
       const double scale = product / square;
       const compare::MonotoneCubic curve(x, f);
       for (std::size_t i = 0; i < target.depth.size(); ++i) {
-        // The lateral force of a stuck sphere goes as the root of its depth, see lateral_paths().
+        // The lateral force of a sphere without slip grows as the root of its depth, see
+        // lateral_paths().
         target.slope.push_back(scale * (target.kind == PathKind::Normal
                                             ? curve.slope(target.depth[i])
                                             : model[i].force / (2 * target.lateral_depth)));
@@ -322,7 +323,7 @@ class Inverse {
     if (target.shift < 0) return u;
     const double of_contact = target.slope[i] * target.contact_uncertainty;
     return std::sqrt(
-        std::max(u * u - of_contact * of_contact, kLeastOwnShare * kLeastOwnShare * u * u));
+        std::max(u * u - of_contact * of_contact, kLeastOwnPart * kLeastOwnPart * u * u));
   }
 
   bool evaluate(const double* c, std::size_t columns, double* r, double* J) {

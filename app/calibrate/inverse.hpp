@@ -20,7 +20,7 @@ struct SoughtConstant {
   double low = 0, high = 0;  ///< Pa, or pure
 };
 
-/// Of which constants a profile likelihood is computed: none, all that are sought, or those whose
+/// The constants whose profile likelihood is computed: none, all that are sought, or those whose
 /// linearised interval is in doubt, wider than a tenth of the value to either side or correlated
 /// beyond 0.95 with another one.
 enum class Profiles { None, Doubtful, All };
@@ -53,11 +53,11 @@ struct InverseFit {
   int profile_evaluations = 0;  ///< and for the profiles
 };
 
-/// Measured drags are compared with the stuck lateral paths of the model at their held depth;
+/// Measured drags are compared with lateral paths of the model without slip, at their depth;
 /// lateral paths that were made from the normal one are no measurement and left out.
 /// Where a measured path states the uncertainty of its contact point, the shift of that point is
-/// sought as well, held by the stated uncertainty: an error of the contact point acts on all
-/// samples of a curve alike and must not be averaged away. On a drag it acts by the held depth, as
+/// sought as well, weighted by the stated uncertainty: an error of the contact point acts on all
+/// samples of a curve alike and must not be averaged away. On a drag it acts through the depth, as
 /// force/(2 depth). Where every sample states its
 /// uncertainty the residuals are divided by what the shift leaves of it, and the intervals follow
 /// from that; otherwise the scatter is estimated from the residuals. The samples of a path follow

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "app/case/case.hpp"
 #include "fem/laws/law_table.hpp"
@@ -10,6 +11,10 @@ namespace palpate::app {
 
 /// The law that a [[material]] table declares.
 fem::LawConstants law_of(const MaterialSection& material);
+
+/// The keys of a [[material]] table that declares a law without fibres, as TOML: law_of() of the
+/// parsed table is the same law, to the last digit.
+std::string material_keys(const fem::LawConstants& law);
 
 /// With the directions of the fibres that a file holds; `folder`: that of the case file.
 /// @throws Error(Configuration) as read_fibre_file.

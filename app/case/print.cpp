@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/case/describe.hpp"
+#include "app/case/material.hpp"
 
 namespace palpate::app {
 namespace {
@@ -114,6 +115,15 @@ std::string print(const Case& c, const std::vector<std::string_view>* wanted) {
 
 std::string resolved_toml(const Case& c) {
   return print(c, nullptr);
+}
+
+std::string material_keys(const fem::LawConstants& law) {
+  MaterialSection material;
+  material.law = law.law;
+  material.constants = law.values;
+  Printer printer(nullptr);
+  describe(printer, material);
+  return printer.result();
 }
 
 std::string resolved_sections(const Case& c, const std::vector<std::string_view>& sections) {

@@ -53,7 +53,8 @@ std::string law_card(const fem::LawConstants& c) {
                  c.at("alpha_3"), D, kNone, kNone});
   }
   if (c.law == "arruda-boyce") {
-    // CalculiX takes the modulus mu' before the series: mu = mu' (1 + 3/(5 l^2) + ...).
+    // The parameter of CalculiX is the modulus mu' before the series: mu = mu' (1 + 3/(5 l^2) +
+    // ...).
     const double n = c.at("lambda_m") * c.at("lambda_m");
     const double series = 1 + 3 / (5 * n) + 99 / (175 * n * n) + 513 / (875 * n * n * n) +
                           42039 / (67375 * n * n * n * n);

@@ -10,7 +10,7 @@
 namespace palpate::app {
 
 /// All samples of all paths, one row each, with a title row that carries the SI units:
-/// vertex, status, path, held depth, direction, displacement, force, energies and checks.
+/// vertex, status, path, lateral depth, direction, displacement, force, energies and checks.
 /// Numbers read back exactly.
 std::string curves_csv(const Curves& curves);
 

@@ -44,7 +44,7 @@ std::vector<ElementSide> sides_of(const fem::QuadraticMesh& mesh,
 Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex) {
   if (settings.gravity.acts() || !body.foundation.empty()) {
     throw Error(ErrorKind::Configuration, body.name,
-                "decks for other programs hold neither gravity nor springs",
+                "decks for other programs have neither gravity nor springs",
                 "export a case without [gravity] and without supports that have a stiffness");
   }
   if (fem::is_linear(settings.dilatation)) {
@@ -53,10 +53,10 @@ Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int
                 "export with element = \"tet10-displacement\", which they have");
   }
   if (settings.indentation.refine_under_tool) {
-    throw Error(ErrorKind::Configuration, body.name,
-                "decks for other programs hold the mesh of the body, not what is divided under the "
-                "tool",
-                "export a case without solver.refine_under_tool, on a smaller mesh.element_size");
+    throw Error(
+        ErrorKind::Configuration, body.name,
+        "decks for other programs have the mesh of the body, without refinement under the tool",
+        "export a case without solver.refine_under_tool, on a smaller mesh.element_size");
   }
   Deck deck;
   deck.region_names = body.region_names;
@@ -86,8 +86,7 @@ void check_pressing(const Body& body, const fem::IndentationSettings& press, std
   fem::check_tool(press.tool);
   if (press.friction == fem::ToolFriction::NoSlip || (fem::Tool{press.tool}).has_sharp_edge())
     throw Error(ErrorKind::Configuration, "tool",
-                "it is stuck or has a sharp edge, which other programs hold to the surface in ways "
-                "of their own",
+                "contact without slip and sharp edges are treated differently by other programs",
                 "export a patch (--patch), or a tool without friction and with a rounded edge");
 }
 

@@ -53,8 +53,8 @@ Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, st
 
 /// The tool of the settings pressed in along the inward direction, with the contact stiffness of
 /// the campaign.
-/// @throws Error(Configuration) for linear elements, a vertex that is no site, a stuck tool or one
-/// with a sharp edge, as fem::run_campaign.
+/// @throws Error(Configuration) for linear elements, a vertex that is no site, a no-slip tool or
+/// one with a sharp edge, as fem::run_campaign.
 Deck make_tool_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex);
 
 /// Input of CalculiX: C3D10 elements, *HYPERELASTIC, face-to-face contact; the forces of the tool

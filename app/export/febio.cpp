@@ -47,16 +47,17 @@ FebioLaw febio_law(const fem::LawConstants& c) {
   if (c.law == "veronda-westmann") {
     return {"Veronda-Westmann", {{"c1", c.at("C1")}, {"c2", c.at("C2")}}};
   }
+  if (c.law == "gent") return {"Gent", {{"G", c.at("mu")}, {"Jm", c.at("J_m")}}};
   if (c.law == "saint-venant-kirchhoff") {
     return {"isotropic elastic", {{"E", rest.young}, {"v", rest.poisson}}};
   }
   if (c.law == "holzapfel-gasser-ogden" && c.fibres.kind == fem::FibreField::Kind::Constant) {
     // FEBio has two families at +-gamma; one family is two that coincide, of half the stiffness.
-    const double share = c.fibres.families == 1 ? 0.5 : 1;
+    const double part = c.fibres.families == 1 ? 0.5 : 1;
     const double degrees = c.fibres.families == 1 ? 0 : c.fibres.angle * 180 / 3.141592653589793;
     return {"Holzapfel-Gasser-Ogden",
             {{"c", c.at("c")},
-             {"k1", share * c.at("k1")},
+             {"k1", part * c.at("k1")},
              {"k2", c.at("k2")},
              {"gamma", degrees},
              {"kappa", c.at("kappa")}}};
@@ -119,7 +120,7 @@ class Writer {
                     "material of region '" + deck_.region_names[region] + "'",
                     "FEBio has no law like " + c.law + " of this energy",
                     "compare with a law that it has: neo-hookean, mooney-rivlin, yeoh, ogden, "
-                    "veronda-westmann, saint-venant-kirchhoff, holzapfel-gasser-ogden with a "
+                    "veronda-westmann, gent, saint-venant-kirchhoff, holzapfel-gasser-ogden with a "
                     "constant direction");
       }
       add("<material id=\"{}\" name=\"{}\" type=\"{}\">\n", region + 1,

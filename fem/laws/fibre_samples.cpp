@@ -30,11 +30,9 @@ FibreSamples::FibreSamples(std::vector<FibreSample> samples) : samples_(std::mov
 void FibreSamples::arrange(std::size_t first, std::size_t last, std::size_t axis) {
   if (last - first < 2) return;
   const std::size_t middle = first + (last - first) / 2;
-  const auto place = [&](std::size_t i) {
-    return samples_.begin() + static_cast<std::ptrdiff_t>(i);
-  };
+  const auto at = [&](std::size_t i) { return samples_.begin() + static_cast<std::ptrdiff_t>(i); };
   std::nth_element(
-      place(first), place(middle), place(last),
+      at(first), at(middle), at(last),
       [axis](const FibreSample& a, const FibreSample& b) { return a.at[axis] < b.at[axis]; });
   arrange(first, middle, (axis + 1) % 3);
   arrange(middle + 1, last, (axis + 1) % 3);

@@ -23,7 +23,8 @@ class FibreSamples {
   const FibreSample& nearest(const Vec3& X) const;
 
  private:
-  /// A tree in place: of a range the middle one divides the others along the axis of its level.
+  /// A k-d tree without pointers: the middle sample of a range divides the others along the axis
+  /// of its level.
   void arrange(std::size_t first, std::size_t last, std::size_t axis);
   void search(std::size_t first, std::size_t last, std::size_t axis, const Vec3& X,
               const FibreSample*& best, double& distance) const;

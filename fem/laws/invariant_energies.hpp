@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Isochoric energies W(x, y), x = I1 - 3 and y = I2 - 3 of the isochoric deformation, with their
-// derivatives. Moduli in Pa.
+// derivatives. Moduli in Pa. C is the scalar of the constants, T that of the invariants: C is
+// double in the solver, and an automatic derivative in the calibration, where T is C.
 #pragma once
 
 #include <array>
@@ -9,10 +10,31 @@
 
 namespace palpate::fem {
 
+/// W = mu/2 x [Treloar 1943]. The solver has a kernel of its own for it (NeoHookean).
+template <class C = double>
+struct NeoHookeanEnergy {
+  using Scalar = C;
+  static constexpr bool kSecond = false;
+  C mu;
+
+  bool polyconvex() const { return true; }
+  template <class T>
+  T value(const T& x, const T&) const {
+    return 0.5 * mu * x;
+  }
+  template <class T>
+  InvariantSlopes<T> slopes(const T&, const T&) const {
+    const T zero = zero_of<T>();
+    return {constant_of<T>(C(0.5 * mu)), zero, zero, zero, zero};
+  }
+};
+
 /// W = C10 x + C01 y [Rivlin 1948]. mu = 2 (C10 + C01).
+template <class C = double>
 struct MooneyRivlinEnergy {
+  using Scalar = C;
   static constexpr bool kSecond = true;
-  double C10, C01;
+  C C10, C01;
 
   bool polyconvex() const { return C10 > 0 && C01 == 0; }
   template <class T>
@@ -28,9 +50,11 @@ struct MooneyRivlinEnergy {
 
 /// W = C10 x + C01 y + C20 x^2 + C11 x y + C02 y^2 [Rivlin & Saunders 1951].
 /// mu = 2 (C10 + C01).
+template <class C = double>
 struct MooneyRivlin5Energy {
+  using Scalar = C;
   static constexpr bool kSecond = true;
-  double C10, C01, C20, C11, C02;
+  C C10, C01, C20, C11, C02;
 
   bool polyconvex() const { return C10 > 0 && C20 >= 0 && C01 == 0 && C11 == 0 && C02 == 0; }
   template <class T>
@@ -39,15 +63,17 @@ struct MooneyRivlin5Energy {
   }
   template <class T>
   InvariantSlopes<T> slopes(const T& x, const T& y) const {
-    return {C10 + 2 * C20 * x + C11 * y, C01 + C11 * x + 2 * C02 * y, constant_of<T>(2 * C20),
-            constant_of<T>(C11), constant_of<T>(2 * C02)};
+    return {C10 + 2.0 * C20 * x + C11 * y, C01 + C11 * x + 2.0 * C02 * y,
+            constant_of<T>(C(2.0 * C20)), constant_of<T>(C11), constant_of<T>(C(2.0 * C02))};
   }
 };
 
 /// W = C10 x + C20 x^2 + C30 x^3 [Yeoh 1993]. mu = 2 C10.
+template <class C = double>
 struct YeohEnergy {
+  using Scalar = C;
   static constexpr bool kSecond = false;
-  double C10, C20, C30;
+  C C10, C20, C30;
 
   bool polyconvex() const { return C10 > 0 && C20 >= 0 && C30 >= 0; }
   template <class T>
@@ -57,14 +83,16 @@ struct YeohEnergy {
   template <class T>
   InvariantSlopes<T> slopes(const T& x, const T&) const {
     const T zero = zero_of<T>();
-    return {C10 + x * (2 * C20 + 3 * C30 * x), zero, 2 * C20 + 6 * C30 * x, zero, zero};
+    return {C10 + x * (2.0 * C20 + 3.0 * C30 * x), zero, 2.0 * C20 + 6.0 * C30 * x, zero, zero};
   }
 };
 
 /// W = mu/(2 b) (exp(b x) - 1) [Demiray 1972].
+template <class C = double>
 struct DemirayFungEnergy {
+  using Scalar = C;
   static constexpr bool kSecond = false;
-  double mu, b;
+  C mu, b;
 
   bool polyconvex() const { return true; }
   template <class T>
@@ -79,9 +107,11 @@ struct DemirayFungEnergy {
 };
 
 /// W = C1 (exp(C2 x) - 1) - C1 C2/2 y [Veronda & Westmann 1970]. mu = C1 C2.
+template <class C = double>
 struct VerondaWestmannEnergy {
+  using Scalar = C;
   static constexpr bool kSecond = true;
-  double C1, C2;
+  C C1, C2;
 
   bool polyconvex() const { return false; }
   template <class T>
@@ -91,30 +121,55 @@ struct VerondaWestmannEnergy {
   template <class T>
   InvariantSlopes<T> slopes(const T& x, const T&) const {
     const T zero = zero_of<T>(), W1 = (C1 * C2) * exponential(T(C2 * x));
-    return {W1, constant_of<T>(-0.5 * C1 * C2), C2 * W1, zero, zero};
+    return {W1, constant_of<T>(C(-0.5 * C1 * C2)), C2 * W1, zero, zero};
+  }
+};
+
+/// W = -mu J_m/2 ln(1 - x/J_m) [Gent 1996]. Chains of limited length: the energy grows without
+/// bound towards x = J_m. Value and derivatives are NaN beyond, where the law has none.
+template <class C = double>
+struct GentEnergy {
+  using Scalar = C;
+  static constexpr bool kSecond = false;
+  C mu, J_m;
+
+  /// -ln(1 - x/J_m) is convex and increasing in x, which is polyconvex.
+  bool polyconvex() const { return true; }
+  template <class T>
+  T value(const T& x, const T&) const {
+    return (-0.5 * mu * J_m) * logarithm(T(1.0 - x / J_m));
+  }
+  template <class T>
+  InvariantSlopes<T> slopes(const T& x, const T&) const {
+    const T zero = zero_of<T>(), root = square_root(T(1.0 - x / J_m));
+    const T W1 = 0.5 * mu / (root * root);
+    return {W1, zero, W1 / (J_m * root * root), zero, zero};
   }
 };
 
 /// Eight-chain network by its series to the fifth term [Arruda & Boyce 1993, eq. 26]:
 ///   W = mu' sum_k C_k/lambda_m^(2k-2) (I1^k - 3^k), with mu' such that mu is the modulus at rest.
+template <class C = double>
 struct ArrudaBoyceEnergy {
+  using Scalar = C;
   static constexpr bool kSecond = false;
   static constexpr std::array<double, 5> kSeries{0.5, 1.0 / 20, 11.0 / 1050, 19.0 / 7000,
                                                  519.0 / 673750};
-  double mu, lambda_m;
+  C mu, lambda_m;
 
   bool polyconvex() const { return true; }
   /// Coefficient of I1^k, k = 1..5.
-  std::array<double, 5> coefficients() const {
-    std::array<double, 5> c{};
-    double rest = 0, factor = 1, power_3 = 1;
+  std::array<C, 5> coefficients() const {
+    std::array<C, 5> c{};
+    C rest(0.0), factor(1.0);
+    double power_3 = 1;
     for (std::size_t k = 0; k < 5; ++k) {
       c[k] = kSeries[k] * factor;
-      rest += 2 * static_cast<double>(k + 1) * c[k] * power_3;
+      rest += 2.0 * static_cast<double>(k + 1) * c[k] * power_3;
       power_3 *= 3;
       factor /= lambda_m * lambda_m;
     }
-    for (double& value : c) value *= mu / rest;
+    for (C& value : c) value *= mu / rest;
     return c;
   }
   template <class T>
@@ -134,17 +189,19 @@ struct ArrudaBoyceEnergy {
   InvariantSlopes<T> slopes(const T& x, const T&) const {
     const auto c = coefficients();
     const T zero = zero_of<T>(), I1 = x + 3.0;
-    const T W1 = c[0] + I1 * (2 * c[1] + I1 * (3 * c[2] + I1 * (4 * c[3] + I1 * (5 * c[4]))));
-    const T W11 = 2 * c[1] + I1 * (6 * c[2] + I1 * (12 * c[3] + I1 * (20 * c[4])));
+    const T W1 =
+        c[0] + I1 * (2.0 * c[1] + I1 * (3.0 * c[2] + I1 * (4.0 * c[3] + I1 * (5.0 * c[4]))));
+    const T W11 = 2.0 * c[1] + I1 * (6.0 * c[2] + I1 * (12.0 * c[3] + I1 * (20.0 * c[4])));
     return {W1, zero, W11, zero, zero};
   }
 };
 
-using MooneyRivlin = InvariantLaw<MooneyRivlinEnergy>;
-using MooneyRivlin5 = InvariantLaw<MooneyRivlin5Energy>;
-using Yeoh = InvariantLaw<YeohEnergy>;
-using DemirayFung = InvariantLaw<DemirayFungEnergy>;
-using VerondaWestmann = InvariantLaw<VerondaWestmannEnergy>;
-using ArrudaBoyce = InvariantLaw<ArrudaBoyceEnergy>;
+using MooneyRivlin = InvariantLaw<MooneyRivlinEnergy<>>;
+using MooneyRivlin5 = InvariantLaw<MooneyRivlin5Energy<>>;
+using Yeoh = InvariantLaw<YeohEnergy<>>;
+using DemirayFung = InvariantLaw<DemirayFungEnergy<>>;
+using VerondaWestmann = InvariantLaw<VerondaWestmannEnergy<>>;
+using Gent = InvariantLaw<GentEnergy<>>;
+using ArrudaBoyce = InvariantLaw<ArrudaBoyceEnergy<>>;
 
 }  // namespace palpate::fem

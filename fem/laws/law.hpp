@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Any law, as the solver holds it: eight elements at once.
+// A law of any type behind one interface: eight elements at once.
 #pragma once
 
 #include <memory>
@@ -14,8 +14,8 @@ concept Anisotropic = requires(const L& law) {
   law.fibres();
 };
 
-/// Holds one of the laws of this folder. Cheap to copy: copies share the constants, which never
-/// change. Every method may be called from several threads. Formulas: at the law held.
+/// One of the laws of this folder, whose class has the formulas. Cheap to copy: copies share the
+/// constants, which never change. Every method may be called from several threads.
 class Law {
  public:
   template <class L>

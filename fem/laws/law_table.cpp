@@ -5,9 +5,8 @@
 #include <cmath>
 #include <sstream>
 
-#include "fem/laws/invariant_energies.hpp"
+#include "fem/laws/energy_of_law.hpp"
 #include "fem/laws/law.hpp"
-#include "fem/laws/ogden.hpp"
 #include "fem/laws/require.hpp"
 #include "fem/laws/saint_venant_kirchhoff.hpp"
 #include "format/error.hpp"
@@ -100,6 +99,13 @@ std::vector<LawEntry> make_table() {
        false,
        {positive_stress("C1", "C1 C2 is the shear modulus at small strain"),
         pure("C2", "growth of the stiffness with strain", 0, 1000), poisson()}},
+      {"gent",
+       "-mu J_m/2 ln(1 - (I1 - 3)/J_m)",
+       "Gent 1996",
+       false,
+       {positive_stress("mu", "shear modulus at small strain"),
+        pure("J_m", "limit of I1 - 3, where the stress grows without bound", 0, kInfinity),
+        poisson()}},
       {"arruda-boyce",
        "eight chains, series of five terms",
        "Arruda & Boyce 1993",
@@ -171,24 +177,25 @@ void check_constants(const LawConstants& given, const LawEntry& entry, const std
   }
 }
 
-std::vector<Ogden::Term> ogden_terms(const LawConstants& c) {
-  std::vector<Ogden::Term> terms;
-  for (const char term : {'1', '2', '3'})
-    if (find_value(c.values, std::string("mu_") + term) != nullptr)
-      terms.push_back({c.at(std::string("mu_") + term), c.at(std::string("alpha_") + term)});
-  return terms;
+/// The constants of a law in the order of the table.
+std::vector<double> in_order(const LawConstants& c) {
+  std::vector<double> values;
+  for (const LawConstant& constant : law_entry(c.law).constants)
+    values.push_back(c.at(constant.name));
+  return values;
 }
 
 double shear_modulus(const LawConstants& c) {
   if (c.law == "mooney-rivlin" || c.law == "mooney-rivlin-5")
     return 2 * (c.at("C10") + c.at("C01"));
   if (c.law == "yeoh") return 2 * c.at("C10");
-  if (c.law == "demiray-fung" || c.law == "arruda-boyce") return c.at("mu");
+  if (c.law == "demiray-fung" || c.law == "gent" || c.law == "arruda-boyce") return c.at("mu");
   if (c.law == "veronda-westmann") return c.at("C1") * c.at("C2");
   if (c.law == "holzapfel-gasser-ogden") return c.at("c");
   if (c.law.starts_with("ogden")) {
     double mu = 0;
-    for (const Ogden::Term& term : ogden_terms(c)) mu += term.mu;
+    for (const auto& [name, value] : c.values)
+      if (name.starts_with("mu_")) mu += value;
     return mu;
   }
   return c.at("young") / (2 * (1 + c.at("poisson")));
@@ -268,30 +275,20 @@ Law make_law(const LawConstants& c, const std::string& where) {
 Law unchecked_law(const LawConstants& c) {
   const RestModuli rest = rest_moduli(c);
   const double kappa = rest.kappa();
-  if (c.law == "mooney-rivlin")
-    return MooneyRivlin({.C10 = c.at("C10"), .C01 = c.at("C01")}, kappa);
-  if (c.law == "mooney-rivlin-5")
-    return MooneyRivlin5({.C10 = c.at("C10"),
-                          .C01 = c.at("C01"),
-                          .C20 = c.at("C20"),
-                          .C11 = c.at("C11"),
-                          .C02 = c.at("C02")},
-                         kappa);
-  if (c.law == "yeoh")
-    return Yeoh({.C10 = c.at("C10"), .C20 = c.at("C20"), .C30 = c.at("C30")}, kappa);
-  if (c.law.starts_with("ogden")) return Ogden(ogden_terms(c), kappa);
-  if (c.law == "demiray-fung") return DemirayFung({.mu = c.at("mu"), .b = c.at("b")}, kappa);
-  if (c.law == "veronda-westmann")
-    return VerondaWestmann({.C1 = c.at("C1"), .C2 = c.at("C2")}, kappa);
-  if (c.law == "arruda-boyce")
-    return ArrudaBoyce({.mu = c.at("mu"), .lambda_m = c.at("lambda_m")}, kappa);
+  if (c.law == "neo-hookean") return NeoHookean::from_moduli(rest.mu(), kappa);
   if (c.law == "saint-venant-kirchhoff")
     return SaintVenantKirchhoff(rest.kappa() - 2.0 / 3.0 * rest.mu(), rest.mu());
   if (c.law == "holzapfel-gasser-ogden")
     return HolzapfelGasserOgden(
         {.c = c.at("c"), .k1 = c.at("k1"), .k2 = c.at("k2"), .dispersion = c.at("kappa")}, c.fibres,
         kappa);
-  return NeoHookean::from_moduli(rest.mu(), kappa);
+  const std::vector<double> values = in_order(c);
+  return with_energy(c.law, std::span<const double>(values), [kappa]<class Energy>(Energy energy) {
+    if constexpr (std::is_same_v<Energy, OgdenEnergy<double>>)
+      return Law(Ogden(std::move(energy.terms), kappa));
+    else
+      return Law(InvariantLaw<Energy>(energy, kappa));
+  });
 }
 
 }  // namespace palpate::fem

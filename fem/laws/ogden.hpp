@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <vector>
 
 #include "fem/laws/invariant_law.hpp"
@@ -9,14 +11,49 @@
 
 namespace palpate::fem {
 
+/// A term of Ogden's law; C is the scalar of the constants.
+template <class C = double>
+struct OgdenTerm {
+  C mu, alpha;  ///< Pa, pure
+};
+
+/// Principal Kirchhoff stresses tau_i of an isochoric deformation with the principal logarithmic
+/// strains e_i, Pa, and their derivatives dtau_i/de_j.
+template <class T>
+struct PrincipalStresses {
+  std::array<T, 3> tau;
+  std::array<std::array<T, 3>, 3> slope;
+};
+
+/// tau_i = sum_p 2 mu_p/alpha_p (l_i^a - mean l^a), l_i = exp(e_i).
+template <class C, class T>
+PrincipalStresses<T> principal_stresses(const std::vector<OgdenTerm<C>>& terms,
+                                        const std::array<T, 3>& strain) {
+  PrincipalStresses<T> s;
+  for (std::size_t i = 0; i < 3; ++i) {
+    s.tau[i] = zero_of<T>();
+    s.slope[i].fill(zero_of<T>());
+  }
+  for (const OgdenTerm<C>& term : terms) {
+    std::array<T, 3> x;
+    for (std::size_t i = 0; i < 3; ++i) x[i] = exponential(T(term.alpha * strain[i]));
+    const T mean = (x[0] + x[1] + x[2]) / 3.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+      s.tau[i] += (2.0 * term.mu / term.alpha) * (x[i] - mean);
+      for (std::size_t j = 0; j < 3; ++j)
+        s.slope[i][j] += (2.0 * term.mu / 3.0) * (mean - x[i] - x[j]);
+      s.slope[i][i] += (2.0 * term.mu) * x[i];
+    }
+  }
+  return s;
+}
+
 /// Psi = sum over terms of 2 mu_p/alpha_p^2 (l_1^a + l_2^a + l_3^a - 3) + U(J), in the isochoric
 /// principal stretches l_i = J^{-1/3} lambda_i [Ogden 1972]. mu_p is the part of the term in the
 /// shear modulus: mu = sum mu_p. Ogden's own constants are 2 mu_p/alpha_p.
 class Ogden : public LogQuadraticVolume {
  public:
-  struct Term {
-    double mu, alpha;  ///< Pa, pure
-  };
+  using Term = OgdenTerm<>;
 
   Ogden(std::vector<Term> terms, double kappa)
       : LogQuadraticVolume(kappa), terms_(std::move(terms)) {}
@@ -46,7 +83,7 @@ class Ogden : public LogQuadraticVolume {
   template <class T>
   Tensor2<T> piola(const Tensor2<T>& F, const Tensor2<T>&, const T& J) const {
     const PrincipalStretches<T> principal = principal_stretches(gram(F));
-    const std::array<T, 3> tau = stresses(logarithmic_strains(principal, J)).tau;
+    const std::array<T, 3> tau = principal_stresses(terms_, logarithmic_strains(principal, J)).tau;
     Tensor2<T> S;
     for (T& entry : S) entry = zero_of<T>();
     for (std::size_t i = 0; i < 3; ++i) {
@@ -64,7 +101,7 @@ class Ogden : public LogQuadraticVolume {
   template <class T>
   void add_tangent(const Tensor2<T>& F, const Tensor2<T>&, const T& J, Tensor4<T>& A) const {
     const PrincipalStretches<T> principal = principal_stretches(gram(F));
-    const Principal<T> s = stresses(logarithmic_strains(principal, J));
+    const PrincipalStresses<T> s = principal_stresses(terms_, logarithmic_strains(principal, J));
     std::array<T, 3> lambda, P;
     std::array<std::array<T, 3>, 3> n;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -107,12 +144,6 @@ class Ogden : public LogQuadraticVolume {
   }
 
  private:
-  template <class T>
-  struct Principal {
-    std::array<T, 3> tau;                   ///< principal Kirchhoff stresses
-    std::array<std::array<T, 3>, 3> slope;  ///< dtau_i/dln lambda_j
-  };
-
   /// ln(J^{-1/3} lambda_i).
   template <class T>
   static std::array<T, 3> logarithmic_strains(const PrincipalStretches<T>& principal, const T& J) {
@@ -120,27 +151,6 @@ class Ogden : public LogQuadraticVolume {
     std::array<T, 3> strain;
     for (std::size_t i = 0; i < 3; ++i) strain[i] = 0.5 * logarithm(principal.squared[i]) - mean;
     return strain;
-  }
-
-  template <class T>
-  Principal<T> stresses(const std::array<T, 3>& strain) const {
-    Principal<T> s;
-    for (std::size_t i = 0; i < 3; ++i) {
-      s.tau[i] = zero_of<T>();
-      s.slope[i].fill(zero_of<T>());
-    }
-    for (const Term& term : terms_) {
-      std::array<T, 3> x;
-      for (std::size_t i = 0; i < 3; ++i) x[i] = exponential(T(term.alpha * strain[i]));
-      const T mean = (x[0] + x[1] + x[2]) / 3.0;
-      for (std::size_t i = 0; i < 3; ++i) {
-        s.tau[i] += (2 * term.mu / term.alpha) * (x[i] - mean);
-        for (std::size_t j = 0; j < 3; ++j)
-          s.slope[i][j] += (2 * term.mu / 3) * (mean - x[i] - x[j]);
-        s.slope[i][i] += (2 * term.mu) * x[i];
-      }
-    }
-    return s;
   }
 
   /// (a - b)/(x - y), or its `limit` where x and y agree to five digits: there the difference has

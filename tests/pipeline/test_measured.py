@@ -81,7 +81,7 @@ class Measured(unittest.TestCase):
             self.assertAlmostEqual(record["force_offset_N"], 0.05, delta=2e-4)
             self.assertAlmostEqual(record["rate_m_per_s"], 0.5e-3, delta=2e-5)
             # 1 - 0.5 (1 - int d^2.5/int d^1.5) for a force as d^1.5
-            self.assertAlmostEqual(record["returned_share"], 1 - 0.5 * (1 - 2.5 / 3.5), delta=0.02)
+            self.assertAlmostEqual(record["returned_fraction"], 1 - 0.5 * (1 - 2.5 / 3.5), delta=0.02)
             self.assertTrue(0.8e-3 - 3e-4 < record["contact_m"] < 0.85e-3 + 3e-4)
             self.assertLess(abs(record["drift_N_per_s"] - 2e-4), 6 * record["drift_uncertainty_N_per_s"] + 2e-5)
 
@@ -121,8 +121,8 @@ class Measured(unittest.TestCase):
             along = file["sample/force"][rows] @ file["path/direction"][1]
             travel = file["sample/displacement"][rows]
             slope = np.polyfit(travel, along, 1)[0]
-        held = 1.4e-3
-        stiffness = (law(held + 1e-6) - law(held - 1e-6)) / 2e-6
+        depth = 1.4e-3
+        stiffness = (law(depth + 1e-6) - law(depth - 1e-6)) / 2e-6
         self.assertAlmostEqual(slope, 2 / 3 * stiffness, delta=0.03 * stiffness)
 
     def test_calibration_and_rescaling_agree(self):

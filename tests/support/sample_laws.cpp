@@ -26,6 +26,7 @@ std::vector<fem::LawConstants> sample_laws(double poisson) {
         {"alpha_3", -2}}},
       {"demiray-fung", {{"mu", 3e3}, {"b", 1.5}}},
       {"veronda-westmann", {{"C1", 1.5e3}, {"C2", 2}}},
+      {"gent", {{"mu", 3e3}, {"J_m", 12}}},
       {"arruda-boyce", {{"mu", 3e3}, {"lambda_m", 1.6}}},
       {"saint-venant-kirchhoff", {{"young", 10e3}}},
       {"holzapfel-gasser-ogden", {{"c", 3e3}, {"k1", 4e3}, {"k2", 0.8}, {"kappa", 0.1}}, fibres}};

@@ -233,6 +233,17 @@ TEST(Block, MooneyRivlinOfFiveConstantsHasTheStressOfTheClosedForm) {
   });
 }
 
+/// W1 = mu J_m/(2 (J_m - (I1 - 3))).
+TEST(Block, GentHasTheStressOfTheClosedForm) {
+  check_all(LawConstants("gent", {{"mu", 1}, {"J_m", 5}}), [](Mode mode, double l) {
+    return closed_form(
+        [](double I1, double) -> std::array<double, 2> {
+          return {0.5 * 5 / (5 - (I1 - 3)), 0};
+        },
+        mode, l);
+  });
+}
+
 /// W' and the modulus at rest of the series in its common form, term by term.
 TEST(Block, ArrudaBoyceHasTheStressOfTheClosedForm) {
   const double n = 1.6 * 1.6;
@@ -432,6 +443,10 @@ std::vector<Sheared> laws_of_invariants() {
           {LawConstants("veronda-westmann", {{"C1", 0.25}, {"C2", 4}}),
            [](double I1, double) {
              return Two{std::exp(4 * (I1 - 3)), -0.5};
+           }},
+          {LawConstants("gent", {{"mu", 1}, {"J_m", 5}}),
+           [](double I1, double) {
+             return Two{0.5 * 5 / (5 - (I1 - 3)), 0};
            }},
           {LawConstants("arruda-boyce", {{"mu", 1}, {"lambda_m", 1.6}}),
            [n, at_rest](double I1, double) {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/measurement/records/statistics.hpp"
+
 namespace palpate::calibrate {
 namespace {
 
@@ -13,7 +15,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kMostCorrelated = 0.98;
-constexpr double kOneInTwenty = 1.645;  // of a normal variable, one-sided
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
@@ -180,7 +181,8 @@ CorrelatedNoise correlated_noise(const std::vector<double>& J, std::size_t colum
       result.durbin_watson += std::pow(residual[i + 1] - residual[i], 2) / own;
     first += m;
   }
-  result.significant = result.lag_one - noise.expected_lag_one(0) > kOneInTwenty * deviation;
+  const double one_in_twenty = measured::normal_quantile(0.9);  // one side of a standard normal
+  result.significant = result.lag_one - noise.expected_lag_one(0) > one_in_twenty * deviation;
   result.autocorrelation = noise_correlation(noise, result.lag_one);
   if (!result.significant) return result;
   result.scatter = std::sqrt(squares / noise.expected_squares(result.autocorrelation));

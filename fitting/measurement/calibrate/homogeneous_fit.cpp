@@ -3,171 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
-#include <numbers>
+#include <limits>
 
 #include "format/error.hpp"
 
 namespace palpate::calibrate {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kLeastRelative = 0.05;  ///< of the largest stress, under Weighting::Relative
 
 [[noreturn]] void refuse(const std::string& where, const std::string& problem,
                          const std::string& remedy) {
   throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
-/// A law behind a table of functions, so that laws are chosen by name.
-struct Law {
-  std::string_view name;
-  std::function<std::vector<ConstantInfo>(double scale)> constants;
-  /// Further starts of the exponents of several-minima laws, for a modulus `scale`.
-  std::function<std::vector<std::vector<double>>(double scale)> starts;
-  /// Nominal stress; its derivatives by the constants into `slope` unless null.
-  std::function<double(const double* c, Mode mode, double s, double* slope)> stress;
-  std::function<double(const double* c, const std::array<double, 3>& stretches)> tangent;
-};
-
-template <class Energy>
-double stress_of(const double* c, Mode mode, double s, double* slope) {
-  constexpr int n = Energy::kConstants;
-  using Inner = Dual<double, n>;
-  std::array<Inner, n> inner;
-  for (int i = 0; i < n; ++i) inner[static_cast<std::size_t>(i)] = Inner(c[i], i);
-  const auto energy = [&](const std::array<Dual<Inner, 1>, 3>& l) {
-    std::array<Dual<Inner, 1>, n> constants;
-    for (std::size_t i = 0; i < n; ++i) constants[i].value = inner[i];
-    return Energy{}(constants.data(), l);
-  };
-  const Inner P = nominal_stress(energy, mode, Inner(s));
-  if (slope != nullptr) std::copy(P.slope.begin(), P.slope.end(), slope);
-  return P.value;
-}
-
-template <class Energy>
-double tangent_of(const double* c, const std::array<double, 3>& l) {
-  const auto energy = [&]<class T>(const std::array<T, 3>& at) {
-    std::array<T, Energy::kConstants> constants;
-    for (std::size_t i = 0; i < constants.size(); ++i) constants[i] = T(c[i]);
-    return Energy{}(constants.data(), at);
-  };
-  return least_tangent(energy, l);
-}
-
-template <class Energy>
-Law law(std::string_view name, std::function<std::vector<ConstantInfo>(double)> constants,
-        std::function<std::vector<std::vector<double>>(double)> starts = nullptr) {
-  return {name, std::move(constants), std::move(starts), stress_of<Energy>, tangent_of<Energy>};
-}
-
-std::vector<ConstantInfo> ogden_constants(int terms, double scale) {
-  std::vector<ConstantInfo> out;
-  constexpr std::array<double, 3> exponents{2, 6, -3};
-  for (int i = 0; i < terms; ++i) {
-    const std::string number = terms == 1 ? "" : std::to_string(i + 1);
-    // Each term stiffens: mu_i > 0 for all i makes the law stable [Ogden 1984, sec. 7.2].
-    out.push_back({"mu" + number, true, scale / terms, kSmallModulus, kInfinity});
-    out.push_back({"alpha" + number, false, exponents[static_cast<std::size_t>(i)], -100, 100});
-  }
-  return out;
-}
-
-std::vector<std::vector<double>> ogden_starts(int terms, double scale) {
-  const std::vector<std::vector<double>> exponents =
-      terms == 1 ? std::vector<std::vector<double>>{{2}, {8}, {-5}, {-20}, {20}}
-      : terms == 2
-          ? std::vector<std::vector<double>>{{1.5, 5}, {2, -2}, {1.5, -8}, {8, -8}, {4, 12}}
-          : std::vector<std::vector<double>>{{1.3, 5, -2}, {1.5, 8, -1}, {2, 10, -4}, {1, 4, 12}};
-  std::vector<std::vector<double>> starts;
-  for (const auto& alpha : exponents) {
-    std::vector<double> start;
-    for (std::size_t i = 0; i < alpha.size(); ++i) {
-      // High powers act late: give them less of the modulus.
-      start.push_back(scale * (i == 0 ? 0.9 : 0.05));
-      start.push_back(alpha[i]);
-    }
-    if (terms == 1) start[0] = scale;
-    starts.push_back(start);
-  }
-  return starts;
-}
-
-/// Exponential laws: the stiffer the exponent, the smaller the modulus at rest. Veronda-Westmann's
-/// modulus is C1 C2.
-std::vector<std::vector<double>> exponential_starts(double scale, bool product) {
-  std::vector<std::vector<double>> starts;
-  for (const double exponent : {0.1, 1.0, 4.0, 20.0}) {
-    const double mu = scale / (1 + exponent);
-    for (const double share : {1.0, 0.03}) {
-      starts.push_back({product ? share * mu / exponent : share * mu, exponent});
-    }
-  }
-  return starts;
-}
-
-const std::vector<Law>& laws() {
-  using List = std::vector<ConstantInfo>;
-  static const std::vector<Law> table{
-      law<NeoHookeanEnergy>("neo-hookean",
-                            [](double s) {
-                              return List{{"mu", true, s, kSmallModulus, kInfinity}};
-                            }),
-      law<MooneyRivlinEnergy>(
-          "mooney-rivlin",
-          [](double s) {
-            return List{{"C10", true, 0.4 * s, 0, kInfinity}, {"C01", true, 0.1 * s, 0, kInfinity}};
-          }),
-      law<YeohEnergy>("yeoh",
-                      [](double s) {
-                        return List{{"C10", true, 0.5 * s, kSmallModulus, kInfinity},
-                                    {"C20", true, -1e-3 * s},
-                                    {"C30", true, 1e-5 * s}};
-                      }),
-      law<OgdenEnergy<1>>(
-          "ogden-1", [](double s) { return ogden_constants(1, s); },
-          [](double s) { return ogden_starts(1, s); }),
-      law<OgdenEnergy<2>>(
-          "ogden-2", [](double s) { return ogden_constants(2, s); },
-          [](double s) { return ogden_starts(2, s); }),
-      law<OgdenEnergy<3>>(
-          "ogden-3", [](double s) { return ogden_constants(3, s); },
-          [](double s) { return ogden_starts(3, s); }),
-      law<DemirayFungEnergy>(
-          "demiray-fung",
-          [](double s) {
-            return List{{"mu", true, s, kSmallModulus, kInfinity}, {"b", false, 0.1, 1e-6, 1e3}};
-          },
-          [](double s) { return exponential_starts(s, false); }),
-      law<VerondaWestmannEnergy>(
-          "veronda-westmann",
-          [](double s) {
-            return List{{"C1", true, s, kSmallModulus, kInfinity}, {"C2", false, 0.5, 1e-6, 1e3}};
-          },
-          [](double s) { return exponential_starts(s, true); }),
-      law<GentEnergy>(
-          "gent",
-          [](double s) {
-            return List{{"mu", true, s, kSmallModulus, kInfinity}, {"Jm", false, 100, 1e-3, 1e6}};
-          }),
-      law<ArrudaBoyceEnergy>("arruda-boyce", [](double s) {
-        return List{{"mu", true, s, kSmallModulus, kInfinity}, {"lambda_m", false, 4, 1.01, 1e3}};
-      })};
-  return table;
-}
-
-const Law& law_named(std::string_view name) {
-  for (const Law& candidate : laws()) {
-    if (candidate.name == name) return candidate;
-  }
-  std::string names;
-  for (const Law& candidate : laws()) {
-    names += (names.empty() ? "" : ", ") + std::string(candidate.name);
-  }
-  refuse("law '" + std::string(name) + "'", "it is not known", "use one of " + names);
 }
 
 void check_tests(const std::vector<HomogeneousTest>& tests, const HomogeneousSettings& settings) {
@@ -195,49 +42,44 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-/// What each residual of a test is divided by, times its weight.
+/// What each residual of a test, in nominal stress, is multiplied by.
 std::vector<double> factors(const HomogeneousTest& test, const HomogeneousSettings& settings) {
-  std::vector<double> measured;
-  for (std::size_t i = 0; i < test.nominal.size(); ++i) {
-    const double ratio = settings.residual == Residual::Cauchy
-                             ? cauchy_over_nominal(test.mode, test.deformation[i])
-                             : 1;
-    measured.push_back(test.nominal[i] * ratio);
-  }
+  std::vector<double> ratio, measured;
   double largest = 0;
-  for (const double value : measured) largest = std::max(largest, std::abs(value));
-  std::vector<double> out;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    const double ratio = test.nominal[i] != 0 ? measured[i] / test.nominal[i]
-                         : settings.residual == Residual::Cauchy
-                             ? cauchy_over_nominal(test.mode, test.deformation[i])
-                             : 1;
-    double scale = 1;
+  for (std::size_t i = 0; i < test.nominal.size(); ++i) {
+    ratio.push_back(settings.residual == Residual::Cauchy
+                        ? cauchy_over_nominal(test.mode, test.deformation[i])
+                        : 1);
+    measured.push_back(test.nominal[i] * ratio[i]);
+    largest = std::max(largest, std::abs(measured[i]));
+  }
+  const auto scale = [&](std::size_t i) {
     switch (settings.weighting) {
       case Weighting::Absolute:
         break;
       case Weighting::PerTest:
-        scale = std::max(rms(measured), 1e-300);
-        break;
+        return std::max(rms(measured), 1e-300);
       case Weighting::Relative:
-        scale = std::max({std::abs(measured[i]), kLeastRelative * largest, 1e-300});
-        break;
+        return std::max({std::abs(measured[i]), kLeastRelative * largest, 1e-300});
       case Weighting::Uncertainty:
-        scale = test.uncertainty[i] * ratio;
-        break;
+        return test.uncertainty[i] * ratio[i];
     }
-    out.push_back(test.weight * ratio / scale);
-  }
+    return 1.0;
+  };
+  std::vector<double> out;
+  for (std::size_t i = 0; i < measured.size(); ++i)
+    out.push_back(test.weight * ratio[i] / scale(i));
   return out;
 }
 
 /// A first guess of the shear modulus: the stress over the strain measure of a neo-Hookean solid.
 double modulus_scale(const std::vector<HomogeneousTest>& tests) {
   double above = 0, below = 0;
-  const std::vector<double> unit{1};
+  const IncompressibleLaw unit("neo-hookean", 0.5);
+  const double young = 3;  // of a shear modulus of one
   for (const HomogeneousTest& test : tests) {
     for (std::size_t i = 0; i < test.nominal.size(); ++i) {
-      const double g = law_stress("neo-hookean", unit, test.mode, test.deformation[i]);
+      const double g = unit.stress(&young, test.mode, test.deformation[i]);
       above += g * test.nominal[i];
       below += g * g;
     }
@@ -264,65 +106,28 @@ TestError error_of(const HomogeneousTest& test, const std::vector<double>& predi
   return error;
 }
 
-StabilityLimit stability_in(const Law& law, const std::vector<double>& c, Mode mode, double low,
-                            double high) {
-  constexpr int steps = 200;
-  StabilityLimit limit{mode, low, high, kUnknown};
-  const double rest = rest_of(mode);
-  for (const double end : {high, low}) {
-    for (int i = 0; i <= steps; ++i) {
-      const double s = rest + (end - rest) * i / steps;
-      if (law.tangent(c.data(), stretches(mode, s)) > 0) continue;
-      limit.unstable_at = s;
-      return limit;
-    }
-  }
-  return limit;
-}
-
 double largest_strain(const std::vector<HomogeneousTest>& tests) {
   double largest = 0;
   for (const HomogeneousTest& test : tests) {
     for (const double s : test.deformation) {
-      for (const double l : stretches(test.mode, s)) {
-        largest = std::max(largest, std::abs(std::log(l)));
+      for (const double e : logarithmic_strains(test.mode, s)) {
+        largest = std::max(largest, std::abs(e));
       }
     }
   }
   return largest;
 }
 
-/// A ray of states from uniaxial extension (share 0) over pure shear to uniaxial compression (1):
-/// by isotropy the other directions of strain repeat these.
-std::array<double, 3> stretches_on_ray(double share, double strain) {
-  const double angle = share * std::numbers::pi / 3;
-  std::array<double, 3> e;
-  for (std::size_t i = 0; i < 3; ++i) {
-    e[i] = std::cos(angle - 2 * std::numbers::pi / 3 * static_cast<double>(i));
-  }
-  const double largest = std::max(std::abs(e[0]), std::abs(e[2]));
-  for (double& value : e) value = std::exp(strain / largest * value);
-  return e;
+std::string names_of(const std::vector<Constant>& constants) {
+  std::string names;
+  for (const Constant& constant : constants) names += (names.empty() ? "" : ", ") + constant.name;
+  return names;
 }
 
-StabilityOfStates stability_of_states(const Law& law, const std::vector<double>& c, double strain) {
-  constexpr int steps = 100, rays = 30;
-  StabilityOfStates result{strain, {kUnknown, kUnknown, kUnknown}};
-  for (int i = 1; i <= steps; ++i) {
-    for (int ray = 0; ray <= rays; ++ray) {
-      const auto l = stretches_on_ray(static_cast<double>(ray) / rays, strain * i / steps);
-      if (law.tangent(c.data(), l) > 0) continue;
-      result.unstable_at = l;
-      return result;
-    }
-  }
-  return result;
-}
-
-std::vector<Constant> problem_constants(const Law& law, double scale,
+std::vector<Constant> problem_constants(const IncompressibleLaw& law, double scale,
                                         const HomogeneousSettings& settings) {
   std::vector<Constant> out;
-  for (const ConstantInfo& info : law.constants(scale)) {
+  for (const ConstantInfo& info : default_constants(law, scale)) {
     ConstantInfo used = info;
     for (const ConstantInfo& given : settings.constants) {
       if (given.name == info.name) used = given;
@@ -332,8 +137,8 @@ std::vector<Constant> problem_constants(const Law& law, double scale,
   for (const ConstantInfo& given : settings.constants) {
     const auto is_it = [&](const Constant& c) { return c.name == given.name; };
     if (std::any_of(out.begin(), out.end(), is_it)) continue;
-    refuse("constant '" + given.name + "'", "the law " + std::string(law.name) + " has no such",
-           "its first is " + out.front().name);
+    refuse("constant '" + given.name + "'", "the law " + std::string(law.name()) + " has no such",
+           "its constants are " + names_of(out));
   }
   return out;
 }
@@ -356,32 +161,10 @@ void warn_of_instability(const std::vector<HomogeneousTest>& tests, HomogeneousF
       ", within their strains; add a test in another mode, or bound the constants");
 }
 
-}  // namespace
-
-std::vector<std::string_view> homogeneous_laws() {
-  std::vector<std::string_view> names;
-  for (const Law& law : laws()) names.push_back(law.name);
-  return names;
-}
-
-std::vector<ConstantInfo> constants_of(std::string_view law, double scale) {
-  return law_named(law).constants(scale);
-}
-
-double law_stress(std::string_view law, const std::vector<double>& constants, Mode mode, double s) {
-  return law_named(law).stress(constants.data(), mode, s, nullptr);
-}
-
-double law_tangent(std::string_view law, const std::vector<double>& constants, Mode mode,
-                   double s) {
-  return law_named(law).tangent(constants.data(), stretches(mode, s));
-}
-
-HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
-                               const HomogeneousSettings& settings) {
-  const Law& law = law_named(settings.law);
-  check_tests(tests, settings);
-  const double scale = modulus_scale(tests);
+/// Residuals of all tests, and their derivatives by the constants.
+LeastSquares problem_of(const std::vector<HomogeneousTest>& tests,
+                        const HomogeneousSettings& settings, const IncompressibleLaw& law,
+                        double scale) {
   LeastSquares problem;
   problem.constants = problem_constants(law, scale, settings);
   problem.confidence = settings.confidence;
@@ -393,12 +176,13 @@ HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
     problem.series.push_back(test.nominal.size());
   }
   const std::size_t n = problem.constants.size();
-  problem.model = [&](const double* c, double* r, double* J) {
+  problem.model = [&tests, law, factor, n](const double* c, double* r, double* J) {
     std::vector<double> slope(n);
     std::size_t row = 0;
     for (std::size_t t = 0; t < tests.size(); ++t) {
       for (std::size_t i = 0; i < tests[t].nominal.size(); ++i, ++row) {
-        const double P = law.stress(c, tests[t].mode, tests[t].deformation[i], slope.data());
+        const double P = law.stress(c, tests[t].mode, tests[t].deformation[i],
+                                    J == nullptr ? nullptr : slope.data());
         r[row] = (P - tests[t].nominal[i]) * factor[t][i];
         if (!std::isfinite(r[row])) return false;
         if (J == nullptr) continue;
@@ -407,30 +191,46 @@ HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
     }
     return true;
   };
-  HomogeneousFit fit;
-  const std::string where = "fit of " + settings.law;
-  std::vector<std::vector<double>> starts;
-  if (law.starts && settings.constants.empty()) starts = law.starts(scale);
-  fit.calibration = starts.empty() ? minimise(problem, where) : minimise(problem, starts, where);
-  if (settings.profiles) add_profiles(problem, fit.calibration);
-  std::vector<double> c;
-  for (const Estimate& e : fit.calibration.estimates) c.push_back(e.value);
+  return problem;
+}
+
+/// What the fitted constants make of the tests.
+void add_predictions(const std::vector<HomogeneousTest>& tests, const IncompressibleLaw& law,
+                     const std::vector<double>& c, HomogeneousFit& fit) {
   for (const HomogeneousTest& test : tests) {
     std::vector<double>& predicted = fit.predicted.emplace_back();
     for (const double s : test.deformation) {
-      predicted.push_back(law.stress(c.data(), test.mode, s, nullptr));
+      predicted.push_back(law.stress(c.data(), test.mode, s));
     }
     fit.errors.push_back(error_of(test, predicted));
     const auto [low, high] = std::minmax_element(test.deformation.begin(), test.deformation.end());
     const double rest = rest_of(test.mode);
     fit.stability.push_back(
-        stability_in(law, c, test.mode, std::min(*low, rest), std::max(*high, rest)));
+        stability_in(law, c, {test.mode, std::min(*low, rest), std::max(*high, rest)}));
   }
   fit.all_states = stability_of_states(law, c, largest_strain(tests));
   warn_of_instability(tests, fit);
-  // Simple shear at rest: the slope of the stress is the shear modulus.
-  constexpr double small = 1e-6;
-  fit.shear_modulus = law.stress(c.data(), Mode::SimpleShear, small, nullptr) / small;
+}
+
+}  // namespace
+
+HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
+                               const HomogeneousSettings& settings) {
+  const IncompressibleLaw law(settings.law, settings.poisson);
+  check_tests(tests, settings);
+  const double scale = modulus_scale(tests);
+  const LeastSquares problem = problem_of(tests, settings, law, scale);
+  HomogeneousFit fit;
+  const std::string where = "fit of " + settings.law;
+  std::vector<std::vector<double>> starts;
+  if (settings.constants.empty()) starts = several_starts(law, scale);
+  fit.calibration = starts.empty() ? minimise(problem, where) : minimise(problem, starts, where);
+  if (settings.profiles) add_profiles(problem, fit.calibration);
+  std::vector<double> c;
+  for (const Estimate& e : fit.calibration.estimates) c.push_back(e.value);
+  fit.law = law.for_case(c);
+  fit.shear_modulus = fem::rest_moduli(fit.law).mu();
+  add_predictions(tests, law, c, fit);
   return fit;
 }
 

@@ -45,7 +45,8 @@ bool is_unexplained(const Calibration& result) {
 
 double quantile(const LeastSquares& problem, bool estimated, int freedom, double effective) {
   if (freedom <= 0) return kInfinity;
-  return measured::student_quantile(problem.confidence, estimated ? effective : 1e6);
+  return estimated ? measured::student_quantile(problem.confidence, effective)
+                   : measured::normal_quantile(problem.confidence);
 }
 
 void take(const CorrelatedNoise& noise, Calibration& result) {
@@ -80,10 +81,10 @@ void add_intervals(const LeastSquares& problem, const std::vector<double>& J,
   const bool estimated = !problem.known_scatter || result.widened;
   MatrixXd covariance = unit;
   if (noise.significant) {
-    // Of a stated scatter only the part that the residuals show is known to be correlated.
-    const double share = estimated ? 1 : std::min(1.0, noise.scatter * noise.scatter);
+    // Only the part of a stated scatter that the residuals show is known to be correlated.
+    const double part = estimated ? 1 : std::min(1.0, noise.scatter * noise.scatter);
     const Eigen::Map<const RowMajor> meat(noise.meat.data(), n, n);
-    covariance = (1 - share) * unit + share * (unit * meat * unit);
+    covariance = (1 - part) * unit + part * (unit * meat * unit);
   }
   const double s = estimated ? result.scatter : 1;
   const double t = quantile(problem, estimated, result.freedom, result.effective_freedom);

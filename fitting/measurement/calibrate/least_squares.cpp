@@ -53,7 +53,7 @@ void add_warnings(Calibration& result) {
       const double c = result.correlation[i][j];
       if (!(std::abs(c) > kStrongCorrelation)) continue;
       warn(result.estimates[j].name + " and " + e.name + " are correlated by " + text_of(c) +
-           ": the data hardly tell them apart");
+           ": the data hardly distinguish them");
     }
   }
   if (result.widened) {

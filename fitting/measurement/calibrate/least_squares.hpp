@@ -41,7 +41,8 @@ struct Estimate {
   double unit_error = 0;      ///< the same for independent residuals of unit scatter
   double low = 0, high = 0;   ///< of the confidence interval, by Student's t
   bool at_bound = false;
-  /// Of the profile likelihood, see add_profiles(); NaN without, infinite where it does not end.
+  /// Ends of the profile likelihood, see add_profiles(); NaN without, infinite where it does not
+  /// end.
   double profile_low = std::numeric_limits<double>::quiet_NaN();
   double profile_high = std::numeric_limits<double>::quiet_NaN();
 };
@@ -53,8 +54,9 @@ struct Calibration {
   double cost = 0;                               ///< half the sum of squares
   double scatter = 0;    ///< standard deviation of the noise, from the residuals
   bool widened = false;  ///< known scatter, but the residuals say more: the intervals are theirs
-  /// Of residuals that follow each other, see CorrelatedNoise; `correlated`: more than by chance,
-  /// and the intervals count it, which makes them `correlation_widening` times as wide at most.
+  /// Correlation of residuals that follow each other, see CorrelatedNoise; `correlated`: more than
+  /// by chance, and the intervals count it, which makes them `correlation_widening` times as wide
+  /// at most.
   double lag_one = 0, durbin_watson = 2, autocorrelation = 0;
   bool correlated = false;
   double correlation_widening = 1;
@@ -69,8 +71,8 @@ struct Calibration {
 /// the linearised model, t sqrt(s^2 (J^T J)^-1); constants at a bound are left out of the matrix
 /// and have none. s is the scatter of the residuals; when it is known, 1, unless the residuals
 /// scatter by more than chance lets them: then theirs again [Birge 1932]. Warned of: correlations
-/// beyond 0.95 (two constants that the data cannot tell apart), an interval wider than the value, a
-/// constant at its bound, residuals that a known scatter does not explain. Where residuals that
+/// beyond 0.95 (two constants that the data cannot distinguish), an interval wider than the value,
+/// a constant at its bound, residuals that a known scatter does not explain. Where residuals that
 /// follow each other are alike by more than chance, the covariance is s^2 (J^T J)^-1 J^T V J
 /// (J^T J)^-1 with the correlation V that they show, and that is warned of (correlated_noise.hpp).
 /// @throws Error(Configuration) naming `where` when there are fewer residuals than constants, a
@@ -90,11 +92,12 @@ struct ProfileSettings {
 /// Intervals that do not linearise: of each constant the values at which the best fit of all others
 /// is worse than the best fit by no more than chance allows,
 ///   2 (cost(value) - cost) <= t^2 s^2, s and t those of the linearised intervals,
-/// found by fits with the constant held [Bates & Watts 1988, sec. 6.1]; times what correlated
-/// residuals add to the variance of the constant. They end at the bounds of the constant. Constants
-/// at a bound get none. Warned of: a profile that does not end, or only where the model has no
-/// value, one that is far from its linearised interval, one that meets a better fit. The square
-/// root of the cost is followed, which is linear where the problem is: a few fits an end.
+/// found by fits at fixed values of the constant [Bates & Watts 1988, sec. 6.1]; times what
+/// correlated residuals add to the variance of the constant. They end at the bounds of the
+/// constant. Constants at a bound get none. Warned of: a profile that does not end, or only where
+/// the model has no value, one that is far from its linearised interval, one that meets a better
+/// fit. The square root of the cost is followed, which is linear where the problem is: a few fits
+/// an end.
 void add_profiles(const LeastSquares& problem, Calibration& result,
                   const ProfileSettings& settings = {});
 

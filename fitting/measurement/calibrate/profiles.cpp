@@ -18,21 +18,21 @@ std::string text_of(double value) {
   return text;
 }
 
-/// The problem with one constant held.
-class Held {
+/// The problem with one constant fixed.
+class FixedConstant {
  public:
-  Held(const LeastSquares& problem, std::size_t held)
-      : problem_(problem), held_(held), all_(problem.constants.size()) {
+  FixedConstant(const LeastSquares& problem, std::size_t fixed)
+      : problem_(problem), fixed_(fixed), all_(problem.constants.size()) {
     reduced_ = problem;
-    reduced_.constants.erase(reduced_.constants.begin() + static_cast<std::ptrdiff_t>(held));
+    reduced_.constants.erase(reduced_.constants.begin() + static_cast<std::ptrdiff_t>(fixed));
     reduced_.model = [this](const double* c, double* r, double* J) { return evaluate(c, r, J); };
   }
-  Held(const Held&) = delete;
-  Held& operator=(const Held&) = delete;
+  FixedConstant(const FixedConstant&) = delete;
+  FixedConstant& operator=(const FixedConstant&) = delete;
 
   /// Cost of the best fit near `others`, which moves there; infinite where the model has no value.
   double cost(double value, std::vector<double>& others) {
-    all_[held_] = value;
+    all_[fixed_] = value;
     for (std::size_t i = 0; i < others.size(); ++i) reduced_.constants[i].start = others[i];
     const auto found = descend(reduced_);
     if (!found) return std::numeric_limits<double>::infinity();
@@ -44,18 +44,18 @@ class Held {
   bool evaluate(const double* c, double* r, double* J) {
     const std::size_t n = all_.size();
     for (std::size_t i = 0, j = 0; i < n; ++i)
-      if (i != held_) all_[i] = c[j++];
+      if (i != fixed_) all_[i] = c[j++];
     std::vector<double> whole(J == nullptr ? 0 : problem_.residuals * n);
     if (!problem_.model(all_.data(), r, J == nullptr ? nullptr : whole.data())) return false;
     if (J == nullptr) return true;
     for (std::size_t row = 0; row < problem_.residuals; ++row)
       for (std::size_t i = 0, j = 0; i < n; ++i)
-        if (i != held_) J[row * (n - 1) + j++] = whole[row * n + i];
+        if (i != fixed_) J[row * (n - 1) + j++] = whole[row * n + i];
     return true;
   }
 
   const LeastSquares& problem_;
-  std::size_t held_;
+  std::size_t fixed_;
   std::vector<double> all_;
   LeastSquares reduced_;
 };
@@ -68,7 +68,7 @@ class ProfileEnd {
   ProfileEnd(const LeastSquares& problem, const Calibration& best, std::size_t constant,
              double rise, double closeness)
       : constant_(problem.constants[constant]),
-        held_(problem, constant),
+        fixed_(problem, constant),
         value_(best.estimates[constant].value),
         cost_(best.cost),
         rise_(rise),
@@ -109,11 +109,11 @@ class ProfileEnd {
   bool ended_without_a_model() const { return no_model_; }
 
  private:
-  /// Of the best fit at this value; the state moves there while it is inside.
+  /// Height of the best fit at this value; the state moves there while it is inside.
   double excess_at(double value) {
     constexpr double kSame = 0.01;  // of the rise: a fit that is better by less does not matter
     std::vector<double> others = predicted(value);
-    const double cost = held_.cost(value, others);
+    const double cost = fixed_.cost(value, others);
     const double risen = cost - cost_;
     better_ = better_ || risen < -kSame * rise_;
     const double excess = std::sqrt(std::max(0.0, risen) / rise_) - 1;
@@ -160,7 +160,7 @@ class ProfileEnd {
   }
 
   const Constant& constant_;
-  Held held_;
+  FixedConstant fixed_;
   double value_, cost_, rise_, closeness_;
   std::vector<double> others_, slope_;  ///< of the last fit inside, and by the value
   std::vector<Constant> bounds_;        ///< of the others
@@ -205,7 +205,7 @@ void add_profiles(const LeastSquares& problem, Calibration& result,
     const double width = half / e.unit_error, rise = 0.5 * width * width;
     ProfileEnd below(problem, result, i, rise, settings.closeness);
     ProfileEnd above(problem, result, i, rise, settings.closeness);
-    // Of a constant that is not determined the linearised interval can be any size.
+    // The linearised interval of a constant that is not determined can have any size.
     const double step = e.value != 0 ? std::min(half, std::abs(e.value)) : half;
     e.profile_low = below.find(-step);
     e.profile_high = above.find(step);

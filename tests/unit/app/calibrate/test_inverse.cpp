@@ -99,7 +99,8 @@ TEST(Inverse, FindsTheModuliThatMadeTheCurves) {
   EXPECT_LT(fit.evaluations, 15);
 }
 
-/// A press alone hardly tells Poisson's ratio from Young's modulus; a drag at the same site does.
+/// A press alone hardly distinguishes Poisson's ratio from Young's modulus; a drag at the same site
+/// does.
 /// The truth is a campaign, as a robot would have gone through it.
 TEST(Inverse, DragsTellPoissonsRatioFromTheModulus) {
   const Body body = two_halves();
@@ -181,7 +182,7 @@ TEST(Inverse, IntervalsCoverTheTruth) {
   for (const int count : inside) EXPECT_GE(count, 25);
 }
 
-/// One site cannot tell the two constants of its region apart: the fit must say so.
+/// One site cannot distinguish the two constants of its region, and the fit warns of it.
 TEST(Inverse, WarnsOfConstantsThatTheCurvesCannotTellApart) {
   const Body body = two_halves();
   Curves truth = truth_curves(body);
@@ -189,10 +190,10 @@ TEST(Inverse, WarnsOfConstantsThatTheCurvesCannotTellApart) {
   settings.sought = {{{"soft", "young"}, 100, 1e6}, {{"soft", "poisson"}, 0.1, 0.499}};
   truth.sites.resize(1);
   const InverseFit fit = calibrate_inverse(body, truth, settings);
-  EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("hardly tell them apart")));
+  EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("hardly distinguish them")));
 }
 
-/// Of one constant the profile ends where the misfit itself, computed here from the forces at that
+/// The profile of one constant ends where the misfit itself, computed here from the forces at that
 /// constant, has risen by t^2/2.
 TEST(Inverse, ProfileEndsWhereTheMisfitHasRisen) {
   const Body body = two_halves();

@@ -66,7 +66,7 @@ std::string xml_fault(const std::string& text) {
 
 TEST(Decks, MoveTheSurfaceNodesUnderThePatch) {
   const Deck deck = deck_of({10e3, 0.45});
-  // Of a grid of 5 mm, the vertex and its four neighbours, and the edges between them: four along
+  // On a grid of 5 mm: the vertex and its four neighbours, and the edges between them: four along
   // the grid, two or so across a cell are longer than the patch but join nodes of it.
   std::set<std::int32_t> corners;
   const auto grid = static_cast<std::int32_t>(block().nodes.size());
@@ -155,7 +155,8 @@ Eigen::Vector3d corner_normal(const Eigen::Matrix3Xd& X, const fem::Facet& facet
   return 0.5 * a.cross(b);
 }
 
-/// Of the quadratic facet, halfway between a corner and the middle of the opposite edge or so.
+/// A point of the quadratic facet, halfway between a corner and the middle of the opposite edge or
+/// so.
 Eigen::Vector3d inner_point(const Eigen::Matrix3Xd& X, const fem::Facet& facet) {
   const double L[3] = {0.5, 0.3, 0.2};
   Eigen::Vector3d x = Eigen::Vector3d::Zero();
@@ -283,6 +284,8 @@ TEST(Decks, NameTheLawThatTheOtherProgramLacks) {
   EXPECT_THAT(message(calculix_deck, fung), HasSubstr("CalculiX has no law like demiray-fung"));
   EXPECT_THAT(message(calculix_deck, fung), HasSubstr("region 'tissue'"));
   EXPECT_THAT(message(febio_deck, fung), HasSubstr("FEBio has no law like demiray-fung"));
+  const fem::LawConstants gent("gent", {{"mu", 1e3}, {"J_m", 12}, {"poisson", 0.45}});
+  EXPECT_THAT(message(calculix_deck, gent), HasSubstr("CalculiX has no law like gent"));
 }
 
 }  // namespace

@@ -102,6 +102,7 @@ Matrix febio_stress(const Material& m, const Matrix& F) {
     const double modulus = m.at("c1") * m.at("c2");
     return of_invariants(B, modulus * std::exp(m.at("c2") * x), -modulus / 2);
   }
+  if (m.type == "Gent") return of_invariants(B, 0.5 * m.at("G") * m.at("Jm") / (m.at("Jm") - x), 0);
   if (m.type == "Ogden") return ogden_stress(m, B);
   if (m.type == "Holzapfel-Gasser-Ogden") return fibre_stress(m, F, B);
   EXPECT_EQ(m.type, "isotropic elastic");
@@ -157,7 +158,7 @@ TEST(FebioLaws, HaveTheStressesOfTheirs) {
       ++compared;
     }
   }
-  EXPECT_EQ(compared, 18);
+  EXPECT_EQ(compared, 20);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 // functions of the deformation gradient, for the tests of the laws.
 #pragma once
 
+#include <ceres/jet.h>
+
 #include <Eigen/Geometry>
 #include <random>
 #include <stdexcept>
@@ -12,14 +14,13 @@
 #include "fem/laws/law_table.hpp"
 #include "fem/laws/ogden.hpp"
 #include "fem/laws/saint_venant_kirchhoff.hpp"
-#include "fitting/measurement/calibrate/dual.hpp"
 #include "format/to_index.hpp"
 #include "tests/support/sample_laws.hpp"
 
 namespace palpate::fem {
 
 using Matrix = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-using Varied = calibrate::Dual<double, 9>;
+using Varied = ceres::Jet<double, 9>;
 
 inline constexpr double kPoisson = 0.45;
 inline const Fibres<double> kFibres{{{2.0 / 3, 2.0 / 3, 1.0 / 3}, {0.6, 0, -0.8}}};
@@ -98,6 +99,13 @@ struct Sample<VerondaWestmann> {
   static constexpr auto kName = "veronda-westmann";
   static VerondaWestmann make() {
     return {{.C1 = constant(kName, "C1"), .C2 = constant(kName, "C2")}, bulk_modulus(kName)};
+  }
+};
+template <>
+struct Sample<Gent> {
+  static constexpr auto kName = "gent";
+  static Gent make() {
+    return {{.mu = constant(kName, "mu"), .J_m = constant(kName, "J_m")}, bulk_modulus(kName)};
   }
 };
 template <>
@@ -193,6 +201,11 @@ Tensor4<double> isochoric_tangent(const L& law, const Matrix& F,
   else
     law.add_tangent(t, cof, determinant(t, cof), A);
   return A;
+}
+
+/// Derivative by the i-th entry of the deformation gradient.
+inline double slope(const Varied& value, std::size_t i) {
+  return value.v[static_cast<Eigen::Index>(i)];
 }
 
 inline Tensor2<Varied> varied(const Matrix& F) {

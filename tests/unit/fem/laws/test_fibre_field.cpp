@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Directions of fibres: constant in a plane, and around the axis of a cylinder.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
 #include "fem/laws/law.hpp"
 #include "fem/laws/law_table.hpp"
+#include "format/error.hpp"
 #include "format/to_index.hpp"
+#include "tests/support/sample_laws.hpp"
 
 namespace palpate::fem {
 namespace {
+
+using testing::HasSubstr;
 
 TEST(FibreField, GivesUnitVectorsInThePlaneAsked) {
   FibreField field;
@@ -37,6 +42,23 @@ TEST(FibreField, RunsAroundTheAxisOfACylinder) {
   field.angle = M_PI / 2;
   EXPECT_NEAR(field.at({0.2, 0, 0.5})[0][2], 1, 1e-15);
   EXPECT_NEAR(norm(field.at(field.origin)[0]), 1, 1e-15);
+}
+
+TEST(FibreField, RefusesDirectionsThatSpanNoPlane) {
+  const auto with = [](auto change) -> std::string {
+    LawConstants law = test::sample_laws(0.45).back();
+    change(law.fibres);
+    try {
+      make_law(law, "liver");
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(with([](FibreField& f) { f.first = {}; }), HasSubstr("no length"));
+  EXPECT_THAT(with([](FibreField& f) { f.second = f.first; }), HasSubstr("parallel"));
+  EXPECT_THAT(with([](FibreField& f) { f.angle = 2; }), HasSubstr("angle (rad) = 2"));
+  EXPECT_THAT(with([](FibreField& f) { f.families = 3; }), HasSubstr("families = 3"));
 }
 
 }  // namespace

@@ -109,6 +109,17 @@ TEST(ClosedFormOf, ArrudaBoyce) {
   };
   expect_closed_forms(ArrudaBoyce({.mu = 1, .lambda_m = 2}, 0), closed_forms(slopes, 1.5), 1.5);
 }
+TEST(ClosedFormOf, Gent) {
+  // W1 = mu J_m/(2 (J_m - (I1 - 3))).
+  const auto slopes = [](double I1, double) { return std::pair{0.5 * 5 / (5 - (I1 - 3)), 0.0}; };
+  expect_closed_forms(Gent({.mu = 1, .J_m = 5}, 0), closed_forms(slopes, 1.5), 1.5);
+}
+TEST(ClosedFormOf, GentHasNoValueBeyondItsLimit) {
+  const Gent law({.mu = 1, .J_m = 5}, 0);
+  const Matrix F = Eigen::Vector3d(3, 1 / std::sqrt(3.0), 1 / std::sqrt(3.0)).asDiagonal();
+  EXPECT_TRUE(std::isnan(law.psi(to_tensor(F), 1.0)));
+  EXPECT_TRUE(std::isnan(stress(law, to_tensor(F))[0]));
+}
 TEST(ClosedFormOf, FibresPulledAlongTheirDirection) {
   // P = c (l - l^-2) + 2 k1 E exp(k2 E^2) l, E = l^2 - 1; slack when compressed.
   const HolzapfelGasserOgden law({.c = 1, .k1 = 0.8, .k2 = 0.5, .dispersion = 0}, FibreField{}, 0);
@@ -120,7 +131,7 @@ TEST(ClosedFormOf, FibresPulledAlongTheirDirection) {
 }
 TEST(ClosedFormOf, ArteryMediaByHolzapfel2000) {
   // Two families at +-29 degrees of the circumference, stretched along it with the thickness free
-  // and the axial stretch held: tau_1 - tau_3 = c (l1^2 - l3^2) + 4 k1 E exp(k2 E^2) l1^2 cos^2.
+  // and a constant axial stretch: tau_1 - tau_3 = c (l1^2 - l3^2) + 4 k1 E exp(k2 E^2) l1^2 cos^2.
   const double angle = 29 * M_PI / 180, c2 = std::pow(std::cos(angle), 2);
   FibreField field;
   field.angle = angle;
@@ -186,6 +197,7 @@ TEST(SimpleShear, FollowsTheClosedForm) {
         0.4 + 0.4 * x + 0.3 * x, 0.1 + 0.3 * x + 0.1 * x);
   check(Yeoh({.C10 = 0.5, .C20 = -0.02, .C30 = 0.003}, 0), 0.5 - 0.04 * x + 0.009 * x * x, 0);
   check(DemirayFung({.mu = 1, .b = 3}, 0), 0.5 * std::exp(3 * x), 0);
+  check(Gent({.mu = 1, .J_m = 5}, 0), 2.5 / (5 - x), 0);
   check(VerondaWestmann({.C1 = 0.25, .C2 = 4}, 0), std::exp(4 * x), -0.5);
   // In principal stretches, as functions of the invariants: alpha = 2 is I1, alpha = -2 is I2.
   check(Ogden({{0.8, 2}, {0.2, -2}}, 0), 0.4, 0.1);

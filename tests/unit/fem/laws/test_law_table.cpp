@@ -84,34 +84,5 @@ TEST(LawTable, RefusesConstantsThatDoNotFitTogether) {
   EXPECT_THAT(refusal({"hooke", {}}), HasSubstr("use one of neo-hookean"));
 }
 
-TEST(NeoHookean, RefusesConstantsOutOfRangeByName) {
-  const auto message = [](double E, double nu) -> std::string {
-    try {
-      NeoHookean::from_young_poisson(E, nu, "liver");
-    } catch (const Error& error) {
-      EXPECT_EQ(error.kind(), ErrorKind::Configuration);
-      return error.what();
-    }
-    return "accepted";
-  };
-  EXPECT_THAT(message(-1, 0.4), testing::HasSubstr("young"));
-  EXPECT_NE(message(std::nan(""), 0.4).find("nan"), std::string::npos);
-  EXPECT_NE(message(1e3, 0.5).find("poisson (nu) = 0.5"), std::string::npos);
-  EXPECT_NE(message(1e3, -0.1).find("0 <= nu < 0.5"), std::string::npos);
-  EXPECT_NE(message(1e3, 0.5).find("liver"), std::string::npos);
-}
-
-TEST(FibreField, RefusesWhatSpansNoPlane) {
-  const auto with = [](auto change) {
-    LawConstants law = test::sample_laws(kPoisson).back();
-    change(law.fibres);
-    return refusal(law);
-  };
-  EXPECT_THAT(with([](FibreField& f) { f.first = {}; }), HasSubstr("no length"));
-  EXPECT_THAT(with([](FibreField& f) { f.second = f.first; }), HasSubstr("parallel"));
-  EXPECT_THAT(with([](FibreField& f) { f.angle = 2; }), HasSubstr("angle (rad) = 2"));
-  EXPECT_THAT(with([](FibreField& f) { f.families = 3; }), HasSubstr("families = 3"));
-}
-
 }  // namespace
 }  // namespace palpate::fem

@@ -16,9 +16,8 @@ inline HomogeneousTest measured_test(const std::string& file, Mode mode) {
   HomogeneousTest test;
   test.name = file;
   test.mode = mode;
-  test.deformation =
-      measured::column_in_si(table, table.columns[0].name, measured::Quantity::Ratio);
-  test.nominal = measured::column_in_si(table, table.columns[1].name, measured::Quantity::Stress);
+  test.deformation = measured::column_in_si(table, table.columns[0].name, Dimension::Ratio);
+  test.nominal = measured::column_in_si(table, table.columns[1].name, Dimension::Pressure);
   return test;
 }
 

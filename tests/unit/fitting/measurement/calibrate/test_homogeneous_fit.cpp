@@ -4,14 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numbers>
 #include <random>
 
-#include "fem/laws/material.hpp"
 #include "format/error.hpp"
 #include "tests/support/source_folder.hpp"
 #include "tests/unit/fitting/measurement/calibrate/measured_tests.hpp"
+#include "tests/unit/fitting/measurement/calibrate/typical_constants.hpp"
 
 namespace palpate::calibrate {
 namespace {
@@ -19,106 +17,7 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
-const std::array kModes{Mode::Uniaxial, Mode::Equibiaxial, Mode::PureShear, Mode::SimpleShear};
-
-/// Typical constants of each law, away from special values.
-std::vector<double> typical(std::string_view law) {
-  if (law == "neo-hookean") return {1};
-  if (law == "mooney-rivlin") return {0.4, 0.1};
-  if (law == "yeoh") return {0.5, -0.02, 0.003};
-  if (law == "ogden-1") return {1, 4.3};
-  if (law == "ogden-2") return {0.7, 1.7, 0.3, -3};
-  if (law == "ogden-3") return {0.6, 1.3, 0.01, 5, 0.02, -2};
-  if (law == "demiray-fung") return {1, 3};
-  if (law == "veronda-westmann") return {0.25, 4};
-  if (law == "gent") return {1, 20};
-  return {1, 3};  // arruda-boyce
-}
-
-// Closed forms computed by hand for this project, listed with their formulas in the documentation.
-TEST(Homogeneous, StressesAreTheClosedForms) {
-  struct Row {
-    const char* law;
-    double ut9, ut13, et13, ps13;
-  };
-  for (const Row& row : {Row{"neo-hookean", -0.334568, 0.708284, 1.030671, 0.844834},
-                         Row{"mooney-rivlin", -0.342003, 0.675594, 1.172904, 0.844834},
-                         Row{"yeoh", -0.333712, 0.696004, 0.980359, 0.827000},
-                         Row{"demiray-fung", -0.368524, 1.405614, 9.212796, 1.967045},
-                         Row{"veronda-westmann", -0.389443, 2.987940, 36.497640, 4.369419}}) {
-    const auto c = typical(row.law);
-    EXPECT_NEAR(law_stress(row.law, c, Mode::Uniaxial, 0.9), row.ut9, 1e-6) << row.law;
-    EXPECT_NEAR(law_stress(row.law, c, Mode::Uniaxial, 1.3), row.ut13, 1e-6) << row.law;
-    EXPECT_NEAR(law_stress(row.law, c, Mode::Equibiaxial, 1.3), row.et13, 2e-6) << row.law;
-    EXPECT_NEAR(law_stress(row.law, c, Mode::PureShear, 1.3), row.ps13, 1e-6) << row.law;
-  }
-}
-
-/// Ogden's rubber in his own constants mu_i = 2 (part of the modulus)/alpha_i.
-TEST(Homogeneous, OgdensRubber) {
-  const std::array<double, 3> mu{0.63, 0.0012, -0.01}, alpha{1.3, 5, -2};
-  std::vector<double> c;
-  for (std::size_t i = 0; i < 3; ++i) {
-    c.push_back(0.5 * mu[i] * alpha[i]);
-    c.push_back(alpha[i]);
-  }
-  EXPECT_NEAR(law_stress("ogden-3", c, Mode::Uniaxial, 2), 0.60272, 1e-5);
-  EXPECT_NEAR(law_stress("ogden-3", c, Mode::Equibiaxial, 2), 0.82161, 1e-5);
-  EXPECT_NEAR(law_stress("ogden-3", c, Mode::PureShear, 2), 0.68562, 1e-5);
-}
-
-/// All laws have the modulus they state: stresses at small strain are 3 mu, 6 mu, 4 mu and mu times
-/// the strain, whatever the law.
-TEST(Homogeneous, SmallStrainIsLinearElasticity) {
-  for (const auto law : homogeneous_laws()) {
-    const auto c = typical(law);
-    const double e = 1e-5;
-    const double mu = law_stress(law, c, Mode::SimpleShear, e) / e;
-    EXPECT_NEAR(law_stress(law, c, Mode::Uniaxial, 1 + e) / e, 3 * mu, 2e-3 * mu) << law;
-    EXPECT_NEAR(law_stress(law, c, Mode::Equibiaxial, 1 + e) / e, 6 * mu, 2e-3 * mu) << law;
-    EXPECT_NEAR(law_stress(law, c, Mode::PureShear, 1 + e) / e, 4 * mu, 2e-3 * mu) << law;
-    EXPECT_NEAR(law_tangent(law, c, Mode::Uniaxial, 1), 2 * mu, 1e-6 * mu) << law;
-  }
-  EXPECT_NEAR(law_stress("ogden-2", typical("ogden-2"), Mode::SimpleShear, 1e-5) / 1e-5, 1, 1e-6);
-  EXPECT_NEAR(law_stress("arruda-boyce", {1, 3}, Mode::SimpleShear, 1e-5) / 1e-5, 1, 1e-6);
-  EXPECT_NEAR(law_stress("gent", {1, 20}, Mode::SimpleShear, 1e-5) / 1e-5, 1, 1e-6);
-}
-
-/// A pure shear and a simple shear of the same stretches store the same energy.
-TEST(Homogeneous, PureAndSimpleShearStoreTheSameEnergy) {
-  for (const auto law : homogeneous_laws()) {
-    const auto c = typical(law);
-    const double gamma = 0.6;
-    const double l = 0.5 * gamma + std::sqrt(1 + 0.25 * gamma * gamma);
-    double simple = 0, pure = 0;
-    constexpr int n = 4000;
-    for (int i = 0; i < n; ++i) {
-      const double t = (i + 0.5) / n;
-      simple += law_stress(law, c, Mode::SimpleShear, gamma * t) * gamma / n;
-      pure += law_stress(law, c, Mode::PureShear, 1 + (l - 1) * t) * (l - 1) / n;
-    }
-    EXPECT_NEAR(simple, pure, 1e-6 * pure) << law;
-  }
-}
-
-/// A law of fem/, at unit volume, gives the same stresses through the same templates.
-TEST(Homogeneous, LawsOfTheSolverFitIn) {
-  const double young = 3000, mu = young / (2 * 1.49);
-  const auto law = fem::NeoHookean::from_young_poisson(young, 0.49, "test");
-  const auto energy = [&]<class T>(const std::array<T, 3>& l) {
-    fem::Tensor2<T> F;
-    for (std::size_t i = 0; i < 9; ++i) F[i] = i % 4 == 0 ? l[i / 4] : T(0.0);
-    return law.psi(F, T(1.0));
-  };
-  for (const Mode mode : kModes) {
-    for (const double s : {0.8, 1.1, 1.7}) {
-      const double ours = law_stress("neo-hookean", {mu}, mode, s);
-      EXPECT_NEAR(nominal_stress(energy, mode, s), ours, 1e-9 * mu);
-    }
-  }
-}
-
-/// The derivatives by the constants that the fit uses, against differences.
+/// Data in four modes determine the constants that made them.
 TEST(Homogeneous, FitsRecoverTheConstantsThatMadeTheData) {
   for (const auto law : homogeneous_laws()) {
     const auto c = typical(law);
@@ -149,8 +48,8 @@ TEST(Homogeneous, FitsRecoverTheConstantsThatMadeTheData) {
 TEST(Homogeneous, BloodClotFitIsThePublishedOne) {
   const auto table =
       measured::read_csv(test::source_folder() / "data/measured/clot-2021/pure-shear.csv");
-  const auto x = measured::column_in_si(table, "displacement", measured::Quantity::Length);
-  const auto f = measured::column_in_si(table, "force", measured::Quantity::Force);
+  const auto x = measured::column_in_si(table, "displacement", Dimension::Length);
+  const auto f = measured::column_in_si(table, "force", Dimension::Force);
   constexpr double height = 0.010, area = 0.040 * 0.003;
   HomogeneousTest test{"clot", Mode::PureShear, {}, {}, {}, 1};
   for (std::size_t i = 0; i < x.size(); ++i) {
@@ -224,7 +123,7 @@ TEST(Homogeneous, BrainNeedsANegativeExponent) {
   EXPECT_GT(fit_homogeneous(tests, settings).calibration.cost, 3 * ogden.calibration.cost);
 }
 
-/// Of many noisy data sets the 95 % intervals must hold the truth in about 95 %.
+/// The 95 % intervals contain the truth in about 95 % of many noisy data sets.
 TEST(Homogeneous, IntervalsCoverTheTruth) {
   constexpr int kTrials = 400;
   for (const bool known : {false, true}) {
@@ -261,8 +160,8 @@ TEST(Homogeneous, IntervalsCoverTheTruth) {
   }
 }
 
-/// In one mode near rest the constants of Mooney-Rivlin act alike: the fit must say so.
-TEST(Homogeneous, WarnsOfConstantsThatTheDataCannotTellApart) {
+/// In one mode near rest the constants of Mooney-Rivlin act alike, and the fit warns of it.
+TEST(Homogeneous, WarnsOfConstantsThatTheDataCannotDistinguish) {
   HomogeneousTest test{"short", Mode::PureShear, {}, {}, {}, 1};
   for (int i = 1; i <= 10; ++i) {
     test.deformation.push_back(1 + 0.01 * i);
@@ -271,74 +170,11 @@ TEST(Homogeneous, WarnsOfConstantsThatTheDataCannotTellApart) {
   HomogeneousSettings settings;
   settings.law = "mooney-rivlin";
   const auto calibration = fit_homogeneous({test}, settings).calibration;
-  EXPECT_THAT(calibration.warnings, Contains(HasSubstr("hardly tell them apart")));
+  EXPECT_THAT(calibration.warnings, Contains(HasSubstr("hardly distinguish them")));
 }
 
-TEST(Homogeneous, WarnsOfALawThatLosesStability) {
-  EXPECT_GT(law_tangent("yeoh", {0.5, -0.02, 0.003}, Mode::Uniaxial, 1.5), 0);
-  EXPECT_LT(law_tangent("yeoh", {0.5, -0.2, 0}, Mode::Uniaxial, 2), 0);
-  HomogeneousTest test{"falling", Mode::Uniaxial, {}, {}, {}, 1};
-  for (int i = 1; i <= 30; ++i) {
-    const double s = 1 + 0.05 * i;
-    test.deformation.push_back(s);
-    test.nominal.push_back(law_stress("yeoh", {5e3, -6e2, 20}, test.mode, s));
-  }
-  HomogeneousSettings settings;
-  settings.law = "yeoh";
-  const HomogeneousFit fit = fit_homogeneous({test}, settings);
-  EXPECT_TRUE(std::isfinite(fit.stability[0].unstable_at));
-  EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("unstable in the range")));
-}
-
-/// Least eigenvalue of the Hessian of W by (e1, e2) by differences.
-double least_eigenvalue(const std::function<double(double, double)>& W, double x, double y) {
-  const double h = 1e-4;
-  const double a = (W(x + h, y) - 2 * W(x, y) + W(x - h, y)) / (h * h);
-  const double d = (W(x, y + h) - 2 * W(x, y) + W(x, y - h)) / (h * h);
-  const double b =
-      (W(x + h, y + h) - W(x + h, y - h) - W(x - h, y + h) + W(x - h, y - h)) / (4 * h * h);
-  return 0.5 * (a + d) - std::hypot(0.5 * (a - d), b);
-}
-
-/// Mooney-Rivlin with a negative C01 meets a compression test and fails in tension, at strains that
-/// the test has in its sides: the fit must say where, although no test went there.
-TEST(Homogeneous, WarnsOfInstabilityOutsideTheModesOfTheTests) {
-  constexpr double C10 = 1000, C01 = -100;
-  HomogeneousTest test{"compression", Mode::Uniaxial, {}, {}, {}, 1};
-  for (int i = 1; i <= 30; ++i) {
-    const double s = 1 - 0.7 / 30 * i;
-    test.deformation.push_back(s);
-    test.nominal.push_back(2 * (s - 1 / (s * s)) * (C10 + C01 / s));
-  }
-  HomogeneousSettings settings;
-  settings.law = "mooney-rivlin";
-  settings.constants = {{"C10", true, 500, 1, 1e6}, {"C01", true, 10, -1e6, 1e6}};
-  const HomogeneousFit fit = fit_homogeneous({test}, settings);
-  EXPECT_NEAR(fit.calibration.estimates[1].value, C01, 1e-3);
-  EXPECT_TRUE(std::isnan(fit.stability[0].unstable_at));
-  EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("outside the modes of the tests")));
-  const auto W = [&](double x, double y) {
-    const double a = std::exp(x), b = std::exp(y), c = 1 / (a * b);
-    return C10 * (a * a + b * b + c * c) + C01 * (1 / (a * a) + 1 / (b * b) + 1 / (c * c));
-  };
-  const auto& l = fit.all_states.unstable_at;
-  EXPECT_NEAR(l[0] * l[1] * l[2], 1, 1e-12);
-  EXPECT_LT(least_eigenvalue(W, std::log(l[0]), std::log(l[1])), 0);
-  // No state of less strain is: the scan goes outwards by hundredths of the largest strain.
-  const double reached = std::max(std::log(l[0]), -std::log(l[2]));
-  const double before = reached - 0.011 * fit.all_states.largest_strain;
-  for (int i = 0; i < 360; ++i) {
-    const double x = std::cos(i * std::numbers::pi / 180), y = std::sin(i * std::numbers::pi / 180);
-    const double largest = std::max({std::abs(x), std::abs(y), std::abs(x + y)});
-    EXPECT_GT(least_eigenvalue(W, before * x / largest, before * y / largest), 0);
-  }
-  // With both constants positive the law is stable everywhere.
-  settings.constants.clear();
-  EXPECT_TRUE(std::isnan(fit_homogeneous({test}, settings).all_states.unstable_at[0]));
-}
-
-/// Uncertainties stated four times too small: the residuals tell, and the intervals still hold the
-/// truth as often as they say.
+/// Uncertainties stated four times too small: the residuals show it, and the intervals still
+/// contain the truth as often as stated.
 TEST(Homogeneous, IntervalsCoverTheTruthWhereTheStatedUncertaintyIsTooSmall) {
   constexpr int kTrials = 300;
   std::mt19937 engine(9);
@@ -372,10 +208,10 @@ TEST(Homogeneous, WarnsOfABoundAndOfUnexplainedResiduals) {
   HomogeneousSettings settings;
   settings.law = "neo-hookean";
   settings.weighting = Weighting::Uncertainty;
-  settings.constants = {{"mu", true, 1000, 100, 2000}};
+  settings.constants = {{"young", true, 1000, 100, 2000}};
   const auto calibration = fit_homogeneous({test}, settings).calibration;
   EXPECT_TRUE(calibration.estimates[0].at_bound);
-  EXPECT_THAT(calibration.warnings, Contains(HasSubstr("mu is at its bound 2e+03")));
+  EXPECT_THAT(calibration.warnings, Contains(HasSubstr("young is at its bound 2e+03")));
   EXPECT_THAT(calibration.warnings, Contains(HasSubstr("times the stated uncertainty")));
 }
 
@@ -401,6 +237,10 @@ TEST(Homogeneous, RefusesWhatCannotBeFitted) {
   settings.weighting = Weighting::PerTest;
   settings.law = "hooke";
   EXPECT_THAT(refusal({test}, settings), HasSubstr("law 'hooke': it is not known"));
+  settings.law = "saint-venant-kirchhoff";
+  EXPECT_THAT(refusal({test}, settings), HasSubstr("it has no incompressible form"));
+  settings.law = "holzapfel-gasser-ogden";
+  EXPECT_THAT(refusal({test}, settings), HasSubstr("they do not say how its fibres lie"));
   settings.law = "yeoh";
   settings.constants = {{"C11", true, 1, 0, 2}};
   EXPECT_THAT(refusal({test}, settings), HasSubstr("constant 'C11'"));

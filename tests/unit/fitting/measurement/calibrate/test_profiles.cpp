@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "fitting/measurement/calibrate/least_squares.hpp"
+
+namespace palpate::calibrate {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+/// Residuals over n values of a straight line through the origin in exp(c): the cost is a parabola
+/// in k = exp(c), so that the profile of c ends at the logarithms of the ends of the interval of k.
+TEST(Profile, IsExactWhereTheLinearisedIntervalIsNot) {
+  const std::vector<double> x{1, 2, 3, 4, 5}, y{1.4, 1.3, 4.5, 3.1, 6.9};
+  LeastSquares problem;
+  const double infinity = std::numeric_limits<double>::infinity();
+  problem.constants = {{"c", "1", 0.3, -infinity, infinity}};
+  problem.residuals = x.size();
+  problem.model = [&](const double* c, double* r, double* J) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      r[i] = std::exp(c[0]) * x[i] - y[i];
+      if (J != nullptr) J[i] = std::exp(c[0]) * x[i];
+    }
+    return true;
+  };
+  Calibration fit = minimise(problem, "line");
+  add_profiles(problem, fit);
+  double xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += x[i] * x[i];
+    xy += x[i] * y[i];
+    yy += y[i] * y[i];
+  }
+  const double k = xy / xx, s = std::sqrt((yy - k * xy) / 4);
+  const double half = 2.776445 * s / std::sqrt(xx);  // Student's t of 4 at 95 %
+  EXPECT_NEAR(fit.estimates[0].profile_low, std::log(k - half), 2e-4);
+  EXPECT_NEAR(fit.estimates[0].profile_high, std::log(k + half), 2e-4);
+  EXPECT_GT(fit.estimates[0].high - fit.estimates[0].profile_high,
+            0.01);  // the linearised one is not
+}
+
+/// A linear problem of two correlated constants: profile and linearised interval are the same.
+TEST(Profile, IsTheLinearisedIntervalOfALinearProblem) {
+  const std::vector<double> y{0.3, 1.1, 1.4, 2.6, 2.7, 4.1};
+  LeastSquares problem;
+  problem.constants = {{"a", "1", 0, -100, 100}, {"b", "1", 0, -100, 0.9}};
+  problem.residuals = y.size();
+  problem.model = [&](const double* c, double* r, double* J) {
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      const auto x = static_cast<double>(i);
+      r[i] = c[0] + c[1] * x - y[i];
+      if (J != nullptr) {
+        J[2 * i] = 1;
+        J[2 * i + 1] = x;
+      }
+    }
+    return true;
+  };
+  Calibration fit = minimise(problem, "line");
+  add_profiles(problem, fit);
+  const Estimate &a = fit.estimates[0], &b = fit.estimates[1];
+  EXPECT_NEAR(a.profile_low, a.low, 1e-3 * (a.high - a.low));
+  EXPECT_NEAR(a.profile_high, a.high, 1e-3 * (a.high - a.low));
+  EXPECT_NEAR(b.profile_low, b.low, 1e-3 * (b.high - b.low));
+  EXPECT_GT(b.high, 0.9);
+  EXPECT_EQ(b.profile_high, 0.9);  // its bound
+}
+
+/// Two constants of which only the product acts: each alone can be anything.
+TEST(Profile, SaysWhatTheDataDoNotBound) {
+  LeastSquares problem;
+  const double infinity = std::numeric_limits<double>::infinity();
+  problem.constants = {{"a", "1", 1, -infinity, infinity}, {"b", "1", 0.9, 0.5, infinity}};
+  problem.residuals = 4;
+  problem.model = [&](const double* c, double* r, double* J) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double x = 1 + static_cast<double>(i);
+      r[i] = c[0] * c[1] * x - 2 * x - (i % 2 == 0 ? 0.1 : -0.1);
+      if (J != nullptr) {
+        J[2 * i] = c[1] * x;
+        J[2 * i + 1] = c[0] * x;
+      }
+    }
+    return true;
+  };
+  Calibration fit = minimise(problem, "product");
+  add_profiles(problem, fit);
+  // The product is 2 + sum(noise x)/sum(x x), known to t s/sqrt(sum x x) with two degrees of
+  // freedom.
+  double xx = 0, noise_x = 0, squares = 0;
+  for (int i = 0; i < 4; ++i) {
+    xx += (1 + i) * (1 + i);
+    noise_x += (1 + i) * (i % 2 == 0 ? 0.1 : -0.1);
+  }
+  for (int i = 0; i < 4; ++i) {
+    const double r = noise_x / xx * (1 + i) - (i % 2 == 0 ? 0.1 : -0.1);
+    squares += r * r;
+  }
+  const double high = 2 + noise_x / xx + 4.302653 * std::sqrt(squares / 2 / xx);
+  EXPECT_NEAR(fit.estimates[0].profile_high, high / 0.5, 1e-3);  // b at its bound
+  EXPECT_NEAR(fit.estimates[0].profile_low, 0, 1e-3);            // any b however large
+  EXPECT_EQ(fit.estimates[1].profile_low, 0.5);
+  EXPECT_TRUE(std::isinf(fit.estimates[1].profile_high));
+  EXPECT_THAT(fit.warnings, Contains(HasSubstr("b is not bounded by the data")));
+}
+
+}  // namespace
+}  // namespace palpate::calibrate
