@@ -36,7 +36,7 @@ struct Material {
 
 Eigen::Vector3d vector_in(const std::string& text, const char* tag) {
   std::smatch found;
-  const std::regex three("<" + std::string(tag) + ">([^,<]+),([^,<]+),([^,<]+)</");
+  const std::regex three(std::string("<") + tag + ">([^,<]+),([^,<]+),([^,<]+)</");
   EXPECT_TRUE(std::regex_search(text, found, three)) << tag;
   return {std::stod(found[1]), std::stod(found[2]), std::stod(found[3])};
 }
@@ -69,8 +69,9 @@ Matrix of_invariants(const Matrix& B, double W1, double W2) {
 Matrix ogden_stress(const Material& m, const Matrix& B) {
   const Eigen::SelfAdjointEigenSolver<Matrix> principal(B);
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
-  for (int i = 1; m.values.contains("c" + std::to_string(i)); ++i) {
-    const double c = m.at("c" + std::to_string(i)), power = m.at("m" + std::to_string(i));
+  for (int i = 1; m.values.contains(std::string("c") + std::to_string(i)); ++i) {
+    const double c = m.at(std::string("c") + std::to_string(i)),
+                 power = m.at(std::string("m") + std::to_string(i));
     for (int axis = 0; axis < 3; ++axis)
       t[axis] += c / power * (std::pow(principal.eigenvalues()[axis], power / 2) - 1);
   }
