@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""The Markdown pages are in step with the tree: links lead to files, named files and programs exist,
-lines are short but for rows of tables, and README's tour shows lines that the commands printed (docs/tour.txt, which
-scripts/tour writes).
+"""The Markdown pages are in step with the tree: links lead to files, named files exist, lines are
+short (rows of tables excepted), and README's tour shows lines that the commands printed
+(docs/tour.txt, which scripts/tour writes).
 
 Usage: check_docs.py [ROOT] | --self-test
 """
