@@ -97,7 +97,7 @@ Foreign run_calculix(const app::Deck& deck) {
   return result;
 }
 
-/// Of a disc as large as the facets that the patch moves as a whole.
+/// Radius of a disc as large as the facets that the patch moves as a whole.
 double equal_radius(const app::Deck& deck) {
   std::vector<bool> moved(static_cast<std::size_t>(deck.mesh.nodes()), false);
   for (const std::int32_t node : deck.patch) moved[static_cast<std::size_t>(node)] = true;

@@ -62,7 +62,7 @@ CampaignSettings settings_of(const Body& body, const Constants& c, std::size_t s
   return s;
 }
 
-/// Of the processor: other work on the machine does not count.
+/// Processor time: other work on the machine does not count.
 double processor_time() {
   timespec now{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
@@ -83,84 +83,115 @@ double quotient(const Sites& high, const Sites& low, std::size_t site, double wi
   return (high[site].samples.back().force - low[site].samples.back().force) / width;
 }
 
-void run(int cells, std::size_t sites) {
-  const Body body = layered(cells);
-  const std::vector<double> depths{kDepth / 4, kDepth / 2, 3 * kDepth / 4, kDepth};
-  const std::vector<RegionConstant> constants{
+/// One campaign whose derivatives are computed by the adjoint and by differences.
+struct Problem {
+  Body body;
+  Constants middle;
+  CampaignSettings settings;
+  std::vector<double> depths{kDepth / 4, kDepth / 2, 3 * kDepth / 4, kDepth};
+  std::vector<RegionConstant> constants{
       {"top", "young"}, {"base", "young"}, {"top", "poisson"}, {"base", "poisson"}};
-  const Constants middle;
-  const CampaignSettings settings = settings_of(body, middle, sites);
-  std::printf("%zu sites, %zu depths, %zu constants\n", settings.sites.size(), depths.size(),
-              constants.size());
 
-  CampaignReport report;
-  const double campaign = seconds([&] { run_campaign(body, settings, report); });
-  std::printf("%-52s %8.2f s   1.00\n", "campaign", campaign);
-  const auto tell = [&](const char* what, double spent) {
-    std::printf("%-52s %8.2f s %6.2f of a campaign\n", what, spent, spent / campaign);
-  };
+  /// The settings with other constants.
+  CampaignSettings with(CampaignSettings changed, const Constants& c) const {
+    changed.materials = settings_of(body, c, 0).materials;
+    return changed;
+  }
+  Sites adjoint(const CampaignSettings& s, FactorCache& cache) const {
+    return run_sensitivity(body, s, depths, constants, {}, &cache);
+  }
+};
 
-  FactorCache kept;
-  Sites adjoint;
-  const double by_adjoint =
-      seconds([&] { adjoint = run_sensitivity(body, settings, depths, constants, {}, &kept); });
-  tell("forces and derivatives, adjoint", by_adjoint);
+void print_time(const char* what, double spent, double campaign) {
+  std::printf("%-52s %8.2f s %6.2f of a campaign\n", what, spent, spent / campaign);
+}
 
-  CampaignSettings tight = settings;
-  tight.indentation.force_tolerance = 1e-7;
-  const auto forces = [&](const Constants& c) {
-    CampaignSettings s = tight;
-    s.materials = settings_of(body, c, 0).materials;
-    return run_sensitivity(body, s, depths, {});
-  };
-  std::vector<Constants> more(4, middle), less(4, middle);
+/// Forces above and below each constant by a small step, and the processor time they take.
+struct Differences {
+  std::vector<Sites> high, low;
   std::vector<double> width;
+  double one_sided_s, central_s;
+};
+
+Differences differences(const Problem& problem, const CampaignSettings& tight) {
+  const Constants& middle = problem.middle;
+  const auto forces = [&](const Constants& c) {
+    return run_sensitivity(problem.body, problem.with(tight, c), problem.depths, {});
+  };
+  Differences found{};
+  std::vector<Constants> more(4, middle), less(4, middle);
   const auto vary = [&](std::size_t i, double Constants::*member, double step) {
     more[i].*member += step;
     less[i].*member -= step;
-    width.push_back(2 * step);
+    found.width.push_back(2 * step);
   };
   vary(0, &Constants::top, kStep * middle.top);
   vary(1, &Constants::base, kStep * middle.base);
   vary(2, &Constants::top_poisson, kPoissonStep * (0.5 - middle.top_poisson));
   vary(3, &Constants::base_poisson, kPoissonStep * (0.5 - middle.base_poisson));
-  std::vector<Sites> high, low;
-  const double one_sided = seconds([&] {
+  found.one_sided_s = seconds([&] {
     forces(middle);
-    for (const Constants& c : more) high.push_back(forces(c));
+    for (const Constants& c : more) found.high.push_back(forces(c));
   });
-  const double others = seconds([&] {
-    for (const Constants& c : less) low.push_back(forces(c));
-  });
-  tell("the same by one-sided differences", one_sided);
-  tell("the same by central differences", one_sided + others);
-  std::printf("differences over adjoint: %.1f one-sided, %.1f central\n", one_sided / by_adjoint,
-              (one_sided + others) / by_adjoint);
-  // At one tolerance they are the same derivatives.
-  const Sites exact = run_sensitivity(body, tight, depths, constants, {}, &kept);
-  for (std::size_t c = 0; c < constants.size(); ++c) {
+  found.central_s = found.one_sided_s + seconds([&] {
+                      for (const Constants& c : less) found.low.push_back(forces(c));
+                    });
+  return found;
+}
+
+/// At one tolerance the adjoint and the differences are the same derivatives.
+void print_errors(const Problem& problem, const Differences& by_steps, const Sites& exact,
+                  const Sites& adjoint) {
+  for (std::size_t c = 0; c < problem.constants.size(); ++c) {
     double largest = 0, tightly = 0, loosely = 0;
     for (std::size_t s = 0; s < exact.size(); ++s) {
       const double slope = exact[s].samples.back().slope[c];
+      const double by_step = quotient(by_steps.high[c], by_steps.low[c], s, by_steps.width[c]);
       largest = std::max(largest, std::abs(slope));
-      tightly = std::max(tightly, std::abs(slope - quotient(high[c], low[c], s, width[c])));
+      tightly = std::max(tightly, std::abs(slope - by_step));
       loosely = std::max(loosely, std::abs(slope - adjoint[s].samples.back().slope[c]));
     }
     std::printf(
         "  %s of %s: central differences within %.1e of the adjoint, that at the tolerance "
         "of a campaign within %.1e\n",
-        constants[c].name.c_str(), constants[c].region.c_str(), tightly / largest,
+        problem.constants[c].name.c_str(), problem.constants[c].region.c_str(), tightly / largest,
         loosely / largest);
   }
+}
+
+void run(int cells, std::size_t sites) {
+  Problem problem;
+  problem.body = layered(cells);
+  problem.settings = settings_of(problem.body, problem.middle, sites);
+  std::printf("%zu sites, %zu depths, %zu constants\n", problem.settings.sites.size(),
+              problem.depths.size(), problem.constants.size());
+
+  CampaignReport report;
+  const double campaign = seconds([&] { run_campaign(problem.body, problem.settings, report); });
+  std::printf("%-52s %8.2f s   1.00\n", "campaign", campaign);
+
+  FactorCache cache;
+  Sites adjoint;
+  const double by_adjoint = seconds([&] { adjoint = problem.adjoint(problem.settings, cache); });
+  print_time("forces and derivatives, adjoint", by_adjoint, campaign);
+
+  CampaignSettings tight = problem.settings;
+  tight.indentation.force_tolerance = 1e-7;
+  const Differences by_steps = differences(problem, tight);
+  print_time("the same by one-sided differences", by_steps.one_sided_s, campaign);
+  print_time("the same by central differences", by_steps.central_s, campaign);
+  std::printf("differences over adjoint: %.1f one-sided, %.1f central\n",
+              by_steps.one_sided_s / by_adjoint, by_steps.central_s / by_adjoint);
+  print_errors(problem, by_steps, problem.adjoint(tight, cache), adjoint);
 
   const auto again = [&](const char* what, const Constants& c) {
-    CampaignSettings s = settings;
-    s.materials = settings_of(body, c, 0).materials;
-    const int before = kept.factorizations();
-    tell(what, seconds([&] { run_sensitivity(body, s, depths, constants, {}, &kept); }));
-    std::printf("  (%d factorization%s)\n", kept.factorizations() - before,
-                kept.factorizations() - before == 1 ? "" : "s");
+    const CampaignSettings s = problem.with(problem.settings, c);
+    const int before = cache.factorizations();
+    print_time(what, seconds([&] { problem.adjoint(s, cache); }), campaign);
+    std::printf("  (%d factorization%s)\n", cache.factorizations() - before,
+                cache.factorizations() - before == 1 ? "" : "s");
   };
+  const Constants& middle = problem.middle;
   again("adjoint again, all moduli half as large again", {1.5 * middle.top, 1.5 * middle.base});
   again("adjoint again, one modulus by a tenth", {1.65 * middle.top, 1.5 * middle.base});
   again("adjoint again, Poisson's ratios 0.49", {middle.top, middle.base, 0.49, 0.49});

@@ -183,7 +183,7 @@ double peak_megabytes() {
   return 1e-3 * static_cast<double>(usage.ru_maxrss);
 }
 
-/// Of the upper face, at least a quarter of it from its border; evenly spread, however many
+/// Points on the upper face, at least a quarter of it from its border; evenly spread, however many
 /// (the sequence of the plastic number, M. Roberts 2018).
 std::vector<PressPoint> spread_points(std::size_t count) {
   const auto coordinate = [](double step, std::size_t i) {

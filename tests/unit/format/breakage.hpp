@@ -52,7 +52,7 @@ struct Case {
 
 void PrintTo(const Case& broken, std::ostream* out);
 
-/// Of each case: the sample is read, and refused once it is broken, with a line that names file,
+/// The sample of each case is read, and refused once it is broken, with a line that names file,
 /// object and remedy.
 class Rejection : public testing::TestWithParam<Case> {};
 

@@ -24,11 +24,7 @@ void store_externally(const Path& path) {
   H5Pclose(properties);
 }
 
-std::vector<Case> body_cases() {
-  const auto kind = Kind::Body;
-  const auto poke_u8 = [](const std::string& object, double value) {
-    return poke(object, 0, value);
-  };
+std::vector<Case> curved_and_sprung_body_cases() {
   constexpr auto kSprung = Kind::SprungBody, kCurved = Kind::CurvedBody;
   return {
       {"BodyMiddlesMissing", kCurved, remove("/curved_edges/middle"), "/curved_edges/middle",
@@ -58,6 +54,12 @@ std::vector<Case> body_cases() {
        "/foundation/tangential_stiffness[0]", "is not finite and not negative"},
       {"BodySpringsTooFew", kSprung, replace("/foundation/normal_stiffness", {3}, H5T_IEEE_F64LE),
        "/foundation/normal_stiffness", "4"},
+  };
+}
+
+std::vector<Case> body_mesh_cases() {
+  const auto kind = Kind::Body;
+  return {
       {"BodyNodesMissing", kind, remove("/nodes"), "/nodes", "is missing"},
       {"BodyNodeNaN", kind, poke("/nodes", 4, kNaN), "/nodes[1]", "nan is not finite"},
       {"BodyNodeInfinite", kind, poke("/nodes", 0, kInfinity), "/nodes[0]", "inf is not finite"},
@@ -91,6 +93,12 @@ std::vector<Case> body_cases() {
       {"BodyInverted", kind, swap_corners, "/tetrahedra[0]", "is inverted or flat"},
       {"BodyFlat", kind, replace("/nodes", {64, 3}, H5T_IEEE_F64LE, 1), "/tetrahedra[0]",
        "is inverted or flat"},
+  };
+}
+
+std::vector<Case> body_marking_cases() {
+  const auto kind = Kind::Body;
+  return {
       {"BodyRegionOutOfRange", kind, poke("/tetrahedron_region", 9, 2), "/tetrahedron_region[9]",
        "index 2 is not below 2"},
       {"BodyRegionsTooFew", kind, replace("/tetrahedron_region", {5}, H5T_STD_I32LE),
@@ -112,7 +120,7 @@ std::vector<Case> body_cases() {
        "/response/inward", "has 0 rows, 56 expected"},
       {"BodyTriangleOutOfRange", kind, poke("/response/triangles", 4, 56), "/response/triangles[1]",
        "index 56 is not below 56"},
-      {"BodySiteNeitherYesNorNo", kind, poke_u8("/response/is_site", 2), "/response/is_site[0]",
+      {"BodySiteNeitherYesNorNo", kind, poke("/response/is_site", 0, 2), "/response/is_site[0]",
        "is not 0 or 1"},
       {"BodyNameMissing", kind, edit([](Hdf5Editor& e) { H5Adelete(e.file(), "name"); }), ":/",
        "attribute 'name' is missing"},
@@ -125,7 +133,10 @@ std::vector<Case> body_cases() {
   };
 }
 
-INSTANTIATE_TEST_SUITE_P(Bodies, Rejection, testing::ValuesIn(body_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(CurvedAndSprungBodies, Rejection,
+                         testing::ValuesIn(curved_and_sprung_body_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(BodyMeshes, Rejection, testing::ValuesIn(body_mesh_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(BodyMarkings, Rejection, testing::ValuesIn(body_marking_cases()), name_of);
 
 }  // namespace
 }  // namespace palpate::samples

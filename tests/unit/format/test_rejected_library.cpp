@@ -31,7 +31,7 @@ void link_elsewhere(const Path& path) {
                      H5P_DEFAULT, H5P_DEFAULT);
 }
 
-std::vector<Case> library_cases() {
+std::vector<Case> surface_and_response_cases() {
   const auto kind = Kind::Library;
   const auto coupled = Kind::CoupledLibrary;
   return {
@@ -81,6 +81,12 @@ std::vector<Case> library_cases() {
        "/response/normal_knot", "32-bit float expected"},
       {"LibraryKnotsAreABomb", kind, claim_a_terabyte, "/response/normal_knot",
        "claims more data than the file holds"},
+  };
+}
+
+std::vector<Case> status_and_certificate_cases() {
+  const auto kind = Kind::Library;
+  return {
       {"LibraryStatusUnknown", kind, poke("/response/status", 0, 9), "/response/status[0]",
        "is not a status"},
       {"LibraryHoleThatIsNone", kind, poke("/response/status", 5, 0), "/response/normal_offset[5]",
@@ -111,7 +117,10 @@ std::vector<Case> library_cases() {
   };
 }
 
-INSTANTIATE_TEST_SUITE_P(Libraries, Rejection, testing::ValuesIn(library_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(SurfacesAndResponses, Rejection,
+                         testing::ValuesIn(surface_and_response_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(StatusAndCertificates, Rejection,
+                         testing::ValuesIn(status_and_certificate_cases()), name_of);
 
 }  // namespace
 }  // namespace palpate::samples

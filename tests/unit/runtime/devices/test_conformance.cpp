@@ -185,7 +185,7 @@ TEST_P(Conformance, SaysWhenItSaturates) {
   EXPECT_EQ(saturate(), DeviceStatus::Saturated);
 }
 
-/// Of the drivers that know when a sample is late.
+/// The drivers that know when a sample is late.
 class LateConformance : public Conformance {};
 
 TEST_P(LateConformance, SaysWhenASampleIsLateAndGoesOn) {
