@@ -7,7 +7,7 @@ if(NOT PALPATE_CCACHE OR NOT PALPATE_CCACHE_PROGRAM OR CMAKE_CXX_COMPILER_LAUNCH
   return()
 endif()
 
-# A base folder lets two checkouts share results. The sloppiness and the compiler options are those that the
+# With a base folder, two checkouts use the same results. The sloppiness and the compiler options are those that the
 # manual of ccache asks for with precompiled headers.
 set(launcher ${CMAKE_COMMAND} -E env
   CCACHE_BASEDIR=${PROJECT_SOURCE_DIR}

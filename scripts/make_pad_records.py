@@ -55,7 +55,7 @@ def bluehill(path, label, rows):
 
 
 def robot(path, rng, x, y):
-    """A press, then a drag along x at the held depth; positions of the tip in the frame of the pad."""
+    """A press, then a drag along x at that depth; positions of the tip in the frame of the pad."""
     rate, speed, travel, approach = 100, 0.5, 0.6, 1.0
     down, side = (approach + DEPTH) / speed, travel / speed
     tangential = 2 / 3 * (force(DEPTH + 1e-3) - force(DEPTH - 1e-3)) / 2e-3  # N/mm [Mindlin 1949]

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""What the checks of the sources share: their command line, and the test that they can fail."""
+"""The command line common to all checks of the sources, and the test that each check can fail."""
 import tempfile
 from pathlib import Path
 
 
 def self_test(faults, files, expected):
-    """`faults` of a tree of `files` (path: text) must name just the places `expected`."""
+    """`faults` of a tree of `files` (path: text) must name exactly the places `expected`."""
     with tempfile.TemporaryDirectory() as folder:
         root = Path(folder)
         for name, text in files.items():

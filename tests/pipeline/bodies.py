@@ -43,7 +43,7 @@ def write_off(path, surface):
             file.write(f"3 {a} {b} {c}\n")
 
 
-# A block in a tray: its base and sides are held, its top is touched, but not so near the rim that
+# A block in a tray: its base and sides are fixed, its top is touched, but not so near the rim that
 # the tool would rest on it.
 SIZE = (50, 50, 20)  # mm
 CASE = """name = "block"

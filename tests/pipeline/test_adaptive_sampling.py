@@ -162,7 +162,7 @@ class AdaptiveSampling(unittest.TestCase):
                 self.assertEqual(run.returncode, DONE)
                 return kills
             kills += 1
-            patience *= 1.1  # where one wave of sites takes longer than that, nothing would ever be kept
+            patience *= 1.1  # a batch of sites may take longer than that
         return self.fail("no progress")
 
     def test_it_cannot_be_divided(self):

@@ -88,7 +88,7 @@ class Campaign(unittest.TestCase):
     def kill_until_done(self, out, moment):
         """Starts the campaign again and again, killing it at random moments, until it ends. @return the kills."""
         journal = out / "curves.journal"
-        kept, kills, stretch = 0, 0, 1.0
+        saved, kills, stretch = 0, 0, 1.0
         while True:
             run = subprocess.Popen([PALPATE, "precompute", self.case, "--out", out, "--threads", "2"],
                                    stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
@@ -105,10 +105,10 @@ class Campaign(unittest.TestCase):
             kills += 1
             self.assertLess(kills, 200, "no progress")
             now = summary(journal)["sites_done"] if journal.exists() and journal.stat().st_size > 90 else 0
-            self.assertGreaterEqual(now, kept)
+            self.assertGreaterEqual(now, saved)
             # Sites end in waves: on a machine that has become slower no kill would be late enough for one.
-            stretch = 1.0 if now > kept else 1.2 * stretch
-            kept = now
+            stretch = 1.0 if now > saved else 1.2 * stretch
+            saved = now
 
     def test_a_full_disk_ends_in_one_line_and_the_run_can_go_on(self):
         out = self.fresh("full")
@@ -204,8 +204,8 @@ class Campaign(unittest.TestCase):
             if kernel is None:  # neither: OpenBLAS itself knows such processors
                 continue
             out = self.fresh(f"kernel-{kernel}")
-            told = self.precompute(out, "--shard", "1/16", env=environment | asked).stdout
-            self.assertIn(f"BLAS kernel: {kernel}\n", told)
+            printed = self.precompute(out, "--shard", "1/16", env=environment | asked).stdout
+            self.assertIn(f"BLAS kernel: {kernel}\n", printed)
             step = summary(out / "curves.1-of-16.h5")["provenance"][-1]
             self.assertEqual(step["facts"]["blas_kernel"], kernel)
 

@@ -64,7 +64,7 @@ class Pipeline(unittest.TestCase):
         self.assertEqual(self.built.stderr, "")
 
     def run_ok(self, *arguments):
-        """Standard output. `build` and `precompute` tell again when sites did not complete."""
+        """Standard output. `build` and `precompute` exit with 4 when sites did not complete."""
         result = palpate(*arguments)
         expected = self.built.returncode if arguments[0] in ("build", "precompute") else 0
         self.assertEqual(result.returncode, expected, result.stderr)
@@ -281,7 +281,7 @@ class Pipeline(unittest.TestCase):
             bound, hold = max(certificate["stick"], certificate["slip"]), certificate["hold"]
         self.assertTrue(np.isfinite(bound))
         damping = 0.5
-        rate = 2 * 0.7 * hold / damping  # what certifies 0.7 of the library, slides held back
+        rate = 2 * 0.7 * hold / damping  # certifies 0.7 of the library, with throttled slides
         soft = self.root / "soft.h5"
         out = self.run_ok("certify", self.case, "--out", self.out, "--rate", rate, "--soften", soft)
         self.assertIn("0.70 times its forces would be certified", out)
@@ -307,11 +307,11 @@ class Pipeline(unittest.TestCase):
     def assert_slides_are_held_back(self, hold, bound, damping):
         """Between L_hold and the bound of slides the limit is lowered, and no response is."""
         self.assertLess(1.001 * hold, bound)
-        limit, held = 0.5 * (hold + bound), self.root / "held.h5"
+        limit, throttled = 0.5 * (hold + bound), self.root / "throttled.h5"
         out = self.run_ok("certify", self.case, "--out", self.out, "--rate", 2 * limit / damping,
-                          "--soften", held)
+                          "--soften", throttled)
         self.assertIn("slides can be held back", out)
-        with h5py.File(held) as file, h5py.File(self.out / "library.h5") as original:
+        with h5py.File(throttled) as file, h5py.File(self.out / "library.h5") as original:
             self.assertAlmostEqual(file["certificate"].attrs["limit"], limit, delta=1e-6 * limit)
             self.assertAlmostEqual(file["certificate/device/lowest_rate"][0], 2 * limit / damping,
                                    delta=1e-6 * limit / damping)
@@ -324,11 +324,11 @@ class Pipeline(unittest.TestCase):
         (other / "body.h5").write_bytes((self.out / "body.h5").read_bytes())
         changed = self.root / "coarser.toml"
         changed.write_text(CASE.replace("interior_growth = 3.0", "interior_growth = 4.0"), encoding="utf-8")
-        for case, told in ((self.case, False), (changed, True)):
+        for case, warned in ((self.case, False), (changed, True)):
             result = palpate("precompute", case, "--out", other, "--shard", "1/16")
             self.assertIn(result.returncode, (0, SOME_SITES_FAILED), result.stderr)
             self.assertEqual("body.h5 was not meshed by this case as it is now: the case has changed" in result.stdout,
-                             told, result.stdout)
+                             warned, result.stdout)
 
     def test_threads_do_not_change_the_curves(self):
         other = self.root / "one-thread"

@@ -30,8 +30,8 @@ def table_rows(page, columns):
 
 def first_schema(meaning):
     """The sample of a schema has all that the page knows up to that schema."""
-    told = re.match(r"schema (\d)", meaning)
-    return int(told[1]) if told else 1
+    stated = re.match(r"schema (\d)", meaning)
+    return int(stated[1]) if stated else 1
 
 
 def documented_datasets(kind, schema):

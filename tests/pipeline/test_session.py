@@ -72,7 +72,7 @@ class Session(unittest.TestCase):
             time.sleep(0.05)
 
     def wait_for_steps(self, journal, least):
-        """Until the journal holds so many steps, told from its size: a step takes 168 bytes, a record of them 68 more."""
+        """Waits until the journal contains so many steps: a step takes 168 bytes, a record of them 68 more."""
         self.wait_for(f"{least} steps", lambda: journal.exists() and journal.stat().st_size > 170 * least + 4096)
         self.assertGreaterEqual(self.steps_in(journal), least)
 
@@ -171,17 +171,17 @@ class Session(unittest.TestCase):
             self.assertIn("No space left", filled.stderr)
             self.assertIn(f"palpate recover {journal}", filled.stderr)
             self.assertEqual(os.listdir(disk), ["recording.journal"])
-            kept = self.steps_in(journal)
-            self.assertGreater(kept, RATE)
+            recorded = self.steps_in(journal)
+            self.assertGreater(recorded, RATE)
             # Still no room: the journal stays as it is. Elsewhere there is.
             again = palpate("recover", journal)
             self.assertEqual(again.returncode, INTERNAL)
             self.assertIn("space", again.stderr)
-            self.assertEqual(self.steps_in(journal), kept)
+            self.assertEqual(self.steps_in(journal), recorded)
             elsewhere = palpate("recover", journal, "--out", self.root / "elsewhere.h5")
             self.assertEqual(elsewhere.returncode, DONE, elsewhere.stderr)
         with h5py.File(self.root / "elsewhere.h5") as file:
-            self.assertEqual(len(file["step/time"]), kept)
+            self.assertEqual(len(file["step/time"]), recorded)
         self.assert_good(self.root / "elsewhere.h5")
 
     def scripted(self, out, press_speed):
