@@ -108,8 +108,8 @@ std::vector<std::uint8_t> facet_kinds(const Body& body, const Library& library,
     const auto is_fixed = [&](std::int32_t p) {
       return fixed[to_index(map.node[to_index(p)])] != 0;
     };
-    const bool held = std::all_of(map.facets[f].begin(), map.facets[f].end(), is_fixed);
-    kinds.push_back(touchable ? Touchable : held ? Fixed : NoResponse);
+    const bool all_fixed = std::all_of(map.facets[f].begin(), map.facets[f].end(), is_fixed);
+    kinds.push_back(touchable ? Touchable : all_fixed ? Fixed : NoResponse);
   }
   return kinds;
 }
@@ -192,12 +192,12 @@ json sample_data(const Curves& curves, const Library& library) {
   std::vector<std::int32_t> vertex;
   std::vector<std::uint8_t> kind;
   std::vector<std::uint32_t> offset{0};
-  std::vector<float> held, displacement, force;
+  std::vector<float> lateral_depth, displacement, force;
   for (const SiteCurves& site : curves.sites) {
     for (const CurvePath& path : site.paths) {
       vertex.push_back(site.vertex);
       kind.push_back(static_cast<std::uint8_t>(path.kind));
-      held.push_back(static_cast<float>(path.lateral_depth));
+      lateral_depth.push_back(static_cast<float>(path.lateral_depth));
       const Vec3& axis =
           path.kind == PathKind::Normal ? library.inward[to_index(site.vertex)] : path.direction;
       for (const CurveSample& sample : path.samples) {
@@ -209,7 +209,7 @@ json sample_data(const Curves& curves, const Library& library) {
   }
   return {{"vertex", column(vertex)},
           {"kind", column(kind)},
-          {"lateral_depth", column(held)},
+          {"lateral_depth", column(lateral_depth)},
           {"offset", column(offset)},
           {"displacement", column(displacement)},
           {"force", column(force)}};

@@ -16,7 +16,7 @@ bool same_run(const ProvenanceStep& a, const ProvenanceStep& b) {
   return a.stage == b.stage && a.utc == b.utc && a.git_revision == b.git_revision;
 }
 
-/// The chain of the library first; then what only another artifact tells (the session).
+/// Steps of the library, then those that only another artifact has (the session).
 std::vector<ProvenanceStep> joined_chain(const ReportInput& input) {
   std::vector<ProvenanceStep> chain;
   const auto add = [&](const Provenance& provenance) {

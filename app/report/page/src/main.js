@@ -15,7 +15,7 @@ import { recordSection } from './sections/record.js';
 import { sessionSection } from './sections/session.js';
 import { watchTheme } from './theme.js';
 
-// The state of the page is told on its root element: data-ready "ok" or "failed", data-errors the
+// Attributes of the root element give the state of the page: data-ready "ok" or "failed", data-errors the
 // number of failures. A section that cannot be drawn says so in its place.
 const root = document.documentElement;
 const count = () => { root.dataset.errors = String(Number(root.dataset.errors) + 1); };

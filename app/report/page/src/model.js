@@ -62,42 +62,40 @@ export class Model {
     return Uint32Array.from(borders);
   }
 
-  /** Value of each boundary point from a value of each response vertex; vertices without one (NaN)
-   *  lend nothing. */
+  /** Value at each boundary point from values at the response vertices; NaN values are ignored. */
   interpolate(ofVertex) {
     const { point_triangle: triangle, point_natural: natural, triangles } = this.surface;
     const out = new Float32Array(triangle.length);
     for (let p = 0; p < out.length; ++p) {
       const first = natural[2 * p] / 65535, second = natural[2 * p + 1] / 65535;
-      const share = [first, second, Math.max(0, 1 - first - second)];
+      const weights = [first, second, Math.max(0, 1 - first - second)];
       let sum = 0, weight = 0;
       for (let l = 0; l < 3; ++l) {
         const value = triangle[p] < 0 ? NaN : ofVertex[triangles[3 * triangle[p] + l]];
         if (!Number.isFinite(value)) continue;
-        sum += share[l] * value;
-        weight += share[l];
+        sum += weights[l] * value;
+        weight += weights[l];
       }
       out[p] = weight > 1e-4 ? sum / weight : NaN;
     }
     return out;
   }
 
-  /** The same of values known at some vertices only: none is drawn beyond the triangles that are
-   *  known at all three corners. */
+  /** The same for values at some vertices only: NaN outside of triangles with three known corners. */
   interpolateWithin(ofVertex) {
     const { point_triangle: triangle, point_natural: natural, triangles } = this.surface;
     const out = this.interpolate(ofVertex);
     for (let p = 0; p < out.length; ++p) {
       const first = natural[2 * p] / 65535, second = natural[2 * p + 1] / 65535;
-      const share = [first, second, 1 - first - second];
+      const weights = [first, second, 1 - first - second];
       for (let l = 0; l < 3; ++l) {
-        if (share[l] > 1e-4 && triangle[p] >= 0 && !Number.isFinite(ofVertex[triangles[3 * triangle[p] + l]])) out[p] = NaN;
+        if (weights[l] > 1e-4 && triangle[p] >= 0 && !Number.isFinite(ofVertex[triangles[3 * triangle[p] + l]])) out[p] = NaN;
       }
     }
     return out;
   }
 
-  /** Vertices with a value, but in no triangle that is known at all three corners. */
+  /** Vertices with a value, but without a triangle with three known corners. */
   singles(ofVertex) {
     const { triangles } = this.surface;
     const single = new Set();

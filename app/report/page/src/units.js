@@ -33,7 +33,7 @@ export const bound = (k) => (Number.isFinite(k) ? stiffness(k) : 'not certified:
 export const energy = (j) => (j === 0 ? `0${NBSP}J` : scaled([[1, 'J'], [1e-3, 'mJ'], [1e-6, '\u00b5J'], [1e-9, 'nJ'], [1e-12, 'pJ']])(j));
 export const time = scaled([[1, 's'], [1e-3, 'ms'], [1e-6, '\u00b5s'], [1e-9, 'ns']]);
 export const frequency = scaled([[1e6, 'MHz'], [1e3, 'kHz'], [1, 'Hz']]);
-/** A tenth of a per mille is as fine as a share is ever read. */
+/** Rounds to a tenth of a per mille. */
 export const percent = (x) => (Number.isFinite(x) && x !== 0 && Math.abs(x) < 1e-4
   ? `< 0.01${NBSP}%` : significant(x * 100, 2) + NBSP + '%');
 export const bytes = scaled([[1e9, 'GB'], [1e6, 'MB'], [1e3, 'kB'], [1, 'B']]);

@@ -162,12 +162,12 @@ CurvePath lateral_path(std::int32_t vertex, const Vec3& x, const Vec3& inward) {
   path.lateral_depth = kDepth / 2;
   path.direction = tangent(inward);
   const double k = lateral_stiffness(x);
-  const double held = hertz_factor(x) * std::pow(path.lateral_depth, 2.5) / 2.5;
+  const double before = hertz_factor(x) * std::pow(path.lateral_depth, 2.5) / 2.5;
   for (int i = 0; i <= 6; ++i) {
     CurveSample s;
     s.displacement = 0.003 * i / 6;
     s.force = (k * s.displacement) * path.direction;
-    s.tool_work = held + 0.5 * k * s.displacement * s.displacement;
+    s.tool_work = before + 0.5 * k * s.displacement * s.displacement;
     s.strain_energy = s.tool_work * (1 - 0.5 * balance_gap(vertex));
     path.samples.push_back(s);
   }

@@ -252,10 +252,10 @@ TEST_F(Report, GreysWhatCannotBeTouched) {
     for (const std::int32_t v : all_.body.response.triangles[f / 4])
       touchable = touchable && all_.library.responses[to_index(v)].status != ResponseStatus::Hole;
     EXPECT_EQ(kind[f] == 0, touchable) << f;
-    bool held = true;
+    bool fixed = true;
     for (const std::int32_t n : all_.body.boundary[f])
-      held = held && all_.body.nodes[to_index(n)][2] <= -0.018;
-    EXPECT_EQ(kind[f] == 2, held && !touchable) << f;
+      fixed = fixed && all_.body.nodes[to_index(n)][2] <= -0.018;
+    EXPECT_EQ(kind[f] == 2, fixed && !touchable) << f;
   }
 }
 

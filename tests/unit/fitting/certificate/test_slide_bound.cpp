@@ -183,7 +183,7 @@ TEST(SlipBound, HoldsOnTheTrianglesOfASphere) {
   EXPECT_GT(census.slides, 1000);
 }
 
-/// Energy before and after a slide of the paper's rule, the tool held: c moves by rho - rho_s.
+/// Energy before and after a slide at a fixed tool position: c moves by rho - rho_s.
 struct EnergyStep {
   double before = 0, after = 0;
 };
@@ -228,7 +228,7 @@ TEST(SlidingPassive, NoSlideRaisesTheEnergyWhereItIsCertified) {
   }
   EXPECT_GT(certified, 30);
   EXPECT_GT(slides, 5000);
-  EXPECT_GT(rises_elsewhere, 0);  // the condition tells triangles apart
+  EXPECT_GT(rises_elsewhere, 0);  // the condition distinguishes triangles
 }
 
 }  // namespace

@@ -89,14 +89,14 @@ double mean_square(const Library& library, const Field& field, const std::vector
     for (int i = 0; i < 20; ++i, ++count) {
       double a = uniform(random), b = uniform(random);
       if (a + b > 1) a = 1 - a, b = 1 - b;
-      const std::array<double, 3> share{1 - a - b, a, b};
+      const std::array<double, 3> natural{1 - a - b, a, b};
       double x = 0, y = 0, rendered = 0;
       for (std::size_t k = 0; k < 3; ++k) {
         const auto v = static_cast<std::size_t>(triangle[k]);
         const Vec3& corner = library.positions[v];
-        x += share[k] * corner[0];
-        y += share[k] * corner[1];
-        rendered += share[k] * factors[v] * field(corner[0], corner[1]);
+        x += natural[k] * corner[0];
+        y += natural[k] * corner[1];
+        rendered += natural[k] * factors[v] * field(corner[0], corner[1]);
       }
       sum += std::pow(rendered - field(x, y), 2);
     }
@@ -105,7 +105,7 @@ double mean_square(const Library& library, const Field& field, const std::vector
 }
 
 TEST(BetweenNodes, TheErrorBetweenNodesFallsByMoreThanHalf) {
-  // Stiffness that rises toward a support, as beside the held ends of a body: no quadratic.
+  // Stiffness that rises toward a support, as beside the fixed ends of a body: not quadratic.
   const Field field = [](double x, double) { return 150 + 100 * std::exp(-x / 0.03); };
   const Library library = sheet(field);
   const std::vector<double> one(library.positions.size(), 1.0);

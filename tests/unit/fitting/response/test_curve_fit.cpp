@@ -114,8 +114,8 @@ double objective(const Samples& samples, const std::vector<double>& knots,
   const auto slope_at = [&](double d) {
     std::size_t k = 0;
     while (k + 2 < knots.size() && d > knots[k + 1]) ++k;
-    const double share = (d - knots[k]) / (knots[k + 1] - knots[k]);
-    return slopes[k] + share * (slopes[k + 1] - slopes[k]);
+    const double t = (d - knots[k]) / (knots[k + 1] - knots[k]);
+    return slopes[k] + t * (slopes[k + 1] - slopes[k]);
   };
   double sum = 0;
   double largest_tolerance = 0;

@@ -49,7 +49,7 @@ function extent(values) {
   return low > high ? null : [low, high];
 }
 
-/** What the colours span, in words; grey is told apart from a hole where a bound does not exist. */
+/** Caption of the range of the colours; a missing bound is not reported as a hole. */
 function rangeText(field, depth, span, unbounded) {
   const at = field.deep ? ` at d = ${units.length(depth)}` : '';
   const values = span ? `${units.significant(span[0])} to ${units.significant(span[1])} ${field.unit}` : 'no value';

@@ -44,7 +44,7 @@ function overlay(curve) {
   ];
 }
 
-/** Several points may share an abscissa: each becomes its own by a shift that nobody sees. */
+/** Points may have equal abscissas; an invisible shift makes them distinct. */
 function distinct(points) {
   const seen = new Set();
   return points.map(([x, y]) => {
@@ -73,7 +73,7 @@ function someOf(texts, most = 3) {
   return texts.slice(0, most).join('; ') + (rest > 0 ? `; and ${units.count(rest)} more, in comparison.json` : '');
 }
 
-const percentOf = (share) => (share === null ? 'unknown' : units.percent(share));
+const percentOf = (fraction) => (fraction === null ? 'unknown' : units.percent(fraction));
 const forceOf = (f) => (f === null ? 'unknown' : units.force(f));
 
 function summaryOf(s) {

@@ -9,7 +9,7 @@ import * as units from '../units.js';
 const NORMAL = 0, LATERAL = 1;
 const STEPS = 96;
 
-/** Sampled paths of a node: [{held, x (mm), y (N)}] */
+/** Sampled paths of a node: [{x (mm), y (N)}] */
 function samples(data, vertex, kind) {
   const { samples: s } = data;
   const paths = [];
