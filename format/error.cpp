@@ -12,4 +12,12 @@ Error::Error(ErrorKind kind, std::string where, std::string problem, std::string
       problem_(std::move(problem)),
       remedy_(std::move(remedy)) {}
 
+void refuse(std::string where, std::string problem, std::string remedy) {
+  throw Error(ErrorKind::Configuration, std::move(where), std::move(problem), std::move(remedy));
+}
+
+void refuse_geometry(std::string where, std::string problem, std::string remedy) {
+  throw Error(ErrorKind::Geometry, std::move(where), std::move(problem), std::move(remedy));
+}
+
 }  // namespace palpate

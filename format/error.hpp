@@ -6,15 +6,15 @@
 
 namespace palpate {
 
-/// What a failure means to the caller of the command; the values are its exit codes.
+/// Kind of a failure; the values are the exit codes of the command.
 enum class ErrorKind {
   Internal = 1,       ///< a defect of palpate or of the machine (disk full, out of memory)
   Configuration = 2,  ///< usage, case file, constants, artifacts that do not fit together
   Geometry = 3        ///< a surface or body that cannot be used as it is
 };
 
-/// The one exception of the offline side. It says what is wrong, where, and what to do about it;
-/// `what()` joins the three in one line: "<where>: <problem>; <remedy>".
+/// The exception of palpate. It says where, what is wrong, and what to do about it; `what()` is one
+/// line: "<where>: <problem>; <remedy>".
 class Error : public std::runtime_error {
  public:
   Error(ErrorKind kind, std::string where, std::string problem, std::string remedy);
@@ -30,5 +30,10 @@ class Error : public std::runtime_error {
   std::string problem_;
   std::string remedy_;
 };
+
+/// Throws Error(Configuration).
+[[noreturn]] void refuse(std::string where, std::string problem, std::string remedy);
+/// Throws Error(Geometry).
+[[noreturn]] void refuse_geometry(std::string where, std::string problem, std::string remedy);
 
 }  // namespace palpate

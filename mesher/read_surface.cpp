@@ -25,10 +25,6 @@ namespace pmp = CGAL::Polygon_mesh_processing;
 constexpr double kSmallestBody = 1e-3;  // m
 constexpr double kLargestBody = 10;     // m
 
-[[noreturn]] void refuse(const std::string& where, std::string problem, std::string remedy) {
-  throw Error(ErrorKind::Geometry, where, std::move(problem), std::move(remedy));
-}
-
 std::string lower(std::string word) {
   std::transform(word.begin(), word.end(), word.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
@@ -57,15 +53,15 @@ void check_file(const std::filesystem::path& path) {
   const std::string where = path.string();
   std::error_code failure;
   if (!std::filesystem::exists(path, failure)) {
-    refuse(where, "no such file", "correct the path of the surface in the case");
+    refuse_geometry(where, "no such file", "correct the path of the surface in the case");
   }
   if (!std::filesystem::is_regular_file(path, failure) || !std::ifstream(path)) {
-    refuse(where, "not a readable file", "check its type and its permissions");
+    refuse_geometry(where, "not a readable file", "check its type and its permissions");
   }
   const std::string kind = lower(path.extension().string());
   if (kind != ".off" && kind != ".obj" && kind != ".ply" && kind != ".stl") {
-    refuse(where, "unknown kind of surface file '" + kind + "'",
-           "convert it to OFF, OBJ, PLY or STL");
+    refuse_geometry(where, "unknown kind of surface file '" + kind + "'",
+                    "convert it to OFF, OBJ, PLY or STL");
   }
 }
 
@@ -77,19 +73,19 @@ Soup read_soup(const std::filesystem::path& path) {
   std::vector<std::vector<std::size_t>> polygons;
   if (!CGAL::IO::read_polygon_soup(where, points, polygons, CGAL::parameters::verbose(false))) {
     if (polygons.empty() && points.empty()) {
-      refuse(where, "the file is empty or cannot be read as its ending says",
-             "export the surface again");
+      refuse_geometry(where, "the file is empty or cannot be read as its ending says",
+                      "export the surface again");
     }
     if (const auto lines = lines_not_finite(path); !lines.empty()) {
-      refuse(text(where, ":", lines.front()),
-             text("a coordinate that is not finite (NaN or Inf), in ",
-                  counted(lines.size(), "line"), " of the file"),
-             "correct the coordinates or export the surface again");
+      refuse_geometry(text(where, ":", lines.front()),
+                      text("a coordinate that is not finite (NaN or Inf), in ",
+                           counted(lines.size(), "line"), " of the file"),
+                      "correct the coordinates or export the surface again");
     }
-    refuse(where,
-           text("the file is malformed after ", counted(points.size(), "point"), " and ",
-                counted(polygons.size(), "face")),
-           "export the surface again");
+    refuse_geometry(where,
+                    text("the file is malformed after ", counted(points.size(), "point"), " and ",
+                         counted(polygons.size(), "face")),
+                    "export the surface again");
   }
   Soup soup;
   soup.polygons = std::move(polygons);
@@ -113,11 +109,11 @@ void scale_to_metres(Soup& soup, const SurfaceFile& file) {
   const double raw = largest_dimension(soup.points);
   const double size = raw * file.unit;
   if (!(size >= kSmallestBody && size <= kLargestBody)) {
-    refuse(file.path.string(),
-           text("the largest dimension is ", millimetres(size), " with a unit of ", file.unit,
-                " m, outside 1 mm .. 10 m"),
-           raw > 0 ? "set the unit of the surface; '" + likely_unit(raw) + "' looks likely"
-                   : "the surface has no extent: export it again");
+    refuse_geometry(file.path.string(),
+                    text("the largest dimension is ", millimetres(size), " with a unit of ",
+                         file.unit, " m, outside 1 mm .. 10 m"),
+                    raw > 0 ? "set the unit of the surface; '" + likely_unit(raw) + "' looks likely"
+                            : "the surface has no extent: export it again");
   }
   for (Vec3& x : soup.points) x = file.unit * x;
 }
@@ -143,8 +139,8 @@ Surface triangulate(const Soup& soup, const std::string& where) {
   std::vector<std::size_t> names = soup.names;
   names.resize(soup.polygons.size());
   if (!pmp::triangulate_faces(mesh, pmp::parameters::visitor(NamesOfParts(names)))) {
-    refuse(where, "a face with more than three corners cannot be split into triangles",
-           "triangulate the surface in a mesh editor");
+    refuse_geometry(where, "a face with more than three corners cannot be split into triangles",
+                    "triangulate the surface in a mesh editor");
   }
   mesh.collect_garbage();  // there is none: faces are split, not removed
   Surface surface = to_surface(mesh);
@@ -155,12 +151,13 @@ Surface triangulate(const Soup& soup, const std::string& where) {
 
 void check_geometry(const Surface& surface, const std::string& where) {
   if (const std::size_t flat = count_degenerate_triangles(surface); flat > 0) {
-    refuse(where, counted(flat, "triangle") + " of zero area",
-           "remove degenerate faces in a mesh editor");
+    refuse_geometry(where, counted(flat, "triangle") + " of zero area",
+                    "remove degenerate faces in a mesh editor");
   }
   if (const std::size_t pairs = count_self_intersections(surface); pairs > 0) {
-    refuse(where, text("the surface self-intersects: ", counted(pairs, "pair"), " of triangles"),
-           "resolve the self-intersections in a mesh editor");
+    refuse_geometry(where,
+                    text("the surface self-intersects: ", counted(pairs, "pair"), " of triangles"),
+                    "resolve the self-intersections in a mesh editor");
   }
 }
 

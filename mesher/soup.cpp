@@ -128,10 +128,6 @@ std::size_t drop_unused_points(Soup& soup) {
   return dropped;
 }
 
-[[noreturn]] void refuse(const std::string& where, std::string problem, std::string remedy) {
-  throw Error(ErrorKind::Geometry, where, std::move(problem), std::move(remedy));
-}
-
 /// Points whose polygons do not form a single fan: sheets that meet in a point only.
 std::size_t count_pinched_points(const Soup& soup,
                                  const std::map<Edge, std::vector<std::size_t>>& edges) {
@@ -178,7 +174,8 @@ void tidy(Soup& soup, const std::string& where, const Log& log) {
 
 void check_entries(const Soup& soup, const std::string& where) {
   if (soup.polygons.empty()) {
-    refuse(where, "the file has no faces", "export the surface again as a triangulated surface");
+    refuse_geometry(where, "the file has no faces",
+                    "export the surface again as a triangulated surface");
   }
   std::size_t short_faces = 0, bad_faces = 0, bad_points = 0, first_bad_point = 0;
   for (const auto& corners : soup.polygons) {
@@ -194,17 +191,17 @@ void check_entries(const Soup& soup, const std::string& where) {
     if (bad_points++ == 0) first_bad_point = i;
   }
   if (short_faces > 0) {
-    refuse(where, counted(short_faces, "face") + " with fewer than three indices",
-           "remove them or export the surface again");
+    refuse_geometry(where, counted(short_faces, "face") + " with fewer than three indices",
+                    "remove them or export the surface again");
   }
   if (bad_faces > 0) {
-    refuse(where,
-           text(counted(bad_faces, "face"), " with an index outside the ", soup.points.size(),
-                " vertices of the file"),
-           "the file is damaged: export the surface again");
+    refuse_geometry(where,
+                    text(counted(bad_faces, "face"), " with an index outside the ",
+                         soup.points.size(), " vertices of the file"),
+                    "the file is damaged: export the surface again");
   }
   if (bad_points > 0) {
-    refuse(
+    refuse_geometry(
         where,
         text(counted(bad_points, "point"), " with a coordinate that is not finite (NaN or Inf), ",
              bad_points > 1 ? "the first of them " : "", "number ", first_bad_point + 1,
@@ -221,21 +218,22 @@ void check_manifold(const Soup& soup, const std::string& where) {
     if (polygons.size() > 2) ++crowded;
   }
   if (crowded > 0) {
-    refuse(
+    refuse_geometry(
         where,
         text("the surface is not manifold: ", counted(crowded, "edge"), " with more than two faces",
              border > 0 ? text(" (and ", counted(border, "border edge"), ")") : ""),
         "remove duplicate and inner faces in a mesh editor");
   }
   if (border > 0) {
-    refuse(where, "the surface is not watertight: " + counted(border, "border edge"),
-           "close its holes in a mesh editor; where they are seams whose points do not meet, merge "
-           "vertices there");
+    refuse_geometry(
+        where, "the surface is not watertight: " + counted(border, "border edge"),
+        "close its holes in a mesh editor; where they are seams whose points do not meet, merge "
+        "vertices there");
   }
   if (const std::size_t pinched = count_pinched_points(soup, edges); pinched > 0) {
-    refuse(where,
-           text("the surface is not manifold: sheets meet only in ", counted(pinched, "point")),
-           "separate the sheets or join them along an edge in a mesh editor");
+    refuse_geometry(
+        where, text("the surface is not manifold: sheets meet only in ", counted(pinched, "point")),
+        "separate the sheets or join them along an edge in a mesh editor");
   }
 }
 
@@ -263,16 +261,16 @@ void orient(Soup& soup, const std::string& where, const Log& log) {
           front.push_back(q);
           if (wanted < 0) ++negative;
         } else if (side[q] != wanted) {
-          refuse(where, "the surface has no consistent orientation (it is one-sided)",
-                 "only a surface that encloses a volume can be filled");
+          refuse_geometry(where, "the surface has no consistent orientation (it is one-sided)",
+                          "only a surface that encloses a volume can be filled");
         }
       }
     }
     turned += std::min(negative, front.size() - negative);
   }
   if (parts > 1) {
-    refuse(where, text("the surface has ", parts, " separate parts"),
-           "keep one part for each file; give an inner part as an inclusion");
+    refuse_geometry(where, text("the surface has ", parts, " separate parts"),
+                    "keep one part for each file; give an inner part as an inclusion");
   }
   for (std::size_t p = 0; p < side.size(); ++p) {
     if (side[p] < 0) std::reverse(soup.polygons[p].begin(), soup.polygons[p].end());

@@ -92,11 +92,6 @@ void describe(V& v, FitDocument& d) {
   v.sections("test", d.tests, kRequired, "");
 }
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 double bound_of(const std::string& text, bool is_stress, const std::string& where) {
   if (text == "none") return std::numeric_limits<double>::infinity();
   if (!is_stress) {

@@ -24,11 +24,6 @@ constexpr double kProfileCloseness = 0.01;
 /// correlated with no other beyond this, are not in doubt.
 constexpr double kPreciseEnough = 0.1, kInDoubt = 0.95;
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 std::string constant_name(const fem::RegionConstant& constant) {
   return constant.name + " of " + constant.region;
 }

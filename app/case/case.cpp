@@ -15,10 +15,6 @@
 namespace palpate::app {
 namespace {
 
-[[noreturn]] void fail(std::string where, std::string problem, std::string remedy) {
-  throw Error(ErrorKind::Configuration, std::move(where), std::move(problem), std::move(remedy));
-}
-
 std::string prefix(std::string_view section, std::size_t index) {
   return fmt::format("{}[{}].", section, index);
 }
@@ -36,8 +32,8 @@ void check_name(const Case& c, const SourceMap& sources) {
     return std::isalnum(static_cast<unsigned char>(letter)) != 0 || letter == '-' || letter == '_';
   });
   if (usable) return;
-  fail(sources.where("name"), fmt::format("name = \"{}\" cannot name a folder", c.name),
-       "give the case a name of letters, digits, '-' and '_'");
+  refuse(sources.where("name"), fmt::format("name = \"{}\" cannot name a folder", c.name),
+         "give the case a name of letters, digits, '-' and '_'");
 }
 
 /// Every region of the body, in the order of the case. @throws Error when one is named twice.
@@ -46,9 +42,9 @@ std::vector<std::string_view> regions_of(const Case& c, const SourceMap& sources
   for (std::size_t i = 0; i < c.inclusions.size(); ++i) {
     const std::string& region = c.inclusions[i].region;
     if (std::find(regions.begin(), regions.end(), region) != regions.end()) {
-      fail(sources.where(prefix("inclusion", i) + "region"),
-           fmt::format("region '{}' is named twice", region),
-           "give each surface a region of its own");
+      refuse(sources.where(prefix("inclusion", i) + "region"),
+             fmt::format("region '{}' is named twice", region),
+             "give each surface a region of its own");
     }
     regions.push_back(region);
   }
@@ -62,18 +58,19 @@ void check_materials(const Case& c, const SourceMap& sources) {
     const std::string& region = c.materials[i].region;
     const std::string where = sources.where(prefix("material", i) + "region");
     if (std::find(regions.begin(), regions.end(), region) == regions.end()) {
-      fail(where, fmt::format("material for region '{}', which no surface has", region),
-           fmt::format("the nearest region is '{}'", nearest(region, regions)));
+      refuse(where, fmt::format("material for region '{}', which no surface has", region),
+             fmt::format("the nearest region is '{}'", nearest(region, regions)));
     }
     if (!described.insert(region).second) {
-      fail(where, fmt::format("second material for region '{}'", region), "remove one of the two");
+      refuse(where, fmt::format("second material for region '{}'", region),
+             "remove one of the two");
     }
     fem::check_law(law_of(c.materials[i]), where);
   }
   for (const std::string_view region : regions) {
     if (described.contains(region)) continue;
-    fail(sources.where("material"), fmt::format("region '{}' has no material", region),
-         fmt::format("add [[material]] with region = \"{}\"", region));
+    refuse(sources.where("material"), fmt::format("region '{}' has no material", region),
+           fmt::format("add [[material]] with region = \"{}\"", region));
   }
 }
 
@@ -86,21 +83,21 @@ void choose_depths(Case& c, const SourceMap& sources) {
 
 void check_tool(const Case& c, const SourceMap& sources) {
   if (c.tool.edge_radius <= c.tool.radius) return;
-  fail(sources.where("tool.edge_radius"),
-       fmt::format("tool.edge_radius = {} is larger than tool.radius = {}",
-                   print_quantity(c.tool.edge_radius, Dimension::Length),
-                   print_quantity(c.tool.radius, Dimension::Length)),
-       "give at most the radius of the disc, or 0 for a sharp edge");
+  refuse(sources.where("tool.edge_radius"),
+         fmt::format("tool.edge_radius = {} is larger than tool.radius = {}",
+                     print_quantity(c.tool.edge_radius, Dimension::Length),
+                     print_quantity(c.tool.radius, Dimension::Length)),
+         "give at most the radius of the disc, or 0 for a sharp edge");
 }
 
 void check_depths(const Case& c, const SourceMap& sources) {
   for (const double held : c.indentation.lateral_depths) {
     if (held <= c.indentation.depth) continue;
-    fail(sources.where("indentation.lateral_depths"),
-         fmt::format("indentation.lateral_depths holds {}, deeper than indentation.depth = {}",
-                     print_quantity(held, Dimension::Length),
-                     print_quantity(c.indentation.depth, Dimension::Length)),
-         "keep every held depth within the depth");
+    refuse(sources.where("indentation.lateral_depths"),
+           fmt::format("indentation.lateral_depths holds {}, deeper than indentation.depth = {}",
+                       print_quantity(held, Dimension::Length),
+                       print_quantity(c.indentation.depth, Dimension::Length)),
+           "keep every held depth within the depth");
   }
 }
 
@@ -110,9 +107,9 @@ void check_supports(const Case& c, const SourceMap& sources) {
     if (support.shape != "box") continue;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (support.low[axis] < support.high[axis]) continue;
-      fail(sources.where(prefix("support", i) + "low"),
-           fmt::format("box support has low.{0} not below high.{0}", "xyz"[axis]),
-           "give the corner with the smallest coordinates as low");
+      refuse(sources.where(prefix("support", i) + "low"),
+             fmt::format("box support has low.{0} not below high.{0}", "xyz"[axis]),
+             "give the corner with the smallest coordinates as low");
     }
   }
 }
@@ -121,17 +118,17 @@ void check_supports(const Case& c, const SourceMap& sources) {
 /// back.
 void check_edge(const Case& c, const SourceMap& sources) {
   if (c.tool.shape != "disc" || c.tool.edge_radius > 0 || c.tool.friction == "no-slip") return;
-  fail(sources.where("tool.shape"), "a disc with a sharp edge cannot be pressed without friction",
-       "give tool.edge_radius (a hundredth of the radius is enough), or friction = \"no-slip\"");
+  refuse(sources.where("tool.shape"), "a disc with a sharp edge cannot be pressed without friction",
+         "give tool.edge_radius (a hundredth of the radius is enough), or friction = \"no-slip\"");
 }
 
 void check_sizes(const Case& c, const SourceMap& sources) {
   if (c.mesh.element_size <= c.mesh.patch_spacing) return;
-  fail(sources.where("mesh.element_size"),
-       fmt::format("mesh.element_size = {} is larger than mesh.patch_spacing = {}",
-                   print_quantity(c.mesh.element_size, Dimension::Length),
-                   print_quantity(c.mesh.patch_spacing, Dimension::Length)),
-       "the facets refine the response triangles: choose it at most as large");
+  refuse(sources.where("mesh.element_size"),
+         fmt::format("mesh.element_size = {} is larger than mesh.patch_spacing = {}",
+                     print_quantity(c.mesh.element_size, Dimension::Length),
+                     print_quantity(c.mesh.patch_spacing, Dimension::Length)),
+         "the facets refine the response triangles: choose it at most as large");
 }
 
 Case parsed(const toml::table& table, const std::string& file_name) {

@@ -33,10 +33,6 @@ std::string example_of(const Key& key, Dimension dimension) {
                      print_quantity(typical * units_of(dimension).front().si, dimension));
 }
 
-[[noreturn]] void fail(std::string where, std::string problem, std::string remedy) {
-  throw Error(ErrorKind::Configuration, std::move(where), std::move(problem), std::move(remedy));
-}
-
 }  // namespace
 
 toml::table parse_toml(std::string_view text, const std::string& file_name) {
@@ -45,9 +41,9 @@ toml::table parse_toml(std::string_view text, const std::string& file_name) {
   } catch (const toml::parse_error& error) {
     std::string problem(error.description());
     std::replace(problem.begin(), problem.end(), '\n', ' ');
-    fail(fmt::format("{}:{}", file_name, error.source().begin.line),
-         fmt::format("this is not TOML: {}", problem),
-         "correct the line; the format is described at toml.io");
+    refuse(fmt::format("{}:{}", file_name, error.source().begin.line),
+           fmt::format("this is not TOML: {}", problem),
+           "correct the line; the format is described at toml.io");
   }
 }
 
@@ -56,7 +52,7 @@ toml::table read_toml(const std::filesystem::path& path, std::string_view what) 
   std::ostringstream text;
   const bool empty = stream && stream.peek() == std::ifstream::traits_type::eof();
   if (stream.bad() || (!empty && !(text << stream.rdbuf()))) {
-    fail(path.string(), fmt::format("{} cannot be read", what), "check the path and the rights");
+    refuse(path.string(), fmt::format("{} cannot be read", what), "check the path and the rights");
   }
   return parse_toml(text.str(), path.string());
 }
@@ -92,39 +88,39 @@ void TableReader::finish() const {
     const std::string_view meant = nearest(name.str(), known_);
     const bool is_misspelt = 2 * edit_distance(name.str(), meant) <= meant.size();
     if (!missing_.empty() && !is_misspelt) continue;
-    fail(sources_.where(node), fmt::format("unknown key '{}' in {}", name.str(), title_),
-         fmt::format("the nearest known key is '{}'", meant));
+    refuse(sources_.where(node), fmt::format("unknown key '{}' in {}", name.str(), title_),
+           fmt::format("the nearest known key is '{}'", meant));
   }
   if (missing_.empty()) return;
   const Key& key = missing_.front();
-  fail(sources_.where(table_), fmt::format("key '{}' is missing", dotted(key)),
-       fmt::format("add it ({})", key.about));
+  refuse(sources_.where(table_), fmt::format("key '{}' is missing", dotted(key)),
+         fmt::format("add it ({})", key.about));
 }
 
 const toml::table& TableReader::as_table(const toml::node& node, const std::string& title) const {
   if (const toml::table* table = node.as_table()) return *table;
-  fail(sources_.where(node), fmt::format("{} must be a table, found {}", title, shown(node)),
-       fmt::format("write {} on a line of its own, its keys below", title));
+  refuse(sources_.where(node), fmt::format("{} must be a table, found {}", title, shown(node)),
+         fmt::format("write {} on a line of its own, its keys below", title));
 }
 
 const toml::array& TableReader::as_array(const toml::node& node, const std::string& title) const {
   if (const toml::array* array = node.as_array()) return *array;
-  fail(sources_.where(node), fmt::format("{} is a list of tables, found one value", title),
-       fmt::format("write {} with two brackets", title));
+  refuse(sources_.where(node), fmt::format("{} is a list of tables, found one value", title),
+         fmt::format("write {} with two brackets", title));
 }
 
 void TableReader::wrong_type(const toml::node& node, const Key& key, std::string_view wanted,
                              const std::string& example) const {
-  fail(sources_.where(node),
-       fmt::format("key '{}' needs {}, found {}", dotted(key), wanted, shown(node)),
-       fmt::format("write for example {}", example));
+  refuse(sources_.where(node),
+         fmt::format("key '{}' needs {}, found {}", dotted(key), wanted, shown(node)),
+         fmt::format("write for example {}", example));
 }
 
 void TableReader::check_range(double value, const std::string& value_text, const Key& key,
                               const toml::node& node, const std::string& range) const {
   if (std::isfinite(value) && key.range.holds(value)) return;
-  fail(sources_.where(node), fmt::format("{} = {} is out of range", dotted(key), value_text),
-       fmt::format("the range is {}", range));
+  refuse(sources_.where(node), fmt::format("{} = {} is out of range", dotted(key), value_text),
+         fmt::format("the range is {}", range));
 }
 
 void TableReader::text(std::string& value, const Key& key, const Choices& choices) {
@@ -143,9 +139,9 @@ void TableReader::text(std::string& value, const Key& key, const Choices& choice
   for (const std::string_view choice : choices) {
     list += fmt::format("{}{}", list.empty() ? "" : ", ", choice);
   }
-  fail(sources_.where(*node),
-       fmt::format("key '{}' is '{}', which is not one of {}", dotted(key), value, list),
-       fmt::format("the nearest is '{}'", nearest(value, choices)));
+  refuse(sources_.where(*node),
+         fmt::format("key '{}' is '{}', which is not one of {}", dotted(key), value, list),
+         fmt::format("the nearest is '{}'", nearest(value, choices)));
 }
 
 void TableReader::texts(std::vector<std::string>& values, const Key& key) {

@@ -136,11 +136,6 @@ void describe(V& v, Sidecar& s) {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 void check_columns(const Sidecar& s, const SourceMap& sources) {
   const ColumnsSection& c = s.columns;
   const auto need = [&](const std::string& value, const char* key, const char* what) {

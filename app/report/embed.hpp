@@ -14,8 +14,6 @@ namespace palpate::report {
 /// cannot end the element; bytes that are not UTF-8 become U+FFFD; NaN and infinity null.
 std::string script_json(const nlohmann::json& value);
 
-std::string base64(std::string_view bytes);  ///< RFC 4648, padded
-
 /// A column of numbers as {"<type>": base64 of little-endian bytes}; the page decodes it into a
 /// typed array. The type is one of f4 (float), i4, u4, u2, u1.
 nlohmann::json column(const std::vector<float>& values);

@@ -148,11 +148,6 @@ std::string range_of(const LawConstant& c) {
   return below || above ? text.str() : "any value";
 }
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 template <class List>
 auto* find_value(List& values, std::string_view name) {
   const auto found =

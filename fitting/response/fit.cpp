@@ -21,11 +21,6 @@ std::string site_name(std::int32_t vertex) {
   return "site at vertex " + std::to_string(vertex);
 }
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 void check_site(const Body& body, const SiteCurves& site) {
   const std::string where = site_name(site.vertex);
   const std::string remedy = "fit the curves with the body they were computed on";

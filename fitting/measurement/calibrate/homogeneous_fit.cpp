@@ -12,11 +12,6 @@ namespace {
 
 constexpr double kLeastRelative = 0.05;  ///< of the largest stress, under Weighting::Relative
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 void check_tests(const std::vector<HomogeneousTest>& tests, const HomogeneousSettings& settings) {
   if (tests.empty()) refuse("calibration", "there are no tests", "give at least one");
   for (const HomogeneousTest& test : tests) {

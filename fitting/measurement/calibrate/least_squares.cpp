@@ -21,11 +21,6 @@ constexpr double kSameCost = 1e-6;
 /// Distance to a bound, relative to its size, that counts as being there.
 constexpr double kAtBound = 1e-8;
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 bool is_at(double value, double bound) {
   return std::isfinite(bound) &&
          std::abs(value - bound) <= kAtBound * std::max(1e-12, std::abs(bound));

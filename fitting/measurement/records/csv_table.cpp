@@ -17,11 +17,6 @@ namespace {
 /// Fewer rows of numbers than this are a table of results, not a record.
 constexpr std::size_t kFewestRows = 3;
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 struct Dialect {
   char separator;
   char decimal;

@@ -21,11 +21,6 @@ constexpr std::size_t kOnsetRun = 5;
 constexpr std::size_t kFewestFree = 8;
 constexpr std::size_t kFewestInContact = 8;
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 /// One press: samples begin .. peak go in, peak .. end come back.
 struct Cycle {
   std::size_t begin = 0, peak = 0, end = 0;

@@ -15,11 +15,6 @@ constexpr double kDragOverDepth = 0.1;  ///< sideways travel that makes a drag
 constexpr double kHeldWithin = 0.1;     ///< change of depth that a drag may have
 constexpr double kLargestTilt = std::numbers::pi / 6;
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 void check_log(const RobotLog& log) {
   if (log.tip.size() != log.force.size() ||
       (!log.time.empty() && log.time.size() != log.tip.size())) {

@@ -93,15 +93,6 @@ std::vector<Number> numbers(const json& column, const char* type) {
   return values;
 }
 
-TEST(Base64, IsThatOfRfc4648) {
-  EXPECT_EQ(report::base64(""), "");
-  EXPECT_EQ(report::base64("f"), "Zg==");
-  EXPECT_EQ(report::base64("fo"), "Zm8=");
-  EXPECT_EQ(report::base64("foo"), "Zm9v");
-  EXPECT_EQ(report::base64("foobar"), "Zm9vYmFy");
-  EXPECT_EQ(report::base64("\xff\xfe\xfd"), "//79");
-}
-
 TEST(Columns, TakeTheNarrowestTypeThatHoldsTheValues) {
   EXPECT_EQ(numbers<std::uint16_t>(report::index_column({0, 65535}), "u2").at(1), 65535);
   EXPECT_EQ(numbers<std::uint32_t>(report::index_column({0, 65536}), "u4").at(1), 65536U);
