@@ -28,7 +28,7 @@ double lipschitz_bound_for(const Library& library, const fitting::DeviceProfile&
                            double rate) {
   const double limit = enforced_lipschitz_bound(library.certificate);
   const double bound = fitting::certifiable_stiffness(profile.damping, rate);
-  return bound < limit && bound >= library.certificate.hold ? bound : limit;
+  return bound < limit && bound >= library.certificate.min_lipschitz_bound ? bound : limit;
 }
 
 void require_certified(const Library& library, const std::string& library_file,
@@ -44,14 +44,14 @@ void require_certified(const Library& library, const std::string& library_file,
     refuse(profile.name, "the damping of the device is not known, so no rate is certified",
            "measure it and give it in a profile with --profile");
   }
-  const double hold = library.certificate.hold;
-  const double needed =
-      std::isnan(hold) ? certified_rate(library, profile)
-                       : std::min(certified_rate(library, profile), 2 * hold / profile.damping);
+  const double min_bound = library.certificate.min_lipschitz_bound;
+  const double needed = std::isnan(min_bound) ? certified_rate(library, profile)
+                                              : std::min(certified_rate(library, profile),
+                                                         2 * min_bound / profile.damping);
   if (rate >= needed) return;
   if (std::isinf(needed)) {
     refuse(profile.name, "no rate is certified: the slide has no bound",
-           "run `palpate certify` again, which says why");
+           "run `palpate certify` again, which states the reason");
   }
   refuse(
       profile.name,

@@ -55,7 +55,7 @@ std::string nearest_name(const std::string& name) {
 
 const std::vector<DeviceName>& device_names() {
   static const std::vector<DeviceName> names{
-      {kSimulatedDevice, "a device and a hand in place of hardware"},
+      {kSimulatedDevice, "a simulated device with a hand"},
       {"force-dimension", "omega, delta, sigma, lambda and the Novint Falcon (libdhd)"},
       {"openhaptics", "3D Systems Touch and Phantom, once Sensable (libHD)"},
       {"haply", "Haply Inverse3, through its Inverse Service"},

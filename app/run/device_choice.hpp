@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// From the name of a device to its binding.
+// Makes a device from its name.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace palpate::app {
 
 struct DeviceChoice {
   std::string name;      ///< one of device_names()
-  std::string driver;    ///< path of the vendor's library; empty: where the system finds it
+  std::string driver;    ///< path of the vendor's library; empty: on the search path of the system
   std::string unit;      ///< which one of several: number, name or identity; empty: the default
   std::string lab_file;  ///< configuration of a lab-built device
   std::string host = "localhost";  ///< of the Haply service
@@ -23,7 +23,7 @@ struct DeviceChoice {
   double rate = 1000;  ///< Hz, of the simulated device
 };
 
-/// A device and a hand in place of hardware, with the constants of an empty `[simulate]`.
+/// A simulated device with a hand, with the constants of an empty `[simulate]`.
 inline constexpr const char* kSimulatedDevice = "simulated";
 
 struct DeviceName {
@@ -31,12 +31,12 @@ struct DeviceName {
 };
 const std::vector<DeviceName>& device_names();
 
-/// @throws Error(Configuration) for a name that is not among them, with the one whose
-/// description names it, or else the nearest.
+/// @throws Error(Configuration) for a name that is not among them; the remedy is the device whose
+/// description contains it, or else the nearest name.
 void require_known_device(const std::string& name);
 
 /// Not opened yet. `hand`: of the simulated device. @throws Error(Configuration) for an unknown
-/// name, with the nearest, or a configuration that is no good.
+/// name or an invalid configuration.
 std::unique_ptr<runtime::Device> make_device(
     const DeviceChoice& choice, const std::function<runtime::HandTarget(double)>& hand);
 

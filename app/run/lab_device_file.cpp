@@ -13,7 +13,7 @@ namespace palpate::app {
 namespace {
 
 struct JointSection {
-  std::string kind = "turns";
+  std::string kind = "revolute";
   Vec3 axis{};
   Vec3 point{};
   double counts_per_turn = 0, offset = 0, gear = 1, torque_constant = 0, current_limit = 0;
@@ -33,11 +33,11 @@ struct LabFile {
 template <class V>
 void describe(V& v, JointSection& j) {
   constexpr Range kChannel{.low = 0, .high = 65535};
-  v.text(j.kind, {"kind", "of the joint"}, {"turns", "slides"});
+  v.text(j.kind, {"kind", "of the joint"}, {"revolute", "prismatic"});
   v.direction(j.axis, {"axis", "of the joint with the device at home", kRequired});
   v.point(j.point, Dimension::Length, {"point", "on the axis, with the device at home"});
   v.number(j.counts_per_turn,
-           {"counts_per_turn", "of the encoder; counts a metre if the joint slides", kRequired,
+           {"counts_per_turn", "of the encoder; counts per metre of a prismatic joint", kRequired,
             kPositive});
   v.integer(
       j.counter_bits,
@@ -71,7 +71,8 @@ void describe(V& v, LabFile& f) {
 }
 
 runtime::Joint joint_of(const JointSection& j) {
-  const auto kind = j.kind == "slides" ? runtime::JointKind::Slides : runtime::JointKind::Turns;
+  const auto kind =
+      j.kind == "prismatic" ? runtime::JointKind::Prismatic : runtime::JointKind::Revolute;
   return {kind, j.axis, j.point};
 }
 

@@ -8,7 +8,7 @@
 namespace palpate::app {
 namespace {
 
-constexpr std::size_t kQueueRoom = 1 << 15;  // steps: 30 s at 1 kHz, should the writer be held up
+constexpr std::size_t kQueueRoom = 1 << 15;  // steps: 30 s at 1 kHz, in case the writer is delayed
 constexpr auto kNap = std::chrono::milliseconds(5);
 
 /// Takes the steps off the queue and writes them down, in a thread of its own, until the loop has

@@ -25,19 +25,18 @@ struct LiveSettings {
   double duration = 0;       ///< s; 0 = until stopped
 };
 
-/// As they are recorded.
+/// The settings in the form of a recording.
 SessionSettings session_settings(const LiveSettings& live);
 
 struct LiveOutcome {
   runtime::LoopCounts counts;
-  std::string missing_rights;         ///< one line, empty when all was granted
+  std::string missing_rights;         ///< one line; empty: none
   bool halted = false;                ///< by the watchdog
-  std::optional<Error> not_recorded;  ///< what the disk refused; it ended the session
+  std::optional<Error> not_recorded;  ///< failure of the disk that ended the session
 };
 
-/// Runs the loop on a device that is open until the time is over, `stop` is set, or the device is
-/// lost, or the disk takes no more steps, and closes it. What was recorded until then is with the
-/// recorder, or in its journal.
+/// Runs the loop on an open device until the time is over, `stop` is set, the device is lost, or
+/// the disk is full, and closes the device. The recorded steps are in the recorder or its journal.
 LiveOutcome run_live(runtime::Device& device, const palpate_library& body,
                      const LiveSettings& settings, SessionRecorder& recorder,
                      const std::atomic<bool>& stop);

@@ -102,7 +102,7 @@ class Glide {
   double acceleration_ = 0;
   double drift_ = 0;
   double push_ = 0;
-  double lead_ = 0;  ///< where the spring would hold the mass at t = 0 if it moved with the target
+  double lead_ = 0;  ///< equilibrium of the mass at t = 0 if it moved with the target
   double decay_ = 0;
   double square_ = 0;
 };
@@ -137,7 +137,7 @@ double net_force(const AxisLaw& law, double x) noexcept {
   return law.force + law.hand_stiffness * (law.target - x) + law.hand_damping * law.target_velocity;
 }
 
-/// How long a mass at rest stays so.
+/// How long a mass at rest stays at rest.
 double rest_duration(const AxisLaw& law, double x) noexcept {
   const double net = net_force(law, x);
   const double rate = law.hand_stiffness * law.target_velocity;

@@ -24,7 +24,7 @@ struct AxisState {
 };
 
 /// The state after dt (s). Between changes of sign of the velocity the equation is linear and its
-/// solution is written down; the instants of stopping and of breaking away are found to rounding
+/// solution has a closed form; the instants of stopping and of breaking away are found to rounding
 /// (the velocity is monotone between the zeros of the acceleration, which have a closed form). No
 /// step-size error, hence no energy of the integrator. noexcept, allocation-free, bounded.
 AxisState advance(const AxisLaw& law, const AxisState& start, double dt) noexcept;

@@ -62,7 +62,7 @@ struct ComediElectronics::Driver {
   int (*instruct)(void*, Instruction*);
 };
 
-/// What is asked of the board once, so that the loop does not.
+/// Data that are read from the board once, outside the loop.
 struct ComediElectronics::Output {
   Range* range = nullptr;
   unsigned largest = 0;
@@ -100,7 +100,7 @@ void ComediElectronics::open() {
   }
 }
 
-/// Counter reset, made to count quadrature, and started; range of the output.
+/// Resets the counter, starts it in quadrature mode, and reads the range of the output.
 void ComediElectronics::prepare(const ComediChannel& channel) {
   std::array<unsigned, 2> data{};
   for (const unsigned configure : {kReset, kQuadratureEncoder, kArm}) {

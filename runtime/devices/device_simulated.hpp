@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A haptic device and the hand that holds it, in place of hardware.
+// A simulated haptic device with the hand that moves it.
 #pragma once
 
 #include "format/vec3.hpp"
@@ -15,8 +15,8 @@ struct SimulatedDeviceSettings {
   int delay_samples = 1;        ///< 0 or 1: samples from the computation of a command to its effect
 };
 
-/// A point mass with viscous and dry friction on each axis, held by a hand that pulls it towards a
-/// moving target with a spring and a damper, and driven by the zero-order-held command. With one
+/// A point mass with viscous and dry friction on each axis, connected by a spring and a damper to
+/// the moving target of a hand, and driven by the command, constant between samples. With one
 /// sample of delay the command that acts during [t_k, t_k + T) is the one computed from x_{k-1}
 /// [Mahvash & Hayward 2005, eqs. 3, 4]. The motion between samples is exact (axis_motion.hpp).
 ///
@@ -27,13 +27,12 @@ class SimulatedDevice {
   /// @throws Error(Configuration) naming the constant that is out of range.
   explicit SimulatedDevice(const SimulatedDeviceSettings& settings);
 
-  /// Puts the device somewhere, forgets the pending command; the hand's target goes to `position`
-  /// at rest.
+  /// Sets the state and clears the pending command; the target of the hand is at rest at
+  /// `position`.
   void place(const Vec3& position, const Vec3& velocity) noexcept;
-  /// Where the hand wants to be now (m) and the velocity (m/s) at which that moves on from here.
+  /// Sets the target of the hand (m) and its velocity (m/s).
   void set_target(const Vec3& position, const Vec3& velocity) noexcept;
-  /// Hands over the command computed from the present state (N, on the tool) and advances by dt
-  /// (s).
+  /// Takes the command computed from the present state (N, on the tool) and advances by dt (s).
   void step(double dt, const Vec3& command) noexcept;
 
   const Vec3& position() const noexcept { return position_; }  ///< m
@@ -46,7 +45,7 @@ class SimulatedDevice {
   SimulatedDeviceSettings settings_;
   Vec3 position_{}, velocity_{};
   Vec3 target_{}, target_velocity_{};
-  Vec3 pending_{};  ///< computed from the sample before, acts next
+  Vec3 pending_{};  ///< computed from the last sample, acts next
 };
 
 }  // namespace palpate::runtime

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The simulated device behind the interface of the real ones.
+// The simulated device with the interface of real devices.
 #pragma once
 
 #include <atomic>
@@ -10,14 +10,14 @@
 
 namespace palpate::runtime {
 
-/// Where the hand wants the tip to be at a time since open(), and how fast that moves.
+/// Target of the hand at a time since open(), and its velocity.
 struct HandTarget {
   Vec3 position{};  ///< m
   Vec3 velocity{};  ///< m/s
 };
 
-/// Each command moves the simulated device on by one period, exactly; the clock does not matter, so
-/// that a session comes out the same every time.
+/// Each command advances the simulated device by exactly one period, whatever the clock says, so
+/// that sessions are reproducible.
 class VirtualDevice : public Device {
  public:
   /// rate: commands per second, Hz. hand: called once a step, in the force loop.

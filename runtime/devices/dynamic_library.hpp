@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A vendor's library, bound when it is needed and not before.
+// A vendor's library, loaded when it is needed.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ namespace palpate::runtime {
 /// A shared library opened at run time; closed with the object. Not for the force loop.
 class DynamicLibrary {
  public:
-  /// Opens the first of `names` that the system finds. `what`: whose library it is; `remedy`: how
-  /// to get it. @throws Error(Configuration).
+  /// Opens the first of `names` that the system finds. `what`: the owner of the library; `remedy`:
+  /// how to get it. @throws Error(Configuration).
   DynamicLibrary(const std::vector<std::string>& names, std::string what, std::string remedy);
   ~DynamicLibrary();
   DynamicLibrary(const DynamicLibrary&) = delete;

@@ -12,12 +12,12 @@
 namespace palpate::runtime {
 
 struct ForceDimensionSettings {
-  std::string library;  ///< path of libdhd; empty: libdhd.so.3 where the system finds it
+  std::string library;  ///< path of libdhd; empty: libdhd.so.3 on the search path of the system
   int id = -1;          ///< -1: the default device
 };
 
-/// Units of the vendor are SI. The watchdog of the device is set to 20 ms where the device takes
-/// it. Motors are enabled with the first force that is not zero.
+/// Units of the vendor are SI. The watchdog of the device is set to 20 ms where the device supports
+/// it. Motors are enabled with the first nonzero force.
 class ForceDimensionDevice : public Device {
  public:
   explicit ForceDimensionDevice(ForceDimensionSettings settings);

@@ -66,7 +66,7 @@ void HaplyDevice::close() noexcept {
   open_ = false;
 }
 
-/// The state of our device out of a message; false when it is not in there, or not whole.
+/// Reads the state of the device from a message; false when it is missing or incomplete.
 bool HaplyDevice::take_state(std::string_view text) noexcept {
   const JsonView devices = JsonView(text)["inverse3"];
   for (std::size_t i = 0; devices[i]; ++i) {
@@ -81,9 +81,9 @@ bool HaplyDevice::take_state(std::string_view text) noexcept {
 }
 
 bool HaplyDevice::gives_less(const Vec3& given) const noexcept {
-  constexpr double kShare = 0.9, kSmall = 0.05;  // N: below it friction and rounding are as much
+  constexpr double kFraction = 0.9, kSmall = 0.05;  // N: comparable to friction and rounding
   const double asked = std::min(norm(sent_), norm(sent_before_));
-  return norm(given) < kShare * asked - kSmall;
+  return norm(given) < kFraction * asked - kSmall;
 }
 
 DeviceStatus HaplyDevice::read(DeviceReading& reading) noexcept {

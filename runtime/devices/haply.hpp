@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Haply Inverse3, through the Haply Inverse Service: JSON over a WebSocket on this machine.
+// Haply Inverse3, through the Haply Inverse Service: JSON over a WebSocket to this machine.
 #pragma once
 
 #include <atomic>
@@ -16,15 +16,15 @@ struct HaplySettings {
   std::string host = "localhost";
   std::uint16_t port = 10001;
   std::string device_id;  ///< empty: the first Inverse3 of the inventory
-  int timeout_ms = 5;     ///< how long a step waits for a state before it is late
+  int timeout_ms = 5;     ///< longest wait of a step for a state
 };
 
-/// The service sends an inventory first, then exactly one state for each message it gets: command()
-/// sends a force, the next read() waits for the state that answers it, up to the timeout. A late
-/// state leaves the last one in place (Late); no further force is sent until it has come. A force
-/// that the service says it gives, and that is less than nine tenths of the lesser of the last two
-/// it was sent (which of them it answers is not documented), is Saturated. Sockets are system
-/// calls: this loop is not free of them.
+/// The service sends an inventory first, then exactly one state for each message: command() sends a
+/// force, and the next read() waits for the state that answers it, up to the timeout. When the
+/// state is late, read() repeats the last one (Late), and command() sends no force until it has
+/// come. The device is Saturated when the force that the service reports is less than nine tenths
+/// of the lesser of the last two sent; which of them it answers is not documented. Sockets need
+/// system calls, so a loop with this device is not free of them.
 class HaplyDevice : public Device {
  public:
   explicit HaplyDevice(HaplySettings settings);
@@ -49,7 +49,7 @@ class HaplyDevice : public Device {
   Vec3 sent_{}, sent_before_{};  ///< N
   bool saturated_ = false;       ///< in the last state
   bool open_ = false;
-  bool awaiting_ = false;  ///< a force was sent whose state has not come
+  bool awaiting_ = false;  ///< the state that answers the last force has not come
   std::atomic<bool> halted_{false};
 };
 

@@ -9,7 +9,7 @@ namespace {
 constexpr int kDeepest = 64;
 constexpr std::string_view kSpace = " \t\r\n";
 
-/// Reads on from a place in a text; `ok` turns false at what is not JSON.
+/// Reads forward in a text; `ok` becomes false where it is not JSON.
 struct Cursor {
   std::string_view rest;
   bool ok = true;
@@ -39,7 +39,7 @@ struct Cursor {
     return fail();
   }
 
-  /// Passes over a value and returns it.
+  /// Skips a value and returns it.
   std::string_view take_value(int depth = 0) noexcept {
     skip_space();
     const std::string_view from = rest;

@@ -37,7 +37,7 @@ void check(const LabAxis& axis, std::size_t j) {
   require(above_zero(axis.current_limit), j, "current_limit", axis.current_limit, positive);
 }
 
-/// The way from one raw count to the next, taken the short way around a counter of `bits`.
+/// The shorter difference between two raw counts of a counter of `bits` that wraps around.
 std::int64_t short_way(std::int32_t from, std::int32_t to, int bits) noexcept {
   const int spare = 32 - bits;
   const auto difference = static_cast<std::uint32_t>(to) - static_cast<std::uint32_t>(from);
@@ -88,7 +88,7 @@ void LabDevice::follow(std::size_t j, std::int32_t count) noexcept {
   total_count_[j] += short_way(last_count_[j], count, axis.counter_bits);
   last_count_[j] = count;
   const double turns = static_cast<double>(total_count_[j]) / (axis.counts_per_turn * axis.gear);
-  const double unit = chain_.kind(j) == JointKind::Turns ? kTurn : 1;
+  const double unit = chain_.kind(j) == JointKind::Revolute ? kTurn : 1;
   q_[j] = axis.offset + axis.sign * unit * turns;
 }
 

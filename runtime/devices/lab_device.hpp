@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device built in a laboratory: encoders, motors, and what lies between them and the tip.
+// A device built in a laboratory: encoders, motors and the kinematics between them and the tip.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace palpate::runtime {
 
-/// The electronics: counts in, currents out.
+/// The electronics: reads counts, writes currents.
 class LabElectronics {
  public:
   LabElectronics() = default;
@@ -26,7 +26,7 @@ class LabElectronics {
 
   virtual void open() = 0;  ///< @throws Error
   virtual void close() noexcept = 0;
-  /// One raw count for each joint, as the counter holds it. False: the board does not answer.
+  /// One raw count of the counter for each joint. False: the board does not answer.
   virtual bool read_counts(std::span<std::int32_t> counts) noexcept = 0;
   /// One current for each joint, A.
   virtual bool write_current(std::span<const double> current) noexcept = 0;
@@ -34,13 +34,13 @@ class LabElectronics {
 
 /// From a joint to its encoder and its motor.
 struct LabAxis {
-  double counts_per_turn = 0;  ///< of the encoder; of a joint that slides: counts a metre
+  double counts_per_turn = 0;  ///< of the encoder; for a prismatic joint: counts per metre
   int counter_bits = 24;       ///< the counter wraps around at 2^bits; 8 to 32
-  double sign = 1;             ///< 1 or -1: of the encoder against the joint
+  double sign = 1;             ///< 1 or -1: direction of the encoder relative to the joint
   double offset = 0;           ///< rad or m, of the joint where the counter is 0
   double gear = 1;             ///< N, turns of encoder and motor for one turn of the joint
   double torque_constant = 0;  ///< k_t, N m/A (N/A for a joint that slides)
-  double motor_sign = 1;       ///< 1 or -1: of the motor against the joint
+  double motor_sign = 1;       ///< 1 or -1: direction of the motor relative to the joint
   double current_limit = 0;    ///< A
 };
 
@@ -50,10 +50,10 @@ struct LabDeviceSettings {
   double velocity_cutoff = 80;  ///< Hz, of the first-order filter of the velocity
 };
 
-/// Counts -> joints (wrap-around followed) -> tip; force -> torques J^T f -> currents torque/(N
-/// k_t). When a current would exceed its limit all are scaled alike, so that the force keeps its
-/// direction, and the step is reported as saturated. The velocity is the filtered difference of
-/// positions over the time between reads.
+/// Counts -> joints (with wrap-around of the counters) -> tip; force -> torques J^T f -> currents
+/// torque/(N k_t). When a current would exceed its limit all are scaled equally, so that the force
+/// keeps its direction, and the step is reported as saturated. The velocity is the filtered
+/// difference of positions over the time between reads.
 class LabDevice : public Device {
  public:
   /// @throws Error(Configuration) naming the constant that is out of range.

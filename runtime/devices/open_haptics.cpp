@@ -111,7 +111,7 @@ void OpenHapticsDevice::close() noexcept {
   open_ = false;
 }
 
-/// Errors of the driver queue up until they are asked for.
+/// The driver queues its errors until they are read.
 DeviceStatus OpenHapticsDevice::drain_errors() noexcept {
   DeviceStatus status = DeviceStatus::Good;
   for (int i = 0; i < kMostErrors; ++i) {

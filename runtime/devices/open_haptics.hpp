@@ -12,7 +12,7 @@
 namespace palpate::runtime {
 
 struct OpenHapticsSettings {
-  std::string library;  ///< path of libHD; empty: libHD.so where the system finds it
+  std::string library;  ///< path of libHD; empty: libHD.so on the search path of the system
   std::string device;   ///< name given in the vendor's setup; empty: the default device
 };
 

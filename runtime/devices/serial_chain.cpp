@@ -17,7 +17,7 @@ Vec3 turned(const Vec3& v, const Vec3& axis, double angle) noexcept {
 }
 
 [[noreturn]] void reject(const std::string& problem) {
-  throw Error(ErrorKind::Configuration, "lab-built device", problem, "mend its configuration");
+  throw Error(ErrorKind::Configuration, "lab-built device", problem, "correct its configuration");
 }
 
 }  // namespace
@@ -35,13 +35,13 @@ SerialChain::SerialChain(std::vector<Joint> joints, const Vec3& home)
   }
 }
 
-/// From the last joint to the first: what is found so far, tip and columns, moves with each.
+/// From the last joint to the first: each joint moves the tip and the columns found so far.
 SerialChain::Pose SerialChain::at(const std::array<double, kMostJoints>& q) const noexcept {
   Pose pose;
   pose.tip = home_;
   for (std::size_t j = joints_.size(); j-- > 0;) {
     const Joint& joint = joints_[j];
-    if (joint.kind == JointKind::Slides) {
+    if (joint.kind == JointKind::Prismatic) {
       pose.tip = pose.tip + q[j] * joint.axis;
       pose.column[j] = joint.axis;
       continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kinematics of a lab-built device: where the tip is for given joints, and its Jacobian.
+// Kinematics of a lab-built device: position of the tip for given joints, and its Jacobian.
 #pragma once
 
 #include <array>
@@ -10,18 +10,17 @@
 
 namespace palpate::runtime {
 
-enum class JointKind : unsigned char { Turns, Slides };
+enum class JointKind : unsigned char { Revolute, Prismatic };
 
 /// A joint in the home position of the device: all joint coordinates zero.
 struct Joint {
-  JointKind kind = JointKind::Turns;
+  JointKind kind = JointKind::Revolute;
   Vec3 axis{};   ///< unit
-  Vec3 point{};  ///< m, on the axis; not used by a joint that slides
+  Vec3 point{};  ///< m, on the axis; not used by a prismatic joint
 };
 
-/// Joints one after the other, from the base to the tip. The position of the tip is that of the
-/// product of exponentials [Murray, Li & Sastry 1994, ch. 3]: each joint turns or shifts all that
-/// comes after it.
+/// A chain of joints from the base to the tip. The position of the tip follows from the product of
+/// exponentials [Murray, Li & Sastry 1994, ch. 3].
 class SerialChain {
  public:
   static constexpr std::size_t kMostJoints = 6;

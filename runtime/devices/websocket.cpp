@@ -15,6 +15,7 @@
 #include <cstring>
 #include <random>
 
+#include "format/base64.hpp"
 #include "format/error.hpp"
 #include "runtime/realtime.hpp"
 
@@ -25,8 +26,8 @@ constexpr unsigned kContinuation = 0, kText = 1, kBinary = 2, kClose = 8, kPing 
 constexpr std::size_t kMostSent = 1000;  // bytes of a message out
 constexpr int kHandshakeTimeout = 2000;  // ms
 
-/// SHA-1 [FIPS 180-4, 6.1], which the handshake asks for; nothing is kept secret by it.
-std::array<std::uint8_t, 20> sha1(std::string text) {
+/// SHA-1 [FIPS 180-4, 6.1], as the handshake requires; it protects no secret.
+std::string sha1(std::string text) {
   std::array<std::uint32_t, 5> h{0x67452301, 0xEFCDAB89, 0x98BADCFE, 0x10325476, 0xC3D2E1F0};
   const std::uint64_t bits = 8 * text.size();
   text.push_back('\x80');
@@ -52,32 +53,17 @@ std::array<std::uint8_t, 20> sha1(std::string text) {
     }
     h = {h[0] + a, h[1] + b, h[2] + c, h[3] + d, h[4] + e};
   }
-  std::array<std::uint8_t, 20> digest{};
-  for (std::size_t i = 0; i < 20; ++i) {
-    digest[i] = static_cast<std::uint8_t>(h[i / 4] >> (24 - 8 * (i % 4)));
+  std::string digest(20, '\0');
+  for (std::size_t i = 0; i < digest.size(); ++i) {
+    digest[i] = static_cast<char>(h[i / 4] >> (24 - 8 * (i % 4)));
   }
   return digest;
 }
 
-template <class Bytes>
-std::string base64(const Bytes& bytes) {
-  constexpr const char* alphabet =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const auto byte = [&](std::size_t k) -> unsigned { return k < bytes.size() ? bytes[k] : 0; };
-    const unsigned group = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += i + k > bytes.size() ? '=' : alphabet[group >> (18 - 6 * k) & 63];
-    }
-  }
-  return text;
-}
-
 std::string random_key() {
   std::random_device random;
-  std::array<std::uint8_t, 16> bytes{};
-  for (auto& b : bytes) b = static_cast<std::uint8_t>(random());
+  std::string bytes(16, '\0');
+  for (char& b : bytes) b = static_cast<char>(random());
   return base64(bytes);
 }
 
@@ -158,7 +144,7 @@ void WebSocket::close() noexcept {
 /// Waits for bytes and appends them; false: none came, or the connection has ended.
 bool WebSocket::fill(int timeout_ms) noexcept {
   pollfd wanted{socket_, POLLIN, 0};
-  if (used_ == bytes_.size()) closed_ = true;  // a message longer than any we can take
+  if (used_ == bytes_.size()) closed_ = true;  // a message longer than the buffer
   if (closed_ || poll(&wanted, 1, timeout_ms) <= 0) return false;
   const ssize_t count = recv(socket_, bytes_.data() + used_, bytes_.size() - used_, 0);
   if (count <= 0) {
@@ -185,7 +171,7 @@ WebSocket::Result WebSocket::receive(int timeout_ms, std::string_view& message) 
   }
 }
 
-/// Takes one frame off the bytes; false when it has not wholly arrived.
+/// Removes one frame from the bytes; false when it is not complete.
 bool WebSocket::take_frame(std::string_view& message, bool& complete) noexcept {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes_[i]); };
   if (used_ < 2) return false;
@@ -228,8 +214,8 @@ bool WebSocket::send(std::string_view message) noexcept {
   return send_frame(kText, message);
 }
 
-/// A client has to mask what it sends [RFC 6455, 5.3]. The mask keeps proxies from being fooled by
-/// the content; a fixed one serves for numbers to this machine.
+/// A client must mask what it sends [RFC 6455, 5.3]. The mask protects proxies from crafted
+/// content; a fixed mask is enough for numbers to this machine.
 bool WebSocket::send_frame(unsigned opcode, std::string_view payload) noexcept {
   if (socket_ < 0 || payload.size() > kMostSent) return false;
   constexpr std::array<std::uint8_t, 4> mask{0x5A, 0xC3, 0x17, 0x9E};

@@ -23,7 +23,8 @@ class WebSocket {
   WebSocket(const WebSocket&) = delete;
   WebSocket& operator=(const WebSocket&) = delete;
 
-  /// Connects and shakes hands. @throws Error(Configuration), naming `what` and the address.
+  /// Connects and performs the handshake. @throws Error(Configuration) naming `what` and the
+  /// address.
   void connect(const std::string& what, const std::string& host, std::uint16_t port);
   void close() noexcept;
 

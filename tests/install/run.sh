@@ -19,7 +19,7 @@ prefix=$work/moved
 "$work/by_cmake/consumer" "$work/plate.h5"
 "$work/by_cmake/consumer_cpp" "$work/plate.h5"
 
-# The examples in C, C++ and Python say the same, and it is 100 k z^2 along the normal of the plate, z the depth they tell.
+# The examples in C, C++ and Python print the same force, 100 k z^2 along the normal of the plate at depth z.
 library=$(find "$prefix" -name 'libpalpate.so')
 said=$("$work/by_cmake/feel_c" "$work/plate.h5" 0 0 1)
 "$python" - "$said" <<'CHECK' || { echo "the example in C says: $said"; exit 1; }
@@ -35,17 +35,10 @@ export PKG_CONFIG_PATH=$(dirname "$pc")
 "$cc" -std=c99 -Wall -Wextra -Wpedantic -Werror "$source/consumer/consumer.c" -o "$work/by_pkg_config" \
   $(pkg-config --cflags --libs palpate) -lm -Wl,-rpath,"$(pkg-config --variable=libdir palpate)"
 "$work/by_pkg_config" "$work/plate.h5"
-# As the page for embedding says.
+# As README.md says.
 "$cc" "$examples/feel.c" $(pkg-config --cflags --libs palpate) -o "$work/feel"
 [ "$(LD_LIBRARY_PATH=$(pkg-config --variable=libdir palpate) "$work/feel" "$work/plate.h5" 0 0 1)" = "$said" ]
 
-# Nothing but the C interface is exported, under the promised name.
-library=$(find "$prefix" -name 'libpalpate.so.*.*')
-readelf -d "$library" | grep -q 'SONAME.*libpalpate\.so\.[0-9]*\]' || { echo "no SONAME"; exit 1; }
-strays=$(nm -D --defined-only "$library" | awk '{print $3}' | grep -v '^palpate_' || true)
-[ -z "$strays" ] || { echo "exported besides the C interface: $strays"; exit 1; }
-# The declarations of the header and the exported symbols are the same set.
-header=$(find "$prefix" -name palpate.h)
-diff <(grep -ozP 'PALPATE_API[^;(]*\bpalpate_\w+(?=\()' "$header" | tr '\0' '\n' | grep -oP 'palpate_\w+$' | sort -u) \
-     <(nm -D --defined-only "$library" | awk '{print $3}' | sort -u)
-echo "install: the consumers and the examples run, the interface is what the header says"
+# The licence comes with the library.
+cmp "$(find "$prefix" -path '*/share/doc/palpate/LICENSE')" "$source/../../runtime/LICENSE" || { echo "no licence"; exit 1; }
+echo "install: the consumers and the examples run"

@@ -38,7 +38,7 @@ std::unique_ptr<Device> lab_device(const std::string& library) {
     settings.axes.push_back(axis);
     Vec3 along{};
     along[j] = 1;
-    joints.push_back({runtime::JointKind::Slides, along, {}});
+    joints.push_back({runtime::JointKind::Prismatic, along, {}});
   }
   return std::make_unique<runtime::LabDevice>(settings, runtime::SerialChain(joints, {}),
                                               std::make_unique<runtime::ComediElectronics>(board));

@@ -12,6 +12,7 @@
 #include "format/error.hpp"
 #include "runtime/devices/device_virtual.hpp"
 #include "runtime/force_loop.hpp"
+#include "runtime/handles.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/palpate.h"
 #include "runtime/realtime.hpp"
