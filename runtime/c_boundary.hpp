@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every function of the C interface needs: messages, and an end to exceptions.
+// Messages and exceptions at the boundary of the C interface.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace palpate::runtime {
 /// Remembers the message for palpate_last_error of this thread and returns the status.
 int fail(int status, const char* text) noexcept;
 
-/// Runs what may throw and turns the exception into a status and a message; `status` is that of an
-/// exception with a message of its own.
+/// Runs an action that may throw and turns an exception into a status and a message. `status`: for
+/// an exception with a message.
 template <typename Action>
 int guarded(int status, Action action) noexcept {
   try {
@@ -30,7 +30,7 @@ int guarded(int status, Action action) noexcept {
   }
 }
 
-/// Gives the caller the fields that both headers know; what only a newer one knows is left alone.
+/// Copies the fields that both headers know to the caller; fields of a newer header stay untouched.
 template <class Struct>
 void give(const Struct& whole, Struct* to, std::uint32_t size) noexcept {
   const std::uint32_t known = std::min<std::uint32_t>(size, sizeof(Struct));

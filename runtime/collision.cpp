@@ -16,7 +16,7 @@ namespace {
 constexpr std::int32_t kLeafSize = 4;
 constexpr std::size_t kDeepest = 64;  // halving 2^31 triangles needs 31 levels
 constexpr double kLeastGain = 0.7;  // a pass that leaves more of the lateral deflection overshoots
-constexpr double kLeastShare = 1.0 / 16;
+constexpr double kLeastFraction = 1.0 / 16;
 constexpr double kNaturalTolerance = 1e-9;  // neighbours overlap by this much: no gap between them
 
 /// Does the segment meet the box? Slab by slab; a direction component of zero is a containment
@@ -97,7 +97,7 @@ void test_entry(const Surface& surface, std::int32_t m, const Vec3& from, const 
 }
 
 struct Closest {
-  double distance2 = 0;  ///< m^2; nothing further is taken
+  double distance2 = 0;  ///< m^2; farther points are ignored
   SurfacePoint point;
 };
 
@@ -108,7 +108,7 @@ void test_distance(const Surface& surface, std::int32_t m, const Vec3& x, Closes
   best = {dot(r, r), p};
 }
 
-/// Is every point of the element further than the best? Cheap, and wrong only on the safe side.
+/// Is every point of the element farther than the best? Cheap and conservative.
 bool surely_further(const Surface& surface, const Element& e, const Vec3& x,
                     const Closest& best) noexcept {
   const double off_plane = surface.outside_distance(e, x);
@@ -251,13 +251,13 @@ void CollisionTree::gather(const Vec3& from, const Vec3& to, double radius, std:
 Projection project(const Surface& surface, const SurfacePoint& from, const Vec3& x, int passes,
                    double tolerance, const Delivery* delivered) noexcept {
   Projection p{from, std::numeric_limits<double>::infinity(), false, false};
-  double share = 1;  // of the lateral deflection walked in a pass; less where full passes overshoot
+  double fraction = 1;  // of the lateral deflection walked in a pass; less where passes overshoot
   for (int pass = 0;; ++pass) {
     const Deflection d = LocalModel(surface, p.point, 0).deflection(x);
-    if (d.lateral > kLeastGain * p.lateral) share = std::max(share / 2, kLeastShare);
+    if (d.lateral > kLeastGain * p.lateral) fraction = std::max(fraction / 2, kLeastFraction);
     p.lateral = d.lateral;
     if (d.lateral <= tolerance || pass == passes) return p;
-    const Walk moved = walk(surface, p.point, d.tangent, share * d.lateral, delivered);
+    const Walk moved = walk(surface, p.point, d.tangent, fraction * d.lateral, delivered);
     p.point = moved.point;
     p.at_border = moved.at_border;
     p.awaiting = moved.awaiting;

@@ -17,7 +17,7 @@ namespace palpate::runtime {
 SurfacePoint first_entry(const Surface& surface, std::span<const std::int32_t> elements,
                          const Vec3& from, const Vec3& to) noexcept;
 
-/// Closest point to x on some triangles, no further than `within` (m). noexcept, allocation-free,
+/// Closest point to x on some triangles, no farther than `within` (m). noexcept, allocation-free,
 /// linear.
 SurfacePoint nearest(const Surface& surface, std::span<const std::int32_t> elements, const Vec3& x,
                      double within) noexcept;
@@ -32,7 +32,7 @@ class CollisionTree {
   /// logarithmic for the short steps of a force loop.
   SurfacePoint first_entry(const Vec3& from, const Vec3& to) const noexcept;
 
-  /// Closest point of the surface to x, no further than `within` (m); its element is kNoElement
+  /// Closest point of the surface to x, no farther than `within` (m); its element is kNoElement
   /// when there is none. noexcept, allocation-free, bounded by the number of triangles.
   SurfacePoint nearest(const Vec3& x, double within) const noexcept;
 
@@ -62,9 +62,9 @@ class CollisionTree {
 /// `passes` walks along the lateral deflection. Stops when it is below `tolerance` (m).
 struct Projection {
   SurfacePoint point;
-  double lateral = 0;      ///< m, what is left of it
-  bool at_border = false;  ///< a border stood in the way
-  bool awaiting = false;   ///< a triangle that has not been delivered stood in the way
+  double lateral = 0;      ///< m, remaining lateral deflection
+  bool at_border = false;  ///< a border stopped it
+  bool awaiting = false;   ///< a triangle that is not delivered stopped it
 };
 Projection project(const Surface& surface, const SurfacePoint& from, const Vec3& x, int passes,
                    double tolerance, const Delivery* delivered = nullptr) noexcept;

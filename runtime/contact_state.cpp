@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "runtime/palpate.h"
 #include "runtime/sliding.hpp"
+#include "runtime/status.hpp"
 
 namespace palpate::runtime {
 namespace {
@@ -13,20 +13,21 @@ namespace {
 constexpr double kRelaxed = 1e-11;  // m; a lateral deflection this small stores no energy (1e-19 J)
 constexpr int kActivationPasses = 24;  // each gains at least a digit where the surface is smooth
 constexpr int kRelaxedPasses = 8;
-constexpr double kRecoveryShare = 0.5;  // of the tip's travel: how fast the offset may return
-constexpr double kRounding = 1e-12;     // N; what the limit on the change of force overlooks
-constexpr int kShorterSlides = 5;       // tries, before the contact point is held
+constexpr double kRecoveryFraction = 0.5;  // of the travel of the tip: how fast the offset returns
+constexpr double kRounding = 1e-12;        // N; tolerance of the limit on the change of force
+constexpr int kThrottleTries = 5;          // shorter slides that are tried before c stays fixed
 
 bool finite(const Vec3& v) noexcept {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-/// Where a straight way from `near`, no longer than `allowed`, to `far`, which is longer, becomes
-/// too long: its share, in [0, 1]. Half of the way when both are too long.
-double share_within(const Vec3& near, const Vec3& far, double allowed) noexcept {
-  const Vec3 way = far - near;
-  const double a = dot(way, way);
-  const double b = dot(near, way);
+/// The fraction in [0, 1] of the straight path from `near`, no longer than `allowed`, to `far`,
+/// which is longer, at which the vector reaches the length `allowed`. One half when both are
+/// longer.
+double fraction_within(const Vec3& near, const Vec3& far, double allowed) noexcept {
+  const Vec3 path = far - near;
+  const double a = dot(path, path);
+  const double b = dot(near, path);
   const double c = allowed * allowed - dot(near, near);
   return c > 0 ? c / (b + std::sqrt(b * b + a * c)) : 0.5;
 }
@@ -53,7 +54,7 @@ void ContactState::set_delivery(const Delivery* delivered) noexcept {
 }
 
 std::uint32_t ContactState::refuse() noexcept {
-  seen_.status = PALPATE_BAD_INPUT;
+  seen_.status = step_status::BadInput;
   drop();
   return seen_.status;
 }
@@ -67,7 +68,7 @@ std::uint32_t ContactState::step(const Vec3& x) noexcept {
   seen_.status = 0;
   if (model_) touch(x, travelled);
   if (!model_) detect(from, x);
-  if (model_) seen_.status |= PALPATE_CONTACT;
+  if (model_) seen_.status |= step_status::Contact;
   return seen_.status;
 }
 
@@ -80,8 +81,8 @@ void ContactState::detect(const Vec3& from, const Vec3& x) noexcept {
   };
   const Projection facing = facing_from(*approaching_);
   if (begin_at(facing, x)) return;
-  // No point near the entry faces the tip, or it takes more passes to find. The closest point says
-  // whether to go on, and may be a better start.
+  // No point near the entry faces the tip, or it takes more passes to find. The closest point tells
+  // whether the tip is inside, and may be a better start.
   approaching_.reset();
   const SurfacePoint closest = closest_if_inside(x);
   if (closest.element == kNoElement) return;
@@ -96,7 +97,7 @@ SurfacePoint ContactState::entry(const Vec3& from, const Vec3& to) const noexcep
 }
 
 /// The closest point of the surface when the tip is on its inner side and not deeper than the
-/// deepest sample; else none. Sure of the side even at edges, as u_l . facet normal > 0 in every
+/// deepest sample; else none. The side is certain also at edges, as u_l . facet normal > 0 in every
 /// triangle.
 SurfacePoint ContactState::closest_if_inside(const Vec3& x) const noexcept {
   const SurfacePoint p = delivered_ == nullptr
@@ -116,7 +117,7 @@ bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
   if (!(depth >= 0 && depth <= surface_->deepest())) return false;
   model.set_offset(depth);
   approaching_.reset();
-  seen_.status |= PALPATE_ACTIVATED;
+  seen_.status |= step_status::Activated;
   Candidate first{model, {}, {}, depth, 0};
   respond(first, x);
   commit(first, 0);
@@ -124,29 +125,29 @@ bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
 }
 
 void ContactState::touch(const Vec3& x, double travelled) noexcept {
-  Held held;
-  held.deflection = model_->deflection(x);
-  held.response = model_->respond(held.deflection, pieces_);
-  held.travelled = travelled;
-  held.allowance = std::isinf(settings_.lipschitz_bound)
-                       ? settings_.lipschitz_bound  // also at rest
-                       : settings_.lipschitz_bound * travelled;
-  if (exceeds_friction(held.response, 0)) {
-    const double limit = slip_limit(*model_, held.deflection, held.response);
-    held.excess = std::max(held.deflection.lateral - limit, 0.0);
+  FixedContact fixed;
+  fixed.deflection = model_->deflection(x);
+  fixed.response = model_->respond(fixed.deflection, pieces_);
+  fixed.travelled = travelled;
+  fixed.allowance = std::isinf(settings_.lipschitz_bound)
+                        ? settings_.lipschitz_bound  // also at rest
+                        : settings_.lipschitz_bound * travelled;
+  if (exceeds_friction(fixed.response, 0)) {
+    const double limit = slip_limit(*model_, fixed.deflection, fixed.response);
+    fixed.excess = std::max(fixed.deflection.lateral - limit, 0.0);
   }
-  const double energy_before = held.response.energy;  // E_{i-1}(x_i)
+  const double energy_before = fixed.response.energy;  // E_{i-1}(x_i)
   seen_.absorbed += energy_before - seen_.energy;
-  const Candidate next = choose(x, held);
+  const Candidate next = choose(x, fixed);
   seen_.status |= next.status;
   if (release(next, x, energy_before)) return;
-  if (next.model.contact_point() != model_->contact_point()) seen_.status |= PALPATE_SLIDING;
+  if (next.model.contact_point() != model_->contact_point()) seen_.status |= step_status::Sliding;
   commit(next, energy_before);
 }
 
 /// Is the lateral force above mu g by more than `tolerated` (N)? Out of normal contact mu g is 0.
 bool ContactState::exceeds_friction(const LocalResponse& r, double tolerated) const noexcept {
-  return r.lateral_force > settings_.friction * r.grip + tolerated;
+  return r.lateral_force > settings_.friction * r.friction_normal_force + tolerated;
 }
 
 /// Of a response that exceeds friction.
@@ -155,62 +156,66 @@ double ContactState::slip_limit(const LocalModel& model, const Deflection& at,
   return model.slip_limit_below(at, response, settings_.friction, pieces_);
 }
 
-/// Does the force change by no more than `allowed` (N, infinite if any may)?
+/// Does the force change by at most `allowed` (N; infinite: any change)?
 bool ContactState::may_change_to(const Candidate& c, double allowed) const noexcept {
   const Vec3 change = c.response.force - seen_.force;
   return dot(change, change) <= allowed * allowed;
 }
 
 /// The slide and the return of the offset as far as the force may change in this step.
-ContactState::Candidate ContactState::choose(const Vec3& x, const Held& held) const noexcept {
-  const double allowed = held.allowance + kRounding;
+ContactState::Candidate ContactState::choose(const Vec3& x,
+                                             const FixedContact& fixed) const noexcept {
+  const double allowed = fixed.allowance + kRounding;
   const auto within = [&](const Candidate& c) { return may_change_to(c, allowed); };
-  Candidate next = move(x, held, {.recovery = kRecoveryShare * held.travelled});
+  Candidate next = move(x, fixed, {.recovery = kRecoveryFraction * fixed.travelled});
   if (within(next)) return next;
-  next = move(x, held, {});
-  const std::uint32_t obstacles = next.status & (PALPATE_AT_BORDER | PALPATE_AWAITING);
-  if (!within(next)) next = hold_back(x, held, next, allowed);
-  next.status |= obstacles | PALPATE_FORCE_LIMITED;
+  next = move(x, fixed, {});
+  const std::uint32_t obstacles = next.status & (step_status::AtBorder | step_status::Awaiting);
+  if (!within(next)) next = throttle(x, fixed, next, allowed);
+  next.status |= obstacles | step_status::ForceLimited;
   return next;
 }
 
-/// As much of a slide as the limit on the change of force has room for. With c held the tool slips
-/// over it, which is within a certified limit from any state in which friction holds; where more
-/// was left over than the limit lets go of now, the tool slips in part. How far c may go is first
-/// taken from the straight line over its whole way; that may lead over a seam of the body and say
-/// nothing of the way to it, so the next tries are of the travel of the tip and of ever less.
-ContactState::Candidate ContactState::hold_back(const Vec3& x, const Held& held,
-                                                const Candidate& asked,
-                                                double allowed) const noexcept {
+/// The largest part of a slide that the limit on the change of force allows. With c fixed the tool
+/// slips over it, which is within a certified limit from any state inside the friction cone; from a
+/// state outside it the tool slips in part. The first try for the motion of c interpolates the
+/// change of force linearly over its whole path. That path may cross an edge of the body, so the
+/// next tries are the travel of the tip and ever shorter motions.
+ContactState::Candidate ContactState::throttle(const Vec3& x, const FixedContact& fixed,
+                                               const Candidate& whole,
+                                               double allowed) const noexcept {
   const auto change = [&](const Candidate& c) { return c.response.force - seen_.force; };
   const auto within = [&](const Candidate& c) { return may_change_to(c, allowed); };
-  const Candidate slipping = move(x, held, {.follow = 0});
+  const Candidate slipping = move(x, fixed, {.follow = 0});
   const bool may_follow = within(slipping);
   const Candidate base =
-      may_follow ? slipping : Candidate{*model_, held.deflection, held.response, goal_, 0};
-  Candidate next = may_follow ? asked : slipping;
-  double share = 1;
-  for (int i = 0; i < kShorterSlides; ++i) {
-    const double line = 0.9 * share_within(change(base), change(next), allowed);
-    share *= std::clamp(line, 0.02, may_follow && i > 1 ? 0.25 : 0.9);
-    if (may_follow && i == 1) share = std::min(share, held.travelled / norm(lag(held)));
-    next = move(x, held, may_follow ? Shares{.follow = share} : Shares{.follow = 0, .slip = share});
+      may_follow ? slipping : Candidate{*model_, fixed.deflection, fixed.response, goal_, 0};
+  Candidate next = may_follow ? whole : slipping;
+  double fraction = 1;
+  for (int i = 0; i < kThrottleTries; ++i) {
+    const double line = 0.9 * fraction_within(change(base), change(next), allowed);
+    fraction *= std::clamp(line, 0.02, may_follow && i > 1 ? 0.25 : 0.9);
+    if (may_follow && i == 1) fraction = std::min(fraction, fixed.travelled / norm(lag(fixed)));
+    next = move(x, fixed,
+                may_follow ? SlideFractions{.follow = fraction}
+                           : SlideFractions{.follow = 0, .slip = fraction});
     if (within(next)) return next;
   }
   return base;
 }
 
-/// The model after a share of the slide, with an offset that keeps the energy in the budget.
-ContactState::Candidate ContactState::move(const Vec3& x, const Held& held,
-                                           const Shares& shares) const noexcept {
+/// The model after these fractions of the slide, with an offset that keeps the energy in the
+/// budget.
+ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fixed,
+                                           const SlideFractions& fractions) const noexcept {
   std::uint32_t status = 0;
-  Candidate next{slide(x, held, shares, status), {}, {}, goal_, 0};
+  Candidate next{slide(x, fixed, fractions, status), {}, {}, goal_, 0};
   next.status = status;
   next.deflection = next.model.deflection(x);
-  double recovery = shares.recovery;
+  double recovery = fractions.recovery;
   if (!(next.deflection.depth > 0)) {
-    // Out of normal contact but perhaps inside the body: the offset follows the tip outwards, at no
-    // energy, until the true surface is felt again.
+    // Out of normal contact but perhaps inside the body: the offset follows the tip outwards, which
+    // takes no energy, until it is back at the true surface.
     const double rearmed = std::min(next.model.offset(), std::max(next.deflection.geometric, 0.0));
     next.goal = std::min(goal_, rearmed);
     next.model.set_offset(rearmed);
@@ -218,21 +223,21 @@ ContactState::Candidate ContactState::move(const Vec3& x, const Held& held,
     recovery = 0;
   }
   next.response = next.model.respond(next.deflection, pieces_);
-  if (settings_.budget == EnergyBudget::Kept) keep_budget(next, x, held, recovery);
-  if (shares.slip == 1) keep_friction(next, held.allowance);
+  if (settings_.budget == EnergyBudget::Enforced) enforce_budget(next, x, fixed, recovery);
+  if (fractions.slip == 1) enforce_friction(next, fixed.allowance);
   return next;
 }
 
-/// Where no offset keeps a slide in the budget c is held, and the tool slips over it: at the same c
-/// that lowers the energy.
-void ContactState::keep_budget(Candidate& moved, const Vec3& x, const Held& held,
-                               double recovery) const noexcept {
+/// Where no offset keeps a slide in the budget c stays fixed and the tool slips over it: with c
+/// fixed slip lowers the energy.
+void ContactState::enforce_budget(Candidate& moved, const Vec3& x, const FixedContact& fixed,
+                                  double recovery) const noexcept {
   const EnergyVerdict verdict = judge(moved.model, x, moved.response,
-                                      tank_.budget(held.response.energy), moved.goal, recovery);
+                                      tank_.budget(fixed.response.energy), moved.goal, recovery);
   if (!verdict.limited && verdict.offset == moved.model.offset()) return;
-  if (verdict.limited) moved.status |= PALPATE_ENERGY_LIMITED;
-  if (verdict.hold) {
-    moved.model = let_go(held, 1);
+  if (verdict.limited) moved.status |= step_status::EnergyLimited;
+  if (verdict.fix_contact_point) {
+    moved.model = slip_at_fixed_point(fixed, 1);
     moved.goal = goal_;
   } else {
     moved.model.set_offset(verdict.offset);
@@ -245,83 +250,86 @@ void ContactState::respond(Candidate& at, const Vec3& x) const noexcept {
   at.response = at.model.respond(at.deflection, pieces_);
 }
 
-/// What a slide or a change of the offset has left of the lateral force above mu g is let go at
-/// once: all of coupled responses, whose bound holds up to the slip limit. Of decoupled ones, whose
-/// bound holds everywhere, what is above that of one step of travel; the next slide of c takes the
-/// rest.
-void ContactState::keep_friction(Candidate& moved, double allowance) const noexcept {
+/// Slips where a slide or a change of the offset has left a lateral force above mu g: coupled
+/// responses by all of it, as their bound is valid up to the slip limit; decoupled responses, whose
+/// bound is valid everywhere, by what exceeds the allowance of one step. The next slide of c
+/// releases the rest.
+void ContactState::enforce_friction(Candidate& moved, double allowance) const noexcept {
   if (!exceeds_friction(moved.response, moved.model.coupled() ? 0 : allowance)) return;
   const double limit = slip_limit(moved.model, moved.deflection, moved.response);
   moved.model.slip_to(limit, moved.deflection, moved.response, pieces_);
 }
 
-LocalModel ContactState::slide(const Vec3& x, const Held& held, const Shares& shares,
+LocalModel ContactState::slide(const Vec3& x, const FixedContact& fixed,
+                               const SlideFractions& fractions,
                                std::uint32_t& status) const noexcept {
-  if (shares.follow == 0) return let_go(held, shares.slip);
-  if (!(held.deflection.depth > 0) && shares.follow == 1) return relax(x, status);
+  if (fractions.follow == 0) return slip_at_fixed_point(fixed, fractions.slip);
+  if (!(fixed.deflection.depth > 0) && fractions.follow == 1) return relax(x, status);
   const bool apart = model_->lateral_offset() != Vec3{};
-  if (!apart && !(held.excess > 0)) return *model_;
-  return follow(held, shares.follow, apart, status);
+  if (!apart && !(fixed.excess > 0)) return *model_;
+  return follow(fixed, fractions.follow, apart, status);
 }
 
 /// Where the lateral deflection exceeds the slip limit the anchor c + s moves by the excess along
-/// t, and c goes a share of the way to it. What c does not go is left in s. Where nothing hinders
-/// c, s stays zero: of an ordinary slide the next step takes what the curvature left over.
-LocalModel ContactState::follow(const Held& held, double share, bool apart,
+/// t, and c moves a fraction of the path to it; the rest stays in s. Where nothing hinders c, s
+/// stays zero: the next step corrects what the curvature of the surface leaves in an ordinary
+/// slide.
+LocalModel ContactState::follow(const FixedContact& fixed, double fraction, bool apart,
                                 std::uint32_t& status) const noexcept {
-  const Vec3 way = lag(held);
-  const double distance = apart ? norm(way) : held.excess;
-  const Vec3 direction = apart ? way : held.deflection.tangent;
-  const Walk moved = walk(*surface_, model_->point(), direction, share * distance, delivered_);
-  if (moved.at_border) status |= PALPATE_AT_BORDER;
-  if (moved.awaiting) status |= PALPATE_AWAITING;
+  const Vec3 path = lag(fixed);
+  const double distance = apart ? norm(path) : fixed.excess;
+  const Vec3 direction = apart ? path : fixed.deflection.tangent;
+  const Walk moved = walk(*surface_, model_->point(), direction, fraction * distance, delivered_);
+  if (moved.at_border) status |= step_status::AtBorder;
+  if (moved.awaiting) status |= step_status::Awaiting;
   LocalModel next(*surface_, moved.point, model_->offset());
-  if (apart || moved.hindered || share != 1) {
-    next.set_lateral_offset(way - (next.contact_point() - model_->contact_point()));
-    if (share == 1 && norm(next.lateral_offset()) <= kRelaxed) next.set_lateral_offset({});
+  if (apart || moved.hindered || fraction != 1) {
+    next.set_lateral_offset(path - (next.contact_point() - model_->contact_point()));
+    if (fraction == 1 && norm(next.lateral_offset()) <= kRelaxed) next.set_lateral_offset({});
   }
   return next;
 }
 
 /// From c to the anchor once it has slipped.
-Vec3 ContactState::lag(const Held& held) const noexcept {
-  return model_->lateral_offset() + held.excess * held.deflection.tangent;
+Vec3 ContactState::lag(const FixedContact& fixed) const noexcept {
+  return model_->lateral_offset() + fixed.excess * fixed.deflection.tangent;
 }
 
-/// Out of normal contact nothing holds the tool: c follows the tip until x - c is parallel to n,
-/// and where it cannot, s does.
+/// Out of normal contact there is no friction: c follows the tip until x - c is parallel to n, and
+/// where it cannot, s does.
 LocalModel ContactState::relax(const Vec3& x, std::uint32_t& status) const noexcept {
   const Projection p = project(*surface_, model_->point(), x, kRelaxedPasses, kRelaxed, delivered_);
-  if (p.at_border) status |= PALPATE_AT_BORDER;
-  if (p.awaiting) status |= PALPATE_AWAITING;
+  if (p.at_border) status |= step_status::AtBorder;
+  if (p.awaiting) status |= step_status::Awaiting;
   LocalModel next(*surface_, p.point, model_->offset());
   if (p.lateral > kRelaxed) next.set_lateral_offset(x - next.contact_point());
   return next;
 }
 
-/// c held; of the excess over the slip limit a share goes into s.
-LocalModel ContactState::let_go(const Held& held, double share) const noexcept {
+/// c stays fixed; a fraction of the excess over the slip limit goes into s.
+LocalModel ContactState::slip_at_fixed_point(const FixedContact& fixed,
+                                             double fraction) const noexcept {
   LocalModel next = *model_;
   next.set_lateral_offset(model_->lateral_offset() +
-                          (share * held.excess) * held.deflection.tangent);
+                          (fraction * fixed.excess) * fixed.deflection.tangent);
   return next;
 }
 
 /// The contact ends when the tip is out of normal contact and outside the body, and the lateral
-/// deflection has relaxed: nothing is stored then.
+/// deflection has relaxed: no energy is stored then.
 bool ContactState::release(const Candidate& moved, const Vec3& x, double energy_before) noexcept {
   const Deflection& d = moved.deflection;
   const Element& e = surface_->element(moved.model.point().element);
   if (d.depth > 0 || surface_->outside_distance(e, x) < 0) return false;
   if (d.lateral > kRelaxed) return false;  // the force still falls
   if (norm(moved.model.lateral_offset()) > kRelaxed) {
-    // The way for c is not there yet; or c is not opposite to the tip, so that its plane does not
-    // decide on which side the tip is.
-    if (moved.status & PALPATE_AWAITING) return false;
+    // The triangles for c have not been delivered; or c is not opposite to the tip, so that its
+    // plane does not decide on which side the tip is.
+    if (moved.status & step_status::Awaiting) return false;
     if (closest_if_inside(x).element != kNoElement) return false;
   }
   tank_.settle(energy_before, 0);
-  seen_.status |= PALPATE_RELEASED;
+  seen_.status |= step_status::Released;
   free_contact();
   return true;
 }
@@ -332,7 +340,7 @@ void ContactState::commit(const Candidate& next, double energy_before) noexcept 
   if (ahead_ != kNoElement || !same_element) look_ahead(next.deflection);
   goal_ = next.goal;
   tank_.settle(energy_before, next.response.energy);
-  if (next.deflection.depth > next.model.deepest()) seen_.status |= PALPATE_BEYOND_DEPTH;
+  if (next.deflection.depth > next.model.deepest()) seen_.status |= step_status::BeyondDepth;
   seen_.point = next.model.point();
   seen_.contact_point = next.model.contact_point();
   seen_.normal = next.model.normal();
@@ -344,7 +352,7 @@ void ContactState::commit(const Candidate& next, double energy_before) noexcept 
   seen_.tank = tank_.level();
 }
 
-/// What the contact point may reach in the next steps is fetched from memory in this one.
+/// Prefetches what the contact point may reach in the next steps.
 void ContactState::look_ahead(const Deflection& at) noexcept {
   const std::int32_t now = model_->point().element;
   const NodeCurves::InUse in_use = model_->curves_in_use(at);
@@ -366,7 +374,7 @@ void ContactState::free_contact() noexcept {
 void ContactState::drop() noexcept {
   approaching_.reset();
   if (!model_) return;
-  seen_.status |= PALPATE_DROPPED;
+  seen_.status |= step_status::Dropped;
   free_contact();
 }
 

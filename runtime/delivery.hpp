@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the search at a low rate hands to the force loop.
+// The triangles that the search delivers to the force loop.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace palpate::runtime {
 
-/// The triangles on which the force loop may find a collision and over which it may slide, until
-/// the next delivery [Mahvash & Hayward 2005, VI-A]. Of fixed size, so that it passes through a
+/// The triangles on which the force loop may find a collision and over which it may slide until the
+/// next delivery [Mahvash & Hayward 2005, VI-A]. Its size is fixed, so that it passes through a
 /// queue without allocation.
 class Delivery {
  public:
@@ -32,8 +32,8 @@ class Delivery {
   }
   std::span<const std::int32_t> elements() const noexcept { return {elements_.data(), count_}; }
 
-  /// Where the tip went from outside to inside between the last two looks of the search; an element
-  /// of kNoElement when it did not. For a tip so fast that it outran the triangles it was given.
+  /// Where the tip crossed from outside to inside between the last two searches; its element is
+  /// kNoElement when it did not. For a tip that was faster than the delivery of triangles.
   SurfacePoint entry;
 
  private:

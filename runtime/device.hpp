@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the force loop asks of a haptic device.
+// The interface of a haptic device to the force loop.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace palpate::runtime {
 
-/// How a call in the loop went.
+/// Result of a call in the loop.
 enum class DeviceStatus : std::uint8_t {
   Good,
-  Saturated,  ///< the device gives less force than it was asked for
+  Saturated,  ///< the device gives less force than commanded
   Late,       ///< no new sample in time: the last one again
-  Lost        ///< unplugged, switched off, or its service is gone: no further call makes sense
+  Lost        ///< unplugged, switched off, or its service ended: the loop ends
 };
 
 struct DeviceReading {
@@ -25,10 +25,10 @@ struct DeviceReading {
   std::uint32_t buttons = 0;  ///< one bit each
 };
 
-/// A device with one point of three degrees of freedom. open() and close() belong outside the force
-/// loop; read() and command() are called by one thread, alternately, never allocate in this
-/// library, and return a status instead of throwing. close() is safe to call at any time and twice,
-/// and leaves the device without force.
+/// A device with one point of three degrees of freedom. Call open() and close() outside the force
+/// loop. One thread calls read() and command() alternately; they do not allocate in this library
+/// and return a status instead of throwing. close() may be called at any time and repeatedly, and
+/// leaves the device without force.
 class Device {
  public:
   Device() = default;
@@ -42,17 +42,16 @@ class Device {
   virtual void close() noexcept = 0;
 
   virtual DeviceStatus read(DeviceReading& reading) noexcept = 0;
-  /// Force on the tool, N, held until the next command.
+  /// Force on the tool, N, constant until the next command.
   virtual DeviceStatus command(const Vec3& force) noexcept = 0;
-  /// No force from now on, whatever is commanded. For the watchdog: from any thread.
+  /// No force from now on, whatever is commanded. For the watchdog; from any thread.
   virtual void halt() noexcept = 0;
 
-  /// Largest force it can give in any direction, N; NaN when it does not say.
+  /// Largest force in any direction, N; NaN when not known.
   virtual double peak_force() const noexcept { return std::numeric_limits<double>::quiet_NaN(); }
 
-  /// A driver that calls the loop from its own thread returns true and takes the loop by
-  /// start_calls: `step` is called at the rate of the driver until it returns false or stop_calls()
-  /// returns.
+  /// True for a driver that calls the loop from its own thread: after start_calls it calls `step`
+  /// at its rate until `step` returns false or stop_calls() returns.
   virtual bool has_own_thread() const noexcept { return false; }
   virtual void start_calls(std::function<bool()> step);  ///< @throws Error when the driver refuses
   virtual void stop_calls() noexcept {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What keeps a slide from creating energy.
+// The rule by which a slide creates no energy.
 #pragma once
 
 #include "format/vec3.hpp"
@@ -15,12 +15,12 @@ namespace palpate::runtime {
 double least_offset(const LocalModel& model, const Vec3& x, double budget, double low,
                     double high) noexcept;
 
-/// What may be stored and what is kept of it.
+/// Energy that was absorbed before and is available to an activation.
 class EnergyTank {
  public:
   explicit EnergyTank(double cap) noexcept : cap_(cap) {}
   double level() const noexcept { return level_; }  ///< J
-  /// E_{i-1}(x_i) + tank: the most that the next model may hold.
+  /// E_{i-1}(x_i) + tank: the most energy that the next model may store.
   double budget(double energy_before) const noexcept { return energy_before + level_; }
   /// tank := clamp(tank + E_{i-1}(x_i) - E_i(x_i), 0, cap)
   void settle(double energy_before, double energy_after) noexcept;
@@ -33,9 +33,9 @@ class EnergyTank {
 
 /// Outcome of the rule for a model moved by a slide.
 struct EnergyVerdict {
-  bool hold = false;     ///< no offset is enough: the contact point must stay where it was
-  bool limited = false;  ///< the offset was raised
-  double offset = 0;     ///< m
+  bool fix_contact_point = false;  ///< no offset is enough: the contact point must not move
+  bool limited = false;            ///< the offset was raised
+  double offset = 0;               ///< m
 };
 
 /// Rules 2 and 3. `moved` is the model after the slide, with the offset of the step before, and

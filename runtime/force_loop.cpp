@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/force_loop.hpp"
 
-#include "runtime/palpate.h"
 #include "runtime/realtime.hpp"
+#include "runtime/status.hpp"
 
 namespace palpate::runtime {
 
-void enter_observation(const palpate_state& state, RecordedStep& step) noexcept {
-  const ContactObservation seen = state.observe();
+void enter_observation(const PosedContact& contact, RecordedStep& step) noexcept {
+  const ContactObservation seen = contact.observe();
   step.contact_point = seen.contact_point;
   step.depth = seen.deflection.depth;
   step.lateral = seen.deflection.lateral;
@@ -18,9 +18,9 @@ void enter_observation(const palpate_state& state, RecordedStep& step) noexcept 
   step.element = seen.point.element;
 }
 
-ForceLoop::ForceLoop(Device& device, palpate_state& state, const SafetySettings& safety,
+ForceLoop::ForceLoop(Device& device, PosedContact& contact, const SafetySettings& safety,
                      StepQueue* queue)
-    : device_(device), state_(state), safety_(safety), queue_(queue) {}
+    : device_(device), contact_(contact), safety_(safety), queue_(queue) {}
 
 bool ForceLoop::tick(std::int64_t due) noexcept {
   const std::int64_t began = monotonic_ns();
@@ -33,12 +33,12 @@ bool ForceLoop::tick(std::int64_t due) noexcept {
   DeviceReading reading;
   std::uint32_t status = note(device_.read(reading));
   if (counts_.lost) {
-    state_.contact.refuse();
-    record(reading, {}, status | PALPATE_DROPPED, began);
+    contact_.contact.refuse();
+    record(reading, {}, status | step_status::Dropped, began);
     return false;
   }
-  status |= state_.step(reading.position);
-  const auto verdict = safety_.judge(state_.command(), reading.velocity, dt);
+  status |= contact_.step(reading.position);
+  const auto verdict = safety_.judge(contact_.command(), reading.velocity, dt);
   status |= verdict.status | note(device_.command(verdict.force));
   count(status);
   record(reading, verdict.force, status, began);
@@ -51,23 +51,23 @@ std::uint32_t ForceLoop::note(DeviceStatus status) noexcept {
       return 0;
     case DeviceStatus::Saturated:
       ++counts_.saturated;
-      return PALPATE_LOOP_SATURATED;
+      return step_status::LoopSaturated;
     case DeviceStatus::Late:
       ++counts_.stale;
-      return PALPATE_LOOP_STALE;
+      return step_status::LoopStale;
     case DeviceStatus::Lost:
       break;
   }
   counts_.lost = true;
-  return PALPATE_LOOP_DEVICE_LOST;
+  return step_status::LoopDeviceLost;
 }
 
 void ForceLoop::count(std::uint32_t status) noexcept {
   const auto one_if = [status](std::uint32_t bits) { return (status & bits) != 0 ? 1U : 0U; };
-  counts_.late += one_if(PALPATE_LOOP_LATE);
-  counts_.clamped += one_if(PALPATE_LOOP_CLAMPED);
-  counts_.cut_off += one_if(PALPATE_LOOP_LATE | PALPATE_LOOP_TOO_FAST);
-  counts_.not_finite += one_if(PALPATE_LOOP_NOT_FINITE);
+  counts_.late += one_if(step_status::LoopLate);
+  counts_.clamped += one_if(step_status::LoopClamped);
+  counts_.cut_off += one_if(step_status::LoopLate | step_status::LoopTooFast);
+  counts_.not_finite += one_if(step_status::LoopNotFinite);
 }
 
 void ForceLoop::record(const DeviceReading& reading, const Vec3& force, std::uint32_t status,
@@ -81,7 +81,7 @@ void ForceLoop::record(const DeviceReading& reading, const Vec3& force, std::uin
   step.position = reading.position;
   step.velocity = reading.velocity;
   step.force = force;
-  enter_observation(state_, step);
+  enter_observation(contact_, step);
   step.status = status;
   step.latency_ns = spent;
   if (!queue_->try_enqueue(step)) ++counts_.unrecorded;

@@ -10,41 +10,41 @@
 
 #include "format/recording.hpp"
 #include "runtime/device.hpp"
-#include "runtime/handles.hpp"
 #include "runtime/latency_histogram.hpp"
+#include "runtime/posed_contact.hpp"
 #include "runtime/safety.hpp"
 
 namespace palpate::runtime {
 
-/// Steps on their way from the force loop to whoever writes them down.
+/// Steps on their way from the force loop to the recorder.
 using StepQueue = moodycamel::BlockingReaderWriterCircularBuffer<RecordedStep>;
 
-/// Enters into `step` what the model did in it: contact, deflections and the energy account.
-void enter_observation(const palpate_state& state, RecordedStep& step) noexcept;
+/// Copies the observation of the last step (contact, deflections, energies) into `step`.
+void enter_observation(const PosedContact& contact, RecordedStep& step) noexcept;
 
-/// What the loop did, to be read when it has stopped.
+/// Counts of the loop, to be read when it has stopped.
 struct LoopCounts {
   std::uint64_t steps = 0;
   std::uint64_t late = 0;       ///< gaps longer than the watchdog allows
-  std::uint64_t overruns = 0;   ///< steps that were not done when the next was due
-  std::uint64_t saturated = 0;  ///< the device gave less than it was asked for
+  std::uint64_t overruns = 0;   ///< steps that ended after the next was due
+  std::uint64_t saturated = 0;  ///< the device gave less force than commanded
   std::uint64_t stale = 0;      ///< the device had no new sample
   std::uint64_t clamped = 0;
-  std::uint64_t cut_off = 0;  ///< steps without force for speed or lateness
+  std::uint64_t cut_off = 0;  ///< steps without force: too fast or too late
   std::uint64_t not_finite = 0;
-  std::uint64_t unrecorded = 0;  ///< steps the queue had no room for
-  bool lost = false;             ///< the device went away
+  std::uint64_t unrecorded = 0;  ///< steps for which the queue had no room
+  bool lost = false;             ///< the device is lost
   LatencyHistogram wake;         ///< from the time a step was due to its beginning
   LatencyHistogram compute;      ///< reading, stepping and commanding
 };
 
-/// The force loop, driven from outside: by LoopThread, or by the thread of a vendor's driver. Reads
-/// the device, steps the contact, passes the force through Safety, commands it, records. tick() is
-/// noexcept, allocation-free and lock-free besides what the driver of the device does.
+/// The force loop: reads the device, steps the contact, passes the force through Safety, commands
+/// it, records. LoopThread or the thread of a vendor's driver calls tick(), which is noexcept,
+/// allocation-free and lock-free except for the calls of the device's driver.
 class ForceLoop {
  public:
   /// All must outlive the loop; queue may be null.
-  ForceLoop(Device& device, palpate_state& state, const SafetySettings& safety, StepQueue* queue);
+  ForceLoop(Device& device, PosedContact& contact, const SafetySettings& safety, StepQueue* queue);
 
   /// One step. due: when it should have begun, on the monotonic clock, ns. False when the device is
   /// lost: the loop is over.
@@ -62,7 +62,7 @@ class ForceLoop {
               std::int64_t began) noexcept;
 
   Device& device_;
-  palpate_state& state_;
+  PosedContact& contact_;
   Safety safety_;
   StepQueue* queue_;
   LoopCounts counts_;

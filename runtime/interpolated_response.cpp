@@ -26,7 +26,7 @@ double solve_rising_quadratic(const MergedPiece& p, double target) noexcept {
   return denominator > 0.0 ? 2.0 * rise / denominator : kInfinity;
 }
 
-/// h from `start` on, where it is on these pieces.
+/// h from `start` on, while it is on these pieces.
 MergedPiece merged(const std::array<const PackedPiece*, 3>& pieces, const Vec3& weights,
                    double start) noexcept {
   MergedPiece sum;
@@ -41,9 +41,9 @@ MergedPiece merged(const std::array<const PackedPiece*, 3>& pieces, const Vec3& 
   return sum;
 }
 
-constexpr PackedPiece kNothing;  // of a response that is zero
+constexpr PackedPiece kNothing;  // the zero response
 
-/// The piece that holds a deflection, and from where to where it does.
+/// The piece that contains a deflection, and its range.
 struct Found {
   const PackedPiece* piece = &kNothing;
   double from = 0, to = kInfinity;
@@ -59,7 +59,7 @@ class KnotMerge {
  public:
   KnotMerge(const InterpolatedResponse& response, const Vec3& weights) noexcept
       : response_(response), weights_(weights) {}
-  /// On the piece that holds `at`.
+  /// On the piece that contains `at`.
   KnotMerge(const InterpolatedResponse& response, const Vec3& weights, double at) noexcept
       : response_(response), weights_(weights) {
     for (std::size_t l = 0; l < 3; ++l) index_[l] = response_.node(l).lateral().piece_at(at);
@@ -98,7 +98,7 @@ class KnotMerge {
 
   bool at_first() const noexcept { return !(start_ > 0); }
 
-  /// To the piece before; not from the first.
+  /// To the piece before; not allowed from the first.
   void retreat() noexcept {
     for (std::size_t l = 0; l < 3; ++l) {
       const CurveView curve = response_.node(l).lateral();

@@ -11,11 +11,11 @@
 
 namespace palpate::runtime {
 
-/// The pieces of the curves of three nodes that hold a depth and a lateral deflection, and how far
-/// both may change while they do: a memory of the search for them. The next evaluation mostly needs
-/// the same ones, and finds that out by a few comparisons that a processor foresees.
+/// Cache of the search for pieces: the pieces of the curves of three nodes that contain a depth and
+/// a lateral deflection, and the range of both in which they do. The next evaluation mostly needs
+/// the same pieces and verifies it by a few predictable comparisons.
 struct PiecesInUse {
-  std::array<const NodeCurves*, 3> nodes{};  ///< whose they are; null: nobody's yet
+  std::array<const NodeCurves*, 3> nodes{};  ///< owners of the pieces; null: none
   std::array<const PackedPiece*, 3> normal{}, lateral{}, coupling{};
   double depth_from = 0, depth_to = 0;      ///< m, of the normal responses and of w
   double lateral_from = 0, lateral_to = 0;  ///< m
@@ -30,7 +30,7 @@ struct PiecesInUse {
 /// Coupled responses are interpolated as potentials,
 ///   E(z, rho) = sum n_l (G_l(z) + w_l(z) H_l(rho)),
 /// which is the same with w_l = 1. At a depth their lateral response is sum (n_l w_l) f_l^r(rho):
-/// the natural coordinates give way to the weights n_l w_l, whose sum is not 1. A view of three
+/// the weights n_l w_l, whose sum is not 1, replace the natural coordinates. A view of three
 /// nodes: cheap to copy, valid while the nodes live. Evaluation is noexcept, allocation-free and
 /// bounded by the number of knots.
 class InterpolatedResponse {
@@ -51,7 +51,7 @@ class InterpolatedResponse {
 
   bool coupled() const noexcept { return nodes_[0]->coupled(); }
 
-  /// What the three lateral responses count for at a depth: n_l, or n_l w_l(z).
+  /// Weights of the three lateral responses at a depth: n_l, or n_l w_l(z).
   Vec3 lateral_weights(double z) const noexcept {
     if (!coupled()) return natural_;
     Vec3 weights;
@@ -60,19 +60,19 @@ class InterpolatedResponse {
     return weights;
   }
 
-  /// What coupled responses are at a depth, whatever the lateral deflection.
+  /// The part of coupled responses that does not depend on the lateral deflection.
   struct AtDepth {
-    double grip = 0;    ///< g, N
-    double energy = 0;  ///< sum n_l G_l, J
-    Vec3 weights{};     ///< n_l w_l
-    Vec3 rates{};       ///< n_l w_l', 1/m
+    double friction_normal_force = 0;  ///< g, N
+    double energy = 0;                 ///< sum n_l G_l, J
+    Vec3 weights{};                    ///< n_l w_l
+    Vec3 rates{};                      ///< n_l w_l', 1/m
   };
   AtDepth at_depth(double z, PiecesInUse& pieces) const noexcept {
     look_up_depth(z, pieces);
     AtDepth at;
     for (std::size_t l = 0; l < 3; ++l) {
       const CurveValue g = z > 0 ? pieces.normal[l]->evaluate(z) : CurveValue{};
-      at.grip += natural_[l] * g.force;
+      at.friction_normal_force += natural_[l] * g.force;
       at.energy += natural_[l] * g.energy;
       const CurveValue w = pieces.coupling[l]->evaluate(std::max(z, 0.0));
       at.weights[l] = natural_[l] * w.force;
@@ -87,10 +87,10 @@ class InterpolatedResponse {
     double lateral = 0;  ///< dE/drho = sum n_l w_l h_l, N
     double energy = 0;   ///< J
   };
-  /// Of coupled responses.
+  /// For coupled responses.
   Value coupled_at(const AtDepth& at, double rho, PiecesInUse& pieces) const noexcept {
     look_up_lateral(rho, pieces);
-    Value value{at.grip, 0, at.energy};
+    Value value{at.friction_normal_force, 0, at.energy};
     for (std::size_t l = 0; l < 3; ++l) {
       const CurveValue h = pieces.lateral[l]->evaluate(rho);
       value.normal += at.rates[l] * h.energy;
@@ -99,7 +99,7 @@ class InterpolatedResponse {
     }
     return value;
   }
-  /// Of decoupled responses: g, h and the sum of their energies.
+  /// For decoupled responses: g, h and the sum of their energies.
   Value decoupled_at(double z, double rho, PiecesInUse& pieces) const noexcept {
     look_up_depth(z, pieces);
     look_up_lateral(rho, pieces);
@@ -109,8 +109,8 @@ class InterpolatedResponse {
   }
 
   /// Smallest rho >= 0 with h(rho) = force, in closed form: the knots of the three curves are
-  /// walked in order, and on the piece that holds the answer h is one quadratic. 0 for force <= 0;
-  /// infinity when h never reaches the force (nothing can slip there).
+  /// walked in order, and on the piece that contains the answer h is one quadratic. 0 for force <=
+  /// 0; infinity when h never reaches the force (no slip is possible).
   double lateral_inverse(double force) const noexcept { return lateral_inverse(force, natural_); }
   double lateral_inverse(double force, const Vec3& weights) const noexcept;
 

@@ -11,9 +11,8 @@
 
 namespace palpate::runtime {
 
-/// Allocator for std::vector that asks the system for large pages where the table is large. Finding
-/// a small page of a table of 100 MB costs more than the read itself; a system that has no large
-/// pages ignores the request.
+/// Allocator for std::vector that requests large pages where the table is large: in a table of 100
+/// MB a miss of the page cache costs more than the read. A system without large pages ignores it.
 template <class T>
 struct LargeMemory {
   using value_type = T;
@@ -28,7 +27,7 @@ struct LargeMemory {
     const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
     void* memory = std::aligned_alloc(alignment, whole);
     if (memory == nullptr) throw std::bad_alloc();
-    if (alignment == kPage) madvise(memory, whole, MADV_HUGEPAGE);  // a wish, not a need
+    if (alignment == kPage) madvise(memory, whole, MADV_HUGEPAGE);  // optional
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t) noexcept { std::free(memory); }

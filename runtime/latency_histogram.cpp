@@ -30,8 +30,8 @@ void LatencyHistogram::add(std::int64_t ns) noexcept {
   largest_ = std::max(largest_, ns);
 }
 
-double LatencyHistogram::quantile(double share) const noexcept {
-  const double wanted = share * static_cast<double>(count_);
+double LatencyHistogram::quantile(double fraction) const noexcept {
+  const double wanted = fraction * static_cast<double>(count_);
   double seen = 0;
   for (std::size_t b = 0; b < kBuckets; ++b) {
     seen += static_cast<double>(buckets_[b]);

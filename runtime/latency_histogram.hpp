@@ -8,15 +8,16 @@
 namespace palpate::runtime {
 
 /// Counts durations in buckets that grow by 1/8 octave: 9 % wide, from 1 ns to 18 minutes. add() is
-/// noexcept, allocation-free and constant in time. One writer; read it when the writer has stopped.
+/// noexcept, allocation-free and constant in time. For one writer; read it when the writer has
+/// stopped.
 class LatencyHistogram {
  public:
   void add(std::int64_t ns) noexcept;  ///< below 1 ns counts as 1 ns
 
   std::uint64_t count() const noexcept { return count_; }
   std::int64_t largest() const noexcept { return largest_; }  ///< ns, exact
-  /// Duration that this share of the samples did not exceed, ns: the upper end of its bucket.
-  double quantile(double share) const noexcept;
+  /// Duration that this fraction of the samples does not exceed, ns: the upper end of its bucket.
+  double quantile(double fraction) const noexcept;
 
  private:
   static constexpr std::size_t kPerOctave = 8;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The static conservative force field f_i(x) that is active while the contact point is held.
+// The static conservative force field f_i(x) of a fixed contact point.
 #pragma once
 
 #include "format/vec3.hpp"
@@ -12,8 +12,8 @@ namespace palpate::runtime {
 struct Deflection {
   double geometric = 0;  ///< n . (x - c), m: depth of the tip below the surface at rest
   double depth = 0;      ///< z = geometric - d0, m
-  double lateral = 0;  ///< rho = |q| >= 0, m, q what the lateral offset leaves of the lateral part
-  Vec3 tangent{};      ///< t = q/rho, unit; zero when rho = 0
+  double lateral = 0;    ///< rho = |q| >= 0, m, q the lateral part minus the lateral offset
+  Vec3 tangent{};        ///< t = q/rho, unit; zero when rho = 0
 };
 
 /// Force and energy of a local model at one tip position.
@@ -22,20 +22,19 @@ struct LocalResponse {
   double lateral_force = 0;  ///< dE/drho, N; h(rho) of decoupled responses
   double energy = 0;  ///< E = sum n_l (G_l(z) + H_l(rho)), J [Mahvash & Hayward 2005, eq. 32]
   Vec3 force{};       ///< f = g n + h t, of the tool ON the body, N [eq. 28]
-  double grip = 0;    ///< g(z), N: friction holds up to mu times it
-  InterpolatedResponse::AtDepth at_depth{};  ///< of coupled responses only
+  double friction_normal_force = 0;          ///< g(z), N: friction is limited to mu times it
+  InterpolatedResponse::AtDepth at_depth{};  ///< for coupled responses only
 };
 
-/// With c, n = n(c), the offset d0 and the lateral offset s (s . n = 0) held:
+/// With c, n = n(c), the offset d0 and the lateral offset s (s . n = 0) fixed:
 ///   r = x - c,  z = n . r - d0,  q = r - (n . r) n - s,  rho = |q|,  t = q/rho,
 ///   f(x) = g(z) n + h(rho) t = grad E(x).          [Mahvash & Hayward 2005, eqs. 26-32, with s =
 ///   0]
-/// s is how far friction has let go of the tool where c could not follow; a = c + s, the anchor, is
-/// where c would be.
-/// Coupled responses: E = sum n_l (G_l(z) + w_l(z) H_l(rho)), and the same f = grad E. Slip is
-/// judged by g(z), which the normal force is never below. Decoupled, its Jacobian is g' n n^T + h'
-/// t t^T + (h/rho) s s^T with s = n x t: no steeper than the steepest stored slope. noexcept,
-/// allocation-free.
+/// s is slip that c has not followed; a = c + s, the anchor, is the position of c without that.
+/// Coupled responses: E = sum n_l (G_l(z) + w_l(z) H_l(rho)), and again f = grad E. The
+/// friction-limited normal force is g(z), which the normal force is never below. The Jacobian of
+/// decoupled responses is g' n n^T + h' t t^T + (h/rho) b b^T with b = n x t: its norm does not
+/// exceed the largest stored slope. noexcept, allocation-free.
 class LocalModel {
  public:
   LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept
@@ -56,7 +55,7 @@ class LocalModel {
     if (d.lateral > 0) d.tangent = (1.0 / d.lateral) * lateral;
     return d;
   }
-  /// `pieces` of the evaluation before this one, and then of this one.
+  /// pieces: of the last evaluation; on return of this one.
   LocalResponse respond(const Deflection& d, PiecesInUse& pieces) const noexcept {
     LocalResponse r;
     if (response_.coupled()) {
@@ -65,7 +64,7 @@ class LocalModel {
       return r;
     }
     take(response_.decoupled_at(d.depth, d.lateral, pieces), d, r);
-    r.grip = r.normal_force;
+    r.friction_normal_force = r.normal_force;
     return r;
   }
   LocalResponse respond(const Deflection& d) const noexcept {
@@ -80,13 +79,13 @@ class LocalModel {
   double slip_limit_below(const Deflection& d, const LocalResponse& at, double friction,
                           PiecesInUse& pieces) const noexcept {
     return response_.lateral_inverse_below(
-        friction * at.grip, d.lateral,
+        friction * at.friction_normal_force, d.lateral,
         response_.coupled() ? at.at_depth.weights : response_.natural(), pieces);
   }
 
-  /// Lets the tool slip along t while c is held, until `rho` (m, no more than it is) of the lateral
-  /// deflection is left: s takes the rest. t and the depth stay as they are; the deflection and the
-  /// response follow.
+  /// Slip along t with c fixed until the lateral deflection is `rho` (m, at most its present
+  /// value); the rest goes into s. t and the depth do not change; the deflection and the response
+  /// are updated.
   void slip_to(double rho, Deflection& d, LocalResponse& at, PiecesInUse& pieces) noexcept;
 
   /// Rate of change of E when c moves by unit length along d in its element and the anchor c + s by
@@ -94,8 +93,8 @@ class LocalModel {
   ///   n' = P (sum u_l grad n_l . d)/|sum n_l u_l|, P the projector normal to n,
   ///   dE/ds = sum (grad n_l . d)(G_l + H_l) + g ((q + s) . n' - n . d)
   ///           - h (t . a' + (z + d0)(t . n')),
-  /// with H_l times w_l(z), and dE/dz, dE/drho for g, h, where responses are coupled. An ordinary
-  /// slide takes the anchor along, a' = d; where c catches up with it, a' = 0.
+  /// with H_l times w_l(z), and dE/dz, dE/drho for g, h, where responses are coupled. In an
+  /// ordinary slide the anchor moves with c, a' = d; where c catches up with the anchor, a' = 0.
   double energy_slope(const Deflection& at, const Vec3& d, const Vec3& anchor_rate) const noexcept;
   double energy_slope(const Deflection& at, const Vec3& d) const noexcept {
     return energy_slope(at, d, d);
@@ -107,7 +106,7 @@ class LocalModel {
   double offset() const noexcept { return offset_; }
   void set_offset(double offset) noexcept { offset_ = offset; }
   const Vec3& lateral_offset() const noexcept { return lateral_offset_; }
-  /// Of any vector its part across n.
+  /// Sets s to the part of the vector across n.
   void set_lateral_offset(const Vec3& s) noexcept { lateral_offset_ = s - dot(s, n_) * n_; }
   bool coupled() const noexcept { return response_.coupled(); }
   double deepest() const noexcept { return response_.deepest(); }
@@ -123,10 +122,10 @@ class LocalModel {
     r.energy = value.energy;
     r.force = value.normal * n_ + value.lateral * d.tangent;
   }
-  /// Of coupled responses what depends on the lateral deflection.
+  /// The part of coupled responses that depends on the lateral deflection.
   void respond_at_depth(const Deflection& d, PiecesInUse& pieces, LocalResponse& r) const noexcept {
     take(response_.coupled_at(r.at_depth, d.lateral, pieces), d, r);
-    r.grip = r.at_depth.grip;
+    r.friction_normal_force = r.at_depth.friction_normal_force;
   }
 
   const Surface* surface_;

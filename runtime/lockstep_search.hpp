@@ -8,9 +8,9 @@
 
 namespace palpate::runtime {
 
-/// The search at a low rate without a thread, for simulations that must come out the same each
-/// time: it looks in every `period`-th step of the force loop, and what it finds arrives with the
-/// next look, as late as a thread of that rate could be.
+/// The search at a low rate without a thread, for reproducible simulations: it runs in every
+/// `period`-th step of the force loop, and its delivery arrives with the next run, as late as that
+/// of a thread of this rate can be.
 class LockstepSearch {
  public:
   LockstepSearch(const Surface& surface, const CollisionTree& tree, int period,
@@ -19,7 +19,7 @@ class LockstepSearch {
   LockstepSearch(const LockstepSearch&) = delete;  // the contact points into it
   LockstepSearch& operator=(const LockstepSearch&) = delete;
 
-  /// One step of the force loop at tip position x; the contact must be used with this search alone.
+  /// One step of the force loop at tip position x; the contact must use this search only.
   std::uint32_t step(ContactState& contact, const Vec3& x) {
     const bool looks = steps_++ % period_ == 0;
     if (looks) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The force loop in a real-time thread, or in that of the driver, with a watchdog beside it.
+// The force loop in a real-time thread, or in the thread of the driver, with a watchdog.
 #pragma once
 
 #include <atomic>
@@ -15,15 +15,15 @@
 namespace palpate::runtime {
 
 struct LoopThreadSettings {
-  double rate = 1000;      ///< Hz; of a driver with its own thread, what it is expected to keep
+  double rate = 1000;      ///< Hz; for a driver with its own thread: its expected rate
   double watchdog = 0.02;  ///< s without a step after which the device is halted
   RealtimeSettings realtime;
 };
 
 /// Runs a ForceLoop until it is stopped or the device is lost. Steps are due at absolute times, so
-/// that they do not drift. A step that is not done when the next is due is an overrun: the steps it
-/// missed are left out, not made up for in a burst. When no step begins for longer than the
-/// watchdog allows, the device is halted for good, whatever the loop does later.
+/// that they do not drift. A step that ends after the next was due is an overrun: the missed steps
+/// are skipped, not made up for in a burst. When no step begins for longer than the watchdog
+/// allows, the device is halted for the rest of the session.
 class LoopThread {
  public:
   /// Starts at once. The device is open. @throws Error(Configuration) for settings out of range.
@@ -32,12 +32,12 @@ class LoopThread {
   LoopThread(const LoopThread&) = delete;
   LoopThread& operator=(const LoopThread&) = delete;
 
-  /// Ends the loop after the step under way, commands no force, and waits. The device stays open.
+  /// Ends the loop after the current step, commands zero force, and waits. The device stays open.
   void stop() noexcept;
   bool running() const noexcept { return running_.load(); }
   bool halted() const noexcept { return halted_.load(); }  ///< by the watchdog
-  /// One line on what the system refused (see become_realtime); empty when all was granted. After
-  /// the first step.
+  /// One line on what the system refused (see become_realtime); empty when nothing. Valid after the
+  /// first step.
   std::string missing_rights() const;
 
  private:

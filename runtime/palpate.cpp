@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The C interface: arguments are checked, exceptions end here.
+// The C interface: checks arguments and turns exceptions into statuses.
 #include "runtime/palpate.h"
 
 #include <fcntl.h>
@@ -20,6 +20,7 @@
 #include "palpate_version.hpp"
 #include "runtime/c_boundary.hpp"
 #include "runtime/handles.hpp"
+#include "runtime/status.hpp"
 
 using palpate::Vec3;
 using palpate::operator-;
@@ -31,22 +32,43 @@ using palpate::runtime::guarded;
 
 namespace {
 
+// The bits of the C interface are those of the runtime.
+namespace bits = palpate::runtime::step_status;
+static_assert(PALPATE_CONTACT == std::uint32_t{bits::Contact});
+static_assert(PALPATE_ACTIVATED == std::uint32_t{bits::Activated});
+static_assert(PALPATE_RELEASED == std::uint32_t{bits::Released});
+static_assert(PALPATE_SLIDING == std::uint32_t{bits::Sliding});
+static_assert(PALPATE_AT_BORDER == std::uint32_t{bits::AtBorder});
+static_assert(PALPATE_ENERGY_LIMITED == std::uint32_t{bits::EnergyLimited});
+static_assert(PALPATE_BEYOND_DEPTH == std::uint32_t{bits::BeyondDepth});
+static_assert(PALPATE_BAD_INPUT == std::uint32_t{bits::BadInput});
+static_assert(PALPATE_DROPPED == std::uint32_t{bits::Dropped});
+static_assert(PALPATE_FORCE_LIMITED == std::uint32_t{bits::ForceLimited});
+static_assert(PALPATE_AWAITING == std::uint32_t{bits::Awaiting});
+static_assert(PALPATE_LOOP_RAMPING == std::uint32_t{bits::LoopRamping});
+static_assert(PALPATE_LOOP_CLAMPED == std::uint32_t{bits::LoopClamped});
+static_assert(PALPATE_LOOP_TOO_FAST == std::uint32_t{bits::LoopTooFast});
+static_assert(PALPATE_LOOP_LATE == std::uint32_t{bits::LoopLate});
+static_assert(PALPATE_LOOP_NOT_FINITE == std::uint32_t{bits::LoopNotFinite});
+static_assert(PALPATE_LOOP_SATURATED == std::uint32_t{bits::LoopSaturated});
+static_assert(PALPATE_LOOP_STALE == std::uint32_t{bits::LoopStale});
+static_assert(PALPATE_LOOP_DEVICE_LOST == std::uint32_t{bits::LoopDeviceLost});
+
 constexpr double kDefaultTankCap = 5e-3;   // J
 constexpr double kMostSearchRate = 10000;  // Hz
 
 thread_local char last_error[512] = "";
 
-// Sizes of the structs in the first header that was published: a smaller one is a mistake, one in
-// between is an older header, a larger one a newer.
+// Smallest valid sizes of the structs: a smaller size is an error, one in between is that of an
+// older header, a larger one that of a newer header.
 constexpr std::uint32_t kFirstSettings = 40;
 constexpr std::uint32_t kFirstObservation = offsetof(palpate_observation, lateral_offset);
-constexpr std::uint32_t kFirstInfo = offsetof(palpate_library_info, hold);
+constexpr std::uint32_t kFirstInfo = offsetof(palpate_library_info, min_lipschitz_bound);
 static_assert(sizeof(palpate_settings) >= kFirstSettings);
 
-constexpr double kRigid = 1e-9;  // what rounding may leave of the rotation's orthonormality
+constexpr double kRigid = 1e-9;  // tolerance of orthonormality of a rotation
 
-/// The bytes as a file that lasts as long as the object, for the reader of files; HDF5 asks for a
-/// path that exists. In the folder for temporary files.
+/// The bytes as a temporary file that exists as long as the object: the reader needs a path.
 class MemoryFile {
  public:
   MemoryFile(const void* bytes, std::size_t size)
@@ -81,7 +103,7 @@ class MemoryFile {
   std::string path_;
 };
 
-/// The library in a file that the caller does not know: errors name the bytes in its place.
+/// The library in that file; errors name the bytes instead of the file.
 palpate::Library read_from(const MemoryFile& file) {
   try {
     return palpate::read_library(file.path());
@@ -128,8 +150,8 @@ palpate_library_info palpate_library::describe(const palpate::Library& library,
   info.triangles = static_cast<std::int32_t>(library.triangles.size());
   info.stick = library.certificate.stick;
   info.slip = library.certificate.slip;
-  info.hold = library.certificate.hold;
-  info.limit = enforced_lipschitz_bound(library.certificate);
+  info.min_lipschitz_bound = library.certificate.min_lipschitz_bound;
+  info.lipschitz_bound = enforced_lipschitz_bound(library.certificate);
   info.friction = library.certificate.friction;
   info.depth = surface.deepest();
   copy(surface.low(), info.low);
@@ -169,7 +191,7 @@ int palpate_library_load(const char* path, palpate_library** library) {
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: library is null");
   *library = nullptr;
   if (path == nullptr || *path == '\0')
-    return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: there is no path");
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: path is null or empty");
   return guarded(PALPATE_ERROR_FORMAT, [&] {
     if (!std::ifstream(path, std::ios::binary)) {
       const std::string text = std::string(path) + ": cannot be opened; check path and rights";
@@ -185,7 +207,7 @@ int palpate_library_load_memory(const void* bytes, size_t size, palpate_library*
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load_memory: library is null");
   *library = nullptr;
   if (bytes == nullptr || size == 0)
-    return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load_memory: there are no bytes");
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load_memory: bytes is null or size is 0");
   return guarded(PALPATE_ERROR_FORMAT, [&] {
     const MemoryFile file(bytes, size);
     *library = new palpate_library(read_from(file));
@@ -242,8 +264,8 @@ int palpate_state_create(const palpate_library* library, const palpate_settings*
     char text[160];
     std::snprintf(
         text, sizeof text,
-        "palpate_state_create: lipschitz_bound must be 0, or at least what this library can be "
-        "held to: %s",
+        "palpate_state_create: lipschitz_bound must be 0, or at least the smallest bound that this "
+        "library allows: %s",
         palpate::lipschitz_bound_text(library->min_lipschitz_bound).c_str());
     return fail(PALPATE_ERROR_ARGUMENT, text);
   }

@@ -1,13 +1,30 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* The public C interface of the palpate runtime: load a response library, step a tool over it.
+/* palpate: forces of a soft body under a tool, from a response library, at haptic rates.
  *
- * Units are SI (m, m/s, s, N, J). Functions return PALPATE_OK or a negative status; the text of the
- * last failure of the calling thread is palpate_last_error(). No exception, signal, thread, output
- * or locale change crosses this interface. Loading, creating and destroying belong outside the
- * real-time thread; palpate_step never allocates, locks, or calls the system. A library is
- * immutable and may be shared by threads, each with states of its own, one for each tool; a state
- * belongs to one thread at a time. Structs begin with their size: fields are only ever added at the
- * end, and a program built with an older header gets and gives the fields that it knows. */
+ *   palpate_library* library;
+ *   palpate_state* state;
+ *   if (palpate_library_load("library.h5", &library) != PALPATE_OK) puts(palpate_last_error());
+ *   palpate_state_create(library, NULL, &state);
+ *   for (;;) {
+ *     read_device(position, velocity);
+ *     palpate_step(state, position, velocity, 1e-3, force);
+ *     command_device(force);
+ *   }
+ *
+ * Units are SI: m, m/s, s, N, N/m, J, Hz. Vectors have three components in the frame of the world.
+ *
+ * Functions that return int return PALPATE_OK or a negative PALPATE_ERROR_*; palpate_last_error()
+ * explains the last failure of the calling thread. No exception, signal, output or change of locale
+ * crosses this interface.
+ *
+ * Real time: palpate_step, palpate_observe and palpate_state_set_pose do not allocate, lock or call
+ * the system, and their time is bounded. Call all other functions outside the real-time thread.
+ *
+ * Threads: a library is immutable and may be shared by threads. A state is one tool on one body; it
+ * belongs to one thread at a time.
+ *
+ * Structs begin with their size, in bytes. Fields are only ever added at the end: a program
+ * compiled with an older header exchanges the fields that it knows. */
 #ifndef PALPATE_H
 #define PALPATE_H
 
@@ -27,188 +44,233 @@ extern "C" {
 typedef struct palpate_library palpate_library;
 typedef struct palpate_state palpate_state;
 
-/* Status of calls. */
+/* Results of calls. */
 enum {
   PALPATE_OK = 0,
-  PALPATE_ERROR_ARGUMENT = -1, /* a null pointer or a value out of range: see the message */
-  PALPATE_ERROR_FILE = -2,     /* the file cannot be read: check path and rights */
-  PALPATE_ERROR_FORMAT = -3,   /* not a valid response library: rebuild it with this version */
-  PALPATE_ERROR_MEMORY = -4    /* out of memory */
+  PALPATE_ERROR_ARGUMENT = -1, /* a null pointer or a value out of range: see palpate_last_error */
+  PALPATE_ERROR_FILE = -2,     /* the file cannot be read: check path and access rights */
+  PALPATE_ERROR_FORMAT = -3,   /* not a valid response library: make it again with this version */
+  PALPATE_ERROR_MEMORY = -4    /* out of memory: free memory or load a smaller library */
 };
 
-/* Bits of the status of a step. From 1 << 16 on: of a step of the force loop (recordings). */
+/* Status bits of a step. Bits without "Remedy" belong to normal operation. */
 enum {
-  PALPATE_CONTACT = 1u << 0,        /* a local model is active */
-  PALPATE_ACTIVATED = 1u << 1,      /* a collision was accepted in this step */
-  PALPATE_RELEASED = 1u << 2,       /* the contact ended in this step */
-  PALPATE_SLIDING = 1u << 3,        /* the contact point moved in this step */
-  PALPATE_AT_BORDER = 1u << 4,      /* the slide stopped at a border of the response surface */
-  PALPATE_ENERGY_LIMITED = 1u << 5, /* the energy rule changed d0 or held the contact point */
-  PALPATE_BEYOND_DEPTH = 1u << 6,   /* deeper than the deepest sample: linear continuation */
-  PALPATE_BAD_INPUT = 1u << 7,      /* NaN, infinity, dt <= 0, or a step longer than the diagonal of
-                                       the body: zero force, the contact is dropped */
-  PALPATE_DROPPED = 1u << 8,        /* the contact was dropped, what it stored discarded */
-  PALPATE_FORCE_LIMITED =
-      1u << 9,                      /* a slide or a return of d0 was made in part only, so that the
-                                       force changes by no more than lipschitz_bound times the travel */
-  PALPATE_AWAITING = 1u << 10,      /* the contact point waits at an edge for triangles that the
-                                       search thread has not delivered yet */
-  PALPATE_LOOP_RAMPING = 1u << 16,  /* the force is scaled while it is let in */
-  PALPATE_LOOP_CLAMPED = 1u << 17,  /* shortened to the largest allowed force */
-  PALPATE_LOOP_TOO_FAST = 1u << 18, /* cut off: faster than allowed */
-  PALPATE_LOOP_LATE = 1u << 19,     /* cut off: too long since the step before */
-  PALPATE_LOOP_NOT_FINITE = 1u << 20, /* the force was no number: zero */
-  PALPATE_LOOP_SATURATED = 1u << 21,  /* the device gave less than it was asked for */
-  PALPATE_LOOP_STALE = 1u << 22,      /* the device had no new sample */
-  PALPATE_LOOP_DEVICE_LOST = 1u << 23 /* the device went away: the loop ended */
+  /* A local model is active: the tool touches the body. */
+  PALPATE_CONTACT = 1u << 0,
+  /* The contact began in this step. */
+  PALPATE_ACTIVATED = 1u << 1,
+  /* The contact ended in this step. */
+  PALPATE_RELEASED = 1u << 2,
+  /* The contact point moved in this step. */
+  PALPATE_SLIDING = 1u << 3,
+  /* A slide stopped at a border of the response surface: the contact point stays there and the tool
+   * slips over it. Remedy: press farther from the border, or compute responses beyond it. */
+  PALPATE_AT_BORDER = 1u << 4,
+  /* A slide would have created energy: the depth offset was raised, or the contact point stayed.
+   * Remedy, if the force is noticeably softer: a larger tank_cap. */
+  PALPATE_ENERGY_LIMITED = 1u << 5,
+  /* Deeper than the deepest sample: the curves continue in a straight line. Remedy: compute the
+   * library to a larger depth. */
+  PALPATE_BEYOND_DEPTH = 1u << 6,
+  /* Unusable input: NaN, infinity, dt <= 0, or a tip that moved farther than the diagonal of the
+   * body since the last step. The force is zero and the contact is dropped. Remedy: check the
+   * device's reading, its units and its frame. */
+  PALPATE_BAD_INPUT = 1u << 7,
+  /* The contact was dropped and its stored energy discarded, after PALPATE_BAD_INPUT. Remedy: leave
+   * the body and touch it again. */
+  PALPATE_DROPPED = 1u << 8,
+  /* A slide was throttled so that the force changes by at most lipschitz_bound times the travel of
+   * the tip; later steps make the rest. Remedy, if slides lag noticeably: a larger lipschitz_bound.
+   */
+  PALPATE_FORCE_LIMITED = 1u << 9,
+  /* The contact point waits at an edge for triangles that the search thread has not delivered.
+   * Remedy: a higher search_rate. */
+  PALPATE_AWAITING = 1u << 10,
+
+  /* Bits of the force loop (palpate_loop_*), also in recordings. */
+
+  /* The force is scaled down while it grows to its full value, at the start and after a cut-off. */
+  PALPATE_LOOP_RAMPING = 1u << 16,
+  /* The force was shortened to max_force. Remedy: press less, or allow more force. */
+  PALPATE_LOOP_CLAMPED = 1u << 17,
+  /* No force: the tip is faster than max_speed. Remedy: move slower; check the device's units. */
+  PALPATE_LOOP_TOO_FAST = 1u << 18,
+  /* No force: too long since the last step. Remedy: real-time rights (missing_rights of the
+   * report), a lower rate, or a processor of its own (core). */
+  PALPATE_LOOP_LATE = 1u << 19,
+  /* The force was not finite and was replaced by zero. Remedy: report the library as a defect. */
+  PALPATE_LOOP_NOT_FINITE = 1u << 20,
+  /* The device gave less force than commanded. Remedy: a softer library, or press less. */
+  PALPATE_LOOP_SATURATED = 1u << 21,
+  /* The device had no new sample; the last one was used again. Remedy: a lower rate of the loop. */
+  PALPATE_LOOP_STALE = 1u << 22,
+  /* The device is lost and the loop has ended. Remedy: check power and cable, start a new loop. */
+  PALPATE_LOOP_DEVICE_LOST = 1u << 23
 };
 
 typedef struct palpate_settings {
-  uint32_t size;          /* sizeof(palpate_settings), set by palpate_settings_default */
-  double friction;        /* mu; negative = the value the library was certified for */
-  double tank_cap;        /* J, cap of the energy tank; 0 = strict Theorem 2 */
-  double lipschitz_bound; /* N/m: the force changes by at most this times the travel of the tip; 0 =
-                       the limit of the certificate; else at least its L_hold. On a device of
-                       smallest damping b at the period T, b/(2 T) is certified passive. Without a
-                       certificate there is no limit but the one given here. */
-  double search_rate; /* Hz: a thread of its own looks for the triangles near the tool at this rate
-                         (100 is plenty) and hands them to the step; 0 = no thread, the step
-                         searches the whole body */
+  uint32_t size;   /* sizeof(palpate_settings), set by palpate_settings_default */
+  double friction; /* mu, friction coefficient; negative (default) = that of the certificate */
+  double tank_cap; /* J, cap of the energy tank; default 0.005; 0 = no tank (Theorem 2) */
+  /* N/m, Lipschitz bound of the force: between two steps the force changes by at most this times
+   * the travel of the tip. 0 (default) = lipschitz_bound of the library, or no bound where it has
+   * no certificate; any other value must be at least min_lipschitz_bound of the library. A device
+   * of smallest damping b (N s/m) renders the body passively at the period T (s) if this is at most
+   * b/(2 T). */
+  double lipschitz_bound;
+  /* Hz, rate of a thread that finds the triangles near the tool and delivers them to the step; 100
+   * is enough. 0 (default) = no thread: each step searches the whole body. At most 10000. */
+  double search_rate;
 } palpate_settings;
 
-/* Everything a recorder or a picture wants to know of the last step. */
+/* The state after the last step, for recording and display. */
 typedef struct palpate_observation {
-  uint32_t size;            /* sizeof(palpate_observation), set by the caller */
-  uint32_t status;          /* bits of the last step */
-  int32_t element;          /* active triangle, -1 without contact */
-  double contact_point[3];  /* c, m */
-  double natural[3];        /* natural coordinates of c in the element */
-  double normal[3];         /* n, unit, into the body */
-  double depth;             /* z = delta^z, m */
-  double lateral;           /* rho = |x - c - (z + d0) n - s|, m */
-  double offset;            /* d0, m */
-  double energy;            /* E_i(x), J */
-  double tank;              /* J */
-  double absorbed;          /* net work done by the tool on the body since creation, J: the exact
-                               sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}) */
-  double force_on_body[3];  /* f, N; the device is commanded -f */
-  double lateral_offset[3]; /* s, m: how far friction has let go of the tool where c could not
-                               follow: at borders, at edges not yet delivered, and while a slide is
-                               held back */
+  uint32_t size;           /* sizeof(palpate_observation), set by the caller */
+  uint32_t status;         /* status bits of the last step */
+  int32_t element;         /* active element (row of the triangles), -1 without contact */
+  double contact_point[3]; /* c, m */
+  double natural[3];       /* natural coordinates of c in the active element; they sum to 1 */
+  double normal[3];        /* n, unit, into the body */
+  double depth;            /* z = n . (x - c) - d0, m */
+  double lateral;          /* rho = |x - c - (z + d0) n - s|, m */
+  double offset;           /* d0, depth offset, m */
+  double energy;           /* E_i(x), stored in the local model, J */
+  double tank;             /* energy tank, J */
+  double absorbed;         /* net work of the tool on the body since the state was created or reset,
+                              J: the sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}) */
+  double force_on_body[3]; /* f, N; palpate_step gives -f */
+  double lateral_offset[3]; /* s, lateral offset, m: slip that the contact point has not followed,
+                               at borders, at edges that await delivery, and in throttled slides */
 } palpate_observation;
 
 typedef struct palpate_library_info {
   uint32_t size; /* sizeof(palpate_library_info), set by the caller */
   int32_t vertices, triangles;
-  double stick, slip;     /* certified bounds, N/m; 0 when the library has no certificate */
-  double friction;        /* mu of the certificate */
-  double depth;           /* deepest sample, m */
-  double low[3], high[3]; /* bounding box, m */
-  double hold;            /* N/m, the least lipschitz_bound that a state can keep; NaN: not known */
-  double limit;           /* N/m, the lipschitz_bound that a state keeps unless it is given one */
+  double stick, slip;         /* L_stick and L_slip, N/m; 0 without a certificate */
+  double friction;            /* mu of the certificate */
+  double depth;               /* deepest sample, m */
+  double low[3], high[3];     /* bounding box in the frame of the body, m */
+  double min_lipschitz_bound; /* N/m, smallest enforceable lipschitz_bound; NaN: not known */
+  double lipschitz_bound;     /* N/m, enforced by default; infinite without a certificate */
 } palpate_library_info;
 
+/* "major.minor.patch". */
 PALPATE_API const char* palpate_version(void);
+/* One line on the last failure of the calling thread; empty when there was none. */
 PALPATE_API const char* palpate_last_error(void);
+/* One line on a PALPATE_OK or PALPATE_ERROR_* value. */
 PALPATE_API const char* palpate_status_text(int status);
 
+/* Reads and checks a response library (library.h5). On failure *library is NULL. */
 PALPATE_API int palpate_library_load(const char* path, palpate_library** library);
-/* The same from a library file in memory, by way of a temporary file; the bytes may go away
- * afterwards. */
+/* The same from a library file in memory, by way of a temporary file in TMPDIR. The bytes are not
+ * used after the call. */
 PALPATE_API int palpate_library_load_memory(const void* bytes, size_t size,
                                             palpate_library** library);
+/* Destroy its states first. NULL is allowed. */
 PALPATE_API void palpate_library_destroy(palpate_library* library);
+/* Fills the fields that fit into info->size bytes. */
 PALPATE_API int palpate_library_describe(const palpate_library* library,
                                          palpate_library_info* info);
 
+/* Sets size and every default. */
 PALPATE_API void palpate_settings_default(palpate_settings* settings);
-/* The library must outlive the state. settings may be NULL for the defaults. */
+/* The library must outlive the state. settings may be NULL: the defaults. On failure *state is
+ * NULL. */
 PALPATE_API int palpate_state_create(const palpate_library* library,
                                      const palpate_settings* settings, palpate_state** state);
+/* NULL is allowed. */
 PALPATE_API void palpate_state_destroy(palpate_state* state);
+/* Ends the contact and sets all energies to zero. The pose remains. */
 PALPATE_API void palpate_state_reset(palpate_state* state);
 
-/* Where the body is: x_world = rotation x_body + position, rotation by rows and rigid. Positions,
- * forces and observations are in the world; at first the two are the same. May be called between
- * steps, also in contact: the body then moves against the tool, and `absorbed` counts their
- * relative motion, so that who moves the body takes part in the work. Real-time safe. */
+/* Sets the pose of the body: x_world = rotation x_body + position. rotation: three rows,
+ * orthonormal and right-handed. Positions, forces and observations are in the world; until the
+ * first call world and body coincide. May be called between steps, also in contact: the body then
+ * moves against the tool, and `absorbed` includes the work of that motion. Real-time safe. */
 PALPATE_API int palpate_state_set_pose(palpate_state* state, const double position[3],
                                        const double rotation[9]);
 
-/* One step of the force loop. position, velocity: of the tool tip; dt: since the last step, > 0.
- * force: what to command to the device, the force of the body on the tool (-f). Always finite.
- * Returns status bits. Real-time safe. */
+/* One step of the force loop. position (m), velocity (m/s): of the tool tip; dt (s): since the last
+ * step, > 0. force (N): of the body on the tool, to command to the device; always finite. Returns
+ * status bits. Real-time safe. */
 PALPATE_API uint32_t palpate_step(palpate_state* state, const double position[3],
                                   const double velocity[3], double dt, double force[3]);
+/* Fills the fields that fit into observation->size bytes. Real-time safe. */
 PALPATE_API int palpate_observe(const palpate_state* state, palpate_observation* observation);
 
 /* A force loop in a real-time thread of its own, for programs that have none. While it runs the
- * state belongs to it. Everything in docs/devices.md under "Safety" holds for it. */
+ * state belongs to it. docs/devices.md, "Safety", describes its safety functions. */
 
-/* How to reach a device. Called from the loop; must not block for long. */
+/* How to reach a device. The loop calls read and command from its thread; they must not block for
+ * longer than a small part of the period. */
 typedef struct palpate_device {
-  uint32_t size; /* sizeof(palpate_device) */
-  void* context; /* handed to the functions */
-  /* 0: done; 1: no new sample, the last one again; negative: the device is lost. */
+  uint32_t size; /* sizeof(palpate_device), set by the caller */
+  void* context; /* first argument of the functions */
+  /* position (m) and velocity (m/s) of the tool tip. Returns 0: new sample; 1: no new sample, the
+   * last one again; negative: the device is lost. */
   int (*read)(void* context, double position[3], double velocity[3]);
-  /* 0: done; 1: saturated; negative: the device is lost. force: on the tool, N. */
+  /* force (N) on the tool. Returns 0: done; 1: saturated; negative: the device is lost. */
   int (*command)(void* context, const double force[3]);
-  void (*halt)(void* context); /* no force from now on; from any thread; may be NULL */
+  /* No force from now on. Called from any thread, by the watchdog. May be NULL. */
+  void (*halt)(void* context);
 } palpate_device;
 
 typedef struct palpate_loop_settings {
   uint32_t size;    /* sizeof(palpate_loop_settings), set by palpate_loop_settings_default */
-  int32_t priority; /* of SCHED_FIFO, 1 to 99; 0 = the ordinary scheduler; default 80 */
-  int32_t core;     /* processor to stay on; -1 = any */
+  int32_t priority; /* of SCHED_FIFO, 1 to 99; 0 = ordinary scheduler; default 80 */
+  int32_t core;     /* processor of the thread; -1 (default) = any */
   double rate;      /* Hz; default 1000 */
-  double ramp;      /* s, from no force to full force; default 0.5 */
-  double max_force; /* N; default: no clamp */
-  double max_speed; /* m/s, beyond it the force is cut off; default 3 */
+  double ramp;      /* s, time in which the force grows from zero to its full value; default 0.5 */
+  double max_force; /* N, longer forces are shortened; default infinite */
+  double max_speed; /* m/s, above it there is no force; default 3 */
   double watchdog;  /* s without a step after which the device is halted; default 0.02 */
-  uint32_t record;  /* steps that are kept until palpate_loop_take; default 0: none are */
+  uint32_t record;  /* steps that wait for palpate_loop_take; 0 (default) = none are recorded */
 } palpate_loop_settings;
 
 typedef struct palpate_loop_report {
   uint32_t size;         /* sizeof(palpate_loop_report), set by the caller */
-  uint32_t lost, halted; /* 1: the device went away; the watchdog halted it */
+  uint32_t lost, halted; /* 1: the device was lost; the watchdog halted it */
+  /* Numbers of steps: all; those that ended after the next was due; and those with the bits LATE,
+   * LATE or TOO_FAST, CLAMPED, SATURATED, STALE, NOT_FINITE. */
   uint64_t steps, overruns, late, cut_off, clamped, saturated, stale, not_finite;
-  double wake_median, wake_p999, wake_longest;          /* s late for a step */
-  double compute_median, compute_p999, compute_longest; /* s for a step with the device's calls */
+  double wake_median, wake_p999, wake_longest;          /* s, delay of the start of a step */
+  double compute_median, compute_p999, compute_longest; /* s, duration of a step */
   char missing_rights[256]; /* one line on what the system refused; empty: nothing */
   uint64_t unrecorded;      /* steps for which the record had no room */
 } palpate_loop_report;
 
-/* What a step of the loop read, felt and commanded. */
+/* What a step of the loop read, computed and commanded. */
 typedef struct palpate_loop_step {
   uint32_t size;                   /* sizeof(palpate_loop_step), set by the caller */
-  uint32_t status;                 /* status bits, those of the loop included */
-  int32_t element;                 /* active triangle, -1 without contact */
+  uint32_t status;                 /* status bits, with those of the loop */
+  int32_t element;                 /* active element, -1 without contact */
   int64_t time_ns;                 /* since the first step */
-  int64_t spent_ns;                /* by the step, the calls of the device included */
-  double position[3], velocity[3]; /* as the device told them */
+  int64_t spent_ns;                /* duration, with the calls of the device */
+  double position[3], velocity[3]; /* as read from the device, m and m/s */
   double force[3];                 /* commanded, N */
-  double contact_point[3];         /* m */
-  double depth, lateral, offset;   /* m */
-  double energy, tank, absorbed;   /* J, the energy account */
+  double contact_point[3];         /* c, m */
+  double depth, lateral, offset;   /* z, rho and d0, m */
+  double energy, tank, absorbed;   /* J */
 } palpate_loop_step;
 
 typedef struct palpate_loop palpate_loop;
 
+/* Sets size and every default. */
 PALPATE_API void palpate_loop_settings_default(palpate_loop_settings* settings);
-/* Starts at once. The state and what the device needs must outlive the loop. settings may be NULL.
- */
+/* Starts the loop. The state and the context of the device must outlive it. settings may be NULL:
+ * the defaults. On failure *loop is NULL. */
 PALPATE_API int palpate_loop_start(palpate_state* state, const palpate_device* device,
                                    const palpate_loop_settings* settings, palpate_loop** loop);
-/* 1 until it has been stopped or the device is lost. */
+/* 1 until the loop is stopped or the device is lost, then 0. */
 PALPATE_API int palpate_loop_running(const palpate_loop* loop);
-/* The oldest step that was recorded and not yet taken: 1, or 0 when there is none now. From one
- * thread at a time, which never holds up the loop; a loop that finds no room leaves a step out and
- * counts it. */
+/* Takes the oldest recorded step: 1, or 0 when there is none. Call it from one thread at a time. It
+ * never delays the loop; when the record is full the loop omits the step and counts it. */
 PALPATE_API int palpate_loop_take(palpate_loop* loop, palpate_loop_step* step);
-/* Ends the loop after the step under way, commands no force and waits. What was recorded can still
- * be taken. */
+/* Ends the loop after the current step, commands zero force and waits. Recorded steps can still be
+ * taken. */
 PALPATE_API void palpate_loop_end(palpate_loop* loop);
-/* Ends the loop if that was not done, reports (report may be NULL) and frees the loop. */
+/* Ends the loop if it still runs, fills the report (may be NULL) and destroys the loop. */
 PALPATE_API int palpate_loop_stop(palpate_loop* loop, palpate_loop_report* report);
 
 #ifdef __cplusplus

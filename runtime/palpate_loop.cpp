@@ -9,6 +9,7 @@
 #include <string>
 
 #include "runtime/c_boundary.hpp"
+#include "runtime/handles.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/palpate.h"
 
@@ -18,7 +19,7 @@ using palpate::Vec3;
 using palpate::runtime::DeviceReading;
 using palpate::runtime::DeviceStatus;
 
-/// The functions of the caller behind the interface of the devices.
+/// The caller's functions as a device.
 class CallerDevice : public palpate::runtime::Device {
  public:
   explicit CallerDevice(const palpate_device& functions) : functions_(functions) {}
@@ -79,7 +80,7 @@ struct palpate_loop {
 
 namespace {
 
-// Sizes of the structs in the first header that was published.
+// Smallest valid sizes of the structs.
 constexpr std::uint32_t kFirstSettings = offsetof(palpate_loop_settings, record);
 constexpr std::uint32_t kFirstReport = offsetof(palpate_loop_report, unrecorded);
 constexpr std::uint32_t kFirstStep = sizeof(palpate_loop_step);

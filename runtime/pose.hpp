@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the body is in the world of the tool.
+// Pose of the body in the world of the tool.
 #pragma once
 
 #include <array>

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;  // ns
 
-/// The pages of the stack that the loop may use, taken now instead of by a fault later.
+/// Touches the pages of the stack that the loop may use, so that it has no page faults.
 void touch_stack() noexcept {
   constexpr std::size_t kDepth = std::size_t{256} * 1024;
   constexpr std::size_t kPage = 4096;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a thread asks of the system to be on time.
+// Real-time scheduling and the monotonic clock.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@ namespace palpate::runtime {
 
 struct RealtimeSettings {
   int priority = 80;  ///< of SCHED_FIFO, 1 to 99; 0 = the ordinary scheduler
-  int core = -1;      ///< processor to stay on; -1 = any
+  int core = -1;      ///< processor of the thread; -1 = any
 };
 
-/// Makes the calling thread real-time: locks the memory of the process, touches the stack, asks for
-/// SCHED_FIFO and the processor. What the system refuses is left, and named in one line with what
-/// to do about it; empty when all was granted. Allocates: before the loop, not in it.
+/// Makes the calling thread real-time: locks the memory of the process, touches the stack, requests
+/// SCHED_FIFO and the processor. @return one line on each request that the system refused, with its
+/// remedy; empty when all were granted. Allocates: call it before the loop.
 std::string become_realtime(const RealtimeSettings& settings);
 
 std::int64_t monotonic_ns() noexcept;               ///< CLOCK_MONOTONIC, ns; no system call

@@ -22,10 +22,10 @@ struct CurveValue {
 /// With x = d - d_k on piece k and c_k = (s_{k+1} - s_k) / (2 (d_{k+1} - d_k)):
 ///   f' = s_k + 2 c_k x,   f = f_k + s_k x + c_k x^2,   E = E_k + f_k x + s_k x^2/2 + c_k x^3/3.
 /// For d <= 0 there is no contact: force, slope and energy are 0. (A lateral response is evaluated
-/// at rho >= 0 only, so that this is its odd continuation as well; its slope at 0 is asked with
-/// slope_at_rest.) Beyond the last knot c = 0: linear, with the last slope, hence never steeper
-/// than max_slope(). Immutable after construction; evaluation is noexcept, allocation-free, and
-/// takes O(log K). Any thread may evaluate.
+/// at rho >= 0 only, so this is also its odd continuation; its slope at 0 is slope_at_rest.) Beyond
+/// the last knot c = 0: linear, with the last slope, hence never steeper than max_slope().
+/// Immutable after construction; evaluation is noexcept, allocation-free, and takes O(log K). Any
+/// thread may evaluate.
 class CompiledCurve {
  public:
   /// One polynomial piece, starting at `start`; the last one has no end.
@@ -65,9 +65,9 @@ class CompiledCurve {
   double max_slope_ = 0;
 };
 
-inline constexpr double kThird = 1.0 / 3.0;  ///< a product is ready long before a quotient
+inline constexpr double kThird = 1.0 / 3.0;  ///< a product takes less time than a quotient
 
-/// A piece as the force loop reads it, two to a cache line. Start and slope are the stored numbers.
+/// A piece as the force loop reads it, two in a cache line. Start and slope are the stored numbers.
 struct alignas(32) PackedPiece {
   float start = 0;       ///< d_k, m
   float slope = 0;       ///< s_k, N/m
@@ -97,7 +97,7 @@ class CurveView {
     return pieces_[piece_at(d)].evaluate(d);
   }
 
-  /// Of a curve that does not start at 0: at d <= 0 its first value, flat.
+  /// For a curve that does not start at 0: its first value at d <= 0, with slope 0.
   CurveValue evaluate_from_start(double d) const noexcept {
     if (count_ == 0 || d > 0.0) return evaluate(d);
     return {pieces_[0].force, 0, 0};
@@ -108,10 +108,10 @@ class CurveView {
   double start(std::size_t k) const noexcept { return static_cast<double>(knots_[k]); }
   double last_knot() const noexcept { return count_ == 0 ? 0.0 : start(count_ - 1); }
 
-  /// Index of the piece that holds d; 0 for d <= 0 and for the zero response.
+  /// Index of the piece that contains d; 0 for d <= 0 and for the zero response.
   std::size_t piece_at(double d) const noexcept {
     std::size_t k = 0;
-    for (std::size_t left = count_; left > 1;) {  // a search without branches to mispredict
+    for (std::size_t left = count_; left > 1;) {  // without branches that could be mispredicted
       const std::size_t half = left / 2;
       k += start(k + half) <= d ? half : 0;
       left -= half;
@@ -127,29 +127,29 @@ class CurveView {
 
 inline constexpr std::size_t kCacheLine = 64;  ///< bytes that the processor fetches at once
 
-/// Memory that is counted in lines.
+/// Unit of the memory of a surface.
 struct alignas(kCacheLine) CacheLine {
   std::array<std::byte, kCacheLine> bytes{};
 };
 
-/// How many pieces the responses of a node have.
+/// Numbers of pieces of the responses of a node.
 struct CurveSizes {
   std::uint16_t normal = 0, lateral = 0, coupling = 0;
   std::size_t sum() const noexcept { return std::size_t{normal} + lateral + coupling; }
 };
 
 /// The responses of a node, side by side in memory: f^z, then f^r, then w when they are coupled.
-/// First all knots, so that looking up a piece costs one line and not one for each comparison; then
+/// First all knots, so that a search reads one cache line instead of one for each comparison; then
 /// the pieces.
 class NodeCurves {
  public:
   NodeCurves() = default;
-  /// Of curves that write() put there.
+  /// A view of curves that write() has written.
   NodeCurves(const CacheLine* memory, CurveSizes sizes) noexcept : memory_(memory), sizes_(sizes) {}
 
-  /// Lines that curves of these sizes take.
+  /// Number of cache lines for curves of these sizes.
   static std::size_t lines(const CurveSizes& sizes) noexcept;
-  /// The compiled curves into that many lines.
+  /// Writes the compiled curves to that many lines.
   static NodeCurves write(CacheLine* memory, const CompiledCurve& normal,
                           const CompiledCurve& lateral,
                           const CompiledCurve& coupling = {}) noexcept;
@@ -161,8 +161,8 @@ class NodeCurves {
   }
   bool coupled() const noexcept { return sizes_.coupling > 0; }
 
-  /// How many lines the knots take, and lines from the first to those of the pieces at a
-  /// deflection; 0 for w of decoupled responses.
+  /// Number of lines of the knots, and the lines of the pieces at a deflection, counted from the
+  /// first; 0 for w of decoupled responses.
   struct InUse {
     std::size_t knots = 0, normal = 0, lateral = 0, coupling = 0;
   };

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "format/error.hpp"
-#include "runtime/palpate.h"
+#include "runtime/status.hpp"
 
 namespace palpate::runtime {
 namespace {
@@ -35,8 +35,8 @@ bool Safety::cut_off(const Vec3& velocity, double dt, std::uint32_t& status) noe
   const double speed = norm(velocity);
   too_fast_ = !(speed <= (too_fast_ ? settings_.max_speed / 2 : settings_.max_speed));
   const bool late = !(dt <= settings_.watchdog);
-  if (too_fast_) status |= PALPATE_LOOP_TOO_FAST;
-  if (late) status |= PALPATE_LOOP_LATE;
+  if (too_fast_) status |= step_status::LoopTooFast;
+  if (late) status |= step_status::LoopLate;
   return too_fast_ || late;
 }
 
@@ -48,18 +48,18 @@ Safety::Verdict Safety::judge(const Vec3& force, const Vec3& velocity, double dt
   }
   since_cut_ = std::min(since_cut_ + dt, settings_.ramp);
   if (!finite(force)) {
-    verdict.status |= PALPATE_LOOP_NOT_FINITE;
+    verdict.status |= step_status::LoopNotFinite;
     return verdict;
   }
   double scale = 1;
   if (since_cut_ < settings_.ramp) {
     scale = since_cut_ / settings_.ramp;
-    verdict.status |= PALPATE_LOOP_RAMPING;
+    verdict.status |= step_status::LoopRamping;
   }
   const double size = scale * norm(force);
   if (size > settings_.max_force) {
     scale *= settings_.max_force / size;
-    verdict.status |= PALPATE_LOOP_CLAMPED;
+    verdict.status |= step_status::LoopClamped;
   }
   verdict.force = scale * force;
   return verdict;

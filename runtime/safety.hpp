@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last word on a force before it reaches a hand.
+// The safety functions that a force passes before it reaches a hand.
 #pragma once
 
 #include <cstdint>
@@ -10,17 +10,17 @@
 namespace palpate::runtime {
 
 struct SafetySettings {
-  double ramp = 0.5;  ///< s, from no force to full force, at the start and after each cut-off
+  double ramp = 0.5;  ///< s, time of the force ramp, at the start and after each cut-off
   double max_force = std::numeric_limits<double>::infinity();  ///< N
-  double max_speed = 3;    ///< m/s; faster than this the force is cut off
-  double watchdog = 0.02;  ///< s; a longer gap between two steps cuts the force off
+  double max_speed = 3;    ///< m/s; above it the force is cut off
+  double watchdog = 0.02;  ///< s; a longer time between two steps cuts the force off
 };
 
-/// Turns the force of the body into the force that is commanded, in this order: what is not finite
-/// becomes zero; too fast or too late cuts off, and the ramp begins anew; the ramp scales; the
-/// clamp shortens and keeps the direction. A cut-off by speed lasts until the speed is below half
-/// of the limit. Clamp and ramp are no part of the passive model: they are reported, and meant not
-/// to act. noexcept, allocation-free.
+/// Turns the force of the body into the commanded force, in this order: a tip that is too fast or a
+/// step that is too late cuts the force off and restarts the ramp; a force that is not finite
+/// becomes zero; the ramp scales; the clamp shortens and keeps the direction. A cut-off by speed
+/// lasts until the speed is below half of the limit. Clamp and ramp are not covered by the
+/// certificate: each action is reported in the status. noexcept, allocation-free.
 class Safety {
  public:
   /// @throws Error(Configuration) naming the setting that is out of range.
@@ -28,9 +28,9 @@ class Safety {
 
   struct Verdict {
     Vec3 force{};              ///< N
-    std::uint32_t status = 0;  ///< bits of palpate.h, PALPATE_LOOP_*
+    std::uint32_t status = 0;  ///< step_status::Loop* bits
   };
-  /// dt: s since the step before.
+  /// dt: s since the last step.
   Verdict judge(const Vec3& force, const Vec3& velocity, double dt) noexcept;
 
  private:

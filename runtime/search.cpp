@@ -10,7 +10,8 @@
 namespace palpate::runtime {
 namespace {
 
-constexpr double kLooksAhead = 2;  // the next delivery comes one look later, and takes its time
+constexpr double kLooksAhead =
+    2;  // searches: the next delivery comes one search later, plus its duration
 constexpr std::size_t kMostNear = 8192;  // triangles considered for a free tip
 
 Vec3 centre(const Surface& surface, std::int32_t m) {
@@ -50,7 +51,7 @@ Delivery Search::look(const TipReport& tip) {
   return delivery;
 }
 
-/// Distance of the middle of a triangle from the way, m.
+/// Distance of the centroid of a triangle from the predicted path, m.
 double Search::distance(std::int32_t m, const Way& way) const {
   const Vec3 along = way.to - way.from;
   const Vec3 r = centre(*surface_, m) - way.from;

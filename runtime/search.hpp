@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which triangles the force loop will need next: the part of the work that may be done at a low
-// rate.
+// Which triangles the force loop will need next; this may be computed at a low rate.
 #pragma once
 
 #include <cstddef>
@@ -15,14 +14,14 @@
 
 namespace palpate::runtime {
 
-/// Where the force loop is.
+/// Position of the force loop.
 struct TipReport {
   Vec3 position{};                    ///< m
   std::int32_t element = kNoElement;  ///< active element, if any
 };
 
-/// Looks around the tip, again and again. Between two looks the tip is taken to move on as it did
-/// between the last two. Allocates; for one thread, which is not the force loop.
+/// Finds the triangles around the tip, repeatedly. The motion of the tip until the next call is
+/// predicted from that between the last two. Allocates; for one thread other than the force loop.
 class Search {
  public:
   /// The surface and the tree must outlive the search. `most`: triangles in a delivery; the active
@@ -30,8 +29,8 @@ class Search {
   Search(const Surface& surface, const CollisionTree& tree, std::size_t most = Delivery::kMost);
 
   /// In contact: the 1-ring of the active element, then outwards over the surface, nearest to the
-  /// way ahead first. Free: the triangles nearest to the way ahead, whatever part of the body they
-  /// belong to.
+  /// predicted path first. Free: the triangles nearest to the predicted path, on any part of the
+  /// body.
   Delivery look(const TipReport& tip);
 
  private:
@@ -49,7 +48,7 @@ class Search {
   std::size_t most_;
   double edge_ = 0;  ///< m, typical
   std::optional<Vec3> last_;
-  std::vector<std::uint32_t> stamp_;  ///< per element: the look that last took it
+  std::vector<std::uint32_t> stamp_;  ///< per element: the search that last found it
   std::uint32_t look_ = 0;
   std::vector<std::int32_t> found_;
 };

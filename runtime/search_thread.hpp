@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search in a thread of its own, at a low rate, beside the force loop.
+// The search in a thread of its own, at a low rate.
 #pragma once
 
 #include <readerwriterqueue/readerwritercircularbuffer.h>
@@ -16,12 +16,12 @@
 
 namespace palpate::runtime {
 
-/// The latest report of one writer for one reader. Neither ever waits for the other: a reader that
-/// meets a write in progress gets nothing this time.
+/// The latest report of one writer for one reader. Neither waits for the other: a read during a
+/// write returns nothing.
 class LatestReport {
  public:
   void write(const TipReport& report) noexcept;
-  /// False when there is nothing newer than the last report read, or it is being written.
+  /// False when there is no report newer than the last one read, or it is being written.
   bool read(TipReport& report) noexcept;
 
  private:
@@ -31,11 +31,12 @@ class LatestReport {
   std::uint64_t read_ = 0;  ///< sequence of the last report read
 };
 
-/// The force loop reports where it is and receives triangles; the thread looks around. Deliveries
-/// pass through a bounded queue without locks [Mahvash & Hayward 2005, VI-A].
+/// The force loop reports the position of the tip and receives the triangles near it, which the
+/// thread finds. Deliveries pass through a bounded queue without locks [Mahvash & Hayward 2005,
+/// VI-A].
 class SearchThread {
  public:
-  /// Starts the thread. rate: looks per second, Hz, > 0. @throws std::system_error.
+  /// Starts the thread. rate: searches per second, Hz, > 0. @throws std::system_error.
   SearchThread(const Surface& surface, const CollisionTree& tree, double rate);
   ~SearchThread();  ///< stops the thread and waits for it
   SearchThread(const SearchThread&) = delete;
@@ -55,7 +56,7 @@ class SearchThread {
   std::mutex mutex_;
   std::condition_variable wake_;
   bool stop_ = false;
-  std::thread thread_;  ///< last: it uses all the others
+  std::thread thread_;  ///< last member: it uses the others
 };
 
 }  // namespace palpate::runtime

@@ -48,7 +48,7 @@ class Walker {
   }
 
  private:
-  /// Why there is no way on.
+  /// Why the walk cannot continue.
   struct Obstacle {
     bool border = false, undelivered = false;
     void add(const Obstacle& other) noexcept {
@@ -80,7 +80,7 @@ class Walker {
     in_plane = (1.0 / length) * in_plane;
     return true;
   }
-  /// Of an element that was crossed into this is done.
+  /// After crossing into an element.
   bool project() noexcept {
     const bool done = projected_;
     projected_ = false;
@@ -111,8 +111,8 @@ class Walker {
     for (std::size_t l = 0; l < 3; ++l) point_.natural[l] += length * dot(e.gradient[l], d);
   }
 
-  /// How much of the motion goes along an edge, of 1.
-  double share_along(const Vec3& edge) const noexcept {
+  /// Fraction of the motion along an edge, in [0, 1].
+  double fraction_along(const Vec3& edge) const noexcept {
     return dot(direction_, edge) / (norm(edge) * length_);
   }
 
@@ -127,7 +127,7 @@ class Walker {
     const std::size_t b = (exit + 2) % 3;
     const std::size_t apex = vertex_besides(n, element().vertices[a], element().vertices[b]);
     if (!(dot(n.gradient[apex], d) > 0)) return false;
-    // Neighbours of one orientation go along their edge in opposite directions.
+    // Neighbours of one orientation traverse their edge in opposite directions.
     SurfacePoint there{next, {}};
     there.natural[(apex + 1) % 3] = point_.natural[b];
     there.natural[(apex + 2) % 3] = point_.natural[a];
@@ -137,8 +137,8 @@ class Walker {
     return true;
   }
 
-  /// The vertex of an element that is neither of two. Without branches: which one it is nobody can
-  /// foresee.
+  /// The vertex of an element that is neither of two. Without branches, which could not be
+  /// predicted.
   static std::size_t vertex_besides(const Element& e, std::int32_t a, std::int32_t b) noexcept {
     const auto is = [&](std::size_t l) {
       return static_cast<std::size_t>(e.vertices[l] != a) *
@@ -161,17 +161,17 @@ class Walker {
     const Element& e = element();
     const Vec3 edge = surface_.vertex(e, to) - surface_.vertex(e, from);
     const double length = norm(edge);
-    const double share = share_along(edge);
-    if (!(share > kLeastProjection)) return false;
+    const double fraction = fraction_along(edge);
+    if (!(fraction > kLeastProjection)) return false;
     const double to_end = point_.natural[from] * length;
-    if (remaining_ * share < to_end) {
-      move((1.0 / length) * edge, remaining_ * share);
+    if (remaining_ * fraction < to_end) {
+      move((1.0 / length) * edge, remaining_ * fraction);
       point_.natural[3 - from - to] = 0;
       point_.natural = tidy(point_.natural);
       remaining_ = 0;
       return true;
     }
-    remaining_ -= to_end / share;
+    remaining_ -= to_end / fraction;
     point_.natural = {0, 0, 0};
     point_.natural[to] = 1;
     return true;
@@ -216,14 +216,14 @@ class Walker {
     }
     for (const std::size_t to : {a, b}) {
       const Vec3 edge = surface_.vertex(e, to) - surface_.vertex(e, v);
-      const double share = share_along(edge);
-      if (share > spoke_.share) spoke_ = {m, v, to, share};
+      const double fraction = fraction_along(edge);
+      if (fraction > spoke_.fraction) spoke_ = {m, v, to, fraction};
     }
     return false;
   }
 
   bool leave_along_edge() noexcept {
-    if (!(spoke_.share > kLeastProjection)) return false;
+    if (!(spoke_.fraction > kLeastProjection)) return false;
     stand_on(spoke_.element, spoke_.from);
     return go_along(spoke_.from, spoke_.to);
   }
@@ -242,7 +242,7 @@ class Walker {
   struct Spoke {
     std::int32_t element = kNoElement;
     std::size_t from = 0, to = 0;
-    double share = 0;  ///< of the motion that goes along it
+    double fraction = 0;  ///< of the motion along it
   };
 
   const Surface& surface_;

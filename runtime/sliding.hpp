@@ -10,17 +10,17 @@ namespace palpate::runtime {
 
 struct Walk {
   SurfacePoint point;
-  bool at_border = false;  ///< a border of the response surface stood in the way
-  bool awaiting = false;   ///< a triangle that has not been delivered stood in the way
-  bool hindered = false;   ///< it followed an edge, or did not go all the way
+  bool at_border = false;  ///< a border of the response surface stopped it
+  bool awaiting = false;   ///< a triangle that is not delivered stopped it
+  bool hindered = false;   ///< it followed an edge, or ended early
 };
 
 /// Moves a point over the surface by `distance` (m, >= 0) along the projection of `direction`, of
 /// any length, on the plane of its element. At an edge the direction is projected anew on the
 /// neighbour, and the rest of the distance is walked there. Where there is no neighbour, or the new
 /// direction does not point into it, the point follows the edge by the component of the motion
-/// along it, or stays. A neighbour that is not among `delivered` (null: all are there) is none for
-/// now. noexcept, allocation-free, at most 64 edges.
+/// along it, or stays. A neighbour that is not among `delivered` (null: all are) counts as
+/// missing. noexcept, allocation-free, at most 64 edges.
 Walk walk(const Surface& surface, const SurfacePoint& from, const Vec3& direction, double distance,
           const Delivery* delivered = nullptr) noexcept;
 

@@ -23,7 +23,7 @@ std::string triangle_name(std::size_t m) {
   return "library triangle " + std::to_string(m);
 }
 
-/// The numbers of the points along a curve through space on which near points are mostly near each
+/// Positions of the points along a space-filling curve, on which near points are mostly near each
 /// other (Z order; G. M. Morton 1966).
 std::vector<std::size_t> along_a_curve(const std::vector<Vec3>& points, const Vec3& low,
                                        const Vec3& high) {
@@ -177,7 +177,7 @@ void Surface::check_directions(const Library& library, std::size_t m) const {
 
 void Surface::connect() {
   struct Side {
-    std::int32_t from, to;  // the edge as this triangle goes along it
+    std::int32_t from, to;  // the edge as this triangle traverses it
     std::int32_t element;
     std::uint8_t opposite;  // local vertex
     auto edge() const { return std::pair(from, to); }

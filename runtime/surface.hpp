@@ -15,19 +15,18 @@ namespace palpate::runtime {
 
 inline constexpr std::int32_t kNoElement = -1;
 
-/// A triangle of the response surface. Everything about it is constant over the triangle.
+/// A triangle of the response surface.
 struct alignas(kCacheLine) Element {
   std::array<std::int32_t, 3> vertices{};  ///< their records in the memory of the surface
   /// neighbour[l] is across the edge opposite to vertex l; kNoElement at a border.
   std::array<std::int32_t, 3> neighbour{kNoElement, kNoElement, kNoElement};
   std::array<Vec3, 3> gradient{};  ///< of the natural coordinates, 1/m, in the plane
   Vec3 facet_normal{};             ///< unit, INTO the body
-  bool active = false;             ///< false next to a hole: never touched, a border for the others
+  bool active = false;  ///< false next to a hole: cannot be touched, a border for its neighbours
 };
 
-/// All that belongs to a vertex: one cache line, which those of its curves follow. An element names
-/// it by the number of that line, so that what a step will need of it can be asked for without
-/// having read anything of it.
+/// The data of a vertex: one cache line, followed by those of its curves. An element refers to it
+/// by the number of that line, so that a step can prefetch it without reading it.
 struct alignas(kCacheLine) SurfaceNode {
   Vec3 position{};  ///< m
   Vec3 inward{};    ///< unit
@@ -78,16 +77,15 @@ class Surface {
     return {{&node(e, 0).curves, &node(e, 1).curves, &node(e, 2).curves}, p.natural};
   }
 
-  /// Asks the processor for what lies around an element, in two calls that should be a step apart:
-  /// first the elements beyond its neighbours and the vertices opposite to its edges, then the
-  /// vertices of the elements beyond. The contact point then moves on, over an edge or near a
-  /// vertex over two, without waiting for the memory. Of the curves only the lines are asked for
-  /// that are in use at the contact point now.
+  /// Prefetch the surroundings of an element, in two calls that should be a step apart: first the
+  /// elements beyond its neighbours and the vertices opposite to its edges, then the vertices of
+  /// the elements beyond. The contact point can then cross an edge, or near a vertex two, without
+  /// waiting for memory. Of the curves only the lines in use at the contact point are prefetched.
   void prefetch_around(std::int32_t m, const NodeCurves::InUse& in_use) const noexcept;
   void prefetch_beyond(std::int32_t m, const NodeCurves::InUse& in_use) const noexcept;
 
   /// Signed distance of x to the plane of an element, positive OUTSIDE the body, m. Collision and
-  /// release use this one expression, so that they never disagree on which side a point is.
+  /// release use this one expression, so that they agree on which side a point is.
   double outside_distance(const Element& e, const Vec3& x) const noexcept {
     return dot(vertex(e, 0) - x, e.facet_normal);
   }
@@ -113,7 +111,7 @@ class Surface {
 
   template <class T>
   using Table = std::vector<T, LargeMemory<T>>;
-  Table<CacheLine> records_;  ///< of each node a SurfaceNode and its curves
+  Table<CacheLine> records_;  ///< a SurfaceNode and its curves for each node
   Table<Element> elements_;
   Vec3 low_{}, high_{};
   double deepest_ = 0;

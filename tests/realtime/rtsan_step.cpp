@@ -32,7 +32,7 @@ void do_forbidden(const char* what) {
 
 int main(int count, char** arguments) {
   palpate_state state(palpate::test::ride_body(),
-                      {0.2, 0, palpate::runtime::EnergyBudget::Kept, 400});
+                      {0.2, 0, palpate::runtime::EnergyBudget::Enforced, 400});
   std::uint32_t seen = palpate::test::ride_bits();
   __rtsan_realtime_enter();
   if (count > 1) {

@@ -49,7 +49,7 @@ namespace palpate::test {
 namespace {
 
 TEST(Step, NeverAllocatesOrFrees) {
-  palpate_state state(ride_body(), {0.2, 0, runtime::EnergyBudget::Kept, 400});
+  palpate_state state(ride_body(), {0.2, 0, runtime::EnergyBudget::Enforced, 400});
   allocations = 0;
   counting = true;
   const std::uint32_t seen = ride(state);
@@ -66,7 +66,7 @@ TEST(ForceLoop, NeverAllocatesOrFreesInATick) {
     return runtime::HandTarget{{0.03 * std::cos(t), 0.03 * std::sin(t), 0.01 * t}, {}};
   });
   device.open();
-  palpate_state state(ride_body(), {0.2, 5e-3, runtime::EnergyBudget::Kept, 400}, 200);
+  palpate_state state(ride_body(), {0.2, 5e-3, runtime::EnergyBudget::Enforced, 400}, 200);
   runtime::StepQueue queue(1000);
   runtime::ForceLoop loop(device, state, {}, &queue);
   allocations = 0;

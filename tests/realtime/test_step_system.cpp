@@ -19,7 +19,7 @@
 namespace palpate::test {
 namespace {
 
-const runtime::ContactSettings kSettings{0.2, 0, runtime::EnergyBudget::Kept, 400};
+const runtime::ContactSettings kSettings{0.2, 0, runtime::EnergyBudget::Enforced, 400};
 
 long page_faults() {
   rusage usage{};

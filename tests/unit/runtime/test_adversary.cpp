@@ -309,7 +309,7 @@ class Adversary : public ::testing::TestWithParam<Case> {
   Adversary()
       : library_(certified(body_named(GetParam().body), GetParam().friction)), body_(library_) {}
   ContactSettings settings(double lipschitz_bound) const {
-    return {GetParam().friction, GetParam().tank_cap, EnergyBudget::Kept, lipschitz_bound};
+    return {GetParam().friction, GetParam().tank_cap, EnergyBudget::Enforced, lipschitz_bound};
   }
 
   void run(const char* name, const Mover& mover, double lipschitz_bound) {
@@ -356,7 +356,7 @@ TEST_P(Adversary, GetsNoEnergyNoJumpAndNoNonsense) {
 }
 
 TEST_P(Adversary, GetsNoneOfThemWhereSlidesAreHeldBackAsFarAsCertified) {
-  const double hold = library_.certificate.hold;
+  const double hold = library_.certificate.min_lipschitz_bound;
   ASSERT_GE(hold, library_.certificate.stick);
   ASSERT_LE(hold, body_.lipschitz_bound);
   run_all(hold);

@@ -279,7 +279,7 @@ TEST(Contact, TheForceChangesNoFasterThanTheLipschitzBoundUntilItHasGone) {
   const double unlimited = std::sqrt(1 + mu * mu) * k;
   for (const double lipschitz_bound : {k, 1.001 * unlimited}) {
     Rig rig(plate(10, 0.1, [&](const Vec3&) { return wall_response(k, k); }),
-            {mu, 5e-3, runtime::EnergyBudget::Kept, lipschitz_bound});
+            {mu, 5e-3, runtime::EnergyBudget::Enforced, lipschitz_bound});
     rig.step({0.02, 0.03, 0.0001});
     for (int i = 0; i <= 140; ++i) rig.step({0.02, 0.03, -5e-5 * i});
     for (int i = 0; i <= 500; ++i) rig.step({0.02 + 2e-5 * i, 0.03, -0.007});
@@ -307,7 +307,7 @@ TEST(Contact, ASlideThatTheLimitHoldsBackIsFeltAsFrictionAndMadeUpFor) {
   };
   const double lipschitz_bound = 160;
   for (const double step : {1e-5, 1e-4, 4e-4}) {
-    Rig rig(plate(200, 0.1, seam), {kMu, 5e-3, runtime::EnergyBudget::Kept, lipschitz_bound});
+    Rig rig(plate(200, 0.1, seam), {kMu, 5e-3, runtime::EnergyBudget::Enforced, lipschitz_bound});
     rig.step({0.03, 0.05, 1e-4});
     for (int i = 0; i <= 50; ++i) rig.step({0.03, 0.05, -1e-4 * i});
     double furthest = 0;

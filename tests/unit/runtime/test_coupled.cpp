@@ -66,7 +66,7 @@ TEST_F(Coupled, ForceOpposesTheDeflectionAndTheEnergyIsNeverNegative) {
     const LocalResponse r = at(model, tip(model, z, rho));
     EXPECT_GE(r.energy, 0);
     EXPECT_GE(r.lateral_force, 0);
-    EXPECT_GE(r.normal_force, r.grip);
+    EXPECT_GE(r.normal_force, r.friction_normal_force);
     if (z <= 0) {
       EXPECT_EQ(r.normal_force, 0);
     }
@@ -94,7 +94,7 @@ TEST_F(Coupled, SlipBeginsWhereTheLateralForceIsMuTimesTheGrip) {
     const Deflection there = model.deflection(tip(model, z, 0.02));
     const double limit = model.slip_limit(there, mu);
     const LocalResponse r = at(model, tip(model, z, limit));
-    EXPECT_NEAR(r.lateral_force, mu * r.grip, 1e-9);
+    EXPECT_NEAR(r.lateral_force, mu * r.friction_normal_force, 1e-9);
     runtime::PiecesInUse pieces;
     const LocalResponse pressed = model.respond(there, pieces);
     EXPECT_NEAR(model.slip_limit_below(there, pressed, mu, pieces), limit, 1e-12);

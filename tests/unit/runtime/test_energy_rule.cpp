@@ -85,7 +85,7 @@ TEST_F(EnergyRuleTest, AnExcessRaisesTheOffset) {
   const EnergyVerdict verdict =
       judge(moved, x, moved.respond(moved.deflection(x)), budget, 0.0002, 1e-4);
   EXPECT_TRUE(verdict.limited);
-  EXPECT_FALSE(verdict.hold);
+  EXPECT_FALSE(verdict.fix_contact_point);
   EXPECT_GT(verdict.offset, 0.0002);
   EXPECT_NEAR(energy(moved, x, verdict.offset), budget, 1e-8 * budget);
 }
@@ -95,10 +95,10 @@ TEST_F(EnergyRuleTest, WhatNoOffsetCanLowerHoldsTheContactPoint) {
   const Vec3 x = tip(moved, 0.004, 0.003);
   const double lateral_alone = energy(moved, x, 0.004);
   ASSERT_GT(lateral_alone, 0);
-  EXPECT_TRUE(
-      judge(moved, x, moved.respond(moved.deflection(x)), 0.9 * lateral_alone, 0, 1e-4).hold);
-  EXPECT_FALSE(
-      judge(moved, x, moved.respond(moved.deflection(x)), 1.1 * lateral_alone, 0, 1e-4).hold);
+  EXPECT_TRUE(judge(moved, x, moved.respond(moved.deflection(x)), 0.9 * lateral_alone, 0, 1e-4)
+                  .fix_contact_point);
+  EXPECT_FALSE(judge(moved, x, moved.respond(moved.deflection(x)), 1.1 * lateral_alone, 0, 1e-4)
+                   .fix_contact_point);
 }
 
 TEST_F(EnergyRuleTest, ASurplusGivesTheOffsetBackWithinItsMeans) {

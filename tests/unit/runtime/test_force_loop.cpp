@@ -2,6 +2,7 @@
 // The force loop with devices that behave, and with devices that do not. Times of waking up are not
 // asserted: they are the machine's. What happens to late steps is.
 #include "runtime/force_loop.hpp"
+#include "runtime/handles.hpp"
 
 #include <gtest/gtest.h>
 

@@ -285,7 +285,7 @@ TEST_F(PalpateApi, HoldsAStateToNoLessThanWhatTheCertificateHolds) {
   c.triangles.assign(library.triangles.size(), {200, 900, 0, 1, 1});
   c.stick = 200;
   c.slip = 900;
-  c.hold = 250.25;
+  c.min_lipschitz_bound = 250.25;
   c.friction = 0.3;
   const std::string certified = (folder_ / "certified.h5").string();
   write_library(certified, library);
@@ -293,14 +293,15 @@ TEST_F(PalpateApi, HoldsAStateToNoLessThanWhatTheCertificateHolds) {
   ASSERT_EQ(palpate_library_load(certified.c_str(), &held), PALPATE_OK) << palpate_last_error();
 
   palpate_library_info info{};
-  info.size = offsetof(palpate_library_info, hold);  // a program with the first header
-  info.hold = 42;
+  info.size =
+      offsetof(palpate_library_info, min_lipschitz_bound);  // a program with the first header
+  info.min_lipschitz_bound = 42;
   ASSERT_EQ(palpate_library_describe(held, &info), PALPATE_OK);
-  EXPECT_EQ(info.hold, 42);
+  EXPECT_EQ(info.min_lipschitz_bound, 42);
   info.size = sizeof info;
   ASSERT_EQ(palpate_library_describe(held, &info), PALPATE_OK);
-  EXPECT_EQ(info.hold, 250.25);
-  EXPECT_EQ(info.limit, 800);  // 4 L_stick, where slides would need 900
+  EXPECT_EQ(info.min_lipschitz_bound, 250.25);
+  EXPECT_EQ(info.lipschitz_bound, 800);  // 4 L_stick, where slides would need 900
 
   palpate_state* state = nullptr;
   palpate_settings settings = settings_;

@@ -244,7 +244,7 @@ TEST(SearchThread, ServesAForceLoopBesideIt) {
   };
   for (int i = 0; i < 100; ++i) {  // until something has been delivered
     state.step({0.02, 0.05, 0.0005});
-    if (!state.delivery.elements().empty()) break;
+    if (!state.delivery().elements().empty()) break;
     wait();
   }
   hold({0.02, 0.05, -0.0001}, PALPATE_CONTACT, 0);

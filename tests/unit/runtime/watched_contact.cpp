@@ -106,7 +106,7 @@ void WatchedContact::account(const Vec3& x, const runtime::ContactObservation& b
 
 /// By how much the lateral force w h(rho) is above mu g(z), N.
 double WatchedContact::overdraft(const runtime::ContactObservation& model) const {
-  double lateral = 0, grip = 0;
+  double lateral = 0, friction_normal_force = 0;
   const Triangle& t = library_.triangles[static_cast<std::size_t>(model.point.element)];
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library_.responses[static_cast<std::size_t>(t[l])];
@@ -115,9 +115,9 @@ double WatchedContact::overdraft(const runtime::ContactObservation& model) const
                          : 1;
     const double n = model.point.natural[l];
     lateral += n * w * curve_at(node.lateral, model.deflection.lateral).force;
-    grip += n * curve_at(node.normal, model.deflection.depth).force;
+    friction_normal_force += n * curve_at(node.normal, model.deflection.depth).force;
   }
-  return lateral - friction_ * grip;
+  return lateral - friction_ * friction_normal_force;
 }
 
 void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& before) {
