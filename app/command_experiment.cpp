@@ -39,7 +39,7 @@ void draw_figure_12(const std::filesystem::path& out) {
 }
 
 void wall_margins(double tolerance) {
-  say("wall: stiffness at which the swing begins to last, N/m");
+  say("wall: stiffness at which the oscillation begins to last, N/m");
   say("  {:>8} {:>10} {:>16}", "rate", "simulated", "energy balance");
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
     SlingshotSetup setup;
@@ -66,13 +66,14 @@ void cylinder_margins(double tolerance) {
         margin_by_played_swings(one));
   }
   constexpr double kOffAxis = 0.01, kRadius = 0.04;  // m
-  say("  {:>5g} mm stuck, in closed form {:>27.1f}", 1e3 * kOffAxis,
+  say("  {:>5g} mm no-slip, closed form {:>27.1f}", 1e3 * kOffAxis,
       bonded_margin_by_energy_balance(2000, std::asin(kOffAxis / kRadius)));
 }
 
 int experiment(const ExperimentOptions& options) {
   prepare_output(options.out);
-  say("experiment: a device slung into a wall, as in Mahvash & Hayward 2005, VI-B, in simulation");
+  say("experiment: a device that a band pulls into a wall, as in Mahvash & Hayward 2005, VI-B, in "
+      "simulation");
   draw_figure_12(options.out);
   if (options.margins) {
     wall_margins(options.tolerance);

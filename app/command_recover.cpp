@@ -6,7 +6,7 @@
 
 #include "app/command.hpp"
 #include "app/console.hpp"
-#include "app/record/tell.hpp"
+#include "app/record/report_recovery.hpp"
 #include "format/error.hpp"
 
 namespace palpate::app {
@@ -28,7 +28,7 @@ int recover_session(const Options& options) {
                   "name another file with --out");
     }
   }
-  tell(recover(journal, out));
+  report(recover(journal, out));
   return kExitDone;
 }
 

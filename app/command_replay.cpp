@@ -20,11 +20,11 @@ struct Options {
 void require_library_of(const RecordingHeading& recording, const Options& options) {
   if (recording.library_sha256.empty()) return;
   if (sha256_of_file(options.library) == recording.library_sha256) return;
-  throw Error(ErrorKind::Configuration, options.library, "is not the library that was felt",
+  throw Error(ErrorKind::Configuration, options.library, "is not the library of the recording",
               "give the one with sha256 " + recording.library_sha256);
 }
 
-/// Where what is felt now goes, if anywhere.
+/// The output of the repeated session, if any.
 void open_writer(std::optional<RecordingWriter>& writer, const RecordingReader& recorded,
                  const Options& options) {
   if (options.out.empty()) return;
@@ -34,7 +34,7 @@ void open_writer(std::optional<RecordingWriter>& writer, const RecordingReader& 
   writer.emplace(options.out, heading, recorded.steps());
 }
 
-/// A few thousand steps at a time. What is felt now is written to the end, whatever differs.
+/// A few thousand steps at a time. The repeated session is written to its end, whatever differs.
 int replay_recording(const Options& options) {
   RecordingReader recorded(options.recording);
   require_library_of(recorded.heading(), options);
@@ -69,9 +69,9 @@ void add_replay_command(CLI::App& root, Action& action) {
       "Example: palpate replay out/cylinder/recording.h5 --library out/cylinder/library.h5");
   const auto options = std::make_shared<Options>();
   command->add_option("RECORDING", options->recording, "Of a session (recording.h5)")->required();
-  command->add_option("--library", options->library, "The library that was felt (library.h5)")
+  command->add_option("--library", options->library, "The library of the recording (library.h5)")
       ->required();
-  command->add_option("--out", options->out, "Write what is felt now (recording.h5)");
+  command->add_option("--out", options->out, "Write the repeated session (recording.h5)");
   command->callback(
       [options, &action] { action = [options] { return replay_recording(*options); }; });
 }

@@ -14,8 +14,8 @@
 #include "app/console.hpp"
 #include "app/pipeline/device_profile.hpp"
 #include "app/pipeline/workspace.hpp"
+#include "app/record/report_recovery.hpp"
 #include "app/record/session_recorder.hpp"
-#include "app/record/tell.hpp"
 #include "app/run/certified.hpp"
 #include "app/run/device_choice.hpp"
 #include "app/run/live_session.hpp"
@@ -143,7 +143,7 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
   if (live.contact.friction < 0) live.contact.friction = library.certificate.friction;
   live.contact.lipschitz_bound = lipschitz_bound_for(library, profile, live.loop.rate);
   if (live.contact.lipschitz_bound < body.lipschitz_bound) {
-    say("run: slides are held back to {:.1f} N/m, which is certified at this rate",
+    say("run: lipschitz_bound = {:.1f} N/m, which is certified at this rate",
         live.contact.lipschitz_bound);
   }
   if (profile.peak_force > 0) {
@@ -165,13 +165,13 @@ int run(RunOptions options) {
   const palpate_library body(library);
   settle(options, library, body);
   const auto device = make_device(options.device, scripted_hand(library, options.live.pose));
-  tell_what_was_left(options.recording);
+  recover_and_report(options.recording);
   device->open();
   SessionRecorder recorder(options.recording, heading_of(options, library, device->name()));
   const StopOnInterrupt stop_on_interrupt;
   say("run: {} at {:g} Hz; Ctrl-C ends it", options.device.name, options.live.loop.rate);
   const LiveOutcome outcome = run_live(*device, body, options.live, recorder, interrupted);
-  if (outcome.not_recorded) throw_keeping_journal(*outcome.not_recorded, recorder.journal());
+  if (outcome.not_recorded) throw_with_journal(*outcome.not_recorded, recorder.journal());
   recorder.finish();
   summarize(outcome, options.recording);
   require_good_end(outcome, device->name(), options.recording);

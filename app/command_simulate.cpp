@@ -5,7 +5,7 @@
 #include "app/case_options.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
-#include "app/record/tell.hpp"
+#include "app/record/report_recovery.hpp"
 #include "app/simulate/session.hpp"
 #include "format/error.hpp"
 #include "runtime/latency_histogram.hpp"
@@ -14,7 +14,7 @@
 namespace palpate::app {
 namespace {
 
-/// What is told of a session, gathered as it goes.
+/// Summary of a session.
 struct Summary {
   std::int64_t steps = 0, contact = 0, sliding = 0, held_back = 0, limited = 0, beyond = 0;
   double deepest = 0, largest = 0, absorbed = 0;
@@ -35,10 +35,10 @@ struct Summary {
   }
 };
 
-void tell(const Summary& s, double rate, const std::filesystem::path& file) {
+void report(const Summary& s, double rate, const std::filesystem::path& file) {
   say("simulate: {} steps at {} Hz, deepest {:.2f} mm, largest force {:.3f} N -> {}", s.steps, rate,
       s.deepest * 1e3, s.largest, file.string());
-  say("  contact in {} steps, sliding in {}, held back in {}, energy rule in {}, "
+  say("  contact in {} steps, sliding in {}, throttled in {}, energy rule in {}, "
       "beyond the deepest sample in {}",
       s.contact, s.sliding, s.held_back, s.limited, s.beyond);
   say("  absorbed by the body: {:.3f} mJ; force step: median {:.2f} us, 99 % within {:.2f} us",
@@ -56,7 +56,7 @@ int simulate(const CaseOptions& options, const std::string& library_option,
   }
   const Library library = read_library(file);
   prepare_output(space.out);
-  tell_what_was_left(space.recording());
+  recover_and_report(space.recording());
   ScriptedSession session(file, library, space.c.simulate, lipschitz_bound);
   RecordingHeading heading = session.heading();
   heading.provenance = library.provenance;
@@ -70,10 +70,10 @@ int simulate(const CaseOptions& options, const std::string& library_option,
       recorder.add(step);
     });
   } catch (const Error& error) {
-    throw_keeping_journal(error, recorder.journal());
+    throw_with_journal(error, recorder.journal());
   }
   recorder.finish();
-  tell(summary, heading.rate, space.recording());
+  report(summary, heading.rate, space.recording());
   return kExitDone;
 }
 
@@ -88,9 +88,10 @@ void add_simulate_command(CLI::App& root, Action& action) {
   command->add_option("--library", *library, "Response library (default: library.h5 of the case)");
   const auto lipschitz_bound = std::make_shared<double>(0);
   command
-      ->add_option("--lipschitz_bound", *lipschitz_bound,
-                   "N/m: hold the change of force to this times the travel of the tool, from the "
-                   "L_hold of the library on (default: the limit of the library)")
+      ->add_option(
+          "--lipschitz_bound", *lipschitz_bound,
+          "N/m: the force changes by at most this times the travel of the tool; at least the "
+          "L_min of the library (default: the bound of the library)")
       ->check(CLI::PositiveNumber);
   command->callback([options, library, lipschitz_bound, &action] {
     action = [options, library, lipschitz_bound] {

@@ -191,7 +191,8 @@ void write_body(const std::filesystem::path& path, const Body& body) {
                "Name of each material region; region 0 is the matrix.");
   writer.dataset("/boundary", body.boundary,
                  {"1", "Nodes of each boundary facet, counter-clockwise seen from outside."});
-  writer.dataset("/fixed_nodes", body.fixed_nodes, {"1", "Nodes held by a support, ascending."});
+  writer.dataset("/fixed_nodes", body.fixed_nodes,
+                 {"1", "Nodes with zero displacement, ascending."});
   if (!body.curved_edges.empty()) write_curved_edges(writer, body.curved_edges);
   if (!body.foundation.empty()) write_foundation(writer, body.foundation);
   write_response(writer, body.response);
@@ -201,7 +202,8 @@ void write_body(const std::filesystem::path& path, const Body& body) {
 
 Body read_body(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kRemedy);
-  const auto schema = reader.require_artifact(kArtifact, kBodySchema, kCurvedBodySchema);
+  const auto schema =
+      reader.require_artifact(kArtifact, {kBodySchema, kSprungBodySchema, kCurvedBodySchema});
   Body body;
   body.name = reader.text("/", "name");
   body.nodes = reader.dataset<Vec3>("/nodes", "m");

@@ -56,7 +56,7 @@ struct Body {
   std::vector<std::string> region_names;         ///< region 0 is the matrix
   std::vector<Triangle> boundary;                ///< (B) boundary facets, outward orientation
   std::vector<CurvedEdge> curved_edges;          ///< ascending ends; empty: flat facets
-  std::vector<std::int32_t> fixed_nodes;         ///< nodes held by a support, ascending
+  std::vector<std::int32_t> fixed_nodes;         ///< nodes with zero displacement, ascending
   std::vector<SprungFacet> foundation;           ///< ascending facets; empty: none
   ResponseSurface response;
   Provenance provenance;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers and texts as bytes: what journals keep, and what digests are of. Little-endian; a text or
+// Numbers and texts as bytes, for journals and digests. Little-endian; a text or
 // a list follows its length (uint32).
 #pragma once
 

@@ -22,7 +22,7 @@ struct Rule {
   double low = -std::numeric_limits<double>::max();
   double high = std::numeric_limits<double>::max();
   bool unit = false;     ///< a direction of length 1
-  bool unknown = false;  ///< NaN says "unknown"
+  bool unknown = false;  ///< NaN means "unknown"
   const char* text = "finite";
 };
 namespace rules {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records in memory <-> one dataset per member on disk. One table per record says it all: name,
-// member, units, meaning, rule; it is what writes, reads and checks.
+// Records in memory <-> one dataset per member on disk. One table per record (name, member,
+// units, meaning, rule) writes, reads and checks it.
 #pragma once
 
 #include <cstdint>

@@ -85,7 +85,7 @@ constexpr auto kSampleColumns = std::make_tuple(
            "Stored in the springs that enforce the contact; NaN when unknown.", rules::kKnownFinite,
            true),
     column("tension", &CurveSample::tension, "N",
-           "Pulls of stuck points on the body, added up; NaN when unknown.",
+           "Sum of the tensile normal forces of bonded facets; NaN when unknown.",
            rules::kKnownNonNegative, true));
 
 /// The curves as they lie on disk.
@@ -229,7 +229,7 @@ void write_curves(const std::filesystem::path& path, const Curves& curves) {
 
 Curves read_curves(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kRemedy);
-  reader.require_artifact(kArtifact, kCurvesSchema);
+  reader.require_artifact(kArtifact, {kCurvesSchema});
   Curves curves;
   curves.tool.shape = reader.text("/", "tool_shape");
   curves.tool.radius = reader.real("/", "tool_radius");

@@ -14,23 +14,23 @@
 
 namespace palpate {
 
-inline constexpr int kCurvesSchema = 1;
+inline constexpr int kCurvesSchema = 2;
 
 enum class SiteStatus : std::uint8_t {
   Complete = 0,  ///< every path reached its end
-  Partial = 1,   ///< a path stopped early; what was computed is kept, the reason is recorded
-  Failed = 2     ///< nothing usable
+  Partial = 1,   ///< a path stopped early; its samples are valid, the reason is recorded
+  Failed = 2     ///< no usable sample
 };
 
 enum class PathKind : std::uint8_t {
   Normal = 0,  ///< along the inward direction, from touch
-  Lateral = 1  ///< at a held depth, contact stuck, along `direction`
+  Lateral = 1  ///< along `direction`, at a constant depth, without slip
 };
 
 /// One converged state of the tool on a path. The first sample of a normal path is the touch
-/// (displacement 0, force 0); the first of a lateral path is the held state (displacement 0). What
-/// only a solver knows (energies, Jacobian, penetration, area) is NaN in a measured sample, what
-/// only a measurement has (scatter, uncertainty) in a simulated one.
+/// (displacement 0, force 0); the first of a lateral path is the state at the lateral depth before
+/// the travel (displacement 0). Energies, Jacobian, penetration and area are NaN in a measured
+/// sample, scatter and uncertainty in a simulated one.
 struct CurveSample {
   double displacement = 0;   ///< m, of the tool along the path
   Vec3 force{};              ///< N, of the tool ON the body
@@ -47,7 +47,7 @@ struct CurveSample {
   /// J, stored in the springs that enforce the contact; NaN when unknown. With it the balance is
   /// complete: tool_work = strain_energy + contact_energy.
   double contact_energy = std::numeric_limits<double>::quiet_NaN();
-  /// N, pulls of what sticks on the body, added up (a surface without glue would let go there);
+  /// N, sum over bonded facets of tensile normal forces, which an unbonded contact cannot carry;
   /// NaN when unknown.
   double tension = std::numeric_limits<double>::quiet_NaN();
 };

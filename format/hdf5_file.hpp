@@ -124,21 +124,20 @@ inline constexpr std::size_t kAnyRows = static_cast<std::size_t>(-1);
 /// Reads a file and believes nothing: the seal must be unbroken, a dataset must have exactly the
 /// asked type, rank, shape and units, lie in this very file (no external or virtual storage) and be
 /// wholly present: HDF5 itself reads a part that was never written as zeros, with success. Memory
-/// is only taken for data that the file really holds. @throws Error(Configuration):
+/// is only allocated for data that the file contains. @throws Error(Configuration):
 /// "<file>:<object>: <problem>; <remedy>".
 class Reader {
  public:
-  /// `remedy`: what the user should do when the file is no good, e.g. how to make it again.
+  /// `remedy`: how the user gets a valid file, e.g. how to make it again.
   Reader(std::filesystem::path file, std::string remedy);
   ~Reader();
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
-  /// First of all: is it this kind of artifact, of a schema version in this range? @return it.
-  std::int64_t require_artifact(const std::string& artifact, std::int64_t first, std::int64_t last);
-  void require_artifact(const std::string& artifact, std::int64_t schema) {
-    require_artifact(artifact, schema, schema);
-  }
+  /// Call first: refuses a file of another kind, or of a schema that is not among `known`
+  /// (ascending). @return the schema of the file.
+  std::int64_t require_artifact(const std::string& artifact,
+                                std::initializer_list<std::int64_t> known);
 
   bool has(const std::string& path) const;
   bool has_attribute(const std::string& object, const std::string& name) const;
@@ -160,7 +159,7 @@ class Reader {
     require_units(path, units);
     return found;
   }
-  /// Some of the rows that rows_of() told.
+  /// Some of the rows of a dataset, after rows_of().
   template <class T>
   std::vector<T> part(const std::string& path, std::size_t first, std::size_t count) const {
     std::vector<T> values(count);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the reader and the writer share. Only the .cpp files of this folder include it.
+// Common parts of the reader and the writer. Only the .cpp files of this folder include it.
 #pragma once
 
 #include <hdf5.h>

@@ -31,6 +31,16 @@ bool same_number(hid_t stored, hid_t wanted) {
   return H5Tget_class(stored) != H5T_INTEGER || H5Tget_sign(stored) == H5Tget_sign(wanted);
 }
 
+/// "1, 3 and 4"
+std::string listed(std::initializer_list<std::int64_t> values) {
+  std::string text;
+  for (const std::int64_t* value = values.begin(); value != values.end(); ++value) {
+    if (value != values.begin()) text += value + 1 == values.end() ? " and " : ", ";
+    text += std::to_string(*value);
+  }
+  return text;
+}
+
 void require_readable_file(const fs::path& path, const std::string& remedy) {
   const auto fail = [&](const std::string& problem, const std::string& advice) {
     throw Error(ErrorKind::Configuration, path.string(), problem, advice);
@@ -107,8 +117,8 @@ void Reader::State::require_present(const std::string& object, hid_t dataset, do
     fail(object, "is kept in another file (virtual or external storage)");
   }
   const bool filtered = H5Pget_nfilters(properties.get()) > 0;
-  const double held = static_cast<double>(H5Dget_storage_size(dataset));
-  if (held * (filtered ? kLargestCompression : 1.0) < bytes) {
+  const double stored = static_cast<double>(H5Dget_storage_size(dataset));
+  if (stored * (filtered ? kLargestCompression : 1.0) < bytes) {
     fail(object, "claims more data than the file holds");
   }
   if (layout != H5D_CHUNKED) return;
@@ -238,21 +248,19 @@ void Reader::fail(const std::string& object, const std::string& problem) const {
   state_->fail(object, problem);
 }
 
-std::int64_t Reader::require_artifact(const std::string& artifact, std::int64_t first,
-                                      std::int64_t last) {
+std::int64_t Reader::require_artifact(const std::string& artifact,
+                                      std::initializer_list<std::int64_t> known) {
   if (H5Aexists(state_->file.get(), "artifact") <= 0) {
     fail("/", "is not a palpate artifact, " + artifact + " expected");
   }
   const std::string found = text("/", "artifact");
   if (found != artifact) fail("/", "holds " + quoted(found) + ", " + artifact + " expected");
-  const std::int64_t version = integer("/", "schema");
-  if (version >= first && version <= last) return version;
-  const std::string known =
-      std::to_string(first) + (last > first ? " to " + std::to_string(last) : std::string());
+  const std::int64_t schema = integer("/", "schema");
+  if (std::find(known.begin(), known.end(), schema) != known.end()) return schema;
   const std::string problem =
-      "has schema " + std::to_string(version) + ", this palpate reads " + known;
+      "has schema " + std::to_string(schema) + ", this palpate reads " + listed(known);
   const std::string update =
-      version > last ? "update palpate to the version that wrote it, or " : "";
+      schema > *(known.end() - 1) ? "update palpate to the version that wrote it, or " : "";
   throw Error(ErrorKind::Configuration, state_->path.string() + ":/", problem,
               update + state_->remedy);
 }

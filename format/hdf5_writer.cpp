@@ -21,7 +21,7 @@ enum class Storage { Contiguous, Deflated };
 }  // namespace
 
 struct Writer::State {
-  /// A dataset under way.
+  /// A dataset that is being written in parts.
   struct Filling {
     Handle dataset;
     hsize_t rows = 0, filled = 0;
@@ -151,14 +151,14 @@ void Writer::fill(const std::string& path, Scalar scalar, std::uint64_t rows, st
   const std::array<hsize_t, 2> start{filling.filled, 0};
   const std::array<hsize_t, 2> count{rows, std::max<hsize_t>(columns, 1)};
   const int rank = columns > 0 ? 2 : 1;
-  const Handle held =
+  const Handle rows_in_memory =
       state_->checked(H5Screate_simple(rank, count.data(), nullptr), H5Sclose, path);
   const Handle space = state_->checked(H5Dget_space(filling.dataset.get()), H5Sclose, path);
   state_->check(H5Sselect_hyperslab(space.get(), H5S_SELECT_SET, start.data(), nullptr,
                                     count.data(), nullptr),
                 path);
-  state_->check(H5Dwrite(filling.dataset.get(), native_type(scalar), held.get(), space.get(),
-                         H5P_DEFAULT, data),
+  state_->check(H5Dwrite(filling.dataset.get(), native_type(scalar), rows_in_memory.get(),
+                         space.get(), H5P_DEFAULT, data),
                 path);
   filling.filled += rows;
 }

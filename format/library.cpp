@@ -14,13 +14,13 @@ namespace {
 constexpr const char* kArtifact = "palpate.library";
 constexpr const char* kRemedy = "make it again with 'palpate fit'";
 
-constexpr auto kResponseColumns =
-    std::make_tuple(column("status", &NodeResponse::status, "1", "0 fitted, 1 filled, 2 hole.",
-                           rules::up_to(2, "a status (0, 1 or 2)")),
-                    column("normal_error", &NodeResponse::normal_error, "N",
-                           "Largest |fit - sample| of the normal curve.", rules::kNonNegative),
-                    column("lateral_error", &NodeResponse::lateral_error, "N",
-                           "Largest |fit - sample| of the lateral curve.", rules::kNonNegative));
+constexpr auto kResponseColumns = std::make_tuple(
+    column("status", &NodeResponse::status, "1", "0 fitted, 1 interpolated, 2 hole.",
+           rules::up_to(2, "a status (0, 1 or 2)")),
+    column("normal_error", &NodeResponse::normal_error, "N",
+           "Largest |fit - sample| of the normal curve.", rules::kNonNegative),
+    column("lateral_error", &NodeResponse::lateral_error, "N",
+           "Largest |fit - sample| of the lateral curve.", rules::kNonNegative));
 
 constexpr auto kTriangleColumns = std::make_tuple(
     column("stick", &TriangleCertificate::stick, "N/m",
@@ -180,12 +180,12 @@ void check_certificate(const Checks& checks, const Library& library) {
   check("depth", certificate.depth, rules::kNonNegative);
   check("stick", certificate.stick, rules::kBound);
   check("slip", certificate.slip, rules::kBound);
-  check_if_known("hold", certificate.hold);
-  check_if_known("limit", certificate.limit);
+  check_if_known("min_lipschitz_bound", certificate.min_lipschitz_bound);
+  check_if_known("lipschitz_bound", certificate.lipschitz_bound);
   check("worst_triangle", certificate.worst_triangle,
         Rule{-1, triangles - 1, false, false, "-1 or a triangle"});
   check("holes", certificate.holes, rules::up_to(vertices, "a number of vertices"));
-  check("filled", certificate.filled, rules::up_to(vertices, "a number of vertices"));
+  check("interpolated", certificate.interpolated, rules::up_to(vertices, "a number of vertices"));
   if (!certificate.triangles.empty()) {
     checks.same_size("/certificate/triangle/stick", certificate.triangles.size(),
                      library.triangles.size());
@@ -245,13 +245,15 @@ void write_certificate(hdf5::Writer& writer, const Certificate& certificate) {
   writer.set_real(group, "depth", certificate.depth);
   writer.set_real(group, "stick", certificate.stick);
   writer.set_real(group, "slip", certificate.slip);
-  if (!std::isnan(certificate.hold)) writer.set_real(group, "hold", certificate.hold);
-  if (!std::isnan(certificate.limit)) writer.set_real(group, "limit", certificate.limit);
+  if (!std::isnan(certificate.min_lipschitz_bound))
+    writer.set_real(group, "min_lipschitz_bound", certificate.min_lipschitz_bound);
+  if (!std::isnan(certificate.lipschitz_bound))
+    writer.set_real(group, "lipschitz_bound", certificate.lipschitz_bound);
   writer.set_integer(group, "worst_triangle", certificate.worst_triangle);
   writer.set_text(group, "limited_by", certificate.limited_by);
   writer.set_text(group, "basis", certificate.basis);
   writer.set_integer(group, "holes", certificate.holes);
-  writer.set_integer(group, "filled", certificate.filled);
+  writer.set_integer(group, "interpolated", certificate.interpolated);
   writer.group("/certificate/triangle", "Bounds of each triangle, in the order of the surface.");
   write_columns(writer, "/certificate/triangle", certificate.triangles, kTriangleColumns);
   writer.group("/certificate/device", "What each device profile yields on this library.");
@@ -272,27 +274,45 @@ std::int32_t read_int32(const hdf5::Reader& reader, const std::string& object,
   return static_cast<std::int32_t>(value);
 }
 
-Certificate read_certificate(const hdf5::Reader& reader) {
+/// Names of the attributes of the certificate that schema 1 calls otherwise.
+struct CertificateNames {
+  const char* min_lipschitz_bound = "min_lipschitz_bound";
+  const char* lipschitz_bound = "lipschitz_bound";
+  const char* interpolated = "interpolated";
+};
+
+CertificateNames certificate_names(std::int64_t schema) {
+  return schema == kFirstLibrarySchema ? CertificateNames{"hold", "limit", "filled"}
+                                       : CertificateNames{};
+}
+
+/// NaN when the file does not say.
+double real_if_there(const hdf5::Reader& reader, const std::string& object, const char* name) {
+  return reader.has_attribute(object, name) ? reader.real(object, name)
+                                            : std::numeric_limits<double>::quiet_NaN();
+}
+
+Certificate read_certificate(const hdf5::Reader& reader, const CertificateNames& names) {
   const std::string group = "/certificate";
   Certificate certificate;
   certificate.friction = reader.real(group, "friction");
   certificate.depth = reader.real(group, "depth");
   certificate.stick = reader.real(group, "stick");
   certificate.slip = reader.real(group, "slip");
-  if (reader.has_attribute(group, "hold")) certificate.hold = reader.real(group, "hold");
-  if (reader.has_attribute(group, "limit")) certificate.limit = reader.real(group, "limit");
+  certificate.min_lipschitz_bound = real_if_there(reader, group, names.min_lipschitz_bound);
+  certificate.lipschitz_bound = real_if_there(reader, group, names.lipschitz_bound);
   certificate.worst_triangle = read_int32(reader, group, "worst_triangle");
   certificate.limited_by = reader.text(group, "limited_by");
   if (reader.has_attribute(group, "basis")) certificate.basis = reader.text(group, "basis");
   certificate.holes = read_int32(reader, group, "holes");
-  certificate.filled = read_int32(reader, group, "filled");
+  certificate.interpolated = read_int32(reader, group, names.interpolated);
   certificate.triangles =
       read_columns<TriangleCertificate>(reader, "/certificate/triangle", kTriangleColumns);
   certificate.devices =
       read_columns<DeviceCertificate>(reader, "/certificate/device", kDeviceColumns);
-  const std::vector<std::string> names =
+  const std::vector<std::string> devices =
       reader.texts("/certificate/device/name", certificate.devices.size());
-  for (std::size_t i = 0; i < names.size(); ++i) certificate.devices[i].device = names[i];
+  for (std::size_t i = 0; i < devices.size(); ++i) certificate.devices[i].device = devices[i];
   return certificate;
 }
 
@@ -301,15 +321,16 @@ Certificate read_certificate(const hdf5::Reader& reader) {
 double enforced_lipschitz_bound(const Certificate& certificate) {
   const Certificate& c = certificate;
   if (c.triangles.empty()) return std::numeric_limits<double>::infinity();
-  if (!std::isnan(c.limit)) return c.limit;
+  if (!std::isnan(c.lipschitz_bound)) return c.lipschitz_bound;
   const double slides = std::min(std::max(c.stick, c.slip), 4 * c.stick);
-  return std::isfinite(c.hold) ? std::max(slides, c.hold) : slides;
+  return std::isfinite(c.min_lipschitz_bound) ? std::max(slides, c.min_lipschitz_bound) : slides;
 }
 
 double certified_lipschitz_bound(const Certificate& certificate) {
   const double limit = enforced_lipschitz_bound(certificate);
   const bool free = limit >= std::max(certificate.stick, certificate.slip);
-  return free || limit >= certificate.hold ? limit : std::numeric_limits<double>::infinity();
+  return free || limit >= certificate.min_lipschitz_bound ? limit
+                                                          : std::numeric_limits<double>::infinity();
 }
 
 std::string lipschitz_bound_text(double lipschitz_bound) {
@@ -324,11 +345,11 @@ std::string verdict(const Certificate& certificate, const DeviceCertificate& dev
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), "certified passive from %.0f Hz", device.lowest_rate);
   std::string said = text.data();
-  const double held_rate = 2 * certificate.hold / device.damping;
-  if (!(held_rate < 0.995 * device.lowest_rate)) return said;  // also when it is not known
-  std::snprintf(text.data(), text.size(), "; from %.0f Hz when slides are held back to ",
-                std::ceil(held_rate));
-  return said + text.data() + lipschitz_bound_text(certificate.hold) + " (lipschitz_bound)";
+  const double throttled_rate = 2 * certificate.min_lipschitz_bound / device.damping;
+  if (!(throttled_rate < 0.995 * device.lowest_rate)) return said;  // also when it is not known
+  std::snprintf(text.data(), text.size(),
+                "; from %.0f Hz with lipschitz_bound = ", std::ceil(throttled_rate));
+  return said + text.data() + lipschitz_bound_text(certificate.min_lipschitz_bound);
 }
 
 void write_library(const std::filesystem::path& path, const Library& library) {
@@ -350,10 +371,9 @@ void write_library(const std::filesystem::path& path, const Library& library) {
 Library read_library(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kRemedy);
   Library library;
-  if (reader.require_artifact(kArtifact, kLibrarySchema, kCoupledLibrarySchema) ==
-      kCoupledLibrarySchema) {
-    library.kind = ResponseKind::Coupled;
-  }
+  const std::int64_t schema = reader.require_artifact(
+      kArtifact, {kFirstLibrarySchema, kLibrarySchema, kCoupledLibrarySchema});
+  if (schema == kCoupledLibrarySchema) library.kind = ResponseKind::Coupled;
   library.name = reader.text("/", "name");
   library.tool_shape = reader.text("/", "tool_shape");
   library.tool_radius = reader.real("/", "tool_radius");
@@ -364,7 +384,7 @@ Library read_library(const std::filesystem::path& path) {
   read_flat(reader, "/response/normal_", library.responses, normal_of);
   read_flat(reader, "/response/lateral_", library.responses, lateral_of);
   if (library.kind == ResponseKind::Coupled) read_coupling(reader, library.responses);
-  library.certificate = read_certificate(reader);
+  library.certificate = read_certificate(reader, certificate_names(schema));
   library.provenance = read_provenance(reader);
   const Checks checks(reader);
   check_surface(checks, library);

@@ -14,15 +14,17 @@
 
 namespace palpate {
 
-/// Schema of a library of decoupled responses, and of one of coupled responses: a reader of the
-/// first must not take the second for what it knows.
-inline constexpr int kLibrarySchema = 1;
-inline constexpr int kCoupledLibrarySchema = 2;
+/// Schemas of a library of decoupled and of coupled responses. They differ so that a reader that
+/// knows decoupled responses alone refuses coupled ones.
+inline constexpr int kLibrarySchema = 3;
+inline constexpr int kCoupledLibrarySchema = 4;
+/// Decoupled responses; the bounds of the certificate have other names. Read, never written.
+inline constexpr int kFirstLibrarySchema = 1;
 
 /// A response f(d), d >= 0, with f(0) = 0: the force is piecewise quadratic and C1, its slope
 /// piecewise linear and continuous. Between knots k and k+1, with h = d_{k+1} - d_k:
 ///   f'(d) = s_k + (s_{k+1} - s_k)(d - d_k)/h,   f_{k+1} = f_k + h (s_k + s_{k+1})/2.
-/// Beyond the last knot the curve goes on with the last slope. All s_k >= 0 makes it monotone and
+/// Beyond the last knot the curve continues with the last slope. All s_k >= 0 makes it monotone and
 /// non-negative, hence passive; max s_k is its largest slope, exactly; the antiderivative is a
 /// cubic and the inverse a square root on each piece. Stored in single precision: what is stored
 /// is what is certified and rendered.
@@ -32,9 +34,9 @@ struct ResponseCurve {
 };
 
 enum class ResponseStatus : std::uint8_t {
-  Fitted = 0,  ///< from the curves of this node
-  Filled = 1,  ///< from its neighbours, on request
-  Hole = 2     ///< no response: triangles at this vertex are a border for the runtime
+  Fitted = 0,        ///< from the curves of this node
+  Interpolated = 1,  ///< from its neighbours
+  Hole = 2           ///< no response: triangles at this vertex are a border for the runtime
 };
 
 /// How the responses of a node depend on each other.
@@ -72,7 +74,7 @@ struct TriangleCertificate {
 struct DeviceCertificate {
   std::string device;      ///< profile name
   double damping = 0;      ///< sigma_0(B), N s/m
-  double lowest_rate = 0;  ///< Hz, 2 L/sigma_0(B), L the limit; infinite: no rate will do
+  double lowest_rate = 0;  ///< Hz, 2 L/sigma_0(B), L the enforced bound; infinite: no rate
   double linear_limit =
       0;  ///< N/m at 1 kHz, 2 b/(3 T): exact linear limit with one sample of delay
   double no_delay_limit = 0;  ///< N/m at 1 kHz, 2 b/T
@@ -80,40 +82,40 @@ struct DeviceCertificate {
 
 struct Certificate {
   double friction = 0;  ///< mu the bounds were computed for
-  double depth = 0;     ///< m, D: deepest depth the bounds hold for
+  double depth = 0;     ///< m, D: deepest depth for which the bounds are valid
   double stick = 0;     ///< N/m, over all triangles
   double slip = 0;      ///< N/m, over all triangles
-  /// N/m, L_hold: the least limit of the change of force for the travel of the tool that the
-  /// runtime can keep in every step and at every depth, by holding slides back, (R16). Infinite: it
-  /// cannot promise any; NaN: not known.
-  double hold = std::numeric_limits<double>::quiet_NaN();
-  /// N/m, L of Theorem 1: the limit that the runtime keeps unless it is given another one, and that
-  /// the rates are certified for. NaN: not chosen, see enforced_lipschitz_bound.
-  double limit = std::numeric_limits<double>::quiet_NaN();
+  /// N/m, L_min: the smallest Lipschitz bound of the force that the runtime can enforce in every
+  /// step and at every depth, by throttling slides, (R16). Infinite: none is certain; NaN: not
+  /// known.
+  double min_lipschitz_bound = std::numeric_limits<double>::quiet_NaN();
+  /// N/m, L of Theorem 1: the bound that the runtime enforces by default, for which the rates are
+  /// certified. NaN: not chosen, see enforced_lipschitz_bound.
+  double lipschitz_bound = std::numeric_limits<double>::quiet_NaN();
   std::int32_t worst_triangle = -1;
   std::string limited_by;  ///< one line: what sets the bound in the worst triangle
   /// What the responses are made of: "simulated", "measured", "simulated shape, measured scale".
   std::string basis = "simulated";
   std::int32_t holes = 0;
-  std::int32_t filled = 0;
+  std::int32_t interpolated = 0;
   std::vector<TriangleCertificate> triangles;  ///< (M)
   std::vector<DeviceCertificate> devices;
 };
 
-/// N/m: what the runtime keeps the change of force to, for the travel of the tool, unless it is
-/// given another limit: the one that was chosen, or else the bound of slides, at most 4 L_stick,
-/// but at least L_hold. Infinite without a certificate.
+/// N/m: the Lipschitz bound of the force that the runtime enforces by default: that of the
+/// certificate; where it has none, max(L_stick, L_slip), at most 4 L_stick and at least L_min.
+/// Infinite without a certificate.
 double enforced_lipschitz_bound(const Certificate& certificate);
 
-/// N/m: the limit above where it is certain that it is kept, infinite where it is not: slides
-/// without a bound, of which no L_hold is known.
+/// N/m: the bound above where it is certain that the runtime can enforce it; infinite where slides
+/// have no bound and L_min is not known.
 double certified_lipschitz_bound(const Certificate& certificate);
 
-/// N/m in words, to a tenth and upwards: what is said can be given as a Lipschitz bound.
+/// A Lipschitz bound as text in N/m, rounded up to a tenth, so that the text is a valid setting.
 std::string lipschitz_bound_text(double lipschitz_bound);
 
-/// In words, for people: the lowest certified rate, also with slides held back as far as possible;
-/// or that the device is not certified, and why.
+/// For people: the lowest certified rate, also with slides throttled as far as possible; or that
+/// the device is not certified, and why.
 std::string verdict(const Certificate& certificate, const DeviceCertificate& device);
 
 struct Library {

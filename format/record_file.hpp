@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that grows by whole records, for what must outlive a crash. Each record is its length
-// (uint32), its bytes, and their SHA-256 in 64 hexadecimal digits: what a crash cut short is told
-// from what is whole.
+// A file that grows by whole records and survives a crash. Each record is its length
+// (uint32), its bytes, and their SHA-256 in 64 hexadecimal digits: an incomplete
+// record is recognised.
 #pragma once
 
 #include <cstdint>
@@ -13,10 +13,10 @@ namespace palpate {
 
 inline constexpr std::size_t kDigestDigits = 64;
 
-/// `payload` with what goes before and after it.
+/// `payload` as a record, with its length and digest.
 std::string record_of(std::string_view payload);
 
-/// Takes a whole record off the front of `bytes`; false when there is none.
+/// Removes a whole record from the front of `bytes`; false when there is none.
 bool take_record(std::string_view& bytes, std::string_view& payload);
 
 /// Held by one process at a time (flock). Not thread-safe.

@@ -15,14 +15,15 @@ namespace {
 constexpr const char* kArtifact = "palpate.recording";
 constexpr const char* kRemedy = "record it again with 'palpate run'";
 
-// What the device told is kept as it was, NaN included: a faulty reading is worth replaying. What
+// The readings of the device are stored unchanged, NaN included, so that a faulty reading can be
+// replayed. What
 // palpate answered must be finite.
 constexpr auto kStepColumns = std::make_tuple(
     column("time", &RecordedStep::time_ns, "ns", "Since the start of the session, not decreasing.",
            rules::kNonNegative),
-    column("position", &RecordedStep::position, "m", "Tool tip, as the device told it.",
+    column("position", &RecordedStep::position, "m", "Tool tip, as read from the device.",
            rules::kAnything),
-    column("velocity", &RecordedStep::velocity, "m/s", "Of the tool tip, as the device told it.",
+    column("velocity", &RecordedStep::velocity, "m/s", "Of the tool tip, as read from the device.",
            rules::kAnything),
     column("force", &RecordedStep::force, "N", "Commanded to the device.", rules::kFinite),
     column("contact_point", &RecordedStep::contact_point, "m",
@@ -179,7 +180,7 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
 
 struct RecordingReader::State {
   explicit State(const std::filesystem::path& path) : reader(path, kRemedy) {
-    reader.require_artifact(kArtifact, kRecordingSchema);
+    reader.require_artifact(kArtifact, {kRecordingSchema});
     heading.device = reader.text("/", "device");
     heading.library_sha256 = reader.text("/", "library_sha256");
     heading.rate = reader.real("/", "rate");

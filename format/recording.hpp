@@ -13,7 +13,7 @@
 
 namespace palpate {
 
-inline constexpr int kRecordingSchema = 1;
+inline constexpr int kRecordingSchema = 2;
 
 struct RecordedStep {
   std::int64_t time_ns = 0;  ///< since the start of the session
@@ -34,16 +34,16 @@ struct RecordedStep {
 
 /// What the forces of a session depend on besides the library and the motion.
 struct SessionSettings {
-  double tank_cap = 0;                  ///< J
-  double lipschitz_bound = 0;           ///< N/m, may be infinite
-  double search_rate = 0;               ///< Hz; 0 = each step searched the body itself
-  Vec3 body_position{};                 ///< m, of the origin of the body in the frame of the device
-  bool guarded = false;                 ///< the forces passed through the safety of a force loop:
-  double ramp = 0, watchdog = 0;        ///< s
+  double tank_cap = 0;            ///< J
+  double lipschitz_bound = 0;     ///< N/m, may be infinite
+  double search_rate = 0;         ///< Hz; 0 = each step searched the body itself
+  Vec3 body_position{};           ///< m, of the origin of the body in the frame of the device
+  bool guarded = false;           ///< the safety functions of a force loop acted on the forces:
+  double ramp = 0, watchdog = 0;  ///< s
   double max_force = 0, max_speed = 0;  ///< N, may be infinite; m/s
 };
 
-/// What a recording says besides its steps.
+/// A recording without its steps.
 struct RecordingHeading {
   std::string device;
   std::string library_sha256;
@@ -57,8 +57,9 @@ struct Recording : RecordingHeading {
   std::vector<RecordedStep> steps;
 };
 
-/// Writes a recording of any length in the memory of a few thousand steps, crash-safely. The room
-/// that it may need is taken on the disk at the beginning, so that a full disk is met there.
+/// Writes a recording of any length in the memory of a few thousand steps, crash-safely. It
+/// reserves the disk space that it may need at the beginning, so that a full disk is reported
+/// there.
 /// @throws Error as hdf5::Writer, and Internal for a step that the schema does not allow.
 class RecordingWriter {
  public:

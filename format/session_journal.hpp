@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The steps of a session under way, on the disk as they come. Normative page:
+// The journal of a session in progress. Normative page:
 // format/schema/session.md.
 #pragma once
 
@@ -14,8 +14,8 @@
 
 namespace palpate {
 
-/// Keeps what was recorded through a crash. Steps are there by whole records, each with its
-/// SHA-256. Held by one process at a time. Not thread-safe.
+/// The recorded steps survive a crash, in whole records, each with its SHA-256. One process at a
+/// time has the journal open. Not thread-safe.
 class SessionJournal {
  public:
   /// Begins the journal of a session; nothing but a heading cut short may be there. @throws Error

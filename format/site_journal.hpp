@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The finished sites of a campaign under way. Normative page: format/schema/journal.md.
+// The journal of the finished sites of a campaign in progress. Normative page:
+// format/schema/journal.md.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace palpate {
 
-/// What a journal is of: two campaigns with the same key and count compute the same.
+/// Identity of a campaign: campaigns with the same key and count compute the same.
 struct JournalHeading {
   std::string key;                 ///< 64 hexadecimal digits
   std::int64_t planned_sites = 0;  ///< of the campaign
@@ -40,7 +41,7 @@ class SiteJournal {
   /// when another process holds it.
   SiteJournal(const std::filesystem::path& path, const JournalHeading& heading);
 
-  const std::vector<SiteCurves>& found() const { return found_; }  ///< sites kept from before
+  const std::vector<SiteCurves>& found() const { return found_; }  ///< sites of an earlier run
   std::uint64_t dropped_bytes() const { return dropped_bytes_; }
   bool moved_aside() const { return moved_aside_; }
 

@@ -296,9 +296,9 @@ void describe(V& v, FitSection& s) {
   v.integer(
       s.max_knots,
       {"max_knots", "largest number of knots of a response", kOptional, {.low = 2, .high = 1000}});
-  v.flag(
-      s.fill_holes,
-      {"fill_holes", "give failed sites the mean response of their neighbours, marked as filled"});
+  v.flag(s.fill_holes,
+         {"fill_holes",
+          "give failed sites the mean response of their neighbours, marked as interpolated"});
   v.flag(
       s.between_nodes,
       {"between_nodes",

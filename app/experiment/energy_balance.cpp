@@ -26,7 +26,7 @@ Response response_at(double k, double d) {
   return {wall_force(k, d), k, k * (d * d / 2 - kCurved * d / 2 + kCurved * kCurved / 6)};
 }
 
-/// A body held at its contact point, felt along a line at an angle to its normal: two springs, and
+/// A body at a fixed contact point along a line at an angle to its normal: two springs, and
 /// the band.
 class BondedBody {
  public:
@@ -107,7 +107,7 @@ double bonded_margin_by_energy_balance(double rate, double angle) {
 
 namespace {
 
-/// One way of a swing between two turning points of a conservative force: where the tip is when.
+/// Half a swing between two turning points of a conservative force: position over time.
 class Swing {
  public:
   /// force: against the motion, at equal distances from `low` to `turn`, band included. The lower
@@ -199,12 +199,12 @@ double gain_of_played(LineOfTouch& line, const Swing& swing, double rate) {
   const double dt = 1 / rate;
   const auto samples = [&](double periods) { return std::llround(periods * swing.period() / dt); };
   const long long first = samples(kSettling), last = first + samples(kPlayed);
-  double work = 0, held = 0;
+  double work = 0, commanded = 0;
   for (long long n = 0; n < last; ++n) {
     const double now = static_cast<double>(n) * dt;
     const double force = line.force(swing.at(now));
-    if (n >= first) work -= held * (swing.at(now + dt) - swing.at(now));
-    held = force;
+    if (n >= first) work -= commanded * (swing.at(now + dt) - swing.at(now));
+    commanded = force;
   }
   return work / kPlayed - swing.loss();
 }

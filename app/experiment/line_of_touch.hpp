@@ -20,11 +20,11 @@ inline constexpr double kAnchor = 0.0584;  // m
 inline constexpr double kRelease = -0.03;  // m
 inline constexpr double kCurved = 0.005;   // m: the wall is quadratic up to here
 
-/// Of the wall (34) at depth x, N.
+/// Force of the wall (34) at depth x, N.
 double wall_force(double k, double x);
 
-/// The body, felt along a line that is parallel to the x axis: depth in, force against the motion
-/// out. Each call is one sample of the force loop.
+/// The body along a line parallel to the x axis: force against the motion (N) at a depth (m). Each
+/// call is one sample of the force loop.
 class LineOfTouch {
  public:
   LineOfTouch(const SlingshotSetup& setup, double k);

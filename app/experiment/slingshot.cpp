@@ -21,7 +21,7 @@ constexpr double kDrift = 2e-5;     // m/s
 constexpr double kLongest = 400;    // s
 constexpr std::size_t kMeanOf = 5;  // windows
 
-/// Watches the velocity in windows and says when the swing is decided.
+/// Watches the velocity in windows and decides whether the oscillation lasts.
 class Verdict {
  public:
   explicit Verdict(double rate) : window_(std::llround(kWindow * rate)) {}

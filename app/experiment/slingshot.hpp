@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The experiment of Mahvash & Hayward 2005, section VI-B, in simulation: a device is slung into a
-// virtual body by a rubber band, and either comes to rest or keeps swinging.
+// The experiment of Mahvash & Hayward 2005, section VI-B, in simulation: a rubber band pulls a
+// device into a virtual body, where it comes to rest or oscillates.
 #pragma once
 
 #include <vector>
@@ -26,7 +26,7 @@ struct PhasePoint {
 };
 
 struct SlingshotOutcome {
-  bool decayed = false;          ///< came to rest; else swings on
+  bool decayed = false;          ///< came to rest; else it oscillates
   double amplitude = 0;          ///< m/s, half of the peak-to-peak velocity at the end
   double impact = 0;             ///< m/s, velocity at the first touch
   double seconds = 0;            ///< simulated
@@ -34,13 +34,15 @@ struct SlingshotOutcome {
 };
 
 /// One shot at stiffness k (N/m). The device has 0.0845 kg, 0.081 N s/m and 0.01 N of dry friction,
-/// the band 20 N/m anchored 58.4 mm inside: values with which the published margin comes out; the
-/// device of the paper has none published. One sample of delay, zero-order hold, motion exact
-/// between samples, confined to a line. Velocities are judged in windows of 0.5 s: decayed below 2
-/// mm/s, swinging when the mean of five windows drifts by less than 2e-5 m/s, until 400 s.
+/// the band 20 N/m anchored 58.4 mm inside: values that reproduce the published margin;
+/// those of the paper's device are not published. One sample of delay, zero-order hold, motion
+/// exact between samples, confined to a line. Velocities are judged in windows of 0.5 s: decayed
+/// below 2 mm/s, oscillating when the mean of five windows drifts by less than 2e-5 m/s, until 400
+/// s.
 SlingshotOutcome sling(const SlingshotSetup& setup, double k, bool keep_path = false);
 
-/// The stiffness at which the swing begins to last, to `tolerance` (N/m) between low and high.
+/// The stiffness at which the oscillation begins to last, to `tolerance` (N/m) between low and
+/// high.
 /// @throws Error(Internal) when it does not lie between them.
 double passivity_margin(const SlingshotSetup& setup, double low, double high, double tolerance);
 

@@ -202,8 +202,8 @@ Json summary_of(const Certificate& certificate) {
           {"depth", with_unit(certificate.depth, "m")},
           {"L_stick", with_unit(certificate.stick, "N/m")},
           {"L_slip", with_unit(certificate.slip, "N/m")},
-          {"L_hold", with_unit(certificate.hold, "N/m")},
-          {"limit_of_the_runtime", with_unit(enforced_lipschitz_bound(certificate), "N/m")},
+          {"L_min", with_unit(certificate.min_lipschitz_bound, "N/m")},
+          {"lipschitz_bound", with_unit(enforced_lipschitz_bound(certificate), "N/m")},
           {"worst_triangle", certificate.worst_triangle},
           {"limited_by", certificate.limited_by},
           {"basis", certificate.basis},
@@ -212,11 +212,11 @@ Json summary_of(const Certificate& certificate) {
 }
 
 Json summary_of(const Library& library) {
-  std::size_t fitted = 0, filled = 0, holes = 0, knots = 0;
+  std::size_t fitted = 0, interpolated = 0, holes = 0, knots = 0;
   double normal_error = 0, lateral_error = 0;
   for (const NodeResponse& response : library.responses) {
     fitted += response.status == ResponseStatus::Fitted ? 1 : 0;
-    filled += response.status == ResponseStatus::Filled ? 1 : 0;
+    interpolated += response.status == ResponseStatus::Interpolated ? 1 : 0;
     holes += response.status == ResponseStatus::Hole ? 1 : 0;
     knots += response.normal.knot.size() + response.lateral.knot.size();
     normal_error = std::max(normal_error, response.normal_error);
@@ -228,7 +228,7 @@ Json summary_of(const Library& library) {
           {"vertices", library.positions.size()},
           {"triangles", library.triangles.size()},
           {"responses_fitted", fitted},
-          {"responses_filled", filled},
+          {"responses_interpolated", interpolated},
           {"holes", holes},
           {"knots", knots},
           {"largest_normal_error", with_unit(normal_error, "N")},

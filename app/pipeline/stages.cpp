@@ -30,10 +30,11 @@ std::string bound_text(double value, const char* unit) {
 void tell_certificate(const Certificate& certificate) {
   say("  L_stick: {}, L_slip: {} at mu = {}", bound_text(certificate.stick, "N/m"),
       bound_text(certificate.slip, "N/m"), certificate.friction);
-  say("  L_hold: {}; the runtime holds the force to {}",
-      std::isfinite(certificate.hold) ? lipschitz_bound_text(certificate.hold)
-                                      : "not certified: no bound",
-      bound_text(certificate.limit, "N/m"));
+  say("  L_min: {}; the runtime holds the force to {}",
+      std::isfinite(certificate.min_lipschitz_bound)
+          ? lipschitz_bound_text(certificate.min_lipschitz_bound)
+          : "not certified: no bound",
+      bound_text(certificate.lipschitz_bound, "N/m"));
   say("  limited by: {}", certificate.limited_by);
   for (const DeviceCertificate& device : certificate.devices) {
     say("  {}: {}", device.device, verdict(certificate, device));
@@ -129,9 +130,9 @@ void run_fit(const Workspace& space) {
     return std::count_if(library.responses.begin(), library.responses.end(),
                          [=](const NodeResponse& r) { return r.status == status; });
   };
-  say("fit: {} responses fitted, {} filled, {} holes -> {}", with_status(ResponseStatus::Fitted),
-      with_status(ResponseStatus::Filled), with_status(ResponseStatus::Hole),
-      space.library().string());
+  say("fit: {} responses fitted, {} interpolated, {} holes -> {}",
+      with_status(ResponseStatus::Fitted), with_status(ResponseStatus::Interpolated),
+      with_status(ResponseStatus::Hole), space.library().string());
 }
 
 void run_certify(const Workspace& space) {
@@ -164,15 +165,15 @@ void tell_keep(const Library& library, const fitting::DeviceProfile& device, dou
                steepest, bound / steepest);
   say("    slides of the library need {}: {} of {} triangles are over, the worst is triangle {}",
       bound_text(steepest, "N/m"), over, c.triangles.size(), c.worst_triangle);
-  if (c.hold <= bound)
+  if (c.min_lipschitz_bound <= bound)
     return say(
         "    slides can be held back to {}: certified with a lipschitz_bound of {:.1f} N/m, "
         "which --soften writes as the limit of a library and `palpate run` takes by itself",
-        lipschitz_bound_text(c.hold), std::floor(10 * bound) / 10);
-  if (std::isinf(c.hold)) return say("    and cannot be held back to any limit");
+        lipschitz_bound_text(c.min_lipschitz_bound), std::floor(10 * bound) / 10);
+  if (std::isinf(c.min_lipschitz_bound)) return say("    and cannot be held back to any limit");
   say("    held back they need {:.1f} N/m: {:.2f} times its forces would be certified; "
       "--soften caps the stiff slopes alone",
-      c.hold, bound / c.hold);
+      c.min_lipschitz_bound, bound / c.min_lipschitz_bound);
 }
 
 void write_softened(const Workspace& space, const KeepOptions& options, Library library,
@@ -191,7 +192,8 @@ void write_softened(const Workspace& space, const KeepOptions& options, Library 
   step.facts.emplace_back("softened_for_hz", fmt::format("{}", options.rate));
   if (soft.curves > 0)
     step.facts.emplace_back("softened_max_slope", fmt::format("{}", soft.max_slope));
-  step.facts.emplace_back("enforced_lipschitz_bound", fmt::format("{}", library.certificate.limit));
+  step.facts.emplace_back("enforced_lipschitz_bound",
+                          fmt::format("{}", library.certificate.lipschitz_bound));
   library.provenance.steps.push_back(step);
   write_library(options.softened, library);
   if (soft.curves == 0) {

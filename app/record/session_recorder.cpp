@@ -33,10 +33,10 @@ std::string now() {
 
 }  // namespace
 
-void throw_keeping_journal(const Error& error, const fs::path& journal) {
+void throw_with_journal(const Error& error, const fs::path& journal) {
   throw Error(error.kind(), error.where(), error.problem(),
-              error.remedy() + "; the steps are kept: `palpate recover " + journal.string() +
-                  "` makes the recording of them");
+              error.remedy() + "; the steps are in the journal: `palpate recover " +
+                  journal.string() + "` makes the recording of them");
 }
 
 fs::path journal_of(const fs::path& recording) {
@@ -46,19 +46,19 @@ fs::path journal_of(const fs::path& recording) {
 
 Recovered recover(const fs::path& journal, const fs::path& recording) {
   const SessionSummary summary = summarize_session(journal);
-  RecordFile held(journal, "the session is still running", "wait until it ends");
+  RecordFile locked(journal, "the session is still running", "wait until it ends");
   Provenance provenance = summary.heading.provenance;
   provenance.steps.push_back(make_provenance_step(
       "recover", "", {},
       {{"dropped_bytes", std::to_string(summary.broken_bytes)},
-       {"reason", "the session was cut off; this is what its journal holds"}}));
+       {"reason", "the session was interrupted; these are the steps of its journal"}}));
   Recovered result{recording, 0, summary.broken_bytes};
   result.steps = write_recording_of(journal, recording, provenance);
-  held.remove();
+  locked.remove();
   return result;
 }
 
-std::optional<Recovered> recover_what_was_left(const fs::path& recording) {
+std::optional<Recovered> recover_interrupted(const fs::path& recording) {
   const fs::path journal = journal_of(recording);
   std::error_code ignored;
   if (!fs::exists(journal, ignored) || !is_session_journal(journal)) return {};
@@ -96,7 +96,7 @@ void SessionRecorder::finish() {
     if (!provenance_.steps.empty()) provenance_.steps.back().utc = now();
     write_recording_of(journal_.path(), recording_, provenance_);
   } catch (const Error& error) {
-    throw_keeping_journal(error, journal_.path());
+    throw_with_journal(error, journal_.path());
   }
   journal_.remove();
 }

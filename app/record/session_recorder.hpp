@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A session on its way to recording.h5: in a journal while it runs, a recording when it ends.
+// Writes a session to a journal while it runs and to recording.h5 when it ends.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@
 
 namespace palpate::app {
 
-/// Where the steps are kept until the recording is written: recording.h5 -> recording.journal.
+/// The journal of a recording: recording.h5 -> recording.journal.
 std::filesystem::path journal_of(const std::filesystem::path& recording);
 
 struct Recovered {
@@ -24,29 +24,28 @@ struct Recovered {
   std::uint64_t dropped_bytes = 0;  ///< of a record that was being written
 };
 
-/// Makes the recording of a session that was cut off, and removes its journal. Its provenance says
-/// so. @throws Error when the disk refuses (the journal stays), or Configuration when the journal
-/// is none or its session is still running.
+/// Makes the recording of an interrupted session and removes its journal. The provenance of the
+/// recording has a stage `recover`. @throws Error when the disk refuses (the journal stays), or
+/// Configuration when the file is not a journal or its session is still running.
 Recovered recover(const std::filesystem::path& journal, const std::filesystem::path& recording);
 
-/// The same for what an earlier session left where `recording` will be written, under a free name
-/// beside it: recording.recovered-1.h5. None when nothing was left.
-std::optional<Recovered> recover_what_was_left(const std::filesystem::path& recording);
+/// The same for the journal that an earlier session left beside `recording`, under a free name:
+/// recording.recovered-1.h5. Nothing when there is none.
+std::optional<Recovered> recover_interrupted(const std::filesystem::path& recording);
 
-/// The same error with the remedy that the journal is.
-[[noreturn]] void throw_keeping_journal(const Error& error, const std::filesystem::path& journal);
+/// The same error, its remedy extended by `palpate recover`.
+[[noreturn]] void throw_with_journal(const Error& error, const std::filesystem::path& journal);
 
-/// Steps go to the journal several times a second, and to the disk every second, so that a crash of
-/// the process or of the machine loses no more. Memory does not grow with the session. One thread
-/// at a time.
+/// Writes steps to the journal several times a second and synchronizes it every second, which
+/// bounds what a crash can lose. Memory does not grow with the session. One thread at a time.
 class SessionRecorder {
  public:
-  /// Begins the journal; nothing of an earlier session may be there (recover_what_was_left).
+  /// Begins the journal; that of an earlier session must be recovered first (recover_interrupted).
   SessionRecorder(std::filesystem::path recording, const RecordingHeading& heading);
 
   /// @throws Error when the disk refuses; what is in the journal stays there.
   void add(const RecordedStep& step);
-  /// To be called now and then where steps come in real time: writes what waits long enough.
+  /// Call it regularly where steps come in real time: writes steps that have waited long enough.
   void breathe();
   /// Writes recording.h5, its last stage of provenance ending now, and removes the journal. @throws
   /// Error when the disk refuses; the journal stays, and the remedy names it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A recorded session once more, without device and clock.
+// Repeats a recorded session without device and clock.
 #pragma once
 
 #include <cstddef>
@@ -19,31 +19,31 @@ class Replay {
  public:
   /// Both must outlive the replay.
   Replay(const RecordingHeading& recorded, const palpate_library& body);
-  /// The next recorded step as it would be recorded now.
+  /// Repeats the next recorded step.
   RecordedStep step(const RecordedStep& recorded);
 
  private:
   palpate_state state_;
   std::optional<runtime::Safety> safety_;
-  std::optional<std::int64_t> last_;  ///< time of the step before, ns
+  std::optional<std::int64_t> last_;  ///< time of the last step, ns
 };
 
 /// All steps at once.
 Recording replay(const Recording& recorded, const palpate_library& body);
 
-/// Where two recordings of the same motion part.
+/// A value in which two recordings of the same motion differ.
 struct Difference {
   std::size_t step = 0;
   std::string what;  ///< a column of recording.h5
   double recorded = 0, replayed = 0;
 };
 
-/// The first value of a step that has not the same bits, latency apart; `number`: of the step.
+/// The first value of a step whose bits differ, except the latency; `number`: of the step.
 std::optional<Difference> difference(const RecordedStep& recorded, const RecordedStep& replayed,
                                      std::size_t number);
 std::optional<Difference> first_difference(const Recording& recorded, const Recording& replayed);
 
-/// Says what was the first difference and what can be behind it.
+/// @throws Error(Configuration) that names the difference and its possible causes.
 [[noreturn]] void refuse(const Difference& found, const RecordingHeading& recorded,
                          const std::string& file);
 

@@ -11,8 +11,8 @@ constexpr double kClearance = 0.004;   ///< m, above the surface at the start an
 constexpr double kPeakOverMean = 1.5;  ///< of the speed of smooth()
 
 /// From 0 to 1 with rest at both ends.
-double smooth(double share) {
-  const double s = std::clamp(share, 0.0, 1.0);
+double smooth(double fraction) {
+  const double s = std::clamp(fraction, 0.0, 1.0);
   return s * s * (3 - 2 * s);
 }
 

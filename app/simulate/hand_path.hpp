@@ -8,14 +8,15 @@
 
 namespace palpate::app {
 
-/// Where the hand is, and how fast it moves.
+/// Position and velocity of the hand.
 struct HandState {
   Vec3 position{};  ///< m
   Vec3 velocity{};  ///< m/s
 };
 
 /// The scripted path of the hand: from above the surface down to the press depth, along the surface
-/// at that depth, up again. Each part starts and ends at rest; the speed of the script is its peak.
+/// at that depth, and up again. Each part starts and ends at rest; the speed of the script is its
+/// peak.
 class HandPath {
  public:
   HandPath(const SimulateSection& script, std::vector<PathPoint> path);

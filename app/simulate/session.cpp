@@ -47,7 +47,7 @@ StateHandle create(const palpate_library* library, double lipschitz_bound,
   return {state, &palpate_state_destroy};
 }
 
-/// What the state goes by.
+/// The settings of the state.
 SessionSettings settings_of(const palpate_library* library, double lipschitz_bound) {
   const palpate_settings chosen = chosen_settings(lipschitz_bound);
   SessionSettings settings;

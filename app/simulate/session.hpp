@@ -14,9 +14,9 @@ namespace palpate::app {
 /// A script on a library, played through the public C interface with a simulated device and hand.
 class ScriptedSession {
  public:
-  /// `library` is the content of `library_file`; the change of force is held to `Lipschitz bound`,
-  /// N/m, or to the limit of the library where that is 0. @throws Error(Configuration) when the
-  /// library cannot be loaded, the Lipschitz bound cannot be kept or the script does not fit.
+  /// `library` is the content of `library_file`. lipschitz_bound: N/m, 0 = that of the library.
+  /// @throws Error(Configuration) when the library cannot be loaded or does not allow the bound, or
+  /// the script does not fit the library.
   ScriptedSession(const std::filesystem::path& library_file, const Library& library,
                   const SimulateSection& script, double lipschitz_bound = 0);
   ~ScriptedSession();

@@ -195,9 +195,9 @@ PathPoint point_at(const std::vector<PathPoint>& path, double distance) {
   if (after == path.end()) return path.back();
   const PathPoint& a = *(after - 1);
   const PathPoint& b = *after;
-  const double share = (distance - a.distance) / (b.distance - a.distance);
-  return {distance, (1 - share) * a.position + share * b.position,
-          unit((1 - share) * a.inward + share * b.inward)};
+  const double fraction = (distance - a.distance) / (b.distance - a.distance);
+  return {distance, (1 - fraction) * a.position + fraction * b.position,
+          unit((1 - fraction) * a.inward + fraction * b.inward)};
 }
 
 }  // namespace palpate::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A place to press and a straight way along the surface, for a scripted session.
+// The point of the press and the straight path along the surface of a scripted session.
 #pragma once
 
 #include <vector>

@@ -122,7 +122,7 @@ Grid library_grid(const Library& library, double depth) {
   Samples normal = samples_at(library, &NodeResponse::normal, depth);
   Samples lateral = samples_at(library, &NodeResponse::lateral, depth);
   grid.point_data = {{"inward", "1", "u^z, into the body.", library.inward},
-                     {"status", "1", "0 fitted, 1 filled, 2 hole.",
+                     {"status", "1", "0 fitted, 1 interpolated, 2 hole.",
                       column_of(library.responses, &NodeResponse::status)},
                      {"normal_force", "N", "f^z" + at, std::move(normal.force)},
                      {"normal_stiffness", "N/m", "Slope of f^z" + at, std::move(normal.slope)},

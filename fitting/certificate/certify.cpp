@@ -35,7 +35,7 @@ void count_vertices(const Library& library, Certificate& certificate) {
   for (const std::int32_t v : used) {
     const ResponseStatus status = library.responses[static_cast<std::size_t>(v)].status;
     if (status == ResponseStatus::Hole) ++certificate.holes;
-    if (status == ResponseStatus::Filled) ++certificate.filled;
+    if (status == ResponseStatus::Interpolated) ++certificate.interpolated;
   }
 }
 
@@ -135,13 +135,14 @@ void certify(Library& library, const CertifySettings& settings) {
   const std::vector<TriangleBounds> bounds =
       triangle_bounds(library, certificate.depth, settings.friction);
   double largest = 0;
-  certificate.hold = 0;
+  certificate.min_lipschitz_bound = 0;
   for (std::size_t m = 0; m < bounds.size(); ++m) {
     const TriangleCertificate& triangle = bounds[m].certificate;
     certificate.triangles.push_back(triangle);
     certificate.stick = std::max(certificate.stick, triangle.stick);
     certificate.slip = std::max(certificate.slip, triangle.slip);
-    certificate.hold = std::max(certificate.hold, bounds[m].min_lipschitz_bound);
+    certificate.min_lipschitz_bound =
+        std::max(certificate.min_lipschitz_bound, bounds[m].min_lipschitz_bound);
     const double both = std::max(triangle.stick, triangle.slip);
     if (both > largest) {
       largest = both;
@@ -162,8 +163,8 @@ void certify(Library& library, const CertifySettings& settings) {
   }
   certificate.basis = basis_of(library.provenance);
   count_vertices(library, certificate);
-  certificate.limit = settings.enforced_bound;
-  certificate.limit = enforced_lipschitz_bound(certificate);
+  certificate.lipschitz_bound = settings.enforced_bound;
+  certificate.lipschitz_bound = enforced_lipschitz_bound(certificate);
   add_devices(certificate, settings);
   library.certificate = certificate;
 }

@@ -77,7 +77,7 @@ Softening soften(Library& library, const CertifySettings& settings, double bound
   enforcing.enforced_bound = bound;
   const auto is_certified = [&](Library& candidate) {
     certify(candidate, enforcing);
-    return candidate.certificate.hold <= bound;
+    return candidate.certificate.min_lipschitz_bound <= bound;
   };
   if (is_certified(library)) return {};
   const double steepest = largest_slope(library);
@@ -88,7 +88,7 @@ Softening soften(Library& library, const CertifySettings& settings, double bound
                 "no softening certifies it for " + std::to_string(bound) +
                     " N/m: with its slopes limited to a hundredth of the largest, the smallest "
                     "enforceable bound is " +
-                    std::to_string(best.certificate.hold) + " N/m",
+                    std::to_string(best.certificate.min_lipschitz_bound) + " N/m",
                 "raise the rate, or choose a device with more damping");
   }
   for (int i = 0; i < kBisections; ++i) {

@@ -40,8 +40,8 @@ void fill_holes(Library& library, const FitSettings& settings) {
         if (before[n].status != ResponseStatus::Hole) sources.push_back(&before[n]);
       }
       if (sources.empty()) continue;
-      library.responses[v] =
-          mean_of_neighbours(sources, settings, "filled response of vertex " + std::to_string(v));
+      library.responses[v] = mean_of_neighbours(
+          sources, settings, "interpolated response of vertex " + std::to_string(v));
       progress = true;
     }
   }

@@ -39,8 +39,8 @@ std::vector<std::size_t> sites_not_computed(const Body& body,
 /// would have to be extrapolated.
 std::vector<std::size_t> interpolation_donors(const Library& library);
 
-/// Interpolates the responses of the sites that were not computed; status Filled. Their errors are
-/// the largest leave-one-out errors of the nearest computed vertices.
+/// Interpolates the responses of the sites that were not computed; status Interpolated. Their
+/// errors are the largest leave-one-out errors of the nearest computed vertices.
 /// @param computed vertices that were computed, successfully or not, ascending; they are unchanged.
 /// @return number of interpolated responses.
 std::size_t interpolate_rest(const Body& body, const std::vector<std::int32_t>& computed,

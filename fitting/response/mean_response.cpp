@@ -109,7 +109,7 @@ NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
   CurveFitSettings curve{settings.relative_tolerance, settings.absolute_tolerance,
                          settings.max_knots, true};
   NodeResponse response;
-  response.status = ResponseStatus::Filled;
+  response.status = ResponseStatus::Interpolated;
   const auto normal = curves_of(sources, [](const NodeResponse& r) { return r.normal; });
   response.normal = mean_curve(normal, curve, where);
   curve.zero_first_slope = false;

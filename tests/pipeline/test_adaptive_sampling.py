@@ -32,7 +32,7 @@ start_spacing = "16 mm"
 tolerance = {TOLERANCE}
 hold_out = 16
 """
-FITTED, FILLED = 0, 1
+FITTED, INTERPOLATED = 0, 1
 
 
 # A tool and a depth whose contact spans several facets: where it does not, forces depend on where in
@@ -81,7 +81,7 @@ def deepest_forces(library, depth):
         knots, slopes = file["/response/normal_knot"][:], file["/response/normal_slope"][:]
     forces = {}
     for v, of in enumerate(status):
-        if of in (FITTED, FILLED):
+        if of in (FITTED, INTERPOLATED):
             piece = slice(offset[v], offset[v + 1])
             forces[v] = force_at(knots[piece], slopes[piece], depth)
     return status, forces
@@ -132,9 +132,9 @@ class AdaptiveSampling(unittest.TestCase):
         self.assertEqual(palpate("fit", self.every, "--out", part).returncode, DONE)
         status, forces = deepest_forces(self.out / "library.h5", DEPTH)
         _, direct = deepest_forces(part / "library.h5", DEPTH)
-        not_computed = [v for v in forces if status[v] == FILLED]
+        not_computed = [v for v in forces if status[v] == INTERPOLATED]
         self.assertEqual(len(not_computed), self.rounds[-1]["of_sites"] - self.rounds[-1]["sites"])
-        misses = sorted(abs(forces[v] - direct[v]) / direct[v] for v in direct if status[v] == FILLED)
+        misses = sorted(abs(forces[v] - direct[v]) / direct[v] for v in direct if status[v] == INTERPOLATED)
         self.assertGreater(len(misses), 15)
         self.assertLess(misses[int(0.9 * len(misses))], TOLERANCE)
 

@@ -278,7 +278,7 @@ class Pipeline(unittest.TestCase):
     def test_certify_tells_what_may_be_kept_and_softens_to_it(self):
         with h5py.File(self.out / "library.h5") as file:
             certificate = file["certificate"].attrs
-            bound, hold = max(certificate["stick"], certificate["slip"]), certificate["hold"]
+            bound, hold = max(certificate["stick"], certificate["slip"]), certificate["min_lipschitz_bound"]
         self.assertTrue(np.isfinite(bound))
         damping = 0.5
         rate = 2 * 0.7 * hold / damping  # certifies 0.7 of the library, with throttled slides
@@ -288,9 +288,9 @@ class Pipeline(unittest.TestCase):
         self.assertIn("force lost", out)
         with h5py.File(soft) as file:
             certificate = dict(file["certificate"].attrs)
-        self.assertLessEqual(certificate["hold"], 0.7 * hold * (1 + 1e-6))
-        self.assertGreater(certificate["hold"], 0.6 * hold)
-        self.assertAlmostEqual(certificate["limit"], 0.7 * hold, delta=1e-6 * hold)
+        self.assertLessEqual(certificate["min_lipschitz_bound"], 0.7 * hold * (1 + 1e-6))
+        self.assertGreater(certificate["min_lipschitz_bound"], 0.6 * hold)
+        self.assertAlmostEqual(certificate["lipschitz_bound"], 0.7 * hold, delta=1e-6 * hold)
         # The library of the case is as it was, and more than fast enough at twice the lowest rate.
         out = self.run_ok("certify", self.case, "--out", self.out, "--rate", 4 * bound / damping)
         self.assertIn("certified with room for 2.00 times its forces", out)
@@ -305,14 +305,14 @@ class Pipeline(unittest.TestCase):
         self.assertIn("--device", refused.stderr)
 
     def assert_slides_are_held_back(self, hold, bound, damping):
-        """Between L_hold and the bound of slides the limit is lowered, and no response is."""
+        """Between L_min and the bound of slides the limit is lowered, and no response is."""
         self.assertLess(1.001 * hold, bound)
         limit, throttled = 0.5 * (hold + bound), self.root / "throttled.h5"
         out = self.run_ok("certify", self.case, "--out", self.out, "--rate", 2 * limit / damping,
                           "--soften", throttled)
         self.assertIn("slides can be held back", out)
         with h5py.File(throttled) as file, h5py.File(self.out / "library.h5") as original:
-            self.assertAlmostEqual(file["certificate"].attrs["limit"], limit, delta=1e-6 * limit)
+            self.assertAlmostEqual(file["certificate"].attrs["lipschitz_bound"], limit, delta=1e-6 * limit)
             self.assertAlmostEqual(file["certificate/device/lowest_rate"][0], 2 * limit / damping,
                                    delta=1e-6 * limit / damping)
             for name, values in original["response"].items():

@@ -249,7 +249,7 @@ class FileFormat(unittest.TestCase):
         known = Tokens(self.folder / f"{name}.txt")
         with h5py.File(self.folder / f"{name}.h5", "r") as file:
             coupled = known.number() == 1
-            self.assertEqual(file.attrs["schema"], 2 if coupled else 1)
+            self.assertEqual(file.attrs["schema"], 4 if coupled else 3)
             self.assertEqual(file.attrs["name"], known.text())
             self.assertEqual(file.attrs["tool_shape"], known.text())
             self.assertEqual(file.attrs["tool_radius"], known.number())
@@ -274,11 +274,11 @@ class FileFormat(unittest.TestCase):
                     self.assertEqual(response["coupling_base"][i], base)
                 check_curve("coupling", i, coupled)
             certificate = file["certificate"]
-            for name in ("friction", "depth", "stick", "slip", "hold", "limit", "worst_triangle"):
+            for name in ("friction", "depth", "stick", "slip", "min_lipschitz_bound", "lipschitz_bound", "worst_triangle"):
                 self.assertEqual(certificate.attrs[name], known.number())
             self.assertEqual(certificate.attrs["limited_by"], known.text())
             self.assertEqual(certificate.attrs["basis"], known.text())
-            for name in ("holes", "filled"):
+            for name in ("holes", "interpolated"):
                 self.assertEqual(certificate.attrs[name], known.number())
             triangle = {name: data[()] for name, data in certificate["triangle"].items()}
             for i in range(len(triangle["stick"])):

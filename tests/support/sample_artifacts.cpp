@@ -266,7 +266,7 @@ Library library(unsigned seed) {
   }
   library.inward = source.response.inward;
   library.triangles = source.response.triangles;
-  library.responses[3].status = ResponseStatus::Filled;
+  library.responses[3].status = ResponseStatus::Interpolated;
   library.responses[5] = NodeResponse{};
   Certificate& certificate = library.certificate;
   certificate = {0.3, 0.006, 912.5, 1530.25, 953.5, 1400.5, 7, "slope of vertex 12",
@@ -374,8 +374,8 @@ std::string dump(const Library& library) {
     out << static_cast<double>(r.coupling.base) << r.coupling.curve;
   }
   const Certificate& c = library.certificate;
-  out << c.friction << c.depth << c.stick << c.slip << c.hold << c.limit << c.worst_triangle
-      << c.limited_by << c.basis << c.holes << c.filled;
+  out << c.friction << c.depth << c.stick << c.slip << c.min_lipschitz_bound << c.lipschitz_bound
+      << c.worst_triangle << c.limited_by << c.basis << c.holes << c.interpolated;
   for (const TriangleCertificate& t : c.triangles) {
     out << t.stick << t.slip << t.kappa << t.cos_theta << t.sliding_passive;
   }

@@ -41,7 +41,7 @@ TEST(GoldenLibrary, KeepsItsResponses) {
   EXPECT_EQ(first.lateral.slope, (std::vector<float>{80, 60}));
   EXPECT_EQ(first.normal_error, 0.001);
   EXPECT_EQ(first.lateral_error, 0.002);
-  EXPECT_EQ(library.responses[2].status, ResponseStatus::Filled);
+  EXPECT_EQ(library.responses[2].status, ResponseStatus::Interpolated);
   EXPECT_EQ(library.responses[2].normal.slope, (std::vector<float>{0, 200, 240, 240}));
   EXPECT_EQ(library.responses[3].status, ResponseStatus::Fitted);
   EXPECT_EQ(library.responses[4].status, ResponseStatus::Hole);
@@ -55,15 +55,15 @@ TEST(GoldenLibrary, KeepsItsCertificateAndProvenance) {
   EXPECT_EQ(c.depth, 0.006);
   EXPECT_EQ(c.stick, 240);
   EXPECT_TRUE(std::isinf(c.slip));
-  // From before L_hold was known: the runtime keeps 4 L_stick, and nothing is certified for it.
-  EXPECT_TRUE(std::isnan(c.hold));
+  // From before L_min was known: the runtime keeps 4 L_stick, and nothing is certified for it.
+  EXPECT_TRUE(std::isnan(c.min_lipschitz_bound));
   EXPECT_EQ(enforced_lipschitz_bound(c), 960);
   EXPECT_TRUE(std::isinf(certified_lipschitz_bound(c)));
   EXPECT_EQ(c.worst_triangle, 1);
   EXPECT_EQ(c.limited_by, "written by hand: no bound of the slide");
   EXPECT_EQ(c.basis, "simulated shape, measured scale");
   EXPECT_EQ(c.holes, 1);
-  EXPECT_EQ(c.filled, 1);
+  EXPECT_EQ(c.interpolated, 1);
   ASSERT_EQ(c.triangles.size(), 3u);
   EXPECT_EQ(c.triangles[0].stick, 240);
   EXPECT_EQ(c.triangles[0].slip, 300);

@@ -31,12 +31,12 @@ std::vector<Case> common_cases() {
   for (const auto& [name, kind] : kinds) {
     add(name + "OfLaterSchema", kind,
         edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 99, H5T_NATIVE_INT); }), ":/",
-        kind == Kind::Body      ? "has schema 99, this palpate reads 1 to 3; update palpate"
-        : kind == Kind::Library ? "has schema 99, this palpate reads 1 to 2; update palpate"
-                                : "has schema 99, this palpate reads 1; update palpate");
+        kind == Kind::Body      ? "has schema 99, this palpate reads 1, 2 and 3; update palpate"
+        : kind == Kind::Library ? "has schema 99, this palpate reads 1, 3 and 4; update palpate"
+                                : "has schema 99, this palpate reads 2; update palpate");
     add(name + "OfEarlierSchema", kind,
         edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 0, H5T_NATIVE_INT); }), ":/",
-        "has schema 0, this palpate reads 1");
+        "has schema 0, this palpate reads ");
     add(name + "OfOtherKind", kind,
         edit([](Hdf5Editor& e) { e.set_text("/", "artifact", "palpate.other"); }), ":/",
         "holds 'palpate.other', palpate.");

@@ -15,7 +15,7 @@ export function decode(value) {
 
 export const readData = () => decode(JSON.parse(document.getElementById('data').textContent));
 
-export const RESPONSE = ['fitted', 'filled from its neighbours', 'none (hole)'];
+export const RESPONSE = ['fitted', 'interpolated from its neighbours', 'none (hole)'];
 export const SITE = { 0: 'complete', 1: 'partial', 2: 'failed', 255: 'not run' };
 export const HOLE = 2;
 export const TOUCHABLE = 0;

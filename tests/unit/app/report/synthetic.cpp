@@ -293,7 +293,7 @@ Library make_library(const Body& body, const Curves& curves) {
     if (site.status == SiteStatus::Failed && filled) continue;
     response = make_response(library.positions[to_index(site.vertex)]);
     if (site.status == SiteStatus::Failed) {
-      response.status = ResponseStatus::Filled;
+      response.status = ResponseStatus::Interpolated;
       filled = true;
       continue;
     }
@@ -306,7 +306,7 @@ Library make_library(const Body& body, const Curves& curves) {
   for (const SiteCurves& site : curves.sites) {
     const ResponseStatus status = library.responses[to_index(site.vertex)].status;
     library.certificate.holes += status == ResponseStatus::Hole ? 1 : 0;
-    library.certificate.filled += status == ResponseStatus::Filled ? 1 : 0;
+    library.certificate.interpolated += status == ResponseStatus::Interpolated ? 1 : 0;
   }
   make_certificate(library);
   library.provenance = curves.provenance;

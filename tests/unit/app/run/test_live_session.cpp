@@ -56,8 +56,8 @@ TEST(Certified, TheRateIsTwiceTheLipschitzBoundOverTheDamping) {
   EXPECT_NEAR(certified_rate(library, device_with(0.5)), 2 * steepest / 0.5, 1e-9);
   const double needed = certified_rate(library, device_with(0.5));
   EXPECT_EQ(refusal(library, 0.5, needed * 1.001), "");
-  // Between that and L_hold slides are held back.
-  const double held = 2 * library.certificate.hold / 0.5;
+  // Between that and L_min slides are held back.
+  const double held = 2 * library.certificate.min_lipschitz_bound / 0.5;
   EXPECT_NE(refusal(library, 0.5, held * 0.999).find("is not certified"), std::string::npos);
 }
 
@@ -66,18 +66,21 @@ TEST(Certified, SlidesAreHeldBackAsFarAsTheRateAsks) {
       8, 0.08, [](const Vec3& x) { return test::wall_response(170 + 1500 * x[0], 120); });
   fitting::certify(library, {0.3, {}});
   const Certificate& c = library.certificate;
-  ASSERT_LT(1.01 * c.hold, c.limit);
+  ASSERT_LT(1.01 * c.min_lipschitz_bound, c.lipschitz_bound);
   const fitting::DeviceProfile device = device_with(0.5);
-  EXPECT_DOUBLE_EQ(lipschitz_bound_for(library, device, 2 * c.limit / 0.5 + 1), c.limit);
-  const double between = 2 * 0.5 * (c.hold + c.limit) / 0.5;
-  EXPECT_NEAR(lipschitz_bound_for(library, device, between), 0.5 * (c.hold + c.limit), 1e-9);
+  EXPECT_DOUBLE_EQ(lipschitz_bound_for(library, device, 2 * c.lipschitz_bound / 0.5 + 1),
+                   c.lipschitz_bound);
+  const double between = 2 * 0.5 * (c.min_lipschitz_bound + c.lipschitz_bound) / 0.5;
+  EXPECT_NEAR(lipschitz_bound_for(library, device, between),
+              0.5 * (c.min_lipschitz_bound + c.lipschitz_bound), 1e-9);
   EXPECT_EQ(refusal(library, 0.5, between), "");
   // Below what can be held nothing is certified, and nothing is gained by holding back.
-  const double below = 2 * 0.99 * c.hold / 0.5;
-  EXPECT_DOUBLE_EQ(lipschitz_bound_for(library, device, below), c.limit);
+  const double below = 2 * 0.99 * c.min_lipschitz_bound / 0.5;
+  EXPECT_DOUBLE_EQ(lipschitz_bound_for(library, device, below), c.lipschitz_bound);
   EXPECT_NE(refusal(library, 0.5, below).find("is not certified"), std::string::npos);
-  EXPECT_DOUBLE_EQ(lipschitz_bound_for(library, device_with(std::nan("")), 1e5), c.limit);
-  library.certificate.hold = library.certificate.slip = std::numeric_limits<double>::infinity();
+  EXPECT_DOUBLE_EQ(lipschitz_bound_for(library, device_with(std::nan("")), 1e5), c.lipschitz_bound);
+  library.certificate.min_lipschitz_bound = library.certificate.slip =
+      std::numeric_limits<double>::infinity();
   EXPECT_NE(refusal(library, 0.5, 1e7).find("no rate is certified"), std::string::npos);
 }
 

@@ -91,10 +91,10 @@ TEST(Certificate, AHoleIsABorder) {
   Library library = sphere(0.04, 1);
   set_equal_responses(library, node_response(linear_curve(100, 0.001), linear_curve(80)));
   library.responses[7] = NodeResponse{};
-  library.responses[9].status = ResponseStatus::Filled;
+  library.responses[9].status = ResponseStatus::Interpolated;
   certify(library, with_friction(0.3));
   EXPECT_EQ(library.certificate.holes, 1);
-  EXPECT_EQ(library.certificate.filled, 1);
+  EXPECT_EQ(library.certificate.interpolated, 1);
   for (std::size_t m = 0; m < library.triangles.size(); ++m) {
     const Triangle& t = library.triangles[m];
     const bool touches = t[0] == 7 || t[1] == 7 || t[2] == 7;
@@ -110,12 +110,11 @@ TEST(Certificate, DepthBeyondTheRadiusOfCurvatureHasNoBoundAndAReason) {
   settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
   certify(library, settings);
   // The runtime throttles such slides: to 4 L_stick by default, to |M_0| on request.
-  EXPECT_NEAR(library.certificate.hold, 100 * std::hypot(1, 0.3), 1e-9);
-  EXPECT_DOUBLE_EQ(library.certificate.limit, 400);
+  EXPECT_NEAR(library.certificate.min_lipschitz_bound, 100 * std::hypot(1, 0.3), 1e-9);
+  EXPECT_DOUBLE_EQ(library.certificate.lipschitz_bound, 400);
   EXPECT_DOUBLE_EQ(library.certificate.devices.at(0).lowest_rate, 2 * 400 / 0.081);
   EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
-            "certified passive from 9877 Hz; from 2578 Hz when slides are held back to 104.5 N/m "
-            "(lipschitz_bound)");
+            "certified passive from 9877 Hz; from 2578 Hz with lipschitz_bound = 104.5 N/m");
   EXPECT_TRUE(std::isinf(library.certificate.slip));
   const std::string& line = library.certificate.limited_by;
   EXPECT_NE(line.find("no bound of the slide: pressed 10 mm deep"), std::string::npos) << line;
@@ -151,16 +150,16 @@ TEST(Certificate, ACoupledResponseThatIsFlatWhereSlipBeginsHasNoEnforceableBound
     for (NodeResponse& node : library.responses)
       node.coupling = {0.5F, {{0.0F, 0.005F, 0.01F}, {0, 60, 0}}};
     certify(library, settings);
-    EXPECT_EQ(std::isinf(library.certificate.hold), flat);
+    EXPECT_EQ(std::isinf(library.certificate.min_lipschitz_bound), flat);
     if (!flat) {
       // If w grows with depth without limit, so does the lateral stiffness.
       Library growing = library;
       for (NodeResponse& node : growing.responses) node.coupling.curve.slope.back() = 20;
       certify(growing, settings);
-      EXPECT_TRUE(std::isinf(growing.certificate.hold));
+      EXPECT_TRUE(std::isinf(growing.certificate.min_lipschitz_bound));
     }
-    EXPECT_LE(library.certificate.stick, library.certificate.hold);
-    EXPECT_LE(library.certificate.limit, 4 * library.certificate.hold);
+    EXPECT_LE(library.certificate.stick, library.certificate.min_lipschitz_bound);
+    EXPECT_LE(library.certificate.lipschitz_bound, 4 * library.certificate.min_lipschitz_bound);
     EXPECT_EQ(std::isinf(library.certificate.devices.at(0).lowest_rate), flat);
     if (flat) {
       EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),

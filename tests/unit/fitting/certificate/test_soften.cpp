@@ -50,9 +50,9 @@ TEST(Soften, MeetsTheBoundAndChangesOnlySteepSlopes) {
   EXPECT_EQ(same.responses[2].normal.slope, stiff.slope);
 
   const Softening cost = soften(library, settings, 150);
-  EXPECT_LE(library.certificate.hold, 150);
-  EXPECT_GE(library.certificate.hold, 145);  // no more than needed
-  EXPECT_DOUBLE_EQ(library.certificate.limit, 150);
+  EXPECT_LE(library.certificate.min_lipschitz_bound, 150);
+  EXPECT_GE(library.certificate.min_lipschitz_bound, 145);  // no more than needed
+  EXPECT_DOUBLE_EQ(library.certificate.lipschitz_bound, 150);
   EXPECT_EQ(cost.curves, 1u);
   EXPECT_EQ(library.responses[0].normal.slope, soft.slope);
   EXPECT_EQ(library.responses[2].normal.slope[1], 60.0F);
@@ -68,12 +68,12 @@ TEST(Soften, ThrottlesSlidesBeforeItSoftens) {
   const Library before = library;
   EXPECT_EQ(soften(library, with_friction(0.3), 120).curves, 0u);
   EXPECT_TRUE(std::isinf(library.certificate.slip));
-  EXPECT_DOUBLE_EQ(library.certificate.limit, 120);
+  EXPECT_DOUBLE_EQ(library.certificate.lipschitz_bound, 120);
   for (std::size_t v = 0; v < before.responses.size(); ++v)
     EXPECT_EQ(library.responses[v].normal.slope, before.responses[v].normal.slope);
   EXPECT_GT(soften(library, with_friction(0.3), 80).curves, 0u);
-  EXPECT_LE(library.certificate.hold, 80);
-  EXPECT_DOUBLE_EQ(library.certificate.limit, 80);
+  EXPECT_LE(library.certificate.min_lipschitz_bound, 80);
+  EXPECT_DOUBLE_EQ(library.certificate.lipschitz_bound, 80);
 }
 
 TEST(Soften, RefusesABoundBelowAHundredthOfTheSlopes) {

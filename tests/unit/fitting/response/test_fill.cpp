@@ -19,7 +19,7 @@ TEST(Fill, RingsAreFilledFromTheInsideOfTheKnownPart) {
   fill_holes(library, {});
   for (std::size_t v = 1; v < 12; ++v) {
     const NodeResponse& node = library.responses[v];
-    EXPECT_EQ(node.status, ResponseStatus::Filled);
+    EXPECT_EQ(node.status, ResponseStatus::Interpolated);
     for (const double d : {0.003, 0.006, 0.01}) {
       const double expected = runtime::CompiledCurve(known.normal).force(d);
       EXPECT_NEAR(runtime::CompiledCurve(node.normal).force(d), expected,
@@ -34,7 +34,7 @@ TEST(Fill, TheErrorIsTheLargestDifferenceFromANeighbour) {
   library.responses = {NodeResponse{}, node_response(linear_curve(100), linear_curve(60)),
                        node_response(linear_curve(100), linear_curve(80))};
   fill_holes(library, {});
-  EXPECT_EQ(library.responses[0].status, ResponseStatus::Filled);
+  EXPECT_EQ(library.responses[0].status, ResponseStatus::Interpolated);
   EXPECT_NEAR(library.responses[0].lateral_error, 10 * 0.01, 0.01);
 }
 

@@ -218,7 +218,7 @@ TEST(Fit, FillingAHoleTakesTheMeanOfItsNeighbours) {
   settings.fill_holes = true;
   const Library library = fit(body, curves, settings);
   const NodeResponse& node = library.responses[0];
-  EXPECT_EQ(node.status, ResponseStatus::Filled);
+  EXPECT_EQ(node.status, ResponseStatus::Interpolated);
   const runtime::CompiledCurve normal(node.normal);
   EXPECT_NEAR(normal.force(kDepth), normal_law(kDepth), 0.02 * normal_law(kDepth));
   EXPECT_NEAR(runtime::CompiledCurve(node.lateral).force(kTravel), 60 * kTravel, 0.005);

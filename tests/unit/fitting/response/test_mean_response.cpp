@@ -22,7 +22,7 @@ TEST(MeanResponse, OfLinearResponsesHasTheMeanStiffness) {
   FitSettings settings;
   settings.relative_tolerance = settings.absolute_tolerance = 1e-4;
   const NodeResponse mean = mean_response({{&soft, 0.25}, {&stiff, 0.75}}, settings, "test");
-  EXPECT_EQ(mean.status, ResponseStatus::Filled);
+  EXPECT_EQ(mean.status, ResponseStatus::Interpolated);
   for (const double d : {0.002, 0.005, 0.01}) {
     EXPECT_NEAR(force(mean.lateral, d), 70 * d, 0.002 * 70 * d);
     // The normal response starts with slope zero, so only its end is the mean.

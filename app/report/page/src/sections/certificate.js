@@ -8,13 +8,13 @@ const nodes = (n) => `${units.count(n)} ${n === 1 ? 'node' : 'nodes'}`;
 function notCovered(data) {
   const { certificate: c, session, key } = data;
   const list = [
-    `Depths beyond ${units.length(c.depth)}: the curves are extrapolated linearly there, outside of ${c.limit >= c.hold ? 'L_stick and L_slip; the runtime enforces its bound there too' : 'the bounds'}.`,
+    `Depths beyond ${units.length(c.depth)}: the curves are extrapolated linearly there, outside of ${c.lipschitz_bound >= c.min_lipschitz_bound ? 'L_stick and L_slip; the runtime enforces its bound there too' : 'the bounds'}.`,
     'Several simultaneous contacts: their bounds add up.',
     'Effects of the device other than its damping: flexible links, backlash, amplifier limits, quantized positions, filtered velocities, missed samples.',
     'Accuracy: the bounds are those of the rendered force, not of its error against the real body.',
   ];
   if (c.holes > 0) list.push(`${nodes(c.holes)} without a response: their triangles form a border and have no bounds.`);
-  if (c.filled > 0) list.push(`${nodes(c.filled)} filled from neighbours: bounded like the others, but not computed.`);
+  if (c.interpolated > 0) list.push(`${nodes(c.interpolated)} filled from neighbours: bounded like the others, but not computed.`);
   if (key.deepest > c.depth * (1 + 1e-6)) list.push(`Presses between ${units.length(c.depth)} and ${units.length(key.deepest)}, which were computed but lie deeper than the bounds.`);
   if (session && Math.abs(session.friction - c.friction) > 1e-9) list.push(`The friction of the session, \u03bc = ${units.significant(session.friction)}: the bounds were computed for ${units.significant(c.friction)}.`);
   return list;
@@ -36,8 +36,8 @@ export function certificateSection(data) {
     definitions([
       ['L_stick', `${units.bound(c.stick)}; fixed contact point`],
       ['L_slip', `${units.bound(c.slip)}; while sliding, \u03bc = ${units.significant(c.friction)}`],
-      ['L_min', Number.isFinite(c.hold) ? `${units.bound(c.hold)}; smallest enforceable bound, with throttled slides` : 'unknown'],
-      ['Enforced bound', `${units.bound(c.limit)}: in each step the force changes by at most this times the travel of the tool`],
+      ['L_min', Number.isFinite(c.min_lipschitz_bound) ? `${units.bound(c.min_lipschitz_bound)}; smallest enforceable bound, with throttled slides` : 'unknown'],
+      ['Enforced bound', `${units.bound(c.lipschitz_bound)}: in each step the force changes by at most this times the travel of the tool`],
       ['Responses', c.basis],
       ['Valid to', `a depth of ${units.length(c.depth)}`],
       ['Worst triangle', c.worst_triangle < 0 ? 'none' : `${c.worst_triangle}: ${c.limited_by || 'cause not recorded'}`],

@@ -7,8 +7,8 @@
 
 namespace palpate::app {
 
-void tell(const Recovered& recovered);  ///< on the standard output
-/// recover_what_was_left, told.
-void tell_what_was_left(const std::filesystem::path& recording);
+void report(const Recovered& recovered);  ///< on the standard output
+/// recover_interrupted with its report.
+void recover_and_report(const std::filesystem::path& recording);
 
 }  // namespace palpate::app
