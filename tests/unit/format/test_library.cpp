@@ -1,19 +1,135 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a certificate means to the runtime and to people, and libraries of schema 1.
+// What a certificate means to the runtime, libraries of schema 1, and what a reader must refuse.
 #include "format/library.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
+#include <filesystem>
+#include <string>
+#include <vector>
 
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/format/breakage.hpp"
 
-namespace palpate {
+namespace palpate::samples {
 namespace {
 
-using samples::kInfinity;
-using samples::kNaN;
+/// 2^40 numbers in deflated chunks of which none is stored.
+void claim_a_terabyte(const Path& path) {
+  Hdf5Editor editor(path);
+  const hid_t properties = H5Pcreate(H5P_DATASET_CREATE);
+  const hsize_t chunk = 1 << 20;
+  H5Pset_chunk(properties, 1, &chunk);
+  H5Pset_deflate(properties, 9);
+  editor.claim("/response/normal_knot", {hsize_t{1} << 40}, H5T_IEEE_F32LE, properties);
+  H5Pclose(properties);
+}
+
+void link_elsewhere(const Path& path) {
+  const Path other = path.parent_path() / "other.h5";
+  std::filesystem::copy_file(path, other);
+  Hdf5Editor editor(path);
+  editor.remove("/surface/position");
+  H5Lcreate_external(other.c_str(), "/surface/position", editor.file(), "/surface/position",
+                     H5P_DEFAULT, H5P_DEFAULT);
+}
+
+std::vector<Case> surface_and_response_cases() {
+  const auto kind = Kind::Library;
+  const auto coupled = Kind::CoupledLibrary;
+  return {
+      {"LibraryCoupledBaseZero", coupled, poke("/response/coupling_base", 0, 0),
+       "/response/coupling_base[0]", "finite and above 0"},
+      {"LibraryCoupledSlopeNegative", coupled, poke("/response/coupling_slope", 1, -1),
+       "/response/coupling_slope[1]", "finite and not negative"},
+      {"LibraryCoupledWithoutWeights", coupled, remove("/response/coupling_knot"),
+       "/response/coupling_knot", "is missing"},
+      {"LibraryCoupledWithoutBase", coupled, remove("/response/coupling_base"),
+       "/response/coupling_base", "is missing"},
+      // A library of decoupled responses cannot pass for the other kind.
+      {"LibraryOfOtherKindOfResponse", kind,
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 4, H5T_NATIVE_INT); }),
+       "/response/coupling_offset", "is missing"},
+      {"LibraryOfSchemaTwo", kind,
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 2, H5T_NATIVE_INT); }), ":/",
+       "has schema 2, this palpate reads 1, 3 and 4"},
+      {"LibraryPositionNaN", kind, poke("/surface/position", 0, kNaN), "/surface/position[0]",
+       "nan is not finite"},
+      {"LibraryPositionElsewhere", kind, link_elsewhere, "/surface/position",
+       "is kept in another file by a link"},
+      {"LibraryInwardNotUnit", kind, poke("/surface/inward", 1, 2), "/surface/inward[0]",
+       "1 expected"},
+      {"LibraryTriangleOutOfRange", kind, poke("/surface/triangles", 0, 999),
+       "/surface/triangles[0]", "index 999"},
+      {"LibraryOffsetDecreasing", kind, poke("/response/normal_offset", 2, 0),
+       "/response/normal_offset[2]", "is below the row before it"},
+      {"LibraryOffsetNotFromZero", kind, poke("/response/lateral_offset", 0, 1),
+       "/response/lateral_offset[0]", "is not 0"},
+      {"LibraryOffsetBeyondKnots", kind, poke("/response/normal_offset", 56, 1e15),
+       "/response/normal_offset", "ends at 1000000000000000"},
+      {"LibraryOffsetsTooFew", kind, replace("/response/normal_offset", {56}, H5T_STD_I64LE),
+       "/response/normal_offset", "has shape (56), (57) expected"},
+      {"LibraryCurveVanished", kind, poke("/response/normal_offset", 1, 0),
+       "/response/normal_offset[0]", "under 2 knots"},
+      {"LibraryKnotNotFromZero", kind, poke("/response/normal_knot", 0, 1e-5),
+       "/response/normal_knot[0]", "begins not at 0"},
+      {"LibraryKnotRepeated", kind, poke("/response/lateral_knot", 1, 0),
+       "/response/lateral_knot[1]", "is not above the knot before it"},
+      {"LibraryKnotNaN", kind, poke("/response/normal_knot", 1, kNaN), "/response/normal_knot[1]",
+       "nan is not finite"},
+      {"LibrarySlopeNegative", kind, poke("/response/normal_slope", 1, -1e-3),
+       "/response/normal_slope[1]", "is not finite and not negative"},
+      {"LibrarySlopeInfinite", kind, poke("/response/lateral_slope", 0, kInfinity),
+       "/response/lateral_slope[0]", "inf is not finite"},
+      {"LibrarySlopesTooFew", kind, replace("/response/normal_slope", {7}, H5T_IEEE_F32LE),
+       "/response/normal_slope", "has shape (7)"},
+      {"LibraryKnotsInDoublePrecision", kind, replace("/response/normal_knot", {7}, H5T_IEEE_F64LE),
+       "/response/normal_knot", "32-bit float expected"},
+      {"LibraryKnotsAreABomb", kind, claim_a_terabyte, "/response/normal_knot",
+       "claims more data than the file holds"},
+  };
+}
+
+std::vector<Case> status_and_certificate_cases() {
+  const auto kind = Kind::Library;
+  return {
+      {"LibraryStatusUnknown", kind, poke("/response/status", 0, 9), "/response/status[0]",
+       "is not a status"},
+      {"LibraryHoleThatIsNone", kind, poke("/response/status", 5, 0), "/response/normal_offset[5]",
+       "under 2 knots"},
+      {"LibraryErrorNaN", kind, poke("/response/normal_error", 2, kNaN),
+       "/response/normal_error[2]", "nan"},
+      {"LibraryCertificateMissing", kind, remove("/certificate"), "/certificate", "is missing"},
+      {"LibraryStickNaN", kind, real("/certificate", "stick", kNaN), "/certificate@stick",
+       "not negative"},
+      {"LibraryMinLipschitzBoundNegative", kind, real("/certificate", "min_lipschitz_bound", -1.0),
+       "/certificate@min_lipschitz_bound", "not negative"},
+      {"LibraryLipschitzBoundNegative", kind, real("/certificate", "lipschitz_bound", -1.0),
+       "/certificate@lipschitz_bound", "not negative"},
+      {"LibraryFrictionInfinite", kind, real("/certificate", "friction", kInfinity),
+       "/certificate@friction", "is not finite"},
+      {"LibraryWorstTriangleOutOfRange", kind, edit([](Hdf5Editor& e) {
+         e.set_attribute("/certificate", "worst_triangle", 108, H5T_NATIVE_INT);
+       }),
+       "/certificate@worst_triangle", "-1 or a triangle"},
+      {"LibraryWorstTriangleHuge", kind, edit([](Hdf5Editor& e) {
+         e.set_attribute("/certificate", "worst_triangle", 1LL << 40, H5T_NATIVE_LLONG);
+       }),
+       "/certificate@worst_triangle", "is out of range"},
+      {"LibraryBoundMissing", kind, poke("/certificate/triangle/stick", 4, kNaN),
+       "/certificate/triangle/stick[4]", "nan is not"},
+      {"LibraryCosineAboveOne", kind, poke("/certificate/triangle/cos_theta", 4, 1.1),
+       "/certificate/triangle/cos_theta[4]", "between -1 and 1"},
+      {"LibraryDeviceNameMissing", kind, remove("/certificate/device/name"),
+       "/certificate/device/name", "is missing"},
+  };
+}
+
+INSTANTIATE_TEST_SUITE_P(SurfacesAndResponses, Rejection,
+                         testing::ValuesIn(surface_and_response_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(StatusAndCertificates, Rejection,
+                         testing::ValuesIn(status_and_certificate_cases()), name_of);
 
 /// A certificate of one triangle.
 Certificate certificate(double stick, double slip, double min_bound = kNaN, double bound = kNaN) {
@@ -69,12 +185,12 @@ TEST(Verdict, NamesTheRateTheReasonAndWhatThrottledSlidesBring) {
 }
 
 TEST(LibraryOfSchemaOne, HasOtherNamesForTheBoundsOfTheCertificate) {
-  const samples::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto path = folder / "library.h5";
-  samples::copy_sample(samples::Kind::Library, path);
+  copy_sample(Kind::Library, path);
   const Certificate written = read_library(path).certificate;
   {
-    samples::Hdf5Editor editor(path);
+    Hdf5Editor editor(path);
     editor.set_attribute("/", "schema", 1, H5T_NATIVE_INT);
     const auto rename = [&](const char* name, const char* old_name) {
       ASSERT_GE(H5Arename_by_name(editor.file(), "/certificate", name, old_name, H5P_DEFAULT), 0);
@@ -91,4 +207,4 @@ TEST(LibraryOfSchemaOne, HasOtherNamesForTheBoundsOfTheCertificate) {
 }
 
 }  // namespace
-}  // namespace palpate
+}  // namespace palpate::samples

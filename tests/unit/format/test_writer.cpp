@@ -2,53 +2,30 @@
 // Nothing half-written, and nothing invalid, ever bears the final name.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <functional>
 #include <limits>
-#include <sstream>
 #include <thread>
 
 #include "format/crash_safe_file.hpp"
-#include "format/error.hpp"
 #include "format/hdf5_file.hpp"
 #include "format/sha256.hpp"
 #include "tests/support/sample_artifacts.hpp"
 #include "tests/support/small_disk.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/unit/format/refusal.hpp"
 
 namespace palpate {
 namespace {
 
+using samples::expect_refusal;
 using samples::SmallDisk;
 using samples::TemporaryFolder;
-using testing::HasSubstr;
+using samples::text_of;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 using Path = std::filesystem::path;
-
-std::string text_of(const Path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
-void expect_refusal(const std::function<void()>& action, ErrorKind kind, const std::string& where,
-                    const std::string& problem) {
-  try {
-    action();
-    FAIL() << "was accepted";
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    EXPECT_THAT(error.where(), HasSubstr(where));
-    EXPECT_THAT(error.problem(), HasSubstr(problem));
-    EXPECT_FALSE(error.remedy().empty());
-  }
-}
 
 struct Artifact {
   std::string name;
@@ -85,66 +62,6 @@ INSTANTIATE_TEST_SUITE_P(
         Artifact{"Text",
                  [](const Path& p) { write_file_crash_safely(p, std::string(5000, 'x')); }}),
     [](const auto& param) { return param.param.name; });
-
-TEST(CrashSafeFile, BearsTheFinalNameOnlyOnceCommitted) {
-  const TemporaryFolder folder;
-  {
-    CrashSafeFile file(folder / "report.html");
-    file.write("half");
-    EXPECT_THAT(folder.names(),
-                UnorderedElementsAre(".report.html.partial-" + std::to_string(getpid())));
-    file.write(" and half");
-    file.commit();
-  }
-  EXPECT_THAT(folder.names(), UnorderedElementsAre("report.html"));
-  EXPECT_EQ(text_of(folder / "report.html"), "half and half");
-}
-
-TEST(CrashSafeFile, AbandonedLeavesNothing) {
-  const TemporaryFolder folder;
-  { CrashSafeFile(folder / "report.html").write("half"); }
-  EXPECT_THAT(folder.names(), IsEmpty());
-}
-
-// A process killed in the middle leaves its temporary at most, never a half file under the name.
-TEST(CrashSafeFile, KilledProcessLeavesThePreviousFile) {
-  const TemporaryFolder folder;
-  write_file_crash_safely(folder / "curves.csv", "previous content");
-  const pid_t child = fork();
-  ASSERT_GE(child, 0);
-  if (child == 0) {
-    CrashSafeFile file(folder / "curves.csv");
-    file.write("half");
-    raise(SIGKILL);
-  }
-  int status = 0;
-  waitpid(child, &status, 0);
-  ASSERT_TRUE(WIFSIGNALED(status));
-  EXPECT_EQ(text_of(folder / "curves.csv"), "previous content");
-}
-
-TEST(CrashSafeFile, FollowsASymbolicLink) {
-  const TemporaryFolder folder;
-  write_file_crash_safely(folder / "target", "old");
-  std::filesystem::create_symlink("target", folder / "link");
-  write_file_crash_safely(folder / "link", "new");
-  EXPECT_TRUE(std::filesystem::is_symlink(folder / "link"));
-  EXPECT_EQ(text_of(folder / "target"), "new");
-}
-
-TEST(CrashSafeFile, RefusesWhatIsNoFile) {
-  const TemporaryFolder folder;
-  const auto refuse = [](const Path& path, const std::string& problem) {
-    expect_refusal([&] { write_file_crash_safely(path, "x"); }, ErrorKind::Configuration,
-                   path.string(), problem);
-  };
-  refuse(folder.path(), "is not a regular file");
-  refuse("/dev/null", "is not a regular file");
-  refuse(folder / "absent/file", "No such file or directory");
-  refuse(folder / std::string(300, 'n'), "File name too long");
-  refuse(Path(folder.path()) / "", "is not a file name");
-  EXPECT_THAT(folder.names(), IsEmpty());
-}
 
 TEST(Writer, RefusesInvalidContentBeforeTouchingTheDisk) {
   const TemporaryFolder folder;

@@ -55,10 +55,10 @@ double curve_force(const ResponseCurve& curve, double d) {
   return f;
 }
 
-/// Work of the force of a held local model along a straight segment.
-class HeldModelWork {
+/// Work of the force of a fixed local model along a straight segment.
+class FixedModelWork {
  public:
-  HeldModelWork(const Library& library, const ContactObservation& model)
+  FixedModelWork(const Library& library, const ContactObservation& model)
       : library_(library), model_(model) {}
 
   double along(const Vec3& from, const Vec3& to) const {
@@ -155,7 +155,7 @@ class Account {
       : library_(library), contact_(body.surface, body.tree, settings) {}
 
   std::uint32_t step(const Vec3& x) {
-    if (started_) work_ += HeldModelWork(library_, contact_.observation()).along(last_, x);
+    if (started_) work_ += FixedModelWork(library_, contact_.observation()).along(last_, x);
     started_ = true;
     last_ = x;
     const std::uint32_t status = contact_.step(x);
@@ -267,7 +267,7 @@ TEST_P(Passivity, AnAdversaryThatPicksTheMostProfitableStep) {
       const Vec3 y = x + size * Vec3{any(random), any(random), any(random)};
       const double r = std::hypot(y[0], y[1]);
       if (r < 0.03 || r > 0.042 || y[2] < 0.005 || y[2] > 0.195) continue;
-      const double profit = -HeldModelWork(library_, account.seen()).along(x, y);
+      const double profit = -FixedModelWork(library_, account.seen()).along(x, y);
       const double stiffer =
           std::sin(2 * std::numbers::pi * y[2] / 0.04);                 // worth being there loaded
       const double loaded = i % 400 < 200 ? kRadius - r : r - kRadius;  // press, then leave
@@ -295,75 +295,78 @@ INSTANTIATE_TEST_SUITE_P(Friction, Passivity,
                          });
 
 TEST(UncorrectedSliding, CreatesEnergyOnTheSameCycles) {
-  // The rule of the paper alone, on the same ten cycles: without friction to pay for it, the body
-  // gives back millijoules that nobody put in.
+  // The rule of the paper alone, on the same ten cycles: without the dissipation of friction the
+  // body returns millijoules that it has not absorbed.
   const Library library = varying_cylinder();
   const palpate_library body(library);
   double previous = -1;
   for (const double mu : {0.0, 0.05, 0.1}) {
     Account account(library, body, {mu, 5e-3, EnergyBudget::Ignored});
     soft_to_stiff(account, 10);
-    RecordProperty("created_mJ_mu_" + std::to_string(static_cast<int>(100 * mu)),
-                   std::to_string(-1e3 * account.work_));
     EXPECT_LT(account.work_, -1e-3) << "mu = " << mu;
     EXPECT_LE(account.largest_difference_, 1e-12);
-    EXPECT_GT(account.work_, previous);  // friction pays for a part
+    EXPECT_GT(account.work_, previous);  // friction dissipates a part
     previous = account.work_;
   }
 }
 
-TEST(EnergyRule, LeavesAlmostNoTraceInTheForce) {
-  // With the budget kept, the force on random paths hardly differs (RMS) from the uncorrected one,
-  // and never jumps.
+/// A smooth random path inside the cylinder, after an entry of 200 steps.
+class RandomPath {
+ public:
+  explicit RandomPath(unsigned seed) : random_(seed) {}
+  Vec3 next() {
+    const auto any = [&] { return std::uniform_real_distribution<double>(-1, 1)(random_); };
+    rate_angle_ = 0.995 * rate_angle_ + 3e-6 * any();
+    rate_depth_ = 0.995 * rate_depth_ + 1e-7 * any() + 1e-7 * (0.003 - depth_);
+    rate_z_ = 0.995 * rate_z_ + 1e-6 * any() + 1e-6 * (0.1 - z_);
+    angle_ += rate_angle_;
+    depth_ = std::clamp(depth_ + rate_depth_, 0.001, 0.006);
+    z_ = std::clamp(z_ + rate_z_, 0.02, 0.18);
+    return on_cylinder(angle_, kRadius - std::min(1.0, step_++ / 200.0) * depth_, z_);
+  }
+
+ private:
+  std::mt19937 random_;
+  double angle_ = 0, depth_ = 0.003, z_ = 0.1;
+  double rate_angle_ = 0, rate_depth_ = 0, rate_z_ = 0;
+  int step_ = 0;
+};
+
+/// One random path with the rule and without it.
+void expect_little_trace(const Library& library, const palpate_library& body, double mu,
+                         unsigned seed) {
+  SCOPED_TRACE("mu = " + std::to_string(mu) + ", seed " + std::to_string(seed));
+  Account enforced(library, body, {mu, 5e-3});
+  Account ignored(library, body, {mu, 5e-3, EnergyBudget::Ignored});
+  RandomPath path(seed);
+  bool acted = false;
+  double difference = 0, size = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const Vec3 x = path.next();
+    enforced.step(x);
+    ignored.step(x);
+    acted = acted || (enforced.seen().status & PALPATE_ENERGY_LIMITED) != 0;
+    if (!acted) {
+      ASSERT_EQ(enforced.seen().force, ignored.seen().force) << "step " << i;
+    }
+    difference += std::pow(norm(enforced.seen().force - ignored.seen().force), 2);
+    size += std::pow(norm(ignored.seen().force), 2);
+  }
+  EXPECT_GT(size, 0);
+  EXPECT_LT(std::sqrt(difference / size), 0.1);
+  enforced.expect_passive();
+}
+
+TEST(EnergyRule, ChangesNoForceBeforeItActsAndLittleAfterwards) {
   const Library library = varying_cylinder();
   const palpate_library body(library);
-  for (const double mu : {0.0, 0.05, 0.3}) {
-    Account kept(library, body, {mu, 5e-3});
-    Account ignored(library, body, {mu, 5e-3, EnergyBudget::Ignored});
-    std::mt19937 random(17);
-    std::uniform_real_distribution<double> any(-1, 1);
-    double angle = 0;
-    double depth = 0.003;
-    double z = 0.1;
-    double wa = 0;
-    double wd = 0;
-    double wz = 0;
-    double difference = 0;
-    double size = 0;
-    double jump = 0;
-    Vec3 before{};
-    kept.step(on_cylinder(0, kRadius + 1e-4, z));
-    ignored.step(on_cylinder(0, kRadius + 1e-4, z));
-    for (int i = 0; i < 20000; ++i) {
-      wa = 0.995 * wa + 3e-6 * any(random);
-      wd = 0.995 * wd + 1e-7 * any(random) + 1e-6 * (0.003 - depth) * 1e-1;
-      wz = 0.995 * wz + 1e-6 * any(random) + 1e-6 * (0.1 - z);
-      angle += wa;
-      depth = std::clamp(depth + wd, 0.001, 0.006);
-      z = std::clamp(z + wz, 0.02, 0.18);
-      const double entry = std::min(1.0, i / 200.0);
-      const Vec3 x = on_cylinder(angle, kRadius - entry * depth, z);
-      kept.step(x);
-      ignored.step(x);
-      const Vec3 f = kept.seen().force;
-      difference += std::pow(norm(f - ignored.seen().force), 2);
-      size += std::pow(norm(ignored.seen().force), 2);
-      jump = std::max(jump, norm(f - before));
-      before = f;
-    }
-    const std::string tag = "_mu_" + std::to_string(static_cast<int>(100 * mu));
-    RecordProperty("rms_deviation" + tag, std::to_string(std::sqrt(difference / size)));
-    RecordProperty("largest_jump_N" + tag, std::to_string(jump));
-    // Friction pays for the way from soft to stiff; without it the offset has to.
-    EXPECT_LT(std::sqrt(difference / size), mu > 0 ? 1e-6 : 5e-2) << "mu = " << mu;
-    EXPECT_LT(jump, 0.03) << "mu = " << mu;
-    kept.expect_passive();
-  }
+  for (const double mu : {0.0, 0.05, 0.3})
+    for (unsigned seed = 1; seed <= 5; ++seed) expect_little_trace(library, body, mu, seed);
 }
 
 /// The published experiment on the deformable cylinder [Mahvash & Hayward 2005, VI-B]: a device
-/// held to a radial line is slung into it at 2 kHz with one sample of delay. Half peak-to-peak
-/// velocity over the last half second, m/s.
+/// confined to a radial line is pulled into it by a band at 2 kHz with one sample of delay. Half
+/// peak-to-peak velocity over the last half second, m/s.
 double swing_on_cylinder(double k, double seconds) {
   const palpate_library body(
       cylinder(25, 20, kRadius, kLength, [&](const Vec3&) { return wall_response(k, k); }));

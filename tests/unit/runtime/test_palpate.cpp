@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The C interface from a file to a force: load, collide, press, slide, account, and every refusal.
+#include "runtime/palpate.h"
+
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -17,53 +16,10 @@
 #include <thread>
 #include <vector>
 
-#include "runtime/palpate.h"
-#include "tests/support/bodies.hpp"
+#include "tests/unit/runtime/api_fixture.hpp"
 
 namespace palpate::test {
 namespace {
-
-constexpr double kStiffness = 170;
-constexpr double kDt = 5e-4;
-
-class PalpateApi : public ::testing::Test {
- protected:
-  void SetUp() override {
-    folder_ =
-        std::filesystem::temp_directory_path() / ("palpate_api_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-    path_ = (folder_ / "library.h5").string();
-    write_library(path_,
-                  plate(8, 0.08, [](const Vec3&) { return wall_response(kStiffness, 120); }));
-    ASSERT_EQ(palpate_library_load(path_.c_str(), &library_), PALPATE_OK) << palpate_last_error();
-    palpate_settings_default(&settings_);
-    settings_.friction = 0.3;
-    ASSERT_EQ(palpate_state_create(library_, &settings_, &state_), PALPATE_OK);
-  }
-  void TearDown() override {
-    palpate_state_destroy(state_);
-    palpate_library_destroy(library_);
-    std::filesystem::remove_all(folder_);
-  }
-
-  std::uint32_t step(const Vec3& x) {
-    const double velocity[3] = {0, 0, 0};
-    return palpate_step(state_, x.data(), velocity, kDt, force_.data());
-  }
-  palpate_observation observe() const {
-    palpate_observation o{};
-    o.size = sizeof o;
-    EXPECT_EQ(palpate_observe(state_, &o), PALPATE_OK);
-    return o;
-  }
-
-  std::filesystem::path folder_;
-  std::string path_;
-  palpate_library* library_ = nullptr;
-  palpate_state* state_ = nullptr;
-  palpate_settings settings_{};
-  Vec3 force_{};
-};
 
 TEST_F(PalpateApi, DescribesTheLibrary) {
   palpate_library_info info{};
@@ -96,7 +52,7 @@ TEST_F(PalpateApi, PressSlideReleaseOnAPlate) {
   EXPECT_NEAR(observe().absorbed, pressed, 1e-9);
   EXPECT_NEAR(observe().energy, pressed, 1e-9);
 
-  // Slide 20 mm along x: sticks first (presliding), then the lateral force saturates at mu g.
+  // Slide 20 mm along x: presliding first, then the lateral force saturates at mu g.
   std::uint32_t seen = 0;
   for (int i = 1; i <= 400; ++i) seen = step({0.030 + 5e-5 * i, 0.033, -0.006});
   EXPECT_TRUE(seen & PALPATE_SLIDING);
@@ -104,7 +60,7 @@ TEST_F(PalpateApi, PressSlideReleaseOnAPlate) {
   EXPECT_NEAR(force_[2], g, 1e-6);
   EXPECT_NEAR(observe().contact_point[0], 0.050 - 0.3 * g / 120, 1e-7);
 
-  // Release: the energy that friction took stays absorbed.
+  // Release: the energy that friction dissipated stays absorbed.
   for (int i = 1; i <= 70; ++i) seen = step({0.050, 0.033, -0.006 + 1e-4 * i});
   EXPECT_EQ(seen, 0U);
   EXPECT_EQ(norm(force_), 0.0);
@@ -131,7 +87,7 @@ TEST_F(PalpateApi, BadInputGivesAFiniteZeroForceAndDropsTheContact) {
     const std::uint32_t status = step(bad);
     EXPECT_EQ(status, PALPATE_BAD_INPUT | PALPATE_DROPPED);
     EXPECT_EQ(norm(force_), 0.0);
-    // The energy that was given up must not come back: no force until the surface is crossed anew.
+    // The discarded energy must not come back: no force until the surface is crossed anew.
     step(inside);
     step(inside);
     EXPECT_EQ(norm(force_), 0.0);
@@ -151,7 +107,7 @@ TEST_F(PalpateApi, RefusesATimeStepThatIsNotPositive) {
   EXPECT_EQ(palpate_step(state_, x, v, kDt, nullptr), PALPATE_BAD_INPUT);
 }
 
-TEST_F(PalpateApi, SaysWhatIsWrongWithAFile) {
+TEST_F(PalpateApi, RefusesAFileWithTheReason) {
   palpate_library* none = nullptr;
   EXPECT_EQ(palpate_library_load((folder_ / "absent.h5").c_str(), &none), PALPATE_ERROR_FILE);
   EXPECT_NE(std::strstr(palpate_last_error(), "absent.h5"), nullptr);
@@ -211,7 +167,7 @@ TEST_F(PalpateApi, LoadsFromMemory) {
   EXPECT_EQ(copy, nullptr);
 }
 
-TEST_F(PalpateApi, ABodyThatLiesElsewhereFeelsTheSameThere) {
+TEST_F(PalpateApi, AMovedBodyGivesTheMovedForces) {
   // The plate turned by 120 degrees about (1, 1, 1) and shifted: x -> y -> z -> x.
   const double rotation[9] = {0, 0, 1, 1, 0, 0, 0, 1, 0};
   const double shift[3] = {0.5, -0.2, 0.1};
@@ -254,7 +210,7 @@ TEST_F(PalpateApi, RefusesAPoseThatIsNotRigid) {
   EXPECT_EQ(palpate_state_set_pose(state_, origin, good), PALPATE_OK);
 }
 
-TEST_F(PalpateApi, AProgramWithANewerHeaderGetsWhatThisLibraryKnows) {
+TEST_F(PalpateApi, AProgramWithANewerHeaderGetsTheFieldsOfThisLibrary) {
   struct Newer {
     palpate_observation known;
     double added;
@@ -263,13 +219,13 @@ TEST_F(PalpateApi, AProgramWithANewerHeaderGetsWhatThisLibraryKnows) {
   newer.known.size = sizeof newer;
   step({0.03, 0.033, 0.001});
   EXPECT_EQ(palpate_observe(state_, &newer.known), PALPATE_OK);
-  EXPECT_EQ(newer.added, 42);  // left alone
+  EXPECT_EQ(newer.added, 42);  // unchanged
   EXPECT_EQ(newer.known.element, -1);
   newer.known.size = 8;
   EXPECT_EQ(palpate_observe(state_, &newer.known), PALPATE_ERROR_ARGUMENT);
 }
 
-TEST_F(PalpateApi, AProgramWithTheFirstHeaderGetsWhatItKnows) {
+TEST_F(PalpateApi, AProgramWithAnOlderHeaderGetsItsOwnFields) {
   palpate_observation seen{};
   seen.size = offsetof(palpate_observation, lateral_offset);
   seen.lateral_offset[0] = 42;
@@ -279,7 +235,7 @@ TEST_F(PalpateApi, AProgramWithTheFirstHeaderGetsWhatItKnows) {
   EXPECT_EQ(seen.size, offsetof(palpate_observation, lateral_offset));
 }
 
-TEST_F(PalpateApi, HoldsAStateToNoLessThanWhatTheCertificateHolds) {
+TEST_F(PalpateApi, RefusesALipschitzBoundThatTheLibraryCannotEnforce) {
   Library library = read_library(path_);
   Certificate& c = library.certificate;
   c.triangles.assign(library.triangles.size(), {200, 900, 0, 1, 1});
@@ -289,33 +245,33 @@ TEST_F(PalpateApi, HoldsAStateToNoLessThanWhatTheCertificateHolds) {
   c.friction = 0.3;
   const std::string certified = (folder_ / "certified.h5").string();
   write_library(certified, library);
-  palpate_library* held = nullptr;
-  ASSERT_EQ(palpate_library_load(certified.c_str(), &held), PALPATE_OK) << palpate_last_error();
+  palpate_library* limited = nullptr;
+  ASSERT_EQ(palpate_library_load(certified.c_str(), &limited), PALPATE_OK) << palpate_last_error();
 
   palpate_library_info info{};
   info.size =
-      offsetof(palpate_library_info, min_lipschitz_bound);  // a program with the first header
+      offsetof(palpate_library_info, min_lipschitz_bound);  // a program with an older header
   info.min_lipschitz_bound = 42;
-  ASSERT_EQ(palpate_library_describe(held, &info), PALPATE_OK);
+  ASSERT_EQ(palpate_library_describe(limited, &info), PALPATE_OK);
   EXPECT_EQ(info.min_lipschitz_bound, 42);
   info.size = sizeof info;
-  ASSERT_EQ(palpate_library_describe(held, &info), PALPATE_OK);
+  ASSERT_EQ(palpate_library_describe(limited, &info), PALPATE_OK);
   EXPECT_EQ(info.min_lipschitz_bound, 250.25);
   EXPECT_EQ(info.lipschitz_bound, 800);  // 4 L_stick, where slides would need 900
 
   palpate_state* state = nullptr;
   palpate_settings settings = settings_;
   settings.lipschitz_bound = 250.2;
-  EXPECT_EQ(palpate_state_create(held, &settings, &state), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_state_create(limited, &settings, &state), PALPATE_ERROR_ARGUMENT);
   EXPECT_NE(std::strstr(palpate_last_error(), "250.3 N/m"), nullptr) << palpate_last_error();
   settings.lipschitz_bound = 250.3;
-  EXPECT_EQ(palpate_state_create(held, &settings, &state), PALPATE_OK) << palpate_last_error();
+  EXPECT_EQ(palpate_state_create(limited, &settings, &state), PALPATE_OK) << palpate_last_error();
   palpate_state_destroy(state);
-  palpate_library_destroy(held);
+  palpate_library_destroy(limited);
 }
 
-TEST_F(PalpateApi, TellsHowFarTheToolHasSlippedOverABorder) {
-  // What an observation says of itself: x = c + (z + d0) n + s + q, |q| = rho.
+TEST_F(PalpateApi, ObservesTheLateralOffsetAtABorder) {
+  // The observation is consistent: x = c + (z + d0) n + s + q, |q| = rho.
   step({0.07, 0.05, 0.0001});
   for (int i = 1; i <= 30; ++i) step({0.07, 0.05, -1e-4 * i});
   for (int i = 1; i <= 250; ++i) step({0.07 + 1e-4 * i, 0.05, -0.003});
@@ -329,150 +285,8 @@ TEST_F(PalpateApi, TellsHowFarTheToolHasSlippedOverABorder) {
   EXPECT_NEAR(dot(vec(seen.lateral_offset), vec(seen.normal)), 0, 1e-15);
 }
 
-/// A device of the embedding program: presses slowly, counts, and may vanish.
-struct OwnDevice {
-  static int read(void* self, double position[3], double velocity[3]) {
-    auto& d = *static_cast<OwnDevice*>(self);
-    position[0] = 0.03, position[1] = 0.033, position[2] = 0.0005 - 2e-5 * d.reads;
-    velocity[0] = velocity[1] = 0, velocity[2] = -0.02;
-    return ++d.reads > d.lasts ? -1 : 0;
-  }
-  static int command(void* self, const double force[3]) {
-    auto& d = *static_cast<OwnDevice*>(self);
-    d.largest = std::max(d.largest, std::abs(force[2]));
-    d.last = std::abs(force[2]);
-    return 0;
-  }
-  palpate_device functions() { return {sizeof(palpate_device), this, read, command, nullptr}; }
-  int reads = 0, lasts = 150;
-  double largest = 0, last = 1;
-};
-
-TEST_F(PalpateApi, RunsALoopOfItsOwnUntilTheDeviceIsLost) {
-  OwnDevice own;
-  const palpate_device device = own.functions();
-  palpate_loop_settings settings;
-  palpate_loop_settings_default(&settings);
-  settings.priority = 0;
-  settings.rate = 2000;
-  settings.ramp = 0;
-  settings.watchdog = 10;
-  palpate_loop* loop = nullptr;
-  ASSERT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_OK)
-      << palpate_last_error();
-  for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
-  palpate_loop_report report{};
-  report.size = sizeof report;
-  EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
-  EXPECT_EQ(report.lost, 1U);
-  EXPECT_EQ(report.halted, 0U);
-  EXPECT_EQ(report.steps, 151U);
-  EXPECT_GT(report.compute_median, 0);
-  EXPECT_GE(report.compute_longest, report.compute_median);
-  // 100 k z^2 at the last position before it was lost, less the offset of one step.
-  EXPECT_NEAR(own.largest, 100 * kStiffness * std::pow(0.0005 - 2e-5 * 149 + 2e-5, 2), 2e-3);
-  EXPECT_EQ(own.last, 0);
-}
-
-/// A loop over the own device until that is lost, with so much room for its steps.
-struct RecordedLoop {
-  RecordedLoop(palpate_state* state, std::uint32_t room) {
-    OwnDevice own;
-    const palpate_device device = own.functions();
-    palpate_loop_settings settings;
-    palpate_loop_settings_default(&settings);
-    EXPECT_EQ(settings.record, 0U);
-    settings.priority = 0;
-    settings.rate = 2000;
-    settings.ramp = 0;
-    settings.watchdog = 10;
-    settings.record = room;
-    palpate_loop* loop = nullptr;
-    EXPECT_EQ(palpate_loop_start(state, &device, &settings, &loop), PALPATE_OK);
-    for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
-    palpate_loop_end(loop);
-    palpate_loop_step step{};
-    EXPECT_EQ(palpate_loop_take(loop, &step), 0);  // its size is not set
-    step.size = sizeof step;
-    while (palpate_loop_take(loop, &step) == 1) steps.push_back(step);
-    report.size = sizeof report;
-    EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
-  }
-  std::vector<palpate_loop_step> steps;
-  palpate_loop_report report{};
-};
-
-TEST_F(PalpateApi, ALoopHandsOutEveryStep) {
-  const RecordedLoop loop(state_, 1000);
-  ASSERT_EQ(loop.steps.size(), 151U);
-  EXPECT_EQ(loop.report.unrecorded, 0U);
-  // The same motion by palpate_step: the same forces and the same account, to the bit.
-  palpate_state_reset(state_);
-  double largest = 0;
-  for (std::size_t i = 0; i + 1 < loop.steps.size(); ++i) {
-    const palpate_loop_step& recorded = loop.steps[i];
-    EXPECT_EQ(recorded.position[2], 0.0005 - 2e-5 * static_cast<double>(i));
-    EXPECT_EQ(recorded.velocity[2], -0.02);
-    const std::uint32_t status =
-        step({recorded.position[0], recorded.position[1], recorded.position[2]});
-    const palpate_observation seen = observe();
-    EXPECT_EQ(recorded.status, status);
-    EXPECT_EQ(recorded.element, seen.element);
-    EXPECT_EQ(recorded.depth, seen.depth);
-    EXPECT_EQ(recorded.energy, seen.energy);
-    EXPECT_EQ(recorded.absorbed, seen.absorbed);
-    for (std::size_t k = 0; k < 3; ++k) {
-      EXPECT_EQ(recorded.force[k], force_[k]);
-      EXPECT_EQ(recorded.contact_point[k], seen.contact_point[k]);
-    }
-    if (i > 0) {
-      EXPECT_GT(recorded.time_ns, loop.steps[i - 1].time_ns);
-    }
-    largest = std::max(largest, recorded.force[2]);
-  }
-  EXPECT_GT(largest, 0.1);
-  const palpate_loop_step& last = loop.steps.back();
-  EXPECT_NE(last.status & PALPATE_LOOP_DEVICE_LOST, 0U);
-  EXPECT_EQ(last.force[2], 0);
-}
-
-TEST_F(PalpateApi, ALoopWithoutRoomLeavesStepsOutAndSaysSo) {
-  const RecordedLoop full(state_, 100);
-  ASSERT_EQ(full.steps.size(), 100U);
-  EXPECT_EQ(full.report.unrecorded, 51U);
-  EXPECT_EQ(full.steps.back().position[2], 0.0005 - 2e-5 * 99);
-  const RecordedLoop none(state_, 0);
-  EXPECT_TRUE(none.steps.empty());
-  EXPECT_EQ(none.report.unrecorded, 0U);
-  EXPECT_EQ(palpate_loop_take(nullptr, nullptr), 0);
-  palpate_loop_end(nullptr);
-}
-
-TEST_F(PalpateApi, RefusesALoopThatCannotRun) {
-  OwnDevice own;
-  palpate_device device = own.functions();
-  palpate_loop* loop = nullptr;
-  palpate_loop_settings settings;
-  palpate_loop_settings_default(&settings);
-  settings.rate = 0;
-  EXPECT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_ERROR_ARGUMENT);
-  EXPECT_NE(std::strstr(palpate_last_error(), "rate"), nullptr);
-  settings.size = 3;
-  EXPECT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_ERROR_ARGUMENT);
-  device.read = nullptr;
-  EXPECT_EQ(palpate_loop_start(state_, &device, nullptr, &loop), PALPATE_ERROR_ARGUMENT);
-  EXPECT_EQ(palpate_loop_start(nullptr, &device, nullptr, &loop), PALPATE_ERROR_ARGUMENT);
-  EXPECT_EQ(loop, nullptr);
-  EXPECT_EQ(palpate_loop_running(nullptr), 0);
-  EXPECT_EQ(palpate_loop_stop(nullptr, nullptr), PALPATE_ERROR_ARGUMENT);
-}
-
 TEST_F(PalpateApi, ThreadsMayShareALibrary) {
-  // Four tools on one library at once feel what one tool alone feels, bit for bit.
+  // Four tools on one library at once get the forces of one tool alone, bit for bit.
   const auto press_and_slide = [&](Vec3& sum) {
     palpate_state* own = nullptr;
     ASSERT_EQ(palpate_state_create(library_, &settings_, &own), PALPATE_OK);

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The thread of the force loop. Wake-up times depend on the machine and are not asserted; the
+// treatment of late steps is.
+#include "runtime/loop_thread.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "format/error.hpp"
+#include "tests/unit/runtime/loop_rig.hpp"
+
+namespace palpate::test {
+namespace {
+
+using runtime::DeviceStatus;
+using runtime::ForceLoop;
+using runtime::LoopThread;
+using runtime::LoopThreadSettings;
+
+LoopThreadSettings ordinary(double rate, double watchdog) {
+  LoopThreadSettings settings;
+  settings.rate = rate;
+  settings.watchdog = watchdog;
+  settings.realtime.priority = 0;
+  return settings;
+}
+
+void wait_until_over(const LoopThread& thread) {
+  for (int i = 0; i < 5000 && thread.running(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+TEST(LoopThread, StepsAndStopsWithoutForce) {
+  LoopRig rig;
+  {
+    LoopThread thread(rig.loop, rig.device, ordinary(2000, 10));
+    while (rig.loop.heartbeat() == 0) std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    EXPECT_TRUE(thread.running());
+    thread.stop();
+    EXPECT_FALSE(thread.running());
+    EXPECT_FALSE(thread.halted());
+  }
+  EXPECT_GT(rig.loop.counts().steps, 1U);
+  EXPECT_EQ(rig.device.commanded.back(), Vec3{});
+  EXPECT_EQ(rig.loop.counts().wake.count(), rig.loop.counts().steps);
+}
+
+TEST(LoopThread, MissedStepsAreLeftOutNotMadeUpFor) {
+  // Every read takes three periods: at most one step in three, and each an overrun.
+  LoopRig rig;
+  std::atomic<int> reads{0};
+  rig.device.before_read = [&](int) {
+    ++reads;
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
+  };
+  const std::int64_t start = runtime::monotonic_ns();
+  {
+    LoopThread thread(rig.loop, rig.device, ordinary(1000, 10));
+    while (reads < 10) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    thread.stop();
+  }
+  const double periods = 1e-6 * static_cast<double>(runtime::monotonic_ns() - start);
+  const auto& counts = rig.loop.counts();
+  EXPECT_GT(counts.steps, 2U);
+  EXPECT_LE(static_cast<double>(counts.steps), periods / 3 + 1);
+  EXPECT_GE(counts.overruns + 1, counts.steps);
+}
+
+TEST(LoopThread, TheWatchdogHaltsADeviceWhoseLoopHangs) {
+  LoopRig rig;
+  std::atomic<bool> hang{true};
+  rig.device.before_read = [&](int step) {
+    while (step == 5 && hang) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  LoopThread thread(rig.loop, rig.device, ordinary(1000, 0.1));
+  for (int i = 0; i < 5000 && !rig.device.halted; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_TRUE(rig.device.halted);  // while the loop still hangs
+  hang = false;
+  thread.stop();
+  EXPECT_TRUE(thread.halted());
+}
+
+/// A driver whose thread takes its time before the first call.
+class LateStarter : public ScriptedDevice {
+ public:
+  ~LateStarter() override { stop_calls(); }
+  bool has_own_thread() const noexcept override { return true; }
+  void start_calls(std::function<bool()> step) override {
+    thread_ = std::thread([this, step] {
+      std::this_thread::sleep_for(std::chrono::milliseconds(250));
+      for (int i = 0; i < 20 && step(); ++i) ++called_;
+    });
+  }
+  void stop_calls() noexcept override {
+    if (thread_.joinable()) thread_.join();
+  }
+  std::atomic<int> called_{0};
+
+ private:
+  std::thread thread_;
+};
+
+TEST(LoopThread, TheWatchdogWaitsForTheFirstStep) {
+  LateStarter device;
+  device.place = pressing;
+  palpate_state state(plate_body(), {0.3, 5e-3});
+  ForceLoop loop(device, state, kPatient, nullptr);
+  LoopThread thread(loop, device, ordinary(1000, 0.1));
+  for (int i = 0; i < 2000 && device.called_ == 0; ++i) {
+    EXPECT_FALSE(thread.halted());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_GT(device.called_, 0);
+  thread.stop();
+}
+
+TEST(LoopThread, EndsByItselfWhenTheDeviceIsLost) {
+  LoopRig rig;
+  rig.device.status_of_read = [](int step) {
+    return step < 10 ? DeviceStatus::Good : DeviceStatus::Lost;
+  };
+  LoopThread thread(rig.loop, rig.device, ordinary(2000, 10));
+  wait_until_over(thread);
+  EXPECT_FALSE(thread.running());
+  EXPECT_EQ(drain(rig.queue).size(), 11U);
+}
+
+TEST(LoopThread, MissingRightsAreSaidInOneLineAndTheLoopRunsAllTheSame) {
+  LoopRig rig;
+  LoopThreadSettings settings = ordinary(1000, 10);
+  settings.realtime.priority = 1000;  // what no system grants
+  settings.realtime.core = 1000;
+  LoopThread thread(rig.loop, rig.device, settings);
+  while (rig.loop.heartbeat() == 0) std::this_thread::yield();
+  const std::string missing = thread.missing_rights();
+  thread.stop();
+  EXPECT_NE(missing.find("SCHED_FIFO"), std::string::npos) << missing;
+  EXPECT_NE(missing.find("not pinned"), std::string::npos) << missing;
+  EXPECT_EQ(missing.find('\n'), std::string::npos);
+  EXPECT_GT(rig.loop.counts().steps, 0U);
+}
+
+TEST(LoopThread, RefusesSettingsOutOfRange) {
+  LoopRig rig;
+  EXPECT_THROW(LoopThread(rig.loop, rig.device, ordinary(0, 1)), Error);
+  EXPECT_THROW(LoopThread(rig.loop, rig.device, ordinary(1e9, 1)), Error);
+  EXPECT_THROW(LoopThread(rig.loop, rig.device, ordinary(1000, 0)), Error);
+}
+
+}  // namespace
+}  // namespace palpate::test

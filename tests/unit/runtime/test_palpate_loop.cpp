@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The force loop of the C interface.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <thread>
+#include <vector>
+
+#include "runtime/palpate.h"
+#include "tests/unit/runtime/api_fixture.hpp"
+
+namespace palpate::test {
+namespace {
+
+using PalpateLoop = PalpateApi;
+
+/// A device of the embedding program: presses slowly, counts, and may vanish.
+struct OwnDevice {
+  static int read(void* self, double position[3], double velocity[3]) {
+    auto& d = *static_cast<OwnDevice*>(self);
+    position[0] = 0.03, position[1] = 0.033, position[2] = 0.0005 - 2e-5 * d.reads;
+    velocity[0] = velocity[1] = 0, velocity[2] = -0.02;
+    return ++d.reads > d.lasts ? -1 : 0;
+  }
+  static int command(void* self, const double force[3]) {
+    auto& d = *static_cast<OwnDevice*>(self);
+    d.largest = std::max(d.largest, std::abs(force[2]));
+    d.last = std::abs(force[2]);
+    return 0;
+  }
+  palpate_device functions() { return {sizeof(palpate_device), this, read, command, nullptr}; }
+  int reads = 0, lasts = 150;
+  double largest = 0, last = 1;
+};
+
+TEST_F(PalpateLoop, RunsUntilTheDeviceIsLost) {
+  OwnDevice own;
+  const palpate_device device = own.functions();
+  palpate_loop_settings settings;
+  palpate_loop_settings_default(&settings);
+  settings.priority = 0;
+  settings.rate = 2000;
+  settings.ramp = 0;
+  settings.watchdog = 10;
+  palpate_loop* loop = nullptr;
+  ASSERT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_OK)
+      << palpate_last_error();
+  for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  palpate_loop_report report{};
+  report.size = sizeof report;
+  EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
+  EXPECT_EQ(report.lost, 1U);
+  EXPECT_EQ(report.halted, 0U);
+  EXPECT_EQ(report.steps, 151U);
+  EXPECT_GT(report.compute_median, 0);
+  EXPECT_GE(report.compute_longest, report.compute_median);
+  // 100 k z^2 at the last position before it was lost, less the offset of one step.
+  EXPECT_NEAR(own.largest, 100 * kStiffness * std::pow(0.0005 - 2e-5 * 149 + 2e-5, 2), 2e-3);
+  EXPECT_EQ(own.last, 0);
+}
+
+/// The steps of a loop over this device until it is lost; `room`: for its record.
+struct RecordedLoop {
+  RecordedLoop(palpate_state* state, std::uint32_t room) {
+    OwnDevice own;
+    const palpate_device device = own.functions();
+    palpate_loop_settings settings;
+    palpate_loop_settings_default(&settings);
+    EXPECT_EQ(settings.record, 0U);
+    settings.priority = 0;
+    settings.rate = 2000;
+    settings.ramp = 0;
+    settings.watchdog = 10;
+    settings.record = room;
+    palpate_loop* loop = nullptr;
+    EXPECT_EQ(palpate_loop_start(state, &device, &settings, &loop), PALPATE_OK);
+    for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    palpate_loop_end(loop);
+    palpate_loop_step step{};
+    EXPECT_EQ(palpate_loop_take(loop, &step), 0);  // its size is not set
+    step.size = sizeof step;
+    while (palpate_loop_take(loop, &step) == 1) steps.push_back(step);
+    report.size = sizeof report;
+    EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
+  }
+  std::vector<palpate_loop_step> steps;
+  palpate_loop_report report{};
+};
+
+TEST_F(PalpateLoop, GivesEveryRecordedStep) {
+  const RecordedLoop loop(state_, 1000);
+  ASSERT_EQ(loop.steps.size(), 151U);
+  EXPECT_EQ(loop.report.unrecorded, 0U);
+  // The same motion by palpate_step: the same forces and energies, to the bit.
+  palpate_state_reset(state_);
+  double largest = 0;
+  for (std::size_t i = 0; i + 1 < loop.steps.size(); ++i) {
+    const palpate_loop_step& recorded = loop.steps[i];
+    EXPECT_EQ(recorded.position[2], 0.0005 - 2e-5 * static_cast<double>(i));
+    EXPECT_EQ(recorded.velocity[2], -0.02);
+    const std::uint32_t status =
+        step({recorded.position[0], recorded.position[1], recorded.position[2]});
+    const palpate_observation seen = observe();
+    EXPECT_EQ(recorded.status, status);
+    EXPECT_EQ(recorded.element, seen.element);
+    EXPECT_EQ(recorded.depth, seen.depth);
+    EXPECT_EQ(recorded.energy, seen.energy);
+    EXPECT_EQ(recorded.absorbed, seen.absorbed);
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(recorded.force[k], force_[k]);
+      EXPECT_EQ(recorded.contact_point[k], seen.contact_point[k]);
+    }
+    if (i > 0) {
+      EXPECT_GT(recorded.time_ns, loop.steps[i - 1].time_ns);
+    }
+    largest = std::max(largest, recorded.force[2]);
+  }
+  EXPECT_GT(largest, 0.1);
+  const palpate_loop_step& last = loop.steps.back();
+  EXPECT_NE(last.status & PALPATE_LOOP_DEVICE_LOST, 0U);
+  EXPECT_EQ(last.force[2], 0);
+}
+
+TEST_F(PalpateLoop, CountsTheStepsForWhichTheRecordHasNoRoom) {
+  const RecordedLoop full(state_, 100);
+  ASSERT_EQ(full.steps.size(), 100U);
+  EXPECT_EQ(full.report.unrecorded, 51U);
+  EXPECT_EQ(full.steps.back().position[2], 0.0005 - 2e-5 * 99);
+  const RecordedLoop none(state_, 0);
+  EXPECT_TRUE(none.steps.empty());
+  EXPECT_EQ(none.report.unrecorded, 0U);
+  EXPECT_EQ(palpate_loop_take(nullptr, nullptr), 0);
+  palpate_loop_end(nullptr);
+}
+
+TEST_F(PalpateLoop, RefusesSettingsOutOfRange) {
+  OwnDevice own;
+  palpate_device device = own.functions();
+  palpate_loop* loop = nullptr;
+  palpate_loop_settings settings;
+  palpate_loop_settings_default(&settings);
+  settings.rate = 0;
+  EXPECT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_ERROR_ARGUMENT);
+  EXPECT_NE(std::strstr(palpate_last_error(), "rate"), nullptr);
+  settings.size = 3;
+  EXPECT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_ERROR_ARGUMENT);
+  device.read = nullptr;
+  EXPECT_EQ(palpate_loop_start(state_, &device, nullptr, &loop), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_loop_start(nullptr, &device, nullptr, &loop), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(loop, nullptr);
+  EXPECT_EQ(palpate_loop_running(nullptr), 0);
+  EXPECT_EQ(palpate_loop_stop(nullptr, nullptr), PALPATE_ERROR_ARGUMENT);
+}
+
+}  // namespace
+}  // namespace palpate::test
