@@ -6,7 +6,7 @@
 namespace palpate::fitting {
 
 /// Gives every hole of the triangulation the mean response of its neighbours, ring by ring, with
-/// status Filled. Its errors are the largest differences from a neighbour.
+/// status Interpolated. Its errors are the largest differences from a neighbour.
 void fill_holes(Library& library, const FitSettings& settings);
 
 }  // namespace palpate::fitting
