@@ -14,9 +14,9 @@ struct WeightedResponse {
   double weight = 0;
 };
 
-/// Weighted mean of the responses at equal deflections, with status Interpolated. It is fitted like any
-/// curve, hence monotone and passive for any weights. The weights sum to 1 and may be negative. The
-/// errors are 0; the caller sets them.
+/// Weighted mean of the responses at equal deflections, with status Interpolated. It is fitted like
+/// any curve, hence monotone and passive for any weights. The weights sum to 1 and may be negative.
+/// The errors are 0; the caller sets them.
 NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
                            const FitSettings& settings, const std::string& where);
 
