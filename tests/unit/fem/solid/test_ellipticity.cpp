@@ -164,7 +164,7 @@ TEST(Ellipticity, PolyconvexLawsNeverLoseIt) {
       for (int trial = 0; trial < 60; ++trial)
         EXPECT_GT(weakest_of(law, random_gradient(random)), 0) << constants.law;
     }
-  EXPECT_EQ(polyconvex, 3 * 7);
+  EXPECT_EQ(polyconvex, 3 * 8);
 }
 
 /// Of a body: the place where it is lost first, and none where it is kept.
