@@ -124,8 +124,8 @@ class Writer {
   std::vector<std::int32_t> held() const {
     std::vector<std::int32_t> nodes;
     const auto& mesh = deck_.mesh;
-    for (std::size_t node = 0; node < mesh.held.size(); ++node) {
-      if (mesh.held[node]) nodes.push_back(static_cast<std::int32_t>(node));
+    for (std::size_t node = 0; node < mesh.fixed.size(); ++node) {
+      if (mesh.fixed[node]) nodes.push_back(static_cast<std::int32_t>(node));
     }
     return nodes;
   }

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "fem/campaign/bonded_patch.hpp"
-#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/first_touch.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 

@@ -168,8 +168,8 @@ class Writer {
       add("</Elements>\n");
     }
     std::vector<std::int32_t> held;
-    for (std::size_t node = 0; node < mesh.held.size(); ++node) {
-      if (mesh.held[node]) held.push_back(static_cast<std::int32_t>(node));
+    for (std::size_t node = 0; node < mesh.fixed.size(); ++node) {
+      if (mesh.fixed[node]) held.push_back(static_cast<std::int32_t>(node));
     }
     if (deck_.tool) tool_elements(*deck_.tool);
     node_set("held", held);

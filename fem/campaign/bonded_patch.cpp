@@ -7,7 +7,7 @@
 
 #include "fem/campaign/region_laws.hpp"
 #include "fem/factor/cholesky.hpp"
-#include "fem/mesh/in_words.hpp"
+#include "fem/mesh/millimetres.hpp"
 #include "fem/solve/newton.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"

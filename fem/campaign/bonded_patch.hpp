@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "fem/campaign/campaign.hpp"
+#include "fem/campaign/settings.hpp"
 #include "fem/mesh/quadratic_mesh.hpp"
+#include "format/body.hpp"
 
 namespace palpate::fem {
 

@@ -4,9 +4,8 @@
 #include <algorithm>
 
 #include "fem/campaign/region_laws.hpp"
-#include "fem/campaign/site_body.hpp"
+#include "fem/mesh/to_eigen.hpp"
 #include "fem/solve/preload.hpp"
-#include "fem/solve/shared_factor_solver.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 
@@ -17,14 +16,6 @@ namespace {
 /// Penalty over E/R: the gap it leaves is micrometres for a tool of millimetres, a change of the
 /// force of about 0.1 %.
 constexpr double kContactStiffness = 5000;
-/// Of the window, over the tool radius. A wider one costs factorizations, a narrower one solves:
-/// the total is flat between 1.6 and 2.4.
-constexpr double kWindowRadius = 2;
-
-Eigen::Vector3d to_eigen(const Vec3& v) {
-  return Eigen::Vector3d(v.data());
-}
-
 }  // namespace
 
 ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& settings,
@@ -39,18 +30,18 @@ ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& set
 
 namespace {
 
-/// What is divided under the tool knows the energy of the elements alone.
-void check_division(const Body& body, const CampaignSettings& settings, Engine engine) {
+/// Refined elements have energies of elements alone: no nodal pressure, springs or weight.
+void check_refinement(const Body& body, const CampaignSettings& settings, Engine engine) {
   if (!settings.indentation.refine_under_tool) return;
   const auto refuse = [&](const char* with) {
     throw Error(ErrorKind::Configuration, body.name,
-                std::string("elements cannot be divided under the tool ") + with,
-                "leave solver.refine_under_tool out, and choose a smaller mesh.element_size");
+                std::string("elements cannot be refined under the tool ") + with,
+                "remove solver.refine_under_tool and choose a smaller mesh.element_size");
   };
-  if (has_nodal_pressure(settings.dilatation)) refuse("where pressures are nodal");
+  if (has_nodal_pressure(settings.dilatation)) refuse("with nodal pressures");
   if (!body.foundation.empty()) refuse("of a body on springs");
   if (settings.gravity.acts()) refuse("of a body under its weight");
-  if (engine == Engine::Direct) refuse("where every step factorizes the body");
+  if (engine == Engine::Direct) refuse("when every step factorizes the body");
 }
 
 }  // namespace
@@ -67,7 +58,7 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
       rest(equilibrium_under_weight(model, permutation, b.name)),
       at_rest(model.energy(rest)) {
   use_one_thread_per_site();
-  check_division(b, settings, engine);
+  check_refinement(b, settings, engine);
   contact_stiffness = fem::contact_stiffness(b, settings, model);
   if (engine == Engine::Direct) return;
   std::vector<double> K;
@@ -83,29 +74,7 @@ Eigen::Vector3d CampaignContext::rest_position(const Vec3& X) const {
   return to_eigen(X) + displacement_at(model.mesh(), rest, to_eigen(X));
 }
 
-double window_radius(const CampaignContext& context) {
-  const ToolGeometry& tool = context.indentation.tool;
-  return tool.extent() + (kWindowRadius - 1) * tool.radius;
-}
-
-SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site) {
-  return {context.model, site, window_radius(context)};
-}
-
-double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
-  // Counted here and in the solvers: history, trials and line searches of a path; residuals and
-  // directions; the factor of a window over its stiffness.
-  constexpr double kDisplacements = 12, kVectors = 8, kWindowFill = 8;
-  constexpr double kPairs = 2.0 * SharedFactorSolver::kMostPairs * sizeof(float);
-  const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
-  const double held = static_cast<double>(context.indentation.lateral_depths.size());
-  const double numbers = 3 * nodes * (kDisplacements + held) + unknowns * kVectors;
-  const SiteBody site(context, to_eigen(context.place(vertex).position));
-  return sizeof(double) * (numbers + kWindowFill * site.window().pattern().nonzeros()) +
-         unknowns * kPairs + site.bytes();
-}
-
-PressPoint CampaignContext::place(std::int32_t vertex) const {
+PressPoint CampaignContext::press_point(std::int32_t vertex) const {
   if (!points.empty()) return points[to_index(vertex)];
   return {body.nodes[to_index(body.response.node[to_index(vertex)])],
           body.response.inward[to_index(vertex)]};

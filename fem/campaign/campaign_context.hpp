@@ -6,9 +6,10 @@
 #include <mutex>
 #include <vector>
 
-#include "fem/campaign/campaign.hpp"
+#include "fem/campaign/settings.hpp"
+#include "fem/contact/contact.hpp"
 #include "fem/factor/rest_factor.hpp"
-#include "fem/solve/newton.hpp"
+#include "fem/solid/solid_model.hpp"
 
 namespace palpate::fem {
 
@@ -24,9 +25,10 @@ struct CampaignContext {
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
                   FactorCache* kept = nullptr);
 
-  /// Of a response vertex, or of a point of the settings by its index when there are any.
-  PressPoint place(std::int32_t vertex) const;
-  /// Where a point of the boundary is before it is touched.
+  /// The point and direction of a response vertex; of a point of the settings, by its index, when
+  /// there are any.
+  PressPoint press_point(std::int32_t vertex) const;
+  /// Position of a point of the boundary before the tool touches it.
   Eigen::Vector3d rest_position(const Vec3& X) const;
 
   const Body& body;
@@ -35,20 +37,12 @@ struct CampaignContext {
   Engine engine;
   SolidModel model;
   std::vector<int> permutation;  ///< elimination order of the whole body
-  Displacement rest;          ///< where the body is before it is touched: sagged under its weight
-  SolidModel::State at_rest;  ///< there
+  Displacement rest;             ///< before the tool touches the body: displaced by its weight
+  SolidModel::State at_rest;     ///< there
   ContactStiffness contact_stiffness;
   std::shared_ptr<const RestFactor> rest_factor;  ///< SharedFactor only
-  mutable std::mutex direct_solve;                ///< held while a site factorizes the whole body
+  mutable std::mutex direct_solve;                ///< locked while a site factorizes the whole body
 };
-
-/// Of the part of the body around a site where the strains are large, m.
-double window_radius(const CampaignContext& context);
-/// That part.
-SolidModel window_at(const CampaignContext& context, const Eigen::Vector3d& site);
-
-/// Memory of a site under way, at most.
-double bytes_of_site(const CampaignContext& context, std::int32_t vertex);
 
 /// The largest Young's modulus at rest behind the boundary, and a multiple of it over the radius of
 /// the tool. What lies deeper must not stiffen the contact.

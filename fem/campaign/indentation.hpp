@@ -1,43 +1,35 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One site: the tool is pressed along the inward direction, then, held at chosen depths, moved
-// sideways with the contact stuck.
+// One site: the tool is pressed along the inward direction, and from chosen depths moved along
+// tangents at constant depth without slip.
 #pragma once
 
 #include <functional>
-#include <memory>
-#include <mutex>
 #include <vector>
 
 #include "fem/campaign/campaign_context.hpp"
+#include "fem/contact/contact.hpp"
 #include "fem/factor/rest_factor.hpp"
-#include "fem/solve/newton.hpp"
 
 namespace palpate::fem {
 
-/// Where a normal path begins: the tool as it first touches the body, and the facets it may meet.
-struct FirstTouch {
-  Tool tool;
-  std::vector<Facet> facets;
-};
-FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex);
-
-/// The tool held at a depth and moved sideways, the contact stuck.
+/// A lateral path: the tool moves along a tangent at a constant depth, without slip.
 struct LateralPlan {
   double lateral_depth = 0;     ///< m
-  Vec3 direction{};             ///< unit, across inward
+  Vec3 direction{};             ///< unit, normal to inward
   std::vector<double> travels;  ///< m, ascending, without the 0 of the start
 };
 
-/// What is done at one site.
+/// The paths of one site.
 struct SitePlan {
-  std::vector<double> stops;  ///< m, depths that the normal path passes; where lateral ones start
+  std::vector<double> stops;  ///< m, depths that the normal path passes, among them lateral depths
   std::vector<LateralPlan> lateral;
 };
 
 /// Solves sites one after another on one thread.
 class SiteSolver {
  public:
-  /// `batch`: this thread's place among those that share block solves; may be null for Direct.
+  /// `batch`: this thread's membership of the threads that share block solves; may be null for
+  /// Engine::Direct.
   SiteSolver(const CampaignContext& context, SolveBatch::Member* batch)
       : context_(context), batch_(batch) {}
 
@@ -46,8 +38,8 @@ class SiteSolver {
   SiteCurves solve(std::int32_t vertex);
   SiteCurves solve(std::int32_t vertex, const SitePlan& plan);
 
-  /// Called with every equilibrium of the normal path, the tool in its place, before the surface is
-  /// tied to it; with elements divided under the tool the displacement has their nodes too.
+  /// Called with every equilibrium of the normal path, before the surface is bonded to the tool.
+  /// With refined elements the displacement has their nodes too.
   using Observer = std::function<void(const ToolContact&, const Displacement&, const CurveSample&)>;
   void observe(Observer observer) { observer_ = std::move(observer); }
 
@@ -73,15 +65,10 @@ class SiteSolver {
   LateralObserver lateral_observer_;
 };
 
-/// Solve one site alone.
+/// Solves one site alone. `pressed`: the displacement at the end of its normal path; may be null.
 SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displacement* pressed);
 
-/// Two unit vectors that complete `normal` to a right-handed orthonormal frame; azimuth 0 points
-/// along the first. The frame is a function of the normal alone.
-std::array<Eigen::Vector3d, 2> tangents(const Eigen::Vector3d& normal);
-
-/// Integral of y over x by parabolas through neighbouring samples, third-order accurate for uneven
-/// steps; running value at each sample.
-std::vector<double> running_integral(const std::vector<double>& x, const std::vector<double>& y);
+/// An upper bound of the memory that a running site needs, bytes.
+double bytes_of_site(const CampaignContext& context, std::int32_t vertex);
 
 }  // namespace palpate::fem

@@ -14,17 +14,18 @@
 
 namespace palpate::fem {
 
-SiteThreads site_threads(const RestFactor& factor, int threads, std::size_t sites, double memory,
-                         double each) {
+SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites, double memory,
+                         double bytes_per_site) {
   SiteThreads size;
-  size.cores = std::max(1, threads);
-  const std::size_t share = (sites + to_index(size.cores) - 1) / to_index(size.cores);
-  const double fallback = 2 * factor.bytes();
-  size.lanes = fitting_times(
-      memory, size.cores * each, static_cast<int>(std::min<std::size_t>(kBatch, share)),
+  size.cores = std::max(1, cores);
+  const std::size_t sites_per_core = (sites + to_index(size.cores) - 1) / to_index(size.cores);
+  const double double_precision_factor = 2 * factor.bytes();
+  size.threads_per_core = fitting_times(
+      memory, size.cores * bytes_per_site,
+      static_cast<int>(std::min<std::size_t>(kBatch, sites_per_core)),
       "a site on each of " + std::to_string(size.cores) +
-          " cores (memory is kept for the factor that one may need of its own)",
-      fallback);
+          " cores (memory is reserved for the factor that one site may need of its own)",
+      double_precision_factor);
   return size;
 }
 
@@ -46,9 +47,10 @@ void parallel_for_sites(const RestFactor& factor, const SiteThreads& size, std::
   };
   std::deque<SolveBatch> batches;
   std::vector<std::thread> threads;
-  for (int core = 0; core < size.cores; ++core) batches.emplace_back(factor, size.lanes, &batches);
+  for (int core = 0; core < size.cores; ++core)
+    batches.emplace_back(factor, size.threads_per_core, &batches);
   for (SolveBatch& batch : batches)
-    for (int lane = 0; lane < size.lanes; ++lane)
+    for (int i = 0; i < size.threads_per_core; ++i)
       threads.emplace_back([&serve, &batch] { serve(batch); });
   for (std::thread& thread : threads) thread.join();
   if (failure) std::rethrow_exception(failure);

@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Sites on several cores, many abreast on each, so that they share block solves.
+// Sites on several cores, several at a time on each, so that they share block solves.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 
 #include "fem/factor/rest_factor.hpp"
 
 namespace palpate::fem {
 
-/// How many threads work: `lanes` of each core share a SolveBatch, of which one runs at a time.
+/// How many threads work. The threads of a core share a SolveBatch, and one of them runs at a time.
 struct SiteThreads {
-  int cores = 1, lanes = 1;
+  int cores = 1, threads_per_core = 1;
 };
 
-/// As many lanes as there are sites for, as a batch takes and as fit into `memory`, bytes (0: no
-/// bound), beside a factor in double precision for the site that needs its own.
-/// @throws Error(Configuration) when `each`, bytes, does not fit once for each core.
-SiteThreads site_threads(const RestFactor& factor, int threads, std::size_t sites, double memory,
-                         double each);
+/// On each core as many threads as there are sites for, at most kBatch, and no more than fit into
+/// `memory`, bytes (0: no bound), beside a factor in double precision for a site that needs its
+/// own. `bytes_per_site`: memory of a running site.
+/// @throws Error(Configuration) when one site for each core does not fit.
+SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites, double memory,
+                         double bytes_per_site);
 
-/// Calls `work` for every index below `count`, each once, on the threads of a crew. The first
-/// exception ends it once the work under way is done, and is passed on.
+/// Calls `work` once for every index below `count`, concurrently. After the first exception no
+/// further index is started; it is rethrown once the running ones are done.
 void parallel_for_sites(const RestFactor& factor, const SiteThreads& size, std::size_t count,
                         const std::function<void(SolveBatch::Member&, std::size_t)>& work);
 

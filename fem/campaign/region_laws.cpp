@@ -2,7 +2,6 @@
 #include "fem/campaign/region_laws.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "fem/solid/fibre_potential.hpp"
 #include "format/error.hpp"
@@ -17,10 +16,9 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-void require_positive(const char* name, double value) {
-  if (!(std::isfinite(value) && value > 0))
-    refuse("indentation", std::string(name) + " = " + std::to_string(value) + " is out of range",
-           std::string("give a finite ") + name + " > 0");
+[[noreturn]] void refuse(const std::string& where, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(ErrorKind::Configuration, where, problem, remedy);
 }
 
 }  // namespace
@@ -58,27 +56,6 @@ std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMater
     laws.push_back(make_law(placed_on(body, static_cast<std::int32_t>(laws.size()), law), where));
   }
   return laws;
-}
-
-void check_indentation(const IndentationSettings& settings) {
-  check_tool(settings.tool);
-  const ToolGeometry& tool = settings.tool;
-  if (tool.shape == ToolShape::Disc && tool.edge_radius == 0 &&
-      settings.friction == ToolFriction::Frictionless)
-    refuse("tool", "a disc with a sharp edge cannot be pressed without friction",
-           "give it an edge radius (a hundredth of its own is enough), or let it stick");
-  require_positive("depth", settings.depth);
-  require_positive("force_tolerance", settings.force_tolerance);
-  require_positive("increments", settings.increments);
-  for (const double held : settings.lateral_depths) {
-    require_positive("lateral_depths", held);
-    if (held > settings.depth * (1 + 1e-12))
-      refuse("indentation", "a held depth of " + std::to_string(held) + " m lies beyond the depth",
-             "keep lateral_depths at most " + std::to_string(settings.depth) + " m");
-  }
-  if (settings.lateral_depths.empty() || settings.azimuths.empty()) return;
-  require_positive("lateral_travel", settings.lateral_travel);
-  require_positive("lateral_increments", settings.lateral_increments);
 }
 
 }  // namespace palpate::fem

@@ -3,8 +3,9 @@
 
 #include <vector>
 
-#include "fem/campaign/campaign.hpp"
+#include "fem/campaign/settings.hpp"
 #include "fem/laws/law.hpp"
+#include "format/body.hpp"
 
 namespace palpate::fem {
 
@@ -16,9 +17,5 @@ std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMater
 /// The law of a region, its fibres where they depend on the body as samples of it.
 /// @throws Error(Configuration) as fibres_of_potential, and where a file of fibres was not read.
 LawConstants placed_on(const Body& body, std::int32_t region, const LawConstants& law);
-
-/// @throws Error(Configuration) when a length is not positive and finite, a held depth lies beyond
-/// the depth, a count is below one, or a disc with a sharp edge is pressed without friction.
-void check_indentation(const IndentationSettings& settings);
 
 }  // namespace palpate::fem

@@ -9,7 +9,9 @@
 #include "fem/campaign/indentation.hpp"
 #include "fem/campaign/parallel_sites.hpp"
 #include "fem/campaign/region_laws.hpp"
+#include "fem/campaign/site_body.hpp"
 #include "fem/laws/law.hpp"
+#include "fem/mesh/to_eigen.hpp"
 #include "fem/solve/tangent_solver.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
@@ -85,10 +87,10 @@ Varied varied(const Body& body, const CampaignSettings& settings, const RegionCo
 class Differentiator {
  public:
   Differentiator(const CampaignContext& context, const std::vector<Varied>& constants,
-                 SolveBatch::Member& batch, const PressPoint& place)
+                 SolveBatch::Member& batch, const PressPoint& point)
       : context_(context),
         constants_(constants),
-        window_(window_at(context, Eigen::Vector3d(place.position.data()))),
+        window_(window_at(context.model, to_eigen(point.position), context.indentation.tool)),
         solver_(context.model, window_,
                 [&batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch.solve(b, x); }) {}
 
@@ -122,7 +124,7 @@ class Differentiator {
     if (!differentiate(contact, u, direction, slope, adjoint)) return false;
     if (constants_.empty()) return true;
     Displacement multiplier = Displacement::Zero(3, u.cols());
-    move(context_.model, 1, adjoint, multiplier);
+    add_step(context_.model, 1, adjoint, multiplier);
     const ToolContact* after = &contact;
     for (std::size_t i = count; i-- > 0; after = &bonded_[i].contact) {
       const Bonded& bonded = bonded_[i];
@@ -131,7 +133,7 @@ class Differentiator {
       if (by_bond.isZero(0)) continue;  // nothing was tied there
       if (!solve(bonded.contact, bonded.u, by_bond, m)) return false;
       for (std::size_t c = 0; c < constants_.size(); ++c) slope[c] -= m.dot(bonded.residuals[c]);
-      move(context_.model, 1, m, multiplier);
+      add_step(context_.model, 1, m, multiplier);
     }
     return true;
   }
@@ -185,11 +187,11 @@ class SiteDifferentiation {
   SiteDifferentiation(const CampaignContext& context, const std::vector<Varied>& constants,
                       SolveBatch::Member& batch, std::int32_t vertex,
                       const std::vector<LateralPlan>& lateral)
-      : place_(context.place(vertex)),
+      : point_(context.press_point(vertex)),
         lateral_(lateral),
         depths_(context.indentation.lateral_depths),
         stuck_(context.indentation.friction == ToolFriction::NoSlip),
-        differentiator_(context, constants, batch, place_),
+        differentiator_(context, constants, batch, point_),
         solver_(context, &batch) {
     result_.vertex = vertex;
     result_.lateral.resize(lateral.size());
@@ -208,8 +210,8 @@ class SiteDifferentiation {
  private:
   void pressed(const ToolContact& contact, const Displacement& u, const CurveSample& sample) {
     if (is_among(sample.displacement, depths_)) {
-      ForceSensitivity s{sample.displacement, dot(sample.force, place_.inward), {}};
-      const Eigen::Vector3d inward(place_.inward.data());
+      ForceSensitivity s{sample.displacement, dot(sample.force, point_.inward), {}};
+      const Eigen::Vector3d inward = to_eigen(point_.inward);
       keep(differentiator_.differentiate_tied(contact, u, differentiator_.kept(), inward, s.slope),
            s, result_.samples);
     }
@@ -232,7 +234,7 @@ class SiteDifferentiation {
                                                        p.direction == path.direction;
                                               }) -
                                  lateral_.begin());
-    const Eigen::Vector3d direction(path.direction.data());
+    const Eigen::Vector3d direction = to_eigen(path.direction);
     keep(differentiator_.differentiate_tied(contact, u, tied_when_held_.at(path.lateral_depth),
                                             direction, s.slope),
          s, result_.lateral[index]);
@@ -245,7 +247,7 @@ class SiteDifferentiation {
       result_.reason = "the stiffness is not positive definite at an equilibrium";
   }
 
-  PressPoint place_;
+  PressPoint point_;
   const std::vector<LateralPlan>& lateral_;
   const std::vector<double>& depths_;
   bool stuck_;

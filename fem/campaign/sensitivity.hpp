@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "fem/campaign/campaign.hpp"
 #include "fem/campaign/indentation.hpp"
 
 namespace palpate::fem {

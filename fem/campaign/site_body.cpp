@@ -11,10 +11,13 @@ namespace palpate::fem {
 
 namespace {
 
+/// Of the window, over the tool radius. A wider one costs factorizations, a narrower one solves.
+constexpr double kWindowRadius = 2;
+
 /// Distance of a point from a segment.
 double distance(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const double share = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-  return (a + share * (b - a) - x).norm();
+  const double fraction = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+  return (a + fraction * (b - a) - x).norm();
 }
 
 /// Distance of a point from a triangle: from its plane where it lies above it, else from its edges.
@@ -30,8 +33,8 @@ double distance(const Eigen::Vector3d& x, const std::array<Eigen::Vector3d, 3>& 
   return above ? std::abs((x - corner[0]).dot(normal)) : nearest;
 }
 
-/// The elements behind the facets that come within `reach` of a point, and those that share three
-/// corners with these facets.
+/// The elements behind the facets that come within `reach` of a point, and those that fraction
+/// three corners with these facets.
 std::vector<int> elements_near(const QuadraticMesh& mesh, const Eigen::Vector3d& site,
                                double reach) {
   std::vector<bool> corner_of_near(to_index(mesh.nodes()), false);
@@ -49,25 +52,35 @@ std::vector<int> elements_near(const QuadraticMesh& mesh, const Eigen::Vector3d&
 
 }  // namespace
 
-SiteBody::SiteBody(const CampaignContext& context, const Eigen::Vector3d& site)
-    : whole_(&context.model), rest_(context.rest) {
-  if (context.engine == Engine::Direct) return;
-  if (!context.indentation.refine_under_tool) {
-    window_.emplace(window_at(context, site));
-    return;
-  }
-  // All that is divided belongs to the window, and an element around it: seen from outside the
-  // window, the body at rest is then still nearly the one that was factorized.
-  const QuadraticMesh& mesh = context.model.mesh();
-  const double reach = context.indentation.tool.extent();
-  RefinedMesh divided = divide(mesh, elements_near(mesh, site, reach));
-  std::vector<bool> free = nodes_within(mesh, site, window_radius(context));
-  for (const RefinedMesh::Made& made : divided.made)
-    for (const int node : mesh.tetrahedra[to_index(made.parent)]) free[to_index(node)] = true;
-  free.resize(free.size() + divided.made.size(), true);
-  refined_.emplace(SolidModel::without_stiffness(context.model, std::move(divided.mesh)));
+double window_radius(const ToolGeometry& tool) {
+  return tool.extent() + (kWindowRadius - 1) * tool.radius;
+}
+
+SolidModel window_at(const SolidModel& body, const Eigen::Vector3d& site,
+                     const ToolGeometry& tool) {
+  return {body, site, window_radius(tool)};
+}
+
+SiteBody::SiteBody(const SolidModel& body, const Displacement& rest, const Eigen::Vector3d& site,
+                   const ToolGeometry& tool, SiteMesh mesh)
+    : whole_(&body), rest_(rest) {
+  if (mesh == SiteMesh::Window) window_.emplace(window_at(body, site, tool));
+  if (mesh == SiteMesh::RefinedWindow) refine(site, tool);
+}
+
+/// The window has all refined elements and one more layer: seen from outside the window, the
+/// refined body at rest is then nearly the one that was factorized.
+void SiteBody::refine(const Eigen::Vector3d& site, const ToolGeometry& tool) {
+  const QuadraticMesh& mesh = whole_->mesh();
+  RefinedMesh refined = refine_elements(mesh, elements_near(mesh, site, tool.extent()));
+  std::vector<bool> free = nodes_within(mesh, site, window_radius(tool));
+  for (const RefinedMesh::NewNode& node : refined.new_nodes)
+    for (const int neighbour : mesh.tetrahedra[to_index(node.parent)])
+      free[to_index(neighbour)] = true;
+  free.resize(free.size() + refined.new_nodes.size(), true);
+  refined_.emplace(SolidModel::without_stiffness(*whole_, std::move(refined.mesh)));
   window_.emplace(*refined_, std::move(free));
-  prolongation_.emplace(divided, mesh.tetrahedra, *refined_);
+  prolongation_.emplace(refined, mesh.tetrahedra, *refined_);
   rest_.conservativeResize(Eigen::NoChange, refined_->mesh().nodes());
   rest_.rightCols(refined_->mesh().nodes() - mesh.nodes()).setZero();
 }

@@ -4,29 +4,47 @@
 
 #include <optional>
 
-#include "fem/campaign/campaign_context.hpp"
-#include "fem/mesh/refined_mesh.hpp"
+#include "fem/contact/tool.hpp"
+#include "fem/solid/prolongation.hpp"
+#include "fem/solid/solid_model.hpp"
 
 namespace palpate::fem {
 
-/// The body and the window around the tool, on the mesh of the campaign; or, where
-/// IndentationSettings::refine_under_tool asks for it, with the elements around the tool divided in
-/// eight. The factor of the campaign serves both: what is divided lies inside the window, which
-/// every site solves by itself. Immutable after construction.
+/// Radius of the window around a site, m: the part of the body where the strains are large.
+double window_radius(const ToolGeometry& tool);
+
+/// The window around a site: its nodes are free, all others fixed.
+SolidModel window_at(const SolidModel& body, const Eigen::Vector3d& site, const ToolGeometry& tool);
+
+/// Which models a site has.
+enum class SiteMesh {
+  WholeBody,     ///< the body alone
+  Window,        ///< the body and a window, on the mesh of the body
+  RefinedWindow  ///< the same with the elements around the tool divided into eight
+};
+
+/// The body and the window around the tool. The factor of the campaign serves a refined mesh too:
+/// every refined element lies inside the window, which each site solves by itself. Immutable after
+/// construction.
 class SiteBody {
  public:
-  SiteBody(const CampaignContext& context, const Eigen::Vector3d& site);
+  /// `body` must outlive this. `rest`: the displacement of the body before the touch.
+  SiteBody(const SolidModel& body, const Displacement& rest, const Eigen::Vector3d& site,
+           const ToolGeometry& tool, SiteMesh mesh);
 
   const SolidModel& whole() const { return refined_ ? *refined_ : *whole_; }
   const QuadraticMesh& mesh() const { return whole().mesh(); }
-  /// Only with a shared factor.
+  /// There is none with SiteMesh::WholeBody.
   const SolidModel& window() const { return *window_; }
+  /// Null where no element is refined.
   const Prolongation* prolongation() const { return prolongation_ ? &*prolongation_ : nullptr; }
-  /// The state before the touch, on the nodes of mesh().
+  /// The displacement before the touch, on the nodes of mesh().
   const Displacement& rest() const { return rest_; }
-  double bytes() const;  ///< without what the campaign shares
+  double bytes() const;  ///< without what the sites of a campaign share
 
  private:
+  void refine(const Eigen::Vector3d& site, const ToolGeometry& tool);
+
   const SolidModel* whole_;
   std::optional<SolidModel> refined_, window_;
   std::optional<Prolongation> prolongation_;

@@ -5,6 +5,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "fem/mesh/to_eigen.hpp"
 #include "format/edge.hpp"
 #include "format/to_index.hpp"
 
@@ -40,9 +41,9 @@ class EdgeNodes {
 /// The middle of an edge is held where the edge is: on a facet with three held corners, or in a
 /// volume that is held, of which at least one end lies inside. An edge that runs through the body
 /// from one held face to another is free between them.
-void mark_held_nodes(const Body& body, const EdgeNodes& edges, QuadraticMesh& mesh) {
-  mesh.held.assign(to_index(mesh.nodes()), false);
-  for (const auto node : body.fixed_nodes) mesh.held[to_index(node)] = true;
+void mark_fixed_nodes(const Body& body, const EdgeNodes& edges, QuadraticMesh& mesh) {
+  mesh.fixed.assign(to_index(mesh.nodes()), false);
+  for (const auto node : body.fixed_nodes) mesh.fixed[to_index(node)] = true;
   std::vector<bool> on_boundary(body.nodes.size(), false);
   for (const Triangle& facet : body.boundary)
     for (const auto corner : facet) on_boundary[to_index(corner)] = true;
@@ -50,12 +51,12 @@ void mark_held_nodes(const Body& body, const EdgeNodes& edges, QuadraticMesh& me
   for (std::size_t e = 0; e < edges.corners().size(); ++e) {
     const auto [a, b] = edges.corners()[e];
     const bool across = on_boundary[to_index(a)] && on_boundary[to_index(b)];
-    mesh.held[corner_count + e] = mesh.held[to_index(a)] && mesh.held[to_index(b)] && !across;
+    mesh.fixed[corner_count + e] = mesh.fixed[to_index(a)] && mesh.fixed[to_index(b)] && !across;
   }
   for (const Facet& facet : mesh.facets)
-    if (mesh.held[to_index(facet[0])] && mesh.held[to_index(facet[1])] &&
-        mesh.held[to_index(facet[2])])
-      for (std::size_t edge = 3; edge < 6; ++edge) mesh.held[to_index(facet[edge])] = true;
+    if (mesh.fixed[to_index(facet[0])] && mesh.fixed[to_index(facet[1])] &&
+        mesh.fixed[to_index(facet[2])])
+      for (std::size_t edge = 3; edge < 6; ++edge) mesh.fixed[to_index(facet[edge])] = true;
 }
 
 using Corners = std::array<std::int32_t, 3>;
@@ -106,13 +107,13 @@ QuadraticMesh make_quadratic_mesh(const Body& body, bool linear) {
   const auto corner_count = static_cast<Eigen::Index>(body.nodes.size());
   mesh.X.resize(3, corner_count + static_cast<Eigen::Index>(edges.corners().size()));
   for (Eigen::Index i = 0; i < corner_count; ++i)
-    mesh.X.col(i) = Eigen::Vector3d(body.nodes[static_cast<std::size_t>(i)].data());
+    mesh.X.col(i) = to_eigen(body.nodes[static_cast<std::size_t>(i)]);
   for (std::size_t e = 0; e < edges.corners().size(); ++e)
     mesh.X.col(corner_count + static_cast<Eigen::Index>(e)) =
         0.5 * (mesh.X.col(edges.corners()[e][0]) + mesh.X.col(edges.corners()[e][1]));
   for (const CurvedEdge& curved : body.curved_edges)
-    mesh.X.col(edges.of(curved.ends[0], curved.ends[1])) = Eigen::Vector3d(curved.middle.data());
-  mark_held_nodes(body, edges, mesh);
+    mesh.X.col(edges.of(curved.ends[0], curved.ends[1])) = to_eigen(curved.middle);
+  mark_fixed_nodes(body, edges, mesh);
   mesh.edges = edges.corners();
   return mesh;
 }

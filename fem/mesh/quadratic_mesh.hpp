@@ -28,7 +28,7 @@ struct QuadraticMesh {
   std::vector<std::int32_t> region;        ///< of each tetrahedron
   std::vector<Facet> facets;               ///< boundary, outward
   std::vector<std::int32_t> facet_region;  ///< region of the tetrahedron behind each facet
-  std::vector<bool> held;                  ///< (nodes) by a support
+  std::vector<bool> fixed;                 ///< (nodes) by a support
   std::vector<SprungFacet> sprung;
   std::vector<std::array<std::int32_t, 2>> edges;  ///< the two corners of each mid-edge node
   /// Displacements are linear in each element: mid-edge nodes stay halfway between their corners.
@@ -37,7 +37,7 @@ struct QuadraticMesh {
   int nodes() const { return static_cast<int>(X.cols()); }
   int corners() const { return nodes() - static_cast<int>(edges.size()); }
   /// Whether a node has displacements of its own: it is not held, nor does it follow its corners.
-  bool is_free(int node) const { return !held[to_index(node)] && (!linear || node < corners()); }
+  bool is_free(int node) const { return !fixed[to_index(node)] && (!linear || node < corners()); }
 };
 
 QuadraticMesh make_quadratic_mesh(const Body& body, bool linear = false);

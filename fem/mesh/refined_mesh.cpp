@@ -181,24 +181,24 @@ class Refiner {
   std::int32_t middle(int element, std::size_t a, std::size_t b) {
     const Tetrahedron10& node = whole_.tetrahedra[to_index(element)];
     if (a < 4 && b < 4) return node[middle_node(a, b)];
-    const auto next = whole_.nodes() + static_cast<std::int32_t>(refined_.made.size());
+    const auto next = whole_.nodes() + static_cast<std::int32_t>(refined_.new_nodes.size());
     const auto [entry, added] = middle_.try_emplace(edge_between(node[a], node[b]), next);
     if (!added) return entry->second;
     const Volume La = volume_coordinates(a), Lb = volume_coordinates(b);
     Volume L{};
     for (std::size_t c = 0; c < 4; ++c) L[c] = 0.5 * (La[c] + Lb[c]);
-    refined_.made.push_back({element, shape_functions(L)});
-    held_.push_back(all_held_around(node, L));
+    refined_.new_nodes.push_back({element, shape_functions(L)});
+    fixed_.push_back(all_fixed_around(node, L));
     return next;
   }
 
   /// Whether every node of the edge, face or element is held that a point lies on.
-  bool all_held_around(const Tetrahedron10& node, const Volume& L) const {
+  bool all_fixed_around(const Tetrahedron10& node, const Volume& L) const {
     for (std::size_t a = 0; a < kTetNodes; ++a) {
       const Volume of = volume_coordinates(a);
       bool on = true;
       for (std::size_t c = 0; c < 4; ++c) on = on && (of[c] == 0 || L[c] > 0);
-      if (on && !whole_.held[to_index(node[a])]) return false;
+      if (on && !whole_.fixed[to_index(node[a])]) return false;
     }
     return true;
   }
@@ -255,64 +255,32 @@ class Refiner {
   }
 
   void place_nodes() {
-    const auto made = static_cast<Eigen::Index>(refined_.made.size());
+    const auto made = static_cast<Eigen::Index>(refined_.new_nodes.size());
     refined_.mesh.X.resize(3, whole_.X.cols() + made);
     refined_.mesh.X.leftCols(whole_.X.cols()) = whole_.X;
     for (Eigen::Index i = 0; i < made; ++i) {
-      const auto& [parent, N] = refined_.made[to_index(static_cast<int>(i))];
+      const auto& [parent, N] = refined_.new_nodes[to_index(static_cast<int>(i))];
       auto x = refined_.mesh.X.col(whole_.X.cols() + i);
       x.setZero();
       for (std::size_t a = 0; a < kTetNodes; ++a)
         x += N[a] * whole_.X.col(whole_.tetrahedra[to_index(parent)][a]);
     }
-    refined_.mesh.held = whole_.held;
-    refined_.mesh.held.insert(refined_.mesh.held.end(), held_.begin(), held_.end());
+    refined_.mesh.fixed = whole_.fixed;
+    refined_.mesh.fixed.insert(refined_.mesh.fixed.end(), fixed_.begin(), fixed_.end());
   }
 
   const QuadraticMesh& whole_;
   RefinedMesh refined_;
   std::vector<unsigned> edges_;          ///< of each element, those that are divided, one bit each
   std::vector<bool> split_;              ///< of each mid-edge node, whether its edge is divided
-  std::vector<bool> held_;               ///< of each new node
+  std::vector<bool> fixed_;              ///< of each new node
   std::map<Edge, std::int32_t> middle_;  ///< of two old nodes
 };
 
 }  // namespace
 
-RefinedMesh divide(const QuadraticMesh& mesh, const std::vector<int>& elements) {
+RefinedMesh refine_elements(const QuadraticMesh& mesh, const std::vector<int>& elements) {
   return Refiner(mesh).run(elements);
-}
-
-Prolongation::Prolongation(const RefinedMesh& divided, const std::vector<Tetrahedron10>& elements,
-                           const SolidModel& whole)
-    : all_(whole.pattern().n) {
-  const int old_nodes = whole.mesh().nodes() - static_cast<int>(divided.made.size());
-  for (int node = 0; node < old_nodes; ++node)
-    if (whole.equation(node) >= 0) old_ += 3;
-  for (std::size_t i = 0; i < divided.made.size(); ++i) {
-    const int first = whole.equation(old_nodes + static_cast<int>(i));
-    if (first < 0) continue;
-    const RefinedMesh::Made& made = divided.made[i];
-    for (std::size_t a = 0; a < kTetNodes; ++a) {
-      const int parent = whole.equation(elements[to_index(made.parent)][a]);
-      if (parent >= 0 && made.N[a] != 0) shares_.push_back({first, parent, made.N[a]});
-    }
-  }
-}
-
-Eigen::VectorXd Prolongation::extended(const Eigen::VectorXd& d) const {
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(all_);
-  all.head(old_) = d;
-  for (const Share& share : shares_)
-    all.segment<3>(share.node) += share.N * d.segment<3>(share.parent);
-  return all;
-}
-
-Eigen::VectorXd Prolongation::reduced(const Eigen::VectorXd& f) const {
-  Eigen::VectorXd old = f.head(old_);
-  for (const Share& share : shares_)
-    old.segment<3>(share.parent) += share.N * f.segment<3>(share.node);
-  return old;
 }
 
 }  // namespace palpate::fem

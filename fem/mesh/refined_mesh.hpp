@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "fem/mesh/quadratic_mesh.hpp"
-#include "fem/solid/solid_model.hpp"
 
 namespace palpate::fem {
 
@@ -19,41 +18,17 @@ namespace palpate::fem {
 struct RefinedMesh {
   /// Where a new node lies: its displacement, were the parent still one quadratic element, is
   /// sum N_a u_a over the nodes of the parent.
-  struct Made {
+  struct NewNode {
     std::int32_t parent;  ///< element of the unrefined mesh
     std::array<double, kTetNodes> N;
   };
 
   QuadraticMesh mesh;  ///< unrefined elements in their order, then the children; without springs
-  std::vector<Made> made;
+  std::vector<NewNode> new_nodes;
 };
 
 /// `elements`: to be divided in eight. @throws Error(Geometry) where a curved edge turns a child
 /// over.
-RefinedMesh divide(const QuadraticMesh& mesh, const std::vector<int>& elements);
-
-/// The new unknowns of a divided mesh as functions of those of the unrefined one. Both numbered by
-/// node, the old ones first.
-class Prolongation {
- public:
-  /// `whole`: the divided body, all nodes free that are not held. `elements`: of the unrefined
-  /// mesh.
-  Prolongation(const RefinedMesh& divided, const std::vector<Tetrahedron10>& elements,
-               const SolidModel& whole);
-
-  /// (d, P d): new nodes move as their parents would.
-  Eigen::VectorXd extended(const Eigen::VectorXd& d) const;
-  /// f_old + P^T f_new: the gradient over the old unknowns when new nodes follow.
-  Eigen::VectorXd reduced(const Eigen::VectorXd& f) const;
-
- private:
-  struct Share {
-    int node;    ///< first of the three unknowns of a new node
-    int parent;  ///< of one that it follows
-    double N;
-  };
-  Eigen::Index old_ = 0, all_ = 0;  ///< unknowns
-  std::vector<Share> shares_;
-};
+RefinedMesh refine_elements(const QuadraticMesh& mesh, const std::vector<int>& elements);
 
 }  // namespace palpate::fem

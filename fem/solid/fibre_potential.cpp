@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "fem/mesh/to_eigen.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 
@@ -30,7 +31,7 @@ struct Element {
 
 Element element_of(const Body& body, const Tetrahedron& nodes) {
   std::array<Vector3d, 4> X;
-  for (std::size_t i = 0; i < 4; ++i) X[i] = Vector3d(body.nodes[to_index(nodes[i])].data());
+  for (std::size_t i = 0; i < 4; ++i) X[i] = to_eigen(body.nodes[to_index(nodes[i])]);
   const Vector3d a = X[1] - X[0], b = X[2] - X[0], c = X[3] - X[0];
   const double six_volumes = a.dot(b.cross(c));
   Element e{nodes, six_volumes / 6, 0.25 * (X[0] + X[1] + X[2] + X[3]), {}};

@@ -7,7 +7,8 @@
 #include <limits>
 #include <numeric>
 
-#include "fem/mesh/in_words.hpp"
+#include "fem/mesh/millimetres.hpp"
+#include "fem/mesh/to_eigen.hpp"
 #include "fem/solid/ellipticity.hpp"
 
 namespace palpate::fem {
@@ -47,7 +48,7 @@ double shape_integral(std::size_t a, bool linear) {
 Eigen::Matrix3Xd nodal_weight(const QuadraticMesh& mesh, const Gravity& gravity) {
   if (!gravity.acts()) return {};
   Eigen::Matrix3Xd weight = Eigen::Matrix3Xd::Zero(3, mesh.nodes());
-  const Eigen::Vector3d per_volume = gravity.density * Eigen::Vector3d(gravity.acceleration.data());
+  const Eigen::Vector3d per_volume = gravity.density * to_eigen(gravity.acceleration);
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e)
     for (std::size_t a = 0; a < kTetNodes; ++a)
       weight.col(mesh.tetrahedra[to_index(e)][a]) +=
@@ -102,7 +103,7 @@ SolidModel::SolidModel(const SolidModel& whole, std::vector<bool> free) : solid_
 SolidModel SolidModel::without_stiffness(const SolidModel& whole, QuadraticMesh mesh) {
   SolidModel model(std::make_shared<const Solid>(
       Solid{std::move(mesh), whole.solid_->laws, whole.solid_->dilatation, {}}));
-  std::vector<bool> free = model.mesh().held;
+  std::vector<bool> free = model.mesh().fixed;
   free.flip();
   model.number_unknowns(free);
   std::vector<int> elements(model.mesh().tetrahedra.size());
@@ -438,7 +439,7 @@ std::optional<SolidModel::EllipticityLoss> SolidModel::ellipticity_loss(
   }
   if (element < 0) return std::nullopt;
   const Vec3 X = centroid(mesh(), element);
-  return EllipticityLoss{weakest, Eigen::Vector3d(X.data())};
+  return EllipticityLoss{weakest, to_eigen(X)};
 }
 
 void SolidModel::element_fields(const Displacement& u, std::vector<double>& energy_density,
@@ -457,6 +458,12 @@ void SolidModel::element_fields(const Displacement& u, std::vector<double>& ener
       pressure[to_index(block.element[to_index(lane)])] = p[lane];
     }
   }
+}
+
+void add_step(const SolidModel& model, double length, const Eigen::VectorXd& d, Displacement& u) {
+  for (int node = 0; node < model.mesh().nodes(); ++node)
+    if (model.equation(node) >= 0) u.col(node) += length * d.segment<3>(model.equation(node));
+  straighten(model.mesh(), u);
 }
 
 }  // namespace palpate::fem

@@ -146,4 +146,7 @@ class SolidModel {
       scatter_;  ///< place in the values of each entry, by block, entry and lane; -1: none
 };
 
+/// u += length d on the unknowns of the model.
+void add_step(const SolidModel& model, double length, const Eigen::VectorXd& d, Displacement& u);
+
 }  // namespace palpate::fem

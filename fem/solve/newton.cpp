@@ -20,12 +20,6 @@ constexpr double kPatchTolerance = 0.1;
 
 }  // namespace
 
-void move(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacement& u) {
-  for (int node = 0; node < model.mesh().nodes(); ++node)
-    if (model.equation(node) >= 0) u.col(node) += s * d.segment<3>(model.equation(node));
-  straighten(model.mesh(), u);
-}
-
 double imbalance(const SolidModel& model, const Eigen::VectorXd& residual) {
   if (residual.norm() <= kWeightNoise * model.weight_norm()) return 0;
   if (model.mesh().sprung.empty()) return residual.norm();
@@ -118,7 +112,7 @@ bool NewtonSolver::line_search(const ToolContact& contact, const Eigen::VectorXd
   double step = 1;
   for (int halvings = 0; halvings < 12; ++halvings, step *= 0.5) {
     Displacement trial = u;
-    move(model_, step, d, trial);
+    add_step(model_, step, d, trial);
     Equilibrium next = evaluate(model_, contact, trial);
     if (!(next.min_J > 0)) continue;
     const bool lower =

@@ -89,7 +89,4 @@ class NewtonSolver {
   bool factorized_ = false;
 };
 
-/// u += s d on the unknowns of the model.
-void move(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacement& u);
-
 }  // namespace palpate::fem

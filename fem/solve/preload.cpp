@@ -70,7 +70,7 @@ class Weighing {
     double length = 1;
     for (int halvings = 0; halvings < kHalvings; ++halvings, length *= 0.5) {
       Displacement trial = u;
-      move(model_, length, x_, trial);
+      add_step(model_, length, x_, trial);
       State next = evaluate(part, trial);
       if (!(next.min_J > 0)) continue;
       const bool lower = next.energy <= now.energy + 1e-4 * length * slope;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "fem/solve/rigid_motion.hpp"
+#include "fem/solid/rigid_motion.hpp"
 
 namespace palpate::fem {
 

@@ -4,7 +4,7 @@
 #include <deque>
 #include <functional>
 
-#include "fem/mesh/refined_mesh.hpp"
+#include "fem/solid/prolongation.hpp"
 #include "fem/solve/newton.hpp"
 
 namespace palpate::fem {

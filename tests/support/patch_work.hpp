@@ -6,12 +6,12 @@
 #include <vector>
 
 #include "fem/campaign/bonded_patch.hpp"
-#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/path_work.hpp"
 
 namespace palpate::test {
 
-/// Without the steps that a contact makes in the force, the work done on a stuck patch is the
-/// stored energy, to the error of the integration over the increments of the press.
+/// The force on a bonded patch is a smooth function of its depth: its work is the stored energy, to
+/// the error of the integration over the increments.
 inline void expect_work_is_stored(const fem::PatchCurve& curve) {
   ASSERT_EQ(curve.reason, "");
   std::vector<double> depth, force;

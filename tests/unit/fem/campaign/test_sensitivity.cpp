@@ -6,6 +6,8 @@
 
 #include "fem/campaign/indentation.hpp"
 #include "fem/campaign/sensitivity.hpp"
+#include "fem/campaign/site_body.hpp"
+#include "fem/mesh/to_eigen.hpp"
 #include "fem/solve/tangent_solver.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
@@ -202,8 +204,8 @@ TEST(TangentSolver, AgreesWithAFactorOfTheTangent) {
   const CampaignContext context(body, settings, Engine::SharedFactor);
   SolveBatch batch(*context.rest_factor, 1);
   SolveBatch::Member member(batch);
-  const Vec3 site = context.place(settings.sites.front()).position;
-  const SolidModel window = window_at(context, Eigen::Vector3d(site.data()));
+  const Vec3 site = context.press_point(settings.sites.front()).position;
+  const SolidModel window = window_at(context.model, to_eigen(site), context.indentation.tool);
   TangentSolver solver(context.model, window,
                        [&](const Eigen::VectorXd& b, Eigen::VectorXd& x) { member.solve(b, x); });
   SiteSolver paths(context, &member);

@@ -36,13 +36,13 @@ std::vector<int> all_elements(const QuadraticMesh& mesh) {
 /// A body whose elements are the children of all elements of another, with its sites.
 Body refined_body(const Body& body) {
   const QuadraticMesh mesh = make_quadratic_mesh(body);
-  const RefinedMesh divided = divide(mesh, all_elements(mesh));
+  const RefinedMesh divided = refine_elements(mesh, all_elements(mesh));
   Body fine;
   fine.name = "divided";
   fine.region_names = body.region_names;
   for (int node = 0; node < mesh.nodes(); ++node) {
     fine.nodes.push_back({mesh.X(0, node), mesh.X(1, node), mesh.X(2, node)});
-    if (mesh.held[to_index(node)]) fine.fixed_nodes.push_back(node);
+    if (mesh.fixed[to_index(node)]) fine.fixed_nodes.push_back(node);
   }
   for (const Tetrahedron10& t : divided.mesh.tetrahedra)
     fine.tetrahedra.push_back({t[0], t[1], t[2], t[3]});
@@ -134,7 +134,7 @@ TEST(RefinedMesh, FitsTogetherAndKeepsVolumeAndSurface) {
   const QuadraticMesh whole = make_quadratic_mesh(block_of(6));
   for (const double radius : {0.001, 0.004, 0.009}) {
     const std::vector<int> some = elements_around(whole, radius);
-    const RefinedMesh divided = divide(whole, some);
+    const RefinedMesh divided = refine_elements(whole, some);
     expect_fit(divided.mesh);
     EXPECT_GT(divided.mesh.tetrahedra.size(), whole.tetrahedra.size() + 7 * some.size());
     double sum = 0;
@@ -142,7 +142,7 @@ TEST(RefinedMesh, FitsTogetherAndKeepsVolumeAndSurface) {
     EXPECT_NEAR(sum, 0.03 * 0.03 * 0.015, 1e-12);
     EXPECT_NEAR(area(divided.mesh), area(whole), 1e-12);
   }
-  const RefinedMesh all = divide(whole, all_elements(whole));
+  const RefinedMesh all = refine_elements(whole, all_elements(whole));
   expect_fit(all.mesh);
   EXPECT_EQ(all.mesh.tetrahedra.size(), 8 * whole.tetrahedra.size());
 }
@@ -150,12 +150,12 @@ TEST(RefinedMesh, FitsTogetherAndKeepsVolumeAndSurface) {
 // Any field that is quadratic in space is met by one element and by its children alike.
 TEST(RefinedMesh, ProlongsQuadraticFieldsExactly) {
   const QuadraticMesh whole = make_quadratic_mesh(block_of(4));
-  const RefinedMesh divided = divide(whole, elements_around(whole, 0.005));
+  const RefinedMesh divided = refine_elements(whole, elements_around(whole, 0.005));
   const auto field = [](const Eigen::Vector3d& X) {
     return 3 + 2 * X[0] - X[2] + 40 * X[0] * X[1] - 7 * X[2] * X[2];
   };
-  for (std::size_t i = 0; i < divided.made.size(); ++i) {
-    const RefinedMesh::Made& made = divided.made[i];
+  for (std::size_t i = 0; i < divided.new_nodes.size(); ++i) {
+    const RefinedMesh::NewNode& made = divided.new_nodes[i];
     double value = 0;
     for (std::size_t a = 0; a < kTetNodes; ++a)
       value += made.N[a] * field(whole.X.col(whole.tetrahedra[to_index(made.parent)][a]));
@@ -189,7 +189,7 @@ Body domed_block(int across) {
 // Curved edges make the top the paraboloid itself; the children lie on it, too.
 TEST(RefinedMesh, FollowsACurvedSkin) {
   const QuadraticMesh whole = make_quadratic_mesh(domed_block(4));
-  const RefinedMesh divided = divide(whole, elements_around(whole, 0.005));
+  const RefinedMesh divided = refine_elements(whole, elements_around(whole, 0.005));
   int on_top = 0;
   for (const QuadraticMesh* mesh : {&whole, &divided.mesh})
     for (const Facet& f : mesh->facets) {
@@ -209,7 +209,7 @@ TEST(RefinedMesh, RefusesAnElementThatACurvedEdgeTurnsOver) {
   for (CurvedEdge& edge : body.curved_edges) edge.middle[2] -= 0.02;
   const QuadraticMesh whole = make_quadratic_mesh(body);
   try {
-    divide(whole, all_elements(whole));
+    refine_elements(whole, all_elements(whole));
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("turn"));

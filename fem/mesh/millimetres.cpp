@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fem/mesh/in_words.hpp"
+#include "fem/mesh/millimetres.hpp"
 
 #include <cstdio>
 

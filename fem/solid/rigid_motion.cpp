@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "fem/solve/rigid_motion.hpp"
+#include "fem/solid/rigid_motion.hpp"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
-
-#include "fem/solve/newton.hpp"
 
 namespace palpate::fem {
 
@@ -27,7 +25,7 @@ Vector3d middle_of_support(const QuadraticMesh& mesh, const Displacement& u) {
     ++count;
   };
   for (int node = 0; node < mesh.nodes(); ++node)
-    if (mesh.held[to_index(node)]) add(node);
+    if (mesh.fixed[to_index(node)]) add(node);
   for (const SprungFacet& sprung : mesh.sprung)
     for (const auto node : mesh.facets[to_index(sprung.facet)]) add(node);
   return count > 0 ? Vector3d(sum / count) : sum;
@@ -75,7 +73,7 @@ void move_turning(const SolidModel& model, double s, const Eigen::VectorXd& d, D
   const QuadraticMesh& mesh = model.mesh();
   const Vector3d w = s * mean_turn(model, d, u);
   const double angle = w.norm();
-  if (angle < kLeastTurn) return move(model, s, d, u);
+  if (angle < kLeastTurn) return add_step(model, s, d, u);
   const Matrix3d turn = Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
   const Vector3d c = middle_of_support(mesh, u);
   for (int node = 0; node < mesh.nodes(); ++node) {

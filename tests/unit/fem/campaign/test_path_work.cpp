@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
-#include <Eigen/Geometry>
 #include <cmath>
 
-#include "fem/campaign/indentation.hpp"
+#include "fem/campaign/path_work.hpp"
 
 namespace palpate::fem {
 namespace {
@@ -29,15 +28,6 @@ TEST(RunningIntegral, OfAHertzCurveConverges) {
   };
   EXPECT_LT(error(12), 3e-4);
   EXPECT_LT(error(24), 0.25 * error(12));
-}
-
-TEST(Tangents, CompleteARightHandedFrame) {
-  for (const Eigen::Vector3d& n :
-       {Eigen::Vector3d(0, 0, -1), Eigen::Vector3d(1, 2, 3).normalized()}) {
-    const auto [a, b] = tangents(n);
-    EXPECT_NEAR(a.norm(), 1, 1e-14);
-    EXPECT_LT((a.cross(b) - n).norm(), 1e-14);
-  }
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "fem/campaign/indentation.hpp"
-#include "fem/solve/rigid_motion.hpp"
+#include "fem/solid/rigid_motion.hpp"
 #include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -91,7 +91,7 @@ TEST(Rocking, AStepThatTurnsTheBodyDoesNotStretchIt) {
   for (int node = 0; node < model.mesh().nodes(); ++node)
     d.segment<3>(model.equation(node)) = v + w.cross(Eigen::Vector3d(model.mesh().X.col(node)));
   Displacement along = Displacement::Zero(3, model.mesh().nodes()), turned = along;
-  move(model, 1, d, along);
+  add_step(model, 1, d, along);
   move_turning(model, 1, d, turned);
   EXPECT_GT(model.energy(along).energy, 1e-5);
   EXPECT_NEAR(model.energy(turned).energy, 0, 1e-14);

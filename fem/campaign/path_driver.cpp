@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign/path_driver.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "fem/mesh/millimetres.hpp"
+#include "fem/mesh/to_eigen.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+constexpr int kMaxHalvings = 5;
+constexpr int kHalvingsBeforeDirect = 2;
+constexpr double kLargestStep = 0.25;  ///< of one increment, over the tool radius
+/// Over the tool radius. The penetration into a free surface stays far below.
+constexpr double kLargestPenetration = 0.01;
+/// An element whose volume ratio is below this is about to invert.
+constexpr double kNearInversion = 0.25;
+
+/// What the last equilibrium before a failure says about its cause; empty when nothing.
+std::string about_inversion(const SolidModel& model, const Displacement& u) {
+  const auto [J, X] = model.most_compressed(u);
+  if (J > kNearInversion) return {};
+  char text[96];
+  std::snprintf(text, sizeof text, " (an element at %s is about to invert: det F = %.2f)",
+                point_in_millimetres(X).c_str(), J);
+  return text;
+}
+
+}  // namespace
+
+bool PathDriver::advance(double from, double to, Predictor& states, Displacement& u,
+                         CurveSample& sample, std::string& reason) {
+  work_ = problem_.follows_work ? std::optional(0.0) : std::nullopt;
+  // A tool that moves by a large part of its size at once could pass the surface unnoticed.
+  double at = from, step = std::min(to - from, kLargestStep * problem_.tool_radius);
+  int halvings = 0;
+  sample.iterations = 0;
+  std::string failure;  // of the last attempt: dropped when a smaller step succeeds
+  while (at < to) {
+    const double next = to - at <= 1.001 * step ? to : at + step;
+    Displacement trial = states.predict(problem_.model, next);
+    const Outcome outcome = equilibrate(next, halvings, trial, sample, failure);
+    if (outcome == Outcome::Found) {
+      add_work(at, states.last(), trial);
+      u = trial;
+      states.add(next, u);
+      at = next;
+      continue;
+    }
+    if (outcome == Outcome::Meaningless || ++halvings > kMaxHalvings) {
+      reason = "at " + in_millimetres(next) + ": " + failure;
+      if (outcome == Outcome::NotFound) reason += about_inversion(problem_.model, states.last());
+      return false;
+    }
+    step *= 0.5;
+  }
+  return true;
+}
+
+void PathDriver::add_work(double from, const Displacement& before, const Displacement& after) {
+  if (!work_) return;
+  const auto more = problem_.equilibrium.work_between(problem_.contact, problem_.tool_at(from).tip,
+                                                      before, after);
+  work_ = more ? std::optional(*work_ + *more) : std::nullopt;
+}
+
+PathDriver::Outcome PathDriver::equilibrate(double s, int halvings, Displacement& u,
+                                            CurveSample& sample, std::string& reason) {
+  problem_.contact.move_to(problem_.tool_at(s));
+  const NewtonResult result =
+      problem_.equilibrium.solve(problem_.contact, halvings >= kHalvingsBeforeDirect, u);
+  sample.iterations += result.iterations;
+  reason = result.reason;
+  if (!result.converged) return Outcome::NotFound;
+  record(s, u, sample);
+  const std::string fault = fault_of(sample, u);
+  if (fault.empty()) return Outcome::Found;
+  reason = fault;
+  return Outcome::Meaningless;
+}
+
+std::string PathDriver::fault_of(const CurveSample& sample, const Displacement& u) const {
+  if (sample.penetration > kLargestPenetration * problem_.tool_radius)
+    return "the tool cuts into a part of the surface that cannot yield (is it fixed there?)";
+  if (sample.displacement > kLargestStep * problem_.tool_radius && sample.contact_area == 0)
+    return "the tool has lost the surface";
+  if (const int entering = problem_.self_contact.entering_node(u); entering >= 0)
+    return "the surface meets itself at " +
+           point_in_millimetres(problem_.model.mesh().X.col(entering)) + ", which is not modelled";
+  if (const auto loss = problem_.model.ellipticity_loss(u)) return loss->reason();
+  return {};
+}
+
+void PathDriver::record(double s, const Displacement& u, CurveSample& sample) const {
+  const ToolContact& contact = problem_.contact;
+  const SolidModel::State state = problem_.model.energy(u);
+  sample.displacement = s;
+  sample.force = to_vec3(contact.tool_force(u));
+  sample.strain_energy = state.energy - problem_.energy_at_rest;
+  sample.min_jacobian = state.min_J;
+  sample.penetration = contact.penetration(u);
+  sample.contact_area = contact.contact_area(u);
+  sample.contact_energy = contact.energy(u);
+  sample.tension = contact.tension(u);
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "fem/campaign/predictor.hpp"
+#include "fem/campaign/site_equilibrium.hpp"
+#include "fem/contact/self_contact.hpp"
+#include "format/curves.hpp"
+
+namespace palpate::fem {
+
+/// What a path is followed with. The references must outlive the driver.
+struct PathProblem {
+  const SolidModel& model;
+  ToolContact& contact;  ///< moved along the path
+  SiteEquilibrium& equilibrium;
+  const SelfContact& self_contact;
+  double tool_radius;                   ///< m
+  double energy_at_rest;                ///< J, subtracted from the energy of the samples
+  bool follows_work;                    ///< integrate the work of the tool within increments
+  std::function<Tool(double)> tool_at;  ///< the tool at a travel, m
+};
+
+/// Follows a path in increments, each predicted from the last, and halves those that fail. The path
+/// ends where the equilibrium found is no indentation: the tool cuts into fixed surface or has lost
+/// the surface, the body meets itself, or the law loses ellipticity.
+class PathDriver {
+ public:
+  explicit PathDriver(PathProblem problem) : problem_(std::move(problem)) {
+    problem_.equilibrium.restart();
+  }
+
+  /// From `from`, where `states` end, to `to`. True: u is the equilibrium and `sample` is filled
+  /// but for the work. False: `reason` says why, one clause.
+  bool advance(double from, double to, Predictor& states, Displacement& u, CurveSample& sample,
+               std::string& reason);
+
+  /// J, of the tool in the last advance(); nothing where it could not be integrated.
+  std::optional<double> work() const { return work_; }
+
+ private:
+  enum class Outcome {
+    Found,
+    NotFound,    ///< a smaller step may help
+    Meaningless  ///< found, but no indentation: smaller steps lead to the same
+  };
+
+  Outcome equilibrate(double s, int halvings, Displacement& u, CurveSample& sample,
+                      std::string& reason);
+  /// Why the equilibrium of `sample` is no indentation; empty when it is one.
+  std::string fault_of(const CurveSample& sample, const Displacement& u) const;
+  void record(double s, const Displacement& u, CurveSample& sample) const;
+  void add_work(double from, const Displacement& before, const Displacement& after);
+
+  PathProblem problem_;
+  std::optional<double> work_;
+};
+
+}  // namespace palpate::fem

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What a campaign is asked to do.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "fem/contact/tool.hpp"
+#include "fem/laws/law_table.hpp"
+#include "fem/solid/dilatation.hpp"
+#include "fem/solid/gravity.hpp"
+#include "format/curves.hpp"
+#include "format/vec3.hpp"
+
+namespace palpate::fem {
+
+struct RegionMaterial {
+  std::string region;  ///< name of a region of the body
+  LawConstants law;
+};
+
+struct IndentationSettings {
+  ToolGeometry tool;
+  ToolFriction friction = ToolFriction::Frictionless;  ///< of the normal path
+  double tool_azimuth = 0;  ///< rad, of the axis of a cylinder, from the first tangent of the site
+  double depth = 0.006;     ///< m, end of the normal path
+  int increments = 12;      ///< of the normal path
+  double lateral_travel = 0.003;  ///< m, end of each lateral path
+  int lateral_increments = 6;
+  std::vector<double> lateral_depths{
+      0.002, 0.004, 0.006};           ///< m, where lateral paths start; each at most `depth`
+  std::vector<double> azimuths{0.0};  ///< rad, from the first tangent direction of the site
+  double force_tolerance = 1e-4;      ///< relative error of the tool force allowed to the solver
+  /// Elements around the tool are divided in eight, for each site anew: a contact that is smaller
+  /// than a facet is met where elements of half the size meet it.
+  bool refine_under_tool = false;
+};
+
+/// Where the tool is pressed: any point of the boundary, and the direction of its normal path.
+struct PressPoint {
+  Vec3 position{};  ///< m
+  Vec3 inward{};    ///< unit, into the body
+};
+
+/// State of a campaign, told after each finished site.
+struct CampaignProgress {
+  std::int64_t done = 0, failed = 0, total = 0;
+  std::int64_t known = 0;    ///< of `done`: taken over, not computed now
+  std::int64_t running = 0;  ///< sites under way: they run abreast, so that they end in waves
+};
+
+struct CampaignSettings {
+  std::vector<RegionMaterial> materials;  ///< one for each region of the body
+  Dilatation dilatation = Dilatation::Mean;
+  /// The body sags under its weight first; depths, work and energy are counted from there.
+  Gravity gravity;
+  IndentationSettings indentation;
+  std::vector<std::int32_t> sites;  ///< response vertices; empty = every vertex with is_site
+  /// Pressed instead of response vertices when not empty; the `vertex` of a result is then the
+  /// index of its point. Such curves are of no use to a fit.
+  std::vector<PressPoint> points;
+  int threads = 1;
+  double memory = 0;  ///< bytes the process may use; 0: no bound. Fewer sites then run abreast
+  std::vector<SiteCurves> known;  ///< results of an earlier run of the same campaign: not repeated
+  /// Called for each site as it finishes, and then with the progress; from one thread at a time.
+  /// An exception ends the campaign once the sites under way are done, and is passed on.
+  std::function<void(const SiteCurves&)> finished;
+  std::function<void(const CampaignProgress&)> progress;
+};
+
+/// @throws Error(Configuration) when a length is not positive and finite, a lateral depth exceeds
+/// the depth, a count is below one, or a disc with a sharp edge is pressed without friction.
+void check_indentation(const IndentationSettings& settings);
+
+}  // namespace palpate::fem

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign/site_equilibrium.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+/// Residual at which the shared-factor solver stops, over the wanted error of the force. The force
+/// is off by up to twice that residual on a lateral path (bench_precompute errors).
+constexpr double kSharedTolerance = 0.5;
+/// Factor on that tolerance for a no-slip normal path: the surface is bonded where it is met, so
+/// that errors add up.
+constexpr double kNoSlipTolerance = 0.5;
+
+}  // namespace
+
+std::size_t pairs_needed(const CampaignContext& context) {
+  const bool no_slip = context.indentation.friction == ToolFriction::NoSlip;
+  return no_slip || !context.model.mesh().sprung.empty() ? SharedFactorSolver::kMostPairs
+                                                         : SharedFactorSolver::kFewPairs;
+}
+
+SiteEquilibrium::SiteEquilibrium(const CampaignContext& context, const SiteBody& body,
+                                 SolveBatch::Member* batch)
+    : context_(context), direct_possible_(body.prolongation() == nullptr) {
+  if (context.engine == Engine::Direct) return;
+  shared_ = std::make_unique<SharedFactorSolver>(
+      body.whole(), body.window(),
+      [batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch->solve(b, x); },
+      pairs_needed(context), body.prolongation());
+}
+
+NewtonResult SiteEquilibrium::solve(const ToolContact& contact, bool direct_allowed,
+                                    Displacement& u) {
+  NewtonResult result;
+  if (shared_) {
+    result = solve_shared(contact, u);
+    if (result.converged || !direct_allowed || !direct_possible_) return result;
+  }
+  const int before = result.iterations;
+  result = shared_ ? solve_direct_alone(contact, u) : solve_direct(contact, u);
+  result.iterations += before;
+  return result;
+}
+
+std::optional<double> SiteEquilibrium::work_between(const ToolContact& contact,
+                                                    const Eigen::Vector3d& from,
+                                                    const Displacement& before,
+                                                    const Displacement& after) {
+  if (shared_) return shared_->work_between(contact, from, before, after);
+  return direct_ ? direct_->work_between(contact, from, before, after) : std::nullopt;
+}
+
+void SiteEquilibrium::restart() {
+  if (shared_) shared_->restart();
+}
+
+NewtonResult SiteEquilibrium::solve_shared(const ToolContact& contact, Displacement& u) {
+  NewtonOptions options;
+  options.tolerance = kSharedTolerance * context_.indentation.force_tolerance;
+  if (context_.indentation.friction == ToolFriction::NoSlip) options.tolerance *= kNoSlipTolerance;
+  Displacement trial = u;
+  NewtonResult result = shared_->solve(contact, options, trial);
+  if (result.converged)
+    u.swap(trial);
+  else
+    shared_->restart();
+  return result;
+}
+
+NewtonResult SiteEquilibrium::solve_direct(const ToolContact& contact, Displacement& u) {
+  NewtonOptions options;
+  options.tolerance = context_.indentation.force_tolerance;
+  if (!direct_) direct_ = std::make_unique<NewtonSolver>(context_.model, &context_.permutation);
+  return direct_->solve(contact, options, u);
+}
+
+/// One site at a time, and the factor is freed at once: factors of the whole body, one for each
+/// site that runs, would fill the memory.
+NewtonResult SiteEquilibrium::solve_direct_alone(const ToolContact& contact, Displacement& u) {
+  const std::lock_guard lock(context_.direct_solve);
+  NewtonResult result = solve_direct(contact, u);
+  direct_.reset();
+  return result;
+}
+
+}  // namespace palpate::fem

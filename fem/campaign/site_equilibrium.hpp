@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "fem/campaign/campaign_context.hpp"
+#include "fem/campaign/site_body.hpp"
+#include "fem/factor/rest_factor.hpp"
+#include "fem/solve/newton.hpp"
+#include "fem/solve/shared_factor_solver.hpp"
+
+namespace palpate::fem {
+
+/// Curvature pairs that the shared-factor solver of a campaign keeps at most.
+std::size_t pairs_needed(const CampaignContext& context);
+
+/// The solvers of one site: first the shared factor, then Newton's method on the whole body where
+/// that fails. A body with refined elements has no factor of its own, so that it has only the
+/// first. One thread.
+class SiteEquilibrium {
+ public:
+  /// `batch`: may be null for Engine::Direct.
+  SiteEquilibrium(const CampaignContext& context, const SiteBody& body, SolveBatch::Member* batch);
+
+  /// Moves `u` to the equilibrium. `direct_allowed`: the whole body may be factorized, which costs
+  /// about a hundred times more.
+  NewtonResult solve(const ToolContact& contact, bool direct_allowed, Displacement& u);
+
+  /// As NewtonSolver::work_between.
+  std::optional<double> work_between(const ToolContact& contact, const Eigen::Vector3d& from,
+                                     const Displacement& before, const Displacement& after);
+
+  /// To be called at the start of a path.
+  void restart();
+
+ private:
+  NewtonResult solve_shared(const ToolContact& contact, Displacement& u);
+  NewtonResult solve_direct(const ToolContact& contact, Displacement& u);
+  NewtonResult solve_direct_alone(const ToolContact& contact, Displacement& u);
+
+  const CampaignContext& context_;
+  bool direct_possible_;
+  std::unique_ptr<SharedFactorSolver> shared_;
+  std::unique_ptr<NewtonSolver> direct_;
+};
+
+}  // namespace palpate::fem
