@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "app/blas_kernel.hpp"
+#include "fem/campaign/campaign.hpp"
 #include "fem/campaign/sensitivity.hpp"
 #include "tests/support/block_body.hpp"
 

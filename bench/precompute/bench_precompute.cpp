@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "app/blas_kernel.hpp"
+#include "fem/campaign/campaign.hpp"
 #include "fem/campaign/indentation.hpp"
 #include "fem/factor/cholesky.hpp"
 #include "tests/support/block_body.hpp"

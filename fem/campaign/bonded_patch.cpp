@@ -20,8 +20,8 @@ namespace {
   throw Error(ErrorKind::Configuration, body.name, problem, remedy);
 }
 
-/// The body with the corner nodes of the patch held as well.
-Body held_at_patch(const Body& body, std::int32_t vertex, double radius) {
+/// The body with the corner nodes of the patch fixed, too.
+Body with_fixed_patch(const Body& body, std::int32_t vertex, double radius) {
   const auto count = static_cast<std::int32_t>(body.response.node.size());
   if (vertex < 0 || vertex >= count || body.response.is_site[to_index(vertex)] == 0)
     refuse(body, "response vertex " + std::to_string(vertex) + " is not a site",
@@ -37,14 +37,14 @@ Body held_at_patch(const Body& body, std::int32_t vertex, double radius) {
   for (const std::int32_t node : body.fixed_nodes)
     if (in_patch[to_index(node)])
       refuse(body, "the patch reaches a support", "give a smaller radius or another site");
-  Body held = body;
+  Body fixed = body;
   for (std::size_t node = 0; node < in_patch.size(); ++node)
-    if (in_patch[node]) held.fixed_nodes.push_back(static_cast<std::int32_t>(node));
-  return held;
+    if (in_patch[node]) fixed.fixed_nodes.push_back(static_cast<std::int32_t>(node));
+  return fixed;
 }
 
-/// Nodes held in `mesh` that are free in `free`.
-std::vector<std::int32_t> newly_held(const QuadraticMesh& mesh, const QuadraticMesh& free) {
+/// Nodes fixed in `mesh` that are free in `free`.
+std::vector<std::int32_t> newly_fixed(const QuadraticMesh& mesh, const QuadraticMesh& free) {
   std::vector<std::int32_t> nodes;
   for (int node = 0; node < mesh.nodes(); ++node)
     if (free.is_free(node) && !mesh.is_free(node)) nodes.push_back(node);
@@ -55,14 +55,14 @@ std::vector<std::int32_t> newly_held(const QuadraticMesh& mesh, const QuadraticM
 class PatchPress {
  public:
   PatchPress(const Body& body, const CampaignSettings& settings, std::int32_t vertex, double radius)
-      : held_(held_at_patch(body, vertex, radius), laws_of_regions(body, settings.materials),
-              settings.dilatation),
+      : fixed_(with_fixed_patch(body, vertex, radius), laws_of_regions(body, settings.materials),
+               settings.dilatation),
         free_(body, laws_of_regions(body, settings.materials), settings.dilatation),
-        patch_(newly_held(held_.mesh(), free_.mesh())),
+        patch_(newly_fixed(fixed_.mesh(), free_.mesh())),
         inward_(body.response.inward[to_index(vertex)].data()),
-        no_contact_(held_.mesh(), Eigen::Vector3d::Constant(1e6), 1e-6, {1, 1}),
-        newton_(held_),
-        u_(Displacement::Zero(3, held_.mesh().nodes())),
+        no_contact_(fixed_.mesh(), Eigen::Vector3d::Constant(1e6), 1e-6, {1, 1}),
+        newton_(fixed_),
+        u_(Displacement::Zero(3, fixed_.mesh().nodes())),
         before_(u_) {
     double young = 0;
     for (const RegionMaterial& m : settings.materials)
@@ -71,8 +71,8 @@ class PatchPress {
     options_.tolerance = 1e-7 * young * radius * settings.indentation.depth / 1e-12;
   }
 
-  /// False with the reason where no equilibrium is found.
-  bool to(double depth, PatchForce& sample, std::string& reason) {
+  /// False, with the reason, where no equilibrium is found.
+  bool press_to(double depth, PatchForce& sample, std::string& reason) {
     if (!advance(depth, 0, reason)) return false;
     Eigen::VectorXd f;
     sample = {depth, {}, free_.forces(u_, f).energy};
@@ -83,9 +83,9 @@ class PatchPress {
   }
 
  private:
-  void put_patch(double depth, Displacement& u) const {
+  void set_patch(double depth, Displacement& u) const {
     for (const std::int32_t node : patch_) u.col(node) = depth * inward_;
-    straighten(held_.mesh(), u);
+    straighten(fixed_.mesh(), u);
   }
 
   bool advance(double depth, int halvings, std::string& reason) {
@@ -93,10 +93,10 @@ class PatchPress {
     Displacement trial = u_;
     if (depth_ > before_depth_)
       trial += (depth - depth_) / (depth_ - before_depth_) * (u_ - before_);
-    put_patch(depth, trial);
-    if (!(held_.energy(trial).min_J > 0)) {
+    set_patch(depth, trial);
+    if (!(fixed_.energy(trial).min_J > 0)) {
       trial = u_;
-      put_patch(depth, trial);
+      set_patch(depth, trial);
     }
     const NewtonResult result = newton_.solve(no_contact_, options_, trial);
     if (!result.converged) {
@@ -104,7 +104,7 @@ class PatchPress {
       return halvings < kMaxHalvings && advance(0.5 * (depth_ + depth), halvings + 1, reason) &&
              advance(depth, halvings + 1, reason);
     }
-    if (const auto loss = held_.ellipticity_loss(trial)) {
+    if (const auto loss = fixed_.ellipticity_loss(trial)) {
       reason = "at " + in_millimetres(depth) + ": " + loss->reason();
       return false;
     }
@@ -115,7 +115,7 @@ class PatchPress {
     return true;
   }
 
-  SolidModel held_, free_;
+  SolidModel fixed_, free_;
   std::vector<std::int32_t> patch_;
   Eigen::Vector3d inward_;
   ToolContact no_contact_;
@@ -130,7 +130,8 @@ class PatchPress {
 BondedPatch bonded_patch(const Body& body, std::int32_t vertex, double radius) {
   BondedPatch patch;
   patch.mesh = make_quadratic_mesh(body);
-  patch.nodes = newly_held(make_quadratic_mesh(held_at_patch(body, vertex, radius)), patch.mesh);
+  patch.nodes =
+      newly_fixed(make_quadratic_mesh(with_fixed_patch(body, vertex, radius)), patch.mesh);
   return patch;
 }
 
@@ -143,10 +144,10 @@ PatchCurve press_patch(const Body& body, const CampaignSettings& settings, std::
   for (int i = 1; i <= settings.indentation.increments; ++i) {
     PatchForce sample;
     const double depth = settings.indentation.depth * i / settings.indentation.increments;
-    if (!press.to(depth, sample, curve.reason)) return curve;
+    if (!press.press_to(depth, sample, curve.reason)) return curve;
     curve.samples.push_back(sample);
   }
-  curve.reason.clear();  // of an attempt that a cut-back has overcome
+  curve.reason.clear();  // of a step that succeeded after a cut-back
   return curve;
 }
 

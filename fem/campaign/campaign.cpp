@@ -38,8 +38,8 @@ std::vector<std::int32_t> chosen_sites(const Body& body, std::vector<std::int32_
   return sites;
 }
 
-/// What the results are numbered by: the chosen response vertices, or the points by their index.
-std::vector<std::int32_t> chosen_places(const Body& body, const CampaignSettings& settings) {
+/// The numbers of the results: the chosen response vertices, or the indices of the points.
+std::vector<std::int32_t> numbers_of_results(const Body& body, const CampaignSettings& settings) {
   if (settings.points.empty()) return chosen_sites(body, settings.sites);
   std::vector<std::int32_t> index(settings.points.size());
   std::iota(index.begin(), index.end(), 0);
@@ -51,8 +51,8 @@ std::vector<std::int32_t> chosen_places(const Body& body, const CampaignSettings
   return index;
 }
 
-/// Puts known sites into their places. @return the places of the others.
-std::vector<std::size_t> take_over(const std::vector<SiteCurves>& known, Curves& curves) {
+/// Copies known results. @return the indices of the sites that remain to be solved.
+std::vector<std::size_t> copy_known(const std::vector<SiteCurves>& known, Curves& curves) {
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < curves.sites.size(); ++i) {
     const auto same = [&](const SiteCurves& site) { return site.vertex == curves.sites[i].vertex; };
@@ -65,12 +65,12 @@ std::vector<std::size_t> take_over(const std::vector<SiteCurves>& known, Curves&
   return open;
 }
 
-/// Solves the sites that are open and tells of each as it finishes.
-class Crew {
+/// Solves the open sites and reports each as it finishes.
+class OpenSites {
  public:
-  /// `open`: the places of `curves` that are to be solved.
-  Crew(const CampaignContext& context, const CampaignSettings& settings,
-       std::vector<std::size_t> open, Curves& curves)
+  /// `open`: the indices of the sites of `curves` to be solved.
+  OpenSites(const CampaignContext& context, const CampaignSettings& settings,
+            std::vector<std::size_t> open, Curves& curves)
       : context_(context), settings_(settings), open_(std::move(open)), curves_(curves) {
     progress_.total = static_cast<std::int64_t>(curves.sites.size());
     progress_.done = progress_.total - static_cast<std::int64_t>(open_.size());
@@ -90,18 +90,18 @@ class Crew {
   }
 
  private:
-  void solve(SolveBatch::Member& member, SiteCurves& place) {
+  void solve(SolveBatch::Member& member, SiteCurves& result) {
     {
       const std::lock_guard lock(mutex_);
       ++progress_.running;
     }
-    SiteCurves site = SiteSolver(context_, &member).solve(place.vertex);
+    SiteCurves site = SiteSolver(context_, &member).solve(result.vertex);
     const std::lock_guard lock(mutex_);
     --progress_.running;
     ++progress_.done;
     if (site.status != SiteStatus::Complete) ++progress_.failed;
-    place = std::move(site);
-    if (settings_.finished) settings_.finished(place);
+    result = std::move(site);
+    if (settings_.finished) settings_.finished(result);
     if (settings_.progress) settings_.progress(progress_);
   }
 
@@ -113,23 +113,23 @@ class Crew {
   CampaignProgress progress_;
 };
 
-/// What else than held nodes carries the body, and how far it sags.
+/// Facts about the foundation and the weight of the body.
 void add_supports(const CampaignContext& context, const CampaignSettings& settings,
                   CampaignReport& report) {
   if (const auto& foundation = context.body.foundation; !foundation.empty())
     report.facts.emplace_back("facets_on_springs", std::to_string(foundation.size()));
   if (!settings.gravity.acts()) return;
-  const double sag = context.rest.colwise().norm().maxCoeff();
-  report.facts.emplace_back("max_gravity_displacement_m", std::to_string(sag));
+  const double largest = context.rest.colwise().norm().maxCoeff();
+  report.facts.emplace_back("max_gravity_displacement_m", std::to_string(largest));
   report.facts.emplace_back("min_jacobian_before_touch", std::to_string(context.at_rest.min_J));
 }
 
 }  // namespace
 
 Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
-                    FactorCache* kept) {
+                    FactorCache* cache) {
   const auto start = std::chrono::steady_clock::now();
-  const auto passed = [&] {
+  const auto elapsed = [&] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   check_indentation(settings.indentation);
@@ -139,17 +139,17 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
                  tool.edge_radius, tool.length};
   curves.depth = settings.indentation.depth;
   curves.lateral_travel = settings.indentation.lateral_travel;
-  for (const auto vertex : chosen_places(body, settings)) {
+  for (const auto vertex : numbers_of_results(body, settings)) {
     curves.sites.emplace_back();
     curves.sites.back().vertex = vertex;
   }
-  const std::vector<std::size_t> open = take_over(settings.known, curves);
-  const CampaignContext context(body, settings, Engine::SharedFactor, kept);
-  report.set_up_seconds = passed();
-  if (!open.empty()) Crew(context, settings, open, curves).run();
+  const std::vector<std::size_t> open = copy_known(settings.known, curves);
+  const CampaignContext context(body, settings, Engine::SharedFactor, cache);
+  report.set_up_seconds = elapsed();
+  if (!open.empty()) OpenSites(context, settings, open, curves).run();
 
   report.unknowns = context.model.pattern().n;
-  report.seconds = passed();
+  report.seconds = elapsed();
   for (const auto& site : curves.sites) report.cpu_seconds += site.cpu_seconds;
   report.facts = {
       {"element", name_of(settings.dilatation)},
@@ -159,7 +159,7 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
       {"blas_kernel", blas_kernel()},
       {"solver", solver_versions()}};
   if (settings.indentation.refine_under_tool)
-    report.facts.emplace_back("under_the_tool", "elements divided in eight");
+    report.facts.emplace_back("under_the_tool", "elements divided into eight");
   add_supports(context, settings, report);
   return curves;
 }

@@ -16,25 +16,25 @@ namespace palpate::fem {
 /// What the campaign did, for the log and the provenance.
 struct CampaignReport {
   double seconds = 0;
-  double set_up_seconds = 0;  ///< on the clock, before the first site
-  double cpu_seconds = 0;     ///< of the sites
+  double set_up_seconds = 0;  ///< wall-clock time before the first site
+  double cpu_seconds = 0;     ///< sum over the sites
   std::int64_t unknowns = 0;
   std::vector<std::pair<std::string, std::string>> facts;  ///< BLAS kernel, factor size, versions
 };
 
 class FactorCache;
 
-/// The sites come back in ascending order of vertex whatever the number of threads. A site whose
-/// solve failed is data: its status, reason and partial curve are kept.
-/// @param kept  the factor of earlier campaigns on this body, which on a large mesh takes as long
-/// as
-///   dozens of sites; may be null. With the same laws it changes no bit.
-/// @throws Error(Geometry) when the body finds no equilibrium under its weight.
+/// Presses every site. The results are in ascending order of vertex, whatever the number of
+/// threads. A site whose solve failed is data, with its status, reason and partial curve.
+/// @param cache  the factor of earlier campaigns on this body; on a large mesh a factorization
+/// takes
+///   as long as dozens of sites. May be null. With the same laws the bits are the same.
+/// @throws Error(Geometry) when the body has no equilibrium under its weight.
 /// @throws Error(Configuration) for constants out of range (named, with value and range), a region
-///   without a law, a law without a region, a held depth beyond the depth, a vertex that is no
-///   site.
+///   without a law, a law without a region, a lateral depth that exceeds the depth, a vertex that
+///   is not a site.
 Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
-                    FactorCache* kept = nullptr);
+                    FactorCache* cache = nullptr);
 
 /// Displacement of the nodes of the body (corner nodes, same order as Body::nodes) for one site at
 /// the end of its normal path: for pictures and exports.

@@ -13,8 +13,8 @@ namespace palpate::fem {
 
 namespace {
 
-/// Penalty over E/R: the gap it leaves is micrometres for a tool of millimetres, a change of the
-/// force of about 0.1 %.
+/// Penalty over E/R: the penetration is micrometres for a tool of millimetres, which changes the
+/// force by about 0.1 %.
 constexpr double kContactStiffness = 5000;
 }  // namespace
 
@@ -47,14 +47,14 @@ void check_refinement(const Body& body, const CampaignSettings& settings, Engine
 }  // namespace
 
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
-                                 FactorCache* kept)
+                                 FactorCache* cache)
     : body(b),
       points(settings.points),
       indentation(settings.indentation),
       engine(e),
       model(b, laws_of_regions(b, settings.materials), settings.dilatation, settings.gravity),
-      permutation(kept != nullptr ? kept->permutation(model.pattern())
-                                  : nested_dissection(model.pattern())),
+      permutation(cache != nullptr ? cache->permutation(model.pattern())
+                                   : nested_dissection(model.pattern())),
       rest(equilibrium_under_weight(model, permutation, b.name)),
       at_rest(model.energy(rest)) {
   use_one_thread_per_site();
@@ -64,8 +64,8 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
   std::vector<double> K;
   model.stiffness(rest, K);
   rest_factor =
-      kept != nullptr
-          ? kept->factor_of(model.pattern(), K, body.name, settings.memory, settings.threads)
+      cache != nullptr
+          ? cache->factor_of(model.pattern(), K, body.name, settings.memory, settings.threads)
           : std::make_shared<RestFactor>(model.pattern(), permutation, K, body.name,
                                          settings.memory, settings.threads);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What all sites of a campaign share.
+// Data that all sites of a campaign share.
 #pragma once
 
 #include <memory>
@@ -13,17 +13,18 @@
 
 namespace palpate::fem {
 
-/// Which solver finds the equilibria.
+/// The solver of the equilibria.
 enum class Engine {
   Direct,       ///< Newton with a factorization of the whole body per iteration: the reference
   SharedFactor  ///< one factor for all sites and a window around the tool; Direct where that fails
 };
 
-/// What all sites share: the model, the factor of the rest stiffness, the settings.
+/// What all sites share: the model, the factor of the rest stiffness, the settings. Read-only for
+/// sites but for its lock.
 struct CampaignContext {
-  /// `kept`: shared with earlier campaigns on the body; may be null.
+  /// `cache`: shared with earlier campaigns on the body; may be null.
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
-                  FactorCache* kept = nullptr);
+                  FactorCache* cache = nullptr);
 
   /// The point and direction of a response vertex; of a point of the settings, by its index, when
   /// there are any.
@@ -44,8 +45,8 @@ struct CampaignContext {
   mutable std::mutex direct_solve;                ///< locked while a site factorizes the whole body
 };
 
-/// The largest Young's modulus at rest behind the boundary, and a multiple of it over the radius of
-/// the tool. What lies deeper must not stiffen the contact.
+/// From the largest Young's modulus at rest of the regions at the boundary: stiffer regions inside
+/// must not stiffen the contact.
 ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& settings,
                                    const SolidModel& model);
 

@@ -14,8 +14,9 @@ namespace palpate::fem {
 /// twice, or constants out of range.
 std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMaterial>& materials);
 
-/// The law of a region, its fibres where they depend on the body as samples of it.
-/// @throws Error(Configuration) as fibres_of_potential, and where a file of fibres was not read.
+/// The law of a region; fibres that depend on the body as samples of it.
+/// @throws Error(Configuration) as fibres_of_potential, and where the file of the fibres was not
+/// read.
 LawConstants placed_on(const Body& body, std::int32_t region, const LawConstants& law);
 
 }  // namespace palpate::fem

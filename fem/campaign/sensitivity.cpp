@@ -19,12 +19,11 @@
 namespace palpate::fem {
 namespace {
 
-/// A constant as the tangent-linear model needs it: the body with a little more and a little less
-/// of it. The laws are smooth in their constants, so that central differences over 1e-5 are exact
-/// to about 1e-9.
+/// The body with a slightly larger and a slightly smaller value of one constant. The laws are
+/// smooth in their constants: central differences over 1e-5 are exact to about 1e-9.
 struct Varied {
   SolidModel more, less;
-  double width;    ///< between the two values
+  double width;    ///< difference of the two values
   double penalty;  ///< d(ln eps)/d(constant)
 
   /// d(internal forces)/d(constant).
@@ -36,15 +35,15 @@ struct Varied {
   }
 };
 
-/// With gravity, where the tool touches would depend on the constants through the sag.
-void refuse_what_is_not_differentiated(const CampaignSettings& settings) {
+/// With gravity the point of first touch would depend on the constants.
+void refuse_unsupported(const CampaignSettings& settings) {
   if (settings.indentation.refine_under_tool)
     throw Error(ErrorKind::Configuration, "refine_under_tool",
-                "gradients are those of the elements of the body, not of divided ones",
-                "calibrate without solver.refine_under_tool, on a smaller mesh.element_size");
+                "gradients are not computed with refined elements",
+                "calibrate without solver.refine_under_tool, with a smaller mesh.element_size");
   if (!settings.gravity.acts()) return;
   throw Error(ErrorKind::Configuration, "gravity",
-              "the gradients by constants of a body that sags are not computed",
+              "gradients are not computed for a body under its weight",
               "calibrate without [gravity]");
 }
 
@@ -94,8 +93,8 @@ class Differentiator {
         solver_(context.model, window_,
                 [&batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch.solve(b, x); }) {}
 
-  /// Of the force along `direction`. False when the stiffness is not positive definite: the
-  /// equilibrium is at a limit point. `adjoint`: K^-1 dF/du.
+  /// Derivatives of the force along `direction`. False when the stiffness is not positive definite:
+  /// the equilibrium is at a limit point. `adjoint`: K^-1 dF/du.
   bool differentiate(const ToolContact& contact, const Displacement& u,
                      const Eigen::Vector3d& direction, std::vector<double>& slope,
                      Eigen::VectorXd& adjoint) {
@@ -111,13 +110,13 @@ class Differentiator {
     return true;
   }
 
-  /// Keep a state at which the surface is tied after it was observed, in the order of the path.
-  void keep(const ToolContact& contact, const Displacement& u) {
+  /// Records a state at which the surface is tied afterwards, in the order of the path.
+  void record(const ToolContact& contact, const Displacement& u) {
     bonded_.push_back({contact, u, residual_slopes(contact, u)});
   }
-  std::size_t kept() const { return bonded_.size(); }
+  std::size_t recorded() const { return bonded_.size(); }
 
-  /// Of a state whose ties were made at the first `count` of the states that were kept.
+  /// The same for a state whose ties were made at the first `count` recorded states.
   bool differentiate_tied(const ToolContact& contact, const Displacement& u, std::size_t count,
                           const Eigen::Vector3d& direction, std::vector<double>& slope) {
     Eigen::VectorXd adjoint;
@@ -156,7 +155,7 @@ class Differentiator {
     return slopes;
   }
 
-  /// K x = b; by a factor of K itself where the shared one does not get there.
+  /// K x = b; by a factor of K itself where the solve with the shared factor fails.
   bool solve(const ToolContact& contact, const Displacement& u, const Eigen::VectorXd& b,
              Eigen::VectorXd& x) {
     if (solver_.linearize(contact, u) && solver_.solve(b, x)) return true;
@@ -181,7 +180,7 @@ bool is_among(double depth, const std::vector<double>& depths) {
                      [&](double d) { return std::abs(d - depth) < 1e-9 * depth; });
 }
 
-/// Presses one site, moves the tool sideways where asked, and differentiates at the stops.
+/// Follows the normal path and the lateral paths of one site and differentiates at the stops.
 class SiteDifferentiation {
  public:
   SiteDifferentiation(const CampaignContext& context, const std::vector<Varied>& constants,
@@ -190,7 +189,7 @@ class SiteDifferentiation {
       : point_(context.press_point(vertex)),
         lateral_(lateral),
         depths_(context.indentation.lateral_depths),
-        stuck_(context.indentation.friction == ToolFriction::NoSlip),
+        no_slip_(context.indentation.friction == ToolFriction::NoSlip),
         differentiator_(context, constants, batch, point_),
         solver_(context, &batch) {
     result_.vertex = vertex;
@@ -212,16 +211,17 @@ class SiteDifferentiation {
     if (is_among(sample.displacement, depths_)) {
       ForceSensitivity s{sample.displacement, dot(sample.force, point_.inward), {}};
       const Eigen::Vector3d inward = to_eigen(point_.inward);
-      keep(differentiator_.differentiate_tied(contact, u, differentiator_.kept(), inward, s.slope),
-           s, result_.samples);
+      add(differentiator_.differentiate_tied(contact, u, differentiator_.recorded(), inward,
+                                             s.slope),
+          s, result_.samples);
     }
-    bool held = false;
+    bool starts_lateral = false;
     for (const LateralPlan& path : lateral_)
-      held = held || is_among(sample.displacement, {path.lateral_depth});
-    if (held || stuck_) differentiator_.keep(contact, u);
+      starts_lateral = starts_lateral || is_among(sample.displacement, {path.lateral_depth});
+    if (starts_lateral || no_slip_) differentiator_.record(contact, u);
     for (const LateralPlan& path : lateral_)
       if (is_among(sample.displacement, {path.lateral_depth}))
-        tied_when_held_[path.lateral_depth] = differentiator_.kept();
+        ties_at_start_[path.lateral_depth] = differentiator_.recorded();
   }
 
   void moved(const LateralPlan& path, const ToolContact& contact, const Displacement& u,
@@ -235,12 +235,12 @@ class SiteDifferentiation {
                                               }) -
                                  lateral_.begin());
     const Eigen::Vector3d direction = to_eigen(path.direction);
-    keep(differentiator_.differentiate_tied(contact, u, tied_when_held_.at(path.lateral_depth),
-                                            direction, s.slope),
-         s, result_.lateral[index]);
+    add(differentiator_.differentiate_tied(contact, u, ties_at_start_.at(path.lateral_depth),
+                                           direction, s.slope),
+        s, result_.lateral[index]);
   }
 
-  void keep(bool found, const ForceSensitivity& s, std::vector<ForceSensitivity>& samples) {
+  void add(bool found, const ForceSensitivity& s, std::vector<ForceSensitivity>& samples) {
     if (found)
       samples.push_back(s);
     else if (result_.reason.empty())
@@ -250,14 +250,14 @@ class SiteDifferentiation {
   PressPoint point_;
   const std::vector<LateralPlan>& lateral_;
   const std::vector<double>& depths_;
-  bool stuck_;
-  std::map<double, std::size_t> tied_when_held_;  ///< states kept up to each held depth
+  bool no_slip_;
+  std::map<double, std::size_t> ties_at_start_;  ///< recorded states up to each lateral depth
   Differentiator differentiator_;
   SiteSolver solver_;
   SiteSensitivity result_;
 };
 
-/// Of a site that is differentiated: beside what its paths need, the tangent of the whole body.
+/// Memory of a site that is differentiated: that of its paths and the tangent of the whole body.
 double bytes_of(const CampaignContext& context, std::int32_t vertex) {
   return bytes_of_site(context, vertex) +
          static_cast<double>(sizeof(double)) * context.model.pattern().nonzeros();
@@ -269,15 +269,15 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
                                              const std::vector<double>& depths,
                                              const std::vector<RegionConstant>& constants,
                                              const std::vector<std::vector<LateralPlan>>& lateral,
-                                             FactorCache* kept) {
-  refuse_what_is_not_differentiated(settings);
+                                             FactorCache* cache) {
+  refuse_unsupported(settings);
   CampaignSettings normal = settings;
   normal.indentation.lateral_depths = depths;  // the states that the path must pass
   normal.indentation.depth = *std::max_element(depths.begin(), depths.end());
   normal.indentation.azimuths.clear();  // no lateral paths
-  // An equilibrium without friction does not depend on the way there: the depths are steps enough.
+  // An equilibrium without friction does not depend on the path: no increments between the depths.
   if (normal.indentation.friction == ToolFriction::Frictionless) normal.indentation.increments = 1;
-  normal.indentation.lateral_travel = 0;  // only how far candidates of the contact reach
+  normal.indentation.lateral_travel = 0;  // only the reach of the contact candidates
   for (const auto& plans : lateral) {
     for (const LateralPlan& plan : plans) {
       normal.indentation.depth = std::max(normal.indentation.depth, plan.lateral_depth);
@@ -289,7 +289,7 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
   const std::vector<LateralPlan> none;
   std::vector<SiteSensitivity> results(settings.sites.size());
   if (results.empty()) return results;
-  const CampaignContext context(body, normal, Engine::SharedFactor, kept);
+  const CampaignContext context(body, normal, Engine::SharedFactor, cache);
   std::vector<Varied> derivatives;
   for (const RegionConstant& constant : constants) {
     derivatives.push_back(varied(body, normal, constant));

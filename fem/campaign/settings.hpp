@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a campaign is asked to do.
+// Settings of a campaign.
 #pragma once
 
 #include <cstdint>
@@ -33,39 +33,39 @@ struct IndentationSettings {
       0.002, 0.004, 0.006};           ///< m, where lateral paths start; each at most `depth`
   std::vector<double> azimuths{0.0};  ///< rad, from the first tangent direction of the site
   double force_tolerance = 1e-4;      ///< relative error of the tool force allowed to the solver
-  /// Elements around the tool are divided in eight, for each site anew: a contact that is smaller
-  /// than a facet is met where elements of half the size meet it.
+  /// Divide the elements around the tool into eight, for each site anew: for contacts smaller than
+  /// a facet.
   bool refine_under_tool = false;
 };
 
-/// Where the tool is pressed: any point of the boundary, and the direction of its normal path.
+/// A point of the boundary where the tool is pressed, and the direction of its normal path.
 struct PressPoint {
   Vec3 position{};  ///< m
   Vec3 inward{};    ///< unit, into the body
 };
 
-/// State of a campaign, told after each finished site.
+/// State of a campaign, reported after each finished site.
 struct CampaignProgress {
   std::int64_t done = 0, failed = 0, total = 0;
-  std::int64_t known = 0;    ///< of `done`: taken over, not computed now
-  std::int64_t running = 0;  ///< sites under way: they run abreast, so that they end in waves
+  std::int64_t known = 0;    ///< of `done`: results of an earlier run
+  std::int64_t running = 0;  ///< sites run concurrently, in batches, and finish in groups
 };
 
 struct CampaignSettings {
   std::vector<RegionMaterial> materials;  ///< one for each region of the body
   Dilatation dilatation = Dilatation::Mean;
-  /// The body sags under its weight first; depths, work and energy are counted from there.
+  /// The weight is applied first; depths, work and energy are counted from that state.
   Gravity gravity;
   IndentationSettings indentation;
   std::vector<std::int32_t> sites;  ///< response vertices; empty = every vertex with is_site
   /// Pressed instead of response vertices when not empty; the `vertex` of a result is then the
-  /// index of its point. Such curves are of no use to a fit.
+  /// index of its point. Such curves cannot be fitted.
   std::vector<PressPoint> points;
   int threads = 1;
-  double memory = 0;  ///< bytes the process may use; 0: no bound. Fewer sites then run abreast
-  std::vector<SiteCurves> known;  ///< results of an earlier run of the same campaign: not repeated
+  double memory = 0;  ///< bytes the process may use; 0: no bound. Limits the concurrent sites
+  std::vector<SiteCurves> known;  ///< results of an earlier run of the campaign: not repeated
   /// Called for each site as it finishes, and then with the progress; from one thread at a time.
-  /// An exception ends the campaign once the sites under way are done, and is passed on.
+  /// After an exception no further site starts; it is rethrown once the running sites are done.
   std::function<void(const SiteCurves&)> finished;
   std::function<void(const CampaignProgress&)> progress;
 };

@@ -11,7 +11,8 @@ namespace palpate::fem {
 
 namespace {
 
-/// Of the window, over the tool radius. A wider one costs factorizations, a narrower one solves.
+/// Radius of the window over the tool radius. A wider one costs factorizations, a narrower one
+/// solves.
 constexpr double kWindowRadius = 2;
 
 /// Distance of a point from a segment.
@@ -33,8 +34,8 @@ double distance(const Eigen::Vector3d& x, const std::array<Eigen::Vector3d, 3>& 
   return above ? std::abs((x - corner[0]).dot(normal)) : nearest;
 }
 
-/// The elements behind the facets that come within `reach` of a point, and those that fraction
-/// three corners with these facets.
+/// The elements behind the facets within `reach` of a point, and those with three corners among the
+/// corners of these facets.
 std::vector<int> elements_near(const QuadraticMesh& mesh, const Eigen::Vector3d& site,
                                double reach) {
   std::vector<bool> corner_of_near(to_index(mesh.nodes()), false);

@@ -42,11 +42,11 @@ std::array<double, 6> facet_shape(double L0, double L1, bool linear) {
 
 namespace {
 
-/// c of a tie. Half-spaces pressed by a sphere, elements of half to twice the contact radius: their
-/// lateral stiffness is within 4 % of Mindlin's in the mean over places of the sphere.
+/// c of a tie, chosen so that the lateral stiffness of a half-space under a sphere is that of
+/// Mindlin in the mean over positions of the sphere (test_no_slip_contact).
 constexpr double kTie = 5;
-/// What a share of 1 lacks in (1 - phi), so that k stays finite: the tie is then a thousand times
-/// as stiff as the elements.
+/// Added to 1 - phi so that k stays finite: at phi = 1 the tie is a thousand times as stiff as the
+/// elements.
 constexpr double kRigidTie = 1e-3;
 
 }  // namespace
@@ -120,8 +120,7 @@ Eigen::Matrix3d ToolContact::hessian_at(const Point& point, const Eigen::Vector3
 double ToolContact::energy(const Displacement& u) const {
   double sum = 0;
   for (const Point& point : points_) sum += point.area * energy_at(point, position(point, u));
-  for (const Tie& tie : ties_)
-    sum += 0.5 * tie.stiffness * slip(tie, position(tie.node, u)).squaredNorm();
+  for (const Tie& tie : ties_) sum += energy_at(tie, position(tie, u));
   return sum;
 }
 
@@ -138,7 +137,7 @@ void ToolContact::add_forces(const SolidModel& model, const Displacement& u,
   }
   for (const Tie& tie : ties_)
     if (const int first = model.equation(tie.node); first >= 0)
-      f.segment<3>(first) += tie.stiffness * slip(tie, position(tie.node, u));
+      f.segment<3>(first) += gradient_at(tie, position(tie, u));
 }
 
 void ToolContact::add_stiffness(const SolidModel& model, const Displacement& u, bool geometric,
@@ -182,38 +181,39 @@ std::map<int, double> ToolContact::tie_stiffnesses(const Displacement& u, double
   }
   std::map<int, double> stiffness;
   for (const auto& [node, surface] : around) {
-    const double share = surface.in_contact / surface.area;
-    if (share > 0)
-      stiffness[node] = kTie * young_ * std::sqrt(surface.area) * share / (1 + kRigidTie - share);
+    const double fraction = surface.in_contact / surface.area;
+    if (fraction > 0)
+      stiffness[node] =
+          kTie * young_ * std::sqrt(surface.area) * fraction / (1 + kRigidTie - fraction);
   }
   return stiffness;
 }
 
-void ToolContact::settle_beneath(const Displacement& u) {
+void ToolContact::decide_beneath(const Displacement& u) {
   if (!tool_.has_sharp_edge()) return;
   for (Point& point : points_) {
     const Eigen::Vector3d x = position(point, u);
-    // What touches the plane of the end stays as it is: a change would cost energy. Not so at
-    // first, when rounding alone can have put the surface behind that plane.
-    if (settled_ && tool_.beyond_end(x) < 0) continue;
+    // A point behind the plane of the end keeps its state: a change would change the energy. Not so
+    // at first, when rounding may have put the surface behind that plane.
+    if (decided_ && tool_.beyond_end(x) < 0) continue;
     point.beneath = tool_.from_axis(x) < tool_.geometry.radius;
   }
-  settled_ = true;
+  decided_ = true;
 }
 
 void ToolContact::bond(const Displacement& u, double closeness) {
-  settle_beneath(u);
+  decide_beneath(u);
   std::map<int, double> tied;
   for (const Tie& tie : ties_) tied[tie.node] += tie.stiffness;
   for (const auto& [node, stiffness] : tie_stiffnesses(u, closeness))
     if (const double more = stiffness - tied[node]; more > 0)
-      ties_.push_back({node, more, position(node, u) - tool_.tip});
+      ties_.push_back({node, more, mesh_->X.col(node) + u.col(node) - tool_.tip});
 }
 
 Eigen::Vector3d ToolContact::tool_force(const Displacement& u) const {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (const Point& point : points_) force -= point.area * gradient_at(point, position(point, u));
-  for (const Tie& tie : ties_) force -= tie.stiffness * slip(tie, position(tie.node, u));
+  for (const Tie& tie : ties_) force -= gradient_at(tie, position(tie, u));
   return force;
 }
 
@@ -223,11 +223,11 @@ void ToolContact::add_tool_force_gradient(const SolidModel& model, const Displac
   for (const Point& point : points_) {
     const Eigen::Matrix3d H = hessian_at(point, position(point, u), true);
     if (H.isZero(0)) continue;
-    const Eigen::Vector3d pull = point.area * H * direction;
+    const Eigen::Vector3d change = point.area * H * direction;
     const Facet& facet = facets_[to_index(point.facet)];
     for (std::size_t a = 0; a < 6; ++a) {
       const int first = model.equation(facet[a]);
-      if (first >= 0) g.segment<3>(first) -= point.N[a] * pull;
+      if (first >= 0) g.segment<3>(first) -= point.N[a] * change;
     }
   }
   for (const Tie& tie : ties_)
@@ -258,11 +258,11 @@ double ToolContact::penetration(const Displacement& u) const {
   return deepest;
 }
 
-std::vector<double> ToolContact::facet_pressures(const Displacement& u) const {
-  std::vector<double> pushed(facets_.size(), 0);
+std::vector<double> ToolContact::facet_forces(const Displacement& u) const {
+  std::vector<double> force(facets_.size(), 0);
   for (const Point& point : points_) {
     const Eigen::Vector3d x = position(point, u);
-    pushed[to_index(point.facet)] -=
+    force[to_index(point.facet)] -=
         point.area * gradient_at(point, x).dot(gap_derivatives(x).normal);
   }
   std::map<int, std::vector<std::size_t>> facets_of;
@@ -272,17 +272,17 @@ std::vector<double> ToolContact::facet_pressures(const Displacement& u) const {
       if (const auto found = facets_of.find(node); found != facets_of.end())
         found->second.push_back(f);
   for (const Tie& tie : ties_) {
-    const Eigen::Vector3d x = position(tie.node, u);
+    const Eigen::Vector3d x = position(tie, u);
     const double push = -tie.stiffness * slip(tie, x).dot(gap_derivatives(x).normal);
-    const auto& sharing = facets_of.at(tie.node);
-    for (const std::size_t f : sharing) pushed[f] += push / static_cast<double>(sharing.size());
+    const auto& around = facets_of.at(tie.node);
+    for (const std::size_t f : around) force[f] += push / static_cast<double>(around.size());
   }
-  return pushed;
+  return force;
 }
 
 double ToolContact::tension(const Displacement& u) const {
   double sum = 0;
-  for (const double pushed : facet_pressures(u)) sum += std::max(0.0, -pushed);
+  for (const double force : facet_forces(u)) sum += std::max(0.0, -force);
   return sum;
 }
 

@@ -13,21 +13,22 @@ namespace palpate::fem {
 
 namespace {
 
-/// A facet that flips costs one iteration.
+/// A facet that comes into contact or leaves it costs about one iteration.
 constexpr int kPatchIterations = 50;
 constexpr int kPatchHalvings = 10;
-/// Of the stiffening, where the model of the patch is not convex; with all of it it is.
-constexpr std::array<double, 5> kStiffeningShares{0, 0.003, 0.03, 0.3, 1};
+/// Fractions of the stiffening to try where the model of the patch is not convex; with all of it
+/// the model is convex.
+constexpr std::array<double, 5> kStiffeningFractions{0, 0.003, 0.03, 0.3, 1};
 
 }  // namespace
 
 ContactPatch::ContactPatch(const ToolContact& contact, const SolidModel& model,
                            const Displacement& u)
-    : near_(contact.facets_.size(), 0) {
+    : near_(contact.facets().size(), 0) {
   std::set<int> touched;  // nodes of the facets in contact
   double nearest = std::numeric_limits<double>::infinity();
   int nearest_facet = -1;
-  for (const auto& point : contact.points_) {
+  for (const auto& point : contact.points()) {
     const Eigen::Vector3d x = contact.position(point, u);
     const double gap = contact.gap(point, x);
     if (gap < nearest) {
@@ -35,33 +36,33 @@ ContactPatch::ContactPatch(const ToolContact& contact, const SolidModel& model,
       nearest_facet = point.facet;
     }
     if (gap < 0)
-      touched.insert(contact.facets_[to_index(point.facet)].begin(),
-                     contact.facets_[to_index(point.facet)].end());
+      touched.insert(contact.facets()[to_index(point.facet)].begin(),
+                     contact.facets()[to_index(point.facet)].end());
   }
-  for (const auto& tie : contact.ties_) touched.insert(tie.node);
+  for (const auto& tie : contact.ties()) touched.insert(tie.node);
   if (touched.empty() && nearest_facet >= 0)
-    touched.insert(contact.facets_[to_index(nearest_facet)].begin(),
-                   contact.facets_[to_index(nearest_facet)].end());
+    touched.insert(contact.facets()[to_index(nearest_facet)].begin(),
+                   contact.facets()[to_index(nearest_facet)].end());
   for (std::size_t f = 0; f < near_.size(); ++f) {
-    const Facet& facet = contact.facets_[f];
+    const Facet& facet = contact.facets()[f];
     if (std::none_of(facet.begin(), facet.end(), [&](int n) { return touched.contains(n); }))
       continue;
     near_[f] = 1;
-    for (const int node : facet) node_place_[node] = -1;
+    for (const int node : facet) first_of_[node] = -1;
   }
   std::map<int, int> free;  // first unknown to node
-  for (const auto& [node, place] : node_place_)
-    if (model.equation(node) >= 0) free[model.equation(node)] = node;
+  for (const auto& entry : first_of_)
+    if (const int node = entry.first; model.equation(node) >= 0) free[model.equation(node)] = node;
   for (const auto& [first, node] : free) {
-    node_place_[node] = static_cast<int>(unknowns_.size());
+    first_of_[node] = static_cast<int>(unknowns_.size());
     for (int i = 0; i < 3; ++i) unknowns_.push_back(first + i);
   }
-  for (std::size_t i = 0; i < contact.points_.size(); ++i) {
-    const auto& point = contact.points_[i];
+  for (std::size_t i = 0; i < contact.points().size(); ++i) {
+    const auto& point = contact.points()[i];
     if (near_[to_index(point.facet)] == 0) continue;
     Point mine{i, {}, Eigen::Vector3d::Zero()};
     for (std::size_t a = 0; a < 6; ++a)
-      mine.place[a] = node_place_.at(contact.facets_[to_index(point.facet)][a]);
+      mine.first[a] = first_of_.at(contact.facets()[to_index(point.facet)][a]);
     points_.push_back(mine);
   }
 }
@@ -70,51 +71,50 @@ bool ContactPatch::covers(const ToolContact& contact, const Displacement& u) con
   const auto inside = [&](const auto& point) {
     return near_[to_index(point.facet)] != 0 || contact.gap(point, contact.position(point, u)) >= 0;
   };
-  const auto held = [&](const auto& tie) { return node_place_.contains(tie.node); };
-  return std::all_of(contact.points_.begin(), contact.points_.end(), inside) &&
-         std::all_of(contact.ties_.begin(), contact.ties_.end(), held);
+  const auto known = [&](const auto& tie) { return first_of_.contains(tie.node); };
+  return std::all_of(contact.points().begin(), contact.points().end(), inside) &&
+         std::all_of(contact.ties().begin(), contact.ties().end(), known);
 }
 
 Eigen::VectorXd ContactPatch::difference(const Displacement& from, const Displacement& to) const {
   Eigen::VectorXd d(size());
-  for (const auto& [node, place] : node_place_)
-    if (place >= 0) d.segment<3>(place) = to.col(node) - from.col(node);
+  for (const auto& [node, first] : first_of_)
+    if (first >= 0) d.segment<3>(first) = to.col(node) - from.col(node);
   return d;
 }
 
 void ContactPatch::start_from(const ToolContact& contact, const Displacement& u) {
-  for (Point& point : points_) point.x = contact.position(contact.points_[point.index], u);
+  for (Point& point : points_) point.x = contact.position(contact.points()[point.index], u);
   ties_.clear();
-  for (std::size_t i = 0; i < contact.ties_.size(); ++i) {
-    const int node = contact.ties_[i].node;
-    ties_.push_back({i, node_place_.at(node), contact.position(node, u)});
+  for (std::size_t i = 0; i < contact.ties().size(); ++i) {
+    const ToolContact::Tie& tie = contact.ties()[i];
+    ties_.push_back({i, first_of_.at(tie.node), contact.position(tie, u)});
   }
 }
 
 Eigen::Vector3d ContactPatch::position(const ToolContact& contact, const Point& point,
                                        const Eigen::VectorXd& d) const {
-  const auto& N = contact.points_[point.index].N;
+  const auto& N = contact.points()[point.index].N;
   Eigen::Vector3d x = point.x;
   for (std::size_t a = 0; a < 6; ++a)
-    if (point.place[a] >= 0) x += N[a] * d.segment<3>(point.place[a]);
+    if (point.first[a] >= 0) x += N[a] * d.segment<3>(point.first[a]);
   return x;
 }
 
-Eigen::Vector3d ContactPatch::slip(const ToolContact& contact, const Tie& tie,
-                                   const Eigen::VectorXd& d) const {
+Eigen::Vector3d ContactPatch::position(const Tie& tie, const Eigen::VectorXd& d) {
   Eigen::Vector3d x = tie.x;
-  if (tie.place >= 0) x += d.segment<3>(tie.place);
-  return contact.slip(contact.ties_[tie.index], x);
+  if (tie.first >= 0) x += d.segment<3>(tie.first);
+  return x;
 }
 
 double ContactPatch::energy(const ToolContact& contact, const Eigen::VectorXd& d) const {
   double sum = 0;
   for (const Point& point : points_) {
-    const auto& source = contact.points_[point.index];
+    const auto& source = contact.points()[point.index];
     sum += source.area * contact.energy_at(source, position(contact, point, d));
   }
   for (const Tie& tie : ties_)
-    sum += 0.5 * contact.ties_[tie.index].stiffness * slip(contact, tie, d).squaredNorm();
+    sum += contact.energy_at(contact.ties()[tie.index], position(tie, d));
   return sum;
 }
 
@@ -123,19 +123,19 @@ double ContactPatch::gradient(const ToolContact& contact, const Eigen::VectorXd&
   double sum = 0;
   g.setZero(d.size());
   for (const Point& point : points_) {
-    const auto& source = contact.points_[point.index];
+    const auto& source = contact.points()[point.index];
     const Eigen::Vector3d x = position(contact, point, d);
     const Eigen::Vector3d force = source.area * contact.gradient_at(source, x);
     if (force.isZero(0)) continue;
     sum += source.area * contact.energy_at(source, x);
     for (std::size_t a = 0; a < 6; ++a)
-      if (point.place[a] >= 0) g.segment<3>(point.place[a]) += source.N[a] * force;
+      if (point.first[a] >= 0) g.segment<3>(point.first[a]) += source.N[a] * force;
   }
   for (const Tie& tie : ties_) {
-    const double stiffness = contact.ties_[tie.index].stiffness;
-    const Eigen::Vector3d s = slip(contact, tie, d);
-    sum += 0.5 * stiffness * s.squaredNorm();
-    if (tie.place >= 0) g.segment<3>(tie.place) += stiffness * s;
+    const auto& source = contact.ties()[tie.index];
+    const Eigen::Vector3d x = position(tie, d);
+    sum += contact.energy_at(source, x);
+    if (tie.first >= 0) g.segment<3>(tie.first) += contact.gradient_at(source, x);
   }
   return sum;
 }
@@ -143,36 +143,37 @@ double ContactPatch::gradient(const ToolContact& contact, const Eigen::VectorXd&
 void ContactPatch::add_hessian(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
                                Eigen::MatrixXd& H) const {
   for (const Point& point : points_) {
-    const auto& source = contact.points_[point.index];
+    const auto& source = contact.points()[point.index];
     const Eigen::Vector3d x = position(contact, point, d);
     if (contact.gradient_at(source, x).isZero(0)) continue;
     const Eigen::Matrix3d h = source.area * contact.hessian_at(source, x, geometric);
     for (std::size_t a = 0; a < 6; ++a)
       for (std::size_t b = 0; b < 6; ++b) {
-        if (point.place[b] < 0 || point.place[a] < point.place[b]) continue;
-        H.block<3, 3>(point.place[a], point.place[b]) += source.N[a] * source.N[b] * h;
+        if (point.first[b] < 0 || point.first[a] < point.first[b]) continue;
+        H.block<3, 3>(point.first[a], point.first[b]) += source.N[a] * source.N[b] * h;
       }
   }
   for (const Tie& tie : ties_)
-    if (tie.place >= 0)
-      H.diagonal().segment<3>(tie.place).array() += contact.ties_[tie.index].stiffness;
+    if (tie.first >= 0)
+      H.diagonal().segment<3>(tie.first).array() += contact.ties()[tie.index].stiffness;
 }
 
 Eigen::Vector3d ContactPatch::tool_force(const ToolContact& contact,
                                          const Eigen::VectorXd& d) const {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (const Point& point : points_) {
-    const auto& source = contact.points_[point.index];
+    const auto& source = contact.points()[point.index];
     force -= source.area * contact.gradient_at(source, position(contact, point, d));
   }
-  for (const Tie& tie : ties_) force -= contact.ties_[tie.index].stiffness * slip(contact, tie, d);
+  for (const Tie& tie : ties_)
+    force -= contact.gradient_at(contact.ties()[tie.index], position(tie, d));
   return force;
 }
 
 namespace {
 
-/// The factor in H of S and the contact; of the contact without what can be negative in it where
-/// the whole has none. False when that has none either.
+/// Factorizes S and the Hessian of the contact into H; without the geometric term of the contact,
+/// which can be negative, where that fails. False when both fail.
 bool factorize_patch(const ContactPatch& patch, const ToolContact& contact,
                      const Eigen::MatrixXd& S, const Eigen::VectorXd& d, Eigen::MatrixXd& H) {
   for (const bool geometric : {true, false}) {
@@ -190,18 +191,18 @@ Eigen::VectorXd patch_minimum(const ContactPatch& patch, const ToolContact& cont
                               Eigen::VectorXd d, double tolerance, Eigen::MatrixXd& scratch) {
   Eigen::MatrixXd S = stiffness.S;
   Eigen::VectorXd contact_force;
-  std::size_t share = 0;
+  std::size_t fraction = 0;
   for (int iteration = 0; iteration < kPatchIterations; ++iteration) {
-    const double pushed = patch.gradient(contact, d, contact_force);
-    const Eigen::VectorXd pull = S * d, g = pull - load + contact_force;
+    const double contact_energy = patch.gradient(contact, d, contact_force);
+    const Eigen::VectorXd Sd = S * d, g = Sd - load + contact_force;
     if (g.norm() <= tolerance) break;
     if (!factorize_patch(patch, contact, S, d, scratch)) {
-      if (++share == kStiffeningShares.size()) break;
+      if (++fraction == kStiffeningFractions.size()) break;
       S = stiffness.S;
-      S.diagonal() += kStiffeningShares[share] * stiffness.stiffening;
+      S.diagonal() += kStiffeningFractions[fraction] * stiffness.stiffening;
       continue;
     }
-    const double energy = 0.5 * d.dot(pull) - load.dot(d) + pushed;
+    const double energy = 0.5 * d.dot(Sd) - load.dot(d) + contact_energy;
     const Eigen::VectorXd step = -solve_factorized(scratch, g);
     const double slope = g.dot(step);
     double length = 1;

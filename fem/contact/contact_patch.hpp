@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The contact as a function of the few unknowns that feel it.
+// The contact as a function of the few unknowns that it depends on.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,9 +13,9 @@ namespace palpate::fem {
 /// Round-off of an energy summed over the elements, relative.
 inline constexpr double kEnergyNoise = 1e-14;
 
-/// The facets in contact and those that share a node with them. Their free nodes are the unknowns
-/// of a small dense problem; d below is a change of these unknowns. Made for one contact, it serves
-/// its copies too, moved or bonded.
+/// The facets in contact and those with a common node. Their free nodes are the unknowns of a small
+/// dense problem; d below is a change of these unknowns. A patch made for one contact serves its
+/// copies too, moved or bonded.
 class ContactPatch {
  public:
   /// The patch at displacement u; without contact, around the facet nearest to the tool.
@@ -45,35 +45,37 @@ class ContactPatch {
  private:
   struct Point {
     std::size_t index;         ///< in the contact
-    std::array<int, 6> place;  ///< in d of the first unknown of each node, -1: none
+    std::array<int, 6> first;  ///< index into d of the first unknown of each node, -1: none
     Eigen::Vector3d x;         ///< at the start
   };
   struct Tie {
     std::size_t index;  ///< in the contact
-    int place;          ///< as above
+    int first;          ///< as above
     Eigen::Vector3d x;  ///< at the start
   };
 
   Eigen::Vector3d position(const ToolContact& contact, const Point& point,
                            const Eigen::VectorXd& d) const;
-  Eigen::Vector3d slip(const ToolContact& contact, const Tie& tie, const Eigen::VectorXd& d) const;
+  static Eigen::Vector3d position(const Tie& tie, const Eigen::VectorXd& d);
 
-  std::vector<char> near_;         ///< (facets of the contact)
-  std::map<int, int> node_place_;  ///< of every node of them, -1: none
+  std::vector<char> near_;       ///< (facets of the contact)
+  std::map<int, int> first_of_;  ///< index into d of every node of these facets, -1: none
   std::vector<int> unknowns_;
   std::vector<Point> points_;
-  std::vector<Tie> ties_;  ///< of the contact that the start was with
+  std::vector<Tie> ties_;  ///< of the contact at the start
 };
 
-/// The solid as the patch feels it, N/m, numbered as the patch. Under pressure it is often stable
-/// against its tool alone and S indefinite; S with `stiffening` on its diagonal is not.
+/// The stiffness of the solid condensed onto the patch, N/m, numbered as the patch. A compressed
+/// body is often stable only against its tool, and S indefinite; S with `stiffening` on its
+/// diagonal is positive definite.
 struct PatchStiffness {
   Eigen::MatrixXd S;
   Eigen::VectorXd stiffening;
 };
 
-/// The minimum over d of d S d/2 - load . d + E_c(d), sought by Newton's method from `d` until the
-/// gradient is within `tolerance`, N. `scratch` is of any size: it keeps its memory between calls.
+/// The minimum over d of d S d/2 - load . d + E_c(d), by Newton's method from `d` until the
+/// gradient is within `tolerance`, N. `scratch` may have any size; its memory is reused between
+/// calls.
 Eigen::VectorXd patch_minimum(const ContactPatch& patch, const ToolContact& contact,
                               const PatchStiffness& stiffness, const Eigen::VectorXd& load,
                               Eigen::VectorXd d, double tolerance, Eigen::MatrixXd& scratch);

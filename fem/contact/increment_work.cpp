@@ -17,9 +17,9 @@ constexpr std::array<Node, 5> kGauss{{{0.046910077030668, 0.118463442528095},
                                       {0.769234655052842, 0.239314335249683},
                                       {0.953089922969332, 0.118463442528095}}};
 
-/// What the forces at such a point are sought to be out of balance by, and may be, over those at
-/// the end.
-constexpr double kSought = 1e-3, kAllowed = 1e-2;
+/// Residual at a Gauss point that the solve aims at, and the largest that is accepted, over the
+/// forces at the end.
+constexpr double kTarget = 1e-3, kAllowed = 1e-2;
 
 ToolContact with_tip_at(const ToolContact& contact, const Eigen::Vector3d& tip) {
   ToolContact moved = contact;
@@ -37,14 +37,15 @@ Eigen::VectorXd forces(ContactPatch& patch, const ToolContact& contact, const Di
   return f;
 }
 
-double unbalanced(const ContactPatch& patch, const ToolContact& contact, const Eigen::MatrixXd& S,
-                  const Eigen::VectorXd& load, const Eigen::VectorXd& d) {
-  Eigen::VectorXd pushed;
-  patch.gradient(contact, d, pushed);
-  return (S * d - load + pushed).norm();
+double residual_norm(const ContactPatch& patch, const ToolContact& contact,
+                     const Eigen::MatrixXd& S, const Eigen::VectorXd& load,
+                     const Eigen::VectorXd& d) {
+  Eigen::VectorXd contact_force;
+  patch.gradient(contact, d, contact_force);
+  return (S * d - load + contact_force).norm();
 }
 
-/// S with S step = y besides.
+/// S updated so that S step = y.
 std::optional<PatchStiffness> with_secant(const PatchStiffness& stiffness,
                                           const Eigen::VectorXd& step, const Eigen::VectorXd& y) {
   const Eigen::VectorXd Ss = stiffness.S * step;
@@ -66,15 +67,16 @@ std::optional<double> work_between(ContactPatch& patch, const PatchStiffness& st
   const Eigen::VectorXd last = forces(patch, contact, after), first = forces(patch, moved, before);
   const auto secant = with_secant(stiffness, step, first - last);
   if (!secant) return std::nullopt;
-  const Eigen::Vector3d way = contact.tool().tip - from;
+  const Eigen::Vector3d travel = contact.tool().tip - from;
   Eigen::VectorXd d = Eigen::VectorXd::Zero(patch.size());
   Eigen::MatrixXd scratch;
   double work = 0;
   for (const Node& node : kGauss) {
-    moved = with_tip_at(contact, from + node.at * way);
-    d = patch_minimum(patch, moved, *secant, first, d, kSought * last.norm(), scratch);
-    if (unbalanced(patch, moved, secant->S, first, d) > kAllowed * last.norm()) return std::nullopt;
-    work += node.weight * patch.tool_force(moved, d).dot(way);
+    moved = with_tip_at(contact, from + node.at * travel);
+    d = patch_minimum(patch, moved, *secant, first, d, kTarget * last.norm(), scratch);
+    if (residual_norm(patch, moved, secant->S, first, d) > kAllowed * last.norm())
+      return std::nullopt;
+    work += node.weight * patch.tool_force(moved, d).dot(travel);
   }
   return work;
 }

@@ -19,7 +19,7 @@ Cell cell_of(const Eigen::Vector3d& x, double size) {
           static_cast<int>(std::floor(x[2] / size))};
 }
 
-/// The corners of a tetrahedron where they are now.
+/// The deformed corners of a tetrahedron.
 Eigen::Matrix<double, 3, 4> corners(const QuadraticMesh& mesh, int element, const Displacement& u) {
   Eigen::Matrix<double, 3, 4> x;
   for (int c = 0; c < 4; ++c) {
@@ -29,7 +29,7 @@ Eigen::Matrix<double, 3, 4> corners(const QuadraticMesh& mesh, int element, cons
   return x;
 }
 
-/// Well inside: not by rounding.
+/// Inside by more than rounding.
 bool contains(const Eigen::Matrix<double, 3, 4>& x, const Eigen::Vector3d& point) {
   Eigen::Matrix3d edges;
   for (int c = 0; c < 3; ++c) edges.col(c) = x.col(c + 1) - x.col(0);
@@ -59,7 +59,8 @@ SelfContact::SelfContact(const QuadraticMesh& mesh, const Eigen::Vector3d& centr
 }
 
 int SelfContact::entering_node(const Displacement& u) const {
-  double size = 0;  // of a cell: the largest extent of a tetrahedron, so that few cells hold each
+  double size =
+      0;  // of a cell: the largest extent of a tetrahedron, so that each lies in few cells
   for (const int e : tetrahedra_) {
     const auto x = corners(*mesh_, e, u);
     size = std::max(size, (x.rowwise().maxCoeff() - x.rowwise().minCoeff()).maxCoeff());

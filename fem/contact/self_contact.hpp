@@ -7,21 +7,21 @@
 
 namespace palpate::fem {
 
-/// Tells when a part of the surface enters another part of the body: contact of the body with
-/// itself is not modelled, and what follows its onset means nothing.
+/// Detects a part of the surface that enters another part of the body. Self-contact is not
+/// modelled: results after its onset are meaningless.
 class SelfContact {
  public:
-  /// Watches what lies within `reach` of `centre` at rest.
+  /// Checks nodes and elements within `reach` of `centre` at rest.
   SelfContact(const QuadraticMesh& mesh, const Eigen::Vector3d& centre, double reach);
 
-  /// A corner node of the boundary that lies inside a tetrahedron (its deformed corners) which is
-  /// no neighbour of it, nor of a neighbour; -1 when there is none.
+  /// A corner node of the boundary inside a tetrahedron with straight edges between its deformed
+  /// corners, where neither the node nor a neighbour is a corner of it; -1 when there is none.
   int entering_node(const Displacement& u) const;
 
  private:
   struct Watched {
     int node;
-    std::vector<int> ring;  ///< ascending: the node and all it shares a tetrahedron with
+    std::vector<int> ring;  ///< ascending: the node and the corners of all its tetrahedra
   };
 
   const QuadraticMesh* mesh_;

@@ -21,8 +21,8 @@ using Eigen::Vector3d;
               "give " + range + remedy);
 }
 
-/// Distance to a point, and to a line through it: `free` projects on the directions in which the
-/// distance grows (all of them for a point, those across the line for a line).
+/// Distance to a point or a line through it: `free` projects on the directions in which the
+/// distance grows (all for a point, those normal to the line for a line).
 Gap round_gap(const Vector3d& from_core, const Matrix3d& free, double radius) {
   const double distance = from_core.norm();
   const Vector3d n = from_core / distance;
@@ -41,9 +41,9 @@ OnAxis nearest_on_axis(const Tool& tool, const Vector3d& x) {
   return {centre + std::clamp(along, -half, half) * tool.axis, std::abs(along) > half};
 }
 
-/// A point relative to a disc, on the half plane through its axis. The disc is its core, the
-/// upright cylinder of radius R - e with a flat end at height e, thickened by the edge radius e.
-/// Within the core a point is pushed along the axis, however deep it is: a tool that moves in must
+/// A point relative to a disc, on the half plane through its axis. The disc is a core, the upright
+/// cylinder of radius R - e with a flat end at height e, thickened by the edge radius e. A point
+/// within the core is pushed along the axis, however deep it is, so that a tool that moves in does
 /// not push the points at its rim aside.
 struct AtDisc {
   Vector3d radial;    ///< unit, away from the axis (any direction on it)
@@ -100,11 +100,11 @@ void check_tool(const ToolGeometry& g) {
   if (!(std::isfinite(g.radius) && g.radius > 0))
     refuse("tool_radius", g.radius, "a finite radius > 0", "");
   if (g.shape != ToolShape::Disc && g.edge_radius != 0)
-    refuse("edge_radius", g.edge_radius, "none", ": only a disc has an edge");
+    refuse("edge_radius", g.edge_radius, "no edge_radius", ": only a disc has an edge");
   if (!(g.edge_radius >= 0 && g.edge_radius <= g.radius))
     refuse("edge_radius", g.edge_radius, "0 (a sharp edge) to the radius", " of the disc");
   if (g.shape != ToolShape::Cylinder && g.length != 0)
-    refuse("length", g.length, "none", ": only a cylinder has a length");
+    refuse("length", g.length, "no length", ": only a cylinder has a length");
   if (g.shape == ToolShape::Cylinder && !(std::isfinite(g.length) && g.length > 0))
     refuse("length", g.length, "a finite length > 0", " between the centres of the rounded ends");
 }

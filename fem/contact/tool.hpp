@@ -13,7 +13,7 @@ enum class ToolShape {
   Cylinder  ///< a lying cylinder with ends rounded to hemispheres
 };
 
-/// Whether the surface may slide along the tool while it is pressed.
+/// Whether the surface may slide along the tool on the normal path.
 enum class ToolFriction { Frictionless, NoSlip };
 
 /// Size and shape of a tool, m.
@@ -23,17 +23,17 @@ struct ToolGeometry {
   double edge_radius = 0;  ///< disc: fillet of its edge, 0 (sharp) to `radius`
   double length = 0;       ///< cylinder: between the centres of its ends
 
-  /// Largest distance of a point of the end of the tool from its axis of pressing.
+  /// Largest distance of a point of the end of the tool from the line of its normal path.
   double extent() const;
 };
 
-/// The name of a shape in cases and files: "sphere", "disc", "cylinder".
+/// Name of a shape in cases and files: "sphere", "disc", "cylinder".
 std::string name_of(ToolShape shape);
-/// "frictionless", "no-slip".
+/// Name in cases and files: "frictionless", "no-slip".
 std::string name_of(ToolFriction friction);
 
-/// @throws Error(Configuration) naming the size, its value and range: radius > 0; edge_radius of a
-/// disc alone, 0 .. radius; length of a cylinder alone, > 0.
+/// @throws Error(Configuration) naming the size, its value and range: radius > 0; edge_radius 0 ..
+/// radius, of a disc only; length > 0, of a cylinder only.
 void check_tool(const ToolGeometry& geometry);
 
 /// Signed distance of a point to the surface of a tool, negative inside, with its derivatives.
@@ -43,12 +43,12 @@ struct Gap {
   Eigen::Matrix3d curvature;  ///< d2(distance)/dx2, 1/m
 };
 
-/// A tool in its place. The point of it that is pressed in first is its tip.
+/// A tool at a position. Its tip is the point that is pressed in first.
 struct Tool {
   ToolGeometry geometry;
   Eigen::Vector3d tip = Eigen::Vector3d::Zero();
-  Eigen::Vector3d inward = -Eigen::Vector3d::UnitZ();  ///< unit: out of the tool at its tip
-  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();     ///< unit, normal to inward: of a cylinder
+  Eigen::Vector3d inward = -Eigen::Vector3d::UnitZ();  ///< unit, out of the tool at its tip
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitX();     ///< unit, normal to inward; of a cylinder
 
   bool has_sharp_edge() const {
     return geometry.shape == ToolShape::Disc && geometry.edge_radius == 0;

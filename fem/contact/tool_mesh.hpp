@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The tool as a mesh, for programs that know rigid surfaces by their facets only.
+// The tool as a mesh, for programs whose rigid surfaces are made of facets.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 namespace palpate::fem {
 
 /// Quadratic tetrahedra from a point within the tool to six-node facets on the part of its surface
-/// that a body can meet: the lower half of a sphere or a lying cylinder, the end and the side of a
+/// that can touch a body: the lower half of a sphere or a lying cylinder, the end and the side of a
 /// disc. Every node of a facet lies on the tool. The nodes 0, 1, 2 of a tetrahedron are its facet.
 struct ToolMesh {
   Eigen::Matrix3Xd X;  ///< (3, nodes) m

@@ -16,7 +16,7 @@ namespace palpate::fem {
 
 namespace {
 
-/// The memory of CHOLMOD is one function for the whole process.
+/// CHOLMOD has one allocation function for the whole process.
 void put_factors_in_large_pages() {
   static const bool once = [] {
     SuiteSparse_config.malloc_func = allocate_in_large_pages;
@@ -122,7 +122,7 @@ struct Cholesky::Impl {
   }
 
   SparsePattern pattern;
-  std::size_t last;  ///< how many unknowns are kept for the end
+  std::size_t last;  ///< number of unknowns that are eliminated last
   cholmod_common common = started_common();
   cholmod_factor* factor = nullptr;
 };
@@ -246,10 +246,10 @@ std::string solver_versions() {
 
 void use_one_thread_per_site() {
   openblas_set_num_threads(1);
-  // CHOLMOD asks for four threads in its own loops, whatever omp_set_num_threads says.
+  // CHOLMOD requests four threads in its own loops, whatever omp_set_num_threads says.
   omp_set_max_active_levels(0);
-  // Work arrays of megabytes come and go with every factorization: keep them in the process.
-  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the largest that is heeded
+  // Every factorization allocates and frees work arrays of megabytes: keep them in the process.
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the largest value that takes effect
   mallopt(M_TRIM_THRESHOLD, 1 << 30);
 }
 

@@ -25,7 +25,7 @@ class SolveWorkspace {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The numbers of a factor L of P A P^T: supernode k spans the columns first_column[k] .. [k+1],
+/// The values of a factor L of P A P^T: supernode k spans the columns first_column[k] .. [k+1],
 /// has the rows `rows[row_start[k] .. row_start[k+1]]` (its own columns first), stored by columns.
 struct SupernodalView {
   int supernodes = 0;
@@ -65,7 +65,7 @@ class Cholesky {
   /// L of the Schur complement of the unknowns `last`: A_ll - A_lr A_rr^-1 A_rl = L L^T.
   Eigen::MatrixXd last_block() const;
 
-  double bytes() const;  ///< of the numbers of the factor, known before they are
+  double bytes() const;  ///< of the values of the factor, known before factorize()
 
   SupernodalView view() const;  ///< valid until the next factorization
 
@@ -74,15 +74,16 @@ class Cholesky {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Fill-reducing order of a large pattern by METIS nested dissection. To be called on one thread.
+/// Fill-reducing order of a large pattern by METIS nested dissection. Not thread-safe.
 std::vector<int> nested_dissection(const SparsePattern& pattern);
 
-/// Kernel set that OpenBLAS chose for this processor, e.g. "SkylakeX"; and one line of versions.
+/// Kernel set that OpenBLAS chose for this processor, e.g. "SkylakeX".
 std::string blas_kernel();
+/// Versions of CHOLMOD and OpenBLAS, one line.
 std::string solver_versions();
 
-/// Keep BLAS and CHOLMOD to one thread: sites, not matrices, are what runs in parallel. To be
-/// called on every thread that solves.
+/// Limits BLAS and CHOLMOD to one thread: sites run in parallel, matrices do not. To be called on
+/// every thread that solves.
 void use_one_thread_per_site();
 
 }  // namespace palpate::fem

@@ -11,7 +11,7 @@ namespace palpate::fem {
 
 namespace {
 
-/// Columns of a panel, wide enough for BLAS to be at its best.
+/// Columns of a panel: wide enough for BLAS to reach its full speed.
 constexpr int kPanel = 64;
 
 int size_of(const Eigen::MatrixXd& A) {

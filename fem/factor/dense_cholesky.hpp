@@ -7,15 +7,15 @@
 namespace palpate::fem {
 
 /// A = L L^T in place: reads and writes the lower triangle of A, the upper one is not touched.
-/// False when A is not positive definite: A is then of no use.
+/// False when A is not positive definite: the contents of A are then undefined.
 bool factorize_in_place(Eigen::MatrixXd& A);
-/// The same of `n` rows and columns, stored by columns of `stride` numbers.
+/// The same for `n` rows and columns; each column starts `stride` numbers after the last.
 bool factorize_in_place(double* A, int n, int stride);
 
-/// x = (L L^T)^-1 b with the lower triangle that factorize_in_place() left.
+/// x = (L L^T)^-1 b with the lower triangle from factorize_in_place().
 Eigen::VectorXd solve_factorized(const Eigen::MatrixXd& L, Eigen::VectorXd b);
 
-/// Lower triangle of L L^T, of which nothing above the diagonal of L is read.
+/// Lower triangle of L L^T. Nothing above the diagonal of L is read.
 Eigen::MatrixXd product_with_transpose(const Eigen::MatrixXd& L);
 
 }  // namespace palpate::fem

@@ -12,8 +12,8 @@ namespace palpate::fem {
 
 namespace {
 
-/// The largest part is at most one over this of the work of a thread.
-constexpr double kPartsOfAThread = 2;
+/// The largest part has at most the work of a thread over this.
+constexpr double kPartsPerThread = 2;
 
 double square_bytes(int rows) {
   return sizeof(double) * static_cast<double>(rows) * rows;
@@ -23,7 +23,7 @@ double bytes_of_columns(const EliminationTree& tree, int k) {
   return sizeof(double) * static_cast<double>(tree.columns[to_index(k)]) * tree.rows[to_index(k)];
 }
 
-/// Of each supernode and all below it.
+/// Work of each supernode and all its descendants.
 std::vector<double> work_of_subtrees(const EliminationTree& tree) {
   std::vector<double> work(tree.parent.size());
   for (int k = 0; k < tree.supernodes(); ++k) {
@@ -34,9 +34,10 @@ std::vector<double> work_of_subtrees(const EliminationTree& tree) {
   return work;
 }
 
-/// Roots of subtrees of at most `most` work, and those that were opened for it.
-std::pair<std::vector<int>, std::vector<int>> opened(const EliminationTree& tree,
-                                                     const std::vector<double>& work, double most) {
+/// Roots of subtrees of at most `most` work, and the supernodes above them.
+std::pair<std::vector<int>, std::vector<int>> split_tree(const EliminationTree& tree,
+                                                         const std::vector<double>& work,
+                                                         double most) {
   std::vector<int> open, roots, top;
   for (int k = 0; k < tree.supernodes(); ++k)
     if (tree.parent[to_index(k)] < 0) open.push_back(k);
@@ -54,13 +55,13 @@ std::pair<std::vector<int>, std::vector<int>> opened(const EliminationTree& tree
   return {roots, top};
 }
 
-/// What one thread holds at most while it eliminates these, beside the columns of one.
+/// Peak memory of the updates while one thread eliminates these supernodes.
 double peak_bytes(const EliminationTree& tree, const std::vector<int>& part) {
-  double held = 0, peak = 0;
+  double live = 0, peak = 0;
   for (const int k : part) {
-    held += square_bytes(tree.below(k));
-    peak = std::max(peak, held);
-    for (const int child : tree.children[to_index(k)]) held -= square_bytes(tree.below(child));
+    live += square_bytes(tree.below(k));
+    peak = std::max(peak, live);
+    for (const int child : tree.children[to_index(k)]) live -= square_bytes(tree.below(child));
   }
   return peak;
 }
@@ -112,7 +113,7 @@ EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
     return;
   }
   std::vector<int> roots;
-  std::tie(roots, top) = opened(tree, work, whole / (kPartsOfAThread * threads));
+  std::tie(roots, top) = split_tree(tree, work, whole / (kPartsPerThread * threads));
   std::stable_sort(roots.begin(), roots.end(),
                    [&](int a, int b) { return work[to_index(a)] > work[to_index(b)]; });
   std::vector<int> part_of(tree.parent.size(), -1);

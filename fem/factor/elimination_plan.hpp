@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Who eliminates what, when several threads factorize one matrix.
+// Which thread eliminates which supernodes when several factorize one matrix.
 #pragma once
 
 #include <vector>
@@ -22,16 +22,16 @@ struct EliminationTree {
   std::vector<int> columns, rows;          ///< of each supernode, its own columns counted in rows
 };
 
-/// Subtrees that one thread each eliminates, and what remains above them. The results of an
-/// elimination do not depend on it.
+/// Subtrees, each eliminated by one thread, and the supernodes above them. The factor does not
+/// depend on the plan.
 struct EliminationPlan {
-  /// Some parts a thread, so that they come out even; one part with all in it for one thread.
+  /// Several parts for each thread, to balance the work; a single part for one thread.
   EliminationPlan(const EliminationTree& tree, int threads);
 
   std::vector<std::vector<int>> parts;  ///< supernodes, ascending; the part with most work first
   std::vector<int> top;                 ///< ascending
-  double update_bytes = 0;              ///< of what fronts leave to their parents, at most
-  double column_bytes = 0;              ///< of the columns that each thread works on, at most
+  double update_bytes = 0;  ///< upper bound, of the updates that fronts pass to their parents
+  double column_bytes = 0;  ///< upper bound, of the columns that the threads work on
 };
 
 }  // namespace palpate::fem

@@ -8,9 +8,9 @@ namespace palpate::fem {
 
 namespace {
 
-/// Smaller ones are kept by the allocator.
+/// Numbers from which a block is pooled; the allocator itself reuses smaller ones.
 constexpr std::size_t kLarge = std::size_t{1} << 17;
-/// Over what is asked for, of a spare that is taken for it.
+/// Largest size of a spare block that is reused, over the size requested.
 constexpr std::size_t kMostWaste = 2;
 
 double bytes_of(const LargeVector<double>& memory) {
@@ -19,7 +19,7 @@ double bytes_of(const LargeVector<double>& memory) {
 
 }  // namespace
 
-/// The smallest spare that is large enough and no waste; empty when there is none.
+/// The smallest spare block that fits without waste; empty when there is none.
 LargeVector<double> FrontMemory::fitting(std::size_t numbers) {
   const std::lock_guard lock(mutex_);
   auto best = spare_.end();
@@ -33,11 +33,11 @@ LargeVector<double> FrontMemory::fitting(std::size_t numbers) {
     return found;
   }
   const double needed = sizeof(double) * static_cast<double>(numbers);
-  while (!spare_.empty() && held_ + needed > bound_) {
-    held_ -= bytes_of(spare_.front());
+  while (!spare_.empty() && allocated_ + needed > bound_) {
+    allocated_ -= bytes_of(spare_.front());
     spare_.pop_front();
   }
-  held_ += needed;
+  allocated_ += needed;
   return {};
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Memory that goes from front to front of a factorization.
+// Memory reused between the fronts of a factorization.
 #pragma once
 
 #include <list>
@@ -9,9 +9,8 @@
 
 namespace palpate::fem {
 
-/// What fronts that are done have left is taken again by those to come: the system clears every
-/// page that it hands out. Spare memory is given back before more than `bound` bytes are in use.
-/// Any thread may call it.
+/// A pool for the updates of fronts: pages that the system hands out anew are cleared first, which
+/// costs time. Spare memory is freed before more than `bound` bytes are in use. Thread-safe.
 class FrontMemory {
  public:
   explicit FrontMemory(double bound) : bound_(bound) {}
@@ -24,7 +23,7 @@ class FrontMemory {
   LargeVector<double> fitting(std::size_t numbers);
 
   std::mutex mutex_;
-  double bound_, held_ = 0;  ///< bytes; of all large ones that were handed out or are spare
+  double bound_, allocated_ = 0;  ///< bytes; of all large blocks, in use or spare
   std::list<LargeVector<double>> spare_;
 };
 

@@ -28,7 +28,7 @@ void* allocate_in_large_pages(std::size_t bytes) {
   if (bytes < kLargePagesFrom || bytes > kMost) return std::malloc(bytes);
   const std::size_t whole = rounded_up(bytes, kLargePage);
   void* memory = std::aligned_alloc(kLargePage, whole);
-  if (memory) madvise(memory, whole, MADV_HUGEPAGE);  // advice: nothing is lost when it is declined
+  if (memory) madvise(memory, whole, MADV_HUGEPAGE);  // advice: harmless when declined
   return memory;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Memory in large pages, for what is read from end to end again and again.
+// Memory in large pages, for large arrays that are read from end to end repeatedly.
 #pragma once
 
 #include <cstddef>
@@ -10,20 +10,20 @@
 
 namespace palpate::fem {
 
-/// From this many bytes on memory is asked for in large pages.
+/// Blocks of at least this many bytes are requested in large pages.
 inline constexpr std::size_t kLargePagesFrom = std::size_t{32} << 20;
-/// From this many bytes on a LargeVector has pages of its own.
+/// A LargeVector of at least this many bytes has pages of its own.
 inline constexpr std::size_t kMappedFrom = std::size_t{1} << 20;
 
-/// As std::malloc, of which it is but another form: std::free and std::realloc take it back. Large
-/// blocks start at a large page and the system is asked to use such pages for them (madvise, "Huge
-/// pages" of Linux): a factor of hundreds of megabytes then costs hundreds of page faults to make,
-/// not a hundred thousand, and its reading few misses of the address cache. Where the system
-/// declines, the memory is ordinary; the numbers in it are the same.
+/// A replacement for std::malloc; std::free and std::realloc accept its blocks. Large blocks start
+/// at a large page and the system is asked to use such pages for them (madvise, "huge pages" of
+/// Linux): filling a factor of hundreds of megabytes then takes hundreds of page faults instead of
+/// a hundred thousand, and reading it few TLB misses. Where the system declines, the memory is
+/// ordinary.
 void* allocate_in_large_pages(std::size_t bytes);
 
-/// Pages of the system's own, the first a large one: what is given back is the system's again at
-/// once, whatever was allocated since. Null when there is none.
+/// Pages mapped from the system, aligned to a large page. Unmapping returns them at once, whatever
+/// was allocated since. Null when memory runs out.
 void* map_pages(std::size_t bytes);
 void unmap_pages(void* memory, std::size_t bytes) noexcept;
 
@@ -50,20 +50,20 @@ struct LargePages {
     else
       std::free(memory);
   }
-  /// Numbers that nothing is said of have no value: their memory is first touched where it is used.
+  /// Default-initialized: the memory is first touched by the thread that uses it.
   template <class U>
-  void construct(U* place) {
-    ::new (static_cast<void*>(place)) U;
+  void construct(U* object) {
+    ::new (static_cast<void*>(object)) U;
   }
   template <class U, class... Arguments>
-  void construct(U* place, Arguments&&... arguments) {
-    ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+  void construct(U* object, Arguments&&... arguments) {
+    ::new (static_cast<void*>(object)) U(std::forward<Arguments>(arguments)...);
   }
 
   bool operator==(const LargePages&) const = default;
 };
 
-/// resize() leaves new numbers undefined.
+/// resize() leaves new elements uninitialized.
 template <class T>
 using LargeVector = std::vector<T, LargePages<T>>;
 

@@ -28,15 +28,15 @@ double resident_bytes() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
-int fitting_times(double bound, double each, int wanted, const std::string& what, double kept) {
+int fitting_times(double bound, double each, int wanted, const std::string& what, double reserved) {
   if (bound <= 0) return wanted;
   const double used = resident_bytes();
-  const double times = std::max(0.0, bound - used - kept) / each;
+  const double times = std::max(0.0, bound - used - reserved) / each;
   if (times >= 1) return times >= wanted ? wanted : static_cast<int>(times);
   throw Error(ErrorKind::Configuration, "memory of " + megabytes(bound),
               what + " needs " + megabytes(each) + " beside the " + megabytes(used) + " in use" +
-                  (kept > 0 ? " and " + megabytes(kept) + " kept" : ""),
-              "allow more, use fewer threads or a coarser mesh");
+                  (reserved > 0 ? " and " + megabytes(reserved) + " reserved" : ""),
+              "allow more memory, use fewer threads or a coarser mesh");
 }
 
 void out_of_memory(int unknowns) {

@@ -19,14 +19,14 @@ namespace palpate::fem {
 
 namespace {
 
-/// Rows and columns of a front that are one piece of work: fixed, for the bits depend on it.
+/// Rows and columns of a tile of a front. Fixed: the bits depend on it.
 constexpr int kTile = 256;
 
 int tiles_of(int rows) {
   return (rows + kTile - 1) / kTile;
 }
 
-/// Dense, by columns, of which every `stride`-th number starts a column.
+/// A dense column-major matrix; each column starts `stride` numbers after the last.
 struct Block {
   double* first;
   int stride;
@@ -54,7 +54,7 @@ void subtract_product(const Block& L, int columns, const Block& U, int below, in
 
 }  // namespace
 
-/// One factorization under way.
+/// A running factorization.
 class Elimination {
  public:
   Elimination(const Multifrontal& order, const std::vector<double>& values,
@@ -82,14 +82,14 @@ class Elimination {
   }
 
  private:
-  /// What a thread keeps from front to front.
-  struct Workplace {
-    std::vector<int> place;       ///< in the front, of the rows of the matrix
+  /// Scratch memory of a thread.
+  struct Workspace {
+    std::vector<int> position;    ///< in the front, of the rows of the matrix
     std::vector<int> target;      ///< in the front, of the rows of a child
     LargeVector<double> columns;  ///< of L
   };
 
-  /// Equal pieces of one front, for whoever has nothing else to do.
+  /// Tiles of one front, for any thread that has nothing else to do.
   struct Tiles {
     int count;
     const std::function<void(int)>& work;
@@ -97,7 +97,7 @@ class Elimination {
   };
 
   void serve() {
-    Workplace own;
+    Workspace own;
     std::unique_lock lock(mutex_);
     while (left_ > 0 && definite_ && !failure_) {
       if (Tiles* tiles = unfinished_tiles()) {
@@ -108,7 +108,7 @@ class Elimination {
         lock.unlock();
         const bool done = eliminate_safely(part, own);
         lock.lock();
-        if (done) tell_parent(part.back());
+        if (done) count_child(part.back());
         --left_;
         changed_.notify_all();
       } else {
@@ -117,13 +117,14 @@ class Elimination {
     }
   }
 
-  /// That a child is done: the last supernode of a part, or one of the top.
-  void tell_parent(int child) {
+  /// After the last supernode of a part, or one of the top: its parent is ready with its last
+  /// child.
+  void count_child(int child) {
     const int parent = tree_.parent[to_index(child)];
     if (parent >= 0 && --awaited_[to_index(parent)] == 0) ready_.push_front({parent});
   }
 
-  bool eliminate_safely(const std::vector<int>& part, Workplace& own) {
+  bool eliminate_safely(const std::vector<int>& part, Workspace& own) {
     try {
       if (std::all_of(part.begin(), part.end(), [&](int k) { return eliminate(k, own); }))
         return true;
@@ -136,13 +137,14 @@ class Elimination {
     return false;
   }
 
-  /// The front of supernode k: assembled, eliminated, handed out; its update is kept for the
-  /// parent.
-  bool eliminate(int k, Workplace& own) {
+  /// Assembles the front of supernode k, eliminates it, passes the columns on and stores the update
+  /// for the parent.
+  bool eliminate(int k, Workspace& own) {
     const int columns = tree_.columns[to_index(k)], rows = tree_.rows[to_index(k)],
               below = tree_.below(k);
     const std::size_t numbers = to_index(rows) * to_index(columns);
-    if (own.columns.capacity() < numbers) own.columns = LargeVector<double>();  // never both
+    if (own.columns.capacity() < numbers)
+      own.columns = LargeVector<double>();  // free the old block first
     own.columns.assign(numbers, 0.0);
     update_[to_index(k)] = memory_.zeros(to_index(below) * to_index(below));
     const Block L{own.columns.data(), rows}, U{update_[to_index(k)].data(), below};
@@ -159,28 +161,28 @@ class Elimination {
     return true;
   }
 
-  void assemble(int k, const Block& L, const Block& U, Workplace& own) {
+  void assemble(int k, const Block& L, const Block& U, Workspace& own) {
     const int* rows = order_.view_.rows + order_.view_.row_start[k];
-    own.place.resize(order_.entry_start_.size());
-    for (int i = 0; i < tree_.rows[to_index(k)]; ++i) own.place[to_index(rows[i])] = i;
+    own.position.resize(order_.entry_start_.size());
+    for (int i = 0; i < tree_.rows[to_index(k)]; ++i) own.position[to_index(rows[i])] = i;
     for (int j = 0; j < tree_.columns[to_index(k)]; ++j) {
       const std::size_t column = to_index(order_.view_.first_column[k] + j);
       for (std::size_t e = order_.entry_start_[column]; e < order_.entry_start_[column + 1]; ++e) {
         const auto& entry = order_.entries_[e];
-        *L(own.place[to_index(entry.row)], j) = values_[to_index(entry.value)];
+        *L(own.position[to_index(entry.row)], j) = values_[to_index(entry.value)];
       }
     }
     for (const int child : tree_.children[to_index(k)])
       add_update_of(child, L, U, tree_.columns[to_index(k)], own);
   }
 
-  /// Both have their rows in ascending order: what is below a diagonal stays below it.
-  void add_update_of(int child, const Block& L, const Block& U, int columns, Workplace& own) {
+  /// Both have their rows in ascending order: an entry below the diagonal stays below it.
+  void add_update_of(int child, const Block& L, const Block& U, int columns, Workspace& own) {
     const int below = tree_.below(child);
     const int* rows =
         order_.view_.rows + order_.view_.row_start[child] + tree_.columns[to_index(child)];
     own.target.resize(to_index(below));
-    for (int i = 0; i < below; ++i) own.target[to_index(i)] = own.place[to_index(rows[i])];
+    for (int i = 0; i < below; ++i) own.target[to_index(i)] = own.position[to_index(rows[i])];
     const int* target = own.target.data();
     const double* source = update_[to_index(child)].data();
     for (int j = 0; j < below; ++j, source += below) {
@@ -204,7 +206,7 @@ class Elimination {
     if (++tiles.done == tiles.count) changed_.notify_all();
   }
 
-  /// Calls work for each of `count` tiles, on this thread and on those that wait.
+  /// Calls `work` for each of `count` tiles, on this thread and on waiting ones.
   void in_tiles(int count, const std::function<void(int)>& work) {
     if (count < 2) {
       if (count == 1) work(0);
@@ -233,8 +235,8 @@ class Elimination {
   std::exception_ptr failure_;
 
   FrontMemory memory_;
-  std::vector<LargeVector<double>> update_;  ///< of each supernode, until its parent has it
-  std::vector<int> awaited_;                 ///< children of a supernode of the top
+  std::vector<LargeVector<double>> update_;  ///< of each supernode, until its parent has added it
+  std::vector<int> awaited_;  ///< children not yet eliminated, of a supernode of the top
 };
 
 Multifrontal::Multifrontal(const SparsePattern& pattern, const SupernodalView& view)

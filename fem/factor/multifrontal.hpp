@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Sparse Cholesky factorization on several threads, without a place for the factor.
+// Sparse Cholesky factorization on several threads that does not store the factor.
 #pragma once
 
 #include <functional>
@@ -11,23 +11,23 @@
 namespace palpate::fem {
 
 /// L L^T = P A P^T by the multifrontal method (Duff & Reid, ACM Trans. Math. Softw. 9, 1983): each
-/// supernode is eliminated in a dense matrix of its own rows, its front, to which its children have
-/// added what their elimination leaves of the rest. The columns of L are handed out as they come
-/// and not kept. The bits do not depend on the number of threads: a front is the same work in the
-/// same order whoever does it.
+/// supernode is eliminated in a dense matrix of its rows, its front, to which its children have
+/// added the Schur complements of their elimination. The columns of L are passed to a callback and
+/// not stored. The bits do not depend on the number of threads: every front is computed in the same
+/// order.
 class Multifrontal {
  public:
-  /// `view`: of an analysis of `pattern`; both are to outlive this.
+  /// `view`: of an analysis of `pattern`; both must outlive this.
   Multifrontal(const SparsePattern& pattern, const SupernodalView& view);
 
-  /// Of the fronts, at most; the columns that are handed out are not counted.
+  /// Upper bound of the memory of the fronts, without the columns that are passed to the callback.
   double working_bytes(int threads) const {
     const EliminationPlan plan(tree_, threads);
     return plan.update_bytes + plan.column_bytes;
   }
 
-  /// Takes the columns of L of a supernode, rows by columns, what is above the diagonal undefined.
-  /// Called on any thread of the factorization, for several supernodes at once.
+  /// Receives the columns of L of a supernode, column-major, undefined above the diagonal. Called
+  /// from any thread of the factorization, concurrently for several supernodes.
   using Finished = std::function<void(int supernode, const double* columns)>;
 
   /// False when A, `values` on the pattern, is not positive definite. @throws std::bad_alloc

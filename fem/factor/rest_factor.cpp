@@ -16,7 +16,7 @@ namespace palpate::fem {
 
 namespace {
 
-/// One right-hand side in each lane; the compiler splits it where registers are narrower.
+/// One right-hand side in each SIMD lane; the compiler splits it where registers are narrower.
 typedef float Pack __attribute__((vector_size(kBatch * sizeof(float)), aligned(4), may_alias));
 
 inline Pack& pack(float* y, int row) {
@@ -57,7 +57,7 @@ void for_panels_backward(int columns, Work&& work) {
   while (end > 0) work.template operator()<16>(end -= 16);
 }
 
-/// What the panels of a supernode with `rows` rows below hold, in numbers.
+/// Numbers in the panels of a supernode with `rows` rows below.
 std::size_t panel_numbers(int columns, int rows) {
   std::size_t total = 0;
   for_panels(columns,
@@ -111,8 +111,8 @@ void backward_panel(const float* panel, float* own, int inside, const int* rows,
 
 namespace {
 
-/// Of `wanted`, so many as need no more than `bound`, 0 for none, beside what is in use now.
-/// @throws Error(Configuration) when there is no room for one.
+/// As many threads, at most `wanted`, as fit into `bound` (0: none) beside the resident memory.
+/// @throws Error(Configuration) when one does not fit.
 template <class Bytes>
 int threads_that_fit(double bound, int wanted, Bytes&& bytes) {
   int threads = std::max(1, wanted);
@@ -145,7 +145,8 @@ RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& per
   try {
     values_.resize(total);
     if (!fronts.factorize(values, threads, [&](int k, const double* x) { store(k, x); }))
-      throw Error(ErrorKind::Geometry, owner, "the body at rest is not stiff in every direction",
+      throw Error(ErrorKind::Geometry, owner,
+                  "the stiffness of the body at rest is not positive definite",
                   "check the supports and that the mesh is in one piece");
   } catch (const std::bad_alloc&) {
     out_of_memory(n_);
@@ -206,8 +207,8 @@ void RestFactor::solve(std::vector<float>& block, std::vector<float>& scratch) c
 
 namespace {
 
-/// Largest over smallest local stiffness, of the new matrix over the old, that a factor is kept
-/// for. The eigenvalues of what it preconditions are within about that ratio.
+/// A factor is reused while the ratios of the new diagonal to the old spread by no more than this.
+/// The eigenvalues of the preconditioned matrix are then within about that ratio.
 constexpr double kMostSpread = 1.25;
 
 std::vector<double> diagonal_of(const SparsePattern& pattern, const std::vector<double>& values) {
@@ -251,9 +252,9 @@ std::shared_ptr<const RestFactor> FactorCache::factor_of(const SparsePattern& pa
   return factor_;
 }
 
-SolveBatch::SolveBatch(const RestFactor& factor, int members, std::deque<SolveBatch>* crew)
+SolveBatch::SolveBatch(const RestFactor& factor, int members, std::deque<SolveBatch>* batches)
     : factor_(factor),
-      crew_(crew),
+      batches_(batches),
       members_(members),
       block_(to_index(factor.size()) * kBatch, 0.0f) {}
 
@@ -266,8 +267,8 @@ void SolveBatch::serve_if_all_wait() {
 }
 
 SolveBatch* SolveBatch::reserved_elsewhere() {
-  if (crew_ == nullptr) return nullptr;
-  for (SolveBatch& other : *crew_)
+  if (batches_ == nullptr) return nullptr;
+  for (SolveBatch& other : *batches_)
     for (int there = other.members_; there + 2 <= members_;)
       if (other.members_.compare_exchange_weak(there, there + 1)) return &other;
   return nullptr;
@@ -283,21 +284,21 @@ SolveBatch::Member::~Member() {
 
 void SolveBatch::Member::join() {
   lock_ = std::unique_lock(batch_->mutex_);
-  for (lane_ = 0; batch_->taken_[to_index(lane_)]; ++lane_) continue;
-  batch_->taken_.set(to_index(lane_));
+  for (column_ = 0; batch_->taken_[to_index(column_)]; ++column_) continue;
+  batch_->taken_.set(to_index(column_));
 }
 
 void SolveBatch::Member::leave() {
-  // What an empty lane held would be solved for again and again, down to numbers that are slow.
-  for (std::size_t i = to_index(lane_); i < batch_->block_.size(); i += kBatch)
+  // A stale column would be solved again and again, down to slow subnormal numbers.
+  for (std::size_t i = to_index(column_); i < batch_->block_.size(); i += kBatch)
     batch_->block_[i] = 0;
-  batch_->taken_.reset(to_index(lane_));
+  batch_->taken_.reset(to_index(column_));
   --batch_->members_;
   batch_->serve_if_all_wait();
   lock_.unlock();
 }
 
-/// Lanes know nothing of one another: the solution is the same in any batch.
+/// Right-hand sides are independent: the solution is the same in any batch.
 void SolveBatch::Member::rebalance() {
   SolveBatch* other = batch_->reserved_elsewhere();
   if (other == nullptr) return;
@@ -307,19 +308,20 @@ void SolveBatch::Member::rebalance() {
 }
 
 void SolveBatch::Member::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
-  // Scaled to unit length: residuals near convergence would lose bits to the range of a float.
+  // Scaled to unit length: small residuals would lose bits in the range of a float.
   const double length = b.norm();
   x.setZero(b.size());
   if (length == 0) return;
   rebalance();
-  float* lane = batch_->block_.data() + lane_;
-  for (Eigen::Index i = 0; i < b.size(); ++i) lane[i * kBatch] = static_cast<float>(b[i] / length);
+  float* column = batch_->block_.data() + column_;
+  for (Eigen::Index i = 0; i < b.size(); ++i)
+    column[i * kBatch] = static_cast<float>(b[i] / length);
   ++batch_->waiting_;
   const std::uint64_t mine = batch_->generation_;
   batch_->serve_if_all_wait();
   batch_->served_.wait(lock_, [&] { return batch_->generation_ != mine; });
   const double scale = length * batch_->factor_.inverse_scale();
-  for (Eigen::Index i = 0; i < b.size(); ++i) x[i] = scale * lane[i * kBatch];
+  for (Eigen::Index i = 0; i < b.size(); ++i) x[i] = scale * column[i * kBatch];
 }
 
 }  // namespace palpate::fem

@@ -23,20 +23,21 @@ inline constexpr int kBatch = 16;
 
 /// A supernodal Cholesky factor in single precision, laid out for solves with kBatch right-hand
 /// sides. The solve is a preconditioner: single precision costs no accuracy and halves the traffic,
-/// which is what a solve consists of. Each right-hand side is one lane of every operation: its
-/// solution has the same bits whatever stands in the other lanes.
+/// which dominates its time. Each right-hand side is one SIMD lane of every operation: its solution
+/// has the same bits whatever the other right-hand sides are.
 class RestFactor {
  public:
   /// @throws Error(Geometry) when the matrix is not positive definite; `owner` names the body.
-  /// @throws Error(Configuration) when its making would pass `memory`, bytes; 0: no bound.
+  /// @throws Error(Configuration) when the factorization needs more than `memory`, bytes; 0: no
+  /// bound.
   /// @throws Error(Internal) when memory runs out.
-  /// Made on up to `threads` threads, fewer where `memory` is short: the bits are the same.
+  /// Uses up to `threads` threads, fewer where `memory` is short: the bits are the same.
   RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
              const std::vector<double>& values, const std::string& owner, double memory = 0,
              int threads = 1);
 
-  /// From now on the factor of `ratio` times the matrix: a body whose laws all became so much
-  /// stiffer. Not while solves are under way.
+  /// Makes this the factor of `ratio` times the matrix, as when all laws become stiffer by that
+  /// ratio. Not while solves run.
   void scale(double ratio) { inverse_scale_ /= ratio; }
   /// K0^-1 b is this times the solution of solve().
   double inverse_scale() const { return inverse_scale_; }
@@ -44,7 +45,7 @@ class RestFactor {
   int size() const { return n_; }
   double bytes() const { return static_cast<double>(values_.size()) * sizeof(float); }
 
-  /// In place: block[unknown * kBatch + lane]. `scratch` is resized as needed.
+  /// In place: block[unknown * kBatch + right-hand side]. `scratch` is resized as needed.
   void solve(std::vector<float>& block, std::vector<float>& scratch) const;
 
  private:
@@ -54,7 +55,7 @@ class RestFactor {
     std::size_t values;    ///< into values_, where its panels start
   };
 
-  /// Takes the columns of L of a supernode over.
+  /// Stores the columns of L of a supernode.
   void store(int supernode, const double* columns);
   void forward(float* y) const;
   void backward(float* y) const;
@@ -66,17 +67,18 @@ class RestFactor {
   LargeVector<float> values_;
 };
 
-/// The factors of campaigns on one body that differ in the constants of their laws alone, one
-/// after the other: of a calibration. A factor is a preconditioner and accuracy does not depend on
-/// it, so that it serves as long as the stiffness at rest is nearly a multiple of the one it was
-/// made of: exactly so when all laws scale together. The elimination order is made once.
+/// Reuses a factor in successive campaigns on one body that differ only in the constants of their
+/// laws, as in a calibration. A factor is a preconditioner and accuracy does not depend on it: it
+/// serves while the stiffness at rest is nearly a multiple of the one that was factorized, exactly
+/// so when all laws scale together. The elimination order is computed once. Not thread-safe.
 class FactorCache {
  public:
-  /// Of `values` on `pattern`, which is that of every call before. @throws Error as RestFactor.
+  /// A factor of `values`, approximately. `pattern` must be that of every call before.
+  /// @throws Error as RestFactor.
   std::shared_ptr<const RestFactor> factor_of(const SparsePattern& pattern,
                                               const std::vector<double>& values,
                                               const std::string& owner, double memory, int threads);
-  /// Made by the first call.
+  /// Computed by the first call.
   const std::vector<int>& permutation(const SparsePattern& pattern);
 
   int factorizations() const { return factorizations_; }
@@ -84,24 +86,24 @@ class FactorCache {
  private:
   std::vector<int> permutation_;
   std::vector<double> diagonal_;  ///< of the matrix that was factorized
-  double scale_ = 1;              ///< of what the factor stands for now
+  double scale_ = 1;  ///< of the matrix that the factor approximates, over the one factorized
   std::shared_ptr<RestFactor> factor_;
   int factorizations_ = 0;
 };
 
-/// Gathers the requests of up to kBatch sites that run side by side, each on its own thread, and
-/// serves them by one block solve when every running site waits for it. Only one of the threads
-/// runs at a time (they hold the lock of the batch), so that a batch occupies one core.
+/// Gathers the requests of up to kBatch sites, each on its own thread, and serves them by one block
+/// solve when every running site waits for it. Only one of the threads runs at a time (the one that
+/// owns the lock of the batch), so that a batch occupies one core.
 class SolveBatch {
  public:
-  /// `members`: how many threads will take part; each leaves when its Member ends. `crew`: batches
-  /// between which members move, so that none is left idle while another is full; this is one of
-  /// them, and no member joins before the last of them is made.
-  SolveBatch(const RestFactor& factor, int members, std::deque<SolveBatch>* crew = nullptr);
+  /// `members`: how many threads will take part; each leaves when its Member ends. `batches`: among
+  /// which members are rebalanced, so that no core idles while another has several sites; this is
+  /// one of them, and no member joins before the last of them is constructed.
+  SolveBatch(const RestFactor& factor, int members, std::deque<SolveBatch>* batches = nullptr);
 
   int members() const { return members_; }
 
-  /// A site thread holds one of these while it runs.
+  /// The membership of a site thread while it runs.
   class Member {
    public:
     explicit Member(SolveBatch& batch);
@@ -109,7 +111,7 @@ class SolveBatch {
     Member(const Member&) = delete;
     Member& operator=(const Member&) = delete;
 
-    /// x = K0^-1 b. Waits for the other members.
+    /// x = K0^-1 b. Blocks until every member of the batch waits for a solve.
     void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
    private:
@@ -118,23 +120,23 @@ class SolveBatch {
     void rebalance();
 
     SolveBatch* batch_;
-    int lane_ = 0;
+    int column_ = 0;  ///< of the block
     std::unique_lock<std::mutex> lock_;
   };
 
  private:
   void serve_if_all_wait();
-  /// A batch of the crew with two members less, the new member counted there; null: none.
+  /// A batch with at least two members fewer, where this member is then counted; null: none.
   SolveBatch* reserved_elsewhere();
 
   const RestFactor& factor_;
-  std::deque<SolveBatch>* crew_;
+  std::deque<SolveBatch>* batches_;
   std::mutex mutex_;
   std::condition_variable served_;
-  std::atomic<int> members_;  ///< those on their way counted
+  std::atomic<int> members_;  ///< with those about to join
   int waiting_ = 0;
   std::uint64_t generation_ = 0;
-  std::bitset<kBatch> taken_;  ///< lanes
+  std::bitset<kBatch> taken_;  ///< columns of the block
   std::vector<float> block_, scratch_;
 };
 

@@ -16,13 +16,13 @@ struct SparsePattern {
 
   int nonzeros() const { return start.empty() ? 0 : start.back(); }
 
-  /// Place of an entry in the array of values; the entry must exist. Rows and columns in any order.
+  /// Index of an entry in the array of values; the entry must exist. Row and column in any order.
   int position(int i, int j) const;
 };
 
-/// Pattern of a stiffness that couples all unknowns within each of some groups of nodes: elements,
-/// or all that a pressure acts on. `equation`: first of the three unknowns of each node, or -1;
-/// `unknowns`: their number.
+/// Pattern of a stiffness that couples all unknowns within each group of nodes: the nodes of an
+/// element, or all on which a pressure acts. `equation`: first of the three unknowns of each node,
+/// or -1; `unknowns`: their number.
 SparsePattern stiffness_pattern(const std::vector<std::span<const std::int32_t>>& groups,
                                 const std::vector<int>& equation, int unknowns);
 

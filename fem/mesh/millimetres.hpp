@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Lengths and places as they stand in the reasons of paths that end early.
+// Lengths and points as text in messages.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,9 +7,9 @@
 
 namespace palpate::fem {
 
-/// "2.500 mm", of metres.
+/// Metres as "2.500 mm".
 std::string in_millimetres(double metres);
-/// "(1.0, -2.5, 30.0) mm", of metres.
+/// Metres as "(1.0, -2.5, 30.0) mm".
 std::string point_in_millimetres(const Eigen::Vector3d& X);
 
 }  // namespace palpate::fem

@@ -38,9 +38,9 @@ class EdgeNodes {
   std::vector<Edge> corners_;
 };
 
-/// The middle of an edge is held where the edge is: on a facet with three held corners, or in a
-/// volume that is held, of which at least one end lies inside. An edge that runs through the body
-/// from one held face to another is free between them.
+/// A mid-edge node is fixed with its edge: on a facet with three fixed corners, or where both ends
+/// are fixed and at least one lies inside the body. The middle of an edge through the body from one
+/// fixed face to another is free.
 void mark_fixed_nodes(const Body& body, const EdgeNodes& edges, QuadraticMesh& mesh) {
   mesh.fixed.assign(to_index(mesh.nodes()), false);
   for (const auto node : body.fixed_nodes) mesh.fixed[to_index(node)] = true;

@@ -29,7 +29,7 @@ std::array<double, kTetNodes> shape_functions(const Volume& L) {
   return N;
 }
 
-/// Of a node of an element.
+/// Volume coordinates of a node of an element.
 Volume volume_coordinates(std::size_t node) {
   Volume L{};
   if (node < 4) {
@@ -40,15 +40,15 @@ Volume volume_coordinates(std::size_t node) {
   return L;
 }
 
-/// A child of an element, by four of its nodes.
+/// A child of an element: four nodes of the element.
 using Child = std::array<std::size_t, 4>;
 
 constexpr unsigned kAllEdges = 0b111111;
 /// The edges of each face, one bit an edge; faces opposite to the corners 0..3.
 constexpr std::array<unsigned, 4> kFaceEdges{0b110010, 0b101100, 0b011001, 0b000111};
 
-/// The least division that holds `edges` and fits together on every face with a neighbour's: no
-/// face has two divided edges.
+/// The smallest set of split edges that contains `edges` and can be matched by neighbours on every
+/// face: no face has two split edges.
 unsigned completed(unsigned edges) {
   for (bool grown = true; grown;) {
     grown = false;
@@ -62,7 +62,7 @@ unsigned completed(unsigned edges) {
   return std::popcount(edges) >= 3 && !face ? kAllEdges : edges;
 }
 
-/// In eight: four at the corners, the octahedron between them in four along its shortest diagonal.
+/// Four at the corners, and the octahedron between them in four along its shortest diagonal.
 std::vector<Child> children_in_eight(const QuadraticMesh& mesh, const Tetrahedron10& node) {
   // Mid-edge nodes: 4 = 01, 5 = 12, 6 = 20, 7 = 03, 8 = 13, 9 = 23. Opposite ones span a diagonal
   // of the octahedron; the other four go around it.
@@ -85,7 +85,7 @@ std::vector<Child> children_in_eight(const QuadraticMesh& mesh, const Tetrahedro
   return parts;
 }
 
-/// Along edges that share no corner: an end of each is in each child.
+/// Along edges without a common corner: each child has one end of each.
 std::vector<Child> children_along(const std::vector<std::size_t>& edges) {
   std::vector<Child> parts{{0, 1, 2, 3}};
   for (const std::size_t edge : edges) {
@@ -132,7 +132,7 @@ double six_volumes(const QuadraticMesh& mesh, const Tetrahedron10& node, const C
   return edges.determinant();
 }
 
-/// Divides the elements one after another; an edge that two of them share gets one middle.
+/// Divides the elements one after another; a common edge of two elements gets one middle node.
 class Refiner {
  public:
   explicit Refiner(const QuadraticMesh& whole)
@@ -150,7 +150,7 @@ class Refiner {
   }
 
  private:
-  /// Which edges are divided, by their mid-edge nodes, until every element agrees.
+  /// Marks the mid-edge nodes of split edges until the marks of every element are complete.
   void choose_edges(const std::vector<int>& elements) {
     split_.assign(to_index(whole_.nodes()), false);
     for (const int e : elements)
@@ -177,7 +177,7 @@ class Refiner {
     refined_.mesh.region.push_back(region);
   }
 
-  /// The middle between two nodes of an element: one that is there if they are corners.
+  /// The node between two nodes of an element; exists already where they are corners.
   std::int32_t middle(int element, std::size_t a, std::size_t b) {
     const Tetrahedron10& node = whole_.tetrahedra[to_index(element)];
     if (a < 4 && b < 4) return node[middle_node(a, b)];
@@ -192,7 +192,7 @@ class Refiner {
     return next;
   }
 
-  /// Whether every node of the edge, face or element is held that a point lies on.
+  /// Whether every node of the edge, face or element on which a point lies is fixed.
   bool all_fixed_around(const Tetrahedron10& node, const Volume& L) const {
     for (std::size_t a = 0; a < kTetNodes; ++a) {
       const Volume of = volume_coordinates(a);
@@ -217,13 +217,13 @@ class Refiner {
   }
 
   [[noreturn]] static void refuse(int element) {
-    throw Error(
-        ErrorKind::Geometry, "element " + std::to_string(element) + " of the body",
-        "cannot be divided: its curved edges turn a part of it over",
-        "mesh the body again, or take smaller elements instead of solver.refine_under_tool");
+    throw Error(ErrorKind::Geometry, "element " + std::to_string(element) + " of the body",
+                "cannot be refined: its curved edges invert a child",
+                "mesh the body again, or choose a smaller mesh.element_size instead of "
+                "solver.refine_under_tool");
   }
 
-  /// After the elements: all middles are known.
+  /// After the elements: all middle nodes exist.
   void refine_facet(std::size_t index) {
     const Facet& facet = whole_.facets[index];  // corners 0..2, then the edges 01, 12, 20
     std::vector<std::array<std::size_t, 3>> parts;
@@ -271,8 +271,8 @@ class Refiner {
 
   const QuadraticMesh& whole_;
   RefinedMesh refined_;
-  std::vector<unsigned> edges_;          ///< of each element, those that are divided, one bit each
-  std::vector<bool> split_;              ///< of each mid-edge node, whether its edge is divided
+  std::vector<unsigned> edges_;          ///< of each element, its split edges, one bit each
+  std::vector<bool> split_;              ///< of each mid-edge node, whether its edge is split
   std::vector<bool> fixed_;              ///< of each new node
   std::map<Edge, std::int32_t> middle_;  ///< of two old nodes
 };

@@ -9,15 +9,15 @@
 
 namespace palpate::fem {
 
-/// A mesh, some of its elements divided in eight: four at the corners, the octahedron between them
-/// in four along its shortest diagonal [Bey 1995]. Their neighbours are divided as far as the mesh
-/// has to fit together: along one edge, along two opposite ones, or along those of one face; in
-/// eight where that is not enough. The nodes of the unrefined mesh come first, in its order. The
-/// new ones are the middles of the new edges. All lie on the quadratic through the nodes of their
-/// parents, so that the children of elements under a curved skin follow it.
+/// A mesh with some elements divided into eight: four at the corners, and the octahedron between
+/// them into four along its shortest diagonal [Bey 1995]. Neighbours are divided as conformity
+/// requires: along one edge, along two opposite edges, or along the edges of one face; else into
+/// eight. The nodes of the unrefined mesh come first, in its order; the new ones are the middles of
+/// the new edges. They lie on the quadratic through the nodes of their parents, so that the
+/// children of elements at a curved surface follow it.
 struct RefinedMesh {
-  /// Where a new node lies: its displacement, were the parent still one quadratic element, is
-  /// sum N_a u_a over the nodes of the parent.
+  /// A new node; in the parent its position is sum N_a X_a, and its displacement, as long as the
+  /// parent deforms as one quadratic element, sum N_a u_a.
   struct NewNode {
     std::int32_t parent;  ///< element of the unrefined mesh
     std::array<double, kTetNodes> N;
@@ -27,8 +27,8 @@ struct RefinedMesh {
   std::vector<NewNode> new_nodes;
 };
 
-/// `elements`: to be divided in eight. @throws Error(Geometry) where a curved edge turns a child
-/// over.
+/// `elements`: to be divided into eight. @throws Error(Geometry) where a curved edge inverts a
+/// child.
 RefinedMesh refine_elements(const QuadraticMesh& mesh, const std::vector<int>& elements);
 
 }  // namespace palpate::fem

@@ -14,7 +14,7 @@ inline constexpr std::size_t kTetPoints = 4;
 inline constexpr std::array<std::array<std::size_t, 2>, 6> kTetEdges{
     {{0, 1}, {1, 2}, {2, 0}, {0, 3}, {1, 3}, {2, 3}}};
 
-/// The node between corners a and b, which differ.
+/// The node between two different corners a and b.
 constexpr std::size_t middle_node(std::size_t a, std::size_t b) {
   std::size_t e = 0;
   while (kTetEdges[e] != std::array{a, b} && kTetEdges[e] != std::array{b, a}) ++e;

@@ -3,13 +3,13 @@
 
 namespace palpate::fem {
 
-/// The element: where its volumetric energy is taken, and with it what its pressure is like, and
-/// whether its displacements are quadratic (Tet10) or linear (Tet4).
+/// The element: the dilatation at which its volumetric energy is evaluated, and whether its
+/// displacements are quadratic (Tet10) or linear (Tet4).
 enum class Dilatation {
   Mean,       ///< at the mean dilatation: an element-constant pressure
-  Nodal,      ///< at the means around the corner nodes: a continuous, linear pressure
+  Nodal,      ///< at the means around the corner nodes: a continuous linear pressure
   Pointwise,  ///< at every Gauss point: the pure displacement element, which locks near nu = 1/2
-  /// Linear, with the means around the nodes [Bonet & Burton 1998]: for quick looks.
+  /// Linear, at the means around the nodes [Bonet & Burton 1998]: for quick looks
   LinearNodal,
 };
 
@@ -22,7 +22,7 @@ constexpr bool has_nodal_pressure(Dilatation dilatation) {
   return dilatation == Dilatation::Nodal || dilatation == Dilatation::LinearNodal;
 }
 
-/// For the provenance: "Tet10, element-constant pressure" ..
+/// Name in the provenance, as "Tet10, element-constant pressure".
 inline const char* name_of(Dilatation dilatation) {
   switch (dilatation) {
     case Dilatation::Mean:

@@ -3,11 +3,11 @@
 // condensed):
 //   Pi_e = sum_q w_q psi(F_q) + V U(Jbar),   Jbar = (1/V) sum_q w_q J_q,
 // so that the stiffness stays symmetric and positive definite near nu = 1/2 without locking. Two
-// others: the pure displacement element, for comparison with other programs,
+// variants: the pure displacement element, for comparison with other programs,
 //   Pi_e = sum_q w_q (psi(F_q) + U(J_q)),
-// and Pi_e = sum_q w_q psi(F_q) alone, to which the means around the corner nodes add their U
-// (fem/solid/nodal_pressure.hpp). The linear element, Tet4, is the last one with F constant: one
-// point does, and the mid-edge nodes have no part in it.
+// and Pi_e = sum_q w_q psi(F_q), to which the mean dilatations around the corner nodes add their U
+// (fem/solid/nodal_pressure.hpp). The linear element, Tet4, is the last variant with constant F, at
+// one point and without mid-edge nodes.
 #pragma once
 
 #include "fem/laws/holzapfel_gasser_ogden.hpp"
@@ -70,7 +70,7 @@ ElementKinematics<T> kinematics(const ElementGeometry<T>& geometry, const Elemen
   return k;
 }
 
-/// Of the linear element: the same at every point.
+/// Kinematics of the linear element, the same at every point.
 template <class T>
 ElementKinematics<T> linear_kinematics(const ElementGeometry<T>& geometry,
                                        const ElementVector<T>& u) {
@@ -90,12 +90,12 @@ ElementKinematics<T> linear_kinematics(const ElementGeometry<T>& geometry,
   return k;
 }
 
-/// How many points of the element differ, each of the same weight.
+/// Number of integration points of the element, all of the same weight.
 constexpr std::size_t points_of(Dilatation dilatation) {
   return is_linear(dilatation) ? 1 : kTetPoints;
 }
 
-/// Strain energy of the element, J; where pressures are nodal its isochoric part.
+/// Strain energy of the element, J; with nodal pressures its isochoric part.
 template <class T, class Law>
 T element_energy(const Law& law, Dilatation dilatation, const ElementGeometry<T>& geometry,
                  const ElementKinematics<T>& k) {
@@ -132,7 +132,7 @@ PointPressures<T> interpolated_pressures(const std::array<T, 4>& corner) {
   return p;
 }
 
-/// Their mean, at the one point of the linear element.
+/// The mean of the corner pressures, at the one point of the linear element.
 template <class T>
 PointPressures<T> mean_pressure(const std::array<T, 4>& corner) {
   PointPressures<T> p;
@@ -168,7 +168,7 @@ ElementVector<T> nodal_forces(const ElementGeometry<T>& geometry, Stress&& stres
   return f;
 }
 
-/// Of the linear element, for the one stress it has: f_c = V P . dL_c/dX.
+/// Nodal forces of the linear element with stress P: f_c = V P . dL_c/dX.
 template <class T>
 ElementVector<T> linear_forces(const ElementGeometry<T>& geometry, const Tensor2<T>& P) {
   ElementVector<T> f;
@@ -181,8 +181,8 @@ ElementVector<T> linear_forces(const ElementGeometry<T>& geometry, const Tensor2
   return f;
 }
 
-/// Internal forces of the element, N: the derivative of its energy, and of what its corners have of
-/// their own.
+/// Internal forces of the element, N: the derivative of its energy and, with nodal pressures, of
+/// the energy of its corners.
 template <class T, class Law>
 ElementVector<T> element_forces(const Law& law, Dilatation dilatation,
                                 const ElementGeometry<T>& geometry, const ElementKinematics<T>& k,
@@ -200,13 +200,14 @@ ElementVector<T> element_forces(const Law& law, Dilatation dilatation,
 template <class T>
 ElementVector<T> dilatation_forces(Dilatation dilatation, const ElementGeometry<T>& geometry,
                                    const ElementKinematics<T>& k, std::size_t c) {
-  const auto share = [&](std::size_t q) {
+  const auto weighted_cofactor = [&](std::size_t q) {
     const double L = is_linear(dilatation) ? 0.25 : q == c ? kTetNear : kTetFar;
     Tensor2<T> cof = k.cof[q];
     for (T& entry : cof) entry *= L;
     return cof;
   };
-  return is_linear(dilatation) ? linear_forces(geometry, share(0)) : nodal_forces(geometry, share);
+  return is_linear(dilatation) ? linear_forces(geometry, weighted_cofactor(0))
+                               : nodal_forces(geometry, weighted_cofactor);
 }
 
 /// Add p d(cof F)/dF, the geometric part of the pressure: with the permutation symbol e,
@@ -299,7 +300,7 @@ void add_dilatation_tangent(const Tensor2<T>& cof, const T& slope, Tensor4<T>& A
   }
 }
 
-/// K = (U''/V) g g^T with g = d(V Jbar)/du: what the condensed pressure adds to the stiffness.
+/// K = (U''/V) g g^T with g = d(V Jbar)/du: the stiffness of the condensed pressure.
 template <class T, class Law>
 void set_pressure_stiffness(const Law& law, const ElementGeometry<T>& geometry,
                             const ElementKinematics<T>& k, ElementMatrix<T>& K) {
@@ -312,8 +313,8 @@ void set_pressure_stiffness(const Law& law, const ElementGeometry<T>& geometry,
   }
 }
 
-/// Stiffness of the element, N/m: the derivative of element_forces; where pressures are nodal that
-/// at fixed pressures.
+/// Stiffness of the element, N/m: the derivative of element_forces; with nodal pressures the
+/// derivative at constant pressures.
 template <class T, class Law>
 void element_stiffness(const Law& law, Dilatation dilatation, const ElementGeometry<T>& geometry,
                        const ElementKinematics<T>& k, const PointPressures<T>& pressure,

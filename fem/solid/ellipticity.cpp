@@ -18,15 +18,14 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Directions from which a minimum is sought. The form has few minima: a dozen found the lowest in
-/// every state tried.
+/// Number of starting directions; the form has few minima.
 constexpr int kDirections = 48;
-constexpr double kRoughly = 1e-4, kNearly = 1e-8;  ///< change of a step, relative
-constexpr int kRoughSteps = 10, kNearSteps = 100, kNewtonSteps = 20;
-constexpr double kTurn = 1e-4;  ///< rad, of difference quotients
-constexpr int kCandidates = 8;  ///< of the rough minima, that are followed to the end
-/// A pivot over the largest entry of the diagonal that is positive beyond round-off.
-constexpr double kSurely = 1e-8;
+constexpr double kRoughTolerance = 1e-4, kFineTolerance = 1e-8;  ///< relative change of a step
+constexpr int kRoughSteps = 10, kFineSteps = 100, kNewtonSteps = 20;
+constexpr double kTurn = 1e-4;  ///< rad, step of difference quotients
+constexpr int kCandidates = 8;  ///< number of rough minima that are refined
+/// A pivot above this, over the largest entry of the diagonal, is positive beyond round-off.
+constexpr double kPositive = 1e-8;
 
 /// Spread evenly over a half sphere by the golden angle.
 std::vector<Vector3d> half_sphere() {
@@ -69,8 +68,8 @@ Tensor4<Lanes> cofactor_tangent(const Tensor2<Lanes>& F) {
   return D;
 }
 
-/// The smallest pivot of a Cholesky decomposition without roots: positive where A is positive
-/// definite. What follows a pivot that is not is void.
+/// The smallest pivot of an LDL^T decomposition: positive where A is positive definite. Pivots
+/// after one that is not positive are void.
 Lanes smallest_pivot(Tensor4<Lanes> A) {
   Lanes smallest = A[0][0];
   for (std::size_t p = 0; p < 9; ++p) {
@@ -118,8 +117,8 @@ struct Descent {
   Vector3d n;
 };
 
-/// The minimum that is reached from a direction, to a relative change of a step of `settled`.
-Descent descend(const Tensor4<double>& A, const Vector3d& start, double settled, int steps) {
+/// The minimum reached from a direction, until the relative change of a step is below `tolerance`.
+Descent descend(const Tensor4<double>& A, const Vector3d& start, double tolerance, int steps) {
   Eigen::SelfAdjointEigenSolver<Matrix3d> eigen;
   Descent now{std::numeric_limits<double>::infinity(), start};
   for (int step = 0; step < steps; ++step) {
@@ -127,7 +126,7 @@ Descent descend(const Tensor4<double>& A, const Vector3d& start, double settled,
     eigen.compute(acoustic_tensor(A, now.n));
     eigen.compute(transposed_tensor(A, eigen.eigenvectors().col(0)));
     now = {eigen.eigenvalues()[0], eigen.eigenvectors().col(0)};
-    if (step > 0 && !(now.stiffness < last - settled * std::abs(last))) break;
+    if (step > 0 && !(now.stiffness < last - tolerance * std::abs(last))) break;
   }
   return now;
 }
@@ -137,9 +136,9 @@ double weakest_along(const Tensor4<double>& A, const Vector3d& n) {
       .eigenvalues()[0];
 }
 
-/// Newton's method over the sphere of directions, by difference quotients: turns by turns creep
-/// along the valleys that stiff fibres make. Only steps that lower the value are taken; where two
-/// eigenvalues cross and it has no derivative, none may be.
+/// Newton's method over the sphere of directions, by difference quotients: alternating minimization
+/// converges slowly along the valleys of stiff fibres. Only steps that lower the value are taken;
+/// there may be none where two eigenvalues cross and the value has no derivative.
 Descent sharpen(const Tensor4<double>& A, Descent now) {
   for (int step = 0; step < kNewtonSteps; ++step) {
     const Vector3d e1 = now.n.unitOrthogonal(), e2 = now.n.cross(e1);
@@ -172,14 +171,15 @@ double min_acoustic_eigenvalue(const Tensor4<double>& A) {
   static const std::vector<Vector3d> directions = half_sphere();
   std::vector<Descent> found;
   for (const Vector3d& start : directions)
-    found.push_back(descend(A, start, kRoughly, kRoughSteps));
+    found.push_back(descend(A, start, kRoughTolerance, kRoughSteps));
   std::sort(found.begin(), found.end(),
             [](const Descent& a, const Descent& b) { return a.stiffness < b.stiffness; });
   // Two minima may be nearer to each other than the rough values are to them.
   double weakest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kCandidates; ++i)
-    weakest = std::min(weakest,
-                       sharpen(A, descend(A, found[to_index(i)].n, kNearly, kNearSteps)).stiffness);
+    weakest = std::min(
+        weakest,
+        sharpen(A, descend(A, found[to_index(i)].n, kFineTolerance, kFineSteps)).stiffness);
   return weakest;
 }
 
@@ -193,7 +193,7 @@ Lanes min_acoustic_eigenvalue(const Tensor2<Lanes>& F, const Tensor4<Lanes>& A) 
   for (std::size_t i = 0; i < 9; ++i) size = size.max(A[i][i].abs());
   Lanes weakest = smallest_pivot(shifted);
   for (int lane = 0; lane < kLanes; ++lane)
-    if (!(weakest[lane] > kSurely * size[lane]))
+    if (!(weakest[lane] > kPositive * size[lane]))
       weakest[lane] = min_acoustic_eigenvalue(lane_of(A, lane));
   return weakest;
 }

@@ -69,7 +69,7 @@ std::vector<bool> surface_nodes(const Body& body, const std::vector<Element>& el
 
 constexpr double kFree = -1;
 
-/// 0 or 1 where the potential is given, kFree elsewhere.
+/// 0 or 1 where the potential is prescribed, kFree elsewhere.
 std::vector<double> given_values(const Body& body, const std::vector<Element>& elements,
                                  const FibreField& field, const std::string& where) {
   const std::vector<bool> on_surface = surface_nodes(body, elements);
@@ -80,8 +80,8 @@ std::vector<double> given_values(const Body& body, const std::vector<Element>& e
     const bool low = field.from.holds(body.nodes[node]), high = field.to.holds(body.nodes[node]);
     if (low && high)
       throw Error(ErrorKind::Configuration, where,
-                  "the two boxes of the fibres hold the same part of the surface",
-                  "give boxes that are apart");
+                  "the two boxes of the fibres overlap on the surface",
+                  "give boxes without a common part of the surface");
     if (low || high) given[node] = high ? 1 : 0;
     from = from || low;
     to = to || high;
@@ -95,7 +95,7 @@ std::vector<double> given_values(const Body& body, const std::vector<Element>& e
   return given;
 }
 
-/// Completes the values of the nodes of the elements.
+/// Computes the values that are not given.
 void solve(const std::vector<Element>& elements, std::vector<double>& phi,
            const std::string& where) {
   std::vector<int> equation(phi.size(), -1);
@@ -122,14 +122,14 @@ void solve(const std::vector<Element>& elements, std::vector<double>& phi,
   K.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(K);
   const Eigen::VectorXd x = factor.solve(b);
-  // A part that neither box touches leaves its own constant open.
+  // In a part that neither box touches the potential is determined up to a constant only.
   const double off = (K * x - b).lpNorm<Eigen::Infinity>();
   if (factor.info() != Eigen::Success || !x.allFinite() || x.minCoeff() < -1e-6 ||
       x.maxCoeff() > 1 + 1e-6 ||
       factor.vectorD().minCoeff() < 1e-10 * factor.vectorD().maxCoeff() || !(off < 1e-6))
     throw Error(ErrorKind::Configuration, where,
-                "the potential of the fibres is not determined: a part of the region is reached "
-                "from neither box",
+                "the potential of the fibres is not determined: a part of the region is connected "
+                "to neither box",
                 "give boxes that both touch every part of the region");
   for (std::size_t node = 0; node < phi.size(); ++node)
     if (equation[node] >= 0) phi[node] = x[equation[node]];
@@ -146,7 +146,7 @@ FibreField fibres_of_potential(const Body& body, std::int32_t region, const Fibr
   for (const Element& e : elements) {
     Vector3d slope = Vector3d::Zero();
     for (std::size_t i = 0; i < 4; ++i) slope += phi[to_index(e.nodes[i])] * e.gradient[i];
-    // Against the steepest that four nodes of this size could make.
+    // Relative to the steepest gradient possible in an element of this size.
     const bool flat = slope.norm() * std::cbrt(e.volume) < 1e-9;
     if (!flat)
       samples.push_back(

@@ -24,7 +24,7 @@ FacetMass quadratic_mass() {
   return M / 180;
 }
 
-/// Of linear shape functions of the corners alone.
+/// The same for linear shape functions of the corners.
 FacetMass linear_mass() {
   FacetMass M = FacetMass::Zero();
   M.topLeftCorner<3, 3>() << 2, 1, 1, 1, 2, 1, 1, 1, 2;

@@ -12,7 +12,7 @@ namespace palpate::fem {
 /// Springs per area between the boundary and the ground [Winkler 1867], slack at rest. With N the
 /// outward normal of a facet at rest and u the displacement, a facet stores
 ///   integral of (k_n (u . N)^2 + k_t |u - (u . N) N|^2)/2 over its area at rest:
-/// a linear support, by which a body also holds when it is pulled. Immutable after construction.
+/// a linear support that also resists tension. Immutable after construction.
 class Foundation {
  public:
   Foundation() = default;

@@ -5,7 +5,7 @@
 
 namespace palpate::fem {
 
-/// Weight of every region alike.
+/// Gravity on a body of one density.
 struct Gravity {
   Vec3 acceleration{};  ///< m/s^2
   double density = 0;   ///< kg/m^3, at rest

@@ -25,14 +25,15 @@ class NodalPressure {
   };
 
   NodalPressure() = default;
-  /// The points around the corners of `elements`. `equation`: of each node, -1 where it is held.
+  /// The points around the corners of `elements`. `equation`: of each node, -1 where it is not
+  /// free.
   NodalPressure(const QuadraticMesh& mesh, const std::vector<int>& elements,
                 const std::vector<int>& equation);
 
   const std::vector<Point>& points() const { return points_; }
-  /// All elements that a point lies at: those of the constructor, and their neighbours.
+  /// All elements with a point at a corner: those of the constructor and their neighbours.
   const std::vector<int>& elements() const { return elements_; }
-  /// The points at the corners of an element, -1 where it is none of them.
+  /// The points at the corners of an element, -1 where there is none.
   std::array<int, 4> points_of(const QuadraticMesh& mesh, int element) const;
   std::size_t bytes() const;
 

@@ -11,7 +11,7 @@ namespace palpate::fem {
 
 namespace {
 
-/// Means of the projection, and the roughness.
+/// Element means of the projection, and the roughness.
 SmoothPressure project(const QuadraticMesh& mesh, const NodalPressure& nodal,
                        const std::vector<double>& pressure) {
   std::vector<double> at_point(nodal.points().size(), 0.0);

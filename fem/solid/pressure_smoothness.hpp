@@ -9,18 +9,18 @@
 
 namespace palpate::fem {
 
-/// Of SmoothPressure::alternation: above it element pressures are not to be read as they are.
+/// Threshold of SmoothPressure::alternation above which element pressures are not reliable.
 inline constexpr double kAlternating = 2;
 
 struct SmoothPressure {
   /// (elements) Pa: means of the projection onto pressures that are linear in each element and
-  /// continuous within a region, its mass matrix lumped. It filters checkerboards out.
+  /// continuous within a region, with a lumped mass matrix. It removes checkerboards.
   std::vector<double> pressure;
-  /// What the projection changes, over the spread of the pressures about their mean, both root mean
-  /// squares over the volume: 0 for a field that it leaves alone, about 1 for a checkerboard.
+  /// Change by the projection over the spread of the pressures about their mean, both root mean
+  /// squares over the volume: 0 for a field that it does not change, about 1 for a checkerboard.
   double roughness = 0;
-  /// The roughness over that of the projection itself, which is what the mesh leaves unresolved:
-  /// about 1.6 for a field of one sign of its changes, whatever the mesh, more with a checkerboard.
+  /// The roughness over that of the projected field, which measures what the mesh does not resolve.
+  /// Larger with a checkerboard.
   double alternation = 0;
 };
 

@@ -12,10 +12,10 @@ Prolongation::Prolongation(const RefinedMesh& refined, const std::vector<Tetrahe
   for (std::size_t i = 0; i < refined.new_nodes.size(); ++i) {
     const int first = whole.equation(old_nodes + static_cast<int>(i));
     if (first < 0) continue;
-    const RefinedMesh::NewNode& made = refined.new_nodes[i];
+    const RefinedMesh::NewNode& added = refined.new_nodes[i];
     for (std::size_t a = 0; a < kTetNodes; ++a) {
-      const int parent = whole.equation(elements[to_index(made.parent)][a]);
-      if (parent >= 0 && made.N[a] != 0) shares_.push_back({first, parent, made.N[a]});
+      const int parent = whole.equation(elements[to_index(added.parent)][a]);
+      if (parent >= 0 && added.N[a] != 0) weights_.push_back({first, parent, added.N[a]});
     }
   }
 }
@@ -23,15 +23,15 @@ Prolongation::Prolongation(const RefinedMesh& refined, const std::vector<Tetrahe
 Eigen::VectorXd Prolongation::extended(const Eigen::VectorXd& d) const {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(all_);
   all.head(old_) = d;
-  for (const Share& share : shares_)
-    all.segment<3>(share.node) += share.N * d.segment<3>(share.parent);
+  for (const Weight& weight : weights_)
+    all.segment<3>(weight.node) += weight.N * d.segment<3>(weight.parent);
   return all;
 }
 
 Eigen::VectorXd Prolongation::reduced(const Eigen::VectorXd& f) const {
   Eigen::VectorXd old = f.head(old_);
-  for (const Share& share : shares_)
-    old.segment<3>(share.parent) += share.N * f.segment<3>(share.node);
+  for (const Weight& weight : weights_)
+    old.segment<3>(weight.parent) += weight.N * f.segment<3>(weight.node);
   return old;
 }
 

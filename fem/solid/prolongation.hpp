@@ -10,28 +10,28 @@
 
 namespace palpate::fem {
 
-/// The new unknowns of a refined mesh as functions of those of the unrefined one. Both numbered by
-/// node, the old ones first.
+/// The unknowns of new nodes of a refined mesh as functions of the unknowns of the unrefined mesh.
+/// Both are numbered by node, the unrefined ones first. Immutable after construction.
 class Prolongation {
  public:
-  /// `whole`: the refined body, all nodes free that are not held. `elements`: of the unrefined
+  /// `whole`: the refined body, all nodes free that are not fixed. `elements`: of the unrefined
   /// mesh.
   Prolongation(const RefinedMesh& refined, const std::vector<Tetrahedron10>& elements,
                const SolidModel& whole);
 
-  /// (d, P d): new nodes move as their parents would.
+  /// (d, P d): new nodes move with their parent elements.
   Eigen::VectorXd extended(const Eigen::VectorXd& d) const;
-  /// f_old + P^T f_new: the gradient over the old unknowns when new nodes follow.
+  /// f_old + P^T f_new: the gradient by the old unknowns when new nodes follow them.
   Eigen::VectorXd reduced(const Eigen::VectorXd& f) const;
 
  private:
-  struct Share {
+  struct Weight {
     int node;    ///< first of the three unknowns of a new node
-    int parent;  ///< of one that it follows
+    int parent;  ///< the same of a node of its parent element
     double N;
   };
   Eigen::Index old_ = 0, all_ = 0;  ///< unknowns
-  std::vector<Share> shares_;
+  std::vector<Weight> weights_;
 };
 
 }  // namespace palpate::fem

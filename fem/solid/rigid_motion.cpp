@@ -12,11 +12,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Of a step, rad, from where a turn is made as one: below, its second order is round-off beside
-/// the strains that a tool makes.
-constexpr double kLeastTurn = 2e-3;
+/// Rotation of a step, rad, from which it is applied as one: below, its second order is negligible
+/// beside the strains under a tool.
+constexpr double kSmallestRotation = 2e-3;
 
-/// The middle, now, of the nodes that are held or rest on springs.
+/// Mean position of the nodes that are fixed or on springs.
 Vector3d middle_of_support(const QuadraticMesh& mesh, const Displacement& u) {
   Vector3d sum = Vector3d::Zero();
   int count = 0;
@@ -31,8 +31,9 @@ Vector3d middle_of_support(const QuadraticMesh& mesh, const Displacement& u) {
   return count > 0 ? Vector3d(sum / count) : sum;
 }
 
-/// The w of the fit of v + w x x to the steps d of the free nodes.
-Vector3d mean_turn(const SolidModel& model, const Eigen::VectorXd& d, const Displacement& u) {
+/// The w of the least-squares fit of v + w x x to the steps d of the free nodes.
+Vector3d rotation_of_step(const SolidModel& model, const Eigen::VectorXd& d,
+                          const Displacement& u) {
   const QuadraticMesh& mesh = model.mesh();
   Vector3d x_mean = Vector3d::Zero(), d_mean = Vector3d::Zero();
   int count = 0;
@@ -69,18 +70,19 @@ Matrix3d mean_rotation(const QuadraticMesh& mesh, const Displacement& u) {
   return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
 }
 
-void move_turning(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacement& u) {
+void add_rotating_step(const SolidModel& model, double s, const Eigen::VectorXd& d,
+                       Displacement& u) {
   const QuadraticMesh& mesh = model.mesh();
-  const Vector3d w = s * mean_turn(model, d, u);
+  const Vector3d w = s * rotation_of_step(model, d, u);
   const double angle = w.norm();
-  if (angle < kLeastTurn) return add_step(model, s, d, u);
-  const Matrix3d turn = Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
+  if (angle < kSmallestRotation) return add_step(model, s, d, u);
+  const Matrix3d rotation = Eigen::AngleAxisd(angle, w / angle).toRotationMatrix();
   const Vector3d c = middle_of_support(mesh, u);
   for (int node = 0; node < mesh.nodes(); ++node) {
     if (model.equation(node) < 0) continue;
     const Vector3d r = mesh.X.col(node) + u.col(node) - c;
     const Vector3d step = s * d.segment<3>(model.equation(node)), along = w.cross(r);
-    u.col(node) += step - along + turn * r - r;
+    u.col(node) += step - along + rotation * r - r;
   }
   straighten(mesh, u);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The rigid part of a motion of the body: a body on soft springs, or on a small support, turns as a
-// whole, and a linear step along such a turn would stretch it.
+// The rigid part of a motion of the body: a body on soft springs, or on a small support, rotates as
+// a whole, and a linear step along a rotation would stretch it.
 #pragma once
 
 #include <Eigen/Core>
@@ -13,10 +13,11 @@ namespace palpate::fem {
 /// [Kabsch 1976].
 Eigen::Matrix3d mean_rotation(const QuadraticMesh& mesh, const Displacement& u);
 
-/// u += s d on the unknowns of the model, with the rigid turn in it, the least-squares fit of
-/// v + w x (x - c) to d, made as the rotation exp(s w) around c instead of along its tangent. The
-/// two differ by second order in s w, and by nothing at c, the middle of what is held or on
-/// springs; turns of less than 2 mrad are left as they are.
-void move_turning(const SolidModel& model, double s, const Eigen::VectorXd& d, Displacement& u);
+/// u += s d on the unknowns of the model. The rigid rotation w in d, by the least-squares fit of
+/// v + w x (x - c), is applied as exp(s w) around c instead of along its tangent; c is the mean
+/// position of the nodes that are fixed or on springs. The two differ by second order in s w;
+/// rotations of less than 2 mrad are applied linearly.
+void add_rotating_step(const SolidModel& model, double s, const Eigen::VectorXd& d,
+                       Displacement& u);
 
 }  // namespace palpate::fem

@@ -184,14 +184,14 @@ int SolidModel::unknown(const Tetrahedron10& node, std::size_t row) const {
 
 void SolidModel::make_scatter() {
   scatter_.assign(blocks_.size() * kElementEntries * kLanes, -1);
-  int* place = scatter_.data();
+  int* position = scatter_.data();
   for (const Block& block : blocks_)
     for (std::size_t row = 0; row < 3 * kTetNodes; ++row)
-      for (std::size_t column = 0; column <= row; ++column, place += kLanes)
+      for (std::size_t column = 0; column <= row; ++column, position += kLanes)
         for (int lane = 0; lane < block.count; ++lane) {
           const auto& node = mesh().tetrahedra[to_index(block.element[to_index(lane)])];
           const int i = unknown(node, row), j = unknown(node, column);
-          if (i >= 0 && j >= 0) place[lane] = pattern_.position(i, j);
+          if (i >= 0 && j >= 0) position[lane] = pattern_.position(i, j);
         }
 }
 
@@ -230,7 +230,7 @@ double smallest(const ElementKinematics<Lanes>& k) {
   return std::min({k.J[0].minCoeff(), k.J[1].minCoeff(), k.J[2].minCoeff(), k.J[3].minCoeff()});
 }
 
-/// Exponential laws overflow long before an element inverts: such a state is as inadmissible.
+/// Exponential laws overflow long before an element inverts: such a state is inadmissible, too.
 SolidModel::State checked(SolidModel::State state) {
   if (!std::isfinite(state.energy)) state.min_J = 0;
   return state;
@@ -259,10 +259,10 @@ SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
     const auto& J = k.J;
     const Lanes all = kTetFar * (J[0] + J[1] + J[2] + J[3]);
     for (std::size_t c = 0; c < 4; ++c) {
-      const Lanes share = 0.25 * block.geometry.volume * (all + (kTetNear - kTetFar) * J[c]);
+      const Lanes part = 0.25 * block.geometry.volume * (all + (kTetNear - kTetFar) * J[c]);
       for (int lane = 0; lane < block.count; ++lane)
         if (const int point = block.pressure_point[to_index(lane)][c]; point >= 0)
-          mean[to_index(point)] += share[lane];
+          mean[to_index(point)] += part[lane];
     }
   }
   for (std::size_t n = 0; n < points.size(); ++n) {
@@ -307,8 +307,10 @@ void SolidModel::add_point_stiffness(const Displacement& u, const PointState& st
         const auto& node = mesh().tetrahedra[to_index(block.element[to_index(lane)])];
         for (std::size_t a = 0; a < kTetNodes; ++a) {
           if (equation(node[a]) < 0) continue;
-          const auto place = std::lower_bound(nodes.begin(), nodes.end(), node[a]) - nodes.begin();
-          for (int i = 0; i < 3; ++i) slope[to_index(point)](i, place) += g[a][to_index(i)][lane];
+          const auto position =
+              std::lower_bound(nodes.begin(), nodes.end(), node[a]) - nodes.begin();
+          for (int i = 0; i < 3; ++i)
+            slope[to_index(point)](i, position) += g[a][to_index(i)][lane];
         }
       }
     }
@@ -372,15 +374,15 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) 
 void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) const {
   values.assign(to_index(pattern_.nonzeros()), 0.0);
   ElementMatrix<Lanes> K;
-  const int* place = scatter_.data();
+  const int* position = scatter_.data();
   const PointState points = point_state(u);
   for (const Block& block : blocks_) {
     const auto k = kinematics_of(block, u);
     element_stiffness(solid_->laws[to_index(block.region)], solid_->dilatation, block.geometry, k,
                       pressures(block, k, points), K);
-    for (std::size_t entry = 0; entry < kElementEntries; ++entry, place += kLanes)
+    for (std::size_t entry = 0; entry < kElementEntries; ++entry, position += kLanes)
       for (int lane = 0; lane < block.count; ++lane)
-        if (place[lane] >= 0) values[to_index(place[lane])] += K[entry][lane];
+        if (position[lane] >= 0) values[to_index(position[lane])] += K[entry][lane];
   }
   add_point_stiffness(u, points, values);
   foundation_.add_stiffness(equation_, pattern_, values);
@@ -420,8 +422,8 @@ Lanes SolidModel::min_acoustic_eigenvalues(const Block& block,
 }
 
 std::string SolidModel::EllipticityLoss::reason() const {
-  return "the law loses ellipticity in the element at " + point_in_millimetres(X) +
-         ": what follows would depend on the mesh";
+  return "strong ellipticity is lost in the element at " + point_in_millimetres(X) +
+         ": further results would depend on the mesh";
 }
 
 std::optional<SolidModel::EllipticityLoss> SolidModel::ellipticity_loss(

@@ -19,10 +19,10 @@
 
 namespace palpate::fem {
 
-/// Displacement of every node, (3, nodes), m; zero at held nodes.
+/// Displacement of every node, (3, nodes), m; zero at fixed nodes.
 using Displacement = Eigen::Matrix3Xd;
 
-/// A mesh and the law of each of its regions, shared by the models made of it.
+/// A mesh and the law of each region, shared by the models of the body.
 struct Solid {
   QuadraticMesh mesh;
   std::vector<Law> laws;
@@ -34,7 +34,7 @@ struct Solid {
 std::vector<bool> nodes_within(const QuadraticMesh& mesh, const Eigen::Vector3d& centre,
                                double radius);
 
-/// The body without the tool, or a part of it, with the springs that it rests on: energy, internal
+/// The body, or a part of it, with its elastic foundation and without the tool: energy, internal
 /// forces and stiffness as functions of the displacement, on a chosen set of free nodes. Immutable
 /// after construction; every method may be called from several threads.
 class SolidModel {
@@ -43,25 +43,25 @@ class SolidModel {
   SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation = Dilatation::Mean,
              const Gravity& gravity = {});
 
-  /// The part of `whole` that feels its nodes within `radius` of `centre` move: those nodes are
-  /// free, the elements at them are kept, all other nodes stay where the displacement puts them.
+  /// The part of `whole` around `centre`: the nodes within `radius` are free, the model has their
+  /// elements, and all other nodes have prescribed displacements.
   SolidModel(const SolidModel& whole, const Eigen::Vector3d& centre, double radius);
-  /// The same with any choice of nodes; those that are held stay so.
+  /// The same with any choice of free nodes; nodes fixed in `whole` stay fixed.
   SolidModel(const SolidModel& whole, std::vector<bool> free);
 
-  /// The laws of `whole` on another mesh of the body, for energies and forces alone: it has no
-  /// stiffness, and its pattern() nothing but the number of unknowns. No weight, no springs.
+  /// The laws of `whole` on another mesh of the body, for energies and forces only: it has no
+  /// stiffness, no weight and no foundation, and its pattern() has only the number of unknowns.
   static SolidModel without_stiffness(const SolidModel& whole, QuadraticMesh mesh);
 
   struct State {
-    double energy = 0;  ///< J, strain energy, what the foundation stores, less the work of gravity
+    double energy = 0;  ///< J, strain energy and energy of the foundation less work of gravity
     /// Smallest det F at the Gauss points; 0 where the energy has no finite value. The rest is
     /// void when it is not positive.
     double min_J = 1;
   };
 
   State energy(const Displacement& u) const;
-  /// Internal forces on the unknowns, N, those of the foundation counted, less the weight.
+  /// Internal forces on the unknowns, N, with those of the foundation, less the weight.
   State forces(const Displacement& u, Eigen::VectorXd& f) const;
   /// Values of pattern(), N/m.
   void stiffness(const Displacement& u, std::vector<double>& values) const;
@@ -83,32 +83,32 @@ class SolidModel {
   };
   Compressed most_compressed(const Displacement& u) const;
 
-  /// A point where the law lets a plane wave of no speed stand: its acoustic tensor has an
-  /// eigenvalue that is not positive. `X` is the centre of its element at rest, m; the stiffness is
-  /// that eigenvalue, Pa, the smallest of all points.
+  /// The Gauss point with the smallest eigenvalue of the acoustic tensor, where it is not positive:
+  /// strong ellipticity is lost. `X` is the centre of its element at rest, m; the stiffness is that
+  /// eigenvalue, Pa.
   struct EllipticityLoss {
     double stiffness;
     Eigen::Vector3d X;
     std::string reason() const;  ///< why a path ends there
   };
-  /// None where every Gauss point is elliptic; laws that are polyconvex are not looked at.
+  /// Nothing where every Gauss point is elliptic; polyconvex laws are not checked.
   std::optional<EllipticityLoss> ellipticity_loss(const Displacement& u) const;
 
   const QuadraticMesh& mesh() const { return solid_->mesh; }
   /// First of the three unknowns of a node, -1 where it is not free.
   int equation(int node) const { return equation_[to_index(node)]; }
   const SparsePattern& pattern() const { return pattern_; }
-  double bytes() const;  ///< of its own tables, without the mesh that it shares
+  double bytes() const;  ///< of its own tables, without the shared mesh
 
  private:
   struct Block {
-    int count = 0;  ///< lanes in use; the others repeat the last element
+    int count = 0;  ///< SIMD lanes in use; the others repeat the last element
     int region = 0;
     std::array<int, kLanes> element{};
-    std::array<std::array<int, 4>, kLanes> pressure_point{};  ///< where pressures are nodal: or -1
+    std::array<std::array<int, 4>, kLanes> pressure_point{};  ///< with nodal pressures; else -1
     ElementGeometry<Lanes> geometry;
   };
-  /// Where pressures are nodal: Jbar_n, and what it makes of U there.
+  /// Nodal pressures: derivatives of U at Jbar_n, and its energy.
   struct PointState {
     std::vector<double> pressure, slope;  ///< dU/dJ and d2U/dJ2, Pa
     double energy = 0;                    ///< sum of V_n U(Jbar_n), J
@@ -127,8 +127,8 @@ class SolidModel {
   void scatter(const Block& block, const ElementVector<Lanes>& forces, Eigen::VectorXd& f) const;
   double work_of_gravity(const Displacement& u) const;  ///< on the free nodes, J
   PointState point_state(const Displacement& u) const;
-  /// The smallest stiffness of a wave at each element of a block, Pa; no more than positive where
-  /// it is known to be that.
+  /// The smallest eigenvalue of the acoustic tensor at the points of each element of a block, Pa;
+  /// where it is positive, a positive lower value.
   Lanes min_acoustic_eigenvalues(const Block& block, const ElementKinematics<Lanes>& k) const;
   PointPressures<Lanes> pressures(const Block& block, const ElementKinematics<Lanes>& k,
                                   const PointState& points) const;
@@ -142,8 +142,7 @@ class SolidModel {
   NodalPressure nodal_;
   Foundation foundation_;
   std::vector<Block> blocks_;
-  std::vector<int>
-      scatter_;  ///< place in the values of each entry, by block, entry and lane; -1: none
+  std::vector<int> scatter_;  ///< index into the values, by block, entry and SIMD lane; -1: none
 };
 
 /// u += length d on the unknowns of the model.

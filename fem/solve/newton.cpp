@@ -12,10 +12,11 @@ namespace palpate::fem {
 
 namespace {
 
-/// Forces that a sagged body may be left with, over its weight: ten times what it is left with.
+/// Residual of a body in equilibrium with its weight, over the weight: ten times the tolerance of
+/// equilibrium_under_weight().
 constexpr double kWeightNoise = 1e-8;
 
-/// The residual that the patch may leave, over that allowed to the increment.
+/// Tolerance of the solve on the patch, over that of the increment.
 constexpr double kPatchTolerance = 0.1;
 
 }  // namespace
@@ -42,9 +43,9 @@ void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& 
   patch_.emplace(contact, model_, u);
   factor_.emplace(model_.pattern(), permutation_, patch_->unknowns());
   const std::vector<int>& ours = patch_->unknowns();
-  last_place_.clear();
+  index_in_patch_.clear();
   for (const int unknown : factor_->last_unknowns())
-    last_place_.push_back(
+    index_in_patch_.push_back(
         static_cast<int>(std::lower_bound(ours.begin(), ours.end(), unknown) - ours.begin()));
   factorized_ = false;
 }
@@ -63,9 +64,9 @@ void NewtonSolver::shifted_stiffness(const Displacement& u, double patch, double
 }
 
 bool NewtonSolver::factorize(const Displacement& u) {
-  // What is pressed is stable against the tool, not without it: A alone is often indefinite, but on
-  // the patch. Away from equilibrium a large pressure can make the rest indefinite, too; raising
-  // all of its diagonal still gives a direction of descent.
+  // A pressed body is stable against the tool, not without it: A is often indefinite on the patch.
+  // Away from equilibrium a large pressure can make the rest indefinite, too; raising the whole
+  // diagonal still gives a direction of descent.
   struct Shift {
     double patch, all;
   };
@@ -81,7 +82,7 @@ bool NewtonSolver::factorize(const Displacement& u) {
   patch_stiffness_.S.resize(root_.rows(), root_.cols());
   for (Eigen::Index j = 0; j < root_.cols(); ++j)
     for (Eigen::Index i = j; i < root_.rows(); ++i)
-      patch_stiffness_.S(place(i), place(j)) = patch_stiffness_.S(place(j), place(i)) =
+      patch_stiffness_.S(in_patch(i), in_patch(j)) = patch_stiffness_.S(in_patch(j), in_patch(i)) =
           ordered(i, j);
   patch_stiffness_.S.diagonal() -= patch_stiffness_.stiffening;
   return true;
@@ -90,15 +91,15 @@ bool NewtonSolver::factorize(const Displacement& u) {
 Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displacement& u,
                                         const Eigen::VectorXd& residual, double tolerance) {
   Eigen::VectorXd load = -residual, y(load.size()), d(load.size());
-  contact.add_forces(model_, u, load);  // what is left are the internal forces
+  contact.add_forces(model_, u, load);  // leaves the internal forces
   factor_->solve_forward(load.data(), y.data(), workspace_);
   if (const Eigen::Index count = root_.rows(); count > 0) {
     patch_->start_from(contact, u);
     Eigen::VectorXd x(count), ordered = root_.triangularView<Eigen::Lower>() * y.tail(count);
-    for (Eigen::Index i = 0; i < count; ++i) x[place(i)] = ordered[i];
+    for (Eigen::Index i = 0; i < count; ++i) x[in_patch(i)] = ordered[i];
     x = patch_minimum(*patch_, contact, patch_stiffness_, x, Eigen::VectorXd::Zero(count),
                       tolerance, patch_scratch_);
-    for (Eigen::Index i = 0; i < count; ++i) ordered[i] = x[place(i)];
+    for (Eigen::Index i = 0; i < count; ++i) ordered[i] = x[in_patch(i)];
     y.tail(count) = root_.transpose().triangularView<Eigen::Upper>() * ordered;
   }
   factor_->solve_backward(y.data(), d.data(), workspace_);

@@ -16,39 +16,39 @@ namespace palpate::fem {
 struct NewtonOptions {
   double tolerance = 1e-4;  ///< |residual| over |tool force|
   int max_iterations = 40;
-  bool reuse_factor = false;  ///< keep the last factor while it contracts well (modified Newton)
+  bool reuse_factor = false;  ///< reuse the last factor while it converges well (modified Newton)
 };
 
 struct NewtonResult {
   bool converged = false;
   int iterations = 0;
-  std::string reason;  ///< of a failure, one clause
+  std::string reason;  ///< of a failure, one clause; else empty
 };
 
 /// Energy of body and contact at a displacement, with its gradient on the unknowns of the model.
 struct Equilibrium {
   double energy = 0;
-  double min_J = 1;  ///< the rest is void when not positive
+  double min_J = 1;  ///< the other members are void when it is not positive
   Eigen::VectorXd residual;
 };
-/// What `options.tolerance` is held against, N: the norm of the residual, and on springs, where no
-/// support takes what is left over, the sum of it. 0 where it is round-off of the weight: a tool
-/// that meets nothing yet has no force to measure by.
+/// The residual that is compared with `options.tolerance`, N: its norm; for a body on springs,
+/// which has no fixed node to take the resultant, at least the norm of its sum. 0 where it is
+/// round-off of the weight: without contact there is no tool force to compare with.
 double imbalance(const SolidModel& model, const Eigen::VectorXd& residual);
 Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u);
 
-/// Minimises the energy of body and contact over the unknowns of a model. Each iteration replaces
-/// the solid by its quadratic model, with a Cholesky factorization of its tangent A alone, and
-/// keeps the contact as it is:
+/// Minimizes the energy of body and contact over the unknowns of a model. Each iteration replaces
+/// the solid by its quadratic model, with a Cholesky factorization of its tangent A, and leaves the
+/// contact nonlinear:
 ///   min over d of r . d + d A d / 2 + E_c(u + d),   r the internal forces.
-/// E_c sees the unknowns of the contact patch only. They are eliminated last, so that their Schur
-/// complement S stands at the end of the factor and the minimum is found by Newton's method on
-/// them, dense and small:  min r'_P . d_P + d_P S d_P / 2 + E_c(d_P),  r' the load condensed to P.
-/// Facets that come into contact or leave it thus cost no factorization. A solid under pressure is
-/// often stable against its tool alone, S indefinite: the diagonal of the patch is raised for the
-/// factor, which raises that of S by as much, and lowered again in S. Steps are shortened until
-/// det F > 0 everywhere and the energy or the residual decreases. A failure is a return value: u is
-/// then the last admissible iterate.
+/// E_c depends only on the unknowns of the contact patch P. They are eliminated last, so that their
+/// Schur complement S is the end of the factor and the minimum is found by Newton's method on them,
+/// dense and small:  min r'_P . d_P + d_P S d_P / 2 + E_c(d_P),  r' the load condensed to P.
+/// Facets that come into contact or leave it thus need no factorization. A compressed solid is
+/// often stable only against its tool, and S indefinite: the diagonal of the patch is raised for
+/// the factorization, which raises that of S by as much, and lowered again in S. Steps are
+/// shortened until det F > 0 everywhere and the energy or the residual decreases. A failure is a
+/// return value: u is then the last admissible iterate. One thread.
 class NewtonSolver {
  public:
   /// `permutation`: elimination order for the pattern of the model, see Cholesky.
@@ -64,17 +64,19 @@ class NewtonSolver {
  private:
   void choose_patch(const ToolContact& contact, const Displacement& u);
   bool factorize(const Displacement& u);
-  /// K_ = A(u), its diagonal raised by these parts of itself on the patch and everywhere.
+  /// K_ = A(u), its diagonal raised by the fractions `patch`, on the patch, and `all`, everywhere.
   void shifted_stiffness(const Displacement& u, double patch, double all);
-  /// The minimum of the model above, contact residual left: `tolerance`, N.
+  /// The minimizer of the model above, to a residual of `tolerance`, N, on the patch.
   Eigen::VectorXd direction(const ToolContact& contact, const Displacement& u,
                             const Eigen::VectorXd& residual, double tolerance);
   /// Moves u along d; false when no admissible step is found.
   bool line_search(const ToolContact& contact, const Eigen::VectorXd& d, Equilibrium& now,
                    Displacement& u) const;
 
-  /// In the patch, of the i-th of the last unknowns of the factor.
-  Eigen::Index place(Eigen::Index i) const { return last_place_[static_cast<std::size_t>(i)]; }
+  /// Index into the patch of the i-th of the last unknowns of the factor.
+  Eigen::Index in_patch(Eigen::Index i) const {
+    return index_in_patch_[static_cast<std::size_t>(i)];
+  }
 
   const SolidModel& model_;
   const std::vector<int>* permutation_;
@@ -82,9 +84,9 @@ class NewtonSolver {
   std::optional<Cholesky> factor_;
   SolveWorkspace workspace_;
   std::vector<double> K_;
-  std::vector<int> last_place_;     ///< in the patch, of the last unknowns of the factor
+  std::vector<int> index_in_patch_;  ///< of the last unknowns of the factor
   Eigen::MatrixXd root_;            ///< lower triangular, of stiffened S in the order of the factor
-  PatchStiffness patch_stiffness_;  ///< S itself, what the diagonal of A has in the factor
+  PatchStiffness patch_stiffness_;  ///< S, and what was added to the diagonal of A
   Eigen::MatrixXd patch_scratch_;
   bool factorized_ = false;
 };

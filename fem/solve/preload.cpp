@@ -16,15 +16,15 @@ namespace palpate::fem {
 
 namespace {
 
-constexpr double kTolerance = 1e-9;  ///< forces left, over the weight
+constexpr double kTolerance = 1e-9;  ///< residual over the weight
 constexpr int kIterations = 30;
-constexpr int kHalvings = 12;            ///< of a Newton step
-constexpr double kLeastPart = 1.0 / 64;  ///< of the weight, put on at once
+constexpr int kHalvings = 12;               ///< of a Newton step
+constexpr double kSmallestPart = 1.0 / 64;  ///< of the weight, applied at once
 
 /// Equilibrium under a part of the weight.
-class Weighing {
+class PartialWeight {
  public:
-  Weighing(const SolidModel& model, const std::vector<int>& permutation)
+  PartialWeight(const SolidModel& model, const std::vector<int>& permutation)
       : model_(model),
         weight_(model.weight()),
         factor_(model.pattern(), &permutation),
@@ -33,7 +33,7 @@ class Weighing {
   double weight() const { return weight_.norm(); }
 
   /// False when it is not found; u is then no equilibrium.
-  bool carry(double part, Displacement& u) {
+  bool equilibrate(double part, Displacement& u) {
     State now = evaluate(part, u);
     for (int i = 0; i < kIterations && now.min_J > 0; ++i) {
       if (now.residual.norm() <= kTolerance * weight()) return true;
@@ -52,7 +52,7 @@ class Weighing {
     Eigen::VectorXd residual;
   };
 
-  /// The model carries all of the weight; what is too much is taken off.
+  /// The model has the whole weight; the excess is subtracted.
   State evaluate(double part, const Displacement& u) const {
     State now;
     const SolidModel::State state = model_.forces(u, now.residual);
@@ -116,21 +116,21 @@ Displacement equilibrium_under_weight(const SolidModel& model, const std::vector
                                       const std::string& owner) {
   Displacement u = Displacement::Zero(3, model.mesh().nodes());
   if (model.weight().isZero(0)) return u;
-  Weighing body(model, permutation);
+  PartialWeight body(model, permutation);
   double carried = 0, part = 1;
   while (carried < 1) {
     const double next = std::min(1.0, carried + part);
     Displacement trial = u;
-    if (body.carry(next, trial)) {
+    if (body.equilibrate(next, trial)) {
       u.swap(trial);
       carried = next;
       continue;
     }
     part *= 0.5;
-    if (part >= kLeastPart) continue;
+    if (part >= kSmallestPart) continue;
     char problem[96];
     std::snprintf(problem, sizeof problem,
-                  "it finds no equilibrium beyond %.0f %% of its weight: it buckles or tears",
+                  "there is no equilibrium beyond %.0f %% of the weight: the body buckles",
                   100 * carried);
     throw Error(ErrorKind::Geometry, "gravity on " + owner, problem,
                 "check the direction and the units of gravity.acceleration, the density, the "

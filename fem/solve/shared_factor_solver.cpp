@@ -9,12 +9,12 @@ namespace palpate::fem {
 
 namespace {
 
-/// Of the body as a whole, from where its stiffness at rest must be turned with it, |R - 1|.
-constexpr double kTurned = 5e-3;
-/// Of the sensitivity of the force that was seen, what is kept from step to step.
-constexpr double kFading = 0.5;
+/// |R - 1| of the mean rotation from which the stiffness at rest is rotated with the body.
+constexpr double kRotated = 5e-3;
+/// Factor on the sensitivity of the force from step to step.
+constexpr double kDecay = 0.5;
 
-/// On the first `count` unknowns.
+/// a - b on the first `count` unknowns.
 Eigen::VectorXd difference(const SolidModel& model, Eigen::Index count, const Displacement& a,
                            const Displacement& b) {
   Eigen::VectorXd d(count);
@@ -29,7 +29,7 @@ Eigen::VectorXd difference(const SolidModel& model, Eigen::Index count, const Di
 bool SharedFactorSolver::relax_window(const ToolContact& contact, const NewtonOptions& options,
                                       Displacement& u, NewtonResult& result) {
   NewtonOptions inner = options;
-  // What is left inside must not be seen from outside; far from the end that is little to ask.
+  // The residual inside must be small beside that outside; far from convergence it may be large.
   inner.tolerance = std::max(0.2 * options.tolerance, 0.03 * error_);
   inner.reuse_factor = true;
   const NewtonResult relaxed = newton_.solve(contact, inner, u);
@@ -43,8 +43,8 @@ Equilibrium SharedFactorSolver::evaluated(const ToolContact& contact, const Disp
   return now;
 }
 
-void SharedFactorSolver::moved(double length, const Eigen::VectorXd& d, Displacement& u) const {
-  move_turning(whole_, length, prolongation_ != nullptr ? prolongation_->extended(d) : d, u);
+void SharedFactorSolver::add_step(double length, const Eigen::VectorXd& d, Displacement& u) const {
+  add_rotating_step(whole_, length, prolongation_ != nullptr ? prolongation_->extended(d) : d, u);
 }
 
 Eigen::VectorXd SharedFactorSolver::direction(const Eigen::VectorXd& residual) {
@@ -55,23 +55,23 @@ Eigen::VectorXd SharedFactorSolver::direction(const Eigen::VectorXd& residual) {
     alpha[i] = pairs_[i].s.dot(q) / pairs_[i].sy;
     q -= alpha[i] * pairs_[i].y;
   }
-  Eigen::VectorXd load = q.cast<double>(), answer;
-  solve_turned(load, answer);
-  Eigen::VectorXf d = answer.cast<float>();
+  Eigen::VectorXd load = q.cast<double>(), solution;
+  solve_rotated(load, solution);
+  Eigen::VectorXf d = solution.cast<float>();
   for (std::size_t i = 0; i < pairs_.size(); ++i)
     d += (alpha[i] - pairs_[i].y.dot(d) / pairs_[i].sy) * pairs_[i].s;
   return -length * d.cast<double>();
 }
 
-void SharedFactorSolver::solve_turned(Eigen::VectorXd& q, Eigen::VectorXd& d) const {
-  if (!turned_) return rest_solve_(q, d);
-  const auto turn = [](const Eigen::Matrix3d& R, Eigen::VectorXd& v) {
+void SharedFactorSolver::solve_rotated(Eigen::VectorXd& q, Eigen::VectorXd& d) const {
+  if (!rotated_) return rest_solve_(q, d);
+  const auto rotate = [](const Eigen::Matrix3d& R, Eigen::VectorXd& v) {
     Eigen::Map<Eigen::Matrix3Xd> nodes(v.data(), 3, v.size() / 3);
     nodes = (R * nodes).eval();
   };
-  turn(turn_.transpose(), q);
+  rotate(rotation_.transpose(), q);
   rest_solve_(q, d);
-  turn(turn_, d);
+  rotate(rotation_, d);
 }
 
 void SharedFactorSolver::remember(const Eigen::VectorXd& s, const Eigen::VectorXd& y) {
@@ -89,7 +89,7 @@ bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& o
   double length = 1;
   for (int halvings = 0; halvings < 6; ++halvings, length *= 0.5) {
     Displacement trial = u;
-    moved(length, d, trial);
+    add_step(length, d, trial);
     if (!relax_window(contact, options, trial, result)) continue;
     Equilibrium next = evaluated(contact, trial);
     if (!(next.min_J > 0)) continue;
@@ -107,8 +107,8 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
                                        Displacement& u) {
   NewtonResult result;
   error_ = 0.1;
-  turn_ = mean_rotation(whole_.mesh(), u);
-  turned_ = (turn_ - Eigen::Matrix3d::Identity()).norm() > kTurned;
+  rotation_ = mean_rotation(whole_.mesh(), u);
+  rotated_ = (rotation_ - Eigen::Matrix3d::Identity()).norm() > kRotated;
   if (!relax_window(contact, options, u, result)) return result;
   Equilibrium now = evaluated(contact, u);
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
@@ -118,7 +118,7 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
     error_ = imbalance(whole_, now.residual) / scale;
     if (result.iterations > 0)
       sensitivity_ =
-          std::max((force - before).norm() / (scale * last_error), kFading * sensitivity_);
+          std::max((force - before).norm() / (scale * last_error), kDecay * sensitivity_);
     before = force;
     if (std::max(1.0, sensitivity_) * error_ <= options.tolerance) {
       result.converged = true;

@@ -46,7 +46,7 @@ bool TangentSolver::linearize(const ToolContact& contact, const Displacement& u)
   return factor_.factorize(K_window_);
 }
 
-void TangentSolver::put_inside(Eigen::VectorXd& load, Eigen::VectorXd& x) {
+void TangentSolver::solve_window(Eigen::VectorXd& load, Eigen::VectorXd& x) {
   factor_.solve(load.data(), load.data(), workspace_);
   for (std::size_t i = 0; i < unknown_.size(); ++i)
     x[unknown_[i]] = load[static_cast<Eigen::Index>(i)];
@@ -63,8 +63,8 @@ Eigen::VectorXd TangentSolver::preconditioned(const Eigen::VectorXd& r) {
   Eigen::VectorXd z;
   rest_solve_(r, z);
   Eigen::VectorXd load = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(unknown_.size()));
-  for (const Coupling& c : couplings_) load[c.inside] -= K_[to_index(c.place)] * z[c.outside];
-  put_inside(load, z);
+  for (const Coupling& c : couplings_) load[c.inside] -= K_[to_index(c.value)] * z[c.outside];
+  solve_window(load, z);
   return z;
 }
 
@@ -73,7 +73,7 @@ bool TangentSolver::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   Eigen::VectorXd load(static_cast<Eigen::Index>(unknown_.size()));
   for (std::size_t i = 0; i < unknown_.size(); ++i)
     load[static_cast<Eigen::Index>(i)] = b[unknown_[i]];
-  put_inside(load, x);
+  solve_window(load, x);
   Eigen::VectorXd r = b - times(x), p, q;
   for (const int i : unknown_) r[i] = 0;
   const double allowed = kTolerance * r.norm();

@@ -12,11 +12,11 @@
 
 namespace palpate::fem {
 
-/// K x = b without factorizing K. As in SharedFactorSolver the window around the tool, which holds
-/// the contact and the large strains, is eliminated by a factor of its own. What remains is the
-/// Schur complement of the unknowns outside; it differs little from that at rest, whose inverse is
-/// the outer block of K0^-1. So conjugate gradients, preconditioned by a solve with the factor of
-/// K0, end after few steps [Nocedal & Wright 2006, alg. 5.3].
+/// K x = b without factorizing K. As in SharedFactorSolver the window around the tool, with the
+/// contact and the large strains, is eliminated by a factor of its own. The Schur complement of the
+/// unknowns outside differs little from that at rest, whose inverse is the outer block of K0^-1.
+/// Conjugate gradients, preconditioned by a solve with the factor of K0, therefore converge in few
+/// iterations [Nocedal & Wright 2006, alg. 5.3].
 /// One thread; the rest solve may be shared.
 class TangentSolver {
  public:
@@ -25,11 +25,11 @@ class TangentSolver {
 
   TangentSolver(const SolidModel& whole, const SolidModel& window, RestSolve rest_solve);
 
-  /// Take the tangent at `u`. False when that of the window is not positive definite.
+  /// Computes the tangent at `u`. False when that of the window is not positive definite.
   bool linearize(const ToolContact& contact, const Displacement& u);
 
-  /// x = K^-1 b, the residual outside the window less than 1e-6 of what b leaves there. False when
-  /// a direction of no stiffness is met, or after 200 steps.
+  /// x = K^-1 b, to 1e-6 of the initial residual outside the window. False when a direction of
+  /// non-positive stiffness is found, or after 200 iterations.
   bool solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
 
   int iterations() const { return iterations_; }  ///< of all solves so far
@@ -39,17 +39,17 @@ class TangentSolver {
  private:
   /// An entry of K between an unknown of the window and one outside.
   struct Coupling {
-    int inside;   ///< by the window's numbers
-    int outside;  ///< by those of the whole body
-    int place;    ///< in the values
+    int inside;   ///< unknown of the window
+    int outside;  ///< unknown of the whole body
+    int value;    ///< index into the values
   };
 
   void find_couplings();
   /// K x outside the window, for an x that is in equilibrium there.
   Eigen::VectorXd times(const Eigen::VectorXd& x) const;
-  /// The window of x from the load on it, which is overwritten.
-  void put_inside(Eigen::VectorXd& load, Eigen::VectorXd& x);
-  /// Outside the inverse of the Schur complement at rest times r; inside in equilibrium with that.
+  /// Solves for the window part of x. The load is overwritten.
+  void solve_window(Eigen::VectorXd& load, Eigen::VectorXd& x);
+  /// Outside, the inverse of the Schur complement at rest times r; inside, in equilibrium with it.
   Eigen::VectorXd preconditioned(const Eigen::VectorXd& r);
 
   const SolidModel& whole_;

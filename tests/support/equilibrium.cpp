@@ -155,7 +155,7 @@ void equilibrate(const fem::SolidModel& model, const Loads& loads,
     factor.solve(residual.data(), d.data(), workspace);
     for (double step = 1; step > 1e-3; step /= 2) {  // until every element keeps its orientation
       fem::Displacement trial = u;
-      fem::move(model, step, d, trial);
+      fem::add_step(model, step, d, trial);
       if (!(model.energy(trial).min_J > 0)) continue;
       u = trial;
       break;

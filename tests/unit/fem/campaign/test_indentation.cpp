@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "fem/campaign/campaign.hpp"
 #include "fem/campaign/indentation.hpp"
 #include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"

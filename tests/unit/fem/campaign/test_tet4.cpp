@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "fem/campaign/bonded_patch.hpp"
+#include "fem/campaign/campaign.hpp"
 #include "fem/campaign/indentation.hpp"
 #include "fem/solve/preload.hpp"
 #include "format/to_index.hpp"

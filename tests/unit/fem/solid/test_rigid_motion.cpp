@@ -92,7 +92,7 @@ TEST(Rocking, AStepThatTurnsTheBodyDoesNotStretchIt) {
     d.segment<3>(model.equation(node)) = v + w.cross(Eigen::Vector3d(model.mesh().X.col(node)));
   Displacement along = Displacement::Zero(3, model.mesh().nodes()), turned = along;
   add_step(model, 1, d, along);
-  move_turning(model, 1, d, turned);
+  add_rotating_step(model, 1, d, turned);
   EXPECT_GT(model.energy(along).energy, 1e-5);
   EXPECT_NEAR(model.energy(turned).energy, 0, 1e-14);
   const Eigen::Matrix3d R = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix();
