@@ -69,7 +69,7 @@ SiteBody::SiteBody(const SolidModel& body, const Displacement& rest, const Eigen
   if (mesh == SiteMesh::RefinedWindow) refine(site, tool);
 }
 
-/// The window has all refined elements and one more layer: seen from outside the window, the
+/// The window has every new node and the nodes of its parent: seen from outside the window, the
 /// refined body at rest is then nearly the one that was factorized.
 void SiteBody::refine(const Eigen::Vector3d& site, const ToolGeometry& tool) {
   const QuadraticMesh& mesh = whole_->mesh();

@@ -24,7 +24,7 @@ enum class SiteMesh {
 };
 
 /// The body and the window around the tool. The factor of the campaign serves a refined mesh too:
-/// every refined element lies inside the window, which each site solves by itself. Immutable after
+/// every new node lies inside the window, which each site solves by itself. Immutable after
 /// construction.
 class SiteBody {
  public:

@@ -80,7 +80,7 @@ std::vector<double> given_values(const Body& body, const std::vector<Element>& e
     const bool low = field.from.holds(body.nodes[node]), high = field.to.holds(body.nodes[node]);
     if (low && high)
       throw Error(ErrorKind::Configuration, where,
-                  "the two boxes of the fibres overlap on the surface",
+                  "the two boxes of the fibres contain the same part of the surface",
                   "give boxes without a common part of the surface");
     if (low || high) given[node] = high ? 1 : 0;
     from = from || low;

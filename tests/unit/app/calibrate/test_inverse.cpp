@@ -6,6 +6,7 @@
 #include <random>
 
 #include "app/calibrate/inverse.hpp"
+#include "fem/campaign/campaign.hpp"
 #include "fitting/measurement/compare/compare.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The campaign on two threads in a fraction of a second, so that the thread sanitizer sees it.
+// The campaign on two threads, fast enough for the thread sanitizer.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -23,13 +23,13 @@ TEST(CampaignThreads, TwoGiveTheBitsOfOne) {
   settings.indentation.lateral_increments = 1;
   for (std::int32_t v = 0; v < 25 && settings.sites.size() < 4; ++v)
     if (body.response.is_site[to_index(v)]) settings.sites.push_back(v);
-  std::int64_t told = 0;
-  settings.progress = [&](const CampaignProgress& progress) { told += progress.done; };
+  std::int64_t reported = 0;
+  settings.progress = [&](const CampaignProgress& progress) { reported += progress.done; };
   CampaignReport report;
   const Curves one = run_campaign(body, settings, report);
   settings.threads = 2;
   const Curves two = run_campaign(body, settings, report);
-  EXPECT_EQ(told, 2 * (1 + 2 + 3 + 4));  // from one thread at a time
+  EXPECT_EQ(reported, 2 * (1 + 2 + 3 + 4));  // from one thread at a time
   ASSERT_EQ(one.sites.size(), 4u);
   ASSERT_EQ(two.sites.size(), 4u);
   for (std::size_t i = 0; i < one.sites.size(); ++i) {

@@ -16,7 +16,7 @@
 namespace palpate::fem {
 namespace {
 
-Body held_all_around() {
+Body fixed_all_around() {
   Body body =
       test::make_block(test::even(0, 0.03, 3), test::even(0, 0.03, 3), test::even(0, 0.03, 3));
   std::mt19937 random(5);
@@ -37,7 +37,7 @@ Body held_all_around() {
 class PatchTest : public testing::TestWithParam<std::tuple<LawConstants, Dilatation>> {};
 
 TEST_P(PatchTest, AnAffineBoundaryGivesAnAffineInterior) {
-  const Body body = held_all_around();
+  const Body body = fixed_all_around();
   const auto& [constants, dilatation] = GetParam();
   const Law law = make_law(constants, "t");
   const SolidModel model(body, {law}, dilatation);
@@ -71,7 +71,7 @@ TEST_P(PatchTest, AnAffineBoundaryGivesAnAffineInterior) {
   EXPECT_NEAR(model.energy(u).energy, volume * density, 1e-12);
 }
 
-std::string name_of(const testing::TestParamInfo<PatchTest::ParamType>& instance) {
+std::string instance_name(const testing::TestParamInfo<PatchTest::ParamType>& instance) {
   const auto& [constants, dilatation] = instance.param;
   std::string name = constants.law;
   if (dilatation == Dilatation::Nodal) name += "NodalPressure";
@@ -85,11 +85,11 @@ INSTANTIATE_TEST_SUITE_P(EveryLaw, PatchTest,
                          testing::Combine(testing::ValuesIn(test::sample_laws(0.49)),
                                           testing::Values(Dilatation::Mean, Dilatation::Nodal,
                                                           Dilatation::LinearNodal)),
-                         name_of);
+                         instance_name);
 INSTANTIATE_TEST_SUITE_P(PureDisplacement, PatchTest,
                          testing::Combine(testing::Values(test::sample_laws(0.45).front()),
                                           testing::Values(Dilatation::Pointwise)),
-                         name_of);
+                         instance_name);
 
 }  // namespace
 }  // namespace palpate::fem

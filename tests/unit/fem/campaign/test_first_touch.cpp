@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign/first_touch.hpp"
+
+#include <gtest/gtest.h>
+
+#include "fem/mesh/to_eigen.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+/// A block whose top is a paraboloid of `curvature`, 1/m, positive for a hollow.
+Body curved_top(double curvature) {
+  Body body = test::make_block(test::even(-0.01, 0.01, 8), test::even(-0.01, 0.01, 8),
+                               test::even(-0.01, 0, 2));
+  test::deform(body, [&](const Vec3& x) {
+    return Vec3{x[0], x[1],
+                x[2] + 0.5 * curvature * (x[0] * x[0] + x[1] * x[1]) * (1 + x[2] / 0.01)};
+  });
+  return body;
+}
+
+CampaignSettings settings() {
+  CampaignSettings s;
+  s.materials = {{"tissue", {10e3, 0.45}}};
+  return s;
+}
+
+TEST(FirstTouch, OfABulgeIsAtThePoint) {
+  const Body body = curved_top(-20);
+  const CampaignContext context(body, settings(), Engine::Direct);
+  const std::int32_t site = test::site_nearest(body);
+  const FirstTouch touch = first_touch(context, site);
+  EXPECT_LT((touch.tool.tip - to_eigen(context.press_point(site).position)).norm(), 1e-12);
+  EXPECT_FALSE(touch.facets.empty());
+}
+
+/// The hollow is narrower than the sphere of 5 mm: the tool is drawn back until it only touches.
+TEST(FirstTouch, OfANarrowHollowIsAboveThePoint) {
+  const Body body = curved_top(400);
+  const CampaignContext context(body, settings(), Engine::Direct);
+  const std::int32_t site = test::site_nearest(body);
+  const Eigen::Vector3d point = to_eigen(context.press_point(site).position);
+  FirstTouch touch = first_touch(context, site);
+  EXPECT_GT((touch.tool.tip - point).dot(-touch.tool.inward), 1e-4);
+  const ToolContact contact = contact_at(context, context.model.mesh(), point);
+  EXPECT_LE(contact.penetration_of(touch.tool, context.rest), 1e-7 * 0.005);
+  touch.tool.tip += 1e-6 * touch.tool.inward;
+  EXPECT_GT(contact.penetration_of(touch.tool, context.rest), 0);
+}
+
+}  // namespace
+}  // namespace palpate::fem

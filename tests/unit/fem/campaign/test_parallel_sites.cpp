@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Fast enough for the thread sanitizer.
+#include "fem/campaign/parallel_sites.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "fem/factor/memory.hpp"
+#include "format/error.hpp"
+#include "tests/unit/fem/factor/assembled_block.hpp"
+
+namespace palpate::fem {
+namespace {
+
+class ParallelSites : public testing::Test {
+ protected:
+  Assembled block;
+  RestFactor factor{block.model.pattern(), nested_dissection(block.model.pattern()), block.K,
+                    "block"};
+};
+
+TEST_F(ParallelSites, ServesEachIndexOnceAndSolvesForEach) {
+  const Eigen::VectorXd expected = block.dense.ldlt().solve(block.b);
+  for (const SiteThreads& size : {SiteThreads{1, 1}, SiteThreads{2, 3}, SiteThreads{3, kBatch}}) {
+    constexpr std::size_t kCount = 61;
+    std::vector<std::atomic<int>> calls(kCount);
+    std::vector<double> error(kCount, 1);
+    parallel_for_sites(factor, size, kCount, [&](SolveBatch::Member& member, std::size_t i) {
+      ++calls[i];
+      Eigen::VectorXd x;
+      const double scale = 1 + static_cast<double>(i);
+      for (std::size_t turn = 0; turn <= i % 4; ++turn) member.solve(scale * block.b, x);
+      error[i] = (x - scale * expected).norm() / (scale * expected.norm());
+    });
+    for (std::size_t i = 0; i < kCount; ++i) {
+      EXPECT_EQ(calls[i], 1);
+      EXPECT_LT(error[i], 1e-3);
+    }
+  }
+}
+
+TEST_F(ParallelSites, CallsNothingForNoSites) {
+  parallel_for_sites(factor, {2, 2}, 0, [](SolveBatch::Member&, std::size_t) { FAIL(); });
+}
+
+TEST_F(ParallelSites, StopsAfterAnExceptionAndRethrowsIt) {
+  constexpr std::size_t kCount = 100000;
+  std::atomic<std::size_t> calls{0};
+  try {
+    parallel_for_sites(factor, {2, 4}, kCount, [&](SolveBatch::Member& member, std::size_t i) {
+      ++calls;
+      Eigen::VectorXd x;
+      member.solve(block.b, x);
+      if (i == 7) throw std::runtime_error("site 7");
+    });
+    FAIL() << "the exception is lost";
+  } catch (const std::runtime_error& error) {
+    EXPECT_EQ(error.what(), std::string("site 7"));
+  }
+  EXPECT_GE(calls, 8u);
+  EXPECT_LT(calls, kCount);
+}
+
+TEST_F(ParallelSites, HasAsManyThreadsAsThereAreSitesUpToABatch) {
+  const auto threads = [&](int cores, std::size_t sites) {
+    const SiteThreads size = site_threads(factor, cores, sites, 0, 1e9);
+    EXPECT_EQ(size.cores, std::max(1, cores));
+    return size.threads_per_core;
+  };
+  EXPECT_EQ(threads(2, 1000), kBatch);
+  EXPECT_EQ(threads(2, 5), 3);
+  EXPECT_EQ(threads(0, 5), 5);
+  EXPECT_EQ(threads(4, 1), 1);
+}
+
+TEST_F(ParallelSites, HasFewerThreadsWhereMemoryIsShort) {
+  constexpr double kSite = 1e12;  // beside which the resident memory is negligible
+  const double reserved = 2 * factor.bytes();
+  const auto threads = [&](double sites_per_core) {
+    return site_threads(factor, 2, 1000, reserved + 2 * sites_per_core * kSite, kSite)
+        .threads_per_core;
+  };
+  EXPECT_EQ(threads(4.5), 4);
+  EXPECT_EQ(threads(1.5), 1);
+  EXPECT_EQ(threads(40.5), kBatch);
+  EXPECT_THROW(threads(0.5), Error);
+}
+
+}  // namespace
+}  // namespace palpate::fem

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign/site_body.hpp"
+
+#include <gtest/gtest.h>
+
+#include "format/to_index.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+class SiteBodies : public testing::Test {
+ protected:
+  Body body = test::make_block(test::even(-0.02, 0.02, 8), test::even(-0.02, 0.02, 8),
+                               test::even(-0.02, 0, 4));
+  SolidModel model{body, {NeoHookean::from_young_poisson(10e3, 0.45, "t")}};
+  Displacement rest = 1e-4 * Displacement::Random(3, model.mesh().nodes());
+  Eigen::Vector3d site = Eigen::Vector3d(0.001, 0.002, 0);
+  ToolGeometry tool;  // a sphere of 5 mm
+};
+
+TEST_F(SiteBodies, WholeBodyIsTheBodyItself) {
+  const SiteBody s(model, rest, site, tool, SiteMesh::WholeBody);
+  EXPECT_EQ(&s.whole(), &model);
+  EXPECT_EQ(s.prolongation(), nullptr);
+  EXPECT_EQ(s.rest(), rest);
+  EXPECT_EQ(s.bytes(), 0);
+}
+
+TEST_F(SiteBodies, WindowFreesTheNodesWithinItsRadius) {
+  const SiteBody s(model, rest, site, tool, SiteMesh::Window);
+  EXPECT_EQ(&s.whole(), &model);
+  EXPECT_EQ(s.prolongation(), nullptr);
+  EXPECT_GT(s.bytes(), 0);
+  int free = 0;
+  for (int node = 0; node < model.mesh().nodes(); ++node) {
+    const bool near = (model.mesh().X.col(node) - site).norm() <= window_radius(tool);
+    EXPECT_EQ(s.window().equation(node) >= 0, near && model.mesh().is_free(node));
+    free += s.window().equation(node) >= 0 ? 1 : 0;
+  }
+  EXPECT_GT(free, 50);
+  EXPECT_EQ(s.window().pattern().n, 3 * free);
+}
+
+TEST_F(SiteBodies, WindowReachesARadiusBeyondTheTool) {
+  EXPECT_DOUBLE_EQ(window_radius(tool), 0.01);
+  const ToolGeometry cylinder{ToolShape::Cylinder, 0.005, 0, 0.02};
+  EXPECT_DOUBLE_EQ(window_radius(cylinder), 0.015 + 0.005);
+}
+
+/// Otherwise the factor of the unrefined body would not serve.
+TEST_F(SiteBodies, RefinedWindowContainsEveryNewNode) {
+  const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow);
+  const int old_nodes = model.mesh().nodes();
+  ASSERT_GT(s.mesh().nodes(), old_nodes);
+  ASSERT_NE(s.prolongation(), nullptr);
+  for (int node = old_nodes; node < s.mesh().nodes(); ++node)
+    EXPECT_TRUE(s.window().equation(node) >= 0 || s.mesh().fixed[to_index(node)]);
+  EXPECT_GT(s.mesh().tetrahedra.size(), model.mesh().tetrahedra.size() + 100);
+  EXPECT_EQ(s.rest().leftCols(old_nodes), rest);
+  EXPECT_TRUE(s.rest().rightCols(s.mesh().nodes() - old_nodes).isZero(0));
+}
+
+/// A homogeneous deformation has the same energy and nodal forces on both meshes.
+TEST_F(SiteBodies, RefinedBodyIsTheBodyUnderHomogeneousDeformation) {
+  const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow);
+  Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
+  G.col(2) = Eigen::Vector3d(0.1, -0.05, -0.08);  // vanishes at the fixed base
+  const auto homogeneous = [&](const QuadraticMesh& mesh) {
+    return Displacement(G * (mesh.X.colwise() + Eigen::Vector3d(0, 0, 0.02)));
+  };
+  Eigen::VectorXd coarse, fine;
+  const double energy = model.forces(homogeneous(model.mesh()), coarse).energy;
+  EXPECT_NEAR(s.whole().forces(homogeneous(s.mesh()), fine).energy, energy, 1e-12 * energy);
+  EXPECT_LT((s.prolongation()->reduced(fine) - coarse).norm(), 1e-10 * coarse.norm());
+}
+
+}  // namespace
+}  // namespace palpate::fem

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/contact/tool_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "format/to_index.hpp"
+
+namespace palpate::fem {
+namespace {
+
+class ToolMeshes : public testing::TestWithParam<ToolGeometry> {
+ protected:
+  Tool tool() const {
+    const Eigen::Vector3d inward = Eigen::Vector3d(0.2, -0.1, -1).normalized();
+    return {GetParam(), Eigen::Vector3d(0.01, 0.02, 0.03), inward, inward.unitOrthogonal()};
+  }
+};
+
+TEST_P(ToolMeshes, HaveEveryNodeOfAFacetOnTheTool) {
+  const Tool t = tool();
+  const ToolMesh mesh = make_tool_mesh(t, 0.01);
+  ASSERT_GT(mesh.tetrahedra.size(), 50u);
+  for (const Tetrahedron10& element : mesh.tetrahedra)
+    for (const std::size_t node : {0, 1, 2, 4, 5, 6})
+      EXPECT_NEAR(t.distance(mesh.X.col(element[node])), 0, 1e-9 * 0.005);
+}
+
+TEST_P(ToolMeshes, HaveElementsOfPositiveVolume) {
+  const ToolMesh mesh = make_tool_mesh(tool(), 0.01);
+  for (const Tetrahedron10& element : mesh.tetrahedra) {
+    const auto edge = [&](std::size_t c) -> Eigen::Vector3d {
+      return mesh.X.col(element[c]) - mesh.X.col(element[0]);
+    };
+    EXPECT_GT(edge(1).cross(edge(2)).dot(edge(3)), 0);
+  }
+}
+
+/// The tip is the first point that a body meets.
+TEST_P(ToolMeshes, ReachTheTip) {
+  const Tool t = tool();
+  const ToolMesh mesh = make_tool_mesh(t, 0.01);
+  double nearest = 1;
+  for (const Tetrahedron10& element : mesh.tetrahedra)
+    for (const std::size_t node : {0, 1, 2}) {
+      EXPECT_LE(t.beyond_end(mesh.X.col(element[node])), 1e-12);
+      nearest = std::min(nearest, (mesh.X.col(element[node]) - t.tip).norm());
+    }
+  EXPECT_LT(nearest, 0.002);
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, ToolMeshes,
+                         testing::Values(ToolGeometry{ToolShape::Sphere, 0.005, 0, 0},
+                                         ToolGeometry{ToolShape::Disc, 0.005, 0.001, 0},
+                                         ToolGeometry{ToolShape::Cylinder, 0.005, 0, 0.01}),
+                         [](const auto& instance) { return name_of(instance.param.shape); });
+
+}  // namespace
+}  // namespace palpate::fem

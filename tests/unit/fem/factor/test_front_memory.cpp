@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/factor/front_memory.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace palpate::fem {
+namespace {
+
+constexpr std::size_t kLarge = std::size_t{1} << 18;
+
+bool all_zero(const LargeVector<double>& memory) {
+  return std::all_of(memory.begin(), memory.end(), [](double x) { return x == 0; });
+}
+
+TEST(FrontMemory, ReusesABlockAndClearsIt) {
+  FrontMemory pool(1e9);
+  LargeVector<double> block = pool.zeros(kLarge);
+  EXPECT_TRUE(all_zero(block));
+  std::fill(block.begin(), block.end(), 3.0);
+  const double* address = block.data();
+  pool.give_back(std::move(block));
+  const LargeVector<double> again = pool.zeros(kLarge - 100);
+  EXPECT_EQ(again.data(), address);
+  EXPECT_EQ(again.size(), kLarge - 100);
+  EXPECT_TRUE(all_zero(again));
+}
+
+TEST(FrontMemory, DoesNotWasteALargeBlockOnASmallRequest) {
+  FrontMemory pool(1e9);
+  LargeVector<double> block = pool.zeros(4 * kLarge);
+  const double* address = block.data();
+  pool.give_back(std::move(block));
+  const LargeVector<double> small = pool.zeros(kLarge);
+  EXPECT_NE(small.data(), address);
+  EXPECT_LE(small.capacity(), 2 * kLarge);
+}
+
+}  // namespace
+}  // namespace palpate::fem

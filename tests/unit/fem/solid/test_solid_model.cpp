@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/solid/solid_model.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+class SolidModels : public testing::TestWithParam<Dilatation> {
+ protected:
+  Body body =
+      test::make_block(test::even(0, 0.02, 3), test::even(0, 0.02, 3), test::even(0, 0.02, 3));
+  Gravity gravity{{1, 2, -9.81}, 1000};
+  SolidModel model{body, {NeoHookean::from_young_poisson(10e3, 0.45, "t")}, GetParam(), gravity};
+  Eigen::VectorXd d = 1e-4 * Eigen::VectorXd::Random(model.pattern().n),
+                  e = 1e-4 * Eigen::VectorXd::Random(model.pattern().n);
+  Displacement moved(double s) const {
+    Displacement u = Displacement::Zero(3, model.mesh().nodes());
+    add_step(model, 1, d, u);
+    add_step(model, s, e, u);
+    return u;
+  }
+};
+
+/// Central differences of the energy and the forces along a direction.
+TEST_P(SolidModels, HaveForcesAndStiffnessOfTheirEnergy) {
+  constexpr double h = 1e-3;
+  Eigen::VectorXd f, high, low;
+  const double up = model.forces(moved(h), high).energy, down = model.forces(moved(-h), low).energy;
+  model.forces(moved(0), f);
+  EXPECT_NEAR(f.dot(e), (up - down) / (2 * h), 1e-5 * f.norm() * e.norm());
+  std::vector<double> K;
+  model.stiffness(moved(0), K);
+  Eigen::VectorXd Ke(e.size());
+  symmetric_multiply(model.pattern(), K, e.data(), Ke.data());
+  EXPECT_LT((Ke - (high - low) / (2 * h)).norm(), 1e-5 * Ke.norm());
+  EXPECT_DOUBLE_EQ(model.energy(moved(0)).energy, model.forces(moved(0), f).energy);
+}
+
+TEST_P(SolidModels, CarryTheWeightOfTheirVolume) {
+  double weight = 0;
+  for (int i = 2; i < model.weight().size(); i += 3) weight += model.weight()[i];
+  EXPECT_LT(weight, 0);
+  EXPECT_GT(weight, -9810 * 8e-6);  // without the part on the fixed base
+  EXPECT_GT(model.weight_norm(), 0);
+}
+
+TEST_P(SolidModels, FindTheMostCompressedElement) {
+  Displacement u = Displacement::Zero(3, model.mesh().nodes());
+  for (int node = 0; node < model.mesh().nodes(); ++node) {
+    const double z = model.mesh().X(2, node) / 0.02;
+    u(2, node) = -0.3 * 0.02 * z * z * z;  // compresses the top most
+  }
+  straighten(model.mesh(), u);
+  const SolidModel::Compressed worst = model.most_compressed(u);
+  EXPECT_DOUBLE_EQ(worst.J, model.energy(u).min_J);
+  EXPECT_GT(worst.X[2], 0.013);
+}
+
+INSTANTIATE_TEST_SUITE_P(Elements, SolidModels,
+                         testing::Values(Dilatation::Mean, Dilatation::Nodal, Dilatation::Pointwise,
+                                         Dilatation::LinearNodal),
+                         [](const auto& instance) {
+                           return std::to_string(static_cast<int>(instance.param));
+                         });
+
+TEST(SolidModel, WindowHasTheForcesOfTheWholeOnItsUnknowns) {
+  const Body body =
+      test::make_block(test::even(0, 0.02, 4), test::even(0, 0.02, 4), test::even(0, 0.02, 4));
+  const SolidModel whole(body, {NeoHookean::from_young_poisson(10e3, 0.45, "t")});
+  const SolidModel window(whole, Eigen::Vector3d(0.01, 0.01, 0.02), 0.008);
+  Displacement u = Displacement::Zero(3, whole.mesh().nodes());
+  add_step(whole, 1e-4, Eigen::VectorXd::Random(whole.pattern().n), u);
+  Eigen::VectorXd all, part;
+  whole.forces(u, all);
+  window.forces(u, part);
+  ASSERT_GT(part.size(), 0);
+  ASSERT_LT(part.size(), all.size());
+  for (int node = 0; node < whole.mesh().nodes(); ++node)
+    if (window.equation(node) >= 0)
+      EXPECT_LT(
+          (part.segment<3>(window.equation(node)) - all.segment<3>(whole.equation(node))).norm(),
+          1e-13);
+}
+
+}  // namespace
+}  // namespace palpate::fem
