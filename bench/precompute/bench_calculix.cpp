@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A site against CalculiX (Debian's calculix-ccx) in one run: blocks of tissue with a patch of 3 mm
-// radius stuck to the tool and pressed 3 mm in 10 increments, elements of displacements alone.
+// radius bonded to the tool and pressed 3 mm in 10 increments, elements of displacements alone.
 // CalculiX gets the deck that `palpate export site --calculix` writes; the campaign presses a sharp
-// disc of the same radius that the surface sticks to.
+// disc of the same radius without slip.
 //
 // Usage: bench_calculix [SIZE...]   of the elements under the patch, mm; 2.5 and 1.5 by default
 #include <sys/resource.h>
@@ -31,7 +31,8 @@ namespace fs = std::filesystem;
 
 constexpr double kRadius = 0.003;
 
-/// 60 x 60 x 30 mm with its base held, cells of `fine` in the middle of the top that grow outwards.
+/// 60 x 60 x 30 mm with its base fixed, cells of `fine` in the middle of the top that grow
+/// outwards.
 Body block(double fine) {
   const auto across = test::graded(0.03, 0.0075, fine, 1.6);
   std::vector<double> down;
@@ -142,7 +143,7 @@ int main(int count, char** arguments) {
   for (int i = 1; i < count; ++i) sizes.push_back(1e-3 * std::atof(arguments[i]));
   if (sizes.empty()) sizes = {2.5e-3, 1.5e-3};
   std::printf(
-      "stuck patch of 3 mm radius to 3 mm, 10 increments, nu = 0.49, displacements alone; BLAS "
+      "bonded patch of 3 mm radius to 3 mm, 10 increments, nu = 0.49, displacements alone; BLAS "
       "kernel %s\n| elements | free nodes | CalculiX, a site | its force | campaign, a site | its "
       "force "
       "| ratio |\n|---|---|---|---|---|---|---|\n",

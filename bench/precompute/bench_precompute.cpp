@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a site costs, on blocks of tissue pressed by a sphere. Each part is one run on one machine;
-// only ratios within a part mean anything.
+// The cost of a site on blocks of tissue pressed by a sphere. Each part is one run on one machine;
+// only ratios within a part are meaningful.
 //
 // Usage: bench_precompute PART
 //   newton [8|26]       against one site after another by Newton's method with a Cholesky
@@ -31,8 +31,8 @@
 namespace palpate::fem {
 namespace {
 
-/// 60 x 60 x 30 mm with its base held, cells as cubes: 12 cells an edge make 8 125 quadratic nodes,
-/// 18 make 26 011.
+/// 60 x 60 x 30 mm with its base fixed, cells as cubes: 12 cells an edge make 8 125 quadratic
+/// nodes, 18 make 26 011.
 Body block(int cells) {
   return test::make_block(test::even(-0.03, 0.03, cells), test::even(-0.03, 0.03, cells),
                           test::even(-0.03, 0, cells / 2));
@@ -133,24 +133,23 @@ struct Press {
   const char* name;
   ToolShape shape;
   ToolFriction friction;
-  bool divided;
+  bool refined;
 };
 
 constexpr Press kPresses[] = {
     {"sphere", ToolShape::Sphere, ToolFriction::Frictionless, false},
-    {"sphere, divided", ToolShape::Sphere, ToolFriction::Frictionless, true},
-    {"stuck sphere", ToolShape::Sphere, ToolFriction::NoSlip, false},
-    {"stuck disc", ToolShape::Disc, ToolFriction::NoSlip, false},
+    {"sphere, refined elements", ToolShape::Sphere, ToolFriction::Frictionless, true},
+    {"no-slip sphere", ToolShape::Sphere, ToolFriction::NoSlip, false},
+    {"no-slip disc", ToolShape::Disc, ToolFriction::NoSlip, false},
 };
 
-/// What a force tolerance is worth: the same sites at several, against one that is as good as
-/// exact.
+/// Errors at several force tolerances, against a very small one.
 void against_tolerance(int cells, const Press& press) {
   const Body body = block(cells);
   CampaignSettings s = settings(0.45);
   s.indentation.tool.shape = press.shape;
   s.indentation.friction = press.friction;
-  s.indentation.refine_under_tool = press.divided;
+  s.indentation.refine_under_tool = press.refined;
   s.indentation.lateral_depths = {0.002};
   s.sites = inner_sites(body, 16);
   s.indentation.force_tolerance = 1e-8;

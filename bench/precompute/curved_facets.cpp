@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What curved facets are worth: a sphere pressed onto many places of a ball, which is as stiff at
-// one as at any other, on facets that are flat or curved and elements that are divided under the
-// tool or not, against the force on a mesh that is refined at the pole and has curved facets.
+// The effect of curved facets: a sphere is pressed onto many points of a ball, whose stiffness does
+// not depend on the position, on flat or curved facets, with and without refinement under the tool,
+// against the force on a mesh that is refined at the pole and has curved facets.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -50,8 +50,8 @@ void print_row(double h, const char* what, const std::vector<test::Spread>& foun
 
 }  // namespace
 
-/// Mean force over the places, its error and the standard deviation of the places, both over the
-/// force of the finest mesh; what the next coarser one differs from it says how far to trust it.
+/// Mean force over the positions, its error and the standard deviation over the positions, both
+/// over the force of the finest mesh, whose own error the next coarser mesh shows.
 int main(int, char** arguments) {
   palpate::app::ensure_blas_kernel(arguments);
   const test::RoundCap cap;
@@ -69,16 +69,16 @@ int main(int, char** arguments) {
     test::curve_onto_sphere(cap.radius, body);
     const auto found = test::spread_of_force(cap, body, press, h);
     if (reference.empty()) reference = found;
-    print_row(h, "curved, at the pole alone", found, reference);
+    print_row(h, "curved, at the pole only", found, reference);
   }
   for (const double h : {0.006, 0.004})
-    for (const bool divided : {false, true})
+    for (const bool refined : {false, true})
       for (const bool curved : {false, true}) {
         Body body = test::even_cap(cap, h);
         if (curved) test::curve_onto_sphere(cap.radius, body);
-        press.refine_under_tool = divided;
+        press.refine_under_tool = refined;
         const char* what =
-            divided ? (curved ? "curved, divided" : "flat, divided") : (curved ? "curved" : "flat");
+            refined ? (curved ? "curved, refined" : "flat, refined") : (curved ? "curved" : "flat");
         print_row(h, what, test::spread_of_force(cap, body, press, kNear), reference);
       }
 }

@@ -11,7 +11,7 @@
 namespace palpate::test {
 
 /// A block spanned by three ascending lists of coordinates, six tetrahedra a cell (Kuhn). The base
-/// z = z.front() is held; the response surface is the top with every grid vertex a response node,
+/// z = z.front() is fixed; the response surface is the top with every grid vertex a response node,
 /// rim vertices excluded from the sites. One region, "tissue".
 Body make_block(const std::vector<double>& x, const std::vector<double>& y,
                 const std::vector<double>& z);
@@ -29,7 +29,7 @@ std::int32_t site_nearest(const Body& body, double x = 0, double y = 0);
 /// The facets that belong to one tetrahedron only, outward.
 std::vector<Triangle> boundary_of(const std::vector<Tetrahedron>& tetrahedra);
 
-/// Move every node by a map; the topology stays.
+/// Moves every node by a map; the topology stays.
 void deform(Body& body, const std::function<Vec3(const Vec3&)>& map);
 
 }  // namespace palpate::test

@@ -224,7 +224,7 @@ Library thin_body(int n, double side, double thickness, const Responses& respons
 }
 
 Library cube(int n, double side, const Responses& responses) {
-  std::map<std::array<int, 3>, std::int32_t> number;  // one vertex for the faces that share it
+  std::map<std::array<int, 3>, std::int32_t> number;  // one vertex for all its faces
   std::vector<Vec3> positions;
   const auto vertex = [&](const std::array<int, 3>& at) {
     const auto [it, is_new] = number.emplace(at, static_cast<std::int32_t>(positions.size()));

@@ -103,13 +103,13 @@ Loads body_loads(const fem::QuadraticMesh& mesh,
 
 namespace {
 
-/// Each unknown's place in the array of displacements.
-std::vector<double*> places(const fem::SolidModel& model, fem::Displacement& u) {
-  std::vector<double*> place(to_index(model.pattern().n));
+/// The entry of the displacements of each unknown.
+std::vector<double*> entries_of(const fem::SolidModel& model, fem::Displacement& u) {
+  std::vector<double*> entry(to_index(model.pattern().n));
   for (int node = 0; node < model.mesh().nodes(); ++node)
     for (int i = 0; i < 3 && model.equation(node) >= 0; ++i)
-      place[to_index(model.equation(node) + i)] = &u(i, node);
-  return place;
+      entry[to_index(model.equation(node) + i)] = &u(i, node);
+  return entry;
 }
 
 }  // namespace
@@ -131,16 +131,16 @@ void equilibrate(const fem::SolidModel& model, const Loads& loads,
     Eigen::VectorXd residual = load - f;
     model.stiffness(u, K);
     double missing = 0;
-    const auto place = places(model, u);
+    const auto entry = entries_of(model, u);
     for (const auto& [i, value] : prescribed) {
-      const double gap = value - *place[to_index(i)];
+      const double gap = value - *entry[to_index(i)];
       double& diagonal = K[to_index(pattern.start[to_index(i)])];
       missing = std::max(missing, std::abs(gap));
       diagonal *= 1e10;
       residual[i] = diagonal * gap;
     }
     Eigen::VectorXd free = residual;
-    for (const auto& entry : prescribed) free[entry.unknown] = 0;
+    for (const auto& given : prescribed) free[given.unknown] = 0;
     const double left = free.norm();
     if (iteration > 0 && missing < 1e-9 && left <= 1e-9 * scale) return;
     bool definite = factor.factorize(K);

@@ -70,8 +70,8 @@ Triangulation octant_of_sphere(int divisions) {
   for (int i = 0; i <= divisions; ++i) {
     first.push_back(static_cast<std::int32_t>(mesh.points.size()));
     for (int j = 0; i + j <= divisions; ++j) {
-      const auto share = [&](int k) { return std::sin(0.5 * M_PI * k / divisions); };
-      const Vec3 x{share(i), share(j), share(divisions - i - j)};
+      const auto part = [&](int k) { return std::sin(0.5 * M_PI * k / divisions); };
+      const Vec3 x{part(i), part(j), part(divisions - i - j)};
       mesh.points.push_back((1 / norm(x)) * x);
     }
   }
@@ -85,12 +85,12 @@ Triangulation octant_of_sphere(int divisions) {
 }
 
 Body make_prisms(const Triangulation& base, int layers,
-                 const std::function<Vec3(const Vec3& point, int layer)>& place) {
+                 const std::function<Vec3(const Vec3& point, int layer)>& position) {
   Body body;
   body.name = "prisms";
   body.region_names = {"tissue"};
   for (int layer = 0; layer <= layers; ++layer)
-    for (const Vec3& point : base.points) body.nodes.push_back(place(point, layer));
+    for (const Vec3& point : base.points) body.nodes.push_back(position(point, layer));
   const auto count = static_cast<std::int32_t>(base.points.size());
   for (std::int32_t layer = 0; layer < layers; ++layer)
     for (const Triangle& triangle : base.triangles)

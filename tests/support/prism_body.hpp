@@ -24,10 +24,10 @@ Triangulation rings(const std::vector<double>& radii, int sectors);
 Triangulation octant_of_sphere(int divisions);
 
 /// Three tetrahedra for each prism between a triangle of layer k and of layer k + 1. Node
-/// `layer * points + point` lies at place(point, layer); layers 0 .. layers. No supports, one
+/// `layer * points + point` lies at position(point, layer); layers 0 .. layers. No supports, one
 /// region "tissue", no response surface.
 Body make_prisms(const Triangulation& base, int layers,
-                 const std::function<Vec3(const Vec3& point, int layer)>& place);
+                 const std::function<Vec3(const Vec3& point, int layer)>& position);
 
 /// Curves the edges of the boundary with both ends at `radius` from the origin onto that sphere.
 void curve_onto_sphere(double radius, Body& body);

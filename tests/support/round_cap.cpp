@@ -17,7 +17,7 @@ Vec3 unit(const Vec3& x) {
 }
 
 /// Where the tool is pressed.
-std::vector<fem::PressPoint> places(const RoundCap& cap, const Body& body, double near) {
+std::vector<fem::PressPoint> points(const RoundCap& cap, const Body& body, double near) {
   const bool curved = !body.curved_edges.empty();
   std::vector<fem::PressPoint> points;
   for (const Triangle& facet : body.boundary) {
@@ -64,7 +64,7 @@ std::vector<Spread> spread_of_force(const RoundCap& cap, const Body& body,
   settings.indentation.lateral_depths.clear();
   settings.indentation.lateral_travel = 0;
   settings.threads = 2;
-  settings.points = places(cap, body, near);
+  settings.points = points(cap, body, near);
   fem::CampaignReport report;
   const Curves curves = fem::run_campaign(body, settings, report);
   std::vector<Spread> spread(to_index(press.increments));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The cap of a ball on a rigid core, pressed here and there: a ball is as stiff at one place of its
-// skin as at any other.
+// The cap of a ball on a rigid core: its stiffness does not depend on the position.
 #pragma once
 
 #include <vector>
@@ -17,7 +16,7 @@ struct RoundCap {
 };
 
 /// Rings at ascending angles from the pole, layers at descending depths below the skin from the
-/// thickness to 0; flat facets, the inside held.
+/// thickness to 0; flat facets, the inside fixed.
 Body cap_of(const RoundCap& cap, const std::vector<double>& angles, int sectors,
             const std::vector<double>& depths);
 
@@ -26,7 +25,7 @@ Body even_cap(const RoundCap& cap, double size);
 
 struct Spread {
   double mean = 0;       ///< N
-  double deviation = 0;  ///< of the places, standard, over the mean
+  double deviation = 0;  ///< standard deviation over the positions, over the mean
 };
 
 /// Presses a tool along the radius onto the facets whose middles are within `near` of the pole: at

@@ -59,7 +59,7 @@ TEST(Campaign, GivesTheSameBitsWhateverTheNumberOfThreads) {
   for (std::size_t i = 0; i < one.sites.size(); ++i) expect_same_bits(one.sites[i], two.sites[i]);
 }
 
-TEST(Campaign, CampaignsThatShareAFactorKnowNothingOfOneAnother) {
+TEST(Campaign, ThatSharesAFactorHasTheSameBits) {
   const Body body = small_block();
   const CampaignSettings settings = quick();
   CampaignSettings some = settings, points = settings;
@@ -69,10 +69,10 @@ TEST(Campaign, CampaignsThatShareAFactorKnowNothingOfOneAnother) {
   points.points = {{{0.002, 0.001, 0}, {0, 0, -1}}};
   points.indentation.lateral_depths.clear();
   CampaignReport report;
-  FactorCache kept;
-  run_campaign(body, points, report, &kept);
-  const Curves after = run_campaign(body, some, report, &kept);
-  EXPECT_EQ(kept.factorizations(), 1);
+  FactorCache cache;
+  run_campaign(body, points, report, &cache);
+  const Curves after = run_campaign(body, some, report, &cache);
+  EXPECT_EQ(cache.factorizations(), 1);
   ASSERT_EQ(after.sites.size(), 1u);
   expect_same_bits(after.sites[0], run_campaign(body, some, report).sites[0]);
 }
@@ -98,7 +98,7 @@ std::ptrdiff_t threads_of_this_process() {
   return std::distance(std::filesystem::directory_iterator("/proc/self/task"), {});
 }
 
-TEST(Campaign, LibrariesStartNoThreadsOfTheirOwn) {
+TEST(Campaign, StartsNoThreadsInLibraries) {
   // CHOLMOD and OpenBLAS would each bring threads to every site and the cores would thrash.
   const Body body = small_block();
   CampaignSettings settings = quick();
@@ -113,7 +113,7 @@ TEST(Campaign, LibrariesStartNoThreadsOfTheirOwn) {
   EXPECT_LE(most, before + site_threads);
 }
 
-TEST(Campaign, TellsItsProgress) {
+TEST(Campaign, ReportsItsProgress) {
   CampaignSettings settings = quick();
   settings.sites = {6, 8, 7};
   const Body body = small_block();
@@ -141,7 +141,7 @@ std::string refusal(const CampaignSettings& settings) {
   return "accepted";
 }
 
-TEST(Campaign, RefusesWhatDoesNotFit) {
+TEST(Campaign, RefusesInvalidSettings) {
   CampaignSettings s = quick();
   s.materials[0].region = "bone";
   EXPECT_THAT(refusal(s), HasSubstr("use one of: tissue"));
@@ -165,7 +165,7 @@ TEST(Campaign, RefusesWhatDoesNotFit) {
   EXPECT_THAT(refusal(s), HasSubstr("poisson"));
 }
 
-TEST(Campaign, AStuckDiscFeelsNoRoundingOfTheSurface) {
+TEST(Campaign, OfANoSlipDiscDoesNotDependOnRounding) {
   // A flat end on a flat surface: whether that lies a femtometre before or behind it at rest must
   // not decide what is beneath the end.
   CampaignSettings s = quick();
@@ -184,7 +184,7 @@ TEST(Campaign, AStuckDiscFeelsNoRoundingOfTheSurface) {
     EXPECT_NEAR(force(top), exact, 1e-6 * exact) << "top at " << top;
 }
 
-TEST(Campaign, AFailedSiteKeepsItsPartialCurveAndReason) {
+TEST(Campaign, HasThePartialCurveAndReasonOfAFailedSite) {
   CampaignSettings s = quick();
   s.indentation.depth = 0.03;  // the block is 15 mm thick
   s.indentation.lateral_depths.clear();
@@ -198,8 +198,8 @@ TEST(Campaign, AFailedSiteKeepsItsPartialCurveAndReason) {
   EXPECT_GE(curves.sites[0].paths.at(0).samples.size(), 1u);
 }
 
-TEST(Campaign, EveryFailedPathOfASiteLeavesItsReason) {
-  // Dragged both ways into the rim, which is held.
+TEST(Campaign, HasTheReasonOfEveryFailedPath) {
+  // Moved both ways into the fixed rim.
   CampaignSettings s = quick();
   s.indentation.lateral_travel = 0.03;
   s.indentation.lateral_increments = 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// A ball is as stiff at one place of its skin as at any other. On flat facets it is not: a node
-// sticks out of the chords around it, the middle of a facet lies below the ball.
+// The stiffness of a ball does not depend on the position. With flat facets it does: a node
+// protrudes from the chords around it, and the middle of a facet lies below the ball.
 #include <gtest/gtest.h>
 
 #include "tests/support/prism_body.hpp"
@@ -9,7 +9,7 @@
 namespace palpate::fem {
 namespace {
 
-TEST(CurvedFacets, MakeABallAsStiffAtOnePlaceAsAtAnother) {
+TEST(CurvedFacets, MakeTheStiffnessOfABallIndependentOfThePosition) {
   const test::RoundCap cap;
   IndentationSettings press;
   press.tool.radius = 0.005;

@@ -109,13 +109,13 @@ TEST_F(Indentation, ForceIsTheDerivativeOfTheStrainEnergy) {
   }
 }
 
-TEST_F(Indentation, ContactGapIsSmall) {
-  // Half a percent of the depth: the penalty, not the solver, sets it.
+TEST_F(Indentation, PenetrationIsSmall) {
+  // Half a percent of the depth, set by the penalty.
   for (const auto& path : curves_->paths)
     for (const auto& sample : path.samples) EXPECT_LT(sample.penetration, 2e-5);
 }
 
-TEST_F(Indentation, LateralForceOpposesAndLeavesTheHeldForceNearly) {
+TEST_F(Indentation, LateralForceOpposesTheMotionAndGrows) {
   const auto& lateral = curves_->paths[1];
   const double end = dot(lateral.samples.back().force, lateral.direction);
   EXPECT_GT(end, 0);
@@ -127,7 +127,7 @@ TEST_F(Indentation, LateralForceOpposesAndLeavesTheHeldForceNearly) {
   }
 }
 
-TEST_F(Indentation, TheForceIsThatOfNewtonOnTheWholeBodyWithinTheTolerance) {
+TEST_F(Indentation, ForceIsThatOfNewtonOnTheWholeBodyWithinTheTolerance) {
   const double tolerance = settings().indentation.force_tolerance;
   CampaignSettings exact = settings();
   exact.indentation.force_tolerance = 1e-3 * tolerance;

@@ -51,7 +51,7 @@ double end_force(const SiteCurves& site) {
   return norm(site.paths.front().samples.back().force);
 }
 
-/// Saint Venant-Kirchhoff loses ellipticity under the tool before 2 mm.
+/// Saint Venant-Kirchhoff loses strong ellipticity under the tool before 2 mm.
 CampaignSettings bearable(const LawConstants& tissue, const LawConstants& skin) {
   CampaignSettings settings = settings_of(tissue, skin);
   if (skin.law == "saint-venant-kirchhoff") settings.indentation.depth = 0.0015;
@@ -87,7 +87,7 @@ TEST_P(LawIndentation, WorksAsASkinOnAnotherLaw) {
   EXPECT_LT(layered, 0.95 * stiff);
 }
 
-TEST_P(LawIndentation, StoresTheWorkDoneOnAStuckPatch) {
+TEST_P(LawIndentation, StoresTheWorkDoneOnABondedPatch) {
   const Body body = layered_block();
   CampaignSettings settings = bearable(GetParam(), GetParam());
   settings.indentation.increments = 8;

@@ -47,15 +47,15 @@ const std::vector<RegionConstant> kConstants{
     {"top", "young"}, {"base", "young"}, {"top", "poisson"}};
 constexpr double kTop = 8e3, kBase = 20e3, kPoisson = 0.45;
 
-/// A site with the derivatives by kConstants, and without them where one constant at a time is a
-/// little more and a little less.
+/// A site with the derivatives by kConstants, and without them with one constant at a time slightly
+/// larger and slightly smaller.
 struct Differences {
   SiteSensitivity exact;
   std::array<std::array<SiteSensitivity, 2>, 3> varied;
   std::array<double, 3> width;  ///< between the two
 };
 
-/// `run(top, base, poisson, constants)`; moduli differ by the share h, Poisson's ratio by k.
+/// `run(top, base, poisson, constants)`; moduli differ by the fraction h, Poisson's ratio by k.
 template <typename Run>
 Differences by_differences(const Run& run, double h, double k) {
   return {run(kTop, kBase, kPoisson, kConstants),
@@ -162,9 +162,8 @@ TEST(Sensitivity, OfALateralPathIsTheDerivativeByDifferences) {
   }
 }
 
-/// What sticks while the tool goes down is tied where it is at each increment, which depends on the
-/// constants: the normal force, and the drags that start from it.
-TEST(Sensitivity, OfAStuckPathIsTheDerivativeByDifferences) {
+/// On a no-slip path the positions at which the surface is tied depend on the constants, too.
+TEST(Sensitivity, OfANoSlipPathIsTheDerivativeByDifferences) {
   const Body body = layered();
   const std::vector<std::vector<LateralPlan>> plans{{{0.002, {0.6, 0.8, 0}, {0.001}}}};
   const auto run = [&](double top, double base, double nu,
@@ -179,24 +178,23 @@ TEST(Sensitivity, OfAStuckPathIsTheDerivativeByDifferences) {
   ASSERT_EQ(exact.samples.size(), 2U) << exact.reason;
   ASSERT_EQ(exact.lateral[0].size(), 1U) << exact.reason;
   for (std::size_t c = 0; c < 3; ++c) {
-    const auto held = [&](const ForceSensitivity& s, double more, double less) {
+    const auto compare = [&](const ForceSensitivity& s, double more, double less) {
       const double wanted = (more - less) / both.width[c];
       const double noise = 2 * 3e-7 * s.force / both.width[c];
       EXPECT_NEAR(s.slope[c], wanted, 2e-3 * std::abs(wanted) + noise) << c << ' ' << s.depth;
     };
     for (std::size_t i = 0; i < 2; ++i)
-      held(exact.samples[i], both.varied[c][0].samples[i].force,
-           both.varied[c][1].samples[i].force);
-    held(exact.lateral[0][0], both.varied[c][0].lateral[0][0].force,
-         both.varied[c][1].lateral[0][0].force);
+      compare(exact.samples[i], both.varied[c][0].samples[i].force,
+              both.varied[c][1].samples[i].force);
+    compare(exact.lateral[0][0], both.varied[c][0].lateral[0][0].force,
+            both.varied[c][1].lateral[0][0].force);
   }
   for (const ForceSensitivity& s : exact.samples)
     EXPECT_NEAR(kTop * s.slope[0] + kBase * s.slope[1], s.force, 1e-4 * s.force);  // Euler
 }
 
-/// At a deep press the tangent is far from that at rest: the solve that never factorizes it must
-/// still agree with one that does, after few steps.
-TEST(TangentSolver, AgreesWithAFactorOfTheTangent) {
+/// In a deep press the tangent is far from that at rest.
+TEST(Sensitivity, SolvesWithTheTangentAsAFactorOfItDoes) {
   const Body body = layered();
   CampaignSettings settings = settings_of(body, 8e3, 20e3, 0.49);
   settings.indentation.azimuths.clear();
@@ -229,21 +227,21 @@ TEST(TangentSolver, AgreesWithAFactorOfTheTangent) {
 
 /// Constants are tried one after the other with what was made for the first: the answers are those
 /// of calls that know nothing of each other, and the body is factorized only where it must be.
-TEST(Sensitivity, KeepsAFactorWhileItServes) {
+TEST(Sensitivity, ReusesAFactorWhileItServes) {
   const Body body = layered();
   const std::vector<RegionConstant> constants{{"top", "young"}, {"base", "young"}};
   struct Trial {
     double top, base, poisson;
     int factorizations;
   };
-  FactorCache kept;
+  FactorCache cache;
   for (const Trial& t :
        {Trial{8e3, 20e3, 0.45, 1}, Trial{24e3, 60e3, 0.45, 1}, Trial{24e3, 70e3, 0.45, 1},
         Trial{24e3, 70e3, 0.49, 2}, Trial{6e3, 70e3, 0.49, 3}, Trial{0.6e3, 7e3, 0.49, 3}}) {
     const CampaignSettings settings = settings_of(body, t.top, t.base, t.poisson);
-    const auto reused = run_sensitivity(body, settings, kDepths, constants, {}, &kept).front();
+    const auto reused = run_sensitivity(body, settings, kDepths, constants, {}, &cache).front();
     const auto alone = run_sensitivity(body, settings, kDepths, constants).front();
-    EXPECT_EQ(kept.factorizations(), t.factorizations) << t.top << ' ' << t.base;
+    EXPECT_EQ(cache.factorizations(), t.factorizations) << t.top << ' ' << t.base;
     ASSERT_EQ(reused.samples.size(), kDepths.size()) << reused.reason;
     for (std::size_t i = 0; i < kDepths.size(); ++i) {
       const ForceSensitivity &a = reused.samples[i], &b = alone.samples[i];

@@ -104,16 +104,14 @@ TEST(Tet4, AColumnShortensUnderItsWeight) {
   EXPECT_NEAR(sum / count, expected, 0.02 * expected);
 }
 
-/// A patch of Tet4 stores the work that is done on it.
-TEST(Tet4, StoresTheWorkDoneOnAStuckPatch) {
+TEST(Tet4, StoresTheWorkDoneOnABondedPatch) {
   const PatchCurve curve =
       press_patch(block(), settings(kTet4, 0.49), test::site_nearest(block()), 0.0051);
   test::expect_work_is_stored(curve);
 }
 
-/// Under a tool whose contact spans two elements: what is too much near nu = 1/2 is what is too
-/// much far from it, so that it is not the volume that stiffens Tet4; with twice as many elements
-/// an edge, which has as many nodes, it is a third.
+/// Under a tool whose contact spans two elements the excess near nu = 1/2 is that far from it: Tet4
+/// does not lock. With twice as many elements along an edge, and as many nodes, it is a third.
 TEST(Tet4, IsStifferThanQuadraticElementsButNoMoreSoNearIncompressibility) {
   const auto force = [](Dilatation dilatation, double poisson, int cells) {
     CampaignSettings s = settings(dilatation, poisson);
@@ -125,15 +123,13 @@ TEST(Tet4, IsStifferThanQuadraticElementsButNoMoreSoNearIncompressibility) {
     return force(kTet4, poisson, cells) / force(Dilatation::Nodal, poisson, 8) - 1;
   };
   const double far = excess(0.3, 8), near = excess(0.49, 8), fine = excess(0.49, 16);
-  std::printf("Tet4 over Tet10: +%.3f at nu = 0.3, %.3f at 0.49, %.3f there with as many nodes\n",
-              far, near, fine);
   EXPECT_GT(far, 0);
   EXPECT_LT(far, 0.5);
   EXPECT_NEAR(near, far, 0.1);
   EXPECT_LT(fine, 0.5 * near);
 }
 
-TEST(Tet4, IsNamedInWhatACampaignReports) {
+TEST(Tet4, IsNamedInTheReportOfACampaign) {
   CampaignSettings s = settings(kTet4, 0.45);
   s.indentation.increments = 1;
   s.indentation.lateral_depths.clear();

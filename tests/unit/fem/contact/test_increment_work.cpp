@@ -111,7 +111,7 @@ TEST(IncrementWork, OfADiscOnALinearSolidIsHalfTheForceTimesTheDepth) {
 }
 
 /// The contact grows from nothing over several facets: no power law, no parabola.
-TEST(IncrementWork, OfASphereOnALinearSolidIsWhatSolidAndContactStore) {
+TEST(IncrementWork, OfASphereOnALinearSolidIsTheStoredEnergy) {
   LinearSolid solid({ToolShape::Sphere, kRadius, 0, 0});
   for (const double depth : {0.0003, 0.001, 0.002}) {
     const Step step = one_step(solid, 0, depth);
@@ -121,7 +121,7 @@ TEST(IncrementWork, OfASphereOnALinearSolidIsWhatSolidAndContactStore) {
   EXPECT_NEAR(later.work, later.stored, 1e-3 * later.stored);
 }
 
-TEST(IncrementWork, OfAStiffnessThatIsNotItsOwnIsMendedByTheForcesAtBothEnds) {
+TEST(IncrementWork, WithAnotherStiffnessIsCorrectedByTheForcesAtBothEnds) {
   LinearSolid solid({ToolShape::Sphere, kRadius, 0, 0});
   for (const double seen : {0.7, 1.5}) {
     const Step step = one_step(solid, 0, 0.001, seen);
@@ -132,7 +132,7 @@ TEST(IncrementWork, OfAStiffnessThatIsNotItsOwnIsMendedByTheForcesAtBothEnds) {
   EXPECT_NEAR(step.work, step.stored, 1e-6 * step.stored);
 }
 
-TEST(IncrementWork, IsNotGuessedWhereThePatchDoesNotCoverTheContact) {
+TEST(IncrementWork, IsEmptyWhereThePatchDoesNotCoverTheContact) {
   LinearSolid solid({ToolShape::Sphere, kRadius, 0, 0});
   solid.press(1e-5);
   ContactPatch small(solid.contact, solid.model, solid.rest);

@@ -32,15 +32,15 @@ class Bar : public testing::Test {
 
 TEST_F(Bar, EndsOfARingMeetAtAFullCircle) {
   const SelfContact watch(mesh, Eigen::Vector3d(0.03, 0, 0), 1);
-  for (const double share : {0.01, 0.5, 0.9, 0.99})
-    EXPECT_EQ(watch.entering_node(bent(mesh, 0.06, share * 2 * M_PI)), -1) << share;
+  for (const double part : {0.01, 0.5, 0.9, 0.99})
+    EXPECT_EQ(watch.entering_node(bent(mesh, 0.06, part * 2 * M_PI)), -1) << part;
   const int node = watch.entering_node(bent(mesh, 0.06, 1.02 * 2 * M_PI));
   ASSERT_GE(node, 0);
   const double X = mesh.X(0, node);
   EXPECT_TRUE(X < 0.003 || X > 0.057) << X;  // at an end
 }
 
-TEST_F(Bar, WhatIsOutOfReachIsNotWatched) {
+TEST_F(Bar, OutOfReachIsNotWatched) {
   const SelfContact watch(mesh, Eigen::Vector3d(0.03, 0, 0), 0.01);
   EXPECT_EQ(watch.entering_node(bent(mesh, 0.06, 1.02 * 2 * M_PI)), -1);
 }

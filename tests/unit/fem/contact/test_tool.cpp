@@ -22,7 +22,7 @@ const ToolGeometry kSharp{ToolShape::Disc, 0.005, 0, 0};
 const ToolGeometry kRounded{ToolShape::Disc, 0.005, 0.001, 0};
 const ToolGeometry kCylinder{ToolShape::Cylinder, 0.003, 0, 0.008};
 
-/// Any place and direction but those of the axes.
+/// Any position, and a direction along no axis.
 Tool placed(const ToolGeometry& geometry) {
   const Vector3d inward = Vector3d(0.3, -0.5, -0.8).normalized();
   return {geometry, Vector3d(0.01, 0.02, -0.03), inward, inward.unitOrthogonal()};

@@ -36,7 +36,7 @@ TEST(DenseCholesky, OfAMatrixOfKnownFactor) {
   }
 }
 
-TEST(DenseCholesky, SolvesWithTheLowerTriangleAlone) {
+TEST(DenseCholesky, SolvesWithTheLowerTriangle) {
   for (const int n : kSizes) {
     // The inverse of min(i, j) is the second difference with a free end.
     const Eigen::VectorXd b = Eigen::VectorXd::Random(n);
@@ -61,7 +61,7 @@ TEST(DenseCholesky, ProductReadsNothingAboveTheDiagonal) {
   }
 }
 
-TEST(DenseCholesky, SaysThatAMatrixIsNotPositiveDefinite) {
+TEST(DenseCholesky, RefusesAnIndefiniteMatrix) {
   for (const int n : kSizes) {
     Eigen::MatrixXd A = of_ones(n);
     A(n - 1, n - 1) -= 1.5;  // the last pivot is 1

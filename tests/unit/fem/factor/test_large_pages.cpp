@@ -20,7 +20,7 @@ bool starts_at_a_large_page(const void* memory) {
   return reinterpret_cast<std::uintptr_t>(memory) % (std::uintptr_t{2} << 20) == 0;
 }
 
-TEST(LargePages, StartWhereAPageStarts) {
+TEST(LargePages, AreAlignedToAPage) {
   for (const std::size_t bytes : {kLargePagesFrom, kLargePagesFrom + 1, kLargePagesFrom + 12345}) {
     const Memory memory(allocate_in_large_pages(bytes), std::free);
     ASSERT_NE(memory, nullptr);
@@ -30,7 +30,7 @@ TEST(LargePages, StartWhereAPageStarts) {
   }
 }
 
-TEST(LargePages, AreGivenBackAsAnyMemory) {
+TEST(LargePages, AreFreedAsAnyMemory) {
   void* memory = allocate_in_large_pages(kLargePagesFrom);
   ASSERT_NE(memory, nullptr);
   static_cast<char*>(memory)[kLargePagesFrom - 1] = 'x';
@@ -41,7 +41,7 @@ TEST(LargePages, AreGivenBackAsAnyMemory) {
   std::free(allocate_in_large_pages(1));
 }
 
-TEST(LargePages, MappedOnesAreTheSystemsAgainAtOnce) {
+TEST(LargePages, ReturnMappedMemoryAtOnce) {
   const std::size_t bytes = 2 * kLargePagesFrom + 1;
   for (int i = 0; i < 3; ++i) {
     void* memory = map_pages(bytes);
@@ -55,7 +55,7 @@ TEST(LargePages, MappedOnesAreTheSystemsAgainAtOnce) {
   }
 }
 
-TEST(LargePages, RefuseMoreThanThereAreAddresses) {
+TEST(LargePages, RefuseMoreThanTheAddressSpace) {
   EXPECT_THROW(LargePages<float>().allocate(static_cast<std::size_t>(-1) / 2), std::bad_alloc);
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kGroups = 5, kOfGroup = 150, kShared = 600;
 
-/// Groups of unknowns that know one another only by those they share, which come last: the front of
+/// Groups of unknowns that are coupled only through common ones, which come last: the front of
 /// each group is larger than two tiles.
 struct Star {
   SparsePattern pattern;
@@ -70,7 +70,7 @@ Columns columns_of(const Star& star, const Cholesky& analysis, int threads) {
   return columns;
 }
 
-TEST(Multifrontal, HandsOutTheFactorOfTheDenseMatrix) {
+TEST(Multifrontal, ComputesTheFactorOfTheDenseMatrix) {
   const Star star;
   const Cholesky analysis(star.pattern, &star.order);
   const SupernodalView view = analysis.view();
@@ -106,7 +106,7 @@ TEST(Multifrontal, HasTheSameBitsOnAnyNumberOfThreads) {
     }
 }
 
-TEST(Multifrontal, SaysThatAMatrixIsNotPositiveDefinite) {
+TEST(Multifrontal, RefusesAnIndefiniteMatrix) {
   for (const int unknown : {3, kGroups * kOfGroup + kShared - 1})
     for (const int threads : {1, 4}) {
       Star star;
@@ -116,7 +116,7 @@ TEST(Multifrontal, SaysThatAMatrixIsNotPositiveDefinite) {
     }
 }
 
-TEST(Multifrontal, PassesOnWhatItsCallerThrows) {
+TEST(Multifrontal, RethrowsAnExceptionOfTheCallback) {
   const Star star;
   const Cholesky analysis(star.pattern, &star.order);
   const Multifrontal fronts(star.pattern, analysis.view());
@@ -126,7 +126,7 @@ TEST(Multifrontal, PassesOnWhatItsCallerThrows) {
         std::bad_alloc);
 }
 
-TEST(EliminationPlan, HoldsWhatTheGroupsLeaveAndTheFrontOfThoseShared) {
+TEST(EliminationPlan, CountsTheMemoryOfGroupsWithACommonFront) {
   const Star star;
   const Cholesky analysis(star.pattern, &star.order);
   ASSERT_EQ(analysis.view().supernodes, kGroups);  // the last group is one with those shared

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Elements that are divided under the tool, against bodies that were divided as a whole before
-// anything was solved on them.
+// Elements refined under the tool, against bodies that are refined as a whole beforehand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,18 +36,18 @@ std::vector<int> all_elements(const QuadraticMesh& mesh) {
 /// A body whose elements are the children of all elements of another, with its sites.
 Body refined_body(const Body& body) {
   const QuadraticMesh mesh = make_quadratic_mesh(body);
-  const RefinedMesh divided = refine_elements(mesh, all_elements(mesh));
+  const RefinedMesh refined = refine_elements(mesh, all_elements(mesh));
   Body fine;
-  fine.name = "divided";
+  fine.name = "refined";
   fine.region_names = body.region_names;
   for (int node = 0; node < mesh.nodes(); ++node) {
     fine.nodes.push_back({mesh.X(0, node), mesh.X(1, node), mesh.X(2, node)});
     if (mesh.fixed[to_index(node)]) fine.fixed_nodes.push_back(node);
   }
-  for (const Tetrahedron10& t : divided.mesh.tetrahedra)
+  for (const Tetrahedron10& t : refined.mesh.tetrahedra)
     fine.tetrahedra.push_back({t[0], t[1], t[2], t[3]});
-  fine.tetrahedron_region = divided.mesh.region;
-  for (const Facet& f : divided.mesh.facets) fine.boundary.push_back({f[0], f[1], f[2]});
+  fine.tetrahedron_region = refined.mesh.region;
+  for (const Facet& f : refined.mesh.facets) fine.boundary.push_back({f[0], f[1], f[2]});
   fine.response = body.response;
   return fine;
 }
@@ -66,9 +65,9 @@ CampaignSettings pressed_by(double radius, double depth) {
   return s;
 }
 
-SiteCurves press(const Body& body, CampaignSettings settings, bool divide, double x = 0,
+SiteCurves press(const Body& body, CampaignSettings settings, bool refine, double x = 0,
                  double y = 0) {
-  settings.indentation.refine_under_tool = divide;
+  settings.indentation.refine_under_tool = refine;
   settings.points = {{{x, y, 0}, {0, 0, -1}}};
   CampaignReport report;
   return run_campaign(body, settings, report).sites.front();
@@ -100,8 +99,8 @@ std::vector<int> elements_around(const QuadraticMesh& mesh, double radius) {
 }
 
 /// Each face belongs to two elements or to one and to the boundary, mid-edge nodes are in the
-/// middle of their edges, and elements that share an edge share its node.
-void expect_fit(const QuadraticMesh& mesh) {
+/// middle of their edges, and elements with a common edge have its node in common.
+void expect_conforming(const QuadraticMesh& mesh) {
   std::map<std::array<std::int32_t, 3>, int> owners;
   std::map<Edge, std::int32_t> middle_of;
   for (const Tetrahedron10& t : mesh.tetrahedra) {
@@ -131,36 +130,36 @@ void expect_fit(const QuadraticMesh& mesh) {
   for (const auto& [face, count] : owners) EXPECT_EQ(count, 2);
 }
 
-TEST(RefinedMesh, FitsTogetherAndKeepsVolumeAndSurface) {
+TEST(RefinedMesh, IsConformingWithTheSameVolumeAndSurface) {
   const QuadraticMesh whole = make_quadratic_mesh(block_of(6));
   for (const double radius : {0.001, 0.004, 0.009}) {
     const std::vector<int> some = elements_around(whole, radius);
-    const RefinedMesh divided = refine_elements(whole, some);
-    expect_fit(divided.mesh);
-    EXPECT_GT(divided.mesh.tetrahedra.size(), whole.tetrahedra.size() + 7 * some.size());
+    const RefinedMesh refined = refine_elements(whole, some);
+    expect_conforming(refined.mesh);
+    EXPECT_GT(refined.mesh.tetrahedra.size(), whole.tetrahedra.size() + 7 * some.size());
     double sum = 0;
-    for (const Tetrahedron10& t : divided.mesh.tetrahedra) sum += volume(divided.mesh, t);
+    for (const Tetrahedron10& t : refined.mesh.tetrahedra) sum += volume(refined.mesh, t);
     EXPECT_NEAR(sum, 0.03 * 0.03 * 0.015, 1e-12);
-    EXPECT_NEAR(area(divided.mesh), area(whole), 1e-12);
+    EXPECT_NEAR(area(refined.mesh), area(whole), 1e-12);
   }
   const RefinedMesh all = refine_elements(whole, all_elements(whole));
-  expect_fit(all.mesh);
+  expect_conforming(all.mesh);
   EXPECT_EQ(all.mesh.tetrahedra.size(), 8 * whole.tetrahedra.size());
 }
 
-// Any field that is quadratic in space is met by one element and by its children alike.
+// A quadratic field is represented by an element and by its children.
 TEST(RefinedMesh, ProlongsQuadraticFieldsExactly) {
   const QuadraticMesh whole = make_quadratic_mesh(block_of(4));
-  const RefinedMesh divided = refine_elements(whole, elements_around(whole, 0.005));
+  const RefinedMesh refined = refine_elements(whole, elements_around(whole, 0.005));
   const auto field = [](const Eigen::Vector3d& X) {
     return 3 + 2 * X[0] - X[2] + 40 * X[0] * X[1] - 7 * X[2] * X[2];
   };
-  for (std::size_t i = 0; i < divided.new_nodes.size(); ++i) {
-    const RefinedMesh::NewNode& made = divided.new_nodes[i];
+  for (std::size_t i = 0; i < refined.new_nodes.size(); ++i) {
+    const RefinedMesh::NewNode& made = refined.new_nodes[i];
     double value = 0;
     for (std::size_t a = 0; a < kTetNodes; ++a)
       value += made.N[a] * field(whole.X.col(whole.tetrahedra[to_index(made.parent)][a]));
-    const Eigen::Vector3d X = divided.mesh.X.col(whole.nodes() + static_cast<int>(i));
+    const Eigen::Vector3d X = refined.mesh.X.col(whole.nodes() + static_cast<int>(i));
     EXPECT_NEAR(value, field(X), 1e-12);
   }
 }
@@ -188,11 +187,11 @@ Body domed_block(int across) {
 }
 
 // Curved edges make the top the paraboloid itself; the children lie on it, too.
-TEST(RefinedMesh, FollowsACurvedSkin) {
+TEST(RefinedMesh, FollowsACurvedSurface) {
   const QuadraticMesh whole = make_quadratic_mesh(domed_block(4));
-  const RefinedMesh divided = refine_elements(whole, elements_around(whole, 0.005));
+  const RefinedMesh refined = refine_elements(whole, elements_around(whole, 0.005));
   int on_top = 0;
-  for (const QuadraticMesh* mesh : {&whole, &divided.mesh})
+  for (const QuadraticMesh* mesh : {&whole, &refined.mesh})
     for (const Facet& f : mesh->facets) {
       const auto corner_on_top = [&](int node) {
         return std::abs(mesh->X(2, node) - paraboloid(mesh->X(0, node), mesh->X(1, node))) < 1e-12;
@@ -205,7 +204,7 @@ TEST(RefinedMesh, FollowsACurvedSkin) {
   EXPECT_GT(on_top, 2 * 2 * 4 * 4);
 }
 
-TEST(RefinedMesh, RefusesAnElementThatACurvedEdgeTurnsOver) {
+TEST(RefinedMesh, RefusesAnElementThatACurvedEdgeInverts) {
   Body body = domed_block(4);
   for (CurvedEdge& edge : body.curved_edges) edge.middle[2] -= 0.02;
   const QuadraticMesh whole = make_quadratic_mesh(body);
@@ -217,8 +216,8 @@ TEST(RefinedMesh, RefusesAnElementThatACurvedEdgeTurnsOver) {
   }
 }
 
-// A tool as large as the body: what the site divides is the body divided beforehand.
-TEST(RefineUnderTool, IsTheDividedBodyWhereTheToolSpansItAll) {
+// A tool as large as the body: the site refines every element.
+TEST(RefineUnderTool, IsTheRefinedBodyWhereTheToolSpansItAll) {
   const Body coarse = block_of(4), fine = refined_body(coarse);
   const CampaignSettings settings = pressed_by(0.027, 0.003);
   const SiteCurves ours = press(coarse, settings, true), reference = press(fine, settings, false);
@@ -232,8 +231,8 @@ TEST(RefineUnderTool, IsTheDividedBodyWhereTheToolSpansItAll) {
     }
 }
 
-// A contact smaller than a facet, beside the nodes: what division leaves of the error of the mesh.
-TEST(RefineUnderTool, MeetsSmallContactsLikeTheDividedBody) {
+// A contact smaller than a facet, beside the nodes.
+TEST(RefineUnderTool, HasTheForcesOfTheRefinedBodyInSmallContacts) {
   const Body coarse = block_of(6), fine = refined_body(coarse);
   const CampaignSettings settings = pressed_by(0.004, 0.0016);
   const double x = 0.0012, y = 0.0021;
@@ -249,7 +248,7 @@ TEST(RefineUnderTool, MeetsSmallContactsLikeTheDividedBody) {
   EXPECT_GT(norm(unrefined.paths[0].samples[1].force - first), 0.05 * norm(first));
 }
 
-TEST(RefineUnderTool, LosesNoEnergyWhereSmallElementsMeetLargeOnes) {
+TEST(RefineUnderTool, ConservesEnergyBetweenSmallAndLargeElements) {
   const SiteCurves site = press(block_of(6), pressed_by(0.005, 0.003), true, 0.0012, 0.0021);
   ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
   for (const CurvePath& path : site.paths) {
@@ -258,7 +257,7 @@ TEST(RefineUnderTool, LosesNoEnergyWhereSmallElementsMeetLargeOnes) {
   }
 }
 
-TEST(RefineUnderTool, IsRefusedWhereItIsNotThoughtThrough) {
+TEST(RefineUnderTool, IsRefusedWithNodalPressuresAndWeight) {
   const Body body = block_of(4);
   CampaignSettings settings = pressed_by(0.005, 0.002);
   settings.dilatation = Dilatation::Nodal;

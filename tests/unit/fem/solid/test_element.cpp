@@ -54,7 +54,7 @@ TEST(SolidModel, VolumeOfTheElementsIsThatOfTheBlock) {
   EXPECT_NEAR(model.energy(u).energy, 6e-6 * law.volumetric_energy(1.331), 1e-12);
 }
 
-/// Every element has the fibres of its own place: in a homogeneous stretch the energy is the sum of
+/// Every element has the fibres at its centroid: in a homogeneous stretch the energy is the sum of
 /// those of its elements.
 TEST(SolidModel, FibresRunAroundTheirAxisElementByElement) {
   const Body body = distorted_block();

@@ -107,9 +107,9 @@ TEST(Ellipticity, OfASofteningSolidEndsWhereTheStressOfSimpleShearPeaks) {
 }
 
 /// Against a grid of directions, in states on both sides of the limit.
-TEST(Ellipticity, TheWeakestWaveIsWeakerThanOnAnyGrid) {
+TEST(Ellipticity, MinimumIsBelowThatOnAnyGrid) {
   std::mt19937 random(5);
-  int lost = 0, kept = 0;
+  int lost = 0, elliptic = 0;
   for (const LawConstants& constants : sound_and_softening_laws())
     for (int trial = 0; trial < 3; ++trial) {
       const Law law = make_law(constants, "t");
@@ -134,15 +134,15 @@ TEST(Ellipticity, TheWeakestWaveIsWeakerThanOnAnyGrid) {
       for (std::size_t i = 0; i < 9; ++i) size = std::max(size, std::abs(A[i][i]));
       EXPECT_LE(found, grid + 1e-9 * size) << constants.law;
       EXPECT_GT(found, grid - 0.01 * size) << constants.law;
-      ++(found > 0 ? kept : lost);
+      ++(found > 0 ? elliptic : lost);
     }
   EXPECT_GE(lost, 3);
-  EXPECT_GE(kept, 20);
+  EXPECT_GE(elliptic, 20);
 }
 
 /// The check of eight points at once never calls a state elliptic that is not, and decides most
 /// states that are.
-TEST(Ellipticity, TheCheckThatSufficesIsRight) {
+TEST(Ellipticity, SufficientConditionIsRight) {
   std::mt19937 random(6);
   for (const LawConstants& constants : sound_and_softening_laws())
     for (int trial = 0; trial < 40; ++trial) {
@@ -167,8 +167,8 @@ TEST(Ellipticity, PolyconvexLawsNeverLoseIt) {
   EXPECT_EQ(polyconvex, 3 * 8);
 }
 
-/// Of a body: the place where it is lost first, and none where it is kept.
-TEST(Ellipticity, OfABodyIsLostWhereItIsSquashedMost) {
+/// The element in which ellipticity is lost first; none where it is not lost.
+TEST(Ellipticity, OfABodyIsLostWhereItIsCompressedMost) {
   const Body body =
       test::make_block(test::even(0, 0.02, 2), test::even(0, 0.02, 2), test::even(0, 0.04, 4));
   const LawConstants softening("saint-venant-kirchhoff", {{"young", 10e3}, {"poisson", 0.3}});

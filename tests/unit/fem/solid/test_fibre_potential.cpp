@@ -36,7 +36,7 @@ TEST(FibreSamples, FindTheNearest) {
   }
 }
 
-TEST(FibreSamples, RefuseWhatHasNoDirection) {
+TEST(FibreSamples, RefuseAZeroDirection) {
   using Samples = std::vector<FibreSample>;
   EXPECT_THROW(FibreSamples(Samples{}), Error);
   EXPECT_THROW(FibreSamples(Samples{{{0, 0, 0}, {0, 0, 0}, {}}}), Error);
@@ -86,7 +86,7 @@ double pressed_force(const Body& body, const FibreField& field) {
   return norm(curves.paths.front().samples.back().force);
 }
 
-TEST(FibreField, OfSamplesThatAreAllAlikePressesAsTheConstantOne) {
+TEST(FibreField, OfEqualSamplesPressesAsTheConstantOne) {
   const Body body = test::make_block(test::even(-0.01, 0.01, 4), test::even(-0.01, 0.01, 4),
                                      test::even(-0.01, 0, 2));
   const FibreField constant = constant_field();
@@ -150,7 +150,7 @@ TEST(FibreField, OfAPotentialPressesAsTheCylindricalOne) {
   EXPECT_NEAR(pressed_force(body, between_the_ends()) / force, 1, 0.01);
 }
 
-TEST(FibreField, OfAPotentialNeedsTwoEndsThatAreApart) {
+TEST(FibreField, OfAPotentialNeedsTwoSeparateEnds) {
   const Body body = quarter_ring(2);
   const auto message = [&](const FibreField& field) -> std::string {
     try {
@@ -179,14 +179,14 @@ TEST(FibreField, OfAPotentialReachesEveryPartOfTheRegion) {
   field.to = {{0.0099, -1, -1}, {0.0101, 1, 1}};
   EXPECT_NO_THROW(fibres_of_potential(body, 0, field, "bar"));
   // Without its second quarter the rest of the bar is an island.
-  std::vector<Tetrahedron> kept;
+  std::vector<Tetrahedron> outer;
   for (const Tetrahedron& t : body.tetrahedra) {
     double x = 0;
     for (const std::int32_t node : t) x += 0.25 * body.nodes[to_index(node)][0];
-    if (x < 0.01 || x > 0.02) kept.push_back(t);
+    if (x < 0.01 || x > 0.02) outer.push_back(t);
   }
-  body.tetrahedra = kept;
-  body.tetrahedron_region.resize(kept.size());
+  body.tetrahedra = outer;
+  body.tetrahedron_region.resize(outer.size());
   EXPECT_THROW(fibres_of_potential(body, 0, field, "bar"), Error);
 }
 

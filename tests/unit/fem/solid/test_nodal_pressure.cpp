@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Pressures shared around corner nodes, and the measure of checkerboards.
+#include "fem/solid/nodal_pressure.hpp"
+
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "fem/solid/pressure_smoothness.hpp"
 #include "fem/solid/solid_model.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -21,7 +21,7 @@ Body block() {
 
 class NodalPressures : public testing::TestWithParam<Dilatation> {};
 
-/// The elements beyond the free nodes take part in the dilatation around the nodes at the edge.
+/// Elements beyond the free nodes contribute to the dilatation around the outermost ones.
 TEST_P(NodalPressures, OfAWindowHaveTheForcesAndTheStiffnessOfTheWhole) {
   const Body body = block();
   const SolidModel whole(body,
@@ -56,44 +56,6 @@ TEST_P(NodalPressures, OfAWindowHaveTheForcesAndTheStiffnessOfTheWhole) {
 
 INSTANTIATE_TEST_SUITE_P(Elements, NodalPressures,
                          testing::Values(Dilatation::Nodal, Dilatation::LinearNodal));
-
-TEST(SmoothPressure, LeavesAConstantAndFlattensAlternatingPressures) {
-  Body body = block();
-  body.tetrahedron_region.assign(body.tetrahedra.size(), 0);
-  const QuadraticMesh mesh = make_quadratic_mesh(body);
-  const std::vector<double> constant(mesh.tetrahedra.size(), 5);
-  const SmoothPressure same = smooth_pressure(mesh, constant);
-  for (const double p : same.pressure) EXPECT_NEAR(p, 5, 1e-12);
-  std::vector<double> alternating;
-  for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
-    alternating.push_back(e % 2 == 0 ? 1 : -1);
-  const SmoothPressure flat = smooth_pressure(mesh, alternating);
-  EXPECT_GT(flat.roughness, 0.9);
-  EXPECT_GT(flat.alternation, kAlternating);
-}
-
-/// Its only change to a linear field is at the boundary, where a node has elements on one side.
-TEST(SmoothPressure, IsNearALinearField) {
-  Body body = block();
-  body.tetrahedron_region.assign(body.tetrahedra.size(), 0);
-  const QuadraticMesh mesh = make_quadratic_mesh(body);
-  std::vector<double> linear;
-  for (const auto& t : mesh.tetrahedra) {
-    double x = 0;
-    for (std::size_t c = 0; c < 4; ++c) x += 0.25 * mesh.X(0, t[c]);
-    linear.push_back(x);
-  }
-  EXPECT_LT(smooth_pressure(mesh, linear).roughness, 0.2);
-}
-
-/// A jump between regions is the body's, not a checkerboard.
-TEST(SmoothPressure, KeepsAJumpBetweenRegions) {
-  const Body body = block();
-  const QuadraticMesh mesh = make_quadratic_mesh(body);
-  std::vector<double> jump;
-  for (const auto region : mesh.region) jump.push_back(region == 0 ? 1 : 3);
-  EXPECT_LT(smooth_pressure(mesh, jump).roughness, 1e-12);
-}
 
 }  // namespace
 }  // namespace palpate::fem

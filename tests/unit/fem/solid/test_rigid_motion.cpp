@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Bodies that turn as a whole under the tool: on springs far softer than themselves, or on a
-// support so small that they rock on it.
+// Bodies that rotate as a whole under the tool: on springs far softer than themselves, or on a
+// small support.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -34,7 +34,7 @@ Body on_springs(double stiffness) {
   return body;
 }
 
-Body on_a_stump() {
+Body on_small_support() {
   Body body = block();
   body.fixed_nodes.clear();
   for (std::int32_t node = 0; node < static_cast<std::int32_t>(body.nodes.size()); ++node) {
@@ -64,7 +64,7 @@ int iterations_of(const SiteCurves& site) {
   return sum;
 }
 
-/// Both engines to the end, to the same forces. @return iterations of the shared factor.
+/// Both engines complete with the same forces. @return iterations with the shared factor.
 int press_both_ways(const Body& body, const CampaignSettings& settings) {
   const auto press = [&](Engine engine) {
     SiteCurves site = solve_site(CampaignContext(body, settings, engine), 0, nullptr);
@@ -76,13 +76,11 @@ int press_both_ways(const Body& body, const CampaignSettings& settings) {
     const Vec3 a = shared.paths[p].samples.back().force, b = direct.paths[p].samples.back().force;
     EXPECT_LT(norm(a - b), 1e-3 * norm(b));
   }
-  std::printf("%d iterations with the shared factor, %d with factors of its own\n",
-              iterations_of(shared), iterations_of(direct));
   return iterations_of(shared);
 }
 
-/// A turn made along its tangent stretches the body; made as one it stores nothing.
-TEST(Rocking, AStepThatTurnsTheBodyDoesNotStretchIt) {
+/// A rotation applied along its tangent stretches the body; as a rotation it stores no energy.
+TEST(RigidMotion, OfARotatingStepStoresNoEnergy) {
   Body body = block();
   body.fixed_nodes.clear();
   const SolidModel model(body, {make_law({10e3, 0.45}, "t")});
@@ -90,23 +88,22 @@ TEST(Rocking, AStepThatTurnsTheBodyDoesNotStretchIt) {
   Eigen::VectorXd d(model.pattern().n);
   for (int node = 0; node < model.mesh().nodes(); ++node)
     d.segment<3>(model.equation(node)) = v + w.cross(Eigen::Vector3d(model.mesh().X.col(node)));
-  Displacement along = Displacement::Zero(3, model.mesh().nodes()), turned = along;
+  Displacement along = Displacement::Zero(3, model.mesh().nodes()), rotated = along;
   add_step(model, 1, d, along);
-  add_rotating_step(model, 1, d, turned);
+  add_rotating_step(model, 1, d, rotated);
   EXPECT_GT(model.energy(along).energy, 1e-5);
-  EXPECT_NEAR(model.energy(turned).energy, 0, 1e-14);
+  EXPECT_NEAR(model.energy(rotated).energy, 0, 1e-14);
   const Eigen::Matrix3d R = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix();
-  EXPECT_LT((mean_rotation(model.mesh(), turned) - R).norm(), 1e-12);
+  EXPECT_LT((mean_rotation(model.mesh(), rotated) - R).norm(), 1e-12);
 }
 
-/// Without turning the stiffness at rest with the body, and turns as turns: 345 iterations.
-TEST(Rocking, OnSoftSpringsTheSharedFactorServes) {
+/// Without the rotation of the stiffness at rest, and with linear steps, it needs more.
+TEST(RigidMotion, OnSoftSpringsNeedsFewIterations) {
   EXPECT_LT(press_both_ways(on_springs(2e4), settings(100e3)), 300);
 }
 
-/// Without: 545 iterations.
-TEST(Rocking, OnASmallSupportTheSharedFactorServes) {
-  EXPECT_LT(press_both_ways(on_a_stump(), settings(10e3)), 250);
+TEST(RigidMotion, OnASmallSupportNeedsFewIterations) {
+  EXPECT_LT(press_both_ways(on_small_support(), settings(10e3)), 250);
 }
 
 }  // namespace
