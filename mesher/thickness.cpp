@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "format/tangent_frame.hpp"
 #include "format/to_index.hpp"
 #include "mesher/queries.hpp"
 
@@ -15,15 +16,9 @@ constexpr int kRing = 6;
 constexpr double kFacesTool = 0.3;  // least cosine of the surface normal with the line of the tool
 constexpr double kSmooth = 0.8;     // the same, of all facets around a vertex that is no edge
 
-Vec3 any_perpendicular(const Vec3& u) {
-  const Vec3 axis = std::abs(u[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  return unit(cross(u, axis));
-}
-
 double largest_on_ring(const Surface& boundary, const SurfaceQuery& query, const Vec3& centre,
                        const Vec3& inward, double radius) {
-  const Vec3 e1 = any_perpendicular(inward);
-  const Vec3 e2 = cross(inward, e1);
+  const auto [e1, e2] = tangent_frame(inward);
   double largest = 0;
   for (int k = 0; k < kRing; ++k) {
     const double angle = 2 * std::numbers::pi * k / kRing;

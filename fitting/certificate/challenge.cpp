@@ -10,6 +10,7 @@
 
 #include "fitting/certificate/contact_element.hpp"
 #include "format/error.hpp"
+#include "format/tangent_frame.hpp"
 #include "runtime/local_model.hpp"
 #include "runtime/sliding.hpp"
 #include "runtime/surface.hpp"
@@ -97,12 +98,8 @@ class Challenger {
   }
 
   static Vec3 sideways(const Vec3& n, double turns) {
-    const std::size_t axis = std::abs(n[0]) < 0.6 ? 0 : 1;
-    Vec3 e{};
-    e[axis] = 1;
-    const Vec3 crossed = cross(n, e);
-    const Vec3 first = (1 / norm(crossed)) * crossed;
-    return std::cos(2 * M_PI * turns) * first + std::sin(2 * M_PI * turns) * cross(n, first);
+    const auto [first, second] = tangent_frame(n);
+    return std::cos(2 * M_PI * turns) * first + std::sin(2 * M_PI * turns) * second;
   }
 
   /// Force after the contact point has moved and come to rest inside its triangle.

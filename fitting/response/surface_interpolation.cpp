@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fitting/response/surface_interpolation.hpp"
+#include "format/tangent_frame.hpp"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -23,17 +24,6 @@ constexpr double kLargestWeights = 2.0;
 struct Planar {
   double x = 0, y = 0;
 };
-
-Vec3 direction_of(const Vec3& v) {
-  return (1 / norm(v)) * v;
-}
-
-/// Two unit vectors normal to n.
-std::array<Vec3, 2> tangents(const Vec3& n) {
-  const Vec3 least = std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 first = direction_of(cross(n, least));
-  return {first, cross(n, first)};
-}
 
 double kernel(const Planar& a, const Planar& b) {
   const double r2 = (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y);
@@ -112,7 +102,7 @@ std::vector<Donor> SurfaceInterpolation::nearest(std::size_t vertex, std::size_t
 std::vector<Donor> SurfaceInterpolation::weights(std::size_t vertex) const {
   std::vector<Donor> donors = nearest(vertex, kDonors);
   if (donors.size() < kFewest) return inverse_square_weights(std::move(donors));
-  const auto [e1, e2] = tangents(inward_[vertex]);
+  const auto [e1, e2] = tangent_frame(inward_[vertex]);
   const double unit_length = donors.back().weight;
   std::vector<Planar> points;
   for (const Donor& donor : donors) {

@@ -6,6 +6,7 @@
 
 #include "fitting/measurement/records/statistics.hpp"
 #include "format/error.hpp"
+#include "format/tangent_frame.hpp"
 
 namespace palpate::measured {
 namespace {
@@ -149,10 +150,7 @@ CurvePath lateral_from_normal(const CurvePath& normal, double ratio) {
   CurvePath path;
   path.kind = PathKind::Lateral;
   path.lateral_depth = start.displacement;
-  const Vec3& n = normal.direction;
-  const Vec3 axis = std::abs(n[0]) < 0.6 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-  const Vec3 across = cross(n, axis);
-  path.direction = (1 / norm(across)) * across;
+  path.direction = tangent_frame(normal.direction)[0];
   constexpr int steps = 4;
   for (int i = 0; i <= steps; ++i) {
     CurveSample sample = measured_sample();

@@ -30,9 +30,10 @@ TEST_F(Prolongations, ReproduceQuadraticFields) {
   const Eigen::VectorXd all = prolongation.extended(d);
   ASSERT_GT(all.size(), d.size());
   for (int node = 0; node < fine.mesh().nodes(); ++node)
-    if (fine.equation(node) >= 0)
+    if (fine.equation(node) >= 0) {
       EXPECT_LT((all.segment<3>(fine.equation(node)) - field(fine.mesh().X.col(node))).norm(),
                 1e-15);
+    }
 }
 
 TEST_F(Prolongations, ReduceByTheTranspose) {

@@ -79,10 +79,11 @@ TEST(SolidModel, WindowHasTheForcesOfTheWholeOnItsUnknowns) {
   ASSERT_GT(part.size(), 0);
   ASSERT_LT(part.size(), all.size());
   for (int node = 0; node < whole.mesh().nodes(); ++node)
-    if (window.equation(node) >= 0)
+    if (window.equation(node) >= 0) {
       EXPECT_LT(
           (part.segment<3>(window.equation(node)) - all.segment<3>(whole.equation(node))).norm(),
           1e-13);
+    }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "fem/factor/cholesky.hpp"
+#include "fem/laws/law_table.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
 
