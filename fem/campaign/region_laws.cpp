@@ -16,11 +16,6 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 }  // namespace
 
 LawConstants placed_on(const Body& body, std::int32_t region, const LawConstants& law) {

@@ -9,11 +9,6 @@ namespace palpate::fem {
 
 namespace {
 
-[[noreturn]] void refuse(const std::string& where, const std::string& problem,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::Configuration, where, problem, remedy);
-}
-
 void require_positive(const char* name, double value) {
   if (!(std::isfinite(value) && value > 0))
     refuse("indentation", std::string(name) + " = " + std::to_string(value) + " is out of range",
