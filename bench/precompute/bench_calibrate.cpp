@@ -103,11 +103,11 @@ struct Problem {
   }
 };
 
-  FactorCache cache;
-  Sites adjoint;
-  const double by_adjoint =
-      seconds([&] { adjoint = run_sensitivity(body, settings, depths, constants, {}, &cache); });
-  tell("forces and derivatives, adjoint", by_adjoint);
+FactorCache cache;
+Sites adjoint;
+const double by_adjoint =
+    seconds([&] { adjoint = run_sensitivity(body, settings, depths, constants, {}, &cache); });
+tell("forces and derivatives, adjoint", by_adjoint);
 
 /// Forces above and below each constant by a small step, and the processor time they take.
 struct Differences {
