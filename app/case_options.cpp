@@ -5,24 +5,39 @@
 #include <algorithm>
 #include <thread>
 
+#include "app/console.hpp"
+#include "app/pipeline/json_sink.hpp"
+#include "app/pipeline/text_sink.hpp"
+
 namespace palpate::app {
 
 std::shared_ptr<CaseOptions> add_case_options(CLI::App& command, ThreadsOption threads) {
   auto options = std::make_shared<CaseOptions>();
   command.add_option("CASE", options->case_file, "Case file (TOML), see docs/cases.md")->required();
   command.add_option("--out", options->out,
-                     "Folder of the artifacts (default: output.folder of the case, else out/NAME)");
+                     "Folder of the artifacts (default: output.folder of the case, or out/NAME)");
   if (threads == ThreadsOption::Present) {
-    command
-        .add_option("--threads", options->threads, "Sites computed at once (default: processors)")
+    command.add_option("--threads", options->threads, "Threads (default: one for each processor)")
         ->check(CLI::Range(1, 4096));
     command
         .add_option("--memory", options->memory,
-                    "What the process may use, e.g. 8GB: fewer sites are then under way at once")
+                    "Memory that the process may use, e.g. 8GB; fewer sites then run concurrently")
         ->transform(CLI::AsSizeValue(true))
         ->option_text("SIZE");
   }
   return options;
+}
+
+std::shared_ptr<CaseOptions> add_stage_options(CLI::App& command, ThreadsOption threads) {
+  auto options = add_case_options(command, threads);
+  command.add_flag("--json", options->json,
+                   "Print events as JSON objects, one on each line; see docs/campaigns.md");
+  return options;
+}
+
+EventSink event_sink(const CaseOptions& options) {
+  if (options.json) return JsonSink(print_line);
+  return TextSink(standard_output());
 }
 
 Workspace open_workspace(const CaseOptions& options) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The subcommands of `palpate`. Each registers itself with the parser; the one that was called
-// leaves what is to be done in `action`, whose result is the exit code.
+// The subcommands of `palpate`. Each registers itself with the parser. The parsed subcommand stores
+// its work in `action`, which returns the exit code.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@ class App;
 
 namespace palpate::app {
 
-/// Exit codes beside those of ErrorKind.
+/// Exit codes in addition to those of ErrorKind.
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitUsage = 2;
 inline constexpr int kExitSomeSitesFailed = 4;

@@ -13,19 +13,21 @@ namespace palpate::app {
 
 void add_build_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
-      "build", "The whole way from the case to library.h5, skipping what is up to date");
+      "build",
+      "All stages from the case to library.h5; skips those whose artifacts are up to date");
   command->footer("Example: palpate build data/cases/cylinder.toml --out out/cylinder");
-  const auto options = add_case_options(*command, ThreadsOption::Present);
+  const auto options = add_stage_options(*command, ThreadsOption::Present);
   const auto last = std::make_shared<std::string>(stage_name(Stage::Certify));
   std::map<std::string, Stage> stages;
   for (const Stage stage : {Stage::Mesh, Stage::Precompute, Stage::Fit, Stage::Certify})
     stages.emplace(stage_name(stage), stage);
-  command->add_option("--until", *last, "The last stage: mesh, precompute, fit or certify")
+  command->add_option("--until", *last, "Last stage: mesh, precompute, fit or certify")
       ->check(CLI::IsMember(stages))
       ->option_text("STAGE");
   command->callback([options, last, stages, &action] {
     action = [options, last, stages] {
-      const SiteCounts counts = run_build(open_workspace(*options), stages.at(*last));
+      const SiteCounts counts =
+          run_build(open_workspace(*options), stages.at(*last), event_sink(*options));
       return counts.all_complete() ? kExitDone : kExitSomeSitesFailed;
     };
   });

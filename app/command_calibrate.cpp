@@ -55,7 +55,7 @@ int calibrate_tests(const Options& options) {
   return kExitDone;
 }
 
-/// How far a constant may move from its start, and what a Poisson's ratio may be.
+/// Largest factor between a constant and its start value, and the largest Poisson's ratio.
 constexpr double kConstantFactor = 100;
 constexpr double kLargestPoisson = 0.4995;
 
@@ -108,7 +108,7 @@ InverseSettings inverse_settings(const BodyOptions& options, const Workspace& sp
   for (const std::string& text : options.constant) {
     const std::size_t colon = text.rfind(':');
     if (colon == std::string::npos) {
-      throw Error(ErrorKind::Configuration, "--constant " + text, "it names no constant",
+      throw Error(ErrorKind::Configuration, "--constant " + text, "it does not name a constant",
                   "write REGION:NAME, for example liver:C10");
     }
     settings.sought.push_back(
@@ -149,14 +149,15 @@ int calibrate_body(const BodyOptions& options) {
   const Curves measured = read_curves(options.measured);
   if (!measured.body_sha256.empty() && measured.body_sha256 != sha256_of_file(space.body())) {
     throw Error(ErrorKind::Configuration, options.measured,
-                "its sites are of another body than " + space.body().string(),
+                "it belongs to another body than " + space.body().string(),
                 "import the measurement again with --body " + space.body().string());
   }
   const InverseFit fit = calibrate_inverse(body, measured, inverse_settings(options, space));
   const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(), [](const InversePath& p) {
     return p.kind == PathKind::Lateral;
   });
-  say("calibrate: {} sites, {} drags, rms {:.4g} N ({:.2g} % of the largest force), {} evaluations",
+  say("calibrate: {} sites, {} drags, RMS residual {:.4g} N ({:.2g} % of the largest force), {} "
+      "evaluations",
       static_cast<std::ptrdiff_t>(fit.paths.size()) - drags, drags, fit.rms, 100 * fit.relative_rms,
       fit.evaluations);
   if (fit.profile_evaluations > 0)
@@ -176,28 +177,33 @@ int calibrate_body(const BodyOptions& options) {
 
 void add_body_part(CLI::App& command, Action& action) {
   CLI::App* part = command.add_subcommand(
-      "body", "From indentation curves measured on a body, by the finite element model");
+      "body",
+      "Identifies constants from indentation curves of a body, by the finite element model");
   part->footer(
       "Example: palpate calibrate body data/cases/pad.toml --measured out/pad-measured/curves.h5 "
       "--young gel --out out/pad");
   const auto options = std::make_shared<BodyOptions>();
   options->common = add_case_options(*part, ThreadsOption::Present);
   part->add_option("--measured", options->measured, "curves.h5 of `palpate import`")->required();
-  part->add_option("--young", options->young, "Region whose Young's modulus is sought; repeat");
-  part->add_option("--poisson", options->poisson, "Region whose Poisson's ratio is sought; repeat");
-  part->add_option("--constant", options->constant,
-                   "Any constant of the law of a region, as REGION:NAME (liver:C10); repeat");
-  part->add_option("--depths", options->depths, "Depths of each curve that are compared")
+  part->add_option("--young", options->young,
+                   "Region whose Young's modulus is identified; may be repeated");
+  part->add_option("--poisson", options->poisson,
+                   "Region whose Poisson's ratio is identified; may be repeated");
+  part->add_option(
+      "--constant", options->constant,
+      "Any constant of the law of a region, as REGION:NAME (liver:C10); may be repeated");
+  part->add_option("--depths", options->depths, "Number of depths of each curve that are compared")
       ->capture_default_str()
       ->check(CLI::Range(2, 200));
   part->add_flag("--drags", options->drags,
-                 "Compare measured drags too; needs a mesh that resolves the contact");
-  part->add_option("--confidence", options->confidence, "Of the intervals")
+                 "Also compare measured drags; needs a mesh that resolves the contact");
+  part->add_option("--confidence", options->confidence, "Confidence level of the intervals")
       ->capture_default_str()
       ->check(CLI::Range(0.5, 0.9999));
-  part->add_option("--profiles", options->profiles,
-                   "Intervals by profile likelihoods: of constants whose linearised interval is in "
-                   "doubt, all, none. Each end takes 1 to 20 evaluations of the model")
+  part->add_option(
+          "--profiles", options->profiles,
+          "Profile-likelihood intervals: of constants whose linearised interval is doubtful, "
+          "of all, of none. Each end takes 1 to 20 evaluations of the model")
       ->capture_default_str()
       ->check(CLI::IsMember({"doubtful", "all", "none"}));
   part->callback([options, &action] { action = [options] { return calibrate_body(*options); }; });
@@ -206,11 +212,12 @@ void add_body_part(CLI::App& command, Action& action) {
 }  // namespace
 
 void add_calibrate_command(CLI::App& root, Action& action) {
-  CLI::App* command =
-      root.add_subcommand("calibrate", "Constants of a law from measurements, with intervals");
+  CLI::App* command = root.add_subcommand(
+      "calibrate", "Identifies constants of a law from measurements, with confidence intervals");
   command->require_subcommand(1);
-  CLI::App* tests = command->add_subcommand(
-      "tests", "From homogeneous tests: uniaxial, equibiaxial, pure shear, simple shear");
+  CLI::App* tests = command->add_subcommand("tests",
+                                            "Identifies constants from homogeneous tests: "
+                                            "uniaxial, equibiaxial, pure shear, simple shear");
   tests->footer("Example: palpate calibrate tests data/measured/treloar-1944/ogden.toml");
   const auto options = std::make_shared<Options>();
   tests->add_option("FIT", options->fit_file, "Fit file (TOML), see docs/measured.md")->required();

@@ -10,42 +10,44 @@ namespace palpate::app {
 
 void add_certify_command(CLI::App& root, Action& action) {
   CLI::App* command =
-      root.add_subcommand("certify", "library.h5 -> library.h5 with its passivity certificate");
+      root.add_subcommand("certify", "Adds the passivity certificate to library.h5");
   command->footer(
       "Examples:\n"
       "  palpate certify data/cases/cylinder.toml --out out/cylinder\n"
       "  palpate certify data/cases/cylinder.toml --out out/cylinder --rate 2000 --device "
       "data/devices/paper-simulated.toml --soften soft.h5\n"
       "  palpate certify data/cases/cylinder.toml --out out/cylinder --challenge 400");
-  const auto options = add_case_options(*command, ThreadsOption::Absent);
-  const auto keep = std::make_shared<KeepOptions>();
+  const auto options = add_stage_options(*command, ThreadsOption::Absent);
+  const auto at_rate = std::make_shared<RateOptions>();
   CLI::Option* rate = command
-                          ->add_option("--rate", keep->rate,
-                                       "Hz: tell the stiffest response that may be kept at this "
-                                       "rate, instead of certifying")
+                          ->add_option("--rate", at_rate->rate,
+                                       "Hz: report the certifiable stiffness at this sampling rate "
+                                       "instead of writing a certificate")
                           ->check(CLI::Range(1.0, 1e6));
-  command->add_option("--device", keep->device, "Device profile (default: those of the case)")
+  command->add_option("--device", at_rate->device, "Device profile (default: those of the case)")
       ->needs(rate);
   command
-      ->add_option("--soften", keep->softened,
-                   "Write a library here whose stiff slopes are capped until it is certified")
+      ->add_option("--soften", at_rate->softened,
+                   "Write a library here, with slopes capped until it is certified at the rate")
       ->needs(rate);
   const auto tries = std::make_shared<int>(0);
   command
-      ->add_option("--challenge", *tries,
-                   "Instead, look for forces steeper than the certificate says, so often in each "
-                   "triangle")
+      ->add_option(
+          "--challenge", *tries,
+          "Instead, search so often in each triangle for forces that exceed the bounds of the "
+          "certificate")
       ->check(CLI::Range(1, 1000000))
       ->excludes(rate);
-  command->callback([options, keep, tries, &action] {
-    action = [options, keep, tries] {
+  command->callback([options, at_rate, tries, &action] {
+    action = [options, at_rate, tries] {
       const Workspace space = open_workspace(*options);
+      const EventSink emit = event_sink(*options);
       if (*tries > 0) {
-        run_challenge(space, *tries);
-      } else if (keep->rate > 0) {
-        run_keep(space, *keep);
+        run_challenge(space, *tries, emit);
+      } else if (at_rate->rate > 0) {
+        run_certify_at_rate(space, *at_rate, emit);
       } else {
-        run_certify(space);
+        run_certify(space, emit);
       }
       return kExitDone;
     };

@@ -25,17 +25,17 @@ struct Options {
   compare::CompareSettings settings;
   double jnd_floor_mn = 5, site_tolerance_mm = 2;
   std::vector<double> depths_mm;
-  CaseOptions fem;  ///< judged by direct solutions when its case is given
+  CaseOptions fem;  ///< with a case: its library is compared with direct solutions
   FidelityOptions fidelity;
   double floor_mn = 20;
   std::vector<std::string> libraries;
 };
 
-void place(compare::ComparedSet& set, const fs::path& file) {
+void add_positions(compare::ComparedSet& set, const fs::path& file) {
   const Body body = read_body(file);
   if (!set.body_sha256.empty() && set.body_sha256 != sha256_of_file(file)) {
     throw Error(ErrorKind::Configuration, file.string(),
-                "it is not the body of " + set.name + " (another digest)",
+                "it is not the body of " + set.name + " (the digests differ)",
                 "give the body.h5 that the curves were made with");
   }
   for (compare::ComparedSite& site : set.sites) {
@@ -49,12 +49,12 @@ void place(compare::ComparedSet& set, const fs::path& file) {
   }
 }
 
-/// curves.h5 or library.h5, whichever it is.
+/// Reads curves.h5 or library.h5.
 compare::ComparedSet read_set(const fs::path& file, const std::string& body) {
   const std::string kind = hdf5::Reader(file, "give curves.h5 or library.h5").text("/", "artifact");
   if (kind == "palpate.curves") {
     compare::ComparedSet set = compare::set_of(read_curves(file), file.string());
-    if (!body.empty()) place(set, body);
+    if (!body.empty()) add_positions(set, body);
     return set;
   }
   if (kind == "palpate.library") return compare::set_of(read_library(file), file.string());
@@ -62,11 +62,11 @@ compare::ComparedSet read_set(const fs::path& file, const std::string& body) {
               "give curves.h5 or library.h5");
 }
 
-std::string share(double value) {
+std::string percentage(double value) {
   return std::isfinite(value) ? fmt::format("{:.0f} %", 100 * value) : std::string("unknown");
 }
 
-void tell(const compare::Comparison& comparison) {
+void print(const compare::Comparison& comparison) {
   for (const compare::Summary& s : comparison.summaries) {
     say("  {}: {} curves, {} points", s.kind == PathKind::Normal ? "normal" : "lateral", s.curves,
         s.points);
@@ -74,15 +74,15 @@ void tell(const compare::Comparison& comparison) {
         "{:.3g} to {:.3g} N",
         s.rmse, 100 * s.normalised_rmse, s.bias, s.agreement_low, s.agreement_high);
     say("    {:.2g} just noticeable differences (root mean square), noticeable at {} of the points",
-        s.jnd_rms, share(s.noticeable));
+        s.jnd_rms, percentage(s.noticeable));
     say("    scatter of the reference: {}; within the uncertainty: {} of the points",
         std::isfinite(s.mean_scatter) ? fmt::format("{:.3g} N", s.mean_scatter) : "unknown",
-        share(s.within_uncertainty));
-    say("    worst: site {} at {:.2f} mm, {:.4g} N for {:.4g} N", s.worst_vertex,
+        percentage(s.within_uncertainty));
+    say("    largest error: site {} at {:.2f} mm, {:.4g} N instead of {:.4g} N", s.worst_vertex,
         1e3 * s.worst.displacement, s.worst.model, s.worst.reference);
   }
   if (!comparison.unmatched.empty()) {
-    say("  without a partner: {} (listed in comparison.json)", comparison.unmatched.size());
+    say("  unmatched sites: {} (listed in comparison.json)", comparison.unmatched.size());
   }
 }
 
@@ -94,7 +94,7 @@ int compare_sets(Options options) {
   const auto model = read_set(options.model, options.model_body);
   const compare::Comparison comparison = compare::compare(reference, model, options.settings);
   say("compare: {} against {}", options.model, options.reference);
-  tell(comparison);
+  print(comparison);
   const fs::path out = options.out;
   prepare_output(out);
   auto json = comparison_json(comparison, options.settings);
@@ -116,30 +116,34 @@ int compare_with_fem(Options options) {
 }
 
 void add_fem_options(CLI::App& command, Options& options, CLI::Option* sets) {
-  CLI::Option* fem = command.add_option(
-      "--fem", options.fem.case_file,
-      "Case whose library is judged by direct solutions at points that are no sites");
+  CLI::Option* fem =
+      command.add_option("--fem", options.fem.case_file,
+                         "Case whose library is compared with direct solutions at hold-out points");
   fem->excludes(sets);
   const auto only_with_fem = [&](CLI::Option* option) {
     option->needs(fem);
     return option;
   };
-  only_with_fem(command.add_option("--points", options.fidelity.off_node, "Points off the nodes"))
+  only_with_fem(command.add_option("--points", options.fidelity.off_node,
+                                   "Number of hold-out points between the response vertices"))
       ->capture_default_str()
       ->check(CLI::Range(1, 100000));
-  only_with_fem(command.add_option("--nodes", options.fidelity.at_node, "Nodes pressed again"))
+  only_with_fem(command.add_option("--nodes", options.fidelity.at_node,
+                                   "Number of response vertices that are pressed again"))
       ->capture_default_str()
       ->check(CLI::Range(0, 100000));
-  only_with_fem(command.add_option("--seed", options.fidelity.seed, "Of the drawn points"))
+  only_with_fem(command.add_option("--seed", options.fidelity.seed, "Seed of the random points"))
       ->capture_default_str();
-  only_with_fem(command.add_option("--floor-mN", options.floor_mn,
-                                   "Errors are relative to the direct force, or to this if larger"))
+  only_with_fem(
+      command.add_option(
+          "--floor-mN", options.floor_mn,
+          "Errors are relative to the direct force, or to this force if it is larger, mN"))
       ->capture_default_str()
       ->check(CLI::Range(1e-6, 1e6));
   only_with_fem(command.add_option("--library", options.libraries,
-                                   "Libraries to judge (default: that of the case)"));
-  only_with_fem(
-      command.add_option("--threads", options.fem.threads, "Presses at once (default: processors)"))
+                                   "Libraries to compare (default: that of the case)"));
+  only_with_fem(command.add_option("--threads", options.fem.threads,
+                                   "Threads (default: one for each processor)"))
       ->check(CLI::Range(1, 4096));
 }
 
@@ -148,38 +152,38 @@ void add_fem_options(CLI::App& command, Options& options, CLI::Option* sets) {
 void add_compare_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
       "compare",
-      "Simulated against measured, a library against either, two libraries, or one against direct "
-      "solutions");
+      "Compares curves or libraries, simulated or measured, or a library with direct solutions");
   command->footer(
       "Examples:\n"
       "  palpate compare out/pad-measured/curves.h5 out/pad/curves.h5 --out out/pad\n"
       "  palpate compare --fem data/cases/cylinder-demo.toml --out out/cylinder-demo");
   const auto options = std::make_shared<Options>();
   CLI::Option* reference = command->add_option("REFERENCE", options->reference,
-                                               "curves.h5 or library.h5: the measured side");
-  CLI::Option* model =
-      command->add_option("MODEL", options->model, "curves.h5 or library.h5: what is judged");
+                                               "curves.h5 or library.h5 taken as the reference");
+  CLI::Option* model = command->add_option("MODEL", options->model,
+                                           "curves.h5 or library.h5 that is compared with it");
   reference->needs(model);
   add_fem_options(*command, *options, reference);
   command->add_option("--reference-body", options->reference_body,
                       "body.h5 of the reference, to match sites by position");
-  command->add_option("--model-body", options->model_body, "body.h5 of the model, likewise");
+  command->add_option("--model-body", options->model_body,
+                      "body.h5 of the model, to match sites by position");
   command->add_option("--out", options->out, "Folder of the tables; with --fem, of the artifacts")
       ->required();
   command
       ->add_option("--jnd", options->settings.jnd, "Just noticeable relative difference of force")
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1.0));
-  command->add_option("--jnd-floor-mN", options->jnd_floor_mn, "Least noticeable difference")
+  command->add_option("--jnd-floor-mN", options->jnd_floor_mn, "Smallest noticeable difference, mN")
       ->capture_default_str()
       ->check(CLI::Range(1e-6, 1e6));
   command
       ->add_option("--site-tolerance-mm", options->site_tolerance_mm,
-                   "Sites of two bodies are one within this distance")
+                   "Largest distance between matched sites of two bodies, mm")
       ->capture_default_str()
       ->check(CLI::Range(1e-6, 1e6));
   command->add_option("--depths-mm", options->depths_mm,
-                      "Depths at which stiffness is told (default: thirds of the range)");
+                      "Depths at which stiffness is compared, mm (default: thirds of the range)");
   command->callback([options, &action] {
     if (options->reference.empty() && options->fem.case_file.empty())
       throw CLI::RequiredError("REFERENCE and MODEL, or --fem CASE");

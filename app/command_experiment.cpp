@@ -28,18 +28,18 @@ void draw_figure_12(const std::filesystem::path& out) {
   std::vector<PhasePlane> planes;
   for (const double k : {kPublishedBelow, kPublishedAbove}) {
     const SlingshotOutcome o = sling({}, k, true);
-    say("  k = {:g} N/m: impact {:.3f} m/s, {} after {:.1f} s, {:.3f} m/s left", k, o.impact,
-        o.decayed ? "at rest" : "a lasting swing", o.seconds, o.amplitude);
+    say("  k = {:g} N/m: impact at {:.3f} m/s, {} after {:.1f} s, amplitude {:.3f} m/s", k,
+        o.impact, o.decayed ? "at rest" : "sustained oscillation", o.seconds, o.amplitude);
     write_phase_csv(out / fmt::format("phase_plane_{:g}.csv", k), o.path);
     const std::string end = o.decayed ? fmt::format("at rest after {:.0f} s", o.seconds)
-                                      : fmt::format("swings on with {:.3f} m/s", o.amplitude);
+                                      : fmt::format("oscillates with {:.3f} m/s", o.amplitude);
     planes.push_back({fmt::format("k = {:g} N/m: {}", k, end), o.path});
   }
   write_phase_planes(out / "phase_planes.svg", planes);
 }
 
 void wall_margins(double tolerance) {
-  say("wall: stiffness at which the oscillation begins to last, N/m");
+  say("wall: smallest stiffness with sustained oscillation, N/m");
   say("  {:>8} {:>10} {:>16}", "rate", "simulated", "energy balance");
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
     SlingshotSetup setup;
@@ -50,7 +50,7 @@ void wall_margins(double tolerance) {
 }
 
 void cylinder_margins(double tolerance) {
-  say("cylinder, 2000 Hz: the same, search in the force loop and at 100 Hz");
+  say("cylinder, 2000 Hz: the same, with the search in the force loop and at 100 Hz");
   say("  {:>8} {:>5} {:>10} {:>10} {:>16}", "off axis", "mu", "one rate", "two rates",
       "energy balance");
   struct Line {
@@ -66,14 +66,13 @@ void cylinder_margins(double tolerance) {
         margin_by_played_swings(one));
   }
   constexpr double kOffAxis = 0.01, kRadius = 0.04;  // m
-  say("  {:>5g} mm no-slip, closed form {:>27.1f}", 1e3 * kOffAxis,
+  say("  {:>5g} mm bonded, closed form {:>27.1f}", 1e3 * kOffAxis,
       bonded_margin_by_energy_balance(2000, std::asin(kOffAxis / kRadius)));
 }
 
 int experiment(const ExperimentOptions& options) {
   prepare_output(options.out);
-  say("experiment: a device that a band pulls into a wall, as in Mahvash & Hayward 2005, VI-B, in "
-      "simulation");
+  say("experiment: a device hits a virtual wall [Mahvash & Hayward 2005, section VI-B], simulated");
   draw_figure_12(options.out);
   if (options.margins) {
     wall_margins(options.tolerance);
@@ -87,16 +86,18 @@ int experiment(const ExperimentOptions& options) {
 
 void add_experiment_command(CLI::App& root, Action& action) {
   CLI::App* parent =
-      root.add_subcommand("experiment", "Repeat a published experiment in simulation");
+      root.add_subcommand("experiment", "Repeats a published experiment in simulation");
   parent->require_subcommand(1);
   CLI::App* command = parent->add_subcommand(
-      "passivity", "A device slung into a virtual body: phase planes, stability margins");
+      "passivity", "A device hits a virtual body: phase planes and passivity margins");
   command->footer("Example: palpate experiment passivity --margins");
   const auto options = std::make_shared<ExperimentOptions>();
-  command->add_option("--out", options->out, "Folder of the pictures (default: out/experiment)");
+  command->add_option("--out", options->out, "Folder of the figures (default: out/experiment)");
   command->add_flag("--margins", options->margins,
-                    "Also find the margins of wall and cylinder (about a minute)");
-  command->add_option("--tolerance", options->tolerance, "Of the margins, N/m (default: 0.5)")
+                    "Also compute the passivity margins of wall and cylinder (about a minute)");
+  command
+      ->add_option("--tolerance", options->tolerance,
+                   "Tolerance of the margins, N/m (default: 0.5)")
       ->check(CLI::Range(0.01, 10.0));
   command->callback([options, &action] { action = [options] { return experiment(*options); }; });
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
 
+#include "app/case/names.hpp"
 #include "app/case_options.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
@@ -34,7 +35,7 @@ int export_curves(const Workspace& space) {
 }
 
 int export_library(const Workspace& space) {
-  write(vtkhdf::library_grid(read_library(space.library()), space.c.indentation.depth),
+  write(vtkhdf::library_grid(read_library(space.library()), space.c.campaign.indentation.depth),
         space.out / "library.vtkhdf");
   return kExitDone;
 }
@@ -42,23 +43,23 @@ int export_library(const Workspace& space) {
 struct SiteOptions {
   std::int32_t vertex = -1;
   bool calculix = false, febio = false;
-  bool patch = false;       ///< moved together, instead of the tool
+  bool patch = false;       ///< displaces a bonded patch instead of the tool
   double patch_radius = 0;  ///< mm; 0: that of the tool
 };
 
-/// What palpate computes for a deck.
+/// The solution of palpate for a deck.
 struct OwnSolution {
   std::string csv;
   std::string what;
   double depth = 0, force = 0;  ///< at the end
-  std::string reason;           ///< why it ends early
+  std::string reason;           ///< why the curve ends early
 };
 
 OwnSolution press_patch(const Body& body, const fem::CampaignSettings& settings,
                         std::int32_t vertex, double radius, std::size_t nodes) {
   const fem::PatchCurve curve = fem::press_patch(body, settings, vertex, radius);
   OwnSolution own{"depth_m,force_x_N,force_y_N,force_z_N,strain_energy_J\n",
-                  fmt::format("{} nodes moved together", nodes), 0, 0, curve.reason};
+                  fmt::format("bonded patch of {} nodes displaced", nodes), 0, 0, curve.reason};
   for (const fem::PatchForce& s : curve.samples) {
     own.csv += fmt::format("{},{},{},{},{}\n", s.depth, s.force[0], s.force[1], s.force[2],
                            s.strain_energy);
@@ -75,7 +76,7 @@ OwnSolution press_tool(const Body& body, fem::CampaignSettings settings, std::in
   const Curves curves = fem::run_campaign(body, settings, report);
   const SiteCurves& site = curves.sites.front();
   OwnSolution own{"depth_m,force_x_N,force_y_N,force_z_N,strain_energy_J,penetration_m\n",
-                  name_of(settings.indentation.tool.shape) + " pressed in", 0, 0, site.reason};
+                  name_of(settings.indentation.tool.shape) + " pressed", 0, 0, site.reason};
   for (const CurveSample& s : site.paths.front().samples) {
     own.csv += fmt::format("{},{},{},{},{},{}\n", s.displacement, s.force[0], s.force[1],
                            s.force[2], s.strain_energy, s.penetration);
@@ -85,7 +86,7 @@ OwnSolution press_tool(const Body& body, fem::CampaignSettings settings, std::in
   return own;
 }
 
-/// Decks of the site for other programs, beside what palpate computes for the same.
+/// Input files of the site for other programs, and the solution of palpate for comparison.
 int export_decks(const Workspace& space, const SiteOptions& options) {
   const Body body = read_body(space.body());
   const fem::CampaignSettings settings = campaign_settings(space);
@@ -99,7 +100,7 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
     write_file_crash_safely(space.out / name, text);
     say("export: {}", (space.out / name).string());
   };
-  // Both are made before either is written: a law that one of them lacks leaves nothing half done.
+  // Both decks are made before either is written, so that an unsupported law leaves no file.
   const std::string calculix = options.calculix ? calculix_deck(deck) : std::string();
   const std::string febio = options.febio ? febio_deck(deck) : std::string();
   const OwnSolution own =
@@ -109,12 +110,12 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
   if (!febio.empty()) save(febio, stem + ".feb");
   save(own.csv, stem + (patch ? "-patch.csv" : "-tool.csv"));
   say("site {}: {} by {:.2f} mm, force {:.4f} N by {}", options.vertex, own.what, 1e3 * own.depth,
-      own.force, space.c.solver.element);
+      own.force, name_in(kElements, settings.dilatation));
   if (!own.reason.empty()) say("the curve ends early: {}", own.reason);
   return kExitDone;
 }
 
-/// Solve the site again and keep the whole state, which the campaign does not.
+/// Solves the site again, because the campaign does not store the displacement field.
 int export_site(const Workspace& space, std::int32_t vertex) {
   const Body body = read_body(space.body());
   const fem::DeformedState state = fem::deformed_state(body, campaign_settings(space), vertex);
@@ -147,7 +148,7 @@ void add_recording_part(CLI::App& parent, Action& action) {
   CLI::App* part = parent.add_subcommand("recording", "recording.h5 -> recording.csv beside it");
   part->footer("Example: palpate export recording out/cylinder/recording.h5");
   const auto file = std::make_shared<std::string>();
-  part->add_option("RECORDING", *file, "Of a session (recording.h5)")->required();
+  part->add_option("RECORDING", *file, "Recording of a session (recording.h5)")->required();
   part->callback([file, &action] { action = [file] { return export_recording(*file); }; });
 }
 
@@ -169,8 +170,8 @@ CLI::App* add_part(CLI::App& parent, Action& action, const char* name, const cha
 }  // namespace
 
 void add_export_command(CLI::App& root, Action& action) {
-  CLI::App* command =
-      root.add_subcommand("export", "Artifacts for other programs: ParaView (VTKHDF) and CSV");
+  CLI::App* command = root.add_subcommand(
+      "export", "Exports artifacts to ParaView (VTKHDF), CSV, CalculiX and FEBio");
   command->footer("Example: palpate export site data/cases/cylinder.toml --vertex 12");
   command->require_subcommand(1);
   add_part(*command, action, "body", "body.h5 -> body.vtkhdf", export_body);
@@ -182,19 +183,19 @@ void add_export_command(CLI::App& root, Action& action) {
   const auto options = std::make_shared<SiteOptions>();
   CLI::App* site =
       add_part(*command, action, "site",
-               "The body deformed at one site -> site-N.vtkhdf, or that site for another solver",
+               "Deformed body at one site -> site-N.vtkhdf, or an input file of another solver",
                [options](const Workspace& space) {
                  const bool decks = options->calculix || options->febio;
                  return decks ? export_decks(space, *options) : export_site(space, options->vertex);
                });
   site->add_option("--vertex", options->vertex, "Response vertex, as in curves.csv")->required();
   site->add_flag("--calculix", options->calculix,
-                 "Write site-N.inp for CalculiX: the tool pressed in without friction");
+                 "Write site-N.inp for CalculiX, with frictionless contact");
   site->add_flag("--febio", options->febio, "Write site-N.feb for FEBio 4");
   site->add_flag("--patch", options->patch,
-                 "In these, move the surface nodes under the tool together instead: no contact");
+                 "Displace a bonded patch of surface nodes instead of the tool, without contact");
   site->add_option("--patch-radius-mm", options->patch_radius,
-                   "Radius of those nodes about the site (default: that of the tool)")
+                   "Radius of the patch, mm (default: that of the tool)")
       ->check(CLI::PositiveNumber);
 }
 

@@ -11,10 +11,10 @@ void add_fit_command(CLI::App& root, Action& action) {
   CLI::App* command =
       root.add_subcommand("fit", "curves.h5 -> library.h5: compact passive responses");
   command->footer("Example: palpate fit data/cases/cylinder.toml --out out/cylinder");
-  const auto options = add_case_options(*command, ThreadsOption::Absent);
+  const auto options = add_stage_options(*command, ThreadsOption::Absent);
   command->callback([options, &action] {
     action = [options] {
-      run_fit(open_workspace(*options));
+      run_fit(open_workspace(*options), event_sink(*options));
       return kExitDone;
     };
   });

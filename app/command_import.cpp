@@ -28,7 +28,7 @@ int import_records(const Options& options) {
         site["force_N"].get<double>(), site["force_uncertainty_N"].get<double>(),
         1e6 * site["contact_uncertainty_m"].get<double>());
     for (const auto& drag : site["lateral_paths"]) {
-      if (drag["repeats"] == 0) continue;  // made from the normal path, not measured
+      if (drag["repeats"] == 0) continue;  // derived from the normal path, not measured
       say("    drag at {:.2f} mm: {} repeats to {:.2f} mm, {:.4f} N +- {:.4f} N",
           1e3 * drag["lateral_depth_m"].get<double>(), drag["repeats"].get<int>(),
           1e3 * drag["travel_m"].get<double>(), drag["force_N"].get<double>(),
@@ -46,15 +46,15 @@ int import_records(const Options& options) {
 }  // namespace
 
 void add_import_command(CLI::App& root, Action& action) {
-  CLI::App* command = root.add_subcommand(
-      "import", "Records of a testing machine or robot -> curves.h5, like those of a campaign");
+  CLI::App* command =
+      root.add_subcommand("import", "Records of a testing machine or robot -> curves.h5");
   command->footer(
       "Example: palpate import data/measured/pad/presses.toml --body out/pad/body.h5 "
       "--out out/pad-measured");
   const auto options = std::make_shared<Options>();
   command->add_option("SIDECAR", options->sidecar, "Sidecar (TOML), see docs/measured.md")
       ->required();
-  command->add_option("--body", options->body, "body.h5 on which the sites lie");
+  command->add_option("--body", options->body, "body.h5 that contains the sites");
   command->add_option("--out", options->out, "Folder of the artifacts")->required();
   command->callback(
       [options, &action] { action = [options] { return import_records(*options); }; });

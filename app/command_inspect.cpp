@@ -13,7 +13,7 @@ void add_inspect_command(CLI::App& root, Action& action) {
     std::string file;
     bool json = false;
   };
-  CLI::App* command = root.add_subcommand("inspect", "Check an artifact and say what it holds");
+  CLI::App* command = root.add_subcommand("inspect", "Checks an artifact and prints its contents");
   command->footer("Example: palpate inspect out/cylinder/library.h5 --json");
   const auto options = std::make_shared<Options>();
   command
@@ -21,7 +21,8 @@ void add_inspect_command(CLI::App& root, Action& action) {
           "FILE", options->file,
           "body.h5, curves.h5, library.h5, recording.h5, curves.journal or recording.journal")
       ->required();
-  command->add_flag("--json", options->json, "Print JSON, with the resolved case of each stage");
+  command->add_flag("--json", options->json,
+                    "Print JSON, including the resolved case of each stage");
   command->callback([options, &action] {
     action = [options] {
       const nlohmann::ordered_json summary = summarize_artifact(options->file);

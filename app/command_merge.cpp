@@ -9,14 +9,16 @@ namespace palpate::app {
 
 void add_merge_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
-      "merge", "curves.I-of-N.h5 of several machines -> curves.h5, every site checked");
+      "merge",
+      "curves.I-of-N.h5 of several machines -> curves.h5; checks that every site is there once");
   command->footer("Example: palpate merge data/cases/cylinder.toml --out out/cylinder");
-  const auto options = add_case_options(*command);
+  const auto options = add_stage_options(*command);
   const auto parts = std::make_shared<std::vector<std::string>>();
-  command->add_option("PARTS", *parts, "The parts (default: all curves.I-of-N.h5 of the folder)");
+  command->add_option("PARTS", *parts, "Parts (default: every curves.I-of-N.h5 in the folder)");
   command->callback([options, parts, &action] {
     action = [options, parts] {
-      const SiteCounts counts = run_merge(open_workspace(*options), {parts->begin(), parts->end()});
+      const SiteCounts counts =
+          run_merge(open_workspace(*options), {parts->begin(), parts->end()}, event_sink(*options));
       return counts.all_complete() ? kExitDone : kExitSomeSitesFailed;
     };
   });

@@ -19,7 +19,7 @@ Shard parse_shard(const std::string& text) {
   std::istringstream in(text);
   const bool is_pair = static_cast<bool>(in >> shard.index >> slash >> shard.count);
   if (!is_pair || slash != '/' || in >> more || shard.index < 1 || shard.index > shard.count)
-    throw Error(ErrorKind::Configuration, "--shard " + text, "is no part I/N with 1 <= I <= N",
+    throw Error(ErrorKind::Configuration, "--shard " + text, "it is not I/N with 1 <= I <= N",
                 "for the second of four parts write --shard 2/4");
   return shard;
 }
@@ -28,35 +28,33 @@ Shard parse_shard(const std::string& text) {
 
 void add_precompute_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
-      "precompute", "body.h5 -> curves.h5: press and drag the tool at every site");
+      "precompute", "body.h5 -> curves.h5: indentation and lateral paths at every site");
   command->footer("Example: palpate precompute data/cases/cylinder.toml --out out/cylinder");
   struct Options {
     std::string shard;
-    bool json = false;
     int convergence = 0;
     std::vector<std::int32_t> sites;
   };
-  const auto common = add_case_options(*command, ThreadsOption::Present);
+  const auto common = add_stage_options(*command, ThreadsOption::Present);
   const auto options = std::make_shared<Options>();
   command->add_option(
       "--shard", options->shard,
-      "I/N: only the I-th of N parts of the sites, into curves.I-of-N.h5; see merge");
-  command->add_flag("--json", options->json, "Tell each event as a JSON object on a line");
-  command->add_option(
-      "--convergence", options->convergence,
-      "N: instead, press some sites on N ever finer meshes, the case's first; see convergence.csv");
-  command->add_option("--sites", options->sites, "Sites of --convergence; by default three")
+      "I/N: compute only the I-th of N parts of the sites and write curves.I-of-N.h5; see merge");
+  command->add_option("--convergence", options->convergence,
+                      "N: instead, press some sites on N meshes, that of the case and finer ones, "
+                      "and extrapolate the "
+                      "forces; writes convergence.csv");
+  command->add_option("--sites", options->sites, "Sites of --convergence (default: three)")
       ->delimiter(',');
   command->callback([common, options, &action] {
     action = [common, options] {
       Workspace space = open_workspace(*common);
       if (options->convergence != 0) {
-        run_convergence(space, options->convergence, options->sites);
+        run_convergence(space, options->convergence, options->sites, event_sink(*common));
         return kExitDone;
       }
       if (!options->shard.empty()) space.shard = parse_shard(options->shard);
-      const SiteCounts counts =
-          run_precompute(space, options->json ? Telling::Json : Telling::Text);
+      const SiteCounts counts = run_precompute(space, event_sink(*common));
       return counts.all_complete() ? kExitDone : kExitSomeSitesFailed;
     };
   });

@@ -24,7 +24,7 @@ int recover_session(const Options& options) {
     out = journal;
     out.replace_extension(".h5");
     if (std::filesystem::exists(out)) {
-      throw Error(ErrorKind::Configuration, out.string(), "exists already",
+      throw Error(ErrorKind::Configuration, out.string(), "the file exists",
                   "name another file with --out");
     }
   }
@@ -36,10 +36,10 @@ int recover_session(const Options& options) {
 
 void add_recover_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
-      "recover", "The recording of a session that was cut off, from the journal it left");
+      "recover", "Writes the recording of an interrupted session from its journal");
   command->footer("Example: palpate recover recording.journal");
   const auto options = std::make_shared<Options>();
-  command->add_option("JOURNAL", options->journal, "Left by run or simulate (recording.journal)")
+  command->add_option("JOURNAL", options->journal, "Journal of run or simulate (recording.journal)")
       ->required();
   command->add_option("--out", options->out, "Recording (default: beside the journal)");
   command->callback(

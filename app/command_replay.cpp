@@ -20,11 +20,11 @@ struct Options {
 void require_library_of(const RecordingHeading& recording, const Options& options) {
   if (recording.library_sha256.empty()) return;
   if (sha256_of_file(options.library) == recording.library_sha256) return;
-  throw Error(ErrorKind::Configuration, options.library, "is not the library of the recording",
-              "give the one with sha256 " + recording.library_sha256);
+  throw Error(ErrorKind::Configuration, options.library, "it is not the library of the recording",
+              "give the library with sha256 " + recording.library_sha256);
 }
 
-/// The output of the repeated session, if any.
+/// Opens the recording of the repeated session, if one is asked for.
 void open_writer(std::optional<RecordingWriter>& writer, const RecordingReader& recorded,
                  const Options& options) {
   if (options.out.empty()) return;
@@ -34,7 +34,7 @@ void open_writer(std::optional<RecordingWriter>& writer, const RecordingReader& 
   writer.emplace(options.out, heading, recorded.steps());
 }
 
-/// A few thousand steps at a time. The repeated session is written to its end, whatever differs.
+/// Streams the recording. With --out, writes every step even after a difference.
 int replay_recording(const Options& options) {
   RecordingReader recorded(options.recording);
   require_library_of(recorded.heading(), options);
@@ -56,7 +56,7 @@ int replay_recording(const Options& options) {
   }
   if (writer) writer->commit();
   if (found) refuse(*found, recorded.heading(), options.recording);
-  say("replay: {} steps, forces, energies and contact points the same to the bit", number);
+  say("replay: {} steps; forces, energies and contact points are identical to the bit", number);
   return kExitDone;
 }
 
@@ -64,12 +64,13 @@ int replay_recording(const Options& options) {
 
 void add_replay_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
-      "replay", "A recorded motion through the model again: the same forces, or where they part");
+      "replay", "Repeats a recorded motion and checks that the forces are identical to the bit");
   command->footer(
       "Example: palpate replay out/cylinder/recording.h5 --library out/cylinder/library.h5");
   const auto options = std::make_shared<Options>();
-  command->add_option("RECORDING", options->recording, "Of a session (recording.h5)")->required();
-  command->add_option("--library", options->library, "The library of the recording (library.h5)")
+  command->add_option("RECORDING", options->recording, "Recording of a session (recording.h5)")
+      ->required();
+  command->add_option("--library", options->library, "Library of the session (library.h5)")
       ->required();
   command->add_option("--out", options->out, "Write the repeated session (recording.h5)");
   command->callback(

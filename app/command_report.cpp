@@ -42,7 +42,7 @@ int report(const CaseOptions& options) {
   input.fidelity = text_if_there(space.out / "fidelity.json");
   write_report(input, space.report());
   say("report: {}{}", space.report().string(),
-      session ? "" : " (without a session: run `palpate simulate` first to see one)");
+      session ? "" : " (without a session; `palpate simulate` records one)");
   return kExitDone;
 }
 
@@ -50,7 +50,7 @@ int report(const CaseOptions& options) {
 
 void add_report_command(CLI::App& root, Action& action) {
   CLI::App* command =
-      root.add_subcommand("report", "The artifacts of a case -> report.html, one file");
+      root.add_subcommand("report", "Artifacts of a case -> report.html, a single file");
   command->footer("Example: palpate report data/cases/cylinder.toml --out out/cylinder");
   const auto options = add_case_options(*command);
   command->callback([options, &action] { action = [options] { return report(*options); }; });

@@ -22,8 +22,8 @@ int rescale_curves(const Options& options) {
   say("rescale: measured = {:.4f} +- {:.4f} of simulated, from {} sites", result.factor,
       result.uncertainty, result.sites.size());
   for (const compare::SiteScale& site : result.sites) {
-    say("  site {}: {:.4f} +- {:.4f}, misfit of the shape {:.2g} % of its largest force",
-        site.vertex, site.factor, site.uncertainty, 100 * site.misfit);
+    say("  site {}: {:.4f} +- {:.4f}, residual {:.2g} % of its largest force", site.vertex,
+        site.factor, site.uncertainty, 100 * site.misfit);
   }
   result.curves.provenance.steps.push_back(
       make_provenance_step("rescale", "", {options.simulated, options.measured},
@@ -41,8 +41,8 @@ int rescale_curves(const Options& options) {
 }  // namespace
 
 void add_rescale_command(CLI::App& root, Action& action) {
-  CLI::App* command = root.add_subcommand(
-      "rescale", "Simulated curves with the scale of measured ones -> curves.h5");
+  CLI::App* command =
+      root.add_subcommand("rescale", "Scales simulated curves to measured forces -> curves.h5");
   command->footer(
       "Example: palpate rescale out/pad/curves.h5 out/pad-measured/curves.h5 --out out/scaled");
   const auto options = std::make_shared<Options>();

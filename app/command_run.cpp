@@ -20,7 +20,6 @@
 #include "app/run/device_choice.hpp"
 #include "app/run/live_session.hpp"
 #include "app/simulate/hand_path.hpp"
-#include "app/simulate/simulated_device.hpp"
 #include "format/error.hpp"
 #include "format/sha256.hpp"
 
@@ -37,7 +36,7 @@ struct RunOptions {
 
 std::atomic<bool> interrupted{false};
 
-/// Ctrl-C, a closed terminal and a polite kill end the session, not the process, while this lives.
+/// While this object exists, SIGINT, SIGTERM and SIGHUP end the session instead of the process.
 class StopOnInterrupt {
  public:
   StopOnInterrupt() {
@@ -58,12 +57,12 @@ class StopOnInterrupt {
 };
 
 int list_devices() {
-  say("devices, for --device:");
+  say("devices:");
   for (const DeviceName& device : device_names()) say("  {:<16} {}", device.name, device.about);
   return kExitDone;
 }
 
-/// A hand that presses and slides in the middle of the body, for the simulated device.
+/// A hand that presses and slides at the middle of the body, for the simulated device.
 std::function<runtime::HandTarget(double)> scripted_hand(const Library& library,
                                                          const runtime::Pose& pose) {
   constexpr double kSpacing = 0.0005;  // m
@@ -76,32 +75,34 @@ std::function<runtime::HandTarget(double)> scripted_hand(const Library& library,
   };
 }
 
-/// Without a file nothing is known but of the simulated device, which is what it is.
+/// Without a profile, only the damping and friction of the simulated device are known.
 fitting::DeviceProfile profile_of(const RunOptions& options) {
   if (!options.profile.empty()) return read_device_profile(options.profile);
   fitting::DeviceProfile profile;
   profile.name = options.device.name;
   if (profile.name == kSimulatedDevice) {
-    profile.damping = simulated_device({}).damping;
-    profile.coulomb_friction = simulated_device({}).coulomb_friction;
+    profile.damping = SimulateSection{}.device.damping;
+    profile.coulomb_friction = SimulateSection{}.device.coulomb_friction;
   }
   return profile;
 }
 
 void say_quantiles(const char* what, const runtime::LatencyHistogram& h) {
-  say("  {}: median {:.1f} us, 99 % {:.1f}, 99.9 % {:.1f}, longest {:.1f}", what,
+  say("  {}: median {:.1f} us, 99th percentile {:.1f}, 99.9th {:.1f}, largest {:.1f}", what,
       1e-3 * h.quantile(0.5), 1e-3 * h.quantile(0.99), 1e-3 * h.quantile(0.999),
       1e-3 * static_cast<double>(h.largest()));
 }
 
 void summarize(const LiveOutcome& outcome, const std::string& file) {
   const runtime::LoopCounts& c = outcome.counts;
-  if (!outcome.missing_rights.empty()) say("  without: {}", outcome.missing_rights);
+  if (!outcome.missing_rights.empty()) say("  missing permissions: {}", outcome.missing_rights);
   say("run: {} steps -> {}", c.steps, file);
-  say_quantiles("woken late by", c.wake);
-  say_quantiles("step took", c.compute);
-  say("  overruns {}, cut off {}, clamped {}, saturated {}, stale {}, not recorded {}", c.overruns,
-      c.cut_off, c.clamped, c.saturated, c.stale, c.unrecorded);
+  say_quantiles("wake-up latency", c.wake);
+  say_quantiles("step duration", c.compute);
+  say("  steps that overran {}, stopped for speed {}, clamped {}, saturated {}, with stale "
+      "triangles {}, "
+      "not recorded {}",
+      c.overruns, c.cut_off, c.clamped, c.saturated, c.stale, c.unrecorded);
 }
 
 RecordingHeading heading_of(const RunOptions& options, const Library& library,
@@ -121,16 +122,16 @@ RecordingHeading heading_of(const RunOptions& options, const Library& library,
   return heading;
 }
 
-/// The session ended by itself, but not as it should.
+/// @throws Error when the session ended because of a fault.
 void require_good_end(const LiveOutcome& outcome, const std::string& device,
                       const std::string& recording) {
   if (outcome.counts.lost) {
-    throw Error(ErrorKind::Configuration, device, "the device was lost",
-                "check cable and power; what was recorded is in " + recording);
+    throw Error(ErrorKind::Configuration, device, "the device was disconnected",
+                "check cable and power; the recording is in " + recording);
   }
   if (outcome.halted) {
     throw Error(ErrorKind::Internal, device, "the watchdog halted the device",
-                "lower --rate or the load of the machine; what was recorded is in " + recording);
+                "lower --rate or the load of the machine; the recording is in " + recording);
   }
 }
 
@@ -143,7 +144,8 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
   if (live.contact.friction < 0) live.contact.friction = library.certificate.friction;
   live.contact.lipschitz_bound = lipschitz_bound_for(library, profile, live.loop.rate);
   if (live.contact.lipschitz_bound < body.lipschitz_bound) {
-    say("run: lipschitz_bound = {:.1f} N/m, which is certified at this rate",
+    say("run: the enforced Lipschitz bound is lowered to {:.1f} N/m, which is certified at this "
+        "rate",
         live.contact.lipschitz_bound);
   }
   if (profile.peak_force > 0) {
@@ -158,7 +160,7 @@ int run(RunOptions options) {
   if (options.list) return list_devices();
   if (options.library.empty()) {
     throw Error(ErrorKind::Configuration, "run", "no library was given",
-                "name a library.h5, or --list the devices");
+                "name a library.h5, or list the devices with --list");
   }
   require_known_device(options.device.name);
   const Library library = read_library(options.library);
@@ -169,7 +171,7 @@ int run(RunOptions options) {
   device->open();
   SessionRecorder recorder(options.recording, heading_of(options, library, device->name()));
   const StopOnInterrupt stop_on_interrupt;
-  say("run: {} at {:g} Hz; Ctrl-C ends it", options.device.name, options.live.loop.rate);
+  say("run: {} at {:g} Hz; end with Ctrl-C", options.device.name, options.live.loop.rate);
   const LiveOutcome outcome = run_live(*device, body, options.live, recorder, interrupted);
   if (outcome.not_recorded) throw_with_journal(*outcome.not_recorded, recorder.journal());
   recorder.finish();
@@ -179,36 +181,42 @@ int run(RunOptions options) {
 }
 
 void add_device_options(CLI::App& command, RunOptions& o) {
-  command.add_option("--device", o.device.name, "Which device; see --list")
+  command.add_option("--device", o.device.name, "Device; see --list")
       ->default_val(kSimulatedDevice);
-  command.add_flag("--list", o.list, "List the devices and end");
-  command.add_option("--driver", o.device.driver, "Library of the vendor, if not where usual");
-  command.add_option("--unit", o.device.unit, "Which one of several: number, name or identity");
+  command.add_flag("--list", o.list, "List the devices and exit");
+  command.add_option("--driver", o.device.driver, "Path of the vendor library, if not installed");
+  command.add_option("--unit", o.device.unit,
+                     "Which of several devices: number, name or serial number");
   command.add_option("--lab", o.device.lab_file, "Configuration of a lab-built device (TOML)");
-  command.add_option("--host", o.device.host, "Of the Haply Inverse Service");
-  command.add_option("--port", o.device.port, "Of the Haply Inverse Service");
-  command.add_option("--profile", o.profile, "Profile of the device (TOML), see data/devices");
+  command.add_option("--host", o.device.host, "Address of the Haply Inverse Service");
+  command.add_option("--port", o.device.port, "Address of the Haply Inverse Service");
+  command.add_option("--profile", o.profile, "Device profile (TOML), see data/devices");
   command.add_flag("--uncertified", o.uncertified,
-                   "Render although nothing certifies that the device stays at rest");
+                   "Render although the device is not certified passive at this rate");
 }
 
 void add_loop_options(CLI::App& command, RunOptions& o) {
-  command.add_option("--rate", o.live.loop.rate, "Force steps a second, Hz (default: 1000)");
-  command.add_option("--duration", o.live.duration, "s; 0 until Ctrl-C")
+  command.add_option("--rate", o.live.loop.rate,
+                     "Sampling rate of the force loop, Hz (default: 1000)");
+  command.add_option("--duration", o.live.duration, "s; 0: until Ctrl-C")
       ->check(CLI::NonNegativeNumber);
   command.add_option("--friction", o.live.contact.friction,
-                     "mu (default: that of the certificate)");
-  command.add_option("--max-force", o.live.safety.max_force, "N, clamp of the commanded force");
-  command.add_option("--max-speed", o.live.safety.max_speed, "m/s, beyond it the force is cut off");
-  command.add_option("--ramp", o.live.safety.ramp, "s, from no force to full force");
-  command.add_option("--watchdog", o.live.safety.watchdog, "s without a step until the force ends");
+                     "Friction coefficient (default: that of the certificate)");
+  command.add_option("--max-force", o.live.safety.max_force, "N, largest commanded force");
+  command.add_option("--max-speed", o.live.safety.max_speed,
+                     "m/s, speed of the device beyond which the force is switched off");
+  command.add_option("--ramp", o.live.safety.ramp, "s, duration of the force ramp");
+  command.add_option("--watchdog", o.live.safety.watchdog,
+                     "s without a step until the device is halted");
   command
       .add_option("--priority", o.live.loop.realtime.priority,
-                  "Of SCHED_FIFO; 0 for the ordinary scheduler")
+                  "SCHED_FIFO priority; 0: ordinary scheduler")
       ->check(CLI::Range(0, 99));
-  command.add_option("--core", o.live.loop.realtime.core, "Processor for the force loop");
-  command.add_option("--search-rate", o.live.search_rate, "Hz, of the search for triangles");
-  command.add_option("--at-mm", o.at_mm, "Where the origin of the body lies for the device: X Y Z")
+  command.add_option("--core", o.live.loop.realtime.core, "CPU core of the force loop");
+  command.add_option("--search-rate", o.live.search_rate, "Rate of the search thread, Hz");
+  command
+      .add_option("--at-mm", o.at_mm,
+                  "Position of the origin of the body in device coordinates: X Y Z")
       ->expected(3);
   command.add_option("--out", o.recording, "Recording (default: recording.h5)");
 }

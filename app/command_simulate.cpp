@@ -14,9 +14,9 @@
 namespace palpate::app {
 namespace {
 
-/// Summary of a session.
+/// Statistics of a session, updated after each step.
 struct Summary {
-  std::int64_t steps = 0, contact = 0, sliding = 0, held_back = 0, limited = 0, beyond = 0;
+  std::int64_t steps = 0, contact = 0, sliding = 0, throttled = 0, limited = 0, beyond = 0;
   double deepest = 0, largest = 0, absorbed = 0;
   runtime::LatencyHistogram latency;
 
@@ -25,7 +25,7 @@ struct Summary {
     ++steps;
     contact += one_if(PALPATE_CONTACT);
     sliding += one_if(PALPATE_SLIDING);
-    held_back += one_if(PALPATE_FORCE_LIMITED);
+    throttled += one_if(PALPATE_FORCE_LIMITED);
     limited += one_if(PALPATE_ENERGY_LIMITED);
     beyond += one_if(PALPATE_BEYOND_DEPTH);
     deepest = std::max(deepest, step.depth);
@@ -35,12 +35,13 @@ struct Summary {
   }
 };
 
-void report(const Summary& s, double rate, const std::filesystem::path& file) {
+void print(const Summary& s, double rate, const std::filesystem::path& file) {
   say("simulate: {} steps at {} Hz, deepest {:.2f} mm, largest force {:.3f} N -> {}", s.steps, rate,
       s.deepest * 1e3, s.largest, file.string());
-  say("  contact in {} steps, sliding in {}, throttled in {}, energy rule in {}, "
-      "beyond the deepest sample in {}",
-      s.contact, s.sliding, s.held_back, s.limited, s.beyond);
+  say("  steps in contact {}, sliding {}, throttled {}, limited by the energy tank {}, "
+      "extrapolated "
+      "beyond the computed depth {}",
+      s.contact, s.sliding, s.throttled, s.limited, s.beyond);
   say("  absorbed by the body: {:.3f} mJ; force step: median {:.2f} us, 99 % within {:.2f} us",
       s.absorbed * 1e3, s.latency.quantile(0.5) * 1e-3, s.latency.quantile(0.99) * 1e-3);
 }
@@ -73,7 +74,7 @@ int simulate(const CaseOptions& options, const std::string& library_option,
     throw_with_journal(error, recorder.journal());
   }
   recorder.finish();
-  report(summary, heading.rate, space.recording());
+  print(summary, heading.rate, space.recording());
   return kExitDone;
 }
 
@@ -81,7 +82,8 @@ int simulate(const CaseOptions& options, const std::string& library_option,
 
 void add_simulate_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
-      "simulate", "Press, slide and release on library.h5 with a simulated device -> recording.h5");
+      "simulate",
+      "Scripted press, slide and release on library.h5 with a simulated device -> recording.h5");
   command->footer("Example: palpate simulate data/cases/cylinder.toml --out out/cylinder");
   const auto options = add_case_options(*command);
   const auto library = std::make_shared<std::string>();
@@ -89,9 +91,9 @@ void add_simulate_command(CLI::App& root, Action& action) {
   const auto lipschitz_bound = std::make_shared<double>(0);
   command
       ->add_option(
-          "--lipschitz_bound", *lipschitz_bound,
-          "N/m: the force changes by at most this times the travel of the tool; at least the "
-          "L_min of the library (default: the bound of the library)")
+          "--lipschitz-bound", *lipschitz_bound,
+          "N/m: Lipschitz bound of the force that the runtime enforces, at least the L_min "
+          "of the library (default: that of the library)")
       ->check(CLI::PositiveNumber);
   command->callback([options, library, lipschitz_bound, &action] {
     action = [options, library, lipschitz_bound] {

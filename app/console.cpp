@@ -6,25 +6,37 @@
 #include <cmath>
 #include <cstdio>
 
+#include "app/pipeline/events.hpp"
+
 namespace palpate::app {
 namespace {
 
 constexpr double kSecondsBetweenLines = 10;
 constexpr double kSecondsBetweenBars = 0.2;
 
-std::string bar(double share) {
+std::string bar(double fraction) {
   constexpr int width = 30;
-  const int filled = static_cast<int>(std::lround(share * width));
+  const int filled = static_cast<int>(std::lround(fraction * width));
   return std::string(static_cast<std::size_t>(filled), '#') +
          std::string(static_cast<std::size_t>(width - filled), '.');
 }
 
 }  // namespace
 
+void TextOutput::line(std::string_view text) const {
+  write(std::string(text) + '\n');
+}
+
+TextOutput standard_output() {
+  return {[](std::string_view text) {
+            std::fwrite(text.data(), 1, text.size(), stdout);
+            std::fflush(stdout);
+          },
+          isatty(STDOUT_FILENO) != 0};
+}
+
 void print_line(std::string_view line) {
-  std::fwrite(line.data(), 1, line.size(), stdout);
-  std::fputc('\n', stdout);
-  std::fflush(stdout);
+  standard_output().line(line);
 }
 
 std::string duration_text(double seconds) {
@@ -34,28 +46,25 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
 }
 
-ProgressDisplay::ProgressDisplay(std::string label)
-    : label_(std::move(label)), terminal_(isatty(STDOUT_FILENO) != 0) {}
-
-void ProgressDisplay::show(std::int64_t done, std::int64_t incomplete, std::int64_t running,
-                           std::int64_t total, std::int64_t known) {
+void ProgressDisplay::show(const Progress& p) {
   const Clock::time_point now = Clock::now();
   const double since_last = std::chrono::duration<double>(now - last_).count();
-  const bool finished = done >= total;
-  if (!finished && since_last < (terminal_ ? kSecondsBetweenBars : kSecondsBetweenLines)) return;
+  const double interval = output_.terminal ? kSecondsBetweenBars : kSecondsBetweenLines;
+  const bool finished = p.done >= p.total;
+  if (!finished && since_last < interval) return;
   last_ = now;
   const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const double share = total > 0 ? static_cast<double>(done) / static_cast<double>(total) : 1;
-  const double work = (static_cast<double>(done - known) + 0.5 * static_cast<double>(running)) /
-                      std::fmax(1, static_cast<double>(total - known));
-  const std::string time = finished       ? duration_text(elapsed)
-                           : done > known ? duration_text(elapsed * (1 - work) / work) + " left"
-                                          : std::string("time left unknown");
+  const auto done = static_cast<double>(p.done), total = static_cast<double>(p.total),
+             known = static_cast<double>(p.known), running = static_cast<double>(p.running);
+  const double work = (done - known + 0.5 * running) / std::fmax(1, total - known);
+  const std::string time = finished           ? duration_text(elapsed)
+                           : p.done > p.known ? duration_text(elapsed * (1 - work) / work) + " left"
+                                              : std::string("remaining time unknown");
   const std::string text =
-      fmt::format("{}: {} of {} sites, {} incomplete, {}", label_, done, total, incomplete, time);
-  if (!terminal_) return print_line(text);
-  fmt::print("\r[{}] {}\x1b[K{}", bar(share), text, finished ? "\n" : "");
-  std::fflush(stdout);
+      fmt::format("{}: {} of {} sites, {} incomplete, {}", label_, p.done, p.total, p.failed, time);
+  if (!output_.terminal) return output_.line(text);
+  const double fraction = p.total > 0 ? done / total : 1;
+  output_.write(fmt::format("\r[{}] {}\x1b[K{}", bar(fraction), text, finished ? "\n" : ""));
 }
 
 }  // namespace palpate::app

@@ -17,7 +17,7 @@
 namespace palpate::app {
 namespace {
 
-/// One line, whatever the text holds.
+/// Prints the error on one line.
 int fail(std::string text, int exit_code) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   std::fflush(stdout);
@@ -31,7 +31,7 @@ int run(const Action& action) {
   } catch (const Error& error) {
     return fail(error.what(), static_cast<int>(error.kind()));
   } catch (const std::bad_alloc&) {
-    return fail("out of memory; use a coarser mesh or fewer threads",
+    return fail("out of memory; use a coarser mesh, fewer threads or --memory",
                 static_cast<int>(ErrorKind::Internal));
   } catch (const std::exception& error) {
     return fail(std::string("internal error: ") + error.what() + "; please report it",
@@ -60,7 +60,7 @@ void add_commands(CLI::App& root, Action& action) {
   add_experiment_command(root, action);
 }
 
-/// A first argument that is no subcommand: CLI11 would only say that one is missing.
+/// The message for an unknown subcommand: CLI11 would only say that one is missing.
 std::string unknown_subcommand(const CLI::App& root, int count, char** arguments) {
   if (count < 2 || arguments[1][0] == '-') return {};
   std::vector<std::string> names;
@@ -72,11 +72,10 @@ std::string unknown_subcommand(const CLI::App& root, int count, char** arguments
 }
 
 int parse_and_run(int count, char** arguments) {
-  CLI::App root{
-      "palpate: press a soft body everywhere once, offline; feel it forever, in real time"};
+  CLI::App root{"palpate: precomputes the indentation of a soft body and renders it in real time"};
   root.footer(
-      "Exit codes: 0 done, 1 internal error, 2 usage or configuration, 3 unusable geometry,\n"
-      "4 finished but some sites did not complete.\n"
+      "Exit codes: 0 success, 1 internal error, 2 usage or configuration, 3 unusable geometry,\n"
+      "4 finished, but some sites are incomplete.\n"
       "Example: palpate build data/cases/cylinder-demo.toml");
   root.set_version_flag("--version", creator_text());
   root.require_subcommand(1);
@@ -100,7 +99,7 @@ int main(int count, char** arguments) {
   try {
     palpate::app::ensure_blas_kernel(arguments);
     return palpate::app::parse_and_run(count, arguments);
-  } catch (...) {  // not even a message could be made
+  } catch (...) {  // out of memory for the message itself
     std::fputs("palpate: internal error: out of memory\n", stderr);
     return static_cast<int>(palpate::ErrorKind::Internal);
   }

@@ -37,12 +37,12 @@ void check_lengths(const Settings& s) {
   if (!positive(s.patch_spacing) || !positive(s.element_size)) {
     refuse_setting("patch_spacing and element_size must be positive lengths", "correct the case");
   }
-  if (!std::isfinite(s.interior_growth) || s.interior_growth < 1) {
-    refuse_setting(text("interior_growth is ", s.interior_growth, ", below 1"),
+  if (!std::isfinite(s.interior_coarsening) || s.interior_coarsening < 1) {
+    refuse_setting(text("interior_coarsening is ", s.interior_coarsening, ", below 1"),
                    "give 1 for a uniform mesh or more for a coarser interior");
   }
-  if (!(s.feature_angle > 0 && s.feature_angle <= 180)) {
-    refuse_setting(text("feature_angle is ", s.feature_angle, " degrees"), "give 0 .. 180");
+  if (!(s.feature_angle > 0 && s.feature_angle <= std::numbers::pi)) {
+    refuse_setting(text("feature_angle is ", s.feature_angle, " rad"), "give 0 .. pi");
   }
   if (!positive(s.tool_radius) || !not_negative(s.depth) || !not_negative(s.lateral_travel)) {
     refuse_setting("tool_radius must be positive, depth and lateral_travel not negative",
@@ -107,12 +107,12 @@ void check_lateral_travel(const Settings& settings, double largest) {
 void check_counts(const Settings& settings, const Surface& skin) {
   const double h = settings.element_size;
   const double facets = area(skin) / (0.43 * h * h);  // equilateral triangles of edge h
-  const double interior = 1.5 * signed_volume(skin) / std::pow(settings.interior_growth * h, 3);
+  const double interior = 1.5 * signed_volume(skin) / std::pow(settings.interior_coarsening * h, 3);
   if (facets > kMostNodes || interior > kMostNodes) {
     throw Error(ErrorKind::Configuration, settings.surface.path.string(),
                 text("an element_size of ", millimetres(h), " needs about ", facets,
                      " boundary facets and ", interior, " interior nodes, more than ", kMostNodes),
-                "increase element_size or interior_growth, or check the unit of the surface");
+                "increase element_size or interior_coarsening, or check the unit of the surface");
   }
 }
 

@@ -52,7 +52,7 @@ void fill_body(Body& body, const Settings& settings, const Surface& boundary,
                const std::vector<Surface>& inclusions) {
   const std::vector<Surface> remeshed = remesh_inclusions(settings, inclusions);
   const Surface shells = join_shells(settings, boundary, remeshed);
-  Filling filling = fill(shells, settings.interior_growth * settings.element_size,
+  Filling filling = fill(shells, settings.interior_coarsening * settings.element_size,
                          settings.surface.path.string());
   if (filling.cut_short) {
     note(settings.log,

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -255,7 +256,7 @@ NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const
                      const Log& log) {
   Mesh mesh = to_mesh(input);
   EdgeFlags sharp = mesh.add_property_map<Mesh::Edge_index, bool>("e:sharp", false).first;
-  pmp::detect_sharp_edges(mesh, settings.feature_angle, sharp);
+  pmp::detect_sharp_edges(mesh, settings.feature_angle * 180 / std::numbers::pi, sharp);
   const std::size_t dropped = drop_short_features(mesh, sharp, kShortestFeature * settings.spacing);
   if (dropped > 0) {
     note(log, text(where, ": ", counted(dropped, "sharp edge"), " in fragments shorter than ",

@@ -20,7 +20,7 @@ struct NestedSurface {
 struct RemeshSettings {
   double spacing = 0;        ///< m, edge length of the response surface
   int subdivisions = 1;      ///< n: each response triangle becomes n x n boundary facets
-  double feature_angle = 0;  ///< degrees; sharper edges of the input stay sharp
+  double feature_angle = 0;  ///< rad; sharper edges of the input stay sharp
   bool curved = false;       ///< put the middles of boundary edges on the input surface
 };
 

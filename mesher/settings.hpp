@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -54,18 +55,18 @@ struct Springs {
 
 struct Settings {
   std::string name;
-  SurfaceFile surface;                  ///< the outer skin
-  std::vector<SurfaceFile> inclusions;  ///< disjoint closed surfaces strictly inside the skin
-  std::vector<Support> supports;        ///< surface nodes inside any of them are fixed
-  std::vector<Springs> foundation;      ///< stiffnesses add where foundations overlap
-  double patch_spacing = 0.010;         ///< m, edge length of the response surface
-  double element_size = 0.005;          ///< m, edge length of the boundary facets
-  double interior_growth = 1.5;         ///< target of the largest interior edge over element_size
-  double feature_angle = 45;            ///< degrees; sharper edges of the input stay sharp
-  bool curved_facets = true;            ///< writes Body::curved_edges; without, facets are flat
-  double tool_radius = 0.005;           ///< m, smallest distance of sites from supports
-  double depth = 0;                     ///< m, of the planned indentation; 0 skips the check
-  double lateral_travel = 0;            ///< m, of the planned drags; 0 skips the check
+  SurfaceFile surface{{}, 1.0, "matrix"};  ///< the outer skin
+  std::vector<SurfaceFile> inclusions;     ///< disjoint closed surfaces strictly inside the skin
+  std::vector<Support> supports;           ///< surface nodes inside any of them are fixed
+  std::vector<Springs> foundation;         ///< stiffnesses add where foundations overlap
+  double patch_spacing = 0.010;            ///< m, edge length of the response surface
+  double element_size = 0.005;             ///< m, edge length of the boundary facets
+  double interior_coarsening = 1.5;  ///< target of the largest interior edge over element_size
+  double feature_angle = std::numbers::pi / 4;  ///< rad; sharper edges of the input stay sharp
+  bool curved_facets = true;   ///< writes Body::curved_edges; without, facets are flat
+  double tool_radius = 0.005;  ///< m, smallest distance of sites from supports
+  double depth = 0;            ///< m, of the planned indentation; 0 skips the check
+  double lateral_travel = 0;   ///< m, of the planned drags; 0 skips the check
   std::function<void(std::string_view)> log;  ///< receives one line for each step; may be empty
 };
 

@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <set>
 #include <utility>
+#include <variant>
 
-#include "app/case/material.hpp"
+#include "app/case/describe.hpp"
 #include "app/case/nearest.hpp"
 #include "app/case/reader.hpp"
 #include "format/error.hpp"
@@ -15,15 +16,19 @@
 namespace palpate::app {
 namespace {
 
+std::string length_text(double metres) {
+  return print_quantity(metres, Dimension::Length);
+}
+
 std::string prefix(std::string_view section, std::size_t index) {
   return fmt::format("{}[{}].", section, index);
 }
 
-/// What the author left to the rest of the case: the name, the region of the only material.
+/// Defaults that depend on other keys: the name, the regions of materials.
 void fill_defaults(Case& c, const std::string& file_name) {
   if (c.name.empty()) c.name = std::filesystem::path(file_name).stem().string();
   for (MaterialSection& material : c.materials) {
-    if (material.region.empty()) material.region = c.surface.region;
+    if (material.region.empty()) material.region = c.mesh.surface.region_name;
   }
 }
 
@@ -36,14 +41,14 @@ void check_name(const Case& c, const SourceMap& sources) {
          "give the case a name of letters, digits, '-' and '_'");
 }
 
-/// Every region of the body, in the order of the case. @throws Error when one is named twice.
+/// Every region of the body, in the order of the case. @throws Error for a repeated name.
 std::vector<std::string_view> regions_of(const Case& c, const SourceMap& sources) {
-  std::vector<std::string_view> regions{c.surface.region};
-  for (std::size_t i = 0; i < c.inclusions.size(); ++i) {
-    const std::string& region = c.inclusions[i].region;
+  std::vector<std::string_view> regions{c.mesh.surface.region_name};
+  for (std::size_t i = 0; i < c.mesh.inclusions.size(); ++i) {
+    const std::string& region = c.mesh.inclusions[i].region_name;
     if (std::find(regions.begin(), regions.end(), region) != regions.end()) {
       refuse(sources.where(prefix("inclusion", i) + "region"),
-             fmt::format("region '{}' is named twice", region),
+             fmt::format("two surfaces bound the region '{}'", region),
              "give each surface a region of its own");
     }
     regions.push_back(region);
@@ -58,14 +63,14 @@ void check_materials(const Case& c, const SourceMap& sources) {
     const std::string& region = c.materials[i].region;
     const std::string where = sources.where(prefix("material", i) + "region");
     if (std::find(regions.begin(), regions.end(), region) == regions.end()) {
-      refuse(where, fmt::format("material for region '{}', which no surface has", region),
+      refuse(where, fmt::format("material for region '{}', which no surface bounds", region),
              fmt::format("the nearest region is '{}'", nearest(region, regions)));
     }
     if (!described.insert(region).second) {
       refuse(where, fmt::format("second material for region '{}'", region),
              "remove one of the two");
     }
-    fem::check_law(law_of(c.materials[i]), where);
+    fem::check_law(c.materials[i].law, where);
   }
   for (const std::string_view region : regions) {
     if (described.contains(region)) continue;
@@ -74,39 +79,46 @@ void check_materials(const Case& c, const SourceMap& sources) {
   }
 }
 
-/// Held depths that the case leaves open follow its depth.
+/// Without the key, the lateral depths follow the depth.
 void choose_depths(Case& c, const SourceMap& sources) {
   if (sources.has("indentation.lateral_depths")) return;
-  const double depth = c.indentation.depth;
-  c.indentation.lateral_depths = {depth / 3, 2 * depth / 3, depth};
+  const double depth = c.campaign.indentation.depth;
+  c.campaign.indentation.lateral_depths = {depth / 3, 2 * depth / 3, depth};
 }
 
+/// A disc without fillet has a discontinuous gap at its edge: frictionless contact does not
+/// converge there.
 void check_tool(const Case& c, const SourceMap& sources) {
-  if (c.tool.edge_radius <= c.tool.radius) return;
-  refuse(sources.where("tool.edge_radius"),
-         fmt::format("tool.edge_radius = {} is larger than tool.radius = {}",
-                     print_quantity(c.tool.edge_radius, Dimension::Length),
-                     print_quantity(c.tool.radius, Dimension::Length)),
-         "give at most the radius of the disc, or 0 for a sharp edge");
+  const fem::IndentationSettings& s = c.campaign.indentation;
+  if (s.tool.edge_radius > s.tool.radius)
+    refuse(sources.where("tool.edge_radius"),
+           fmt::format("tool.edge_radius = {} is larger than tool.radius = {}",
+                       length_text(s.tool.edge_radius), length_text(s.tool.radius)),
+           "give at most the radius of the disc, or 0 for a sharp edge");
+  if (s.tool.shape == fem::ToolShape::Disc && !(s.tool.edge_radius > 0) &&
+      s.friction == fem::ToolFriction::Frictionless)
+    refuse(
+        sources.where("tool.shape"), "a disc with a sharp edge needs no-slip contact",
+        "give tool.edge_radius (a hundredth of the radius is enough), or friction = \"no-slip\"");
 }
 
 void check_depths(const Case& c, const SourceMap& sources) {
-  for (const double held : c.indentation.lateral_depths) {
-    if (held <= c.indentation.depth) continue;
+  const fem::IndentationSettings& s = c.campaign.indentation;
+  for (const double depth : s.lateral_depths) {
+    if (depth <= s.depth) continue;
     refuse(sources.where("indentation.lateral_depths"),
-           fmt::format("indentation.lateral_depths holds {}, deeper than indentation.depth = {}",
-                       print_quantity(held, Dimension::Length),
-                       print_quantity(c.indentation.depth, Dimension::Length)),
-           "keep every held depth within the depth");
+           fmt::format("the lateral depth {} is larger than indentation.depth = {}",
+                       length_text(depth), length_text(s.depth)),
+           "give lateral depths of at most the depth");
   }
 }
 
 void check_supports(const Case& c, const SourceMap& sources) {
   for (std::size_t i = 0; i < c.supports.size(); ++i) {
-    const SupportSection& support = c.supports[i];
-    if (support.shape != "box") continue;
+    const auto* box = std::get_if<mesher::BoxSupport>(&c.supports[i].where);
+    if (box == nullptr) continue;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (support.low[axis] < support.high[axis]) continue;
+      if (box->low[axis] < box->high[axis]) continue;
       refuse(sources.where(prefix("support", i) + "low"),
              fmt::format("box support has low.{0} not below high.{0}", "xyz"[axis]),
              "give the corner with the smallest coordinates as low");
@@ -114,21 +126,12 @@ void check_supports(const Case& c, const SourceMap& sources) {
   }
 }
 
-/// The gap to a flat end jumps at its edge: what is pressed there can neither slide off nor come
-/// back.
-void check_edge(const Case& c, const SourceMap& sources) {
-  if (c.tool.shape != "disc" || c.tool.edge_radius > 0 || c.tool.friction == "no-slip") return;
-  refuse(sources.where("tool.shape"), "a disc with a sharp edge cannot be pressed without friction",
-         "give tool.edge_radius (a hundredth of the radius is enough), or friction = \"no-slip\"");
-}
-
 void check_sizes(const Case& c, const SourceMap& sources) {
   if (c.mesh.element_size <= c.mesh.patch_spacing) return;
   refuse(sources.where("mesh.element_size"),
          fmt::format("mesh.element_size = {} is larger than mesh.patch_spacing = {}",
-                     print_quantity(c.mesh.element_size, Dimension::Length),
-                     print_quantity(c.mesh.patch_spacing, Dimension::Length)),
-         "the facets refine the response triangles: choose it at most as large");
+                     length_text(c.mesh.element_size), length_text(c.mesh.patch_spacing)),
+         "give at most the patch spacing: facets subdivide the response triangles");
 }
 
 Case parsed(const toml::table& table, const std::string& file_name) {
@@ -145,18 +148,10 @@ Case parsed(const toml::table& table, const std::string& file_name) {
   check_depths(c, sources);
   check_supports(c, sources);
   check_sizes(c, sources);
-  check_edge(c, sources);
   return c;
 }
 
 }  // namespace
-
-double& MaterialSection::constant(std::string_view name) {
-  for (auto& [known, value] : constants) {
-    if (known == name) return value;
-  }
-  return constants.emplace_back(name, 0.0).second;
-}
 
 Case parse_case(std::string_view toml, const std::string& file_name) {
   return parsed(parse_toml(toml, file_name), file_name);

@@ -1,27 +1,31 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The one description of the keys of a case file. The reader, the printer and the reference page
-// are visitors of it, so that they cannot disagree.
+// The one description of the keys of a case file: name, unit, range and meaning of each, bound to
+// the field of the settings of a stage. The reader, the printer and the reference page are visitors
+// of it, so that they cannot disagree.
 #pragma once
 
+#include <algorithm>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "app/case/case.hpp"
+#include "app/case/names.hpp"
 #include "app/case/quantity.hpp"
 #include "fem/laws/law_table.hpp"
 
 namespace palpate::app {
 
-/// Values a constant may take. An open end is excluded.
+/// Values that a key accepts. An open end is excluded.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool low_open = false;
   bool high_open = false;
 
-  constexpr bool holds(double value) const {
+  constexpr bool contains(double value) const {
     return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
   }
 };
@@ -44,148 +48,222 @@ using Choices = std::vector<std::string_view>;
 constexpr auto kRequired = Presence::Required;
 constexpr auto kOptional = Presence::Optional;
 
+/// A value that a case file writes as one of the names of a table.
+template <class V, class T, std::size_t N>
+void describe_choice(V& v, T& value, const Key& key, const std::array<Named<T>, N>& table) {
+  std::string name(name_in(table, value));
+  v.text(name, key, names_in(table));
+  for (const Named<T>& entry : table)
+    if (entry.name == name) value = entry.value;
+}
+
+/// The length of the unit of a file, m, written by its symbol.
 template <class V>
-void describe(V& v, SurfaceSection& s) {
-  v.text(s.file,
-         {"file", "closed triangulated surface: OFF, OBJ, PLY or STL; relative to the case file",
-          kRequired});
-  v.text(s.unit, {"unit", "length unit of the coordinates in the file", kRequired},
-         unit_symbols(Dimension::Length));
-  v.text(s.region, {"region", "name of the material region inside"});
+void describe_length_unit(V& v, double& metres, const Key& key) {
+  const auto units = units_of(Dimension::Length);
+  const auto same =
+      std::find_if(units.begin(), units.end(), [&](const Unit& unit) { return unit.si == metres; });
+  std::string symbol(same == units.end() ? std::string_view{} : same->symbol);
+  v.text(symbol, key, unit_symbols(Dimension::Length));
+  for (const Unit& unit : units)
+    if (unit.symbol == symbol) metres = unit.si;
 }
 
 template <class V>
-void describe(V& v, InclusionSection& s) {
-  v.text(s.file, {"file", "closed surface strictly inside the outer one", kRequired});
-  v.text(s.unit, {"unit", "length unit of the coordinates in the file", kRequired},
-         unit_symbols(Dimension::Length));
-  v.text(s.region, {"region", "name of the material region inside", kRequired});
+void describe_path(V& v, std::filesystem::path& path, const Key& key) {
+  std::string text = path.string();
+  v.text(text, key);
+  path = text;
 }
 
 template <class V>
-void describe(V& v, MeshSection& s) {
+void describe_surface(V& v, mesher::SurfaceFile& s) {
+  describe_path(v, s.path,
+                {"file", "watertight triangle surface (OFF, OBJ, PLY or STL), relative to the case",
+                 kRequired});
+  describe_length_unit(v, s.unit,
+                       {"unit", "length unit of the coordinates in the file", kRequired});
+  v.text(s.region_name, {"region", "name of the material region inside the surface"});
+}
+
+template <class V>
+void describe_inclusion(V& v, mesher::SurfaceFile& s) {
+  describe_path(v, s.path, {"file", "watertight surface strictly inside the outer one", kRequired});
+  describe_length_unit(v, s.unit,
+                       {"unit", "length unit of the coordinates in the file", kRequired});
+  v.text(s.region_name, {"region", "name of the material region inside the surface", kRequired});
+}
+
+template <class V>
+void describe_mesh(V& v, mesher::Settings& s) {
   v.quantity(s.patch_spacing, Dimension::Length,
              {"patch_spacing", "edge length of the response surface", kOptional, kPositive});
   v.quantity(s.element_size, Dimension::Length,
              {"element_size", "edge length of the boundary facets", kOptional, kPositive});
-  v.number(s.interior_growth,
-           {"interior_growth", "largest interior edge over element_size", kOptional, {.low = 1}});
+  v.number(s.interior_coarsening, {"interior_coarsening",
+                                   "target ratio of the largest interior edge to `element_size`",
+                                   kOptional,
+                                   {.low = 1}});
   v.quantity(s.feature_angle, Dimension::Angle,
              {"feature_angle",
-              "sharper edges of the surface are kept",
+              "edges of the surface with a larger dihedral deviation are preserved",
               kOptional,
-              {.low = 0, .high = 3.141592653589793, .low_open = true}});
+              {.low = 0, .high = std::numbers::pi, .low_open = true}});
   v.flag(s.curved_facets, {"curved_facets",
-                           "the tool meets a skin that is curved as the surface is, through the "
-                           "middles of the edges of facets; false: flat facets"});
+                           "`true`: boundary facets are quadratic, with their edge midpoints on "
+                           "the input surface; `false`: facets are flat"});
+}
+
+/// The alternative A of a variant; it becomes that alternative, with default values, if it was not.
+template <class A, class Variant>
+A& alternative(Variant& variant) {
+  if (!std::holds_alternative<A>(variant)) variant.template emplace<A>();
+  return std::get<A>(variant);
+}
+
+/// In the order of the alternatives of mesher::Support.
+inline constexpr std::array<std::string_view, 5> kSupportShapes{"plane", "box", "sphere", "surface",
+                                                                "label"};
+
+template <class V>
+void describe_support_shape(V& v, const std::string& shape, mesher::Support& where) {
+  if (v.when("shape", shape, "plane")) {
+    auto& plane = alternative<mesher::PlaneSupport>(where);
+    v.point(plane.point, Dimension::Length, {"point", "a point of the plane", kRequired});
+    v.direction(
+        plane.normal,
+        {"normal", "normal of the plane, towards the supported side; of any length", kRequired});
+  }
+  if (v.when("shape", shape, "box")) {
+    auto& box = alternative<mesher::BoxSupport>(where);
+    v.point(box.low, Dimension::Length, {"low", "corner with the smallest coordinates", kRequired});
+    v.point(box.high, Dimension::Length,
+            {"high", "corner with the largest coordinates", kRequired});
+  }
+  if (v.when("shape", shape, "sphere")) {
+    auto& sphere = alternative<mesher::SphereSupport>(where);
+    v.point(sphere.centre, Dimension::Length, {"centre", "centre of the sphere", kRequired});
+    v.quantity(sphere.radius, Dimension::Length,
+               {"radius", "radius of the sphere", kRequired, kPositive});
+  }
+  if (v.when("shape", shape, "surface")) {
+    auto& support = alternative<mesher::SurfaceSupport>(where);
+    describe_path(v, support.surface.path,
+                  {"file", "watertight surface, such as that of a bone", kRequired});
+    describe_length_unit(v, support.surface.unit,
+                         {"unit", "length unit of the coordinates in the file", kRequired});
+    v.quantity(support.distance, Dimension::Length,
+               {"distance", "nodes inside the surface or nearer to it than this are supported",
+                kRequired, kNotNegative});
+  }
+  if (v.when("shape", shape, "label")) {
+    v.text(alternative<mesher::LabelSupport>(where).label,
+           {"label",
+            "name of the supported faces in the OBJ file of the surface: of a group (`g`), an "
+            "object (`o`) or a material (`usemtl`)",
+            kRequired});
+  }
 }
 
 template <class V>
-void describe(V& v, SupportSection& s) {
-  v.text(s.shape, {"shape", "surface nodes inside this shape are held", kRequired},
-         {"plane", "box", "sphere", "surface", "label"});
+void describe_support(V& v, mesher::Springs& s) {
+  std::string shape(kSupportShapes[s.where.index()]);
+  v.text(shape, {"shape", "shape that contains the supported surface nodes", kRequired},
+         {kSupportShapes.begin(), kSupportShapes.end()});
   v.quantity(s.normal_stiffness, Dimension::FoundationStiffness,
              {"normal_stiffness",
-              "instead of being held, the facets inside rest on springs per area: along their "
-              "normals at rest; 0 with the next: held",
+              "elastic foundation along the facet normals; fixed nodes when this and "
+              "`tangential_stiffness` are 0",
               kOptional, kNotNegative});
-  v.quantity(
-      s.tangential_stiffness, Dimension::FoundationStiffness,
-      {"tangential_stiffness", "of those springs, across the normals", kOptional, kNotNegative});
-  if (v.when("shape", s.shape, "plane")) {
-    v.point(s.point, Dimension::Length, {"point", "a point of the plane", kRequired});
-    v.direction(s.normal,
-                {"normal", "towards the held side; need not be of unit length", kRequired});
-  }
-  if (v.when("shape", s.shape, "box")) {
-    v.point(s.low, Dimension::Length, {"low", "corner with the smallest coordinates", kRequired});
-    v.point(s.high, Dimension::Length, {"high", "corner with the largest coordinates", kRequired});
-  }
-  if (v.when("shape", s.shape, "sphere")) {
-    v.point(s.centre, Dimension::Length, {"centre", "centre of the sphere", kRequired});
-    v.quantity(s.radius, Dimension::Length,
-               {"radius", "radius of the sphere", kRequired, kPositive});
-  }
-  if (v.when("shape", s.shape, "surface")) {
-    v.text(s.file,
-           {"file", "closed surface, such as that of a bone: nodes inside or near it are held",
-            kRequired});
-    v.text(s.unit, {"unit", "length unit of the coordinates in the file", kRequired},
-           unit_symbols(Dimension::Length));
-    v.quantity(s.distance, Dimension::Length,
-               {"distance", "how near is held", kRequired, kNotNegative});
-  }
-  if (v.when("shape", s.shape, "label")) {
-    v.text(s.label, {"label",
-                     "name of the held faces in the OBJ file of the surface: of a group (`g`), an "
-                     "object (`o`) or a material (`usemtl`)",
-                     kRequired});
-  }
+  v.quantity(s.tangential_stiffness, Dimension::FoundationStiffness,
+             {"tangential_stiffness", "stiffness of the elastic foundation across the normals",
+              kOptional, kNotNegative});
+  describe_support_shape(v, shape, s.where);
+}
+
+template <class V>
+void describe_sampled_fibres(V& v, MaterialSection& s) {
+  describe_path(v, s.fibre_file,
+                {"fibre_file",
+                 "fibre directions at points, see below; an element takes the directions of the "
+                 "point nearest to its centroid",
+                 kRequired});
+  describe_length_unit(v, s.fibre_unit,
+                       {"fibre_unit", "length unit of x, y, z in the file", kRequired});
+  v.direction(s.law.fibres.second,
+              {"fibre_plane",
+               "second direction of the plane of the fibres, where the file has none", kRequired});
+}
+
+template <class V>
+void describe_laplace_fibres(V& v, fem::FibreField& fibres) {
+  v.point(
+      fibres.from.low, Dimension::Length,
+      {"fibre_from_low",
+       "smallest corner of a box around the start of the fibres; they follow a Laplace potential",
+       kRequired});
+  v.point(fibres.from.high, Dimension::Length,
+          {"fibre_from_high", "largest corner of that box", kRequired});
+  v.point(
+      fibres.to.low, Dimension::Length,
+      {"fibre_to_low", "smallest corner of a box around the part where the fibres end", kRequired});
+  v.point(fibres.to.high, Dimension::Length,
+          {"fibre_to_high", "largest corner of that box", kRequired});
+  v.direction(fibres.second,
+              {"fibre_plane", "second direction of the plane of the fibres", kRequired});
 }
 
 template <class V>
 void describe_fibres(V& v, MaterialSection& s) {
-  v.integer(s.fibre_families, {"fibre_families",
-                               "1: fibres at +fibre_angle; 2: at both signs of it",
-                               kOptional,
-                               {.low = 1, .high = 2}});
-  v.quantity(s.fibre_angle, Dimension::Angle,
+  fem::FibreField& fibres = s.law.fibres;
+  v.integer(fibres.families,
+            {"fibre_families",
+             "1: one family, at `+fibre_angle`; 2: two families, at `+fibre_angle` and "
+             "`-fibre_angle`",
+             kOptional,
+             {.low = 1, .high = 2}});
+  v.quantity(fibres.angle, Dimension::Angle,
              {"fibre_angle",
-              "of the fibres from the mean direction, in their plane",
+              "angle between a fibre family and the mean direction, in the plane of the fibres",
               kOptional,
-              {.low = 0, .high = 1.5707963267948966}});
-  v.text(s.fibre_field, {"fibre_field", "how the directions vary in the region"},
-         {"constant", "cylindrical", "file", "laplace"});
-  if (v.when("fibre_field", s.fibre_field, "constant")) {
-    v.direction(s.fibre_direction, {"fibre_direction", "mean direction", kRequired});
-    v.direction(s.fibre_plane,
+              {.low = 0, .high = std::numbers::pi / 2}});
+  describe_choice(v, fibres.kind, {"fibre_field", "variation of the directions over the region"},
+                  kFibreFields);
+  const std::string field(name_in(kFibreFields, fibres.kind));
+  if (v.when("fibre_field", field, "constant")) {
+    v.direction(fibres.first, {"fibre_direction", "mean direction", kRequired});
+    v.direction(fibres.second,
                 {"fibre_plane", "second direction of the plane of the fibres", kRequired});
   }
-  if (v.when("fibre_field", s.fibre_field, "cylindrical")) {
-    v.direction(s.fibre_axis,
-                {"fibre_axis", "the mean direction runs around it, the plane along it", kRequired});
-    v.point(s.fibre_axis_point, Dimension::Length,
+  if (v.when("fibre_field", field, "cylindrical")) {
+    v.direction(
+        fibres.first,
+        {"fibre_axis",
+         "axis; the mean direction is circumferential, and the plane of the fibres contains "
+         "the axial direction",
+         kRequired});
+    v.point(fibres.origin, Dimension::Length,
             {"fibre_axis_point", "a point of the axis", kRequired});
   }
-  if (v.when("fibre_field", s.fibre_field, "file")) {
-    v.text(s.fibre_file,
-           {"fibre_file",
-            "directions at points, one line each below `x,y,z,fx,fy,fz` (or with `,sx,sy,sz`, a "
-            "second "
-            "direction of the plane); an element takes those of the point nearest to its centroid",
-            kRequired});
-    v.text(s.fibre_unit, {"fibre_unit", "length unit of x, y, z in the file", kRequired},
-           unit_symbols(Dimension::Length));
-    v.direction(
-        s.fibre_plane,
-        {"fibre_plane", "second direction of the plane where the file has none", kRequired});
-  }
-  if (v.when("fibre_field", s.fibre_field, "laplace")) {
-    v.point(
-        s.fibre_from_low, Dimension::Length,
-        {"fibre_from_low",
-         "corner of a box around the part of the surface where the fibres begin; they follow the "
-         "gradient of a potential",
-         kRequired});
-    v.point(s.fibre_from_high, Dimension::Length,
-            {"fibre_from_high", "its opposite corner", kRequired});
-    v.point(s.fibre_to_low, Dimension::Length,
-            {"fibre_to_low", "the same where they end", kRequired});
-    v.point(s.fibre_to_high, Dimension::Length,
-            {"fibre_to_high", "its opposite corner", kRequired});
-    v.direction(s.fibre_plane,
-                {"fibre_plane", "second direction of the plane of the fibres", kRequired});
-  }
+  if (v.when("fibre_field", field, "file")) describe_sampled_fibres(v, s);
+  if (v.when("fibre_field", field, "laplace")) describe_laplace_fibres(v, fibres);
+}
+
+/// The value of a constant of a law; 0 when it is new.
+inline double& value_of(fem::LawConstants& law, std::string_view name) {
+  for (auto& [known, value] : law.values)
+    if (known == name) return value;
+  return law.values.emplace_back(name, 0.0).second;
 }
 
 template <class V>
 void describe(V& v, MaterialSection& s) {
-  v.text(s.region, {"region", "region of an inclusion; empty means that of the surface"});
+  v.text(s.region, {"region", "region of the body; empty means that of the outer surface"});
   Choices laws;
   for (const fem::LawEntry& law : fem::law_table()) laws.push_back(law.name);
-  v.text(s.law, {"law", "hyperelastic law, see below"}, laws);
+  v.text(s.law.law, {"law", "hyperelastic law, see [theory](theory-fem.md)"}, laws);
   for (const fem::LawEntry& law : fem::law_table()) {
-    if (!v.when("law", s.law, law.name)) continue;
+    if (!v.when("law", s.law.law, law.name)) continue;
     for (const fem::LawConstant& constant : law.constants) {
       const Key key{constant.name,
                     constant.about,
@@ -194,7 +272,7 @@ void describe(V& v, MaterialSection& s) {
                      .high = constant.high,
                      .low_open = constant.low_open,
                      .high_open = constant.high_open}};
-      double& value = s.constant(constant.name);
+      double& value = value_of(s.law, constant.name);
       if (constant.is_stress) {
         v.quantity(value, Dimension::Pressure, key);
       } else {
@@ -206,194 +284,213 @@ void describe(V& v, MaterialSection& s) {
 }
 
 template <class V>
-void describe(V& v, ToolSection& s) {
-  v.text(
-      s.shape,
-      {"shape",
-       "of the rigid tool; disc: the flat end of an upright cylinder; cylinder: a lying one, its "
-       "ends rounded to hemispheres"},
-      {"sphere", "disc", "cylinder"});
-  v.quantity(s.radius, Dimension::Length,
-             {"radius", "of the sphere, the disc or the cross-section of the cylinder", kOptional,
-              kPositive});
-  v.text(
-      s.friction,
-      {"friction", "while pressing: the surface slides along the tool, or sticks where it touches"},
-      {"frictionless", "no-slip"});
-  if (v.when("shape", s.shape, "disc")) {
-    v.quantity(s.edge_radius, Dimension::Length,
-               {"edge_radius", "fillet of the edge, 0 when sharp; at most `radius`", kOptional,
-                kNotNegative});
+void describe_tool(V& v, fem::IndentationSettings& s) {
+  describe_choice(v, s.tool.shape,
+                  {"shape",
+                   "rigid tool; `disc`: end of an upright cylinder; `cylinder`: on its side, with "
+                   "hemispherical ends"},
+                  kToolShapes);
+  v.quantity(s.tool.radius, Dimension::Length,
+             {"radius", "radius of the sphere, the disc or the cross-section of the cylinder",
+              kOptional, kPositive});
+  describe_choice(
+      v, s.friction,
+      {"friction",
+       "contact on the normal path: `frictionless` sliding along the tool, or `no-slip` "
+       "after touch"},
+      kToolFrictions);
+  const std::string shape(name_in(kToolShapes, s.tool.shape));
+  if (v.when("shape", shape, "disc")) {
+    v.quantity(s.tool.edge_radius, Dimension::Length,
+               {"edge_radius", "fillet radius of the edge, at most `radius`; 0: a sharp edge",
+                kOptional, kNotNegative});
   }
-  if (v.when("shape", s.shape, "cylinder")) {
-    v.quantity(s.length, Dimension::Length,
-               {"length", "between the centres of the ends", kRequired, kPositive});
-    v.quantity(s.azimuth, Dimension::Angle,
-               {"azimuth", "of the axis in the tangent plane", kOptional, kAny});
+  if (v.when("shape", shape, "cylinder")) {
+    v.quantity(s.tool.length, Dimension::Length,
+               {"length", "distance between the centres of the ends", kRequired, kPositive});
+    v.quantity(s.tool_azimuth, Dimension::Angle,
+               {"azimuth", "direction of the cylinder axis in the tangent plane", kOptional, kAny});
   }
 }
 
 template <class V>
-void describe(V& v, IndentationSection& s) {
-  v.quantity(s.depth, Dimension::Length, {"depth", "end of the normal path", kOptional, kPositive});
+void describe_indentation(V& v, fem::IndentationSettings& s) {
+  v.quantity(s.depth, Dimension::Length,
+             {"depth", "depth at the end of the normal path", kOptional, kPositive});
   v.integer(s.increments,
-            {"increments", "steps of the normal path", kOptional, {.low = 2, .high = 1000}});
+            {"increments", "increments of the normal path", kOptional, {.low = 2, .high = 1000}});
   v.quantity(s.lateral_travel, Dimension::Length,
-             {"lateral_travel", "end of each lateral path", kOptional, kPositive});
-  v.integer(
-      s.lateral_increments,
-      {"lateral_increments", "steps of each lateral path", kOptional, {.low = 2, .high = 1000}});
+             {"lateral_travel", "travel at the end of each lateral path", kOptional, kPositive});
+  v.integer(s.lateral_increments, {"lateral_increments",
+                                   "increments of each lateral path",
+                                   kOptional,
+                                   {.low = 2, .high = 1000}});
   v.quantities(s.lateral_depths, Dimension::Length,
                {"lateral_depths",
-                "depths where lateral paths start, each at most `depth`; by default a third, two "
-                "thirds and all of it",
+                "depths of the lateral paths, each at most `depth`; without this key a third, two "
+                "thirds and all of `depth`",
                 kOptional, kPositive});
   v.quantities(
       s.azimuths, Dimension::Angle,
       {"azimuths", "directions of the lateral paths in the tangent plane", kOptional, kAny});
   v.number(s.force_tolerance, {"force_tolerance",
-                               "relative error of the tool force allowed to the solver",
+                               "relative tolerance of the tool force at equilibrium",
                                kOptional,
                                {.low = 0, .high = 0.1, .low_open = true}});
 }
 
+inline constexpr std::array kSamplingMethods{Named{SamplingMethod::Vertices, "vertices"},
+                                             Named{SamplingMethod::Nodes, "nodes"},
+                                             Named{SamplingMethod::Adaptive, "adaptive"}};
+
 template <class V>
 void describe(V& v, SamplingSection& s) {
-  v.text(s.method,
-         {"method",
-          "which points of the response surface are pressed: all; all surface nodes (patch_spacing "
-          "is then element_size); or as many as it takes, the rest interpolated"},
-         {"spacing", "nodes", "adaptive"});
-  if (v.when("method", s.method, "adaptive")) {
-    v.quantity(s.start_spacing, Dimension::Length,
-               {"start_spacing", "of the first sites", kOptional, kPositive});
-    v.number(s.tolerance,
-             {"tolerance",
-              "sites are added until 95 % of the forces at points held out are as near as this, "
-              "relative to the local force",
-              kOptional,
-              {.low = 0, .high = 1, .low_open = true, .high_open = true}});
-    v.integer(s.hold_out, {"hold_out",
-                           "random points of the surface, pressed but never fitted",
-                           kOptional,
-                           {.low = 10, .high = 10000}});
-    v.integer(s.most_sites, {"most_sites",
-                             "end with this many sites, whatever the error",
-                             kOptional,
-                             {.low = 1, .high = 1000000}});
-  }
+  describe_choice(v, s.method,
+                  {"method",
+                   "sites: response vertices, surface nodes (`patch_spacing` is then "
+                   "`element_size`) or adaptive"},
+                  kSamplingMethods);
+  if (!v.when("method", std::string(name_in(kSamplingMethods, s.method)), "adaptive")) return;
+  v.quantity(
+      s.initial_spacing, Dimension::Length,
+      {"initial_spacing", "distance between the sites of the first round", kOptional, kPositive});
+  v.number(s.tolerance,
+           {"tolerance",
+            "sites are added until the 95th-percentile relative error of the normal forces at "
+            "hold-out points is below this",
+            kOptional,
+            {.low = 0, .high = 1, .low_open = true, .high_open = true}});
+  v.integer(s.hold_out_points, {"hold_out_points",
+                                "number of random surface points that are solved directly and "
+                                "never fitted",
+                                kOptional,
+                                {.low = 10, .high = 10000}});
+  v.integer(s.max_sites, {"max_sites",
+                          "largest number of sites, whatever the error",
+                          kOptional,
+                          {.low = 1, .high = 1000000}});
 }
 
 template <class V>
-void describe(V& v, FitSection& s) {
+void describe_fit(V& v, fitting::FitSettings& s) {
   v.number(s.relative_tolerance, {"relative_tolerance",
-                                  "allowed error of a response over the local force",
+                                  "tolerated error of a response, relative to the local force",
                                   kOptional,
                                   {.low = 0, .high = 1}});
   v.quantity(s.absolute_tolerance, Dimension::Force,
-             {"absolute_tolerance", "allowed error of a response; the larger of the two applies",
-              kOptional, kPositive});
+             {"absolute_tolerance",
+              "tolerated error of a response; the larger of the two tolerances applies", kOptional,
+              kPositive});
   v.integer(
       s.max_knots,
       {"max_knots", "largest number of knots of a response", kOptional, {.low = 2, .high = 1000}});
-  v.flag(s.fill_holes,
-         {"fill_holes",
-          "give failed sites the mean response of their neighbours, marked as interpolated"});
-  v.flag(
-      s.between_nodes,
-      {"between_nodes",
-       "scale responses to be right in the mean between the nodes instead of at them, by how the "
-       "forces curve along the surface"});
-  v.text(s.responses,
-         {"responses",
-          "coupled: the lateral response grows with depth, best from several lateral_depths"},
-         {"decoupled", "coupled"});
+  v.flag(s.fill_holes, {"fill_holes",
+                        "gives failed sites the mean response of their neighbours, marked as "
+                        "interpolated"});
+  v.flag(s.between_nodes,
+         {"interpolation_correction",
+          "scales responses so that interpolated forces have no mean error between the vertices, "
+          "by the curvature of the force along the surface"});
+  describe_choice(
+      v, s.kind,
+      {"responses",
+       "`coupled`: the lateral response grows with depth; give several `lateral_depths`"},
+      kResponseKinds);
 }
 
 template <class V>
 void describe(V& v, CertifySection& s) {
   v.number(s.friction,
            {"friction", "friction coefficient mu between tool and body", kOptional, kNotNegative});
-  v.texts(s.devices,
-          {"devices", "device profiles to certify for: TOML files, relative to the case file"});
+  v.texts(s.devices, {"devices", "device profiles (TOML) to certify, relative to the case"});
 }
 
 template <class V>
 void describe(V& v, SimulateSection& s) {
   v.quantity(s.rate, Dimension::Frequency,
-             {"rate", "of the force loop", kOptional, {.low = 100, .high = 100000}});
-  v.quantity(s.mass, Dimension::Mass, {"mass", "of the simulated device", kOptional, kPositive});
-  v.quantity(s.damping, Dimension::Damping,
+             {"rate", "sampling rate of the force loop", kOptional, {.low = 100, .high = 100000}});
+  v.quantity(s.device.mass, Dimension::Mass,
+             {"mass", "mass of the simulated device", kOptional, kPositive});
+  v.quantity(s.device.damping, Dimension::Damping,
              {"damping", "viscous damping of the simulated device", kOptional, kNotNegative});
-  v.quantity(s.coulomb_friction, Dimension::Force,
+  v.quantity(s.device.coulomb_friction, Dimension::Force,
              {"coulomb_friction", "dry friction of the simulated device", kOptional, kNotNegative});
   v.quantity(
-      s.hand_stiffness, Dimension::Stiffness,
-      {"hand_stiffness", "spring between the hand's path and the device", kOptional, kPositive});
-  v.quantity(s.hand_damping, Dimension::Damping,
-             {"hand_damping", "damper beside that spring", kOptional, kNotNegative});
-  v.quantity(s.press_depth, Dimension::Length,
-             {"press_depth", "depth of the hand's path below the surface", kOptional, kPositive});
-  v.quantity(s.press_speed, Dimension::Speed,
-             {"press_speed", "of the approach, the press and the release", kOptional, kPositive});
+      s.device.hand_stiffness, Dimension::Stiffness,
+      {"hand_stiffness", "stiffness of the spring between the path of the hand and the device",
+       kOptional, kPositive});
+  v.quantity(s.device.hand_damping, Dimension::Damping,
+             {"hand_damping", "damping in parallel with that spring", kOptional, kNotNegative});
   v.quantity(
-      s.slide_length, Dimension::Length,
-      {"slide_length", "along the surface; shorter where the surface ends", kOptional, kPositive});
+      s.press_depth, Dimension::Length,
+      {"press_depth", "depth of the path of the hand below the surface", kOptional, kPositive});
+  v.quantity(s.press_speed, Dimension::Speed,
+             {"press_speed", "mean speed of approach, press and release", kOptional, kPositive});
+  v.quantity(s.slide_length, Dimension::Length,
+             {"slide_length", "length of the slide; shorter where the surface ends", kOptional,
+              kPositive});
   v.quantity(s.slide_speed, Dimension::Speed,
-             {"slide_speed", "along the surface", kOptional, kPositive});
+             {"slide_speed", "mean speed of the slide", kOptional, kPositive});
 }
 
 template <class V>
-void describe(V& v, SolverSection& s) {
-  v.text(
-      s.element,
-      {"element",
-       "tetrahedra of ten nodes with an element-constant pressure; with a continuous one, where "
-       "pressures are wanted near poisson = 0.5 (slower); or, to compare with other programs, of "
-       "displacements alone (too stiff near poisson = 0.5); tet4: of four nodes, for quick looks "
-       "at "
-       "a case, with forces too high by tens of percent"},
-      {"tet10-pressure", "tet10-nodal-pressure", "tet10-displacement", "tet4"});
-  v.flag(s.refine_under_tool,
+void describe_solver(V& v, fem::CampaignSettings& s) {
+  describe_choice(v, s.dilatation, {"element", "finite element, see [below](#elements)"},
+                  kElements);
+  v.flag(s.indentation.refine_under_tool,
          {"refine_under_tool",
-          "divide the elements around the tool in eight, for each site anew: for contacts smaller "
-          "than a facet"});
+          "divides the elements under the tool into eight at each site, for contacts smaller than "
+          "a facet"});
 }
 
 template <class V>
-void describe(V& v, GravitySection& s) {
+void describe_gravity(V& v, fem::Gravity& s) {
   v.point(s.acceleration, Dimension::Acceleration,
-          {"acceleration", "of gravity; all 0: the body has no weight"});
+          {"acceleration", "acceleration of gravity; all 0: no preload"});
   v.quantity(s.density, Dimension::Density,
-             {"density", "at rest, of every region", kOptional, kPositive});
+             {"density", "reference density of every region", kOptional, kPositive});
 }
 
 template <class V>
 void describe(V& v, OutputSection& s) {
-  v.text(
-      s.folder,
-      {"folder", "where artifacts go, relative to the current folder; empty means `out/<name>`"});
+  v.text(s.folder, {"folder",
+                    "folder of the artifacts, relative to the current folder; empty means "
+                    "`out/<name>`"});
 }
 
 template <class V>
 void describe(V& v, Case& c) {
-  v.text(c.name, {"name", "of the body; names the output; empty means the name of the case file"});
-  v.section("surface", c.surface, kRequired, "The outer skin of the body.");
-  v.sections("inclusion", c.inclusions, kOptional,
-             "A region of another material inside the body. Repeat for each.");
-  v.section("mesh", c.mesh, kOptional, "Resolution.");
-  v.sections("support", c.supports, kRequired, "Where the body is held. Repeat for each.");
-  v.sections("material", c.materials, kRequired, "One for each region.");
-  v.section("tool", c.tool, kOptional, "What presses.");
-  v.section("indentation", c.indentation, kOptional, "What is computed at each site.");
-  v.section("sampling", c.sampling, kOptional, "Where the tool is pressed.");
-  v.section("solver", c.solver, kOptional, "How the equilibria are computed.");
-  v.section("gravity", c.gravity, kOptional,
-            "The body comes to equilibrium under its weight before it is touched.");
-  v.section("fit", c.fit, kOptional, "From curves to responses.");
-  v.section("certify", c.certify, kOptional, "Passivity certificate.");
-  v.section("simulate", c.simulate, kOptional, "Scripted session of `palpate simulate`.");
-  v.section("output", c.output, kOptional, "Where results go.");
+  v.text(c.name,
+         {"name", "name of the body and of its output folder; empty means that of the case file"});
+  v.section("surface", kRequired, "Outer surface of the body.",
+            [&](auto& in) { describe_surface(in, c.mesh.surface); });
+  v.sections("inclusion", c.mesh.inclusions, kOptional,
+             "Region of another material inside the body. Repeat for each.",
+             [](auto& in, auto& s) { describe_inclusion(in, s); });
+  v.section("mesh", kOptional, "Resolution.", [&](auto& in) { describe_mesh(in, c.mesh); });
+  v.sections("support", c.supports, kRequired,
+             "Fixed nodes or an elastic foundation. Repeat for each.",
+             [](auto& in, auto& s) { describe_support(in, s); });
+  v.sections("material", c.materials, kRequired, "Law and constants, one table for each region.",
+             [](auto& in, auto& s) { describe(in, s); });
+  v.section("tool", kOptional, "Tool of the campaign.",
+            [&](auto& in) { describe_tool(in, c.campaign.indentation); });
+  v.section("indentation", kOptional, "Paths at each site.",
+            [&](auto& in) { describe_indentation(in, c.campaign.indentation); });
+  v.section("sampling", kOptional, "Choice of the sites.",
+            [&](auto& in) { describe(in, c.sampling); });
+  v.section("solver", kOptional, "Finite elements.",
+            [&](auto& in) { describe_solver(in, c.campaign); });
+  v.section("gravity", kOptional, "Preload: the body deforms under its weight before touch.",
+            [&](auto& in) { describe_gravity(in, c.campaign.gravity); });
+  v.section("fit", kOptional, "From raw curves to responses.",
+            [&](auto& in) { describe_fit(in, c.fit); });
+  v.section("certify", kOptional, "Passivity certificate.",
+            [&](auto& in) { describe(in, c.certify); });
+  v.section("simulate", kOptional, "Scripted session of `palpate simulate`.",
+            [&](auto& in) { describe(in, c.simulate); });
+  v.section("output", kOptional, "Where the artifacts go.",
+            [&](auto& in) { describe(in, c.output); });
 }
 
 }  // namespace palpate::app

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kDirections = "x,y,z,fx,fy,fz", kPlanes = "x,y,z,fx,fy,fz,sx,sy,sz";
 
-/// Without blanks and comment.
+/// The line without blanks and comment.
 std::string bare(std::string line) {
   line = line.substr(0, line.find('#'));
   std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
@@ -28,15 +28,15 @@ class FibreFile {
  public:
   explicit FibreFile(const std::filesystem::path& path) : path_(path.string()), stream_(path) {
     if (!stream_) {
-      throw Error(ErrorKind::Configuration, path_, "the file of fibres cannot be read",
-                  "check fibre_file and the rights");
+      throw Error(ErrorKind::Configuration, path_, "cannot read the fibre file",
+                  "check its path and permissions");
     }
   }
 
   std::vector<fem::FibreSample> read(double unit) {
     const std::string title = next();
     if (title != kDirections && title != kPlanes) {
-      fail(fmt::format("the columns are named '{}'", title),
+      fail(fmt::format("unknown columns '{}'", title),
            fmt::format("name them {} or {}", kDirections, kPlanes));
     }
     const std::size_t columns = title == kPlanes ? 9 : 6;
@@ -48,12 +48,12 @@ class FibreFile {
       check(sample, columns == 9);
       samples.push_back(sample);
     }
-    if (samples.empty()) fail("no point follows the names of the columns", "give at least one");
+    if (samples.empty()) fail("the file has no points", "give at least one");
     return samples;
   }
 
  private:
-  /// The next line that says something; empty at the end.
+  /// The next line with content; empty at the end.
   std::string next() {
     for (std::string line; std::getline(stream_, line);) {
       ++line_;
@@ -71,15 +71,15 @@ class FibreFile {
       double value = 0;
       const auto [rest, fault] = std::from_chars(at, end, value);
       if (fault != std::errc() || !std::isfinite(value) || (rest != end && *rest != ',')) {
-        fail(fmt::format("value {} is no finite number", values.size() + 1),
-             "write numbers with commas between them");
+        fail(fmt::format("value {} is not a finite number", values.size() + 1),
+             "write numbers separated by commas");
       }
       values.push_back(value);
       at = rest == end ? end : rest + 1;
     }
     if (values.size() != columns) {
-      fail(fmt::format("{} values where {} are named", values.size(), columns),
-           "give every column a value");
+      fail(fmt::format("{} values for {} columns", values.size(), columns),
+           "give a value for each column");
     }
     return values;
   }
@@ -88,7 +88,7 @@ class FibreFile {
     const double mean = norm(sample.mean), across = norm(sample.across);
     if (!(mean > 0) ||
         (has_plane && !(norm(cross(sample.mean, sample.across)) > 1e-6 * mean * across))) {
-      fail("the direction is zero, or parallel to the second one of its plane",
+      fail("the fibre direction is zero or parallel to the second direction of its plane",
            "give directions that span a plane");
     }
   }

@@ -5,22 +5,19 @@
 #include <string>
 
 #include "app/case/case.hpp"
-#include "fem/laws/law_table.hpp"
 
 namespace palpate::app {
 
-/// The law that a [[material]] table declares.
-fem::LawConstants law_of(const MaterialSection& material);
-
-/// The keys of a [[material]] table that declares a law without fibres, as TOML: law_of() of the
-/// parsed table is the same law, to the last digit.
+/// The keys of a [[material]] table that declares a law without fibres, as TOML: the parsed table
+/// has the same law, to the last digit.
 std::string material_keys(const fem::LawConstants& law);
 
-/// With the directions of the fibres that a file holds; `folder`: that of the case file.
-/// @throws Error(Configuration) as read_fibre_file.
-fem::LawConstants law_of(const MaterialSection& material, const std::filesystem::path& folder);
-
-/// Whether the second of these reads a file.
+/// Whether the law of the material has fibres whose directions come from a file.
 bool reads_fibre_file(const MaterialSection& material);
+
+/// The material with the fibre directions of its file, if it has one; `folder`: that of the case.
+/// @throws Error(Configuration) as read_fibre_file.
+fem::RegionMaterial with_sampled_fibres(const MaterialSection& material,
+                                        const std::filesystem::path& folder);
 
 }  // namespace palpate::app

@@ -10,7 +10,8 @@ namespace palpate::app {
 /// Number of insertions, deletions and substitutions from one word to the other [Levenshtein 1966].
 std::size_t edit_distance(std::string_view a, std::string_view b);
 
-/// The word of `known` with the smallest edit distance; the first of equals; "" when none is known.
+/// The word of `known` with the smallest edit distance, the first of several; "" when there is
+/// none.
 std::string_view nearest(std::string_view word, const std::vector<std::string_view>& known);
 
 }  // namespace palpate::app

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The resolved case: every key with the value in force, as TOML.
+// The resolved case: the value of every key, as TOML.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ std::string list(const T& items, Print print) {
 
 class Printer {
  public:
-  /// Print only these sections; null for all.
+  /// Prints these sections only; null: all.
   explicit Printer(const std::vector<std::string_view>* wanted)
       : wanted_(wanted), printing_(is_wanted("")) {}
 
@@ -70,21 +70,22 @@ class Printer {
     return value == wanted;
   }
 
-  template <class S>
-  void section(std::string_view name, S& s, Presence, std::string_view) {
+  template <class Body>
+  void section(std::string_view name, Presence, std::string_view, Body body) {
     if (!is_wanted(name)) return;
     printing_ = true;
     out_ += fmt::format("\n[{}]\n", name);
-    describe(*this, s);
+    body(*this);
   }
 
-  template <class S>
-  void sections(std::string_view name, std::vector<S>& items, Presence, std::string_view) {
+  template <class S, class Body>
+  void sections(std::string_view name, std::vector<S>& items, Presence, std::string_view,
+                Body body) {
     if (!is_wanted(name)) return;
     printing_ = true;
     for (S& s : items) {
       out_ += fmt::format("\n[[{}]]\n", name);
-      describe(*this, s);
+      body(*this, s);
     }
   }
 
@@ -106,12 +107,16 @@ class Printer {
 
 std::string print(const Case& c, const std::vector<std::string_view>* wanted) {
   Printer printer(wanted);
-  Case copy = c;  // describe() is shared with the reader and takes what it may write
+  Case copy = c;  // describe() takes references that a reader writes to
   describe(printer, copy);
   return printer.result();
 }
 
 }  // namespace
+
+bool operator==(const Case& a, const Case& b) {
+  return resolved_toml(a) == resolved_toml(b);
+}
 
 std::string resolved_toml(const Case& c) {
   return print(c, nullptr);
@@ -119,8 +124,7 @@ std::string resolved_toml(const Case& c) {
 
 std::string material_keys(const fem::LawConstants& law) {
   MaterialSection material;
-  material.law = law.law;
-  material.constants = law.values;
+  material.law = law;
   Printer printer(nullptr);
   describe(printer, material);
   return printer.result();

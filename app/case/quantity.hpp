@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Quantities of the case file: text with a unit outside, SI inside.
+// Quantities of TOML files: text with a unit in the file, SI in memory.
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ struct ParsedQuantity {
   QuantityFault fault = QuantityFault::None;
 };
 
-/// "10 mm" -> 0.01. The number is a plain decimal; blanks around the parts do not matter.
+/// "10 mm" -> 0.01. The number is a decimal; blanks around number and unit are ignored.
 ParsedQuantity parse_quantity(std::string_view text, Dimension dimension);
 
-/// A text that parse_quantity turns back into exactly `value`: in the preferred unit when that is
-/// exact, in SI otherwise.
+/// Text from which parse_quantity reads exactly `value`: in the preferred unit when that is exact,
+/// otherwise in SI.
 std::string print_quantity(double value, Dimension dimension);
 
 /// Shortest text that reads back as exactly `value`; always a TOML float (with a point or

@@ -8,7 +8,7 @@
 
 namespace palpate::app {
 
-/// "> 0 mm", "0 .. 0.5 (0.5 excluded)", "any": for messages and for the reference page.
+/// "> 0 mm", "0 .. 0.5, upper end excluded", "any finite value": for messages and the reference.
 std::string range_text(const Range& range, std::optional<Dimension> dimension = std::nullopt);
 
 }  // namespace palpate::app

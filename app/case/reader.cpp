@@ -17,7 +17,7 @@
 namespace palpate::app {
 namespace {
 
-/// The value as the user wrote it, on one line and not too long.
+/// The value as written, on one line and shortened.
 std::string shown(const toml::node& node) {
   std::ostringstream stream;
   stream << toml::node_view<const toml::node>(node);
@@ -42,8 +42,8 @@ toml::table parse_toml(std::string_view text, const std::string& file_name) {
     std::string problem(error.description());
     std::replace(problem.begin(), problem.end(), '\n', ' ');
     refuse(fmt::format("{}:{}", file_name, error.source().begin.line),
-           fmt::format("this is not TOML: {}", problem),
-           "correct the line; the format is described at toml.io");
+           fmt::format("invalid TOML: {}", problem),
+           "correct the line; see toml.io for the syntax");
   }
 }
 
@@ -52,7 +52,7 @@ toml::table read_toml(const std::filesystem::path& path, std::string_view what) 
   std::ostringstream text;
   const bool empty = stream && stream.peek() == std::ifstream::traits_type::eof();
   if (stream.bad() || (!empty && !(text << stream.rdbuf()))) {
-    refuse(path.string(), fmt::format("{} cannot be read", what), "check the path and the rights");
+    refuse(path.string(), fmt::format("cannot read {}", what), "check its path and permissions");
   }
   return parse_toml(text.str(), path.string());
 }
@@ -81,7 +81,7 @@ const toml::node* TableReader::find(const Key& key) {
   return node;
 }
 
-/// A missing key is reported before an unknown one, unless it was meant by the unknown one.
+/// Reports a missing key before an unknown one, unless the unknown key is a misspelling of it.
 void TableReader::finish() const {
   for (const auto& [name, node] : table_) {
     if (std::find(known_.begin(), known_.end(), name.str()) != known_.end()) continue;
@@ -94,19 +94,20 @@ void TableReader::finish() const {
   if (missing_.empty()) return;
   const Key& key = missing_.front();
   refuse(sources_.where(table_), fmt::format("key '{}' is missing", dotted(key)),
-         fmt::format("add it ({})", key.about));
+         fmt::format("add it: {}", key.about));
 }
 
 const toml::table& TableReader::as_table(const toml::node& node, const std::string& title) const {
   if (const toml::table* table = node.as_table()) return *table;
   refuse(sources_.where(node), fmt::format("{} must be a table, found {}", title, shown(node)),
-         fmt::format("write {} on a line of its own, its keys below", title));
+         fmt::format("write {} on a line of its own and its keys below it", title));
 }
 
 const toml::array& TableReader::as_array(const toml::node& node, const std::string& title) const {
   if (const toml::array* array = node.as_array()) return *array;
-  refuse(sources_.where(node), fmt::format("{} is a list of tables, found one value", title),
-         fmt::format("write {} with two brackets", title));
+  refuse(sources_.where(node),
+         fmt::format("{} must be a list of tables, found a single value", title),
+         fmt::format("write {} with double brackets", title));
 }
 
 void TableReader::wrong_type(const toml::node& node, const Key& key, std::string_view wanted,
@@ -118,9 +119,9 @@ void TableReader::wrong_type(const toml::node& node, const Key& key, std::string
 
 void TableReader::check_range(double value, const std::string& value_text, const Key& key,
                               const toml::node& node, const std::string& range) const {
-  if (std::isfinite(value) && key.range.holds(value)) return;
+  if (std::isfinite(value) && key.range.contains(value)) return;
   refuse(sources_.where(node), fmt::format("{} = {} is out of range", dotted(key), value_text),
-         fmt::format("the range is {}", range));
+         fmt::format("give a value in the range {}", range));
 }
 
 void TableReader::text(std::string& value, const Key& key, const Choices& choices) {
@@ -129,10 +130,10 @@ void TableReader::text(std::string& value, const Key& key, const Choices& choice
   const std::string example =
       fmt::format("{} = \"{}\"", key.name, choices.empty() ? "..." : choices.front());
   const auto found = node->value_exact<std::string>();
-  if (!found) wrong_type(*node, key, "a text", example);
+  if (!found) wrong_type(*node, key, "a string", example);
   value = *found;
   if (value.empty() && key.presence == kRequired) {
-    wrong_type(*node, key, "a text that is not empty", example);
+    wrong_type(*node, key, "a string that is not empty", example);
   }
   if (choices.empty() || std::find(choices.begin(), choices.end(), value) != choices.end()) return;
   std::string list;
@@ -148,11 +149,11 @@ void TableReader::texts(std::vector<std::string>& values, const Key& key) {
   const toml::node* node = find(key);
   if (node == nullptr) return;
   const std::string example = fmt::format("{} = [\"...\"]", key.name);
-  if (!node->is_array()) wrong_type(*node, key, "a list of texts", example);
+  if (!node->is_array()) wrong_type(*node, key, "a list of strings", example);
   values.clear();
   for (const toml::node& item : *node->as_array()) {
     const auto found = item.value_exact<std::string>();
-    if (!found) wrong_type(item, key, "a list of texts", example);
+    if (!found) wrong_type(item, key, "a list of strings", example);
     values.push_back(*found);
   }
 }
@@ -169,7 +170,7 @@ void TableReader::integer(int& value, const Key& key) {
   const toml::node* node = find(key);
   if (node == nullptr) return;
   const auto found = node->value_exact<std::int64_t>();
-  if (!found) wrong_type(*node, key, "a whole number", fmt::format("{} = 10", key.name));
+  if (!found) wrong_type(*node, key, "an integer", fmt::format("{} = 10", key.name));
   check_range(static_cast<double>(*found), std::to_string(*found), key, *node,
               range_text(key.range));
   value = static_cast<int>(*found);
@@ -178,7 +179,7 @@ void TableReader::integer(int& value, const Key& key) {
 double TableReader::number_of(const toml::node& node, const Key& key) const {
   const auto found = node.value<double>();
   if (!node.is_number() || !found) {
-    wrong_type(node, key, "a bare number", fmt::format("{} = 0.5", key.name));
+    wrong_type(node, key, "a number without unit", fmt::format("{} = 0.5", key.name));
   }
   check_range(*found, shown(node), key, node, range_text(key.range));
   return *found;
@@ -229,7 +230,7 @@ const toml::array& TableReader::three(const toml::node& node, const Key& key,
                                       std::string_view example) const {
   const toml::array* array = node.as_array();
   if (array == nullptr || array->size() != 3) {
-    wrong_type(node, key, "a list of three", fmt::format("{} = {}", key.name, example));
+    wrong_type(node, key, "a list of three values", fmt::format("{} = {}", key.name, example));
   }
   return *array;
 }

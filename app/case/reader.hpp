@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The visitor that fills a case from TOML. Internal to this folder.
+// The visitor that reads settings from TOML.
 #pragma once
 
 #include <fmt/format.h>
@@ -16,11 +16,11 @@
 
 namespace palpate::app {
 
-/// Parse a TOML file. `what` names it in messages. @throws Error(Configuration) with the line.
+/// Parses a TOML file. `what` names it in messages. @throws Error(Configuration) with the line.
 toml::table read_toml(const std::filesystem::path& path, std::string_view what);
 toml::table parse_toml(std::string_view text, const std::string& file_name);
 
-/// Where each key was found, so that later checks can point at a line.
+/// The line of each key, for the messages of later checks.
 class SourceMap {
  public:
   explicit SourceMap(std::string file) : file_(std::move(file)) {}
@@ -29,7 +29,7 @@ class SourceMap {
     lines_[key] = node.source().begin.line;
   }
   bool has(const std::string& key) const { return lines_.contains(key); }
-  /// "file:line" of a dotted key, or of the file when the key was not written.
+  /// "file:line" of a dotted key; the file alone when the key is absent.
   std::string where(const std::string& key) const;
   std::string where(const toml::node& node) const;
 
@@ -38,10 +38,10 @@ class SourceMap {
   std::map<std::string, std::uint32_t> lines_;
 };
 
-/// Reads one table; finish() rejects what was not asked for and what is missing.
+/// Reads one table. finish() rejects unknown keys and missing ones.
 class TableReader {
  public:
-  /// title: how the user knows the table ("[mesh]"); prefix: of dotted keys ("mesh.").
+  /// title: name of the table in messages ("[mesh]"); prefix: of its dotted keys ("mesh.").
   TableReader(const toml::table& table, std::string title, std::string prefix, SourceMap& sources);
 
   void text(std::string& value, const Key& key, const Choices& choices = {});
@@ -60,32 +60,44 @@ class TableReader {
 
   template <class S>
   void section(std::string_view name, S& s, Presence presence, std::string_view about) {
+    section(name, presence, about, [&](TableReader& inner) { describe(inner, s); });
+  }
+  /// The keys are those that `body` describes to a visitor.
+  template <class Body>
+  void section(std::string_view name, Presence presence, std::string_view about, Body body) {
     const toml::node* node = find({name, about, presence});
     if (node == nullptr) return;
     const std::string title = fmt::format("[{}]", name);
-    read(as_table(*node, title), title, fmt::format("{}.", name), s);
+    read(as_table(*node, title), title, fmt::format("{}.", name), body);
   }
 
   template <class S>
   void sections(std::string_view name, std::vector<S>& list, Presence presence,
                 std::string_view about) {
+    sections(name, list, presence, about, [](TableReader& inner, S& s) { describe(inner, s); });
+  }
+  template <class S, class Body>
+  void sections(std::string_view name, std::vector<S>& list, Presence presence,
+                std::string_view about, Body body) {
     const toml::node* node = find({name, about, presence});
     if (node == nullptr) return;
     const std::string title = fmt::format("[[{}]]", name);
     for (const toml::node& item : as_array(*node, title)) {
       const std::string prefix = fmt::format("{}[{}].", name, list.size());
       sources_.remember(prefix, item);
-      read(as_table(item, title), title, prefix, list.emplace_back());
+      S& s = list.emplace_back();
+      read(as_table(item, title), title, prefix, [&](TableReader& inner) { body(inner, s); });
     }
   }
 
   void finish() const;
 
  private:
-  template <class S>
-  void read(const toml::table& table, const std::string& title, const std::string& prefix, S& s) {
+  template <class Body>
+  void read(const toml::table& table, const std::string& title, const std::string& prefix,
+            Body body) {
     TableReader inner(table, title, prefix, sources_);
-    describe(inner, s);
+    body(inner);
     inner.finish();
   }
 

@@ -2,6 +2,9 @@
 // The reference tables of docs/cases.md, from the same description as the reader.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 #include "app/case/describe.hpp"
 #include "app/case/range_text.hpp"
 
@@ -15,13 +18,20 @@ class Documenter {
     for (const std::string_view choice : choices) {
       allowed += fmt::format("{}`\"{}\"`", allowed.empty() ? "" : ", ", choice);
     }
-    row(key, choices.empty() ? "text" : allowed,
+    if (choices.size() > kMostInACell) {
+      below_ += fmt::format("\nValues of `{}`:\n\n", key.name);
+      for (const std::string_view choice : choices) below_ += fmt::format("- `\"{}\"`\n", choice);
+      allowed = "see below";
+    }
+    row(key, choices.empty() ? "string" : allowed,
         value.empty() ? "empty" : fmt::format("`\"{}\"`", value));
   }
-  void texts(const std::vector<std::string>&, const Key& key) { row(key, "list of texts", "`[]`"); }
+  void texts(const std::vector<std::string>&, const Key& key) {
+    row(key, "list of strings", "`[]`");
+  }
   void flag(bool value, const Key& key) { row(key, "`true`, `false`", fmt::format("`{}`", value)); }
   void integer(int value, const Key& key) {
-    row(key, fmt::format("whole number, {}", range_text(key.range)), fmt::format("`{}`", value));
+    row(key, fmt::format("integer, {}", range_text(key.range)), fmt::format("`{}`", value));
   }
   void number(double value, const Key& key) {
     row(key, fmt::format("number, {}", range_text(key.range)),
@@ -31,41 +41,46 @@ class Documenter {
     row(key, allowed(dimension, key), fmt::format("`\"{}\"`", print_quantity(value, dimension)));
   }
   void quantities(const std::vector<double>& values, Dimension dimension, const Key& key) {
-    std::string shown;
-    for (const double value : values) {
-      shown += fmt::format("{}\"{}\"", shown.empty() ? "" : ", ", print_quantity(value, dimension));
-    }
-    row(key, fmt::format("list, each: {}", allowed(dimension, key)), fmt::format("`[{}]`", shown));
+    row(key, fmt::format("list, each: {}", allowed(dimension, key)),
+        fmt::format("`[{}]`", quoted(values, dimension)));
   }
-  void point(const Vec3&, Dimension dimension, const Key& key) {
-    row(key, fmt::format("list of three, each: {}", allowed(dimension, key)), "");
+  void point(const Vec3& value, Dimension dimension, const Key& key) {
+    row(key, fmt::format("three values, each: {}", allowed(dimension, key)),
+        fmt::format("`[{}]`", quoted(value, dimension)));
   }
-  void direction(const Vec3&, const Key& key) { row(key, "list of three numbers, not all 0", ""); }
+  void direction(const Vec3&, const Key& key) { row(key, "three numbers, not all 0", ""); }
 
-  /// Every alternative is documented, with its condition.
+  /// Documents every alternative, with its condition.
   bool when(std::string_view key, const std::string&, std::string_view wanted) {
     condition_ = fmt::format(" (`{} = \"{}\"`)", key, wanted);
     return true;
   }
 
-  template <class S>
-  void section(std::string_view name, S& s, Presence presence, std::string_view about) {
+  template <class Body>
+  void section(std::string_view name, Presence presence, std::string_view about, Body body) {
     open(fmt::format("[{}]", name), presence, about);
-    describe(*this, s);
+    body(*this);
   }
-  template <class S>
-  void sections(std::string_view name, std::vector<S>&, Presence presence, std::string_view about) {
+  template <class S, class Body>
+  void sections(std::string_view name, std::vector<S>&, Presence presence, std::string_view about,
+                Body body) {
     open(fmt::format("[[{}]]", name), presence, about);
     S defaults;
-    describe(*this, defaults);
+    body(*this, defaults);
   }
 
-  const std::string& result() const { return out_; }
+  std::string result() const {
+    std::string units = "\n### Units\n\n| dimension | units |\n|---|---|\n";
+    for (const Dimension dimension : used_)
+      units += fmt::format("| {} | {} |\n", dimension_name(dimension), unit_list(dimension));
+    return out_ + below_ + units;
+  }
   void table_head() { out_ += "| key | meaning | value | default |\n|---|---|---|---|\n"; }
 
  private:
   void open(const std::string& title, Presence presence, std::string_view about) {
     condition_.clear();
+    out_ += std::exchange(below_, {});
     out_ += fmt::format("\n### `{}`{}\n\n{}\n\n", title, presence == kRequired ? ", required" : "",
                         about);
     table_head();
@@ -74,13 +89,24 @@ class Documenter {
     out_ += fmt::format("| `{}` | {}{} | {} | {} |\n", key.name, key.about, condition_, values,
                         key.presence == kRequired ? "required" : by_default);
   }
-  static std::string allowed(Dimension dimension, const Key& key) {
-    return fmt::format("{} ({}), {}", dimension_name(dimension), unit_list(dimension),
-                       range_text(key.range, dimension));
+  template <class Values>
+  static std::string quoted(const Values& values, Dimension dimension) {
+    std::string list;
+    for (const double value : values)
+      list += fmt::format("{}\"{}\"", list.empty() ? "" : ", ", print_quantity(value, dimension));
+    return list;
   }
+  std::string allowed(Dimension dimension, const Key& key) {
+    if (std::find(used_.begin(), used_.end(), dimension) == used_.end()) used_.push_back(dimension);
+    return fmt::format("{}, {}", dimension_name(dimension), range_text(key.range, dimension));
+  }
+
+  static constexpr std::size_t kMostInACell = 5;
 
   std::string out_;
   std::string condition_;
+  std::string below_;  ///< what a cell is too small for, printed below the table
+  std::vector<Dimension> used_;
 };
 
 }  // namespace

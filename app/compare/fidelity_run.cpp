@@ -9,6 +9,7 @@
 
 #include "app/compare/fidelity_tables.hpp"
 #include "app/console.hpp"
+#include "app/pipeline/events.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
 #include "fitting/fidelity/skin.hpp"
@@ -87,9 +88,9 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
       {direct_key(space, settings), static_cast<std::int64_t>(settings.points.size())});
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) { journal.append(site); };
-  ProgressDisplay display("direct");
+  ProgressDisplay display("direct", standard_output());
   settings.progress = [&](const fem::CampaignProgress& p) {
-    display.show(p.done, p.failed, p.running, p.total, p.known);
+    display.show({p.done, p.failed, p.running, p.total, p.known});
   };
   fem::CampaignReport report;
   Curves direct = fem::run_campaign(body, settings, report);

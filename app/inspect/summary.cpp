@@ -21,11 +21,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// JSON has neither infinity nor NaN: such a value is null and says why.
+/// JSON has neither infinity nor NaN: such a value is null, with the reason.
 Json with_unit(double value, const char* unit) {
   if (std::isnan(value)) return {{"value", nullptr}, {"unit", unit}, {"why", "unknown"}};
   if (std::isinf(value)) {
-    return {{"value", nullptr}, {"unit", unit}, {"why", "not certified: no bound"}};
+    return {{"value", nullptr}, {"unit", unit}, {"why", "no bound"}};
   }
   return {{"value", value}, {"unit", unit}};
 }
@@ -71,8 +71,8 @@ Json summary_of(const Body& body) {
           {"nodes", body.nodes.size()},
           {"tetrahedra", body.tetrahedra.size()},
           {"boundary_facets", body.boundary.size()},
-          {"held_nodes", body.fixed_nodes.size()},
-          {"facets_on_springs", body.foundation.size()},
+          {"fixed_nodes", body.fixed_nodes.size()},
+          {"foundation_facets", body.foundation.size()},
           {"response_vertices", body.response.node.size()},
           {"response_triangles", body.response.triangles.size()},
           {"sites", std::count(is_site.begin(), is_site.end(), 1)},
@@ -91,8 +91,8 @@ Json failures_of(const Curves& curves) {
   return failures;
 }
 
-/// The largest value and the site where it stands; unknown values do not count.
-struct Worst {
+/// The largest value and its site; unknown values do not count.
+struct Largest {
   double value = std::numeric_limits<double>::quiet_NaN();
   std::int32_t vertex = -1;
 
@@ -103,29 +103,27 @@ struct Worst {
   }
 };
 
-/// How well the contact was kept: how deep the surface stands in the tool, which part of the energy
-/// is in the springs that hold it out (no energy there, no pressure across a gap), and how hard
-/// stuck points pull where a surface would let go.
+/// Quality of the contact: penetration, penalty energy over strain energy, and the tensile part of
+/// a no-slip contact over its force.
 Json contact_of(const Curves& curves) {
-  Worst penetration, springs, pull;
+  Largest penetration, contact_energy, tension;
   for (const SiteCurves& site : curves.sites)
     for (const CurvePath& path : site.paths)
       for (const CurveSample& sample : path.samples) {
         penetration.take(sample.penetration, site.vertex);
         if (sample.strain_energy > 0)
-          springs.take(sample.contact_energy / sample.strain_energy, site.vertex);
-        if (norm(sample.force) > 0) pull.take(sample.tension / norm(sample.force), site.vertex);
+          contact_energy.take(sample.contact_energy / sample.strain_energy, site.vertex);
+        if (norm(sample.force) > 0) tension.take(sample.tension / norm(sample.force), site.vertex);
       }
-  return {{"largest_penetration", with_unit(penetration.value, "m")},
-          {"at_site", penetration.vertex},
-          {"largest_energy_in_springs_over_stored", springs.value},
-          {"at_site_of_the_springs", springs.vertex},
-          {"largest_pull_over_force", pull.value},
-          {"at_site_of_the_pull", pull.vertex}};
+  return {{"max_penetration", with_unit(penetration.value, "m")},
+          {"site_of_max_penetration", penetration.vertex},
+          {"max_contact_energy_over_strain_energy", contact_energy.value},
+          {"site_of_max_contact_energy", contact_energy.vertex},
+          {"max_tension_over_force", tension.value},
+          {"site_of_max_tension", tension.vertex}};
 }
 
-/// The work of the tool over what is stored at the end of a path, less 1; NaN where one of them is
-/// not known.
+/// |work of the tool / stored energy - 1| at the end of a path; NaN where one of them is unknown.
 double imbalance_of(const CurvePath& path) {
   if (path.samples.empty()) return std::numeric_limits<double>::quiet_NaN();
   const CurveSample& end = path.samples.back();
@@ -134,11 +132,11 @@ double imbalance_of(const CurvePath& path) {
                     : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// How well work and stored energy balance: what they differ by is what the solver leaves and the
-/// integration of the force over the increments of the case.
+/// Balance of work and stored energy: they differ by the residual of the solver and by the
+/// integration of the force over the increments.
 Json energy_of(const Curves& curves) {
   constexpr double kHalfAPercent = 0.005;
-  Worst imbalance;
+  Largest imbalance;
   int paths = 0, beyond = 0;
   for (const SiteCurves& site : curves.sites)
     for (const CurvePath& path : site.paths) {
@@ -147,15 +145,15 @@ Json energy_of(const Curves& curves) {
       paths += std::isnan(here) ? 0 : 1;
       beyond += here > kHalfAPercent ? 1 : 0;
     }
-  return {{"largest_imbalance", imbalance.value},
-          {"at_site", imbalance.vertex},
-          {"paths_with_a_balance", paths},
-          {"paths_out_by_more_than_half_a_percent", beyond}};
+  return {{"max_imbalance", imbalance.value},
+          {"site_of_max_imbalance", imbalance.vertex},
+          {"paths_with_balance", paths},
+          {"paths_off_by_more_than_half_a_percent", beyond}};
 }
 
 Json summary_of(const Curves& curves) {
   double cpu = 0, force = 0;
-  double jacobian = std::numeric_limits<double>::quiet_NaN();  // unknown where all is measured
+  double jacobian = std::numeric_limits<double>::quiet_NaN();  // unknown for measured curves
   std::size_t samples = 0;
   for (const SiteCurves& site : curves.sites) {
     cpu += site.cpu_seconds;
@@ -176,8 +174,8 @@ Json summary_of(const Curves& curves) {
           {"sites", curves.sites.size()},
           {"sites_not_complete", failures.size()},
           {"samples", samples},
-          {"largest_force", with_unit(force, "N")},
-          {"smallest_jacobian", jacobian},
+          {"max_force", with_unit(force, "N")},
+          {"min_jacobian", jacobian},
           {"contact", contact_of(curves)},
           {"energy", energy_of(curves)},
           {"cpu_time", with_unit(cpu, "s")},
@@ -186,7 +184,7 @@ Json summary_of(const Curves& curves) {
 }
 
 Json summary_of(const Certificate& certificate) {
-  if (certificate.triangles.empty()) return "none: run `palpate certify`";
+  if (certificate.triangles.empty()) return "not yet certified: run `palpate certify`";
   Json devices = Json::array();
   for (const DeviceCertificate& d : certificate.devices) {
     devices.push_back({{"device", d.device},
@@ -203,11 +201,11 @@ Json summary_of(const Certificate& certificate) {
           {"L_stick", with_unit(certificate.stick, "N/m")},
           {"L_slip", with_unit(certificate.slip, "N/m")},
           {"L_min", with_unit(certificate.min_lipschitz_bound, "N/m")},
-          {"lipschitz_bound", with_unit(enforced_lipschitz_bound(certificate), "N/m")},
+          {"enforced_bound", with_unit(enforced_lipschitz_bound(certificate), "N/m")},
           {"worst_triangle", certificate.worst_triangle},
           {"limited_by", certificate.limited_by},
           {"basis", certificate.basis},
-          {"triangles_where_sliding_needs_no_correction", passive},
+          {"triangles_with_passive_sliding", passive},
           {"devices", devices}};
 }
 
@@ -231,8 +229,8 @@ Json summary_of(const Library& library) {
           {"responses_interpolated", interpolated},
           {"holes", holes},
           {"knots", knots},
-          {"largest_normal_error", with_unit(normal_error, "N")},
-          {"largest_lateral_error", with_unit(lateral_error, "N")},
+          {"max_normal_error", with_unit(normal_error, "N")},
+          {"max_lateral_error", with_unit(lateral_error, "N")},
           {"bounding_box", box_of(library.positions)},
           {"certificate", summary_of(library.certificate)}};
 }
@@ -256,10 +254,10 @@ Json summary_of(RecordingReader& reader) {
           {"friction", recording.friction},
           {"steps", reader.steps()},
           {"duration", with_unit(static_cast<double>(last.time_ns) * 1e-9, "s")},
-          {"deepest", with_unit(depth, "m")},
-          {"largest_force", with_unit(force, "N")},
+          {"max_depth", with_unit(depth, "m")},
+          {"max_force", with_unit(force, "N")},
           {"absorbed_energy", with_unit(last.absorbed, "J")},
-          {"slowest_force_step", with_unit(static_cast<double>(slowest) * 1e-9, "s")}};
+          {"longest_force_step", with_unit(static_cast<double>(slowest) * 1e-9, "s")}};
 }
 
 Json provenance_of(const Provenance& provenance) {
@@ -286,7 +284,7 @@ Json complete(Json head, const Artifact& artifact) {
   return head;
 }
 
-/// A campaign under way, or one that was interrupted.
+/// A running or interrupted campaign.
 Json summary_of(const JournalContents& journal) {
   std::int64_t not_complete = 0;
   double cpu = 0;
@@ -298,22 +296,22 @@ Json summary_of(const JournalContents& journal) {
           {"sites_done", journal.sites.size()},
           {"sites_not_complete", not_complete},
           {"cpu_time", with_unit(cpu, "s")},
-          {"broken_bytes_at_the_end", journal.broken_bytes},
+          {"incomplete_bytes_at_end", journal.broken_bytes},
           {"key", journal.heading.key}};
 }
 
-/// A session under way, or one that was cut off.
+/// A running or interrupted session.
 Json summary_of(const SessionSummary& session) {
   return {{"device", session.heading.device},
           {"library_sha256", session.heading.library_sha256},
           {"rate", with_unit(session.heading.rate, "Hz")},
           {"steps", session.steps},
           {"duration", with_unit(static_cast<double>(session.last_time_ns) * 1e-9, "s")},
-          {"broken_bytes_at_the_end", session.broken_bytes}};
+          {"incomplete_bytes_at_end", session.broken_bytes}};
 }
 
 std::string artifact_kind(const std::filesystem::path& file) {
-  const hdf5::Reader reader(file, "give an artifact made by palpate");
+  const hdf5::Reader reader(file, "give an artifact of palpate");
   return reader.text("/", "artifact");
 }
 
@@ -353,7 +351,7 @@ void print(const Json& object, const std::string& indent, std::string& out) {
     const bool is_tree = value.is_object() && !is_quantity(value);
     if (!is_tree && !holds_objects(value)) {
       const std::string text = scalar_text(value);
-      if (text.find('\n') != std::string::npos) continue;  // a whole case: see --json
+      if (text.find('\n') != std::string::npos) continue;  // a resolved case: see --json
       out.append(indent).append(label).append(": ").append(text).append("\n");
       continue;
     }

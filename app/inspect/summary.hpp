@@ -7,13 +7,13 @@
 
 namespace palpate::app {
 
-/// What an artifact holds, whatever its kind, as a tree: numbers with a unit are
-/// {"value": number, "unit": text}, or {"value": null, "unit": text, "why": text} where there is no
-/// such number; the provenance is complete. The whole file is read and checked.
-/// @throws Error(Configuration) when the file is no artifact of palpate or is damaged.
+/// Contents of an artifact of any kind, as a tree. A number with a unit is {"value": number,
+/// "unit": text}, or {"value": null, "unit": text, "why": text} when it is not finite. The
+/// provenance is complete. Reads and checks the whole file.
+/// @throws Error(Configuration) when the file is not an artifact of palpate or is damaged.
 nlohmann::ordered_json summarize_artifact(const std::filesystem::path& file);
 
-/// The same for a reader: one line a value, indented, long texts of the provenance left out.
+/// The same as text: one line for each value, indented, without the resolved cases.
 std::string summary_text(const nlohmann::ordered_json& summary);
 
 }  // namespace palpate::app

@@ -60,7 +60,7 @@ class HoldOut {
   HoldOut(const Workspace& space, const Body& body, const Library& library,
           fem::FactorCache& factors, fem::CampaignSettings settings, const std::string& key)
       : space_(space) {
-    points_ = fidelity::draw_points(library, space.c.sampling.hold_out, 0, kSeed);
+    points_ = fidelity::draw_points(library, space.c.sampling.hold_out_points, 0, kSeed);
     fidelity::find_skin(body, points_);
     settings.sites.clear();
     for (const fidelity::HoldOutPoint& p : points_)
@@ -134,10 +134,10 @@ std::vector<std::int32_t> sites_to_add(const Workspace& space, const Body& body,
                                        const std::vector<std::int32_t>& computed,
                                        const Library& library) {
   const SamplingSection& sampling = space.c.sampling;
-  const auto most_sites = static_cast<std::size_t>(sampling.most_sites);
-  if (computed.size() >= most_sites) return {};
+  const auto max_sites = static_cast<std::size_t>(sampling.max_sites);
+  if (computed.size() >= max_sites) return {};
   const std::size_t fewest = std::max(kMinAdded, computed.size() / kGrowth);
-  const std::size_t most = std::min(2 * fewest, most_sites - computed.size());
+  const std::size_t most = std::min(2 * fewest, max_sites - computed.size());
   std::vector<std::int32_t> sites;
   for (double part = 1; part >= kMinTarget && sites.size() < std::min(fewest, most); part /= 2)
     sites = fitting::next_sites(body, computed, library, part * sampling.tolerance, most);
@@ -154,7 +154,7 @@ std::vector<std::pair<std::string, std::string>> facts_of(const SamplingRound& l
   return {{"sampling", "adaptive"},
           {"sampling_rounds", std::to_string(last.number)},
           {"sites_computed", fmt::format("{} of {}", last.sites, last.of_sites)},
-          {"hold_out_points", std::to_string(sampling.hold_out)},
+          {"hold_out_points", std::to_string(sampling.hold_out_points)},
           {"hold_out_points_failed", std::to_string(last.points_failed)},
           {"hold_out_states", std::to_string(last.along.states)},
           {"hold_out_tolerance", fmt::format("{:.6g}", sampling.tolerance)},
@@ -179,7 +179,7 @@ std::optional<SamplingEnd> end_of(const std::vector<SamplingRound>& rounds,
   if (last.along.states > 0 && last.along.p95 <= sampling.tolerance)
     return SamplingEnd::ToleranceMet;
   if (last.sites == last.of_sites) return SamplingEnd::AllSites;
-  if (last.sites >= static_cast<std::size_t>(sampling.most_sites)) return SamplingEnd::MostSites;
+  if (last.sites >= static_cast<std::size_t>(sampling.max_sites)) return SamplingEnd::MostSites;
   if (more.empty() || no_longer_helps(rounds)) return SamplingEnd::NoLongerHelps;
   return std::nullopt;
 }
@@ -195,7 +195,7 @@ std::string words(SamplingEnd end) {
     case SamplingEnd::AllSites:
       return "all sites are computed; a smaller mesh.patch_spacing gives more";
     case SamplingEnd::MostSites:
-      return "sampling.most_sites is reached";
+      return "sampling.max_sites is reached";
   }
   return {};
 }
@@ -209,7 +209,7 @@ AdaptiveCampaign sample_adaptively(const Workspace& space, const Body& body,
   AdaptiveCampaign result;
   std::optional<HoldOut> hold_out;
   std::vector<SamplingRound> rounds;
-  settings.sites = fitting::spread_sites(body, sampling.start_spacing);
+  settings.sites = fitting::spread_sites(body, sampling.initial_spacing);
   const auto start = std::chrono::steady_clock::now();
   fem::FactorCache factors;
   for (bool open = true; open;) {

@@ -2,29 +2,17 @@
 // Adaptive sampling: sites are added until the forces at hold-out points are within the tolerance.
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "app/pipeline/events.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "fem/campaign/campaign.hpp"
-#include "fitting/fidelity/fidelity.hpp"
 #include "format/body.hpp"
 
 namespace palpate::app {
-
-/// State of the sampling after a round.
-struct SamplingRound {
-  int number = 0;
-  std::size_t sites = 0, of_sites = 0;  ///< computed sites, and all sites of the body
-  double leave_one_out = 0;             ///< 95th percentile of the relative leave-one-out errors
-  /// Relative errors of the forces of normal presses at the hold-out points: of the component along
-  /// the press, which responses represent, and of the vector.
-  fidelity::ErrorRow along, whole;
-  std::size_t points_failed = 0;  ///< hold-out points whose direct solution is not complete
-};
 
 enum class SamplingEnd { ToleranceMet, NoLongerHelps, AllSites, MostSites };
 
@@ -38,7 +26,7 @@ struct AdaptiveCampaign {
   SamplingEnd end = SamplingEnd::AllSites;
 };
 
-/// Computes sites `[sampling] start_spacing` apart, then adds in each round the sites of the
+/// Computes sites `[sampling] initial_spacing` apart, then adds in each round the sites of the
 /// largest expected interpolation error (fitting::next_sites), at most half of the present number.
 /// After each round the library of the case is rendered at random hold-out points of the surface
 /// and compared with direct solutions there. Sampling ends when the 95th-percentile error along the

@@ -21,7 +21,7 @@ std::vector<std::int32_t> sites_of_shard(const Body& body, const Shard& shard) {
     throw Error(
         ErrorKind::Configuration, "--shard",
         std::to_string(shard.count) + " shards for " + std::to_string(all.size()) + " sites",
-        "use at most one shard a site");
+        "use at most as many shards as sites");
   std::vector<std::int32_t> mine;
   for (std::size_t i = static_cast<std::size_t>(shard.index) - 1; i < all.size(); i += count)
     mine.push_back(all[i]);

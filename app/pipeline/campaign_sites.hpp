@@ -12,8 +12,8 @@ namespace palpate::app {
 /// All sites of a body, ascending.
 std::vector<std::int32_t> sites_of(const Body& body);
 
-/// Every count-th of them from the index-th: neighbours go to different shards, so that hard
-/// regions are shared out. @throws Error(Configuration) when there are more shards than sites.
+/// Every count-th site from the index-th, so that regions with slow sites are spread over the
+/// shards. @throws Error(Configuration) when there are more shards than sites.
 std::vector<std::int32_t> sites_of_shard(const Body& body, const Shard& shard);
 
 }  // namespace palpate::app

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 
-#include "app/console.hpp"
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/settings.hpp"
 #include "fem/campaign/campaign.hpp"
@@ -72,19 +71,9 @@ void check_same_sites(const Body& first, const Body& finer, const std::string& w
               "change patch_spacing a little and report the case");
 }
 
-void report(const ConvergenceTable& table) {
-  for (const ConvergenceRow& row : table.rows) {
-    std::string forces;
-    for (const double f : row.forces) forces += fmt::format(" {:.2f}", 1e3 * f);
-    if (row.limit.trusted) {
-      say("  site {}, {}:{} -> {:.2f} mN, order {:.2f}; error of the mesh of the case {:+.1f} %",
-          row.vertex, row.quantity, forces, 1e3 * row.limit.value, row.limit.order,
-          100 * row.limit.error);
-    } else {
-      say("  site {}, {}:{} mN follow no power of the element size; their range is {:.1f} %",
-          row.vertex, row.quantity, forces, 100 * row.limit.error);
-    }
-  }
+ConvergenceOfForce convergence_of(const ConvergenceRow& row) {
+  return {row.vertex,      row.quantity,    row.forces,     row.limit.trusted,
+          row.limit.order, row.limit.value, row.limit.error};
 }
 
 }  // namespace
@@ -113,7 +102,7 @@ std::string convergence_csv(const ConvergenceTable& table) {
 }
 
 ConvergenceTable run_convergence(const Workspace& space, int levels,
-                                 std::vector<std::int32_t> sites) {
+                                 std::vector<std::int32_t> sites, const EventSink& emit) {
   if (levels < 3) {
     throw Error(ErrorKind::Configuration, fmt::format("--convergence {}", levels),
                 "an order of convergence needs at least three meshes", "give 3 or more");
@@ -143,14 +132,16 @@ ConvergenceTable run_convergence(const Workspace& space, int levels,
     fem::CampaignReport report;
     const Curves curves = fem::run_campaign(body, campaign, report);
     for (const SiteCurves& site : curves.sites) add_forces(site, paths, table.rows);
-    say("convergence: elements of {:.3g} mm, {} unknowns, {} a site", 1e3 * size, report.unknowns,
-        duration_text(report.cpu_seconds / static_cast<double>(curves.sites.size())));
+    emit(ConvergenceLevel{size, report.unknowns,
+                          report.cpu_seconds / static_cast<double>(curves.sites.size())});
   }
-  for (ConvergenceRow& row : table.rows) row.limit = extrapolate(table.element_sizes, row.forces);
-  report(table);
+  for (ConvergenceRow& row : table.rows) {
+    row.limit = extrapolate(table.element_sizes, row.forces);
+    emit(convergence_of(row));
+  }
   const auto file = space.out / "convergence.csv";
   write_file_crash_safely(file, convergence_csv(table));
-  say("convergence: {}", file.string());
+  emit(FileWritten{"convergence", file});
   return table;
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "app/pipeline/events.hpp"
 #include "app/pipeline/richardson.hpp"
 #include "app/pipeline/workspace.hpp"
 
@@ -31,10 +32,11 @@ struct ConvergenceTable {
 std::vector<double> finer_element_sizes(double patch_spacing, double element_size, int levels);
 
 /// Meshes the case on `levels` meshes, presses `sites` (empty: three sites, spread over all),
-/// prints the table and writes it to `convergence.csv`. The artifacts are unchanged.
+/// reports the limits of the forces and writes them to `convergence.csv`. The artifacts are
+/// unchanged.
 /// @throws Error(Configuration) for fewer than three levels or a vertex that is not a site.
 ConvergenceTable run_convergence(const Workspace& space, int levels,
-                                 std::vector<std::int32_t> sites);
+                                 std::vector<std::int32_t> sites, const EventSink& emit);
 
 std::string convergence_csv(const ConvergenceTable& table);
 

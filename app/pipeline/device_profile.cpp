@@ -10,7 +10,7 @@ namespace palpate::fitting {
 template <class V>
 void describe(V& v, DeviceProfile& p) {
   using palpate::Dimension;
-  v.text(p.name, {"name", "of the device", app::kRequired});
+  v.text(p.name, {"name", "name of the device", app::kRequired});
   v.quantity(
       p.damping, Dimension::Damping,
       {"damping", "smallest viscous damping over all directions", app::kOptional, app::kPositive});
@@ -18,7 +18,7 @@ void describe(V& v, DeviceProfile& p) {
              {"coulomb_friction", "dry friction", app::kOptional, app::kNotNegative});
   v.quantity(p.peak_force, Dimension::Force,
              {"peak_force", "largest force", app::kOptional, app::kPositive});
-  v.text(p.source, {"source", "where the figures come from", app::kRequired});
+  v.text(p.source, {"source", "source of the values", app::kRequired});
 }
 
 }  // namespace palpate::fitting

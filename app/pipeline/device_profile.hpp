@@ -7,9 +7,8 @@
 
 namespace palpate::app {
 
-/// Read the profile of a haptic device (TOML; see data/devices). Quantities carry their units;
-/// what the documentation of the device does not say is left out and becomes NaN. @throws
-/// Error(Configuration).
+/// Reads the profile of a haptic device (TOML; see data/devices). A missing quantity is unknown and
+/// becomes NaN. @throws Error(Configuration).
 fitting::DeviceProfile read_device_profile(const std::filesystem::path& path);
 
 }  // namespace palpate::app

@@ -10,7 +10,7 @@
 namespace palpate::app {
 namespace {
 
-/// Name of the fact that holds the part of the case on which the stage depends.
+/// Name of the fact with the part of the case that the stage depends on.
 constexpr const char* kSettingsFact = "stage_case";
 
 std::string fact(const ProvenanceStep& step, const std::string& name) {
@@ -40,7 +40,7 @@ std::string stale_reason(const Workspace& space, Stage stage, const Provenance& 
   const std::string name = stage_name(stage);
   const auto last = std::find_if(provenance.steps.rbegin(), provenance.steps.rend(),
                                  [&](const ProvenanceStep& step) { return step.stage == name; });
-  if (last == provenance.steps.rend()) return "it has not been through this stage";
+  if (last == provenance.steps.rend()) return "this stage has not run";
   if (last->version != PALPATE_VERSION) return "it was made by version " + last->version;
   if (fact(*last, kSettingsFact) != stage_case(space, stage)) return "the case has changed";
   if (!same_inputs(*last, stage_inputs(space, stage))) return "an input file has changed";

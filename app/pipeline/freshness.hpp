@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Is an artifact what a stage would make now? Decided from what its provenance says it was made
-// from, never from file times.
+// Whether an artifact is up to date, by the inputs in its provenance and never by file times.
 #pragma once
 
 #include <string>
@@ -10,12 +9,12 @@
 
 namespace palpate::app {
 
-/// The step to append to the provenance of what a stage has made.
+/// The provenance step of a stage.
 ProvenanceStep make_stage_step(const Workspace& space, Stage stage,
                                std::vector<std::pair<std::string, std::string>> facts);
 
-/// Empty when the last step of this stage had the same version of palpate, the same settings and
-/// the same input files as it would have now; otherwise why not, in a few words.
+/// Why an artifact is out of date, in a few words; empty when the last step of the stage had the
+/// version of palpate, the settings and the input files that it would have now.
 std::string stale_reason(const Workspace& space, Stage stage, const Provenance& provenance);
 
 }  // namespace palpate::app

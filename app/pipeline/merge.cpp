@@ -5,7 +5,6 @@
 #include <map>
 #include <regex>
 
-#include "app/console.hpp"
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/settings.hpp"
@@ -27,20 +26,21 @@ std::vector<fs::path> parts_in(const fs::path& folder) {
       if (std::regex_match(entry.path().filename().string(), name)) parts.push_back(entry.path());
   std::sort(parts.begin(), parts.end());
   if (parts.empty())
-    throw Error(ErrorKind::Configuration, folder.string(), "holds no curves.I-of-N.h5 to merge",
+    throw Error(ErrorKind::Configuration, folder.string(), "contains no curves.I-of-N.h5",
                 "run `palpate precompute CASE --shard I/N` for each I of 1..N first");
   return parts;
 }
 
-/// A part must come from this body and this case, as this version of palpate computes them.
+/// Refuses a part of another body, case or version of palpate.
 Curves read_part(const Workspace& space, const std::string& body_sha256, const fs::path& part) {
   Curves curves = read_input(part, "precompute --shard I/N", read_curves);
   const std::string why = curves.body_sha256 != body_sha256
                               ? "it was computed on another body"
                               : stale_reason(space, Stage::Precompute, curves.provenance);
   if (!why.empty())
-    throw Error(ErrorKind::Configuration, part.string(), "does not belong to this campaign: " + why,
-                "compute this shard again with the present case and body, or leave it out");
+    throw Error(ErrorKind::Configuration, part.string(),
+                "it does not belong to this campaign: " + why,
+                "compute this shard again with the current case and body, or leave it out");
   return curves;
 }
 
@@ -61,7 +61,7 @@ class Collection {
       if (!is_new)
         throw Error(ErrorKind::Configuration, file.string(),
                     fmt::format("site {} is in {} as well", site.vertex, before->second.string()),
-                    "give parts of one division of the sites, each once");
+                    "give each part of one division of the sites once");
       sites_.push_back(std::move(site));
     }
   }
@@ -94,7 +94,7 @@ double cpu_seconds(const std::vector<SiteCurves>& sites) {
 
 }  // namespace
 
-SiteCounts run_merge(const Workspace& space, std::vector<fs::path> parts) {
+SiteCounts run_merge(const Workspace& space, std::vector<fs::path> parts, const EventSink& emit) {
   const Body body = read_input(space.body(), "mesh", read_body);
   const std::string body_sha256 = sha256_of_file(space.body());
   if (parts.empty()) parts = parts_in(space.out);
@@ -116,9 +116,7 @@ SiteCounts run_merge(const Workspace& space, std::vector<fs::path> parts) {
          make_stage_step(space, Stage::Precompute, std::move(facts)));
   write_curves(space.curves(), merged);
   const SiteCounts counts = count_sites(merged);
-  say("merge: {} sites of {} parts, {} complete, {} stopped early, {} failed -> {}",
-      merged.sites.size(), parts.size(), counts.complete, counts.partial, counts.failed,
-      space.curves().string());
+  emit(MergeFinished{merged.sites.size(), parts.size(), counts, space.curves()});
   return counts;
 }
 

@@ -2,9 +2,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
+#include <optional>
 
-#include "app/console.hpp"
 #include "app/pipeline/adaptive.hpp"
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/freshness.hpp"
@@ -20,9 +19,7 @@
 namespace palpate::app {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
-/// All that decides the bits of the results.
+/// Digest of everything that the bits of the results depend on.
 std::string campaign_key(const Workspace& space, const std::string& body_sha256) {
   return sha256(fmt::format("{}\n{}\n{}\n{}\n{}\n{}/{}\n", body_sha256,
                             stage_case(space, Stage::Precompute), PALPATE_VERSION,
@@ -30,128 +27,28 @@ std::string campaign_key(const Workspace& space, const std::string& body_sha256)
                             space.shard.count));
 }
 
-/// What the user, or a program that watches, is told while the sites are computed.
-class ProgressReporter {
- public:
-  explicit ProgressReporter(Telling telling) : telling_(telling) {}
+/// Reasons to doubt the result that do not prevent the campaign.
+void emit_warnings(const Workspace& space, const Body& body, const EventSink& emit) {
+  const std::string stale = stale_reason(space, Stage::Mesh, body.provenance);
+  if (!stale.empty())
+    emit(Warning{"precompute", fmt::format("{} is out of date: {}; run `palpate mesh`",
+                                           space.body().string(), stale)});
+  if (fem::is_linear(space.c.campaign.dilatation))
+    emit(Warning{"precompute",
+                 "element = \"tet4\" gives forces that are tens of percent too high; use "
+                 "tet10-pressure for a library to render"});
+}
 
-  /// A campaign begins: what decides its bits beside body and case, and what is known already.
-  void start(const SiteJournal& journal, const std::filesystem::path& path) {
-    if (telling_ == Telling::Json) {
-      return event({{"event", "start"},
-                    {"blas_kernel", fem::blas_kernel()},
-                    {"kept_sites", journal.found().size()},
-                    {"dropped_bytes", journal.dropped_bytes()},
-                    {"moved_aside", journal.moved_aside()}});
-    }
-    say("  BLAS kernel: {}", fem::blas_kernel());
-    if (journal.moved_aside())
-      say("  the sites in {} are of another campaign: moved to {}.old", path.string(),
-          path.filename().string());
-    if (!journal.found().empty())
-      say("  {} finished sites found in {}: they are not computed again", journal.found().size(),
-          path.string());
-    if (journal.dropped_bytes() > 0)
-      say("  a site that was being written when the last run stopped ({} bytes) is computed again",
-          journal.dropped_bytes());
-  }
+SiteFinished finished(const SiteCurves& site) {
+  return {site.vertex, site.status, site.reason, site.cpu_seconds};
+}
 
-  /// A body of another case, or of this one before it was changed, is pressed as asked.
-  void body(const std::filesystem::path& path, const std::string& stale_reason) {
-    if (telling_ == Telling::Text && !stale_reason.empty())
-      say("  WARNING: {} was not meshed by this case as it is now: {}; `palpate mesh` makes it "
-          "again",
-          path.string(), stale_reason);
-  }
-
-  /// Forces that are for looks must not be taken for more.
-  void element(fem::Dilatation dilatation) {
-    if (telling_ == Telling::Text && fem::is_linear(dilatation))
-      say("  WARNING: element = \"tet4\" is for quick looks: its forces are too high by tens of "
-          "percent, and the file says so; take tet10-pressure for a library to feel");
-  }
-
-  void site(const SiteCurves& site) {
-    if (telling_ == Telling::Text) return;
-    constexpr const char* kStatus[] = {"complete", "partial", "failed"};
-    event({{"event", "site"},
-           {"vertex", site.vertex},
-           {"status", kStatus[static_cast<int>(site.status)]},
-           {"reason", site.reason},
-           {"cpu_seconds", site.cpu_seconds}});
-  }
-
-  void progress(const fem::CampaignProgress& p) {
-    if (telling_ == Telling::Text)
-      return display_.show(p.done, p.failed, p.running, p.total, p.known);
-    event({{"event", "progress"},
-           {"done", p.done},
-           {"failed", p.failed},
-           {"running", p.running},
-           {"total", p.total}});
-  }
-
-  void round(const SamplingRound& r) {
-    if (telling_ == Telling::Text)
-      return say(
-          "  round {}: {} of {} sites; at points held out 95 % of the forces are off by less than "
-          "{:.1f} "
-          "% along the press, {:.1f} % in all (median {:.1f} %)",
-          r.number, r.sites, r.of_sites, 100 * r.along.p95, 100 * r.whole.p95,
-          100 * r.whole.median);
-    event({{"event", "round"},
-           {"round", r.number},
-           {"sites", r.sites},
-           {"of_sites", r.of_sites},
-           {"leave_one_out_error_p95", r.leave_one_out},
-           {"hold_out_states", r.along.states},
-           {"hold_out_points_failed", r.points_failed},
-           {"error_along_press", error_of(r.along)},
-           {"error_of_vector", error_of(r.whole)}});
-  }
-
-  void end(const std::filesystem::path& file, const SiteCounts& counts, double seconds,
-           double cpu_seconds) {
-    if (telling_ == Telling::Text) {
-      return say(
-          "precompute: {} sites complete, {} stopped early, {} failed, {} ({} on the processors) "
-          "-> {}",
-          counts.complete, counts.partial, counts.failed, duration_text(seconds),
-          duration_text(cpu_seconds), file.string());
-    }
-    event({{"event", "end"},
-           {"complete", counts.complete},
-           {"partial", counts.partial},
-           {"failed", counts.failed},
-           {"seconds", seconds},
-           {"cpu_seconds", cpu_seconds},
-           {"file", file.string()}});
-  }
-
-  bool tells_text() const { return telling_ == Telling::Text; }
-
- private:
-  static Json error_of(const fidelity::ErrorRow& row) {
-    return {{"median", row.median}, {"p95", row.p95}, {"worst", row.worst}};
-  }
-
-  static void event(const Json& what) { print_line(what.dump()); }
-
-  Telling telling_;
-  ProgressDisplay display_{"precompute"};
-};
-
-/// A failed site is data, but one that a user must see.
-void tell_failures(const Curves& curves) {
-  constexpr std::size_t kLargestShown = 5;
-  std::size_t shown = 0;
-  for (const SiteCurves& site : curves.sites) {
-    if (site.status == SiteStatus::Complete) continue;
-    if (++shown > kLargestShown) continue;
-    say("  site {} {}: {}", site.vertex,
-        site.status == SiteStatus::Failed ? "failed" : "stopped early", site.reason);
-  }
-  if (shown > kLargestShown) say("  and {} more: see `palpate inspect`", shown - kLargestShown);
+CampaignFinished campaign_finished(const Curves& curves, const fem::CampaignReport& report,
+                                   const std::filesystem::path& file) {
+  CampaignFinished event{count_sites(curves), report.seconds, report.cpu_seconds, file, {}};
+  for (const SiteCurves& site : curves.sites)
+    if (site.status != SiteStatus::Complete) event.incomplete.push_back(finished(site));
+  return event;
 }
 
 std::vector<std::pair<std::string, std::string>> facts_of(const Workspace& space,
@@ -167,22 +64,17 @@ std::vector<std::pair<std::string, std::string>> facts_of(const Workspace& space
   return facts;
 }
 
-/// A part of a campaign that is done already: whoever starts all parts again, because some were
-/// killed, does not compute the others twice. (A whole campaign is started again by those who mean
-/// it.)
-std::optional<SiteCounts> finished_part(const Workspace& space, ProgressReporter& reporter) {
+/// The counts of a shard that is up to date: when all shards are started again because some were
+/// killed, the others end at once. A whole campaign is repeated on request.
+std::optional<SiteCounts> finished_shard(const Workspace& space, const EventSink& emit) {
   if (space.shard.count == 1 || !std::filesystem::exists(space.precomputed())) return {};
   const Curves curves = read_curves(space.precomputed());
   if (!stale_reason(space, Stage::Precompute, curves.provenance).empty()) return {};
-  const SiteCounts counts = count_sites(curves);
-  if (reporter.tells_text())
-    say("precompute: {} is up to date", space.precomputed().string());
-  else
-    reporter.end(space.precomputed(), counts, 0, 0);
-  return counts;
+  emit(StageUpToDate{stage_name(Stage::Precompute), space.precomputed()});
+  return count_sites(curves);
 }
 
-/// What one stage computes, however its sites are chosen.
+/// Result of the campaign, however its sites are chosen.
 struct Campaign {
   Curves curves;
   fem::CampaignReport report;
@@ -195,51 +87,50 @@ Campaign press_all(const Body& body, const fem::CampaignSettings& settings) {
   return campaign;
 }
 
-Campaign press_by_need(const Workspace& space, const Body& body,
-                       const fem::CampaignSettings& settings, const std::string& key,
-                       ProgressReporter& reporter) {
-  AdaptiveCampaign adaptive = sample_adaptively(
-      space, body, settings, key, [&](const SamplingRound& round) { reporter.round(round); });
-  if (reporter.tells_text())
-    say("  {}{}",
-        adaptive.end == SamplingEnd::ToleranceMet ? "" : "WARNING: ", words(adaptive.end));
+Campaign press_adaptively(const Workspace& space, const Body& body,
+                          const fem::CampaignSettings& settings, const std::string& key,
+                          const EventSink& emit) {
+  AdaptiveCampaign adaptive = sample_adaptively(space, body, settings, key,
+                                                [&](const SamplingRound& round) { emit(round); });
+  emit(SamplingFinished{adaptive.end == SamplingEnd::ToleranceMet, words(adaptive.end)});
   return {std::move(adaptive.curves), std::move(adaptive.report), std::move(adaptive.facts)};
 }
 
-/// Each round waits for all sites of the one before.
-void require_whole(const Workspace& space) {
+/// A round of adaptive sampling needs all sites of the round before.
+void refuse_adaptive_shard(const Workspace& space) {
   if (space.shard.count == 1 || !is_adaptive(space)) return;
   throw Error(ErrorKind::Configuration, "--shard",
-              "adaptive sampling chooses sites by the results of others and cannot be divided",
-              "leave --shard out, or set sampling.method = \"spacing\"");
+              "adaptive sampling cannot be divided: it chooses sites by the results of others",
+              "leave --shard out, or set sampling.method = \"vertices\"");
 }
 
 }  // namespace
 
-SiteCounts run_precompute(const Workspace& space, Telling telling) {
-  require_whole(space);
+SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
+  refuse_adaptive_shard(space);
   const Body body = read_input(space.body(), "mesh", read_body);
   prepare_output(space.out);
-  ProgressReporter reporter(telling);
-  reporter.body(space.body(), stale_reason(space, Stage::Mesh, body.provenance));
-  if (const auto counts = finished_part(space, reporter)) return *counts;
+  if (const auto counts = finished_shard(space, emit)) return *counts;
   const std::string body_sha256 = sha256_of_file(space.body());
   fem::CampaignSettings settings = campaign_settings(space);
   settings.sites = sites_of_shard(body, space.shard);
 
   const std::string key = campaign_key(space, body_sha256);
   SiteJournal journal(space.journal(), {key, static_cast<std::int64_t>(settings.sites.size())});
-  reporter.start(journal, space.journal());
-  reporter.element(settings.dilatation);
+  emit(CampaignStarted{fem::blas_kernel(), journal.found().size(), journal.dropped_bytes(),
+                       journal.moved_aside(), space.journal()});
+  emit_warnings(space, body, emit);
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) {
     journal.append(site);
-    reporter.site(site);
+    emit(finished(site));
   };
-  settings.progress = [&](const fem::CampaignProgress& p) { reporter.progress(p); };
+  settings.progress = [&](const fem::CampaignProgress& p) {
+    emit(Progress{p.done, p.failed, p.running, p.total, p.known});
+  };
 
   auto [curves, report, facts] = is_adaptive(space)
-                                     ? press_by_need(space, body, settings, key, reporter)
+                                     ? press_adaptively(space, body, settings, key, emit)
                                      : press_all(body, settings);
   curves.body_sha256 = body_sha256;
   const auto general = facts_of(space, report, settings.known.size());
@@ -248,10 +139,8 @@ SiteCounts run_precompute(const Workspace& space, Telling telling) {
   write_curves(space.precomputed(), curves);
   journal.remove();
   remove_hold_out(space);
-  const SiteCounts counts = count_sites(curves);
-  reporter.end(space.precomputed(), counts, report.seconds, report.cpu_seconds);
-  if (reporter.tells_text()) tell_failures(curves);
-  return counts;
+  emit(campaign_finished(curves, report, space.precomputed()));
+  return count_sites(curves);
 }
 
 }  // namespace palpate::app

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/pipeline/settings.hpp"
 
-#include <numbers>
-#include <utility>
+#include <variant>
 
 #include "app/case/material.hpp"
-#include "app/case/quantity.hpp"
 #include "app/pipeline/device_profile.hpp"
 
 namespace palpate::app {
@@ -14,33 +12,18 @@ namespace fs = std::filesystem;
 
 namespace {
 
-double unit_length(const std::string& symbol) {
-  return parse_quantity("1 " + symbol, Dimension::Length).value;
+/// Paths of a case are relative to its file.
+mesher::SurfaceFile resolved(const Workspace& space, mesher::SurfaceFile file) {
+  file.path = space.case_folder / file.path;
+  return file;
 }
 
-template <class Section>
-mesher::SurfaceFile surface_file(const Workspace& space, const Section& section) {
-  return {space.case_folder / section.file, unit_length(section.unit), section.region};
-}
-
-mesher::Support support_of(const Workspace& space, const SupportSection& section) {
-  if (section.shape == "surface") {
-    return mesher::SurfaceSupport{{space.case_folder / section.file, unit_length(section.unit), ""},
-                                  section.distance};
-  }
-  if (section.shape == "plane") {
-    return mesher::PlaneSupport{section.point, (1 / norm(section.normal)) * section.normal};
-  }
-  if (section.shape == "box") return mesher::BoxSupport{section.low, section.high};
-  if (section.shape == "label") return mesher::LabelSupport{section.label};
-  return mesher::SphereSupport{section.centre, section.radius};
-}
-
-fem::ToolGeometry tool_of(const ToolSection& section) {
-  fem::ToolShape shape = fem::ToolShape::Sphere;
-  if (section.shape == "disc") shape = fem::ToolShape::Disc;
-  if (section.shape == "cylinder") shape = fem::ToolShape::Cylinder;
-  return {shape, section.radius, section.edge_radius, section.length};
+mesher::Support resolved(const Workspace& space, mesher::Support support) {
+  if (auto* plane = std::get_if<mesher::PlaneSupport>(&support))
+    plane->normal = (1 / norm(plane->normal)) * plane->normal;
+  if (auto* bone = std::get_if<mesher::SurfaceSupport>(&support))
+    bone->surface = resolved(space, bone->surface);
+  return support;
 }
 
 }  // namespace
@@ -60,74 +43,43 @@ std::string stage_name(Stage stage) {
 }
 
 bool is_adaptive(const Workspace& space) {
-  return space.c.sampling.method == "adaptive";
+  return space.c.sampling.method == SamplingMethod::Adaptive;
 }
 
 mesher::Settings mesh_settings(const Workspace& space) {
   const Case& c = space.c;
-  mesher::Settings settings;
+  mesher::Settings settings = c.mesh;
   settings.name = c.name;
-  settings.surface = surface_file(space, c.surface);
-  for (const auto& inclusion : c.inclusions) {
-    settings.inclusions.push_back(surface_file(space, inclusion));
-  }
-  for (const auto& support : c.supports) {
+  settings.surface = resolved(space, settings.surface);
+  for (mesher::SurfaceFile& inclusion : settings.inclusions) inclusion = resolved(space, inclusion);
+  for (mesher::Springs support : c.supports) {
+    support.where = resolved(space, support.where);
     if (support.normal_stiffness > 0 || support.tangential_stiffness > 0) {
-      settings.foundation.push_back(
-          {support_of(space, support), support.normal_stiffness, support.tangential_stiffness});
+      settings.foundation.push_back(support);
     } else {
-      settings.supports.push_back(support_of(space, support));
+      settings.supports.push_back(support.where);
     }
   }
-  const bool all_nodes = c.sampling.method == "nodes";
-  settings.patch_spacing = all_nodes ? c.mesh.element_size : c.mesh.patch_spacing;
-  settings.element_size = c.mesh.element_size;
-  settings.interior_growth = c.mesh.interior_growth;
-  settings.feature_angle = c.mesh.feature_angle * 180 / std::numbers::pi;
-  settings.curved_facets = c.mesh.curved_facets;
-  settings.tool_radius = tool_of(c.tool).extent();
-  settings.depth = c.indentation.depth;
-  settings.lateral_travel = c.indentation.lateral_travel;
+  if (c.sampling.method == SamplingMethod::Nodes) settings.patch_spacing = settings.element_size;
+  const fem::IndentationSettings& indentation = c.campaign.indentation;
+  settings.tool_radius = indentation.tool.extent();
+  settings.depth = indentation.depth;
+  settings.lateral_travel = indentation.lateral_travel;
   return settings;
 }
 
 fem::CampaignSettings campaign_settings(const Workspace& space) {
-  const Case& c = space.c;
-  fem::CampaignSettings settings;
-  for (const MaterialSection& material : c.materials) {
-    settings.materials.push_back({material.region, law_of(material, space.case_folder)});
-  }
-  if (c.solver.element == "tet10-displacement") settings.dilatation = fem::Dilatation::Pointwise;
-  if (c.solver.element == "tet10-nodal-pressure") settings.dilatation = fem::Dilatation::Nodal;
-  if (c.solver.element == "tet4") settings.dilatation = fem::Dilatation::LinearNodal;
-  settings.gravity = {c.gravity.acceleration, c.gravity.density};
-  fem::IndentationSettings& indentation = settings.indentation;
-  indentation.tool = tool_of(c.tool);
-  indentation.tool_azimuth = c.tool.azimuth;
-  if (c.tool.friction == "no-slip") indentation.friction = fem::ToolFriction::NoSlip;
-  indentation.depth = c.indentation.depth;
-  indentation.increments = c.indentation.increments;
-  indentation.lateral_travel = c.indentation.lateral_travel;
-  indentation.lateral_increments = c.indentation.lateral_increments;
-  indentation.lateral_depths = c.indentation.lateral_depths;
-  indentation.azimuths = c.indentation.azimuths;
-  indentation.force_tolerance = c.indentation.force_tolerance;
-  indentation.refine_under_tool = c.solver.refine_under_tool;
+  fem::CampaignSettings settings = space.c.campaign;
+  for (const MaterialSection& material : space.c.materials)
+    settings.materials.push_back(with_sampled_fibres(material, space.case_folder));
   settings.threads = space.threads;
   settings.memory = space.memory;
   return settings;
 }
 
 fitting::FitSettings fit_settings(const Workspace& space) {
-  const FitSection& fit = space.c.fit;
-  fitting::FitSettings settings;
-  settings.relative_tolerance = fit.relative_tolerance;
-  settings.absolute_tolerance = fit.absolute_tolerance;
-  settings.max_knots = fit.max_knots;
-  settings.fill_holes = fit.fill_holes;
+  fitting::FitSettings settings = space.c.fit;
   settings.interpolate = is_adaptive(space);
-  settings.between_nodes = fit.between_nodes;
-  settings.kind = fit.responses == "coupled" ? ResponseKind::Coupled : ResponseKind::Decoupled;
   return settings;
 }
 
@@ -144,13 +96,12 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
   std::vector<fs::path> inputs;
   switch (stage) {
     case Stage::Mesh:
-      inputs.push_back(space.case_folder / space.c.surface.file);
-      for (const auto& inclusion : space.c.inclusions) {
-        inputs.push_back(space.case_folder / inclusion.file);
-      }
-      for (const auto& support : space.c.supports) {
-        if (support.shape == "surface") inputs.push_back(space.case_folder / support.file);
-      }
+      inputs.push_back(space.case_folder / space.c.mesh.surface.path);
+      for (const mesher::SurfaceFile& inclusion : space.c.mesh.inclusions)
+        inputs.push_back(space.case_folder / inclusion.path);
+      for (const mesher::Springs& support : space.c.supports)
+        if (const auto* bone = std::get_if<mesher::SurfaceSupport>(&support.where))
+          inputs.push_back(space.case_folder / bone->surface.path);
       break;
     case Stage::Precompute:
       inputs = {space.body()};
@@ -172,11 +123,11 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
 
 std::string stage_case(const Workspace& space, Stage stage) {
   switch (stage) {
-    case Stage::Mesh:  // the tool and its depth: the mesher checks that the body is thick enough
+    case Stage::Mesh:  // with the tool and its depth: the mesher checks the thickness of the body
       return resolved_sections(
                  space.c, {"", "surface", "inclusion", "mesh", "support", "tool", "indentation"}) +
-             (space.c.sampling.method == "nodes" ? "every surface node\n" : "");
-    case Stage::Precompute:  // adaptive sampling judges what is fitted
+             (space.c.sampling.method == SamplingMethod::Nodes ? "every surface node\n" : "");
+    case Stage::Precompute:  // adaptive sampling judges fitted responses
       return is_adaptive(space)
                  ? resolved_sections(space.c, {"material", "tool", "indentation", "sampling",
                                                "solver", "gravity", "fit"})

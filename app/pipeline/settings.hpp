@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// From the case to the settings of each stage, and to the text that identifies them.
+// The settings of each stage: those of the case, with what follows from several of its keys.
 #pragma once
 
 #include <filesystem>
@@ -16,9 +16,10 @@ namespace palpate::app {
 
 enum class Stage { Mesh, Precompute, Fit, Certify };
 
-std::string stage_name(Stage stage);  ///< as in the provenance: "mesh", ...
+/// "mesh", "precompute", "fit", "certify": in commands and in the provenance.
+std::string stage_name(Stage stage);
 
-/// Whether only some sites are computed and the others interpolated.
+/// Whether sites are chosen adaptively and all other responses interpolated.
 bool is_adaptive(const Workspace& space);
 
 mesher::Settings mesh_settings(const Workspace& space);
@@ -28,7 +29,7 @@ fitting::FitSettings fit_settings(const Workspace& space);
 /// Reads the device profiles. @throws Error(Configuration).
 fitting::CertifySettings certify_settings(const Workspace& space);
 
-/// Files a stage reads, in the order of its provenance.
+/// The files that a stage reads, in the order of its provenance.
 std::vector<std::filesystem::path> stage_inputs(const Workspace& space, Stage stage);
 
 /// The part of the resolved case on which the result of a stage depends.

@@ -9,7 +9,7 @@
 
 namespace palpate::app {
 
-/// An artifact of the stage before, with a remedy that names that stage.
+/// Reads the artifact of an earlier stage; the remedy of a missing one names that stage.
 template <class Read>
 auto read_input(const std::filesystem::path& path, const char* made_by, Read read) {
   if (!std::filesystem::exists(path)) {
@@ -19,7 +19,7 @@ auto read_input(const std::filesystem::path& path, const char* made_by, Read rea
   return read(path);
 }
 
-/// The provenance of what a stage makes: that of its input and one step more.
+/// The provenance of an artifact: that of its input and one more step.
 inline void append(Provenance& provenance, const Provenance& before, ProvenanceStep step) {
   provenance = before;
   provenance.steps.push_back(std::move(step));

@@ -1,51 +1,46 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One function a stage: read the artifacts before, compute, append to the provenance, write.
+// One function a stage: read the artifacts before it, compute, append to the provenance, write.
 #pragma once
 
 #include <filesystem>
 #include <vector>
 
+#include "app/pipeline/events.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "format/curves.hpp"
 
 namespace palpate::app {
 
-/// Sites by status: what the exit code and the closing line depend on.
-struct SiteCounts {
-  std::size_t complete = 0, partial = 0, failed = 0;
-  bool all_complete() const { return partial == 0 && failed == 0; }
-};
 SiteCounts count_sites(const Curves& curves);
 
-void run_mesh(const Workspace& space);
+void run_mesh(const Workspace& space, const EventSink& emit);
 
-/// How precompute tells what it does: a bar and lines for people, or a JSON object a line.
-enum class Telling { Text, Json };
-/// Every site computed is in the journal at once; a run that was interrupted is continued.
-SiteCounts run_precompute(const Workspace& space, Telling telling = Telling::Text);
-/// The parts that several machines computed -> curves.h5. `parts` empty: all in the folder.
-SiteCounts run_merge(const Workspace& space, std::vector<std::filesystem::path> parts);
+/// Writes every computed site to the journal at once; continues an interrupted run.
+SiteCounts run_precompute(const Workspace& space, const EventSink& emit);
+/// Merges the parts of several machines into curves.h5. `parts` empty: all in the folder.
+SiteCounts run_merge(const Workspace& space, std::vector<std::filesystem::path> parts,
+                     const EventSink& emit);
 
-void run_fit(const Workspace& space);
-void run_certify(const Workspace& space);
+void run_fit(const Workspace& space, const EventSink& emit);
+void run_certify(const Workspace& space, const EventSink& emit);
 
-/// What may be kept at a rate.
-struct KeepOptions {
+/// The stiffest response that is certified at a sampling rate.
+struct RateOptions {
   double rate = 0;                 ///< Hz
   std::filesystem::path device;    ///< profile; empty: those of the case
-  std::filesystem::path softened;  ///< where a library goes that is softened until it is certified
+  std::filesystem::path softened;  ///< where to write the softened library; empty: nowhere
 };
-/// Tells for each device the stiffest response that is certified at the rate and what the library
-/// lacks for it; writes the softened library for a single device when it is asked for.
-void run_keep(const Workspace& space, const KeepOptions& options);
+/// Reports StiffnessAtRate for each device. Writes a library softened until it is certified at the
+/// rate, for a single device, when it is asked for.
+void run_certify_at_rate(const Workspace& space, const RateOptions& options, const EventSink& emit);
 
-/// Looks in the library, `tries` times in each triangle, for forces steeper than its certificate
-/// says, and tells how near it came. @throws Error(Geometry) when it finds one.
-void run_challenge(const Workspace& space, int tries);
+/// Searches the library, `tries` times in each triangle, for forces steeper than its certificate
+/// allows. @throws Error(Geometry) when it finds one.
+void run_challenge(const Workspace& space, int tries, const EventSink& emit);
 
-/// The stages up to `last`, each only when its artifact is not up to date. @return the sites, none
-/// when the curves were not asked for.
-SiteCounts run_build(const Workspace& space, Stage last = Stage::Certify);
+/// Runs the stages up to `last` whose artifacts are out of date. @return the counts of the sites;
+/// none when `last` is Stage::Mesh.
+SiteCounts run_build(const Workspace& space, Stage last, const EventSink& emit);
 
 }  // namespace palpate::app

@@ -41,12 +41,12 @@ void prepare_output(const fs::path& folder) {
   fs::create_directories(folder, failure);
   if (failure) {
     throw Error(ErrorKind::Configuration, folder.string(),
-                "the output folder cannot be made (" + failure.message() + ")",
+                "cannot create the output folder (" + failure.message() + ")",
                 "choose another with --out");
   }
   if (access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw Error(ErrorKind::Configuration, folder.string(),
-                "no permission to write into the output folder", "choose another with --out");
+    throw Error(ErrorKind::Configuration, folder.string(), "the output folder is not writable",
+                "choose another with --out");
   }
 }
 

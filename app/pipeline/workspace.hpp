@@ -25,20 +25,20 @@ struct Workspace {
 
   std::filesystem::path body() const { return out / "body.h5"; }
   std::filesystem::path curves() const { return out / "curves.h5"; }
-  /// What precompute writes: curves(), or the part of the shard.
+  /// The file that precompute writes: curves(), or the part of the shard.
   std::filesystem::path precomputed() const;
-  /// The finished sites of precompute, while it is not done.
+  /// The finished sites of an unfinished campaign.
   std::filesystem::path journal() const;
   std::filesystem::path library() const { return out / "library.h5"; }
   std::filesystem::path recording() const { return out / "recording.h5"; }
   std::filesystem::path report() const { return out / "report.html"; }
 };
 
-/// Read the case and name the places; nothing is created. `out` empty: as the case says.
+/// Reads the case; creates nothing. `out` empty: the folder that the case names, or out/NAME.
 Workspace make_workspace(const std::filesystem::path& case_file, const std::string& out,
                          int threads);
 
-/// Make the output folder and check that files can be made in it, before any long work.
+/// Creates the output folder and checks that it is writable, before any long work.
 /// @throws Error(Configuration).
 void prepare_output(const std::filesystem::path& folder);
 

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <string_view>
 
+#include "app/case/case.hpp"
 #include "app/case/nearest.hpp"
-#include "app/simulate/simulated_device.hpp"
 #include "format/error.hpp"
 #include "runtime/devices/force_dimension.hpp"
 #include "runtime/devices/haply.hpp"
@@ -27,7 +27,7 @@ int unit_number(const std::string& unit) {
 
 std::unique_ptr<runtime::Device> simulated(const DeviceChoice& choice,
                                            const std::function<runtime::HandTarget(double)>& hand) {
-  return std::make_unique<runtime::VirtualDevice>(simulated_device({}), choice.rate, hand);
+  return std::make_unique<runtime::VirtualDevice>(SimulateSection{}.device, choice.rate, hand);
 }
 
 std::string lower_case(std::string text) {

@@ -7,7 +7,6 @@
 #include <string>
 
 #include "app/simulate/hand_path.hpp"
-#include "app/simulate/simulated_device.hpp"
 #include "app/simulate/surface_path.hpp"
 #include "format/error.hpp"
 #include "format/sha256.hpp"
@@ -100,7 +99,7 @@ struct ScriptedSession::State {
         handle(load(file)),
         state(create(handle.get(), lipschitz_bound, file)),
         hand(hand_path_of(library, given)),
-        device(simulated_device(given)) {
+        device(given.device) {
     heading.device = "simulated";
     heading.library_sha256 = sha256_of_file(file);
     heading.rate = script.rate;

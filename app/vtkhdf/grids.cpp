@@ -19,7 +19,7 @@ std::string region_legend(const std::vector<std::string>& names) {
   return legend + ".";
 }
 
-/// What a response tells at one deflection, for all vertices.
+/// Force and slope of a response at one deflection, for all vertices.
 struct Samples {
   std::vector<double> force;
   std::vector<double> slope;
@@ -55,7 +55,8 @@ void add_certificate(const std::vector<TriangleCertificate>& triangles, Grid& gr
                             column_of(triangles, &TriangleCertificate::slip)});
   grid.cell_data.push_back({"kappa", "1/m", "Bound on the turning rate of n.",
                             column_of(triangles, &TriangleCertificate::kappa)});
-  grid.cell_data.push_back({"cos_theta", "1", "Worst angle between n and the facet normal.",
+  grid.cell_data.push_back({"cos_theta", "1",
+                            "Cosine of the largest angle between n and the facet normal.",
                             column_of(triangles, &TriangleCertificate::cos_theta)});
   grid.cell_data.push_back({"sliding_passive", "1", "1 where sliding needs no correction.",
                             column_of(triangles, &TriangleCertificate::sliding_passive)});
@@ -78,7 +79,7 @@ Grid body_grid(const Body& body) {
     site[node] = body.response.is_site[vertex];
     inward[node] = body.response.inward[vertex];
   }
-  grid.point_data = {{"fixed", "1", "1 where a support holds the node.", std::move(fixed)},
+  grid.point_data = {{"fixed", "1", "1 at a fixed node.", std::move(fixed)},
                      {"response", "1", "1 at a response vertex.", std::move(response)},
                      {"site", "1", "1 where the tool may be pressed.", std::move(site)},
                      {"inward", "1", "u^z at a response vertex, else 0.", std::move(inward)}};
@@ -93,24 +94,25 @@ Grid deformed_grid(const Body& body, const DeformedFields& fields) {
                     fields.smooth_pressure.size() == body.tetrahedra.size();
   if (!fits) {
     throw Error(ErrorKind::Internal, "deformed state of " + body.name,
-                "its fields have not the size of the body", "report this as a defect of palpate");
+                "the sizes of its fields differ from that of the body",
+                "report this as a defect of palpate");
   }
   Grid grid = body_grid(body);
   grid.description = "Body " + body.name + ", pressed.";
   grid.point_data.push_back({"displacement", "m", "u = x - X of each node.", fields.displacement});
   grid.cell_data.push_back(
       {"strain_energy_density", "J/m^3", "Mean over the element.", fields.strain_energy_density});
+  grid.cell_data.push_back({"pressure", "Pa", "Element mean, tension positive.", fields.pressure});
   grid.cell_data.push_back(
-      {"pressure", "Pa", "Of the element, tension positive.", fields.pressure});
-  grid.cell_data.push_back({"smooth_pressure", "Pa",
-                            "Its projection onto continuous pressures: without checkerboards.",
-                            fields.smooth_pressure});
+      {"smooth_pressure", "Pa",
+       "Projection of the pressure onto continuous functions, without checkerboards.",
+       fields.smooth_pressure});
   return grid;
 }
 
 Grid library_grid(const Library& library, double depth) {
   if (!(std::isfinite(depth) && depth > 0)) {
-    throw Error(ErrorKind::Configuration, "depth of the picture",
+    throw Error(ErrorKind::Configuration, "depth of the exported forces",
                 std::to_string(depth) + " m is not positive and finite", "give a depth above 0");
   }
   Grid grid;

@@ -34,9 +34,9 @@ struct Grid {
   std::vector<std::uint8_t> types;         ///< (cells) CellType of each
   std::vector<DataArray> point_data;
   std::vector<DataArray> cell_data;
-  Provenance provenance;  ///< kept beside the grid, in /provenance
+  Provenance provenance;  ///< written to /provenance
 
-  /// Append cells that are rows of point indices: triangles or tetrahedra.
+  /// Appends cells given as rows of point indices: triangles or tetrahedra.
   template <std::size_t N>
   void add_cells(const std::vector<std::array<std::int32_t, N>>& cells) {
     static_assert(N == 3 || N == 4, "triangles or tetrahedra");
@@ -49,11 +49,11 @@ struct Grid {
   }
 };
 
-/// Write the grid as VTKHDF 1.0 UnstructuredGrid, one partition, which VTK 9.1 and later and
-/// ParaView 5.10 and later read. Crash-safe; the file should be named *.vtkhdf or *.hdf.
-/// @throws Error(Internal) for a grid that does not fit together (sizes, indices, names, points
-/// that
-///   are not finite), else as CrashSafeFile.
+/// Writes the grid as a VTKHDF 1.0 UnstructuredGrid of one partition, for VTK 9.1 and ParaView 5.10
+/// or later. Crash-safe; the file should be named *.vtkhdf or *.hdf.
+/// @throws Error(Internal) for an inconsistent grid (sizes, indices, repeated names, points that
+/// are
+///   not finite), else as CrashSafeFile.
 void write_vtkhdf(const std::filesystem::path& path, const Grid& grid);
 
 }  // namespace palpate::vtkhdf

@@ -103,11 +103,9 @@ struct Problem {
   }
 };
 
-FactorCache cache;
-Sites adjoint;
-const double by_adjoint =
-    seconds([&] { adjoint = run_sensitivity(body, settings, depths, constants, {}, &cache); });
-tell("forces and derivatives, adjoint", by_adjoint);
+void print_time(const char* what, double spent, double campaign) {
+  std::printf("%-52s %8.2f s %6.2f of a campaign\n", what, spent, spent / campaign);
+}
 
 /// Forces above and below each constant by a small step, and the processor time they take.
 struct Differences {
@@ -136,16 +134,16 @@ Differences differences(const Problem& problem, const CampaignSettings& tight) {
     forces(middle);
     for (const Constants& c : more) found.high.push_back(forces(c));
   });
-  const double others = seconds([&] {
-    for (const Constants& c : less) low.push_back(forces(c));
-  });
-  tell("the same by one-sided differences", one_sided);
-  tell("the same by central differences", one_sided + others);
-  std::printf("differences over adjoint: %.1f one-sided, %.1f central\n", one_sided / by_adjoint,
-              (one_sided + others) / by_adjoint);
-  // At one tolerance they are the same derivatives.
-  const Sites exact = run_sensitivity(body, tight, depths, constants, {}, &cache);
-  for (std::size_t c = 0; c < constants.size(); ++c) {
+  found.central_s = found.one_sided_s + seconds([&] {
+                      for (const Constants& c : less) found.low.push_back(forces(c));
+                    });
+  return found;
+}
+
+/// At one tolerance the adjoint and the differences are the same derivatives.
+void print_errors(const Problem& problem, const Differences& by_steps, const Sites& exact,
+                  const Sites& adjoint) {
+  for (std::size_t c = 0; c < problem.constants.size(); ++c) {
     double largest = 0, tightly = 0, loosely = 0;
     for (std::size_t s = 0; s < exact.size(); ++s) {
       const double slope = exact[s].samples.back().slope[c];
@@ -188,10 +186,9 @@ void run(int cells, std::size_t sites) {
   print_errors(problem, by_steps, problem.adjoint(tight, cache), adjoint);
 
   const auto again = [&](const char* what, const Constants& c) {
-    CampaignSettings s = settings;
-    s.materials = settings_of(body, c, 0).materials;
+    const CampaignSettings s = problem.with(problem.settings, c);
     const int before = cache.factorizations();
-    tell(what, seconds([&] { run_sensitivity(body, s, depths, constants, {}, &cache); }));
+    print_time(what, seconds([&] { problem.adjoint(s, cache); }), campaign);
     std::printf("  (%d factorization%s)\n", cache.factorizations() - before,
                 cache.factorizations() - before == 1 ? "" : "s");
   };

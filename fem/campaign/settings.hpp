@@ -55,7 +55,7 @@ struct CampaignSettings {
   std::vector<RegionMaterial> materials;  ///< one for each region of the body
   Dilatation dilatation = Dilatation::Mean;
   /// The weight is applied first; depths, work and energy are counted from that state.
-  Gravity gravity;
+  Gravity gravity{{}, 1000};
   IndentationSettings indentation;
   std::vector<std::int32_t> sites;  ///< response vertices; empty = every vertex with is_site
   /// Pressed instead of response vertices when not empty; the `vertex` of a result is then the

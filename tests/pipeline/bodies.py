@@ -56,7 +56,7 @@ region = "gel"
 [mesh]
 patch_spacing = "12.5 mm"
 element_size = "4.2 mm"
-interior_growth = 3.0
+interior_coarsening = 3.0
 
 [[support]]
 shape = "plane"

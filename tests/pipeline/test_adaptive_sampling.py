@@ -28,9 +28,9 @@ DEPTH = 0.004  # m
 SAMPLING = f"""
 [sampling]
 method = "adaptive"
-start_spacing = "16 mm"
+initial_spacing = "16 mm"
 tolerance = {TOLERANCE}
-hold_out = 16
+hold_out_points = 16
 """
 FITTED, INTERPOLATED = 0, 1
 

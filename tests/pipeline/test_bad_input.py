@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""What a user does wrong, through the real command: the right exit code, exactly one line that says
+"""Mistakes of users, by the real command: the right exit code and exactly one line that says
 what, where and what to do, and nothing left behind. Usage: bad_input_test.py PALPATE
 """
 import subprocess
@@ -15,8 +15,8 @@ from bodies import CASE, SIZE, block, write_case  # noqa: E402
 PALPATE = None
 USAGE, GEOMETRY = 2, 3
 
-# One support, below the body.
-NOTHING_HELD = CASE[: CASE.index("[[support]]")] + """[[support]]
+# A support below the body.
+NO_FIXED_NODES = CASE[: CASE.index("[[support]]")] + """[[support]]
 shape = "plane"
 point = ["0 mm", "0 mm", "-5 mm"]
 normal = [0, 0, -1]
@@ -30,7 +30,7 @@ def open_block():
 
 
 def crossing_block():
-    """Two boxes as one surface, one through the other."""
+    """A surface of two intersecting boxes."""
     vertices, triangles = block(SIZE, 5)
     moved = [(x + 10, y + 10, z + 10) for x, y, z in vertices]
     shifted = [tuple(i + len(vertices) for i in triangle) for triangle in triangles]
@@ -38,7 +38,7 @@ def crossing_block():
 
 
 def dented_block():
-    """One surface that runs through itself: a top vertex pushed out through the base."""
+    """A surface that intersects itself: a top vertex is moved through the base."""
     vertices, triangles = block(SIZE, 5)
     top = vertices.index((20.0, 20.0, 20.0))
     vertices[top] = (20.0, 20.0, -15.0)
@@ -71,7 +71,7 @@ class BadInput(unittest.TestCase):
         self.refuse(code, words, "build", path, "--out", self.out)
 
     def test_case_file_is_missing(self):
-        self.refuse(USAGE, ["none.toml", "cannot be read"], "build", self.root / "none.toml", "--out", self.out)
+        self.refuse(USAGE, ["none.toml", "cannot read"], "build", self.root / "none.toml", "--out", self.out)
 
     def test_case_file_is_empty(self):
         self.refuse_case(USAGE, ["block.toml:1", "'surface' is missing"], case="")
@@ -85,13 +85,13 @@ class BadInput(unittest.TestCase):
         (self.root / "block.off").unlink()
         self.refuse(GEOMETRY, ["block.off"], "build", path, "--out", self.out)
 
-    def test_surface_is_not_closed(self):
+    def test_surface_is_not_watertight(self):
         self.refuse_case(GEOMETRY, ["block.off"], surface=open_block())
 
     def test_surface_is_in_parts(self):
         self.refuse_case(GEOMETRY, ["block.off"], surface=crossing_block())
 
-    def test_surface_runs_through_itself(self):
+    def test_surface_intersects_itself(self):
         self.refuse_case(GEOMETRY, ["block.off", "intersect"], surface=dented_block())
 
     def test_surface_has_a_wrong_unit(self):
@@ -114,18 +114,18 @@ class BadInput(unittest.TestCase):
     def test_constant_is_negative(self):
         self.refuse_case(USAGE, ["material[0].young", "-10 kPa"], CASE.replace('"10 kPa"', '"-10 kPa"'))
 
-    def test_tool_goes_deeper_than_the_body(self):
+    def test_depth_exceeds_the_body(self):
         self.refuse_case(GEOMETRY, ["depth", "25 mm"], CASE.replace('depth = "1.2 mm"', 'depth = "25 mm"'))
 
-    def test_tool_goes_farther_than_the_body(self):
+    def test_lateral_travel_is_longer_than_the_body(self):
         self.refuse_case(GEOMETRY, ["lateral travel", "60 mm", "50 mm"],
                          CASE.replace('lateral_travel = "0.6 mm"', 'lateral_travel = "60 mm"'))
 
     def test_tool_is_larger_than_the_body(self):
         self.refuse_case(GEOMETRY, ["tool radius", "80 mm"], CASE.replace('radius = "6 mm"', 'radius = "80 mm"'))
 
-    def test_supports_hold_nothing(self):
-        self.refuse_case(GEOMETRY, ["support"], NOTHING_HELD)
+    def test_supports_fix_no_node(self):
+        self.refuse_case(GEOMETRY, ["support"], NO_FIXED_NODES)
 
     def test_output_folder_cannot_be_made(self):
         path = write_case(self.root)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""From a test bench to a felt body, through the real command, with the shipped records of the pad:
+"""From a test bench to a rendered body, by the real command, with the records of the pad in data/measured:
 import, a library of measurements alone, comparison, calibration by the finite element model, and a
 library with simulated shape and measured scale. Usage: measured_test.py PALPATE SOURCE_DIR
 """
@@ -69,7 +69,7 @@ class Measured(unittest.TestCase):
             depth, force = file["sample/displacement"][rows], -file["sample/force"][rows][:, 2]
             uncertainty = file["sample/force_uncertainty"][rows]
             self.assertTrue(np.all(np.isnan(file["sample/strain_energy"][rows])))
-            # The pad differs over its top: 4 % times the sine of the number of the site.
+            # The stiffness of the pad varies over its top: 4 % times the sine of the number of the site.
             truth = law(depth) * (1 + 0.04 * math.sin(5))
             self.assertTrue(np.all(np.abs(force - truth) <= 3.5 * uncertainty + 1e-9), (force - truth, uncertainty))
             self.assertLess(uncertainty[-1], 0.06 * force[-1])
@@ -97,7 +97,7 @@ class Measured(unittest.TestCase):
         self.assertEqual(summary["certificate"]["basis"], "measured")
         self.assertEqual([s["stage"] for s in summary["provenance"]], ["mesh", "import", "fit", "certify"])
         self.assertEqual(summary["provenance"][1]["facts"]["licence"], "CC0-1.0")
-        # What will be rendered, against what was measured.
+        # The library against the measurement.
         text = self.ok("compare", self.measured / "curves.h5", out / "library.h5", "--out", out / "compared")
         self.assertIn("within the uncertainty", text)
         compared = json.loads((out / "compared/comparison.json").read_text())
@@ -142,7 +142,7 @@ class Measured(unittest.TestCase):
         self.assertAlmostEqual(young["value"] / 10e3, factor, delta=0.1 * factor)
         self.assertLess(young["low"], young["value"])
         self.assertEqual([p["kind"] for p in found["paths"]], ["normal"])
-        # The drag is that of a half space and a round contact, which this mesh is too coarse for: the fit says so.
+        # The drag is that of a half-space with a round contact, which this mesh does not resolve: the fit reports it.
         text = self.ok("calibrate", "body", self.case, "--measured", robot / "curves.h5", "--young", "gel", "--drags",
                        "--depths", 2, "--out", self.out, "--threads", 2)
         self.assertIn("1 drags", text)
@@ -194,7 +194,7 @@ class Measured(unittest.TestCase):
             self.assertEqual("the radius of the tool, 6000 mm, is larger than the body" in out, doubted, out)
 
     def test_bad_records_are_refused(self):
-        """What laboratories get wrong: each is one line that names the file and the remedy."""
+        """Common mistakes in records: each is an error of one line that names the file and the remedy."""
         record = (self.presses.parent / "press-20-20-1.csv").read_bytes().decode()
         units = '"(s)","(mm)","(N)"'
         self.assertIn(units, record)

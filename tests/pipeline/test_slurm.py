@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""A campaign as an array of jobs of a real Slurm, started here for the purpose: a task is killed, the array is
+"""A campaign as an array of jobs on a Slurm that the test starts: a task is killed, the array is
 submitted again, and the merged curves have the bits of those computed without Slurm.
 
 Usage: slurm_test.py PALPATE SUBMIT. Needs munged, slurmctld and slurmd (Debian's packages) and root.
@@ -63,7 +63,7 @@ def free_port():
 
 
 class Cluster:
-    """munge, the controller and one node, with all their files in one folder."""
+    """munge, the controller and one node, with all files in one folder."""
 
     def __init__(self, root):
         self.root = root
@@ -71,7 +71,7 @@ class Cluster:
         text = CONFIGURATION.format(host=host, root=root, controller=free_port(), node=free_port())
         self.configuration = root / "slurm.conf"
         self.configuration.write_text(text, encoding="ascii")
-        # Of version 1, which nothing here uses: the other is looked for, and not found in a bare chroot.
+        # cgroup version 1, unused here: the search for version 2 fails in a bare chroot.
         (root / "cgroup.conf").write_text("CgroupPlugin=cgroup/v1\n", encoding="ascii")
         (root / "state").mkdir()
         (root / "spool").mkdir()
@@ -116,7 +116,7 @@ class Cluster:
             time.sleep(pause)
 
     def state_of(self, job):
-        """PENDING, RUNNING ..., also of jobs that have ended; empty when the controller does not answer."""
+        """PENDING, RUNNING, ..., also for finished jobs; empty when the controller does not answer."""
         found = re.search(r"JobState=(\w+)", self.run("scontrol", "show", "job", job).stdout)
         return found.group(1) if found else ""
 
@@ -153,13 +153,13 @@ class Slurm(unittest.TestCase):
         self.assertEqual(self.cluster.state_of(job), wanted, self.cluster.logs())
 
     def kill_process_of(self, shard):
-        """As the system does when memory runs out: the task's program, not the task."""
+        """Kills the program of the task, as the out-of-memory killer does."""
         def found():
             for folder in Path("/proc").glob("[0-9]*"):
                 try:
                     words = (folder / "cmdline").read_bytes().decode(errors="replace").split("\0")
                 except OSError:
-                    continue  # it has ended
+                    continue  # it has finished
                 if shard in words and str(self.out) in words and words[1] == "precompute":
                     os.kill(int(folder.name), signal.SIGKILL)
                     return True

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""VTKHDF files read by VTK itself, against the artifacts they were made from (read by h5py).
+"""VTKHDF files, read by VTK, against the artifacts they were made from, read by h5py.
 
 usage: vtkhdf_test.py <write_sample_grids>
 """
@@ -76,7 +76,7 @@ class VtkHdf(unittest.TestCase):
             np.testing.assert_array_equal(cells["region"], body["tetrahedron_region"])
 
     def test_vtk_finds_the_volumes(self):
-        """VTK's own volumes: orientation and order of the corners are as VTK expects."""
+        """VTK computes positive volumes: orientation and order of the corners are right."""
         sizes = vtkCellSizeFilter()
         sizes.SetInputData(self.grid("body"))
         sizes.Update()

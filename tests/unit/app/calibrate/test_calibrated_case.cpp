@@ -61,7 +61,7 @@ fem::LawConstants pasted(const std::string& material) {
       "[surface]\nfile = \"a.off\"\nunit = \"mm\"\n[[support]]\nshape = \"sphere\"\n"
       "centre = [\"0 mm\", \"0 mm\", \"0 mm\"]\nradius = \"1 mm\"\n[[material]]\n" +
       material;
-  return law_of(parse_case(text, "pasted.toml").materials.at(0));
+  return parse_case(text, "pasted.toml").materials.at(0).law;
 }
 
 class CalibratedCase : public testing::TestWithParam<fem::LawConstants> {};

@@ -39,7 +39,7 @@ class FibreFile : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(FibreFile, HoldsPlacesInItsUnitAndDirections) {
+TEST_F(FibreFile, ReadsPointsInTheirUnitAndDirections) {
   const auto samples = read_fibre_file(
       write("# from a scan\nx,y,z,fx,fy,fz,sx,sy,sz\n\n1, 2, 3, 0, 0, 2, 1, 0, 0  # first\n"
             "-1e1,0,0.5,1,0,0,0,1,0\r\n"),
@@ -53,18 +53,18 @@ TEST_F(FibreFile, HoldsPlacesInItsUnitAndDirections) {
   EXPECT_EQ(without[0].across, (Vec3{0, 0, 0}));
 }
 
-TEST_F(FibreFile, TellsTheLineAndTheFault) {
+TEST_F(FibreFile, NamesTheLineAndTheProblem) {
   using testing::AllOf;
   using testing::HasSubstr;
   const std::string title = "x,y,z,fx,fy,fz\n";
-  EXPECT_THAT(message("a,b\n"), AllOf(HasSubstr(":1"), HasSubstr("the columns are named 'a,b'")));
-  EXPECT_THAT(message(""), HasSubstr("the columns are named ''"));
-  EXPECT_THAT(message(title), HasSubstr("no point"));
+  EXPECT_THAT(message("a,b\n"), AllOf(HasSubstr(":1"), HasSubstr("unknown columns 'a,b'")));
+  EXPECT_THAT(message(""), HasSubstr("unknown columns ''"));
+  EXPECT_THAT(message(title), HasSubstr("no points"));
   EXPECT_THAT(message(title + "1,2,3,1,0,0\n1,2,3,1,0\n"),
-              AllOf(HasSubstr(":3"), HasSubstr("5 values where 6")));
-  EXPECT_THAT(message(title + "1,2,3,1,0,0,7\n"), HasSubstr("7 values where 6"));
-  EXPECT_THAT(message(title + "1,2,mm,1,0,0\n"), HasSubstr("value 3 is no finite number"));
-  EXPECT_THAT(message(title + "1,2,nan,1,0,0\n"), HasSubstr("value 3 is no finite number"));
+              AllOf(HasSubstr(":3"), HasSubstr("5 values for 6 columns")));
+  EXPECT_THAT(message(title + "1,2,3,1,0,0,7\n"), HasSubstr("7 values for 6 columns"));
+  EXPECT_THAT(message(title + "1,2,mm,1,0,0\n"), HasSubstr("value 3 is not a finite number"));
+  EXPECT_THAT(message(title + "1,2,nan,1,0,0\n"), HasSubstr("value 3 is not a finite number"));
   EXPECT_THAT(message(title + "1,2,3,0,0,0\n"), AllOf(HasSubstr(":2"), HasSubstr("is zero")));
   EXPECT_THAT(message("x,y,z,fx,fy,fz,sx,sy,sz\n1,2,3,0,0,1,0,0,2\n"), HasSubstr("parallel"));
   EXPECT_THROW(read_fibre_file(folder_ / "none.csv", 1), Error);

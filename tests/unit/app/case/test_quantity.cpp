@@ -3,7 +3,6 @@
 
 #include <random>
 
-#include "app/case/nearest.hpp"
 #include "app/case/quantity.hpp"
 
 namespace palpate::app {
@@ -42,14 +41,6 @@ TEST(Quantity, PrintsWhatReadsBackExactly) {
   }
   EXPECT_EQ(print_quantity(0.01, Dimension::Length), "10 mm");
   EXPECT_EQ(print_quantity(1e4, Dimension::Pressure), "10 kPa");
-}
-
-TEST(Nearest, FindsTheWordThatWasMeant) {
-  EXPECT_EQ(edit_distance("kitten", "sitting"), 3U);  // the textbook pair
-  EXPECT_EQ(edit_distance("", "abc"), 3U);
-  EXPECT_EQ(edit_distance("same", "same"), 0U);
-  EXPECT_EQ(nearest("yuong", {"poisson", "young", "law"}), "young");
-  EXPECT_EQ(nearest("x", {}), "");
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include <string>
 
 #include "app/case/case.hpp"
-#include "app/case/material.hpp"
 #include "app/case/quantity.hpp"
 #include "fem/laws/law.hpp"
 #include "tests/support/source_folder.hpp"
@@ -102,7 +101,7 @@ TEST(Tissues, AreMaterialsOfACaseAndHaveTheStressOfTheirConstants) {
     for (const char* about : {"source", "range", "note"})
       EXPECT_GE(tissue[about].value<std::string>().value().size(), 10u) << about;
     const Case c = parse_case(case_with(tissue), "tissue.toml");
-    const fem::LawConstants law = law_of(c.materials.at(0));
+    const fem::LawConstants law = c.materials.at(0).law;
     for (const double stretch : {0.9, 1.1, 1.2}) {
       const double expected = closed_form(tissue, stretch);
       EXPECT_NEAR(nominal_stress(law, stretch), expected, 1e-9 * std::abs(expected) + 1e-9);

@@ -337,13 +337,13 @@ TEST_F(Report, RefusesArtifactsThatDoNotFitTogether) {
   };
   const testing::Synthetic sound = all_;
   all_.library.responses.pop_back();
-  EXPECT_THAT(problem(), HasSubstr("number of vertices"));
+  EXPECT_THAT(problem(), HasSubstr("numbers of vertices"));
   all_ = sound;
   all_.curves.sites[3].vertex = 100000;
-  EXPECT_THAT(problem(), HasSubstr("vertex that the body does not have"));
+  EXPECT_THAT(problem(), HasSubstr("a vertex of the curves is not in the body"));
   all_ = sound;
   all_.library.certificate.triangles.pop_back();
-  EXPECT_THAT(problem(), HasSubstr("number of triangles"));
+  EXPECT_THAT(problem(), HasSubstr("numbers of triangles"));
   ReportInput none = input();
   none.library = nullptr;
   EXPECT_THROW(write_report(none, folder_ / "refused.html"), Error);

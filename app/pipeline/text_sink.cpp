@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/pipeline/text_sink.hpp"
+
+#include <cmath>
+
+#include "format/library.hpp"
+
+namespace palpate::app {
+namespace {
+
+std::string bound_text(double value) {
+  return std::isfinite(value) ? fmt::format("{:.1f} N/m", value) : "no bound";
+}
+
+std::string rounded_up(double bound) {
+  return std::isfinite(bound) ? lipschitz_bound_text(bound) : "no bound";
+}
+
+}  // namespace
+
+void TextSink::operator()(const Event& event) {
+  std::visit([this](const auto& e) { print(e); }, event);
+}
+
+void TextSink::print(const StageStarted& e) {
+  line("{}: making {}: {}", e.stage, e.file.string(), e.reason);
+}
+
+void TextSink::print(const StageUpToDate& e) {
+  line("{}: {} is up to date", e.stage, e.file.string());
+}
+
+void TextSink::print(const LogLine& e) {
+  line("  {}", e.text);
+}
+
+void TextSink::print(const Warning& e) {
+  line("  WARNING: {}", e.text);
+}
+
+void TextSink::print(const MeshFinished& e) {
+  line("mesh: {} nodes, {} tetrahedra, {} response triangles, {} sites -> {}", e.nodes,
+       e.tetrahedra, e.response_triangles, e.sites, e.file.string());
+}
+
+void TextSink::print(const CampaignStarted& e) {
+  progress_ = ProgressDisplay("precompute", output_);  // its clock starts now
+  line("  BLAS kernel: {}", e.blas_kernel);
+  if (e.moved_aside)
+    line("  {} belongs to another campaign: moved to {}.old", e.journal.string(),
+         e.journal.filename().string());
+  if (e.known_sites > 0)
+    line("  {} finished sites found in {} are not computed again", e.known_sites,
+         e.journal.string());
+  if (e.dropped_bytes > 0)
+    line(
+        "  an incomplete record at the end of the journal ({} bytes) is dropped; its site is "
+        "computed again",
+        e.dropped_bytes);
+}
+
+void TextSink::print(const Progress& e) {
+  progress_.show(e);
+}
+
+void TextSink::print(const SamplingRound& e) {
+  line(
+      "  round {}: {} of {} sites; 95th-percentile error at hold-out points: {:.1f} % along the "
+      "press, {:.1f} % as vectors (median {:.1f} %)",
+      e.number, e.sites, e.of_sites, 100 * e.along.p95, 100 * e.whole.p95, 100 * e.whole.median);
+}
+
+void TextSink::print(const SamplingFinished& e) {
+  line("  {}{}", e.tolerance_met ? "" : "WARNING: ", e.reason);
+}
+
+void TextSink::print(const CampaignFinished& e) {
+  constexpr std::size_t kMostListed = 5;
+  line("precompute: {} sites complete, {} stopped early, {} failed, {} ({} CPU time) -> {}",
+       e.counts.complete, e.counts.partial, e.counts.failed, duration_text(e.seconds),
+       duration_text(e.cpu_seconds), e.file.string());
+  for (std::size_t i = 0; i < std::min(kMostListed, e.incomplete.size()); ++i) {
+    const SiteFinished& site = e.incomplete[i];
+    line("  site {} {}: {}", site.vertex,
+         site.status == SiteStatus::Failed ? "failed" : "stopped early", site.reason);
+  }
+  if (e.incomplete.size() > kMostListed)
+    line("  and {} more: see `palpate inspect`", e.incomplete.size() - kMostListed);
+}
+
+void TextSink::print(const MergeFinished& e) {
+  line("merge: {} sites of {} parts, {} complete, {} stopped early, {} failed -> {}", e.sites,
+       e.parts, e.counts.complete, e.counts.partial, e.counts.failed, e.file.string());
+}
+
+void TextSink::print(const FitFinished& e) {
+  line("fit: {} responses fitted, {} interpolated, {} holes -> {}", e.fitted, e.interpolated,
+       e.holes, e.file.string());
+}
+
+void TextSink::print(const Certified& e) {
+  line("  L_stick: {}, L_slip: {} at mu = {}", bound_text(e.stick_bound), bound_text(e.slip_bound),
+       e.friction);
+  line("  smallest enforceable bound L_min: {}; the runtime enforces {}",
+       rounded_up(e.min_enforceable_bound), bound_text(e.enforced_bound));
+  line("  limited by: {}", e.limited_by);
+  for (const auto& [device, verdict] : e.devices) line("  {}: {}", device, verdict);
+  line("certify: {}", e.file.string());
+}
+
+void TextSink::print(const StiffnessAtRate& e) {
+  if (std::isnan(e.certifiable_stiffness))
+    return line("  {}: not certified: its damping is unknown", e.device);
+  const double bound = e.certifiable_stiffness;
+  line("  {} at {} Hz: certifiable stiffness {:.1f} N/m", e.device, e.rate, bound);
+  if (e.library_bound <= bound)
+    return line("    the library, {:.1f} N/m, is certified; {:.2f} times its forces would be, too",
+                e.library_bound, bound / e.library_bound);
+  line("    the library needs {}: {} of {} triangles exceed it, most of all triangle {}",
+       bound_text(e.library_bound), e.triangles_over, e.triangles, e.worst_triangle);
+  if (e.min_enforceable_bound <= bound)
+    return line(
+        "    slides can be throttled to {}: certified with an enforced bound of {:.1f} N/m, which "
+        "--soften writes into a library and `palpate run` chooses by itself",
+        rounded_up(e.min_enforceable_bound), std::floor(10 * bound) / 10);
+  if (std::isinf(e.min_enforceable_bound)) return line("    and no bound can be enforced");
+  line(
+      "    with throttled slides it needs {:.1f} N/m: {:.2f} times its forces would be certified; "
+      "--soften caps only the stiff slopes",
+      e.min_enforceable_bound, bound / e.min_enforceable_bound);
+}
+
+void TextSink::print(const Softened& e) {
+  if (e.curves == 0) return line("certify: no response had to be softened -> {}", e.file.string());
+  line("certify: slopes capped at {:.1f} N/m, {} curves changed -> {}", e.slope_cap, e.curves,
+       e.file.string());
+  line(
+      "  force lost at full deflection: median {:.1f} %, 95th percentile {:.1f} %, largest {:.1f} "
+      "%",
+      100 * e.median_loss, 100 * e.p95_loss, 100 * e.largest_loss);
+  line("  to compare with direct solutions: palpate compare --fem CASE --out DIR --library {}",
+       e.file.string());
+}
+
+void TextSink::print(const SteepestForce& e) {
+  if (e.triangle < 0) return line("  {}: nothing to search", e.contact);
+  const std::string ratio = std::isfinite(e.bound)
+                                ? fmt::format("{:.2f} of the bound", e.slope / e.bound)
+                                : "there is no bound";
+  line(
+      "  {}: {:.1f} N/m in triangle {}, {}; largest ratio to the bound of its own triangle {:.4f} "
+      "({} tries)",
+      e.contact, e.slope, e.triangle, ratio, e.largest_ratio, e.tries);
+}
+
+void TextSink::print(const ConvergenceLevel& e) {
+  line("convergence: elements of {:.3g} mm, {} unknowns, {} CPU time a site", 1e3 * e.element_size,
+       e.unknowns, duration_text(e.cpu_seconds_per_site));
+}
+
+void TextSink::print(const ConvergenceOfForce& e) {
+  std::string forces;
+  for (const double f : e.forces) forces += fmt::format(" {:.2f}", 1e3 * f);
+  if (e.has_order)
+    return line("  site {}, {}:{} -> {:.2f} mN, order {:.2f}; error of the case's mesh {:+.1f} %",
+                e.vertex, e.quantity, forces, 1e3 * e.limit, e.order, 100 * e.error);
+  line("  site {}, {}:{} mN follow no power of the element size; spread {:.1f} %", e.vertex,
+       e.quantity, forces, 100 * e.error);
+}
+
+void TextSink::print(const FileWritten& e) {
+  line("{}: {}", e.stage, e.file.string());
+}
+
+}  // namespace palpate::app

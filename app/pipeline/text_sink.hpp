@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "app/console.hpp"
+#include "app/pipeline/events.hpp"
+
+namespace palpate::app {
+
+/// Prints events as lines of text, and progress as a bar where the output is a terminal.
+/// Not thread-safe.
+class TextSink {
+ public:
+  explicit TextSink(TextOutput output) : output_(std::move(output)) {}
+  void operator()(const Event& event);
+
+ private:
+  void print(const StageStarted& e);
+  void print(const StageUpToDate& e);
+  void print(const LogLine& e);
+  void print(const Warning& e);
+  void print(const MeshFinished& e);
+  void print(const CampaignStarted& e);
+  void print(const SiteFinished&) {}  // progress and the summary are enough for a reader
+  void print(const Progress& e);
+  void print(const SamplingRound& e);
+  void print(const SamplingFinished& e);
+  void print(const CampaignFinished& e);
+  void print(const MergeFinished& e);
+  void print(const FitFinished& e);
+  void print(const Certified& e);
+  void print(const StiffnessAtRate& e);
+  void print(const Softened& e);
+  void print(const SteepestForce& e);
+  void print(const ConvergenceLevel& e);
+  void print(const ConvergenceOfForce& e);
+  void print(const FileWritten& e);
+
+  template <class... Args>
+  void line(fmt::format_string<Args...> format, Args&&... args) {
+    output_.line(fmt::format(format, std::forward<Args>(args)...));
+  }
+
+  TextOutput output_;
+  ProgressDisplay progress_{"precompute", output_};
+};
+
+}  // namespace palpate::app

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/app/case/good_case.hpp"
+
+namespace palpate::app {
+namespace {
+
+TEST(CaseReader, RejectsBareNumberForADimensionalKey) {
+  const std::string message = message_with("\"8 mm\"", "8");
+  EXPECT_THAT(message, HasSubstr("ball.toml:14: "));
+  EXPECT_THAT(message, HasSubstr("mesh.patch_spacing"));
+  EXPECT_THAT(message, HasSubstr("found 8"));
+  EXPECT_THAT(message, HasSubstr("patch_spacing = \"10 mm\""));
+}
+
+TEST(CaseReader, RejectsWrongOrMissingUnit) {
+  EXPECT_THAT(message_with("\"8 mm\"", "\"8 kPa\""), HasSubstr("found '8 kPa'"));
+  EXPECT_THAT(message_with("\"8 mm\"", "'8'"), HasSubstr("mesh.patch_spacing"));
+  EXPECT_THAT(message_with("\"10 kPa\"", "\"10 mm\""), HasSubstr("units: kPa, MPa, Pa"));
+  EXPECT_THAT(message_with("\"-15 mm\"", "\"-15\""), HasSubstr("support[0].point"));
+  EXPECT_THAT(message_with("\"33.3 deg\"", "33.3"), HasSubstr("indentation.azimuths"));
+}
+
+TEST(CaseReader, RejectsUnitWhereANumberIsBare) {
+  EXPECT_THAT(message_with("poisson = 0.49", "poisson = \"0.49\""),
+              HasSubstr("material[0].poisson"));
+}
+
+TEST(CaseReader, NamesTheNearestKnownKey) {
+  const std::string message =
+      message_with("young = \"10 kPa\"", "yuong = \"10 kPa\"\nyoung = \"1 Pa\"");
+  EXPECT_THAT(message, HasSubstr("unknown key 'yuong' in [[material]]"));
+  EXPECT_THAT(message, HasSubstr("'young'"));
+  EXPECT_THAT(message, HasSubstr("ball.toml:40: "));
+  EXPECT_THAT(message_with("[mesh]", "[mehs]"), HasSubstr("nearest known key is 'mesh'"));
+}
+
+TEST(CaseReader, RejectsAKeyOfAnotherShape) {
+  EXPECT_THAT(message_with("normal = [0, 0, -1]", "normal = [0, 0, -1]\nradius = \"5 mm\""),
+              HasSubstr("unknown key 'radius'"));
+}
+
+TEST(CaseReader, RejectsNumbersThatAreNotFinite) {
+  const std::string message = message_with("poisson = 0.49", "poisson = nan");
+  EXPECT_THAT(message, HasSubstr("material[0].poisson = nan is out of range"));
+  EXPECT_THAT(message, HasSubstr("0 .. 0.5, upper end excluded"));
+  EXPECT_THAT(message_with("poisson = 0.49", "poisson = inf"), HasSubstr("= inf is out of range"));
+  EXPECT_THAT(message_with("\"10 kPa\"", "\"nan kPa\""), HasSubstr("material[0].young = nan kPa"));
+  EXPECT_THAT(message_with("\"10 kPa\"", "\"inf kPa\""), HasSubstr("> 0 kPa"));
+  EXPECT_THAT(message_with("\"33.3 deg\"", "\"nan deg\""), HasSubstr("out of range"));
+  EXPECT_THAT(message_with("[0, 0, -1]", "[0, 0, nan]"), HasSubstr("support[0].normal"));
+}
+
+TEST(CaseReader, RejectsValuesOutOfRange) {
+  EXPECT_THAT(message_with("\"10 kPa\"", "\"-10 kPa\""), HasSubstr("material[0].young = -10 kPa"));
+  EXPECT_THAT(message_with("poisson = 0.49", "poisson = 0.5"), HasSubstr("out of range"));
+  EXPECT_THAT(message_with("poisson = 0.49", "poisson = -0.1"), HasSubstr("out of range"));
+  EXPECT_THAT(message_with("\"4 mm\"\n\n[[support]]", "\"0 mm\"\n\n[[support]]"),
+              HasSubstr("mesh.element_size = 0 mm"));
+  EXPECT_THAT(message_with("[0, 0, -1]", "[0, 0, 0]"), HasSubstr("not zero"));
+}
+
+TEST(CaseReader, RejectsMissingKeys) {
+  EXPECT_THAT(message_with("unit = \"mm\"\n", ""), HasSubstr("key 'surface.unit' is missing"));
+  EXPECT_THAT(message_with("poisson = 0.49\n", ""), HasSubstr("material[0].poisson"));
+  EXPECT_THAT(message_with("poisson = 0.49\n", "posson = 0.49\n"),
+              HasSubstr("unknown key 'posson'"));
+  EXPECT_THAT(message_with("shape = \"box\"\n", ""), HasSubstr("support[3].shape"));
+  EXPECT_THAT(message_of("name = \"x\"\n"), HasSubstr("key 'surface' is missing"));
+}
+
+TEST(CaseReader, NamesTheLineOfInvalidToml) {
+  EXPECT_THAT(message_with("[mesh]", "[mesh"), HasSubstr("ball.toml:13: invalid TOML"));
+  EXPECT_THAT(message_with("unit = \"cm\"", "unit = \"foot\""), HasSubstr("not one of mm, cm"));
+}
+
+TEST(CaseReader, RejectsAnUnreadableFile) {
+  try {
+    read_case("/nonexistent/case.toml");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Configuration);
+    EXPECT_EQ(error.where(), "/nonexistent/case.toml");
+  }
+}
+
+}  // namespace
+}  // namespace palpate::app

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The sinks by themselves: every event as text and as JSON, and the page that lists its keys.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "app/pipeline/describe_events.hpp"
+#include "app/pipeline/json_sink.hpp"
+#include "app/pipeline/text_sink.hpp"
+#include "tests/support/source_folder.hpp"
+
+namespace palpate::app {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using Json = nlohmann::json;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// What a text sink prints for these events on an output that is no terminal.
+std::string text_of(const std::vector<Event>& events, bool terminal = false) {
+  std::string out;
+  TextSink sink({[&](std::string_view text) { out += text; }, terminal});
+  for (const Event& event : events) sink(event);
+  return out;
+}
+
+Json json_of(const Event& event) {
+  std::string out;
+  const JsonSink sink([&](std::string_view line) { out += line; });
+  sink(event);
+  EXPECT_EQ(out.find('\n'), std::string::npos);
+  return Json::parse(out);
+}
+
+SamplingRound sampling_round() {
+  SamplingRound round;
+  round.number = 2;
+  round.sites = 13;
+  round.of_sites = 88;
+  round.leave_one_out = 0.05;
+  round.along.states = 40;
+  round.along.p95 = 0.038;
+  round.whole.p95 = 0.04;
+  round.whole.median = 0.013;
+  return round;
+}
+
+Certified certified() {
+  Certified event;
+  event.friction = 0.3;
+  event.stick_bound = 150.26;
+  event.slip_bound = kInfinity;
+  event.min_enforceable_bound = 160.01;
+  event.enforced_bound = 170;
+  event.limited_by = "a slide in triangle 7";
+  event.devices = {{"pen", "certified passive from 900 Hz"}};
+  event.file = "out/library.h5";
+  return event;
+}
+
+StiffnessAtRate stiffness(double certifiable, double library, double enforceable) {
+  StiffnessAtRate event{"pen", 1000, certifiable, library, enforceable, 3, 20, 7};
+  return event;
+}
+
+TEST(TextSink, PrintsTheStagesOfABuild) {
+  EXPECT_EQ(text_of({StageStarted{"mesh", "out/body.h5", "it does not exist"},
+                     LogLine{"mesh", "remeshed"}, MeshFinished{10, 20, 30, 5, "out/body.h5"},
+                     StageUpToDate{"fit", "out/library.h5"}, FitFinished{4, 1, 2, "l.h5"},
+                     FileWritten{"convergence", "c.csv"}, Warning{"precompute", "careful"}}),
+            "mesh: making out/body.h5: it does not exist\n"
+            "  remeshed\n"
+            "mesh: 10 nodes, 20 tetrahedra, 30 response triangles, 5 sites -> out/body.h5\n"
+            "fit: out/library.h5 is up to date\n"
+            "fit: 4 responses fitted, 1 interpolated, 2 holes -> l.h5\n"
+            "convergence: c.csv\n"
+            "  WARNING: careful\n");
+}
+
+TEST(TextSink, PrintsWhatACampaignContinues) {
+  EXPECT_EQ(text_of({CampaignStarted{"Haswell", 0, 0, false, "o/c.journal"}}),
+            "  BLAS kernel: Haswell\n");
+  const std::string text = text_of({CampaignStarted{"Haswell", 32, 9, true, "o/c.journal"}});
+  EXPECT_THAT(text, HasSubstr("moved to c.journal.old"));
+  EXPECT_THAT(text, HasSubstr("32 finished sites found in o/c.journal"));
+  EXPECT_THAT(text, HasSubstr("(9 bytes)"));
+}
+
+TEST(TextSink, ListsTheFirstIncompleteSites) {
+  CampaignFinished event{{1, 1, 6}, 65, 3605, "curves.h5", {}};
+  for (int vertex = 0; vertex < 7; ++vertex)
+    event.incomplete.push_back(
+        {vertex, vertex == 0 ? SiteStatus::Partial : SiteStatus::Failed, "a reason", 1});
+  const std::string text = text_of({event});
+  EXPECT_THAT(text, HasSubstr("1 sites complete, 1 stopped early, 6 failed, 1 min 05 s (1 h 00 min "
+                              "CPU time) -> curves.h5"));
+  EXPECT_THAT(text, HasSubstr("site 0 stopped early: a reason"));
+  EXPECT_THAT(text, HasSubstr("site 4 failed: a reason"));
+  EXPECT_THAT(text, ::testing::Not(HasSubstr("site 5")));
+  EXPECT_THAT(text, HasSubstr("and 2 more"));
+  event.incomplete.clear();
+  EXPECT_THAT(text_of({event}), ::testing::Not(HasSubstr("more")));
+}
+
+TEST(TextSink, PrintsProgressByLineAndByBar) {
+  const Progress done{10, 1, 0, 10, 0}, half{5, 0, 2, 10, 0};
+  EXPECT_THAT(text_of({half}), IsEmpty());  // too soon after the start for a line
+  EXPECT_THAT(text_of({done}), HasSubstr("precompute: 10 of 10 sites, 1 incomplete, 0 s\n"));
+  const std::string bar = text_of({done}, true);
+  EXPECT_THAT(bar, HasSubstr("\r[##############################] precompute: 10 of 10"));
+  EXPECT_TRUE(bar.ends_with("\n"));
+  EXPECT_THAT(text_of({SiteFinished{}}), IsEmpty());
+}
+
+TEST(TextSink, PrintsAdaptiveSampling) {
+  EXPECT_EQ(text_of({sampling_round(), SamplingFinished{false, "all points are sites"}}),
+            "  round 2: 13 of 88 sites; 95th-percentile error at hold-out points: 3.8 % along the "
+            "press, 4.0 % as vectors (median 1.3 %)\n"
+            "  WARNING: all points are sites\n");
+  EXPECT_EQ(text_of({SamplingFinished{true, "met"}}), "  met\n");
+}
+
+TEST(TextSink, PrintsTheCertificateAndBoundsThatDoNotExist) {
+  EXPECT_EQ(text_of({certified()}),
+            "  L_stick: 150.3 N/m, L_slip: no bound at mu = 0.3\n"
+            "  smallest enforceable bound L_min: 160.1 N/m; the runtime enforces 170.0 N/m\n"
+            "  limited by: a slide in triangle 7\n"
+            "  pen: certified passive from 900 Hz\n"
+            "certify: out/library.h5\n");
+}
+
+TEST(TextSink, PrintsTheCertifiableStiffnessAndItsRemedies) {
+  EXPECT_THAT(text_of({stiffness(NAN, 100, 90)}), HasSubstr("its damping is unknown"));
+  EXPECT_THAT(text_of({stiffness(200, 100, 90)}), HasSubstr("2.00 times its forces"));
+  EXPECT_THAT(text_of({stiffness(95, 100, 90)}), HasSubstr("throttled to 90.0 N/m"));
+  EXPECT_THAT(text_of({stiffness(80, 100, kInfinity)}), HasSubstr("no bound can be enforced"));
+  EXPECT_THAT(text_of({stiffness(45, 100, 90)}),
+              HasSubstr("3 of 20 triangles exceed it, most of all triangle 7"));
+  EXPECT_THAT(text_of({stiffness(45, 100, 90)}), HasSubstr("0.50 times its forces"));
+  EXPECT_THAT(text_of({Softened{0, kInfinity, 0, 0, 0, "s.h5"}}), HasSubstr("no response had to"));
+  EXPECT_THAT(text_of({Softened{4, 80, 0.01, 0.1, 0.2, "s.h5"}}),
+              HasSubstr("median 1.0 %, 95th percentile 10.0 %, largest 20.0 %"));
+}
+
+TEST(TextSink, PrintsSearchesAndStudies) {
+  EXPECT_THAT(text_of({SteepestForce{"sliding", 0, 0, -1, 0, 0}}), HasSubstr("nothing to search"));
+  EXPECT_THAT(text_of({SteepestForce{"sticking", 90, 100, 3, 0.95, 400}}),
+              HasSubstr("90.0 N/m in triangle 3, 0.90 of the bound"));
+  EXPECT_THAT(text_of({SteepestForce{"sliding", 90, kInfinity, 3, 0.95, 400}}),
+              HasSubstr("there is no bound"));
+  EXPECT_THAT(text_of({ConvergenceLevel{0.004, 12000, 61}}),
+              HasSubstr("elements of 4 mm, 12000 unknowns, 1 min 01 s"));
+  EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, true, 1.5, 0.08, 0.25}}),
+              HasSubstr("100.00 90.00 -> 80.00 mN, order 1.50"));
+  EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, false, NAN, 0.09, 0.1}}),
+              HasSubstr("spread 10.0 %"));
+  EXPECT_THAT(text_of({MergeFinished{9, 3, {9, 0, 0}, "c.h5"}}),
+              HasSubstr("9 sites of 3 parts, 9 complete"));
+}
+
+TEST(JsonSink, WritesOneObjectForEachEvent) {
+  EXPECT_EQ(json_of(CampaignStarted{"Haswell", 3, 0, false, "c.journal"}),
+            Json::parse(R"({"event": "start", "blas_kernel": "Haswell", "known_sites": 3,
+                            "dropped_bytes": 0, "moved_aside": false})"));
+  EXPECT_EQ(json_of(SiteFinished{7, SiteStatus::Partial, "line search failed", 1.5}),
+            Json::parse(R"({"event": "site", "vertex": 7, "status": "partial",
+                            "reason": "line search failed", "cpu_seconds": 1.5})"));
+  EXPECT_EQ(json_of(Progress{4, 1, 2, 10, 3}),
+            Json::parse(R"({"event": "progress", "done": 4, "failed": 1, "running": 2,
+                            "total": 10})"));
+  EXPECT_EQ(json_of(CampaignFinished{{8, 1, 1}, 2, 3.5, "curves.h5", {}}),
+            Json::parse(R"({"event": "end", "complete": 8, "partial": 1, "failed": 1,
+                            "seconds": 2.0, "cpu_seconds": 3.5, "file": "curves.h5"})"));
+}
+
+TEST(JsonSink, WritesErrorsOfARoundAsObjects) {
+  const Json round = json_of(sampling_round());
+  EXPECT_EQ(round["event"], "round");
+  EXPECT_EQ(round["error_along_press"]["p95"], 0.038);
+  EXPECT_EQ(round["error_of_vector"]["median"], 0.013);
+  EXPECT_EQ(round["hold_out_states"], 40);
+}
+
+TEST(JsonSink, WritesNullForNumbersThatAreNotFinite) {
+  const Json event = json_of(certified());
+  EXPECT_TRUE(event["L_slip"].is_null());
+  EXPECT_EQ(event["L_stick"], 150.26);
+  EXPECT_EQ(event["devices"]["pen"], "certified passive from 900 Hz");
+  EXPECT_TRUE(json_of(stiffness(NAN, 1, 1))["certifiable_stiffness"].is_null());
+}
+
+TEST(Console, DurationsAreShort) {
+  EXPECT_EQ(duration_text(41.6), "42 s");
+  EXPECT_EQ(duration_text(187), "3 min 07 s");
+  EXPECT_EQ(duration_text(8100), "2 h 15 min");
+  EXPECT_EQ(duration_text(-1), "0 s");
+}
+
+/// Set PALPATE_UPDATE_DOCS=1 to rewrite the tables of the page.
+TEST(EventReference, IsThatOfThePage) {
+  const std::string path = (test::source_folder() / "docs/campaigns.md").string();
+  std::ostringstream page;
+  page << std::ifstream(path).rdbuf();
+  const std::string begin = "<!-- events: begin -->\n";
+  const std::string text = page.str();
+  const auto first = text.find(begin);
+  const auto last = text.find("<!-- events: end -->");
+  ASSERT_NE(first, std::string::npos);
+  ASSERT_NE(last, std::string::npos);
+  const std::string expected =
+      text.substr(0, first + begin.size()) + event_reference() + text.substr(last);
+  if (std::getenv("PALPATE_UPDATE_DOCS") != nullptr) std::ofstream(path) << expected;
+  EXPECT_EQ(text, expected) << "run this test once with PALPATE_UPDATE_DOCS=1";
+}
+
+}  // namespace
+}  // namespace palpate::app
