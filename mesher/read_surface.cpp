@@ -15,6 +15,7 @@
 #include "mesher/cgal_mesh.hpp"
 #include "mesher/queries.hpp"
 #include "mesher/read_obj.hpp"
+#include "mesher/repair.hpp"
 #include "mesher/soup.hpp"
 
 namespace palpate::mesher {
@@ -167,6 +168,28 @@ void turn_outward(Surface& surface, const std::string& where, const Log& log) {
   note(log, where + ": the faces were oriented inward; all were reversed");
 }
 
+/// The surface as the file has it, or a refusal that names its fault.
+Surface checked(Soup soup, const std::string& where, const Log& log) {
+  check_manifold(soup, where);
+  orient(soup, where, log);
+  Surface surface = triangulate(soup, where);
+  check_geometry(surface, where);
+  return surface;
+}
+
+Surface repaired(const Soup& soup, const RepairSettings& settings, const std::string& where,
+                 const Log& log) {
+  RepairReport report;
+  Surface surface = repair(soup, settings, where, report);
+  for (const std::string& step : report.steps) note(log, where + ": " + step);
+  note(log, text(where, ": repaired: area ", 1e6 * report.area_before, " to ",
+                 1e6 * report.area_after, " mm^2, volume ", 1e9 * report.volume,
+                 " mm^3; the surface moved by at most ", millimetres(report.moved), " at ",
+                 millimetres(report.moved_at), "; what was added is at most ",
+                 millimetres(report.added), " from it, at ", millimetres(report.added_at)));
+  return surface;
+}
+
 }  // namespace
 
 Surface read_surface(const SurfaceFile& file, const Log& log) {
@@ -176,10 +199,10 @@ Surface read_surface(const SurfaceFile& file, const Log& log) {
   scale_to_metres(soup, file);
   tidy(soup, where, log);
   check_entries(soup, where);
-  check_manifold(soup, where);
-  orient(soup, where, log);
-  Surface surface = triangulate(soup, where);
-  check_geometry(surface, where);
+  const bool repairs = file.repair.mode == RepairMode::Wrap ||
+                       (file.repair.mode == RepairMode::Auto && !is_sound(soup));
+  Surface surface =
+      repairs ? repaired(soup, file.repair, where, log) : checked(std::move(soup), where, log);
   turn_outward(surface, where, log);
   const Bounds box = bounds(surface.points);
   note(log, text(where, ": ", surface.points.size(), " points, ", surface.triangles.size(),

@@ -11,14 +11,17 @@
 #include <vector>
 
 #include "format/vec3.hpp"
+#include "mesher/repair_settings.hpp"
 
 namespace palpate::mesher {
 
-/// A closed triangulated surface on disk (OFF, OBJ, PLY, STL) and the length of its unit.
+/// A triangulated surface on disk (OFF, OBJ, PLY, STL), the length of its unit, and how its faults
+/// are repaired.
 struct SurfaceFile {
   std::filesystem::path path;
   double unit = 1.0;        ///< m per unit of the file
   std::string region_name;  ///< material region of its interior
+  RepairSettings repair{};
 };
 
 /// Contains the nodes on the side of the plane to which `normal` points.

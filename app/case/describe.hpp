@@ -77,21 +77,48 @@ void describe_path(V& v, std::filesystem::path& path, const Key& key) {
 }
 
 template <class V>
+void describe_repair(V& v, mesher::RepairSettings& s) {
+  describe_choice(
+      v, s.mode,
+      {"repair",
+       "faults of the surface: `auto` repairs them, `none` refuses them, `wrap` replaces "
+       "the surface by an alpha wrap"},
+      kRepairModes);
+  describe_choice(
+      v, s.largest_part,
+      {"parts",
+       "separate parts: `one` refuses several, `largest` keeps the one with the largest "
+       "area"},
+      kParts);
+  v.number(s.max_hole, {"max_hole",
+                        "diameter of the largest hole that `auto` fills, over the extent of the "
+                        "surface; flat cuts of any size are filled",
+                        kOptional,
+                        {.low = 0, .high = 1}});
+  v.number(s.max_change, {"max_change",
+                          "largest distance that `auto` may move the surface, over its extent",
+                          kOptional,
+                          {.low = 0, .high = 1}});
+}
+
+template <class V>
 void describe_surface(V& v, mesher::SurfaceFile& s) {
-  describe_path(v, s.path,
-                {"file", "watertight triangle surface (OFF, OBJ, PLY or STL), relative to the case",
-                 kRequired});
+  describe_path(
+      v, s.path,
+      {"file", "triangle surface (OFF, OBJ, PLY or STL), relative to the case", kRequired});
   describe_length_unit(v, s.unit,
                        {"unit", "length unit of the coordinates in the file", kRequired});
   v.text(s.region_name, {"region", "name of the material region inside the surface"});
+  describe_repair(v, s.repair);
 }
 
 template <class V>
 void describe_inclusion(V& v, mesher::SurfaceFile& s) {
-  describe_path(v, s.path, {"file", "watertight surface strictly inside the outer one", kRequired});
+  describe_path(v, s.path, {"file", "closed surface strictly inside the outer one", kRequired});
   describe_length_unit(v, s.unit,
                        {"unit", "length unit of the coordinates in the file", kRequired});
   v.text(s.region_name, {"region", "name of the material region inside the surface", kRequired});
+  describe_repair(v, s.repair);
 }
 
 template <class V>

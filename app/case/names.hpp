@@ -11,6 +11,7 @@
 #include "fem/laws/fibre_field.hpp"
 #include "fem/solid/dilatation.hpp"
 #include "format/library.hpp"
+#include "mesher/repair_settings.hpp"
 
 namespace palpate::app {
 
@@ -19,6 +20,9 @@ struct Named {
   T value;
   std::string_view name;
 };
+// clang 14 does not deduce the parameter of an aggregate by itself.
+template <class T>
+Named(T, std::string_view) -> Named<T>;
 
 inline constexpr std::array kToolShapes{Named{fem::ToolShape::Sphere, "sphere"},
                                         Named{fem::ToolShape::Disc, "disc"},
@@ -35,6 +39,11 @@ inline constexpr std::array kFibreFields{Named{fem::FibreField::Kind::Constant, 
                                          Named{fem::FibreField::Kind::Laplace, "laplace"}};
 inline constexpr std::array kResponseKinds{Named{ResponseKind::Decoupled, "decoupled"},
                                            Named{ResponseKind::Coupled, "coupled"}};
+
+inline constexpr std::array kRepairModes{Named{mesher::RepairMode::Auto, "auto"},
+                                         Named{mesher::RepairMode::None, "none"},
+                                         Named{mesher::RepairMode::Wrap, "wrap"}};
+inline constexpr std::array kParts{Named{false, "one"}, Named{true, "largest"}};
 
 /// The name of a value; empty when the table does not list it.
 template <class T, std::size_t N>

@@ -11,7 +11,7 @@ namespace palpate::mesher::test {
 
 Settings settings_for(const std::filesystem::path& path, double unit) {
   Settings s;
-  s.surface = {path, unit, ""};
+  s.surface = {path, unit, "", {RepairMode::None}};
   s.supports = {PlaneSupport{{0, 0, 1e-3}, {0, 0, -1}}};
   s.patch_spacing = 0.010;
   s.element_size = 0.010;

@@ -9,6 +9,8 @@
 
 #include "format/error.hpp"
 #include "mesher/mesher.hpp"
+#include "mesher/queries.hpp"
+#include "mesher/read_surface.hpp"
 #include "tests/support/source_folder.hpp"
 #include "tests/unit/mesher/body_checks.hpp"
 
@@ -34,7 +36,7 @@ class BrokenSurface : public testing::TestWithParam<Broken> {};
 TEST_P(BrokenSurface, IsRefusedForItsDefect) {
   const auto path = surface(GetParam().file);
   Settings s;
-  s.surface = {path, GetParam().unit, ""};
+  s.surface = {path, GetParam().unit, "", {RepairMode::None}};
   s.supports = {PlaneSupport{{0, 0, 0}, {0, 0, -1}}};
   try {
     mesh(s);
@@ -60,6 +62,20 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"trimesh/notenoughindices.obj", 0.001, "1 face with fewer than three indices"},
         Broken{"trimesh/soup.stl", 0.1, "not watertight: 300 border edges"},
         Broken{"sofa/pelvis_f.obj", 10, "outside 1 mm .. 10 m"}));
+
+TEST(FaultySurface, IsRepairedToASoundOne) {
+  // Two hemispheres of a cortex that intersect themselves.
+  std::string log;
+  SurfaceFile file{surface("surfice/cortex_5124.obj"), 0.001, ""};
+  file.repair.largest_part = true;
+  const Surface cortex =
+      read_surface(file, [&](std::string_view line) { log += std::string(line) + "\n"; });
+  EXPECT_EQ(count_self_intersections(cortex), 0U);
+  EXPECT_EQ(count_degenerate_triangles(cortex), 0U);
+  EXPECT_GT(signed_volume(cortex), 0);
+  EXPECT_THAT(log, testing::HasSubstr("removed 1 separate part"));
+  EXPECT_THAT(log, testing::HasSubstr("the surface moved by at most"));
+}
 
 struct Clean {
   std::string file;

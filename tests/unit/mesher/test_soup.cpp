@@ -50,7 +50,7 @@ TEST(Soup, TidyClosesSeamsThatDifferByRoundingAndNoOthers) {
   EXPECT_NEAR(signed_volume(closed), 0.05 * 0.05 * 0.05, 1e-9);
   EXPECT_THAT(log, testing::HasSubstr("closed a seam: merged 4 points"));
   const TemporaryFile open("open.off", box_with_a_loose_lid(5e-7));
-  EXPECT_THROW(read_surface({open.path(), 1, ""}, collect), Error);
+  EXPECT_THROW(read_surface({open.path(), 1, "", {RepairMode::None}}, collect), Error);
 }
 
 TEST(Soup, RefusesNumbersThatAreNotFiniteAndBadIndices) {

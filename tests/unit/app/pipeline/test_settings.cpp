@@ -111,6 +111,8 @@ class SettingsText {
   }
   void add(const mesher::SurfaceFile& file) {
     add(file.path.string(), file.unit, file.region_name);
+    add(static_cast<int>(file.repair.mode), file.repair.largest_part, file.repair.max_hole,
+        file.repair.max_change);
   }
   void add(const mesher::PlaneSupport& s) { add(s.point), add(s.normal); }
   void add(const mesher::BoxSupport& s) { add(s.low), add(s.high); }
