@@ -150,7 +150,7 @@ bool ContactState::exceeds_friction(const LocalResponse& r, double tolerated) co
   return r.lateral_force > settings_.friction * r.friction_normal_force + tolerated;
 }
 
-/// Of a response that exceeds friction.
+/// Lateral deflection at which a response that exceeds friction slips, m.
 double ContactState::slip_limit(const LocalModel& model, const Deflection& at,
                                 const LocalResponse& response) const noexcept {
   return model.slip_limit_below(at, response, settings_.friction, pieces_);

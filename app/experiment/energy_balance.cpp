@@ -39,7 +39,7 @@ class BondedBody {
     rest_ = high;
   }
 
-  /// Of the body alone, along the line.
+  /// Force and slope of the body without the band, along the line.
   Response at(double x) const {
     const Response n = response_at(k_, cos_ * x);
     const Response t = response_at(k_, sin_ * x);

@@ -62,7 +62,8 @@ std::vector<LawConstant> ogden_constants(int terms) {
 constexpr std::string_view kOgdenFormula =
     "sum of 2 mu_i/alpha_i^2 (l1^alpha_i + l2^alpha_i + l3^alpha_i - 3)";
 
-std::vector<LawEntry> make_table() {
+/// Polynomials of the invariants or of the principal stretches.
+std::vector<LawEntry> polynomial_laws() {
   const LawConstant young = positive_stress("young", "Young's modulus at small strain");
   return {
       {"neo-hookean", "mu/2 (I1 - 3)", "Treloar 1943", false, {young, poisson()}},
@@ -86,32 +87,42 @@ std::vector<LawEntry> make_table() {
         any_stress("C20", "of (I1 - 3)^2"), any_stress("C30", "of (I1 - 3)^3"), poisson()}},
       {"ogden-1", kOgdenFormula, "Ogden 1972", false, ogden_constants(1)},
       {"ogden-2", kOgdenFormula, "Ogden 1972", false, ogden_constants(2)},
-      {"ogden-3", kOgdenFormula, "Ogden 1972", false, ogden_constants(3)},
-      {"demiray-fung",
-       "mu/(2 b) (exp(b (I1 - 3)) - 1)",
-       "Demiray 1972",
-       false,
-       {positive_stress("mu", "shear modulus at small strain"),
-        pure("b", "growth of the stiffness with strain", 0, 1000), poisson()}},
-      {"veronda-westmann",
-       "C1 (exp(C2 (I1 - 3)) - 1) - C1 C2/2 (I2 - 3)",
-       "Veronda & Westmann 1970",
-       false,
-       {positive_stress("C1", "C1 C2 is the shear modulus at small strain"),
-        pure("C2", "growth of the stiffness with strain", 0, 1000), poisson()}},
-      {"gent",
-       "-mu J_m/2 ln(1 - (I1 - 3)/J_m)",
-       "Gent 1996",
-       false,
-       {positive_stress("mu", "shear modulus at small strain"),
-        pure("J_m", "limit of I1 - 3, where the stress grows without bound", 0, kInfinity),
-        poisson()}},
-      {"arruda-boyce",
-       "eight chains, series of five terms",
-       "Arruda & Boyce 1993",
-       false,
-       {positive_stress("mu", "shear modulus at small strain"),
-        pure("lambda_m", "locking stretch of the chains", 1, kInfinity), poisson()}},
+      {"ogden-3", kOgdenFormula, "Ogden 1972", false, ogden_constants(3)}};
+}
+
+/// Isotropic laws that stiffen towards large strains.
+std::vector<LawEntry> stiffening_laws() {
+  return {{"demiray-fung",
+           "mu/(2 b) (exp(b (I1 - 3)) - 1)",
+           "Demiray 1972",
+           false,
+           {positive_stress("mu", "shear modulus at small strain"),
+            pure("b", "growth of the stiffness with strain", 0, 1000), poisson()}},
+          {"veronda-westmann",
+           "C1 (exp(C2 (I1 - 3)) - 1) - C1 C2/2 (I2 - 3)",
+           "Veronda & Westmann 1970",
+           false,
+           {positive_stress("C1", "C1 C2 is the shear modulus at small strain"),
+            pure("C2", "growth of the stiffness with strain", 0, 1000), poisson()}},
+          {"gent",
+           "-mu J_m/2 ln(1 - (I1 - 3)/J_m)",
+           "Gent 1996",
+           false,
+           {positive_stress("mu", "shear modulus at small strain"),
+            pure("J_m", "limit of I1 - 3, where the stress grows without bound", 0, kInfinity),
+            poisson()}},
+          {"arruda-boyce",
+           "eight chains, series of five terms",
+           "Arruda & Boyce 1993",
+           false,
+           {positive_stress("mu", "shear modulus at small strain"),
+            pure("lambda_m", "locking stretch of the chains", 1, kInfinity), poisson()}}};
+}
+
+/// A law without an isochoric part of its own, and one with fibres.
+std::vector<LawEntry> other_laws() {
+  const LawConstant young = positive_stress("young", "Young's modulus at small strain");
+  return {
       {"saint-venant-kirchhoff",
        "lambda/2 (tr E)^2 + mu E:E; for comparison: it locks towards nu = 1/2 and softens under "
        "compression",
@@ -137,6 +148,13 @@ std::vector<LawEntry> make_table() {
          .low_open = false,
          .high_open = false},
         poisson()}}};
+}
+
+std::vector<LawEntry> make_table() {
+  std::vector<LawEntry> table = polynomial_laws();
+  for (const auto& more : {stiffening_laws(), other_laws()})
+    table.insert(table.end(), more.begin(), more.end());
+  return table;
 }
 
 std::string range_of(const LawConstant& c) {

@@ -150,7 +150,7 @@ TEST(Campaign, RefusesInvalidSettings) {
   EXPECT_THAT(refusal(s), HasSubstr("region 'tissue'"));
   s = quick();
   s.indentation.lateral_depths = {0.003};
-  EXPECT_THAT(refusal(s), HasSubstr("beyond the depth"));
+  EXPECT_THAT(refusal(s), HasSubstr("exceeds the depth"));
   s = quick();
   s.indentation.tool.radius = std::nan("");
   EXPECT_THAT(refusal(s), HasSubstr("tool_radius"));

@@ -23,7 +23,7 @@ TEST_P(ToolMeshes, HaveEveryNodeOfAFacetOnTheTool) {
   const ToolMesh mesh = make_tool_mesh(t, 0.01);
   ASSERT_GT(mesh.tetrahedra.size(), 50u);
   for (const Tetrahedron10& element : mesh.tetrahedra)
-    for (const std::size_t node : {0, 1, 2, 4, 5, 6})
+    for (const std::size_t node : {0u, 1u, 2u, 4u, 5u, 6u})
       EXPECT_NEAR(t.distance(mesh.X.col(element[node])), 0, 1e-9 * 0.005);
 }
 
@@ -43,7 +43,7 @@ TEST_P(ToolMeshes, ReachTheTip) {
   const ToolMesh mesh = make_tool_mesh(t, 0.01);
   double nearest = 1;
   for (const Tetrahedron10& element : mesh.tetrahedra)
-    for (const std::size_t node : {0, 1, 2}) {
+    for (const std::size_t node : {0u, 1u, 2u}) {
       EXPECT_LE(t.beyond_end(mesh.X.col(element[node])), 1e-12);
       nearest = std::min(nearest, (mesh.X.col(element[node]) - t.tip).norm());
     }
