@@ -171,6 +171,13 @@ class Repair {
  private:
   void did(const std::string& step) { report_.steps.push_back(step); }
 
+  /// All steps in one line.
+  std::string steps() const {
+    std::string line;
+    for (const std::string& step : report_.steps) line += (line.empty() ? "" : ", ") + step;
+    return line;
+  }
+
   Surface wrapped() {
     did(text("replaced the surface by its alpha wrap, alpha ", millimetres(kWrapAlpha * extent_)));
     return alpha_wrap(soup_, kWrapAlpha * extent_, kWrapOffset * extent_);
@@ -432,8 +439,8 @@ class Repair {
     if (settings_.mode == RepairMode::Wrap || report_.moved <= settings_.max_change * extent_)
       return;
     refuse_geometry(where_,
-                    text("the repair would move the surface by ", millimetres(report_.moved),
-                         " at ", millimetres(report_.moved_at),
+                    text("the repair (", steps(), ") would move the surface by ",
+                         millimetres(report_.moved), " at ", millimetres(report_.moved_at),
                          ", more than max_change = ", settings_.max_change, " of its extent"),
                     "raise surface.max_change, or mend the surface there in a mesh editor");
   }

@@ -110,6 +110,7 @@ SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
   refuse_adaptive_shard(space);
   const Body body = read_input(space.body(), "mesh", read_body);
   prepare_output(space.out);
+  emit_warnings(space, body, emit);
   if (const auto counts = finished_shard(space, emit)) return *counts;
   const std::string body_sha256 = sha256_of_file(space.body());
   fem::CampaignSettings settings = campaign_settings(space);
@@ -119,7 +120,6 @@ SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
   SiteJournal journal(space.journal(), {key, static_cast<std::int64_t>(settings.sites.size())});
   emit(CampaignStarted{fem::blas_kernel(), journal.found().size(), journal.dropped_bytes(),
                        journal.moved_aside(), space.journal()});
-  emit_warnings(space, body, emit);
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) {
     journal.append(site);

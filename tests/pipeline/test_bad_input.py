@@ -86,13 +86,14 @@ class BadInput(unittest.TestCase):
         self.refuse(GEOMETRY, ["block.off"], "build", path, "--out", self.out)
 
     def test_surface_is_not_watertight(self):
-        self.refuse_case(GEOMETRY, ["block.off"], surface=open_block())
+        case = CASE.replace('unit = "mm"', 'unit = "mm"\nrepair = "none"', 1)
+        self.refuse_case(GEOMETRY, ["block.off", "not watertight"], case, surface=open_block())
 
     def test_surface_is_in_parts(self):
         self.refuse_case(GEOMETRY, ["block.off"], surface=crossing_block())
 
     def test_surface_intersects_itself(self):
-        self.refuse_case(GEOMETRY, ["block.off", "intersect"], surface=dented_block())
+        self.refuse_case(GEOMETRY, ["block.off", "self-intersection", "max_change"], surface=dented_block())
 
     def test_surface_has_a_wrong_unit(self):
         self.refuse_case(GEOMETRY, ["block.off"], CASE.replace('unit = "mm"', 'unit = "um"'))

@@ -16,7 +16,7 @@ function tile(term, value, note, id, kind) {
 
 function certified(certificate) {
   if (!certificate) return tile('Certified stiffness', '\u2013', 'The library has not been certified.', 'certified');
-  const { stick, slip, limit } = certificate;
+  const { stick, slip, lipschitz_bound: limit } = certificate;
   const bounded = Number.isFinite(limit);
   return tile('Certified stiffness', bounded ? units.stiffness(limit) : 'none',
     `L_stick ${units.bound(stick)}, L_slip ${units.bound(slip)}`, 'certified', bounded ? undefined : 'warn');
