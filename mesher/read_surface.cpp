@@ -181,7 +181,7 @@ Surface repaired(const Soup& soup, const RepairSettings& settings, const std::st
                  const Log& log) {
   RepairReport report;
   Surface surface = repair(soup, settings, where, report);
-  for (const std::string& step : report.steps) note(log, where + ": " + step);
+  for (const std::string& step : report.steps) note(log, text(where, ": ", step));
   note(log, text(where, ": repaired: area ", 1e6 * report.area_before, " to ",
                  1e6 * report.area_after, " mm^2, volume ", 1e9 * report.volume,
                  " mm^3; the surface moved by at most ", millimetres(report.moved), " at ",

@@ -13,6 +13,7 @@ using Json = nlohmann::ordered_json;
 
 class JsonVisitor {
  public:
+  JsonVisitor() : json_(Json::object()) {}
   void event(std::string_view name, std::string_view) { json_["event"] = name; }
   template <class T>
   void field(std::string_view name, const T& value, std::string_view) {
