@@ -8,8 +8,8 @@
 
 #include "format/error.hpp"
 #include "format/to_index.hpp"
-#include "mesher/text.hpp"
-#include "mesher/thickness.hpp"
+#include "mesher/geometry/text.hpp"
+#include "mesher/geometry/thickness.hpp"
 
 namespace palpate::mesher {
 namespace {

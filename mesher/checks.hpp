@@ -5,9 +5,9 @@
 #include <string>
 
 #include "format/body.hpp"
-#include "mesher/quality.hpp"
+#include "mesher/geometry/quality.hpp"
+#include "mesher/geometry/surface.hpp"
 #include "mesher/settings.hpp"
-#include "mesher/surface.hpp"
 
 namespace palpate::mesher {
 

@@ -6,15 +6,15 @@
 #include <utility>
 
 #include "mesher/checks.hpp"
-#include "mesher/curved_skin.hpp"
-#include "mesher/fill.hpp"
-#include "mesher/inclusions.hpp"
-#include "mesher/quality.hpp"
-#include "mesher/read_surface.hpp"
-#include "mesher/remesh.hpp"
-#include "mesher/response.hpp"
-#include "mesher/supports.hpp"
-#include "mesher/text.hpp"
+#include "mesher/geometry/quality.hpp"
+#include "mesher/geometry/text.hpp"
+#include "mesher/read/read_surface.hpp"
+#include "mesher/response/response.hpp"
+#include "mesher/skin/curved_skin.hpp"
+#include "mesher/skin/remesh.hpp"
+#include "mesher/support/supports.hpp"
+#include "mesher/volume/fill.hpp"
+#include "mesher/volume/inclusions.hpp"
 
 namespace palpate::mesher {
 namespace {

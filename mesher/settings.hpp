@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "format/vec3.hpp"
-#include "mesher/repair_settings.hpp"
+#include "mesher/repair/repair_settings.hpp"
 
 namespace palpate::mesher {
 

@@ -16,7 +16,15 @@ ROOMS = STAGES + ("tests", "bench")
 # rules of the folder or room around it. Tests and benchmarks may include everything.
 MAY_INCLUDE = {
     "format": set(),
-    "mesher": {"format"},
+    "mesher": {"format", "mesher/geometry", "mesher/read", "mesher/repair", "mesher/response", "mesher/skin",
+               "mesher/support", "mesher/volume"},
+    "mesher/geometry": {"format"},
+    "mesher/read": {"format", "mesher", "mesher/geometry", "mesher/repair"},
+    "mesher/repair": {"format", "mesher/geometry"},
+    "mesher/response": {"format", "mesher", "mesher/geometry", "mesher/skin", "mesher/support"},
+    "mesher/skin": {"format", "mesher/geometry"},
+    "mesher/support": {"format", "mesher", "mesher/geometry", "mesher/read"},
+    "mesher/volume": {"format", "mesher", "mesher/geometry", "mesher/skin"},
     "fem": {"format"},
     "fem/laws": {"format"},
     "fem/mesh": {"format", "fem/solid"},

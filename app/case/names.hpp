@@ -11,7 +11,7 @@
 #include "fem/laws/fibre_field.hpp"
 #include "fem/solid/dilatation.hpp"
 #include "format/library.hpp"
-#include "mesher/repair_settings.hpp"
+#include "mesher/repair/repair_settings.hpp"
 
 namespace palpate::app {
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "format/error.hpp"
+#include "mesher/geometry/surface.hpp"
 #include "mesher/settings.hpp"
-#include "mesher/surface.hpp"
 
 namespace palpate::mesher::test {
 

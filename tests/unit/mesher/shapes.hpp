@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "mesher/surface.hpp"
+#include "mesher/geometry/surface.hpp"
 
 namespace palpate::mesher::test {
 

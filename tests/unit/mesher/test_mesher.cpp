@@ -5,9 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesher/geometry/queries.hpp"
 #include "mesher/mesher.hpp"
-#include "mesher/queries.hpp"
-#include "mesher/read_surface.hpp"
+#include "mesher/read/read_surface.hpp"
 #include "tests/support/source_folder.hpp"
 #include "tests/unit/mesher/body_checks.hpp"
 #include "tests/unit/mesher/shapes.hpp"

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/read/read_surface.hpp"
+
+#include <CGAL/IO/polygon_soup_io.h>
+#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
+#include <CGAL/Polygon_mesh_processing/triangulate_faces.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <sstream>
+#include <utility>
+
+#include "format/error.hpp"
+#include "mesher/geometry/cgal_mesh.hpp"
+#include "mesher/geometry/queries.hpp"
+#include "mesher/geometry/soup.hpp"
+#include "mesher/read/read_obj.hpp"
+#include "mesher/repair/repair.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+namespace pmp = CGAL::Polygon_mesh_processing;
+
+constexpr double kSmallestBody = 1e-3;  // m
+constexpr double kLargestBody = 10;     // m
+
+std::string lower(std::string word) {
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word;
+}
+
+/// The lines with a number that is not finite: text readers stop there without naming the line.
+std::vector<std::size_t> lines_not_finite(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  std::vector<std::size_t> lines;
+  std::size_t number = 0;
+  for (std::string line; std::getline(in, line);) {
+    ++number;
+    std::istringstream words(lower(line));
+    for (std::string word; words >> word;) {
+      if (word.front() == '-' || word.front() == '+') word.erase(0, 1);
+      if (word != "nan" && word != "inf" && word != "infinity") continue;
+      lines.push_back(number);
+      break;
+    }
+  }
+  return lines;
+}
+
+void check_file(const std::filesystem::path& path) {
+  const std::string where = path.string();
+  std::error_code failure;
+  if (!std::filesystem::exists(path, failure)) {
+    refuse_geometry(where, "no such file", "correct the path of the surface in the case");
+  }
+  if (!std::filesystem::is_regular_file(path, failure) || !std::ifstream(path)) {
+    refuse_geometry(where, "not a readable file", "check its type and its permissions");
+  }
+  const std::string kind = lower(path.extension().string());
+  if (kind != ".off" && kind != ".obj" && kind != ".ply" && kind != ".stl") {
+    refuse_geometry(where, "unknown kind of surface file '" + kind + "'",
+                    "convert it to OFF, OBJ, PLY or STL");
+  }
+}
+
+Soup read_soup(const std::filesystem::path& path) {
+  const std::string where = path.string();
+  check_file(path);
+  if (lower(path.extension().string()) == ".obj") return read_obj(path);
+  std::vector<Point> points;
+  std::vector<std::vector<std::size_t>> polygons;
+  if (!CGAL::IO::read_polygon_soup(where, points, polygons, CGAL::parameters::verbose(false))) {
+    if (polygons.empty() && points.empty()) {
+      refuse_geometry(where, "the file is empty or cannot be read as its ending says",
+                      "export the surface again");
+    }
+    if (const auto lines = lines_not_finite(path); !lines.empty()) {
+      refuse_geometry(text(where, ":", lines.front()),
+                      text("a coordinate that is not finite (NaN or Inf), in ",
+                           counted(lines.size(), "line"), " of the file"),
+                      "correct the coordinates or export the surface again");
+    }
+    refuse_geometry(where,
+                    text("the file is malformed after ", counted(points.size(), "point"), " and ",
+                         counted(polygons.size(), "face")),
+                    "export the surface again");
+  }
+  Soup soup;
+  soup.polygons = std::move(polygons);
+  for (const Point& p : points) soup.points.push_back(to_vec3(p));
+  return soup;
+}
+
+/// The unit with which the largest dimension is nearest to 150 mm, the size of an organ.
+std::string likely_unit(double file_dimension) {
+  const std::pair<const char*, double> units[] = {
+      {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}};
+  const auto deviation = [&](const auto& unit) {
+    return std::abs(std::log10(file_dimension * unit.second / 0.15));
+  };
+  return std::min_element(std::begin(units), std::end(units),
+                          [&](const auto& a, const auto& b) { return deviation(a) < deviation(b); })
+      ->first;
+}
+
+void scale_to_metres(Soup& soup, const SurfaceFile& file) {
+  const double raw = largest_dimension(soup.points);
+  const double size = raw * file.unit;
+  if (!(size >= kSmallestBody && size <= kLargestBody)) {
+    refuse_geometry(file.path.string(),
+                    text("the largest dimension is ", millimetres(size), " with a unit of ",
+                         file.unit, " m, outside 1 mm .. 10 m"),
+                    raw > 0 ? "set the unit of the surface; '" + likely_unit(raw) + "' looks likely"
+                            : "the surface has no extent: export it again");
+  }
+  for (Vec3& x : soup.points) x = file.unit * x;
+}
+
+/// Copies the names of a polygon to the triangles it is split into.
+struct NamesOfParts : pmp::Triangulate_faces::Default_visitor<Mesh> {
+  explicit NamesOfParts(std::vector<std::size_t>& n) : names(&n) {}
+  void before_subface_creations(Mesh::Face_index face) { whole = (*names)[face.idx()]; }
+  void after_subface_created(Mesh::Face_index face) {
+    if (face.idx() >= names->size()) names->resize(face.idx() + 1);
+    (*names)[face.idx()] = whole;
+  }
+  std::vector<std::size_t>* names;
+  std::size_t whole = 0;
+};
+
+/// @pre the soup is manifold, closed and oriented.
+Surface triangulate(const Soup& soup, const std::string& where) {
+  std::vector<Point> points;
+  for (const Vec3& x : soup.points) points.push_back(to_point(x));
+  Mesh mesh;
+  pmp::polygon_soup_to_polygon_mesh(points, soup.polygons, mesh);
+  std::vector<std::size_t> names = soup.names;
+  names.resize(soup.polygons.size());
+  if (!pmp::triangulate_faces(mesh, pmp::parameters::visitor(NamesOfParts(names)))) {
+    refuse_geometry(where, "a face with more than three corners cannot be split into triangles",
+                    "triangulate the surface in a mesh editor");
+  }
+  mesh.collect_garbage();  // there is none: faces are split, not removed
+  Surface surface = to_surface(mesh);
+  if (!soup.names.empty()) surface.names = std::move(names);
+  surface.known_names = soup.known_names;
+  return surface;
+}
+
+void check_geometry(const Surface& surface, const std::string& where) {
+  if (const std::size_t flat = count_degenerate_triangles(surface); flat > 0) {
+    refuse_geometry(where, counted(flat, "triangle") + " of zero area",
+                    "remove degenerate faces in a mesh editor");
+  }
+  if (const std::size_t pairs = count_self_intersections(surface); pairs > 0) {
+    refuse_geometry(where,
+                    text("the surface self-intersects: ", counted(pairs, "pair"), " of triangles"),
+                    "resolve the self-intersections in a mesh editor");
+  }
+}
+
+void turn_outward(Surface& surface, const std::string& where, const Log& log) {
+  if (signed_volume(surface) >= 0) return;
+  for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
+  note(log, where + ": the faces were oriented inward; all were reversed");
+}
+
+/// The surface as the file has it, or a refusal that names its fault.
+Surface checked(Soup soup, const std::string& where, const Log& log) {
+  check_manifold(soup, where);
+  orient(soup, where, log);
+  Surface surface = triangulate(soup, where);
+  check_geometry(surface, where);
+  return surface;
+}
+
+Surface repaired(const Soup& soup, const RepairSettings& settings, const std::string& where,
+                 const Log& log) {
+  RepairReport report;
+  Surface surface = repair(soup, settings, where, report);
+  for (const std::string& step : report.steps) note(log, text(where, ": ", step));
+  note(log, text(where, ": repaired: area ", 1e6 * report.area_before, " to ",
+                 1e6 * report.area_after, " mm^2, volume ", 1e9 * report.volume,
+                 " mm^3; the surface moved by at most ", millimetres(report.moved), " at ",
+                 millimetres(report.moved_at), "; what was added is at most ",
+                 millimetres(report.added), " from it, at ", millimetres(report.added_at)));
+  return surface;
+}
+
+}  // namespace
+
+Surface read_surface(const SurfaceFile& file, const Log& log) {
+  const std::string where = file.path.string();
+  Soup soup = read_soup(file.path);
+  check_entries(soup, where);
+  scale_to_metres(soup, file);
+  tidy(soup, where, log);
+  check_entries(soup, where);
+  const bool repairs = file.repair.mode == RepairMode::Wrap ||
+                       (file.repair.mode == RepairMode::Auto && !is_sound(soup));
+  Surface surface =
+      repairs ? repaired(soup, file.repair, where, log) : checked(std::move(soup), where, log);
+  turn_outward(surface, where, log);
+  const Bounds box = bounds(surface.points);
+  note(log, text(where, ": ", surface.points.size(), " points, ", surface.triangles.size(),
+                 " triangles, watertight, ", millimetres(box.low), " to ", millimetres(box.high)));
+  return surface;
+}
+
+}  // namespace palpate::mesher

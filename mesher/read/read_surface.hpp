@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include "mesher/geometry/surface.hpp"
+#include "mesher/geometry/text.hpp"
+#include "mesher/settings.hpp"
+
+namespace palpate::mesher {
+
+/// Reads a surface, scales it to metres, repairs it as `tidy` does, splits polygons into triangles
+/// and orients them outward.
+/// @throws Error(Geometry), with the path as `where`, for a surface that does not enclose one
+/// volume.
+Surface read_surface(const SurfaceFile& file, const Log& log);
+
+}  // namespace palpate::mesher

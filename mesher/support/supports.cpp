@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/support/supports.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "format/error.hpp"
+#include "format/to_index.hpp"
+#include "mesher/geometry/text.hpp"
+#include "mesher/read/read_surface.hpp"
+#include "mesher/support/rigid_motion.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+// Nodes on the border of a support are inside it whatever their rounding: this part of
+// element_size.
+constexpr double kSupportTolerance = 1e-3;
+
+/// For each entry of Surface::known_names, whether it has the label.
+std::vector<bool> entries_with(const std::string& label, const Surface& skin,
+                               const std::string& where) {
+  std::vector<bool> has_label;
+  std::set<std::string> all;
+  bool found = false;
+  for (const Names& names : skin.known_names) {
+    all.insert(names.begin(), names.end());
+    has_label.push_back(std::find(names.begin(), names.end(), label) != names.end());
+    found = found || has_label.back();
+  }
+  if (found) return has_label;
+  std::string list;
+  for (const std::string& name : all) list += (list.empty() ? "" : ", ") + name;
+  throw Error(ErrorKind::Configuration, where,
+              text("no face has the name '", label, "', which a support asks for"),
+              all.empty() ? "name faces by 'g', 'o' or 'usemtl' in an OBJ file; other kinds of "
+                            "file carry no names"
+                          : text("use one of ", list));
+}
+
+/// Marks the boundary points inside a support.
+struct MarkInside {
+  const Settings& settings;
+  const Surface& skin;
+  const Surface& boundary;
+  double tolerance = kSupportTolerance * settings.element_size;
+
+  template <typename Shape>
+  Marks operator()(const Shape& shape) const {
+    return mark([&](const Vec3& x) { return contains(shape, x, tolerance); });
+  }
+
+  Marks operator()(const SurfaceSupport& near) const {
+    const SurfaceQuery surface(read_surface(near.surface, settings.log));
+    return mark([&](const Vec3& x) { return is_near(surface, x, near.distance + tolerance); });
+  }
+
+  /// A point within the tolerance of a named face has that face, or one that shares a corner with
+  /// it, as its nearest.
+  Marks operator()(const LabelSupport& support) const {
+    const std::vector<bool> has_label =
+        entries_with(support.label, skin, settings.surface.path.string());
+    const SurfaceQuery query(skin);
+    const auto around = incident_triangles(skin.points.size(), skin.triangles);
+    const auto lies_on = [&](const Vec3& x, std::int32_t t) {
+      const Triangle& triangle = skin.triangles[to_index(t)];
+      const auto corner = [&](std::size_t k) { return skin.points[to_index(triangle[k])]; };
+      return has_label[skin.names[to_index(t)]] &&
+             distance_to_triangle(x, corner(0), corner(1), corner(2)) <= tolerance;
+    };
+    return mark([&](const Vec3& x) {
+      const Triangle& nearest = skin.triangles[to_index(query.closest(x).triangle)];
+      return std::any_of(nearest.begin(), nearest.end(), [&](std::int32_t corner) {
+        const auto& fan = around[to_index(corner)];
+        return std::any_of(fan.begin(), fan.end(), [&](std::int32_t t) { return lies_on(x, t); });
+      });
+    });
+  }
+
+ private:
+  template <typename Predicate>
+  Marks mark(const Predicate& is_inside) const {
+    Marks marks;
+    for (const Vec3& x : boundary.points) marks.push_back(is_inside(x) ? 1 : 0);
+    return marks;
+  }
+};
+
+std::vector<SupportedPoint> supported_points(const Body& body, const Surface& boundary) {
+  std::vector<SupportedPoint> points;
+  for (const std::int32_t node : body.fixed_nodes)
+    points.push_back({boundary.points[to_index(node)]});
+  for (const SprungFacet& sprung : body.foundation) {
+    const Triangle& facet = boundary.triangles[to_index(sprung.facet)];
+    const double stiffest = std::max(sprung.normal_stiffness, sprung.tangential_stiffness);
+    for (const std::int32_t node : facet)
+      points.push_back({boundary.points[to_index(node)], unit(area_vector(boundary.points, facet)),
+                        sprung.normal_stiffness / stiffest,
+                        sprung.tangential_stiffness / stiffest});
+  }
+  return points;
+}
+
+}  // namespace
+
+bool all_marked(const Triangle& triangle, const Marks& marks) {
+  return std::all_of(triangle.begin(), triangle.end(),
+                     [&](std::int32_t v) { return marks[to_index(v)] != 0; });
+}
+
+void add_marks(Marks& marks, const Marks& more) {
+  for (std::size_t i = 0; i < marks.size(); ++i) marks[i] |= more[i];
+}
+
+bool contains(const PlaneSupport& plane, const Vec3& point, double tolerance) {
+  return dot(point - plane.point, unit(plane.normal)) >= -tolerance;
+}
+
+bool contains(const BoxSupport& box, const Vec3& point, double tolerance) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (point[k] < box.low[k] - tolerance || point[k] > box.high[k] + tolerance) return false;
+  }
+  return true;
+}
+
+bool contains(const SphereSupport& sphere, const Vec3& point, double tolerance) {
+  return norm(point - sphere.centre) <= sphere.radius + tolerance;
+}
+
+bool is_near(const SurfaceQuery& surface, const Vec3& point, double distance) {
+  return norm(surface.closest(point).point - point) <= distance || surface.contains(point);
+}
+
+Marks fix_nodes(Body& body, const Settings& settings, const Surface& skin,
+                const Surface& boundary) {
+  Marks fixed(boundary.points.size(), 0);
+  for (const Support& support : settings.supports)
+    add_marks(fixed, std::visit(MarkInside{settings, skin, boundary}, support));
+  for (std::size_t i = 0; i < fixed.size(); ++i)
+    if (fixed[i] != 0) body.fixed_nodes.push_back(static_cast<std::int32_t>(i));
+  return fixed;
+}
+
+Marks set_foundation(Body& body, const Settings& settings, const Surface& skin,
+                     const Surface& boundary) {
+  Marks on_springs(boundary.points.size(), 0);
+  std::map<std::int32_t, SprungFacet> facets;
+  for (const Springs& springs : settings.foundation) {
+    const Marks inside = std::visit(MarkInside{settings, skin, boundary}, springs.where);
+    for (std::size_t f = 0; f < boundary.triangles.size(); ++f) {
+      if (!all_marked(boundary.triangles[f], inside)) continue;
+      const auto number = static_cast<std::int32_t>(f);
+      SprungFacet& facet = facets[number];
+      facet.facet = number;
+      facet.normal_stiffness += springs.normal_stiffness;
+      facet.tangential_stiffness += springs.tangential_stiffness;
+      for (const std::int32_t node : boundary.triangles[f]) on_springs[to_index(node)] = 1;
+    }
+  }
+  for (const auto& [number, facet] : facets) body.foundation.push_back(facet);
+  if (!settings.foundation.empty() && facets.empty()) {
+    throw Error(ErrorKind::Geometry, settings.surface.path.string(),
+                "the supports with springs contain no facet",
+                text("place them on the body, which spans ", extent_of(boundary.points)));
+  }
+  return on_springs;
+}
+
+void check_supports(const Body& body, const Settings& settings, const Surface& boundary) {
+  if (prevent_rigid_motion(supported_points(body, boundary))) return;
+  const std::string springs =
+      body.foundation.empty()
+          ? std::string()
+          : text(" and ", counted(body.foundation.size(), "facet"), " on springs");
+  throw Error(ErrorKind::Geometry, settings.surface.path.string(),
+              text("the supports, ", body.fixed_nodes.size(), " fixed nodes of ",
+                   boundary.points.size(), springs, ", do not prevent rigid motion"),
+              text(springs.empty() ? "place a support on the body, which spans "
+                                   : "give tangential_stiffness, or fix a part of the body, which "
+                                     "spans ",
+                   extent_of(boundary.points)));
+}
+
+}  // namespace palpate::mesher

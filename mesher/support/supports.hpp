@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The supports of a body: fixed nodes and the elastic foundation.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "format/body.hpp"
+#include "mesher/geometry/queries.hpp"
+#include "mesher/geometry/surface.hpp"
+#include "mesher/settings.hpp"
+
+namespace palpate::mesher {
+
+/// One entry for each point of a surface: 1 where it is marked.
+using Marks = std::vector<std::uint8_t>;
+
+bool all_marked(const Triangle& triangle, const Marks& marks);
+
+/// Marks also what `more` marks.
+void add_marks(Marks& marks, const Marks& more);
+
+/// Whether the shape contains the point; `tolerance` (m) widens it.
+bool contains(const PlaneSupport& plane, const Vec3& point, double tolerance);
+bool contains(const BoxSupport& box, const Vec3& point, double tolerance);
+bool contains(const SphereSupport& sphere, const Vec3& point, double tolerance);
+
+/// Whether the point lies inside the closed surface or within `distance` (m) of it.
+bool is_near(const SurfaceQuery& surface, const Vec3& point, double distance);
+
+/// Writes Body::fixed_nodes: the points of `boundary`, which are the first nodes, inside a support.
+/// @param skin the surface as read, which carries the names that a LabelSupport asks for
+/// @return the fixed nodes, marked
+/// @throws Error(Configuration) when no face has the name of a LabelSupport.
+Marks fix_nodes(Body& body, const Settings& settings, const Surface& skin, const Surface& boundary);
+
+/// Writes Body::foundation.
+/// @return the nodes of the facets on springs, marked
+/// @throws Error(Geometry) when springs are given and no facet lies inside their supports.
+Marks set_foundation(Body& body, const Settings& settings, const Surface& skin,
+                     const Surface& boundary);
+
+/// @throws Error(Geometry) when fixed nodes and springs leave a rigid motion free.
+void check_supports(const Body& body, const Settings& settings, const Surface& boundary);
+
+}  // namespace palpate::mesher

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/volume/inclusions.hpp"
+
+#include <map>
+#include <utility>
+
+#include "format/error.hpp"
+#include "format/to_index.hpp"
+#include "mesher/geometry/quality.hpp"
+#include "mesher/geometry/queries.hpp"
+#include "mesher/geometry/text.hpp"
+#include "mesher/skin/remesh.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+[[noreturn]] void refuse(const SurfaceFile& inclusion, const std::string& problem,
+                         const std::string& remedy) {
+  throw Error(ErrorKind::Geometry, inclusion.path.string(), problem, remedy);
+}
+
+/// The region of each closed cell of the filling: that of its largest element, whose centroid is
+/// safely inside an inclusion or outside all of them.
+std::map<std::int32_t, std::int32_t> regions_of_parts(const Filling& filling,
+                                                      const std::vector<Surface>& inclusions) {
+  std::map<std::int32_t, std::pair<double, std::size_t>> largest;
+  for (std::size_t t = 0; t < filling.tetrahedra.size(); ++t) {
+    const double v = volume(filling.nodes, filling.tetrahedra[t]);
+    auto& entry = largest[filling.part[t]];
+    if (v > entry.first) entry = {v, t};
+  }
+  const std::vector<SurfaceQuery> queries(inclusions.begin(), inclusions.end());
+  std::map<std::int32_t, std::int32_t> region;
+  for (const auto& [part, entry] : largest) {
+    Vec3 centroid{};
+    for (const std::int32_t v : filling.tetrahedra[entry.second])
+      centroid = centroid + 0.25 * filling.nodes[to_index(v)];
+    region[part] = 0;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      if (queries[i].contains(centroid)) region[part] = static_cast<std::int32_t>(i) + 1;
+    }
+  }
+  return region;
+}
+
+std::string name_or(const std::string& name, const std::string& fallback) {
+  return name.empty() ? fallback : name;
+}
+
+}  // namespace
+
+void check_inclusions(const Settings& settings, const Surface& skin,
+                      const std::vector<Surface>& inclusions) {
+  const SurfaceQuery inside_skin(skin);
+  for (std::size_t i = 0; i < inclusions.size(); ++i) {
+    const SurfaceFile& file = settings.inclusions[i];
+    if (surfaces_meet(skin, inclusions[i])) {
+      refuse(file, "the inclusion intersects the skin", "move or shrink it");
+    }
+    if (!inside_skin.contains(inclusions[i].points.front())) {
+      refuse(file, "the inclusion lies outside the skin", "check its position and its unit");
+    }
+    const SurfaceQuery inside_this(inclusions[i]);
+    for (std::size_t j = 0; j < inclusions.size(); ++j) {
+      if (i == j) continue;
+      const std::string other = settings.inclusions[j].path.string();
+      if (surfaces_meet(inclusions[i], inclusions[j])) {
+        refuse(file, "the inclusion intersects " + other, "move inclusions apart");
+      }
+      if (inside_this.contains(inclusions[j].points.front())) {
+        refuse(file, "the inclusion contains " + other, "nested inclusions are not supported");
+      }
+    }
+  }
+}
+
+std::vector<Surface> remesh_inclusions(const Settings& settings,
+                                       const std::vector<Surface>& inclusions) {
+  std::vector<Surface> remeshed;
+  for (std::size_t i = 0; i < inclusions.size(); ++i) {
+    remeshed.push_back(remesh(inclusions[i], {settings.element_size, 1, settings.feature_angle},
+                              settings.inclusions[i].path.string(), settings.log)
+                           .boundary);
+  }
+  return remeshed;
+}
+
+Surface join_shells(const Settings& settings, const Surface& boundary,
+                    const std::vector<Surface>& inclusions) {
+  Surface shells = boundary;
+  for (std::size_t i = 0; i < inclusions.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (surfaces_meet(inclusions[i], inclusions[j])) {
+        refuse(settings.inclusions[i],
+               "remeshed to element_size, the inclusion intersects another one",
+               "reduce element_size or move them apart");
+      }
+    }
+    if (surfaces_meet(boundary, inclusions[i])) {
+      refuse(settings.inclusions[i], "remeshed to element_size, the inclusion intersects the skin",
+             "reduce element_size and patch_spacing or move it inward");
+    }
+    append(shells, inclusions[i]);
+  }
+  return shells;
+}
+
+void set_regions(Body& body, const Settings& settings, const Filling& filling,
+                 const std::vector<Surface>& inclusions) {
+  body.region_names.push_back(name_or(settings.surface.region_name, "matrix"));
+  for (std::size_t i = 0; i < inclusions.size(); ++i) {
+    body.region_names.push_back(
+        name_or(settings.inclusions[i].region_name, text("inclusion_", i + 1)));
+  }
+  const auto region = regions_of_parts(filling, inclusions);
+  for (const std::int32_t part : filling.part) {
+    body.tetrahedron_region.push_back(region.at(part));
+  }
+}
+
+}  // namespace palpate::mesher

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Inclusions: closed surfaces inside the skin that bound regions of the body.
+#pragma once
+
+#include <vector>
+
+#include "format/body.hpp"
+#include "mesher/geometry/surface.hpp"
+#include "mesher/settings.hpp"
+#include "mesher/volume/fill.hpp"
+
+namespace palpate::mesher {
+
+/// @throws Error(Geometry) when an inclusion intersects the skin or another inclusion, lies outside
+///   the skin, or contains another inclusion.
+void check_inclusions(const Settings& settings, const Surface& skin,
+                      const std::vector<Surface>& inclusions);
+
+/// Inclusions with edges near element_size.
+std::vector<Surface> remesh_inclusions(const Settings& settings,
+                                       const std::vector<Surface>& inclusions);
+
+/// The boundary and the inclusions as one list of triangles, the boundary first.
+/// @throws Error(Geometry) when they intersect after remeshing.
+Surface join_shells(const Settings& settings, const Surface& boundary,
+                    const std::vector<Surface>& inclusions);
+
+/// Writes Body::region_names and Body::tetrahedron_region: region 0 is the matrix, region 1 + i is
+/// inclusion i.
+void set_regions(Body& body, const Settings& settings, const Filling& filling,
+                 const std::vector<Surface>& inclusions);
+
+}  // namespace palpate::mesher

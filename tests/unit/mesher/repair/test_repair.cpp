@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Faulty copies of shapes of known volume: each repair must give the volume back.
+#include "mesher/repair/repair.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include "format/error.hpp"
+#include "mesher/geometry/queries.hpp"
+#include "tests/unit/mesher/shapes.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+
+constexpr double kRadius = 0.03;  // m
+
+Soup soup_of(const Surface& surface) {
+  Soup soup;
+  soup.points = surface.points;
+  for (const Triangle& t : surface.triangles) {
+    std::vector<std::size_t> corners;
+    for (const std::int32_t v : t) corners.push_back(static_cast<std::size_t>(v));
+    soup.polygons.push_back(corners);
+  }
+  return soup;
+}
+
+/// Every triangle with corners of its own, as in an STL file.
+Soup unconnected(const Surface& surface) {
+  Soup soup;
+  for (const Triangle& t : surface.triangles) {
+    const std::size_t first = soup.points.size();
+    for (const std::int32_t v : t)
+      soup.points.push_back(surface.points[static_cast<std::size_t>(v)]);
+    soup.polygons.push_back({first, first + 1, first + 2});
+  }
+  return soup;
+}
+
+Surface ball() {
+  return test::sphere({0, 0, 0}, kRadius, 32);
+}
+
+Surface add(Surface surface, const Surface& more) {
+  append(surface, more);
+  return surface;
+}
+
+struct Repaired {
+  Surface surface;
+  RepairReport report;
+};
+
+Repaired repaired(const Soup& soup, const RepairSettings& settings = {}) {
+  Repaired result;
+  result.surface = repair(soup, settings, "body.stl", result.report);
+  return result;
+}
+
+/// Sound, of the volume of `shape` within `tolerance` (relative), and repaired by `step`.
+void expect_repaired(const Soup& soup, const Surface& shape, const std::string& step,
+                     double tolerance = 1e-9, const RepairSettings& settings = {}) {
+  EXPECT_FALSE(is_sound(soup));
+  const Repaired result = repaired(soup, settings);
+  EXPECT_TRUE(is_sound(soup_of(result.surface)));
+  EXPECT_NEAR(signed_volume(result.surface) / signed_volume(shape), 1, tolerance);
+  EXPECT_THAT(result.report.steps, Contains(HasSubstr(step)));
+}
+
+void expect_refused(const Soup& soup, const std::string& problem, const std::string& remedy,
+                    const RepairSettings& settings = {}) {
+  RepairReport report;
+  try {
+    repair(soup, settings, "body.stl", report);
+    FAIL() << "repaired, expected: " << problem;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Geometry);
+    EXPECT_THAT(error.problem(), HasSubstr(problem));
+    EXPECT_THAT(error.remedy(), HasSubstr(remedy));
+  }
+}
+
+TEST(Repair, ASoundSurfaceIsRecognized) {
+  EXPECT_TRUE(is_sound(soup_of(ball())));
+  EXPECT_TRUE(is_sound(soup_of(test::box({0, 0, 0}, {1, 1, 1}))));
+}
+
+TEST(Repair, ADuplicateFaceIsRemoved) {
+  Soup soup = soup_of(ball());
+  soup.polygons.push_back(soup.polygons[7]);
+  expect_repaired(soup, ball(), "1 duplicate or collapsed face");
+}
+
+TEST(Repair, AMissingTriangleIsFilled) {
+  Soup soup = soup_of(ball());
+  soup.polygons.erase(soup.polygons.begin() + 7);
+  expect_repaired(soup, ball(), "filled 1 hole");
+}
+
+TEST(Repair, ATJunctionIsSplit) {
+  // The triangle (0, 2, 1) of the bottom is split at the middle of its edge 0-1; its neighbour in
+  // the front face is not.
+  const Surface box = test::box({0, 0, 0}, {0.05, 0.04, 0.03});
+  Soup soup = soup_of(box);
+  soup.points.push_back(0.5 * (box.points[0] + box.points[1]));
+  soup.polygons[0] = {0, 2, 8};
+  soup.polygons.push_back({8, 2, 1});
+  expect_repaired(soup, box, "1 T-junction");
+}
+
+TEST(Repair, AFloatingSpeckIsRemoved) {
+  const Surface speck = test::box({0.06, 0, 0}, {0.0605, 0.0005, 0.0005});
+  expect_repaired(soup_of(add(ball(), speck)), ball(), "removed 1 separate part");
+}
+
+TEST(Repair, CopiesOfPointsThatDifferByNoiseAreMerged) {
+  Soup soup = unconnected(test::box({0, 0, 0}, {0.05, 0.05, 0.05}));
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> noise(-1e-5 * 0.05, 1e-5 * 0.05);
+  for (Vec3& x : soup.points)
+    for (double& coordinate : x) coordinate += noise(random);
+  // Each face moves by 1e-5 of the edge at most: the volume by 6e-5.
+  expect_repaired(soup, test::box({0, 0, 0}, {0.05, 0.05, 0.05}), "merged", 1e-4);
+}
+
+TEST(Repair, TurnedFacesAreOriented) {
+  Soup soup = soup_of(ball());
+  for (std::size_t p = 0; p < soup.polygons.size(); p += 3)
+    std::swap(soup.polygons[p][0], soup.polygons[p][1]);
+  EXPECT_TRUE(is_sound(soup));  // once the faces are oriented
+  EXPECT_NEAR(signed_volume(repaired(soup).surface), signed_volume(ball()), 1e-12);
+  for (auto& corners : soup.polygons = soup_of(ball()).polygons) std::swap(corners[0], corners[1]);
+  EXPECT_NEAR(signed_volume(repaired(soup).surface), signed_volume(ball()), 1e-12);
+}
+
+TEST(Repair, AFlatCutOfAnySizeIsClosed) {
+  // A cylinder without its lower cap.
+  const Surface whole = test::cylinder(kRadius, 0.1, 48);
+  Soup soup = soup_of(whole);
+  std::erase_if(soup.polygons, [&](const auto& corners) {
+    return std::all_of(corners.begin(), corners.end(),
+                       [&](std::size_t v) { return soup.points[v][2] == 0; });
+  });
+  RepairSettings settings;
+  settings.max_hole = 0.01;
+  expect_repaired(soup, whole, "filled 1 hole", 1e-9, settings);
+}
+
+TEST(Repair, AnOpenShellIsRefusedWithThePlaceOfItsHole) {
+  // Half of the ball's latitudes on one side: the border of the hole is not flat.
+  Soup soup = soup_of(ball());
+  std::erase_if(soup.polygons, [&](const auto& corners) {
+    const Vec3& x = soup.points[corners[0]];
+    return x[0] > 0.3 * kRadius + 0.4 * std::abs(x[1]);
+  });
+  RepairSettings settings;
+  settings.max_hole = 0.1;
+  expect_refused(soup, "not watertight: a hole of", "surface.repair = \"wrap\"", settings);
+}
+
+TEST(Repair, SeveralPartsAreRefusedWithTheirSizesAndTheLargestIsKeptOnRequest) {
+  const Surface other = test::sphere({0.1, 0, 0}, 0.5 * kRadius, 16);
+  const Soup soup = soup_of(add(other, ball()));
+  expect_refused(soup, "2 separate parts, the largest first: (-30", "surface.parts = \"largest\"");
+  RepairSettings settings;
+  settings.largest_part = true;
+  expect_repaired(soup, ball(), "removed 1 separate part", 1e-9, settings);
+}
+
+TEST(Repair, ALocalSelfIntersectionIsRemoved) {
+  Surface folded = test::sphere({0, 0, 0}, kRadius, 64);
+  // Two neighbouring points of the equator change places.
+  const auto near_equator = [&](std::size_t v) { return std::abs(folded.points[v][2]) < 1e-9; };
+  std::size_t first = 0;
+  while (!near_equator(first)) ++first;
+  std::swap(folded.points[first], folded.points[first + 1]);
+  ASSERT_GT(count_self_intersections(folded), 0U);
+  RepairSettings settings;
+  settings.max_change = 0.05;
+  expect_repaired(soup_of(folded), test::sphere({0, 0, 0}, kRadius, 64), "self-intersection", 2e-3,
+                  settings);
+}
+
+TEST(Repair, SaysHowFarTheSurfaceMoved) {
+  // The floating speck does not count; nothing else moves.
+  const Surface speck = test::box({0.06, 0, 0}, {0.0605, 0.0005, 0.0005});
+  const Repaired result = repaired(soup_of(add(ball(), speck)));
+  EXPECT_LT(result.report.moved, 1e-15);
+  EXPECT_LT(result.report.added, 1e-15);
+  EXPECT_NEAR(result.report.volume, signed_volume(ball()), 1e-15);
+}
+
+TEST(Repair, NamesOfFacesAreHandedOn) {
+  Soup soup = soup_of(ball());
+  soup.known_names = {{"south"}, {"north"}};
+  for (const auto& corners : soup.polygons)
+    soup.names.push_back(
+        soup.points[corners[0]][2] + soup.points[corners[1]][2] + soup.points[corners[2]][2] > 0);
+  soup.polygons.erase(soup.polygons.begin() + 7);
+  soup.names.erase(soup.names.begin() + 7);
+  const Surface surface = repaired(soup).surface;
+  ASSERT_EQ(surface.names.size(), surface.triangles.size());
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+    double height = 0;
+    for (const std::int32_t v : surface.triangles[t])
+      height += surface.points[static_cast<std::size_t>(v)][2];
+    if (std::abs(height) > 1e-6) {
+      EXPECT_EQ(surface.names[t], height > 0 ? 1U : 0U) << t;
+    }
+  }
+}
+
+TEST(AlphaWrap, OfABallWithACrackIsClosedAndNearItsVolume) {
+  Soup soup = soup_of(ball());
+  soup.polygons.resize(soup.polygons.size() - 3);
+  const double alpha = kRadius / 10, offset = kRadius / 300;
+  const Surface wrap = alpha_wrap(soup, alpha, offset);
+  EXPECT_TRUE(is_sound(soup_of(wrap)));
+  const double exact = 4 * std::numbers::pi / 3 * std::pow(kRadius, 3);
+  EXPECT_GT(signed_volume(wrap), 0.98 * signed_volume(ball()));
+  EXPECT_LT(signed_volume(wrap), std::pow(1 + 2 * offset / kRadius, 3) * exact);
+}
+
+}  // namespace
+}  // namespace palpate::mesher
