@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/volume/refine.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Mesh_complex_3_in_triangulation_3.h>
+#include <CGAL/Mesh_criteria_3.h>
+#include <CGAL/Mesh_triangulation_3.h>
+#include <CGAL/exude_mesh_3.h>
+#include <CGAL/make_mesh_3.h>
+#include <CGAL/perturb_mesh_3.h>
+
+#include <tuple>
+#include <unordered_map>
+#include <utility>
+
+#include "mesher/geometry/cgal_mesh.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+/// The Oracle in the terms of CGAL (concept MeshDomain_3). CGAL numbers sub-domains from 1 and
+/// keeps 0 for the outside: region + 1.
+class OracleDomain {
+ public:
+  using R = Kernel;
+  using FT = Kernel::FT;
+  using Point_3 = Point;
+  using Segment_3 = Kernel::Segment_3;
+  using Ray_3 = Kernel::Ray_3;
+  using Line_3 = Kernel::Line_3;
+  using Vector_3 = Kernel::Vector_3;
+  using Sphere_3 = Kernel::Sphere_3;
+  using Has_features = CGAL::Tag_false;
+  using Subdomain_index = int;
+  using Surface_patch_index = std::pair<int, int>;
+  using Index = boost::variant<Subdomain_index, Surface_patch_index>;
+  using Subdomain = boost::optional<Subdomain_index>;
+  using Surface_patch = boost::optional<Surface_patch_index>;
+  using Intersection = std::tuple<Point_3, Index, int>;
+
+  OracleDomain(const Oracle& oracle, const SizeField& seed_spacing)
+      : oracle_(oracle), seed_spacing_(seed_spacing) {
+    const Bounds box = oracle.box();
+    const Vec3 margin = 0.1 * (box.high - box.low);
+    const Vec3 low = box.low - margin, high = box.high + margin;
+    box_ = CGAL::Bbox_3(low[0], low[1], low[2], high[0], high[1], high[2]);
+  }
+
+  struct Construct_initial_points {
+    const OracleDomain& domain;
+    template <typename Out>
+    Out operator()(Out out, int = 0) const {
+      for (const Crossing& seed : domain.oracle_.seeds(domain.seed_spacing_)) {
+        *out++ = std::make_pair(to_point(seed.point), Index(patch(seed)));
+      }
+      return out;
+    }
+  };
+  struct Is_in_subdomain {
+    const OracleDomain& domain;
+    Subdomain operator()(const Point_3& point) const {
+      const std::int32_t region = domain.oracle_.region(to_vec3(point));
+      return region == kVoid ? Subdomain() : Subdomain(region + 1);
+    }
+  };
+  struct Construct_intersection {
+    const OracleDomain& domain;
+    Intersection operator()(const Segment_3& s) const { return along(s.source(), s.target()); }
+    Intersection operator()(const Ray_3& ray) const { return clipped(ray); }
+    Intersection operator()(const Line_3& line) const { return clipped(line); }
+
+   private:
+    template <typename Query>
+    Intersection clipped(const Query& query) const {
+      const auto cut = CGAL::intersection(query, Kernel::Iso_cuboid_3(domain.box_));
+      const Segment_3* inside = cut ? boost::get<Segment_3>(&*cut) : nullptr;
+      return inside == nullptr ? Intersection() : (*this)(*inside);
+    }
+    Intersection along(const Point_3& from, const Point_3& to) const {
+      const auto crossing = domain.oracle_.crossing(to_vec3(from), to_vec3(to));
+      return crossing ? Intersection(to_point(crossing->point), Index(patch(*crossing)), 2)
+                      : Intersection();
+    }
+  };
+
+  Construct_initial_points construct_initial_points_object() const { return {*this}; }
+  Is_in_subdomain is_in_domain_object() const { return {*this}; }
+  Construct_intersection construct_intersection_object() const { return {*this}; }
+
+  Index index_from_surface_patch_index(const Surface_patch_index& i) const { return Index(i); }
+  Index index_from_subdomain_index(const Subdomain_index& i) const { return Index(i); }
+  Surface_patch_index surface_patch_index(const Index& i) const {
+    return boost::get<Surface_patch_index>(i);
+  }
+  Subdomain_index subdomain_index(const Index& i) const { return boost::get<Subdomain_index>(i); }
+  CGAL::Bbox_3 bbox() const { return box_; }
+
+ private:
+  static Surface_patch_index patch(const Crossing& crossing) {
+    return {crossing.low + 1, crossing.high + 1};
+  }
+
+  const Oracle& oracle_;
+  const SizeField& seed_spacing_;
+  CGAL::Bbox_3 box_;
+};
+
+/// A size by place, for CGAL (concept MeshDomainField_3).
+struct Size {
+  using FT = OracleDomain::FT;
+  using Point_3 = OracleDomain::Point_3;
+  using Index = OracleDomain::Index;
+
+  const SizeField* size;
+  double factor = 1;
+
+  FT operator()(const Point_3& point, int /*dimension*/, const Index& /*index*/) const {
+    return factor * (*size)(to_vec3(point));
+  }
+};
+
+using Triangulation = CGAL::Mesh_triangulation_3<OracleDomain>::type;
+using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
+using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
+
+Criteria criteria_of(const RefineSettings& settings) {
+  namespace p = CGAL::parameters;
+  return Criteria(p::facet_angle = settings.smallest_facet_angle,
+                  p::facet_size = Size{&settings.facet_size},
+                  p::facet_distance = Size{&settings.facet_size, settings.facet_distance},
+                  p::cell_radius_edge_ratio = settings.radius_edge_ratio,
+                  p::cell_size = Size{&settings.cell_size});
+}
+
+VolumeMesh mesh_of(const Complex& complex) {
+  VolumeMesh mesh;
+  std::unordered_map<const void*, std::int32_t> number;
+  for (auto cell = complex.cells_in_complex_begin(); cell != complex.cells_in_complex_end();
+       ++cell) {
+    Tetrahedron corners{};
+    for (int k = 0; k < 4; ++k) {
+      const auto vertex = cell->vertex(k);
+      const auto [entry, is_new] =
+          number.emplace(&*vertex, static_cast<std::int32_t>(mesh.nodes.size()));
+      if (is_new) mesh.nodes.push_back(to_vec3(vertex->point().point()));
+      corners[static_cast<std::size_t>(k)] = entry->second;
+    }
+    mesh.tetrahedra.push_back(corners);
+    mesh.region.push_back(complex.subdomain_index(cell) - 1);
+  }
+  return mesh;
+}
+
+}  // namespace
+
+Refinement refine(const Oracle& oracle, const RefineSettings& settings) {
+  namespace p = CGAL::parameters;
+  const OracleDomain domain(oracle, settings.seed_spacing);
+  const Criteria criteria = criteria_of(settings);
+  CGAL::Mesh_error_code code = CGAL::CGAL_MESH_3_NO_ERROR;
+  const auto options = p::mesh_3_options(p::maximal_number_of_vertices = settings.most_nodes,
+                                         p::pointer_to_error_code = &code);
+  // CGAL forbids an edge with more than two facets, which several regions need.
+  const auto topology = oracle.has_one_region() ? p::manifold() : p::non_manifold();
+  Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria, p::no_perturb(), p::no_exude(),
+                                               topology, options);
+  Refinement result;
+  result.cut_short = code != CGAL::CGAL_MESH_3_NO_ERROR;
+  if (settings.smallest_dihedral > 0 && !result.cut_short) {
+    // Limits of time would make the result depend on the machine.
+    CGAL::perturb_mesh_3(complex, domain, p::time_limit = 0,
+                         p::sliver_bound = settings.smallest_dihedral);
+    CGAL::exude_mesh_3(complex, p::time_limit = 0, p::sliver_bound = settings.smallest_dihedral);
+  }
+  result.mesh = mesh_of(complex);
+  return result;
+}
+
+}  // namespace palpate::mesher
