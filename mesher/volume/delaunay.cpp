@@ -49,9 +49,11 @@ Domain scaled(const Domain& domain, const Frame& frame) {
 RefineSettings refine_settings(const DelaunaySettings& settings, const Frame& frame) {
   RefineSettings refine;
   const double h = frame.scaled(settings.element_size);
-  const double inside = static_cast<float>(settings.interior_coarsening) * h;
+  // Edges are 1.25 times as long as the bound on the radius, in the mean.
+  const double radius = 0.8 * h;
+  const double inside = static_cast<float>(settings.interior_coarsening) * radius;
   refine.facet_size = [=, coarsening = settings.surface_coarsening](const Vec3& x) {
-    return coarsening ? h * std::max(1.0, coarsening(frame.metres(x))) : h;
+    return coarsening ? radius * std::max(1.0, coarsening(frame.metres(x))) : radius;
   };
   refine.cell_size = [=](const Vec3&) { return inside; };
   refine.seed_spacing = [=](const Vec3&) { return 2 * h; };

@@ -38,7 +38,7 @@ struct DelaunayReport {
 };
 
 /// Fills the domain. Every facet of an interface belongs to two tetrahedra; facets between the body
-/// and the void form closed manifold surfaces. Boundary nodes lie on the surfaces of the domain.
+/// and the void form closed manifold surfaces.
 /// Where the body is thinner than the elements, they become smaller.
 /// Equal arguments give equal meshes, to the bit; the scale of the coordinates does not matter.
 /// @throws Error(Geometry), with the place, where no such mesh within the limits of the settings is

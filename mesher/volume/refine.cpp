@@ -132,6 +132,23 @@ Criteria criteria_of(const RefineSettings& settings) {
                   p::cell_size = Size{&settings.cell_size});
 }
 
+/// Moves nodes by gradients and, where that does not help, a few times at random (with a seed of
+/// CGAL's own). Random moves cost most of the time: exudation removes what they would.
+void perturb(Complex& complex, const OracleDomain& domain, double smallest_dihedral) {
+  namespace p = CGAL::parameters;
+  using Criterion = CGAL::Mesh_3::Min_dihedral_angle_criterion<Triangulation>;
+  using Perturber = CGAL::Mesh_3::Sliver_perturber<Complex, OracleDomain, Criterion>;
+  // The perturber owns them.
+  const std::vector<Perturber::Perturbation*> moves = {
+      new CGAL::Mesh_3::Sq_radius_perturbation<Complex, OracleDomain, Criterion>(40, 0.05),
+      new CGAL::Mesh_3::Dihedral_angle_perturbation<Complex, OracleDomain, Criterion>(40, 0.05),
+      new CGAL::Mesh_3::Li_random_perturbation<Complex, OracleDomain, Criterion>(10, 0.15)};
+  // A limit of time would make the result depend on the machine.
+  CGAL::perturb_mesh_3(complex, domain, p::time_limit = 0,
+                       p::sliver_criterion = Criterion(smallest_dihedral, complex.triangulation()),
+                       p::perturbation_vector = moves);
+}
+
 VolumeMesh mesh_of(const Complex& complex) {
   VolumeMesh mesh;
   std::unordered_map<const void*, std::int32_t> number;
@@ -167,9 +184,7 @@ Refinement refine(const Oracle& oracle, const RefineSettings& settings) {
   Refinement result;
   result.cut_short = code != CGAL::CGAL_MESH_3_NO_ERROR;
   if (settings.smallest_dihedral > 0 && !result.cut_short) {
-    // Limits of time would make the result depend on the machine.
-    CGAL::perturb_mesh_3(complex, domain, p::time_limit = 0,
-                         p::sliver_bound = settings.smallest_dihedral);
+    perturb(complex, domain, settings.smallest_dihedral);
     CGAL::exude_mesh_3(complex, p::time_limit = 0, p::sliver_bound = settings.smallest_dihedral);
   }
   result.mesh = mesh_of(complex);

@@ -16,7 +16,7 @@ struct RefineSettings {
   double facet_distance = 1.0 / 12;  ///< largest distance of a facet from the interface / its size
   double smallest_facet_angle = 25;  ///< degrees
   double radius_edge_ratio = 3;      ///< largest circumradius over shortest edge
-  double smallest_dihedral = 12;     ///< degrees; flatter tetrahedra are perturbed and exuded
+  double smallest_dihedral = 10;     ///< degrees; flatter tetrahedra are perturbed and exuded
   std::size_t most_nodes = 0;        ///< refinement stops there; 0: no bound
 };
 
