@@ -14,7 +14,7 @@ constexpr double kCountsPerMetre = 200000;
 constexpr double kNewtonPerVolt = 2;
 
 palpate::test::FakeWorld world;
-std::array<bool, 3> armed{}, quadrature{};
+std::array<bool, 3> reset{}, armed{}, quadrature{};
 std::array<double, 3> volts{};
 
 struct Range {
@@ -40,7 +40,7 @@ extern "C" {
 void* comedi_open(const char*) {
   if (!world.present) return nullptr;
   ++world.opened;
-  armed = quadrature = {};
+  reset = armed = quadrature = {};
   volts = {};
   return &world;
 }
@@ -87,8 +87,10 @@ unsigned comedi_from_phys(double value, Range* r, unsigned largest) {
 int comedi_do_insn(void*, Instruction* insn) {
   if (insn->kind != (3U | 0x4000000U | 0x8000000U) || insn->subdevice != 2) return -1;
   if (insn->channel > 2) return -1;
-  if (insn->data[0] == 1003) quadrature[insn->channel] = true;
-  if (insn->data[0] == 31) armed[insn->channel] = true;
+  const unsigned channel = insn->channel;
+  if (insn->data[0] == 34) reset[channel] = true, armed[channel] = quadrature[channel] = false;
+  if (insn->data[0] == 1003) quadrature[channel] = reset[channel];
+  if (insn->data[0] == 31) armed[channel] = quadrature[channel];
   return 1;
 }
 

@@ -49,7 +49,7 @@ int dhdStop(char) {
   return 0;
 }
 int dhdGetSystemType(char) {
-  return gone() ? fail(2) : 33;
+  return gone() ? fail(2) : world.system_type.load();
 }
 int dhdGetPosition(double* x, double* y, double* z, char) {
   world.wait_for_device();
@@ -72,11 +72,14 @@ int dhdGetButtonMask(char) {
   return gone() ? fail(2) : world.buttons.load();
 }
 int dhdEnableExpertMode() {
+  if (!world.has_watchdog) return fail(9);
   expert = true;
   return 0;
 }
-int dhdSetWatchdog(unsigned char, char) {
-  return expert ? 0 : fail(9);
+int dhdSetWatchdog(unsigned char ticks, char) {
+  if (!expert) return fail(9);
+  world.watchdog_ticks = ticks;
+  return 0;
 }
 int dhdErrorGetLast() {
   return last_error;

@@ -48,8 +48,9 @@ struct HDErrorInfo {
   unsigned hHD;
 };
 
-unsigned hdInitDevice(const char*) {
+unsigned hdInitDevice(const char* name) {
   if (world.present) {
+    world.opened_name = name == nullptr ? "default" : name;
     ++world.opened;
     return 7;
   }
@@ -115,6 +116,7 @@ void hdUnschedule(unsigned long) {
 }
 HDErrorInfo hdGetError() {
   const std::scoped_lock lock(error_mutex);
+  if (const unsigned queued = world.queued_error.exchange(0)) return {queued, 0, 7};
   if (errors.empty()) return {0, 0, 0};
   const unsigned code = errors.front();
   errors.pop_front();

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
+#include <string>
 #include <thread>
 
 #include "format/vec3.hpp"
@@ -32,6 +33,10 @@ struct FakeWorld {
     present = true;
     unplugged = saturated = late = forces_enabled = false;
     forces = opened = closed = stall_ms = 0;
+    system_type = 33;
+    watchdog_ticks = queued_error = 0;
+    has_watchdog = true;
+    opened_name.clear();
   }
   /// Where a driver waits for its device. Once it takes as long as a test says.
   void wait_for_device() {
@@ -77,6 +82,13 @@ struct FakeWorld {
   std::atomic<bool> present{true}, unplugged{false}, saturated{false}, late{false};
   std::atomic<bool> forces_enabled{false};
   std::atomic<int> forces{0}, opened{0}, closed{0}, stall_ms{0};
+
+  // Each of one vendor.
+  std::atomic<int> system_type{33};       ///< dhd: an omega.3
+  std::atomic<int> watchdog_ticks{0};     ///< dhd: as it was set, in 125 us; 0: never
+  std::atomic<bool> has_watchdog{true};   ///< dhd
+  std::atomic<unsigned> queued_error{0};  ///< hd: an error that its queue still holds
+  std::string opened_name;                ///< hd: the device that was asked for
 };
 
 }  // namespace palpate::test
