@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "fem/laws/invariant_energies.hpp"
+#include "fem/laws/law.hpp"
 #include "fem/laws/law_table.hpp"
 #include "fem/laws/ogden.hpp"
 #include "fem/laws/saint_venant_kirchhoff.hpp"

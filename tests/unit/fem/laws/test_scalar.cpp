@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The functions of eight numbers at once against those of the C library.
+#include "fem/laws/scalar.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace palpate::fem {
+namespace {
+
+/// The numbers of the laws: volume ratios, squares of stretches, exponents of fibres.
+const Lanes kNumbers = (Lanes() << 1e-3, 0.2, 0.9, 1 - 1e-9, 1.0, 1 + 1e-9, 1.7, 40).finished();
+
+template <class Eight, class One>
+void expect_same(Eight eight, One one, double tolerance) {
+  const Lanes result = eight(kNumbers);
+  for (int lane = 0; lane < kLanes; ++lane) {
+    const double expected = one(kNumbers[lane]);
+    EXPECT_NEAR(result[lane], expected, tolerance * std::max(std::abs(expected), 1e-300))
+        << kNumbers[lane];
+  }
+}
+
+TEST(ScalarFunctions, AreThoseOfTheCLibraryInEveryLane) {
+  expect_same([](const Lanes& x) { return logarithm(x); }, [](double x) { return std::log(x); },
+              1e-15);
+  expect_same([](const Lanes& x) { return exponential(x); }, [](double x) { return std::exp(x); },
+              1e-15);
+  // Eigen's eight square roots at once come from an estimate and Newton's method: the last bit.
+  expect_same([](const Lanes& x) { return square_root(x); }, [](double x) { return std::sqrt(x); },
+              2.3e-16);
+  for (const double exponent : {-2.0 / 3, -4.0 / 3, 1.0 / 3})
+    expect_same([&](const Lanes& x) { return power_of(x, exponent); },
+                [&](double x) { return std::pow(x, exponent); }, 4e-15);
+}
+
+TEST(ScalarFunctions, ExceedsIsStrict) {
+  expect_same([](const Lanes& x) { return exceeds(x, 1.0); },
+              [](double x) { return x > 1 ? 1.0 : 0.0; }, 0);
+  EXPECT_EQ(exceeds(1.0, 1.0), 0);
+  EXPECT_EQ(exceeds(std::nextafter(1.0, 2.0), 1.0), 1);
+}
+
+TEST(ScalarFunctions, ConstantsFillEveryLane) {
+  EXPECT_TRUE((constant_of<Lanes>(2.5) == 2.5).all());
+  EXPECT_TRUE((zero_of<Lanes>() == 0).all());
+  EXPECT_EQ(constant_of<double>(2.5), 2.5);
+}
+
+}  // namespace
+}  // namespace palpate::fem
