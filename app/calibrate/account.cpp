@@ -7,17 +7,11 @@
 
 #include "app/case/material.hpp"
 #include "app/console.hpp"
+#include "app/json_number.hpp"
 
 namespace palpate::app {
-namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-}  // namespace
 
 Json calibration_account(const calibrate::Calibration& calibration, double confidence) {
   Json constants = Json::array(), correlation = Json::array();
@@ -25,23 +19,23 @@ Json calibration_account(const calibrate::Calibration& calibration, double confi
     constants.push_back({{"name", e.name},
                          {"unit", e.unit},
                          {"value", e.value},
-                         {"standard_error", number(e.standard_error)},
-                         {"low", number(e.low)},
-                         {"high", number(e.high)},
-                         {"profile_low", number(e.profile_low)},
-                         {"profile_high", number(e.profile_high)},
+                         {"standard_error", json_number(e.standard_error)},
+                         {"low", json_number(e.low)},
+                         {"high", json_number(e.high)},
+                         {"profile_low", json_number(e.profile_low)},
+                         {"profile_high", json_number(e.profile_high)},
                          {"at_bound", e.at_bound}});
   }
   for (const auto& row : calibration.correlation) {
     Json numbers = Json::array();
-    for (const double value : row) numbers.push_back(number(value));
+    for (const double value : row) numbers.push_back(json_number(value));
     correlation.push_back(numbers);
   }
   return {{"converged", calibration.converged},
           {"confidence", confidence},
           {"constants", constants},
           {"correlation", correlation},
-          {"condition", number(calibration.condition)},
+          {"condition", json_number(calibration.condition)},
           {"degrees_of_freedom", calibration.freedom},
           {"residual_scatter", calibration.scatter},
           {"intervals_widened", calibration.widened},
@@ -69,12 +63,12 @@ Json homogeneous_account(const calibrate::HomogeneousFit& fit,
                       {"mode", calibrate::mode_name(tests[i].mode)},
                       {"rms_Pa", e.rms},
                       {"relative_rms", e.relative},
-                      {"r2", number(e.r2)},
+                      {"r2", json_number(e.r2)},
                       {"worst_Pa", e.worst},
                       {"worst_at", e.worst_at},
                       {"stable_from", limit.low},
                       {"stable_to", limit.high},
-                      {"unstable_at", number(limit.unstable_at)},
+                      {"unstable_at", json_number(limit.unstable_at)},
                       {"deformation", tests[i].deformation},
                       {"measured_nominal_Pa", tests[i].nominal},
                       {"fitted_nominal_Pa", fit.predicted[i]}});

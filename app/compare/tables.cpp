@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "app/json_number.hpp"
 #include "format/provenance.hpp"
 
 namespace palpate::app {
@@ -17,10 +18,6 @@ const char* kind_name(PathKind kind) {
   return kind == PathKind::Normal ? "normal" : "lateral";
 }
 
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
 /// An unknown value is an empty field.
 std::string field(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : std::string();
@@ -30,8 +27,8 @@ Json point_json(const compare::ComparedPoint& p) {
   return {{"displacement_m", p.displacement},
           {"reference_N", p.reference},
           {"model_N", p.model},
-          {"uncertainty_N", number(p.uncertainty)},
-          {"scatter_N", number(p.scatter)},
+          {"uncertainty_N", json_number(p.uncertainty)},
+          {"scatter_N", json_number(p.scatter)},
           {"jnd", p.jnd}};
 }
 
@@ -50,15 +47,15 @@ Json curve_json(const compare::CurveComparison& c) {
           {"lateral_depth_m", c.lateral_depth},
           {"range_m", c.range},
           {"rmse_N", c.rmse},
-          {"normalised_rmse", number(c.normalised_rmse)},
-          {"r2", number(c.r2)},
+          {"normalised_rmse", json_number(c.normalised_rmse)},
+          {"r2", json_number(c.r2)},
           {"bias_N", c.bias},
           {"worst", point_json(c.worst)},
           {"rms_jnd", c.jnd_rms},
           {"noticeable_fraction", c.noticeable},
-          {"within_uncertainty_fraction", number(c.within_uncertainty)},
-          {"uncertainty_N", number(c.mean_uncertainty)},
-          {"scatter_N", number(c.mean_scatter)},
+          {"within_uncertainty_fraction", json_number(c.within_uncertainty)},
+          {"uncertainty_N", json_number(c.mean_uncertainty)},
+          {"scatter_N", json_number(c.mean_scatter)},
           {"energy_reference_J", c.energy_reference},
           {"energy_model_J", c.energy_model},
           {"stiffness", stiffness},
@@ -70,14 +67,14 @@ Json summary_json(const compare::Summary& s) {
           {"curves", s.curves},
           {"points", s.points},
           {"rmse_N", s.rmse},
-          {"normalised_rmse", number(s.normalised_rmse)},
+          {"normalised_rmse", json_number(s.normalised_rmse)},
           {"bias_N", s.bias},
           {"agreement_low_N", s.agreement_low},
           {"agreement_high_N", s.agreement_high},
           {"rms_jnd", s.jnd_rms},
           {"noticeable_fraction", s.noticeable},
-          {"within_uncertainty_fraction", number(s.within_uncertainty)},
-          {"scatter_N", number(s.mean_scatter)},
+          {"within_uncertainty_fraction", json_number(s.within_uncertainty)},
+          {"scatter_N", json_number(s.mean_scatter)},
           {"worst_vertex", s.worst_vertex},
           {"worst", point_json(s.worst)}};
 }

@@ -11,6 +11,7 @@
 #include <optional>
 #include <sstream>
 
+#include "app/json_number.hpp"
 #include "fitting/measurement/records/csv_table.hpp"
 #include "fitting/measurement/records/placement.hpp"
 #include "fitting/measurement/records/repeats.hpp"
@@ -26,10 +27,6 @@ namespace m = palpate::measured;
 using Json = nlohmann::ordered_json;
 
 constexpr Vec3 kDown{0, 0, -1};
-
-Json number(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
 
 /// Everything found at one site.
 struct SiteRecords {
@@ -225,7 +222,7 @@ class Importer {
     if (curves.drag) {
       records_.back()["drag"] = {{"lateral_depth_m", curves.drag->lateral_depth},
                                  {"travel_m", curves.drag->travel.back()},
-                                 {"slip_at_m", number(curves.drag->slip)}};
+                                 {"slip_at_m", json_number(curves.drag->slip)}};
       sites_[curves.site.vertex].drags.push_back(*curves.drag);
     }
     sites_[curves.site.vertex].presses.push_back(curves.press);
@@ -246,13 +243,13 @@ class Importer {
                         {"contact_uncertainty_m", curve.contact.uncertainty},
                         {"force_offset_N", b.offset},
                         {"drift_N_per_s", b.drift},
-                        {"drift_uncertainty_N_per_s", number(b.drift_uncertainty)},
+                        {"drift_uncertainty_N_per_s", json_number(b.drift_uncertainty)},
                         {"noise_N", b.noise},
-                        {"rate_m_per_s", number(curve.rate)},
+                        {"rate_m_per_s", json_number(curve.rate)},
                         {"deepest_m", curve.loading.back().depth},
                         {"largest_force_N", curve.loading.back().force},
                         {"work_loading_J", curve.work_loading},
-                        {"returned_fraction", number(returned)}});
+                        {"returned_fraction", json_number(returned)}});
   }
 
   Vec3 inward_of(int vertex) const {
@@ -322,10 +319,10 @@ class Importer {
   static Json end_account(const CurvePath& path) {
     const CurveSample& end = path.samples.back();
     return {{"repeats", path.repeats},
-            {"contact_uncertainty_m", number(path.contact_uncertainty)},
+            {"contact_uncertainty_m", json_number(path.contact_uncertainty)},
             {"force_N", dot(end.force, path.direction)},
-            {"force_scatter_N", number(end.force_scatter)},
-            {"force_uncertainty_N", number(end.force_uncertainty)}};
+            {"force_scatter_N", json_number(end.force_scatter)},
+            {"force_uncertainty_N", json_number(end.force_uncertainty)}};
   }
 
   static Json sites_account(const Curves& curves) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/simulate/hand_path.hpp"
 #include "app/simulate/surface_path.hpp"
 #include "format/error.hpp"
 
@@ -128,29 +127,6 @@ TEST(SurfacePath, FollowsACurvedSurface) {
     EXPECT_GT(dot(point.inward, radial), std::cos(0.02));
     EXPECT_NEAR(norm(point.inward), 1, 1e-12);
   }
-}
-
-TEST(HandPath, PressesSlidesAndReleases) {
-  const Library library = flat(9, 9);
-  SimulateSection script;
-  script.press_depth = 0.003;
-  script.press_speed = 0.01;
-  script.slide_length = 0.03;
-  script.slide_speed = 0.03;
-  const HandPath hand(script, straight_path(library, middle_triangle(library), 0.03, 0.0005));
-  double deepest = 0, fastest = 0;
-  for (double t = 0; t < hand.duration(); t += 1e-3) {
-    const HandState state = hand.at(t);
-    deepest = std::max(deepest, -state.position[2]);
-    fastest = std::max(fastest, norm(state.velocity));
-  }
-  EXPECT_NEAR(deepest, script.press_depth, 1e-9);
-  EXPECT_NEAR(fastest, script.slide_speed, 1e-4);
-  EXPECT_GT(hand.at(0).position[2], 0);
-  EXPECT_GT(hand.at(hand.duration()).position[2], 0);
-  EXPECT_NEAR(norm(hand.at(0).velocity), 0, 1e-6);
-  const double slid = norm(hand.at(hand.duration()).position - hand.at(0).position);
-  EXPECT_NEAR(slid, 0.03, 1e-9);
 }
 
 }  // namespace

@@ -1,68 +1,24 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Input files of other programs, by their structure: tags that close, counts, numbers that refer to
-// what exists; the tool as a mesh. That CalculiX computes the same is shown by the verification
-// tests.
+// What is pressed, by what and where, for the input files of other programs; the tool as a mesh.
+#include "app/export/deck.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
 
 #include <map>
-#include <regex>
 #include <set>
 
-#include "app/export/deck.hpp"
 #include "fem/contact/tool_mesh.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
-#include "tests/support/block_body.hpp"
-#include "tests/support/sample_laws.hpp"
+#include "tests/unit/app/export/decks.hpp"
 
 namespace palpate::app {
 namespace {
 
 using testing::HasSubstr;
-
-Body block() {
-  Body body =
-      test::make_block(test::even(0, 0.02, 4), test::even(0, 0.02, 4), test::even(0, 0.01, 2));
-  body.name = "a <b> -- \"c\" & d";
-  return body;
-}
-
-Deck deck_of(const fem::LawConstants& law) {
-  const Body body = block();
-  fem::CampaignSettings settings;
-  settings.materials = {{"tissue", law}};
-  settings.indentation.depth = 0.002;
-  return make_patch_deck(body, settings, test::site_nearest(body, 0.01, 0.01), 0.0052);
-}
-
-std::size_t count(const std::string& text, const std::string& part) {
-  std::size_t n = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
-  return n;
-}
-
-/// Every tag closed in its order; the first fault in words, empty when there is none.
-std::string xml_fault(const std::string& text) {
-  static const std::regex tag(R"(<(/?)([A-Za-z_0-9]+)((?: [a-z_A-Z0-9]+="[^"<>]*")*)(/?)>)");
-  std::vector<std::string> open;
-  std::size_t marks = 0;
-  for (std::sregex_iterator it(text.begin(), text.end(), tag), end; it != end; ++it) {
-    ++marks;
-    const std::string name = (*it)[2];
-    if ((*it)[1] == "/") {
-      if (open.empty() || open.back() != name) return "unexpected </" + name + ">";
-      open.pop_back();
-    } else if ((*it)[4] != "/") {
-      open.push_back(name);
-    }
-  }
-  if (!open.empty()) return "<" + open.back() + "> is not closed";
-  // The declaration and the comment are the only marks that are no tags.
-  return marks + 2 == count(text, "<") ? "" : "a mark that is no tag";
-}
 
 TEST(Decks, MoveTheSurfaceNodesUnderThePatch) {
   const Deck deck = deck_of({10e3, 0.45});
@@ -106,48 +62,6 @@ TEST(Decks, RefuseLinearElements) {
     }
   }
 }
-
-TEST(Decks, CalculixHoldsEveryNodeAndElementOnce) {
-  const Deck deck = deck_of({10e3, 0.45});
-  const std::string text = calculix_deck(deck);
-  const std::string nodes =
-      text.substr(text.find("*NODE,"), text.find("** region") - text.find("*NODE,"));
-  EXPECT_EQ(count(nodes, "\n") - 1, static_cast<std::size_t>(deck.mesh.X.cols()));
-  const std::size_t first = text.find("*ELEMENT"), last = text.find("*MATERIAL");
-  EXPECT_EQ(count(text.substr(first, last - first), "\n") - 1, deck.mesh.tetrahedra.size());
-  EXPECT_THAT(text, HasSubstr("PATCH,3,3,-2.000000000000e-03"));
-}
-
-TEST(Decks, FebioIsWellFormedAndCountsRight) {
-  for (const fem::LawConstants& law : test::sample_laws(0.45)) {
-    if (law.law == "mooney-rivlin-5" || law.law == "demiray-fung" || law.law == "arruda-boyce") {
-      EXPECT_THROW(febio_deck(deck_of(law)), Error);
-      continue;
-    }
-    const Deck deck = deck_of(law);
-    const std::string text = febio_deck(deck);
-    EXPECT_EQ(xml_fault(text), "") << law.law;
-    EXPECT_EQ(count(text, "<node id="), static_cast<std::size_t>(deck.mesh.X.cols()));
-    EXPECT_EQ(count(text, "<elem id="), deck.mesh.tetrahedra.size());
-    EXPECT_EQ(count(text, "<material id="), 1u);
-    const std::size_t set = text.find("<NodeSet name=\"patch\">");
-    const std::size_t end = text.find("</NodeSet>", set);
-    EXPECT_EQ(count(text.substr(set, end - set), ",") + 1, deck.patch.size());
-  }
-}
-
-fem::CampaignSettings pressed_by(const fem::ToolGeometry& tool) {
-  fem::CampaignSettings settings;
-  settings.materials = {{"tissue", {10e3, 0.45}}};
-  settings.indentation.tool = tool;
-  settings.indentation.depth = 0.002;
-  return settings;
-}
-
-const fem::ToolGeometry kTools[] = {{fem::ToolShape::Sphere, 0.004, 0, 0},
-                                    {fem::ToolShape::Disc, 0.004, 0.001, 0},
-                                    {fem::ToolShape::Disc, 0.004, 0.004, 0},
-                                    {fem::ToolShape::Cylinder, 0.003, 0, 0.004}};
 
 Eigen::Vector3d corner_normal(const Eigen::Matrix3Xd& X, const fem::Facet& facet) {
   const Eigen::Vector3d a = X.col(facet[1]) - X.col(facet[0]),
@@ -242,25 +156,6 @@ TEST(Decks, PressTheToolAgainstTheSkinThatItMayMeet) {
   }
 }
 
-TEST(Decks, OfAToolAreWellFormedAndCountRight) {
-  const Body body = block();
-  const Deck deck =
-      make_tool_deck(body, pressed_by(kTools[0]), test::site_nearest(body, 0.01, 0.01));
-  const auto nodes = static_cast<std::size_t>(deck.mesh.X.cols() + deck.tool->mesh.X.cols());
-  const std::size_t elements = deck.mesh.tetrahedra.size() + deck.tool->mesh.tetrahedra.size();
-  const std::string febio = febio_deck(deck);
-  EXPECT_EQ(xml_fault(febio), "");
-  EXPECT_EQ(count(febio, "<node id="), nodes);
-  EXPECT_EQ(count(febio, "<elem id="), elements);
-  EXPECT_EQ(count(febio, "<tri6 id="), deck.tool->skin.size() + deck.tool->mesh.tetrahedra.size());
-  EXPECT_EQ(count(febio, "prescribed displacement"), 0u);
-  EXPECT_THAT(febio, HasSubstr("<value lc=\"1\">-2.000000000000e-03</value>"));
-  const std::string calculix = calculix_deck(deck);
-  EXPECT_EQ(count(calculix, "*NODE, NSET=TOOL"), 1u);
-  EXPECT_THAT(calculix, HasSubstr("TOOL,3,3,-2.000000000000e-03"));
-  EXPECT_THAT(calculix, HasSubstr(std::to_string(elements) + ","));
-}
-
 TEST(Decks, RefuseToolsThatOtherProgramsHoldInTheirOwnWay) {
   const Body body = block();
   fem::CampaignSettings settings = pressed_by({fem::ToolShape::Disc, 0.004, 0, 0});
@@ -269,23 +164,6 @@ TEST(Decks, RefuseToolsThatOtherProgramsHoldInTheirOwnWay) {
   settings.indentation.friction = fem::ToolFriction::NoSlip;
   EXPECT_THROW(make_tool_deck(body, settings, test::site_nearest(body, 0.01, 0.01)), Error);
   EXPECT_THROW(make_tool_deck(body, pressed_by(kTools[0]), -1), Error);
-}
-
-TEST(Decks, NameTheLawThatTheOtherProgramLacks) {
-  const auto message = [](auto write, const fem::LawConstants& law) -> std::string {
-    try {
-      write(deck_of(law));
-    } catch (const Error& error) {
-      return error.what();
-    }
-    return "written";
-  };
-  const fem::LawConstants fung("demiray-fung", {{"mu", 1e3}, {"b", 1}, {"poisson", 0.45}});
-  EXPECT_THAT(message(calculix_deck, fung), HasSubstr("CalculiX has no law like demiray-fung"));
-  EXPECT_THAT(message(calculix_deck, fung), HasSubstr("region 'tissue'"));
-  EXPECT_THAT(message(febio_deck, fung), HasSubstr("FEBio has no law like demiray-fung"));
-  const fem::LawConstants gent("gent", {{"mu", 1e3}, {"J_m", 12}, {"poisson", 0.45}});
-  EXPECT_THAT(message(calculix_deck, gent), HasSubstr("CalculiX has no law like gent"));
 }
 
 }  // namespace

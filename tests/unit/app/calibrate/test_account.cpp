@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/calibrate/account.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace palpate::app {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// Exact stresses of an incompressible neo-Hookean solid, P = mu (l - l^-2).
+calibrate::HomogeneousTest uniaxial(double mu) {
+  calibrate::HomogeneousTest test{"tension", calibrate::Mode::Uniaxial, {}, {}};
+  for (double l = 1.05; l < 1.5; l += 0.05) {
+    test.deformation.push_back(l);
+    test.nominal.push_back(mu * (l - 1 / (l * l)));
+  }
+  return test;
+}
+
+TEST(CalibrationAccount, HasTheConstantsAndTheFitOfEachTest) {
+  constexpr double kMu = 4e3;
+  calibrate::HomogeneousSettings settings;
+  settings.law = "neo-hookean";
+  const std::vector<calibrate::HomogeneousTest> tests{uniaxial(kMu)};
+  const auto fit = calibrate::fit_homogeneous(tests, settings);
+  const auto account = homogeneous_account(fit, settings, tests);
+  EXPECT_EQ(account.at("law"), "neo-hookean");
+  EXPECT_NEAR(account.at("shear_modulus_Pa").get<double>(), kMu, 1e-3 * kMu);
+  ASSERT_EQ(account.at("constants").size(), 1u);
+  EXPECT_EQ(account.at("constants").at(0).at("unit"), "Pa");
+  const auto& test = account.at("tests").at(0);
+  EXPECT_EQ(test.at("test"), "tension");
+  EXPECT_EQ(test.at("measured_nominal_Pa").size(), tests[0].nominal.size());
+  for (std::size_t i = 0; i < tests[0].nominal.size(); ++i)
+    EXPECT_NEAR(test.at("fitted_nominal_Pa").at(i).get<double>(), tests[0].nominal[i], 1e-3 * kMu);
+  EXPECT_THAT(account.at("case_material").get<std::string>(),
+              testing::HasSubstr("law = \"neo-hookean\""));
+}
+
+/// What is not known is null, which every reader of JSON takes; NaN none.
+TEST(CalibrationAccount, WritesWhatIsUnknownAsNull) {
+  calibrate::Calibration calibration;
+  calibrate::Estimate estimate;
+  estimate.name = "mu";
+  estimate.standard_error = kUnknown;
+  estimate.high = std::numeric_limits<double>::infinity();
+  estimate.low = 1;
+  calibration.estimates = {estimate};
+  calibration.correlation = {{kUnknown}};
+  const auto account = calibration_account(calibration, 0.95);
+  const auto& constant = account.at("constants").at(0);
+  EXPECT_TRUE(constant.at("standard_error").is_null());
+  EXPECT_TRUE(constant.at("high").is_null());
+  EXPECT_TRUE(constant.at("profile_low").is_null());
+  EXPECT_EQ(constant.at("low"), 1);
+  EXPECT_TRUE(account.at("correlation").at(0).at(0).is_null());
+  EXPECT_EQ(account.dump().find("nan"), std::string::npos);
+}
+
+TEST(CalibrationAccount, IsSaidLineByLine) {
+  calibrate::Calibration calibration;
+  calibrate::Estimate free, bound;
+  free.name = "mu", free.unit = "Pa", free.value = 4000, free.low = 3900, free.high = 4100;
+  bound.name = "b", bound.unit = "1", bound.value = 20, bound.at_bound = true;
+  calibration.estimates = {free, bound};
+  calibration.warnings = {"the data do not say b"};
+  testing::internal::CaptureStdout();
+  say_calibration(calibration, 0.95);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(),
+            "  mu = 4000 Pa, 95 % interval 3900 to 4100\n  b = 20, at its bound\n"
+            "  warning: the data do not say b\n");
+}
+
+}  // namespace
+}  // namespace palpate::app

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The structure of the input file: tags that close, counts, numbers that refer to what exists.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <regex>
+
+#include "tests/support/sample_laws.hpp"
+#include "tests/unit/app/export/decks.hpp"
+
+namespace palpate::app {
+namespace {
+
+using testing::HasSubstr;
+
+/// Every tag closed in its order; the first fault in words, empty when there is none.
+std::string xml_fault(const std::string& text) {
+  static const std::regex tag(R"(<(/?)([A-Za-z_0-9]+)((?: [a-z_A-Z0-9]+="[^"<>]*")*)(/?)>)");
+  std::vector<std::string> open;
+  std::size_t marks = 0;
+  for (std::sregex_iterator it(text.begin(), text.end(), tag), end; it != end; ++it) {
+    ++marks;
+    const std::string name = (*it)[2];
+    if ((*it)[1] == "/") {
+      if (open.empty() || open.back() != name) return "unexpected </" + name + ">";
+      open.pop_back();
+    } else if ((*it)[4] != "/") {
+      open.push_back(name);
+    }
+  }
+  if (!open.empty()) return "<" + open.back() + "> is not closed";
+  // The declaration and the comment are the only marks that are no tags.
+  return marks + 2 == count(text, "<") ? "" : "a mark that is no tag";
+}
+
+TEST(FebioDeck, IsWellFormedAndCountsRight) {
+  for (const fem::LawConstants& law : test::sample_laws(0.45)) {
+    if (law.law == "mooney-rivlin-5" || law.law == "demiray-fung" || law.law == "arruda-boyce") {
+      EXPECT_THROW(febio_deck(deck_of(law)), Error);
+      continue;
+    }
+    const Deck deck = deck_of(law);
+    const std::string text = febio_deck(deck);
+    EXPECT_EQ(xml_fault(text), "") << law.law;
+    EXPECT_EQ(count(text, "<node id="), static_cast<std::size_t>(deck.mesh.X.cols()));
+    EXPECT_EQ(count(text, "<elem id="), deck.mesh.tetrahedra.size());
+    EXPECT_EQ(count(text, "<material id="), 1u);
+    const std::size_t set = text.find("<NodeSet name=\"patch\">");
+    const std::size_t end = text.find("</NodeSet>", set);
+    EXPECT_EQ(count(text.substr(set, end - set), ",") + 1, deck.patch.size());
+  }
+}
+
+TEST(FebioDeck, OfAToolIsWellFormedAndCountsRight) {
+  const Deck deck = sphere_deck();
+  const std::string text = febio_deck(deck);
+  EXPECT_EQ(xml_fault(text), "");
+  EXPECT_EQ(count(text, "<node id="), nodes_of(deck));
+  EXPECT_EQ(count(text, "<elem id="), elements_of(deck));
+  EXPECT_EQ(count(text, "<tri6 id="), deck.tool->skin.size() + deck.tool->mesh.tetrahedra.size());
+  EXPECT_EQ(count(text, "prescribed displacement"), 0u);
+  EXPECT_THAT(text, HasSubstr("<value lc=\"1\">-2.000000000000e-03</value>"));
+}
+
+TEST(FebioDeck, NamesTheLawThatTheProgramLacks) {
+  const fem::LawConstants fung("demiray-fung", {{"mu", 1e3}, {"b", 1}, {"poisson", 0.45}});
+  EXPECT_THAT(refusal_of(febio_deck, fung), HasSubstr("FEBio has no law like demiray-fung"));
+}
+
+}  // namespace
+}  // namespace palpate::app

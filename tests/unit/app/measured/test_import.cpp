@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Records of a synthetic testing machine, from files to curves.
+#include "app/measured/import.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+
+#include "format/error.hpp"
+#include "format/sha256.hpp"
+#include "tests/support/sample_artifacts.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/unit/fitting/measurement/records/bench.hpp"
+
+namespace palpate::app {
+namespace {
+
+using measured::Bench;
+using testing::HasSubstr;
+
+class Imports : public testing::Test {
+ protected:
+  /// The record of a machine that writes seconds, millimetres and newtons.
+  void write_record(const std::string& name, const Bench& bench, unsigned seed) const {
+    const measured::PressRecord record = measured::press_on(bench, seed);
+    std::ofstream file(folder_ / name);
+    file.precision(17);
+    file << "t (s),x (mm),f (N)\n";
+    for (std::size_t i = 0; i < record.time.size(); ++i)
+      file << record.time[i] << ',' << 1e3 * record.displacement[i] << ',' << record.force[i]
+           << '\n';
+  }
+  std::filesystem::path write_sidecar(const std::string& presses,
+                                      const std::string& more = "") const {
+    std::ofstream(folder_ / "bench.toml")
+        << "name = \"bench\"\nspecimen = \"gel\"\nsource = \"synthetic\"\nlicence = \"CC0-1.0\"\n"
+           "[tool]\nradius = \"5 mm\"\nfriction = \"frictionless\"\n[columns]\ntime = \"t\"\n"
+           "displacement = \"x\"\nforce = \"f\"\n"
+        << more << presses;
+    return folder_ / "bench.toml";
+  }
+  static std::string press(const std::string& file, int vertex) {
+    return "[[press]]\nfile = \"" + file + "\"\nvertex = " + std::to_string(vertex) + "\n";
+  }
+  std::string refusal(const std::filesystem::path& sidecar,
+                      const std::filesystem::path& body = {}) const {
+    try {
+      import_measurement(sidecar, body);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::Configuration);
+      return error.what();
+    }
+    return "accepted";
+  }
+
+  const samples::TemporaryFolder folder_;
+};
+
+/// Frame, load cell and point of contact of the machine are taken out; what is left is the law of
+/// the specimen.
+TEST_F(Imports, GiveTheForceOfTheSpecimenAtItsDepth) {
+  Bench bench;
+  bench.compliance = 2e-4;
+  write_record("a.csv", bench, 1);
+  const Import result = import_measurement(
+      write_sidecar(press("a.csv", 7), "[machine]\ncompliance = \"0.2 mm/N\"\n"), {});
+  ASSERT_EQ(result.curves.sites.size(), 1u);
+  const SiteCurves& site = result.curves.sites[0];
+  EXPECT_EQ(site.vertex, 7);
+  EXPECT_EQ(result.curves.body_sha256, "");
+  ASSERT_EQ(site.paths.size(), 1u);  // no drag was recorded, and none was made up
+  EXPECT_EQ(site.paths[0].direction, (Vec3{0, 0, -1}));
+  const double deepest = measured::sneddon_force(bench.depth, bench.radius, bench.modulus);
+  for (const CurveSample& sample : site.paths[0].samples)
+    EXPECT_NEAR(-sample.force[2],
+                measured::sneddon_force(sample.displacement, bench.radius, bench.modulus),
+                0.02 * deepest);
+  EXPECT_NEAR(result.curves.depth, bench.depth, 0.02 * bench.depth);
+  const auto& record = result.account.at("records").at(0);
+  EXPECT_NEAR(record.at("force_offset_N").get<double>(), bench.offset, 1e-3);
+  EXPECT_NEAR(record.at("contact_m").get<double>(), bench.contact, 5e-5);
+  EXPECT_NEAR(record.at("rate_m_per_s").get<double>(), bench.speed, 0.05 * bench.speed);
+  EXPECT_NEAR(record.at("returned_fraction").get<double>(), bench.loss, 0.03);
+  EXPECT_TRUE(result.account.at("warnings").empty());
+}
+
+/// One path with the scatter between the presses: of two, their difference over sqrt 2.
+TEST_F(Imports, MakeOnePathOfTheRepeatsOfASite) {
+  Bench soft, stiff;
+  stiff.modulus = 1.1 * soft.modulus;
+  write_record("a.csv", soft, 1);
+  write_record("b.csv", stiff, 2);
+  write_record("c.csv", soft, 3);
+  const Import result = import_measurement(
+      write_sidecar(press("a.csv", 2) + press("b.csv", 2) + press("c.csv", 1)), {});
+  ASSERT_EQ(result.curves.sites.size(), 2u);
+  EXPECT_EQ(result.curves.sites[0].vertex, 1);
+  const CurveSample& end = result.curves.sites[1].paths[0].samples.back();
+  const double force = measured::sneddon_force(end.displacement, soft.radius, soft.modulus);
+  EXPECT_NEAR(-end.force[2], 1.05 * force, 0.02 * force);
+  EXPECT_NEAR(end.force_scatter, 0.1 * force / std::sqrt(2.0), 0.02 * force);
+  EXPECT_TRUE(std::isnan(result.curves.sites[0].paths[0].samples.back().force_scatter));
+}
+
+TEST_F(Imports, CarryTheDigestsOfSidecarAndRecords) {
+  write_record("a.csv", {}, 1);
+  const auto sidecar = write_sidecar(press("a.csv", 0) + press("a.csv", 1));
+  const Import result = import_measurement(sidecar, {});
+  const ProvenanceStep& step = result.curves.provenance.steps.back();
+  EXPECT_EQ(step.stage, "import");
+  ASSERT_EQ(step.inputs.size(), 2u);  // a record that serves twice is one input
+  EXPECT_EQ(step.inputs[0].sha256, sha256_of_file(sidecar));
+  EXPECT_EQ(step.inputs[1].sha256, sha256_of_file(folder_ / "a.csv"));
+}
+
+TEST_F(Imports, AreRefusedWithTheRecordThatIsWrong) {
+  write_record("a.csv", {}, 1);
+  const auto body_file = folder_ / "body.h5";
+  const Body body = samples::body(1);
+  write_body(body_file, body);
+  const auto vertices = static_cast<int>(body.response.node.size());
+  EXPECT_THAT(refusal(write_sidecar(press("a.csv", vertices)), body_file),
+              HasSubstr("vertex " + std::to_string(vertices) + " is not a site of the body"));
+  EXPECT_THAT(refusal(write_sidecar(press("none.csv", 0))), HasSubstr("none.csv"));
+  EXPECT_THAT(refusal(write_sidecar("[[press]]\nfile = \"a.csv\"\nsite = [\"1 mm\", \"1 mm\", "
+                                    "\"1 mm\"]\n")),
+              HasSubstr("add --body body.h5"));
+}
+
+/// Metres that were written as millimetres: 4 m of depth for a tool of 5 mm.
+TEST_F(Imports, WarnOfADepthThatLooksLikeAWrongUnit) {
+  Bench bench;
+  bench.radius = 5;
+  bench.contact = 2.3, bench.depth = 4, bench.speed = 1;
+  bench.modulus = 30e-3;
+  write_record("a.csv", bench, 1);
+  const Import result = import_measurement(write_sidecar(press("a.csv", 0)), {});
+  ASSERT_EQ(result.account.at("warnings").size(), 1u);
+  EXPECT_THAT(result.account.at("warnings").at(0).get<std::string>(),
+              HasSubstr("its radius is 5 mm: check the units"));
+}
+
+}  // namespace
+}  // namespace palpate::app
