@@ -24,6 +24,21 @@ struct SurfaceFile {
   RepairSettings repair{};
 };
 
+/// The region of the body that the elements of a group of a mesh file belong to.
+struct GroupRegion {
+  std::string group;  ///< physical group, element set or value of a cell array
+  std::string region;
+};
+
+/// A mesh of tetrahedra on disk, used as it is: Gmsh .msh, VTK .vtu and .vtk, Abaqus and CalculiX
+/// .inp, FEBio .feb, TetGen .node and .ele.
+struct VolumeMeshFile {
+  std::filesystem::path path;
+  double unit = 1.0;                 ///< m per unit of the file
+  std::string region_array;          ///< VTK: cell array of the regions; empty: found by its name
+  std::vector<GroupRegion> regions;  ///< groups that are not listed are regions of their own name
+};
+
 /// Contains the nodes on the side of the plane to which `normal` points.
 struct PlaneSupport {
   Vec3 point{};   ///< m

@@ -19,7 +19,7 @@ MAY_INCLUDE = {
     "mesher": {"format", "mesher/geometry", "mesher/read", "mesher/repair", "mesher/response", "mesher/skin",
                "mesher/support", "mesher/volume"},
     "mesher/geometry": {"format"},
-    "mesher/read": {"format", "mesher", "mesher/geometry", "mesher/repair"},
+    "mesher/read": {"format", "mesher", "mesher/geometry", "mesher/repair", "mesher/volume"},
     "mesher/repair": {"format", "mesher/geometry"},
     "mesher/response": {"format", "mesher", "mesher/geometry", "mesher/skin", "mesher/support"},
     "mesher/skin": {"format", "mesher/geometry"},
@@ -65,6 +65,8 @@ LIBRARIES = (
     (r"CLI/", "CLI11"),
     (r"toml\+\+/", "toml++"),
     (r"nlohmann/", "nlohmann-json"),
+    (r"pugi(xml|config)\.hpp", "pugixml"),
+    (r"zlib\.h", "zlib"),
     (r"fmt/", "fmt"),
     (r"spdlog/", "spdlog"),
 )
@@ -73,7 +75,7 @@ LIBRARIES = (
 TEXT = {"fmt", "spdlog"}
 MAY_USE = {
     "format": {"HDF5"},
-    "mesher": {"Eigen", "CGAL", "TetGen"} | TEXT,
+    "mesher": {"Eigen", "CGAL", "TetGen", "pugixml", "zlib"} | TEXT,
     "fem": {"Eigen", "CHOLMOD", "BLAS", "OpenMP"} | TEXT,
     "fem/laws": {"Eigen"} | TEXT,
     "fitting": {"Eigen"} | TEXT,

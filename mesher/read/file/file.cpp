@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/read/file/file.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <system_error>
+
+#include "format/error.hpp"
+
+namespace palpate::mesher {
+
+std::string lower(std::string word) {
+  std::transform(word.begin(), word.end(), word.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return word;
+}
+
+std::string ending(const std::filesystem::path& path) {
+  const std::string last = lower(path.extension().string());
+  return last == ".gz" ? lower(path.stem().extension().string()) + last : last;
+}
+
+void check_readable(const std::filesystem::path& path) {
+  const std::string where = path.string();
+  std::error_code failure;
+  if (!std::filesystem::exists(path, failure)) {
+    refuse_geometry(where, "no such file", "correct the path in the case");
+  }
+  if (!std::filesystem::is_regular_file(path, failure) || !std::ifstream(path)) {
+    refuse_geometry(where, "not a readable file", "check its type and its permissions");
+  }
+}
+
+std::string read_bytes(const std::filesystem::path& path) {
+  check_readable(path);
+  std::ifstream in(path, std::ios::binary | std::ios::ate);
+  const auto size = in.tellg();
+  if (size == std::ifstream::pos_type(0)) {
+    refuse_geometry(path.string(), "the file is empty", "export it again");
+  }
+  std::string bytes(static_cast<std::size_t>(size), '\0');
+  in.seekg(0);
+  if (!in.read(bytes.data(), size)) {
+    refuse_geometry(path.string(), "the file cannot be read to its end", "check the disk");
+  }
+  return bytes;
+}
+
+}  // namespace palpate::mesher

@@ -1,0 +1,20 @@
+// A box of 40 x 30 x 20 mm, halved at x = 20 mm, with a spherical nodule in the first half.
+SetFactory("OpenCASCADE");
+Box(1) = {0, 0, 0, 20, 30, 20};
+Box(2) = {20, 0, 0, 20, 30, 20};
+Sphere(3) = {10, 15, 12, 6};
+v() = BooleanFragments{ Volume{1, 2, 3}; Delete; }{};
+Mesh.MeshSizeMin = 9;
+Mesh.MeshSizeMax = 9;
+Mesh.Algorithm3D = 1;
+base() = Surface In BoundingBox{-1, -1, -1, 41, 31, 1};
+rim() = Curve In BoundingBox{-1, -1, -1, 1, 31, 1};
+nodule() = Volume In BoundingBox{3, 8, 5, 17, 22, 19};
+right() = Volume In BoundingBox{19, -1, -1, 41, 31, 21};
+left() = Volume In BoundingBox{-1, -1, -1, 21, 31, 21};
+left() -= {nodule()};
+Physical Volume("left half", 11) = {left()};
+Physical Volume("right half", 12) = {right()};
+Physical Volume("nodule", 13) = {nodule()};
+Physical Surface("base", 21) = {base()};
+Physical Curve("rim", 31) = {rim()};
