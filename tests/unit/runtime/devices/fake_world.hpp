@@ -34,7 +34,8 @@ struct FakeWorld {
     unplugged = saturated = late = forces_enabled = false;
     forces = opened = closed = stall_ms = 0;
     system_type = 33;
-    watchdog_ticks = queued_error = 0;
+    watchdog_ticks = 0;
+    queued_error = 0;
     has_watchdog = true;
     opened_name.clear();
   }
