@@ -48,7 +48,7 @@ def faults(root):
         matching = [number for number, pattern, _ in excused if fnmatch.fnmatchcase(str(name), pattern)]
         used.update(matching)
         if not matching:
-            yield f"{name}: has no tests/unit/{stem.parent}/test_{stem.name}.cpp; write it"
+            yield f"{name}: has no tests/unit/{stem.parent}/test_{stem.name}.cpp; write it, or say in {LIST} where it is tested"
     for number, pattern, reason in excused:
         if not reason:
             yield f"{LIST}:{number}: {pattern} without a reason"
