@@ -6,10 +6,8 @@
 #include <utility>
 
 #include "format/error.hpp"
-#include "format/to_index.hpp"
-#include "mesher/geometry/queries.hpp"
-#include "mesher/volume/interfaces.hpp"
-#include "mesher/volume/refine.hpp"
+#include "mesher/volume/attempts.hpp"
+#include "mesher/volume/sizing.hpp"
 #include "mesher/volume/surface_oracle.hpp"
 
 namespace palpate::mesher {
@@ -46,81 +44,90 @@ Domain scaled(const Domain& domain, const Frame& frame) {
   return result;
 }
 
-RefineSettings refine_settings(const DelaunaySettings& settings, const Frame& frame) {
-  RefineSettings refine;
+/// Thin places are refined down to this part of element_size at once.
+constexpr double kSmallest = 1.0 / 4;
+
+SizeField surface_size(const DelaunaySettings& settings, const Frame& frame) {
   const double h = frame.scaled(settings.element_size);
-  // Edges are 1.25 times as long as the bound on the radius, in the mean.
-  const double radius = 0.8 * h;
-  const double inside = static_cast<float>(settings.interior_coarsening) * radius;
-  refine.facet_size = [=, coarsening = settings.surface_coarsening](const Vec3& x) {
-    return coarsening ? radius * std::max(1.0, coarsening(frame.metres(x))) : radius;
+  if (!settings.surface_coarsening) return [h](const Vec3&) { return h; };
+  return [=, coarsening = settings.surface_coarsening](const Vec3& x) {
+    return h * static_cast<float>(std::max(1.0, coarsening(frame.metres(x))));
   };
-  refine.cell_size = [=](const Vec3&) { return inside; };
-  refine.seed_spacing = [=](const Vec3&) { return 2 * h; };
-  refine.most_nodes = settings.most_nodes;
-  return refine;
 }
 
-void measure_distances(const Domain& domain, const VolumeMesh& mesh, DelaunayReport& report) {
-  const Surface boundary = boundary_surface(mesh);
-  const auto largest = [](const Surface& from, const SurfaceQuery& to, double& distance, Vec3& at) {
-    for (const Vec3& x : from.points) {
-      const double d = norm(to.closest(x).point - x);
-      if (d > distance) {
-        distance = d;
-        at = x;
-      }
-    }
-  };
-  largest(boundary, SurfaceQuery(domain.skin), report.distance_to_surface,
-          report.distance_to_surface_at);
-  largest(domain.skin, SurfaceQuery(boundary), report.distance_to_mesh, report.distance_to_mesh_at);
+void to_metres(VolumeMesh& mesh, DelaunayReport& report, const Frame& frame) {
+  for (Vec3& x : mesh.nodes) x = frame.metres(x);
+  report.quality = measure_quality(mesh.nodes, mesh.tetrahedra);
+  report.volume_of_domain *= std::pow(frame.scale, 3);
+  report.distance_to_mesh *= frame.scale;
+  report.distance_to_surface *= frame.scale;
+  report.distance_to_mesh_at = frame.metres(report.distance_to_mesh_at);
+  report.distance_to_surface_at = frame.metres(report.distance_to_surface_at);
 }
 
-void check(const Domain&, const VolumeMesh& mesh, const DelaunaySettings& settings,
-           const std::string& where, const DelaunayReport& report) {
-  const std::string remedy = "reduce element_size, or repair the surface at this place";
-  const auto pinched = non_manifold_nodes(boundary_facets(mesh.tetrahedra));
-  if (!pinched.empty()) {
-    refuse_geometry(
-        where,
-        text("the boundary of the mesh touches itself at ", counted(pinched.size(), "node"),
-             ", one of them at ", millimetres(mesh.nodes[to_index(pinched.front())])),
-        remedy);
-  }
-  if (std::abs(report.volume_change) > settings.most_volume_change) {
-    refuse_geometry(where,
-                    text("the volume of the mesh differs from that of the surface by ",
-                         100 * report.volume_change, " %; the surface is farthest, ",
-                         millimetres(report.distance_to_mesh), ", at ",
-                         millimetres(report.distance_to_mesh_at)),
-                    remedy);
-  }
-  if (report.quality.largest_dihedral > settings.largest_dihedral) {
-    refuse_geometry(
-        where, text("a dihedral angle of ", report.quality.largest_dihedral, " degrees"), remedy);
-  }
+VolumeMesh mesh_request(const Oracle& oracle, std::vector<SizeSource> sizes, const Frame& frame,
+                        const DelaunaySettings& settings, const std::string& where,
+                        DelaunayReport& report) {
+  report = {};
+  const double h = frame.scaled(settings.element_size);
+  const double coarsest = h * static_cast<float>(settings.interior_coarsening);
+  MeshRequest request{oracle,
+                      std::move(sizes),
+                      [=, size = surface_size(settings, frame)](const Vec3& x) {
+                        return std::max(coarsest, size(x));
+                      },
+                      h,
+                      settings.most_volume_change,
+                      settings.largest_dihedral,
+                      settings.most_nodes,
+                      [=](const Vec3& x) { return millimetres(frame.metres(x)); },
+                      where,
+                      settings.log};
+  VolumeMesh mesh = refine_until_sound(std::move(request), report);
+  to_metres(mesh, report, frame);
+  note(settings.log, text("Delaunay refinement: ", mesh.nodes.size(), " nodes, ",
+                          mesh.tetrahedra.size(), " tetrahedra; ", summary(report.quality)));
+  return mesh;
+}
+
+LabelField scaled(const LabelField& field, const Frame& frame) {
+  LabelField result = field;
+  result.region = [=, region = field.region](const Vec3& x) { return region(frame.metres(x)); };
+  result.box = {frame.scaled(field.box.low), frame.scaled(field.box.high)};
+  result.resolution = frame.scaled(field.resolution);
+  return result;
 }
 
 }  // namespace
 
 VolumeMesh mesh_domain(const Domain& domain, const DelaunaySettings& settings,
                        const std::string& where, DelaunayReport& report) {
-  report = {};
   const Frame frame = frame_of(domain.skin);
-  const auto oracle = make_oracle(scaled(domain, frame), frame.scaled(settings.element_size) / 100);
-  Refinement refined = refine(*oracle, refine_settings(settings, frame));
-  VolumeMesh mesh = std::move(refined.mesh);
-  for (Vec3& x : mesh.nodes) x = frame.metres(x);
+  const Domain here = scaled(domain, frame);
+  const double h = frame.scaled(settings.element_size);
+  const auto oracle = make_oracle(here, h / 100);
+  const SizingSettings sizing{surface_size(settings, frame), kSmallest * h};
+  VolumeMesh mesh =
+      mesh_request(*oracle, surface_sizes(here, sizing), frame, settings, where, report);
   mesh.region_names = domain.region_names;
-  report.attempts = 1;
-  report.quality = measure_quality(mesh.nodes, mesh.tetrahedra);
-  report.volume_of_domain = signed_volume(domain.skin);
-  report.volume_change = report.quality.volume / report.volume_of_domain - 1;
-  measure_distances(domain, mesh, report);
-  note(settings.log, text("Delaunay refinement: ", mesh.nodes.size(), " nodes, ",
-                          mesh.tetrahedra.size(), " tetrahedra; ", summary(report.quality)));
-  check(domain, mesh, settings, where, report);
+  return mesh;
+}
+
+VolumeMesh mesh_labels(const LabelField& field, const DelaunaySettings& settings,
+                       const std::string& where, DelaunayReport& report) {
+  const Vec3 span = field.box.high - field.box.low;
+  const Frame frame{field.box.low, std::max({span[0], span[1], span[2]})};
+  const auto oracle = make_oracle(scaled(field, frame));
+  const SizeField size = surface_size(settings, frame);
+  std::vector<SizeSource> sizes;
+  for (const Crossing& seed : oracle->seeds([&](const Vec3& x) { return size(x) / 2; }))
+    sizes.push_back({seed.point, size(seed.point)});
+  if (sizes.empty()) {
+    refuse_geometry(where, "no point of the image belongs to a region",
+                    "check the labels that the case names");
+  }
+  VolumeMesh mesh = mesh_request(*oracle, std::move(sizes), frame, settings, where, report);
+  mesh.region_names = field.region_names;
   return mesh;
 }
 

@@ -6,9 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "mesher/geometry/quality.hpp"
 #include "mesher/geometry/text.hpp"
+#include "mesher/volume/delaunay_report.hpp"
 #include "mesher/volume/domain.hpp"
+#include "mesher/volume/label_oracle.hpp"
 #include "mesher/volume/volume_mesh.hpp"
 
 namespace palpate::mesher {
@@ -25,18 +26,6 @@ struct DelaunaySettings {
   Log log;
 };
 
-/// What became of the domain.
-struct DelaunayReport {
-  Quality quality;
-  double volume_of_domain = 0;     ///< m^3
-  double volume_change = 0;        ///< of the tetrahedra, in parts of the volume of the domain
-  double distance_to_surface = 0;  ///< m, largest, from the boundary facets to the skin
-  Vec3 distance_to_surface_at{};   ///< m
-  double distance_to_mesh = 0;     ///< m, largest, from the skin to the boundary facets
-  Vec3 distance_to_mesh_at{};      ///< m
-  int attempts = 0;
-};
-
 /// Fills the domain. Every facet of an interface belongs to two tetrahedra; facets between the body
 /// and the void form closed manifold surfaces.
 /// Where the body is thinner than the elements, they become smaller.
@@ -44,6 +33,10 @@ struct DelaunayReport {
 /// @throws Error(Geometry), with the place, where no such mesh within the limits of the settings is
 ///   found.
 VolumeMesh mesh_domain(const Domain& domain, const DelaunaySettings& settings,
+                       const std::string& where, DelaunayReport& report);
+
+/// The same for a body given by labels: the dimensions are those of the box of the field.
+VolumeMesh mesh_labels(const LabelField& field, const DelaunaySettings& settings,
                        const std::string& where, DelaunayReport& report);
 
 }  // namespace palpate::mesher

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "format/to_index.hpp"
+#include "mesher/geometry/quality.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -82,6 +84,18 @@ std::vector<Triangle> boundary_facets(const std::vector<Tetrahedron>& tetrahedra
   return facets;
 }
 
+std::vector<Triangle> interface_facets(const VolumeMesh& mesh) {
+  std::vector<Triangle> facets = boundary_facets(mesh.tetrahedra);
+  const std::vector<Face> faces = sorted_faces(mesh.tetrahedra);
+  for (std::size_t i = 1; i < faces.size(); ++i) {
+    if (faces[i].sorted == faces[i - 1].sorted &&
+        mesh.region[faces[i].tetrahedron] != mesh.region[faces[i - 1].tetrahedron]) {
+      facets.push_back(faces[i].sorted);
+    }
+  }
+  return facets;
+}
+
 Surface boundary_surface(const VolumeMesh& mesh) {
   Surface surface;
   surface.triangles = boundary_facets(mesh.tetrahedra);
@@ -136,6 +150,86 @@ std::vector<std::int32_t> connected_sets(const std::vector<Tetrahedron>& tetrahe
     set.push_back(number.emplace(root_of(parent, t), next).first->second);
   }
   return set;
+}
+
+std::int32_t largest_set(const VolumeMesh& mesh, const std::vector<std::int32_t>& set) {
+  std::map<std::int32_t, double> size;
+  for (std::size_t t = 0; t < set.size(); ++t)
+    size[set[t]] += volume(mesh.nodes, mesh.tetrahedra[t]);
+  const auto largest = std::max_element(
+      size.begin(), size.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
+  return largest == size.end() ? -1 : largest->first;
+}
+
+void keep_set(VolumeMesh& mesh, const std::vector<std::int32_t>& set, std::int32_t kept) {
+  VolumeMesh part;
+  std::vector<std::int32_t> number(mesh.nodes.size(), -1);
+  for (std::size_t t = 0; t < set.size(); ++t) {
+    if (set[t] != kept) continue;
+    Tetrahedron corners = mesh.tetrahedra[t];
+    for (std::int32_t& v : corners) {
+      std::int32_t& n = number[to_index(v)];
+      if (n < 0) {
+        n = static_cast<std::int32_t>(part.nodes.size());
+        part.nodes.push_back(mesh.nodes[to_index(v)]);
+      }
+      v = n;
+    }
+    part.tetrahedra.push_back(corners);
+    part.region.push_back(mesh.region[t]);
+  }
+  mesh.nodes = std::move(part.nodes);
+  mesh.tetrahedra = std::move(part.tetrahedra);
+  mesh.region = std::move(part.region);
+}
+
+namespace {
+
+/// The sets of tetrahedra around a node that are connected by faces with the node.
+std::vector<std::size_t> sets_at(const VolumeMesh& mesh, std::int32_t node,
+                                 const std::vector<std::size_t>& around) {
+  std::vector<std::size_t> parent(around.size());
+  std::iota(parent.begin(), parent.end(), 0U);
+  std::map<Edge, std::size_t> first_at;  // by the other two nodes of the face
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    std::vector<std::int32_t> others;
+    for (const std::int32_t v : mesh.tetrahedra[around[i]])
+      if (v != node) others.push_back(v);
+    std::sort(others.begin(), others.end());
+    for (const Edge& edge :
+         {Edge{others[0], others[1]}, Edge{others[0], others[2]}, Edge{others[1], others[2]}}) {
+      const auto [entry, is_new] = first_at.emplace(edge, i);
+      if (!is_new) parent[root_of(parent, i)] = root_of(parent, entry->second);
+    }
+  }
+  for (std::size_t i = 0; i < around.size(); ++i) parent[i] = root_of(parent, i);
+  return parent;
+}
+
+}  // namespace
+
+std::size_t split_nodes(VolumeMesh& mesh) {
+  const std::size_t before = mesh.nodes.size();
+  std::map<std::int32_t, std::vector<std::size_t>> around;
+  for (const std::int32_t v : non_manifold_nodes(boundary_facets(mesh.tetrahedra))) around[v];
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    for (const std::int32_t v : mesh.tetrahedra[t]) {
+      const auto found = around.find(v);
+      if (found != around.end()) found->second.push_back(t);
+    }
+  }
+  for (const auto& [node, tetrahedra] : around) {
+    const std::vector<std::size_t> set = sets_at(mesh, node, tetrahedra);
+    std::map<std::size_t, std::int32_t> name{{set.front(), node}};
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      const auto next = static_cast<std::int32_t>(mesh.nodes.size());
+      const auto [entry, is_new] = name.emplace(set[i], next);
+      if (is_new) mesh.nodes.push_back(Vec3(mesh.nodes[to_index(node)]));
+      for (std::int32_t& v : mesh.tetrahedra[tetrahedra[i]])
+        if (v == node) v = entry->second;
+    }
+  }
+  return mesh.nodes.size() - before;
 }
 
 }  // namespace palpate::mesher

@@ -39,8 +39,14 @@ class Oracle {
   /// first nodes of the mesh.
   virtual std::vector<Crossing> seeds(const SizeField& spacing) const = 0;
 
+  /// The distance to the nearest surface, which need not be an interface.
+  virtual double distance(const Vec3& point) const = 0;
+
   /// The bounds of all that is not void.
   virtual Bounds box() const = 0;
+
+  /// The volume of all that is not void.
+  virtual double volume() const = 0;
 
   /// Whether at most two regions, the void among them, meet at any point.
   virtual bool has_one_region() const = 0;

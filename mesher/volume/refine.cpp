@@ -9,6 +9,8 @@
 #include <CGAL/make_mesh_3.h>
 #include <CGAL/perturb_mesh_3.h>
 
+#include <atomic>
+#include <cmath>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -17,6 +19,28 @@
 
 namespace palpate::mesher {
 namespace {
+
+/// Questions that may still be asked. At acute edges refinement may go on for ever without a new
+/// node: a count, unlike a clock, ends it at the same question on every machine.
+class Budget {
+ public:
+  explicit Budget(std::size_t questions) : left_(questions) {}
+  void spend() const {
+    if (left_ == 0) {
+      stop_ = true;
+    } else {
+      --left_;
+    }
+  }
+  bool is_spent() const { return stop_; }
+  std::atomic<bool>* stop() const { return &stop_; }
+
+ private:
+  mutable std::size_t left_;
+  mutable std::atomic<bool> stop_ = false;
+};
+
+constexpr std::size_t kQuestionsPerNode = 200;  // three times what ordinary bodies take
 
 /// The Oracle in the terms of CGAL (concept MeshDomain_3). CGAL numbers sub-domains from 1 and
 /// keeps 0 for the outside: region + 1.
@@ -38,8 +62,8 @@ class OracleDomain {
   using Surface_patch = boost::optional<Surface_patch_index>;
   using Intersection = std::tuple<Point_3, Index, int>;
 
-  OracleDomain(const Oracle& oracle, const SizeField& seed_spacing)
-      : oracle_(oracle), seed_spacing_(seed_spacing) {
+  OracleDomain(const Oracle& oracle, const SizeField& seed_spacing, const Budget& budget)
+      : oracle_(oracle), seed_spacing_(seed_spacing), budget_(budget) {
     const Bounds box = oracle.box();
     const Vec3 margin = 0.1 * (box.high - box.low);
     const Vec3 low = box.low - margin, high = box.high + margin;
@@ -53,12 +77,18 @@ class OracleDomain {
       for (const Crossing& seed : domain.oracle_.seeds(domain.seed_spacing_)) {
         *out++ = std::make_pair(to_point(seed.point), Index(patch(seed)));
       }
+      // With these, the triangulation reaches beyond the domain: CGAL 5.5 fails where a new node
+      // lies outside the convex hull of the others, as at the edges of a box.
+      for (const Vec3& far : domain.far_points()) {
+        *out++ = std::make_pair(to_point(far), Index(Surface_patch_index{0, 0}));
+      }
       return out;
     }
   };
   struct Is_in_subdomain {
     const OracleDomain& domain;
     Subdomain operator()(const Point_3& point) const {
+      domain.budget_.spend();
       const std::int32_t region = domain.oracle_.region(to_vec3(point));
       return region == kVoid ? Subdomain() : Subdomain(region + 1);
     }
@@ -77,6 +107,7 @@ class OracleDomain {
       return inside == nullptr ? Intersection() : (*this)(*inside);
     }
     Intersection along(const Point_3& from, const Point_3& to) const {
+      domain.budget_.spend();
       const auto crossing = domain.oracle_.crossing(to_vec3(from), to_vec3(to));
       return crossing ? Intersection(to_point(crossing->point), Index(patch(*crossing)), 2)
                       : Intersection();
@@ -96,12 +127,29 @@ class OracleDomain {
   CGAL::Bbox_3 bbox() const { return box_; }
 
  private:
+  /// Corners and middles of the faces of a box around the domain, three times as large, a little
+  /// irregular so that no five lie on a sphere.
+  std::vector<Vec3> far_points() const {
+    const Bounds box = oracle_.box();
+    const Vec3 middle = 0.5 * (box.low + box.high);
+    const double reach = 1.5 * norm(box.high - box.low);
+    std::vector<Vec3> points;
+    for (int n = 0; n < 27; ++n) {
+      const Vec3 direction{n % 3 - 1.0, n / 3 % 3 - 1.0, n / 9 - 1.0};
+      const double length = norm(direction);
+      if (length == 0 || (length > 1.2 && length < 1.6)) continue;  // the middle, and edges
+      points.push_back(middle + (reach * (1 + 0.01 * std::sin(n)) / length) * direction);
+    }
+    return points;
+  }
+
   static Surface_patch_index patch(const Crossing& crossing) {
     return {crossing.low + 1, crossing.high + 1};
   }
 
   const Oracle& oracle_;
   const SizeField& seed_spacing_;
+  const Budget& budget_;
   CGAL::Bbox_3 box_;
 };
 
@@ -112,9 +160,11 @@ struct Size {
   using Index = OracleDomain::Index;
 
   const SizeField* size;
+  const Budget* budget;
   double factor = 1;
 
   FT operator()(const Point_3& point, int /*dimension*/, const Index& /*index*/) const {
+    budget->spend();
     return factor * (*size)(to_vec3(point));
   }
 };
@@ -123,13 +173,13 @@ using Triangulation = CGAL::Mesh_triangulation_3<OracleDomain>::type;
 using Complex = CGAL::Mesh_complex_3_in_triangulation_3<Triangulation>;
 using Criteria = CGAL::Mesh_criteria_3<Triangulation>;
 
-Criteria criteria_of(const RefineSettings& settings) {
+Criteria criteria_of(const RefineSettings& settings, const Budget& budget) {
   namespace p = CGAL::parameters;
   return Criteria(p::facet_angle = settings.smallest_facet_angle,
-                  p::facet_size = Size{&settings.facet_size},
-                  p::facet_distance = Size{&settings.facet_size, settings.facet_distance},
+                  p::facet_size = Size{&settings.facet_size, &budget},
+                  p::facet_distance = Size{&settings.facet_size, &budget, settings.facet_distance},
                   p::cell_radius_edge_ratio = settings.radius_edge_ratio,
-                  p::cell_size = Size{&settings.cell_size});
+                  p::cell_size = Size{&settings.cell_size, &budget});
 }
 
 /// Moves nodes by gradients and, where that does not help, a few times at random (with a seed of
@@ -170,25 +220,40 @@ VolumeMesh mesh_of(const Complex& complex) {
 
 }  // namespace
 
-Refinement refine(const Oracle& oracle, const RefineSettings& settings) {
+namespace {
+
+Refinement run(const Oracle& oracle, const RefineSettings& settings) {
   namespace p = CGAL::parameters;
-  const OracleDomain domain(oracle, settings.seed_spacing);
-  const Criteria criteria = criteria_of(settings);
+  const Budget budget(kQuestionsPerNode * settings.most_nodes);
+  const OracleDomain domain(oracle, settings.seed_spacing, budget);
+  const Criteria criteria = criteria_of(settings, budget);
   CGAL::Mesh_error_code code = CGAL::CGAL_MESH_3_NO_ERROR;
   const auto options = p::mesh_3_options(p::maximal_number_of_vertices = settings.most_nodes,
-                                         p::pointer_to_error_code = &code);
+                                         p::pointer_to_error_code = &code,
+                                         p::pointer_to_stop_atomic_boolean = budget.stop());
   // CGAL forbids an edge with more than two facets, which several regions need.
-  const auto topology = oracle.has_one_region() ? p::manifold() : p::non_manifold();
+  const auto topology =
+      settings.refine_until_manifold && oracle.has_one_region() ? p::manifold() : p::non_manifold();
   Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria, p::no_perturb(), p::no_exude(),
                                                topology, options);
   Refinement result;
-  result.cut_short = code != CGAL::CGAL_MESH_3_NO_ERROR;
+  result.cut_short = budget.is_spent() || code != CGAL::CGAL_MESH_3_NO_ERROR;
   if (settings.smallest_dihedral > 0 && !result.cut_short) {
     perturb(complex, domain, settings.smallest_dihedral);
     CGAL::exude_mesh_3(complex, p::time_limit = 0, p::sliver_bound = settings.smallest_dihedral);
   }
   result.mesh = mesh_of(complex);
   return result;
+}
+
+}  // namespace
+
+Refinement refine(const Oracle& oracle, const RefineSettings& settings) {
+  try {
+    return run(oracle, settings);
+  } catch (const CGAL::Failure_exception& failure) {
+    return {{}, true, failure.what()};
+  }
 }
 
 }  // namespace palpate::mesher

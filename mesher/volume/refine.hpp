@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 
 #include "mesher/volume/oracle.hpp"
 #include "mesher/volume/volume_mesh.hpp"
@@ -10,19 +11,21 @@
 namespace palpate::mesher {
 
 struct RefineSettings {
-  SizeField facet_size;              ///< largest circumradius of a facet there
-  SizeField cell_size;               ///< largest circumradius of a tetrahedron there
-  SizeField seed_spacing;            ///< between the first nodes
-  double facet_distance = 1.0 / 12;  ///< largest distance of a facet from the interface / its size
-  double smallest_facet_angle = 25;  ///< degrees
-  double radius_edge_ratio = 3;      ///< largest circumradius over shortest edge
-  double smallest_dihedral = 10;     ///< degrees; flatter tetrahedra are perturbed and exuded
-  std::size_t most_nodes = 0;        ///< refinement stops there; 0: no bound
+  SizeField facet_size;               ///< largest circumradius of a facet there
+  SizeField cell_size;                ///< largest circumradius of a tetrahedron there
+  SizeField seed_spacing;             ///< between the first nodes
+  double facet_distance = 1.0 / 12;   ///< largest distance of a facet from the interface / its size
+  double smallest_facet_angle = 25;   ///< degrees
+  double radius_edge_ratio = 3;       ///< largest circumradius over shortest edge
+  double smallest_dihedral = 10;      ///< degrees; flatter tetrahedra are perturbed and exuded
+  std::size_t most_nodes = 0;         ///< refinement stops there
+  bool refine_until_manifold = true;  ///< facets where the boundary touches itself are refined
 };
 
 struct Refinement {
   VolumeMesh mesh;         ///< without region names
-  bool cut_short = false;  ///< stopped at most_nodes
+  bool cut_short = false;  ///< stopped at most_nodes, or failed: then without tetrahedra
+  std::string failure;     ///< what CGAL says of it
 };
 
 /// Delaunay refinement of surfaces and volumes [Boissonnat & Oudot 2005, Rineau & Yvinec 2007], as

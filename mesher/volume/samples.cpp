@@ -76,20 +76,28 @@ std::vector<Sample> sample_surface(const Surface& surface, double spacing) {
   return samples;
 }
 
-std::vector<Sample> thinned(const std::vector<Sample>& samples, const SizeField& spacing) {
+std::vector<std::size_t> thinned(const std::vector<Vec3>& points, const SizeField& spacing) {
   double widest = 0;
   std::vector<double> radius;
-  for (const Sample& sample : samples) {
-    radius.push_back(spacing(sample.point));
+  for (const Vec3& x : points) {
+    radius.push_back(spacing(x));
     widest = std::max(widest, radius.back());
   }
   Buckets kept_points(widest > 0 ? widest : 1);
-  std::vector<Sample> kept;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (kept_points.any_within(samples[i].point, radius[i])) continue;
-    kept_points.add(samples[i].point);
-    kept.push_back(samples[i]);
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (kept_points.any_within(points[i], radius[i])) continue;
+    kept_points.add(points[i]);
+    kept.push_back(i);
   }
+  return kept;
+}
+
+std::vector<Sample> thinned(const std::vector<Sample>& samples, const SizeField& spacing) {
+  std::vector<Vec3> points;
+  for (const Sample& sample : samples) points.push_back(sample.point);
+  std::vector<Sample> kept;
+  for (const std::size_t i : thinned(points, spacing)) kept.push_back(samples[i]);
   return kept;
 }
 

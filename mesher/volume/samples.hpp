@@ -17,7 +17,11 @@ struct Sample {
 /// has an area.
 std::vector<Sample> sample_surface(const Surface& surface, double spacing);
 
-/// Keeps samples in their order unless one kept before lies nearer than `spacing` at the sample.
+/// The numbers of the points that remain when, in their order, each is dropped that lies nearer to
+/// one kept before than `spacing` at the point.
+std::vector<std::size_t> thinned(const std::vector<Vec3>& points, const SizeField& spacing);
+
+/// The same for samples.
 std::vector<Sample> thinned(const std::vector<Sample>& samples, const SizeField& spacing);
 
 }  // namespace palpate::mesher

@@ -1,59 +1,45 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "mesher/volume/surface_oracle.hpp"
 
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
-
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 
 #include "format/to_index.hpp"
-#include "mesher/geometry/cgal_mesh.hpp"
-#include "mesher/geometry/queries.hpp"
+#include "mesher/volume/inside_grid.hpp"
 #include "mesher/volume/samples.hpp"
+#include "mesher/volume/triangle_cloud.hpp"
 
 namespace palpate::mesher {
 namespace {
 
-using Triangles = std::vector<Kernel::Triangle_3>;
-using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
-using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
-
-void append_triangles(const Surface& surface, Triangles& triangles) {
-  for (const Triangle& t : surface.triangles) {
-    const auto corner = [&](std::size_t k) { return to_point(surface.points[to_index(t[k])]); };
-    triangles.emplace_back(corner(0), corner(1), corner(2));
-  }
-}
-
-/// Where the segment meets the plane of the triangle, as a fraction of the segment.
-double fraction_at(const Kernel::Triangle_3& triangle, const Vec3& from, const Vec3& to) {
-  const Vec3 a = to_vec3(triangle[0]);
-  const Vec3 normal = cross(to_vec3(triangle[1]) - a, to_vec3(triangle[2]) - a);
-  const double before = dot(normal, from - a), after = dot(normal, to - a);
-  if (before == after) return 0.5;  // inside the plane
-  return std::clamp(before / (before - after), 0.0, 1.0);
+/// The triangles of the skin and of all enclosures.
+TriangleCloud cloud_of(const Domain& domain) {
+  Surface all = domain.skin;
+  for (const Enclosure& enclosure : domain.enclosures) append(all, enclosure.surface);
+  return {all.points, all.triangles};
 }
 
 Crossing ordered(const Vec3& point, std::int32_t a, std::int32_t b) {
   return {point, std::min(a, b), std::max(a, b)};
 }
 
+/// Drops crossings close to an earlier one: surfaces that touch have some.
+std::vector<Crossing> apart(const std::vector<Crossing>& crossings, const SizeField& spacing) {
+  std::vector<Vec3> points;
+  for (const Crossing& crossing : crossings) points.push_back(crossing.point);
+  std::vector<Crossing> kept;
+  const SizeField quarter = [&](const Vec3& x) { return spacing(x) / 4; };
+  for (const std::size_t i : thinned(points, quarter)) kept.push_back(crossings[i]);
+  return kept;
+}
+
 class SurfaceOracle final : public Oracle {
  public:
   SurfaceOracle(const Domain& domain, double step)
-      : domain_(domain), step_(step), skin_(domain_.skin) {
-    append_triangles(domain_.skin, triangles_);
-    for (const Enclosure& enclosure : domain_.enclosures) {
-      append_triangles(enclosure.surface, triangles_);
-      inside_.emplace_back(enclosure.surface);
-    }
-    tree_.insert(triangles_.cbegin(), triangles_.cend());
-    tree_.build();
+      : domain_(domain), step_(step), skin_(domain_.skin), cloud_(cloud_of(domain_)) {
+    for (const Enclosure& enclosure : domain_.enclosures) inside_.emplace_back(enclosure.surface);
     double depth = 0;
     for (const Layer& layer : domain_.layers) walls_.push_back(depth += layer.thickness);
   }
@@ -61,8 +47,7 @@ class SurfaceOracle final : public Oracle {
   std::int32_t region(const Vec3& x) const override {
     const int owner = owner_at(x);
     if (owner == kOutside) return kVoid;
-    return owner == kMatrix ? region_at_depth(depth(x))
-                            : domain_.enclosures[to_index(owner)].region;
+    return owner == kMatrix ? region_in_matrix(x) : domain_.enclosures[to_index(owner)].region;
   }
 
   std::optional<Crossing> crossing(const Vec3& from, const Vec3& to) const override {
@@ -75,7 +60,18 @@ class SurfaceOracle final : public Oracle {
     for (const Enclosure& enclosure : domain_.enclosures)
       add_seeds(enclosure.surface, spacing, all);
     for (const double wall : walls_) add_seeds_of_wall(wall, spacing, all);
-    return all;
+    return apart(all, spacing);
+  }
+
+  double distance(const Vec3& x) const override {
+    const double surface = norm(cloud_.closest(x) - x);
+    return walls_.empty() ? surface : std::min(surface, distance_to_wall(depth(x)));
+  }
+
+  double volume() const override {
+    const bool has_void = std::any_of(domain_.enclosures.begin(), domain_.enclosures.end(),
+                                      [](const Enclosure& e) { return e.region == kVoid; });
+    return signed_volume(domain_.skin) * (has_void ? solid_fraction() : 1);
   }
 
   Bounds box() const override { return bounds(domain_.skin.points); }
@@ -90,26 +86,16 @@ class SurfaceOracle final : public Oracle {
   bool has_one_surface() const { return domain_.enclosures.empty() && walls_.empty(); }
 
   std::optional<Crossing> any_crossing(const Vec3& from, const Vec3& to) const {
-    const auto hit =
-        tree_.any_intersected_primitive(Kernel::Segment_3(to_point(from), to_point(to)));
-    if (!hit) return std::nullopt;
-    return Crossing{from + fraction_at(**hit, from, to) * (to - from), kVoid, 0};
-  }
-
-  /// Fractions of the segment at which it crosses triangles, ascending, with 0 and 1.
-  std::vector<double> cuts(const Vec3& from, const Vec3& to) const {
-    std::vector<Triangles::const_iterator> hits;
-    tree_.all_intersected_primitives(Kernel::Segment_3(to_point(from), to_point(to)),
-                                     std::back_inserter(hits));
-    std::vector<double> fractions{0, 1};
-    for (const auto& hit : hits) fractions.push_back(fraction_at(*hit, from, to));
-    std::sort(fractions.begin(), fractions.end());
-    return fractions;
+    const double fraction = cloud_.any_hit(from, to);
+    if (fraction < 0) return std::nullopt;
+    return Crossing{from + fraction * (to - from), kVoid, 0};
   }
 
   std::optional<Crossing> first_crossing(const Vec3& from, const Vec3& to) const {
-    const std::vector<double> cut = cuts(from, to);
-    if (cut.size() == 2 && walls_.empty()) return std::nullopt;
+    std::vector<double> cut = cloud_.hits(from, to);
+    if (cut.empty() && walls_.empty()) return std::nullopt;
+    cut.insert(cut.begin(), 0);
+    cut.push_back(1);
     const auto at = [&](double fraction) { return from + fraction * (to - from); };
     std::optional<std::int32_t> before;
     for (std::size_t i = 1; i < cut.size(); ++i) {
@@ -142,37 +128,56 @@ class SurfaceOracle final : public Oracle {
   Piece look_for_wall(const Vec3& from, const Vec3& to) const {
     const double length = norm(to - from);
     const auto at = [&](double way) { return from + (way / length) * (to - from); };
-    double way = 0, last = 0, here = depth(from);
-    Piece piece{region_at_depth(here), std::nullopt};
+    double way = 0;
+    Piece piece{region_in_matrix(from), std::nullopt};
     while (way < length) {
-      last = way;
-      way = std::min(length, way + std::max(distance_to_wall(here), step_));
-      here = depth(at(way));
-      if (region_at_depth(here) == piece.region) continue;
+      const double last = way;
+      way = std::min(length, way + std::max(free_way(at(way)), step_));
+      if (region_in_matrix(at(way)) == piece.region) continue;
       piece.wall = between(at(last), at(way), piece.region);
       break;
     }
     return piece;
   }
 
+  /// A distance around the point in which there is no wall.
+  double free_way(const Vec3& x) const {
+    const auto range = skin_.distance_range(x);
+    const double way = layer_at(range.low) == layer_at(range.high)
+                           ? std::min(distance_to_wall(range.low), distance_to_wall(range.high))
+                           : 0;
+    return way > step_ ? way : distance_to_wall(depth(x));
+  }
+
   /// Bisection: `from` lies in `region`, `to` does not.
   Crossing between(Vec3 from, Vec3 to, std::int32_t region) const {
-    std::int32_t beyond = region_at_depth(depth(to));
+    std::int32_t beyond = region_in_matrix(to);
     for (int halving = 0; halving < 30; ++halving) {
       const Vec3 middle = 0.5 * (from + to);
-      const std::int32_t here = region_at_depth(depth(middle));
+      const std::int32_t here = region_in_matrix(middle);
       (here == region ? from : to) = middle;
       if (here != region) beyond = here;
     }
     return ordered(0.5 * (from + to), region, beyond);
   }
 
-  double depth(const Vec3& x) const { return norm(skin_.closest(x).point - x); }
+  double depth(const Vec3& x) const { return norm(skin_.surface().closest(x).point - x); }
 
-  std::int32_t region_at_depth(double depth) const {
-    for (std::size_t i = 0; i < walls_.size(); ++i)
-      if (depth < walls_[i]) return domain_.layers[i].region;
-    return 0;
+  /// The number of walls above this depth.
+  std::size_t layer_at(double depth) const {
+    return static_cast<std::size_t>(std::upper_bound(walls_.begin(), walls_.end(), depth) -
+                                    walls_.begin());
+  }
+
+  std::int32_t region_of_layer(std::size_t layer) const {
+    return layer < walls_.size() ? domain_.layers[layer].region : 0;
+  }
+
+  std::int32_t region_in_matrix(const Vec3& x) const {
+    if (walls_.empty()) return 0;
+    const auto range = skin_.distance_range(x);
+    const std::size_t layer = layer_at(range.low);
+    return region_of_layer(layer == layer_at(range.high) ? layer : layer_at(depth(x)));
   }
 
   double distance_to_wall(double depth) const {
@@ -181,6 +186,24 @@ class SurfaceOracle final : public Oracle {
     return nearest;
   }
 
+  /// The fraction of the points of a lattice inside the skin that lie in no void.
+  double solid_fraction() const {
+    const Bounds around = box();
+    const Vec3 span = around.high - around.low;
+    std::size_t inside = 0, solid = 0;
+    for (int n = 0; n < kLattice * kLattice * kLattice; ++n) {
+      const Vec3 place{(n % kLattice + 0.5) / kLattice, (n / kLattice % kLattice + 0.5) / kLattice,
+                       (n / kLattice / kLattice + 0.5) / kLattice};
+      const int owner =
+          owner_at(around.low + Vec3{place[0] * span[0], place[1] * span[1], place[2] * span[2]});
+      if (owner == kOutside) continue;
+      ++inside;
+      if (owner == kMatrix || domain_.enclosures[to_index(owner)].region != kVoid) ++solid;
+    }
+    return inside == 0 ? 1 : static_cast<double>(solid) / static_cast<double>(inside);
+  }
+
+  static constexpr int kLattice = 80;  // points along each side of the bounds
   static constexpr int kOutside = -2, kMatrix = -1;
 
   /// The enclosure that a point belongs to, or kOutside or kMatrix.
@@ -191,12 +214,17 @@ class SurfaceOracle final : public Oracle {
     return kMatrix;
   }
 
+  /// Samples of a surface that the region changes at.
+  std::vector<Sample> samples_of(const Surface& surface, const SizeField& spacing) const {
+    const double own = largest_dimension(surface.points) / 4;
+    return thinned(sample_surface(surface, own / 8),
+                   [&](const Vec3& x) { return std::min(own, spacing(x)); });
+  }
+
   void add_seeds(const Surface& surface, const SizeField& spacing,
                  std::vector<Crossing>& all) const {
-    const double own = largest_dimension(surface.points) / 4;
-    const double reach = kSide * own;
-    const auto nearer = [&](const Vec3& x) { return std::min(own, spacing(x)); };
-    for (const Sample& sample : thinned(sample_surface(surface, own / 8), nearer)) {
+    const double reach = kSide * largest_dimension(surface.points);
+    for (const Sample& sample : samples_of(surface, spacing)) {
       const std::int32_t within = region(sample.point - reach * sample.outward);
       const std::int32_t beyond = region(sample.point + reach * sample.outward);
       if (within != beyond) all.push_back(ordered(sample.point, within, beyond));
@@ -204,11 +232,11 @@ class SurfaceOracle final : public Oracle {
   }
 
   void add_seeds_of_wall(double wall, const SizeField& spacing, std::vector<Crossing>& all) const {
-    for (const Sample& sample : thinned(sample_surface(domain_.skin, step_ * 8), spacing)) {
+    for (const Sample& sample : samples_of(domain_.skin, spacing)) {
       const Vec3 x = sample.point - wall * sample.outward;
-      if (owner_at(x) != kMatrix || std::abs(depth(x) - wall) > kSide * wall) continue;
-      const auto above = region_at_depth(wall * (1 - kSide));
-      const auto below = region_at_depth(wall * (1 + kSide));
+      if (owner_at(x) != kMatrix || std::abs(depth(x) - wall) > kSide) continue;
+      const auto above = region_of_layer(layer_at(wall * (1 - kSide)));
+      const auto below = region_of_layer(layer_at(wall * (1 + kSide)));
       if (above != below) all.push_back(ordered(x, above, below));
     }
   }
@@ -217,10 +245,9 @@ class SurfaceOracle final : public Oracle {
 
   Domain domain_;
   double step_;
-  SurfaceQuery skin_;
-  std::vector<SurfaceQuery> inside_;
-  Triangles triangles_;
-  Tree tree_;
+  InsideGrid skin_;
+  std::vector<InsideGrid> inside_;
+  TriangleCloud cloud_;
   std::vector<double> walls_;  // m, distance of each wall from the skin
 };
 
