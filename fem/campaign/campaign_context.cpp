@@ -16,6 +16,16 @@ namespace {
 /// Penalty over E/R: the penetration is micrometres for a tool of millimetres, which changes the
 /// force by about 0.1 %.
 constexpr double kContactStiffness = 5000;
+
+/// Residual that counts as none over the weight, and over the residual at rest.
+constexpr double kOfWeight = 1e-8, kOfRest = 10;
+
+double rounding_of_rest(const SolidModel& model, const Displacement& rest) {
+  Eigen::VectorXd residual;
+  model.forces(rest, residual);
+  return std::max(kOfWeight * model.weight_norm(), kOfRest * residual.norm());
+}
+
 }  // namespace
 
 ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& settings,
@@ -56,7 +66,8 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
       permutation(cache != nullptr ? cache->permutation(model.pattern())
                                    : nested_dissection(model.pattern())),
       rest(equilibrium_under_weight(model, permutation, b.name)),
-      at_rest(model.energy(rest)) {
+      at_rest(model.energy(rest)),
+      round_off(settings.gravity.acts() ? rounding_of_rest(model, rest) : 0) {
   use_one_thread_per_site();
   check_refinement(b, settings, engine);
   contact_stiffness = fem::contact_stiffness(b, settings, model);

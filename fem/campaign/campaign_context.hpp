@@ -40,6 +40,7 @@ struct CampaignContext {
   std::vector<int> permutation;  ///< elimination order of the whole body
   Displacement rest;             ///< before the tool touches the body: displaced by its weight
   SolidModel::State at_rest;     ///< there
+  double round_off;              ///< N, residual that is rounding of the equilibrium at rest
   ContactStiffness contact_stiffness;
   std::shared_ptr<const RestFactor> rest_factor;  ///< SharedFactor only
   mutable std::mutex direct_solve;                ///< locked while a site factorizes the whole body

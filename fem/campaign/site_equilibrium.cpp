@@ -57,6 +57,7 @@ void SiteEquilibrium::restart() {
 
 NewtonResult SiteEquilibrium::solve_shared(const ToolContact& contact, Displacement& u) {
   NewtonOptions options;
+  options.round_off = context_.round_off;
   options.tolerance = kSharedTolerance * context_.indentation.force_tolerance;
   if (context_.indentation.friction == ToolFriction::NoSlip) options.tolerance *= kNoSlipTolerance;
   Displacement trial = u;
@@ -70,6 +71,7 @@ NewtonResult SiteEquilibrium::solve_shared(const ToolContact& contact, Displacem
 
 NewtonResult SiteEquilibrium::solve_direct(const ToolContact& contact, Displacement& u) {
   NewtonOptions options;
+  options.round_off = context_.round_off;
   options.tolerance = context_.indentation.force_tolerance;
   if (!direct_) direct_ = std::make_unique<NewtonSolver>(context_.model, &context_.permutation);
   return direct_->solve(contact, options, u);

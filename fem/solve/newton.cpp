@@ -12,17 +12,13 @@ namespace palpate::fem {
 
 namespace {
 
-/// Residual of a body in equilibrium with its weight, over the weight: ten times the tolerance of
-/// equilibrium_under_weight().
-constexpr double kWeightNoise = 1e-8;
-
 /// Tolerance of the solve on the patch, over that of the increment.
 constexpr double kPatchTolerance = 0.1;
 
 }  // namespace
 
-double imbalance(const SolidModel& model, const Eigen::VectorXd& residual) {
-  if (residual.norm() <= kWeightNoise * model.weight_norm()) return 0;
+double imbalance(const SolidModel& model, const Eigen::VectorXd& residual, double round_off) {
+  if (residual.norm() <= round_off) return 0;
   if (model.mesh().sprung.empty()) return residual.norm();
   const Eigen::Vector3d sum =
       Eigen::Map<const Eigen::Matrix3Xd>(residual.data(), 3, residual.size() / 3).rowwise().sum();
@@ -140,7 +136,7 @@ NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     const double before = now.residual.norm();
     const double allowed = options.tolerance * std::max(contact.tool_force(u).norm(), 1e-12);
-    if (imbalance(model_, now.residual) <= allowed) {
+    if (imbalance(model_, now.residual, options.round_off) <= allowed) {
       result.converged = true;
       return result;
     }

@@ -16,6 +16,7 @@ namespace palpate::fem {
 struct NewtonOptions {
   double tolerance = 1e-4;  ///< |residual| over |tool force|
   int max_iterations = 40;
+  double round_off = 0;       ///< N, residual that counts as none
   bool reuse_factor = false;  ///< reuse the last factor while it converges well (modified Newton)
 };
 
@@ -32,9 +33,9 @@ struct Equilibrium {
   Eigen::VectorXd residual;
 };
 /// The residual that is compared with `options.tolerance`, N: its norm; for a body on springs,
-/// which has no fixed node to take the resultant, at least the norm of its sum. 0 where it is
-/// round-off of the weight: without contact there is no tool force to compare with.
-double imbalance(const SolidModel& model, const Eigen::VectorXd& residual);
+/// which has no fixed node to take the resultant, at least the norm of its sum. 0 up to
+/// `options.round_off`: without contact there is no tool force to compare with.
+double imbalance(const SolidModel& model, const Eigen::VectorXd& residual, double round_off);
 Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u);
 
 /// Minimizes the energy of body and contact over the unknowns of a model. Each iteration replaces

@@ -3,12 +3,12 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
-#include "fem/factor/cholesky.hpp"
-#include "fem/solve/newton.hpp"
+#include "fem/mesh/millimetres.hpp"
+#include "fem/solve/partial_weight.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 
@@ -16,78 +16,109 @@ namespace palpate::fem {
 
 namespace {
 
-constexpr double kTolerance = 1e-9;  ///< residual over the weight
-constexpr int kIterations = 30;
-constexpr int kHalvings = 12;               ///< of a Newton step
-constexpr double kSmallestPart = 1.0 / 64;  ///< of the weight, applied at once
+constexpr double kSmallestPart = 1.0 / 1024;  ///< of the weight, applied at once
+constexpr int kMostIterations = 300;          ///< of all parts
+constexpr int kEasy = 8;  ///< iterations up to which the next part is twice as large
+/// Displacement over that of the linear body. Above it the body may have left, somewhere between
+/// two equilibria, a state from which it buckles.
+constexpr double kAmplified = 5;
+/// Smallest eigenvalue of the stiffness over that without weight, below which the body buckles.
+constexpr double kVanished = 0.05;
+/// The same, above which a stiffness that is not positive definite is no buckling of the body.
+constexpr double kUnchanged = 0.5;
 
-/// Equilibrium under a part of the weight.
-class PartialWeight {
+using Outcome = PartialWeight::Outcome;
+
+std::string percent(double part) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3g %%", 100 * part);
+  return text;
+}
+
+/// Equilibria from no weight to all of it, in parts.
+class WeightPath {
  public:
-  PartialWeight(const SolidModel& model, const std::vector<int>& permutation)
+  WeightPath(const SolidModel& model, PartialWeight& body, std::string owner)
       : model_(model),
-        weight_(model.weight()),
-        factor_(model.pattern(), &permutation),
-        x_(weight_.size()) {}
+        body_(body),
+        owner_(std::move(owner)),
+        u_(Displacement::Zero(3, model.mesh().nodes())),
+        weakest_(body.weakest_mode(u_)),
+        stiffness_at_rest_(weakest_ ? weakest_->stiffness : 0) {}
 
-  double weight() const { return weight_.norm(); }
-
-  /// False when it is not found; u is then no equilibrium.
-  bool equilibrate(double part, Displacement& u) {
-    State now = evaluate(part, u);
-    for (int i = 0; i < kIterations && now.min_J > 0; ++i) {
-      if (now.residual.norm() <= kTolerance * weight()) return true;
-      model_.stiffness(u, K_);
-      if (!factor_.factorize(K_)) return false;
-      const Eigen::VectorXd load = -now.residual;
-      factor_.solve(load.data(), x_.data(), workspace_);
-      if (!step(part, now, u)) return false;
+  /// @throws Error(Geometry)
+  Displacement follow() {
+    double part = 0.5;
+    int iterations = 0;
+    while (carried_ < 1) {
+      const double next = std::min(1.0, carried_ + part);
+      Displacement u = u_;
+      if (iterations > kMostIterations) refuse_outcome(Outcome::Unconverged, u);
+      const Outcome outcome = body_.equilibrate(next, u);
+      iterations += body_.iterations();
+      if (outcome == Outcome::Found && follows(u)) {
+        if (body_.iterations() <= kEasy) part *= 2;
+        accept(next, std::move(u));
+        continue;
+      }
+      part *= 0.5;
+      if (part < kSmallestPart) refuse_outcome(outcome, u);
     }
-    return false;
+    return u_;
   }
 
  private:
-  struct State {
-    double energy, min_J;
-    Eigen::VectorXd residual;
-  };
-
-  /// The model has the whole weight; the excess is subtracted.
-  State evaluate(double part, const Displacement& u) const {
-    State now;
-    const SolidModel::State state = model_.forces(u, now.residual);
-    now.residual += (1 - part) * weight_;
-    now.energy = state.energy;
-    for (int node = 0; node < model_.mesh().nodes(); ++node)
-      if (const int first = model_.equation(node); first >= 0)
-        now.energy += (1 - part) * weight_.segment<3>(first).dot(u.col(node));
-    now.min_J = state.min_J;
-    return now;
+  bool follows(const Displacement& u) const {
+    return (u - u_).colwise().norm().maxCoeff() <= kAmplified * body_.first_step();
   }
 
-  bool step(double part, State& now, Displacement& u) const {
-    const double slope = now.residual.dot(x_);
-    double length = 1;
-    for (int halvings = 0; halvings < kHalvings; ++halvings, length *= 0.5) {
-      Displacement trial = u;
-      add_step(model_, length, x_, trial);
-      State next = evaluate(part, trial);
-      if (!(next.min_J > 0)) continue;
-      const bool lower = next.energy <= now.energy + 1e-4 * length * slope;
-      if (!lower && next.residual.norm() > (1 - 0.1 * length) * now.residual.norm()) continue;
-      u.swap(trial);
-      now = std::move(next);
-      return true;
-    }
-    return false;
+  void accept(double part, Displacement u) {
+    carried_ = part;
+    u_ = std::move(u);
+    if (carried_ == 1) return;
+    weakest_ = body_.weakest_mode(u_);
+    if (remaining_stiffness() < kVanished) refuse_unstable();
+  }
+
+  double remaining_stiffness() const {
+    return weakest_ ? weakest_->stiffness / stiffness_at_rest_ : 0;
+  }
+
+  /// The weight at which the stiffness vanishes, by a straight line from that without weight.
+  double critical_part() const { return carried_ / (1 - remaining_stiffness()); }
+
+  [[noreturn]] void refuse_unstable() const {
+    std::string problem = "the body buckles or collapses: its stiffness vanishes near " +
+                          percent(critical_part()) + " of its weight";
+    if (weakest_) problem += ", and it moves most at " + point_in_millimetres(weakest_->X);
+    refuse_geometry("gravity on " + owner_, problem,
+                    "support it there, or check the direction and the unit of "
+                    "gravity.acceleration, the density and the stiffness");
+  }
+
+  [[noreturn]] void refuse_outcome(Outcome outcome, const Displacement& u) const {
+    const bool unstable = outcome == Outcome::Unstable || outcome == Outcome::Found;
+    if (unstable && carried_ > 0 && remaining_stiffness() < kUnchanged) refuse_unstable();
+    const std::string beyond = " beyond " + percent(carried_) + " of the weight";
+    if (outcome == Outcome::Unconverged)
+      refuse_geometry("gravity on " + owner_, "Newton's method does not converge" + beyond,
+                      "check the units of gravity.acceleration, the density and the stiffness; "
+                      "smaller elements may help");
+    const SolidModel::Compressed worst = model_.most_compressed(u);
+    refuse_geometry("gravity on " + owner_,
+                    "there is no stable equilibrium" + beyond + "; the element at " +
+                        point_in_millimetres(worst.X) + " is compressed most",
+                    "check the units of gravity.acceleration, the density and the stiffness, and "
+                    "the supports");
   }
 
   const SolidModel& model_;
-  Eigen::VectorXd weight_;
-  Cholesky factor_;
-  SolveWorkspace workspace_;
-  std::vector<double> K_;
-  Eigen::VectorXd x_;
+  PartialWeight& body_;
+  std::string owner_;
+  double carried_ = 0;
+  Displacement u_;
+  std::optional<PartialWeight::WeakestMode> weakest_;
+  double stiffness_at_rest_;
 };
 
 /// Natural coordinates of the point of a flat triangle nearest to the origin [Ericson 2005,
@@ -117,26 +148,11 @@ Displacement equilibrium_under_weight(const SolidModel& model, const std::vector
   Displacement u = Displacement::Zero(3, model.mesh().nodes());
   if (model.weight().isZero(0)) return u;
   PartialWeight body(model, permutation);
-  double carried = 0, part = 1;
-  while (carried < 1) {
-    const double next = std::min(1.0, carried + part);
-    Displacement trial = u;
-    if (body.equilibrate(next, trial)) {
-      u.swap(trial);
-      carried = next;
-      continue;
-    }
-    part *= 0.5;
-    if (part >= kSmallestPart) continue;
-    char problem[96];
-    std::snprintf(problem, sizeof problem,
-                  "there is no equilibrium beyond %.0f %% of the weight: the body buckles",
-                  100 * carried);
-    throw Error(ErrorKind::Geometry, "gravity on " + owner, problem,
-                "check the direction and the units of gravity.acceleration, the density, the "
-                "stiffness and the supports");
+  if (body.equilibrate(1, u) == Outcome::Found) {
+    const double largest = u.colwise().norm().maxCoeff();
+    if (largest <= kAmplified * body.first_step()) return u;
   }
-  return u;
+  return WeightPath(model, body, owner).follow();
 }
 
 Eigen::Vector3d displacement_at(const QuadraticMesh& mesh, const Displacement& u,

@@ -9,11 +9,15 @@
 
 namespace palpate::fem {
 
-/// The displacement in equilibrium with the weight; 0 without gravity. Newton's method with a
-/// factorization in each step; the weight is applied in parts where the whole does not converge.
-/// The residual is at most 1e-9 of the weight. `permutation`: elimination order of the model.
-/// @throws Error(Geometry) when no equilibrium is found, with the fraction of the weight that was
-/// reached; `owner` names the body.
+/// The displacement in equilibrium with the weight; 0 without gravity. The weight is applied at
+/// once (PartialWeight), and in parts, from one equilibrium to the next, where that does not
+/// converge or where the displacement is many times that of the linear body. Then the smallest
+/// eigenvalue of the stiffness is followed: an equilibrium beyond the weight at which it vanishes
+/// is one of several, chosen by the rounding of the mesh, and is refused. `permutation`:
+/// elimination order of the model.
+/// @throws Error(Geometry) when the body buckles or collapses, with the fraction of the weight and
+/// the place, when an element is crushed or when Newton's method does not converge; `owner` names
+/// the body.
 Displacement equilibrium_under_weight(const SolidModel& model, const std::vector<int>& permutation,
                                       const std::string& owner);
 

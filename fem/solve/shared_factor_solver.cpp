@@ -115,7 +115,7 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
   for (; result.iterations < options.max_iterations; ++result.iterations) {
     const Eigen::Vector3d force = contact.tool_force(u);
     const double scale = std::max(force.norm(), 1e-12), last_error = error_;
-    error_ = imbalance(whole_, now.residual) / scale;
+    error_ = imbalance(whole_, now.residual, options.round_off) / scale;
     if (result.iterations > 0)
       sensitivity_ =
           std::max((force - before).norm() / (scale * last_error), kDecay * sensitivity_);

@@ -10,6 +10,7 @@
 #include "fem/laws/law_table.hpp"
 #include "format/error.hpp"
 #include "tests/support/block_body.hpp"
+#include "tests/support/heavy_rod.hpp"
 
 namespace palpate::fem {
 namespace {
@@ -80,18 +81,74 @@ TEST(Preload, OfColumnsAtLargeStrainIsTheClosedForm) {
   }
 }
 
-/// A slender column buckles under its own weight beyond H^3 = 7.837 E I/(rho g A) [Greenhill 1881].
-TEST(Preload, RefusesAColumnThatBuckles) {
+/// The number that precedes " % of its weight" in a message.
+double percent_in(const std::string& message) {
+  const std::size_t end = message.find(" % of its weight");
+  return std::stod(message.substr(message.rfind(' ', end - 1) + 1));
+}
+
+/// A slender column buckles under its own weight beyond H^3 = 7.837 E I/(rho g A) [Greenhill 1881],
+/// a given column under (H_c/H)^3 of its weight. A leaning one, too, bends over at about that
+/// weight, to one of two sides that it cannot know.
+TEST(Preload, NamesTheWeightUnderWhichAColumnBuckles) {
   constexpr double kWidth = 0.01, kYoung = 1e6, kDensity = 1000, kGravity = 9.81;
   const double greatest = std::cbrt(7.837 * kYoung * kWidth * kWidth / 12 / (kDensity * kGravity));
   const Gravity gravity{{0, 0, -kGravity}, kDensity};
-  EXPECT_NO_THROW(displaced(column(kWidth, 0.9 * greatest), {kYoung, 0.0}, gravity));
+  for (const double lean : {0.0, 1e-3}) {
+    const auto leaning = [&](double height) {
+      Body body = test::make_block(test::even(0, kWidth, 1), test::even(0, kWidth, 1),
+                                   test::even(0, height, 24));
+      test::deform(body, [&](const Vec3& X) { return X + Vec3{lean * X[2], 0, 0}; });
+      return body;
+    };
+    for (const double height : {0.9, 0.97})
+      EXPECT_NO_THROW(displaced(leaning(height * greatest), {kYoung, 0.0}, gravity)) << height;
+    for (const double height : {1.05, 1.5, 3.0}) try {
+        displaced(leaning(height * greatest), {kYoung, 0.0}, gravity);
+        ADD_FAILURE() << "a column of " << height
+                      << " times the greatest height has an equilibrium";
+      } catch (const Error& error) {
+        EXPECT_EQ(error.kind(), ErrorKind::Geometry);
+        EXPECT_THAT(error.problem(), HasSubstr("buckles"));
+        const double critical = 100 * std::pow(height, -3);
+        EXPECT_NEAR(percent_in(error.problem()), critical, 0.03 * critical) << error.what();
+      }
+  }
+}
+
+/// Saint Venant-Kirchhoff with nu = 0 carries at most E/(3 sqrt(3)) in compression. The straight
+/// line to the vanishing stiffness of a limit point overestimates the weight.
+TEST(Preload, NamesTheWeightUnderWhichABodyCollapses) {
+  constexpr double kHeight = 0.05, kYoung = 1e3, kDensity = 1e5, kGravity = 9.81;
+  const Body body = column(kHeight, kHeight);
+  const LawConstants law("saint-venant-kirchhoff", {{"young", kYoung}, {"poisson", 0}});
+  const double critical = 100 * kYoung / (3 * std::sqrt(3)) / (kDensity * kGravity * kHeight);
   try {
-    displaced(column(kWidth, 1.1 * greatest), {kYoung, 0.0}, gravity);
-    FAIL() << "a column above the buckling height has an equilibrium";
+    displaced(body, law, {{0, 0, -kGravity}, kDensity});
+    FAIL() << "the column carries more than its material";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::Geometry);
-    EXPECT_THAT(error.what(), HasSubstr("no equilibrium beyond"));
+    EXPECT_NEAR(percent_in(error.problem()), critical, 0.25 * critical) << error.what();
+  }
+}
+
+/// The shape of a limp rod that turns by a right angle is that of the elastica, whether the clamp
+/// is level or points upwards.
+TEST(Preload, BendsARodLikeTheElastica) {
+  constexpr double kRadius = 0.004, kLength = 0.2, kYoung = 5e5, kDensity = 1000, kGravity = 9.81;
+  const double weight = kDensity * kGravity * M_PI * std::pow(kRadius, 2);
+  const double bending = kYoung * M_PI / 4 * std::pow(kRadius, 4);
+  for (const double clamped : {M_PI / 2, 0.8 * M_PI}) {
+    const Body body = test::make_rod(kRadius, kLength, 24);
+    const Eigen::Vector3d down(0, -std::sin(clamped), std::cos(clamped));
+    const Displacement u =
+        displaced(body, {kYoung, 0.3}, {{0, kGravity * down[1], kGravity * down[2]}, kDensity});
+    const Eigen::Vector3d tip = Eigen::Vector3d(0, 0, kLength) + u.col(24 * 19);
+    const test::RodTip expected = test::heavy_elastica(weight, bending, kLength, clamped);
+    const Eigen::Vector3d across(0, std::cos(clamped), std::sin(clamped));
+    EXPECT_NEAR(tip.dot(down), expected.along, 0.01 * kLength) << clamped;
+    EXPECT_NEAR(tip.dot(across), expected.across, 0.01 * kLength) << clamped;
+    EXPECT_GT(expected.along, clamped < 2 ? 0.8 * kLength : 0.5 * kLength);
   }
 }
 

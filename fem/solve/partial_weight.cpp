@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/solve/partial_weight.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "format/to_index.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+constexpr double kTolerance = 1e-9;  ///< residual over the weight
+constexpr int kIterations = 60;
+constexpr int kFreeSteps = 4;
+constexpr int kHalvings = 12;         ///< of a step
+constexpr double kArmijo = 1e-4;      ///< decrease of the energy over that along the slope
+constexpr double kContraction = 0.1;  ///< decrease of the residual that serves as well, relative
+constexpr int kPowerIterations = 30;  ///< for an eigenvalue: its order of magnitude suffices
+
+double mean_edge(const QuadraticMesh& mesh) {
+  double sum = 0;
+  for (const auto& [a, b] : mesh.edges) sum += (mesh.X.col(a) - mesh.X.col(b)).norm();
+  return sum / static_cast<double>(mesh.edges.size());
+}
+
+/// The node with the largest norm of its three entries.
+Eigen::Index largest_node(const Eigen::VectorXd& d) {
+  Eigen::Index node = 0;
+  Eigen::Map<const Eigen::Matrix3Xd>(d.data(), 3, d.size() / 3)
+      .colwise()
+      .squaredNorm()
+      .maxCoeff(&node);
+  return node;
+}
+
+}  // namespace
+
+PartialWeight::PartialWeight(const SolidModel& model, const std::vector<int>& permutation)
+    : model_(model),
+      weight_(model.weight()),
+      edge_(mean_edge(model.mesh())),
+      factor_(model.pattern(), &permutation) {}
+
+/// The model has the whole weight; the excess is subtracted.
+PartialWeight::State PartialWeight::evaluate(double part, const Displacement& u) const {
+  State now;
+  const SolidModel::State state = model_.forces(u, now.residual);
+  now.residual += (1 - part) * weight_;
+  now.energy = state.energy;
+  for (int node = 0; node < model_.mesh().nodes(); ++node)
+    if (const int first = model_.equation(node); first >= 0)
+      now.energy += (1 - part) * weight_.segment<3>(first).dot(u.col(node));
+  now.min_J = state.min_J;
+  return now;
+}
+
+/// The norm of eps K_ii (|u| + h): the forces that a last digit of the displacements, and of F,
+/// stands for.
+double PartialWeight::rounding_error(const Displacement& u) const {
+  double sum = 0;
+  for (int i = 0; i < model_.pattern().n; ++i) {
+    const double diagonal = K_[to_index(model_.pattern().start[to_index(i)])];
+    sum += diagonal * diagonal;
+  }
+  const double size = u.colwise().norm().maxCoeff() + edge_;
+  return std::numeric_limits<double>::epsilon() * size * std::sqrt(sum);
+}
+
+/// Leaves the stiffness at u for the next step where it is none.
+bool PartialWeight::is_equilibrium(const State& now, const Displacement& u) {
+  if (now.residual.norm() <= kTolerance * weight_.norm()) return true;
+  model_.stiffness(u, K_);
+  return now.residual.norm() <= rounding_error(u);
+}
+
+bool PartialWeight::lowers(double length, const State& next) const {
+  const State& from = checkpoint_.state;
+  const double slope = from.residual.dot(checkpoint_.d);
+  return next.energy <= from.energy + kArmijo * length * slope ||
+         next.residual.norm() <= (1 - kContraction * length) * from.residual.norm();
+}
+
+std::optional<PartialWeight::Outcome> PartialWeight::free_step(double part, State& now,
+                                                               Displacement& u) {
+  if (!factor_.factorize(K_)) return Outcome::Unstable;
+  Eigen::VectorXd d = -now.residual;
+  factor_.solve(d.data(), d.data(), workspace_);
+  if (iterations_ == 0) first_step_ = d.segment<3>(3 * largest_node(d)).norm();
+  if (free_steps_ == 0) checkpoint_ = {u, now, d};
+  double length = 1;
+  for (int halvings = 0; halvings < kHalvings; ++halvings, length *= 0.5) {
+    Displacement trial = u;
+    add_step(model_, length, d, trial);
+    State next = evaluate(part, trial);
+    if (!(next.min_J > 0)) continue;
+    const bool lower = lowers(free_steps_ == 0 ? length : 1, next);
+    if (!lower && free_steps_ == kFreeSteps) return Outcome::Unconverged;
+    free_steps_ = lower ? 0 : free_steps_ + 1;
+    u.swap(trial);
+    now = std::move(next);
+    return std::nullopt;
+  }
+  return Outcome::Inverted;
+}
+
+std::optional<PartialWeight::Outcome> PartialWeight::step_from_checkpoint(double part, State& now,
+                                                                          Displacement& u) {
+  free_steps_ = 0;
+  double length = 0.5;
+  for (int halvings = 1; halvings < kHalvings; ++halvings, length *= 0.5) {
+    Displacement trial = checkpoint_.u;
+    add_step(model_, length, checkpoint_.d, trial);
+    State next = evaluate(part, trial);
+    if (!(next.min_J > 0) || !lowers(length, next)) continue;
+    u.swap(trial);
+    now = std::move(next);
+    return std::nullopt;
+  }
+  return Outcome::Unconverged;
+}
+
+PartialWeight::Outcome PartialWeight::equilibrate(double part, Displacement& u) {
+  State now = evaluate(part, u);
+  if (!(now.min_J > 0)) return Outcome::Inverted;
+  free_steps_ = 0;
+  for (iterations_ = 0; iterations_ < kIterations; ++iterations_) {
+    if (is_equilibrium(now, u)) return Outcome::Found;
+    std::optional<Outcome> failure = free_step(part, now, u);
+    if (failure && free_steps_ > 0) failure = step_from_checkpoint(part, now, u);
+    if (failure) return *failure;
+  }
+  return Outcome::Unconverged;
+}
+
+std::optional<PartialWeight::WeakestMode> PartialWeight::weakest_mode(const Displacement& u) {
+  model_.stiffness(u, K_);
+  if (!factor_.factorize(K_)) return std::nullopt;
+  // Inverse iteration from the weight and an uneven load: a mode of buckling may be normal to the
+  // weight.
+  Eigen::VectorXd mode = weight_ / weight_.norm();
+  for (Eigen::Index i = 0; i < mode.size(); ++i)
+    mode[i] += std::sin(static_cast<double>(i)) / std::sqrt(static_cast<double>(mode.size()));
+  double stiffness = 0;
+  for (int i = 0; i < kPowerIterations; ++i) {
+    mode.normalize();
+    factor_.solve(mode.data(), mode.data(), workspace_);
+    stiffness = 1 / mode.norm();
+  }
+  const auto largest = static_cast<int>(3 * largest_node(mode));
+  for (int node = 0; node < model_.mesh().nodes(); ++node)
+    if (model_.equation(node) == largest) return WeakestMode{stiffness, model_.mesh().X.col(node)};
+  return std::nullopt;
+}
+
+}  // namespace palpate::fem
