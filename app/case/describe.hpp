@@ -286,6 +286,9 @@ inline double& value_of(fem::LawConstants& law, std::string_view name) {
 template <class V>
 void describe(V& v, MaterialSection& s) {
   v.text(s.region, {"region", "region of the body; empty means that of the outer surface"});
+  v.quantity(s.density, Dimension::Density,
+             {"density", "reference density, for the weight; 0: that of `[gravity]`", kOptional,
+              kNotNegative});
   Choices laws;
   for (const fem::LawEntry& law : fem::law_table()) laws.push_back(law.name);
   v.text(s.law.law, {"law", "hyperelastic law, see [theory](theory-fem.md)"}, laws);
@@ -475,7 +478,14 @@ void describe_gravity(V& v, fem::Gravity& s) {
   v.point(s.acceleration, Dimension::Acceleration,
           {"acceleration", "acceleration of gravity; all 0: no preload"});
   v.quantity(s.density, Dimension::Density,
-             {"density", "reference density of every region", kOptional, kPositive});
+             {"density", "reference density of the regions whose material has none", kOptional,
+              kPositive});
+  describe_choice(v, s.shape,
+                  {"shape",
+                   "shape of the surface of the case: `unloaded`: without weight; `loaded`: as the "
+                   "body lies under "
+                   "its weight, from which its shape without weight is computed"},
+                  kGivenShapes);
 }
 
 template <class V>

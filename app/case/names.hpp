@@ -10,6 +10,7 @@
 #include "fem/contact/tool.hpp"
 #include "fem/laws/fibre_field.hpp"
 #include "fem/solid/dilatation.hpp"
+#include "fem/solid/gravity.hpp"
 #include "format/library.hpp"
 #include "mesher/repair/repair_settings.hpp"
 
@@ -37,6 +38,8 @@ inline constexpr std::array kFibreFields{Named{fem::FibreField::Kind::Constant, 
                                          Named{fem::FibreField::Kind::Cylindrical, "cylindrical"},
                                          Named{fem::FibreField::Kind::Sampled, "file"},
                                          Named{fem::FibreField::Kind::Laplace, "laplace"}};
+inline constexpr std::array kGivenShapes{Named{fem::GivenShape::Unloaded, "unloaded"},
+                                         Named{fem::GivenShape::Loaded, "loaded"}};
 inline constexpr std::array kResponseKinds{Named{ResponseKind::Decoupled, "decoupled"},
                                            Named{ResponseKind::Coupled, "coupled"}};
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <mutex>
 #include <numeric>
 
@@ -11,6 +12,7 @@
 #include "fem/campaign/parallel_sites.hpp"
 #include "fem/campaign/region_laws.hpp"
 #include "fem/factor/cholesky.hpp"
+#include "fem/mesh/to_eigen.hpp"
 #include "fem/solid/pressure_smoothness.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
@@ -122,6 +124,13 @@ void add_supports(const CampaignContext& context, const CampaignSettings& settin
   const double largest = context.rest.colwise().norm().maxCoeff();
   report.facts.emplace_back("max_gravity_displacement_m", std::to_string(largest));
   report.facts.emplace_back("min_jacobian_before_touch", std::to_string(context.at_rest.min_J));
+  if (!context.unloaded) return;
+  char distance[32];
+  std::snprintf(distance, sizeof distance, "%.2g", context.unloaded->distance);
+  report.facts.emplace_back("given_shape", "loaded");
+  report.facts.emplace_back("unloaded_shape_distance_m", distance);
+  report.facts.emplace_back("unloaded_shape_equilibria",
+                            std::to_string(context.unloaded->iterations));
 }
 
 }  // namespace
@@ -176,7 +185,9 @@ DeformedState deformed_state(const Body& body, const CampaignSettings& settings,
   DeformedState state;
   for (std::size_t i = 0; i < body.nodes.size(); ++i) {
     const auto column = static_cast<Eigen::Index>(i);
-    state.displacement.push_back({u(0, column), u(1, column), u(2, column)});
+    Eigen::Vector3d moved = u.col(column);
+    if (context.unloaded) moved -= context.rest.col(column);
+    state.displacement.push_back(to_vec3(moved));
   }
   context.model.element_fields(u, state.strain_energy_density, state.pressure);
   SmoothPressure smooth = smooth_pressure(context.model.mesh(), state.pressure);

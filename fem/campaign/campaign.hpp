@@ -36,7 +36,8 @@ class FactorCache;
 Curves run_campaign(const Body& body, const CampaignSettings& settings, CampaignReport& report,
                     FactorCache* cache = nullptr);
 
-/// Displacement of the nodes of the body (corner nodes, same order as Body::nodes) for one site at
+/// Displacement of the nodes of the body (corner nodes, same order as Body::nodes) from their given
+/// positions for one site at
 /// the end of its normal path: for pictures and exports.
 struct DeformedState {
   std::vector<Vec3> displacement;             ///< (N) m

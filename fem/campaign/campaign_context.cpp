@@ -2,6 +2,7 @@
 #include "fem/campaign/campaign_context.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "fem/campaign/region_laws.hpp"
 #include "fem/mesh/to_eigen.hpp"
@@ -56,16 +57,45 @@ void check_refinement(const Body& body, const CampaignSettings& settings, Engine
 
 }  // namespace
 
+/// The model and its equilibrium before the touch.
+struct CampaignContext::Preloaded {
+  std::shared_ptr<const UnloadedBody> unloaded;
+  SolidModel model;
+  std::vector<int> permutation;
+  Displacement rest;
+};
+
+CampaignContext::Preloaded CampaignContext::preloaded(const Body& body,
+                                                      const CampaignSettings& settings,
+                                                      FactorCache* cache) {
+  const std::vector<Law> laws = laws_of_regions(body, settings.materials);
+  const Gravity gravity = gravity_on(body, settings);
+  SolidModel model(body, laws, settings.dilatation, gravity);
+  std::vector<int> permutation =
+      cache != nullptr ? cache->permutation(model.pattern()) : nested_dissection(model.pattern());
+  if (gravity.acts() && gravity.shape == GivenShape::Loaded) {
+    auto found = std::make_shared<const UnloadedBody>(
+        find_unloaded_body(body, laws, settings.dilatation, gravity, permutation));
+    return {found, found->model, std::move(permutation), found->u};
+  }
+  Displacement rest = equilibrium_under_weight(model, permutation, body.name);
+  return {nullptr, std::move(model), std::move(permutation), std::move(rest)};
+}
+
 CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
                                  FactorCache* cache)
+    : CampaignContext(b, settings, e, cache, preloaded(b, settings, cache)) {}
+
+CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings, Engine e,
+                                 FactorCache* cache, Preloaded&& start)
     : body(b),
+      unloaded(std::move(start.unloaded)),
       points(settings.points),
       indentation(settings.indentation),
       engine(e),
-      model(b, laws_of_regions(b, settings.materials), settings.dilatation, settings.gravity),
-      permutation(cache != nullptr ? cache->permutation(model.pattern())
-                                   : nested_dissection(model.pattern())),
-      rest(equilibrium_under_weight(model, permutation, b.name)),
+      model(std::move(start.model)),
+      permutation(std::move(start.permutation)),
+      rest(std::move(start.rest)),
       at_rest(model.energy(rest)),
       round_off(settings.gravity.acts() ? rounding_of_rest(model, rest) : 0) {
   use_one_thread_per_site();
@@ -81,8 +111,16 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
                                          settings.memory, settings.threads);
 }
 
-Eigen::Vector3d CampaignContext::rest_position(const Vec3& X) const {
-  return to_eigen(X) + displacement_at(model.mesh(), rest, to_eigen(X));
+Eigen::Vector3d CampaignContext::rest_position(const Vec3& point) const {
+  const Eigen::Vector3d x = to_eigen(point);
+  return unloaded ? x : x + displacement_at(model.mesh(), rest, x);
+}
+
+Eigen::Vector3d CampaignContext::reference_position(const Vec3& point) const {
+  const Eigen::Vector3d x = to_eigen(point);
+  if (!unloaded) return x;
+  const QuadraticMesh& mesh = model.mesh();
+  return nearest_boundary_point(mesh, mesh.X + rest, x).value(mesh.X);
 }
 
 PressPoint CampaignContext::press_point(std::int32_t vertex) const {

@@ -10,6 +10,7 @@
 #include "fem/contact/contact.hpp"
 #include "fem/factor/rest_factor.hpp"
 #include "fem/solid/solid_model.hpp"
+#include "fem/solve/unloaded_shape.hpp"
 
 namespace palpate::fem {
 
@@ -29,10 +30,14 @@ struct CampaignContext {
   /// The point and direction of a response vertex; of a point of the settings, by its index, when
   /// there are any.
   PressPoint press_point(std::int32_t vertex) const;
-  /// Position of a point of the boundary before the tool touches it.
-  Eigen::Vector3d rest_position(const Vec3& X) const;
+  /// Position of a point of the given surface before the tool touches it.
+  Eigen::Vector3d rest_position(const Vec3& point) const;
+  /// Its position X in the model: without weight.
+  Eigen::Vector3d reference_position(const Vec3& point) const;
 
-  const Body& body;
+  const Body& body;  ///< as given
+  /// Where the given shape is the loaded one: the body without weight, which the model has.
+  std::shared_ptr<const UnloadedBody> unloaded;
   std::vector<PressPoint> points;
   IndentationSettings indentation;
   Engine engine;
@@ -44,6 +49,13 @@ struct CampaignContext {
   ContactStiffness contact_stiffness;
   std::shared_ptr<const RestFactor> rest_factor;  ///< SharedFactor only
   mutable std::mutex direct_solve;                ///< locked while a site factorizes the whole body
+
+ private:
+  struct Preloaded;
+  static Preloaded preloaded(const Body& body, const CampaignSettings& settings,
+                             FactorCache* cache);
+  CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
+                  FactorCache* cache, Preloaded&& start);
 };
 
 /// From the largest Young's modulus at rest of the regions at the boundary: stiffer regions inside

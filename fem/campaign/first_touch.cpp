@@ -41,7 +41,8 @@ Tool tool_at_first_touch(const CampaignContext& context, const ToolContact& cont
 
 FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex) {
   const PressPoint point = context.press_point(vertex);
-  const ToolContact contact = contact_at(context, context.model.mesh(), to_eigen(point.position));
+  const ToolContact contact =
+      contact_at(context, context.model.mesh(), context.reference_position(point.position));
   return {tool_at_first_touch(context, contact, context.rest, point), contact.facets()};
 }
 

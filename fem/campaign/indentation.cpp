@@ -64,7 +64,7 @@ void stop_early(SiteCurves& curves, const std::string& reason) {
 
 struct SiteSolver::Site {
   Site(const CampaignContext& context, const PressPoint& point, SolveBatch::Member* batch)
-      : X(to_eigen(point.position)),
+      : X(context.reference_position(point.position)),
         inward(to_eigen(point.inward)),
         body(body_of_site(context, X)),
         contact(contact_at(context, body.mesh(), X)),
@@ -243,7 +243,8 @@ double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
   const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
   const double starts = static_cast<double>(context.indentation.lateral_depths.size());
   const double numbers = 3 * nodes * (kDisplacements + starts) + unknowns * kVectors;
-  const SiteBody site = body_of_site(context, to_eigen(context.press_point(vertex).position));
+  const SiteBody site =
+      body_of_site(context, context.reference_position(context.press_point(vertex).position));
   return sizeof(double) * (numbers + kWindowFill * site.window().pattern().nonzeros()) +
          unknowns * kPairs + site.bytes();
 }

@@ -53,4 +53,14 @@ std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMater
   return laws;
 }
 
+Gravity gravity_on(const Body& body, const CampaignSettings& settings) {
+  Gravity gravity = settings.gravity;
+  gravity.region_density.assign(body.region_names.size(), gravity.density);
+  for (std::size_t region = 0; region < body.region_names.size(); ++region)
+    for (const RegionMaterial& material : settings.materials)
+      if (material.region == body.region_names[region] && material.density > 0)
+        gravity.region_density[region] = material.density;
+  return gravity;
+}
+
 }  // namespace palpate::fem

@@ -14,6 +14,9 @@ namespace palpate::fem {
 /// twice, or constants out of range.
 std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMaterial>& materials);
 
+/// The gravity of the settings with the density of each region of the body, in its order.
+Gravity gravity_on(const Body& body, const CampaignSettings& settings);
+
 /// The law of a region; fibres that depend on the body as samples of it.
 /// @throws Error(Configuration) as fibres_of_potential, and where the file of the fibres was not
 /// read.

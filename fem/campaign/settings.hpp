@@ -19,6 +19,7 @@ namespace palpate::fem {
 struct RegionMaterial {
   std::string region;  ///< name of a region of the body
   LawConstants law;
+  double density = 0;  ///< kg/m^3, at rest; 0: that of the gravity
 };
 
 struct IndentationSettings {

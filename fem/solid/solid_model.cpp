@@ -48,18 +48,24 @@ double shape_integral(std::size_t a, bool linear) {
 Eigen::Matrix3Xd nodal_weight(const QuadraticMesh& mesh, const Gravity& gravity) {
   if (!gravity.acts()) return {};
   Eigen::Matrix3Xd weight = Eigen::Matrix3Xd::Zero(3, mesh.nodes());
-  const Eigen::Vector3d per_volume = gravity.density * to_eigen(gravity.acceleration);
-  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e)
+  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
+    const Eigen::Vector3d per_volume =
+        gravity.density_of(mesh.region[to_index(e)]) * to_eigen(gravity.acceleration);
     for (std::size_t a = 0; a < kTetNodes; ++a)
       weight.col(mesh.tetrahedra[to_index(e)][a]) +=
           volume_of(mesh, e) * shape_integral(a, mesh.linear) * per_volume;
+  }
   return weight;
 }
 
 std::shared_ptr<const Solid> make_solid(const Body& body, std::vector<Law> laws,
-                                        Dilatation dilatation, const Gravity& gravity) {
-  auto solid = std::make_shared<Solid>(
-      Solid{make_quadratic_mesh(body, is_linear(dilatation)), std::move(laws), dilatation, {}});
+                                        Dilatation dilatation, const Gravity& gravity,
+                                        std::vector<std::array<Vec3, 2>> fibres) {
+  auto solid = std::make_shared<Solid>(Solid{make_quadratic_mesh(body, is_linear(dilatation)),
+                                             std::move(laws),
+                                             dilatation,
+                                             {},
+                                             std::move(fibres)});
   solid->weight = nodal_weight(solid->mesh, gravity);
   return solid;
 }
@@ -67,8 +73,8 @@ std::shared_ptr<const Solid> make_solid(const Body& body, std::vector<Law> laws,
 }  // namespace
 
 SolidModel::SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation,
-                       const Gravity& gravity)
-    : solid_(make_solid(body, std::move(laws), dilatation, gravity)) {
+                       const Gravity& gravity, std::vector<std::array<Vec3, 2>> fibres)
+    : solid_(make_solid(body, std::move(laws), dilatation, gravity, std::move(fibres))) {
   std::vector<bool> free(to_index(mesh().nodes()));
   for (int node = 0; node < mesh().nodes(); ++node) free[to_index(node)] = mesh().is_free(node);
   number_unknowns(free);
@@ -102,7 +108,7 @@ SolidModel::SolidModel(const SolidModel& whole, std::vector<bool> free) : solid_
 
 SolidModel SolidModel::without_stiffness(const SolidModel& whole, QuadraticMesh mesh) {
   SolidModel model(std::make_shared<const Solid>(
-      Solid{std::move(mesh), whole.solid_->laws, whole.solid_->dilatation, {}}));
+      Solid{std::move(mesh), whole.solid_->laws, whole.solid_->dilatation, {}, {}}));
   std::vector<bool> free = model.mesh().fixed;
   free.flip();
   model.number_unknowns(free);
@@ -167,7 +173,9 @@ SolidModel::Block SolidModel::make_block(const std::vector<int>& elements, std::
     if (has_nodal_pressure(solid_->dilatation))
       block.pressure_point[to_index(lane)] = nodal_.points_of(mesh(), element);
     block.geometry.volume[lane] = one.volume;
-    const auto fibres = solid_->laws[to_index(region)].fibres_at(centroid(mesh(), element));
+    const auto fibres = solid_->fibres.empty()
+                            ? solid_->laws[to_index(region)].fibres_at(centroid(mesh(), element))
+                            : solid_->fibres[to_index(element)];
     for (std::size_t family = 0; family < fibres.size(); ++family)
       for (std::size_t j = 0; j < 3; ++j)
         block.geometry.fibres[family][j][lane] = fibres[family][j];

@@ -28,6 +28,8 @@ struct Solid {
   std::vector<Law> laws;
   Dilatation dilatation;
   Eigen::Matrix3Xd weight;  ///< (nodes), N; no columns where there is none
+  /// Fibre directions of each element; empty: those of the laws at the centroids.
+  std::vector<std::array<Vec3, 2>> fibres;
 };
 
 /// One flag for each node: whether it lies within `radius` of `centre` at rest.
@@ -39,9 +41,10 @@ std::vector<bool> nodes_within(const QuadraticMesh& mesh, const Eigen::Vector3d&
 /// after construction; every method may be called from several threads.
 class SolidModel {
  public:
-  /// The whole body. One law for each region, in the order of Body::region_names.
+  /// The whole body. One law for each region, in the order of Body::region_names. `fibres`: see
+  /// Solid.
   SolidModel(const Body& body, std::vector<Law> laws, Dilatation dilatation = Dilatation::Mean,
-             const Gravity& gravity = {});
+             const Gravity& gravity = {}, std::vector<std::array<Vec3, 2>> fibres = {});
 
   /// The part of `whole` around `centre`: the nodes within `radius` are free, the model has their
   /// elements, and all other nodes have prescribed displacements.

@@ -155,24 +155,38 @@ Displacement equilibrium_under_weight(const SolidModel& model, const std::vector
   return WeightPath(model, body, owner).follow();
 }
 
-Eigen::Vector3d displacement_at(const QuadraticMesh& mesh, const Displacement& u,
-                                const Eigen::Vector3d& X) {
+BoundaryPoint nearest_boundary_point(const QuadraticMesh& mesh, const Eigen::Matrix3Xd& positions,
+                                     const Eigen::Vector3d& x) {
   double nearest = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d displacement = Eigen::Vector3d::Zero();
+  BoundaryPoint point{};
   for (const Facet& facet : mesh.facets) {
-    const Eigen::Vector3d a = mesh.X.col(facet[0]) - X, b = mesh.X.col(facet[1]) - X,
-                          c = mesh.X.col(facet[2]) - X;
+    const Eigen::Vector3d a = positions.col(facet[0]) - x, b = positions.col(facet[1]) - x,
+                          c = positions.col(facet[2]) - x;
     const Eigen::Vector3d L = nearest_in_triangle(a, b, c);
     const double distance = (L[0] * a + L[1] * b + L[2] * c).norm();
     if (distance >= nearest) continue;
     nearest = distance;
-    displacement.setZero();
+    point.facet = facet;
     for (int i = 0; i < 3; ++i) {
-      displacement += L[i] * (2 * L[i] - 1) * u.col(facet[to_index(i)]);
-      displacement += 4 * L[i] * L[(i + 1) % 3] * u.col(facet[to_index(3 + i)]);
+      point.N[to_index(i)] = L[i] * (2 * L[i] - 1);
+      point.N[to_index(3 + i)] = 4 * L[i] * L[(i + 1) % 3];
     }
   }
-  return displacement;
+  return point;
+}
+
+Eigen::Vector3d BoundaryPoint::value(const Eigen::Matrix3Xd& field) const {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < 3; ++i) {
+    sum += N[i] * field.col(facet[i]);
+    sum += N[3 + i] * field.col(facet[3 + i]);
+  }
+  return sum;
+}
+
+Eigen::Vector3d displacement_at(const QuadraticMesh& mesh, const Displacement& u,
+                                const Eigen::Vector3d& X) {
+  return nearest_boundary_point(mesh, mesh.X, X).value(u);
 }
 
 }  // namespace palpate::fem

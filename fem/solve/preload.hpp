@@ -2,6 +2,7 @@
 // The body under its weight, before the tool touches it.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,18 @@ namespace palpate::fem {
 /// the body.
 Displacement equilibrium_under_weight(const SolidModel& model, const std::vector<int>& permutation,
                                       const std::string& owner);
+
+/// A point of a facet, with the shape functions of its nodes there.
+struct BoundaryPoint {
+  Facet facet;
+  std::array<double, 6> N;
+  /// A field of the nodes, (3, nodes), at the point.
+  Eigen::Vector3d value(const Eigen::Matrix3Xd& field) const;
+};
+/// The point of the boundary nearest to x where its nodes are at `positions`, (3, nodes), m; facets
+/// are taken as flat.
+BoundaryPoint nearest_boundary_point(const QuadraticMesh& mesh, const Eigen::Matrix3Xd& positions,
+                                     const Eigen::Vector3d& x);
 
 /// Displacement of the point of the boundary nearest to X.
 Eigen::Vector3d displacement_at(const QuadraticMesh& mesh, const Displacement& u,

@@ -79,6 +79,19 @@ TEST(Case, ReadsSpringsAndGravity) {
   EXPECT_THAT(message_of(replaced(text, "1.05 g/cm^3", "0 kg/m^3")), HasSubstr("gravity.density"));
 }
 
+TEST(Case, ReadsTheGivenShapeAndDensitiesOfMaterials) {
+  EXPECT_EQ(parse_case(kGood, "ball.toml").campaign.gravity.shape, fem::GivenShape::Unloaded);
+  const std::string text =
+      replaced(kGood, "[[material]]\n", "[[material]]\ndensity = \"0.9 g/cm^3\"\n") +
+      "\n[gravity]\nshape = \"loaded\"\n";
+  const Case c = parse_case(text, "ball.toml");
+  EXPECT_EQ(c.campaign.gravity.shape, fem::GivenShape::Loaded);
+  EXPECT_DOUBLE_EQ(c.materials[0].density, 900);
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
+  EXPECT_THAT(message_of(replaced(text, "\"loaded\"", "\"sagged\"")), HasSubstr("gravity.shape"));
+  EXPECT_THAT(message_of(replaced(text, "0.9 g/cm^3", "-1 g/cm^3")), HasSubstr("density"));
+}
+
 std::string with_tool(const std::string& tool) {
   return replaced(kGood, "[indentation]", "[tool]\n" + tool + "\n[indentation]");
 }

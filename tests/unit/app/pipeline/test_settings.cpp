@@ -134,7 +134,7 @@ class SettingsText {
     }
   }
   void add(const fem::RegionMaterial& m) {
-    add(m.region, m.law.law);
+    add(m.region, m.density, m.law.law);
     for (const auto& [name, value] : m.law.values) add(name, value);
     const fem::FibreField& f = m.law.fibres;
     add(static_cast<int>(f.kind), f.angle, f.families);
@@ -144,7 +144,7 @@ class SettingsText {
   }
   void add(const fem::CampaignSettings& s) {
     for (const auto& material : s.materials) add(material);
-    add(static_cast<int>(s.dilatation), s.gravity.density);
+    add(static_cast<int>(s.dilatation), s.gravity.density, static_cast<int>(s.gravity.shape));
     add(s.gravity.acceleration);
     const fem::IndentationSettings& i = s.indentation;
     add(static_cast<int>(i.tool.shape), i.tool.radius, i.tool.edge_radius, i.tool.length,
@@ -246,6 +246,7 @@ TEST(StageSettings, KeysThatACaseLeavesOutHaveTheDefaultsOfTheStages) {
   const fem::CampaignSettings campaign = campaign_settings(space), campaign_default;
   EXPECT_EQ(campaign.dilatation, campaign_default.dilatation);
   EXPECT_EQ(campaign.gravity.density, campaign_default.gravity.density);
+  EXPECT_EQ(campaign.gravity.shape, campaign_default.gravity.shape);
   const auto& paths = campaign.indentation;
   const auto& paths_default = campaign_default.indentation;
   EXPECT_EQ(paths.tool.radius, paths_default.tool.radius);

@@ -6,8 +6,11 @@
 
 #include <cmath>
 
+#include "fem/campaign/campaign.hpp"
 #include "fem/campaign/indentation.hpp"
 #include "fem/mesh/quadratic_mesh.hpp"
+#include "fem/mesh/to_eigen.hpp"
+#include "format/edge.hpp"
 #include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
@@ -171,6 +174,51 @@ TEST(BodyUnderItsWeight, HasNoToolForceBeforeTheFirstContact) {
     ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
     EXPECT_EQ(norm(site.paths.front().samples.back().force), 0);
   }
+}
+
+/// A body given as it lies under its weight is pressed as the body that sags to that shape.
+TEST(BodyUnderItsWeight, GivenAsItLiesIsPressedAsTheBodyThatSagsToIt) {
+  const Body body = test::make_block(test::even(-0.016, 0.016, 4), test::even(-0.016, 0.016, 4),
+                                     test::even(-0.024, 0, 4));
+  CampaignSettings settings = pressing({2e3, 0.45});
+  settings.gravity = {{0, 3, -9.81}, 1000};
+  const CampaignContext sagging(body, settings, Engine::SharedFactor);
+  const QuadraticMesh& mesh = sagging.model.mesh();
+  const Eigen::Matrix3Xd lying = mesh.X + sagging.rest;
+  Body given = body;
+  for (std::size_t i = 0; i < given.nodes.size(); ++i)
+    given.nodes[i] = to_vec3(lying.col(static_cast<Eigen::Index>(i)));
+  for (const Edge& ends : edges_of(given.boundary))
+    for (std::size_t e = 0; e < mesh.edges.size(); ++e)
+      if (edge_between(mesh.edges[e][0], mesh.edges[e][1]) == ends)
+        given.curved_edges.push_back(
+            {ends, to_vec3(lying.col(mesh.corners() + static_cast<Eigen::Index>(e)))});
+  settings.gravity.shape = GivenShape::Loaded;
+  const CampaignContext loaded(given, settings, Engine::SharedFactor);
+  ASSERT_TRUE(loaded.unloaded);
+  const std::int32_t vertex = test::site_nearest(body);
+  const Vec3 site = given.nodes[to_index(given.response.node[to_index(vertex)])];
+  EXPECT_EQ(to_vec3(loaded.rest_position(site)), site);
+  const Vec3 at_rest = body.nodes[to_index(body.response.node[to_index(vertex)])];
+  EXPECT_LT((loaded.reference_position(site) - to_eigen(at_rest)).norm(), 1e-7);
+  EXPECT_GT(norm(site - at_rest), 1e-3);
+
+  Displacement u, v;
+  const SiteCurves one = solve_site(sagging, vertex, &u), other = solve_site(loaded, vertex, &v);
+  ASSERT_EQ(one.status, SiteStatus::Complete) << one.reason;
+  ASSERT_EQ(other.status, SiteStatus::Complete) << other.reason;
+  for (std::size_t p = 0; p < one.paths.size(); ++p)
+    for (std::size_t i = 1; i < one.paths[p].samples.size(); ++i) {
+      const CurveSample &a = one.paths[p].samples[i], &b = other.paths[p].samples[i];
+      EXPECT_LT(norm(a.force - b.force), 1e-3 * norm(a.force) + 1e-6);
+      EXPECT_NEAR(b.tool_work, b.strain_energy + b.contact_energy, 5e-3 * b.tool_work + 1e-9);
+    }
+  // Fields are displacements from the given shape.
+  const DeformedState state = deformed_state(given, settings, vertex);
+  const std::int32_t node = given.response.node[to_index(vertex)];
+  const Eigen::Vector3d moved = u.col(node) - sagging.rest.col(node);
+  EXPECT_LT((v.col(node) - loaded.rest.col(node) - moved).norm(), 1e-3 * moved.norm());
+  EXPECT_LT((to_eigen(state.displacement[to_index(node)]) - moved).norm(), 1e-3 * moved.norm());
 }
 
 }  // namespace
