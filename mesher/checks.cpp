@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+#include <vector>
 
 #include "format/error.hpp"
 #include "format/to_index.hpp"
+#include "mesher/geometry/quality.hpp"
 #include "mesher/geometry/text.hpp"
 #include "mesher/geometry/thickness.hpp"
 
@@ -134,39 +135,53 @@ void check_sizes(const Settings& settings, const Surface& skin) {
   check_counts(settings, skin);
 }
 
-void check_depth(const Body& body, const Settings& settings, const Surface& boundary) {
+void exclude_thin_sites(Body& body, const Settings& settings, const Surface& boundary) {
   if (settings.depth <= 0) return;
   const auto thickness = thickness_under_tool(boundary, body.response.inward, settings.tool_radius);
-  std::size_t thin = 0, thinnest = 0;
-  double least = std::numeric_limits<double>::infinity();
+  std::vector<std::size_t> sites, thin;
   for (std::size_t v = 0; v < thickness.size(); ++v) {
     if (body.response.is_site[v] == 0) continue;
-    if (settings.depth > kDeepestFraction * thickness[v]) ++thin;
-    if (thickness[v] < least) {
-      least = thickness[v];
-      thinnest = v;
-    }
+    sites.push_back(v);
+    if (settings.depth > kDeepestFraction * thickness[v]) thin.push_back(v);
   }
-  if (thin > 0) {
-    throw Error(ErrorKind::Geometry, settings.surface.path.string(),
-                text("a depth of ", millimetres(settings.depth), " is more than ", kDeepestFraction,
-                     " of the thickness at ", counted(thin, "site"), ": only ", millimetres(least),
-                     " at ", millimetres(boundary.points[thinnest])),
-                text("reduce the depth below ", millimetres(kDeepestFraction * least),
-                     " or fix the thin part by a support"));
+  if (sites.empty()) return;
+  const auto thinner = [&](std::size_t a, std::size_t b) { return thickness[a] < thickness[b]; };
+  std::sort(sites.begin(), sites.end(), thinner);
+  const std::size_t thinnest = sites.front();
+  const std::string at_the_thinnest =
+      text(millimetres(thickness[thinnest]), " at ", millimetres(boundary.points[thinnest]));
+  if (2 * thin.size() > sites.size()) {
+    const double typical = thickness[sites[sites.size() / 2]];
+    refuse_geometry(settings.surface.path.string(),
+                    text("a depth of ", millimetres(settings.depth), " is more than ",
+                         kDeepestFraction, " of the thickness at ", thin.size(), " of ",
+                         counted(sites.size(), "site"), ": the thickness is ", at_the_thinnest,
+                         " and ", millimetres(typical), " in the median"),
+                    text("reduce the depth below ", millimetres(kDeepestFraction * typical),
+                         ", or check the unit of the surface"));
   }
-  note(settings.log, text("depth: ", millimetres(settings.depth), " of at least ",
-                          millimetres(least), " under every site"));
+  for (const std::size_t v : thin) body.response.is_site[v] = 0;
+  if (thin.empty()) {
+    note(settings.log, text("depth: ", millimetres(settings.depth), " of at least ",
+                            millimetres(thickness[thinnest]), " under every site"));
+    return;
+  }
+  note(settings.log,
+       text("WARNING: ", thin.size(), " of ", counted(sites.size(), "site"),
+            thin.size() == 1 ? " is" : " are", " too thin for the depth of ",
+            millimetres(settings.depth), " and ",
+            thin.size() == 1 ? "becomes a hole" : "become holes", ": the thickness is ",
+            at_the_thinnest, "; a smaller depth recovers them"));
 }
 
-void check_elements(const Body& body, const std::string& where) {
-  for (const Tetrahedron& element : body.tetrahedra) {
-    const auto corner = [&](std::size_t k) { return body.nodes[to_index(element[k])]; };
+void check_elements(const VolumeMesh& mesh, const std::string& where) {
+  for (const Tetrahedron& element : mesh.tetrahedra) {
+    const auto corner = [&](std::size_t k) { return mesh.nodes[to_index(element[k])]; };
     double longest = 0;
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < i; ++j) longest = std::max(longest, norm(corner(i) - corner(j)));
     const double regular = longest * longest * longest / (6 * std::numbers::sqrt2);
-    const double fraction = volume(body.nodes, element) / regular;
+    const double fraction = volume(mesh.nodes, element) / regular;
     if (fraction > kSmallestVolume) continue;
     const Vec3 centroid = 0.25 * (corner(0) + corner(1) + corner(2) + corner(3));
     throw Error(ErrorKind::Geometry, where,
@@ -177,11 +192,12 @@ void check_elements(const Body& body, const std::string& where) {
   }
 }
 
-void check_volumes(const Quality& quality, const Surface& boundary, const std::string& where) {
+void check_filled(const VolumeMesh& mesh, const Surface& boundary, const std::string& where) {
+  const double filled = measure_quality(mesh.nodes, mesh.tetrahedra).volume;
   const double enclosed = signed_volume(boundary);
-  if (!(std::abs(quality.volume - enclosed) <= 1e-9 * enclosed)) {
+  if (!(std::abs(filled - enclosed) <= 1e-9 * enclosed)) {
     throw Error(ErrorKind::Internal, where,
-                text("the tetrahedra fill ", quality.volume, " m^3 of the ", enclosed,
+                text("the tetrahedra fill ", filled, " m^3 of the ", enclosed,
                      " m^3 enclosed by the boundary"),
                 "change element_size or patch_spacing a little and report the case");
   }

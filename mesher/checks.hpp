@@ -5,9 +5,9 @@
 #include <string>
 
 #include "format/body.hpp"
-#include "mesher/geometry/quality.hpp"
 #include "mesher/geometry/surface.hpp"
 #include "mesher/settings.hpp"
+#include "mesher/volume/volume_mesh.hpp"
 
 namespace palpate::mesher {
 
@@ -20,15 +20,18 @@ void check_settings(const Settings& settings);
 ///   Error(Geometry) for a lateral travel longer than the body, which every drag would leave.
 void check_sizes(const Settings& settings, const Surface& skin);
 
-/// @throws Error(Geometry) when the depth is more than 0.8 of the thickness under a site: nominal
-///   strains beyond -0.8 are outside the range of the laws and of a mesh of this kind.
-void check_depth(const Body& body, const Settings& settings, const Surface& boundary);
+/// Excludes the sites where the depth is more than 0.8 of the thickness: nominal strains beyond
+/// -0.8 are outside the range of the laws and of a mesh of this kind. The log states how many and
+/// where.
+/// @throws Error(Geometry) when that is more than half of the sites: then the depth is wrong, not a
+///   few thin places.
+void exclude_thin_sites(Body& body, const Settings& settings, const Surface& boundary);
 
 /// @throws Error(Geometry) when a tetrahedron has no volume to speak of: TetGen leaves such slivers
 ///   under facets that it may not change.
-void check_elements(const Body& body, const std::string& where);
+void check_elements(const VolumeMesh& volume, const std::string& where);
 
 /// @throws Error(Internal) when the tetrahedra do not fill the boundary.
-void check_volumes(const Quality& quality, const Surface& boundary, const std::string& where);
+void check_filled(const VolumeMesh& volume, const Surface& boundary, const std::string& where);
 
 }  // namespace palpate::mesher

@@ -71,14 +71,22 @@ struct Springs {
   double tangential_stiffness = 0;  ///< N/m^3, across it
 };
 
+/// How the tetrahedra are made.
+enum class MeshMethod {
+  Auto,       ///< isotropic remeshing, or Delaunay refinement where that fails
+  Isotropic,  ///< keeps sharp edges; boundary facets nest in the patches
+  Delaunay    ///< meshes detail finer than a patch; rounds sharp edges
+};
+
 struct Settings {
   std::string name;
   SurfaceFile surface{{}, 1.0, "matrix"};  ///< the outer skin
   std::vector<SurfaceFile> inclusions;     ///< disjoint closed surfaces strictly inside the skin
   std::vector<Support> supports;           ///< surface nodes inside any of them are fixed
   std::vector<Springs> foundation;         ///< stiffnesses add where foundations overlap
-  double patch_spacing = 0.010;            ///< m, edge length of the response surface
-  double element_size = 0.005;             ///< m, edge length of the boundary facets
+  MeshMethod method = MeshMethod::Auto;
+  double patch_spacing = 0.010;      ///< m, edge length of the response surface
+  double element_size = 0.005;       ///< m, edge length of the boundary facets
   double interior_coarsening = 1.5;  ///< target of the largest interior edge over element_size
   double feature_angle = std::numbers::pi / 4;  ///< rad; sharper edges of the input stay sharp
   bool curved_facets = true;   ///< writes Body::curved_edges; without, facets are flat

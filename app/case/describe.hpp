@@ -123,6 +123,12 @@ void describe_inclusion(V& v, mesher::SurfaceFile& s) {
 
 template <class V>
 void describe_mesh(V& v, mesher::Settings& s) {
+  describe_choice(
+      v, s.method,
+      {"method",
+       "`isotropic` remeshes the skin and keeps its sharp edges; `delaunay` also meshes detail "
+       "finer than a patch and rounds sharp edges; `auto` takes the first that makes a sound mesh"},
+      kMeshMethods);
   v.quantity(s.patch_spacing, Dimension::Length,
              {"patch_spacing", "edge length of the response surface", kOptional, kPositive});
   v.quantity(s.element_size, Dimension::Length,

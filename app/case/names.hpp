@@ -12,7 +12,7 @@
 #include "fem/solid/dilatation.hpp"
 #include "fem/solid/gravity.hpp"
 #include "format/library.hpp"
-#include "mesher/repair/repair_settings.hpp"
+#include "mesher/settings.hpp"
 
 namespace palpate::app {
 
@@ -46,6 +46,9 @@ inline constexpr std::array kResponseKinds{Named{ResponseKind::Decoupled, "decou
 inline constexpr std::array kRepairModes{Named{mesher::RepairMode::Auto, "auto"},
                                          Named{mesher::RepairMode::None, "none"},
                                          Named{mesher::RepairMode::Wrap, "wrap"}};
+inline constexpr std::array kMeshMethods{Named{mesher::MeshMethod::Auto, "auto"},
+                                         Named{mesher::MeshMethod::Isotropic, "isotropic"},
+                                         Named{mesher::MeshMethod::Delaunay, "delaunay"}};
 inline constexpr std::array kParts{Named{false, "one"}, Named{true, "largest"}};
 
 /// The name of a value; empty when the table does not list it.

@@ -67,8 +67,9 @@ void check_same_sites(const Body& first, const Body& finer, const std::string& w
     same = norm(at(first) - at(finer)) == 0;
   }
   if (same) return;
-  throw Error(ErrorKind::Internal, where, "the finer mesh has a different response surface",
-              "change patch_spacing a little and report the case");
+  throw Error(ErrorKind::Geometry, where,
+              "the finer mesh has other response vertices, so that their forces cannot be compared",
+              "set mesh.method = \"isotropic\", or change patch_spacing a little");
 }
 
 ConvergenceOfForce convergence_of(const ConvergenceRow& row) {

@@ -38,7 +38,10 @@ Quality measure_quality(const std::vector<Vec3>& nodes,
     for (const auto& [a, b, c, d] : kEdgeAndOpposite) {
       const double angle = dihedral(at(a), at(b), at(c), at(d));
       quality.smallest_dihedral = std::min(quality.smallest_dihedral, angle);
-      quality.largest_dihedral = std::max(quality.largest_dihedral, angle);
+      if (angle > quality.largest_dihedral) {
+        quality.largest_dihedral = angle;
+        quality.largest_dihedral_at = 0.5 * (at(a) + at(b));
+      }
       const double length = norm(at(b) - at(a));
       shortest = std::min(shortest, length);
       longest = std::max(longest, length);

@@ -11,6 +11,7 @@ namespace palpate::mesher {
 struct Quality {
   double smallest_dihedral = 180;  ///< degrees, over all edges of all tetrahedra
   double largest_dihedral = 0;     ///< degrees
+  Vec3 largest_dihedral_at{};      ///< m, middle of that edge
   double largest_edge_ratio = 1;   ///< longest over shortest edge of one tetrahedron
   double longest_edge = 0;         ///< m
   double volume = 0;               ///< m^3, of all tetrahedra

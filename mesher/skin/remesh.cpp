@@ -4,13 +4,9 @@
 #include <CGAL/AABB_segment_primitive.h>
 #include <CGAL/AABB_traits.h>
 #include <CGAL/AABB_tree.h>
-#include <CGAL/Polygon_mesh_processing/detect_features.h>
 #include <CGAL/Polygon_mesh_processing/remesh.h>
 
 #include <algorithm>
-#include <map>
-#include <numbers>
-#include <numeric>
 #include <set>
 #include <utility>
 
@@ -19,13 +15,13 @@
 #include "format/to_index.hpp"
 #include "mesher/geometry/cgal_mesh.hpp"
 #include "mesher/geometry/queries.hpp"
+#include "mesher/skin/features.hpp"
 
 namespace palpate::mesher {
 namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 
-using EdgeFlags = Mesh::Property_map<Mesh::Edge_index, bool>;
 using Segments = std::vector<Kernel::Segment_3>;
 using SegmentTree = CGAL::AABB_tree<
     CGAL::AABB_traits<Kernel, CGAL::AABB_segment_primitive<Kernel, Segments::const_iterator>>>;
@@ -35,49 +31,9 @@ using SegmentTree = CGAL::AABB_tree<
 constexpr unsigned kRounds = 4;
 constexpr unsigned kIterationsPerRound = 3;
 
-// Sharp edges of a noisy surface come in fragments. One that is shorter than this many spacings
-// is no feature of the response surface: its ends could not be moved and would force tiny edges.
-constexpr double kShortestFeature = 3;
-
 // An edge that bulges less than this, in parts of its length, is straight: what is left is
 // rounding.
 constexpr double kLeastBulge = 1e-9;
-
-double length(const Mesh& mesh, Mesh::Edge_index edge) {
-  const auto h = mesh.halfedge(edge);
-  return std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
-}
-
-std::size_t find_root(std::vector<std::size_t>& parent, std::size_t v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
-/// Unflag connected fragments of sharp edges shorter than `shortest`. Returns the edges unflagged.
-std::size_t drop_short_features(const Mesh& mesh, EdgeFlags sharp, double shortest) {
-  std::vector<std::size_t> parent(mesh.number_of_vertices());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
-  const auto root = [&](Mesh::Edge_index e) {
-    return find_root(parent, mesh.source(mesh.halfedge(e)).idx());
-  };
-  for (const auto e : mesh.edges()) {
-    if (!sharp[e]) continue;
-    const auto h = mesh.halfedge(e);
-    parent[find_root(parent, mesh.source(h).idx())] = find_root(parent, mesh.target(h).idx());
-  }
-  std::map<std::size_t, double> total;
-  for (const auto e : mesh.edges()) {
-    if (sharp[e]) total[root(e)] += length(mesh, e);
-  }
-  std::size_t dropped = 0;
-  for (const auto e : mesh.edges()) {
-    if (sharp[e] && total[root(e)] < shortest) {
-      sharp[e] = false;
-      ++dropped;
-    }
-  }
-  return dropped;
-}
 
 /// The input surface and its sharp edges, onto which vertices are put.
 class Target {
@@ -255,9 +211,8 @@ void check_nesting(const NestedSurface& nested, double spacing, const std::strin
 NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const std::string& where,
                      const Log& log) {
   Mesh mesh = to_mesh(input);
-  EdgeFlags sharp = mesh.add_property_map<Mesh::Edge_index, bool>("e:sharp", false).first;
-  pmp::detect_sharp_edges(mesh, settings.feature_angle * 180 / std::numbers::pi, sharp);
-  const std::size_t dropped = drop_short_features(mesh, sharp, kShortestFeature * settings.spacing);
+  std::size_t dropped = 0;
+  const EdgeFlags sharp = flag_sharp_edges(mesh, settings.feature_angle, settings.spacing, dropped);
   if (dropped > 0) {
     note(log, text(where, ": ", counted(dropped, "sharp edge"), " in fragments shorter than ",
                    kShortestFeature, " patches are smoothed"));

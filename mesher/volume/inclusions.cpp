@@ -43,8 +43,15 @@ std::map<std::int32_t, std::int32_t> regions_of_parts(const Filling& filling,
   return region;
 }
 
-std::string name_or(const std::string& name, const std::string& fallback) {
-  return name.empty() ? fallback : name;
+/// The matrix, then each inclusion.
+std::vector<std::string> region_names(const Settings& settings) {
+  const auto name_or = [](const std::string& name, const std::string& fallback) {
+    return name.empty() ? fallback : name;
+  };
+  std::vector<std::string> names{name_or(settings.surface.region_name, "matrix")};
+  for (std::size_t i = 0; i < settings.inclusions.size(); ++i)
+    names.push_back(name_or(settings.inclusions[i].region_name, text("inclusion_", i + 1)));
+  return names;
 }
 
 }  // namespace
@@ -72,6 +79,14 @@ void check_inclusions(const Settings& settings, const Surface& skin,
       }
     }
   }
+}
+
+Domain domain_of(const Settings& settings, const Surface& skin,
+                 const std::vector<Surface>& inclusions) {
+  Domain domain{skin, {}, {}, region_names(settings)};
+  for (std::size_t i = 0; i < inclusions.size(); ++i)
+    domain.enclosures.push_back({inclusions[i], static_cast<std::int32_t>(i) + 1});
+  return domain;
 }
 
 std::vector<Surface> remesh_inclusions(const Settings& settings,
@@ -105,17 +120,15 @@ Surface join_shells(const Settings& settings, const Surface& boundary,
   return shells;
 }
 
-void set_regions(Body& body, const Settings& settings, const Filling& filling,
-                 const std::vector<Surface>& inclusions) {
-  body.region_names.push_back(name_or(settings.surface.region_name, "matrix"));
-  for (std::size_t i = 0; i < inclusions.size(); ++i) {
-    body.region_names.push_back(
-        name_or(settings.inclusions[i].region_name, text("inclusion_", i + 1)));
-  }
+VolumeMesh with_regions(const Settings& settings, const Filling& filling,
+                        const std::vector<Surface>& inclusions) {
+  VolumeMesh volume;
+  volume.nodes = filling.nodes;
+  volume.tetrahedra = filling.tetrahedra;
+  volume.region_names = region_names(settings);
   const auto region = regions_of_parts(filling, inclusions);
-  for (const std::int32_t part : filling.part) {
-    body.tetrahedron_region.push_back(region.at(part));
-  }
+  for (const std::int32_t part : filling.part) volume.region.push_back(region.at(part));
+  return volume;
 }
 
 }  // namespace palpate::mesher

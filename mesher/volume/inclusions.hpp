@@ -4,10 +4,11 @@
 
 #include <vector>
 
-#include "format/body.hpp"
 #include "mesher/geometry/surface.hpp"
 #include "mesher/settings.hpp"
+#include "mesher/volume/domain.hpp"
 #include "mesher/volume/fill.hpp"
+#include "mesher/volume/volume_mesh.hpp"
 
 namespace palpate::mesher {
 
@@ -15,6 +16,12 @@ namespace palpate::mesher {
 ///   the skin, or contains another inclusion.
 void check_inclusions(const Settings& settings, const Surface& skin,
                       const std::vector<Surface>& inclusions);
+
+/// The regions of the body as Delaunay refinement takes them: inclusions may touch, cross and
+/// contain one another, the later ones win.
+/// @throws Error(Geometry) when an inclusion lies outside the skin.
+Domain domain_of(const Settings& settings, const Surface& skin,
+                 const std::vector<Surface>& inclusions);
 
 /// Inclusions with edges near element_size.
 std::vector<Surface> remesh_inclusions(const Settings& settings,
@@ -25,9 +32,8 @@ std::vector<Surface> remesh_inclusions(const Settings& settings,
 Surface join_shells(const Settings& settings, const Surface& boundary,
                     const std::vector<Surface>& inclusions);
 
-/// Writes Body::region_names and Body::tetrahedron_region: region 0 is the matrix, region 1 + i is
-/// inclusion i.
-void set_regions(Body& body, const Settings& settings, const Filling& filling,
-                 const std::vector<Surface>& inclusions);
+/// The tetrahedra with their regions: region 0 is the matrix, region 1 + i is inclusion i.
+VolumeMesh with_regions(const Settings& settings, const Filling& filling,
+                        const std::vector<Surface>& inclusions);
 
 }  // namespace palpate::mesher

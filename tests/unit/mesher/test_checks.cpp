@@ -7,6 +7,7 @@
 #include "format/error.hpp"
 #include "mesher/checks.hpp"
 #include "mesher/mesher.hpp"
+#include "mesher/volume/discretization.hpp"
 #include "tests/unit/mesher/refusals.hpp"
 #include "tests/unit/mesher/shapes.hpp"
 
@@ -24,7 +25,7 @@ TEST(Checks, RefuseADepthBeyondTheThickness) {
   Settings s = settings_for(file.path());
   s.patch_spacing = s.element_size = 0.005;
   s.depth = 0.0045;
-  expect_refused(s, "plate.off", "only 5 mm at (", "below 4 mm");
+  expect_refused(s, "plate.off", "the thickness is 5 mm at (", "below 4 mm");
   s.depth = 0.0039;
   EXPECT_NO_THROW(mesh(s));
 }
@@ -69,13 +70,13 @@ TEST(Checks, RefuseSettingsOutOfRange) {
 }
 
 TEST(Checks, RefuseDegenerateTetrahedraAndNameTheirPlace) {
-  Body body;
-  body.nodes = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0.002, 0.002, 1e-9}};
-  body.tetrahedra = {{0, 1, 2, 3}};
-  EXPECT_NO_THROW(check_elements(body, "organ.off"));
-  body.nodes[3][2] = 1e-12;
+  VolumeMesh mesh;
+  mesh.nodes = {{0, 0, 0}, {0.01, 0, 0}, {0, 0.01, 0}, {0.002, 0.002, 1e-9}};
+  mesh.tetrahedra = {{0, 1, 2, 3}};
+  EXPECT_NO_THROW(check_elements(mesh, "organ.off"));
+  mesh.nodes[3][2] = 1e-12;
   try {
-    check_elements(body, "organ.off");
+    check_elements(mesh, "organ.off");
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::Geometry);
@@ -84,17 +85,18 @@ TEST(Checks, RefuseDegenerateTetrahedraAndNameTheirPlace) {
     EXPECT_THAT(error.problem(), testing::HasSubstr("is degenerate"));
     EXPECT_THAT(error.remedy(), testing::HasSubstr("change patch_spacing or element_size"));
   }
-  body.nodes[3][2] = -0.001;  // inverted
-  EXPECT_THROW(check_elements(body, "organ.off"), Error);
+  mesh.nodes[3][2] = -0.001;  // inverted
+  EXPECT_THROW(check_elements(mesh, "organ.off"), Error);
 }
 
 TEST(Checks, RefuseTetrahedraThatDoNotFillTheBoundary) {
-  const Surface box = test::box({0, 0, 0}, {1, 1, 1});
-  Quality quality;
-  quality.volume = 1;
-  EXPECT_NO_THROW(check_volumes(quality, box, "box"));
-  quality.volume = 0.999;
-  EXPECT_THROW(check_volumes(quality, box, "box"), Error);
+  VolumeMesh mesh;
+  mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  mesh.tetrahedra = {{0, 1, 2, 3}};
+  Surface boundary{mesh.nodes, boundary_of(mesh, "tetrahedron"), {}, {}};
+  EXPECT_NO_THROW(check_filled(mesh, boundary, "tetrahedron"));
+  boundary.points[3][2] = 1.001;
+  EXPECT_THROW(check_filled(mesh, boundary, "tetrahedron"), Error);
 }
 
 }  // namespace

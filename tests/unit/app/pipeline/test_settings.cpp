@@ -123,8 +123,8 @@ class SettingsText {
     std::visit([this](const auto& s) { add(s); }, support);
   }
   void add(const mesher::Settings& s) {
-    add(s.name, s.patch_spacing, s.element_size, s.interior_coarsening, s.feature_angle,
-        s.curved_facets, s.tool_radius, s.depth, s.lateral_travel);
+    add(s.name, static_cast<int>(s.method), s.patch_spacing, s.element_size, s.interior_coarsening,
+        s.feature_angle, s.curved_facets, s.tool_radius, s.depth, s.lateral_travel);
     add(s.surface);
     for (const auto& inclusion : s.inclusions) add(inclusion);
     for (const auto& support : s.supports) add(support);

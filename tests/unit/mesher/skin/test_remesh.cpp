@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "mesher/geometry/queries.hpp"
 #include "mesher/skin/remesh.hpp"
@@ -17,9 +18,11 @@ using test::off_text;
 using test::settings_for;
 using test::TemporaryFile;
 
+constexpr double kFeatureAngle = std::numbers::pi / 4;
+
 TEST(Remesh, BoxKeepsItsEdgesAndCornersExactly) {
   const Surface box = test::box({0, 0, 0}, {0.05, 0.04, 0.03});
-  const NestedSurface nested = remesh(box, {0.008, 3, 45}, "box", {});
+  const NestedSurface nested = remesh(box, {0.008, 3, kFeatureAngle}, "box", {});
   EXPECT_NEAR(signed_volume(nested.boundary), 0.05 * 0.04 * 0.03, 1e-15);
   EXPECT_NEAR(area(nested.boundary), 2 * (0.05 * 0.04 + 0.05 * 0.03 + 0.04 * 0.03), 1e-12);
   for (const Vec3& corner : box.points) {
@@ -30,7 +33,8 @@ TEST(Remesh, BoxKeepsItsEdgesAndCornersExactly) {
 }
 
 TEST(Remesh, EdgesOfTheResponseSurfaceAreNearTheSpacing) {
-  const NestedSurface nested = remesh(test::sphere({0, 0, 0}, 0.05, 120), {0.010, 1, 45}, "s", {});
+  const NestedSurface nested =
+      remesh(test::sphere({0, 0, 0}, 0.05, 120), {0.010, 1, kFeatureAngle}, "s", {});
   double sum = 0;
   for (const Triangle& t : nested.response.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -46,7 +50,7 @@ TEST(Remesh, EdgesOfTheResponseSurfaceAreNearTheSpacing) {
 
 TEST(Remesh, AllPointsLieOnTheInputSurface) {
   const Surface input = test::cylinder(0.04, 0.08, 200);
-  const NestedSurface nested = remesh(input, {0.012, 4, 45}, "c", {});
+  const NestedSurface nested = remesh(input, {0.012, 4, kFeatureAngle}, "c", {});
   const SurfaceQuery query(input);
   for (const Vec3& x : nested.boundary.points) EXPECT_LT(norm(query.closest(x).point - x), 1e-9);
 }
@@ -56,7 +60,7 @@ TEST(Remesh, MiddlesOfCurvedEdgesLieOnTheInputSurface) {
   constexpr double kRadius = 0.04, kLength = 0.08;
   const Surface input = test::cylinder(kRadius, kLength, 400);
   const double chord = kRadius * (1 - std::cos(M_PI / 400));  // of the file
-  const NestedSurface nested = remesh(input, {0.012, 2, 45, true}, "c", {});
+  const NestedSurface nested = remesh(input, {0.012, 2, kFeatureAngle, true}, "c", {});
   EXPECT_GT(nested.curved.size(), nested.boundary.triangles.size() / 2);
   const SurfaceQuery query(input);
   std::size_t on_rims = 0;
@@ -72,8 +76,9 @@ TEST(Remesh, MiddlesOfCurvedEdgesLieOnTheInputSurface) {
     on_rims += rim && std::abs(edge.middle[2] - end(0)[2]) < 1e-12;
   }
   EXPECT_GT(on_rims, 2 * 2 * M_PI * kRadius / 0.0075);  // facets of 6 mm around both
-  EXPECT_TRUE(remesh(test::box({0, 0, 0}, {0.05, 0.04, 0.03}), {0.008, 3, 45, true}, "b", {})
-                  .curved.empty());
+  EXPECT_TRUE(
+      remesh(test::box({0, 0, 0}, {0.05, 0.04, 0.03}), {0.008, 3, kFeatureAngle, true}, "b", {})
+          .curved.empty());
 }
 
 TEST(Remesh, RefusesPatchesCoarserThanTheDetail) {

@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""Which surfaces of a collection become a body: runs `palpate mesh` on every file with the same settings.
+
+Usage: surfaces.py PALPATE FOLDER... [--details FILE]
+
+Patches are 1/12 of the largest extent, elements 1/20, the lowest tenth is fixed, the tool has a radius of 1/20
+and presses 1/40 deep. No file gets settings of its own. Prints one row a folder: files, bodies at the first try,
+how many of them after a repair and how many by Delaunay refinement, refusals, the longest time.
+"""
+import argparse
+import collections
+import pathlib
+import subprocess
+import tempfile
+import time
+
+import numpy
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "um": 1e-6}
+USUAL_EXTENT = 0.15  # m
+READERS = {".obj": vtk.vtkOBJReader, ".stl": vtk.vtkSTLReader, ".ply": vtk.vtkPLYReader}
+LIMIT_S = 300
+CASE = """
+[surface]
+file = "{file}"
+unit = "{unit}"
+parts = "largest"
+[mesh]
+patch_spacing = "{patch} mm"
+element_size = "{element} mm"
+[[support]]
+shape = "plane"
+point = ["0 mm", "0 mm", "{floor} mm"]
+normal = [0, 0, -1]
+[[material]]
+region = "matrix"
+law = "neo-hookean"
+young = "10 kPa"
+poisson = 0.49
+[tool]
+radius = "{radius} mm"
+[indentation]
+depth = "{depth} mm"
+lateral_travel = "{depth} mm"
+lateral_depths = ["{depth} mm"]
+"""
+
+
+def points_of(path):
+    """Coordinates of the points, or None where another reader cannot read the file either."""
+    if path.suffix.lower() == ".off":
+        words = [w for line in path.read_text(errors="replace").splitlines()
+                 if not line.lstrip().startswith("#") for w in line.split()]
+        try:
+            start = 1 if not words[0][:1].isdigit() else 0
+            count = int(words[start])
+            return numpy.array(words[start + 3:start + 3 + 3 * count], dtype=float).reshape(-1, 3)
+        except (IndexError, ValueError):
+            return None
+    reader = READERS[path.suffix.lower()]()
+    reader.SetFileName(str(path))
+    reader.Update()
+    points = reader.GetOutput().GetPoints()
+    return vtk_to_numpy(points.GetData()).astype(float) if points and points.GetNumberOfPoints() else None
+
+
+def case_for(path, points):
+    low, high = points.min(axis=0), points.max(axis=0)
+    raw = float((high - low).max())
+    unit = min(UNITS, key=lambda name: abs(numpy.log(raw * UNITS[name] / USUAL_EXTENT)))
+    mm = 1e3 * UNITS[unit]
+    extent = raw * mm
+    return CASE.format(file=path.resolve(), unit=unit, patch=extent / 12, element=extent / 20,
+                       floor=mm * (low[2] + 0.1 * (high[2] - low[2])), radius=extent / 20, depth=extent / 40)
+
+
+def mesh(palpate, path, scratch):
+    """(outcome, seconds, last line of the output) of one file."""
+    points = points_of(path)
+    if points is None or not numpy.isfinite(points).all() or not (numpy.ptp(points, axis=0) > 0).all():
+        points = numpy.array([[0, 0, 0], [150, 150, 150]])
+    case = scratch / "case.toml"
+    case.write_text(case_for(path, points), encoding="utf-8")
+    start = time.monotonic()
+    try:
+        run = subprocess.run([palpate, "mesh", case, "--out", scratch / "out"], capture_output=True, text=True,
+                             timeout=LIMIT_S)
+    except subprocess.TimeoutExpired:
+        return "over the time limit", LIMIT_S, ""
+    seconds = time.monotonic() - start
+    output = (run.stdout + run.stderr).strip()
+    last = output.splitlines()[-1] if output else ""
+    if run.returncode == 3:
+        return "refused", seconds, last
+    if run.returncode != 0:
+        return f"exit {run.returncode}", seconds, last
+    ways = "Delaunay" if "does not make a sound mesh" in output else "isotropic"
+    return ("repaired, " if ": repaired:" in output else "") + ways, seconds, last
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("palpate")
+    parser.add_argument("folders", nargs="+", type=pathlib.Path)
+    parser.add_argument("--details", type=argparse.FileType("w"))
+    arguments = parser.parse_args()
+    vtk.vtkObject.GlobalWarningDisplayOff()
+    print("| collection | files | bodies | of them repaired | by Delaunay refinement | refused | other | longest, s |")
+    print("|---|---|---|---|---|---|---|---|")
+    for folder in arguments.folders:
+        files = sorted(p for p in folder.rglob("*") if p.suffix.lower() in (".off", *READERS))
+        outcomes, longest = collections.Counter(), 0.0
+        for path in files:
+            with tempfile.TemporaryDirectory() as scratch:
+                outcome, seconds, last = mesh(arguments.palpate, path, pathlib.Path(scratch))
+            outcomes[outcome] += 1
+            longest = max(longest, seconds)
+            if arguments.details:
+                print(f"{path}\t{outcome}\t{seconds:.1f}\t{last}", file=arguments.details, flush=True)
+        total = lambda word: sum(n for name, n in outcomes.items() if word in name)
+        bodies = total("isotropic") + total("Delaunay")
+        print(f"| {folder.name} | {len(files)} | {bodies} | {total('repaired')} | {total('Delaunay')} | "
+              f"{outcomes['refused']} | {len(files) - bodies - outcomes['refused']} | {longest:.0f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "mesher/discretize.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "format/error.hpp"
+#include "format/to_index.hpp"
+#include "mesher/checks.hpp"
+#include "mesher/geometry/quality.hpp"
+#include "mesher/geometry/text.hpp"
+#include "mesher/skin/curve_edges.hpp"
+#include "mesher/skin/remesh.hpp"
+#include "mesher/volume/delaunay.hpp"
+#include "mesher/volume/fill.hpp"
+#include "mesher/volume/inclusions.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+/// One way to make the tetrahedra.
+struct Way {
+  std::string name;
+  std::function<Discretization()> run;
+};
+
+int subdivisions_of(const Settings& settings) {
+  return std::max(1, static_cast<int>(std::lround(settings.patch_spacing / settings.element_size)));
+}
+
+Discretization by_remeshing(const Settings& settings, const Surface& skin,
+                            const std::vector<Surface>& inclusions) {
+  const std::string where = settings.surface.path.string();
+  check_inclusions(settings, skin, inclusions);
+  Discretization result;
+  result.skin = remesh(skin,
+                       {settings.patch_spacing, subdivisions_of(settings), settings.feature_angle,
+                        settings.curved_facets},
+                       where, settings.log);
+  const std::vector<Surface> remeshed = remesh_inclusions(settings, inclusions);
+  const Surface shells = join_shells(settings, result.skin.boundary, remeshed);
+  const Filling filling = fill(shells, settings.interior_coarsening * settings.element_size, where);
+  if (filling.cut_short) {
+    note(settings.log,
+         "WARNING: the refinement reached its limit of nodes and was stopped; see the quality");
+  }
+  result.volume = with_regions(settings, filling, remeshed);
+  check_elements(result.volume, where);
+  check_filled(result.volume, result.skin.boundary, where);
+  return result;
+}
+
+Discretization by_refinement(const Settings& settings, const Surface& skin,
+                             const std::vector<Surface>& inclusions) {
+  const std::string where = settings.surface.path.string();
+  DelaunaySettings delaunay;
+  delaunay.element_size = settings.element_size;
+  delaunay.interior_coarsening = settings.interior_coarsening;
+  delaunay.most_volume_change = kMostVolumeChange;
+  delaunay.largest_dihedral = kLargestDihedral;
+  delaunay.log = settings.log;
+  DelaunayReport report;
+  VolumeMesh volume = mesh_domain(domain_of(settings, skin, inclusions), delaunay, where, report);
+  const double spacing = subdivisions_of(settings) > 1 ? settings.patch_spacing : 0;
+  Discretization result = with_response(std::move(volume), spacing, settings.feature_angle, where);
+  if (settings.curved_facets) result.skin.curved = curve_edges(result.skin.boundary, skin);
+  note(settings.log,
+       text("Delaunay refinement: the surface of the body lies within ",
+            millimetres(std::max(report.distance_to_surface, report.distance_to_mesh)),
+            " of the file; its volume differs by ", 100 * report.volume_change, " %"));
+  return result;
+}
+
+/// @throws Error(Geometry) when the mesh would not serve.
+void check_discretization(const Discretization& d, const Surface& skin, const std::string& where) {
+  const Quality quality = measure_quality(d.volume.nodes, d.volume.tetrahedra);
+  if (quality.largest_dihedral > kLargestDihedral)
+    refuse_geometry(where,
+                    text("a tetrahedron at ", millimetres(quality.largest_dihedral_at),
+                         " has a dihedral angle of ", quality.largest_dihedral, " degrees, over ",
+                         kLargestDihedral),
+                    "change patch_spacing or element_size a little, or smooth the surface there");
+  const double enclosed = signed_volume(skin);
+  const double change = signed_volume(d.skin.boundary) / enclosed - 1;
+  if (std::abs(change) > kMostVolumeChange)
+    refuse_geometry(where,
+                    text("the volume of the body differs from that inside the surface by ",
+                         100 * change, " %, more than ", 100 * kMostVolumeChange, " %"),
+                    "reduce element_size");
+}
+
+std::vector<Way> ways(const Settings& settings, const Surface& skin,
+                      const std::vector<Surface>& inclusions) {
+  std::vector<Way> result;
+  if (settings.method != MeshMethod::Delaunay)
+    result.push_back(
+        {"isotropic remeshing", [&] { return by_remeshing(settings, skin, inclusions); }});
+  if (settings.method != MeshMethod::Isotropic)
+    result.push_back(
+        {"Delaunay refinement", [&] { return by_refinement(settings, skin, inclusions); }});
+  return result;
+}
+
+}  // namespace
+
+Discretization discretize(const Settings& settings, const Surface& skin,
+                          const std::vector<Surface>& inclusions) {
+  const std::string where = settings.surface.path.string();
+  std::string problems, remedy;
+  for (const Way& way : ways(settings, skin, inclusions)) {
+    try {
+      Discretization result = way.run();
+      check_discretization(result, skin, where);
+      return result;
+    } catch (const Error& error) {
+      if (error.kind() == ErrorKind::Configuration) throw;
+      note(settings.log, text(way.name, " does not make a sound mesh: ", error.problem()));
+      problems += text(problems.empty() ? "" : "; ", way.name, ": ", error.problem());
+      remedy = error.remedy();
+    }
+  }
+  refuse_geometry(where, "the surface cannot be meshed: " + problems, remedy);
+}
+
+}  // namespace palpate::mesher

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "format/error.hpp"
+#include "mesher/discretize.hpp"
+#include "mesher/geometry/quality.hpp"
+#include "tests/unit/mesher/refusals.hpp"
+#include "tests/unit/mesher/shapes.hpp"
+
+namespace palpate::mesher {
+namespace {
+
+/// A thin shell that patches of 30 mm do not resolve: two walls that are 2 mm apart.
+Surface shell() {
+  Surface shell = test::sphere({0, 0, 0}, 0.050, 60);
+  Surface hollow = test::sphere({0, 0, 0}, 0.048, 60);
+  for (Triangle& t : hollow.triangles) std::swap(t[1], t[2]);
+  append(shell, hollow);
+  return shell;
+}
+
+TEST(Discretize, ABoxIsMadeByRemeshingAndKeepsItsVolume) {
+  Settings s = test::settings_for("box.off");
+  s.surface.path = "box.off";
+  std::string log;
+  s.log = [&](std::string_view line) { log += std::string(line) + "\n"; };
+  const Discretization d = discretize(s, test::cube(), {});
+  EXPECT_NEAR(measure_quality(d.volume.nodes, d.volume.tetrahedra).volume, 0.05 * 0.05 * 0.05,
+              1e-15);
+  EXPECT_THAT(log, testing::Not(testing::HasSubstr("Delaunay")));
+}
+
+TEST(Discretize, BothWaysMakeTheSameVolumeOfASphere) {
+  const Surface sphere = test::sphere({0, 0, 0}, 0.05, 80);
+  Settings s = test::settings_for("sphere.off");
+  double volumes[2];
+  for (const MeshMethod method : {MeshMethod::Isotropic, MeshMethod::Delaunay}) {
+    s.method = method;
+    const Discretization d = discretize(s, sphere, {});
+    volumes[method == MeshMethod::Delaunay] =
+        measure_quality(d.volume.nodes, d.volume.tetrahedra).volume;
+  }
+  EXPECT_NEAR(volumes[0], volumes[1], 0.02 * volumes[0]);
+}
+
+TEST(Discretize, StatesTheReasonOfEachWayThatFails) {
+  Settings s = test::settings_for("shell.off");
+  s.patch_spacing = s.element_size = 0.03;
+  s.method = MeshMethod::Isotropic;
+  try {
+    discretize(s, shell(), {});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Geometry);
+    EXPECT_THAT(error.problem(), testing::HasSubstr("isotropic remeshing: "));
+    EXPECT_FALSE(error.remedy().empty());
+  }
+}
+
+}  // namespace
+}  // namespace palpate::mesher
