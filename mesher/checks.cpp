@@ -120,6 +120,11 @@ void check_counts(const Settings& settings, const Surface& skin) {
 }  // namespace
 
 void check_settings(const Settings& settings) {
+  for (const LayerSettings& layer : settings.layers) {
+    if (!positive(layer.thickness)) {
+      refuse_setting(text("a layer of ", layer.thickness, " m"), "give a positive thickness");
+    }
+  }
   check_lengths(settings);
   for (const Springs& springs : settings.foundation) check_springs(springs);
   for (const Support& support : settings.supports) check_support(support);

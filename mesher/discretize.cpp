@@ -74,8 +74,19 @@ Discretization by_refinement(const Settings& settings, const Surface& skin,
   return result;
 }
 
+bool has_void(const Settings& settings) {
+  return std::any_of(settings.inclusions.begin(), settings.inclusions.end(),
+                     [](const SurfaceFile& inclusion) { return inclusion.is_void; });
+}
+
+/// Isotropic remeshing knows neither layers nor voids.
+bool needs_refinement(const Settings& settings) {
+  return !settings.layers.empty() || has_void(settings);
+}
+
 /// @throws Error(Geometry) when the mesh would not serve.
-void check_discretization(const Discretization& d, const Surface& skin, const std::string& where) {
+void check_discretization(const Discretization& d, const Settings& settings, const Surface& skin,
+                          const std::string& where) {
   const Quality quality = measure_quality(d.volume.nodes, d.volume.tetrahedra);
   if (quality.largest_dihedral > kLargestDihedral)
     refuse_geometry(where,
@@ -83,6 +94,7 @@ void check_discretization(const Discretization& d, const Surface& skin, const st
                          " has a dihedral angle of ", quality.largest_dihedral, " degrees, over ",
                          kLargestDihedral),
                     "change patch_spacing or element_size a little, or smooth the surface there");
+  if (has_void(settings)) return;  // the volume inside the skin is not that of the body
   const double enclosed = signed_volume(skin);
   const double change = signed_volume(d.skin.boundary) / enclosed - 1;
   if (std::abs(change) > kMostVolumeChange)
@@ -95,7 +107,7 @@ void check_discretization(const Discretization& d, const Surface& skin, const st
 std::vector<Way> ways(const Settings& settings, const Surface& skin,
                       const std::vector<Surface>& inclusions) {
   std::vector<Way> result;
-  if (settings.method != MeshMethod::Delaunay)
+  if (settings.method != MeshMethod::Delaunay && !needs_refinement(settings))
     result.push_back(
         {"isotropic remeshing", [&] { return by_remeshing(settings, skin, inclusions); }});
   if (settings.method != MeshMethod::Isotropic)
@@ -109,11 +121,15 @@ std::vector<Way> ways(const Settings& settings, const Surface& skin,
 Discretization discretize(const Settings& settings, const Surface& skin,
                           const std::vector<Surface>& inclusions) {
   const std::string where = settings.surface.path.string();
+  if (settings.method == MeshMethod::Isotropic && needs_refinement(settings)) {
+    refuse(where, "isotropic remeshing makes neither layers nor voids",
+           "remove mesh.method, or the layers and voids");
+  }
   std::string problems, remedy;
   for (const Way& way : ways(settings, skin, inclusions)) {
     try {
       Discretization result = way.run();
-      check_discretization(result, skin, where);
+      check_discretization(result, settings, skin, where);
       return result;
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::Configuration) throw;

@@ -9,6 +9,7 @@
 #include "mesher/geometry/quality.hpp"
 #include "mesher/geometry/text.hpp"
 #include "mesher/read/read_surface.hpp"
+#include "mesher/response/cavities.hpp"
 #include "mesher/response/response.hpp"
 #include "mesher/skin/curved_skin.hpp"
 #include "mesher/support/supports.hpp"
@@ -55,6 +56,7 @@ void set_surface(Body& body, const NestedSurface& nested, const Settings& settin
   Marks constrained = fix_nodes(body, settings, skin, nested.boundary);
   add_marks(constrained, set_foundation(body, settings, skin, nested.boundary));
   set_response(body, nested, constrained, settings);
+  exclude_cavities(body, nested.boundary, settings.log);
   check_supports(body, settings, nested.boundary);
   exclude_thin_sites(body, settings, nested.boundary);
   check_sites(body, settings, nested.boundary);

@@ -22,6 +22,13 @@ struct SurfaceFile {
   double unit = 1.0;        ///< m per unit of the file
   std::string region_name;  ///< material region of its interior
   RepairSettings repair{};
+  bool is_void = false;  ///< an inclusion that is empty: a vessel or a cavity
+};
+
+/// A layer below the skin of the body, or below the layer before it.
+struct LayerSettings {
+  double thickness = 0;     ///< m
+  std::string region_name;  ///< material region of the layer
 };
 
 /// The region of the body that the elements of a group of a mesh file belong to.
@@ -81,7 +88,8 @@ enum class MeshMethod {
 struct Settings {
   std::string name;
   SurfaceFile surface{{}, 1.0, "matrix"};  ///< the outer skin
-  std::vector<SurfaceFile> inclusions;     ///< disjoint closed surfaces strictly inside the skin
+  std::vector<SurfaceFile> inclusions;     ///< closed surfaces; where they overlap, the last wins
+  std::vector<LayerSettings> layers;       ///< outermost first; inclusions cut into them
   std::vector<Support> supports;           ///< surface nodes inside any of them are fixed
   std::vector<Springs> foundation;         ///< stiffnesses add where foundations overlap
   MeshMethod method = MeshMethod::Auto;

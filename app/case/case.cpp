@@ -41,17 +41,34 @@ void check_name(const Case& c, const SourceMap& sources) {
          "give the case a name of letters, digits, '-' and '_'");
 }
 
+/// @throws Error for a void with a region, and for an inclusion with neither.
+void check_region_of_inclusion(const mesher::SurfaceFile& inclusion, const std::string& where) {
+  if (inclusion.is_void && !inclusion.region_name.empty()) {
+    refuse(where, fmt::format("region '{}' of a void", inclusion.region_name),
+           "remove region, or void");
+  }
+  if (!inclusion.is_void && inclusion.region_name.empty()) {
+    refuse(where, "an inclusion without a region", "add region, or void = true");
+  }
+}
+
 /// Every region of the body, in the order of the case. @throws Error for a repeated name.
 std::vector<std::string_view> regions_of(const Case& c, const SourceMap& sources) {
   std::vector<std::string_view> regions{c.mesh.surface.region_name};
-  for (std::size_t i = 0; i < c.mesh.inclusions.size(); ++i) {
-    const std::string& region = c.mesh.inclusions[i].region_name;
+  const auto add = [&](const std::string& region, const std::string& where) {
     if (std::find(regions.begin(), regions.end(), region) != regions.end()) {
-      refuse(sources.where(prefix("inclusion", i) + "region"),
-             fmt::format("two surfaces bound the region '{}'", region),
-             "give each surface a region of its own");
+      refuse(where, fmt::format("two surfaces bound the region '{}'", region),
+             "give each surface and layer a region of its own");
     }
     regions.push_back(region);
+  };
+  for (std::size_t i = 0; i < c.mesh.layers.size(); ++i)
+    add(c.mesh.layers[i].region_name, sources.where(prefix("layer", i) + "region"));
+  for (std::size_t i = 0; i < c.mesh.inclusions.size(); ++i) {
+    const mesher::SurfaceFile& inclusion = c.mesh.inclusions[i];
+    const std::string where = sources.where(prefix("inclusion", i) + "region");
+    check_region_of_inclusion(inclusion, where);
+    if (!inclusion.is_void) add(inclusion.region_name, where);
   }
   return regions;
 }

@@ -114,11 +114,24 @@ void describe_surface(V& v, mesher::SurfaceFile& s) {
 
 template <class V>
 void describe_inclusion(V& v, mesher::SurfaceFile& s) {
-  describe_path(v, s.path, {"file", "closed surface strictly inside the outer one", kRequired});
+  describe_path(v, s.path,
+                {"file",
+                 "closed surface; it may touch, cross or contain others: where they overlap, "
+                 "the last one counts, and what lies outside the body is cut off",
+                 kRequired});
   describe_length_unit(v, s.unit,
                        {"unit", "length unit of the coordinates in the file", kRequired});
-  v.text(s.region_name, {"region", "name of the material region inside the surface", kRequired});
+  v.text(s.region_name,
+         {"region", "name of the material region inside the surface, unless `void`"});
+  v.flag(s.is_void, {"void", "`true`: the inside is empty, as that of a vessel"});
   describe_repair(v, s.repair);
+}
+
+template <class V>
+void describe_layer(V& v, mesher::LayerSettings& s) {
+  v.quantity(s.thickness, Dimension::Length,
+             {"thickness", "distance between the two walls of the layer", kRequired, kPositive});
+  v.text(s.region_name, {"region", "name of the material region of the layer", kRequired});
 }
 
 template <class V>
@@ -510,6 +523,9 @@ void describe(V& v, Case& c) {
   v.sections("inclusion", c.mesh.inclusions, kOptional,
              "Region of another material inside the body. Repeat for each.",
              [](auto& in, auto& s) { describe_inclusion(in, s); });
+  v.sections("layer", c.mesh.layers, kOptional,
+             "Layer below the outer surface, the outermost first. Repeat for each.",
+             [](auto& in, auto& s) { describe_layer(in, s); });
   v.section("mesh", kOptional, "Resolution.", [&](auto& in) { describe_mesh(in, c.mesh); });
   v.sections("support", c.supports, kRequired,
              "Fixed nodes or an elastic foundation. Repeat for each.",

@@ -43,14 +43,18 @@ std::map<std::int32_t, std::int32_t> regions_of_parts(const Filling& filling,
   return region;
 }
 
-/// The matrix, then each inclusion.
+/// The matrix, then each layer, then each inclusion that is no void.
 std::vector<std::string> region_names(const Settings& settings) {
   const auto name_or = [](const std::string& name, const std::string& fallback) {
     return name.empty() ? fallback : name;
   };
   std::vector<std::string> names{name_or(settings.surface.region_name, "matrix")};
-  for (std::size_t i = 0; i < settings.inclusions.size(); ++i)
+  for (std::size_t i = 0; i < settings.layers.size(); ++i)
+    names.push_back(name_or(settings.layers[i].region_name, text("layer_", i + 1)));
+  for (std::size_t i = 0; i < settings.inclusions.size(); ++i) {
+    if (settings.inclusions[i].is_void) continue;
     names.push_back(name_or(settings.inclusions[i].region_name, text("inclusion_", i + 1)));
+  }
   return names;
 }
 
@@ -84,8 +88,11 @@ void check_inclusions(const Settings& settings, const Surface& skin,
 Domain domain_of(const Settings& settings, const Surface& skin,
                  const std::vector<Surface>& inclusions) {
   Domain domain{skin, {}, {}, region_names(settings)};
+  std::int32_t region = 0;
+  for (const LayerSettings& layer : settings.layers)
+    domain.layers.push_back({layer.thickness, ++region});
   for (std::size_t i = 0; i < inclusions.size(); ++i)
-    domain.enclosures.push_back({inclusions[i], static_cast<std::int32_t>(i) + 1});
+    domain.enclosures.push_back({inclusions[i], settings.inclusions[i].is_void ? kVoid : ++region});
   return domain;
 }
 

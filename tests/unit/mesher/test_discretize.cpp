@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "format/error.hpp"
+#include "format/to_index.hpp"
 #include "mesher/discretize.hpp"
 #include "mesher/geometry/quality.hpp"
 #include "tests/unit/mesher/refusals.hpp"
@@ -42,6 +45,32 @@ TEST(Discretize, BothWaysMakeTheSameVolumeOfASphere) {
         measure_quality(d.volume.nodes, d.volume.tetrahedra).volume;
   }
   EXPECT_NEAR(volumes[0], volumes[1], 0.02 * volumes[0]);
+}
+
+TEST(Discretize, LayersAndVoidsAreRefinedAndIsotropicRemeshingRefusesThem) {
+  Settings s = test::settings_for("ball.off");
+  s.patch_spacing = s.element_size = 0.008;
+  s.surface.region_name = "muscle";
+  s.layers = {{0.008, "skin"}};
+  s.inclusions.resize(2);
+  s.inclusions[0].is_void = true;
+  s.inclusions[1].region_name = "stone";
+  const std::vector<Surface> inclusions = {test::sphere({0.012, 0, 0}, 0.01, 32),
+                                           test::sphere({-0.03, 0, 0}, 0.01, 32)};
+  const Surface ball = test::sphere({0, 0, 0}, 0.05, 64);
+  const Discretization d = discretize(s, ball, inclusions);
+  EXPECT_THAT(d.volume.region_names, testing::ElementsAre("muscle", "skin", "stone"));
+  std::vector<double> volumes(3);
+  for (std::size_t t = 0; t < d.volume.tetrahedra.size(); ++t)
+    volumes[to_index(d.volume.region[t])] += volume(d.volume.nodes, d.volume.tetrahedra[t]);
+  const double skin = signed_volume(ball) * (1 - std::pow(0.042 / 0.05, 3));
+  const double stone = signed_volume(inclusions[1]);
+  EXPECT_NEAR(volumes[1], skin, 0.06 * skin);
+  EXPECT_NEAR(volumes[2], stone, 0.3 * stone);  // its radius is 1.2 elements
+  EXPECT_NEAR(volumes[0] + volumes[1] + volumes[2], signed_volume(ball) - stone,
+              0.03 * signed_volume(ball));
+  s.method = MeshMethod::Isotropic;
+  EXPECT_THROW(discretize(s, ball, inclusions), Error);
 }
 
 TEST(Discretize, StatesTheReasonOfEachWayThatFails) {

@@ -144,6 +144,19 @@ TEST(Case, ChecksThatPartsFitTogether) {
   EXPECT_THAT(message_with("name = \"ball\"", "name = \"../ball\""), HasSubstr("cannot name"));
 }
 
+TEST(Case, LayersAndVoids) {
+  const std::string layer = "[[layer]]\nthickness = \"2 mm\"\nregion = \"skin\"\n";
+  EXPECT_THAT(message_with("[mesh]", layer + "[mesh]"), HasSubstr("region 'skin' has no material"));
+  EXPECT_THAT(message_with("[mesh]", "[[layer]]\nthickness = \"0 mm\"\nregion = \"skin\"\n[mesh]"),
+              HasSubstr("thickness"));
+  EXPECT_THAT(message_with("region = \"nodule\"\n\n", "region = \"nodule\"\nvoid = true\n\n"),
+              HasSubstr("region 'nodule' of a void"));
+  EXPECT_THAT(message_with("region = \"nodule\"\n\n", "\n"),
+              HasSubstr("an inclusion without a region"));
+  EXPECT_THAT(message_with("region = \"nodule\"\n\n", "void = true\n\n"),
+              HasSubstr("region 'nodule', which no surface bounds"));
+}
+
 TEST(Case, RejectsASharpEdgeWithoutFriction) {
   const std::string disc = "shape = \"disc\"\nradius = \"3 mm\"\n";
   EXPECT_THAT(message_of(with_tool(disc)), HasSubstr("sharp edge"));
