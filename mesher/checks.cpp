@@ -51,7 +51,9 @@ void check_lengths(const Settings& s) {
   }
 }
 
-void check_unit(const SurfaceFile& file) {
+/// @param file a SurfaceFile or a VolumeMeshFile
+template <class File>
+void check_unit(const File& file) {
   if (positive(file.unit)) return;
   refuse_setting(text("the unit of ", file.path.string(), " is ", file.unit, " m"),
                  "give a positive length, 0.001 for millimetres");
@@ -89,7 +91,7 @@ double largest_extent(const Surface& skin) {
 
 void check_spacing(const Settings& settings, double largest) {
   if (kFewestPatches * settings.patch_spacing <= largest) return;
-  throw Error(ErrorKind::Configuration, settings.surface.path.string(),
+  throw Error(ErrorKind::Configuration, settings.source().string(),
               text("the largest extent of the body is ", millimetres(largest),
                    ", too little for patches of ", millimetres(settings.patch_spacing)),
               text("check the unit of the surface, or reduce patch_spacing below ",
@@ -98,7 +100,7 @@ void check_spacing(const Settings& settings, double largest) {
 
 void check_lateral_travel(const Settings& settings, double largest) {
   if (settings.lateral_travel <= largest) return;
-  throw Error(ErrorKind::Geometry, settings.surface.path.string(),
+  throw Error(ErrorKind::Geometry, settings.source().string(),
               text("a lateral travel of ", millimetres(settings.lateral_travel),
                    " is longer than the body, ", millimetres(largest)),
               "reduce lateral_travel to what a tool slides before it slips, or check the unit of "
@@ -110,7 +112,7 @@ void check_counts(const Settings& settings, const Surface& skin) {
   const double facets = area(skin) / (0.43 * h * h);  // equilateral triangles of edge h
   const double interior = 1.5 * signed_volume(skin) / std::pow(settings.interior_coarsening * h, 3);
   if (facets > kMostNodes || interior > kMostNodes) {
-    throw Error(ErrorKind::Configuration, settings.surface.path.string(),
+    throw Error(ErrorKind::Configuration, settings.source().string(),
                 text("an element_size of ", millimetres(h), " needs about ", facets,
                      " boundary facets and ", interior, " interior nodes, more than ", kMostNodes),
                 "increase element_size or interior_coarsening, or check the unit of the surface");
@@ -127,9 +129,11 @@ void check_settings(const Settings& settings) {
   }
   check_lengths(settings);
   for (const Springs& springs : settings.foundation) check_springs(springs);
-  for (const Support& support : settings.supports) check_support(support);
-  for (const Springs& springs : settings.foundation) check_support(springs.where);
+  for (const Zone& zone : settings.supports) check_support(zone.shape);
+  for (const Zone& zone : settings.press) check_support(zone.shape);
+  for (const Springs& springs : settings.foundation) check_support(springs.where.shape);
   check_unit(settings.surface);
+  check_unit(settings.volume_mesh);
   for (const SurfaceFile& inclusion : settings.inclusions) check_unit(inclusion);
 }
 
@@ -137,7 +141,7 @@ void check_sizes(const Settings& settings, const Surface& skin) {
   const double largest = largest_extent(skin);
   check_spacing(settings, largest);
   check_lateral_travel(settings, largest);
-  check_counts(settings, skin);
+  if (settings.volume_mesh.path.empty()) check_counts(settings, skin);
 }
 
 void exclude_thin_sites(Body& body, const Settings& settings, const Surface& boundary) {
@@ -157,7 +161,7 @@ void exclude_thin_sites(Body& body, const Settings& settings, const Surface& bou
       text(millimetres(thickness[thinnest]), " at ", millimetres(boundary.points[thinnest]));
   if (2 * thin.size() > sites.size()) {
     const double typical = thickness[sites[sites.size() / 2]];
-    refuse_geometry(settings.surface.path.string(),
+    refuse_geometry(settings.source().string(),
                     text("a depth of ", millimetres(settings.depth), " is more than ",
                          kDeepestFraction, " of the thickness at ", thin.size(), " of ",
                          counted(sites.size(), "site"), ": the thickness is ", at_the_thinnest,

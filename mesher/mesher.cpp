@@ -8,11 +8,13 @@
 #include "mesher/discretize.hpp"
 #include "mesher/geometry/quality.hpp"
 #include "mesher/geometry/text.hpp"
+#include "mesher/read/mesh/read_volume_mesh.hpp"
 #include "mesher/read/read_surface.hpp"
 #include "mesher/response/cavities.hpp"
 #include "mesher/response/response.hpp"
 #include "mesher/skin/curved_skin.hpp"
 #include "mesher/support/supports.hpp"
+#include "mesher/volume/discretization.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -51,39 +53,57 @@ std::string summary(const Body& body) {
 
 /// Supports and sites on the surface of the body.
 void set_surface(Body& body, const NestedSurface& nested, const Settings& settings,
-                 const Surface& skin) {
+                 const Labels& labels) {
   body.boundary = nested.boundary.triangles;
-  Marks constrained = fix_nodes(body, settings, skin, nested.boundary);
-  add_marks(constrained, set_foundation(body, settings, skin, nested.boundary));
+  Marks constrained = fix_nodes(body, settings, labels, nested.boundary);
+  add_marks(constrained, set_foundation(body, settings, labels, nested.boundary));
   set_response(body, nested, constrained, settings);
   exclude_cavities(body, nested.boundary, settings.log);
+  keep_sites_in_zones(body, settings, labels, nested.boundary);
   check_supports(body, settings, nested.boundary);
   exclude_thin_sites(body, settings, nested.boundary);
   check_sites(body, settings, nested.boundary);
+}
+
+/// The body of a filled skin.
+Body body_of(Discretization made, const Settings& settings, const Labels& labels) {
+  note_patches(settings, made.skin);
+  Body body;
+  body.name = settings.name.empty() ? settings.source().stem().string() : settings.name;
+  set_surface(body, made.skin, settings, labels);
+  body.nodes = std::move(made.volume.nodes);
+  body.tetrahedra = std::move(made.volume.tetrahedra);
+  body.tetrahedron_region = std::move(made.volume.region);
+  body.region_names = std::move(made.volume.region_names);
+  curve_skin(body, made.skin, settings);
+  note(settings.log, summary(body));
+  note(settings.log, "quality: " + summary(measure_quality(body.nodes, body.tetrahedra)));
+  return body;
+}
+
+/// The tetrahedra of a file as they are; the response surface is a coarsening of their boundary.
+Body body_of_volume_mesh(const Settings& settings) {
+  const std::string where = settings.source().string();
+  VolumeMesh volume = read_volume_mesh(settings.volume_mesh, settings.log);
+  check_elements(volume, where);
+  if (!settings.curved_facets) volume.curved_edges.clear();
+  const double spacing = settings.all_nodes_are_sites ? 0 : settings.patch_spacing;
+  Discretization made = with_response(std::move(volume), spacing, settings.feature_angle, where);
+  check_sizes(settings, made.skin.boundary);
+  const Surface boundary = made.skin.boundary;
+  const NodeSets sets = std::move(made.volume.node_sets);
+  return body_of(std::move(made), settings, {boundary, &sets});
 }
 
 }  // namespace
 
 Body mesh(const Settings& settings) {
   check_settings(settings);
+  if (!settings.volume_mesh.path.empty()) return body_of_volume_mesh(settings);
   const Surface skin = read_surface(settings.surface, settings.log);
   const std::vector<Surface> inclusions = read_inclusions(settings);
   check_sizes(settings, skin);
-
-  Discretization made = discretize(settings, skin, inclusions);
-  note_patches(settings, made.skin);
-  Body body;
-  body.name = settings.name.empty() ? settings.surface.path.stem().string() : settings.name;
-  set_surface(body, made.skin, settings, skin);
-  body.nodes = std::move(made.volume.nodes);
-  body.tetrahedra = std::move(made.volume.tetrahedra);
-  body.tetrahedron_region = std::move(made.volume.region);
-  body.region_names = std::move(made.volume.region_names);
-  curve_skin(body, made.skin, settings);
-
-  note(settings.log, summary(body));
-  note(settings.log, "quality: " + summary(measure_quality(body.nodes, body.tetrahedra)));
-  return body;
+  return body_of(discretize(settings, skin, inclusions), settings, {skin});
 }
 
 }  // namespace palpate::mesher

@@ -2,11 +2,13 @@
 // What the mesher is asked to make.
 #pragma once
 
+#include <concepts>
 #include <filesystem>
 #include <functional>
 #include <numbers>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -65,15 +67,27 @@ struct SurfaceSupport {
   SurfaceFile surface;
   double distance = 0;  ///< m
 };
-/// Contains the nodes on the faces of the skin that have this name in its file.
+/// Contains the nodes on the faces of the skin that have this name in its file, or the nodes of the
+/// set of this name of a volume mesh.
 struct LabelSupport {
   std::string label;
 };
 using Support = std::variant<PlaneSupport, BoxSupport, SphereSupport, SurfaceSupport, LabelSupport>;
 
+/// The nodes that a shape contains, or all others.
+struct Zone {
+  Support shape;
+  bool inverted = false;
+
+  Zone() = default;
+  template <class Shape>
+  requires std::constructible_from<Support, Shape> Zone(Shape one, bool everything_but = false)
+      : shape(std::move(one)), inverted(everything_but) {}
+};
+
 /// An elastic foundation under the boundary facets whose nodes all lie inside `where`.
 struct Springs {
-  Support where;
+  Zone where;
   double normal_stiffness = 0;      ///< N/m^3, along the normal of the facet
   double tangential_stiffness = 0;  ///< N/m^3, across it
 };
@@ -90,9 +104,12 @@ struct Settings {
   SurfaceFile surface{{}, 1.0, "matrix"};  ///< the outer skin
   std::vector<SurfaceFile> inclusions;     ///< closed surfaces; where they overlap, the last wins
   std::vector<LayerSettings> layers;       ///< outermost first; inclusions cut into them
-  std::vector<Support> supports;           ///< surface nodes inside any of them are fixed
+  VolumeMeshFile volume_mesh;              ///< instead of a surface, where it has a path
+  std::vector<Zone> supports;              ///< surface nodes inside any of them are fixed
   std::vector<Springs> foundation;         ///< stiffnesses add where foundations overlap
   MeshMethod method = MeshMethod::Auto;
+  std::vector<Zone> press;           ///< sites lie inside one of them; empty: everywhere
+  bool all_nodes_are_sites = false;  ///< of a volume mesh, whatever the patch_spacing
   double patch_spacing = 0.010;      ///< m, edge length of the response surface
   double element_size = 0.005;       ///< m, edge length of the boundary facets
   double interior_coarsening = 1.5;  ///< target of the largest interior edge over element_size
@@ -102,6 +119,11 @@ struct Settings {
   double depth = 0;            ///< m, of the planned indentation; 0 skips the check
   double lateral_travel = 0;   ///< m, of the planned drags; 0 skips the check
   std::function<void(std::string_view)> log;  ///< receives one line for each step; may be empty
+
+  /// The file that the body is made of.
+  const std::filesystem::path& source() const {
+    return volume_mesh.path.empty() ? surface.path : volume_mesh.path;
+  }
 };
 
 }  // namespace palpate::mesher

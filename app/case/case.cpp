@@ -52,6 +52,27 @@ void check_region_of_inclusion(const mesher::SurfaceFile& inclusion, const std::
   }
 }
 
+/// Exactly one source of the body, and no section of another.
+void check_source(const Case& c, const SourceMap& sources) {
+  const bool has_surface = sources.has("surface"), has_mesh = sources.has("volume_mesh");
+  if (has_surface && has_mesh) {
+    refuse(sources.where("volume_mesh"), "both [surface] and [volume_mesh] are given",
+           "remove one of the two");
+  }
+  if (!has_surface && !has_mesh) {
+    refuse(sources.where(""), "neither [surface] nor [volume_mesh] is given",
+           "add [surface] with file and unit");
+  }
+  if (has_mesh && !c.mesh.inclusions.empty()) {
+    refuse(sources.where("inclusion"), "[[inclusion]] with [volume_mesh]",
+           "name the groups of the mesh by [[mesh_region]]");
+  }
+  if (has_surface && !c.mesh.volume_mesh.regions.empty()) {
+    refuse(sources.where("mesh_region"), "[[mesh_region]] without [volume_mesh]",
+           "name the region of the surface by surface.region");
+  }
+}
+
 /// Every region of the body, in the order of the case. @throws Error for a repeated name.
 std::vector<std::string_view> regions_of(const Case& c, const SourceMap& sources) {
   std::vector<std::string_view> regions{c.mesh.surface.region_name};
@@ -75,11 +96,13 @@ std::vector<std::string_view> regions_of(const Case& c, const SourceMap& sources
 
 void check_materials(const Case& c, const SourceMap& sources) {
   const std::vector<std::string_view> regions = regions_of(c, sources);
+  // Those of a volume mesh are in its file: check_regions of the mesh stage compares them.
+  const bool knows_regions = c.mesh.volume_mesh.path.empty();
   std::set<std::string_view> described;
   for (std::size_t i = 0; i < c.materials.size(); ++i) {
     const std::string& region = c.materials[i].region;
     const std::string where = sources.where(prefix("material", i) + "region");
-    if (std::find(regions.begin(), regions.end(), region) == regions.end()) {
+    if (knows_regions && std::find(regions.begin(), regions.end(), region) == regions.end()) {
       refuse(where, fmt::format("material for region '{}', which no surface bounds", region),
              fmt::format("the nearest region is '{}'", nearest(region, regions)));
     }
@@ -90,7 +113,7 @@ void check_materials(const Case& c, const SourceMap& sources) {
     fem::check_law(c.materials[i].law, where);
   }
   for (const std::string_view region : regions) {
-    if (described.contains(region)) continue;
+    if (!knows_regions || described.contains(region)) continue;
     refuse(sources.where("material"), fmt::format("region '{}' has no material", region),
            fmt::format("add [[material]] with region = \"{}\"", region));
   }
@@ -130,17 +153,21 @@ void check_depths(const Case& c, const SourceMap& sources) {
   }
 }
 
-void check_supports(const Case& c, const SourceMap& sources) {
-  for (std::size_t i = 0; i < c.supports.size(); ++i) {
-    const auto* box = std::get_if<mesher::BoxSupport>(&c.supports[i].where);
-    if (box == nullptr) continue;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (box->low[axis] < box->high[axis]) continue;
-      refuse(sources.where(prefix("support", i) + "low"),
-             fmt::format("box support has low.{0} not below high.{0}", "xyz"[axis]),
-             "give the corner with the smallest coordinates as low");
-    }
+void check_box(const mesher::Zone& zone, const std::string& where) {
+  const auto* box = std::get_if<mesher::BoxSupport>(&zone.shape);
+  if (box == nullptr) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (box->low[axis] < box->high[axis]) continue;
+    refuse(where, fmt::format("box support has low.{0} not below high.{0}", "xyz"[axis]),
+           "give the corner with the smallest coordinates as low");
   }
+}
+
+void check_zones(const Case& c, const SourceMap& sources) {
+  for (std::size_t i = 0; i < c.supports.size(); ++i)
+    check_box(c.supports[i].where, sources.where(prefix("support", i) + "low"));
+  for (std::size_t i = 0; i < c.mesh.press.size(); ++i)
+    check_box(c.mesh.press[i], sources.where(prefix("press", i) + "low"));
 }
 
 void check_sizes(const Case& c, const SourceMap& sources) {
@@ -159,11 +186,12 @@ Case parsed(const toml::table& table, const std::string& file_name) {
   reader.finish();
   fill_defaults(c, file_name);
   check_name(c, sources);
+  check_source(c, sources);
   check_materials(c, sources);
   choose_depths(c, sources);
   check_tool(c, sources);
   check_depths(c, sources);
-  check_supports(c, sources);
+  check_zones(c, sources);
   check_sizes(c, sources);
   return c;
 }

@@ -70,7 +70,8 @@ struct OutputSection {
 /// region with its sampled fibres, threads and memory.
 struct Case {
   std::string name;
-  mesher::Settings mesh;                  ///< [surface], [[inclusion]], [mesh]; paths as written
+  /// [surface], [volume_mesh], [[inclusion]], [mesh], [[press]]; paths as written
+  mesher::Settings mesh;
   std::vector<mesher::Springs> supports;  ///< fixed nodes where both stiffnesses are 0
   std::vector<MaterialSection> materials;
   fem::CampaignSettings campaign;  ///< [tool], [indentation], [solver], [gravity]

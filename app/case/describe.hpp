@@ -135,6 +135,27 @@ void describe_layer(V& v, mesher::LayerSettings& s) {
 }
 
 template <class V>
+void describe_volume_mesh(V& v, mesher::VolumeMeshFile& s) {
+  describe_path(v, s.path,
+                {"file",
+                 "tetrahedra, linear or quadratic (Gmsh .msh, VTK .vtu or .vtk, Abaqus or CalculiX "
+                 ".inp, FEBio .feb, TetGen .node and .ele), relative to the case",
+                 kRequired});
+  describe_length_unit(v, s.unit,
+                       {"unit", "length unit of the coordinates in the file", kRequired});
+  v.text(s.region_array,
+         {"region_array",
+          "VTK: integer cell array whose values are the regions; empty: the only one, or the one "
+          "with a usual name"});
+}
+
+template <class V>
+void describe_mesh_region(V& v, mesher::GroupRegion& s) {
+  v.text(s.group, {"group", "physical group, element set or, for VTK, `array=value`", kRequired});
+  v.text(s.region, {"region", "name of the region of its elements", kRequired});
+}
+
+template <class V>
 void describe_mesh(V& v, mesher::Settings& s) {
   describe_choice(
       v, s.method,
@@ -205,17 +226,30 @@ void describe_support_shape(V& v, const std::string& shape, mesher::Support& whe
   if (v.when("shape", shape, "label")) {
     v.text(alternative<mesher::LabelSupport>(where).label,
            {"label",
-            "name of the supported faces in the OBJ file of the surface: of a group (`g`), an "
-            "object (`o`) or a material (`usemtl`)",
+            "name of faces in the file of the surface (OBJ: a group `g`, an object `o` or a "
+            "material `usemtl`), or of a set of a volume mesh",
             kRequired});
   }
 }
 
 template <class V>
+void describe_zone(V& v, mesher::Zone& s, std::string_view about, std::string& shape) {
+  shape = kSupportShapes[s.shape.index()];
+  v.text(shape, {"shape", about, kRequired}, {kSupportShapes.begin(), kSupportShapes.end()});
+  v.flag(s.inverted, {"invert", "`true`: everything but what the shape contains"});
+}
+
+template <class V>
+void describe_press(V& v, mesher::Zone& s) {
+  std::string shape;
+  describe_zone(v, s, "shape that contains sites", shape);
+  describe_support_shape(v, shape, s.shape);
+}
+
+template <class V>
 void describe_support(V& v, mesher::Springs& s) {
-  std::string shape(kSupportShapes[s.where.index()]);
-  v.text(shape, {"shape", "shape that contains the supported surface nodes", kRequired},
-         {kSupportShapes.begin(), kSupportShapes.end()});
+  std::string shape;
+  describe_zone(v, s.where, "shape that contains the supported surface nodes", shape);
   v.quantity(s.normal_stiffness, Dimension::FoundationStiffness,
              {"normal_stiffness",
               "elastic foundation along the facet normals; fixed nodes when this and "
@@ -224,7 +258,7 @@ void describe_support(V& v, mesher::Springs& s) {
   v.quantity(s.tangential_stiffness, Dimension::FoundationStiffness,
              {"tangential_stiffness", "stiffness of the elastic foundation across the normals",
               kOptional, kNotNegative});
-  describe_support_shape(v, shape, s.where);
+  describe_support_shape(v, shape, s.where.shape);
 }
 
 template <class V>
@@ -518,8 +552,22 @@ template <class V>
 void describe(V& v, Case& c) {
   v.text(c.name,
          {"name", "name of the body and of its output folder; empty means that of the case file"});
-  v.section("surface", kRequired, "Outer surface of the body.",
-            [&](auto& in) { describe_surface(in, c.mesh.surface); });
+  const bool has_surface = c.mesh.volume_mesh.path.empty();
+  if (v.has_section("surface", has_surface)) {
+    v.section("surface", kOptional, "Outer surface of the body; this section or `[volume_mesh]`.",
+              [&](auto& in) { describe_surface(in, c.mesh.surface); });
+  }
+  if (v.has_section("volume_mesh", !has_surface)) {
+    v.section("volume_mesh", kOptional,
+              "Tetrahedra that are used as they are; the response surface is a coarsening of their "
+              "boundary. Of `[mesh]` only `patch_spacing`, `feature_angle` and `curved_facets` "
+              "apply.",
+              [&](auto& in) { describe_volume_mesh(in, c.mesh.volume_mesh); });
+  }
+  v.sections("mesh_region", c.mesh.volume_mesh.regions, kOptional,
+             "Region of a group of the volume mesh. Repeat for each; a group that is not listed is "
+             "a region of its own name, and elements without a group are the region `matrix`.",
+             [](auto& in, auto& s) { describe_mesh_region(in, s); });
   v.sections("inclusion", c.mesh.inclusions, kOptional,
              "Region of another material inside the body. Repeat for each.",
              [](auto& in, auto& s) { describe_inclusion(in, s); });
@@ -530,6 +578,10 @@ void describe(V& v, Case& c) {
   v.sections("support", c.supports, kRequired,
              "Fixed nodes or an elastic foundation. Repeat for each.",
              [](auto& in, auto& s) { describe_support(in, s); });
+  v.sections("press", c.mesh.press, kOptional,
+             "Where the tool may be pressed: sites lie in one of these zones. Without a zone, "
+             "everywhere.",
+             [](auto& in, auto& s) { describe_press(in, s); });
   v.sections("material", c.materials, kRequired, "Law and constants, one table for each region.",
              [](auto& in, auto& s) { describe(in, s); });
   v.section("tool", kOptional, "Tool of the campaign.",

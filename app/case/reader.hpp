@@ -58,6 +58,12 @@ class TableReader {
     return value == wanted;
   }
 
+  /// Whether the file has the section; its name is known whether or not.
+  bool has_section(std::string_view name, bool) {
+    known_.push_back(name);
+    return table_.contains(name);
+  }
+
   template <class S>
   void section(std::string_view name, S& s, Presence presence, std::string_view about) {
     section(name, presence, about, [&](TableReader& inner) { describe(inner, s); });

@@ -56,6 +56,8 @@ class Documenter {
     return true;
   }
 
+  bool has_section(std::string_view, bool) { return true; }
+
   template <class Body>
   void section(std::string_view name, Presence presence, std::string_view about, Body body) {
     open(fmt::format("[{}]", name), presence, about);

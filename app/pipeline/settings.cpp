@@ -18,12 +18,28 @@ mesher::SurfaceFile resolved(const Workspace& space, mesher::SurfaceFile file) {
   return file;
 }
 
-mesher::Support resolved(const Workspace& space, mesher::Support support) {
-  if (auto* plane = std::get_if<mesher::PlaneSupport>(&support))
+mesher::Zone resolved(const Workspace& space, mesher::Zone zone) {
+  if (auto* plane = std::get_if<mesher::PlaneSupport>(&zone.shape))
     plane->normal = (1 / norm(plane->normal)) * plane->normal;
-  if (auto* bone = std::get_if<mesher::SurfaceSupport>(&support))
+  if (auto* bone = std::get_if<mesher::SurfaceSupport>(&zone.shape))
     bone->surface = resolved(space, bone->surface);
-  return support;
+  return zone;
+}
+
+void add_input(const Workspace& space, const mesher::Zone& zone, std::vector<fs::path>& inputs) {
+  if (const auto* bone = std::get_if<mesher::SurfaceSupport>(&zone.shape))
+    inputs.push_back(space.case_folder / bone->surface.path);
+}
+
+/// The files of a volume mesh: TetGen has several.
+void add_inputs(const fs::path& path, std::vector<fs::path>& inputs) {
+  inputs.push_back(path);
+  const fs::path kind = path.extension();
+  if (kind != ".node" && kind != ".ele") return;
+  for (const char* sibling : {".node", ".ele", ".face"}) {
+    const fs::path other = fs::path(path).replace_extension(sibling);
+    if (other != path && fs::exists(other)) inputs.push_back(other);
+  }
 }
 
 }  // namespace
@@ -51,6 +67,9 @@ mesher::Settings mesh_settings(const Workspace& space) {
   mesher::Settings settings = c.mesh;
   settings.name = c.name;
   settings.surface = resolved(space, settings.surface);
+  if (!settings.volume_mesh.path.empty())
+    settings.volume_mesh.path = space.case_folder / settings.volume_mesh.path;
+  for (mesher::Zone& zone : settings.press) zone = resolved(space, zone);
   for (mesher::SurfaceFile& inclusion : settings.inclusions) inclusion = resolved(space, inclusion);
   for (mesher::Springs support : c.supports) {
     support.where = resolved(space, support.where);
@@ -61,6 +80,7 @@ mesher::Settings mesh_settings(const Workspace& space) {
     }
   }
   if (c.sampling.method == SamplingMethod::Nodes) settings.patch_spacing = settings.element_size;
+  settings.all_nodes_are_sites = c.sampling.method == SamplingMethod::Nodes;
   const fem::IndentationSettings& indentation = c.campaign.indentation;
   settings.tool_radius = indentation.tool.extent();
   settings.depth = indentation.depth;
@@ -96,12 +116,12 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
   std::vector<fs::path> inputs;
   switch (stage) {
     case Stage::Mesh:
-      inputs.push_back(space.case_folder / space.c.mesh.surface.path);
+      add_inputs(space.case_folder / space.c.mesh.source(), inputs);
       for (const mesher::SurfaceFile& inclusion : space.c.mesh.inclusions)
         inputs.push_back(space.case_folder / inclusion.path);
       for (const mesher::Springs& support : space.c.supports)
-        if (const auto* bone = std::get_if<mesher::SurfaceSupport>(&support.where))
-          inputs.push_back(space.case_folder / bone->surface.path);
+        add_input(space, support.where, inputs);
+      for (const mesher::Zone& zone : space.c.mesh.press) add_input(space, zone, inputs);
       break;
     case Stage::Precompute:
       inputs = {space.body()};
@@ -124,8 +144,9 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
 std::string stage_case(const Workspace& space, Stage stage) {
   switch (stage) {
     case Stage::Mesh:  // with the tool and its depth: the mesher checks the thickness of the body
-      return resolved_sections(space.c, {"", "surface", "inclusion", "layer", "mesh", "support",
-                                         "tool", "indentation"}) +
+      return resolved_sections(space.c, {"", "surface", "volume_mesh", "mesh_region", "inclusion",
+                                         "layer", "mesh", "support", "press", "tool",
+                                         "indentation"}) +
              (space.c.sampling.method == SamplingMethod::Nodes ? "every surface node\n" : "");
     case Stage::Precompute:  // adaptive sampling judges fitted responses
       return is_adaptive(space)

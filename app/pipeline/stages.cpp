@@ -88,11 +88,27 @@ SiteCounts count_sites(const Curves& curves) {
   return counts;
 }
 
+/// The regions of a volume mesh are known only now.
+void check_regions(const Workspace& space, const Body& body) {
+  const auto& materials = space.c.materials;
+  for (const std::string& region : body.region_names) {
+    const bool is_described = std::any_of(materials.begin(), materials.end(),
+                                          [&](const auto& m) { return m.region == region; });
+    if (is_described) continue;
+    refuse("case " + space.c.name,
+           "region '" + region + "' of " + space.c.mesh.source().string() + " has no material",
+           "add [[material]] with region = \"" + region +
+               "\", or give it another region by "
+               "[[mesh_region]]");
+  }
+}
+
 void run_mesh(const Workspace& space, const EventSink& emit) {
   prepare_output(space.out);
   mesher::Settings settings = mesh_settings(space);
   settings.log = [&](std::string_view text) { emit(LogLine{"mesh", std::string(text)}); };
   Body body = mesher::mesh(settings);
+  check_regions(space, body);
   body.provenance = {};
   body.provenance.steps.push_back(make_stage_step(space, Stage::Mesh, {}));
   write_body(space.body(), body);

@@ -177,7 +177,7 @@ void check_sites(const Body& body, const Settings& settings, const Surface& boun
   const auto& site = body.response.is_site;
   if (std::find(site.begin(), site.end(), std::uint8_t{1}) != site.end()) return;
   throw Error(
-      ErrorKind::Geometry, settings.surface.path.string(),
+      ErrorKind::Geometry, settings.source().string(),
       text("no response vertex is a site: each is on a support or within the tool radius, ",
            millimetres(settings.tool_radius), ", of one"),
       text("make the supports or the tool smaller: the body spans ", extent_of(boundary.points)));

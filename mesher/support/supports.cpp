@@ -39,12 +39,29 @@ std::vector<bool> entries_with(const std::string& label, const Surface& skin,
                           : text("use one of ", list));
 }
 
+/// The set of this name. @throws Error(Configuration) with the names that there are.
+const std::vector<std::int32_t>& set_named(const std::string& label, const NodeSets& sets,
+                                           const std::string& where) {
+  if (const auto found = sets.find(label); found != sets.end()) return found->second;
+  std::string list;
+  for (const auto& [name, nodes] : sets) list += (list.empty() ? "'" : ", '") + name + "'";
+  refuse(where, text("the mesh has no set '", label, "', which a support or press zone asks for"),
+         text("use one of ", list));
+}
+
 /// Marks the boundary points inside a support.
 struct MarkInside {
   const Settings& settings;
-  const Surface& skin;
+  const Labels& labels;
   const Surface& boundary;
   double tolerance = kSupportTolerance * settings.element_size;
+
+  Marks marks_of(const Zone& zone) const {
+    Marks marks = std::visit(*this, zone.shape);
+    if (zone.inverted)
+      for (std::uint8_t& one : marks) one = one == 0 ? 1 : 0;
+    return marks;
+  }
 
   template <typename Shape>
   Marks operator()(const Shape& shape) const {
@@ -59,8 +76,10 @@ struct MarkInside {
   /// A point within the tolerance of a named face has that face, or one that shares a corner with
   /// it, as its nearest.
   Marks operator()(const LabelSupport& support) const {
+    if (labels.node_sets != nullptr) return mark_set(support);
+    const Surface& skin = labels.skin;
     const std::vector<bool> has_label =
-        entries_with(support.label, skin, settings.surface.path.string());
+        entries_with(support.label, skin, settings.source().string());
     const SurfaceQuery query(skin);
     const auto around = incident_triangles(skin.points.size(), skin.triangles);
     const auto lies_on = [&](const Vec3& x, std::int32_t t) {
@@ -79,6 +98,15 @@ struct MarkInside {
   }
 
  private:
+  /// The points of the boundary are the first nodes.
+  Marks mark_set(const LabelSupport& support) const {
+    Marks marks(boundary.points.size(), 0);
+    for (const std::int32_t node :
+         set_named(support.label, *labels.node_sets, settings.source().string()))
+      if (to_index(node) < marks.size()) marks[to_index(node)] = 1;
+    return marks;
+  }
+
   template <typename Predicate>
   Marks mark(const Predicate& is_inside) const {
     Marks marks;
@@ -132,22 +160,38 @@ bool is_near(const SurfaceQuery& surface, const Vec3& point, double distance) {
   return norm(surface.closest(point).point - point) <= distance || surface.contains(point);
 }
 
-Marks fix_nodes(Body& body, const Settings& settings, const Surface& skin,
+Marks fix_nodes(Body& body, const Settings& settings, const Labels& labels,
                 const Surface& boundary) {
   Marks fixed(boundary.points.size(), 0);
-  for (const Support& support : settings.supports)
-    add_marks(fixed, std::visit(MarkInside{settings, skin, boundary}, support));
+  const MarkInside inside{settings, labels, boundary};
+  for (const Zone& support : settings.supports) add_marks(fixed, inside.marks_of(support));
   for (std::size_t i = 0; i < fixed.size(); ++i)
     if (fixed[i] != 0) body.fixed_nodes.push_back(static_cast<std::int32_t>(i));
   return fixed;
 }
 
-Marks set_foundation(Body& body, const Settings& settings, const Surface& skin,
+void keep_sites_in_zones(Body& body, const Settings& settings, const Labels& labels,
+                         const Surface& boundary) {
+  if (settings.press.empty()) return;
+  Marks pressed(boundary.points.size(), 0);
+  const MarkInside inside{settings, labels, boundary};
+  for (const Zone& zone : settings.press) add_marks(pressed, inside.marks_of(zone));
+  std::size_t taken = 0;
+  for (std::size_t v = 0; v < body.response.is_site.size(); ++v) {
+    if (body.response.is_site[v] == 0 || pressed[to_index(body.response.node[v])] != 0) continue;
+    body.response.is_site[v] = 0;
+    ++taken;
+  }
+  note(settings.log,
+       text("press zones: ", counted(taken, "vertex", "vertices"), " outside them no site"));
+}
+
+Marks set_foundation(Body& body, const Settings& settings, const Labels& labels,
                      const Surface& boundary) {
   Marks on_springs(boundary.points.size(), 0);
   std::map<std::int32_t, SprungFacet> facets;
   for (const Springs& springs : settings.foundation) {
-    const Marks inside = std::visit(MarkInside{settings, skin, boundary}, springs.where);
+    const Marks inside = MarkInside{settings, labels, boundary}.marks_of(springs.where);
     for (std::size_t f = 0; f < boundary.triangles.size(); ++f) {
       if (!all_marked(boundary.triangles[f], inside)) continue;
       const auto number = static_cast<std::int32_t>(f);
@@ -160,7 +204,7 @@ Marks set_foundation(Body& body, const Settings& settings, const Surface& skin,
   }
   for (const auto& [number, facet] : facets) body.foundation.push_back(facet);
   if (!settings.foundation.empty() && facets.empty()) {
-    throw Error(ErrorKind::Geometry, settings.surface.path.string(),
+    throw Error(ErrorKind::Geometry, settings.source().string(),
                 "the supports with springs contain no facet",
                 text("place them on the body, which spans ", extent_of(boundary.points)));
   }
@@ -173,7 +217,7 @@ void check_supports(const Body& body, const Settings& settings, const Surface& b
       body.foundation.empty()
           ? std::string()
           : text(" and ", counted(body.foundation.size(), "facet"), " on springs");
-  throw Error(ErrorKind::Geometry, settings.surface.path.string(),
+  throw Error(ErrorKind::Geometry, settings.source().string(),
               text("the supports, ", body.fixed_nodes.size(), " fixed nodes of ",
                    boundary.points.size(), springs, ", do not prevent rigid motion"),
               text(springs.empty() ? "place a support on the body, which spans "

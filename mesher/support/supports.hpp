@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "format/body.hpp"
@@ -28,16 +30,29 @@ bool contains(const SphereSupport& sphere, const Vec3& point, double tolerance);
 /// Whether the point lies inside the closed surface or within `distance` (m) of it.
 bool is_near(const SurfaceQuery& surface, const Vec3& point, double distance);
 
+using NodeSets = std::map<std::string, std::vector<std::int32_t>>;
+
+/// What a LabelSupport asks for.
+struct Labels {
+  const Surface& skin;                  ///< the surface as read, with the names of its faces
+  const NodeSets* node_sets = nullptr;  ///< of a volume mesh, in the place of the skin
+};
+
 /// Writes Body::fixed_nodes: the points of `boundary`, which are the first nodes, inside a support.
-/// @param skin the surface as read, which carries the names that a LabelSupport asks for
 /// @return the fixed nodes, marked
-/// @throws Error(Configuration) when no face has the name of a LabelSupport.
-Marks fix_nodes(Body& body, const Settings& settings, const Surface& skin, const Surface& boundary);
+/// @throws Error(Configuration) when no face or set has the name of a LabelSupport.
+Marks fix_nodes(Body& body, const Settings& settings, const Labels& labels,
+                const Surface& boundary);
+
+/// Takes the sites outside every press zone from Body::response; without zones all stay.
+/// @throws Error as fix_nodes.
+void keep_sites_in_zones(Body& body, const Settings& settings, const Labels& labels,
+                         const Surface& boundary);
 
 /// Writes Body::foundation.
 /// @return the nodes of the facets on springs, marked
 /// @throws Error(Geometry) when springs are given and no facet lies inside their supports.
-Marks set_foundation(Body& body, const Settings& settings, const Surface& skin,
+Marks set_foundation(Body& body, const Settings& settings, const Labels& labels,
                      const Surface& boundary);
 
 /// @throws Error(Geometry) when fixed nodes and springs leave a rigid motion free.
