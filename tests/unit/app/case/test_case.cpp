@@ -17,9 +17,9 @@ TEST(Case, ReadsQuantitiesInSiAndFillsDefaults) {
   ASSERT_EQ(c.mesh.inclusions.size(), 1U);
   EXPECT_DOUBLE_EQ(c.mesh.patch_spacing, 0.008);
   ASSERT_EQ(c.supports.size(), 4U);
-  EXPECT_DOUBLE_EQ(std::get<mesher::SurfaceSupport>(c.supports[2].where).distance, 0.0005);
-  EXPECT_DOUBLE_EQ(std::get<mesher::PlaneSupport>(c.supports[0].where).point[2], -0.015);
-  EXPECT_DOUBLE_EQ(std::get<mesher::SphereSupport>(c.supports[1].where).centre[1], 0.02);
+  EXPECT_DOUBLE_EQ(std::get<mesher::SurfaceSupport>(c.supports[2].where.shape).distance, 0.0005);
+  EXPECT_DOUBLE_EQ(std::get<mesher::PlaneSupport>(c.supports[0].where.shape).point[2], -0.015);
+  EXPECT_DOUBLE_EQ(std::get<mesher::SphereSupport>(c.supports[1].where.shape).centre[1], 0.02);
   EXPECT_DOUBLE_EQ(c.materials[1].law.at("young"), 1e5);
   EXPECT_DOUBLE_EQ(c.campaign.indentation.lateral_depths[1], 0.0033);
   EXPECT_EQ(c.campaign.indentation.increments, fem::IndentationSettings{}.increments);
@@ -52,9 +52,59 @@ TEST(Case, ReadsASupportByTheNameOfFaces) {
                "\"sphere\"");
   const Case c = parse_case(text, "ball.toml");
   ASSERT_EQ(c.supports.size(), 5U);
-  EXPECT_EQ(std::get<mesher::LabelSupport>(c.supports[1].where).label, "bone side");
+  EXPECT_EQ(std::get<mesher::LabelSupport>(c.supports[1].where.shape).label, "bone side");
   EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
   EXPECT_THAT(message_of(replaced(text, "label = \"bone side\"\n", "")), HasSubstr("label"));
+}
+
+std::string with_volume_mesh() {
+  const std::string good(kGood);
+  const std::size_t begin = good.find("[surface]"), inclusion = good.find("[[inclusion]]");
+  const std::size_t end = good.find("\n[", inclusion + 2);
+  return good.substr(0, begin) +
+         "[volume_mesh]\nfile = \"organ.msh\"\nunit = \"mm\"\n"
+         "[[mesh_region]]\ngroup = \"region=3\"\nregion = \"nodule\"\n" +
+         good.substr(end);
+}
+
+TEST(Case, ReadsAVolumeMeshInThePlaceOfASurface) {
+  const Case c = parse_case(with_volume_mesh(), "ball.toml");
+  EXPECT_EQ(c.mesh.source(), "organ.msh");
+  EXPECT_EQ(c.mesh.volume_mesh.unit, 1e-3);
+  ASSERT_EQ(c.mesh.volume_mesh.regions.size(), 1U);
+  EXPECT_EQ(c.mesh.volume_mesh.regions[0].group, "region=3");
+  EXPECT_EQ(resolved_toml(c).find("[surface]"), std::string::npos);
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
+}
+
+TEST(Case, TakesExactlyOneSourceOfTheBody) {
+  const std::string mesh = "[volume_mesh]\nfile = \"a.msh\"\nunit = \"mm\"\n";
+  EXPECT_THAT(message_of(std::string(kGood) + mesh), HasSubstr("both [surface] and [volume_mesh]"));
+  EXPECT_THAT(message_of(std::string(kGood) + "[[mesh_region]]\ngroup = \"a\"\nregion = \"b\"\n"),
+              HasSubstr("[[mesh_region]] without [volume_mesh]"));
+  EXPECT_THAT(message_of(replaced(with_volume_mesh(),
+                                  "[volume_mesh]\nfile = \"organ.msh\"\nunit = \"mm\"\n", "")),
+              HasSubstr("neither [surface] nor [volume_mesh]"));
+  EXPECT_THAT(message_of(with_volume_mesh() +
+                         "[[inclusion]]\nfile = \"a\"\nunit = \"m\"\nregion = \"b\"\n"),
+              HasSubstr("[[inclusion]] with [volume_mesh]"));
+}
+
+TEST(Case, ReadsPressZonesAndInvertedSelectors) {
+  const std::string text = std::string(kGood) +
+                           "[[press]]\nshape = \"label\"\nlabel = \"top\"\n"
+                           "[[press]]\nshape = \"sphere\"\ninvert = true\n"
+                           "centre = [\"1 mm\", \"2 mm\", \"3 mm\"]\nradius = \"4 mm\"\n";
+  const Case c = parse_case(text, "ball.toml");
+  ASSERT_EQ(c.mesh.press.size(), 2U);
+  EXPECT_FALSE(c.mesh.press[0].inverted);
+  EXPECT_TRUE(c.mesh.press[1].inverted);
+  EXPECT_DOUBLE_EQ(std::get<mesher::SphereSupport>(c.mesh.press[1].shape).radius, 0.004);
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
+  EXPECT_THAT(message_of(std::string(kGood) +
+                         "[[press]]\nshape = \"box\"\nlow = [\"0 m\", \"0 m\", \"0 m\"]\n"
+                         "high = [\"1 m\", \"0 m\", \"1 m\"]\n"),
+              HasSubstr("low.y not below high.y"));
 }
 
 TEST(Case, ReadsSpringsAndGravity) {

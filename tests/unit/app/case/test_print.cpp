@@ -22,15 +22,15 @@ TEST(ResolvedCase, IsExactForAnyNumberAndText) {
   c.mesh.patch_spacing = 0.1 / 3;
   c.materials[0].law.at("poisson") = 1.0 / 3;
   c.campaign.indentation.azimuths = {1.0 / 7, -2.0};
-  std::get<mesher::PlaneSupport>(c.supports[0].where).normal = {1.0 / 3, 0, -1e-20};
+  std::get<mesher::PlaneSupport>(c.supports[0].where.shape).normal = {1.0 / 3, 0, -1e-20};
   const Case again = parse_case(resolved_toml(c), "resolved");
   EXPECT_EQ(again, c) << resolved_toml(c);
   EXPECT_EQ(again.mesh.surface.path, c.mesh.surface.path);
   EXPECT_EQ(again.mesh.patch_spacing, c.mesh.patch_spacing);
   EXPECT_EQ(again.materials[0].law.at("poisson"), 1.0 / 3);
   EXPECT_EQ(again.campaign.indentation.azimuths, c.campaign.indentation.azimuths);
-  EXPECT_EQ(std::get<mesher::PlaneSupport>(again.supports[0].where).normal,
-            std::get<mesher::PlaneSupport>(c.supports[0].where).normal);
+  EXPECT_EQ(std::get<mesher::PlaneSupport>(again.supports[0].where.shape).normal,
+            std::get<mesher::PlaneSupport>(c.supports[0].where.shape).normal);
 }
 
 TEST(ResolvedCase, HasTheNamedSectionsOnly) {

@@ -68,7 +68,7 @@ TEST(CaseReader, RejectsMissingKeys) {
   EXPECT_THAT(message_with("poisson = 0.49\n", "posson = 0.49\n"),
               HasSubstr("unknown key 'posson'"));
   EXPECT_THAT(message_with("shape = \"box\"\n", ""), HasSubstr("support[3].shape"));
-  EXPECT_THAT(message_of("name = \"x\"\n"), HasSubstr("key 'surface' is missing"));
+  EXPECT_THAT(message_of("name = \"x\"\n"), HasSubstr("key 'support' is missing"));
 }
 
 TEST(CaseReader, NamesTheLineOfInvalidToml) {

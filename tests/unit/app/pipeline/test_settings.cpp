@@ -119,13 +119,20 @@ class SettingsText {
   void add(const mesher::SphereSupport& s) { add(s.centre), add(s.radius); }
   void add(const mesher::SurfaceSupport& s) { add(s.surface), add(s.distance); }
   void add(const mesher::LabelSupport& s) { add(s.label); }
-  void add(const mesher::Support& support) {
-    std::visit([this](const auto& s) { add(s); }, support);
+  void add(const mesher::Zone& zone) {
+    add(zone.inverted);
+    std::visit([this](const auto& s) { add(s); }, zone.shape);
+  }
+  void add(const mesher::VolumeMeshFile& file) {
+    add(file.path.string(), file.unit, file.region_array);
+    for (const auto& [group, region] : file.regions) add(group, region);
   }
   void add(const mesher::Settings& s) {
     add(s.name, static_cast<int>(s.method), s.patch_spacing, s.element_size, s.interior_coarsening,
         s.feature_angle, s.curved_facets, s.tool_radius, s.depth, s.lateral_travel);
     add(s.surface);
+    add(s.volume_mesh);
+    for (const auto& zone : s.press) add(zone);
     for (const auto& inclusion : s.inclusions) add(inclusion);
     for (const auto& support : s.supports) add(support);
     for (const auto& springs : s.foundation) {
@@ -192,6 +199,7 @@ class Change {
   bool when(std::string_view, const std::string& value, std::string_view wanted) {
     return value == wanted;
   }
+  bool has_section(std::string_view, bool has_values) { return has_values; }
   template <class Body>
   void section(std::string_view name, Presence, std::string_view, Body body) {
     section_ = std::string(name) + ".";
@@ -233,6 +241,25 @@ TEST(StageSettings, EveryKeyChangesTheSettingsOfAStage) {
   EXPECT_GT(keys, 70);
 }
 
+TEST(StageSettings, EveryKeyOfAVolumeMeshAndAPressZoneChangesTheSettings) {
+  Case c = adaptive_case();
+  c.mesh.volume_mesh = {"organ.vtu", 1e-3, "part", {{"part=1", "matrix"}}};
+  c.mesh.press = {mesher::LabelSupport{"top"}};
+  const std::string before = SettingsText(c).text();
+  int changed = 0;
+  for (int key = 0;; ++key) {
+    Change change(key);
+    Case other = c;
+    describe(change, other);
+    if (change.key().empty()) break;
+    const std::string section = change.key().substr(0, change.key().find('.'));
+    if (section != "volume_mesh" && section != "mesh_region" && section != "press") continue;
+    EXPECT_NE(SettingsText(other).text(), before) << change.key();
+    ++changed;
+  }
+  EXPECT_EQ(changed, 8);
+}
+
 TEST(StageSettings, KeysThatACaseLeavesOutHaveTheDefaultsOfTheStages) {
   const Case c = adaptive_case();
   const Workspace space = workspace(c);
@@ -270,13 +297,13 @@ TEST(StageSettings, KeysThatACaseLeavesOutHaveTheDefaultsOfTheStages) {
 
 TEST(StageSettings, PathsAreRelativeToTheCaseAndNormalsOfUnitLength) {
   Case c = adaptive_case();
-  std::get<mesher::PlaneSupport>(c.supports[0].where).normal = {0, 0, -4};
+  std::get<mesher::PlaneSupport>(c.supports[0].where.shape).normal = {0, 0, -4};
   const mesher::Settings mesh = mesh_settings(workspace(c));
   EXPECT_EQ(mesh.surface.path, "/cases/skin.off");
   EXPECT_EQ(mesh.inclusions.at(0).path, "/cases/nodule.off");
-  EXPECT_EQ(std::get<mesher::PlaneSupport>(mesh.supports.at(0)).normal, (Vec3{0, 0, -1}));
+  EXPECT_EQ(std::get<mesher::PlaneSupport>(mesh.supports.at(0).shape).normal, (Vec3{0, 0, -1}));
   ASSERT_EQ(mesh.foundation.size(), 1U);
-  EXPECT_EQ(std::get<mesher::SurfaceSupport>(mesh.foundation[0].where).surface.path,
+  EXPECT_EQ(std::get<mesher::SurfaceSupport>(mesh.foundation[0].where.shape).surface.path,
             "/cases/bone.off");
   EXPECT_EQ(mesh.supports.size(), 4U);
 }
