@@ -23,7 +23,7 @@ namespace palpate::mesher {
 /// Equal settings and files give equal bodies, to the bit. The caller adds the provenance.
 /// @throws Error(Geometry) for a surface that is missing, empty, not watertight, not orientable,
 ///   self-intersecting, in several parts, has non-finite coordinates or an implausible size for its
-///   unit (the largest dimension must lie in 1 mm .. 10 m); for an inclusion that is not strictly
+///   unit (the largest dimension must lie in 10 um .. 10 m); for an inclusion that is not strictly
 ///   inside the skin; for supports that do not prevent rigid motion or leave no site; for detail
 ///   finer than the patches; for a depth of more than 0.8 of the thickness under a site; for a
 ///   lateral travel longer than the body; for degenerate tetrahedra.

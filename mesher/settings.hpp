@@ -17,8 +17,8 @@
 
 namespace palpate::mesher {
 
-/// A triangulated surface on disk (OFF, OBJ, PLY, STL), the length of its unit, and how its faults
-/// are repaired.
+/// A triangulated surface on disk (OFF, OBJ, PLY, STL, VTP, VTK), the length of its unit, and how
+/// its faults are repaired.
 struct SurfaceFile {
   std::filesystem::path path;
   double unit = 1.0;        ///< m per unit of the file

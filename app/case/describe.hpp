@@ -105,7 +105,7 @@ template <class V>
 void describe_surface(V& v, mesher::SurfaceFile& s) {
   describe_path(
       v, s.path,
-      {"file", "triangle surface (OFF, OBJ, PLY or STL), relative to the case", kRequired});
+      {"file", "surface (OFF, OBJ, PLY, STL, VTP or VTK), relative to the case", kRequired});
   describe_length_unit(v, s.unit,
                        {"unit", "length unit of the coordinates in the file", kRequired});
   v.text(s.region_name, {"region", "name of the material region inside the surface"});
@@ -227,7 +227,7 @@ void describe_support_shape(V& v, const std::string& shape, mesher::Support& whe
     v.text(alternative<mesher::LabelSupport>(where).label,
            {"label",
             "name of faces in the file of the surface (OBJ: a group `g`, an object `o` or a "
-            "material `usemtl`), or of a set of a volume mesh",
+            "material `usemtl`; STL: a solid; VTK: `array=value`), or of a set of a volume mesh",
             kRequired});
   }
 }

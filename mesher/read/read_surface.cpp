@@ -5,8 +5,6 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_faces.h>
 
-#include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <sstream>
 #include <utility>
@@ -15,22 +13,18 @@
 #include "mesher/geometry/cgal_mesh.hpp"
 #include "mesher/geometry/queries.hpp"
 #include "mesher/geometry/soup.hpp"
+#include "mesher/read/body_size.hpp"
+#include "mesher/read/file/file.hpp"
 #include "mesher/read/read_obj.hpp"
+#include "mesher/read/read_stl.hpp"
+#include "mesher/read/vtk/read_vtk_legacy.hpp"
+#include "mesher/read/vtk/read_vtk_xml.hpp"
 #include "mesher/repair/repair.hpp"
 
 namespace palpate::mesher {
 namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
-
-constexpr double kSmallestBody = 1e-3;  // m
-constexpr double kLargestBody = 10;     // m
-
-std::string lower(std::string word) {
-  std::transform(word.begin(), word.end(), word.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return word;
-}
 
 /// The lines with a number that is not finite: text readers stop there without naming the line.
 std::vector<std::size_t> lines_not_finite(const std::filesystem::path& path) {
@@ -50,26 +44,21 @@ std::vector<std::size_t> lines_not_finite(const std::filesystem::path& path) {
   return lines;
 }
 
-void check_file(const std::filesystem::path& path) {
-  const std::string where = path.string();
-  std::error_code failure;
-  if (!std::filesystem::exists(path, failure)) {
-    refuse_geometry(where, "no such file", "correct the path of the surface in the case");
-  }
-  if (!std::filesystem::is_regular_file(path, failure) || !std::ifstream(path)) {
-    refuse_geometry(where, "not a readable file", "check its type and its permissions");
-  }
-  const std::string kind = lower(path.extension().string());
-  if (kind != ".off" && kind != ".obj" && kind != ".ply" && kind != ".stl") {
-    refuse_geometry(where, "unknown kind of surface file '" + kind + "'",
-                    "convert it to OFF, OBJ, PLY or STL");
-  }
-}
-
 Soup read_soup(const std::filesystem::path& path) {
-  const std::string where = path.string();
-  check_file(path);
-  if (lower(path.extension().string()) == ".obj") return read_obj(path);
+  const std::string where = path.string(), kind = ending(path);
+  check_readable(path);
+  if (kind == ".obj") return read_obj(path);
+  if (kind == ".vtp" || kind == ".vtu")
+    return surface_of(read_vtk_xml(read_bytes(path), where), where);
+  if (kind == ".vtk") return surface_of(read_vtk_legacy(read_bytes(path), where), where);
+  if (kind != ".off" && kind != ".ply" && kind != ".stl") {
+    refuse_geometry(where, "unknown kind of surface file '" + kind + "'",
+                    "convert it to OFF, OBJ, PLY, STL or VTP");
+  }
+  if (kind == ".stl" && std::filesystem::file_size(path) > 0) {
+    const std::string bytes = read_bytes(path);
+    if (is_text_stl(bytes)) return read_text_stl(bytes, where);
+  }
   std::vector<Point> points;
   std::vector<std::vector<std::size_t>> polygons;
   if (!CGAL::IO::read_polygon_soup(where, points, polygons, CGAL::parameters::verbose(false))) {
@@ -94,28 +83,8 @@ Soup read_soup(const std::filesystem::path& path) {
   return soup;
 }
 
-/// The unit with which the largest dimension is nearest to 150 mm, the size of an organ.
-std::string likely_unit(double file_dimension) {
-  const std::pair<const char*, double> units[] = {
-      {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}};
-  const auto deviation = [&](const auto& unit) {
-    return std::abs(std::log10(file_dimension * unit.second / 0.15));
-  };
-  return std::min_element(std::begin(units), std::end(units),
-                          [&](const auto& a, const auto& b) { return deviation(a) < deviation(b); })
-      ->first;
-}
-
-void scale_to_metres(Soup& soup, const SurfaceFile& file) {
-  const double raw = largest_dimension(soup.points);
-  const double size = raw * file.unit;
-  if (!(size >= kSmallestBody && size <= kLargestBody)) {
-    refuse_geometry(file.path.string(),
-                    text("the largest dimension is ", millimetres(size), " with a unit of ",
-                         file.unit, " m, outside 1 mm .. 10 m"),
-                    raw > 0 ? "set the unit of the surface; '" + likely_unit(raw) + "' looks likely"
-                            : "the surface has no extent: export it again");
-  }
+void scale_to_metres(Soup& soup, const SurfaceFile& file, const Log& log) {
+  check_body_size(largest_dimension(soup.points), file.unit, file.path.string(), log);
   for (Vec3& x : soup.points) x = file.unit * x;
 }
 
@@ -196,7 +165,7 @@ Surface read_surface(const SurfaceFile& file, const Log& log) {
   const std::string where = file.path.string();
   Soup soup = read_soup(file.path);
   check_entries(soup, where);
-  scale_to_metres(soup, file);
+  scale_to_metres(soup, file, log);
   tidy(soup, where, log);
   check_entries(soup, where);
   const bool repairs = file.repair.mode == RepairMode::Wrap ||

@@ -34,9 +34,10 @@ std::vector<bool> entries_with(const std::string& label, const Surface& skin,
   for (const std::string& name : all) list += (list.empty() ? "" : ", ") + name;
   throw Error(ErrorKind::Configuration, where,
               text("no face has the name '", label, "', which a support asks for"),
-              all.empty() ? "name faces by 'g', 'o' or 'usemtl' in an OBJ file; other kinds of "
-                            "file carry no names"
-                          : text("use one of ", list));
+              all.empty()
+                  ? "name faces by 'g', 'o' or 'usemtl' in an OBJ file, by solids in an STL "
+                    "file of text, or by an integer cell array in a VTK file"
+                  : text("use one of ", list));
 }
 
 /// The set of this name. @throws Error(Configuration) with the names that there are.

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <string>
 
 #include "mesher/read/read_surface.hpp"
+#include "tests/support/source_folder.hpp"
 #include "tests/unit/mesher/refusals.hpp"
 #include "tests/unit/mesher/shapes.hpp"
 
@@ -50,6 +52,22 @@ TEST(ReadSurface, TheFourFormatsGiveTheSameCube) {
   }
 }
 
+TEST(ReadSurface, SidesOfAVtkBoxAreLabels) {
+  for (const char* name :
+       {"box_ascii.vtp", "box_appended_zlib.vtp", "box_4.vtk", "box_5_binary.vtk"}) {
+    SCOPED_TRACE(name);
+    const auto path = palpate::test::source_folder() / "tests/data/meshes/vtk" / name;
+    const Surface read = read_surface({path, 1e-3, ""}, {});
+    EXPECT_NEAR(signed_volume(read), 24e-6, 1e-12);
+    EXPECT_EQ(read.points.size(), 8U);
+    ASSERT_EQ(read.names.size(), 12U);
+    std::map<std::string, int> faces;
+    for (const std::size_t n : read.names) ++faces[read.known_names[n].at(0)];
+    EXPECT_EQ(faces.size(), 6U);
+    EXPECT_EQ(faces["side=5"], 2);
+  }
+}
+
 TEST(ReadSurface, OrientsFacesOutwardAndLogsIt) {
   Surface inverted = test::box({0, 0, 0}, {0.05, 0.05, 0.05});
   for (Triangle& t : inverted.triangles) std::swap(t[0], t[1]);
@@ -79,7 +97,7 @@ TEST(ReadSurface, RefusesFilesThatAreMissingOrUnreadable) {
   expect_refused(settings_for("nowhere/liver.stl"), "nowhere/liver.stl", "no such file", "path");
   expect_refused(settings_for(std::filesystem::temp_directory_path()), "", "not a readable file",
                  "permissions");
-  expect_file_refused("a.vtp", "x", "unknown kind of surface file '.vtp'", "convert");
+  expect_file_refused("a.3ds", "x", "unknown kind of surface file '.3ds'", "convert");
   expect_file_refused("empty.off", "", "empty or cannot be read", "export");
   expect_file_refused("empty.obj", "# nothing\n", "no faces", "export");
   testing::internal::CaptureStderr();
@@ -116,8 +134,11 @@ TEST(ReadSurface, RefusesSizesThatDoNotFitTheUnit) {
   const TemporaryFile file("organ_mm.off", off_text(test::box({0, 0, 0}, {180, 120, 70})));
   expect_refused(settings_for(file.path(), 1.0), "organ_mm.off", "180000 mm with a unit of 1 m",
                  "'mm' looks likely");
-  expect_refused(settings_for(file.path(), 1e-6), "organ_mm.off", "0.18 mm with a unit of 1e-06 m",
-                 "'mm' looks likely");
+  std::string log;
+  EXPECT_NEAR(signed_volume(read_surface({file.path(), 1e-6, ""},
+                                         [&](std::string_view line) { log += line; })),
+              180e-6 * 120e-6 * 70e-6, 1e-20);
+  EXPECT_THAT(log, testing::HasSubstr("0.18 mm with a unit of 1e-06 m, unusual"));
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ INSTANTIATE_TEST_SUITE_P(
         Broken{"trimesh/not_convex.obj", 0.1, "12 edges with more than two faces"},
         Broken{"trimesh/notenoughindices.obj", 0.001, "1 face with fewer than three indices"},
         Broken{"trimesh/soup.stl", 0.1, "not watertight: 300 border edges"},
-        Broken{"sofa/pelvis_f.obj", 10, "outside 1 mm .. 10 m"}));
+        Broken{"sofa/pelvis_f.obj", 10, "outside 0.01 mm .. 10 m"}));
 
 TEST(FaultySurface, IsRepairedToASoundOne) {
   // Two hemispheres of a cortex that intersect themselves.
