@@ -7,6 +7,7 @@
 #include "app/console.hpp"
 #include "app/export/csv.hpp"
 #include "app/export/deck.hpp"
+#include "app/export/mesh_file.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/vtkhdf/grids.hpp"
 #include "fem/campaign/bonded_patch.hpp"
@@ -24,6 +25,28 @@ void write(const vtkhdf::Grid& grid, const std::filesystem::path& file) {
 
 int export_body(const Workspace& space) {
   write(vtkhdf::body_grid(read_body(space.body())), space.out / "body.vtkhdf");
+  return kExitDone;
+}
+
+/// The formats of `export mesh`: their name, their ending and their writer.
+struct MeshFormat {
+  const char* name;
+  const char* ending;
+  std::string (*write)(const Body&);
+};
+constexpr MeshFormat kMeshFormats[] = {{"gmsh", "msh", gmsh_mesh},
+                                       {"vtu", "vtu", vtu_mesh},
+                                       {"inp", "inp", abaqus_mesh},
+                                       {"feb", "feb", febio_mesh}};
+
+int export_mesh(const Workspace& space, const std::string& name) {
+  const Body body = read_body(space.body());
+  for (const MeshFormat& format : kMeshFormats) {
+    if (format.name != name) continue;
+    const std::filesystem::path file = space.out / (std::string("body.") + format.ending);
+    write_file_crash_safely(file, format.write(body));
+    say("export: {}", file.string());
+  }
   return kExitDone;
 }
 
@@ -175,6 +198,13 @@ void add_export_command(CLI::App& root, Action& action) {
   command->footer("Example: palpate export site data/cases/cylinder.toml --vertex 12");
   command->require_subcommand(1);
   add_part(*command, action, "body", "body.h5 -> body.vtkhdf", export_body);
+  const auto format = std::make_shared<std::string>("gmsh");
+  add_part(*command, action, "mesh",
+           "body.h5 -> body.msh, .vtu, .inp or .feb with its regions and supports as sets",
+           [format](const Workspace& space) { return export_mesh(space, *format); })
+      ->add_option("--format", *format, "gmsh, vtu, inp or feb")
+      ->check(CLI::IsMember({"gmsh", "vtu", "inp", "feb"}))
+      ->capture_default_str();
   add_part(*command, action, "curves", "curves.h5 -> curves.csv", export_curves);
   add_part(*command, action, "library",
            "library.h5 -> library.vtkhdf, with the forces at the depth of the case",

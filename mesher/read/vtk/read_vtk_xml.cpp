@@ -201,7 +201,8 @@ class XmlReader {
     std::vector<std::string> lines(1);
     for (const double letter : numbers(array, std::nullopt)) {
       if (letter == 0) lines.emplace_back();
-      if (letter > 0 && letter < 128) lines.back() += static_cast<char>(letter);
+      if (letter != 0 && letter >= -128 && letter < 256)
+        lines.back() += static_cast<char>(static_cast<int>(letter));
     }
     lines.pop_back();
     data_.texts[array.attribute("Name").value()] = std::move(lines);
