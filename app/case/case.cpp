@@ -67,6 +67,10 @@ void check_source(const Case& c, const SourceMap& sources) {
     refuse(sources.where("inclusion"), "[[inclusion]] with [volume_mesh]",
            "name the groups of the mesh by [[mesh_region]]");
   }
+  if (has_mesh && !c.mesh.layers.empty()) {
+    refuse(sources.where("layer"), "[[layer]] with [volume_mesh]",
+           "layers are offsets of a surface; name the groups of the mesh by [[mesh_region]]");
+  }
   if (has_surface && !c.mesh.volume_mesh.regions.empty()) {
     refuse(sources.where("mesh_region"), "[[mesh_region]] without [volume_mesh]",
            "name the region of the surface by surface.region");

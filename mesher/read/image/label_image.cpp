@@ -26,7 +26,7 @@ std::string nifti_bytes(const std::filesystem::path& path) {
 
 }  // namespace
 
-LabelField::LabelField(LabelImage image, const std::string& where) : image_(std::move(image)) {
+ImageLabels::ImageLabels(LabelImage image, const std::string& where) : image_(std::move(image)) {
   const auto& [a, b, c] = image_.step;
   const double volume = dot(a, cross(b, c));
   if (!(std::abs(volume) > 1e-9 * norm(a) * norm(b) * norm(c))) {
@@ -36,7 +36,7 @@ LabelField::LabelField(LabelImage image, const std::string& where) : image_(std:
   inverse_ = {(1 / volume) * cross(b, c), (1 / volume) * cross(c, a), (1 / volume) * cross(a, b)};
 }
 
-std::int32_t LabelField::label(const Vec3& point) const {
+std::int32_t ImageLabels::label(const Vec3& point) const {
   std::array<std::int64_t, 3> low{};
   Vec3 part{};
   for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -32,10 +32,10 @@ struct LabelImage {
 /// the largest membership: the indicator function of each label, interpolated trilinearly between
 /// the centres of voxels. Its level set at one half cuts the corners of the steps off. Where two
 /// memberships are equal, the smaller label wins. Outside the image all is 0.
-class LabelField {
+class ImageLabels {
  public:
   /// @throws Error(Geometry) at `where` when the axes of the image do not span space.
-  LabelField(LabelImage image, const std::string& where);
+  ImageLabels(LabelImage image, const std::string& where);
 
   std::int32_t label(const Vec3& point) const;
   const LabelImage& image() const { return image_; }

@@ -59,8 +59,8 @@ TEST(LabelImage, ALeftHandedSpaceIsMirrored) {
   EXPECT_EQ(image.at(0, 0, 1), 3);
 }
 
-LabelField field(std::array<std::size_t, 3> size,
-                 const std::function<std::int32_t(const Vec3&)>& label) {
+ImageLabels field(std::array<std::size_t, 3> size,
+                  const std::function<std::int32_t(const Vec3&)>& label) {
   LabelImage image{size, {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}}, {}, {}};
   for (std::size_t k = 0; k < size[2]; ++k)
     for (std::size_t j = 0; j < size[1]; ++j)
@@ -70,8 +70,8 @@ LabelField field(std::array<std::size_t, 3> size,
   return {std::move(image), "a.nii"};
 }
 
-TEST(LabelField, IsTheLabelOfTheVoxelAtItsCentreAndOutsideBeyondTheImage) {
-  const LabelField corner = field({2, 2, 2}, [](const Vec3& x) { return x[0] > 0 ? 7 : 2; });
+TEST(ImageLabels, IsTheLabelOfTheVoxelAtItsCentreAndOutsideBeyondTheImage) {
+  const ImageLabels corner = field({2, 2, 2}, [](const Vec3& x) { return x[0] > 0 ? 7 : 2; });
   EXPECT_EQ(corner.label({0, 0, 0}), 2);
   EXPECT_EQ(corner.label({1, 1, 0}), 7);
   EXPECT_EQ(corner.label({0.49, 0.5, 0.5}), 2);
@@ -99,10 +99,10 @@ double roughness(const std::function<bool(const Vec3&)>& inside, const Vec3& cen
   return worst;
 }
 
-TEST(LabelField, SmoothsTheSteps) {
+TEST(ImageLabels, SmoothsTheSteps) {
   const Vec3 centre{10, 10, 10};
   const double radius = 7.3;
-  const LabelField ball =
+  const ImageLabels ball =
       field({21, 21, 21}, [&](const Vec3& x) { return norm(x - centre) < radius ? 1 : 0; });
   const double steps = roughness(
       [&](const Vec3& x) {
@@ -140,7 +140,7 @@ TEST(LabelImage, RefusesWhatIsNoSegmentation) {
   refused(with("encoding: text", "encoding: raw"), "3 of 8 bytes");
   expect_refusal(
       [] {
-        LabelField({{1, 1, 1}, {Vec3{1, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}}, {}, {1}}, "a.nii");
+        ImageLabels({{1, 1, 1}, {Vec3{1, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 0, 1}}, {}, {1}}, "a.nii");
       },
       "a.nii", "one plane");
   expect_refusal([] { read_label_image(mesh_file("README.md"), 1); }, "README.md", "kind of image");
