@@ -47,6 +47,10 @@ Domain scaled(const Domain& domain, const Frame& frame) {
 /// Thin places are refined down to this part of element_size at once.
 constexpr double kSmallest = 1.0 / 4;
 
+/// What is thinner than this part of element_size is not resolved: at acute edges refinement would
+/// not end.
+constexpr double kThinnest = 1.0 / 10;
+
 SizeField surface_size(const DelaunaySettings& settings, const Frame& frame) {
   const double h = frame.scaled(settings.element_size);
   if (!settings.surface_coarsening) return [h](const Vec3&) { return h; };
@@ -90,6 +94,18 @@ VolumeMesh mesh_request(const Oracle& oracle, std::vector<SizeSource> sizes, con
   return mesh;
 }
 
+/// @throws Error(Geometry) for a region without tetrahedra.
+void check_regions(const VolumeMesh& mesh, const std::string& where) {
+  for (std::size_t region = 1; region < mesh.region_names.size(); ++region) {
+    const auto number = static_cast<std::int32_t>(region);
+    if (std::find(mesh.region.begin(), mesh.region.end(), number) != mesh.region.end()) continue;
+    refuse_geometry(where,
+                    text("no tetrahedron belongs to the region '", mesh.region_names[region], "'"),
+                    "check that it lies inside the skin, in the right unit and not inside a later "
+                    "one, or reduce element_size");
+  }
+}
+
 LabelField scaled(const LabelField& field, const Frame& frame) {
   LabelField result = field;
   result.region = [=, region = field.region](const Vec3& x) { return region(frame.metres(x)); };
@@ -105,11 +121,12 @@ VolumeMesh mesh_domain(const Domain& domain, const DelaunaySettings& settings,
   const Frame frame = frame_of(domain.skin);
   const Domain here = scaled(domain, frame);
   const double h = frame.scaled(settings.element_size);
-  const auto oracle = make_oracle(here, h / 100);
+  const auto oracle = make_oracle(here, kThinnest * h);
   const SizingSettings sizing{surface_size(settings, frame), kSmallest * h};
   VolumeMesh mesh =
       mesh_request(*oracle, surface_sizes(here, sizing), frame, settings, where, report);
   mesh.region_names = domain.region_names;
+  check_regions(mesh, where);
   return mesh;
 }
 

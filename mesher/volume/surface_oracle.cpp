@@ -37,8 +37,12 @@ std::vector<Crossing> apart(const std::vector<Crossing>& crossings, const SizeFi
 
 class SurfaceOracle final : public Oracle {
  public:
-  SurfaceOracle(const Domain& domain, double step)
-      : domain_(domain), step_(step), skin_(domain_.skin), cloud_(cloud_of(domain_)) {
+  SurfaceOracle(const Domain& domain, double thinnest)
+      : domain_(domain),
+        thinnest_(thinnest),
+        step_(thinnest / 10),
+        skin_(domain_.skin),
+        cloud_(cloud_of(domain_)) {
     for (const Enclosure& enclosure : domain_.enclosures) inside_.emplace_back(enclosure.surface);
     double depth = 0;
     for (const Layer& layer : domain_.layers) walls_.push_back(depth += layer.thickness);
@@ -86,9 +90,12 @@ class SurfaceOracle final : public Oracle {
   bool has_one_surface() const { return domain_.enclosures.empty() && walls_.empty(); }
 
   std::optional<Crossing> any_crossing(const Vec3& from, const Vec3& to) const {
-    const double fraction = cloud_.any_hit(from, to);
-    if (fraction < 0) return std::nullopt;
-    return Crossing{from + fraction * (to - from), kVoid, 0};
+    const std::vector<double> hits = cloud_.hits(from, to);
+    if (hits.empty()) return std::nullopt;
+    // In and out again: a wall too thin for any element. At an acute edge there is always one.
+    const bool through = hits.size() % 2 == 0;
+    if (through && (hits.back() - hits.front()) * norm(to - from) < thinnest_) return std::nullopt;
+    return Crossing{from + hits.front() * (to - from), kVoid, 0};
   }
 
   std::optional<Crossing> first_crossing(const Vec3& from, const Vec3& to) const {
@@ -244,7 +251,8 @@ class SurfaceOracle final : public Oracle {
   static constexpr double kSide = 1e-6;  // a step to the side of a surface, in parts of its size
 
   Domain domain_;
-  double step_;
+  double thinnest_;
+  double step_;  // along a segment that grazes the wall of a layer
   InsideGrid skin_;
   std::vector<InsideGrid> inside_;
   TriangleCloud cloud_;
@@ -253,8 +261,8 @@ class SurfaceOracle final : public Oracle {
 
 }  // namespace
 
-std::unique_ptr<Oracle> make_oracle(const Domain& domain, double step) {
-  return std::make_unique<SurfaceOracle>(domain, step);
+std::unique_ptr<Oracle> make_oracle(const Domain& domain, double thinnest) {
+  return std::make_unique<SurfaceOracle>(domain, thinnest);
 }
 
 }  // namespace palpate::mesher

@@ -8,10 +8,9 @@
 
 namespace palpate::mesher {
 
-/// Answers about a domain of surfaces, by exact predicates: a segment that crosses a triangle is
-/// never missed, and the crossing lies on the triangle.
+/// Answers about a domain of surfaces, by exact predicates; crossings lie on the triangles.
 /// @param domain with all closed surfaces oriented outward; copied
-/// @param step along which a segment is searched for grazing contact with the wall of a layer, m
-std::unique_ptr<Oracle> make_oracle(const Domain& domain, double step);
+/// @param thinnest m: a segment that passes through a thinner body crosses nothing
+std::unique_ptr<Oracle> make_oracle(const Domain& domain, double thinnest);
 
 }  // namespace palpate::mesher

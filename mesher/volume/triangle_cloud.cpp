@@ -63,9 +63,4 @@ std::vector<double> TriangleCloud::hits(const Vec3& from, const Vec3& to) const 
   return fractions;
 }
 
-double TriangleCloud::any_hit(const Vec3& from, const Vec3& to) const {
-  const auto met = tree_->tree.any_intersected_primitive(segment(from, to));
-  return met ? fraction_at(**met, from, to) : -1;
-}
-
 }  // namespace palpate::mesher

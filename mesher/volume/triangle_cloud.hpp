@@ -24,9 +24,6 @@ class TriangleCloud {
   /// meets, each at the plane of the triangle.
   std::vector<double> hits(const Vec3& from, const Vec3& to) const;
 
-  /// One of `hits`, or -1.
-  double any_hit(const Vec3& from, const Vec3& to) const;
-
  private:
   struct Tree;
   std::unique_ptr<Tree> tree_;

@@ -202,6 +202,37 @@ TEST(Delaunay, LayersAreShellsOfTheirThickness) {
               inscribed(0.004, 0.02) * volume_of_ball(0.02));
 }
 
+TEST(Delaunay, ARegionWithoutTetrahedraIsRefusedByName) {
+  Domain domain = solid(test::box({0, 0, 0}, {0.04, 0.04, 0.04}));
+  domain.region_names.emplace_back("stone");
+  domain.enclosures.push_back({test::sphere({0.1, 0.02, 0.02}, 0.01, 32), 1});
+  DelaunayReport report;
+  try {
+    mesh_domain(domain, with_size(0.008), "box", report);
+    FAIL() << "meshed";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Geometry);
+    EXPECT_THAT(error.problem(), testing::HasSubstr("'stone'"));
+    EXPECT_THAT(error.remedy(), testing::HasSubstr("inside the skin"));
+  }
+}
+
+/// A pyramid upside down, its faces at 34 degrees to the square on top.
+TEST(Delaunay, AcuteEdgesEnd) {
+  Surface pyramid;
+  pyramid.points = {{0, 0, 0},
+                    {-0.075, -0.075, 0.05},
+                    {0.075, -0.075, 0.05},
+                    {0.075, 0.075, 0.05},
+                    {-0.075, 0.075, 0.05}};
+  pyramid.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {1, 2, 3}, {1, 3, 4}};
+  const double exact = 0.15 * 0.15 * 0.05 / 3;
+  ASSERT_NEAR(signed_volume(pyramid), exact, 1e-15);
+  DelaunayReport report;
+  mesh_of(solid(pyramid), 0.015, report);
+  EXPECT_NEAR(report.quality.volume, exact, 0.01 * exact);
+}
+
 TEST(Delaunay, VoidsAreEmpty) {
   Domain domain = solid(test::box({0, 0, 0}, {0.04, 0.04, 0.04}));
   domain.enclosures.push_back({test::sphere({0.02, 0.02, 0.02}, 0.01, 64), kVoid});
