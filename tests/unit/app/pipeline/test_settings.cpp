@@ -110,7 +110,7 @@ class SettingsText {
     for (const double value : values) add(value);
   }
   void add(const mesher::SurfaceFile& file) {
-    add(file.path.string(), file.unit, file.region_name);
+    add(file.path.string(), file.unit, file.region_name, file.is_void);
     add(static_cast<int>(file.repair.mode), file.repair.largest_part, file.repair.max_hole,
         file.repair.max_change);
   }
@@ -134,6 +134,7 @@ class SettingsText {
     add(s.volume_mesh);
     for (const auto& zone : s.press) add(zone);
     for (const auto& inclusion : s.inclusions) add(inclusion);
+    for (const auto& layer : s.layers) add(layer.thickness, layer.region_name);
     for (const auto& support : s.supports) add(support);
     for (const auto& springs : s.foundation) {
       add(springs.where);

@@ -43,7 +43,7 @@ TEST(Inclusions, AreTheirOwnRegionAndVolumesAddUp) {
               test::volume_of_region(body, -1), 1e-15);
 }
 
-TEST(Inclusions, AreRefusedWhereTheyIntersectNestOrLieOutside) {
+TEST(Inclusions, MayNestCrossAndLeaveTheSkinButNotLieOutside) {
   const TemporaryFile skin("skin.off", off_text(cube()));
   const auto with = [&](const TemporaryFile& inclusion) {
     Settings s = settings_for(skin.path());
@@ -51,19 +51,26 @@ TEST(Inclusions, AreRefusedWhereTheyIntersectNestOrLieOutside) {
     return s;
   };
   const TemporaryFile outside("outside.off", off_text(test::sphere({0.2, 0, 0}, 0.01, 16)));
-  expect_refused(with(outside), "outside.off", "outside the skin", "unit");
+  expect_refused(with(outside), "skin.off", "outside the skin", "unit");
+  Settings isotropic = with(outside);
+  isotropic.method = MeshMethod::Isotropic;
   const TemporaryFile across("across.off", off_text(test::sphere({0, 0.02, 0.02}, 0.01, 16)));
-  expect_refused(with(across), "across.off", "intersects the skin", "move");
+  isotropic.inclusions = {{across.path(), 1, "nodule"}};
+  expect_refused(isotropic, "skin.off", "intersects the skin", "move");
 
-  const TemporaryFile inner("inner.off", off_text(test::sphere({0.025, 0.025, 0.025}, 0.005, 16)));
+  const TemporaryFile inner("inner.off", off_text(test::sphere({0.025, 0.025, 0.025}, 0.006, 16)));
   const TemporaryFile outer("outer.off", off_text(test::sphere({0.025, 0.025, 0.025}, 0.015, 16)));
-  const TemporaryFile beside("beside.off", off_text(test::sphere({0.03, 0.025, 0.025}, 0.005, 16)));
   Settings nested = with(outer);
+  nested.patch_spacing = nested.element_size = 0.006;
   nested.inclusions.push_back({inner.path(), 1, "core"});
-  expect_refused(nested, "outer.off", "contains", "nested inclusions");
-  Settings crossed = with(inner);
-  crossed.inclusions.push_back({beside.path(), 1, "core"});
-  expect_refused(crossed, "inner.off", "intersects", "apart");
+  nested.inclusions.push_back({across.path(), 1, "cut"});
+  const Body body = mesh(nested);
+  test::expect_sound(body);
+  EXPECT_EQ(body.region_names, (std::vector<std::string>{"matrix", "nodule", "core", "cut"}));
+  const double half = 2 * pi / 3 * 1e-6;  // the half of the last ball that is inside the skin
+  EXPECT_NEAR(test::volume_of_region(body, 3), half, 0.3 * half);
+  EXPECT_GT(test::volume_of_region(body, 1), test::volume_of_region(body, 2));
+  EXPECT_GT(test::volume_of_region(body, 2), 0);
 }
 
 }  // namespace
