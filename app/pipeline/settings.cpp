@@ -144,9 +144,9 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
 std::string stage_case(const Workspace& space, Stage stage) {
   switch (stage) {
     case Stage::Mesh:  // with the tool and its depth: the mesher checks the thickness of the body
-      return resolved_sections(space.c, {"", "surface", "volume_mesh", "mesh_region", "inclusion",
-                                         "layer", "mesh", "support", "press", "tool",
-                                         "indentation"}) +
+      return resolved_sections(space.c,
+                               {"", "surface", "volume_mesh", "mesh_region", "inclusion", "layer",
+                                "mesh", "support", "press", "tool", "indentation"}) +
              (space.c.sampling.method == SamplingMethod::Nodes ? "every surface node\n" : "");
     case Stage::Precompute:  // adaptive sampling judges fitted responses
       return is_adaptive(space)
