@@ -93,6 +93,7 @@ TEST(Remesh, RefusesPatchesCoarserThanTheDetail) {
                            }()));
   Settings s = settings_for(file.path());
   s.patch_spacing = s.element_size = 0.03;
+  s.method = MeshMethod::Isotropic;
   expect_refused(s, "shell.off", "remesh", "reduce the spacing");
 }
 
