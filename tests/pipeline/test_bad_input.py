@@ -74,7 +74,11 @@ class BadInput(unittest.TestCase):
         self.refuse(USAGE, ["none.toml", "cannot read"], "build", self.root / "none.toml", "--out", self.out)
 
     def test_case_file_is_empty(self):
-        self.refuse_case(USAGE, ["block.toml:1", "'surface' is missing"], case="")
+        self.refuse_case(USAGE, ["block.toml:1", "'support' is missing"], case="")
+
+    def test_case_has_no_body(self):
+        without = CASE[:CASE.index("[surface]")] + CASE[CASE.index("[mesh]"):]
+        self.refuse_case(USAGE, ["block.toml", "neither [surface] nor [volume_mesh]", "add [surface]"], without)
 
     def test_patches_as_large_as_the_body(self):
         case = CASE.replace('patch_spacing = "12.5 mm"', 'patch_spacing = "40 mm"')
@@ -96,7 +100,8 @@ class BadInput(unittest.TestCase):
         self.refuse_case(GEOMETRY, ["block.off", "self-intersection", "max_change"], surface=dented_block())
 
     def test_surface_has_a_wrong_unit(self):
-        self.refuse_case(GEOMETRY, ["block.off"], CASE.replace('unit = "mm"', 'unit = "um"'))
+        self.refuse_case(USAGE, ["block.off", "0.05 mm", "check the unit"], CASE.replace('unit = "mm"', 'unit = "um"'))
+        self.refuse_case(GEOMETRY, ["block.off", "outside", "likely"], CASE.replace('unit = "mm"', 'unit = "m"'))
 
     def test_unit_is_of_another_kind(self):
         self.refuse_case(USAGE, ["block.toml:9", "patch_spacing", "10 kPa", "mm"],
