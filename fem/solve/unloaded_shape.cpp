@@ -23,6 +23,7 @@ namespace {
 constexpr double kTolerance = 1e-6;  ///< distance over the largest displacement
 constexpr double kRounding = 1e-12;  ///< distance over the extent of the body
 constexpr int kIterations = 60;
+constexpr int kMostEquilibria = 200;        ///< of all parts
 constexpr double kDivergence = 4;           ///< distance over the smallest so far
 constexpr double kSmallestPart = 1.0 / 64;  ///< of the weight, applied at once
 constexpr double kSmallestVolume = 0.05;    ///< of an element over its given volume
@@ -62,7 +63,7 @@ class UnloadedShape {
       X_ = X;
       u_ = u;
       part *= 0.5;
-      if (part < kSmallestPart) refuse_shape(carried);
+      if (part < kSmallestPart || iterations_ > kMostEquilibria) refuse_shape(carried);
     }
     Body body = moved_body();
     for (const Edge& ends : edges_of(body.boundary)) add_curved_edge(ends, body);
@@ -93,12 +94,23 @@ class UnloadedShape {
                   std::to_string(kIterations) + " iterations");
   }
 
-  /// From the last displacement; from none where that is no good start.
+  /// From the last displacement; where that is no good start from none, in parts.
   bool equilibrate(const SolidModel& model, double part) {
     PartialWeight weight(model, permutation_);
     if (weight.equilibrate(part, u_) == PartialWeight::Outcome::Found) return true;
     u_.setZero();
-    return weight.equilibrate(part, u_) == PartialWeight::Outcome::Found;
+    double carried = 0, step = part;
+    while (carried < part) {
+      Displacement u = u_;
+      const double next = std::min(part, carried + step);
+      if (weight.equilibrate(next, u) == PartialWeight::Outcome::Found) {
+        u_.swap(u);
+        carried = next;
+      } else if ((step *= 0.5) < kSmallestPart * part) {
+        return false;
+      }
+    }
+    return true;
   }
 
   /// Moves X_ by d, or a part of it, so that no element is inverted; the deformed body moves to the
