@@ -4,16 +4,19 @@
 #include <algorithm>
 #include <utility>
 
+#include "format/to_index.hpp"
 #include "mesher/checks.hpp"
 #include "mesher/discretize.hpp"
 #include "mesher/geometry/quality.hpp"
 #include "mesher/geometry/text.hpp"
+#include "mesher/read/image/image_field.hpp"
 #include "mesher/read/mesh/read_volume_mesh.hpp"
 #include "mesher/read/read_surface.hpp"
 #include "mesher/response/cavities.hpp"
 #include "mesher/response/response.hpp"
 #include "mesher/skin/curved_skin.hpp"
 #include "mesher/support/supports.hpp"
+#include "mesher/volume/delaunay.hpp"
 #include "mesher/volume/discretization.hpp"
 
 namespace palpate::mesher {
@@ -95,11 +98,41 @@ Body body_of_volume_mesh(const Settings& settings) {
   return body_of(std::move(made), settings, {boundary, &sets});
 }
 
+/// The nodes of each region.
+NodeSets region_sets(const VolumeMesh& volume) {
+  NodeSets sets;
+  for (std::size_t t = 0; t < volume.tetrahedra.size(); ++t) {
+    auto& set = sets[volume.region_names[to_index(volume.region[t])]];
+    set.insert(set.end(), volume.tetrahedra[t].begin(), volume.tetrahedra[t].end());
+  }
+  return sets;
+}
+
+/// Delaunay refinement of the regions of a segmentation.
+Body body_of_image(const Settings& settings) {
+  const std::string where = settings.source().string();
+  const LabelField field = image_field(settings.image, settings.log);
+  DelaunaySettings delaunay;
+  delaunay.element_size = settings.element_size;
+  delaunay.interior_coarsening = settings.interior_coarsening;
+  delaunay.log = settings.log;
+  DelaunayReport report;
+  VolumeMesh volume = mesh_labels(field, delaunay, where, report);
+  check_elements(volume, where);
+  const double spacing = settings.all_nodes_are_sites ? 0 : settings.patch_spacing;
+  Discretization made = with_response(std::move(volume), spacing, settings.feature_angle, where);
+  check_sizes(settings, made.skin.boundary);
+  const Surface boundary = made.skin.boundary;
+  const NodeSets sets = region_sets(made.volume);
+  return body_of(std::move(made), settings, {boundary, &sets});
+}
+
 }  // namespace
 
 Body mesh(const Settings& settings) {
   check_settings(settings);
   if (!settings.volume_mesh.path.empty()) return body_of_volume_mesh(settings);
+  if (!settings.image.path.empty()) return body_of_image(settings);
   const Surface skin = read_surface(settings.surface, settings.log);
   const std::vector<Surface> inclusions = read_inclusions(settings);
   check_sizes(settings, skin);

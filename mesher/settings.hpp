@@ -48,6 +48,19 @@ struct VolumeMeshFile {
   std::vector<GroupRegion> regions;  ///< groups that are not listed are regions of their own name
 };
 
+/// The region of the voxels of a label.
+struct ImageLabel {
+  int value = 1;
+  std::string region;
+};
+
+/// A segmentation on disk (NIfTI, NRRD). Labels that are not listed are no part of the body.
+struct ImageFile {
+  std::filesystem::path path;
+  double unit = 0;  ///< m per unit of the header; 0: that which the header states
+  std::vector<ImageLabel> labels;
+};
+
 /// Contains the nodes on the side of the plane to which `normal` points.
 struct PlaneSupport {
   Vec3 point{};   ///< m
@@ -68,7 +81,7 @@ struct SurfaceSupport {
   double distance = 0;  ///< m
 };
 /// Contains the nodes on the faces of the skin that have this name in its file, or the nodes of the
-/// set of this name of a volume mesh.
+/// set of this name of a volume mesh, or of the region of this name of an image.
 struct LabelSupport {
   std::string label;
 };
@@ -105,6 +118,7 @@ struct Settings {
   std::vector<SurfaceFile> inclusions;     ///< closed surfaces; where they overlap, the last wins
   std::vector<LayerSettings> layers;       ///< outermost first; inclusions cut into them
   VolumeMeshFile volume_mesh;              ///< instead of a surface, where it has a path
+  ImageFile image;                         ///< instead of a surface, where it has a path
   std::vector<Zone> supports;              ///< surface nodes inside any of them are fixed
   std::vector<Springs> foundation;         ///< stiffnesses add where foundations overlap
   MeshMethod method = MeshMethod::Auto;
@@ -122,6 +136,7 @@ struct Settings {
 
   /// The file that the body is made of.
   const std::filesystem::path& source() const {
+    if (!image.path.empty()) return image.path;
     return volume_mesh.path.empty() ? surface.path : volume_mesh.path;
   }
 };

@@ -54,31 +54,51 @@ void check_region_of_inclusion(const mesher::SurfaceFile& inclusion, const std::
 
 /// Exactly one source of the body, and no section of another.
 void check_source(const Case& c, const SourceMap& sources) {
-  const bool has_surface = sources.has("surface"), has_mesh = sources.has("volume_mesh");
-  if (has_surface && has_mesh) {
-    refuse(sources.where("volume_mesh"), "both [surface] and [volume_mesh] are given",
+  std::vector<std::string> given;
+  for (const char* section : {"surface", "volume_mesh", "image"})
+    if (sources.has(section)) given.emplace_back(section);
+  if (given.size() > 1) {
+    refuse(sources.where(given[1]), fmt::format("both [{}] and [{}] are given", given[0], given[1]),
            "remove one of the two");
   }
-  if (!has_surface && !has_mesh) {
-    refuse(sources.where(""), "neither [surface] nor [volume_mesh] is given",
+  if (given.empty()) {
+    refuse(sources.where(""), "none of [surface], [volume_mesh] and [image] is given",
            "add [surface] with file and unit");
   }
-  if (has_mesh && !c.mesh.inclusions.empty()) {
-    refuse(sources.where("inclusion"), "[[inclusion]] with [volume_mesh]",
-           "name the groups of the mesh by [[mesh_region]]");
+  const auto belongs = [&](const char* list, bool is_empty, const char* section) {
+    if (is_empty || given[0] == section) return;
+    refuse(sources.where(list), fmt::format("[[{}]] with [{}]", list, given[0]),
+           fmt::format("it belongs to [{}]: remove it", section));
+  };
+  belongs("inclusion", c.mesh.inclusions.empty(), "surface");
+  belongs("layer", c.mesh.layers.empty(), "surface");
+  belongs("mesh_region", c.mesh.volume_mesh.regions.empty(), "volume_mesh");
+  belongs("image_label", c.mesh.image.labels.empty(), "image");
+  if (given[0] == "image" && c.mesh.image.labels.empty()) {
+    refuse(sources.where("image"), "[image] without [[image_label]]",
+           "name the region of each label: value and region");
   }
-  if (has_mesh && !c.mesh.layers.empty()) {
-    refuse(sources.where("layer"), "[[layer]] with [volume_mesh]",
-           "layers are offsets of a surface; name the groups of the mesh by [[mesh_region]]");
+}
+
+/// @throws Error for a repeated label.
+std::vector<std::string_view> regions_of_image(const Case& c, const SourceMap& sources) {
+  std::vector<std::string_view> regions;
+  std::set<int> values;
+  for (std::size_t i = 0; i < c.mesh.image.labels.size(); ++i) {
+    const auto& [value, region] = c.mesh.image.labels[i];
+    if (!values.insert(value).second) {
+      refuse(sources.where(prefix("image_label", i) + "value"),
+             fmt::format("the label {} for the second time", value), "remove one of the two");
+    }
+    if (std::find(regions.begin(), regions.end(), region) == regions.end())
+      regions.push_back(region);
   }
-  if (has_surface && !c.mesh.volume_mesh.regions.empty()) {
-    refuse(sources.where("mesh_region"), "[[mesh_region]] without [volume_mesh]",
-           "name the region of the surface by surface.region");
-  }
+  return regions;
 }
 
 /// Every region of the body, in the order of the case. @throws Error for a repeated name.
 std::vector<std::string_view> regions_of(const Case& c, const SourceMap& sources) {
+  if (!c.mesh.image.path.empty()) return regions_of_image(c, sources);
   std::vector<std::string_view> regions{c.mesh.surface.region_name};
   const auto add = [&](const std::string& region, const std::string& where) {
     if (std::find(regions.begin(), regions.end(), region) != regions.end()) {

@@ -150,6 +150,29 @@ void describe_volume_mesh(V& v, mesher::VolumeMeshFile& s) {
 }
 
 template <class V>
+void describe_image(V& v, mesher::ImageFile& s) {
+  describe_path(
+      v, s.path,
+      {"file", "segmentation (NIfTI .nii, .nii.gz, or NRRD), relative to the case", kRequired});
+  constexpr std::string_view of_header = "header";
+  Choices choices = unit_symbols(Dimension::Length);
+  choices.insert(choices.begin(), of_header);
+  std::string symbol(of_header);
+  for (const Unit& unit : units_of(Dimension::Length))
+    if (unit.si == s.unit) symbol = unit.symbol;
+  v.text(symbol, {"unit", "length unit of the header; `header`: that which it states"}, choices);
+  s.unit = 0;
+  for (const Unit& unit : units_of(Dimension::Length))
+    if (unit.symbol == symbol) s.unit = unit.si;
+}
+
+template <class V>
+void describe_image_label(V& v, mesher::ImageLabel& s) {
+  v.integer(s.value, {"value", "value of the voxels", kRequired, {.low = 1, .high = 2147483647}});
+  v.text(s.region, {"region", "name of the region of these voxels", kRequired});
+}
+
+template <class V>
 void describe_mesh_region(V& v, mesher::GroupRegion& s) {
   v.text(s.group, {"group", "physical group, element set or, for VTK, `array=value`", kRequired});
   v.text(s.region, {"region", "name of the region of its elements", kRequired});
@@ -227,7 +250,8 @@ void describe_support_shape(V& v, const std::string& shape, mesher::Support& whe
     v.text(alternative<mesher::LabelSupport>(where).label,
            {"label",
             "name of faces in the file of the surface (OBJ: a group `g`, an object `o` or a "
-            "material `usemtl`; STL: a solid; VTK: `array=value`), or of a set of a volume mesh",
+            "material `usemtl`; STL: a solid; VTK: `array=value`), of a set of a volume mesh, "
+            "or of a region of an image",
             kRequired});
   }
 }
@@ -548,26 +572,45 @@ void describe(V& v, OutputSection& s) {
                     "`out/<name>`"});
 }
 
+/// What the body is made of: one of three sections, and the lists that belong to it.
 template <class V>
-void describe(V& v, Case& c) {
-  v.text(c.name,
-         {"name", "name of the body and of its output folder; empty means that of the case file"});
-  const bool has_surface = c.mesh.volume_mesh.path.empty();
+void describe_source(V& v, mesher::Settings& mesh) {
+  const bool has_mesh = !mesh.volume_mesh.path.empty();
+  const bool has_image = !mesh.image.path.empty();
+  const bool has_surface = !has_mesh && !has_image;
   if (v.has_section("surface", has_surface)) {
-    v.section("surface", kOptional, "Outer surface of the body; this section or `[volume_mesh]`.",
-              [&](auto& in) { describe_surface(in, c.mesh.surface); });
+    v.section("surface", kOptional,
+              "Outer surface of the body; this section, `[volume_mesh]` or `[image]`.",
+              [&](auto& in) { describe_surface(in, mesh.surface); });
   }
-  if (v.has_section("volume_mesh", !has_surface)) {
+  if (v.has_section("volume_mesh", has_mesh)) {
     v.section("volume_mesh", kOptional,
               "Tetrahedra that are used as they are; the response surface is a coarsening of their "
               "boundary. Of `[mesh]` only `patch_spacing`, `feature_angle` and `curved_facets` "
               "apply.",
-              [&](auto& in) { describe_volume_mesh(in, c.mesh.volume_mesh); });
+              [&](auto& in) { describe_volume_mesh(in, mesh.volume_mesh); });
   }
-  v.sections("mesh_region", c.mesh.volume_mesh.regions, kOptional,
+  if (v.has_section("image", has_image)) {
+    v.section("image", kOptional,
+              "Segmentation that Delaunay refinement meshes; detail thinner than a voxel may be "
+              "missed.",
+              [&](auto& in) { describe_image(in, mesh.image); });
+  }
+  v.sections("image_label", mesh.image.labels, kOptional,
+             "Region of a label of the image. Repeat for each; voxels of other labels are no part "
+             "of the body.",
+             [](auto& in, auto& s) { describe_image_label(in, s); });
+  v.sections("mesh_region", mesh.volume_mesh.regions, kOptional,
              "Region of a group of the volume mesh. Repeat for each; a group that is not listed is "
              "a region of its own name, and elements without a group are the region `matrix`.",
              [](auto& in, auto& s) { describe_mesh_region(in, s); });
+}
+
+template <class V>
+void describe(V& v, Case& c) {
+  v.text(c.name,
+         {"name", "name of the body and of its output folder; empty means that of the case file"});
+  describe_source(v, c.mesh);
   v.sections("inclusion", c.mesh.inclusions, kOptional,
              "Region of another material inside the body. Repeat for each.",
              [](auto& in, auto& s) { describe_inclusion(in, s); });

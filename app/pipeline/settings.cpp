@@ -31,12 +31,14 @@ void add_input(const Workspace& space, const mesher::Zone& zone, std::vector<fs:
     inputs.push_back(space.case_folder / bone->surface.path);
 }
 
-/// The files of a volume mesh: TetGen has several.
+/// The file of the body, and those that belong to it: TetGen has several, a detached NRRD two.
 void add_inputs(const fs::path& path, std::vector<fs::path>& inputs) {
   inputs.push_back(path);
   const fs::path kind = path.extension();
-  if (kind != ".node" && kind != ".ele") return;
-  for (const char* sibling : {".node", ".ele", ".face"}) {
+  std::vector<const char*> siblings;
+  if (kind == ".node" || kind == ".ele") siblings = {".node", ".ele", ".face"};
+  if (kind == ".nhdr") siblings = {".raw", ".raw.gz"};
+  for (const char* sibling : siblings) {
     const fs::path other = fs::path(path).replace_extension(sibling);
     if (other != path && fs::exists(other)) inputs.push_back(other);
   }
@@ -69,6 +71,7 @@ mesher::Settings mesh_settings(const Workspace& space) {
   settings.surface = resolved(space, settings.surface);
   if (!settings.volume_mesh.path.empty())
     settings.volume_mesh.path = space.case_folder / settings.volume_mesh.path;
+  if (!settings.image.path.empty()) settings.image.path = space.case_folder / settings.image.path;
   for (mesher::Zone& zone : settings.press) zone = resolved(space, zone);
   for (mesher::SurfaceFile& inclusion : settings.inclusions) inclusion = resolved(space, inclusion);
   for (mesher::Springs support : c.supports) {
@@ -144,9 +147,9 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
 std::string stage_case(const Workspace& space, Stage stage) {
   switch (stage) {
     case Stage::Mesh:  // with the tool and its depth: the mesher checks the thickness of the body
-      return resolved_sections(space.c,
-                               {"", "surface", "volume_mesh", "mesh_region", "inclusion", "layer",
-                                "mesh", "support", "press", "tool", "indentation"}) +
+      return resolved_sections(space.c, {"", "surface", "volume_mesh", "mesh_region", "image",
+                                         "image_label", "inclusion", "layer", "mesh", "support",
+                                         "press", "tool", "indentation"}) +
              (space.c.sampling.method == SamplingMethod::Nodes ? "every surface node\n" : "");
     case Stage::Precompute:  // adaptive sampling judges fitted responses
       return is_adaptive(space)

@@ -75,6 +75,24 @@ TEST(VolumeMeshBody, QuadraticMeshesKeepTheirCurvedSkin) {
   EXPECT_TRUE(mesh(s).curved_edges.empty());
 }
 
+TEST(VolumeMeshBody, ASegmentationBecomesABodyOfItsRegions) {
+  Settings s;
+  s.image = {test::mesh_file("images/ball_sform.nii.gz"), 0, {{1, "soft"}, {5, "stiff"}}};
+  s.patch_spacing = 0.004;
+  s.element_size = 0.002;
+  s.tool_radius = 0.001;
+  s.supports = {PlaneSupport{{0, 0, 0.0155}, {0, 0, -1}}};
+  const Body body = mesh(s);
+  test::expect_sound(body);
+  ASSERT_EQ(body.region_names.size(), 2U);
+  // 246 and 17 voxels of 7.5 mm^3; the smoothing takes the corners of the steps off.
+  EXPECT_NEAR(test::volume_of_region(body, -1), 263 * 7.5e-9, 0.1 * 263 * 7.5e-9);
+  Settings by_label = s;
+  by_label.supports = {LabelSupport{"soft"}};
+  by_label.press = {};
+  test::expect_refusal([&] { mesh(by_label); }, "ball_sform", "", "");
+}
+
 TEST(VolumeMeshBody, NamesTheSetsWhereALabelIsUnknown) {
   Settings s = settings_of("gmsh/body_41.msh");
   s.supports = {LabelSupport{"bone"}};

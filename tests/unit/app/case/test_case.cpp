@@ -77,14 +77,37 @@ TEST(Case, ReadsAVolumeMeshInThePlaceOfASurface) {
   EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
 }
 
+TEST(Case, ReadsAnImageAndItsLabels) {
+  const std::string labels =
+      "[[image_label]]\nvalue = 3\nregion = \"gel\"\n"
+      "[[image_label]]\nvalue = 8\nregion = \"nodule\"\n";
+  const auto with_image = [&](const std::string& more) {
+    return replaced(replaced(with_volume_mesh(),
+                             "[[mesh_region]]\ngroup = \"region=3\"\nregion = \"nodule\"\n", more),
+                    "[volume_mesh]\nfile = \"organ.msh\"\nunit = \"mm\"\n",
+                    "[image]\nfile = \"organ.nii.gz\"\n");
+  };
+  const Case c = parse_case(with_image(labels), "ball.toml");
+  EXPECT_EQ(c.mesh.source(), "organ.nii.gz");
+  EXPECT_EQ(c.mesh.image.unit, 0);
+  ASSERT_EQ(c.mesh.image.labels.size(), 2U);
+  EXPECT_EQ(c.mesh.image.labels[1].value, 8);
+  EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
+  EXPECT_THAT(message_of(with_image("")), HasSubstr("[image] without [[image_label]]"));
+  EXPECT_THAT(message_of(with_image(labels + "[[image_label]]\nvalue = 3\nregion = \"a\"\n")),
+              HasSubstr("the label 3 for the second time"));
+  EXPECT_THAT(message_of(with_image("[[image_label]]\nvalue = 8\nregion = \"nodule\"\n")),
+              HasSubstr("which no surface bounds"));
+}
+
 TEST(Case, TakesExactlyOneSourceOfTheBody) {
   const std::string mesh = "[volume_mesh]\nfile = \"a.msh\"\nunit = \"mm\"\n";
   EXPECT_THAT(message_of(std::string(kGood) + mesh), HasSubstr("both [surface] and [volume_mesh]"));
   EXPECT_THAT(message_of(std::string(kGood) + "[[mesh_region]]\ngroup = \"a\"\nregion = \"b\"\n"),
-              HasSubstr("[[mesh_region]] without [volume_mesh]"));
+              HasSubstr("[[mesh_region]] with [surface]"));
   EXPECT_THAT(message_of(replaced(with_volume_mesh(),
                                   "[volume_mesh]\nfile = \"organ.msh\"\nunit = \"mm\"\n", "")),
-              HasSubstr("neither [surface] nor [volume_mesh]"));
+              HasSubstr("none of [surface], [volume_mesh] and [image]"));
   EXPECT_THAT(message_of(with_volume_mesh() +
                          "[[inclusion]]\nfile = \"a\"\nunit = \"m\"\nregion = \"b\"\n"),
               HasSubstr("[[inclusion]] with [volume_mesh]"));
