@@ -117,7 +117,7 @@ Eigen::Vector3d CampaignContext::rest_position(const Vec3& point) const {
 }
 
 Eigen::Vector3d CampaignContext::reference_position(const Vec3& point) const {
-  const Eigen::Vector3d x = to_eigen(point);
+  Eigen::Vector3d x = to_eigen(point);
   if (!unloaded) return x;
   const QuadraticMesh& mesh = model.mesh();
   return nearest_boundary_point(mesh, mesh.X + rest, x).value(mesh.X);

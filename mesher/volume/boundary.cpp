@@ -6,6 +6,7 @@
 #include <iterator>
 #include <numeric>
 #include <set>
+#include <tuple>
 #include <unordered_map>
 
 #include "format/edge.hpp"
@@ -99,12 +100,13 @@ Pinches pinches(const std::vector<Triangle>& closed_surface) {
   // the next around it.
   struct Step {
     std::int32_t point, from, to;
-    auto operator<=>(const Step&) const = default;
   };
   std::vector<Step> steps;
   for (const Triangle& t : closed_surface)
     for (std::size_t k = 0; k < 3; ++k) steps.push_back({t[k], t[(k + 1) % 3], t[(k + 2) % 3]});
-  std::sort(steps.begin(), steps.end());
+  std::sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {
+    return std::tie(a.point, a.from, a.to) < std::tie(b.point, b.from, b.to);
+  });
   Pinches found;
   std::set<Edge> crowded;
   for (std::size_t first = 0, end = 0; first < steps.size(); first = end) {

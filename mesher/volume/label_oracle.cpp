@@ -49,7 +49,7 @@ class LabelOracle final : public Oracle {
     double nearest = std::numeric_limits<double>::infinity();
     const double reach = norm(field_.box.high - field_.box.low);
     for (int n = 0; n < 27; ++n) {
-      const Vec3 direction{n % 3 - 1.0, n / 3 % 3 - 1.0, n / 9 - 1.0};
+      const Vec3 direction = towards_neighbour(n);
       if (n == 13) continue;  // no direction
       const double way = std::min(reach, nearest);
       const auto met = crossing(x, x + (way / norm(direction)) * direction);

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "mesher/geometry/cgal_mesh.hpp"
+#include "mesher/volume/samples.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -70,7 +71,7 @@ class OracleDomain {
     box_ = CGAL::Bbox_3(low[0], low[1], low[2], high[0], high[1], high[2]);
   }
 
-  struct Construct_initial_points {
+  struct InitialPoints {
     const OracleDomain& domain;
     template <typename Out>
     Out operator()(Out out, int = 0) const {
@@ -85,7 +86,7 @@ class OracleDomain {
       return out;
     }
   };
-  struct Is_in_subdomain {
+  struct IsInSubdomain {
     const OracleDomain& domain;
     Subdomain operator()(const Point_3& point) const {
       domain.budget_.spend();
@@ -93,7 +94,7 @@ class OracleDomain {
       return region == kVoid ? Subdomain() : Subdomain(region + 1);
     }
   };
-  struct Construct_intersection {
+  struct Intersect {
     const OracleDomain& domain;
     Intersection operator()(const Segment_3& s) const { return along(s.source(), s.target()); }
     Intersection operator()(const Ray_3& ray) const { return clipped(ray); }
@@ -114,6 +115,10 @@ class OracleDomain {
     }
   };
 
+  // The names that CGAL asks a domain for [CGAL 5.5, concept MeshDomain_3].
+  using Construct_initial_points = InitialPoints;
+  using Is_in_subdomain = IsInSubdomain;
+  using Construct_intersection = Intersect;
   Construct_initial_points construct_initial_points_object() const { return {*this}; }
   Is_in_subdomain is_in_domain_object() const { return {*this}; }
   Construct_intersection construct_intersection_object() const { return {*this}; }
@@ -135,7 +140,7 @@ class OracleDomain {
     const double reach = 1.5 * norm(box.high - box.low);
     std::vector<Vec3> points;
     for (int n = 0; n < 27; ++n) {
-      const Vec3 direction{n % 3 - 1.0, n / 3 % 3 - 1.0, n / 9 - 1.0};
+      const Vec3 direction = towards_neighbour(n);
       const double length = norm(direction);
       if (length == 0 || (length > 1.2 && length < 1.6)) continue;  // the middle, and edges
       points.push_back(middle + (reach * (1 + 0.01 * std::sin(n)) / length) * direction);

@@ -101,4 +101,9 @@ std::vector<Sample> thinned(const std::vector<Sample>& samples, const SizeField&
   return kept;
 }
 
+Vec3 towards_neighbour(int n) {
+  const int i = n % 3, j = n / 3 % 3, k = n / 9;
+  return {i - 1.0, j - 1.0, k - 1.0};
+}
+
 }  // namespace palpate::mesher

@@ -24,4 +24,7 @@ std::vector<std::size_t> thinned(const std::vector<Vec3>& points, const SizeFiel
 /// The same for samples.
 std::vector<Sample> thinned(const std::vector<Sample>& samples, const SizeField& spacing);
 
+/// From the middle of a cube of 3 x 3 x 3 cells to the middle of cell n, in cells; zero for n = 13.
+Vec3 towards_neighbour(int n);
+
 }  // namespace palpate::mesher

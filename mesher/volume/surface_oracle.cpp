@@ -199,8 +199,8 @@ class SurfaceOracle final : public Oracle {
     const Vec3 span = around.high - around.low;
     std::size_t inside = 0, solid = 0;
     for (int n = 0; n < kLattice * kLattice * kLattice; ++n) {
-      const Vec3 place{(n % kLattice + 0.5) / kLattice, (n / kLattice % kLattice + 0.5) / kLattice,
-                       (n / kLattice / kLattice + 0.5) / kLattice};
+      const int i = n % kLattice, j = n / kLattice % kLattice, k = n / (kLattice * kLattice);
+      const Vec3 place{(i + 0.5) / kLattice, (j + 0.5) / kLattice, (k + 0.5) / kLattice};
       const int owner =
           owner_at(around.low + Vec3{place[0] * span[0], place[1] * span[1], place[2] * span[2]});
       if (owner == kOutside) continue;

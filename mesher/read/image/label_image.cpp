@@ -18,7 +18,8 @@ constexpr std::size_t kNiftiHeader = 348;
 
 /// The bytes of a file of NIfTI, decompressed as far as its header announces.
 std::string nifti_bytes(const std::filesystem::path& path) {
-  const std::string bytes = read_bytes(path), where = path.string();
+  const std::string where = path.string();
+  std::string bytes = read_bytes(path);
   if (ending(path) != ".nii.gz") return bytes;
   const std::string header = inflate_exactly(bytes, kNiftiHeader + 4, where);
   return inflate_exactly(bytes, nifti_file_size(header, where), where);

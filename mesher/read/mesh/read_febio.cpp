@@ -60,7 +60,7 @@ class FebioReader {
   }
 
   std::string name_of(pugi::xml_node section) const {
-    const std::string name = section.attribute("name").value();
+    std::string name = section.attribute("name").value();
     if (name.empty()) xml_.refuse(section, text("a ", section.name(), " without a name"));
     return name;
   }

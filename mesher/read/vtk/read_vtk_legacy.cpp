@@ -107,13 +107,13 @@ class LegacyReader {
     } else if (keyword == "cells") {
       cells(0);
     } else if (keyword == "vertices" && is_surface_) {
-      cells(kVtkPolyVertex);
+      cells(VtkPolyVertex);
     } else if (keyword == "lines" && is_surface_) {
-      cells(kVtkPolyLine);
+      cells(VtkPolyLine);
     } else if (keyword == "polygons" && is_surface_) {
-      cells(kVtkPolygon);
+      cells(VtkPolygon);
     } else if (keyword == "triangle_strips" && is_surface_) {
-      cells(kVtkStrip);
+      cells(VtkStrip);
     } else if (keyword == "cell_types") {
       const std::size_t count = scanner_.count("the number of cell types", 1);
       for (const double type : numbers(kInt, count))

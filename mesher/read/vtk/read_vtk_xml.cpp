@@ -158,9 +158,9 @@ class XmlReader {
     };
     // In the order of the cell data.
     for (const Kind& kind :
-         {Kind{"NumberOfVerts", "Verts", kVtkPolyVertex},
-          Kind{"NumberOfLines", "Lines", kVtkPolyLine}, Kind{"NumberOfPolys", "Polys", kVtkPolygon},
-          Kind{"NumberOfStrips", "Strips", kVtkStrip}}) {
+         {Kind{"NumberOfVerts", "Verts", VtkPolyVertex},
+          Kind{"NumberOfLines", "Lines", VtkPolyLine}, Kind{"NumberOfPolys", "Polys", VtkPolygon},
+          Kind{"NumberOfStrips", "Strips", VtkStrip}}) {
       const std::size_t cells = count(piece, kind.count, 0);
       if (cells == 0) continue;
       add_connectivity(piece.child(kind.name), cells, first_point);

@@ -23,24 +23,24 @@ struct CellShape {
   std::size_t points;  ///< 0: any number
   const char* solid;   ///< name of a volume element, plural; null for others
 };
-constexpr std::array kCellShapes{CellShape{kVtkVertex, 1, nullptr},
-                                 CellShape{kVtkPolyVertex, 0, nullptr},
-                                 CellShape{kVtkLine, 2, nullptr},
-                                 CellShape{kVtkPolyLine, 0, nullptr},
-                                 CellShape{kVtkTriangle, 3, nullptr},
-                                 CellShape{kVtkStrip, 0, nullptr},
-                                 CellShape{kVtkPolygon, 0, nullptr},
-                                 CellShape{kVtkPixel, 4, nullptr},
-                                 CellShape{kVtkQuad, 4, nullptr},
-                                 CellShape{kVtkTetrahedron, 4, "tetrahedra"},
+constexpr std::array kCellShapes{CellShape{VtkVertex, 1, nullptr},
+                                 CellShape{VtkPolyVertex, 0, nullptr},
+                                 CellShape{VtkLine, 2, nullptr},
+                                 CellShape{VtkPolyLine, 0, nullptr},
+                                 CellShape{VtkTriangle, 3, nullptr},
+                                 CellShape{VtkStrip, 0, nullptr},
+                                 CellShape{VtkPolygon, 0, nullptr},
+                                 CellShape{VtkPixel, 4, nullptr},
+                                 CellShape{VtkQuad, 4, nullptr},
+                                 CellShape{VtkTetrahedron, 4, "tetrahedra"},
                                  CellShape{11, 8, "voxels"},
                                  CellShape{12, 8, "hexahedra"},
                                  CellShape{13, 6, "wedges"},
                                  CellShape{14, 5, "pyramids"},
-                                 CellShape{kVtkQuadraticEdge, 3, nullptr},
-                                 CellShape{kVtkQuadraticTriangle, 6, nullptr},
-                                 CellShape{kVtkQuadraticQuad, 8, nullptr},
-                                 CellShape{kVtkQuadraticTetrahedron, 10, "quadratic tetrahedra"},
+                                 CellShape{VtkQuadraticEdge, 3, nullptr},
+                                 CellShape{VtkQuadraticTriangle, 6, nullptr},
+                                 CellShape{VtkQuadraticQuad, 8, nullptr},
+                                 CellShape{VtkQuadraticTetrahedron, 10, "quadratic tetrahedra"},
                                  CellShape{25, 20, "quadratic hexahedra"},
                                  CellShape{26, 15, "quadratic wedges"},
                                  CellShape{27, 13, "quadratic pyramids"},
@@ -57,7 +57,7 @@ const CellShape* shape_of(int type) {
 }
 
 bool is_tetrahedron(int type) {
-  return type == kVtkTetrahedron || type == kVtkQuadraticTetrahedron;
+  return type == VtkTetrahedron || type == VtkQuadraticTetrahedron;
 }
 
 std::string label_of(const VtkArray& array, std::size_t row) {
@@ -147,7 +147,7 @@ void add_cell(MeshEntities& entities, const VtkData& data, std::size_t cell,
   ListedTetrahedron& t = entities.tetrahedra.emplace_back();
   for (std::size_t i = data.begin_of(cell); i < data.end_of(cell); ++i)
     t.nodes[i - data.begin_of(cell)] = static_cast<std::int32_t>(data.connectivity[i]);
-  t.quadratic = type == kVtkQuadraticTetrahedron;
+  t.quadratic = type == VtkQuadraticTetrahedron;
   t.number = static_cast<std::int64_t>(cell);
   t.region = entities.region(regions.at(cell));
 }
@@ -159,15 +159,15 @@ void add_polygons(Soup& soup, const VtkData& data, std::size_t cell, const Names
     corners.push_back(static_cast<std::size_t>(data.connectivity[i]));
   const std::size_t before = soup.polygons.size();
   const int type = data.types[cell];
-  if (type == kVtkStrip) {
+  if (type == VtkStrip) {
     for (std::size_t k = 0; k + 2 < corners.size(); ++k)
       soup.polygons.push_back({corners[k + k % 2], corners[k + 1 - k % 2], corners[k + 2]});
-  } else if (type == kVtkPixel) {
+  } else if (type == VtkPixel) {
     soup.polygons.push_back({corners[0], corners[1], corners[3], corners[2]});
-  } else if (type == kVtkQuadraticTriangle) {
+  } else if (type == VtkQuadraticTriangle) {
     corners.resize(3);
     soup.polygons.push_back(corners);
-  } else if (type == kVtkTriangle || type == kVtkPolygon || type == kVtkQuad) {
+  } else if (type == VtkTriangle || type == VtkPolygon || type == VtkQuad) {
     soup.polygons.push_back(corners);
   }
   const auto known = std::find(soup.known_names.begin(), soup.known_names.end(), names);

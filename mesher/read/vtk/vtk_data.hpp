@@ -41,20 +41,20 @@ struct VtkData {
 
 /// Cell types that palpate handles [VTK file formats, figure 2].
 enum VtkCell : int {
-  kVtkVertex = 1,
-  kVtkPolyVertex = 2,
-  kVtkLine = 3,
-  kVtkPolyLine = 4,
-  kVtkTriangle = 5,
-  kVtkStrip = 6,
-  kVtkPolygon = 7,
-  kVtkPixel = 8,
-  kVtkQuad = 9,
-  kVtkTetrahedron = 10,
-  kVtkQuadraticEdge = 21,
-  kVtkQuadraticTriangle = 22,
-  kVtkQuadraticQuad = 23,
-  kVtkQuadraticTetrahedron = 24
+  VtkVertex = 1,
+  VtkPolyVertex = 2,
+  VtkLine = 3,
+  VtkPolyLine = 4,
+  VtkTriangle = 5,
+  VtkStrip = 6,
+  VtkPolygon = 7,
+  VtkPixel = 8,
+  VtkQuad = 9,
+  VtkTetrahedron = 10,
+  VtkQuadraticEdge = 21,
+  VtkQuadraticTriangle = 22,
+  VtkQuadraticQuad = 23,
+  VtkQuadraticTetrahedron = 24
 };
 
 /// @throws Error(Geometry) where offsets do not ascend to the size of the connectivity, an index is

@@ -12,7 +12,7 @@ using test::expect_refusal;
 VtkData two_tetrahedra() {
   VtkData data;
   data.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};
-  data.types = {kVtkTetrahedron, kVtkTetrahedron, kVtkTriangle};
+  data.types = {VtkTetrahedron, VtkTetrahedron, VtkTriangle};
   data.offsets = {4, 8, 11};
   data.connectivity = {0, 1, 2, 3, 1, 2, 3, 4, 0, 1, 2};
   return data;
@@ -75,7 +75,7 @@ TEST(VtkData, RefusesCellsThatContradictThemselves) {
 TEST(VtkData, PolygonsAreNamedByTheirArrays) {
   VtkData data;
   data.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 0}};
-  data.types = {kVtkPolyLine, kVtkPolygon, kVtkStrip};
+  data.types = {VtkPolyLine, VtkPolygon, VtkStrip};
   data.offsets = {2, 5, 10};
   data.connectivity = {0, 1, 0, 1, 2, 0, 1, 2, 3, 4};
   data.cell_arrays = {{"side", 1, true, {0, 4, 5}}, {"held", 1, true, {0, 0, 1}}};
