@@ -12,6 +12,10 @@ if(PALPATE_SANITIZE)
   target_compile_options(palpate_options INTERFACE -fsanitize=${PALPATE_SANITIZE}
     -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(palpate_options INTERFACE -fsanitize=${PALPATE_SANITIZE})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    target_compile_options(palpate_options INTERFACE
+      -fsanitize-ignorelist=${PROJECT_SOURCE_DIR}/cmake/undefined_behaviour_ignorelist.txt)
+  endif()
 endif()
 
 # palpate_fuzzed(TARGET): counted by libFuzzer where that is to be had.
