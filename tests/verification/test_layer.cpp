@@ -18,7 +18,7 @@ constexpr double kYoung = 10e3, kRadius = 0.005;
 /// F/(2 E* a d) of a flat frictionless punch, by radius over thickness.
 double punch_factor(double poisson, double ratio, int rings) {
   const double h = kRadius / ratio, depth = 1e-4 * kRadius;
-  const Body body = test::make_round_layer({kRadius, rings, 2, h, kRadius + 5 * h});
+  const Body body = test::make_round_layer({kRadius, rings, 2, h, kRadius + 3.5 * h});
   const test::Pressed pressed =
       test::press(body, kYoung, poisson, {ToolShape::Disc, kRadius, 1e-3 * kRadius, 0}, depth, 1);
   const double plane = kYoung / (1 - poisson * poisson);

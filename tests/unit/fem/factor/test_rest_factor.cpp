@@ -97,7 +97,7 @@ TEST(RestFactor, RefusesAnIndefiniteMatrixAndTooLittleMemory) {
   Assembled a;
   const SparsePattern& pattern = a.model.pattern();
   const std::vector<int> order = nested_dissection(pattern);
-  EXPECT_THROW(RestFactor(pattern, order, a.K, "block", 1.0), Error);  // one byte
+  EXPECT_THROW(RestFactor(pattern, order, a.K, "block", {.memory = 1}), Error);  // one byte
   a.K[to_index(pattern.start[5])] = -1;
   EXPECT_THROW(RestFactor(pattern, order, a.K, "block"), Error);
 }
@@ -106,10 +106,10 @@ TEST(FactorCache, ScalesTheFactorOfAMultipleAndReplacesThatOfAnotherMatrix) {
   Assembled a;
   const SparsePattern& pattern = a.model.pattern();
   FactorCache cache;
-  cache.factor_of(pattern, a.K, "block", 0, 1);
+  cache.factor_of(pattern, a.K, "block", {});
   std::vector<double> stiffer = a.K;
   for (double& value : stiffer) value *= 3;
-  const auto factor = cache.factor_of(pattern, stiffer, "block", 0, 1);
+  const auto factor = cache.factor_of(pattern, stiffer, "block", {});
   EXPECT_EQ(cache.factorizations(), 1);
   SolveBatch batch(*factor, 1);
   SolveBatch::Member member(batch);
@@ -118,7 +118,7 @@ TEST(FactorCache, ScalesTheFactorOfAMultipleAndReplacesThatOfAnotherMatrix) {
   const Eigen::VectorXd expected = a.dense.ldlt().solve(a.b) / 3;
   EXPECT_LT((x - expected).norm(), 1e-3 * expected.norm());
   stiffer[to_index(pattern.start[5])] *= 2;
-  cache.factor_of(pattern, stiffer, "block", 0, 1);
+  cache.factor_of(pattern, stiffer, "block", {});
   EXPECT_EQ(cache.factorizations(), 2);
 }
 

@@ -39,8 +39,8 @@ struct PressedBody {
   }
 
   Body body =
-      test::make_block(test::graded(0.02, 0.005, 0.0025, 1.6),
-                       test::graded(0.02, 0.005, 0.0025, 1.6), {-0.02, -0.012, -0.006, -0.0025, 0});
+      test::make_block(test::graded(0.016, 0.005, 0.0025, 1.8),
+                       test::graded(0.016, 0.005, 0.0025, 1.8), {-0.016, -0.007, -0.0025, 0});
   SolidModel whole{body, {NeoHookean::from_young_poisson(kYoung, 0.45, "t")}};
   SolidModel window;
   ToolContact contact{

@@ -86,7 +86,7 @@ TEST(CertifyOnRuntime, EnergyFallsAlongEverySlideOfACertifiedTriangle) {
   std::uniform_real_distribution<double> u(0, 1);
   int certified = 0;
   int checked = 0;
-  for (const double spread : {0.02, 0.1, 0.3}) {
+  for (const double spread : {0.02, 0.1}) {
     const Library library = certified_sphere(engine, spread);
     const runtime::Surface surface(library);
     for (std::int32_t m = 0; m < surface.element_count(); ++m) {
