@@ -104,11 +104,10 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
   if (engine == Engine::Direct) return;
   std::vector<double> K;
   model.stiffness(rest, K);
-  rest_factor =
-      cache != nullptr
-          ? cache->factor_of(model.pattern(), K, body.name, settings.memory, settings.threads)
-          : std::make_shared<RestFactor>(model.pattern(), permutation, K, body.name,
-                                         settings.memory, settings.threads);
+  const FactorResources resources{settings.memory, settings.threads};
+  rest_factor = cache != nullptr ? cache->factor_of(model.pattern(), K, body.name, resources)
+                                 : std::make_shared<RestFactor>(model.pattern(), permutation, K,
+                                                                body.name, resources);
 }
 
 Eigen::Vector3d CampaignContext::rest_position(const Vec3& point) const {

@@ -124,8 +124,8 @@ int threads_that_fit(double bound, int wanted, Bytes&& bytes) {
 }  // namespace
 
 RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
-                       const std::vector<double>& values, const std::string& owner, double memory,
-                       int threads)
+                       const std::vector<double>& values, const std::string& owner,
+                       const FactorResources& resources)
     : n_(pattern.n) {
   const Cholesky analysis(pattern, &permutation);
   const SupernodalView view = analysis.view();
@@ -141,7 +141,8 @@ RestFactor::RestFactor(const SparsePattern& pattern, const std::vector<int>& per
   }
   const Multifrontal fronts(pattern, view);
   const double own = static_cast<double>(total) * sizeof(float);
-  threads = threads_that_fit(memory, threads, [&](int t) { return own + fronts.working_bytes(t); });
+  const int threads = threads_that_fit(resources.memory, resources.threads,
+                                       [&](int t) { return own + fronts.working_bytes(t); });
   try {
     values_.resize(total);
     if (!fronts.factorize(values, threads, [&](int k, const double* x) { store(k, x); }))
@@ -227,8 +228,8 @@ const std::vector<int>& FactorCache::permutation(const SparsePattern& pattern) {
 
 std::shared_ptr<const RestFactor> FactorCache::factor_of(const SparsePattern& pattern,
                                                          const std::vector<double>& values,
-                                                         const std::string& owner, double memory,
-                                                         int threads) {
+                                                         const std::string& owner,
+                                                         const FactorResources& resources) {
   std::vector<double> diagonal = diagonal_of(pattern, values);
   if (factor_ && diagonal.size() == diagonal_.size()) {
     double least = std::numeric_limits<double>::infinity(), most = 0;
@@ -244,8 +245,7 @@ std::shared_ptr<const RestFactor> FactorCache::factor_of(const SparsePattern& pa
     }
   }
   factor_.reset();  // its memory is needed
-  factor_ =
-      std::make_shared<RestFactor>(pattern, permutation(pattern), values, owner, memory, threads);
+  factor_ = std::make_shared<RestFactor>(pattern, permutation(pattern), values, owner, resources);
   diagonal_ = std::move(diagonal);
   scale_ = 1;
   ++factorizations_;

@@ -21,6 +21,12 @@ namespace palpate::fem {
 /// Right-hand sides solved at once. Sixteen floats fill one AVX-512 register.
 inline constexpr int kBatch = 16;
 
+/// What a factorization may use.
+struct FactorResources {
+  double memory = 0;  ///< bytes that the process may hold; 0: no bound
+  int threads = 1;    ///< fewer where `memory` is short; the bits are the same
+};
+
 /// A supernodal Cholesky factor in single precision, laid out for solves with kBatch right-hand
 /// sides. The solve is a preconditioner: single precision costs no accuracy and halves the traffic,
 /// which dominates its time. Each right-hand side is one SIMD lane of every operation: its solution
@@ -28,13 +34,11 @@ inline constexpr int kBatch = 16;
 class RestFactor {
  public:
   /// @throws Error(Geometry) when the matrix is not positive definite; `owner` names the body.
-  /// @throws Error(Configuration) when the factorization needs more than `memory`, bytes; 0: no
-  /// bound.
+  /// @throws Error(Configuration) when the factorization needs more than the memory it may use.
   /// @throws Error(Internal) when memory runs out.
-  /// Uses up to `threads` threads, fewer where `memory` is short: the bits are the same.
   RestFactor(const SparsePattern& pattern, const std::vector<int>& permutation,
-             const std::vector<double>& values, const std::string& owner, double memory = 0,
-             int threads = 1);
+             const std::vector<double>& values, const std::string& owner,
+             const FactorResources& resources = {});
 
   /// Makes this the factor of `ratio` times the matrix, as when all laws become stiffer by that
   /// ratio. Not while solves run.
@@ -77,7 +81,8 @@ class FactorCache {
   /// @throws Error as RestFactor.
   std::shared_ptr<const RestFactor> factor_of(const SparsePattern& pattern,
                                               const std::vector<double>& values,
-                                              const std::string& owner, double memory, int threads);
+                                              const std::string& owner,
+                                              const FactorResources& resources);
   /// Computed by the first call.
   const std::vector<int>& permutation(const SparsePattern& pattern);
 
