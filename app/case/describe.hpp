@@ -138,7 +138,8 @@ template <class V>
 void describe_volume_mesh(V& v, mesher::VolumeMeshFile& s) {
   describe_path(v, s.path,
                 {"file",
-                 "tetrahedra, linear or quadratic (Gmsh .msh, VTK .vtu or .vtk, Abaqus or CalculiX "
+                 "tetrahedra, linear or quadratic (Gmsh .msh, MEDIT .mesh, VTK .vtu or .vtk, "
+                 "Abaqus or CalculiX "
                  ".inp, FEBio .feb, TetGen .node and .ele), relative to the case",
                  kRequired});
   describe_length_unit(v, s.unit,

@@ -13,6 +13,7 @@
 #include "mesher/read/body_size.hpp"
 #include "mesher/read/file/file.hpp"
 #include "mesher/read/mesh/mid_nodes.hpp"
+#include "mesher/read/mesh/separate_sheets.hpp"
 #include "mesher/volume/boundary.hpp"
 
 namespace palpate::mesher {
@@ -254,6 +255,7 @@ VolumeMesh assemble(MeshEntities entities, double unit, const std::string& where
   scale_to_metres(entities, unit, where, log);
   orient(entities, where, log);
   check_repetition(entities, where);
+  separate_sheets(entities, where, log);
   const std::vector<Triangle> boundary = checked_boundary(entities, where, log);
   VolumeMesh mesh;
   mesh.curved_edges = curved_boundary_edges(entities, boundary, where, log);

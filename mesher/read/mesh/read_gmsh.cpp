@@ -3,6 +3,7 @@
 #include "mesher/read/mesh/read_gmsh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <utility>
@@ -27,7 +28,7 @@ class Values {
     version_ = fields.real("the version of the format");
     is_binary_ = fields.integer("0 (text) or 1 (binary)") != 0;
     const auto size = fields.integer("the size of a number");
-    if (version_ != 2.2 && version_ != 4.1) {
+    if (std::floor(version_) != 2 && version_ != 4.1) {
       scanner_.refuse(text("version ", version_, " of the MSH format"),
                       "save it as version 4.1 or 2.2 (gmsh -format msh41)");
     }
@@ -72,14 +73,19 @@ class GmshReader {
       : scanner_(bytes, file), values_(scanner_) {}
 
   MeshEntities read() {
-    if (scanner_.required_line("$MeshFormat") != "$MeshFormat") {
-      scanner_.refuse("the file does not begin with $MeshFormat", "export it as MSH by Gmsh");
+    const auto first = Fields(scanner_.required_line("$MeshFormat"), scanner_).next();
+    if (first == "$NOD") {
+      section(std::string(first));
+    } else if (first == "$MeshFormat") {
+      values_.read_format();
+      skip("$EndMeshFormat");
+    } else {
+      scanner_.refuse("the file begins with neither $MeshFormat nor $NOD",
+                      "export it as MSH by Gmsh");
     }
-    values_.read_format();
-    skip("$EndMeshFormat");
     while (const auto line = scanner_.line()) {
       if (line->empty() || line->front() != '$') continue;
-      section(std::string(*line));
+      section(std::string(Fields(*line, scanner_).next()));
     }
     return std::move(mesh_);
   }
@@ -96,10 +102,15 @@ class GmshReader {
       values_.is_version_4() ? nodes_4() : nodes_2();
     } else if (name == "$Elements") {
       values_.is_version_4() ? elements_4() : elements_2();
+    } else if (name == "$NOD") {
+      nodes_2();
+    } else if (name == "$ELM") {
+      elements_1();
     } else if (name == "$PartitionedEntities") {
       scanner_.refuse("the mesh is partitioned", "save it without partitions");
     }
-    skip("$End" + name.substr(1));
+    const bool is_version_1 = name == "$NOD" || name == "$ELM";
+    skip((is_version_1 ? "$END" : "$End") + name.substr(1));
   }
 
   void physical_names() {
@@ -181,6 +192,24 @@ class GmshReader {
                       "mesh the body with tetrahedra of the first or the second order");
     }
     return *found;
+  }
+
+  /// Version 1 [chapter 10 of the same manual]: "number type group entity count nodes...".
+  void elements_1() {
+    const std::size_t count = scanner_.count("the number of elements", 10);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::int64_t number = scanner_.integer("the number of an element");
+      const GmshType& type = type_of(scanner_.integer("the type of an element"));
+      const std::int64_t physical = std::abs(scanner_.integer("the number of a physical group"));
+      const std::int64_t entity = scanner_.integer("the number of an entity");
+      if (scanner_.integer("the number of nodes") != static_cast<std::int64_t>(type.nodes))
+        scanner_.refuse(text("element ", number, " has another number of nodes than its type"));
+      std::vector<std::int64_t> groups;
+      if (physical != 0) groups.push_back(physical);
+      for (std::size_t k = 0; k < type.nodes; ++k)
+        nodes_.push_back(node(scanner_.integer("a node of an element"), number));
+      add_element(type, number, group_of(type.dimension, entity, groups));
+    }
   }
 
   /// Text: "number type tags... nodes...". Binary: blocks of elements of one type.

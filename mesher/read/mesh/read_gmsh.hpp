@@ -8,7 +8,7 @@
 
 namespace palpate::mesher {
 
-/// Reads the MSH formats 2.2 and 4.1 of Gmsh, text or binary of either byte order.
+/// Reads the MSH formats 1, 2 and 4.1 of Gmsh, text or binary of either byte order.
 /// The region of a tetrahedron is its first physical group; without one it is "matrix". Other
 /// groups become sets of nodes: by the name of the physical group, else "physical surface 3", and
 /// "surface 3" for an entity of the geometry without a group.

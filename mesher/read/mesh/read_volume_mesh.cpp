@@ -11,6 +11,7 @@
 #include "mesher/read/mesh/read_abaqus.hpp"
 #include "mesher/read/mesh/read_febio.hpp"
 #include "mesher/read/mesh/read_gmsh.hpp"
+#include "mesher/read/mesh/read_medit.hpp"
 #include "mesher/read/mesh/read_tetgen.hpp"
 #include "mesher/read/vtk/read_vtk_legacy.hpp"
 #include "mesher/read/vtk/read_vtk_xml.hpp"
@@ -27,6 +28,14 @@ MeshEntities read_tetgen_files(std::filesystem::path path) {
   return read_tetgen({nodes, node.string()}, {elements, ele.string()}, {faces, face.string()});
 }
 
+/// Some programs give files in XML the ending .vtk, as VTK itself reads them.
+MeshEntities read_vtk_entities(const VolumeMeshFile& file) {
+  const std::string where = file.path.string(), bytes = read_bytes(file.path);
+  const bool is_xml = bytes.starts_with("<?xml") || bytes.starts_with("<VTKFile");
+  return volume_entities(is_xml ? read_vtk_xml(bytes, where) : read_vtk_legacy(bytes, where),
+                         file.region_array, where);
+}
+
 MeshEntities read_entities(const VolumeMeshFile& file) {
   const std::string where = file.path.string(), kind = ending(file.path);
   check_readable(file.path);
@@ -34,12 +43,11 @@ MeshEntities read_entities(const VolumeMeshFile& file) {
   if (kind == ".msh") return read_gmsh(read_bytes(file.path), where);
   if (kind == ".inp") return read_abaqus(read_bytes(file.path), where);
   if (kind == ".feb") return read_febio(read_bytes(file.path), where);
-  if (kind == ".vtu")
-    return volume_entities(read_vtk_xml(read_bytes(file.path), where), file.region_array, where);
-  if (kind == ".vtk")
-    return volume_entities(read_vtk_legacy(read_bytes(file.path), where), file.region_array, where);
-  refuse_geometry(where, "unknown kind of volume mesh '" + kind + "'",
-                  "convert it to .msh, .vtu, .vtk, .inp, .feb or .node and .ele (meshio does)");
+  if (kind == ".mesh") return read_medit(read_bytes(file.path), where);
+  if (kind == ".vtu" || kind == ".vtk") return read_vtk_entities(file);
+  refuse_geometry(
+      where, "unknown kind of volume mesh '" + kind + "'",
+      "convert it to .msh, .mesh, .vtu, .vtk, .inp, .feb or .node and .ele (meshio does)");
 }
 
 /// Names of the regions that have elements, and of the other groups.

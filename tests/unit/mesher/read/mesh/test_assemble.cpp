@@ -108,20 +108,32 @@ TEST(Assemble, RefusesSeveralPartsAndSaysWhetherNodesCoincide) {
   refused(mesh, "2 parts", "merge the nodes of equal coordinates");
 }
 
-TEST(Assemble, RefusesABoundaryThatIsNoManifold) {
-  // A ring of tetrahedra around the axis 1-2 with a gap on each side of it.
+/// Tetrahedra around the axis 0-1 with a gap on each side of it, joined above and, if `below`,
+/// below.
+MeshEntities ring(bool below) {
   MeshEntities mesh;
   add_nodes(mesh, {{0, 0, 0}, {0, 0, 1}});
   for (int k = 0; k < 8; ++k) {
     const double angle = k * std::numbers::pi / 4;
     add_nodes(mesh, {{std::cos(angle), std::sin(angle), 0.5}});
   }
+  add_nodes(mesh, {{0, 0, 2}, {0, 0, -1}});
   for (const std::int32_t k : {0, 1, 4, 5}) add(mesh, {0, 1, 2 + k, 3 + k}, "a");
-  // Above, so that the two halves are one part.
-  add_nodes(mesh, {{0, 0, 2}});
-  refused(mesh, "2 parts");
   for (int k = 0; k < 8; ++k) add(mesh, {1, 2 + k, 2 + (k + 1) % 8, 10}, "a");
-  refused(mesh, "not manifold: sheets meet in 1 edge", "");
+  for (int k = 0; below && k < 8; ++k) add(mesh, {0, 2 + k, 2 + (k + 1) % 8, 11}, "a");
+  return mesh;
+}
+
+TEST(Assemble, RefusesABoundaryThatIsNoManifold) {
+  refused(ring(true), "not manifold: sheets meet in 1 edge", "");
+}
+
+TEST(Assemble, SeparatesElementsThatMeetInAnEdgeWhereTheyMeetNowhereElse) {
+  std::string log;
+  const VolumeMesh mesh =
+      assemble(ring(false), 0.01, "a.msh", [&](std::string_view line) { log += line; });
+  EXPECT_EQ(mesh.nodes.size(), 12U);  // 11 of the file
+  EXPECT_THAT(log, testing::HasSubstr("separated at 1 node, the first at (0, 0, 0) mm"));
 }
 
 }  // namespace

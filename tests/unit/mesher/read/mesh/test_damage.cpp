@@ -11,12 +11,14 @@ namespace palpate::mesher {
 namespace {
 
 /// A file of each format and encoding.
-const std::vector<std::string> kFiles{"gmsh/body_22.msh",
+const std::vector<std::string> kFiles{"gmsh/body_1.msh",
+                                      "gmsh/body_22.msh",
                                       "gmsh/body_22_binary.msh",
                                       "gmsh/body_41.msh",
                                       "gmsh/body_41_binary.msh",
                                       "gmsh/ball_22_binary.msh",
                                       "gmsh/ball.inp",
+                                      "gmsh/ball.mesh",
                                       "meshio/body.inp",
                                       "meshio/body.vtu",
                                       "vtk/body_ascii.vtu",

@@ -27,6 +27,18 @@ TEST(ReadGmsh, EveryVersionAndEncodingGivesTheMeshThatGmshStates) {
   }
 }
 
+TEST(ReadGmsh, ReadsVersion1) {
+  const VolumeMesh mesh = read_file("gmsh/body_1.msh");
+  test::expect_body(mesh, "physical volume 11", "physical volume 12", "physical volume 13");
+  EXPECT_EQ(mesh.node_sets.at("physical surface 21").size(), 43U);
+}
+
+TEST(ReadGmsh, TakesEveryVersion2AndBlanksBehindKeywords) {
+  const std::string bytes = "$MeshFormat \n2 0 8\n$EndMeshFormat\n" + kNodes +
+                            "$Elements\n1\n1 4 2 5 1 1 2 3 7\n$EndElements\n";
+  EXPECT_EQ(read_gmsh(bytes, "a.msh").tetrahedra.size(), 1U);
+}
+
 TEST(ReadGmsh, TheMiddlesOfCurvedEdgesLieOnTheBall) {
   for (const char* name : {"gmsh/ball_41.msh", "gmsh/ball_22_binary.msh"}) {
     SCOPED_TRACE(name);
@@ -67,7 +79,7 @@ TEST(ReadGmsh, NamesTheLineOfAFault) {
                           const std::string& problem) {
     expect_refusal([&] { read_gmsh(bytes, "a.msh"); }, where, problem);
   };
-  refused("solid\n", "a.msh:1", "does not begin with $MeshFormat");
+  refused("solid\n", "a.msh:1", "neither $MeshFormat nor $NOD");
   refused("$MeshFormat\n4.0 0 8\n", "a.msh:2", "version 4 of the MSH format");
   refused(kHead + "$Nodes\n1000000000000000000\n", "a.msh:5", "more than the");
   refused(kHead + "$Nodes\n2\n1 0 0 0\n1 1 0 0\n$EndNodes\n", "a.msh:7", "listed twice");
