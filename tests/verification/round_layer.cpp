@@ -63,7 +63,7 @@ Body make_round_layer(const RoundLayer& layer) {
 }
 
 Pressed press(const Body& body, double young, double poisson, const fem::ToolGeometry& tool,
-              double depth, int increments) {
+              double depth, int increments, fem::Engine engine) {
   fem::CampaignSettings s;
   s.materials = {{"tissue", {young, poisson}}};
   s.indentation.tool = tool;
@@ -72,7 +72,7 @@ Pressed press(const Body& body, double young, double poisson, const fem::ToolGeo
   s.indentation.lateral_depths.clear();
   s.indentation.lateral_travel = 0;
   s.indentation.force_tolerance = 3e-5;
-  const fem::CampaignContext context(body, s, fem::Engine::SharedFactor);
+  const fem::CampaignContext context(body, s, engine);
   Pressed pressed{fem::solve_site(context, 0, nullptr), context.model.mesh().nodes()};
   EXPECT_EQ(pressed.curves.status, SiteStatus::Complete) << pressed.curves.reason;
   return pressed;

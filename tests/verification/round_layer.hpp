@@ -27,6 +27,6 @@ struct Pressed {
   double force() const { return -curves.paths.front().samples.back().force[2]; }  ///< N
 };
 Pressed press(const Body& body, double young, double poisson, const fem::ToolGeometry& tool,
-              double depth, int increments);
+              double depth, int increments, fem::Engine engine = fem::Engine::SharedFactor);
 
 }  // namespace palpate::test
