@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Make the surfaces in data/bodies: cylinder.off, organ.off, nodule.off, pad.off (millimetres).
+"""Make the surfaces in data/bodies: cylinder.off, organ.off, nodule.off, liver-nodule.off, pad.off
+(millimetres).
 
 Only the Python standard library; the same files come out on every machine up to the last printed
 digit. Run from anywhere: scripts/make_bodies.py [folder]
@@ -9,6 +10,11 @@ digit. Run from anywhere: scripts/make_bodies.py [folder]
 import math
 import pathlib
 import sys
+
+
+# Centre of the nodule in data/bodies/sofa/liver.obj, mm: 15 mm below the anterior surface of the
+# right lobe, along the normal at (-70, -100.4, 1510) mm.
+LIVER_NODULE = (-65.6, -86.4, 1506.7)
 
 
 def write_off(path, comment, points, triangles, digits=3):
@@ -164,13 +170,17 @@ def outward_normal(x, h=1e-4):
     return [g / size for g in gradient]
 
 
+def ball(centre, radius, frequency):
+    sphere, triangles = geodesic_sphere(frequency)
+    return [tuple(centre[k] + radius * p[k] for k in range(3)) for p in sphere], triangles
+
+
 def nodule(radius, cover, frequency):
     """Sphere whose top lies `cover` below the upper surface of the right lobe."""
     top = on_organ((-36, 16, 48))
     normal = outward_normal(top)
     centre = [top[k] - (cover + radius) * normal[k] for k in range(3)]
-    sphere, triangles = geodesic_sphere(frequency)
-    return [tuple(centre[k] + radius * p[k] for k in range(3)) for p in sphere], triangles, top
+    return *ball(centre, radius, frequency), top
 
 
 def box(size, divisions):
@@ -212,6 +222,8 @@ def main():
     write_off(folder / "organ.off", note, points, triangles)
     points, triangles, top = nodule(radius=11, cover=6, frequency=8)
     write_off(folder / "nodule.off", note, points, triangles, digits=4)
+    points, triangles = ball(LIVER_NODULE, radius=10, frequency=8)
+    write_off(folder / "liver-nodule.off", note, points, triangles, digits=4)
     points, triangles = box(size=(50, 50, 20), divisions=5)
     write_off(folder / "pad.off", note, points, triangles, digits=1)
     print("nodule lies under", ", ".join(f"{x:.1f}" for x in top), "mm")
