@@ -12,9 +12,9 @@ import pathlib
 import sys
 
 
-# Centre of the nodule in data/bodies/sofa/liver.obj, mm: 15 mm below the anterior surface of the
-# right lobe, along the normal at (-70, -100.4, 1510) mm.
-LIVER_NODULE = (-65.6, -86.4, 1506.7)
+# Centre of the nodule in data/bodies/sofa/liver.obj, mm: 16 mm below the anterior surface of the
+# right lobe, along the normal at (-75, -96.1, 1520) mm.
+LIVER_NODULE = (-70.6, -81.3, 1515.9)
 
 
 def write_off(path, comment, points, triangles, digits=3):
@@ -222,7 +222,7 @@ def main():
     write_off(folder / "organ.off", note, points, triangles)
     points, triangles, top = nodule(radius=11, cover=6, frequency=8)
     write_off(folder / "nodule.off", note, points, triangles, digits=4)
-    points, triangles = ball(LIVER_NODULE, radius=10, frequency=8)
+    points, triangles = ball(LIVER_NODULE, radius=12, frequency=8)
     write_off(folder / "liver-nodule.off", note, points, triangles, digits=4)
     points, triangles = box(size=(50, 50, 20), divisions=5)
     write_off(folder / "pad.off", note, points, triangles, digits=1)
