@@ -43,6 +43,12 @@ struct CertifySection {
   std::vector<std::string> devices;  ///< relative to the folder of the case file
 };
 
+/// Where the slide of a scripted session leads.
+enum class SlidePath {
+  Longest,  ///< from the middle of the part with responses, where a straight line is longest
+  Between   ///< from one given point to another
+};
+
 /// A scripted session: press, slide, release. The hand pulls the device along its path through a
 /// spring and a damper.
 struct SimulateSection {
@@ -53,9 +59,12 @@ struct SimulateSection {
                                           .coulomb_friction = 0.01,
                                           .hand_stiffness = 300,
                                           .hand_damping = 8};
-  double press_depth = 0.003;   ///< m
-  double press_speed = 0.010;   ///< m/s
-  double slide_length = 0.040;  ///< m
+  double press_depth = 0.003;  ///< m
+  double press_speed = 0.010;  ///< m/s
+  SlidePath path = SlidePath::Longest;
+  double slide_length = 0.040;  ///< m, of the longest path
+  Vec3 from{};                  ///< m, of a path between two points
+  Vec3 to{};                    ///< m
   double slide_speed = 0.030;   ///< m/s
 };
 

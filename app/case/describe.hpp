@@ -513,6 +513,32 @@ void describe(V& v, CertifySection& s) {
   v.texts(s.devices, {"devices", "device profiles (TOML) to certify, relative to the case"});
 }
 
+inline constexpr std::array kSlidePaths{Named{SlidePath::Longest, "longest"},
+                                        Named{SlidePath::Between, "between"}};
+
+template <class V>
+void describe_slide(V& v, SimulateSection& s) {
+  v.quantity(s.slide_speed, Dimension::Speed,
+             {"slide_speed", "mean speed of the slide", kOptional, kPositive});
+  describe_choice(v, s.path,
+                  {"path",
+                   "`longest`: slides straight on from the middle of the part with responses; "
+                   "`between`: from one point to another"},
+                  kSlidePaths);
+  const std::string path(name_in(kSlidePaths, s.path));
+  if (v.when("path", path, "longest")) {
+    v.quantity(s.slide_length, Dimension::Length,
+               {"slide_length", "length of the slide; shorter where the surface ends", kOptional,
+                kPositive});
+  }
+  if (v.when("path", path, "between")) {
+    v.point(s.from, Dimension::Length,
+            {"from", "the slide starts in the triangle nearest to this point", kRequired});
+    v.point(s.to, Dimension::Length,
+            {"to", "the slide ends in the triangle nearest to this point", kRequired});
+  }
+}
+
 template <class V>
 void describe(V& v, SimulateSection& s) {
   v.quantity(s.rate, Dimension::Frequency,
@@ -534,11 +560,7 @@ void describe(V& v, SimulateSection& s) {
       {"press_depth", "depth of the path of the hand below the surface", kOptional, kPositive});
   v.quantity(s.press_speed, Dimension::Speed,
              {"press_speed", "mean speed of approach, press and release", kOptional, kPositive});
-  v.quantity(s.slide_length, Dimension::Length,
-             {"slide_length", "length of the slide; shorter where the surface ends", kOptional,
-              kPositive});
-  v.quantity(s.slide_speed, Dimension::Speed,
-             {"slide_speed", "mean speed of the slide", kOptional, kPositive});
+  describe_slide(v, s);
 }
 
 template <class V>

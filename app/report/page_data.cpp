@@ -7,6 +7,7 @@
 
 #include "app/report/embed.hpp"
 #include "app/report/figures.hpp"
+#include "app/report/inclusions.hpp"
 #include "app/report/surface_map.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
@@ -129,6 +130,18 @@ json surface_data(const Body& body, const Library& library) {
           {"point_natural", fraction_column(natural)},
           {"triangles", index_column(flat(body.response.triangles))},
           {"library_triangle", column(in_library)}};
+}
+
+json inclusion_data(const Body& body) {
+  json list = json::array();
+  for (const Inclusion& inclusion : inclusions(body)) {
+    std::vector<float> points;
+    for (const std::int32_t n : inclusion.node) append(points, body.nodes[to_index(n)]);
+    list.push_back({{"region", body.region_names[to_index(inclusion.region)]},
+                    {"points", column(points)},
+                    {"facets", index_column(flat(inclusion.facets))}});
+  }
+  return list;
 }
 
 /// Curves of all vertices in sequence, delimited by offsets.
@@ -267,6 +280,7 @@ json page_data(const ReportInput& input) {
           {"body", body_data(*input.body)},
           {"key", key_figures(input)},
           {"surface", surface_data(*input.body, library)},
+          {"inclusions", inclusion_data(*input.body)},
           {"vertices", vertex_data(input, peaks)},
           {"normal", response_columns(library, true)},
           {"lateral", response_columns(library, false)},

@@ -86,6 +86,9 @@ RecordedStep force_step(palpate_state* state, const runtime::SimulatedDevice& de
 
 HandPath hand_path_of(const Library& library, const SimulateSection& script) {
   constexpr double kPointSpacing = 0.0005;  // m
+  if (script.path == SlidePath::Between) {
+    return {script, path_between(library, script.from, script.to, kPointSpacing)};
+  }
   const std::size_t start = middle_triangle(library);
   return {script, straight_path(library, start, script.slide_length, kPointSpacing)};
 }

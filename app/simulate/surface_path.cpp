@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/simulate/surface_path.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -109,30 +111,71 @@ std::optional<Vec3> projected(const Vec3& direction, const Vec3& normal) {
   return unit(in_plane);
 }
 
+/// Points of a straight piece inside triangle m, at most `step` apart.
+void append_piece(std::vector<PathPoint>& path, const TouchableSurface& surface, std::size_t m,
+                  const Vec3& direction, double length, double step) {
+  const PathPoint start = path.back();
+  const int points = std::max(1, static_cast<int>(std::ceil(length / step)));
+  for (int i = 1; i <= points; ++i) {
+    const double along = length * i / points;
+    const Vec3 q = start.position + along * direction;
+    path.push_back({start.distance + along, q, surface.inward(m, q)});
+  }
+}
+
 std::vector<PathPoint> walk(const TouchableSurface& surface, std::size_t start, Vec3 direction,
                             double length, double step) {
   std::size_t m = start;
-  Vec3 p = surface.centroid(m);
-  std::vector<PathPoint> path{{0, p, surface.inward(m, p)}};
-  double walked = 0;
-  while (walked < length) {
+  const Vec3 middle = surface.centroid(m);
+  std::vector<PathPoint> path{{0, middle, surface.inward(m, middle)}};
+  while (path.back().distance < length) {
     const std::optional<Vec3> t = projected(direction, surface.normal(m));
     if (!t) break;
     direction = *t;
-    const Exit exit = exit_of(surface, m, p, direction);
-    const double part = std::min(exit.distance, length - walked);
-    const int points = std::max(1, static_cast<int>(std::ceil(part / step)));
-    for (int i = 1; i <= points; ++i) {
-      const Vec3 q = p + (part * i / points) * direction;
-      path.push_back({walked + part * i / points, q, surface.inward(m, q)});
-    }
-    p = path.back().position;
-    walked += part;
+    const Exit exit = exit_of(surface, m, path.back().position, direction);
+    const double part = std::min(exit.distance, length - path.back().distance);
+    append_piece(path, surface, m, direction, part, step);
     const std::int32_t next = surface.neighbour(m, exit.side);
     if (part < exit.distance || next == kNone) break;
     m = static_cast<std::size_t>(next);
   }
   return path;
+}
+
+[[noreturn]] void refuse_without_responses(const Library& library) {
+  throw Error(ErrorKind::Configuration, library.name, "no triangle of the library has responses",
+              "look at the failed sites with `palpate inspect`");
+}
+
+/// The triangle with responses whose middle is nearest to a point.
+std::size_t triangle_near(const Library& library, const TouchableSurface& surface,
+                          const Vec3& point, const char* key) {
+  const auto distance = [&](std::size_t m) { return norm(surface.centroid(m) - point); };
+  std::optional<std::size_t> nearest;
+  for (std::size_t m = 0; m < surface.size(); ++m) {
+    if (surface.touchable(m) && (!nearest || distance(m) < distance(*nearest))) nearest = m;
+  }
+  if (!nearest) refuse_without_responses(library);
+  double longest_edge = 0;
+  for (std::size_t side = 0; side < 3; ++side) {
+    const Vec3 edge = surface.corner(*nearest, (side + 1) % 3) - surface.corner(*nearest, side);
+    longest_edge = std::max(longest_edge, norm(edge));
+  }
+  if (distance(*nearest) > longest_edge) {
+    throw Error(ErrorKind::Configuration, fmt::format("simulate.{}", key),
+                fmt::format("the nearest triangle with responses is {:.3g} mm away",
+                            1e3 * distance(*nearest)),
+                "choose a point of the surface inside a press zone");
+  }
+  return *nearest;
+}
+
+[[noreturn]] void refuse_interrupted(const Vec3& end, const Vec3& to) {
+  throw Error(ErrorKind::Configuration, "simulate.path",
+              fmt::format("the surface with responses ends at ({:.4g}, {:.4g}, {:.4g}) mm, {:.3g} "
+                          "mm before the end of the slide",
+                          1e3 * end[0], 1e3 * end[1], 1e3 * end[2], 1e3 * norm(to - end)),
+              "choose two points without a hole, a support or a ridge between them");
 }
 
 }  // namespace
@@ -151,10 +194,7 @@ std::size_t middle_triangle(const Library& library) {
       front.push(m);
     }
   }
-  if (!middle) {
-    throw Error(ErrorKind::Configuration, library.name, "no triangle of the library has responses",
-                "look at the failed sites with `palpate inspect`");
-  }
+  if (!middle) refuse_without_responses(library);
   for (; !front.empty(); front.pop()) {
     const std::size_t m = front.front();
     if (rings[m] > rings[*middle]) middle = m;
@@ -185,6 +225,29 @@ std::vector<PathPoint> straight_path(const Library& library, std::size_t start, 
     }
   }
   return longest;
+}
+
+std::vector<PathPoint> path_between(const Library& library, const Vec3& from, const Vec3& to,
+                                    double step) {
+  const TouchableSurface surface(library);
+  std::size_t m = triangle_near(library, surface, from, "from");
+  const std::size_t last = triangle_near(library, surface, to, "to");
+  const Vec3 start = surface.centroid(m), end = surface.centroid(last);
+  std::vector<PathPoint> path{{0, start, surface.inward(m, start)}};
+  // A walk that crosses more triangles than there are goes to and fro.
+  for (std::size_t crossed = 0; m != last; ++crossed) {
+    const Vec3& p = path.back().position;
+    const std::optional<Vec3> direction = projected(unit(end - p), surface.normal(m));
+    if (!direction || crossed > surface.size()) refuse_interrupted(p, end);
+    const Exit exit = exit_of(surface, m, p, *direction);
+    append_piece(path, surface, m, *direction, exit.distance, step);
+    const std::int32_t next = surface.neighbour(m, exit.side);
+    if (next == kNone) refuse_interrupted(path.back().position, end);
+    m = static_cast<std::size_t>(next);
+  }
+  const Vec3 rest = end - path.back().position;
+  if (norm(rest) > 0) append_piece(path, surface, m, unit(rest), norm(rest), step);
+  return path;
 }
 
 PathPoint point_at(const std::vector<PathPoint>& path, double distance) {

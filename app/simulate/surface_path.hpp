@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The point of the press and the straight path along the surface of a scripted session.
+// The point of the press and the path along the surface of a scripted session.
 #pragma once
 
 #include <vector>
@@ -24,6 +24,13 @@ std::size_t middle_triangle(const Library& library);
 /// the one that leads farthest is taken, up to `length`. Points lie at most `step` apart.
 std::vector<PathPoint> straight_path(const Library& library, std::size_t start, double length,
                                      double step);
+
+/// Walk over the triangles that have responses, from the middle of the one nearest to `from` to the
+/// middle of the one nearest to `to`, aiming at it in each triangle. Points lie at most `step`
+/// apart. @throws Error(Configuration) when a point is farther from its triangle than the triangle
+/// is long, or the walk does not arrive.
+std::vector<PathPoint> path_between(const Library& library, const Vec3& from, const Vec3& to,
+                                    double step);
 
 /// The point at a distance from the start, between its neighbours; the ends beyond them.
 PathPoint point_at(const std::vector<PathPoint>& path, double distance);

@@ -33,7 +33,8 @@ export class BodyView {
     this.marked = [];
     this.discs = [];
     this.path = null;
-    this.show = { nodes: true, borders: true, path: true };
+    this.show = { nodes: true, borders: true, path: true, inclusions: true };
+    this.inclusions = [];  // Outlines
     this.canvas = el('canvas', { tabindex: '0', role: 'img', 'aria-label': 'The body in three dimensions. Arrow keys turn it.' });
     this.tip = el('div', { class: 'tip' });
     this.element = el('div', { class: 'stage' }, this.canvas, this.tip);
@@ -159,10 +160,30 @@ export class BodyView {
       project(points, i, spot, 0);
       return { x: spot[0], y: spot[1], seen: this.raster.sees(spot[0], spot[1], spot[2], bias) };
     };
+    if (this.show.inclusions) this.drawInclusions(context, project);
     if (this.show.nodes) this.drawNodes(context, place);
     if (this.show.path && this.path) this.drawPath(context, place);
     for (const mark of this.marked) this.drawMark(context, place, mark);
     this.drawDiscs(context, place);
+  }
+
+  /** Outlines of what lies inside, as if the body were of glass. */
+  drawInclusions(context, project) {
+    context.lineCap = 'butt';
+    for (const [style, width] of [['rgb(0 0 0 / 60%)', 3.4], ['#fff', 1.6]]) {
+      context.strokeStyle = style;
+      context.lineWidth = width * this.scale;
+      context.setLineDash([5 * this.scale, 4 * this.scale]);
+      for (const outline of this.inclusions) {
+        context.beginPath();
+        for (const loop of outline.loops(project)) {
+          loop.forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
+          context.closePath();
+        }
+        context.stroke();
+      }
+    }
+    context.setLineDash([]);
   }
 
   drawNodes(context, place) {

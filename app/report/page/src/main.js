@@ -24,7 +24,12 @@ addEventListener('unhandledrejection', count);
 
 const report = document.getElementById('report');
 
+// report.html?only=body shows one section without its controls, as a figure for a page or a slide.
+const only = new URLSearchParams(location.search).get('only');
+root.toggleAttribute('data-figure', only !== null);
+
 function place(name, make) {
+  if (only !== null && name !== only) return;
   try {
     report.append(make());
   } catch (error) {

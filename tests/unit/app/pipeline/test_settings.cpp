@@ -92,6 +92,9 @@ class SettingsText {
         c.sampling.max_sites, static_cast<int>(c.sampling.method));
     add(c.certify.friction, c.certify.devices.size());
     const SimulateSection& s = c.simulate;
+    add(static_cast<int>(s.path));
+    add(s.from);
+    add(s.to);
     add(s.rate, s.press_depth, s.press_speed, s.slide_length, s.slide_speed, s.device.mass,
         s.device.damping, s.device.coulomb_friction, s.device.hand_stiffness,
         s.device.hand_damping);

@@ -8,6 +8,7 @@ page shows with the same figures computed here from the embedded data.
 import base64
 import html.parser
 import json
+import math
 import pathlib
 import struct
 import subprocess
@@ -59,10 +60,10 @@ class Page(html.parser.HTMLParser):
                 self.by_id[name] = self.by_id.get(name, "") + data
 
 
-def browse(path, *options, budget=BUDGET):
+def browse(path, *options, budget=BUDGET, query=""):
     with tempfile.TemporaryDirectory() as profile:
         done = subprocess.run([BROWSER, *FLAGS, f"--virtual-time-budget={budget}", f"--user-data-dir={profile}",
-                               *options, path.as_uri()],
+                               *options, path.as_uri() + query],
                               capture_output=True, timeout=120, check=True)
     return done.stdout.decode()
 
@@ -97,6 +98,22 @@ def secant_stiffness(data, d):
         x, s = x[:i + 1] + [d], s[:i + 1] + [end]
         result.append(sum((q - p) * (u + v) / 2 for p, q, u, v in zip(x, x[1:], s, s[1:])) / d)
     return result
+
+
+def ball(radius, rings=24, sectors=48):
+    """An inclusion of the page: a sphere, its facets counter-clockwise from outside."""
+    points, facets = [], []
+    for i in range(rings + 1):
+        for j in range(sectors):
+            polar, azimuth = math.pi * i / rings, 2 * math.pi * j / sectors
+            points += [radius * math.sin(polar) * math.cos(azimuth), radius * math.sin(polar) * math.sin(azimuth),
+                       radius * math.cos(polar)]
+    for i in range(rings):
+        for j in range(sectors):
+            a, b = sectors * i + j, sectors * i + (j + 1) % sectors
+            facets += [a, a + sectors, b + sectors, a, b + sectors, b]
+    pack = lambda code, values: base64.b64encode(struct.pack(f"<{len(values)}{code}", *values)).decode()  # noqa: E731
+    return {"region": "<lump>", "points": {"f4": pack("f", points)}, "facets": {"i4": pack("i", facets)}}
 
 
 class ReportPage(unittest.TestCase):
@@ -288,6 +305,53 @@ class ReportPage(unittest.TestCase):
         self.assertGreater(said["stiffness"]["coloured"], 0.5 * said["stiffness"]["body"])
         self.assertIn(f"node {worst}", said["tip"], said)
         self.assertIn("normal: root mean square error 124\u00a0mN (2.86\u00a0JND), scatter 30.0\u00a0mN", said["tip"])
+
+    def test_an_inclusion_is_outlined(self):
+        """The outline of a sphere is a circle of its radius, however the body is turned."""
+        text = (self.path / "full.html").read_text()
+        self.assertEqual(text.count('"inclusions":[]'), 1)
+        act = """addEventListener('load', () => setTimeout(() => {
+          const canvas = document.querySelector('.stage canvas');
+          const pixels = () => canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data;
+          const shown = [...document.querySelectorAll('label')].find((l) => l.textContent === 'inclusions').firstChild;
+          const said = [];
+          for (const key of ['ArrowUp', 'ArrowLeft', 'ArrowLeft']) {
+            canvas.dispatchEvent(new KeyboardEvent('keydown', {key}));
+            const after = pixels();
+            shown.click();
+            const before = pixels();
+            shown.click();
+            const box = [canvas.width, canvas.height, 0, 0];
+            for (let i = 0; i < after.length; i += 4) {
+              if ([0, 1, 2].every((k) => after[i + k] === before[i + k])) continue;
+              const x = (i / 4) % canvas.width, y = Math.floor(i / 4 / canvas.width);
+              [box[0], box[1], box[2], box[3]] = [Math.min(box[0], x), Math.min(box[1], y), Math.max(box[2], x), Math.max(box[3], y)];
+            }
+            said.push([box[2] - box[0] + 1, box[3] - box[1] + 1]);
+          }
+          document.body.append(Object.assign(document.createElement('p'), {id: 'said', textContent: JSON.stringify(said)}));
+        }, 300));"""
+        width = {}
+        for radius in (0.006, 0.012):
+            changed = text.replace('"inclusions":[]', f'"inclusions":[{json.dumps(ball(radius))}]')
+            cut = changed.rindex("</body>")
+            acted = self.path / "included.html"
+            acted.write_text(f"{changed[:cut]}<script>{act}</script>{changed[cut:]}")
+            page = Page(browse(acted, "--dump-dom", "--window-size=1300,1200"))
+            self.assertEqual(page.root.get("data-errors"), "0")
+            self.assertIn("outline of <lump>, inside", page.text)
+            for across, down in json.loads(page.by_id["said"]):
+                self.assertAlmostEqual(across, down, delta=4)
+                width[radius] = across
+        line = 3.4  # pixels, the width of the stroke
+        self.assertAlmostEqual((width[0.012] - line) / (width[0.006] - line), 2, delta=0.1)
+
+    def test_a_section_alone_is_a_figure(self):
+        page = Page(browse(self.path / "full.html", "--dump-dom", query="?only=body"))
+        self.assertEqual(page.root.get("data-errors"), "0")
+        self.assertIn("body", page.by_id)
+        for name in ("fit", "session", "certificate", "record"):
+            self.assertNotIn(name, page.by_id)
 
     def test_what_is_missing_is_said(self):
         self.assertIn("No recording was given", self.bare.by_id["session"])

@@ -74,6 +74,16 @@ TEST_F(Session, FeelsThePlateWhereTheHandGoes) {
   EXPECT_GE(last.absorbed, 0);  // passive
 }
 
+TEST_F(Session, SlidesBetweenTheGivenPoints) {
+  script_.path = SlidePath::Between;
+  script_.from = {0.02, 0.03, 0};
+  script_.to = {0.08, 0.05, 0};
+  const auto steps = played();
+  const double tile = 0.01;  // m
+  EXPECT_NEAR(norm(steps.front().position - script_.from), 0, tile);
+  EXPECT_NEAR(norm(steps.back().position - script_.to), 0, tile);
+}
+
 TEST_F(Session, IsTheSameEveryTime) {
   const auto once = played(), twice = played();
   ASSERT_EQ(once.size(), twice.size());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The scripted session's way over the surface, on surfaces whose geodesics are known.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -127,6 +128,78 @@ TEST(SurfacePath, FollowsACurvedSurface) {
     EXPECT_GT(dot(point.inward, radial), std::cos(0.02));
     EXPECT_NEAR(norm(point.inward), 1, 1e-12);
   }
+}
+
+/// Middle of the lower triangle of the tile with a corner at (i, j) tiles.
+Vec3 middle_of_tile(int i, int j) {
+  return {(i + 2.0 / 3) * kTile, (j + 1.0 / 3) * kTile, 0};
+}
+
+TEST(PathBetween, JoinsTheTrianglesNearestToTwoPoints) {
+  const Library library = flat(9, 9);
+  const Vec3 from = middle_of_tile(1, 2), to = middle_of_tile(7, 5), off{0.001, -0.0005, 0.002};
+  const auto path = path_between(library, from + off, to + off, 0.001);
+  const Vec3 chord = to - from;
+  EXPECT_NEAR(norm(path.front().position - from), 0, 1e-12);
+  EXPECT_NEAR(norm(path.back().position - to), 0, 1e-12);
+  EXPECT_NEAR(path.back().distance, norm(chord), 1e-12);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    EXPECT_LE(norm(path[i].position - path[i - 1].position), 0.001 + 1e-12);
+    EXPECT_NEAR(norm(cross(path[i].position - from, chord)), 0, 1e-12);
+  }
+}
+
+TEST(PathBetween, OfATriangleAndItselfIsAPoint) {
+  const Library library = flat(3, 3);
+  const auto path = path_between(library, middle_of_tile(1, 1), middle_of_tile(1, 1), 0.001);
+  EXPECT_EQ(path.size(), 1u);
+}
+
+/// Around a cylinder the way is an arc, longer than the chord.
+TEST(PathBetween, FollowsACurvedSurface) {
+  const Library library = bent(20, 20);
+  const auto at = [](double x, double y) {
+    return Vec3{kRadius * std::sin(x / kRadius), y, kRadius * std::cos(x / kRadius)};
+  };
+  const double arc = 0.09;  // m, between middles of triangles at the same height
+  const double first = (4 + 2.0 / 3) * kTile, height = (10 + 1.0 / 3) * kTile;
+  const auto path = path_between(library, at(first, height), at(first + arc, height), 0.001);
+  EXPECT_NEAR(path.back().distance, arc, 0.01 * arc);
+  const double sagitta = kRadius * (1 - std::cos(kTile / 2 / kRadius));
+  for (const PathPoint& point : path) {
+    const double r = std::hypot(point.position[0], point.position[2]);
+    EXPECT_LE(r, kRadius + 1e-12);
+    EXPECT_GE(r, kRadius - sagitta - 1e-12);
+    EXPECT_NEAR(point.position[1], height, 0.1 * kTile);
+  }
+}
+
+void expect_refused(const Library& library, const Vec3& from, const Vec3& to, const char* where,
+                    const char* problem) {
+  try {
+    path_between(library, from, to, 0.001);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::Configuration);
+    EXPECT_EQ(error.where(), where);
+    EXPECT_THAT(error.problem(), testing::HasSubstr(problem));
+  }
+}
+
+TEST(PathBetween, RefusesAPointFarFromTheResponses) {
+  const Vec3 inside = middle_of_tile(1, 1), far = inside + Vec3{0, 0, 0.05};
+  expect_refused(flat(3, 3), far, inside, "simulate.from", "is 50 mm away");
+  expect_refused(flat(3, 3), inside, far, "simulate.to", "is 50 mm away");
+}
+
+TEST(PathBetween, RefusesToCrossAHole) {
+  Library library = flat(9, 3);
+  for (std::size_t v = 0; v < library.positions.size(); ++v) {
+    const double x = library.positions[v][0];
+    if (x > 0.039 && x < 0.051) library.responses[v].status = ResponseStatus::Hole;
+  }
+  expect_refused(library, middle_of_tile(1, 1), middle_of_tile(7, 1), "simulate.path",
+                 "ends at (30, ");
 }
 
 }  // namespace

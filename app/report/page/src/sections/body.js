@@ -5,6 +5,7 @@ import { cssGradient, roundTicks } from '../colormap.js';
 import { FIXED, HOLE, RESPONSE, SITE } from '../data.js';
 import { el, paragraph } from '../dom.js';
 import { Model } from '../model.js';
+import { Outline } from '../outline.js';
 import { secantStiffness, responseForce } from '../response.js';
 import { colour } from '../theme.js';
 import { errorOfVertices, errorsAt } from './comparison.js';
@@ -106,6 +107,7 @@ export function bodySection(data, nodes, curves) {
     describe: (found) => describe(data, found, depth),
   });
   view.path = data.session?.drawn ?? null;
+  view.inclusions = data.inclusions.map((inclusion) => new Outline(inclusion));
   const bar = new ColourBar();
   const depthText = el('output', {}), range = el('p', { class: 'note', id: 'field-range' });
   const depthControl = el('label', {}, 'Depth d', slider(top, depth, (e) => { depth = top * e.target.value; refresh(); }), depthText);
@@ -149,6 +151,7 @@ function controls(options, view, depthControl, choose) {
     depthControl,
     check('nodes', 'nodes'), check('patches', 'borders'),
     view.path ? check('contact path', 'path') : null,
+    view.inclusions.length ? check('inclusions', 'inclusions') : null,
     el('span', {},
       el('button', { type: 'button', 'aria-label': 'Zoom in', onclick: () => view.zoomBy(1.25) }, '+'), ' ',
       el('button', { type: 'button', 'aria-label': 'Zoom out', onclick: () => view.zoomBy(0.8) }, '\u2212'), ' ',
@@ -164,7 +167,8 @@ function keys(data) {
   const kinds = new Set(data.surface.facet_kind);
   return el('div', { class: 'keys' },
     kinds.has(FIXED) ? key('body-fixed', 'fixed by a support') : null,
-    kinds.has(1) ? key('body-hole', 'no response (at a hole or a support)') : null,
+    kinds.has(1) ? key('body-hole', 'no response (a hole, a support or outside the press zones)') : null,
+    data.inclusions.length ? el('span', {}, `dashed line: outline of ${data.inclusions.map((i) => i.region).join(', ')}, inside the body`) : null,
     data.session?.drawn ? el('span', {}, 'white line: path of the contact point') : null);
 }
 

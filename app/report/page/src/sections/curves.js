@@ -43,7 +43,7 @@ export class Curves {
     this.normal = curvePlot('Normal response: along the inward direction', 'Depth (mm)', 'Force (N)', 230);
     this.lateral = curvePlot('Lateral response: along the travel, at a lateral depth', 'Lateral deflection (mm)', 'Force (N)', 210);
     this.legend = el('div', {});
-    this.element = el('div', { id: 'curves' }, this.normal.element, this.lateral.element, this.legend,
+    this.element = el('div', { id: 'curves' }, this.normal.element, el('div', { class: 'lateral' }, this.lateral.element), this.legend,
       paragraph('Markers: computed states. Lines: the fitted, rendered response. Dashed: the depth of the picture.', 'note'),
       this.chooser());
     nodes.onChange(() => this.refresh());

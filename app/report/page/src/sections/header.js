@@ -44,7 +44,9 @@ function materialLines(data) {
   if (!step) return ['not recorded in the provenance'];
   return step.materials.map((pairs) => {
     const get = Object.fromEntries(pairs);
-    const rest = pairs.filter(([k]) => k !== 'region' && k !== 'law').map(([k, v]) => `${k} ${v}`);
+    // A density of 0 stands for that of [gravity].
+    const shown = ([k, v]) => k !== 'region' && k !== 'law' && !(k === 'density' && v.startsWith('0 '));
+    const rest = pairs.filter(shown).map(([k, v]) => `${k} ${v}`);
     return `${get.region ?? 'body'}: ${[get.law, ...rest].filter(Boolean).join(', ')}`;
   });
 }
