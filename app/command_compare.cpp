@@ -156,7 +156,7 @@ void add_compare_command(CLI::App& root, Action& action) {
   command->footer(
       "Examples:\n"
       "  palpate compare out/pad-measured/curves.h5 out/pad/curves.h5 --out out/pad\n"
-      "  palpate compare --fem data/cases/cylinder-demo.toml --out out/cylinder-demo");
+      "  palpate compare --fem data/cases/liver.toml --out out/liver");
   const auto options = std::make_shared<Options>();
   CLI::Option* reference = command->add_option("REFERENCE", options->reference,
                                                "curves.h5 or library.h5 taken as the reference");

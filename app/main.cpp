@@ -76,7 +76,7 @@ int parse_and_run(int count, char** arguments) {
   root.footer(
       "Exit codes: 0 success, 1 internal error, 2 usage or configuration, 3 unusable geometry,\n"
       "4 finished, but some sites are incomplete.\n"
-      "Example: palpate build data/cases/cylinder-demo.toml");
+      "Example: palpate build data/cases/liver.toml");
   root.set_version_flag("--version", creator_text());
   root.require_subcommand(1);
   Action action;

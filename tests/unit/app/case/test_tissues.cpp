@@ -52,6 +52,10 @@ double closed_form(const toml::table& t, double l) {
     const double mu = written(t, "mu_1"), a = written(t, "alpha_1");
     return 2 * mu / a * (std::pow(l, a - 1) - std::pow(l, -0.5 * a - 1));
   }
+  if (law == "neo-hookean") {
+    const double nu = written(t, "poisson");
+    return invariants(written(t, "young") / (4 * (1 + nu)), 0);  // C10 = mu/2
+  }
   if (law == "yeoh")
     return invariants(written(t, "C10") + 2 * written(t, "C20") * (I1 - 3) +
                           3 * written(t, "C30") * std::pow(I1 - 3, 2),

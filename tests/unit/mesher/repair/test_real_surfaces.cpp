@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Surfaces of other projects (tests/data/surfaces): broken ones are refused with the right reason,
-// clean ones become sound bodies.
+// Surfaces of other projects (tests/data/surfaces, data/bodies): broken ones are refused with the
+// right reason, clean ones become sound bodies.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,6 +20,8 @@ namespace {
 std::filesystem::path surface(const std::string& name) {
   return palpate::test::source_folder() / "tests/data/surfaces" / name;
 }
+
+constexpr const char* kLiver = "../../../data/bodies/sofa/liver.obj";
 
 struct Broken {
   std::string file;
@@ -107,7 +109,7 @@ TEST_P(CleanSurface, BecomesASoundBody) {
 
 INSTANTIATE_TEST_SUITE_P(
     Files, CleanSurface,
-    testing::Values(Clean{"sofa/liver2.obj", 0.1, 0.010, 0.005, 1.455, 2},
+    testing::Values(Clean{kLiver, 0.1, 0.010, 0.005, 1.455, 2},
                     Clean{"sofa/tongue.obj", 0.02, 0.006, 0.003, -0.058, 2},
                     Clean{"sofa/pelvis_f.obj", 0.1, 0.006, 0.003, -0.006, 0},
                     Clean{"trimesh/ball_a.off", 0.01, 0.010, 0.010, -0.055, 2},
