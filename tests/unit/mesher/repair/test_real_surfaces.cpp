@@ -88,7 +88,7 @@ struct Clean {
 };
 
 void PrintTo(const Clean& clean, std::ostream* out) {
-  *out << clean.file;
+  *out << std::filesystem::path(clean.file).filename().string();
 }
 
 class CleanSurface : public testing::TestWithParam<Clean> {};
