@@ -9,6 +9,7 @@
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 #include "mesher/geometry/quality.hpp"
+#include "mesher/volume/boundary.hpp"
 #include "mesher/volume/faults.hpp"
 #include "mesher/volume/interfaces.hpp"
 #include "mesher/volume/refine.hpp"
@@ -160,11 +161,13 @@ class Attempts {
 
   void take_apart(Candidate& c) {
     if (c.mesh.tetrahedra.empty()) return;
-    const auto set = connected_sets(c.mesh.tetrahedra);
+    const auto set = adjacency(c.mesh.tetrahedra).part;
     const double before = total_volume(c.mesh);
     keep_set(c.mesh, set, largest_set(c.mesh, set));
     report_.removed_fraction = 1 - total_volume(c.mesh) / before;
-    report_.split_nodes = split_nodes(c.mesh);
+    const auto origin = split_nodes(c.mesh.tetrahedra, c.mesh.nodes.size());
+    for (const std::int32_t v : origin) c.mesh.nodes.push_back(Vec3(c.mesh.nodes[to_index(v)]));
+    report_.split_nodes = origin.size();
   }
 
   void measure(Candidate& c) {
@@ -210,7 +213,7 @@ class Attempts {
                        " % of the body is connected to the rest by no facet, near ",
                        request_.place(c.faults.islands.front())));
     }
-    const auto pinched = non_manifold_nodes(boundary_facets(c.mesh.tetrahedra));
+    const auto pinched = pinches(adjacency(c.mesh.tetrahedra).boundary).nodes;
     if (!pinched.empty()) {
       refuse_mesh(text("the boundary of the mesh touches itself at ",
                        counted(pinched.size(), "node"), ", one of them at ",

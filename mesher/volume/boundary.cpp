@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <map>
 #include <numeric>
 #include <set>
 #include <tuple>
@@ -17,7 +18,7 @@ namespace {
 
 /// The sides of a positive tetrahedron, outward.
 constexpr std::array<std::array<std::size_t, 3>, 4> kSides{
-    {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
 
 class UnionFind {
  public:
@@ -81,6 +82,9 @@ Adjacency adjacency(const std::vector<Tetrahedron>& tetrahedra) {
                                   [&](const Side& side) { return side.sorted != first->sorted; });
     const auto count = end - first;
     if (count == 1) boundary.emplace_back(first->tetrahedron, first->outward);
+    if (count == 2) {
+      found.shared.push_back({first->sorted, {first->tetrahedron, std::next(first)->tetrahedron}});
+    }
     for (auto other = std::next(first); other != end; ++other)
       joined.join(to_index(first->tetrahedron), to_index(other->tetrahedron));
     const bool overlap =
@@ -126,10 +130,54 @@ Pinches pinches(const std::vector<Triangle>& closed_surface) {
     } while (at != steps[first].from && around < next.size());
     if (!is_crowded && around == next.size()) continue;
     if (!is_crowded) ++found.points;
-    if (found.first < 0) found.first = point;
+    found.nodes.push_back(point);
   }
   found.edges = crowded.size();
   return found;
+}
+
+namespace {
+
+/// The sets of tetrahedra around a node that are connected by faces with the node, as a root each.
+std::vector<std::size_t> sets_at(const std::vector<Tetrahedron>& tetrahedra, std::int32_t node,
+                                 const std::vector<std::size_t>& around) {
+  UnionFind joined(around.size());
+  std::map<Edge, std::size_t> first_at;  // by the other two nodes of the face
+  for (std::size_t i = 0; i < around.size(); ++i) {
+    const Tetrahedron& t = tetrahedra[around[i]];
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = a + 1; b < 4; ++b) {
+        if (t[a] == node || t[b] == node) continue;
+        const auto [entry, is_new] = first_at.emplace(edge_between(t[a], t[b]), i);
+        if (!is_new) joined.join(i, entry->second);
+      }
+  }
+  std::vector<std::size_t> set;
+  for (std::size_t i = 0; i < around.size(); ++i) set.push_back(joined.root(i));
+  return set;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> split_nodes(std::vector<Tetrahedron>& tetrahedra, std::size_t nodes) {
+  std::map<std::int32_t, std::vector<std::size_t>> around;
+  for (const std::int32_t v : pinches(adjacency(tetrahedra).boundary).nodes) around[v];
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t)
+    for (const std::int32_t v : tetrahedra[t])
+      if (const auto found = around.find(v); found != around.end()) found->second.push_back(t);
+  std::vector<std::int32_t> origin;
+  for (const auto& [node, members] : around) {
+    const std::vector<std::size_t> set = sets_at(tetrahedra, node, members);
+    std::map<std::size_t, std::int32_t> name{{set.front(), node}};
+    for (std::size_t i = 0; i < set.size(); ++i) {
+      const auto next = static_cast<std::int32_t>(nodes + origin.size());
+      const auto [entry, is_new] = name.emplace(set[i], next);
+      if (is_new) origin.push_back(node);
+      std::replace(tetrahedra[members[i]].begin(), tetrahedra[members[i]].end(), node,
+                   entry->second);
+    }
+  }
+  return origin;
 }
 
 std::size_t components(const std::vector<Triangle>& surface) {

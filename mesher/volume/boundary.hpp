@@ -2,6 +2,7 @@
 // How tetrahedra hang together: their common faces, their boundary, their parts.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -10,9 +11,17 @@
 
 namespace palpate::mesher {
 
+/// A face between two tetrahedra.
+struct SharedFace {
+  Triangle corners{};  ///< ascending
+  std::array<std::int32_t, 2> tetrahedra{};
+};
+
 struct Adjacency {
   std::vector<Triangle> boundary;  ///< faces of one tetrahedron, outward, in the order of those
-  std::vector<std::int32_t> part;  ///< of each tetrahedron: equal where common faces lead
+  std::vector<SharedFace> shared;  ///< ascending
+  /// The part of each tetrahedron: equal where common faces lead; numbered by first tetrahedra.
+  std::vector<std::int32_t> part;
   std::int32_t parts = 0;
   /// A face of more than two tetrahedra, or of two on the same side of it: they overlap.
   std::optional<Triangle> overlap;
@@ -24,11 +33,18 @@ Adjacency adjacency(const std::vector<Tetrahedron>& tetrahedra);
 
 /// Where a closed, oriented surface is no manifold.
 struct Pinches {
-  std::size_t edges = 0;    ///< with more than two facets
-  std::size_t points = 0;   ///< whose facets form several fans, ends of such edges aside
-  std::int32_t first = -1;  ///< a point of the first of them
+  std::size_t edges = 0;            ///< with more than two facets
+  std::size_t points = 0;           ///< whose facets form several fans, ends of such edges aside
+  std::vector<std::int32_t> nodes;  ///< these points and the ends of these edges, ascending
 };
 Pinches pinches(const std::vector<Triangle>& closed_surface);
+
+/// Gives each set of tetrahedra that are connected by faces at a node a node of its own, so that
+/// parts of a body that touch in a node or an edge come apart. Where a chain of such faces leads
+/// around, the boundary still touches itself.
+/// @param nodes their number; new ones are numbered from there on
+/// @return of each new node, the node at whose place it is
+std::vector<std::int32_t> split_nodes(std::vector<Tetrahedron>& tetrahedra, std::size_t nodes);
 
 /// The number of connected components of a manifold surface.
 std::size_t components(const std::vector<Triangle>& surface);

@@ -2,10 +2,7 @@
 #include "mesher/volume/discretization.hpp"
 
 #include <algorithm>
-#include <array>
-#include <map>
 #include <numeric>
-#include <set>
 #include <utility>
 
 #include "format/edge.hpp"
@@ -13,57 +10,10 @@
 #include "format/to_index.hpp"
 #include "mesher/geometry/text.hpp"
 #include "mesher/skin/coarsen.hpp"
+#include "mesher/volume/boundary.hpp"
 
 namespace palpate::mesher {
 namespace {
-
-/// Face k of a tetrahedron is opposite its corner k and oriented outward.
-constexpr std::array<std::array<std::size_t, 3>, 4> kFaces{
-    {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-
-Triangle sorted(Triangle t) {
-  std::sort(t.begin(), t.end());
-  return t;
-}
-
-[[noreturn]] void refuse_boundary(const std::string& where, const std::string& problem,
-                                  const Vec3& place) {
-  refuse_geometry(where, text(problem, " at ", millimetres(place)),
-                  "separate the parts there, or join them over a face");
-}
-
-void check_edges(const std::vector<Triangle>& facets, const std::vector<Vec3>& nodes,
-                 const std::string& where) {
-  std::map<Edge, int> uses;
-  for (const Triangle& t : facets)
-    for (std::size_t k = 0; k < 3; ++k) ++uses[edge_between(t[k], t[(k + 1) % 3])];
-  for (const auto& [edge, count] : uses)
-    if (count != 2)
-      refuse_boundary(where, "the surface of the tetrahedra meets itself in an edge",
-                      0.5 * (nodes[to_index(edge[0])] + nodes[to_index(edge[1])]));
-}
-
-/// The facets around a node form one fan.
-void check_nodes(const std::vector<Triangle>& facets, const std::vector<Vec3>& nodes,
-                 const std::string& where) {
-  const auto around = incident_triangles(nodes.size(), facets);
-  for (std::size_t v = 0; v < nodes.size(); ++v) {
-    if (around[v].empty()) continue;
-    std::map<std::int32_t, std::int32_t> next;  // along the border of the fan
-    for (const std::int32_t f : around[v]) {
-      const Triangle& t = facets[to_index(f)];
-      const auto k = static_cast<std::size_t>(
-          std::find(t.begin(), t.end(), static_cast<std::int32_t>(v)) - t.begin());
-      next[t[(k + 1) % 3]] = t[(k + 2) % 3];
-    }
-    const std::int32_t start = next.begin()->first;
-    std::size_t length = 1;
-    for (std::int32_t n = next.at(start); n != start && length <= next.size(); n = next.at(n))
-      ++length;
-    if (length != around[v].size())
-      refuse_boundary(where, "the surface of the tetrahedra meets itself in a node", nodes[v]);
-  }
-}
 
 /// Moves every node index of the mesh to its place in `order`.
 void reorder(VolumeMesh& volume, const std::vector<std::int32_t>& order) {
@@ -129,19 +79,22 @@ std::vector<std::int32_t> node_order(const CoarseSurface& coarse,
 }  // namespace
 
 std::vector<Triangle> boundary_of(const VolumeMesh& volume, const std::string& where) {
-  std::map<Triangle, std::pair<Triangle, int>> faces;
-  for (const Tetrahedron& t : volume.tetrahedra)
-    for (const auto& corners : kFaces) {
-      const Triangle face{t[corners[0]], t[corners[1]], t[corners[2]]};
-      auto& entry = faces[sorted(face)];
-      entry.first = face;
-      ++entry.second;
-    }
-  std::vector<Triangle> facets;
-  for (const auto& [key, entry] : faces)
-    if (entry.second == 1) facets.push_back(entry.first);
-  check_edges(facets, volume.nodes, where);
-  check_nodes(facets, volume.nodes, where);
+  std::vector<Triangle> facets = adjacency(volume.tetrahedra).boundary;
+  if (const Pinches found = pinches(facets); !found.nodes.empty()) {
+    refuse_geometry(
+        where,
+        text("the surface of the tetrahedra meets itself in ", counted(found.edges, "edge"),
+             " and ", counted(found.points, "node"), ", the first at ",
+             millimetres(volume.nodes[to_index(found.nodes.front())])),
+        "separate the parts there, or join them over a face");
+  }
+  // By their corners, so that the response surface does not depend on the order of the tetrahedra.
+  const auto sorted = [](Triangle t) {
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  std::sort(facets.begin(), facets.end(),
+            [&](const Triangle& a, const Triangle& b) { return sorted(a) < sorted(b); });
   return facets;
 }
 

@@ -5,6 +5,7 @@
 
 #include "format/to_index.hpp"
 #include "mesher/geometry/quality.hpp"
+#include "mesher/volume/boundary.hpp"
 #include "mesher/volume/interfaces.hpp"
 #include "mesher/volume/triangle_cloud.hpp"
 
@@ -18,7 +19,7 @@ Vec3 middle(const VolumeMesh& mesh, const Tetrahedron& t) {
 }
 
 std::vector<Vec3> find_islands(const VolumeMesh& mesh) {
-  const std::vector<std::int32_t> set = connected_sets(mesh.tetrahedra);
+  const std::vector<std::int32_t> set = adjacency(mesh.tetrahedra).part;
   const std::int32_t largest = largest_set(mesh, set);
   std::vector<Vec3> islands;
   for (std::size_t t = 0; t < set.size(); ++t)
@@ -42,7 +43,7 @@ std::vector<Vec3> find_lost(const VolumeMesh& mesh, const std::vector<Crossing>&
 Faults find_faults(const VolumeMesh& mesh, const std::vector<Crossing>& interface,
                    const FaultLimits& limits) {
   Faults faults;
-  for (const std::int32_t v : non_manifold_nodes(boundary_facets(mesh.tetrahedra)))
+  for (const std::int32_t v : pinches(adjacency(mesh.tetrahedra).boundary).nodes)
     faults.pinches.push_back(mesh.nodes[to_index(v)]);
   faults.islands = find_islands(mesh);
   for (const Tetrahedron& t : mesh.tetrahedra) {

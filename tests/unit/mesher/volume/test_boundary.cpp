@@ -21,7 +21,7 @@ TEST(Boundary, EnclosesTheVolumeOfTheTetrahedra) {
   for (const Tetrahedron& t : tetrahedra) sum += volume(kPoints, t);
   EXPECT_NEAR(signed_volume({kPoints, found.boundary, {}, {}}), sum, 1e-15);
   EXPECT_EQ(components(found.boundary), 1U);
-  EXPECT_EQ(pinches(found.boundary).first, -1);
+  EXPECT_TRUE(pinches(found.boundary).nodes.empty());
 }
 
 TEST(Boundary, PartsShareNoFace) {
@@ -47,7 +47,7 @@ TEST(Boundary, PinchesAreEdgesOfFourFacetsAndPointsOfTwoFans) {
   const Pinches point = pinches(surface({{0, 1, 2, 3}, {0, 4, 5, 6}}));
   EXPECT_EQ(point.edges, 0U);
   EXPECT_EQ(point.points, 1U);
-  EXPECT_EQ(point.first, 0);
+  EXPECT_EQ(point.nodes, (std::vector<std::int32_t>{0}));
 }
 
 }  // namespace

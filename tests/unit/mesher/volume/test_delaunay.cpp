@@ -10,6 +10,7 @@
 
 #include "format/error.hpp"
 #include "format/to_index.hpp"
+#include "mesher/volume/boundary.hpp"
 #include "mesher/volume/interfaces.hpp"
 #include "tests/unit/mesher/shapes.hpp"
 
@@ -68,9 +69,9 @@ void expect_conforming(const VolumeMesh& mesh) {
     EXPECT_LE(tetrahedra.size(), 2U);
     faces_of_one += tetrahedra.size() == 1 ? 1 : 0;
   }
-  const auto boundary = boundary_facets(mesh.tetrahedra);
+  const auto boundary = adjacency(mesh.tetrahedra).boundary;
   EXPECT_EQ(boundary.size(), faces_of_one);
-  EXPECT_TRUE(non_manifold_nodes(boundary).empty());
+  EXPECT_TRUE(pinches(boundary).nodes.empty());
   EXPECT_EQ(*std::min_element(uses.begin(), uses.end()) > 0, true);
   EXPECT_EQ(mesh.region.size(), mesh.tetrahedra.size());
 }

@@ -117,11 +117,11 @@ TEST(Discretization, RefusesTetrahedraThatMeetInAnEdgeOrANode) {
   VolumeMesh mesh;
   mesh.nodes = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
   mesh.tetrahedra = {{0, 2, 3, 1}, {0, 4, 5, 1}};
-  expect_meets_itself(mesh, "in an edge at (0, 0, 500) mm");
+  expect_meets_itself(mesh, "in 1 edge and 0 nodes, the first at (0, 0, 0) mm");
 
   mesh.nodes = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
   mesh.tetrahedra = {{0, 1, 2, 3}, {0, 5, 4, 6}};
-  expect_meets_itself(mesh, "in a node at (0, 0, 0) mm");
+  expect_meets_itself(mesh, "in 0 edges and 1 node, the first at (0, 0, 0) mm");
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "format/to_index.hpp"
+#include "mesher/volume/boundary.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -31,26 +32,30 @@ TEST(Interfaces, FacetsOfATetrahedronPointOutward) {
 }
 
 TEST(Interfaces, TouchingInANodeOrAnEdgeIsNotManifoldAndIsTakenApart) {
+  const auto pinched = [](const VolumeMesh& mesh) {
+    return pinches(adjacency(mesh.tetrahedra).boundary).nodes;
+  };
   for (const int nodes : {1, 2}) {
     VolumeMesh mesh = pair_sharing(nodes);
-    const auto faulty = non_manifold_nodes(boundary_facets(mesh.tetrahedra));
-    EXPECT_EQ(faulty.front(), 0);
-    EXPECT_EQ(faulty.size(), to_index(nodes));
-    EXPECT_THAT(connected_sets(mesh.tetrahedra), testing::ElementsAre(0, 1));
-    EXPECT_EQ(split_nodes(mesh), to_index(nodes));
-    EXPECT_TRUE(non_manifold_nodes(boundary_facets(mesh.tetrahedra)).empty());
+    EXPECT_EQ(pinched(mesh).front(), 0);
+    EXPECT_EQ(pinched(mesh).size(), to_index(nodes));
+    EXPECT_THAT(adjacency(mesh.tetrahedra).part, testing::ElementsAre(0, 1));
+    const auto origin = split_nodes(mesh.tetrahedra, mesh.nodes.size());
+    EXPECT_EQ(origin.size(), to_index(nodes));
+    for (const std::int32_t v : origin) mesh.nodes.push_back(Vec3(mesh.nodes[to_index(v)]));
+    EXPECT_TRUE(pinched(mesh).empty());
     EXPECT_NEAR(signed_volume(boundary_surface(mesh)), 2.0 / 6, 1e-15);
   }
   VolumeMesh mesh = pair_sharing(3);
-  EXPECT_TRUE(non_manifold_nodes(boundary_facets(mesh.tetrahedra)).empty());
-  EXPECT_THAT(connected_sets(mesh.tetrahedra), testing::ElementsAre(0, 0));
-  EXPECT_EQ(split_nodes(mesh), 0U);
+  EXPECT_TRUE(pinched(mesh).empty());
+  EXPECT_THAT(adjacency(mesh.tetrahedra).part, testing::ElementsAre(0, 0));
+  EXPECT_TRUE(split_nodes(mesh.tetrahedra, mesh.nodes.size()).empty());
 }
 
 TEST(Interfaces, KeepsTheLargestSetAndItsNodes) {
   VolumeMesh mesh = pair_sharing(1);
   mesh.nodes[2] = {3, 0, 0};
-  const auto set = connected_sets(mesh.tetrahedra);
+  const auto set = adjacency(mesh.tetrahedra).part;
   ASSERT_EQ(largest_set(mesh, set), 0);
   keep_set(mesh, set, 0);
   EXPECT_EQ(mesh.nodes.size(), 4U);

@@ -133,7 +133,7 @@ TEST(Assemble, SeparatesElementsThatMeetInAnEdgeWhereTheyMeetNowhereElse) {
   const VolumeMesh mesh =
       assemble(ring(false), 0.01, "a.msh", [&](std::string_view line) { log += line; });
   EXPECT_EQ(mesh.nodes.size(), 12U);  // 11 of the file
-  EXPECT_THAT(log, testing::HasSubstr("separated at 1 node, the first at (0, 0, 0) mm"));
+  EXPECT_THAT(log, testing::HasSubstr("separated: 1 node added, the first at (0, 0, 0) mm"));
 }
 
 }  // namespace
