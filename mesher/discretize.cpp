@@ -10,6 +10,7 @@
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 #include "mesher/checks.hpp"
+#include "mesher/geometry/cgal_guard.hpp"
 #include "mesher/geometry/quality.hpp"
 #include "mesher/geometry/text.hpp"
 #include "mesher/skin/curve_edges.hpp"
@@ -128,7 +129,9 @@ Discretization discretize(const Settings& settings, const Surface& skin,
   std::string problems, remedy;
   for (const Way& way : ways(settings, skin, inclusions)) {
     try {
-      Discretization result = way.run();
+      Discretization result;
+      guard_cgal(where, "smooth the surface, or change element_size a little",
+                 [&] { result = way.run(); });
       check_discretization(result, settings, skin, where);
       return result;
     } catch (const Error& error) {

@@ -81,8 +81,8 @@ void describe_repair(V& v, mesher::RepairSettings& s) {
   describe_choice(
       v, s.mode,
       {"repair",
-       "faults of the surface: `auto` repairs them, `none` refuses them, `wrap` replaces "
-       "the surface by an alpha wrap"},
+       "faults of the surface: `auto` repairs them, by an alpha wrap where local repairs do not "
+       "do, `none` refuses them, `wrap` replaces the surface by its alpha wrap"},
       kRepairModes);
   describe_choice(
       v, s.largest_part,
@@ -91,12 +91,13 @@ void describe_repair(V& v, mesher::RepairSettings& s) {
        "area"},
       kParts);
   v.number(s.max_hole, {"max_hole",
-                        "diameter of the largest hole that `auto` fills, over the extent of the "
-                        "surface; flat cuts of any size are filled",
+                        "holes of a larger diameter, over the extent of the surface, are filled "
+                        "with a warning, unless they are flat cuts",
                         kOptional,
                         {.low = 0, .high = 1}});
   v.number(s.max_change, {"max_change",
-                          "largest distance that `auto` may move the surface, over its extent",
+                          "largest distance that local repairs may move the surface, over its "
+                          "extent; beyond it, the alpha wrap replaces the surface",
                           kOptional,
                           {.low = 0, .high = 1}});
 }
@@ -251,7 +252,8 @@ void describe_support_shape(V& v, const std::string& shape, mesher::Support& whe
     v.text(alternative<mesher::LabelSupport>(where).label,
            {"label",
             "name of faces in the file of the surface (OBJ: a group `g`, an object `o` or a "
-            "material `usemtl`; STL: a solid; VTK: `array=value`), of a set of a volume mesh, "
+            "material `usemtl`; STL: a solid; PLY: a colour, `#ff0000`; VTK: `array=value`), of a "
+            "set of a volume mesh, "
             "or of a region of an image",
             kRequired});
   }

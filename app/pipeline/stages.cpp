@@ -11,6 +11,7 @@
 
 #include "app/pipeline/device_profile.hpp"
 #include "app/pipeline/freshness.hpp"
+#include "app/pipeline/mesh_surface.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
 #include "fitting/certificate/certify.hpp"
@@ -107,7 +108,7 @@ void run_mesh(const Workspace& space, const EventSink& emit) {
   prepare_output(space.out);
   mesher::Settings settings = mesh_settings(space);
   settings.log = [&](std::string_view text) { emit(LogLine{"mesh", std::string(text)}); };
-  Body body = mesher::mesh(settings);
+  Body body = mesh_surface(settings, space.out);
   check_regions(space, body);
   body.provenance = {};
   body.provenance.steps.push_back(make_stage_step(space, Stage::Mesh, {}));

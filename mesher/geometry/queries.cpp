@@ -17,20 +17,33 @@
 namespace palpate::mesher {
 namespace pmp = CGAL::Polygon_mesh_processing;
 
-std::size_t count_self_intersections(const Surface& surface) {
+std::vector<TrianglePair> self_intersections(const Surface& surface) {
   const Mesh mesh = to_mesh(surface);
   std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
   pmp::self_intersections(mesh, std::back_inserter(pairs));
-  return pairs.size();
+  std::vector<TrianglePair> result;
+  for (const auto& [a, b] : pairs)
+    result.emplace_back(static_cast<std::int32_t>(a.idx()), static_cast<std::int32_t>(b.idx()));
+  return result;
+}
+
+std::size_t count_self_intersections(const Surface& surface) {
+  return self_intersections(surface).size();
+}
+
+std::vector<std::int32_t> degenerate_triangles(const Surface& surface) {
+  std::vector<std::int32_t> result;
+  for (std::size_t i = 0; i < surface.triangles.size(); ++i) {
+    const Triangle& t = surface.triangles[i];
+    const auto corner = [&](std::size_t k) { return to_point(surface.points[to_index(t[k])]); };
+    if (CGAL::collinear(corner(0), corner(1), corner(2)))
+      result.push_back(static_cast<std::int32_t>(i));
+  }
+  return result;
 }
 
 std::size_t count_degenerate_triangles(const Surface& surface) {
-  std::size_t count = 0;
-  for (const Triangle& t : surface.triangles) {
-    const auto corner = [&](std::size_t k) { return to_point(surface.points[to_index(t[k])]); };
-    if (CGAL::collinear(corner(0), corner(1), corner(2))) ++count;
-  }
-  return count;
+  return degenerate_triangles(surface).size();
 }
 
 bool surfaces_meet(const Surface& a, const Surface& b) {

@@ -4,15 +4,25 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "mesher/geometry/surface.hpp"
 
 namespace palpate::mesher {
 
+using TrianglePair = std::pair<std::int32_t, std::int32_t>;
+
 /// Pairs of triangles that meet elsewhere than in their common vertex or edge.
+std::vector<TrianglePair> self_intersections(const Surface& surface);
+
+/// Their number.
 std::size_t count_self_intersections(const Surface& surface);
 
 /// Triangles whose corners lie exactly on one line.
+std::vector<std::int32_t> degenerate_triangles(const Surface& surface);
+
+/// Their number.
 std::size_t count_degenerate_triangles(const Surface& surface);
 
 /// Whether the two surfaces touch or cross.

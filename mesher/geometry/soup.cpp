@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "format/error.hpp"
+#include "mesher/geometry/faulty_faces.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -129,13 +130,13 @@ std::size_t drop_unused_points(Soup& soup) {
 }
 
 /// Points whose polygons do not form a single fan: sheets that meet in a point only.
-std::size_t count_pinched_points(const Soup& soup,
-                                 const std::map<Edge, std::vector<std::size_t>>& edges) {
+std::vector<std::size_t> pinched_points(const Soup& soup,
+                                        const std::map<Edge, std::vector<std::size_t>>& edges) {
   std::vector<std::vector<std::size_t>> around(soup.points.size());
   for (std::size_t p = 0; p < soup.polygons.size(); ++p) {
     for (const std::size_t v : soup.polygons[p]) around[v].push_back(p);
   }
-  std::size_t pinched = 0;
+  std::vector<std::size_t> pinched;
   for (std::size_t v = 0; v < soup.points.size(); ++v) {
     std::vector<std::size_t> fan{around[v].front()};
     for (std::size_t i = 0; i < fan.size(); ++i) {
@@ -148,9 +149,29 @@ std::size_t count_pinched_points(const Soup& soup,
         }
       }
     }
-    if (fan.size() != around[v].size()) ++pinched;
+    if (fan.size() != around[v].size()) pinched.push_back(v);
   }
   return pinched;
+}
+
+FaultyFaces faces_at_edges(const Soup& soup,
+                           const std::map<Edge, std::vector<std::size_t>>& edges) {
+  FaultyFaces faulty;
+  for (const auto& [edge, polygons] : edges) {
+    if (polygons.size() == 2) continue;
+    const Fault fault = polygons.size() == 1 ? Fault::BorderEdge : Fault::NonManifoldEdge;
+    for (const std::size_t p : polygons) faulty.add(soup.points, soup.polygons[p], fault);
+  }
+  return faulty;
+}
+
+FaultyFaces faces_at_points(const Soup& soup, const std::vector<std::size_t>& points) {
+  FaultyFaces faulty;
+  for (const auto& corners : soup.polygons)
+    if (std::find_first_of(corners.begin(), corners.end(), points.begin(), points.end()) !=
+        corners.end())
+      faulty.add(soup.points, corners, Fault::NonManifoldPoint);
+  return faulty;
 }
 
 }  // namespace
@@ -218,22 +239,26 @@ void check_manifold(const Soup& soup, const std::string& where) {
     if (polygons.size() > 2) ++crowded;
   }
   if (crowded > 0) {
-    refuse_geometry(
+    throw FaultySurface(
         where,
         text("the surface is not manifold: ", counted(crowded, "edge"), " with more than two faces",
              border > 0 ? text(" (and ", counted(border, "border edge"), ")") : ""),
-        "remove duplicate and inner faces in a mesh editor");
+        "remove duplicate and inner faces in a mesh editor", faces_at_edges(soup, edges));
   }
   if (border > 0) {
-    refuse_geometry(
+    throw FaultySurface(
         where, "the surface is not watertight: " + counted(border, "border edge"),
         "close its holes in a mesh editor; where they are seams whose points do not meet, merge "
-        "vertices there");
+        "vertices there",
+        faces_at_edges(soup, edges));
   }
-  if (const std::size_t pinched = count_pinched_points(soup, edges); pinched > 0) {
-    refuse_geometry(
-        where, text("the surface is not manifold: sheets meet only in ", counted(pinched, "point")),
-        "separate the sheets or join them along an edge in a mesh editor");
+  if (const auto pinched = pinched_points(soup, edges); !pinched.empty()) {
+    throw FaultySurface(
+        where,
+        text("the surface is not manifold: sheets meet only in ", counted(pinched.size(), "point"),
+             ", the first of them at ", millimetres(soup.points[pinched.front()])),
+        "separate the sheets or join them along an edge in a mesh editor",
+        faces_at_points(soup, pinched));
   }
 }
 

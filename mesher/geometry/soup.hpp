@@ -29,8 +29,8 @@ void tidy(Soup& soup, const std::string& where, const Log& log);
 ///   coordinate is not finite, or there is no polygon at all.
 void check_entries(const Soup& soup, const std::string& where);
 
-/// @throws Error(Geometry) with the counts when an edge does not have exactly two polygons or a
-///   point connects several sheets.
+/// @throws FaultySurface with the counts when an edge does not have exactly two polygons or a point
+///   connects several sheets.
 void check_manifold(const Soup& soup, const std::string& where);
 
 /// Reverses polygons until neighbours are oriented alike, and logs how many.

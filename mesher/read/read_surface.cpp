@@ -10,16 +10,21 @@
 #include <utility>
 
 #include "format/error.hpp"
+#include "format/to_index.hpp"
+#include "mesher/geometry/cgal_guard.hpp"
 #include "mesher/geometry/cgal_mesh.hpp"
+#include "mesher/geometry/faulty_faces.hpp"
 #include "mesher/geometry/queries.hpp"
 #include "mesher/geometry/soup.hpp"
 #include "mesher/read/body_size.hpp"
 #include "mesher/read/file/file.hpp"
 #include "mesher/read/read_obj.hpp"
+#include "mesher/read/read_ply.hpp"
 #include "mesher/read/read_stl.hpp"
 #include "mesher/read/vtk/read_vtk_legacy.hpp"
 #include "mesher/read/vtk/read_vtk_xml.hpp"
 #include "mesher/repair/repair.hpp"
+#include "mesher/repair/soundness.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -51,7 +56,8 @@ Soup read_soup(const std::filesystem::path& path) {
   if (kind == ".vtp" || kind == ".vtu")
     return surface_of(read_vtk_xml(read_bytes(path), where), where);
   if (kind == ".vtk") return surface_of(read_vtk_legacy(read_bytes(path), where), where);
-  if (kind != ".off" && kind != ".ply" && kind != ".stl") {
+  if (kind == ".ply") return read_ply(read_bytes(path), where);
+  if (kind != ".off" && kind != ".stl") {
     refuse_geometry(where, "unknown kind of surface file '" + kind + "'",
                     "convert it to OFF, OBJ, PLY, STL or VTP");
   }
@@ -120,14 +126,26 @@ Surface triangulate(const Soup& soup, const std::string& where) {
 }
 
 void check_geometry(const Surface& surface, const std::string& where) {
-  if (const std::size_t flat = count_degenerate_triangles(surface); flat > 0) {
-    refuse_geometry(where, counted(flat, "triangle") + " of zero area",
-                    "remove degenerate faces in a mesh editor");
+  FaultyFaces faulty;
+  const auto add = [&](std::int32_t t, Fault fault) {
+    faulty.add(surface, surface.triangles[to_index(t)], fault);
+  };
+  if (const auto flat = degenerate_triangles(surface); !flat.empty()) {
+    for (const std::int32_t t : flat) add(t, Fault::ZeroArea);
+    throw FaultySurface(where,
+                        text(counted(flat.size(), "triangle"), " of zero area, the first at ",
+                             millimetres(faulty.points.front())),
+                        "remove degenerate faces in a mesh editor", faulty);
   }
-  if (const std::size_t pairs = count_self_intersections(surface); pairs > 0) {
-    refuse_geometry(where,
-                    text("the surface self-intersects: ", counted(pairs, "pair"), " of triangles"),
-                    "resolve the self-intersections in a mesh editor");
+  if (const auto pairs = self_intersections(surface); !pairs.empty()) {
+    for (const auto& [a, b] : pairs) {
+      add(a, Fault::SelfIntersection);
+      add(b, Fault::SelfIntersection);
+    }
+    throw FaultySurface(where,
+                        text("the surface self-intersects: ", counted(pairs.size(), "pair"),
+                             " of triangles, the first at ", millimetres(faulty.points.front())),
+                        "resolve the self-intersections in a mesh editor", faulty);
   }
 }
 
@@ -149,8 +167,11 @@ Surface checked(Soup soup, const std::string& where, const Log& log) {
 Surface repaired(const Soup& soup, const RepairSettings& settings, const std::string& where,
                  const Log& log) {
   RepairReport report;
-  Surface surface = repair(soup, settings, where, report);
+  Surface surface;
+  guard_cgal(where, "mend the surface in a mesh editor",
+             [&] { surface = repair(soup, settings, where, report); });
   for (const std::string& step : report.steps) note(log, text(where, ": ", step));
+  for (const std::string& warning : report.warnings) note(log, text(where, ": WARNING: ", warning));
   note(log, text(where, ": repaired: area ", 1e6 * report.area_before, " to ",
                  1e6 * report.area_after, " mm^2, volume ", 1e9 * report.volume,
                  " mm^3; the surface moved by at most ", millimetres(report.moved), " at ",
@@ -159,9 +180,7 @@ Surface repaired(const Soup& soup, const RepairSettings& settings, const std::st
   return surface;
 }
 
-}  // namespace
-
-Surface read_surface(const SurfaceFile& file, const Log& log) {
+Surface sound_surface(const SurfaceFile& file, const Log& log) {
   const std::string where = file.path.string();
   Soup soup = read_soup(file.path);
   check_entries(soup, where);
@@ -177,6 +196,18 @@ Surface read_surface(const SurfaceFile& file, const Log& log) {
   note(log, text(where, ": ", surface.points.size(), " points, ", surface.triangles.size(),
                  " triangles, watertight, ", millimetres(box.low), " to ", millimetres(box.high)));
   return surface;
+}
+
+}  // namespace
+
+Surface read_surface(const SurfaceFile& file, const Log& log) {
+  try {
+    return sound_surface(file, log);
+  } catch (const FaultySurface& fault) {
+    FaultyFaces faces = fault.faces();
+    for (Vec3& x : faces.points) x = (1 / file.unit) * x;
+    throw FaultySurface(fault.where(), fault.problem(), fault.remedy(), std::move(faces));
+  }
 }
 
 }  // namespace palpate::mesher

@@ -7,10 +7,11 @@
 
 namespace palpate::mesher {
 
-/// Reads a surface, scales it to metres, repairs it as `tidy` does, splits polygons into triangles
-/// and orients them outward.
+/// Reads a surface, scales it to metres, repairs it as `tidy` and, unless the settings forbid it,
+/// `repair` do, splits polygons into triangles and orients them outward. The log states each step.
 /// @throws Error(Geometry), with the path as `where`, for a surface that does not enclose one
-/// volume.
+///   volume: FaultySurface with the faces, in the unit of the file, where some of them are at
+///   fault.
 Surface read_surface(const SurfaceFile& file, const Log& log);
 
 }  // namespace palpate::mesher

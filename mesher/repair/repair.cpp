@@ -1,67 +1,41 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "mesher/repair/repair.hpp"
 
-#include <CGAL/Polygon_mesh_processing/border.h>
-#include <CGAL/Polygon_mesh_processing/connected_components.h>
-#include <CGAL/Polygon_mesh_processing/measure.h>
-#include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
-#include <CGAL/Polygon_mesh_processing/orientation.h>
-#include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
-#include <CGAL/Polygon_mesh_processing/repair_degeneracies.h>
-#include <CGAL/Polygon_mesh_processing/repair_polygon_soup.h>
-#include <CGAL/Polygon_mesh_processing/repair_self_intersections.h>
-#include <CGAL/Polygon_mesh_processing/self_intersections.h>
-#include <CGAL/Polygon_mesh_processing/stitch_borders.h>
-#include <CGAL/Polygon_mesh_processing/triangulate_faces.h>
-#include <CGAL/Polygon_mesh_processing/triangulate_hole.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <utility>
 
 #include "format/error.hpp"
-#include "mesher/geometry/cgal_mesh.hpp"
+#include "format/to_index.hpp"
+#include "mesher/geometry/cgal_guard.hpp"
 #include "mesher/geometry/queries.hpp"
+#include "mesher/repair/change.hpp"
+#include "mesher/repair/crossings.hpp"
+#include "mesher/repair/holes.hpp"
+#include "mesher/repair/parts.hpp"
+#include "mesher/repair/points.hpp"
+#include "mesher/repair/sheets.hpp"
+#include "mesher/repair/soundness.hpp"
+#include "mesher/repair/wrap.hpp"
 
 namespace palpate::mesher {
 namespace {
 
-namespace pmp = CGAL::Polygon_mesh_processing;
-
-using Polygon = std::vector<std::size_t>;
-using SoupEdge = std::pair<std::size_t, std::size_t>;
-
-// Points nearer than this fraction of the extent are one point whose copies differ by noise.
-constexpr double kNoise = 5e-5;
-// Merging must not collapse the mesh: points of edges shorter than this multiple stay apart.
-constexpr double kShortestEdge = 4;
-// Parts whose area is less than this fraction of the largest are negligible.
-constexpr double kNegligibleArea = 0.01;
-// A hole whose border leaves its mean plane by less than this fraction of its diameter is a flat
-// cut.
-constexpr double kFlat = 0.03;
-// Alpha and offset of the wrap as fractions of the extent.
-constexpr double kWrapAlpha = 1.0 / 50, kWrapOffset = 1.0 / 1500;
-
-/// The faces in the form that CGAL works on.
-struct Faces {
-  std::vector<Point> points;
-  std::vector<Polygon> polygons;
-};
-
-Faces to_faces(const Soup& soup) {
-  Faces faces;
-  for (const Vec3& x : soup.points) faces.points.push_back(to_point(x));
-  faces.polygons = soup.polygons;
-  return faces;
-}
+// Alphas of the wraps, as fractions of the extent.
+constexpr std::array<double, 3> kAlphas = {1.0 / 50, 1.0 / 100, 1.0 / 200};
+// A wrap will do where at most this fraction of the area of the file is farther than max_change; of
+// the finest wrap, at most the second fraction.
+constexpr double kFewFar = 0.01, kMostFar = 0.1;
+// A surface with a smaller mean thickness, as a fraction of its extent, is a sheet.
+constexpr double kSheet = 1e-3;
+// So is a wrap of fewer offsets than this.
+constexpr double kSkinOffsets = 4;
 
 /// Triangles of the faces, each with points of its own: no neighbourhood is assumed.
 Surface triangles_of(const Soup& soup) {
   Surface surface;
-  for (const Polygon& corners : soup.polygons)
+  for (const auto& corners : soup.polygons)
     for (std::size_t k = 2; k < corners.size(); ++k) {
       const auto first = static_cast<std::int32_t>(surface.points.size());
       for (const std::size_t v : {corners[0], corners[k - 1], corners[k]})
@@ -71,441 +45,242 @@ Surface triangles_of(const Soup& soup) {
   return surface;
 }
 
-/// Number of polygons at each undirected edge.
-std::map<SoupEdge, int> edge_counts(const Faces& faces) {
-  std::map<SoupEdge, int> count;
-  for (const Polygon& corners : faces.polygons)
-    for (std::size_t k = 0; k < corners.size(); ++k)
-      ++count[std::minmax(corners[k], corners[(k + 1) % corners.size()])];
-  return count;
+Soup to_soup(const Surface& surface) {
+  Soup soup;
+  soup.points = surface.points;
+  for (const Triangle& t : surface.triangles)
+    soup.polygons.push_back({to_index(t[0]), to_index(t[1]), to_index(t[2])});
+  return soup;
 }
 
-std::vector<std::size_t> border_points(const std::map<SoupEdge, int>& edges) {
-  std::vector<std::size_t> points;
-  for (const auto& [edge, count] : edges)
-    if (count == 1) points.insert(points.end(), {edge.first, edge.second});
-  std::sort(points.begin(), points.end());
-  points.erase(std::unique(points.begin(), points.end()), points.end());
-  return points;
-}
-
-double shortest_edge(const Faces& faces, const std::map<SoupEdge, int>& edges) {
-  double shortest = std::numeric_limits<double>::infinity();
-  for (const auto& [edge, count] : edges) {
-    const double squared =
-        CGAL::squared_distance(faces.points[edge.first], faces.points[edge.second]);
-    if (squared > 0) shortest = std::min(shortest, std::sqrt(squared));
-  }
-  return shortest;
-}
-
-/// Pairs (point, other point with a smaller number) of `candidates` nearer than `apart`.
-std::map<std::size_t, std::size_t> near_pairs(const Faces& faces,
-                                              std::vector<std::size_t> candidates, double apart) {
-  std::sort(candidates.begin(), candidates.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(faces.points[a].x(), a) < std::pair(faces.points[b].x(), b);
-  });
-  std::map<std::size_t, std::size_t> target;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Point& x = faces.points[candidates[i]];
-    if (target.contains(candidates[i])) continue;
-    for (std::size_t k = i + 1; k < candidates.size(); ++k) {
-      const Point& y = faces.points[candidates[k]];
-      if (y.x() - x.x() > apart) break;
-      if (CGAL::squared_distance(x, y) <= apart * apart)
-        target.emplace(candidates[k], candidates[i]);
-    }
-  }
-  return target;
-}
-
-using PartOfFace = Mesh::Property_map<Mesh::Face_index, std::size_t>;
-
-/// A hole of a mesh, as its border shows it.
-struct Hole {
-  Vec3 centre{};
-  double diameter = 0;  ///< m, diagonal of the bounding box of the border
-  double flatness = 0;  ///< m, largest distance of the border from its mean plane
-};
-
-Hole hole_at(const Mesh& mesh, Mesh::Halfedge_index border) {
-  std::vector<Vec3> points;
-  for (const auto h : CGAL::halfedges_around_face(border, mesh))
-    points.push_back(to_vec3(mesh.point(mesh.target(h))));
-  const Bounds box = bounds(points);
-  Hole hole;
-  hole.diameter = norm(box.high - box.low);
-  for (const Vec3& x : points) hole.centre = hole.centre + x;
-  hole.centre = (1.0 / static_cast<double>(points.size())) * hole.centre;
-  Vec3 normal{};
-  for (std::size_t k = 0; k < points.size(); ++k)
-    normal = normal + cross(points[k] - hole.centre, points[(k + 1) % points.size()] - hole.centre);
-  if (norm(normal) == 0) return hole;
-  normal = unit(normal);
-  for (const Vec3& x : points)
-    hole.flatness = std::max(hole.flatness, std::abs(dot(x - hole.centre, normal)));
-  return hole;
+FaultyFaces faces_of(const Surface& surface, const std::vector<TrianglePair>& pairs) {
+  std::vector<std::int32_t> triangles;
+  for (const auto& [a, b] : pairs) triangles.insert(triangles.end(), {a, b});
+  std::sort(triangles.begin(), triangles.end());
+  triangles.erase(std::unique(triangles.begin(), triangles.end()), triangles.end());
+  FaultyFaces faulty;
+  for (const std::int32_t t : triangles)
+    faulty.add(surface, surface.triangles[to_index(t)], Fault::SelfIntersection);
+  return faulty;
 }
 
 class Repair {
  public:
   Repair(const Soup& soup, const RepairSettings& settings, const std::string& where,
          RepairReport& report)
-      : original_(triangles_of(soup)),
-        soup_(soup),
+      : soup_(soup),
         settings_(settings),
         where_(where),
         report_(report),
+        original_(triangles_of(soup)),
+        kept_(original_),
+        filled_(original_),
         extent_(largest_dimension(soup.points)) {}
 
   Surface run() {
     report_.area_before = area(original_);
-    Surface surface = settings_.mode == RepairMode::Wrap ? wrapped() : repaired();
+    Surface surface = settings_.mode == RepairMode::Wrap ? wrapped_on_request() : repaired();
     report_.area_after = area(surface);
     report_.volume = signed_volume(surface);
-    measure(surface);
-    hand_on_names(surface);
+    if (!soup_.names.empty()) {
+      hand_on_names(surface, original_, names_of_triangles());
+      surface.known_names = soup_.known_names;
+    }
     return surface;
   }
 
  private:
-  void did(const std::string& step) { report_.steps.push_back(step); }
-
-  /// All steps in one line.
-  std::string steps() const {
-    std::string line;
-    for (const std::string& step : report_.steps) line += (line.empty() ? "" : ", ") + step;
-    return line;
-  }
-
-  Surface wrapped() {
-    did(text("replaced the surface by its alpha wrap, alpha ", millimetres(kWrapAlpha * extent_)));
-    return alpha_wrap(soup_, kWrapAlpha * extent_, kWrapOffset * extent_);
-  }
-
-  Surface repaired() {
-    Mesh mesh = connect(clean(to_faces(soup_)));
-    remove_parts(mesh);
-    fill_holes(mesh);
-    remove_degenerate(mesh);
-    remove_intersections(mesh);
-    check(mesh);
-    if (!pmp::is_outward_oriented(mesh)) {
-      pmp::reverse_face_orientations(mesh);
-      did("reversed all faces: they pointed inward");
-    }
-    mesh.collect_garbage();
-    return to_surface(mesh);
-  }
-
-  Faces clean(Faces faces) {
-    merge_near_points(faces);
-    const std::size_t before = faces.polygons.size();
-    pmp::repair_polygon_soup(faces.points, faces.polygons);
-    if (faces.polygons.size() < before)
-      did("removed " + counted(before - faces.polygons.size(), "duplicate or collapsed face"));
-    split_t_junctions(faces);
-    return faces;
-  }
-
-  void merge_near_points(Faces& faces) {
-    const auto edges = edge_counts(faces);
-    const double apart = std::min(kNoise * extent_, shortest_edge(faces, edges) / kShortestEdge);
-    const auto target = near_pairs(faces, border_points(edges), apart);
-    for (Polygon& corners : faces.polygons)
-      for (std::size_t& v : corners)
-        if (const auto found = target.find(v); found != target.end()) v = found->second;
-    if (!target.empty())
-      did(text("merged ", counted(target.size(), "point"), " less than ", millimetres(apart),
-               " apart"));
-  }
-
-  /// A border point in the interior of a border edge becomes a corner of the face at that edge.
-  void split_t_junctions(Faces& faces) {
-    const auto edges = edge_counts(faces);
-    const std::vector<std::size_t> border = border_points(edges);
-    std::size_t split = 0;
-    for (Polygon& corners : faces.polygons) {
-      Polygon result;
-      for (std::size_t k = 0; k < corners.size(); ++k) {
-        const std::size_t a = corners[k], b = corners[(k + 1) % corners.size()];
-        result.push_back(a);
-        if (edges.at(std::minmax(a, b)) != 1) continue;
-        const std::vector<std::size_t> inside = points_on(faces, border, a, b);
-        result.insert(result.end(), inside.begin(), inside.end());
-        split += inside.size();
-      }
-      corners = std::move(result);
-    }
-    if (split > 0) did("split " + counted(split, "T-junction"));
-  }
-
-  /// Points of `border` in the interior of the edge from a to b, in this order.
-  std::vector<std::size_t> points_on(const Faces& faces, const std::vector<std::size_t>& border,
-                                     std::size_t a, std::size_t b) const {
-    const Point &p = faces.points[a], &q = faces.points[b];
-    const Kernel::Vector_3 d = q - p;
-    const double length2 = d.squared_length();
-    if (length2 == 0) return {};
-    std::vector<std::pair<double, std::size_t>> found;
-    for (const std::size_t v : border) {
-      if (v == a || v == b) continue;
-      const Kernel::Vector_3 r = faces.points[v] - p;
-      const double t = (r * d) / length2;
-      if (t <= 1e-6 || t >= 1 - 1e-6) continue;
-      if ((r - t * d).squared_length() <= kNoise * kNoise * extent_ * extent_)
-        found.emplace_back(t, v);
-    }
-    std::sort(found.begin(), found.end());
-    std::vector<std::size_t> result;
-    for (const auto& [t, v] : found) result.push_back(v);
-    return result;
-  }
-
-  /// Oriented faces, borders stitched; sheets that met in an edge or a point are separate.
-  Mesh connect(Faces faces) {
-    const std::size_t points = faces.points.size();
-    pmp::orient_polygon_soup(faces.points, faces.polygons);
-    if (faces.points.size() > points)
-      did(text("separated sheets that met in an edge or a point: ",
-               counted(faces.points.size() - points, "point"), " duplicated"));
-    Mesh mesh;
-    pmp::polygon_soup_to_polygon_mesh(faces.points, faces.polygons, mesh);
-    pmp::triangulate_faces(mesh);
-    if (const std::size_t stitched = pmp::stitch_borders(mesh); stitched > 0)
-      did("stitched " + counted(stitched, "pair") + " of border edges");
-    return mesh;
-  }
-
-  struct Part {
-    std::size_t number = 0;
-    CGAL::Bbox_3 box;
-    double area = 0;  ///< m^2
-    double size() const {
-      return std::max({box.xmax() - box.xmin(), box.ymax() - box.ymin(), box.zmax() - box.zmin()});
-    }
+  /// Why local repairs do not do.
+  struct Shortcoming {
+    std::string problem;  ///< empty: they do
+    FaultyFaces faces;
   };
 
-  /// The connected parts of the mesh, the largest area first.
-  static std::vector<Part> parts_of(const Mesh& mesh, const PartOfFace& part, std::size_t count) {
-    std::vector<Part> parts(count);
-    for (std::size_t i = 0; i < count; ++i) parts[i].number = i;
-    for (const auto f : mesh.faces()) {
-      for (const auto v : mesh.vertices_around_face(mesh.halfedge(f)))
-        parts[part[f]].box += mesh.point(v).bbox();
-      parts[part[f]].area += CGAL::to_double(pmp::face_area(f, mesh));
+  double most_moved() const { return settings_.max_change * extent_; }
+
+  Surface repaired() {
+    Surface surface;
+    Shortcoming left;
+    try {
+      guard_cgal(where_, {}, [&] { left = mend(surface); });
+    } catch (const FaultySurface&) {
+      throw;
+    } catch (const Error& error) {
+      left.problem = error.problem();
     }
-    std::stable_sort(parts.begin(), parts.end(),
-                     [](const Part& a, const Part& b) { return a.area > b.area; });
-    return parts;
+    return left.problem.empty() ? surface : wrapped_instead(left);
   }
 
-  void remove_parts(Mesh& mesh) {
-    PartOfFace part = mesh.add_property_map<Mesh::Face_index, std::size_t>("f:part", 0).first;
-    const std::vector<Part> parts = parts_of(mesh, part, pmp::connected_components(mesh, part));
-    std::vector<std::size_t> removed;
-    std::vector<Part> remaining;
-    for (const Part& p : parts) {
-      const bool negligible = p.size() < settings_.negligible_part * extent_ ||
-                              p.area < kNegligibleArea * parts.front().area;
-      if (!remaining.empty() && (negligible || settings_.largest_part)) {
-        removed.push_back(p.number);
-        removed_parts_.push_back(p.box);
-      } else {
-        remaining.push_back(p);
-      }
+  Surface wrapped_on_request() {
+    try {
+      guard_cgal(where_, {}, [&] {
+        filled_ = connected();
+        fill();
+      });
+    } catch (const Error& error) {
+      report_.warnings.push_back(error.problem() + "; holes are bridged, not filled");
     }
-    if (remaining.size() > 1) refuse_parts(remaining);
-    if (!removed.empty()) {
-      pmp::remove_connected_components(mesh, removed, part);
-      did(text("removed ", counted(removed.size(), "separate part"), ", the largest of ",
-               millimetres(largest_removed())));
-    }
-    mesh.remove_property_map(part);
+    const double alpha = kAlphas.front() * extent_;
+    Surface wrap = alpha_wrap(filled_, alpha, alpha / kAlphaPerOffset);
+    report_.steps.push_back(
+        text("replaced the surface by its alpha wrap, alpha ", millimetres(alpha)));
+    measure(wrap);
+    return wrap;
   }
 
-  double largest_removed() const {
+  Surface connected() {
+    Soup soup{soup_.points, soup_.polygons, {}, {}};
+    merge_near_points(soup, extent_, report_.steps);
+    remove_duplicate_faces(soup, report_.steps);
+    split_t_junctions(soup, extent_, report_.steps);
+    return connect(soup, report_.steps);
+  }
+
+  /// Local repairs.
+  Shortcoming mend(Surface& surface) {
+    kept_ = connected();
+    keep_parts(kept_, settings_, extent_, where_, report_.steps);
+    filled_ = kept_;
+    fill();
+    check_is_no_sheet();
+    surface = filled_;
+    remove_degenerate_faces(surface, report_.steps);
+    if (!remove_crossings(surface, report_.steps)) return crossings_left(surface);
+    if (!is_sound(to_soup(surface)))
+      return {"local repairs leave the surface open or in several parts", {}};
+    turn_outward(surface);
+    return measured(surface);
+  }
+
+  void fill() {
+    const std::vector<Hole> holes = fill_holes(filled_);
+    if (holes.empty()) return;
     double largest = 0;
-    for (const CGAL::Bbox_3& box : removed_parts_)
-      largest = std::max(largest, Part{0, box, 0}.size());
-    return largest;
-  }
-
-  [[noreturn]] void refuse_parts(const std::vector<Part>& parts) const {
-    constexpr std::size_t kListed = 3;
-    std::string list;
-    for (std::size_t i = 0; i < std::min(parts.size(), kListed); ++i) {
-      const CGAL::Bbox_3& b = parts[i].box;
-      list += text(i > 0 ? "; " : "", millimetres(Vec3{b.xmin(), b.ymin(), b.zmin()}), " to ",
-                   millimetres(Vec3{b.xmax(), b.ymax(), b.zmax()}));
-    }
-    refuse_geometry(
-        where_,
-        text("the surface has ", parts.size(), " separate parts, the largest first: ", list,
-             parts.size() > kListed ? "; ..." : ""),
-        "set surface.parts = \"largest\" or surface.repair = \"wrap\", or keep one part for each "
-        "file and give inner parts as inclusions");
-  }
-
-  void fill_holes(Mesh& mesh) {
-    std::vector<Mesh::Halfedge_index> cycles;
-    pmp::extract_boundary_cycles(mesh, std::back_inserter(cycles));
-    std::size_t filled = 0;
-    double largest = 0;
-    for (const auto h : cycles) {
-      const Hole hole = hole_at(mesh, h);
-      const bool flat = hole.flatness <= kFlat * hole.diameter;
-      if (hole.diameter > settings_.max_hole * extent_ && !flat)
-        refuse_geometry(
-            where_,
-            text("the surface is not watertight: a hole of ", millimetres(hole.diameter), " at ",
-                 millimetres(hole.centre)),
-            "close it in a mesh editor, raise surface.max_hole, or set surface.repair = "
-            "\"wrap\"");
-      fill_hole(mesh, h, hole);
-      ++filled;
+    for (const Hole& hole : holes) {
       largest = std::max(largest, hole.diameter);
+      if (hole.diameter > settings_.max_hole * extent_ && !hole.is_flat())
+        report_.warnings.push_back(
+            text("a hole of ", millimetres(hole.diameter), " at ", millimetres(hole.centre),
+                 ", larger than max_hole = ", settings_.max_hole,
+                 " of the extent, was filled with a patch of ", 1e6 * hole.area,
+                 " mm^2; if the body goes on there, close the surface in a mesh editor"));
     }
-    if (filled > 0)
-      did(text("filled ", counted(filled, "hole"), ", the largest of ", millimetres(largest)));
+    report_.steps.push_back(
+        text("filled ", counted(holes.size(), "hole"), ", the largest of ", millimetres(largest)));
   }
 
-  void fill_hole(Mesh& mesh, Mesh::Halfedge_index border, const Hole& hole) const {
-    std::vector<Mesh::Face_index> faces;
-    std::vector<Mesh::Vertex_index> vertices;
-    pmp::triangulate_and_refine_hole(mesh, border, std::back_inserter(faces),
-                                     std::back_inserter(vertices));
-    if (faces.empty())
-      refuse_geometry(where_,
-                      text("the hole of ", millimetres(hole.diameter), " at ",
-                           millimetres(hole.centre), " cannot be filled"),
-                      "close it in a mesh editor or set surface.repair = \"wrap\"");
+  /// @throws FaultySurface where the faces, once their holes are filled, enclose next to nothing.
+  void check_is_no_sheet() const {
+    const double thickness = std::abs(mean_thickness(filled_));
+    if (!filled_.triangles.empty() && thickness > kSheet * extent_) return;
+    refuse_sheet(text("the faces do not bound a volume: filled, they enclose ",
+                      1e9 * std::abs(signed_volume(filled_)), " mm^3 between sheets of ",
+                      1e6 * area(filled_), " mm^2"));
   }
 
-  void remove_degenerate(Mesh& mesh) {
-    const std::size_t before = mesh.number_of_faces();
-    pmp::remove_degenerate_faces(mesh);
-    if (mesh.number_of_faces() != before) did("removed faces of zero area");
+  [[noreturn]] void refuse_sheet(const std::string& problem) const {
+    FaultyFaces faulty;
+    for (const Triangle& t : kept_.triangles) faulty.add(kept_, t, Fault::BorderEdge);
+    throw FaultySurface(where_, problem,
+                        "export the surface of a solid, or give the sheet a thickness", faulty);
   }
 
-  void remove_intersections(Mesh& mesh) {
-    if (!pmp::does_self_intersect(mesh)) return;
-    std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
-    pmp::self_intersections(mesh, std::back_inserter(pairs));
-    pmp::experimental::remove_self_intersections(mesh, pmp::parameters::preserve_genus(false));
-    if (!pmp::does_self_intersect(mesh))
-      did("removed " + counted(pairs.size(), "self-intersection") + " of faces");
+  static Shortcoming crossings_left(const Surface& surface) {
+    const std::vector<TrianglePair> pairs = self_intersections(surface);
+    const Triangle& first = surface.triangles[to_index(pairs.front().first)];
+    return {text("the surface self-intersects: ", counted(pairs.size(), "pair"),
+                 " of triangles, the first near ", millimetres(surface.points[to_index(first[0])])),
+            faces_of(surface, pairs)};
   }
 
-  void check(const Mesh& mesh) const {
-    if (mesh.is_empty() || mesh.number_of_faces() == 0)
-      refuse_geometry(where_, "the faces do not bound a volume",
-                      "export the surface as one closed, triangulated surface");
-    std::vector<std::pair<Mesh::Face_index, Mesh::Face_index>> pairs;
-    pmp::self_intersections(mesh, std::back_inserter(pairs));
-    if (!pairs.empty()) {
-      const auto v = mesh.target(mesh.halfedge(pairs.front().first));
-      refuse_geometry(where_,
-                      text("the surface self-intersects: ", counted(pairs.size(), "pair"),
-                           " of triangles, the first near ", millimetres(to_vec3(mesh.point(v)))),
-                      "resolve the self-intersections in a mesh editor or set surface.repair = "
-                      "\"wrap\"");
-    }
-    if (!CGAL::is_closed(mesh))
-      refuse_geometry(where_, "the surface is not watertight after the repair",
-                      "close its holes in a mesh editor or set surface.repair = \"wrap\"");
+  void turn_outward(Surface& surface) {
+    if (signed_volume(surface) >= 0) return;
+    for (Triangle& t : surface.triangles) std::swap(t[1], t[2]);
+    report_.steps.push_back("reversed all faces: they pointed inward");
   }
 
-  /// Distances at the corners and the middles of the triangles, both ways.
-  void measure(const Surface& surface) {
-    const SurfaceQuery after(surface), before(original_);
-    const auto largest = [](const Surface& from, const SurfaceQuery& to, double& distance,
-                            Vec3& at) {
-      const auto look = [&](const Vec3& x) {
-        const double d = norm(to.closest(x).point - x);
-        if (d <= distance) return;
-        distance = d;
-        at = x;
-      };
-      for (const Triangle& t : from.triangles) {
-        Vec3 sum{};
-        for (const auto v : t) sum = sum + from.points[static_cast<std::size_t>(v)];
-        look((1.0 / 3) * sum);
+  /// Writes the distances between what was kept and the result to the report.
+  Change measure(const Surface& surface) {
+    Change moved = change_between(kept_, surface, most_moved());
+    const Change added = change_between(surface, kept_, most_moved());
+    report_.moved = moved.distance;
+    report_.moved_at = moved.at;
+    report_.added = added.distance;
+    report_.added_at = added.at;
+    return moved;
+  }
+
+  Shortcoming measured(const Surface& surface) {
+    Change moved = measure(surface);
+    if (moved.distance <= most_moved()) return {};
+    return {text("local repairs would move the surface by ", millimetres(moved.distance), " at ",
+                 millimetres(moved.at)),
+            std::move(moved.far_faces)};
+  }
+
+  /// @throws FaultySurface where no wrap is near enough.
+  Surface wrapped_instead(Shortcoming& left) {
+    for (const double fraction : kAlphas) {
+      const double alpha = fraction * extent_, offset = alpha / kAlphaPerOffset;
+      Surface wrap = alpha_wrap(filled_, alpha, offset);
+      if (mean_thickness(wrap) < kSkinOffsets * offset)
+        refuse_sheet("the faces do not bound a volume: they wrap to a skin about an open sheet");
+      const Change moved = measure(wrap);
+      const bool is_finest = fraction == kAlphas.back();
+      if (moved.far_fraction() > (is_finest ? kMostFar : kFewFar)) {
+        if (is_finest) refuse_wrap(left, moved, alpha);
+        continue;
       }
-      for (const Vec3& x : from.points) look(x);
-    };
-    largest(remaining_original(), after, report_.moved, report_.moved_at);
-    largest(surface, before, report_.added, report_.added_at);
-    if (settings_.mode == RepairMode::Wrap || report_.moved <= settings_.max_change * extent_)
-      return;
-    refuse_geometry(where_,
-                    text("the repair (", steps(), ") would move the surface by ",
-                         millimetres(report_.moved), " at ", millimetres(report_.moved_at),
-                         ", more than max_change = ", settings_.max_change, " of its extent"),
-                    "raise surface.max_change, or mend the surface there in a mesh editor");
-  }
-
-  /// The triangles of the original outside the parts that were removed on purpose.
-  Surface remaining_original() const {
-    Surface remaining;
-    for (const Triangle& t : original_.triangles) {
-      const bool removed =
-          std::any_of(removed_parts_.begin(), removed_parts_.end(), [&](const CGAL::Bbox_3& box) {
-            return std::all_of(t.begin(), t.end(), [&](std::int32_t v) {
-              const Point x = to_point(original_.points[static_cast<std::size_t>(v)]);
-              return CGAL::do_overlap(box, x.bbox());
-            });
-          });
-      if (removed) continue;
-      const auto first = static_cast<std::int32_t>(remaining.points.size());
-      for (const std::int32_t v : t)
-        remaining.points.push_back(original_.points[static_cast<std::size_t>(v)]);
-      remaining.triangles.push_back({first, first + 1, first + 2});
+      tell_wrap(left.problem, moved, alpha);
+      return wrap;
     }
-    return remaining;
+    return {};
   }
 
-  /// Each triangle bears the names of the nearest face of the file.
-  void hand_on_names(Surface& surface) const {
-    if (soup_.names.empty()) return;
-    std::vector<std::size_t> polygon_of_triangle;
+  void tell_wrap(const std::string& problem, const Change& moved, double alpha) {
+    report_.steps.push_back(
+        text("replaced the surface by its alpha wrap, alpha ", millimetres(alpha)));
+    report_.warnings.push_back(
+        text(problem, "; its alpha wrap replaces it, which bridges what is narrower than ",
+             millimetres(alpha), ": ", 100 * moved.far_fraction(),
+             " % of the area of the file lies farther than max_change from it, at most ",
+             millimetres(moved.distance), " at ", millimetres(moved.at)));
+  }
+
+  [[noreturn]] void refuse_wrap(Shortcoming& left, const Change& moved, double alpha) const {
+    for (std::size_t f = 0; f < moved.far_faces.faults.size(); ++f) {
+      const Vec3* corner = &moved.far_faces.points[3 * f];
+      left.faces.add(corner[0], corner[1], corner[2], moved.far_faces.faults[f]);
+    }
+    throw FaultySurface(
+        where_,
+        text(left.problem, "; ", 100 * moved.far_fraction(),
+             " % of its area lies farther than max_change = ", settings_.max_change,
+             " of its extent from its alpha wrap of ", millimetres(alpha), ", at most ",
+             millimetres(moved.distance), " at ", millimetres(moved.at)),
+        "raise surface.max_change, set surface.repair = \"wrap\" to take that wrap, or mend the "
+        "surface there in a mesh editor",
+        left.faces);
+  }
+
+  std::vector<std::size_t> names_of_triangles() const {
+    std::vector<std::size_t> names;
     for (std::size_t p = 0; p < soup_.polygons.size(); ++p)
-      polygon_of_triangle.insert(polygon_of_triangle.end(), soup_.polygons[p].size() - 2, p);
-    const SurfaceQuery before(original_);
-    surface.known_names = soup_.known_names;
-    for (const Triangle& t : surface.triangles) {
-      Vec3 sum{};
-      for (const auto v : t) sum = sum + surface.points[static_cast<std::size_t>(v)];
-      const auto nearest = static_cast<std::size_t>(before.closest((1.0 / 3) * sum).triangle);
-      surface.names.push_back(soup_.names[polygon_of_triangle[nearest]]);
-    }
+      names.insert(names.end(), soup_.polygons[p].size() - 2, soup_.names[p]);
+    return names;
   }
 
-  Surface original_;
   const Soup& soup_;
   const RepairSettings& settings_;
   const std::string& where_;
   RepairReport& report_;
-  double extent_;
-  std::vector<CGAL::Bbox_3> removed_parts_;
+  Surface original_;  // the faces of the file
+  Surface kept_;      // those of the parts that are kept
+  Surface filled_;    // those and the patches in their holes
+  double extent_;     // m
 };
 
 }  // namespace
-
-bool is_sound(const Soup& soup) {
-  Faces faces = to_faces(soup);
-  if (!pmp::orient_polygon_soup(faces.points, faces.polygons)) return false;
-  if (!pmp::is_polygon_soup_a_polygon_mesh(faces.polygons)) return false;
-  Mesh mesh;
-  pmp::polygon_soup_to_polygon_mesh(faces.points, faces.polygons, mesh);
-  if (!pmp::triangulate_faces(mesh) || !CGAL::is_closed(mesh)) return false;
-  auto part = mesh.add_property_map<Mesh::Face_index, std::size_t>("f:part", 0).first;
-  if (pmp::connected_components(mesh, part) != 1) return false;
-  const bool degenerate = std::any_of(mesh.faces().begin(), mesh.faces().end(), [&](auto f) {
-    return pmp::is_degenerate_triangle_face(f, mesh);
-  });
-  return !degenerate && !pmp::does_self_intersect(mesh);
-}
 
 Surface repair(const Soup& soup, const RepairSettings& settings, const std::string& where,
                RepairReport& report) {

@@ -12,10 +12,12 @@ enum class RepairMode {
 /// Lengths are fractions of the largest dimension of the surface.
 struct RepairSettings {
   RepairMode mode = RepairMode::Auto;
-  double max_change = 0.01;  ///< largest distance that the surface of the file may move
-  double max_hole = 0.3;     ///< largest diameter of a hole that is filled, unless it is flat
-  double negligible_part =
-      0.05;  ///< separate parts with a smaller extent are removed, and those of little area
+  /// Largest distance that local repairs may move the surface; beyond, its alpha wrap replaces it.
+  double max_change = 0.01;
+  /// Larger holes are filled with a warning, unless they are flat cuts.
+  double max_hole = 0.3;
+  /// Separate parts with a smaller extent are removed, and those of little area.
+  double negligible_part = 0.05;
   bool largest_part = false;  ///< of several parts keep the one of the largest area
 };
 

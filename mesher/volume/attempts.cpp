@@ -44,6 +44,9 @@ constexpr double kFar = 0.35;
 /// Sizes at faults are reduced by this factor, down to this part of element_size.
 constexpr double kFiner = 0.5, kFinest = 1.0 / 16;
 
+/// All sizes are reduced by this factor where the surface cannot be followed more closely.
+constexpr double kSmaller = 0.7;
+
 /// Nodes in excess of a uniform mesh at which refinement has gone astray.
 constexpr double kExcess = 4;
 
@@ -147,8 +150,7 @@ class Attempts {
     add(c.faults.islands);
     add(c.faults.flat);
     if (report_.attempts == 1 || !has_volume(c)) add(c.faults.lost);
-    if (c.cut_short) facet_angle_ = facet_angle_ > kFacetAngles[1] ? kFacetAngles[1] : 0;
-    if (!has_volume(c)) distance_factor_ *= kFiner;
+    adapt_criteria(c);
     note(request_.log,
          text("attempt ", report_.attempts, ": ", counted(c.mesh.nodes.size(), "node"), ", ",
               counted(c.faults.pinches.size(), "node"), " where the boundary touches itself, ",
@@ -157,6 +159,19 @@ class Attempts {
               " of the surfaces lost, volume ", 100 * c.volume_change, " %",
               c.cut_short ? ", stopped" : "", "; again with smaller elements at ",
               counted(places, "place")));
+  }
+
+  /// Facets that are too far from the interface cost volume: they shall be nearer. Where that has
+  /// no end, as at acute edges, elements become smaller everywhere instead.
+  void adapt_criteria(const Candidate& c) {
+    if (c.cut_short && distance_factor_ < 1) {
+      distance_factor_ = 1;
+      for (SizeSource& source : request_.sizes) source.size *= kSmaller;
+    } else if (c.cut_short) {
+      facet_angle_ = facet_angle_ > kFacetAngles[1] ? kFacetAngles[1] : 0;
+    } else if (!has_volume(c)) {
+      distance_factor_ *= kFiner;
+    }
   }
 
   void take_apart(Candidate& c) {

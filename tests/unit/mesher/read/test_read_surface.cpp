@@ -101,8 +101,8 @@ TEST(ReadSurface, RefusesFilesThatAreMissingOrUnreadable) {
   expect_file_refused("empty.off", "", "empty or cannot be read", "export");
   expect_file_refused("empty.obj", "# nothing\n", "no faces", "export");
   testing::internal::CaptureStderr();
-  expect_file_refused("prose.ply", "once upon a time", "empty or cannot be read", "export");
-  expect_file_refused("header.ply", "ply\nonce upon a time\n", "empty or cannot be read", "export");
+  expect_file_refused("prose.ply", "once upon a time", "does not begin with 'ply'", "export");
+  expect_file_refused("header.ply", "ply\nonce upon a time\n", "ends where 'end_header'", "export");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // the error is the only line
   std::string cut = off_text(cube());
   cut.resize(cut.size() - 20);

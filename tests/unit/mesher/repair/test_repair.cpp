@@ -11,7 +11,10 @@
 #include <random>
 
 #include "format/error.hpp"
+#include "mesher/geometry/faulty_faces.hpp"
 #include "mesher/geometry/queries.hpp"
+#include "mesher/repair/soundness.hpp"
+#include "tests/unit/mesher/repair/soups.hpp"
 #include "tests/unit/mesher/shapes.hpp"
 
 namespace palpate::mesher {
@@ -22,36 +25,12 @@ using testing::HasSubstr;
 
 constexpr double kRadius = 0.03;  // m
 
-Soup soup_of(const Surface& surface) {
-  Soup soup;
-  soup.points = surface.points;
-  for (const Triangle& t : surface.triangles) {
-    std::vector<std::size_t> corners;
-    for (const std::int32_t v : t) corners.push_back(static_cast<std::size_t>(v));
-    soup.polygons.push_back(corners);
-  }
-  return soup;
-}
-
-/// Every triangle with corners of its own, as in an STL file.
-Soup unconnected(const Surface& surface) {
-  Soup soup;
-  for (const Triangle& t : surface.triangles) {
-    const std::size_t first = soup.points.size();
-    for (const std::int32_t v : t)
-      soup.points.push_back(surface.points[static_cast<std::size_t>(v)]);
-    soup.polygons.push_back({first, first + 1, first + 2});
-  }
-  return soup;
-}
+using test::joined;
+using test::soup_of;
+using test::unconnected;
 
 Surface ball() {
   return test::sphere({0, 0, 0}, kRadius, 32);
-}
-
-Surface add(Surface surface, const Surface& more) {
-  append(surface, more);
-  return surface;
 }
 
 struct Repaired {
@@ -88,11 +67,6 @@ void expect_refused(const Soup& soup, const std::string& problem, const std::str
   }
 }
 
-TEST(Repair, ASoundSurfaceIsRecognized) {
-  EXPECT_TRUE(is_sound(soup_of(ball())));
-  EXPECT_TRUE(is_sound(soup_of(test::box({0, 0, 0}, {1, 1, 1}))));
-}
-
 TEST(Repair, ADuplicateFaceIsRemoved) {
   Soup soup = soup_of(ball());
   soup.polygons.push_back(soup.polygons[7]);
@@ -118,7 +92,7 @@ TEST(Repair, ATJunctionIsSplit) {
 
 TEST(Repair, AFloatingSpeckIsRemoved) {
   const Surface speck = test::box({0.06, 0, 0}, {0.0605, 0.0005, 0.0005});
-  expect_repaired(soup_of(add(ball(), speck)), ball(), "removed 1 separate part");
+  expect_repaired(soup_of(joined(ball(), speck)), ball(), "removed 1 separate part");
 }
 
 TEST(Repair, CopiesOfPointsThatDifferByNoiseAreMerged) {
@@ -154,21 +128,94 @@ TEST(Repair, AFlatCutOfAnySizeIsClosed) {
   expect_repaired(soup, whole, "filled 1 hole", 1e-9, settings);
 }
 
-TEST(Repair, AnOpenShellIsRefusedWithThePlaceOfItsHole) {
-  // Half of the ball's latitudes on one side: the border of the hole is not flat.
-  Soup soup = soup_of(ball());
-  std::erase_if(soup.polygons, [&](const auto& corners) {
-    const Vec3& x = soup.points[corners[0]];
+/// The volume of a ball below a height over its radius, from -1 to 1.
+double cap_volume(double height) {
+  const double depth = kRadius * (1 + height);
+  return std::numbers::pi * depth * depth * (3 * kRadius - depth) / 3;
+}
+
+TEST(Repair, AnOpenShellIsFilledWithAWarningOfItsPlaceAndSize) {
+  // The border of the hole lies between two heights, and so does its patch.
+  const Surface shell = test::without(test::sphere({0, 0, 0}, kRadius, 64), [](const Vec3& x) {
     return x[0] > 0.3 * kRadius + 0.4 * std::abs(x[1]);
   });
   RepairSettings settings;
   settings.max_hole = 0.1;
-  expect_refused(soup, "not watertight: a hole of", "surface.repair = \"wrap\"", settings);
+  const Repaired result = repaired(soup_of(shell), settings);
+  EXPECT_TRUE(is_sound(soup_of(result.surface)));
+  EXPECT_GT(signed_volume(result.surface), cap_volume(0.2));
+  EXPECT_LT(signed_volume(result.surface), cap_volume(0.75));
+  EXPECT_LT(result.report.moved, 1e-15);
+  ASSERT_EQ(result.report.warnings.size(), 1U);
+  EXPECT_THAT(
+      result.report.warnings[0],
+      testing::ContainsRegex("a hole of 5[0-9.]+ mm at \\([0-9.]+, .*larger than max_hole = "
+                             "0.1 .*filled with a patch of 2[0-9]+"));
+}
+
+TEST(Repair, ASmallHoleIsFilledWithoutAWarning) {
+  Soup soup = soup_of(ball());
+  soup.polygons.erase(soup.polygons.begin() + 7);
+  EXPECT_THAT(repaired(soup).report.warnings, testing::IsEmpty());
+}
+
+TEST(Repair, AnOpenSheetIsRefusedWithItsFaces) {
+  Surface sheet;
+  for (int i = 0; i < 5; ++i)
+    for (int j = 0; j < 5; ++j) sheet.points.push_back({0.01 * i, 0.01 * j, 0});
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) {
+      const std::int32_t v = 5 * i + j;
+      sheet.triangles.push_back({v, v + 5, v + 6});
+      sheet.triangles.push_back({v, v + 6, v + 1});
+    }
+  }
+  RepairReport report;
+  try {
+    repair(soup_of(sheet), {}, "body.stl", report);
+    FAIL() << "accepted";
+  } catch (const FaultySurface& fault) {
+    EXPECT_THAT(fault.problem(), HasSubstr("do not bound a volume"));
+    EXPECT_THAT(fault.remedy(), HasSubstr("thickness"));
+    EXPECT_EQ(fault.faces().faults.size(), 32U);
+  }
+}
+
+TEST(Repair, ASurfaceWhoseBranchesCrossIsWrapped) {
+  // Two balls that overlap, joined by a triangle's width of nothing: one part, many crossings.
+  const double apart = 1.2 * kRadius;
+  Soup soup = soup_of(joined(test::sphere({0, 0, 0}, kRadius, 96),
+                             test::sphere({apart, 0.01 * kRadius, 0}, kRadius, 96)));
+  // One corner of each becomes common: the parts are connected there once sheets are separated.
+  const Repaired result = repaired(soup, {RepairMode::Wrap});
+  EXPECT_TRUE(is_sound(soup_of(result.surface)));
+  // The union of two balls: both less the lens between them.
+  const double d = apart / 2, cap = kRadius - d;
+  const double lens = 2 * std::numbers::pi * cap * cap * (3 * kRadius - cap) / 3;
+  const double both = 2 * 4 * std::numbers::pi / 3 * std::pow(kRadius, 3) - lens;
+  EXPECT_NEAR(signed_volume(result.surface) / both, 1, 0.02);
+}
+
+TEST(Repair, ADeepDentThatCutsTheFarSideIsWrappedWithAWarning) {
+  // A point of the top of a fine box is pulled through the bottom: the cone crosses it.
+  Surface box = test::sphere({0, 0, 0}, kRadius, 32);
+  const auto top = std::max_element(box.points.begin(), box.points.end(),
+                                    [](const Vec3& a, const Vec3& b) { return a[2] < b[2]; });
+  (*top)[2] = -1.5 * kRadius;
+  ASSERT_GT(count_self_intersections(box), 0U);
+  RepairSettings settings;
+  settings.max_change = 1e-4;  // no local repair
+  const Repaired result = repaired(soup_of(box), settings);
+  EXPECT_TRUE(is_sound(soup_of(result.surface)));
+  EXPECT_THAT(result.report.steps, Contains(HasSubstr("alpha wrap")));
+  ASSERT_EQ(result.report.warnings.size(), 1U);
+  EXPECT_THAT(result.report.warnings[0],
+              testing::ContainsRegex("% of the area of the file lies farther than max_change"));
 }
 
 TEST(Repair, SeveralPartsAreRefusedWithTheirSizesAndTheLargestIsKeptOnRequest) {
   const Surface other = test::sphere({0.1, 0, 0}, 0.5 * kRadius, 16);
-  const Soup soup = soup_of(add(other, ball()));
+  const Soup soup = soup_of(joined(other, ball()));
   expect_refused(soup, "2 separate parts, the largest first: (-30", "surface.parts = \"largest\"");
   RepairSettings settings;
   settings.largest_part = true;
@@ -192,7 +239,7 @@ TEST(Repair, ALocalSelfIntersectionIsRemoved) {
 TEST(Repair, SaysHowFarTheSurfaceMoved) {
   // The floating speck does not count; nothing else moves.
   const Surface speck = test::box({0.06, 0, 0}, {0.0605, 0.0005, 0.0005});
-  const Repaired result = repaired(soup_of(add(ball(), speck)));
+  const Repaired result = repaired(soup_of(joined(ball(), speck)));
   EXPECT_LT(result.report.moved, 1e-15);
   EXPECT_LT(result.report.added, 1e-15);
   EXPECT_NEAR(result.report.volume, signed_volume(ball()), 1e-15);
@@ -216,17 +263,6 @@ TEST(Repair, NamesOfFacesAreHandedOn) {
       EXPECT_EQ(surface.names[t], height > 0 ? 1U : 0U) << t;
     }
   }
-}
-
-TEST(AlphaWrap, OfABallWithACrackIsClosedAndNearItsVolume) {
-  Soup soup = soup_of(ball());
-  soup.polygons.resize(soup.polygons.size() - 3);
-  const double alpha = kRadius / 10, offset = kRadius / 300;
-  const Surface wrap = alpha_wrap(soup, alpha, offset);
-  EXPECT_TRUE(is_sound(soup_of(wrap)));
-  const double exact = 4 * std::numbers::pi / 3 * std::pow(kRadius, 3);
-  EXPECT_GT(signed_volume(wrap), 0.98 * signed_volume(ball()));
-  EXPECT_LT(signed_volume(wrap), std::pow(1 + 2 * offset / kRadius, 3) * exact);
 }
 
 }  // namespace

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The connected parts of a surface, and which of them are kept.
+#pragma once
+
+#include <string>
+
+#include "mesher/geometry/surface.hpp"
+#include "mesher/repair/points.hpp"
+#include "mesher/repair/repair_settings.hpp"
+
+namespace palpate::mesher {
+
+/// Removes parts that are small against the extent (m) or in area, and with largest_part all parts
+/// but that of the largest area.
+/// @throws FaultySurface with the size and place of each part where several remain.
+void keep_parts(Mesh& mesh, const RepairSettings& settings, double extent, const std::string& where,
+                Steps& steps);
+
+}  // namespace palpate::mesher
