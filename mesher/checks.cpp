@@ -42,6 +42,10 @@ void check_lengths(const Settings& s) {
     refuse_setting(text("interior_coarsening is ", s.interior_coarsening, ", below 1"),
                    "give 1 for a uniform mesh or more for a coarser interior");
   }
+  if (!std::isfinite(s.support_coarsening) || s.support_coarsening < 1) {
+    refuse_setting(text("support_coarsening is ", s.support_coarsening, ", below 1"),
+                   "give 1 for elements as small as elsewhere or more for larger ones");
+  }
   if (!(s.feature_angle > 0 && s.feature_angle <= std::numbers::pi)) {
     refuse_setting(text("feature_angle is ", s.feature_angle, " rad"), "give 0 .. pi");
   }

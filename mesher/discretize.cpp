@@ -15,6 +15,7 @@
 #include "mesher/geometry/text.hpp"
 #include "mesher/skin/curve_edges.hpp"
 #include "mesher/skin/remesh.hpp"
+#include "mesher/support/supports.hpp"
 #include "mesher/volume/delaunay.hpp"
 #include "mesher/volume/fill.hpp"
 #include "mesher/volume/inclusions.hpp"
@@ -60,6 +61,7 @@ Discretization by_refinement(const Settings& settings, const Surface& skin,
   DelaunaySettings delaunay;
   delaunay.element_size = settings.element_size;
   delaunay.interior_coarsening = settings.interior_coarsening;
+  delaunay.surface_coarsening = coarsening_at_supports(settings, skin);
   delaunay.most_volume_change = kMostVolumeChange;
   delaunay.largest_dihedral = kLargestDihedral;
   delaunay.log = settings.log;
@@ -80,9 +82,9 @@ bool has_void(const Settings& settings) {
                      [](const SurfaceFile& inclusion) { return inclusion.is_void; });
 }
 
-/// Isotropic remeshing knows neither layers nor voids.
+/// Isotropic remeshing knows one size of facets, and neither layers nor voids.
 bool needs_refinement(const Settings& settings) {
-  return !settings.layers.empty() || has_void(settings);
+  return !settings.layers.empty() || has_void(settings) || settings.support_coarsening > 1;
 }
 
 /// @throws Error(Geometry) when the mesh would not serve.
@@ -123,8 +125,8 @@ Discretization discretize(const Settings& settings, const Surface& skin,
                           const std::vector<Surface>& inclusions) {
   const std::string where = settings.surface.path.string();
   if (settings.method == MeshMethod::Isotropic && needs_refinement(settings)) {
-    refuse(where, "isotropic remeshing makes neither layers nor voids",
-           "remove mesh.method, or the layers and voids");
+    refuse(where, "isotropic remeshing makes neither layers, voids nor coarser supports",
+           "remove mesh.method, or the layers, voids and support_coarsening");
   }
   std::string problems, remedy;
   for (const Way& way : ways(settings, skin, inclusions)) {

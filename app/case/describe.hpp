@@ -196,6 +196,12 @@ void describe_mesh(V& v, mesher::Settings& s) {
                                    "target ratio of the largest interior edge to `element_size`",
                                    kOptional,
                                    {.low = 1}});
+  v.number(s.support_coarsening,
+           {"support_coarsening",
+            "target ratio of the edges at fixed supports to `element_size`; above 1, Delaunay "
+            "refinement makes the mesh",
+            kOptional,
+            {.low = 1}});
   v.quantity(s.feature_angle, Dimension::Angle,
              {"feature_angle",
               "edges of the surface with a larger dihedral deviation are preserved",

@@ -2,7 +2,7 @@
 #include "mesher/repair/change.hpp"
 
 #include "format/to_index.hpp"
-#include "mesher/geometry/queries.hpp"
+#include "mesher/geometry/nearest_triangle.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -16,10 +16,10 @@ Vec3 middle(const Surface& surface, const Triangle& t) {
 }  // namespace
 
 Change change_between(const Surface& from, const Surface& to, double far) {
-  const SurfaceQuery query(to);
+  const NearestTriangle nearest(to);
   Change change;
   const auto look = [&](const Vec3& x) {
-    const double distance = norm(query.closest(x).point - x);
+    const double distance = nearest.to(x).distance;
     if (distance > change.distance) {
       change.distance = distance;
       change.at = x;
@@ -39,9 +39,9 @@ Change change_between(const Surface& from, const Surface& to, double far) {
 
 void hand_on_names(Surface& surface, const Surface& before,
                    const std::vector<std::size_t>& names_of) {
-  const SurfaceQuery query(before);
+  const NearestTriangle nearest(before);
   for (const Triangle& t : surface.triangles)
-    surface.names.push_back(names_of[to_index(query.closest(middle(surface, t)).triangle)]);
+    surface.names.push_back(names_of[to_index(nearest.to(middle(surface, t)).triangle)]);
 }
 
 }  // namespace palpate::mesher

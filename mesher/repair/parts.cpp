@@ -99,6 +99,15 @@ std::string described(const Part& p) {
 
 }  // namespace
 
+double largest_fraction(const Surface& surface) {
+  double all = 0, largest = 0;
+  for (const Part& p : parts_of(surface)) {
+    all += p.area;
+    largest = std::max(largest, p.area);
+  }
+  return all > 0 ? largest / all : 0;
+}
+
 void keep_parts(Surface& surface, const RepairSettings& settings, double extent,
                 const std::string& where, Steps& steps) {
   std::vector<Part> kept;

@@ -10,10 +10,13 @@
 
 namespace palpate::mesher {
 
+/// The area of the largest part over that of all; 0 without faces.
+double largest_fraction(const Surface& surface);
+
 /// Removes parts that are small against the extent (m) or in area, and with largest_part all parts
 /// but that of the largest area.
 /// @throws FaultySurface with the size and place of each part where several remain.
-void keep_parts(Mesh& mesh, const RepairSettings& settings, double extent, const std::string& where,
-                Steps& steps);
+void keep_parts(Surface& surface, const RepairSettings& settings, double extent,
+                const std::string& where, Steps& steps);
 
 }  // namespace palpate::mesher

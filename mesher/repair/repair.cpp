@@ -23,10 +23,12 @@ namespace palpate::mesher {
 namespace {
 
 // Alphas of the wraps, as fractions of the extent.
-constexpr std::array<double, 3> kAlphas = {1.0 / 50, 1.0 / 100, 1.0 / 200};
+constexpr std::array<double, 2> kAlphas = {1.0 / 50, 1.0 / 100};
 // A wrap will do where at most this fraction of the area of the file is farther than max_change; of
-// the finest wrap, at most the second fraction.
-constexpr double kFewFar = 0.01, kMostFar = 0.1;
+// the finest wrap, at most the second fraction. A finer one takes four times as long.
+constexpr double kFewFar = 0.02, kMostFar = 0.1;
+// Of sheets that met in edges, the largest must have this fraction of the area.
+constexpr double kMainSheet = 0.5;
 // A surface with a smaller mean thickness, as a fraction of its extent, is a sheet.
 constexpr double kSheet = 1e-3;
 // So is a wrap of fewer offsets than this.
@@ -114,7 +116,7 @@ class Repair {
   Surface wrapped_on_request() {
     try {
       guard_cgal(where_, {}, [&] {
-        filled_ = connected();
+        filled_ = connected().surface;
         fill();
       });
     } catch (const Error& error) {
@@ -128,7 +130,7 @@ class Repair {
     return wrap;
   }
 
-  Surface connected() {
+  Sheets connected() {
     Soup soup{soup_.points, soup_.polygons, {}, {}};
     merge_near_points(soup, extent_, report_.steps);
     remove_duplicate_faces(soup, report_.steps);
@@ -138,11 +140,15 @@ class Repair {
 
   /// Local repairs.
   Shortcoming mend(Surface& surface) {
-    kept_ = connected();
+    Sheets sheets = connected();
+    if (sheets.separated && largest_fraction(sheets.surface) < kMainSheet)
+      return {"the faces share edges and do not separate into one main sheet and small ones", {}};
+    kept_ = std::move(sheets.surface);
     keep_parts(kept_, settings_, extent_, where_, report_.steps);
     filled_ = kept_;
     fill();
     check_is_no_sheet();
+    steps_before_wrap_ = report_.steps.size();
     surface = filled_;
     remove_degenerate_faces(surface, report_.steps);
     if (!remove_crossings(surface, report_.steps)) return crossings_left(surface);
@@ -238,6 +244,7 @@ class Repair {
   }
 
   void tell_wrap(const std::string& problem, const Change& moved, double alpha) {
+    report_.steps.resize(steps_before_wrap_);
     report_.steps.push_back(
         text("replaced the surface by its alpha wrap, alpha ", millimetres(alpha)));
     report_.warnings.push_back(
@@ -274,10 +281,11 @@ class Repair {
   const RepairSettings& settings_;
   const std::string& where_;
   RepairReport& report_;
-  Surface original_;  // the faces of the file
-  Surface kept_;      // those of the parts that are kept
-  Surface filled_;    // those and the patches in their holes
-  double extent_;     // m
+  Surface original_;                   // the faces of the file
+  Surface kept_;                       // those of the parts that are kept
+  Surface filled_;                     // those and the patches in their holes
+  double extent_;                      // m
+  std::size_t steps_before_wrap_ = 0;  // those that a wrap builds on
 };
 
 }  // namespace

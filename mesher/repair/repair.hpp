@@ -30,8 +30,8 @@ struct RepairReport {
 /// T-junctions split, faces oriented and sheets that meet in an edge or a point separated, borders
 /// stitched, negligible parts removed, holes filled, degenerate faces removed, self-intersections
 /// removed. Where faults remain, or the surface moves by more than max_change, the alpha wrap of
-/// the faces and of the patches in the holes replaces it, the coarsest of alpha = 1/50, 1/100 and
-/// 1/200 of the extent of which at most 1 % of the area of the file is farther than max_change.
+/// the faces and of the patches in the holes replaces it: that of alpha = 1/50 of the extent if at
+/// most 2 % of the area of the file is farther than max_change from it, else that of 1/100.
 ///
 /// Each step that changes something is named in the report. Names of faces are those of the nearest
 /// face of the file.

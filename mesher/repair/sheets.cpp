@@ -33,11 +33,12 @@ void remove_duplicate_faces(Soup& soup, Steps& steps) {
                     counted(before - soup.polygons.size(), "duplicate or collapsed face"));
 }
 
-Surface connect(const Soup& soup, Steps& steps) {
+Sheets connect(const Soup& soup, Steps& steps) {
   std::vector<Point> points = points_of(soup);
   std::vector<std::vector<std::size_t>> polygons = soup.polygons;
   pmp::orient_polygon_soup(points, polygons);
-  if (const std::size_t duplicated = points.size() - soup.points.size(); duplicated > 0)
+  const std::size_t duplicated = points.size() - soup.points.size();
+  if (duplicated > 0)
     steps.push_back(text("separated sheets that met in an edge or a point: ",
                          counted(duplicated, "point"), " duplicated"));
   Mesh mesh;
@@ -46,7 +47,7 @@ Surface connect(const Soup& soup, Steps& steps) {
   if (const std::size_t stitched = pmp::stitch_borders(mesh); stitched > 0)
     steps.push_back("stitched " + counted(stitched, "pair") + " of border edges");
   mesh.collect_garbage();
-  return to_surface(mesh);
+  return {to_surface(mesh), duplicated > 0};
 }
 
 }  // namespace palpate::mesher

@@ -12,9 +12,13 @@ namespace palpate::mesher {
 /// have fewer than three distinct corners.
 void remove_duplicate_faces(Soup& soup, Steps& steps);
 
+struct Sheets {
+  Surface surface;         ///< manifold, with or without borders
+  bool separated = false;  ///< some met in an edge or a point
+};
+
 /// Orients the faces, separates sheets that meet in an edge or a point, splits polygons into
-/// triangles and stitches borders whose points coincide. The result is manifold, with or without
-/// borders.
-Surface connect(const Soup& soup, Steps& steps);
+/// triangles and stitches borders whose points coincide.
+Sheets connect(const Soup& soup, Steps& steps);
 
 }  // namespace palpate::mesher

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <set>
 
 #include "format/error.hpp"
@@ -30,13 +31,18 @@ std::vector<bool> entries_with(const std::string& label, const Surface& skin,
     found = found || has_label.back();
   }
   if (found) return has_label;
+  constexpr std::size_t kListed = 20;  // a painted surface may have thousands of colours
   std::string list;
-  for (const std::string& name : all) list += (list.empty() ? "" : ", ") + name;
+  std::size_t listed = 0;
+  for (const std::string& name : all)
+    if (listed++ < kListed) list += (list.empty() ? "" : ", ") + name;
+  if (all.size() > kListed) list += text(" or ", all.size() - kListed, " more");
   throw Error(ErrorKind::Configuration, where,
               text("no face has the name '", label, "', which a support asks for"),
               all.empty()
                   ? "name faces by 'g', 'o' or 'usemtl' in an OBJ file, by solids in an STL "
-                    "file of text, or by an integer cell array in a VTK file"
+                    "file of text, by colours in a PLY file, or by an integer cell array in a VTK "
+                    "file"
                   : text("use one of ", list));
 }
 
@@ -169,6 +175,21 @@ Marks fix_nodes(Body& body, const Settings& settings, const Labels& labels,
   for (std::size_t i = 0; i < fixed.size(); ++i)
     if (fixed[i] != 0) body.fixed_nodes.push_back(static_cast<std::int32_t>(i));
   return fixed;
+}
+
+std::function<double(const Vec3&)> coarsening_at_supports(const Settings& settings,
+                                                          const Surface& skin) {
+  if (settings.support_coarsening == 1) return {};
+  Marks fixed(skin.points.size(), 0);
+  const Labels labels{skin};
+  const MarkInside inside{settings, labels, skin};
+  for (const Zone& support : settings.supports) add_marks(fixed, inside.marks_of(support));
+  std::vector<bool> is_fixed;
+  for (const Triangle& t : skin.triangles) is_fixed.push_back(all_marked(t, fixed));
+  const auto query = std::make_shared<SurfaceQuery>(skin);
+  return [=, coarsening = settings.support_coarsening](const Vec3& x) {
+    return is_fixed[to_index(query->closest(x).triangle)] ? coarsening : 1.0;
+  };
 }
 
 void keep_sites_in_zones(Body& body, const Settings& settings, const Labels& labels,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -43,6 +44,12 @@ struct Labels {
 /// @throws Error(Configuration) when no face or set has the name of a LabelSupport.
 Marks fix_nodes(Body& body, const Settings& settings, const Labels& labels,
                 const Surface& boundary);
+
+/// Settings::support_coarsening near triangles of the skin whose corners all lie inside one of the
+/// fixed supports, 1 elsewhere; empty where it is 1.
+/// @throws Error as fix_nodes.
+std::function<double(const Vec3&)> coarsening_at_supports(const Settings& settings,
+                                                          const Surface& skin);
 
 /// Takes the sites outside every press zone from Body::response; without zones all stay.
 /// @throws Error as fix_nodes.

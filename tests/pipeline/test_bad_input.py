@@ -23,6 +23,8 @@ normal = [0, 0, -1]
 
 """ + CASE[CASE.index("[[material]]") :]
 
+UNREPAIRED = CASE.replace('unit = "mm"', 'unit = "mm"\nrepair = "none"', 1)
+
 
 def open_block():
     vertices, triangles = block(SIZE, 5)
@@ -54,7 +56,8 @@ class BadInput(unittest.TestCase):
     def tearDown(self):
         self.folder.cleanup()
 
-    def refuse(self, code, words, *arguments):
+    def refuse(self, code, words, *arguments, left=()):
+        """Expects the exit code, the words in the message, and nothing in the folder but the files `left`."""
         result = subprocess.run([PALPATE, *map(str, arguments)], capture_output=True, text=True, check=False)
         message = result.stderr
         self.assertEqual(result.returncode, code, message)
@@ -63,12 +66,12 @@ class BadInput(unittest.TestCase):
         self.assertIn("; ", message)  # the remedy comes after it
         for word in words:
             self.assertIn(word, message)
-        left = [p.name for p in self.out.rglob("*")] if self.out.is_dir() else []
-        self.assertEqual(left, [])
+        found = [p.name for p in self.out.rglob("*")] if self.out.is_dir() else []
+        self.assertEqual(found, list(left))
 
-    def refuse_case(self, code, words, case=CASE, surface=None):
+    def refuse_case(self, code, words, case=CASE, surface=None, left=()):
         path = write_case(self.root, case, surface)
-        self.refuse(code, words, "build", path, "--out", self.out)
+        self.refuse(code, words, "build", path, "--out", self.out, left=left)
 
     def test_case_file_is_missing(self):
         self.refuse(USAGE, ["none.toml", "cannot read"], "build", self.root / "none.toml", "--out", self.out)
@@ -89,15 +92,18 @@ class BadInput(unittest.TestCase):
         (self.root / "block.off").unlink()
         self.refuse(GEOMETRY, ["block.off"], "build", path, "--out", self.out)
 
+    def refuse_faces(self, words, surface, case=CASE):
+        """The refusal names a file with the faulty faces."""
+        self.refuse_case(GEOMETRY, [*words, "faulty-faces.vtp"], case, surface, left=["faulty-faces.vtp"])
+
     def test_surface_is_not_watertight(self):
-        case = CASE.replace('unit = "mm"', 'unit = "mm"\nrepair = "none"', 1)
-        self.refuse_case(GEOMETRY, ["block.off", "not watertight"], case, surface=open_block())
+        self.refuse_faces(["block.off", "not watertight"], open_block(), UNREPAIRED)
 
     def test_surface_is_in_parts(self):
-        self.refuse_case(GEOMETRY, ["block.off"], surface=crossing_block())
+        self.refuse_faces(["block.off", "2 separate parts", "mm^3"], crossing_block())
 
     def test_surface_intersects_itself(self):
-        self.refuse_case(GEOMETRY, ["block.off", "self-intersection", "max_change"], surface=dented_block())
+        self.refuse_faces(["block.off", "self-intersects", "pairs of triangles"], dented_block(), UNREPAIRED)
 
     def test_surface_has_a_wrong_unit(self):
         self.refuse_case(USAGE, ["block.off", "0.05 mm", "check the unit"], CASE.replace('unit = "mm"', 'unit = "um"'))

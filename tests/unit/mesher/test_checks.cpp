@@ -52,6 +52,7 @@ TEST(Checks, RefuseSettingsOutOfRange) {
   };
   expect(with([](Settings& s) { s.patch_spacing = 0; }), "patch_spacing");
   expect(with([&](Settings& s) { s.element_size = nan; }), "element_size");
+  expect(with([](Settings& s) { s.support_coarsening = 0.5; }), "support_coarsening is 0.5");
   expect(with([](Settings& s) { s.interior_coarsening = 0.5; }), "interior_coarsening is 0.5");
   expect(with([](Settings& s) { s.feature_angle = -3; }), "feature_angle is -3");
   expect(with([](Settings& s) { s.depth = -0.001; }), "depth");

@@ -47,6 +47,30 @@ TEST(Discretize, BothWaysMakeTheSameVolumeOfASphere) {
   EXPECT_NEAR(volumes[0], volumes[1], 0.02 * volumes[0]);
 }
 
+/// Facets of the boundary whose corners lie at this height.
+std::size_t facets_at(const Surface& boundary, double height) {
+  std::size_t count = 0;
+  for (const Triangle& t : boundary.triangles) {
+    bool all = true;
+    for (const std::int32_t v : t)
+      all = all && std::abs(boundary.points[to_index(v)][2] - height) < 1e-6;
+    count += all ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(Discretize, SupportsMayBeCoarserThanTheRest) {
+  Settings s = test::settings_for("box.off");
+  s.element_size = s.patch_spacing = 0.005;
+  s.support_coarsening = 2.5;
+  const Discretization d = discretize(s, test::cube(), {});
+  // The bottom is fixed. Facets are as many as 1 / size^2, less the transition from the sides.
+  EXPECT_LT(2 * facets_at(d.skin.boundary, 0), facets_at(d.skin.boundary, 0.05));
+  EXPECT_NEAR(measure_quality(d.volume.nodes, d.volume.tetrahedra).volume, 1.25e-4, 0.01 * 1.25e-4);
+  s.method = MeshMethod::Isotropic;
+  EXPECT_THROW(discretize(s, test::cube(), {}), Error);
+}
+
 TEST(Discretize, LayersAndVoidsAreRefinedAndIsotropicRemeshingRefusesThem) {
   Settings s = test::settings_for("ball.off");
   s.patch_spacing = s.element_size = 0.008;

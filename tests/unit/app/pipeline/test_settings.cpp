@@ -132,7 +132,8 @@ class SettingsText {
   }
   void add(const mesher::Settings& s) {
     add(s.name, static_cast<int>(s.method), s.patch_spacing, s.element_size, s.interior_coarsening,
-        s.feature_angle, s.curved_facets, s.tool_radius, s.depth, s.lateral_travel);
+        s.support_coarsening, s.feature_angle, s.curved_facets, s.tool_radius, s.depth,
+        s.lateral_travel);
     add(s.surface);
     add(s.volume_mesh);
     for (const auto& zone : s.press) add(zone);
@@ -271,6 +272,7 @@ TEST(StageSettings, KeysThatACaseLeavesOutHaveTheDefaultsOfTheStages) {
   EXPECT_EQ(mesh.patch_spacing, mesh_default.patch_spacing);
   EXPECT_EQ(mesh.element_size, mesh_default.element_size);
   EXPECT_EQ(mesh.interior_coarsening, mesh_default.interior_coarsening);
+  EXPECT_EQ(mesh.support_coarsening, mesh_default.support_coarsening);
   EXPECT_EQ(mesh.feature_angle, mesh_default.feature_angle);
   EXPECT_EQ(mesh.curved_facets, mesh_default.curved_facets);
   EXPECT_EQ(mesh.surface.region_name, mesh_default.surface.region_name);

@@ -27,6 +27,13 @@ double kept_volume(Surface surface, const RepairSettings& settings, Steps& steps
   return signed_volume(surface);
 }
 
+TEST(Parts, TheFractionOfTheLargestIsOfTheArea) {
+  const Surface second = test::box({0.08, 0, 0}, {0.13, 0.05, 0.05});
+  const Surface third = test::box({0.16, 0, 0}, {0.21, 0.05, 0.05});
+  EXPECT_NEAR(largest_fraction(test::joined(large(), test::joined(second, third))), 1.0 / 3, 1e-12);
+  EXPECT_EQ(largest_fraction({}), 0);
+}
+
 TEST(Parts, OfSmallExtentAreRemoved) {
   const Surface speck = test::box({0.1, 0, 0}, {0.104, 0.004, 0.004});
   Steps steps;

@@ -181,6 +181,22 @@ TEST(Repair, AnOpenSheetIsRefusedWithItsFaces) {
   }
 }
 
+TEST(Repair, FacesOfAGridOfCellsAreRefused) {
+  // 4 x 4 x 4 cubes with all their walls: no sheet is the surface of the body.
+  Surface cells;
+  for (int i = 0; i < 64; ++i) {
+    const Vec3 low = 0.01 * Vec3{1.0 * (i % 4), 1.0 * (i / 4 % 4), 1.0 * (i / 16)};
+    append(cells, test::box(low, low + Vec3{0.01, 0.01, 0.01}));
+  }
+  Soup soup = soup_of(cells);
+  tidy(soup, "cells.stl", {});
+  expect_refused(soup, "do not separate into one main sheet", "surface.repair = \"wrap\"",
+                 {.largest_part = true});
+  // The wrap has the volume of all cells, 40 mm wide and an offset of 1/1500 on each side.
+  const Repaired wrapped = repaired(soup, {RepairMode::Wrap});
+  EXPECT_NEAR(signed_volume(wrapped.surface) / std::pow(0.04, 3), 1, 0.02);
+}
+
 TEST(Repair, ASurfaceWhoseBranchesCrossIsWrapped) {
   // Two balls that overlap, joined by a triangle's width of nothing: one part, many crossings.
   const double apart = 1.2 * kRadius;

@@ -54,9 +54,14 @@ TEST(Sheets, WithTurnedFacesEncloseTheirVolume) {
   for (std::size_t p = 0; p < soup.polygons.size(); p += 2)
     std::swap(soup.polygons[p][0], soup.polygons[p][1]);
   Steps steps;
-  const Surface surface = connect(soup, steps);
+  const Surface surface = connect(soup, steps).surface;
   EXPECT_TRUE(is_closed(surface));
   EXPECT_NEAR(std::abs(signed_volume(surface)), 0.05 * 0.05 * 0.05, 1e-18);
+}
+
+TEST(Sheets, AreSeparatedOnlyWhereTheyMeet) {
+  Steps steps;
+  EXPECT_FALSE(connect(test::soup_of(cube({0, 0, 0})), steps).separated);
 }
 
 TEST(Sheets, ThatMeetInAPointAreSeparated) {
@@ -67,7 +72,8 @@ TEST(Sheets, ThatMeetInAPointAreSeparated) {
     if (norm(soup.points[v] - Vec3{0.05, 0.05, 0.05}) < 1e-12) (v < 8 ? first : second) = v;
   for (auto& corners : soup.polygons) std::replace(corners.begin(), corners.end(), second, first);
   Steps steps;
-  const Surface surface = connect(soup, steps);
+  const auto [surface, separated] = connect(soup, steps);
+  EXPECT_TRUE(separated);
   EXPECT_EQ(surface.points.size(), 16U);
   EXPECT_TRUE(is_closed(surface));
   EXPECT_THAT(steps, Contains(HasSubstr("1 point duplicated")));
@@ -80,7 +86,7 @@ TEST(Sheets, WhoseBordersCoincideAreStitched) {
   const Surface upper = test::without(ball, [](const Vec3& x) { return x[2] < 1e-9; });
   ASSERT_LT(lower.triangles.size(), ball.triangles.size());
   Steps steps;
-  const Surface surface = connect(test::soup_of(test::joined(lower, upper)), steps);
+  const Surface surface = connect(test::soup_of(test::joined(lower, upper)), steps).surface;
   EXPECT_TRUE(is_closed(surface));
   EXPECT_THAT(steps, Contains("stitched 16 pairs of border edges"));
 }
