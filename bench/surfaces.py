@@ -7,7 +7,7 @@ Usage: surfaces.py PALPATE FOLDER... [--details FILE]
 Patches are 1/12 of the largest extent, elements 1/20, the lowest tenth is fixed, the tool has a radius of 1/20
 and presses 1/40 deep. No file gets settings of its own, and a copy of an earlier file is left out. Prints one row a
 folder: files, bodies at the first try, how many of them after a repair, as an alpha wrap and by Delaunay refinement,
-refusals, the longest time of the processor.
+bodies that are too thin for the depth at most sites, refusals, the longest time of the processor.
 """
 import argparse
 import collections
@@ -23,8 +23,10 @@ from vtk.util.numpy_support import vtk_to_numpy
 
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "um": 1e-6}
 USUAL_EXTENT = 0.15  # m
-READERS = {".obj": vtk.vtkOBJReader, ".stl": vtk.vtkSTLReader, ".ply": vtk.vtkPLYReader}
+READERS = {".stl": vtk.vtkSTLReader, ".ply": vtk.vtkPLYReader}
+ENDINGS = (".off", ".obj", *READERS)
 LIMIT_S = 300
+TOO_THIN = "of the thickness at"  # the body was made, and refused for the depth of the press
 CASE = """
 [surface]
 file = "{file}"
@@ -53,6 +55,13 @@ lateral_depths = ["{depth} mm"]
 
 def points_of(path):
     """Coordinates of the points, or None where another reader cannot read the file either."""
+    if path.suffix.lower() == ".obj":  # vtkOBJReader crashes on some of them
+        lines = (line.split() for line in path.read_text(errors="replace").splitlines())
+        try:
+            points = [[float(w) for w in words[1:4]] for words in lines if words[:1] == ["v"]]
+            return numpy.array(points).reshape(-1, 3) if points else None
+        except ValueError:
+            return None
     if path.suffix.lower() == ".off":
         words = [w for line in path.read_text(errors="replace").splitlines()
                  if not line.lstrip().startswith("#") for w in line.split()]
@@ -102,7 +111,7 @@ def mesh(palpate, path, scratch):
     output = (run.stdout + run.stderr).strip()
     last = output.splitlines()[-1] if output else ""
     if run.returncode == 3:
-        return "refused", seconds, last
+        return "too thin" if TOO_THIN in last else "refused", seconds, last
     if run.returncode != 0:
         return f"exit {run.returncode}", seconds, last
     ways = "Delaunay" if "does not make a sound mesh" in output else "isotropic"
@@ -126,11 +135,11 @@ def main():
     parser.add_argument("--details", type=argparse.FileType("w"))
     arguments = parser.parse_args()
     vtk.vtkObject.GlobalWarningDisplayOff()
-    print("| collection | files | bodies | of them repaired | wrapped | Delaunay refinement | refused | other | longest, s |")
-    print("|---|---|---|---|---|---|---|---|---|")
+    print("| collection | files | bodies | of them repaired | wrapped | Delaunay | too thin | refused | other | longest, s |")
+    print("|---|---|---|---|---|---|---|---|---|---|")
     seen = set()
     for folder in arguments.folders:
-        files = sorted(p for p in folder.rglob("*") if p.suffix.lower() in (".off", *READERS))
+        files = sorted(p for p in folder.rglob("*") if p.suffix.lower() in ENDINGS)
         files = list(without_copies(files, seen))
         outcomes, longest = collections.Counter(), 0.0
         for path in files:
@@ -142,9 +151,10 @@ def main():
                 print(f"{path}\t{outcome}\t{seconds:.1f}\t{last}", file=arguments.details, flush=True)
         total = lambda word: sum(n for name, n in outcomes.items() if word in name)
         bodies = total("isotropic") + total("Delaunay")
+        other = len(files) - bodies - outcomes["too thin"] - outcomes["refused"]
         ways = " | ".join(str(total(word)) for word in ("repaired", "wrapped", "Delaunay"))
         print(f"| {folder.name} | {len(files)} | {bodies} | {ways} | "
-              f"{outcomes['refused']} | {len(files) - bodies - outcomes['refused']} | {longest:.0f} |", flush=True)
+              f"{outcomes['too thin']} | {outcomes['refused']} | {other} | {longest:.0f} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -5,8 +5,6 @@
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
 #include <CGAL/Polygon_mesh_processing/triangulate_faces.h>
 
-#include <fstream>
-#include <sstream>
 #include <utility>
 
 #include "format/error.hpp"
@@ -19,6 +17,7 @@
 #include "mesher/read/body_size.hpp"
 #include "mesher/read/file/file.hpp"
 #include "mesher/read/read_obj.hpp"
+#include "mesher/read/read_off.hpp"
 #include "mesher/read/read_ply.hpp"
 #include "mesher/read/read_stl.hpp"
 #include "mesher/read/vtk/read_vtk_legacy.hpp"
@@ -31,62 +30,38 @@ namespace {
 
 namespace pmp = CGAL::Polygon_mesh_processing;
 
-/// The lines with a number that is not finite: text readers stop there without naming the line.
-std::vector<std::size_t> lines_not_finite(const std::filesystem::path& path) {
-  std::ifstream in(path);
-  std::vector<std::size_t> lines;
-  std::size_t number = 0;
-  for (std::string line; std::getline(in, line);) {
-    ++number;
-    std::istringstream words(lower(line));
-    for (std::string word; words >> word;) {
-      if (word.front() == '-' || word.front() == '+') word.erase(0, 1);
-      if (word != "nan" && word != "inf" && word != "infinity") continue;
-      lines.push_back(number);
-      break;
-    }
-  }
-  return lines;
-}
-
-Soup read_soup(const std::filesystem::path& path) {
-  const std::string where = path.string(), kind = ending(path);
-  check_readable(path);
-  if (kind == ".obj") return read_obj(path);
-  if (kind == ".vtp" || kind == ".vtu")
-    return surface_of(read_vtk_xml(read_bytes(path), where), where);
-  if (kind == ".vtk") return surface_of(read_vtk_legacy(read_bytes(path), where), where);
-  if (kind == ".ply") return read_ply(read_bytes(path), where);
-  if (kind != ".off" && kind != ".stl") {
-    refuse_geometry(where, "unknown kind of surface file '" + kind + "'",
-                    "convert it to OFF, OBJ, PLY, STL or VTP");
-  }
-  if (kind == ".stl" && std::filesystem::file_size(path) > 0) {
-    const std::string bytes = read_bytes(path);
-    if (is_text_stl(bytes)) return read_text_stl(bytes, where);
-  }
+Soup read_binary_stl(const std::string& where) {
   std::vector<Point> points;
   std::vector<std::vector<std::size_t>> polygons;
   if (!CGAL::IO::read_polygon_soup(where, points, polygons, CGAL::parameters::verbose(false))) {
-    if (polygons.empty() && points.empty()) {
-      refuse_geometry(where, "the file is empty or cannot be read as its ending says",
-                      "export the surface again");
-    }
-    if (const auto lines = lines_not_finite(path); !lines.empty()) {
-      refuse_geometry(text(where, ":", lines.front()),
-                      text("a coordinate that is not finite (NaN or Inf), in ",
-                           counted(lines.size(), "line"), " of the file"),
-                      "correct the coordinates or export the surface again");
-    }
     refuse_geometry(where,
-                    text("the file is malformed after ", counted(points.size(), "point"), " and ",
-                         counted(polygons.size(), "face")),
+                    points.empty() && polygons.empty()
+                        ? "the file is empty or cannot be read as its ending says"
+                        : text("the file is malformed after ", counted(points.size(), "point"),
+                               " and ", counted(polygons.size(), "face")),
                     "export the surface again");
   }
   Soup soup;
   soup.polygons = std::move(polygons);
   for (const Point& p : points) soup.points.push_back(to_vec3(p));
   return soup;
+}
+
+Soup read_soup(const std::filesystem::path& path) {
+  const std::string where = path.string(), kind = ending(path);
+  check_readable(path);
+  if (kind == ".obj") return read_obj(path);
+  if (kind == ".off") return read_off(read_bytes(path), where);
+  if (kind == ".ply") return read_ply(read_bytes(path), where);
+  if (kind == ".vtp" || kind == ".vtu")
+    return surface_of(read_vtk_xml(read_bytes(path), where), where);
+  if (kind == ".vtk") return surface_of(read_vtk_legacy(read_bytes(path), where), where);
+  if (kind != ".stl") {
+    refuse_geometry(where, "unknown kind of surface file '" + kind + "'",
+                    "convert it to OFF, OBJ, PLY, STL or VTP");
+  }
+  const std::string bytes = read_bytes(path);
+  return is_text_stl(bytes) ? read_text_stl(bytes, where) : read_binary_stl(where);
 }
 
 void scale_to_metres(Soup& soup, const SurfaceFile& file, const Log& log) {

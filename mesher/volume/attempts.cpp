@@ -162,16 +162,25 @@ class Attempts {
   }
 
   /// Facets that are too far from the interface cost volume: they shall be nearer. Where that has
-  /// no end, as at acute edges, elements become smaller everywhere instead.
+  /// no end, as at acute edges, elements become smaller everywhere instead; and so where the first
+  /// nodes lie too far apart to begin with.
   void adapt_criteria(const Candidate& c) {
     if (c.cut_short && distance_factor_ < 1) {
       distance_factor_ = 1;
-      for (SizeSource& source : request_.sizes) source.size *= kSmaller;
+      shrink_all(kSmaller);
+    } else if (!c.cut_short && c.mesh.tetrahedra.empty()) {
+      shrink_all(kFiner);
     } else if (c.cut_short) {
       facet_angle_ = facet_angle_ > kFacetAngles[1] ? kFacetAngles[1] : 0;
     } else if (!has_volume(c)) {
       distance_factor_ *= kFiner;
     }
+  }
+
+  void shrink_all(double factor) {
+    const double finest = kFinest * request_.element_size;
+    for (SizeSource& source : request_.sizes)
+      source.size = std::max(std::min(source.size, finest), factor * source.size);
   }
 
   void take_apart(Candidate& c) {

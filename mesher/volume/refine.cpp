@@ -5,6 +5,7 @@
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
 #include <CGAL/Mesh_criteria_3.h>
 #include <CGAL/Mesh_triangulation_3.h>
+#include <CGAL/assertions_behaviour.h>
 #include <CGAL/exude_mesh_3.h>
 #include <CGAL/make_mesh_3.h>
 #include <CGAL/perturb_mesh_3.h>
@@ -227,6 +228,20 @@ VolumeMesh mesh_of(const Complex& complex) {
 
 namespace {
 
+/// CGAL prints warnings of its own, such as that a refinement cannot start: the mesh is checked
+/// anyway.
+class NoWarnings {
+ public:
+  NoWarnings() : before_(CGAL::set_warning_handler(ignore)) {}
+  ~NoWarnings() { CGAL::set_warning_handler(before_); }
+  NoWarnings(const NoWarnings&) = delete;
+  NoWarnings& operator=(const NoWarnings&) = delete;
+
+ private:
+  static void ignore(const char*, const char*, const char*, int, const char*) {}
+  CGAL::Failure_function before_;
+};
+
 Refinement run(const Oracle& oracle, const RefineSettings& settings) {
   namespace p = CGAL::parameters;
   const Budget budget(kQuestionsPerNode * settings.most_nodes);
@@ -254,6 +269,7 @@ Refinement run(const Oracle& oracle, const RefineSettings& settings) {
 }  // namespace
 
 Refinement refine(const Oracle& oracle, const RefineSettings& settings) {
+  const NoWarnings quiet;
   try {
     return run(oracle, settings);
   } catch (const CGAL::Failure_exception& failure) {

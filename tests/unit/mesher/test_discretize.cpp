@@ -60,15 +60,16 @@ std::size_t facets_at(const Surface& boundary, double height) {
 }
 
 TEST(Discretize, SupportsMayBeCoarserThanTheRest) {
-  Settings s = test::settings_for("box.off");
+  Settings s = test::settings_for("plate.off");
   s.element_size = s.patch_spacing = 0.005;
-  s.support_coarsening = 2.5;
-  const Discretization d = discretize(s, test::cube(), {});
-  // The bottom is fixed. Facets are as many as 1 / size^2, less the transition from the sides.
-  EXPECT_LT(2 * facets_at(d.skin.boundary, 0), facets_at(d.skin.boundary, 0.05));
-  EXPECT_NEAR(measure_quality(d.volume.nodes, d.volume.tetrahedra).volume, 1.25e-4, 0.01 * 1.25e-4);
+  s.support_coarsening = s.interior_coarsening = 2.5;
+  const Surface plate = test::box({0, 0, 0}, {0.1, 0.1, 0.03});
+  const Discretization d = discretize(s, plate, {});
+  // The bottom is fixed. From its rim, sizes grow from 5 to 12.5 mm within 25 mm.
+  EXPECT_LT(2 * facets_at(d.skin.boundary, 0), facets_at(d.skin.boundary, 0.03));
+  EXPECT_NEAR(measure_quality(d.volume.nodes, d.volume.tetrahedra).volume, 3e-4, 0.01 * 3e-4);
   s.method = MeshMethod::Isotropic;
-  EXPECT_THROW(discretize(s, test::cube(), {}), Error);
+  EXPECT_THROW(discretize(s, plate, {}), Error);
 }
 
 TEST(Discretize, LayersAndVoidsAreRefinedAndIsotropicRemeshingRefusesThem) {

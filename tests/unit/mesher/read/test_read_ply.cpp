@@ -96,13 +96,13 @@ TEST(ReadPly, RefusesWhatItCannotRead) {
   expect_refusal(read("ply\nformat morse 1.0\nend_header\n"), "a.ply:2", "unknown format 'morse'");
   expect_refusal(read("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n"),
                  "a.ply:4", "unknown type 'half'");
-  expect_refusal(read(text_file(kTetrahedron + kFaces, kPoints + "3 0 1 2\n3 0 1 4\n")), "a.ply:15",
+  expect_refusal(read(text_file(kTetrahedron + kFaces, kPoints + "3 0 1 2\n3 0 1 4\n")), "a.ply:16",
                  "the index 4");
   expect_refusal(read(text_file(kTetrahedron + kFaces, kPoints + "3 0 1 2\n")), "a.ply",
                  "the file ends");
-  expect_refusal(read(text_file(kTetrahedron, "0 0 0\n1 zero 0\n0 0 0\n0 0 0\n")), "a.ply:9",
+  expect_refusal(read(text_file(kTetrahedron, "0 0 0\n1 zero 0\n0 0 0\n0 0 0\n")), "a.ply:10",
                  "'zero'");
-  expect_refusal(read(text_file(kTetrahedron, "0 0 0\n1 nan 0\n0 0 0\n0 0 0\n")), "a.ply:9",
+  expect_refusal(read(text_file(kTetrahedron, "0 0 0\n1 nan 0\n0 0 0\n0 0 0\n")), "a.ply:10",
                  "not finite");
   expect_refusal(read(text_file("element vertex 4000000000\nproperty float x\n", "0\n")), "a.ply:4",
                  "4000000000");

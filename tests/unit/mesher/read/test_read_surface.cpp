@@ -98,7 +98,7 @@ TEST(ReadSurface, RefusesFilesThatAreMissingOrUnreadable) {
   expect_refused(settings_for(std::filesystem::temp_directory_path()), "", "not a readable file",
                  "permissions");
   expect_file_refused("a.3ds", "x", "unknown kind of surface file '.3ds'", "convert");
-  expect_file_refused("empty.off", "", "empty or cannot be read", "export");
+  expect_file_refused("empty.off", "", "the file is empty", "export");
   expect_file_refused("empty.obj", "# nothing\n", "no faces", "export");
   testing::internal::CaptureStderr();
   expect_file_refused("prose.ply", "once upon a time", "does not begin with 'ply'", "export");
@@ -106,14 +106,15 @@ TEST(ReadSurface, RefusesFilesThatAreMissingOrUnreadable) {
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // the error is the only line
   std::string cut = off_text(cube());
   cut.resize(cut.size() - 20);
-  expect_file_refused("cut.off", cut, "malformed", "export");
+  expect_file_refused("cut.off", cut, "bytes that follow can hold", "export");
 }
 
 TEST(ReadSurface, NamesTheLineOfANumberThatIsNotFinite) {
   const TemporaryFile inf("inf.off", "OFF\n3 1 0\n0 0 0\n1 -INF inf\n0 nan 0\n3 0 1 2\n");
-  expect_refused(settings_for(inf.path()), "inf.off:4", "not finite (NaN or Inf), in 2 lines",
-                 "coordinates");
-  expect_file_refused("range.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "", "export");
+  expect_refused(settings_for(inf.path()), "inf.off:4", "a coordinate that is not finite (-INF)",
+                 "correct the number");
+  expect_file_refused("range.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n", "the index 7",
+                      "export");
 }
 
 TEST(ReadSurface, RefusesSelfIntersectionsAndTrianglesWithoutArea) {

@@ -265,6 +265,18 @@ TEST(Delaunay, EqualArgumentsGiveEqualMeshesAndTheScaleDoesNotMatter) {
   }
 }
 
+// The first nodes, two elements apart, touch no common tetrahedron inside the rod.
+TEST(Delaunay, ARodThinnerThanTheElementsIsMeshedBySmallerOnes) {
+  const Surface rod = test::cylinder(0.002, 0.0975, 12);
+  DelaunayReport report;
+  testing::internal::CaptureStderr();
+  const VolumeMesh mesh = mesh_domain(solid(rod), with_size(0.0055), "rod", report);
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  expect_conforming(mesh);
+  EXPECT_GT(report.attempts, 1);
+  EXPECT_NEAR(report.quality.volume, signed_volume(rod), 0.03 * signed_volume(rod));
+}
+
 TEST(Delaunay, CoarserWhereTheSurfaceMayBeCoarser) {
   const Domain domain = solid(test::box({0, 0, 0}, {0.06, 0.03, 0.03}));
   DelaunaySettings settings = with_size(0.004);
