@@ -31,8 +31,8 @@ constexpr double kFewFar = 0.02, kMostFar = 0.1;
 constexpr double kMainSheet = 0.5;
 // A surface with a smaller mean thickness, as a fraction of its extent, is a sheet.
 constexpr double kSheet = 1e-3;
-// So is a wrap of fewer offsets than this.
-constexpr double kSkinOffsets = 4;
+// A wrap whose mean thickness is a smaller fraction of alpha is a skin about open sheets.
+constexpr double kSkin = 0.5;
 
 /// Triangles of the faces, each with points of its own: no neighbourhood is assumed.
 Surface triangles_of(const Soup& soup) {
@@ -227,12 +227,14 @@ class Repair {
   /// @throws FaultySurface where no wrap is near enough.
   Surface wrapped_instead(Shortcoming& left) {
     for (const double fraction : kAlphas) {
-      const double alpha = fraction * extent_, offset = alpha / kAlphaPerOffset;
-      Surface wrap = alpha_wrap(filled_, alpha, offset);
-      if (mean_thickness(wrap) < kSkinOffsets * offset)
-        refuse_sheet("the faces do not bound a volume: they wrap to a skin about an open sheet");
-      const Change moved = measure(wrap);
+      const double alpha = fraction * extent_;
+      Surface wrap = alpha_wrap(filled_, alpha, alpha / kAlphaPerOffset);
       const bool is_finest = fraction == kAlphas.back();
+      if (mean_thickness(wrap) < kSkin * alpha) {
+        if (is_finest) refuse_sheet("the faces do not bound a volume: they are open sheets");
+        continue;
+      }
+      const Change moved = measure(wrap);
       if (moved.far_fraction() > (is_finest ? kMostFar : kFewFar)) {
         if (is_finest) refuse_wrap(left, moved, alpha);
         continue;

@@ -47,8 +47,9 @@ constexpr double kFiner = 0.5, kFinest = 1.0 / 16;
 /// All sizes are reduced by this factor where the surface cannot be followed more closely.
 constexpr double kSmaller = 0.7;
 
-/// Nodes in excess of a uniform mesh at which refinement has gone astray.
-constexpr double kExcess = 4;
+/// Nodes in excess of a uniform mesh at which refinement has gone astray; and, as narrow gaps
+/// between walls take more than was expected, in the attempts after one that was stopped.
+constexpr double kExcess = 4, kMost = 16;
 
 /// Parts that are connected to the body by no face are dropped up to this fraction of its volume.
 constexpr double kNegligible = 0.01;
@@ -124,7 +125,7 @@ class Attempts {
     }
     nodes += 1.5 * volume_ / std::pow(request_.element_size, 3);
     return static_cast<std::size_t>(
-        std::min(kExcess * nodes, static_cast<double>(request_.most_nodes)));
+        std::min(excess_ * nodes, static_cast<double>(request_.most_nodes)));
   }
 
   bool is_sound(const Candidate& c) const {
@@ -165,6 +166,7 @@ class Attempts {
   /// no end, as at acute edges, elements become smaller everywhere instead; and so where the first
   /// nodes lie too far apart to begin with.
   void adapt_criteria(const Candidate& c) {
+    if (c.cut_short) excess_ = kMost;
     if (c.cut_short && distance_factor_ < 1) {
       distance_factor_ = 1;
       shrink_all(kSmaller);
@@ -260,6 +262,7 @@ class Attempts {
   double volume_;
   double distance_factor_ = 1;  // on the distance of facets from the interface
   double facet_angle_ = kFacetAngles.front();
+  double excess_ = kExcess;
 };
 
 }  // namespace

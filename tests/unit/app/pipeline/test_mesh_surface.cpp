@@ -33,7 +33,7 @@ mesher::Settings settings_for(const std::filesystem::path& file) {
 }
 
 TEST(MeshSurface, WritesTheFaultyFacesInTheUnitOfTheFileAndNamesIt) {
-  const test::TemporaryFolder folder;
+  const samples::TemporaryFolder folder;
   const auto file = folder.path() / "open.off";
   std::ofstream(file) << off_text(false);
   const auto faulty = folder.path() / "faulty-faces.vtp";
@@ -52,7 +52,7 @@ TEST(MeshSurface, WritesTheFaultyFacesInTheUnitOfTheFileAndNamesIt) {
 }
 
 TEST(MeshSurface, RemovesTheFileOfAnEarlierRefusal) {
-  const test::TemporaryFolder folder;
+  const samples::TemporaryFolder folder;
   const auto file = folder.path() / "closed.off";
   std::ofstream(file) << off_text(true);
   std::ofstream(folder.path() / "faulty-faces.vtp") << "of an earlier run";
