@@ -27,6 +27,9 @@ constexpr std::array<double, 2> kAlphas = {1.0 / 50, 1.0 / 100};
 // A wrap will do where at most this fraction of the area of the file is farther than max_change; of
 // the finest wrap, at most the second fraction. A finer one takes four times as long.
 constexpr double kFewFar = 0.02, kMostFar = 0.1;
+// Local repairs are taken with a warning where they move so little of the area by at most this
+// multiple of max_change.
+constexpr double kLittleMore = 2;
 // Of sheets that met in edges, the largest must have this fraction of the area.
 constexpr double kMainSheet = 0.5;
 // A surface with a smaller mean thickness, as a fraction of its extent, is a sheet.
@@ -219,9 +222,15 @@ class Repair {
   Shortcoming measured(const Surface& surface) {
     Change moved = measure(surface);
     if (moved.distance <= most_moved()) return {};
-    return {text("local repairs would move the surface by ", millimetres(moved.distance), " at ",
-                 millimetres(moved.at)),
-            std::move(moved.far_faces)};
+    const std::string problem = text(
+        "local repairs move the surface by ", millimetres(moved.distance), " at ",
+        millimetres(moved.at), ", more than max_change = ", settings_.max_change, " of its extent");
+    // A wrap would move more than this.
+    if (moved.distance > kLittleMore * most_moved() || moved.far_fraction() > kFewFar)
+      return {problem, std::move(moved.far_faces)};
+    report_.warnings.push_back(
+        text(problem, ": so does ", 100 * moved.far_fraction(), " % of the area of the file"));
+    return {};
   }
 
   /// @throws FaultySurface where no wrap is near enough.

@@ -29,7 +29,8 @@ struct RepairReport {
 /// Local repairs come first, in this order: near points are merged, duplicate faces removed,
 /// T-junctions split, faces oriented and sheets that meet in an edge or a point separated, borders
 /// stitched, negligible parts removed, holes filled, degenerate faces removed, self-intersections
-/// removed. Where faults remain, or the surface moves by more than max_change, the alpha wrap of
+/// removed. They may move 2 % of the area by up to twice max_change, with a warning. Where faults
+/// remain, or the surface moves by more, the alpha wrap of
 /// the faces and of the patches in the holes replaces it: that of alpha = 1/50 of the extent if at
 /// most 2 % of the area of the file is farther than max_change from it, else that of 1/100.
 ///

@@ -79,6 +79,35 @@ TEST(FaultySurface, IsRepairedToASoundOne) {
   EXPECT_THAT(log, testing::HasSubstr("the surface moved by at most"));
 }
 
+/// The surface, and what the log says of it.
+Surface read_logged(const SurfaceFile& file, std::string& log) {
+  Surface result =
+      read_surface(file, [&](std::string_view line) { log += std::string(line) + "\n"; });
+  EXPECT_EQ(count_self_intersections(result), 0U);
+  EXPECT_EQ(count_degenerate_triangles(result), 0U);
+  return result;
+}
+
+TEST(FaultySurface, AHeadWithoutANeckIsClosedWithWarnings) {
+  constexpr double extent = 0.1334958927;  // m, of the file
+  std::string log;
+  const Surface head = read_logged({surface("sofa/head.obj"), 0.01, ""}, log);
+  EXPECT_THAT(log, testing::ContainsRegex("WARNING: a hole of 123[0-9.]* mm at .* was filled"));
+  EXPECT_THAT(log, testing::HasSubstr("WARNING: local repairs move the surface by 1.35"));
+  EXPECT_NEAR(largest_dimension(head.points), extent, 1e-3 * extent);
+}
+
+TEST(FaultySurface, ADragonThatCrossesItselfIsWrapped) {
+  constexpr double extent = 0.228649;  // m, of its largest part
+  std::string log;
+  const Surface dragon =
+      read_logged({surface("sofa/dragon.obj"), 0.01, "", {.largest_part = true}}, log);
+  EXPECT_THAT(log, testing::HasSubstr("WARNING: the surface self-intersects"));
+  EXPECT_THAT(log, testing::HasSubstr("its alpha wrap replaces it"));
+  // The offset of the wrap is 1/1500 of the extent.
+  EXPECT_NEAR(largest_dimension(dragon.points), extent, 0.002 * extent);
+}
+
 struct Clean {
   std::string file;
   double unit;  // m
