@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "app/case/describe.hpp"
+#include "app/case/describe/case.hpp"
 #include "app/case/nearest.hpp"
 #include "app/case/reader.hpp"
 #include "format/error.hpp"

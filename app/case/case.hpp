@@ -73,8 +73,8 @@ struct OutputSection {
 };
 
 /// The settings of every stage of the pipeline. Each key of a case file is bound to a field of the
-/// settings that a stage takes (app/case/describe.hpp), whose default is the default of the key.
-/// What a case leaves out of these settings is set by app/pipeline/settings.hpp: the resolved
+/// settings that a stage takes (app/case/describe/case.hpp), whose default is the default of the
+/// key. What a case leaves out of these settings is set by app/pipeline/settings.hpp: the resolved
 /// paths, the list of supports without springs, the tool that the mesher checks for, the law of a
 /// region with its sampled fibres, threads and memory.
 struct Case {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "app/case/describe.hpp"
+#include "app/case/describe/case.hpp"
 #include "app/case/material.hpp"
 
 namespace palpate::app {

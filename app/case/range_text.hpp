@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "app/case/describe.hpp"
+#include "app/case/describe/key.hpp"
 
 namespace palpate::app {
 

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "app/case/describe.hpp"
+#include "app/case/describe/case.hpp"
 
 namespace palpate::app {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "app/case/describe.hpp"
+#include "app/case/describe/case.hpp"
 #include "app/case/range_text.hpp"
 
 namespace palpate::app {

@@ -53,6 +53,11 @@ double signed_volume(const Surface& surface) {
   return sum / 6;
 }
 
+double mean_thickness(const Surface& surface) {
+  const double sides = area(surface);
+  return sides > 0 ? 2 * signed_volume(surface) / sides : 0;
+}
+
 void append(Surface& surface, const Surface& more) {
   const auto offset = static_cast<std::int32_t>(surface.points.size());
   surface.points.insert(surface.points.end(), more.points.begin(), more.points.end());

@@ -41,6 +41,9 @@ double area(const Surface& surface);
 /// theorem]. The origin is moved to the surface so that no digits are lost far from it.
 double signed_volume(const Surface& surface);
 
+/// 2 V / A, m: the distance between the sides of a closed sheet; 0 without area.
+double mean_thickness(const Surface& surface);
+
 void append(Surface& surface, const Surface& more);
 
 /// For each point, the triangles around it.

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "format/to_index.hpp"
 #include "mesher/geometry/faulty_faces.hpp"
+#include "mesher/geometry/union_find.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -22,38 +22,22 @@ struct Part {
   double area = 0;  ///< m^2
 };
 
-/// The points that are connected by triangles have the same root.
-class Roots {
- public:
-  explicit Roots(std::size_t points) : parent_(points) {
-    std::iota(parent_.begin(), parent_.end(), std::size_t{0});
-  }
-  std::size_t of(std::size_t v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void join(std::size_t a, std::size_t b) { parent_[of(a)] = of(b); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
-
 /// The connected parts, the largest area first.
 std::vector<Part> parts_of(const Surface& surface) {
-  Roots roots(surface.points.size());
+  UnionFind joined(surface.points.size());
   for (const Triangle& t : surface.triangles) {
-    roots.join(to_index(t[0]), to_index(t[1]));
-    roots.join(to_index(t[0]), to_index(t[2]));
+    joined.join(to_index(t[0]), to_index(t[1]));
+    joined.join(to_index(t[0]), to_index(t[2]));
   }
   std::map<std::size_t, Surface> surfaces;
   std::vector<std::int32_t> number(surface.points.size());
   for (std::size_t v = 0; v < surface.points.size(); ++v) {
-    Surface& part = surfaces[roots.of(v)];
+    Surface& part = surfaces[joined.root(v)];
     number[v] = static_cast<std::int32_t>(part.points.size());
     part.points.push_back(surface.points[v]);
   }
   for (const Triangle& t : surface.triangles)
-    surfaces[roots.of(to_index(t[0]))].triangles.push_back(
+    surfaces[joined.root(to_index(t[0]))].triangles.push_back(
         {number[to_index(t[0])], number[to_index(t[1])], number[to_index(t[2])]});
   std::vector<Part> parts;
   for (auto& [root, part] : surfaces) {

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <numeric>
-#include <vector>
+
+#include "mesher/geometry/union_find.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -17,22 +17,16 @@ double length(const Mesh& mesh, Mesh::Edge_index edge) {
   return std::sqrt(CGAL::squared_distance(mesh.point(mesh.source(h)), mesh.point(mesh.target(h))));
 }
 
-std::size_t find_root(std::vector<std::size_t>& parent, std::size_t v) {
-  while (parent[v] != v) v = parent[v] = parent[parent[v]];
-  return v;
-}
-
 /// Unflags connected fragments of sharp edges shorter than `shortest`. Returns the edges unflagged.
 std::size_t drop_short_features(const Mesh& mesh, EdgeFlags sharp, double shortest) {
-  std::vector<std::size_t> parent(mesh.number_of_vertices());
-  std::iota(parent.begin(), parent.end(), std::size_t{0});
+  UnionFind joined(mesh.number_of_vertices());
   const auto root = [&](Mesh::Edge_index e) {
-    return find_root(parent, mesh.source(mesh.halfedge(e)).idx());
+    return joined.root(mesh.source(mesh.halfedge(e)).idx());
   };
   for (const auto e : mesh.edges()) {
     if (!sharp[e]) continue;
     const auto h = mesh.halfedge(e);
-    parent[find_root(parent, mesh.source(h).idx())] = find_root(parent, mesh.target(h).idx());
+    joined.join(mesh.source(h).idx(), mesh.target(h).idx());
   }
   std::map<std::size_t, double> total;
   for (const auto e : mesh.edges()) {

@@ -5,13 +5,13 @@
 #include <array>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <set>
 #include <tuple>
 #include <unordered_map>
 
 #include "format/edge.hpp"
 #include "format/to_index.hpp"
+#include "mesher/geometry/union_find.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -19,21 +19,6 @@ namespace {
 /// The sides of a positive tetrahedron, outward.
 constexpr std::array<std::array<std::size_t, 3>, 4> kSides{
     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}}};
-
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  std::size_t root(std::size_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::size_t a, std::size_t b) { parent_[root(a)] = root(b); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 struct Side {
   Triangle sorted;

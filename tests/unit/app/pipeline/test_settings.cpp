@@ -9,7 +9,7 @@
 #include <optional>
 #include <sstream>
 
-#include "app/case/describe.hpp"
+#include "app/case/describe/case.hpp"
 #include "app/case/range_text.hpp"
 
 namespace palpate::app {

@@ -26,6 +26,12 @@ TEST(Surface, VolumeIsSignedAndKeepsItsDigitsFarFromTheOrigin) {
   EXPECT_NEAR(signed_volume(box), -1, 1e-12);
 }
 
+TEST(Surface, MeanThicknessOfAPlateIsItsThicknessButForTheRim) {
+  // 2 V / A of a x a x t is t / (1 + 2 t / a).
+  EXPECT_NEAR(mean_thickness(test::box({0, 0, 0}, {0.1, 0.1, 0.001})), 0.001 / 1.02, 1e-12);
+  EXPECT_EQ(mean_thickness({}), 0);
+}
+
 TEST(Surface, AppendShiftsTheIndices) {
   Surface both = test::box({0, 0, 0}, {1, 1, 1});
   append(both, test::box({2, 0, 0}, {3, 1, 1}));

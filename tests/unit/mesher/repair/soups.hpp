@@ -49,4 +49,17 @@ Surface without(Surface surface, const Predicate& is_dropped) {
   return surface;
 }
 
+/// With a point in the middle of an edge: one of the three faces there has no area.
+inline Surface with_a_face_of_no_area(Surface surface) {
+  const auto [a, b, c] = surface.triangles[0];
+  const auto middle = static_cast<std::int32_t>(surface.points.size());
+  const Vec3 place = 0.5 * (surface.points[static_cast<std::size_t>(a)] +
+                            surface.points[static_cast<std::size_t>(b)]);
+  surface.points.push_back(place);
+  surface.triangles[0] = {a, middle, c};
+  surface.triangles.push_back({middle, b, c});
+  surface.triangles.push_back({a, b, middle});
+  return surface;
+}
+
 }  // namespace palpate::mesher::test

@@ -56,16 +56,7 @@ TEST(Crossings, OfTwoBallsThatOverlapAreLeftWhereTheyAreMany) {
 }
 
 TEST(DegenerateFaces, AreRemoved) {
-  // A point on an edge of a cube, in the plane of its two triangles: one of the faces that it
-  // makes has no area.
-  Surface cube = test::box({0, 0, 0}, {0.05, 0.05, 0.05});
-  const Triangle first = cube.triangles[0];
-  const auto a = static_cast<std::size_t>(first[0]), b = static_cast<std::size_t>(first[1]);
-  const auto middle = static_cast<std::int32_t>(cube.points.size());
-  cube.points.push_back(0.5 * (cube.points[a] + cube.points[b]));
-  cube.triangles[0] = {first[0], middle, first[2]};
-  cube.triangles.push_back({middle, first[1], first[2]});
-  cube.triangles.push_back({first[0], first[1], middle});
+  Surface cube = test::with_a_face_of_no_area(test::box({0, 0, 0}, {0.05, 0.05, 0.05}));
   ASSERT_EQ(count_degenerate_triangles(cube), 1U);
   Steps steps;
   remove_degenerate_faces(cube, steps);

@@ -48,15 +48,7 @@ TEST(Soundness, OfTwoPartsIsNone) {
 }
 
 TEST(Soundness, OfATriangleOfZeroAreaIsNone) {
-  Surface flat = cube();
-  const Triangle t = flat.triangles[0];
-  const auto a = static_cast<std::size_t>(t[0]), b = static_cast<std::size_t>(t[1]);
-  const auto middle = static_cast<std::int32_t>(flat.points.size());
-  flat.points.push_back(0.5 * (flat.points[a] + flat.points[b]));
-  flat.triangles[0] = {t[0], middle, t[2]};
-  flat.triangles.push_back({middle, t[1], t[2]});
-  flat.triangles.push_back({t[0], t[1], middle});
-  EXPECT_FALSE(is_sound(soup_of(flat)));
+  EXPECT_FALSE(is_sound(soup_of(test::with_a_face_of_no_area(cube()))));
 }
 
 TEST(Soundness, OfASurfaceThatCrossesItselfIsNone) {

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The sections of the campaign: tool, paths, sites, elements, gravity.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "app/case/case.hpp"
+#include "app/case/describe/key.hpp"
+
+namespace palpate::app {
+
+template <class V>
+void describe_tool(V& v, fem::IndentationSettings& s) {
+  describe_choice(v, s.tool.shape,
+                  {"shape",
+                   "rigid tool; `disc`: end of an upright cylinder; `cylinder`: on its side, with "
+                   "hemispherical ends"},
+                  kToolShapes);
+  v.quantity(s.tool.radius, Dimension::Length,
+             {"radius", "radius of the sphere, the disc or the cross-section of the cylinder",
+              kOptional, kPositive});
+  describe_choice(
+      v, s.friction,
+      {"friction",
+       "contact on the normal path: `frictionless` sliding along the tool, or `no-slip` "
+       "after touch"},
+      kToolFrictions);
+  const std::string shape(name_in(kToolShapes, s.tool.shape));
+  if (v.when("shape", shape, "disc")) {
+    v.quantity(s.tool.edge_radius, Dimension::Length,
+               {"edge_radius", "fillet radius of the edge, at most `radius`; 0: a sharp edge",
+                kOptional, kNotNegative});
+  }
+  if (v.when("shape", shape, "cylinder")) {
+    v.quantity(s.tool.length, Dimension::Length,
+               {"length", "distance between the centres of the ends", kRequired, kPositive});
+    v.quantity(s.tool_azimuth, Dimension::Angle,
+               {"azimuth", "direction of the cylinder axis in the tangent plane", kOptional, kAny});
+  }
+}
+
+template <class V>
+void describe_indentation(V& v, fem::IndentationSettings& s) {
+  v.quantity(s.depth, Dimension::Length,
+             {"depth", "depth at the end of the normal path", kOptional, kPositive});
+  v.integer(s.increments,
+            {"increments", "increments of the normal path", kOptional, {.low = 2, .high = 1000}});
+  v.quantity(s.lateral_travel, Dimension::Length,
+             {"lateral_travel", "travel at the end of each lateral path", kOptional, kPositive});
+  v.integer(s.lateral_increments, {"lateral_increments",
+                                   "increments of each lateral path",
+                                   kOptional,
+                                   {.low = 2, .high = 1000}});
+  v.quantities(s.lateral_depths, Dimension::Length,
+               {"lateral_depths",
+                "depths of the lateral paths, each at most `depth`; without this key a third, two "
+                "thirds and all of `depth`",
+                kOptional, kPositive});
+  v.quantities(
+      s.azimuths, Dimension::Angle,
+      {"azimuths", "directions of the lateral paths in the tangent plane", kOptional, kAny});
+  v.number(s.force_tolerance, {"force_tolerance",
+                               "relative tolerance of the tool force at equilibrium",
+                               kOptional,
+                               {.low = 0, .high = 0.1, .low_open = true}});
+}
+
+inline constexpr std::array kSamplingMethods{Named{SamplingMethod::Vertices, "vertices"},
+                                             Named{SamplingMethod::Nodes, "nodes"},
+                                             Named{SamplingMethod::Adaptive, "adaptive"}};
+
+template <class V>
+void describe(V& v, SamplingSection& s) {
+  describe_choice(v, s.method,
+                  {"method",
+                   "sites: response vertices, surface nodes (`patch_spacing` is then "
+                   "`element_size`) or adaptive"},
+                  kSamplingMethods);
+  if (!v.when("method", std::string(name_in(kSamplingMethods, s.method)), "adaptive")) return;
+  v.quantity(
+      s.initial_spacing, Dimension::Length,
+      {"initial_spacing", "distance between the sites of the first round", kOptional, kPositive});
+  v.number(s.tolerance,
+           {"tolerance",
+            "sites are added until the 95th-percentile relative error of the normal forces at "
+            "hold-out points is below this",
+            kOptional,
+            {.low = 0, .high = 1, .low_open = true, .high_open = true}});
+  v.integer(s.hold_out_points, {"hold_out_points",
+                                "number of random surface points that are solved directly and "
+                                "never fitted",
+                                kOptional,
+                                {.low = 10, .high = 10000}});
+  v.integer(s.max_sites, {"max_sites",
+                          "largest number of sites, whatever the error",
+                          kOptional,
+                          {.low = 1, .high = 1000000}});
+}
+
+template <class V>
+void describe_solver(V& v, fem::CampaignSettings& s) {
+  describe_choice(v, s.dilatation, {"element", "finite element, see [below](#elements)"},
+                  kElements);
+  v.flag(s.indentation.refine_under_tool,
+         {"refine_under_tool",
+          "divides the elements under the tool into eight at each site, for contacts smaller than "
+          "a facet"});
+}
+
+template <class V>
+void describe_gravity(V& v, fem::Gravity& s) {
+  v.point(s.acceleration, Dimension::Acceleration,
+          {"acceleration", "acceleration of gravity; all 0: no preload"});
+  v.quantity(s.density, Dimension::Density,
+             {"density", "reference density of the regions whose material has none", kOptional,
+              kPositive});
+  describe_choice(v, s.shape,
+                  {"shape",
+                   "shape of the surface of the case: `unloaded`: without weight; `loaded`: as the "
+                   "body lies under "
+                   "its weight, from which its shape without weight is computed"},
+                  kGivenShapes);
+}
+
+}  // namespace palpate::app
