@@ -95,7 +95,7 @@ class Repair {
   }
 
  private:
-  /// Why local repairs do not do.
+  /// Why local repairs do not suffice.
   struct Shortcoming {
     std::string problem;  ///< empty: they do
     FaultyFaces faces;
@@ -229,7 +229,7 @@ class Repair {
     if (moved.distance > kLittleMore * most_moved() || moved.far_fraction() > kFewFar)
       return {problem, std::move(moved.far_faces)};
     report_.warnings.push_back(
-        text(problem, ": so does ", 100 * moved.far_fraction(), " % of the area of the file"));
+        text(problem, ", but only on ", 100 * moved.far_fraction(), " % of the area of the file"));
     return {};
   }
 

@@ -17,7 +17,7 @@ void describe_repair(V& v, mesher::RepairSettings& s) {
       v, s.mode,
       {"repair",
        "faults of the surface: `auto` repairs them, by an alpha wrap where local repairs do not "
-       "do, `none` refuses them, `wrap` replaces the surface by its alpha wrap"},
+       "suffice, `none` refuses them, `wrap` replaces the surface by its alpha wrap"},
       kRepairModes);
   describe_choice(
       v, s.largest_part,

@@ -44,7 +44,7 @@ void separate_sheets(MeshEntities& entities, const std::string& where, const Log
   note(log, text(where, ": elements that met only in a node or an edge are separated: ",
                  counted(copies.size(), "node"), " added, the first at ",
                  millimetres(entities.nodes[to_index(origin.front())]),
-                 "; they no longer hold each other there"));
+                 "; they transmit no force to each other there"));
 }
 
 }  // namespace palpate::mesher
