@@ -2,8 +2,15 @@
 # One interface target carries the warning level and the sanitizers to every target of the project.
 add_library(palpate_options INTERFACE)
 target_include_directories(palpate_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(palpate_options INTERFACE -Wall -Wextra -Wconversion -Wshadow
+set(unity $<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>)
+set(gnu $<CXX_COMPILER_ID:GNU>)
+target_compile_options(palpate_options INTERFACE -Wall -Wextra -Wconversion
   $<$<BOOL:${PALPATE_WARNINGS_AS_ERRORS}>:-Werror>)
+# Where several files are compiled as one, a local name of one says nothing about the same name in another,
+# and every file is an included one.
+target_compile_options(palpate_options INTERFACE
+  $<$<NOT:${unity}>:-Wshadow>
+  "$<$<AND:${unity},${gnu}>:-Wshadow=local;-Wno-subobject-linkage>")
 # GCC 12 sees overlapping copies in "text" + std::string that are not there (GCC bug 105651).
 target_compile_options(palpate_options INTERFACE
   $<$<AND:$<CXX_COMPILER_ID:GNU>,$<VERSION_LESS:$<CXX_COMPILER_VERSION>,13>>:-Wno-restrict>

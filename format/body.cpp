@@ -9,8 +9,8 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kArtifact = "palpate.body";
-constexpr const char* kRemedy = "make it again with 'palpate mesh'";
+constexpr const char* kBodyArtifact = "palpate.body";
+constexpr const char* kBodyRemedy = "make it again with 'palpate mesh'";
 
 double volume_of(const std::vector<Vec3>& nodes, const Tetrahedron& corners) {
   const auto at = [&](std::size_t i) { return nodes[static_cast<std::size_t>(corners[i])]; };
@@ -180,7 +180,8 @@ void write_response(hdf5::Writer& writer, const ResponseSurface& surface) {
 void write_body(const std::filesystem::path& path, const Body& body) {
   check_body(Checks(path), body);
   hdf5::Writer writer(path);
-  write_root(writer, kArtifact, schema_of(body), "A tetrahedralized body, ready for indentation.");
+  write_root(writer, kBodyArtifact, schema_of(body),
+             "A tetrahedralized body, ready for indentation.");
   writer.set_text("/", "name", body.name);
   writer.dataset("/nodes", body.nodes, {"m", "Reference position X of each node."});
   writer.dataset("/tetrahedra", body.tetrahedra,
@@ -201,9 +202,9 @@ void write_body(const std::filesystem::path& path, const Body& body) {
 }
 
 Body read_body(const std::filesystem::path& path) {
-  hdf5::Reader reader(path, kRemedy);
+  hdf5::Reader reader(path, kBodyRemedy);
   const auto schema =
-      reader.require_artifact(kArtifact, {kBodySchema, kSprungBodySchema, kCurvedBodySchema});
+      reader.require_artifact(kBodyArtifact, {kBodySchema, kSprungBodySchema, kCurvedBodySchema});
   Body body;
   body.name = reader.text("/", "name");
   body.nodes = reader.dataset<Vec3>("/nodes", "m");

@@ -13,6 +13,7 @@
 
 #include "format/error.hpp"
 #include "format/hdf5_file.hpp"
+#include "format/numbers.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate {
@@ -27,7 +28,6 @@ struct Rule {
 };
 namespace rules {
 inline constexpr double kLargest = std::numeric_limits<double>::max();
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr Rule kAnything{-kInfinity, kInfinity, false, true, "anything"};
 inline constexpr Rule kFinite{};
 inline constexpr Rule kKnownFinite{-kLargest, kLargest, false, true, "finite (NaN: unknown)"};

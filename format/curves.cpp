@@ -9,8 +9,8 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kArtifact = "palpate.curves";
-constexpr const char* kRemedy = "make it again with 'palpate precompute' or 'palpate import'";
+constexpr const char* kCurvesArtifact = "palpate.curves";
+constexpr const char* kCurvesRemedy = "make it again with 'palpate precompute' or 'palpate import'";
 
 /// A site and a path as they lie on disk: their paths and samples are runs of rows elsewhere.
 struct SiteRow {
@@ -207,7 +207,8 @@ void write_curves(const std::filesystem::path& path, const Curves& curves) {
   check_heading(checks, curves);
   check_flat(checks, flat);
   hdf5::Writer writer(path);
-  write_root(writer, kArtifact, kCurvesSchema, "Raw force-deflection curves, a status per site.");
+  write_root(writer, kCurvesArtifact, kCurvesSchema,
+             "Raw force-deflection curves, a status per site.");
   writer.set_text("/", "tool_shape", curves.tool.shape);
   writer.set_real("/", "tool_radius", curves.tool.radius);
   writer.set_text("/", "tool_friction", curves.tool.friction);
@@ -228,8 +229,8 @@ void write_curves(const std::filesystem::path& path, const Curves& curves) {
 }
 
 Curves read_curves(const std::filesystem::path& path) {
-  hdf5::Reader reader(path, kRemedy);
-  reader.require_artifact(kArtifact, {kCurvesSchema});
+  hdf5::Reader reader(path, kCurvesRemedy);
+  reader.require_artifact(kCurvesArtifact, {kCurvesSchema});
   Curves curves;
   curves.tool.shape = reader.text("/", "tool_shape");
   curves.tool.radius = reader.real("/", "tool_radius");

@@ -11,8 +11,8 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kArtifact = "palpate.library";
-constexpr const char* kRemedy = "make it again with 'palpate fit'";
+constexpr const char* kLibraryArtifact = "palpate.library";
+constexpr const char* kLibraryRemedy = "make it again with 'palpate fit'";
 
 constexpr auto kResponseColumns = std::make_tuple(
     column("status", &NodeResponse::status, "1", "0 fitted, 1 interpolated, 2 hole.",
@@ -356,7 +356,7 @@ void write_library(const std::filesystem::path& path, const Library& library) {
   check_for_writing(Checks(path), library);
   hdf5::Writer writer(path);
   const bool coupled = library.kind == ResponseKind::Coupled;
-  write_root(writer, kArtifact, coupled ? kCoupledLibrarySchema : kLibrarySchema,
+  write_root(writer, kLibraryArtifact, coupled ? kCoupledLibrarySchema : kLibrarySchema,
              "A response library: surface, responses, certificate.");
   writer.set_text("/", "name", library.name);
   writer.set_text("/", "tool_shape", library.tool_shape);
@@ -369,10 +369,10 @@ void write_library(const std::filesystem::path& path, const Library& library) {
 }
 
 Library read_library(const std::filesystem::path& path) {
-  hdf5::Reader reader(path, kRemedy);
+  hdf5::Reader reader(path, kLibraryRemedy);
   Library library;
   const std::int64_t schema = reader.require_artifact(
-      kArtifact, {kFirstLibrarySchema, kLibrarySchema, kCoupledLibrarySchema});
+      kLibraryArtifact, {kFirstLibrarySchema, kLibrarySchema, kCoupledLibrarySchema});
   if (schema == kCoupledLibrarySchema) library.kind = ResponseKind::Coupled;
   library.name = reader.text("/", "name");
   library.tool_shape = reader.text("/", "tool_shape");

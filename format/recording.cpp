@@ -12,8 +12,8 @@
 namespace palpate {
 namespace {
 
-constexpr const char* kArtifact = "palpate.recording";
-constexpr const char* kRemedy = "record it again with 'palpate run'";
+constexpr const char* kRecordingArtifact = "palpate.recording";
+constexpr const char* kRecordingRemedy = "record it again with 'palpate run'";
 
 // The readings of the device are stored unchanged, NaN included, so that a faulty reading can be
 // replayed. What
@@ -107,7 +107,7 @@ void check_steps(const Checks& checks, const std::vector<RecordedStep>& steps, s
 }
 
 void write_heading(hdf5::Writer& writer, const RecordingHeading& heading) {
-  write_root(writer, kArtifact, kRecordingSchema, "Every step of a haptic session.");
+  write_root(writer, kRecordingArtifact, kRecordingSchema, "Every step of a haptic session.");
   writer.set_text("/", "device", heading.device);
   writer.set_text("/", "library_sha256", heading.library_sha256);
   writer.set_real("/", "rate", heading.rate);
@@ -179,8 +179,8 @@ void write_recording(const std::filesystem::path& path, const Recording& recordi
 }
 
 struct RecordingReader::State {
-  explicit State(const std::filesystem::path& path) : reader(path, kRemedy) {
-    reader.require_artifact(kArtifact, {kRecordingSchema});
+  explicit State(const std::filesystem::path& path) : reader(path, kRecordingRemedy) {
+    reader.require_artifact(kRecordingArtifact, {kRecordingSchema});
     heading.device = reader.text("/", "device");
     heading.library_sha256 = reader.text("/", "library_sha256");
     heading.rate = reader.real("/", "rate");

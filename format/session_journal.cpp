@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kFirstLine = "palpate.session 1\n";
-constexpr const char* kRemedy = "name the journal of a session of this version of palpate";
+constexpr const char* kJournalRemedy = "name the journal of a session of this version of palpate";
 constexpr std::size_t kStepBytes = 21 * sizeof(double);  // 14 columns
 constexpr std::size_t kTextLength = sizeof(std::uint32_t);
 constexpr std::size_t kLargestRecord = 1U << 30;  // bytes: a length beyond it is damage
@@ -205,7 +205,7 @@ void SessionJournal::append(const std::vector<RecordedStep>& steps) {
 SessionJournalReader::SessionJournalReader(const fs::path& path)
     : where_(path.string()), file_(open(path)), size_(fs::file_size(path)) {
   const auto refuse = [&] {
-    throw Error(ErrorKind::Configuration, where_, "is no journal of a session", kRemedy);
+    throw Error(ErrorKind::Configuration, where_, "is no journal of a session", kJournalRemedy);
   };
   std::string first(kFirstLine.size(), '\0');
   if (!file_.read(first.data(), static_cast<std::streamsize>(first.size())) || first != kFirstLine)
@@ -213,7 +213,7 @@ SessionJournalReader::SessionJournalReader(const fs::path& path)
   std::string payload;
   std::uint64_t taken = 0;
   if (!next_payload(file_, size_ - first.size(), payload, taken)) refuse();
-  heading_ = heading_of({payload, where_, "has a heading that is none", kRemedy});
+  heading_ = heading_of({payload, where_, "has a heading that is none", kJournalRemedy});
   good_ = first.size() + taken;
 }
 
@@ -223,7 +223,7 @@ bool SessionJournalReader::next(std::vector<RecordedStep>& steps) {
   if (!next_payload(file_, size_ - good_, payload, taken)) return false;
   good_ += taken;
   steps.clear();
-  ByteReader in(payload, where_, "holds a record that is no steps", kRemedy);
+  ByteReader in(payload, where_, "holds a record that is no steps", kJournalRemedy);
   while (!in.at_end()) steps.push_back(step_of(in));
   return true;
 }

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kFirstLine = "palpate.journal 2\n";
+constexpr std::string_view kJournalFirstLine = "palpate.journal 2\n";
 
 RecordFile open_journal(const fs::path& path) {
   return {path, "another palpate is at this campaign",
@@ -27,8 +27,8 @@ RecordFile open_journal(const fs::path& path) {
 }
 
 std::string heading_text(const JournalHeading& heading) {
-  return std::string(kFirstLine) + heading.key + "\n" + std::to_string(heading.planned_sites) +
-         "\n";
+  return std::string(kJournalFirstLine) + heading.key + "\n" +
+         std::to_string(heading.planned_sites) + "\n";
 }
 
 std::string_view take_line(std::string_view& bytes) {
@@ -49,8 +49,8 @@ JournalHeading take_heading(std::string_view& bytes, const fs::path& path) {
     throw Error(ErrorKind::Configuration, path.string(), "is no journal of a campaign",
                 "remove it, or name a journal of this version of palpate");
   };
-  if (!bytes.starts_with(kFirstLine)) fail();
-  bytes.remove_prefix(kFirstLine.size());
+  if (!bytes.starts_with(kJournalFirstLine)) fail();
+  bytes.remove_prefix(kJournalFirstLine.size());
   JournalHeading heading;
   heading.key = take_line(bytes);
   const std::string_view count = take_line(bytes);
@@ -63,7 +63,7 @@ JournalHeading take_heading(std::string_view& bytes, const fs::path& path) {
 
 /// A crash right after the file was made leaves less than a heading.
 bool is_cut_heading(std::string_view bytes) {
-  return kFirstLine.starts_with(bytes.substr(0, kFirstLine.size())) &&
+  return kJournalFirstLine.starts_with(bytes.substr(0, kJournalFirstLine.size())) &&
          std::count(bytes.begin(), bytes.end(), '\n') < 3;
 }
 

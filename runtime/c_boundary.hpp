@@ -8,6 +8,7 @@
 #include <exception>
 #include <new>
 
+#include "format/vec3.hpp"
 #include "runtime/palpate.h"
 
 namespace palpate::runtime {
@@ -28,6 +29,10 @@ int guarded(int status, Action action) noexcept {
   } catch (...) {
     return fail(status, "unknown failure");
   }
+}
+
+inline void copy(const Vec3& from, double to[3]) noexcept {
+  std::copy(from.begin(), from.end(), to);
 }
 
 /// Copies the fields that both headers know to the caller; fields of a newer header stay untouched.

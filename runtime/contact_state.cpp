@@ -17,10 +17,6 @@ constexpr double kRecoveryFraction = 0.5;  // of the travel of the tip: how fast
 constexpr double kRounding = 1e-12;        // N; tolerance of the limit on the change of force
 constexpr int kThrottleTries = 5;          // shorter slides that are tried before c stays fixed
 
-bool finite(const Vec3& v) noexcept {
-  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-
 /// The fraction in [0, 1] of the straight path from `near`, no longer than `allowed`, to `far`,
 /// which is longer, at which the vector reaches the length `allowed`. One half when both are
 /// longer.
@@ -60,7 +56,7 @@ std::uint32_t ContactState::refuse() noexcept {
 }
 
 std::uint32_t ContactState::step(const Vec3& x) noexcept {
-  if (!finite(x)) return refuse();
+  if (!is_finite(x)) return refuse();
   const Vec3 from = last_.value_or(x);
   const double travelled = norm(x - from);
   last_ = x;

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
+
+#include "format/numbers.hpp"
 
 namespace palpate::runtime {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// h on one interval between consecutive knots of the merged sequence.
 struct MergedPiece {

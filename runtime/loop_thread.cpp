@@ -6,23 +6,18 @@
 #include <cmath>
 #include <utility>
 
-#include "format/error.hpp"
+#include "runtime/settings_check.hpp"
 
 namespace palpate::runtime {
 namespace {
 
 constexpr double kMostRate = 100000;  // Hz
 
-void require(bool good, const char* what, double value, const char* range) {
-  if (good) return;
-  throw Error(ErrorKind::Configuration, "force loop",
-              std::string(what) + " is " + std::to_string(value), std::string("give ") + range);
-}
-
 }  // namespace
 
 LoopThread::LoopThread(ForceLoop& loop, Device& device, const LoopThreadSettings& settings)
     : loop_(loop), device_(device), settings_(settings) {
+  const SettingsCheck require("force loop");
   require(settings.rate > 0 && settings.rate <= kMostRate, "rate (Hz)", settings.rate,
           "1 to 100000");
   require(std::isfinite(settings.watchdog) && settings.watchdog > 0, "watchdog (s)",

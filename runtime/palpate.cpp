@@ -23,6 +23,7 @@
 #include "runtime/status.hpp"
 
 using palpate::Vec3;
+using palpate::runtime::copy;
 using palpate::operator-;
 using palpate::runtime::ContactObservation;
 using palpate::runtime::ContactSettings;
@@ -61,10 +62,10 @@ thread_local char last_error[512] = "";
 
 // Smallest valid sizes of the structs: a smaller size is an error, one in between is that of an
 // older header, a larger one that of a newer header.
-constexpr std::uint32_t kFirstSettings = 40;
+constexpr std::uint32_t kFirstContactSettings = 40;
 constexpr std::uint32_t kFirstObservation = offsetof(palpate_observation, lateral_offset);
 constexpr std::uint32_t kFirstInfo = offsetof(palpate_library_info, min_lipschitz_bound);
-static_assert(sizeof(palpate_settings) >= kFirstSettings);
+static_assert(sizeof(palpate_settings) >= kFirstContactSettings);
 
 constexpr double kRigid = 1e-9;  // tolerance of orthonormality of a rotation
 
@@ -112,10 +113,6 @@ palpate::Library read_from(const MemoryFile& file) {
     if (where.rfind(file.path(), 0) == 0) where.replace(0, file.path().size(), "library in memory");
     throw palpate::Error(e.kind(), where, e.problem(), e.remedy());
   }
-}
-
-void copy(const Vec3& from, double to[3]) noexcept {
-  std::copy(from.begin(), from.end(), to);
 }
 
 palpate_observation translate(const ContactObservation& seen) noexcept {
@@ -243,7 +240,7 @@ int palpate_state_create(const palpate_library* library, const palpate_settings*
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_state_create: library is null");
   palpate_settings chosen;
   palpate_settings_default(&chosen);
-  const bool sized = settings == nullptr || settings->size >= kFirstSettings;
+  const bool sized = settings == nullptr || settings->size >= kFirstContactSettings;
   if (settings != nullptr && sized) give(*settings, &chosen, settings->size);
   if (!sized) {
     return fail(PALPATE_ERROR_ARGUMENT,

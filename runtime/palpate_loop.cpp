@@ -16,6 +16,7 @@
 namespace {
 
 using palpate::Vec3;
+using palpate::runtime::copy;
 using palpate::runtime::DeviceReading;
 using palpate::runtime::DeviceStatus;
 
@@ -81,13 +82,9 @@ struct palpate_loop {
 namespace {
 
 // Smallest valid sizes of the structs.
-constexpr std::uint32_t kFirstSettings = offsetof(palpate_loop_settings, record);
+constexpr std::uint32_t kFirstLoopSettings = offsetof(palpate_loop_settings, record);
 constexpr std::uint32_t kFirstReport = offsetof(palpate_loop_report, unrecorded);
 constexpr std::uint32_t kFirstStep = sizeof(palpate_loop_step);
-
-void copy(const Vec3& from, double to[3]) noexcept {
-  std::copy(from.begin(), from.end(), to);
-}
 
 palpate_loop_step translate(const palpate::RecordedStep& recorded) noexcept {
   palpate_loop_step step{};
@@ -168,7 +165,7 @@ int palpate_loop_start(palpate_state* state, const palpate_device* device,
   palpate_loop_settings chosen;
   palpate_loop_settings_default(&chosen);
   if (settings != nullptr) {
-    if (settings->size < kFirstSettings) {
+    if (settings->size < kFirstLoopSettings) {
       return fail(PALPATE_ERROR_ARGUMENT,
                   "palpate_loop_start: fill the settings with palpate_loop_settings_default first");
     }

@@ -5,25 +5,13 @@
 #include <cmath>
 #include <string>
 
-#include "format/error.hpp"
+#include "runtime/settings_check.hpp"
 #include "runtime/status.hpp"
 
 namespace palpate::runtime {
-namespace {
-
-void require(bool good, const char* what, double value, const char* range) {
-  if (good) return;
-  throw Error(ErrorKind::Configuration, "safety of the force loop",
-              std::string(what) + " is " + std::to_string(value), std::string("give ") + range);
-}
-
-bool finite(const Vec3& v) noexcept {
-  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-
-}  // namespace
 
 Safety::Safety(const SafetySettings& settings) : settings_(settings) {
+  const SettingsCheck require("safety of the force loop");
   require(std::isfinite(settings.ramp) && settings.ramp >= 0, "ramp (s)", settings.ramp,
           "0 or more, finite");
   require(settings.max_force > 0, "max_force (N)", settings.max_force, "a value above 0");
@@ -47,7 +35,7 @@ Safety::Verdict Safety::judge(const Vec3& force, const Vec3& velocity, double dt
     return verdict;
   }
   since_cut_ = std::min(since_cut_ + dt, settings_.ramp);
-  if (!finite(force)) {
+  if (!is_finite(force)) {
     verdict.status |= step_status::LoopNotFinite;
     return verdict;
   }

@@ -10,11 +10,11 @@
 
 #include "fitting/measurement/compare/compare.hpp"
 #include "format/error.hpp"
+#include "format/numbers.hpp"
 
 namespace palpate::app {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 /// What is left of the uncertainty of a force beside the contact point, at least: the difference of
 /// two uncertainties is itself uncertain, and one that is too small makes intervals too narrow.
 constexpr double kLeastOwnPart = 0.5;

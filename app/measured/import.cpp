@@ -17,6 +17,7 @@
 #include "fitting/measurement/records/repeats.hpp"
 #include "fitting/measurement/records/robot.hpp"
 #include "format/error.hpp"
+#include "format/numbers.hpp"
 #include "format/sha256.hpp"
 
 namespace palpate::app {
@@ -233,7 +234,7 @@ class Importer {
                    const m::PressCurve& curve) {
     const m::Baseline& b = curve.baseline;
     const double returned =
-        curve.work_loading > 0 ? curve.work_returned / curve.work_loading : m::kUnknown;
+        curve.work_loading > 0 ? curve.work_returned / curve.work_loading : kUnknown;
     records_.push_back({{"file", file},
                         {"vertex", vertex},
                         {"distance_to_vertex_m", distance},

@@ -10,6 +10,7 @@
 #include "fem/laws/require.hpp"
 #include "fem/laws/saint_venant_kirchhoff.hpp"
 #include "format/error.hpp"
+#include "format/numbers.hpp"
 
 namespace palpate::fem {
 
@@ -23,8 +24,6 @@ void require_constant(bool valid, const std::string& where, const std::string& n
 }
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 LawConstant positive_stress(std::string_view name, std::string_view about) {
   return {.name = name, .about = about, .is_stress = true, .low = 0};

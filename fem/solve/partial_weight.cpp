@@ -11,10 +11,10 @@ namespace palpate::fem {
 
 namespace {
 
-constexpr double kTolerance = 1e-9;  ///< residual over the weight
-constexpr int kIterations = 60;
+constexpr double kResidualTolerance = 1e-9;  ///< residual over the weight
+constexpr int kNewtonSteps = 60;
 constexpr int kFreeSteps = 4;
-constexpr int kHalvings = 12;         ///< of a step
+constexpr int kStepHalvings = 12;     ///< of a step
 constexpr double kArmijo = 1e-4;      ///< decrease of the energy over that along the slope
 constexpr double kContraction = 0.1;  ///< decrease of the residual that serves as well, relative
 constexpr int kPowerIterations = 30;  ///< for an eigenvalue: its order of magnitude suffices
@@ -70,7 +70,7 @@ double PartialWeight::rounding_error(const Displacement& u) const {
 
 /// Leaves the stiffness at u for the next step where it is none.
 bool PartialWeight::is_equilibrium(const State& now, const Displacement& u) {
-  if (now.residual.norm() <= kTolerance * weight_.norm()) return true;
+  if (now.residual.norm() <= kResidualTolerance * weight_.norm()) return true;
   model_.stiffness(u, K_);
   return now.residual.norm() <= rounding_error(u);
 }
@@ -90,7 +90,7 @@ std::optional<PartialWeight::Outcome> PartialWeight::free_step(double part, Stat
   if (iterations_ == 0) first_step_ = d.segment<3>(3 * largest_node(d)).norm();
   if (free_steps_ == 0) checkpoint_ = {u, now, d};
   double length = 1;
-  for (int halvings = 0; halvings < kHalvings; ++halvings, length *= 0.5) {
+  for (int halvings = 0; halvings < kStepHalvings; ++halvings, length *= 0.5) {
     Displacement trial = u;
     add_step(model_, length, d, trial);
     State next = evaluate(part, trial);
@@ -109,7 +109,7 @@ std::optional<PartialWeight::Outcome> PartialWeight::step_from_checkpoint(double
                                                                           Displacement& u) {
   free_steps_ = 0;
   double length = 0.5;
-  for (int halvings = 1; halvings < kHalvings; ++halvings, length *= 0.5) {
+  for (int halvings = 1; halvings < kStepHalvings; ++halvings, length *= 0.5) {
     Displacement trial = checkpoint_.u;
     add_step(model_, length, checkpoint_.d, trial);
     State next = evaluate(part, trial);
@@ -125,7 +125,7 @@ PartialWeight::Outcome PartialWeight::equilibrate(double part, Displacement& u) 
   State now = evaluate(part, u);
   if (!(now.min_J > 0)) return Outcome::Inverted;
   free_steps_ = 0;
-  for (iterations_ = 0; iterations_ < kIterations; ++iterations_) {
+  for (iterations_ = 0; iterations_ < kNewtonSteps; ++iterations_) {
     if (is_equilibrium(now, u)) return Outcome::Found;
     std::optional<Outcome> failure = free_step(part, now, u);
     if (failure && free_steps_ > 0) failure = step_from_checkpoint(part, now, u);

@@ -6,7 +6,7 @@ namespace palpate::fem {
 namespace {
 
 constexpr int kMaxIterations = 200;
-constexpr double kTolerance = 1e-6;
+constexpr double kRelativeResidual = 1e-6;
 
 }  // namespace
 
@@ -76,7 +76,7 @@ bool TangentSolver::solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
   solve_window(load, x);
   Eigen::VectorXd r = b - times(x), p, q;
   for (const int i : unknown_) r[i] = 0;
-  const double allowed = kTolerance * r.norm();
+  const double allowed = kRelativeResidual * r.norm();
   double last = 1;
   for (int i = 0; r.norm() > allowed; ++i, ++iterations_) {
     if (i == kMaxIterations) return false;

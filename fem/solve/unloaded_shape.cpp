@@ -20,14 +20,14 @@ namespace palpate::fem {
 
 namespace {
 
-constexpr double kTolerance = 1e-6;  ///< distance over the largest displacement
-constexpr double kRounding = 1e-12;  ///< distance over the extent of the body
-constexpr int kIterations = 60;
-constexpr int kMostEquilibria = 200;        ///< of all parts
-constexpr double kDivergence = 4;           ///< distance over the smallest so far
-constexpr double kSmallestPart = 1.0 / 64;  ///< of the weight, applied at once
-constexpr double kSmallestVolume = 0.05;    ///< of an element over its given volume
-constexpr int kHalvings = 6;                ///< of a change of the shape
+constexpr double kShapeTolerance = 1e-6;  ///< distance over the largest displacement
+constexpr double kRounding = 1e-12;       ///< distance over the extent of the body
+constexpr int kShapeIterations = 60;
+constexpr int kMostEquilibria = 200;               ///< of all parts
+constexpr double kDivergence = 4;                  ///< distance over the smallest so far
+constexpr double kSmallestPartOfShape = 1.0 / 64;  ///< of the weight, applied at once
+constexpr double kSmallestVolume = 0.05;           ///< of an element over its given volume
+constexpr int kShapeHalvings = 6;                  ///< of a change of the shape
 
 /// Edges of an element from its first corner.
 Eigen::Matrix3d edges_at(const Eigen::Matrix3Xd& X, const Tetrahedron& t) {
@@ -63,7 +63,7 @@ class UnloadedShape {
       X_ = X;
       u_ = u;
       part *= 0.5;
-      if (part < kSmallestPart || iterations_ > kMostEquilibria) refuse_shape(carried);
+      if (part < kSmallestPartOfShape || iterations_ > kMostEquilibria) refuse_shape(carried);
     }
     Body body = moved_body();
     for (const Edge& ends : edges_of(body.boundary)) add_curved_edge(ends, body);
@@ -77,7 +77,7 @@ class UnloadedShape {
     Anderson anderson;
     double nearest = std::numeric_limits<double>::infinity();
     const double extent = (x_.rowwise().maxCoeff() - x_.rowwise().minCoeff()).norm();
-    for (int i = 0; i < kIterations; ++i) {
+    for (int i = 0; i < kShapeIterations; ++i) {
       ++iterations_;
       const SolidModel model = model_of(moved_body());
       if (!equilibrate(model, part))
@@ -85,13 +85,13 @@ class UnloadedShape {
       const Eigen::Matrix3Xd gap = x_ - X_ - u_.leftCols(x_.cols());
       distance_ = gap.colwise().norm().maxCoeff();
       const double sag = u_.colwise().norm().maxCoeff();
-      if (distance_ <= std::max(kTolerance * sag, kRounding * extent)) return true;
+      if (distance_ <= std::max(kShapeTolerance * sag, kRounding * extent)) return true;
       if (distance_ > kDivergence * nearest) return failed("the iteration diverges");
       nearest = std::min(nearest, distance_);
       if (!change_shape(anderson.step(X_, gap))) return false;
     }
     return failed("it is still off by " + in_millimetres(nearest) + " after " +
-                  std::to_string(kIterations) + " iterations");
+                  std::to_string(kShapeIterations) + " iterations");
   }
 
   /// From the last displacement; where that is no good start from none, in parts.
@@ -106,7 +106,7 @@ class UnloadedShape {
       if (weight.equilibrate(next, u) == PartialWeight::Outcome::Found) {
         u_.swap(u);
         carried = next;
-      } else if ((step *= 0.5) < kSmallestPart * part) {
+      } else if ((step *= 0.5) < kSmallestPartOfShape * part) {
         return false;
       }
     }
@@ -117,7 +117,7 @@ class UnloadedShape {
   /// given shape.
   bool change_shape(Eigen::Matrix3Xd d) {
     std::size_t worst = 0;
-    for (int halvings = 0; halvings < kHalvings; ++halvings, d *= 0.5) {
+    for (int halvings = 0; halvings < kShapeHalvings; ++halvings, d *= 0.5) {
       if (smallest_volume(X_ + d, worst) < kSmallestVolume) continue;
       X_ += d;
       const Eigen::Matrix3Xd gap = x_ - X_ - u_.leftCols(x_.cols());

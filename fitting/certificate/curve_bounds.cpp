@@ -3,15 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "fitting/certificate/triangle_frame.hpp"
+#include "format/numbers.hpp"
 
 namespace palpate::fitting {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double slope_at(const runtime::CompiledCurve& curve, double d) {
   return d > 0 ? curve.slope(d) : curve.slope_at_rest();

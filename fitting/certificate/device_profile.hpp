@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
-#include <limits>
 #include <string>
 
-namespace palpate::fitting {
+#include "format/numbers.hpp"
 
-/// A value that a device profile or a setting does not state.
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+namespace palpate::fitting {
 
 /// A haptic device as its documentation describes it.
 struct DeviceProfile {

@@ -5,21 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <queue>
 #include <vector>
 
 #include "fitting/certificate/range.hpp"
+#include "format/numbers.hpp"
 
 namespace palpate::fitting {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Intervals of depth are halved until the largest bound is within this factor of the bound at a
 // single depth inside its interval, or the halvings are used up. The bound is valid at every stage.
 constexpr double kNearEnough = 1.02;
-constexpr int kMaxHalvings = 300;
+constexpr int kMaxHalvingsOfSlide = 300;
 
 /// Bounds for all contact points of the triangle and depths of a cell, at limiting friction.
 struct SlideState {
@@ -293,7 +292,7 @@ double over_depths(const ContactElement& element, double deepest, CellBound boun
   const auto add = [&](const Range& z) { parts.push({bound(element, z), z}); };
   const std::vector<double> ends = element.depth_cells(deepest);
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) add({ends[k], ends[k + 1]});
-  for (int i = 0; i < kMaxHalvings; ++i) {
+  for (int i = 0; i < kMaxHalvingsOfSlide; ++i) {
     const Part worst = parts.top();
     const double half = worst.z.middle();
     if (worst.bound <= kNearEnough * bound(element, {half, half})) break;
@@ -367,7 +366,7 @@ SlideBound slide_bound(const ContactElement& element) {
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
     cells.push(make_cell(element, {ends[k], ends[k + 1]}));
   }
-  for (int i = 0; i < kMaxHalvings; ++i) {
+  for (int i = 0; i < kMaxHalvingsOfSlide; ++i) {
     const Cell worst = cells.top();
     const double half = worst.z.middle();
     const double reached = make_cell(element, {half, half}).bound.total;

@@ -5,12 +5,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "format/numbers.hpp"
 
 namespace palpate::fitting {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 using Natural = SlideCell::Natural;
 using Values = std::array<Range, 3>;

@@ -12,14 +12,14 @@
 namespace palpate::mesher {
 namespace {
 
-using Edge = std::pair<std::size_t, std::size_t>;
+using PointPair = std::pair<std::size_t, std::size_t>;
 
-Edge sorted_edge(std::size_t a, std::size_t b) {
+PointPair sorted_edge(std::size_t a, std::size_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-std::map<Edge, std::vector<std::size_t>> polygons_of_edges(const Soup& soup) {
-  std::map<Edge, std::vector<std::size_t>> result;
+std::map<PointPair, std::vector<std::size_t>> polygons_of_edges(const Soup& soup) {
+  std::map<PointPair, std::vector<std::size_t>> result;
   for (std::size_t p = 0; p < soup.polygons.size(); ++p) {
     const auto& corners = soup.polygons[p];
     for (std::size_t k = 0; k < corners.size(); ++k) {
@@ -29,7 +29,7 @@ std::map<Edge, std::vector<std::size_t>> polygons_of_edges(const Soup& soup) {
   return result;
 }
 
-bool runs_along(const std::vector<std::size_t>& corners, const Edge& edge) {
+bool runs_along(const std::vector<std::size_t>& corners, const PointPair& edge) {
   for (std::size_t k = 0; k < corners.size(); ++k) {
     if (corners[k] == edge.first && corners[(k + 1) % corners.size()] == edge.second) return true;
   }
@@ -130,8 +130,8 @@ std::size_t drop_unused_points(Soup& soup) {
 }
 
 /// Points whose polygons do not form a single fan: sheets that meet in a point only.
-std::vector<std::size_t> pinched_points(const Soup& soup,
-                                        const std::map<Edge, std::vector<std::size_t>>& edges) {
+std::vector<std::size_t> pinched_points(
+    const Soup& soup, const std::map<PointPair, std::vector<std::size_t>>& edges) {
   std::vector<std::vector<std::size_t>> around(soup.points.size());
   for (std::size_t p = 0; p < soup.polygons.size(); ++p) {
     for (const std::size_t v : soup.polygons[p]) around[v].push_back(p);
@@ -142,7 +142,7 @@ std::vector<std::size_t> pinched_points(const Soup& soup,
     for (std::size_t i = 0; i < fan.size(); ++i) {
       const auto& corners = soup.polygons[fan[i]];
       for (std::size_t k = 0; k < corners.size(); ++k) {
-        const Edge edge = sorted_edge(corners[k], corners[(k + 1) % corners.size()]);
+        const PointPair edge = sorted_edge(corners[k], corners[(k + 1) % corners.size()]);
         if (edge.first != v && edge.second != v) continue;
         for (const std::size_t q : edges.at(edge)) {
           if (std::find(fan.begin(), fan.end(), q) == fan.end()) fan.push_back(q);
@@ -155,7 +155,7 @@ std::vector<std::size_t> pinched_points(const Soup& soup,
 }
 
 FaultyFaces faces_at_edges(const Soup& soup,
-                           const std::map<Edge, std::vector<std::size_t>>& edges) {
+                           const std::map<PointPair, std::vector<std::size_t>>& edges) {
   FaultyFaces faulty;
   for (const auto& [edge, polygons] : edges) {
     if (polygons.size() == 2) continue;
@@ -208,7 +208,7 @@ void check_entries(const Soup& soup, const std::string& where) {
   }
   for (std::size_t i = 0; i < soup.points.size(); ++i) {
     const Vec3& x = soup.points[i];
-    if (std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2])) continue;
+    if (is_finite(x)) continue;
     if (bad_points++ == 0) first_bad_point = i;
   }
   if (short_faces > 0) {
@@ -276,7 +276,7 @@ void orient(Soup& soup, const std::string& where, const Log& log) {
       const std::size_t p = front[i];
       const auto& corners = soup.polygons[p];
       for (std::size_t k = 0; k < corners.size(); ++k) {
-        const Edge edge{corners[k], corners[(k + 1) % corners.size()]};
+        const PointPair edge{corners[k], corners[(k + 1) % corners.size()]};
         const auto& pair = edges.at(sorted_edge(edge.first, edge.second));
         const std::size_t q = pair[0] == p ? pair[1] : pair[0];
         // Neighbours agree when they run along their common edge in opposite directions.

@@ -27,7 +27,7 @@ struct Property {
   bool is_real() const { return type == VoxelType::Float || type == VoxelType::Double; }
 };
 
-struct Element {
+struct PlyElement {
   std::string name;
   std::size_t count = 0;
   std::vector<Property> properties;
@@ -39,7 +39,7 @@ using Row = std::vector<std::vector<double>>;
 /// "#ff0000", or empty where there is none.
 using Colour = std::string;
 
-Colour colour_of(const Element& element, const Row& row) {
+Colour colour_of(const PlyElement& element, const Row& row) {
   std::array<int, 3> level{-1, -1, -1};
   constexpr std::array<const char*, 3> kNames = {"red", "green", "blue"};
   for (std::size_t p = 0; p < row.size(); ++p) {
@@ -65,7 +65,7 @@ class PlyReader {
 
   Soup read() {
     read_header();
-    for (const Element& element : elements_) {
+    for (const PlyElement& element : elements_) {
       if (!is_binary_) scanner_.checked_count(count_of(element), element.name, 1);
       for (std::size_t i = 0; i < element.count; ++i) add(element, read_row(element));
     }
@@ -74,7 +74,7 @@ class PlyReader {
   }
 
  private:
-  static std::int64_t count_of(const Element& e) { return static_cast<std::int64_t>(e.count); }
+  static std::int64_t count_of(const PlyElement& e) { return static_cast<std::int64_t>(e.count); }
 
   void read_header() {
     if (scanner_.required_line("ply") != "ply")
@@ -102,7 +102,7 @@ class PlyReader {
   }
 
   void read_element(Fields& fields) {
-    Element element;
+    PlyElement element;
     element.name = fields.next();
     element.count = scanner_.checked_count(fields.integer("a number of elements"), element.name, 1);
     elements_.push_back(element);
@@ -154,7 +154,7 @@ class PlyReader {
     return std::isfinite(value) ? value : 0;
   }
 
-  Row read_row(const Element& element) {
+  Row read_row(const PlyElement& element) {
     Row row;
     for (const Property& p : element.properties) {
       std::size_t count = 1;
@@ -171,7 +171,7 @@ class PlyReader {
     return row;
   }
 
-  void add(const Element& element, const Row& row) {
+  void add(const PlyElement& element, const Row& row) {
     if (element.name == "vertex") {
       soup_.points.push_back(position(element, row));
       point_colours_.push_back(colour_of(element, row));
@@ -184,7 +184,7 @@ class PlyReader {
     }
   }
 
-  Vec3 position(const Element& element, const Row& row) const {
+  Vec3 position(const PlyElement& element, const Row& row) const {
     Vec3 x{};
     int found = 0;
     for (std::size_t p = 0; p < row.size(); ++p) {
@@ -197,7 +197,7 @@ class PlyReader {
     return x;
   }
 
-  const std::vector<double>& indices(const Element& element, const Row& row) const {
+  const std::vector<double>& indices(const PlyElement& element, const Row& row) const {
     for (std::size_t p = 0; p < row.size(); ++p) {
       const Property& property = element.properties[p];
       if (property.is_list && property.name.starts_with("vertex_ind")) return row[p];
@@ -212,7 +212,7 @@ class PlyReader {
     return static_cast<std::size_t>(index);
   }
 
-  std::vector<std::size_t> corners_of(const Element& element, const Row& row) const {
+  std::vector<std::size_t> corners_of(const PlyElement& element, const Row& row) const {
     std::vector<std::size_t> corners;
     for (const double index : indices(element, row)) corners.push_back(point(index));
     return corners;
@@ -224,7 +224,7 @@ class PlyReader {
   }
 
   /// Each index makes a triangle with the two before it, turned every other time; -1 ends a strip.
-  void add_strips(const Element& element, const Row& row) {
+  void add_strips(const PlyElement& element, const Row& row) {
     std::vector<std::size_t> strip;
     for (const double index : indices(element, row)) {
       if (index < 0) {
@@ -268,7 +268,7 @@ class PlyReader {
 
   Scanner scanner_;
   bool is_binary_ = false, is_swapped_ = false;
-  std::vector<Element> elements_;
+  std::vector<PlyElement> elements_;
   std::vector<Colour> point_colours_, face_colours_;
   Soup soup_;
 };

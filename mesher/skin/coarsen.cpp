@@ -32,11 +32,11 @@ constexpr double kShortestEdge = 0.65;
 constexpr double kLongestEdge = 1.6;
 // Least cosine of a triangle with the fine normals at its corners; at the corner of a box it is
 // 0.58.
-constexpr double kLeastCosine = 0.4;
+constexpr double kLeastCosineOfFold = 0.4;
 // 1 for an equilateral triangle, 0 for a degenerate one.
 constexpr double kLeastShape = 0.35;
 constexpr int kSweepsOfFlips = 10;
-constexpr int kRounds = 3;
+constexpr int kCoarseningRounds = 3;
 
 enum class Rank : unsigned char { Smooth, Crease, Corner };
 
@@ -72,7 +72,7 @@ class Coarsening {
   }
 
   CoarseSurface run() {
-    for (int round = 0; round < kRounds; ++round) {
+    for (int round = 0; round < kCoarseningRounds; ++round) {
       collapse();
       flip();
     }
@@ -141,7 +141,7 @@ class Coarsening {
       const std::array<Vertex, 3> then{to, now[1], now[2]};
       const double after = shape_of(then);
       if (after < std::min(kLeastShape, shape_of(now))) return std::nullopt;
-      if (least_cosine(then) < std::min(kLeastCosine, least_cosine(now))) return std::nullopt;
+      if (least_cosine(then) < std::min(kLeastCosineOfFold, least_cosine(now))) return std::nullopt;
       const double longest = kLongestEdge * spacing_;
       if (CGAL::squared_distance(mesh_.point(to), mesh_.point(now[1])) > longest * longest)
         return std::nullopt;
@@ -215,7 +215,7 @@ class Coarsening {
     const double before = std::min(shape_of(left), shape_of(right));
     if (std::min(shape_of(top), shape_of(bottom)) <= 1.01 * before) return false;
     const double turned = std::min(least_cosine(left), least_cosine(right));
-    if (std::min(least_cosine(top), least_cosine(bottom)) < std::min(kLeastCosine, turned))
+    if (std::min(least_cosine(top), least_cosine(bottom)) < std::min(kLeastCosineOfFold, turned))
       return false;
     CGAL::Euler::flip_edge(h, mesh_);
     return true;

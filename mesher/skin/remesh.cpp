@@ -28,7 +28,7 @@ using SegmentTree = CGAL::AABB_tree<
 
 // The remeshing is repeated with the vertices put back on the input between the rounds, because
 // relaxation lets vertices of a curved sharp edge drift along its chords.
-constexpr unsigned kRounds = 4;
+constexpr unsigned kRemeshingRounds = 4;
 constexpr unsigned kIterationsPerRound = 3;
 
 // An edge that bulges less than this, in parts of its length, is straight: what is left is
@@ -218,7 +218,7 @@ NestedSurface remesh(const Surface& input, const RemeshSettings& settings, const
                    kShortestFeature, " patches are smoothed"));
   }
   const Target target(input, mesh, sharp);
-  for (unsigned round = 0; round < kRounds; ++round) {
+  for (unsigned round = 0; round < kRemeshingRounds; ++round) {
     pmp::isotropic_remeshing(mesh.faces(), settings.spacing, mesh,
                              CGAL::parameters::edge_is_constrained_map(sharp)
                                  .number_of_iterations(kIterationsPerRound)

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "format/numbers.hpp"
 
 namespace palpate::runtime {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kStandstill = 1e-15;  // m/s; slower is rounding, not motion
 constexpr int kMostEvents = 256;       // stops and breakaways in one sample
 

@@ -5,25 +5,16 @@
 #include <cstddef>
 #include <string>
 
-#include "format/error.hpp"
 #include "runtime/devices/axis_motion.hpp"
+#include "runtime/settings_check.hpp"
 
 namespace palpate::runtime {
-namespace {
-
-void require(bool good, const char* what, double value, const char* range) {
-  if (good) return;
-  throw Error(ErrorKind::Configuration, "simulated device",
-              std::string(what) + " is " + std::to_string(value), std::string("give ") + range);
-}
-
-void require_not_negative(const char* what, double value) {
-  require(std::isfinite(value) && value >= 0, what, value, "a finite value, 0 or more");
-}
-
-}  // namespace
 
 SimulatedDevice::SimulatedDevice(const SimulatedDeviceSettings& settings) : settings_(settings) {
+  const SettingsCheck require("simulated device");
+  const auto require_not_negative = [&require](const char* what, double value) {
+    require(std::isfinite(value) && value >= 0, what, value, "a finite value, 0 or more");
+  };
   require(std::isfinite(settings.mass) && settings.mass > 0, "mass (kg)", settings.mass,
           "a finite value above 0");
   require_not_negative("damping (N s/m)", settings.damping);

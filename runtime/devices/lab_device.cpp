@@ -8,33 +8,29 @@
 
 #include "format/error.hpp"
 #include "runtime/realtime.hpp"
+#include "runtime/settings_check.hpp"
 
 namespace palpate::runtime {
 namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 
-void require(bool good, std::size_t axis, const char* what, double value, const char* range) {
-  if (good) return;
-  throw Error(ErrorKind::Configuration, "lab-built device, axis " + std::to_string(axis),
-              std::string(what) + " is " + std::to_string(value), std::string("give ") + range);
-}
-
 bool above_zero(double value) {
   return std::isfinite(value) && value > 0;
 }
 
 void check(const LabAxis& axis, std::size_t j) {
+  const SettingsCheck require("lab-built device, axis " + std::to_string(j));
   const char* positive = "a finite value above 0";
-  require(above_zero(axis.counts_per_turn), j, "counts_per_turn", axis.counts_per_turn, positive);
-  require(axis.counter_bits >= 8 && axis.counter_bits <= 32, j, "counter_bits", axis.counter_bits,
+  require(above_zero(axis.counts_per_turn), "counts_per_turn", axis.counts_per_turn, positive);
+  require(axis.counter_bits >= 8 && axis.counter_bits <= 32, "counter_bits", axis.counter_bits,
           "8 to 32");
-  require(std::abs(axis.sign) == 1, j, "sign", axis.sign, "1 or -1");
-  require(std::isfinite(axis.offset), j, "offset", axis.offset, "a finite value");
-  require(above_zero(axis.gear), j, "gear", axis.gear, positive);
-  require(above_zero(axis.torque_constant), j, "torque_constant", axis.torque_constant, positive);
-  require(std::abs(axis.motor_sign) == 1, j, "motor_sign", axis.motor_sign, "1 or -1");
-  require(above_zero(axis.current_limit), j, "current_limit", axis.current_limit, positive);
+  require(std::abs(axis.sign) == 1, "sign", axis.sign, "1 or -1");
+  require(std::isfinite(axis.offset), "offset", axis.offset, "a finite value");
+  require(above_zero(axis.gear), "gear", axis.gear, positive);
+  require(above_zero(axis.torque_constant), "torque_constant", axis.torque_constant, positive);
+  require(std::abs(axis.motor_sign) == 1, "motor_sign", axis.motor_sign, "1 or -1");
+  require(above_zero(axis.current_limit), "current_limit", axis.current_limit, positive);
 }
 
 /// The shorter difference between two raw counts of a counter of `bits` that wraps around.
@@ -58,8 +54,9 @@ LabDevice::LabDevice(LabDeviceSettings settings, SerialChain chain,
                 "describe each joint once");
   }
   for (std::size_t j = 0; j < settings_.axes.size(); ++j) check(settings_.axes[j], j);
-  require(above_zero(settings_.velocity_cutoff), 0, "velocity_cutoff (Hz)",
-          settings_.velocity_cutoff, "a finite value above 0");
+  const SettingsCheck require("lab-built device");
+  require(above_zero(settings_.velocity_cutoff), "velocity_cutoff (Hz)", settings_.velocity_cutoff,
+          "a finite value above 0");
 }
 
 LabDevice::~LabDevice() {

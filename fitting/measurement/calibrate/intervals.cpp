@@ -4,11 +4,11 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "fitting/measurement/calibrate/correlated_noise.hpp"
 #include "fitting/measurement/records/statistics.hpp"
+#include "format/numbers.hpp"
 
 namespace palpate::calibrate {
 namespace {
@@ -16,8 +16,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Inverse of J^T J, and the square root of the ratio of its eigenvalues when it is scaled to a
 /// unit diagonal. Directions that the data do not see get a variance beyond any use, not infinity.

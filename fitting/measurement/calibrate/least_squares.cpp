@@ -4,17 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <optional>
 
 #include "fitting/measurement/calibrate/descent.hpp"
 #include "fitting/measurement/calibrate/intervals.hpp"
 #include "format/error.hpp"
+#include "format/numbers.hpp"
+#include "format/text.hpp"
 
 namespace palpate::calibrate {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr double kStrongCorrelation = 0.95;
 /// Costs closer than this, relatively, are the same.
 constexpr double kSameCost = 1e-6;
@@ -26,18 +26,12 @@ bool is_at(double value, double bound) {
          std::abs(value - bound) <= kAtBound * std::max(1e-12, std::abs(bound));
 }
 
-std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 void add_warnings(Calibration& result) {
   const auto warn = [&](const std::string& text) { result.warnings.push_back(text); };
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
     const Estimate& e = result.estimates[i];
     if (e.at_bound) {
-      warn(e.name + " is at its bound " + text_of(e.value) +
+      warn(e.name + " is at its bound " + three_digits(e.value) +
            ": the interval says nothing there; widen the bound or choose another law");
       continue;
     }
@@ -47,21 +41,21 @@ void add_warnings(Calibration& result) {
     for (std::size_t j = 0; j < i; ++j) {
       const double c = result.correlation[i][j];
       if (!(std::abs(c) > kStrongCorrelation)) continue;
-      warn(result.estimates[j].name + " and " + e.name + " are correlated by " + text_of(c) +
+      warn(result.estimates[j].name + " and " + e.name + " are correlated by " + three_digits(c) +
            ": the data hardly distinguish them");
     }
   }
   if (result.widened) {
-    warn("the residuals are " + text_of(result.scatter) +
+    warn("the residuals are " + three_digits(result.scatter) +
          " times the stated uncertainty: the model does not describe the data within it; the "
          "intervals are widened by that factor, as if the misfit were noise");
   }
   if (result.correlated) {
-    warn("the residuals of neighbouring points are alike (correlation " + text_of(result.lag_one) +
-         " after the fit, " + text_of(result.autocorrelation) + " before it, Durbin-Watson " +
-         text_of(result.durbin_watson) +
+    warn("the residuals of neighbouring points are alike (correlation " +
+         three_digits(result.lag_one) + " after the fit, " + three_digits(result.autocorrelation) +
+         " before it, Durbin-Watson " + three_digits(result.durbin_watson) +
          "): the model misses the shape of the data; the intervals are up to " +
-         text_of(result.correlation_widening) +
+         three_digits(result.correlation_widening) +
          " times as wide for it, as if the misfit were correlated noise");
   }
   if (!result.converged) warn("the iteration did not converge");
@@ -77,8 +71,8 @@ void check_problem(const LeastSquares& problem, const std::string& where) {
   for (const Constant& c : problem.constants) {
     if (c.start >= c.low && c.start <= c.high) continue;
     refuse(where,
-           "the start " + text_of(c.start) + " of " + c.name + " is not within " + text_of(c.low) +
-               " .. " + text_of(c.high),
+           "the start " + three_digits(c.start) + " of " + c.name + " is not within " +
+               three_digits(c.low) + " .. " + three_digits(c.high),
            "choose a start within the bounds");
   }
 }
@@ -117,7 +111,7 @@ void warn_of_other_minimum(const std::vector<Calibration>& found, Calibration& b
     for (std::size_t i = 0; i < other.estimates.size(); ++i) {
       const double a = best.estimates[i].value, b = other.estimates[i].value;
       apart = apart || std::abs(a - b) > 0.01 * (std::abs(a) + std::abs(b));
-      text += (text.empty() ? "" : ", ") + other.estimates[i].name + " = " + text_of(b);
+      text += (text.empty() ? "" : ", ") + other.estimates[i].name + " = " + three_digits(b);
     }
     if (!apart) continue;
     best.warnings.push_back("another set of constants fits as well: " + text);

@@ -6,17 +6,11 @@
 
 #include "fitting/measurement/calibrate/descent.hpp"
 #include "fitting/measurement/calibrate/least_squares.hpp"
+#include "format/numbers.hpp"
+#include "format/text.hpp"
 
 namespace palpate::calibrate {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
 
 /// The problem with one constant fixed.
 class FixedConstant {
@@ -173,7 +167,7 @@ void warn_of_profile(const Estimate& e, const ProfileEnd& below, const ProfileEn
                      std::vector<std::string>& warnings) {
   constexpr double kFar = 0.25;  // of the half width: how far an end is from the linearised one
   const double half = e.high - e.value;
-  const std::string ends = text_of(e.profile_low) + " to " + text_of(e.profile_high);
+  const std::string ends = three_digits(e.profile_low) + " to " + three_digits(e.profile_high);
   const double apart = std::max(std::abs(e.profile_low - e.low), std::abs(e.profile_high - e.high));
   if (below.met_better_fit() || above.met_better_fit()) {
     warnings.push_back("away from the best " + e.name +

@@ -3,13 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
+
+#include "format/numbers.hpp"
 
 namespace palpate::calibrate {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Logarithmic strains on a ray of states from uniaxial extension (`fraction` 0) over pure shear to
 /// uniaxial compression (1): by isotropy the other directions of strain repeat these.

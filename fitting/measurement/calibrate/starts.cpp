@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fitting/measurement/calibrate/starts.hpp"
 
+#include "format/numbers.hpp"
+
 namespace palpate::calibrate {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSmallModulus = 1e-3;  ///< Pa, lower bound of a modulus
 
 struct Range {

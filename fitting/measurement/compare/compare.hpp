@@ -3,16 +3,14 @@
 // against either, or two libraries. Figures and their definitions: docs/measured.md.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "format/curves.hpp"
 #include "format/library.hpp"
+#include "format/numbers.hpp"
 
 namespace palpate::compare {
-
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// One curve: force along its path over displacement, with what is known of its doubt.
 struct ComparedCurve {

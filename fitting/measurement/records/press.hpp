@@ -3,13 +3,12 @@
 // what is uncertain about it. Theory and tests: docs/theory-measured.md.
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
-namespace palpate::measured {
+#include "format/numbers.hpp"
 
-inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+namespace palpate::measured {
 
 /// What a machine recorded of one press, in SI. `time` may be empty: drift and rate are unknown
 /// then. Displacement grows into the body, force is positive in compression.

@@ -40,7 +40,7 @@ void scale_to_metres(MeshEntities& entities, double unit, const std::string& whe
                      const Log& log) {
   for (std::size_t i = 0; i < entities.nodes.size(); ++i) {
     const Vec3& x = entities.nodes[i];
-    if (std::isfinite(x[0]) && std::isfinite(x[1]) && std::isfinite(x[2])) continue;
+    if (is_finite(x)) continue;
     refuse_geometry(where,
                     text("node ", entities.node_numbers[i],
                          " has a coordinate that is not finite (NaN or Inf)"),

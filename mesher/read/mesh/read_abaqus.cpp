@@ -74,7 +74,7 @@ std::string solid_name(std::size_t nodes) {
   }
 }
 
-struct Element {
+struct AbaqusElement {
   std::vector<std::int32_t> nodes;
   std::int32_t tetrahedron = -1;  ///< index into MeshEntities::tetrahedra
 };
@@ -209,7 +209,7 @@ class AbaqusReader {
         mesh_.region(keyword.has("elset") ? name_of(keyword.value("elset")) : kUnnamedRegion);
     while (has_data()) {
       std::int64_t number = 0;
-      Element element;
+      AbaqusElement element;
       bool is_first = true, goes_on = true;
       while (goes_on && has_data()) {
         Fields fields(*line_, scanner_, ',');
@@ -233,7 +233,7 @@ class AbaqusReader {
   }
 
   void add_element(std::int64_t number, const ElementType& type, std::int32_t region,
-                   Element element) {
+                   AbaqusElement element) {
     if (type.is_solid && (type.nodes == 4 || type.nodes == 10)) {
       element.tetrahedron = static_cast<std::int32_t>(mesh_.tetrahedra.size());
       ListedTetrahedron& t = mesh_.tetrahedra.emplace_back();
@@ -250,7 +250,7 @@ class AbaqusReader {
     element_numbers_.push_back(number);
   }
 
-  const Element& element(std::int64_t number) {
+  const AbaqusElement& element(std::int64_t number) {
     const auto found = elements_.find(number);
     if (found == elements_.end()) {
       scanner_.refuse(text("element ", number, " is not among the elements before it"));
@@ -357,7 +357,8 @@ class AbaqusReader {
     mesh_.add_to_set(name, found);
   }
 
-  void add_side(const Element& element, const std::string& side, std::vector<std::int32_t>& found) {
+  void add_side(const AbaqusElement& element, const std::string& side,
+                std::vector<std::int32_t>& found) {
     if (element.tetrahedron < 0) {  // a shell: all of it
       found.insert(found.end(), element.nodes.begin(), element.nodes.end());
       return;
@@ -373,7 +374,7 @@ class AbaqusReader {
       auto& group = mesh_.groups[name];
       std::vector<std::int32_t> nodes;
       for (const std::int64_t number : numbers) {
-        const Element& member = elements_.at(number);
+        const AbaqusElement& member = elements_.at(number);
         nodes.insert(nodes.end(), member.nodes.begin(), member.nodes.end());
         if (member.tetrahedron >= 0) group.push_back(member.tetrahedron);
       }
@@ -402,7 +403,7 @@ class AbaqusReader {
   std::optional<std::string_view> line_;
   MeshEntities mesh_;
   NumberIndex index_;
-  std::unordered_map<std::int64_t, Element> elements_;
+  std::unordered_map<std::int64_t, AbaqusElement> elements_;
   std::vector<std::int64_t> element_numbers_;
   std::map<std::string, std::vector<std::int64_t>> element_sets_;
   std::map<std::string, std::string> spelling_;  ///< by the name in lower case

@@ -12,7 +12,7 @@
 namespace palpate::mesher {
 namespace {
 
-struct Element {
+struct FebioElement {
   std::vector<std::int32_t> nodes;
   std::int32_t tetrahedron = -1;  ///< index into MeshEntities::tetrahedra
 };
@@ -134,7 +134,7 @@ class FebioReader {
     const std::int32_t region = is_solid ? mesh_.region(region_of(root, section)) : 0;
     for (const pugi::xml_node node : section.children()) {
       const std::int64_t number = id_of(node);
-      Element element{node_list(node), -1};
+      FebioElement element{node_list(node), -1};
       if (is_tetrahedron) {
         element.tetrahedron = static_cast<std::int32_t>(mesh_.tetrahedra.size());
         add_tetrahedron(node, number, element.nodes, is_quadratic, region);
@@ -195,7 +195,7 @@ class FebioReader {
   XmlFile xml_;
   MeshEntities mesh_;
   NumberIndex index_;
-  std::unordered_map<std::int64_t, Element> elements_;
+  std::unordered_map<std::int64_t, FebioElement> elements_;
 };
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Each rule at its ends, and whose fault a broken one is.
 #include "format/checks.hpp"
+#include "format/numbers.hpp"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +16,6 @@ namespace {
 using samples::expect_refusal;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSmallest = std::numeric_limits<double>::denorm_min();
 constexpr double kLargest = std::numeric_limits<double>::max();
 

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
+
+#include "format/numbers.hpp"
+
 namespace palpate {
 namespace {
 
@@ -20,6 +24,16 @@ TEST(Vec3, MultipliesByTheRightHandRule) {
   EXPECT_NEAR(dot(cross(a, b), a), 0, 1e-15);
   EXPECT_NEAR(dot(cross(a, b), b), 0, 1e-15);
   EXPECT_EQ(norm({2, 3, 6}), 7);
+}
+
+TEST(Vec3, IsFiniteInEveryComponent) {
+  EXPECT_TRUE(is_finite({1e300, -1, 0}));
+  for (std::size_t i = 0; i < 3; ++i)
+    for (const double bad : {kInfinity, -kInfinity, kUnknown}) {
+      Vec3 a{1, 2, 3};
+      a[i] = bad;
+      EXPECT_FALSE(is_finite(a));
+    }
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "fitting/certificate/certify.hpp"
+#include "format/numbers.hpp"
 #include "runtime/palpate.h"
 #include "runtime/search.hpp"
 #include "tests/support/bodies.hpp"
@@ -178,7 +179,6 @@ void pass_through(WatchedContact& contact, const Library& library, Random& rando
 /// Presses, and in between gives what is no position, or one out of this world.
 void break_input(WatchedContact& contact, const Library& library, Random& random, int steps) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   constexpr double kHuge = std::numeric_limits<double>::max();
   const std::array<double, 8> odd{kNan,   kInfinity, -kInfinity, kHuge,
                                   -kHuge, 1e150,     5e-324,     std::nextafter(0.0, -1.0)};

@@ -5,7 +5,7 @@
 
 #include "runtime/handles.hpp"
 #include "runtime/status.hpp"
-#include "tests/support/bodies.hpp"
+#include "tests/unit/runtime/loop_rig.hpp"
 
 namespace palpate::test {
 namespace {
@@ -13,12 +13,6 @@ namespace {
 using runtime::ContactState;
 using runtime::LockstepSearch;
 namespace step_status = runtime::step_status;
-
-const palpate_library& plate_body() {
-  static const palpate_library body(
-      plate(8, 0.08, [](const Vec3&) { return wall_response(170, 120); }));
-  return body;
-}
 
 TEST(LockstepSearch, DeliversWithTheNextRunAndNotBefore) {
   // The first run is in step 0 and arrives in step 10; until then there is nothing to touch. In

@@ -41,10 +41,6 @@ double coupling_weight(const CouplingCurve& coupling, double z) {
   return static_cast<double>(coupling.base) + curve_at(coupling.curve, z).force;
 }
 
-bool finite(const Vec3& v) {
-  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-
 }  // namespace
 
 double model_energy(const Library& library, const runtime::ContactObservation& model,
@@ -80,11 +76,11 @@ std::uint32_t WatchedContact::step(const Vec3& x) {
   slides += status & PALPATE_SLIDING ? 1 : 0;
   limited += status & PALPATE_ENERGY_LIMITED ? 1 : 0;
   force_limited += status & PALPATE_FORCE_LIMITED ? 1 : 0;
-  always_finite = always_finite && finite(seen().force) && std::isfinite(seen().energy) &&
+  always_finite = always_finite && is_finite(seen().force) && std::isfinite(seen().energy) &&
                   std::isfinite(seen().absorbed) && std::isfinite(seen().tank);
   if (status & PALPATE_BAD_INPUT) {
     // The tip did not move as far as the body knows: what was stored is given up.
-    if (finite(x)) last_ = x;
+    if (is_finite(x)) last_ = x;
     return status;
   }
   cuts += status & PALPATE_DROPPED ? 1 : 0;

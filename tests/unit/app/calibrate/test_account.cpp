@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/calibrate/account.hpp"
+#include "format/numbers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,8 +9,6 @@
 
 namespace palpate::app {
 namespace {
-
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Exact stresses of an incompressible neo-Hookean solid, P = mu (l - l^-2).
 calibrate::HomogeneousTest uniaxial(double mu) {

@@ -15,7 +15,7 @@ compare::Comparison comparison(double scatter) {
     for (int i = 0; i <= 20; ++i) {
       curve.displacement.push_back(1e-4 * i);
       curve.force.push_back(k * 1e-4 * i);
-      curve.uncertainty.push_back(compare::kUnknown);
+      curve.uncertainty.push_back(kUnknown);
       curve.scatter.push_back(scatter);
     }
     compare::ComparedSet one;
@@ -27,7 +27,7 @@ compare::Comparison comparison(double scatter) {
 }
 
 TEST(ComparisonTables, HaveARowACurveAndARowAPoint) {
-  const auto result = comparison(compare::kUnknown);
+  const auto result = comparison(kUnknown);
   const auto curves = test::csv_rows(comparison_csv(result));
   ASSERT_EQ(curves.size(), 1u);
   EXPECT_EQ(curves[0].at("vertex"), "5");
@@ -46,7 +46,7 @@ TEST(ComparisonTables, HaveARowACurveAndARowAPoint) {
 }
 
 TEST(ComparisonTables, LeaveUnknownFieldsEmpty) {
-  const auto unknown = test::csv_rows(comparison_csv(comparison(compare::kUnknown)))[0];
+  const auto unknown = test::csv_rows(comparison_csv(comparison(kUnknown)))[0];
   EXPECT_EQ(unknown.at("scatter_N"), "");
   EXPECT_EQ(unknown.at("within_uncertainty_fraction"), "");
   const auto known = test::csv_rows(comparison_csv(comparison(0.003)))[0];
@@ -54,7 +54,7 @@ TEST(ComparisonTables, LeaveUnknownFieldsEmpty) {
 }
 
 TEST(ComparisonJson, HasWhatTheTablesHave) {
-  const auto result = comparison(compare::kUnknown);
+  const auto result = comparison(kUnknown);
   const auto json = comparison_json(result, {});
   EXPECT_EQ(json.at("artifact"), "palpate.comparison");
   EXPECT_EQ(json.at("model"), "model");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/inspect/summary.hpp"
+#include "format/numbers.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -38,7 +39,6 @@ TEST(Inspect, GivesTheVerdictOfEachDevice) {
 
 TEST(Inspect, CallsAnInfiniteBoundNoBound) {
   Library library = samples::library(4);
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   library.certificate.slip = kInfinity;
   library.certificate.devices[0].lowest_rate = kInfinity;
   const auto summary = summary_of(library);

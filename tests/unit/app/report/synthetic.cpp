@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <utility>
 
 #include "format/edge.hpp"
+#include "format/numbers.hpp"
 #include "format/to_index.hpp"
 #include "runtime/palpate.h"
 
@@ -270,7 +270,6 @@ void make_certificate(Library& library) {
     c.triangles.push_back(t);
   }
   c.limited_by = "sup g' at the deepest depth, and the stiffness changing along the surface";
-  constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   for (const auto& [name, damping] :
        {std::pair{"omega.3", 1.9}, std::pair{"Touch X", 0.6}, std::pair{"unmeasured", kUnknown}}) {
     c.devices.push_back({name, damping, 2 * std::max(c.stick, c.slip) / damping, 2000 * damping / 3,

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "app/report/report.hpp"
+#include "format/numbers.hpp"
 #include "tests/unit/app/report/synthetic.hpp"
 
 namespace {
@@ -171,11 +171,10 @@ int main(int argc, char** argv) {
 
   // A rim too sharp for the slide to be bounded: on one triangle, and so for the body.
   auto& certificate = all.library.certificate;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  certificate.slip = certificate.triangles[0].slip = kInfinity;
+  certificate.slip = certificate.triangles[0].slip = palpate::kInfinity;
   certificate.worst_triangle = 0;
   for (auto& device : certificate.devices) {
-    if (!std::isnan(device.damping)) device.lowest_rate = kInfinity;
+    if (!std::isnan(device.damping)) device.lowest_rate = palpate::kInfinity;
   }
   palpate::write_report(input, folder / "unbounded.html");
 
