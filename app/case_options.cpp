@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "app/console.hpp"
+#include "app/interruption.hpp"
 #include "app/pipeline/json_sink.hpp"
 #include "app/pipeline/text_sink.hpp"
 
@@ -36,8 +37,8 @@ std::shared_ptr<CaseOptions> add_stage_options(CLI::App& command, ThreadsOption 
 }
 
 EventSink event_sink(const CaseOptions& options) {
-  if (options.json) return JsonSink(print_line);
-  return TextSink(standard_output());
+  if (options.json) return with_interruption_note(JsonSink(print_line));
+  return with_interruption_note(TextSink(console()));
 }
 
 Workspace open_workspace(const CaseOptions& options) {

@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct Options {
+struct CalibrateOptions {
   std::string fit_file, out;
 };
 
@@ -33,7 +33,7 @@ Json inputs_of(const std::vector<fs::path>& files) {
   return inputs;
 }
 
-int calibrate_tests(const Options& options) {
+int calibrate_tests(const CalibrateOptions& options) {
   const FitFile file = read_fit_file(options.fit_file);
   const calibrate::HomogeneousFit fit = calibrate::fit_homogeneous(file.tests, file.settings);
   say("calibrate: {} on {} tests of {}", file.settings.law, file.tests.size(), file.name);
@@ -219,7 +219,7 @@ void add_calibrate_command(CLI::App& root, Action& action) {
                                             "Identifies constants from homogeneous tests: "
                                             "uniaxial, equibiaxial, pure shear, simple shear");
   tests->footer("Example: palpate calibrate tests data/measured/treloar-1944/ogden.toml");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CalibrateOptions>();
   tests->add_option("FIT", options->fit_file, "Fit file (TOML), see docs/measured.md")->required();
   tests->add_option("--out", options->out, "Folder for calibration.json (default: print only)");
   add_body_part(*command, action);

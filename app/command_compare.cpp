@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct CompareOptions {
   std::string reference, model, reference_body, model_body, out;
   compare::CompareSettings settings;
   double jnd_floor_mn = 5, site_tolerance_mm = 2;
@@ -86,7 +86,7 @@ void print(const compare::Comparison& comparison) {
   }
 }
 
-int compare_sets(Options options) {
+int compare_sets(CompareOptions options) {
   options.settings.jnd_floor = 1e-3 * options.jnd_floor_mn;
   options.settings.site_tolerance = 1e-3 * options.site_tolerance_mm;
   for (const double depth : options.depths_mm) options.settings.depths.push_back(1e-3 * depth);
@@ -107,7 +107,7 @@ int compare_sets(Options options) {
   return kExitDone;
 }
 
-int compare_with_fem(Options options) {
+int compare_with_fem(CompareOptions options) {
   options.fem.out = options.out;
   options.fidelity.floor = 1e-3 * options.floor_mn;
   for (const std::string& file : options.libraries) options.fidelity.libraries.emplace_back(file);
@@ -115,7 +115,7 @@ int compare_with_fem(Options options) {
   return complete ? kExitDone : kExitSomeSitesFailed;
 }
 
-void add_fem_options(CLI::App& command, Options& options, CLI::Option* sets) {
+void add_fem_options(CLI::App& command, CompareOptions& options, CLI::Option* sets) {
   CLI::Option* fem =
       command.add_option("--fem", options.fem.case_file,
                          "Case whose library is compared with direct solutions at hold-out points");
@@ -157,7 +157,7 @@ void add_compare_command(CLI::App& root, Action& action) {
       "Examples:\n"
       "  palpate compare out/pad-measured/curves.h5 out/pad/curves.h5 --out out/pad\n"
       "  palpate compare --fem data/cases/liver.toml --out out/liver");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<CompareOptions>();
   CLI::Option* reference = command->add_option("REFERENCE", options->reference,
                                                "curves.h5 or library.h5 taken as the reference");
   CLI::Option* model = command->add_option("MODEL", options->model,

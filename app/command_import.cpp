@@ -12,11 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ImportOptions {
   std::string sidecar, body, out;
 };
 
-int import_records(const Options& options) {
+int import_records(const ImportOptions& options) {
   const Import result = import_measurement(options.sidecar, options.body);
   const fs::path out = options.out;
   prepare_output(out);
@@ -51,7 +51,7 @@ void add_import_command(CLI::App& root, Action& action) {
   command->footer(
       "Example: palpate import data/measured/pad/presses.toml --body out/pad/body.h5 "
       "--out out/pad-measured");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ImportOptions>();
   command->add_option("SIDECAR", options->sidecar, "Sidecar (TOML), see docs/measured.md")
       ->required();
   command->add_option("--body", options->body, "body.h5 that contains the sites");

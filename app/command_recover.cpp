@@ -13,11 +13,11 @@ namespace palpate::app {
 
 namespace {
 
-struct Options {
+struct RecoverOptions {
   std::string journal, out;
 };
 
-int recover_session(const Options& options) {
+int recover_session(const RecoverOptions& options) {
   const std::filesystem::path journal = options.journal;
   std::filesystem::path out = options.out;
   if (out.empty()) {
@@ -38,7 +38,7 @@ void add_recover_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
       "recover", "Writes the recording of an interrupted session from its journal");
   command->footer("Example: palpate recover recording.journal");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RecoverOptions>();
   command->add_option("JOURNAL", options->journal, "Journal of run or simulate (recording.journal)")
       ->required();
   command->add_option("--out", options->out, "Recording (default: beside the journal)");

@@ -13,11 +13,11 @@
 namespace palpate::app {
 namespace {
 
-struct Options {
+struct ReplayOptions {
   std::string recording, library, out;
 };
 
-void require_library_of(const RecordingHeading& recording, const Options& options) {
+void require_library_of(const RecordingHeading& recording, const ReplayOptions& options) {
   if (recording.library_sha256.empty()) return;
   if (sha256_of_file(options.library) == recording.library_sha256) return;
   throw Error(ErrorKind::Configuration, options.library, "it is not the library of the recording",
@@ -26,7 +26,7 @@ void require_library_of(const RecordingHeading& recording, const Options& option
 
 /// Opens the recording of the repeated session, if one is asked for.
 void open_writer(std::optional<RecordingWriter>& writer, const RecordingReader& recorded,
-                 const Options& options) {
+                 const ReplayOptions& options) {
   if (options.out.empty()) return;
   RecordingHeading heading = recorded.heading();
   heading.provenance.steps.push_back(
@@ -35,7 +35,7 @@ void open_writer(std::optional<RecordingWriter>& writer, const RecordingReader& 
 }
 
 /// Streams the recording. With --out, writes every step even after a difference.
-int replay_recording(const Options& options) {
+int replay_recording(const ReplayOptions& options) {
   RecordingReader recorded(options.recording);
   require_library_of(recorded.heading(), options);
   const palpate_library body(read_library(options.library));
@@ -67,7 +67,7 @@ void add_replay_command(CLI::App& root, Action& action) {
       "replay", "Repeats a recorded motion and checks that the forces are identical to the bit");
   command->footer(
       "Example: palpate replay out/cylinder/recording.h5 --library out/cylinder/library.h5");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<ReplayOptions>();
   command->add_option("RECORDING", options->recording, "Recording of a session (recording.h5)")
       ->required();
   command->add_option("--library", options->library, "Library of the session (library.h5)")

@@ -12,11 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct RescaleOptions {
   std::string simulated, measured, out;
 };
 
-int rescale_curves(const Options& options) {
+int rescale_curves(const RescaleOptions& options) {
   const Curves simulated = read_curves(options.simulated);
   compare::Rescaling result = compare::rescale(simulated, read_curves(options.measured), {});
   say("rescale: measured = {:.4f} +- {:.4f} of simulated, from {} sites", result.factor,
@@ -45,7 +45,7 @@ void add_rescale_command(CLI::App& root, Action& action) {
       root.add_subcommand("rescale", "Scales simulated curves to measured forces -> curves.h5");
   command->footer(
       "Example: palpate rescale out/pad/curves.h5 out/pad-measured/curves.h5 --out out/scaled");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<RescaleOptions>();
   command->add_option("SIMULATED", options->simulated, "curves.h5 of `palpate precompute`")
       ->required();
   command->add_option("MEASURED", options->measured, "curves.h5 of `palpate import`")->required();

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/console.hpp"
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <cstdio>
+#include <cstdlib>
 
 #include "app/pipeline/events.hpp"
 
@@ -13,12 +18,52 @@ namespace {
 
 constexpr double kSecondsBetweenLines = 10;
 constexpr double kSecondsBetweenBars = 0.2;
+constexpr int kBarWidth = 30, kSmallestBar = 10;  // columns
 
-std::string bar(double fraction) {
-  constexpr int width = 30;
+constexpr std::string_view kRed = "\x1b[1;31m", kYellow = "\x1b[1;33m", kPlain = "\x1b[0m";
+
+/// errno of the first write to the standard output that failed.
+int output_error = 0;
+
+void write_to(FILE* stream, std::string_view text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stream) == text.size();
+  if ((std::fflush(stream) != 0 || !written) && stream == stdout && output_error == 0)
+    output_error = errno;
+}
+
+bool colours_wanted() {
+  const char* refused = std::getenv("NO_COLOR");
+  const char* terminal = std::getenv("TERM");
+  return (refused == nullptr || *refused == '\0') && terminal != nullptr &&
+         std::string_view(terminal) != "dumb";
+}
+
+int columns_of(int descriptor) {
+  winsize size{};
+  return ioctl(descriptor, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+}
+
+TextOutput output_to(FILE* stream, int descriptor) {
+  TextOutput output;
+  output.write = [stream](std::string_view text) { write_to(stream, text); };
+  output.terminal = isatty(descriptor) != 0;
+  output.columns = output.terminal ? columns_of(descriptor) : 0;
+  output.colour = output.terminal && colours_wanted();
+  return output;
+}
+
+std::string bar(double fraction, int width) {
   const int filled = static_cast<int>(std::lround(fraction * width));
   return std::string(static_cast<std::size_t>(filled), '#') +
          std::string(static_cast<std::size_t>(width - filled), '.');
+}
+
+std::string marked_line(std::string_view mark, std::string_view colour, std::string_view text,
+                        bool coloured) {
+  std::string line = coloured ? fmt::format("{}{}:{} {}", colour, mark, kPlain, text)
+                              : fmt::format("{}: {}", mark, text);
+  std::replace(line.begin(), line.end(), '\n', ' ');
+  return line;
 }
 
 }  // namespace
@@ -27,16 +72,42 @@ void TextOutput::line(std::string_view text) const {
   write(std::string(text) + '\n');
 }
 
-TextOutput standard_output() {
-  return {[](std::string_view text) {
-            std::fwrite(text.data(), 1, text.size(), stdout);
-            std::fflush(stdout);
-          },
-          isatty(STDOUT_FILENO) != 0};
+Console& console() {
+  static Console here{output_to(stdout, STDOUT_FILENO), output_to(stderr, STDERR_FILENO)};
+  return here;
 }
 
 void print_line(std::string_view line) {
-  standard_output().line(line);
+  console().out.line(line);
+}
+
+std::string error_line(std::string_view text, bool colour) {
+  return marked_line("error", kRed, text, colour);
+}
+
+std::string warning_line(std::string_view text, bool colour) {
+  return marked_line("warning", kYellow, text, colour);
+}
+
+void warn(std::string_view text) {
+  console().err.line(warning_line(text, console().err.colour));
+}
+
+void ignore_closed_pipes() {
+  std::signal(SIGPIPE, SIG_IGN);
+}
+
+bool all_printed() {
+  return output_error == 0 || output_error == EPIPE;
+}
+
+std::string bar_line(double fraction, std::string_view text, int columns) {
+  constexpr int frame = 3;  // brackets and a blank
+  const int length = static_cast<int>(text.size());
+  const int room = columns > 0 ? columns - 1 - length - frame : kBarWidth;  // the last column wraps
+  if (room >= kSmallestBar)
+    return fmt::format("[{}] {}", bar(fraction, std::min(room, kBarWidth)), text);
+  return std::string(text.substr(0, static_cast<std::size_t>(std::max(1, columns - 1))));
 }
 
 std::string duration_text(double seconds) {
@@ -64,7 +135,14 @@ void ProgressDisplay::show(const Progress& p) {
       fmt::format("{}: {} of {} sites, {} incomplete, {}", label_, p.done, p.total, p.failed, time);
   if (!output_.terminal) return output_.line(text);
   const double fraction = p.total > 0 ? done / total : 1;
-  output_.write(fmt::format("\r[{}] {}\x1b[K{}", bar(fraction), text, finished ? "\n" : ""));
+  output_.write(
+      fmt::format("\r{}\x1b[K{}", bar_line(fraction, text, output_.columns), finished ? "\n" : ""));
+  bar_open_ = !finished;
+}
+
+void ProgressDisplay::interrupt() {
+  if (bar_open_) output_.write("\n");
+  bar_open_ = false;
 }
 
 }  // namespace palpate::app

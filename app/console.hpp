@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Text for people, on the standard output. The standard error is for the one line of an error.
+// Text for people. Results go to the standard output, errors and warnings to the standard error.
 #pragma once
 
 #include <fmt/format.h>
@@ -17,11 +17,28 @@ struct Progress;
 struct TextOutput {
   std::function<void(std::string_view)> write;  ///< text as it is; must flush
   bool terminal = false;                        ///< understands carriage return and erasing
+  int columns = 0;                              ///< width of the terminal; 0: unknown
+  bool colour = false;                          ///< understands the colours of ECMA-48
 
   void line(std::string_view text) const;
 };
 
-TextOutput standard_output();
+/// How much the stages print.
+enum class Verbosity {
+  Quiet,    ///< warnings and errors
+  Normal,   ///< also results and progress
+  Verbose,  ///< also every site
+};
+
+/// The outputs of the process.
+struct Console {
+  TextOutput out, err;
+  Verbosity verbosity = Verbosity::Normal;
+};
+
+/// The console of this process. Colours need a terminal, no NO_COLOR in the environment
+/// (no-color.org), and a TERM other than "dumb".
+Console& console();
 
 void print_line(std::string_view line);  ///< on the standard output
 
@@ -30,7 +47,25 @@ void say(fmt::format_string<Args...> format, Args&&... args) {
   print_line(fmt::format(format, std::forward<Args>(args)...));
 }
 
+/// "error: <text>" or "warning: <text>" on one line, the first word in colour.
+std::string error_line(std::string_view text, bool colour);
+std::string warning_line(std::string_view text, bool colour);
+
+void warn(std::string_view text);  ///< on the standard error
+
+/// Goes on when the reader of the standard output ends early, as `head` does: what is printed
+/// after that is lost, and nothing else.
+void ignore_closed_pipes();
+
+/// Whether everything that was printed on the standard output arrived. A reader that ended early
+/// has what it wanted.
+bool all_printed();
+
 std::string duration_text(double seconds);  ///< "42 s", "3 min 07 s", "2 h 15 min"
+
+/// The text after a bar, together no wider than `columns` (0: any width): the bar shrinks and
+/// vanishes, then the text is cut.
+std::string bar_line(double fraction, std::string_view text, int columns);
 
 /// Progress of a campaign: a bar on a terminal, a line every few seconds otherwise.
 /// Not thread-safe.
@@ -41,6 +76,8 @@ class ProgressDisplay {
   /// The estimate of the remaining time counts running sites as half done, so that it starts with
   /// the first batch, and leaves out the sites that an earlier run computed.
   void show(const Progress& progress);
+  /// Ends the line of a bar, before other text is printed.
+  void interrupt();
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -49,6 +86,7 @@ class ProgressDisplay {
   TextOutput output_;
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_ = start_;
+  bool bar_open_ = false;
 };
 
 }  // namespace palpate::app

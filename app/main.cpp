@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The `palpate` command.
 #include <CLI/CLI.hpp>
-#include <algorithm>
+#include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "app/blas_kernel.hpp"
-#include "app/case/nearest.hpp"
 #include "app/command.hpp"
+#include "app/command_line/words.hpp"
+#include "app/console.hpp"
 #include "format/error.hpp"
 #include "format/provenance.hpp"
 
 namespace palpate::app {
 namespace {
 
-/// Prints the error on one line.
-int fail(std::string text, int exit_code) {
-  std::replace(text.begin(), text.end(), '\n', ' ');
+int fail(std::string_view text, int exit_code) {
   std::fflush(stdout);
-  std::fprintf(stderr, "palpate: %s\n", text.c_str());
+  console().err.line(error_line(text, console().err.colour));
   return exit_code;
 }
 
@@ -58,38 +58,52 @@ void add_commands(CLI::App& root, Action& action) {
   add_recover_command(root, action);
   add_replay_command(root, action);
   add_experiment_command(root, action);
+  add_manual_command(root, action);
+  add_completion_command(root, action);
 }
 
-/// The message for an unknown subcommand: CLI11 would only say that one is missing.
-std::string unknown_subcommand(const CLI::App& root, int count, char** arguments) {
-  if (count < 2 || arguments[1][0] == '-') return {};
-  std::vector<std::string> names;
-  for (const CLI::App* command : root.get_subcommands({})) names.push_back(command->get_name());
-  const std::string given = arguments[1];
-  if (std::find(names.begin(), names.end(), given) != names.end()) return {};
-  return "unknown subcommand '" + given + "'; the nearest is '" +
-         std::string(nearest(given, {names.begin(), names.end()})) + "'";
+void add_common_options(CLI::App& root) {
+  root.set_version_flag("-V,--version", creator_text());
+  CLI::Option* quiet = root.add_flag_function(
+      "-q,--quiet", [](std::int64_t) { console().verbosity = Verbosity::Quiet; },
+      "Stages print warnings and errors only");
+  root.add_flag_function(
+          "-v,--verbose", [](std::int64_t) { console().verbosity = Verbosity::Verbose; },
+          "Stages print every site")
+      ->excludes(quiet);
+}
+
+int finish(int exit_code) {
+  if (all_printed()) return exit_code;
+  return fail("standard output: not everything could be written; free some space",
+              static_cast<int>(ErrorKind::Internal));
 }
 
 int parse_and_run(int count, char** arguments) {
-  CLI::App root{"palpate: precomputes the indentation of a soft body and renders it in real time"};
+  CLI::App root{"palpate: precomputes the indentation of a soft body and renders it in real time",
+                "palpate"};
   root.footer(
       "Exit codes: 0 success, 1 internal error, 2 usage or configuration, 3 unusable geometry,\n"
       "4 finished, but some sites are incomplete.\n"
+      "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose stand before or "
+      "after "
+      "it.\n"
       "Example: palpate build data/cases/liver.toml");
-  root.set_version_flag("--version", creator_text());
   root.require_subcommand(1);
+  root.fallthrough();  // inherited by the subcommands
   Action action;
+  add_common_options(root);
   add_commands(root, action);
-  const std::string unknown = unknown_subcommand(root, count, arguments);
+  const std::vector<std::string> words = help_as_option({arguments + 1, arguments + count});
+  const std::string unknown = unknown_word(root, words);
   if (!unknown.empty()) return fail("command line: " + unknown, kExitUsage);
   try {
-    root.parse(count, arguments);
+    root.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 starts at the back
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return root.exit(error);
     return fail(std::string("command line: ") + error.what() + "; see palpate --help", kExitUsage);
   }
-  return run(action);
+  return finish(run(action));
 }
 
 }  // namespace
@@ -98,9 +112,10 @@ int parse_and_run(int count, char** arguments) {
 int main(int count, char** arguments) {
   try {
     palpate::app::ensure_blas_kernel(arguments);
+    palpate::app::ignore_closed_pipes();
     return palpate::app::parse_and_run(count, arguments);
   } catch (...) {  // out of memory for the message itself
-    std::fputs("palpate: internal error: out of memory\n", stderr);
+    std::fputs("error: out of memory\n", stderr);
     return static_cast<int>(palpate::ErrorKind::Internal);
   }
 }

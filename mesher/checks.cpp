@@ -179,10 +179,9 @@ void exclude_thin_sites(Body& body, const Settings& settings, const Surface& bou
                             millimetres(thickness[thinnest]), " under every site"));
     return;
   }
-  note(settings.log,
-       text("WARNING: ", thin.size(), " of ", counted(sites.size(), "site"),
-            thin.size() == 1 ? " is" : " are", " too thin for the depth of ",
-            millimetres(settings.depth), " and ",
+  warn(settings.log,
+       text(thin.size(), " of ", counted(sites.size(), "site"), thin.size() == 1 ? " is" : " are",
+            " too thin for the depth of ", millimetres(settings.depth), " and ",
             thin.size() == 1 ? "becomes a hole" : "become holes", ": the thickness is ",
             at_the_thinnest, "; a smaller depth recovers them"));
 }

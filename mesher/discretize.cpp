@@ -46,8 +46,8 @@ Discretization by_remeshing(const Settings& settings, const Surface& skin,
   const Surface shells = join_shells(settings, result.skin.boundary, remeshed);
   const Filling filling = fill(shells, settings.interior_coarsening * settings.element_size, where);
   if (filling.cut_short) {
-    note(settings.log,
-         "WARNING: the refinement reached its limit of nodes and was stopped; see the quality");
+    warn(settings.log,
+         "the refinement reached its limit of nodes and was stopped; see the quality");
   }
   result.volume = with_regions(settings, filling, remeshed);
   check_elements(result.volume, where);

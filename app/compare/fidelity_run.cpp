@@ -88,13 +88,13 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
       {direct_key(space, settings), static_cast<std::int64_t>(settings.points.size())});
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) { journal.append(site); };
-  ProgressDisplay display("direct", standard_output());
+  ProgressDisplay display("direct", console().out);
   settings.progress = [&](const fem::CampaignProgress& p) {
     display.show({p.done, p.failed, p.running, p.total, p.known});
   };
   fem::CampaignReport report;
   Curves direct = fem::run_campaign(body, settings, report);
-  say("compare: {} direct presses, {} of them from an earlier run, in {} ({} of processor time)",
+  say("compare: {} direct presses, {} of them from an earlier run, in {} ({} CPU time)",
       settings.points.size(), settings.known.size(), duration_text(report.seconds),
       duration_text(report.cpu_seconds));
   return direct;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "app/case/reader.hpp"
 #include "format/sha256.hpp"
 #include "palpate_version.hpp"
 
@@ -34,6 +35,13 @@ ProvenanceStep make_stage_step(const Workspace& space, Stage stage,
   facts.emplace_back(kSettingsFact, stage_case(space, stage));
   return make_provenance_step(stage_name(stage), resolved_toml(space.c), stage_inputs(space, stage),
                               std::move(facts));
+}
+
+std::string case_name(const Provenance& provenance) {
+  for (const ProvenanceStep& step : provenance.steps)
+    if (step.stage == stage_name(Stage::Mesh))
+      return parse_toml(step.resolved_case, "provenance")["name"].value_or(std::string());
+  return {};
 }
 
 std::string stale_reason(const Workspace& space, Stage stage, const Provenance& provenance) {

@@ -17,4 +17,7 @@ ProvenanceStep make_stage_step(const Workspace& space, Stage stage,
 /// version of palpate, the settings and the input files that it would have now.
 std::string stale_reason(const Workspace& space, Stage stage, const Provenance& provenance);
 
+/// Name of the case that a body was made from; "" where its provenance does not say.
+std::string case_name(const Provenance& provenance);
+
 }  // namespace palpate::app

@@ -21,6 +21,7 @@
 #include "format/body.hpp"
 #include "format/error.hpp"
 #include "format/library.hpp"
+#include "mesher/geometry/text.hpp"
 
 namespace palpate::app {
 namespace {
@@ -43,7 +44,7 @@ Certified certified(const Certificate& certificate, const std::filesystem::path&
 template <class Read>
 std::string reason_to_make(const Workspace& space, Stage stage, const std::filesystem::path& path,
                            Read read) {
-  if (!std::filesystem::exists(path)) return "it does not exist";
+  if (!std::filesystem::exists(path)) return "missing";
   try {
     return stale_reason(space, stage, read(path).provenance);
   } catch (const Error& error) {
@@ -69,6 +70,43 @@ void replace_certify_step(Library& library, ProvenanceStep step) {
   library.provenance.steps.push_back(std::move(step));
 }
 
+/// The regions of a volume mesh are known only now.
+void check_regions(const Workspace& space, const Body& body) {
+  const auto& materials = space.c.materials;
+  for (const std::string& region : body.region_names) {
+    const bool is_described = std::any_of(materials.begin(), materials.end(),
+                                          [&](const auto& m) { return m.region == region; });
+    if (is_described) continue;
+    refuse("case " + space.c.name,
+           "region '" + region + "' of " + space.c.mesh.source().string() + " has no material",
+           "add [[material]] with region = \"" + region +
+               "\", or give it another region by "
+               "[[mesh_region]]");
+  }
+}
+
+/// Two cases that share a folder would replace each other's body, and lose its campaign.
+void refuse_body_of_another_case(const Workspace& space) {
+  if (!std::filesystem::exists(space.body())) return;
+  std::string other;
+  try {
+    other = case_name(read_body(space.body()).provenance);
+  } catch (const std::exception&) {
+    return;  // damaged, or of another version: to be replaced
+  }
+  if (other.empty() || other == space.c.name) return;
+  refuse(space.out.string(),
+         "holds the artifacts of case '" + other + "', not of '" + space.c.name + "'",
+         "choose another folder with --out, or remove this one");
+}
+
+/// A line of the mesher's log as an event.
+void emit_log(const std::string& stage, std::string_view text, const EventSink& emit) {
+  if (!text.starts_with(mesher::kWarningMark)) return emit(LogLine{stage, std::string(text)});
+  text.remove_prefix(mesher::kWarningMark.size());
+  emit(Warning{stage, std::string(text)});
+}
+
 }  // namespace
 
 SiteCounts count_sites(const Curves& curves) {
@@ -89,25 +127,11 @@ SiteCounts count_sites(const Curves& curves) {
   return counts;
 }
 
-/// The regions of a volume mesh are known only now.
-void check_regions(const Workspace& space, const Body& body) {
-  const auto& materials = space.c.materials;
-  for (const std::string& region : body.region_names) {
-    const bool is_described = std::any_of(materials.begin(), materials.end(),
-                                          [&](const auto& m) { return m.region == region; });
-    if (is_described) continue;
-    refuse("case " + space.c.name,
-           "region '" + region + "' of " + space.c.mesh.source().string() + " has no material",
-           "add [[material]] with region = \"" + region +
-               "\", or give it another region by "
-               "[[mesh_region]]");
-  }
-}
-
 void run_mesh(const Workspace& space, const EventSink& emit) {
   prepare_output(space.out);
+  refuse_body_of_another_case(space);
   mesher::Settings settings = mesh_settings(space);
-  settings.log = [&](std::string_view text) { emit(LogLine{"mesh", std::string(text)}); };
+  settings.log = [&](std::string_view text) { emit_log("mesh", text, emit); };
   Body body = mesh_surface(settings, space.out);
   check_regions(space, body);
   body.provenance = {};

@@ -12,6 +12,18 @@ std::string bound_text(double value) {
   return std::isfinite(value) ? fmt::format("{:.1f} N/m", value) : "no bound";
 }
 
+std::string_view words(SiteStatus status) {
+  switch (status) {
+    case SiteStatus::Complete:
+      return "complete";
+    case SiteStatus::Partial:
+      return "stopped early";
+    case SiteStatus::Failed:
+      return "failed";
+  }
+  return "";
+}
+
 std::string rounded_up(double bound) {
   return std::isfinite(bound) ? lipschitz_bound_text(bound) : "no bound";
 }
@@ -23,7 +35,7 @@ void TextSink::operator()(const Event& event) {
 }
 
 void TextSink::print(const StageStarted& e) {
-  line("{}: making {}: {}", e.stage, e.file.string(), e.reason);
+  line("{}: creating {} ({})", e.stage, e.file.string(), e.reason);
 }
 
 void TextSink::print(const StageUpToDate& e) {
@@ -34,8 +46,13 @@ void TextSink::print(const LogLine& e) {
   line("  {}", e.text);
 }
 
+void TextSink::warning(std::string_view text) {
+  progress_.interrupt();
+  console_.err.line(warning_line(text, console_.err.colour));
+}
+
 void TextSink::print(const Warning& e) {
-  line("  WARNING: {}", e.text);
+  warning(e.text);
 }
 
 void TextSink::print(const MeshFinished& e) {
@@ -44,7 +61,7 @@ void TextSink::print(const MeshFinished& e) {
 }
 
 void TextSink::print(const CampaignStarted& e) {
-  progress_ = ProgressDisplay("precompute", output_);  // its clock starts now
+  progress_ = ProgressDisplay("precompute", console_.out);  // its clock starts now
   line("  BLAS kernel: {}", e.blas_kernel);
   if (e.moved_aside)
     line("  {} belongs to another campaign: moved to {}.old", e.journal.string(),
@@ -59,8 +76,14 @@ void TextSink::print(const CampaignStarted& e) {
         e.dropped_bytes);
 }
 
+void TextSink::print(const SiteFinished& e) {
+  if (console_.verbosity == Verbosity::Verbose)
+    line("  site {}: {}, {:.1f} s CPU time{}", e.vertex, words(e.status), e.cpu_seconds,
+         e.reason.empty() ? "" : ": " + e.reason);
+}
+
 void TextSink::print(const Progress& e) {
-  progress_.show(e);
+  if (console_.verbosity != Verbosity::Quiet) progress_.show(e);
 }
 
 void TextSink::print(const SamplingRound& e) {
@@ -71,7 +94,8 @@ void TextSink::print(const SamplingRound& e) {
 }
 
 void TextSink::print(const SamplingFinished& e) {
-  line("  {}{}", e.tolerance_met ? "" : "WARNING: ", e.reason);
+  if (e.tolerance_met) return line("  {}", e.reason);
+  warning(e.reason);
 }
 
 void TextSink::print(const CampaignFinished& e) {
@@ -81,8 +105,7 @@ void TextSink::print(const CampaignFinished& e) {
        duration_text(e.cpu_seconds), e.file.string());
   for (std::size_t i = 0; i < std::min(kMostListed, e.incomplete.size()); ++i) {
     const SiteFinished& site = e.incomplete[i];
-    line("  site {} {}: {}", site.vertex,
-         site.status == SiteStatus::Failed ? "failed" : "stopped early", site.reason);
+    line("  site {} {}: {}", site.vertex, words(site.status), site.reason);
   }
   if (e.incomplete.size() > kMostListed)
     line("  and {} more: see `palpate inspect`", e.incomplete.size() - kMostListed);

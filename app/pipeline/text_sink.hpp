@@ -6,11 +6,11 @@
 
 namespace palpate::app {
 
-/// Prints events as lines of text, and progress as a bar where the output is a terminal.
-/// Not thread-safe.
+/// Prints events as lines of text, and progress as a bar where the output is a terminal; warnings
+/// go to the standard error. Not thread-safe.
 class TextSink {
  public:
-  explicit TextSink(TextOutput output) : output_(std::move(output)) {}
+  explicit TextSink(Console console) : console_(std::move(console)) {}
   void operator()(const Event& event);
 
  private:
@@ -20,7 +20,7 @@ class TextSink {
   void print(const Warning& e);
   void print(const MeshFinished& e);
   void print(const CampaignStarted& e);
-  void print(const SiteFinished&) {}  // progress and the summary are enough for a reader
+  void print(const SiteFinished& e);
   void print(const Progress& e);
   void print(const SamplingRound& e);
   void print(const SamplingFinished& e);
@@ -37,11 +37,14 @@ class TextSink {
 
   template <class... Args>
   void line(fmt::format_string<Args...> format, Args&&... args) {
-    output_.line(fmt::format(format, std::forward<Args>(args)...));
+    if (console_.verbosity == Verbosity::Quiet) return;
+    progress_.interrupt();
+    console_.out.line(fmt::format(format, std::forward<Args>(args)...));
   }
+  void warning(std::string_view text);
 
-  TextOutput output_;
-  ProgressDisplay progress_{"precompute", output_};
+  Console console_;
+  ProgressDisplay progress_{"precompute", console_.out};
 };
 
 }  // namespace palpate::app

@@ -3,6 +3,10 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
 #include <system_error>
 
 #include "format/error.hpp"
@@ -10,6 +14,25 @@
 namespace palpate::app {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+/// Endings of surfaces, volume meshes and images: what a new user gives instead of a case.
+constexpr std::array<std::string_view, 20> kBodies{
+    ".stl", ".obj", ".off",  ".ply", ".vtk", ".vtp",  ".vtu",  ".msh", ".mesh", ".inp",
+    ".feb", ".ele", ".node", ".nii", ".gz",  ".nrrd", ".nhdr", ".3mf", ".step", ".glb"};
+
+void refuse_bodies(const fs::path& case_file) {
+  std::string ending = case_file.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (std::find(kBodies.begin(), kBodies.end(), ending) == kBodies.end()) return;
+  refuse(case_file.string(), "is no case: the ending is that of a surface, mesh or image",
+         "write a case for it, as docs/your-own-organ.md shows; 'palpate init' writes one for a "
+         "surface");
+}
+
+}  // namespace
 
 fs::path Workspace::precomputed() const {
   if (shard.count == 1) return curves();
@@ -22,6 +45,7 @@ fs::path Workspace::journal() const {
 }
 
 Workspace make_workspace(const fs::path& case_file, const std::string& out, int threads) {
+  refuse_bodies(case_file);
   Workspace space;
   space.c = read_case(case_file);
   space.case_folder = case_file.parent_path();

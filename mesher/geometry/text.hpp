@@ -46,4 +46,11 @@ inline void note(const Log& log, const std::string& line) {
   if (log) log(line);
 }
 
+inline constexpr std::string_view kWarningMark = "warning: ";  ///< in front of lines of warn()
+
+/// The same for what casts doubt on the result.
+inline void warn(const Log& log, const std::string& line) {
+  note(log, text(kWarningMark, line));
+}
+
 }  // namespace palpate::mesher

@@ -42,9 +42,9 @@ void check_body_size(double raw, double unit, const std::string& where, const Lo
                         : "the body has no extent: export it again");
   }
   if (size < kSmallestUsualBody || size > kLargestUsualBody) {
-    note(log,
-         text(where, ": WARNING: the largest dimension is ", millimetres(size), " with a unit of ",
-              unit, " m, unusual for a body; '", likely_unit(raw), "' would be that of an organ"));
+    warn(log,
+         text(where, ": the largest dimension is ", millimetres(size), " with a unit of ", unit,
+              " m, unusual for a body; '", likely_unit(raw), "' would be that of an organ"));
   }
 }
 

@@ -146,7 +146,7 @@ Surface repaired(const Soup& soup, const RepairSettings& settings, const std::st
   guard_cgal(where, "mend the surface in a mesh editor",
              [&] { surface = repair(soup, settings, where, report); });
   for (const std::string& step : report.steps) note(log, text(where, ": ", step));
-  for (const std::string& warning : report.warnings) note(log, text(where, ": WARNING: ", warning));
+  for (const std::string& warning : report.warnings) warn(log, text(where, ": ", warning));
   note(log, text(where, ": repaired: area ", 1e6 * report.area_before, " to ",
                  1e6 * report.area_after, " mm^2, volume ", 1e9 * report.volume,
                  " mm^3; the surface moved by at most ", millimetres(report.moved), " at ",

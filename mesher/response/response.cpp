@@ -165,10 +165,9 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
   for (const std::int32_t v : directions.unresolved) {
     response.is_site[to_index(v)] = 0;
   }
-  note(
+  warn(
       log,
-      text("WARNING: ",
-           counted(directions.unresolved.size(), "response vertex", "response vertices"),
+      text(counted(directions.unresolved.size(), "response vertex", "response vertices"),
            " cannot be sites: no direction points into all triangles around them; the first is at ",
            millimetres(nested.response.points[to_index(directions.unresolved.front())])));
 }

@@ -59,10 +59,10 @@ class BadInput(unittest.TestCase):
     def refuse(self, code, words, *arguments, left=()):
         """Expects the exit code, the words in the message, and nothing in the folder but the files `left`."""
         result = subprocess.run([PALPATE, *map(str, arguments)], capture_output=True, text=True, check=False)
-        message = result.stderr
+        *warnings, message = result.stderr.splitlines()
         self.assertEqual(result.returncode, code, message)
-        self.assertEqual(message.count("\n"), 1, message)
-        self.assertTrue(message.startswith("palpate: "), message)
+        self.assertTrue(message.startswith("error: "), message)
+        self.assertTrue(all(line.startswith("warning: ") for line in warnings), warnings)
         self.assertIn("; ", message)  # the remedy comes after it
         for word in words:
             self.assertIn(word, message)

@@ -248,7 +248,7 @@ class Pipeline(unittest.TestCase):
         changed.write_text(CASE.replace("friction = 0.3", "friction = 0.2"), encoding="utf-8")
         out = self.run_ok("build", changed, "--out", self.out)
         self.assertEqual(out.count("up to date"), 3, out)
-        self.assertIn("certify: making", out)
+        self.assertIn("certify: creating", out)
         changed.write_text(CASE.replace('"2 mN"', '"3 mN"'), encoding="utf-8")
         out = self.run_ok("build", changed, "--out", self.out)
         self.assertEqual(out.count("up to date"), 2, out)
@@ -327,8 +327,8 @@ class Pipeline(unittest.TestCase):
         for case, warned in ((self.case, False), (changed, True)):
             result = palpate("precompute", case, "--out", other, "--shard", "1/16")
             self.assertIn(result.returncode, (0, SOME_SITES_FAILED), result.stderr)
-            self.assertEqual("body.h5 is out of date: the case has changed" in result.stdout,
-                             warned, result.stdout)
+            self.assertEqual("body.h5 is out of date: the case has changed" in result.stderr,
+                             warned, result.stderr)
 
     def test_threads_do_not_change_the_curves(self):
         other = self.root / "one-thread"

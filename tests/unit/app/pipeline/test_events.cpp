@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -15,6 +14,7 @@
 #include "app/pipeline/describe_events.hpp"
 #include "app/pipeline/json_sink.hpp"
 #include "app/pipeline/text_sink.hpp"
+#include "format/numbers.hpp"
 #include "tests/support/source_folder.hpp"
 
 namespace palpate::app {
@@ -25,14 +25,14 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using Json = nlohmann::json;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// What a text sink prints for these events on an output that is no terminal.
-std::string text_of(const std::vector<Event>& events, bool terminal = false) {
-  std::string out;
-  TextSink sink({[&](std::string_view text) { out += text; }, terminal});
+/// What a text sink prints on the standard output and the standard error, as a terminal shows them.
+std::string text_of(const std::vector<Event>& events, bool terminal = false,
+                    Verbosity verbosity = Verbosity::Normal) {
+  std::string shown;
+  const TextOutput output{[&](std::string_view text) { shown += text; }, terminal};
+  TextSink sink({output, output, verbosity});
   for (const Event& event : events) sink(event);
-  return out;
+  return shown;
 }
 
 Json json_of(const Event& event) {
@@ -75,17 +75,46 @@ StiffnessAtRate stiffness(double certifiable, double library, double enforceable
 }
 
 TEST(TextSink, PrintsTheStagesOfABuild) {
-  EXPECT_EQ(text_of({StageStarted{"mesh", "out/body.h5", "it does not exist"},
+  EXPECT_EQ(text_of({StageStarted{"mesh", "out/body.h5", "missing"},
                      LogLine{"mesh", "remeshed"}, MeshFinished{10, 20, 30, 5, "out/body.h5"},
                      StageUpToDate{"fit", "out/library.h5"}, FitFinished{4, 1, 2, "l.h5"},
                      FileWritten{"convergence", "c.csv"}, Warning{"precompute", "careful"}}),
-            "mesh: making out/body.h5: it does not exist\n"
+            "mesh: creating out/body.h5 (missing)\n"
             "  remeshed\n"
             "mesh: 10 nodes, 20 tetrahedra, 30 response triangles, 5 sites -> out/body.h5\n"
             "fit: out/library.h5 is up to date\n"
             "fit: 4 responses fitted, 1 interpolated, 2 holes -> l.h5\n"
             "convergence: c.csv\n"
-            "  WARNING: careful\n");
+            "warning: careful\n");
+}
+
+TEST(TextSink, SendsWarningsToTheStandardError) {
+  std::string out, err;
+  TextSink sink({{[&](std::string_view text) { out += text; }},
+                 {[&](std::string_view text) { err += text; }}});
+  sink(LogLine{"mesh", "remeshed"});
+  sink(Warning{"mesh", "a hole was filled"});
+  sink(SamplingFinished{false, "all points are sites"});
+  EXPECT_EQ(out, "  remeshed\n");
+  EXPECT_EQ(err, "warning: a hole was filled\nwarning: all points are sites\n");
+}
+
+TEST(TextSink, PrintsOnlyWarningsWhenQuietAndEverySiteWhenVerbose) {
+  const std::vector<Event> events{LogLine{"mesh", "remeshed"}, Warning{"mesh", "a hole was filled"},
+                                  SiteFinished{7, SiteStatus::Partial, "contact was lost", 1.5},
+                                  Progress{10, 1, 0, 10, 0}};
+  EXPECT_EQ(text_of(events, false, Verbosity::Quiet), "warning: a hole was filled\n");
+  EXPECT_EQ(text_of(events, false, Verbosity::Verbose),
+            "  remeshed\nwarning: a hole was filled\n"
+            "  site 7: stopped early, 1.5 s CPU time: contact was lost\n"
+            "precompute: 10 of 10 sites, 1 incomplete, 0 s\n");
+}
+
+TEST(TextSink, StartsALineForAWarningWhereABarIsOpen) {
+  const std::string shown = text_of(
+      {CampaignStarted{}, Progress{0, 0, 2, 10, 0}, Progress{10, 0, 0, 10, 0}, Warning{"fit", "w"}},
+      true);
+  EXPECT_TRUE(shown.ends_with("0 s\x1b[K\nwarning: w\n")) << shown;
 }
 
 TEST(TextSink, PrintsWhatACampaignContinues) {
@@ -127,7 +156,7 @@ TEST(TextSink, PrintsAdaptiveSampling) {
   EXPECT_EQ(text_of({sampling_round(), SamplingFinished{false, "all points are sites"}}),
             "  round 2: 13 of 88 sites; 95th-percentile error at hold-out points: 3.8 % along the "
             "press, 4.0 % as vectors (median 1.3 %)\n"
-            "  WARNING: all points are sites\n");
+            "warning: all points are sites\n");
   EXPECT_EQ(text_of({SamplingFinished{true, "met"}}), "  met\n");
 }
 

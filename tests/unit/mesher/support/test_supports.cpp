@@ -142,16 +142,16 @@ TEST(Supports, AreRefusedWhereTheyLeaveRigidMotionsOrNoSite) {
   const TemporaryFile file("supported.off", off_text(cube()));
   Settings s = settings_for(file.path());
   s.supports.clear();
-  expect_refused(s, "supported.off", "do not prevent rigid motion",
+  expect_refused(s, "supported.off", "rigid-body motion is not constrained",
                  "(0, 0, 0) mm to (50, 50, 50) mm");
   s.supports = {SphereSupport{{1, 1, 1}, 0.01}};
   expect_refused(s, "supported.off", "0 fixed nodes of", "place a support");
   s.supports = {BoxSupport{{-1, -1, -1}, {1, 0, 0}}};  // one edge: the body can turn about it
-  expect_refused(s, "supported.off", "do not prevent rigid motion", "place a support");
+  expect_refused(s, "supported.off", "rigid-body motion is not constrained", "place a support");
   const BoxSupport base{{-1, -1, -1}, {1, 1, 0}};
   s.supports.clear();
   s.foundation = {{base, 1e6, 0}};  // springs in one direction only: it can slide
-  expect_refused(s, "supported.off", "on springs, do not prevent rigid motion",
+  expect_refused(s, "supported.off", "on springs",
                  "tangential_stiffness");
   s.foundation = {{SphereSupport{{1, 1, 1}, 0.01}, 1e6, 1e6}};
   expect_refused(s, "supported.off", "contain no facet", "place them on the body");

@@ -10,7 +10,7 @@ function sitePanel(data) {
   if (!seconds.some((s) => s > 0)) return el('div', {}, el('h3', {}, 'Time to compute a site'), paragraph('The curves have no computing times.'));
   return el('div', {},
     histogram('Time to compute a site', 'Processor time (s)', 'Sites', [{ label: 'sites', colour: 'series-1', values: seconds }]),
-    paragraph(`${units.count(seconds.length)} sites, ${units.duration(data.key.cpu_seconds)} of processor time in all.`, 'note'));
+    paragraph(`${units.count(seconds.length)} sites, ${units.duration(data.key.cpu_seconds)} of CPU time in all.`, 'note'));
 }
 
 function latencyPanel(session) {
