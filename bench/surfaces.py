@@ -5,9 +5,10 @@
 Usage: surfaces.py PALPATE FOLDER... [--details FILE]
 
 Patches are 1/12 of the largest extent, elements 1/20, the lowest tenth is fixed, the tool has a radius of 1/20
-and presses 1/40 deep. No file gets settings of its own, and a copy of an earlier file is left out. Prints one row a
-folder: files, bodies at the first try, how many of them after a repair, as an alpha wrap and by Delaunay refinement,
-bodies that are too thin for the depth at most sites, refusals, the longest time of the processor.
+and presses 1/40 deep. Lengths are those of the part with the largest area, which the case keeps. No file gets settings
+of its own, and a copy of an earlier file is left out. Prints one row a folder: files, bodies at the first try, how many
+of them after a repair, as an alpha wrap and by Delaunay refinement, bodies that are too thin for the depth at most
+sites, refusals, the longest time of the processor.
 """
 import argparse
 import collections
@@ -53,29 +54,85 @@ lateral_depths = ["{depth} mm"]
 """
 
 
-def points_of(path):
-    """Coordinates of the points, or None where another reader cannot read the file either."""
-    if path.suffix.lower() == ".obj":  # vtkOBJReader crashes on some of them
-        lines = (line.split() for line in path.read_text(errors="replace").splitlines())
-        try:
-            points = [[float(w) for w in words[1:4]] for words in lines if words[:1] == ["v"]]
-            return numpy.array(points).reshape(-1, 3) if points else None
-        except ValueError:
-            return None
-    if path.suffix.lower() == ".off":
-        words = [w for line in path.read_text(errors="replace").splitlines()
-                 if not line.lstrip().startswith("#") for w in line.split()]
-        try:
-            start = 1 if not words[0][:1].isdigit() else 0
-            count = int(words[start])
-            return numpy.array(words[start + 3:start + 3 + 3 * count], dtype=float).reshape(-1, 3)
-        except (IndexError, ValueError):
-            return None
+def obj_faces(path):
+    """Points and faces, or None; vtkOBJReader crashes on some of the files."""
+    points, faces = [], []
+    for words in (line.split() for line in path.read_text(errors="replace").splitlines()):
+        if words[:1] == ["v"]:
+            points.append([float(w) for w in words[1:4]])
+        elif words[:1] == ["f"]:
+            corners = [int(w.split("/")[0]) for w in words[1:]]
+            faces.append([c - 1 if c > 0 else len(points) + c for c in corners])
+    return points, faces
+
+
+def off_faces(path):
+    words = [w for line in path.read_text(errors="replace").splitlines()
+             if not line.lstrip().startswith("#") for w in line.split()]
+    start = 1 if not words[0][:1].isdigit() else 0
+    point_count, face_count = int(words[start]), int(words[start + 1])
+    at = start + 3 + 3 * point_count
+    points = numpy.array(words[start + 3:at], dtype=float)
+    faces = []
+    for _ in range(face_count):
+        corners = int(words[at])
+        faces.append([int(w) for w in words[at + 1:at + 1 + corners]])
+        at += 1 + corners
+        while at < len(words) and "." in words[at]:  # colours
+            at += 1
+    return points, faces
+
+
+def vtk_faces(path):
     reader = READERS[path.suffix.lower()]()
     reader.SetFileName(str(path))
     reader.Update()
-    points = reader.GetOutput().GetPoints()
-    return vtk_to_numpy(points.GetData()).astype(float) if points and points.GetNumberOfPoints() else None
+    data = reader.GetOutput()
+    ids = vtk.vtkIdList()
+    faces = []
+    for cell in range(data.GetNumberOfCells()):
+        data.GetCellPoints(cell, ids)
+        faces.append([ids.GetId(k) for k in range(ids.GetNumberOfIds())])
+    return vtk_to_numpy(data.GetPoints().GetData()) if data.GetPoints() else [], faces
+
+
+def triangles_of(path):
+    """Corners of the triangles, (n, 3, 3), or None where this script cannot read the file."""
+    read = {".obj": obj_faces, ".off": off_faces}.get(path.suffix.lower(), vtk_faces)
+    try:
+        points, faces = read(path)
+        points = numpy.array(points, dtype=float).reshape(-1, 3)
+        fans = [[f[0], f[k - 1], f[k]] for f in faces for k in range(2, len(f))]
+        corners = points[numpy.array(fans, dtype=int).reshape(-1, 3)]
+    except (IndexError, ValueError):
+        return None
+    return corners[numpy.isfinite(corners).all(axis=(1, 2))]
+
+
+def largest_part(corners):
+    """The triangles of the connected part with the largest area."""
+    _, point = numpy.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+    triangles = point.reshape(-1, 3)
+    label = numpy.arange(point.max() + 1)
+    while True:
+        lowest = label[triangles].min(axis=1)
+        joined = label.copy()
+        for k in range(3):
+            numpy.minimum.at(joined, triangles[:, k], lowest)
+        joined = joined[joined]
+        if (joined == label).all():
+            break
+        label = joined
+    part = label[triangles[:, 0]]
+    sides = numpy.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    area = numpy.bincount(part, weights=numpy.linalg.norm(sides, axis=1) / 2)
+    return corners[part == area.argmax()]
+
+
+def points_of(path):
+    """Coordinates of the points of the body, or None."""
+    corners = triangles_of(path)
+    return None if corners is None or len(corners) == 0 else largest_part(corners).reshape(-1, 3)
 
 
 def case_for(path, points):
@@ -97,7 +154,7 @@ def processor_seconds():
 def mesh(palpate, path, scratch):
     """(outcome, seconds, last line of the output) of one file."""
     points = points_of(path)
-    if points is None or not numpy.isfinite(points).all() or not (numpy.ptp(points, axis=0) > 0).all():
+    if points is None or not (numpy.ptp(points, axis=0) > 0).all():
         points = numpy.array([[0, 0, 0], [150, 150, 150]])
     case = scratch / "case.toml"
     case.write_text(case_for(path, points), encoding="utf-8")
