@@ -12,6 +12,7 @@
 #include "mesher/volume/boundary.hpp"
 #include "mesher/volume/faults.hpp"
 #include "mesher/volume/interfaces.hpp"
+#include "mesher/volume/manifold.hpp"
 #include "mesher/volume/refine.hpp"
 #include "mesher/volume/triangle_cloud.hpp"
 
@@ -191,9 +192,16 @@ class Attempts {
     const double before = total_volume(c.mesh);
     keep_set(c.mesh, set, largest_set(c.mesh, set));
     report_.removed_fraction = 1 - total_volume(c.mesh) / before;
-    const auto origin = split_nodes(c.mesh.tetrahedra, c.mesh.nodes.size());
-    for (const std::int32_t v : origin) c.mesh.nodes.push_back(Vec3(c.mesh.nodes[to_index(v)]));
-    report_.split_nodes = origin.size();
+    const ManifoldChange change = make_manifold(c.mesh.nodes, c.mesh.tetrahedra);
+    for (const std::int32_t t : change.tetrahedron_from)
+      c.mesh.region.push_back(std::int32_t(c.mesh.region[to_index(t)]));
+    report_.split_nodes = change.copies;
+    report_.filled_tips = change.filled_tips;
+    if (change.node_from.empty()) return;
+    note(request_.log,
+         text("the boundary touched itself: ", counted(change.copies, "node"), " separated, ",
+              counted(change.halved_edges, "edge"), " halved, the tip of ",
+              counted(change.filled_tips, "void"), " filled"));
   }
 
   void measure(Candidate& c) {

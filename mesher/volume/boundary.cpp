@@ -9,7 +9,6 @@
 #include <tuple>
 #include <unordered_map>
 
-#include "format/edge.hpp"
 #include "format/to_index.hpp"
 #include "mesher/geometry/union_find.hpp"
 
@@ -117,7 +116,7 @@ Pinches pinches(const std::vector<Triangle>& closed_surface) {
     if (!is_crowded) ++found.points;
     found.nodes.push_back(point);
   }
-  found.edges = crowded.size();
+  found.edges.assign(crowded.begin(), crowded.end());
   return found;
 }
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "format/edge.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate::mesher {
@@ -33,7 +34,7 @@ Adjacency adjacency(const std::vector<Tetrahedron>& tetrahedra);
 
 /// Where a closed, oriented surface is no manifold.
 struct Pinches {
-  std::size_t edges = 0;            ///< with more than two facets
+  std::vector<Edge> edges;          ///< with more than two facets, ascending
   std::size_t points = 0;           ///< whose facets form several fans, ends of such edges aside
   std::vector<std::int32_t> nodes;  ///< these points and the ends of these edges, ascending
 };

@@ -19,6 +19,7 @@ struct DelaunayReport {
   int attempts = 0;                ///< refinements from the start, each finer where the last failed
   double removed_fraction = 0;     ///< of the volume: parts that no face connects to the body
   std::size_t split_nodes = 0;  ///< nodes added where parts of the body touched in a node or edge
+  std::size_t filled_tips = 0;  ///< voids whose tip was filled where it touched another void
 };
 
 }  // namespace palpate::mesher

@@ -83,7 +83,7 @@ std::vector<Triangle> boundary_of(const VolumeMesh& volume, const std::string& w
   if (const Pinches found = pinches(facets); !found.nodes.empty()) {
     refuse_geometry(
         where,
-        text("the surface of the tetrahedra meets itself in ", counted(found.edges, "edge"),
+        text("the surface of the tetrahedra meets itself in ", counted(found.edges.size(), "edge"),
              " and ", counted(found.points, "node"), ", the first at ",
              millimetres(volume.nodes[to_index(found.nodes.front())])),
         "separate the parts there, or join them over a face");

@@ -167,11 +167,12 @@ std::vector<Triangle> checked_boundary(const MeshEntities& entities, const std::
   }
   check_parts(entities, joined, where);
   if (const Pinches found = pinches(joined.boundary); !found.nodes.empty()) {
-    refuse_geometry(where,
-                    text("the boundary is not manifold: sheets meet in ",
-                         counted(found.edges, "edge"), " and in ", counted(found.points, "point"),
-                         ", the first at ", place(found.nodes.front())),
-                    "add elements there, or mesh the body again");
+    refuse_geometry(
+        where,
+        text("the boundary is not manifold: sheets meet in ", counted(found.edges.size(), "edge"),
+             " and in ", counted(found.points, "point"), ", the first at ",
+             place(found.nodes.front())),
+        "add elements there, or mesh the body again");
   }
   if (const std::size_t shells = components(joined.boundary); shells > 1) {
     note(log, text(where, ": the body has ", counted(shells - 1, "cavity", "cavities")));

@@ -13,7 +13,7 @@ namespace palpate::mesher {
 ///
 /// Tetrahedra of negative volume are turned. Nodes of no corner of a tetrahedron are dropped, from
 /// the sets too. Every region is also a set of its nodes, unless the file has a set of that name.
-/// Elements that meet only in a node are separated there (separate_sheets). Mid-nodes of quadratic
+/// Where the boundary touches itself it is taken apart (separate_sheets). Mid-nodes of quadratic
 /// tetrahedra become curved edges on the boundary; inside the body edges are straight, and where
 /// the file had them curved, the log says how much.
 /// @param unit m per unit of the file

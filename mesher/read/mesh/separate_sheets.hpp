@@ -8,9 +8,10 @@
 
 namespace palpate::mesher {
 
-/// Splits the nodes of elements that meet in a node or an edge alone (split_nodes), where the
-/// boundary is no manifold: a hinge is cut, and no element changes its shape. Copies of a node are
-/// in its sets. The log states how many, and the first place. Coordinates are in metres.
+/// Takes the boundary apart where it touches itself (make_manifold). A new node is in the sets that
+/// have all nodes it is made of; elements with the middle of a halved edge, and those that fill a
+/// tip, are linear. The log states how many, and a place. Coordinates are in metres.
+/// Elements that overlap are left as they are.
 void separate_sheets(MeshEntities& entities, const std::string& where, const Log& log);
 
 }  // namespace palpate::mesher

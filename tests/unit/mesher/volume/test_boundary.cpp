@@ -42,10 +42,10 @@ TEST(Boundary, PinchesAreEdgesOfFourFacetsAndPointsOfTwoFans) {
     return adjacency(tetrahedra).boundary;
   };
   const Pinches edge = pinches(surface({{0, 1, 2, 3}, {0, 1, 4, 5}}));
-  EXPECT_EQ(edge.edges, 1U);
+  EXPECT_EQ(edge.edges, (std::vector<Edge>{{0, 1}}));
   EXPECT_EQ(edge.points, 0U);
   const Pinches point = pinches(surface({{0, 1, 2, 3}, {0, 4, 5, 6}}));
-  EXPECT_EQ(point.edges, 0U);
+  EXPECT_TRUE(point.edges.empty());
   EXPECT_EQ(point.points, 1U);
   EXPECT_EQ(point.nodes, (std::vector<std::int32_t>{0}));
 }

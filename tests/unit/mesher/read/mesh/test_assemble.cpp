@@ -3,6 +3,9 @@
 
 #include <limits>
 
+#include "format/to_index.hpp"
+#include "mesher/volume/boundary.hpp"
+#include "tests/unit/mesher/lattice.hpp"
 #include "tests/unit/mesher/read/mesh_files.hpp"
 
 namespace palpate::mesher {
@@ -124,8 +127,20 @@ MeshEntities ring(bool below) {
   return mesh;
 }
 
+TEST(Assemble, HalvesAnEdgeInWhichARingMeetsItself) {
+  std::string log;
+  const VolumeMesh mesh =
+      assemble(ring(true), 0.01, "a.msh", [&](std::string_view line) { log += line; });
+  EXPECT_TRUE(pinches(adjacency(mesh.tetrahedra).boundary).nodes.empty());
+  EXPECT_THAT(log, testing::HasSubstr("1 edge halved"));
+}
+
 TEST(Assemble, RefusesABoundaryThatIsNoManifold) {
-  refused(ring(true), "not manifold: sheets meet in 1 edge", "");
+  const test::Lattice ball = test::two_bands();
+  MeshEntities mesh;
+  add_nodes(mesh, ball.nodes);
+  for (const Tetrahedron& t : ball.tetrahedra) add(mesh, t, "fat");
+  refused(mesh, "not manifold: sheets meet in 0 edges and in 1 point, the first at (0, 0, 0)");
 }
 
 TEST(Assemble, SeparatesElementsThatMeetInAnEdgeWhereTheyMeetNowhereElse) {

@@ -4,12 +4,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "mesher/volume/boundary.hpp"
+#include "tests/unit/mesher/lattice.hpp"
 
 namespace palpate::mesher {
 namespace {
+
+using test::Cells;
+using test::node_at;
 
 void add(MeshEntities& mesh, const Tetrahedron& corners) {
   std::copy(corners.begin(), corners.end(), mesh.tetrahedra.emplace_back().nodes.begin());
@@ -26,39 +31,15 @@ Pinches pinches_of(const MeshEntities& mesh) {
   return pinches(adjacency(corners_of(mesh)).boundary);
 }
 
-constexpr int kSide = 5;
-
-std::int32_t node_at(const std::array<int, 3>& at) {
-  return at[0] + kSide * (at[1] + kSide * at[2]);
-}
-
-/// Unit cubes of a lattice of 5 x 5 x 5 points, in six tetrahedra each (Kuhn).
-MeshEntities cubes(const std::vector<std::array<int, 3>>& cells) {
+MeshEntities entities_of(const Cells& cells) {
+  test::Lattice lattice = test::cubes(cells);
   MeshEntities mesh;
-  for (int k = 0; k < kSide; ++k)
-    for (int j = 0; j < kSide; ++j)
-      for (int i = 0; i < kSide; ++i) {
-        mesh.node_numbers.push_back(static_cast<std::int64_t>(mesh.nodes.size()) + 1);
-        mesh.nodes.push_back({1.0 * i, 1.0 * j, 1.0 * k});
-      }
-  constexpr std::array<std::array<int, 3>, 6> kOrders{
-      {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
-  for (const std::array<int, 3>& cell : cells)
-    for (std::size_t order = 0; order < kOrders.size(); ++order) {
-      std::array<int, 3> at = cell;
-      Tetrahedron t{};
-      for (std::size_t corner = 0;; ++corner) {
-        t[corner] = node_at(at);
-        if (corner == 3) break;
-        ++at[static_cast<std::size_t>(kOrders[order][corner])];
-      }
-      if (order > 2) std::swap(t[1], t[2]);  // odd orders turn the other way
-      add(mesh, t);
-    }
+  mesh.nodes = std::move(lattice.nodes);
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i)
+    mesh.node_numbers.push_back(static_cast<std::int64_t>(i) + 1);
+  for (const Tetrahedron& corners : lattice.tetrahedra) add(mesh, corners);
   return mesh;
 }
-
-using Cells = std::vector<std::array<int, 3>>;
 
 /// A chain of cubes whose ends meet in an edge, and one whose ends meet in a corner.
 const Cells kMeetInAnEdge{{0, 0, 0}, {0, 0, 1}, {0, 1, 1}, {1, 1, 1}, {1, 1, 0}};
@@ -67,9 +48,9 @@ const Cells kMeetInACorner{{1, 1, 1}, {0, 1, 1}, {0, 1, 2}, {0, 1, 3},
 
 TEST(SeparateSheets, GivesEachSideOfAPinchItsOwnNode) {
   for (const Cells& cells : {kMeetInAnEdge, kMeetInACorner}) {
-    MeshEntities mesh = cubes(cells);
+    MeshEntities mesh = entities_of(cells);
     const Pinches before = pinches_of(mesh);
-    ASSERT_EQ(before.edges + before.points, 1U);
+    ASSERT_EQ(before.edges.size() + before.points, 1U);
     const std::size_t nodes = mesh.nodes.size();
     const std::int32_t hinge =
         node_at(cells == kMeetInAnEdge ? std::array{1, 1, 0} : std::array{2, 2, 2});
@@ -88,10 +69,46 @@ TEST(SeparateSheets, GivesEachSideOfAPinchItsOwnNode) {
 }
 
 TEST(SeparateSheets, LeavesAManifoldAlone) {
-  MeshEntities mesh = cubes({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
+  MeshEntities mesh = entities_of({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
   const std::size_t nodes = mesh.nodes.size();
   separate_sheets(mesh, "a.msh", [](std::string_view line) { FAIL() << line; });
   EXPECT_EQ(mesh.nodes.size(), nodes);
+}
+
+TEST(SeparateSheets, MiddlesOfHalvedEdgesAreInTheSetsOfBothEnds) {
+  MeshEntities mesh = entities_of(test::kRingAroundAnEdge);
+  const auto [low, high] = test::kEdgeOfTheRing;
+  for (ListedTetrahedron& t : mesh.tetrahedra) t.quadratic = true;
+  const std::size_t before = mesh.tetrahedra.size();
+  mesh.node_sets = {{"both", {low, high}}, {"one", {low}}};
+  std::string log;
+  separate_sheets(mesh, "a.msh", [&](std::string_view line) { log += line; });
+  EXPECT_TRUE(pinches_of(mesh).nodes.empty());
+  EXPECT_EQ(mesh.node_numbers.size(), mesh.nodes.size());
+  const auto first_new = static_cast<std::int32_t>(mesh.nodes.size() - 2);
+  EXPECT_THAT(mesh.node_sets.at("both"), testing::ElementsAre(low, high, first_new, first_new + 1));
+  EXPECT_THAT(mesh.node_sets.at("one"), testing::ElementsAre(low));
+  // The middle of the file's edge is no middle of its halves: they are linear.
+  const auto is_linear = [](const ListedTetrahedron& t) { return !t.quadratic; };
+  EXPECT_EQ(std::count_if(mesh.tetrahedra.begin(), mesh.tetrahedra.end(), is_linear),
+            2 * (mesh.tetrahedra.size() - before));
+  EXPECT_THAT(log, testing::HasSubstr("1 edge halved"));
+}
+
+TEST(SeparateSheets, NodesOfFilledTipsAreInTheSetsOfTheNodeBesideThem) {
+  MeshEntities mesh = entities_of(test::block_without(4, {{1, 1, 1}, {2, 2, 2}}));
+  for (ListedTetrahedron& t : mesh.tetrahedra) t.quadratic = true;
+  const std::size_t before = mesh.tetrahedra.size();
+  const std::int32_t node = test::node_at({2, 2, 2});
+  mesh.node_sets = {{"held", {node}}};
+  std::string log;
+  separate_sheets(mesh, "a.msh", [&](std::string_view line) { log += line; });
+  EXPECT_TRUE(pinches_of(mesh).nodes.empty());
+  EXPECT_THAT(mesh.node_sets.at("held"),
+              testing::ElementsAre(node, static_cast<std::int32_t>(mesh.nodes.size() - 1)));
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
+    EXPECT_EQ(mesh.tetrahedra[t].quadratic, t < before);
+  EXPECT_THAT(log, testing::HasSubstr("the tip of 1 void"));
 }
 
 }  // namespace
