@@ -18,6 +18,7 @@ inline constexpr int kExitSomeSitesFailed = 4;
 
 using Action = std::function<int()>;
 
+void add_init_command(CLI::App& root, Action& action);
 void add_mesh_command(CLI::App& root, Action& action);
 void add_merge_command(CLI::App& root, Action& action);
 void add_precompute_command(CLI::App& root, Action& action);

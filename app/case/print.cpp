@@ -6,30 +6,10 @@
 
 #include "app/case/describe/case.hpp"
 #include "app/case/material.hpp"
+#include "app/case/toml_string.hpp"
 
 namespace palpate::app {
 namespace {
-
-/// A TOML basic string.
-std::string toml_string(std::string_view text) {
-  constexpr std::string_view digits = "0123456789ABCDEF";
-  std::string out = "\"";
-  for (const char letter : text) {
-    const auto code = static_cast<unsigned char>(letter);
-    if (letter == '"' || letter == '\\') {
-      out += '\\';
-      out += letter;
-    } else if (code < 0x20 || code == 0x7f) {
-      out += "\\u00";
-      out += digits[code >> 4U];
-      out += digits[code & 0xfU];
-    } else {
-      out += letter;
-    }
-  }
-  out += '"';
-  return out;
-}
 
 template <class T, class Print>
 std::string list(const T& items, Print print) {

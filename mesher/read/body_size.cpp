@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "mesher/read/body_size.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <utility>
 
 #include "format/error.hpp"
+#include "mesher/read/unit_guess.hpp"
 
 namespace palpate::mesher {
 namespace {
@@ -17,16 +15,8 @@ constexpr double kLargestBody = 10;
 constexpr double kSmallestUsualBody = 1e-3;
 constexpr double kLargestUsualBody = 2;
 
-/// The unit with which the largest dimension is nearest to 150 mm, the size of an organ.
 std::string likely_unit(double raw) {
-  const std::pair<const char*, double> units[] = {
-      {"m", 1}, {"cm", 0.01}, {"mm", 0.001}, {"um", 1e-6}};
-  const auto deviation = [&](const auto& unit) {
-    return std::abs(std::log10(raw * unit.second / 0.15));
-  };
-  return std::min_element(std::begin(units), std::end(units),
-                          [&](const auto& a, const auto& b) { return deviation(a) < deviation(b); })
-      ->first;
+  return std::string(guess_unit(raw).likely.symbol);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ Soup read_binary_stl(const std::string& where) {
   return soup;
 }
 
-Soup read_soup(const std::filesystem::path& path) {
+Soup read_listed(const std::filesystem::path& path) {
   const std::string where = path.string(), kind = ending(path);
   check_readable(path);
   if (kind == ".obj") return read_obj(path);
@@ -157,8 +157,7 @@ Surface repaired(const Soup& soup, const RepairSettings& settings, const std::st
 
 Surface sound_surface(const SurfaceFile& file, const Log& log) {
   const std::string where = file.path.string();
-  Soup soup = read_soup(file.path);
-  check_entries(soup, where);
+  Soup soup = read_faces(file.path);
   scale_to_metres(soup, file, log);
   tidy(soup, where, log);
   check_entries(soup, where);
@@ -174,6 +173,12 @@ Surface sound_surface(const SurfaceFile& file, const Log& log) {
 }
 
 }  // namespace
+
+Soup read_faces(const std::filesystem::path& path) {
+  Soup soup = read_listed(path);
+  check_entries(soup, path.string());
+  return soup;
+}
 
 Surface read_surface(const SurfaceFile& file, const Log& log) {
   try {

@@ -17,7 +17,7 @@ std::string logged(double raw, double unit) {
 TEST(BodySize, SamplesAndOrgansPass) {
   EXPECT_EQ(logged(180, 1e-3), "");
   EXPECT_THAT(logged(300, 1e-6), testing::HasSubstr("0.3 mm with a unit of 1e-06 m, unusual"));
-  EXPECT_THAT(logged(3, 1), testing::HasSubstr("'cm' would be that of an organ"));
+  EXPECT_THAT(logged(3, 1), testing::HasSubstr("'in' would be that of an organ"));
 }
 
 TEST(BodySize, OthersAreRefusedWithTheUnitThatLooksLikely) {

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/init/first_sizes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "format/to_index.hpp"
+#include "mesher/geometry/queries.hpp"
+
+namespace palpate::app {
+namespace {
+
+using mesher::Surface;
+
+// Area of an equilateral triangle over its edge squared, twice: a vertex for two triangles.
+constexpr double kAreaOfVertex = 0.866;
+constexpr double kFewestPatches = 6;  // along the extent
+constexpr double kFinestForThickness = 2;
+constexpr double kElements = 0.5;  // of a patch
+constexpr double kTool = 0.65;     // of a patch: 1.3 elements
+constexpr double kDepthOfTool = 0.6;
+constexpr double kDepthOfThickness = 0.3, kDepthOfThinPlaces = 0.6;
+constexpr double kTravel = 0.5;  // of the depth
+
+double rounded(double value) {
+  const double step = std::pow(10, std::floor(std::log10(value)) - 1);
+  return step * std::round(value / step);
+}
+
+struct Face {
+  Vec3 middle{};
+  Vec3 area_vector{};
+};
+
+std::vector<Face> faces_off(const Base& base, const Surface& surface) {
+  std::vector<Face> faces;
+  for (const Triangle& t : surface.triangles) {
+    const Vec3 middle =
+        (1.0 / 3) * (surface.points[to_index(t[0])] + surface.points[to_index(t[1])] +
+                     surface.points[to_index(t[2])]);
+    const Vec3 area = mesher::area_vector(surface.points, t);
+    if (!base.holds(middle) && norm(area) > 0) faces.push_back({middle, area});
+  }
+  return faces;
+}
+
+/// Thicknesses below points that are spread over the area, ascending.
+std::vector<double> thicknesses(const Surface& surface, const std::vector<Face>& faces,
+                                double area) {
+  constexpr int samples = 400;
+  const mesher::SurfaceQuery query(surface);
+  const double skin = 1e-6 * mesher::largest_dimension(surface.points);
+  std::vector<double> found;
+  double passed = 0;
+  for (const Face& face : faces) {
+    const double before = std::floor(passed * samples / area);
+    passed += norm(face.area_vector) / 2;
+    if (std::floor(passed * samples / area) == before) continue;
+    const Vec3 inward = -mesher::unit(face.area_vector);
+    if (const auto hit = query.first_hit(face.middle + skin * inward, inward))
+      found.push_back(*hit);
+  }
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace
+
+FirstSizes first_sizes(const Surface& surface, const Base& base, int sites) {
+  const std::vector<Face> faces = faces_off(base, surface);
+  FirstSizes sizes;
+  for (const Face& face : faces) sizes.pressable_area += norm(face.area_vector) / 2;
+  const std::vector<double> below = thicknesses(surface, faces, sizes.pressable_area);
+  const double extent = mesher::largest_dimension(surface.points);
+  sizes.thickness = below.empty() ? extent : below[below.size() / 2];
+  const double thin = below.empty() ? extent : below[below.size() / 10];
+
+  const double even = std::sqrt(sizes.pressable_area / (kAreaOfVertex * sites));
+  const double spread =
+      faces.empty() ? extent / kFewestPatches : std::min(even, extent / kFewestPatches);
+  sizes.is_thin = sizes.thickness < spread;
+  sizes.patch_spacing =
+      rounded(std::max(std::min(spread, sizes.thickness), spread / kFinestForThickness));
+  sizes.element_size = rounded(kElements * sizes.patch_spacing);
+  sizes.tool_radius = rounded(kTool * sizes.patch_spacing);
+  sizes.depth = rounded(std::min({kDepthOfTool * sizes.tool_radius,
+                                  kDepthOfThickness * sizes.thickness, kDepthOfThinPlaces * thin}));
+  sizes.lateral_travel = rounded(kTravel * sizes.depth);
+  return sizes;
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Sizes of a mesh, a tool and its paths that suit a body.
+#pragma once
+
+#include "app/init/base.hpp"
+#include "mesher/geometry/surface.hpp"
+
+namespace palpate::app {
+
+/// Lengths in m, rounded to two digits.
+struct FirstSizes {
+  double patch_spacing = 0;
+  double element_size = 0;
+  double tool_radius = 0;
+  double depth = 0;
+  double lateral_travel = 0;
+  double pressable_area = 0;  ///< m^2, that off the base
+  double thickness = 0;       ///< m, of the body below the surface, in the median
+  bool is_thin = false;       ///< the thickness, not the number of sites, sets the patches
+};
+
+/// Patches so large that about `sites` response vertices lie off the base, but at most a sixth of
+/// the extent, and down to half as large where the body is thin; elements of half a patch; a tool
+/// that covers more than one element; a depth that keeps the contact smaller than the tool and the
+/// strain below a third of the thickness; lateral paths of half the depth.
+/// @param surface closed, oriented outward
+FirstSizes first_sizes(const mesher::Surface& surface, const Base& base, int sites);
+
+}  // namespace palpate::app
