@@ -8,6 +8,7 @@
 #include "app/console.hpp"
 #include "app/interruption.hpp"
 #include "app/pipeline/json_sink.hpp"
+#include "app/pipeline/size_of_body.hpp"
 #include "app/pipeline/text_sink.hpp"
 
 namespace palpate::app {
@@ -43,8 +44,10 @@ EventSink event_sink(const CaseOptions& options) {
 
 Workspace open_workspace(const CaseOptions& options) {
   const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  const std::filesystem::path folder = std::filesystem::path(options.case_file).parent_path();
   Workspace space = make_workspace(options.case_file, options.out,
-                                   options.threads > 0 ? options.threads : processors);
+                                   options.threads > 0 ? options.threads : processors,
+                                   [&](const Case& c) { return size_of_body(c.mesh, folder); });
   space.memory = static_cast<double>(options.memory);
   return space;
 }

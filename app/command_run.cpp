@@ -19,8 +19,9 @@
 #include "app/run/certified.hpp"
 #include "app/run/device_choice.hpp"
 #include "app/run/live_session.hpp"
-#include "app/simulate/hand_path.hpp"
+#include "app/simulate/script.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/sha256.hpp"
 
 namespace palpate::app {
@@ -65,10 +66,7 @@ int list_devices() {
 /// A hand that presses and slides at the middle of the body, for the simulated device.
 std::function<runtime::HandTarget(double)> scripted_hand(const Library& library,
                                                          const runtime::Pose& pose) {
-  constexpr double kSpacing = 0.0005;  // m
-  const SimulateSection script;
-  const auto path = std::make_shared<HandPath>(
-      script, straight_path(library, middle_triangle(library), script.slide_length, kSpacing));
+  const auto path = std::make_shared<HandPath>(scripted_path(settled({}, library), library));
   return [path, pose](double time) {
     const HandState hand = path->at(time);
     return runtime::HandTarget{pose.to_world(hand.position), pose.turn(hand.velocity)};
@@ -81,8 +79,8 @@ fitting::DeviceProfile profile_of(const RunOptions& options) {
   fitting::DeviceProfile profile;
   profile.name = options.device.name;
   if (profile.name == kSimulatedDevice) {
-    profile.damping = SimulateSection{}.device.damping;
-    profile.coulomb_friction = SimulateSection{}.device.coulomb_friction;
+    profile.damping = kPublishedDevice.damping;
+    profile.coulomb_friction = kPublishedDevice.coulomb_friction;
   }
   return profile;
 }
@@ -144,9 +142,8 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
   if (live.contact.friction < 0) live.contact.friction = library.certificate.friction;
   live.contact.lipschitz_bound = lipschitz_bound_for(library, profile, live.loop.rate);
   if (live.contact.lipschitz_bound < body.lipschitz_bound) {
-    say("run: the enforced Lipschitz bound is lowered to {:.1f} N/m, which is certified at this "
-        "rate",
-        live.contact.lipschitz_bound);
+    say("run: the enforced Lipschitz bound is lowered to {} N/m, which is certified at this rate",
+        number_text(live.contact.lipschitz_bound, 4));
   }
   if (profile.peak_force > 0) {
     live.safety.max_force = std::min(live.safety.max_force, profile.peak_force);

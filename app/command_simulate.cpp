@@ -6,8 +6,10 @@
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/record/report_recovery.hpp"
+#include "app/simulate/script.hpp"
 #include "app/simulate/session.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "runtime/latency_histogram.hpp"
 #include "runtime/palpate.h"
 
@@ -35,20 +37,31 @@ struct Summary {
   }
 };
 
+/// Forces beyond the deepest sample are guesses: a reader hears it before anything else.
+void warn_of_depth(const Summary& s, double known) {
+  if (s.beyond == 0) return;
+  say("  WARNING: {} of {} steps in contact went beyond the deepest sample: their forces are "
+      "extrapolated, not computed. Every response is known to {} mm, the deepest step is {} mm; "
+      "give "
+      "a smaller [simulate] press_depth, or compute to a larger [indentation] depth",
+      s.beyond, s.contact, number_text(1e3 * known), number_text(1e3 * s.deepest));
+}
+
 void print(const Summary& s, double rate, const std::filesystem::path& file) {
-  say("simulate: {} steps at {} Hz, deepest {:.2f} mm, largest force {:.3f} N -> {}", s.steps, rate,
-      s.deepest * 1e3, s.largest, file.string());
+  say("simulate: {} steps at {} Hz, deepest {} mm, largest force {} -> {}", s.steps, rate,
+      number_text(1e3 * s.deepest), force_text(s.largest), file.string());
   say("  steps in contact {}, sliding {}, throttled {}, limited by the energy tank {}, "
       "extrapolated "
       "beyond the computed depth {}",
       s.contact, s.sliding, s.throttled, s.limited, s.beyond);
-  say("  absorbed by the body: {:.3f} mJ; force step: median {:.2f} us, 99 % within {:.2f} us",
-      s.absorbed * 1e3, s.latency.quantile(0.5) * 1e-3, s.latency.quantile(0.99) * 1e-3);
+  say("  absorbed by the body: {} mJ; force step: median {:.2f} us, 99 % within {:.2f} us",
+      number_text(1e3 * s.absorbed), s.latency.quantile(0.5) * 1e-3,
+      s.latency.quantile(0.99) * 1e-3);
 }
 
 int simulate(const CaseOptions& options, const std::string& library_option,
              double lipschitz_bound) {
-  const Workspace space = open_workspace(options);
+  Workspace space = open_workspace(options);
   const std::filesystem::path file =
       library_option.empty() ? space.library() : std::filesystem::path(library_option);
   if (!std::filesystem::exists(file)) {
@@ -58,6 +71,7 @@ int simulate(const CaseOptions& options, const std::string& library_option,
   const Library library = read_library(file);
   prepare_output(space.out);
   recover_and_report(space.recording());
+  space.c.simulate = settled(space.c.simulate, library);
   ScriptedSession session(file, library, space.c.simulate, lipschitz_bound);
   RecordingHeading heading = session.heading();
   heading.provenance = library.provenance;
@@ -74,6 +88,7 @@ int simulate(const CaseOptions& options, const std::string& library_option,
     throw_with_journal(error, recorder.journal());
   }
   recorder.finish();
+  warn_of_depth(summary, depth_of_responses(library));
   print(summary, heading.rate, space.recording());
   return kExitDone;
 }

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/library.hpp"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "format/artifact.hpp"
 #include "format/columns.hpp"
@@ -331,25 +329,6 @@ double certified_lipschitz_bound(const Certificate& certificate) {
   const bool free = limit >= std::max(certificate.stick, certificate.slip);
   return free || limit >= certificate.min_lipschitz_bound ? limit
                                                           : std::numeric_limits<double>::infinity();
-}
-
-std::string lipschitz_bound_text(double lipschitz_bound) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.1f N/m", std::ceil(10 * lipschitz_bound) / 10);
-  return text.data();
-}
-
-std::string verdict(const Certificate& certificate, const DeviceCertificate& device) {
-  if (std::isnan(device.lowest_rate)) return "damping unknown: not certified for this device";
-  if (std::isinf(device.lowest_rate)) return "not certified: the slide has no bound";
-  std::array<char, 64> text{};
-  std::snprintf(text.data(), text.size(), "certified passive from %.0f Hz", device.lowest_rate);
-  std::string said = text.data();
-  const double throttled_rate = 2 * certificate.min_lipschitz_bound / device.damping;
-  if (!(throttled_rate < 0.995 * device.lowest_rate)) return said;  // also when it is not known
-  std::snprintf(text.data(), text.size(),
-                "; from %.0f Hz with lipschitz_bound = ", std::ceil(throttled_rate));
-  return said + text.data() + lipschitz_bound_text(certificate.min_lipschitz_bound);
 }
 
 void write_library(const std::filesystem::path& path, const Library& library) {

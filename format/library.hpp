@@ -111,13 +111,6 @@ double enforced_lipschitz_bound(const Certificate& certificate);
 /// have no bound and L_min is not known.
 double certified_lipschitz_bound(const Certificate& certificate);
 
-/// A Lipschitz bound as text in N/m, rounded up to a tenth, so that the text is a valid setting.
-std::string lipschitz_bound_text(double lipschitz_bound);
-
-/// For people: the lowest certified rate, also with slides throttled as far as possible; or that
-/// the device is not certified, and why.
-std::string verdict(const Certificate& certificate, const DeviceCertificate& device);
-
 struct Library {
   ResponseKind kind = ResponseKind::Decoupled;
   std::string name;

@@ -17,6 +17,7 @@
 #include <string>
 
 #include "format/error.hpp"
+#include "format/guarantee.hpp"
 #include "palpate_version.hpp"
 #include "runtime/c_boundary.hpp"
 #include "runtime/handles.hpp"

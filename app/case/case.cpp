@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "app/case/describe/case.hpp"
+#include "app/case/lengths.hpp"
 #include "app/case/nearest.hpp"
 #include "app/case/reader.hpp"
 #include "format/error.hpp"
@@ -143,13 +144,6 @@ void check_materials(const Case& c, const SourceMap& sources) {
   }
 }
 
-/// Without the key, the lateral depths follow the depth.
-void choose_depths(Case& c, const SourceMap& sources) {
-  if (sources.has("indentation.lateral_depths")) return;
-  const double depth = c.campaign.indentation.depth;
-  c.campaign.indentation.lateral_depths = {depth / 3, 2 * depth / 3, depth};
-}
-
 /// A disc without fillet has a discontinuous gap at its edge: frictionless contact does not
 /// converge there.
 void check_tool(const Case& c, const SourceMap& sources) {
@@ -169,7 +163,7 @@ void check_tool(const Case& c, const SourceMap& sources) {
 void check_depths(const Case& c, const SourceMap& sources) {
   const fem::IndentationSettings& s = c.campaign.indentation;
   for (const double depth : s.lateral_depths) {
-    if (depth <= s.depth) continue;
+    if (!(depth > s.depth)) continue;
     refuse(sources.where("indentation.lateral_depths"),
            fmt::format("the lateral depth {} is larger than indentation.depth = {}",
                        length_text(depth), length_text(s.depth)),
@@ -195,14 +189,14 @@ void check_zones(const Case& c, const SourceMap& sources) {
 }
 
 void check_sizes(const Case& c, const SourceMap& sources) {
-  if (c.mesh.element_size <= c.mesh.patch_spacing) return;
+  if (!(c.mesh.element_size > c.mesh.patch_spacing)) return;
   refuse(sources.where("mesh.element_size"),
          fmt::format("mesh.element_size = {} is larger than mesh.patch_spacing = {}",
                      length_text(c.mesh.element_size), length_text(c.mesh.patch_spacing)),
          "give at most the patch spacing: facets subdivide the response triangles");
 }
 
-Case parsed(const toml::table& table, const std::string& file_name) {
+Case parsed(const toml::table& table, const std::string& file_name, const SizeOfBody& size) {
   SourceMap sources(file_name);
   Case c;
   TableReader reader(table, "the case", "", sources);
@@ -212,7 +206,9 @@ Case parsed(const toml::table& table, const std::string& file_name) {
   check_name(c, sources);
   check_source(c, sources);
   check_materials(c, sources);
-  choose_depths(c, sources);
+  std::optional<BodySize> body;
+  if (size && needs_body_size(c)) body = size(c);
+  derive_lengths(c, body);
   check_tool(c, sources);
   check_depths(c, sources);
   check_zones(c, sources);
@@ -222,12 +218,26 @@ Case parsed(const toml::table& table, const std::string& file_name) {
 
 }  // namespace
 
-Case parse_case(std::string_view toml, const std::string& file_name) {
-  return parsed(parse_toml(toml, file_name), file_name);
+mesher::Settings mesh_of_case() {
+  mesher::Settings settings;
+  settings.patch_spacing = settings.element_size = kAuto;
+  return settings;
 }
 
-Case read_case(const std::filesystem::path& path) {
-  return parsed(read_toml(path, "the case file"), path.string());
+fem::CampaignSettings campaign_of_case() {
+  fem::CampaignSettings settings;
+  fem::IndentationSettings& paths = settings.indentation;
+  paths.tool.radius = paths.depth = paths.lateral_travel = kAuto;
+  paths.lateral_depths.clear();
+  return settings;
+}
+
+Case parse_case(std::string_view toml, const std::string& file_name, const SizeOfBody& size) {
+  return parsed(parse_toml(toml, file_name), file_name, size);
+}
+
+Case read_case(const std::filesystem::path& path, const SizeOfBody& size) {
+  return parsed(read_toml(path, "the case file"), path.string(), size);
 }
 
 }  // namespace palpate::app

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +17,9 @@
 #include "runtime/devices/device_simulated.hpp"
 
 namespace palpate::app {
+
+/// A quantity that is derived from others: "auto" in a case file. A list is empty instead.
+inline constexpr double kAuto = std::numeric_limits<double>::quiet_NaN();
 
 /// A [[material]] table: the law of a region, and the file that its fibre directions come from.
 struct MaterialSection : fem::RegionMaterial {
@@ -31,7 +37,7 @@ enum class SamplingMethod {
 /// (app/pipeline/adaptive.hpp).
 struct SamplingSection {
   SamplingMethod method = SamplingMethod::Vertices;
-  double initial_spacing = 0.030;  ///< m, between the sites of the first round
+  double initial_spacing = kAuto;  ///< m, between the sites of the first round
   double tolerance = 0.05;         ///< of the 95th-percentile relative error at hold-out points
   int hold_out_points = 40;
   int max_sites = 100000;
@@ -49,56 +55,80 @@ enum class SlidePath {
   Between   ///< from one given point to another
 };
 
+/// The device of [Mahvash & Hayward 2005, section VI] and a hand.
+inline constexpr runtime::SimulatedDeviceSettings kPublishedDevice{.mass = 0.0845,
+                                                                   .damping = 0.081,
+                                                                   .coulomb_friction = 0.01,
+                                                                   .hand_stiffness = 300,
+                                                                   .hand_damping = 8};
+
 /// A scripted session: press, slide, release. The hand pulls the device along its path through a
-/// spring and a damper.
+/// spring and a damper. What is `auto` is derived from the library (app/simulate/script.hpp).
 struct SimulateSection {
   double rate = 2000;  ///< Hz
-  /// The device of [Mahvash & Hayward 2005, section VI] and a hand.
-  runtime::SimulatedDeviceSettings device{.mass = 0.0845,
-                                          .damping = 0.081,
-                                          .coulomb_friction = 0.01,
-                                          .hand_stiffness = 300,
-                                          .hand_damping = 8};
-  double press_depth = 0.003;  ///< m
-  double press_speed = 0.010;  ///< m/s
+  runtime::SimulatedDeviceSettings device{.mass = kAuto,
+                                          .damping = kAuto,
+                                          .coulomb_friction = kAuto,
+                                          .hand_stiffness = kAuto,
+                                          .hand_damping = kAuto};
+  double press_depth = kAuto;  ///< m
+  double press_speed = kAuto;  ///< m/s
   SlidePath path = SlidePath::Longest;
-  double slide_length = 0.040;  ///< m, of the longest path
+  double slide_length = kAuto;  ///< m, of the longest path
   Vec3 from{};                  ///< m, of a path between two points
   Vec3 to{};                    ///< m
-  double slide_speed = 0.030;   ///< m/s
+  double slide_speed = kAuto;   ///< m/s
 };
 
 struct OutputSection {
   std::string folder;  ///< relative to the current folder; empty means "out/<name>"
 };
 
+/// The mesher's and the campaign's settings with every length `auto` that a case may leave out.
+mesher::Settings mesh_of_case();
+fem::CampaignSettings campaign_of_case();
+
 /// The settings of every stage of the pipeline. Each key of a case file is bound to a field of the
 /// settings that a stage takes (app/case/describe/case.hpp), whose default is the default of the
-/// key. What a case leaves out of these settings is set by app/pipeline/settings.hpp: the resolved
-/// paths, the list of supports without springs, the tool that the mesher checks for, the law of a
-/// region with its sampled fibres, threads and memory.
+/// key, but for lengths: they are derived (app/case/lengths.hpp). What a case leaves out of these
+/// settings is set by app/pipeline/settings.hpp: the resolved paths, the list of supports without
+/// springs, the tool that the mesher checks for, the law of a region with its sampled fibres,
+/// threads and memory.
 struct Case {
   std::string name;
   /// [surface], [volume_mesh], [[inclusion]], [mesh], [[press]]; paths as written
-  mesher::Settings mesh;
+  mesher::Settings mesh = mesh_of_case();
   std::vector<mesher::Springs> supports;  ///< fixed nodes where both stiffnesses are 0
   std::vector<MaterialSection> materials;
-  fem::CampaignSettings campaign;  ///< [tool], [indentation], [solver], [gravity]
+  fem::CampaignSettings campaign =
+      campaign_of_case();  ///< [tool], [indentation], [solver], [gravity]
   SamplingSection sampling;
   fitting::FitSettings fit;
   CertifySection certify;
   SimulateSection simulate;
   OutputSection output;
+  /// What was chosen for lengths that are `auto`, for the log: "patch_spacing = 9 mm, ...". No key.
+  std::string derived;
 };
 
 /// Whether every key has the same value: the resolved text is exact.
 bool operator==(const Case& a, const Case& b);
 
-/// Reads a case file strictly. @throws Error(Configuration) with file and line for invalid TOML, an
-/// unknown key (the nearest known key is named), a missing key, a dimensional value without a unit
-/// or with a wrong one, a value that is not finite or out of range, a region without a material.
-Case read_case(const std::filesystem::path& path);
-Case parse_case(std::string_view toml, const std::string& file_name);  ///< the same from memory
+/// Size of the box around a body, m.
+struct BodySize {
+  double diagonal = 0;
+  double thickness = 0;  ///< smallest dimension
+};
+using SizeOfBody = std::function<BodySize(const Case&)>;
+
+/// Reads a case file strictly. Lengths that are `auto` are derived; `size` is asked only where one
+/// of them depends on the body, and without it they stay `auto`. @throws Error(Configuration) with
+/// file and line for invalid TOML, an unknown key (the nearest known key is named), a missing key,
+/// a dimensional value without a unit or with a wrong one, a value that is not finite or out of
+/// range, a region without a material.
+Case read_case(const std::filesystem::path& path, const SizeOfBody& size = {});
+/// The same from memory.
+Case parse_case(std::string_view toml, const std::string& file_name, const SizeOfBody& size = {});
 
 /// The case with the value of every key, defaults included, as TOML: parse_case(resolved_toml(c))
 /// == c.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/case/describe/case.hpp"
 #include "app/case/material.hpp"
@@ -40,6 +41,14 @@ class Printer {
   void quantities(const T& values, Dimension dimension, const Key& key) {
     line(key,
          list(values, [dimension](double v) { return toml_string(print_quantity(v, dimension)); }));
+  }
+  void quantity_or_auto(double value, Dimension dimension, const Key& key) {
+    if (!std::isnan(value)) return quantity(value, dimension, key);
+    line(key, toml_string(kAutoText));
+  }
+  void quantities_or_auto(const std::vector<double>& values, Dimension dimension, const Key& key) {
+    if (!values.empty()) return quantities(values, dimension, key);
+    line(key, toml_string(kAutoText));
   }
   void point(const Vec3& value, Dimension dimension, const Key& key) {
     quantities(value, dimension, key);

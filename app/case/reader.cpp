@@ -33,6 +33,10 @@ std::string example_of(const Key& key, Dimension dimension) {
                      print_quantity(typical * units_of(dimension).front().si, dimension));
 }
 
+bool is_auto(const toml::node& node) {
+  return node.value_exact<std::string_view>() == kAutoText;
+}
+
 }  // namespace
 
 toml::table parse_toml(std::string_view text, const std::string& file_name) {
@@ -224,6 +228,20 @@ void TableReader::quantities(std::vector<double>& values, Dimension dimension, c
   }
   values.clear();
   for (const toml::node& item : *array) values.push_back(quantity_of(item, dimension, key));
+}
+
+void TableReader::quantity_or_auto(double& value, Dimension dimension, const Key& key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  value = is_auto(*node) ? kAuto : quantity_of(*node, dimension, key);
+}
+
+void TableReader::quantities_or_auto(std::vector<double>& values, Dimension dimension,
+                                     const Key& key) {
+  const toml::node* node = table_.get(key.name);
+  if (node == nullptr || !is_auto(*node)) return quantities(values, dimension, key);
+  find(key);
+  values.clear();
 }
 
 const toml::array& TableReader::three(const toml::node& node, const Key& key,

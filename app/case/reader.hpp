@@ -51,6 +51,8 @@ class TableReader {
   void number(double& value, const Key& key);
   void quantity(double& value, Dimension dimension, const Key& key);
   void quantities(std::vector<double>& values, Dimension dimension, const Key& key);
+  void quantity_or_auto(double& value, Dimension dimension, const Key& key);
+  void quantities_or_auto(std::vector<double>& values, Dimension dimension, const Key& key);
   void point(Vec3& value, Dimension dimension, const Key& key);
   void direction(Vec3& value, const Key& key);
 

@@ -44,6 +44,14 @@ class Documenter {
     row(key, fmt::format("list, each: {}", allowed(dimension, key)),
         fmt::format("`[{}]`", quoted(values, dimension)));
   }
+  void quantity_or_auto(double, Dimension dimension, const Key& key) {
+    row(key, fmt::format("`\"{}\"` or {}", kAutoText, allowed(dimension, key)),
+        fmt::format("`\"{}\"`", kAutoText));
+  }
+  void quantities_or_auto(const std::vector<double>&, Dimension dimension, const Key& key) {
+    row(key, fmt::format("`\"{}\"` or list, each: {}", kAutoText, allowed(dimension, key)),
+        fmt::format("`\"{}\"`", kAutoText));
+  }
   void point(const Vec3& value, Dimension dimension, const Key& key) {
     row(key, fmt::format("three values, each: {}", allowed(dimension, key)),
         fmt::format("`[{}]`", quoted(value, dimension)));

@@ -9,6 +9,7 @@
 
 #include "format/body.hpp"
 #include "format/curves.hpp"
+#include "format/guarantee.hpp"
 #include "format/hdf5_file.hpp"
 #include "format/library.hpp"
 #include "format/recording.hpp"
@@ -209,6 +210,14 @@ Json summary_of(const Certificate& certificate) {
           {"devices", devices}};
 }
 
+/// What is guaranteed on each device.
+Json rates_of(const Certificate& certificate) {
+  if (certificate.devices.empty()) return "none is guaranteed: no device profile was given";
+  Json rates = Json::object();
+  for (const DeviceCertificate& d : certificate.devices) rates[d.device] = verdict(certificate, d);
+  return rates;
+}
+
 Json summary_of(const Library& library) {
   std::size_t fitted = 0, interpolated = 0, holes = 0, knots = 0;
   double normal_error = 0, lateral_error = 0;
@@ -221,6 +230,8 @@ Json summary_of(const Library& library) {
     lateral_error = std::max(lateral_error, response.lateral_error);
   }
   return {{"name", library.name},
+          {"guarantee", guarantee_text(library.certificate)},
+          {"rates", rates_of(library.certificate)},
           {"tool", library.tool_shape},
           {"tool_radius", with_unit(library.tool_radius, "m")},
           {"vertices", library.positions.size()},

@@ -141,12 +141,19 @@ void describe(V& v, const FitFinished& e) {
   v.field("fitted", e.fitted, "responses from the curves of their own vertex");
   v.field("interpolated", e.interpolated, "responses from the neighbours of their vertex");
   v.field("holes", e.holes, "vertices without a response");
+  v.field("normal_error", e.normal,
+          "`median` and `worst` error of the normal responses over the largest force of the site, "
+          "and the `vertex` of the worst");
+  v.field("lateral_error", e.lateral,
+          "the same of the lateral responses, to the mean of the paths that they stand for");
+  v.field("lateral_spread", e.spread, "the same, to any single path");
   v.field("file", e.file.string(), "path of `library.h5`");
 }
 
 template <class V>
 void describe(V& v, const Certified& e) {
   v.event("certificate", "a library is certified; a bound that does not exist is null");
+  v.field("guarantee", e.guarantee, "what is guaranteed of the force, and by what");
   v.field("friction", e.friction, "friction coefficient mu");
   v.field("L_stick", e.stick_bound, "Lipschitz bound of the force with a fixed contact point, N/m");
   v.field("L_slip", e.slip_bound, "Lipschitz bound along a slide, N/m");

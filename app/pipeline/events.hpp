@@ -101,13 +101,22 @@ struct MergeFinished {
   std::filesystem::path file;
 };
 
+/// Median and largest relative error of the responses, and the site of the largest.
+struct FitErrors {
+  double median = 0, worst = 0;
+  std::int32_t vertex = -1;
+};
+
 struct FitFinished {
   std::size_t fitted = 0, interpolated = 0, holes = 0;
+  /// Errors relative to the largest force of the site: see fitting::SiteFitError.
+  FitErrors normal, lateral, spread;
   std::filesystem::path file;
 };
 
 /// A library was certified. Infinite: no bound exists. NaN: unknown.
 struct Certified {
+  std::string guarantee;  ///< what is guaranteed of the force, and by what
   double friction = 0;
   double stick_bound = 0, slip_bound = 0;                ///< N/m
   double min_enforceable_bound = 0, enforced_bound = 0;  ///< N/m

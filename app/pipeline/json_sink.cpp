@@ -22,6 +22,10 @@ class JsonVisitor {
   void field(std::string_view name, const fidelity::ErrorRow& row, std::string_view) {
     json_[std::string(name)] = {{"median", row.median}, {"p95", row.p95}, {"worst", row.worst}};
   }
+  void field(std::string_view name, const FitErrors& errors, std::string_view) {
+    json_[std::string(name)] = {
+        {"median", errors.median}, {"worst", errors.worst}, {"vertex", errors.vertex}};
+  }
   void field(std::string_view name,
              const std::vector<std::pair<std::string, std::string>>& verdicts, std::string_view) {
     Json& devices = json_[std::string(name)] = Json::object();

@@ -18,16 +18,21 @@
 #include "fitting/certificate/soften.hpp"
 #include "fitting/response/couple.hpp"
 #include "fitting/response/fit.hpp"
+#include "fitting/response/fit_errors.hpp"
 #include "format/body.hpp"
 #include "format/error.hpp"
+#include "format/guarantee.hpp"
 #include "format/library.hpp"
+#include "format/number_text.hpp"
+#include "format/to_index.hpp"
 #include "mesher/geometry/text.hpp"
 
 namespace palpate::app {
 namespace {
 
 Certified certified(const Certificate& certificate, const std::filesystem::path& file) {
-  Certified event{certificate.friction,
+  Certified event{guarantee_text(certificate),
+                  certificate.friction,
                   certificate.stick,
                   certificate.slip,
                   certificate.min_lipschitz_bound,
@@ -130,6 +135,8 @@ SiteCounts count_sites(const Curves& curves) {
 void run_mesh(const Workspace& space, const EventSink& emit) {
   prepare_output(space.out);
   refuse_body_of_another_case(space);
+  if (!space.c.derived.empty())
+    emit(LogLine{"mesh", "lengths that the case leaves out: " + space.c.derived});
   mesher::Settings settings = mesh_settings(space);
   settings.log = [&](std::string_view text) { emit_log("mesh", text, emit); };
   Body body = mesh_surface(settings, space.out);
@@ -141,6 +148,36 @@ void run_mesh(const Workspace& space, const EventSink& emit) {
   emit(MeshFinished{body.nodes.size(), body.tetrahedra.size(), body.response.triangles.size(),
                     sites, space.body()});
 }
+
+namespace {
+
+FitErrors errors_of(const std::vector<fitting::SiteFitError>& errors,
+                    double fitting::SiteFitError::*which) {
+  const fitting::FitErrorSummary summary = fitting::summary_of(errors, which);
+  return {summary.median, summary.worst, summary.vertex};
+}
+
+/// Warns where responses visibly miss the curves that they were fitted to.
+void warn_of_misfit(const char* kind, const Library& library,
+                    const std::vector<fitting::SiteFitError>& errors,
+                    double fitting::SiteFitError::*which, const EventSink& emit) {
+  const FitErrors worst = errors_of(errors, which);
+  if (!(worst.worst > fitting::kVisibleFitError)) return;
+  const auto count = std::count_if(
+      errors.begin(), errors.end(),
+      [&](const fitting::SiteFitError& error) { return error.*which > fitting::kVisibleFitError; });
+  const Vec3& at = library.positions[to_index(worst.vertex)];
+  emit(Warning{
+      "fit",
+      fmt::format(
+          "{} of {} {} responses miss their curves by more than {}, most of all that of site {} at "
+          "({:.3g}, {:.3g}, {:.3g}) mm, by {} of its largest force; give a smaller [fit] "
+          "absolute_tolerance or more max_knots, and look at the curves of the site in the report",
+          count, errors.size(), kind, percent_text(fitting::kVisibleFitError), worst.vertex,
+          1e3 * at[0], 1e3 * at[1], 1e3 * at[2], percent_text(worst.worst))});
+}
+
+}  // namespace
 
 void run_fit(const Workspace& space, const EventSink& emit) {
   const Body body = read_input(space.body(), "mesh", read_body);
@@ -165,8 +202,14 @@ void run_fit(const Workspace& space, const EventSink& emit) {
         std::count_if(library.responses.begin(), library.responses.end(),
                       [=](const NodeResponse& r) { return r.status == status; }));
   };
+  using fitting::SiteFitError;
+  const std::vector<SiteFitError> errors = fitting::fit_errors(library, curves);
+  warn_of_misfit("normal", library, errors, &SiteFitError::normal, emit);
+  warn_of_misfit("lateral", library, errors, &SiteFitError::lateral, emit);
   emit(FitFinished{with_status(ResponseStatus::Fitted), with_status(ResponseStatus::Interpolated),
-                   with_status(ResponseStatus::Hole), space.library()});
+                   with_status(ResponseStatus::Hole), errors_of(errors, &SiteFitError::normal),
+                   errors_of(errors, &SiteFitError::lateral),
+                   errors_of(errors, &SiteFitError::spread), space.library()});
 }
 
 void run_certify(const Workspace& space, const EventSink& emit) {

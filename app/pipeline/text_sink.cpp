@@ -3,13 +3,14 @@
 
 #include <cmath>
 
-#include "format/library.hpp"
+#include "format/guarantee.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::app {
 namespace {
 
 std::string bound_text(double value) {
-  return std::isfinite(value) ? fmt::format("{:.1f} N/m", value) : "no bound";
+  return std::isfinite(value) ? lipschitz_bound_text(value) : "no bound";
 }
 
 std::string_view words(SiteStatus status) {
@@ -24,8 +25,8 @@ std::string_view words(SiteStatus status) {
   return "";
 }
 
-std::string rounded_up(double bound) {
-  return std::isfinite(bound) ? lipschitz_bound_text(bound) : "no bound";
+std::string stiffness_text(double value) {
+  return number_text(value, 4) + " N/m";
 }
 
 }  // namespace
@@ -117,46 +118,58 @@ void TextSink::print(const MergeFinished& e) {
 }
 
 void TextSink::print(const FitFinished& e) {
+  const auto errors = [](const FitErrors& of) {
+    return fmt::format("{} median, {} worst (site {})", percent_text(of.median),
+                       percent_text(of.worst), of.vertex);
+  };
+  if (e.fitted > 0) {
+    line("  error of the fit over the largest force of a site: normal {}", errors(e.normal));
+    line("    lateral {}; to any single path {}", errors(e.lateral), errors(e.spread));
+  }
   line("fit: {} responses fitted, {} interpolated, {} holes -> {}", e.fitted, e.interpolated,
        e.holes, e.file.string());
 }
 
 void TextSink::print(const Certified& e) {
-  line("  L_stick: {}, L_slip: {} at mu = {}", bound_text(e.stick_bound), bound_text(e.slip_bound),
-       e.friction);
-  line("  smallest enforceable bound L_min: {}; the runtime enforces {}",
-       rounded_up(e.min_enforceable_bound), bound_text(e.enforced_bound));
-  line("  limited by: {}", e.limited_by);
+  line("certify: {}", e.guarantee);
   for (const auto& [device, verdict] : e.devices) line("  {}: {}", device, verdict);
+  if (e.devices.empty())
+    line("  no rate is guaranteed on any device: the case names no profile in [certify] devices");
+  line("  L_stick: {} at a fixed contact point, L_slip: {} while sliding, at mu = {}",
+       bound_text(e.stick_bound), bound_text(e.slip_bound), e.friction);
+  line("  smallest enforceable bound L_min: {}; the runtime enforces {}",
+       bound_text(e.min_enforceable_bound), bound_text(e.enforced_bound));
+  line("  limited by: {}", e.limited_by);
   line("certify: {}", e.file.string());
 }
 
 void TextSink::print(const StiffnessAtRate& e) {
   if (std::isnan(e.certifiable_stiffness))
-    return line("  {}: not certified: its damping is unknown", e.device);
+    return line("  {}: no guarantee: its damping is unknown", e.device);
   const double bound = e.certifiable_stiffness;
-  line("  {} at {} Hz: certifiable stiffness {:.1f} N/m", e.device, e.rate, bound);
+  line("  {} at {} Hz: certifiable stiffness {}", e.device, e.rate, stiffness_text(bound));
   if (e.library_bound <= bound)
-    return line("    the library, {:.1f} N/m, is certified; {:.2f} times its forces would be, too",
-                e.library_bound, bound / e.library_bound);
+    return line("    the library, {}, is certified; {:.2f} times its forces would be, too",
+                bound_text(e.library_bound), bound / e.library_bound);
   line("    the library needs {}: {} of {} triangles exceed it, most of all triangle {}",
        bound_text(e.library_bound), e.triangles_over, e.triangles, e.worst_triangle);
   if (e.min_enforceable_bound <= bound)
     return line(
-        "    slides can be throttled to {}: certified with an enforced bound of {:.1f} N/m, which "
-        "--soften writes into a library and `palpate run` chooses by itself",
-        rounded_up(e.min_enforceable_bound), std::floor(10 * bound) / 10);
+        "    slides can be throttled to {}: certified with that bound or a larger one up to the "
+        "certifiable stiffness, which --soften writes into a library and `palpate run` chooses by "
+        "itself",
+        bound_text(e.min_enforceable_bound));
   if (std::isinf(e.min_enforceable_bound)) return line("    and no bound can be enforced");
   line(
-      "    with throttled slides it needs {:.1f} N/m: {:.2f} times its forces would be certified; "
-      "--soften caps only the stiff slopes",
-      e.min_enforceable_bound, bound / e.min_enforceable_bound);
+      "    with throttled slides it needs {}: {:.2f} times its forces would be certified; --soften "
+      "caps only the stiff slopes",
+      bound_text(e.min_enforceable_bound), bound / e.min_enforceable_bound);
 }
 
 void TextSink::print(const Softened& e) {
   if (e.curves == 0) return line("certify: no response had to be softened -> {}", e.file.string());
-  line("certify: slopes capped at {:.1f} N/m, {} curves changed -> {}", e.slope_cap, e.curves,
-       e.file.string());
+  line("certify: slopes capped at {}, {} curves changed -> {}", stiffness_text(e.slope_cap),
+       e.curves, e.file.string());
   line(
       "  force lost at full deflection: median {:.1f} %, 95th percentile {:.1f} %, largest {:.1f} "
       "%",
@@ -171,9 +184,9 @@ void TextSink::print(const SteepestForce& e) {
                                 ? fmt::format("{:.2f} of the bound", e.slope / e.bound)
                                 : "there is no bound";
   line(
-      "  {}: {:.1f} N/m in triangle {}, {}; largest ratio to the bound of its own triangle {:.4f} "
-      "({} tries)",
-      e.contact, e.slope, e.triangle, ratio, e.largest_ratio, e.tries);
+      "  {}: {} in triangle {}, {}; largest ratio to the bound of its own triangle {:.4f} ({} "
+      "tries)",
+      e.contact, stiffness_text(e.slope), e.triangle, ratio, e.largest_ratio, e.tries);
 }
 
 void TextSink::print(const ConvergenceLevel& e) {
@@ -183,10 +196,11 @@ void TextSink::print(const ConvergenceLevel& e) {
 
 void TextSink::print(const ConvergenceOfForce& e) {
   std::string forces;
-  for (const double f : e.forces) forces += fmt::format(" {:.2f}", 1e3 * f);
+  for (const double f : e.forces) forces += " " + number_text(1e3 * f, 4);
   if (e.has_order)
-    return line("  site {}, {}:{} -> {:.2f} mN, order {:.2f}; error of the case's mesh {:+.1f} %",
-                e.vertex, e.quantity, forces, 1e3 * e.limit, e.order, 100 * e.error);
+    return line("  site {}, {}:{} -> {} mN, order {:.2f}; error of the case's mesh {:+.1f} %",
+                e.vertex, e.quantity, forces, number_text(1e3 * e.limit, 4), e.order,
+                100 * e.error);
   line("  site {}, {}:{} mN follow no power of the element size; spread {:.1f} %", e.vertex,
        e.quantity, forces, 100 * e.error);
 }

@@ -44,10 +44,11 @@ fs::path Workspace::journal() const {
   return precomputed().replace_extension(".journal");
 }
 
-Workspace make_workspace(const fs::path& case_file, const std::string& out, int threads) {
+Workspace make_workspace(const fs::path& case_file, const std::string& out, int threads,
+                         const SizeOfBody& size) {
   refuse_bodies(case_file);
   Workspace space;
-  space.c = read_case(case_file);
+  space.c = read_case(case_file, size);
   space.case_folder = case_file.parent_path();
   space.threads = threads;
   if (!out.empty()) {

@@ -35,8 +35,10 @@ struct Workspace {
 };
 
 /// Reads the case; creates nothing. `out` empty: the folder that the case names, or out/NAME.
+/// @param size  of the body of a case, in the folder of its file; asked only where lengths of the
+///   case are derived from it
 Workspace make_workspace(const std::filesystem::path& case_file, const std::string& out,
-                         int threads);
+                         int threads, const SizeOfBody& size = {});
 
 /// Creates the output folder and checks that it is writable, before any long work.
 /// @throws Error(Configuration).

@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <map>
 
 #include "app/report/embed.hpp"
 #include "app/report/figures.hpp"
 #include "app/report/inclusions.hpp"
 #include "app/report/surface_map.hpp"
+#include "fitting/response/fit_errors.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 
@@ -183,6 +185,9 @@ json vertex_data(const ReportInput& input, const std::vector<PeakForce>& peaks) 
     normal_error.push_back(static_cast<float>(fitted ? response.normal_error : nan));
     lateral_error.push_back(static_cast<float>(fitted ? response.lateral_error : nan));
   }
+  std::vector<float> misfit(size, std::numeric_limits<float>::quiet_NaN());
+  for (const fitting::SiteFitError& error : fitting::fit_errors(library, *input.curves))
+    misfit[to_index(error.vertex)] = static_cast<float>(std::max(error.normal, error.lateral));
   std::vector<float> normal_peak, lateral_peak;
   for (const PeakForce& peak : peaks) {
     normal_peak.push_back(static_cast<float>(peak.normal));
@@ -197,6 +202,8 @@ json vertex_data(const ReportInput& input, const std::vector<PeakForce>& peaks) 
           {"reasons", reasons},
           {"normal_error", column(normal_error)},
           {"lateral_error", column(lateral_error)},
+          {"misfit", column(misfit)},
+          {"visible_misfit", fitting::kVisibleFitError},
           {"normal_peak", column(normal_peak)},
           {"lateral_peak", column(lateral_peak)}};
 }

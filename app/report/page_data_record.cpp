@@ -5,6 +5,7 @@
 
 #include "app/report/embed.hpp"
 #include "app/report/page_data.hpp"
+#include "format/guarantee.hpp"
 
 namespace palpate::report {
 
@@ -46,6 +47,9 @@ json certificate_data(const Library& library) {
     cos_theta.push_back(static_cast<float>(t.cos_theta));
     sliding_passive.push_back(t.sliding_passive ? 1 : 0);
   }
+  const char* by = guaranteed_by(c) == GuaranteedBy::Curves    ? "curves"
+                   : guaranteed_by(c) == GuaranteedBy::Limiter ? "limiter"
+                                                               : "nothing";
   json devices = json::array();
   for (const DeviceCertificate& d : c.devices) {
     devices.push_back({{"device", d.device},
@@ -55,7 +59,9 @@ json certificate_data(const Library& library) {
                        {"linear_limit", d.linear_limit},
                        {"no_delay_limit", d.no_delay_limit}});
   }
-  return {{"friction", c.friction},
+  return {{"guarantee", guarantee_text(c)},
+          {"guaranteed_by", by},
+          {"friction", c.friction},
           {"depth", c.depth},
           {"stick", c.stick},
           {"slip", c.slip},

@@ -9,6 +9,8 @@
 
 #include "fitting/certificate/soften.hpp"
 #include "format/error.hpp"
+#include "format/guarantee.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::app {
 namespace {
@@ -53,12 +55,11 @@ void require_certified(const Library& library, const std::string& library_file,
     refuse(profile.name, "no rate is certified: the slide has no bound",
            "run `palpate certify` again, which states the reason");
   }
-  refuse(
-      profile.name,
-      fmt::format("{:g} Hz is not certified: a lipschitz_bound of {:.1f} N/m on {:g} N s/m needs "
-                  "{:.0f} Hz",
-                  rate, 0.5 * needed * profile.damping, profile.damping, needed),
-      "raise --rate, soften the body (palpate certify --rate --soften)");
+  refuse(profile.name,
+         fmt::format("{:g} Hz is not certified: a lipschitz_bound of {} on {:g} N s/m needs {} Hz",
+                     rate, lipschitz_bound_text(0.5 * needed * profile.damping), profile.damping,
+                     rounded_up_text(needed)),
+         "raise --rate, soften the body (palpate certify --rate --soften)");
 }
 
 }  // namespace palpate::app

@@ -27,7 +27,7 @@ int unit_number(const std::string& unit) {
 
 std::unique_ptr<runtime::Device> simulated(const DeviceChoice& choice,
                                            const std::function<runtime::HandTarget(double)>& hand) {
-  return std::make_unique<runtime::VirtualDevice>(SimulateSection{}.device, choice.rate, hand);
+  return std::make_unique<runtime::VirtualDevice>(kPublishedDevice, choice.rate, hand);
 }
 
 std::string lower_case(std::string text) {

@@ -23,7 +23,7 @@ struct DeviceChoice {
   double rate = 1000;  ///< Hz, of the simulated device
 };
 
-/// A simulated device with a hand, with the constants of an empty `[simulate]`.
+/// The published device with a hand, simulated.
 inline constexpr const char* kSimulatedDevice = "simulated";
 
 struct DeviceName {

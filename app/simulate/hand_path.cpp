@@ -7,7 +7,6 @@
 namespace palpate::app {
 namespace {
 
-constexpr double kClearance = 0.004;   ///< m, above the surface at the start and at the end
 constexpr double kPeakOverMean = 1.5;  ///< of the speed of smooth()
 
 /// From 0 to 1 with rest at both ends.
@@ -21,7 +20,7 @@ double smooth(double fraction) {
 HandPath::HandPath(const SimulateSection& script, std::vector<PathPoint> path)
     : script_(script),
       path_(std::move(path)),
-      press_end_(kPeakOverMean * (kClearance + script.press_depth) / script.press_speed),
+      press_end_(kPeakOverMean * 2 * script.press_depth / script.press_speed),
       slide_time_(kPeakOverMean * path_.back().distance / script.slide_speed) {}
 
 Vec3 HandPath::position(double time) const {
@@ -29,7 +28,7 @@ Vec3 HandPath::position(double time) const {
   const double pressed = smooth(time / press_end_) - smooth(release / press_end_);
   const double slid = slide_time_ > 0 ? smooth((time - press_end_) / slide_time_) : 0;
   const PathPoint point = point_at(path_, slid * path_.back().distance);
-  const double depth = pressed * (kClearance + script_.press_depth) - kClearance;
+  const double depth = (2 * pressed - 1) * script_.press_depth;
   return point.position + depth * point.inward;
 }
 

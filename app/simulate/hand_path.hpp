@@ -14,11 +14,12 @@ struct HandState {
   Vec3 velocity{};  ///< m/s
 };
 
-/// The scripted path of the hand: from above the surface down to the press depth, along the surface
-/// at that depth, and up again. Each part starts and ends at rest; the speed of the script is its
-/// peak.
+/// The scripted path of the hand: from above the surface, as high as the press is deep, down to the
+/// press depth, along the surface at that depth, and up again. Each part starts and ends at rest;
+/// the speed of the script is its peak.
 class HandPath {
  public:
+  /// @pre nothing that the path needs is `auto` in the script.
   HandPath(const SimulateSection& script, std::vector<PathPoint> path);
 
   double duration() const { return press_end_ + slide_time_ + press_end_; }  ///< s

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/simulate/hand_path.hpp"
-#include "app/simulate/surface_path.hpp"
+#include "app/simulate/script.hpp"
 #include "format/error.hpp"
 #include "format/sha256.hpp"
 #include "runtime/handles.hpp"
@@ -84,25 +84,16 @@ RecordedStep force_step(palpate_state* state, const runtime::SimulatedDevice& de
   return step;
 }
 
-HandPath hand_path_of(const Library& library, const SimulateSection& script) {
-  constexpr double kPointSpacing = 0.0005;  // m
-  if (script.path == SlidePath::Between) {
-    return {script, path_between(library, script.from, script.to, kPointSpacing)};
-  }
-  const std::size_t start = middle_triangle(library);
-  return {script, straight_path(library, start, script.slide_length, kPointSpacing)};
-}
-
 }  // namespace
 
 struct ScriptedSession::State {
   State(const std::filesystem::path& file, const Library& library, const SimulateSection& given,
         double lipschitz_bound)
-      : script(given),
+      : script(settled(given, library)),
         handle(load(file)),
         state(create(handle.get(), lipschitz_bound, file)),
-        hand(hand_path_of(library, given)),
-        device(given.device) {
+        hand(scripted_path(script, library)),
+        device(script.device) {
     heading.device = "simulated";
     heading.library_sha256 = sha256_of_file(file);
     heading.rate = script.rate;

@@ -219,8 +219,8 @@ std::vector<PathPoint> straight_path(const Library& library, std::size_t start, 
     const double angle = 2 * std::numbers::pi * i / kDirections;
     const Vec3 direction = std::cos(angle) * first + std::sin(angle) * second;
     std::vector<PathPoint> path = walk(surface, start, direction, length, step);
-    constexpr double kWorthwhile = 1e-9;  // m; equal lengths: the first direction stays
-    if (longest.empty() || path.back().distance > longest.back().distance + kWorthwhile) {
+    constexpr double kWorthwhile = 1 + 1e-7;  // equal lengths: the first direction stays
+    if (longest.empty() || path.back().distance > kWorthwhile * longest.back().distance) {
       longest = std::move(path);
     }
   }

@@ -13,6 +13,7 @@
 #include "fitting/certificate/range.hpp"
 #include "fitting/certificate/triangle_bounds.hpp"
 #include "format/error.hpp"
+#include "format/guarantee.hpp"
 
 namespace palpate::fitting {
 namespace {
@@ -85,12 +86,11 @@ std::string largest_bound_text(const Library& library, std::size_t index,
     centre = centre + (1.0 / 3) * library.positions[static_cast<std::size_t>(v)];
   }
   std::array<char, 160> where{};
-  std::snprintf(where.data(), where.size(), "triangle %zu near (%.4g, %.4g, %.4g) m: ", index,
-                centre[0], centre[1], centre[2]);
+  std::snprintf(where.data(), where.size(), "triangle %zu near (%.4g, %.4g, %.4g) mm: ", index,
+                1e3 * centre[0], 1e3 * centre[1], 1e3 * centre[2]);
   const double bound = std::max(bounds.certificate.stick, bounds.certificate.slip);
-  std::array<char, 40> size{};
-  if (std::isfinite(bound)) std::snprintf(size.data(), size.size(), "%.4g N/m in ", bound);
-  return size.data() + (where.data() + cause(bounds, depth));
+  const std::string size = std::isfinite(bound) ? lipschitz_bound_text(bound) + " in " : "";
+  return size + (where.data() + cause(bounds, depth));
 }
 
 void add_devices(Certificate& certificate, const CertifySettings& settings) {

@@ -21,10 +21,10 @@ namespace {
 using runtime::LocalModel;
 using runtime::SurfacePoint;
 
-constexpr double kStep = 1e-7;   // m, of the tool
-constexpr double kRest = 1e-16;  // m, excess over the slip limit at which a slide has ended
+constexpr double kStepOverDepth = 2e-5;  // of the tool, over the certified depth
+constexpr double kRestOverStep = 1e-9;   // excess over the slip limit at which a slide has ended
 constexpr int kSlideSteps = 400;
-/// Round-off and curvature in a difference of forces over kStep, relative to the bound.
+/// Round-off and curvature in a difference of forces over a step, relative to the bound.
 constexpr double kDifference = 1e-4;
 constexpr double kFirstStride = 0.2, kLastStride = 1e-3;  // of a hill climb
 
@@ -78,16 +78,18 @@ class Challenger {
     if (!std::isfinite(limit)) return std::nullopt;
     const double rho = mode == Mode::Sticking ? attempt.lateral * limit : limit;
     const Vec3 x = model.contact_point() + (z + d0) * n + rho * sideways(n, attempt.azimuth);
-    const Vec3 dx = (kStep / norm(attempt.move)) * attempt.move;
+    const double step = step_length();
+    const Vec3 dx = (step / norm(attempt.move)) * attempt.move;
     const Vec3 before = model.respond(model.deflection(x)).force;
     if (mode == Mode::Sticking)
-      return norm(model.respond(model.deflection(x + dx)).force - before) / kStep;
+      return norm(model.respond(model.deflection(x + dx)).force - before) / step;
     const auto after = slide(x + dx, point, d0);
     if (!after) return std::nullopt;
-    return norm(*after - before) / kStep;
+    return norm(*after - before) / step;
   }
 
  private:
+  double step_length() const { return kStepOverDepth * library_.certificate.depth; }  // m
   double uniform() { return std::uniform_real_distribution<double>(0, 1)(engine_); }
   double normal() { return std::normal_distribution<double>(0, 1)(engine_); }
 
@@ -110,8 +112,8 @@ class Challenger {
       const LocalModel model(surface_, point, d0);
       const runtime::Deflection d = model.deflection(x);
       const double excess = d.lateral - model.slip_limit(d, library_.certificate.friction);
-      if (!(excess > kRest)) {
-        if (norm(model.contact_point() - start) < 1e-3 * kStep) return std::nullopt;
+      if (!(excess > kRestOverStep * step_length())) {
+        if (norm(model.contact_point() - start) < 1e-3 * step_length()) return std::nullopt;
         return model.respond(d).force;
       }
       const runtime::Walk walked = runtime::walk(surface_, point, d.tangent, excess);

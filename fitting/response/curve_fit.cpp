@@ -232,6 +232,15 @@ Samples checked(Samples samples, const std::string& where) {
 
 }  // namespace
 
+CurveFitSettings settled(CurveFitSettings settings, const std::vector<ForceSample>& samples) {
+  if (!std::isnan(settings.absolute_tolerance)) return settings;
+  double peak = 0;
+  for (const ForceSample& sample : samples) peak = std::max(peak, std::abs(sample.force));
+  // Any tolerance suits samples without a force: the curve without a slope meets them.
+  settings.absolute_tolerance = peak > 0 ? kPeakShare * peak : 1;
+  return settings;
+}
+
 std::vector<double> fit_slopes(const std::vector<ForceSample>& samples,
                                const std::vector<double>& knots, const CurveFitSettings& settings) {
   const auto rows = static_cast<Eigen::Index>(samples.size());
@@ -264,9 +273,10 @@ std::vector<double> fit_slopes(const std::vector<ForceSample>& samples,
   return slopes;
 }
 
-CurveFit fit_curve(std::vector<ForceSample> samples, const CurveFitSettings& settings,
+CurveFit fit_curve(std::vector<ForceSample> samples, const CurveFitSettings& given,
                    const std::string& where) {
   const Samples usable = checked(std::move(samples), where);
+  const CurveFitSettings settings = settled(given, usable);
   const Candidate best = KnotSearch(usable, settings).run();
   CurveFit fit{best.curve, 0, best.worst};
   for (std::size_t i = 0; i < usable.size(); ++i) {

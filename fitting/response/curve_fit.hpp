@@ -2,6 +2,7 @@
 // One response curve from samples of force against displacement.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,14 @@ struct ForceSample {
   double force = 0;         ///< N
 };
 
+/// Share of the largest force of a curve below which its errors do not count: half of what is
+/// tolerated of the local force.
+inline constexpr double kPeakShare = 0.005;
+
 struct CurveFitSettings {
   double relative_tolerance = 0.01;
-  double absolute_tolerance = 0.005;  ///< N
+  /// N; NaN: kPeakShare of the largest |force| of the samples
+  double absolute_tolerance = std::numeric_limits<double>::quiet_NaN();
   int max_knots = 12;
   bool zero_first_slope = false;  ///< for the normal response, whose slope is zero at touch
 };
@@ -26,6 +32,9 @@ struct CurveFit {
   double largest_error = 0;  ///< N, max |fit - sample| of the stored single-precision curve
   double worst_ratio = 0;    ///< max |fit - sample| / max(relative * |sample|, absolute)
 };
+
+/// The settings for these samples: the absolute tolerance is a number.
+CurveFitSettings settled(CurveFitSettings settings, const std::vector<ForceSample>& samples);
 
 /// Weight of the penalty on kinks of the slope, relative to a residual of one tolerance.
 inline constexpr double kKinkWeight = 1e-3;
@@ -38,6 +47,7 @@ inline constexpr double kEvenWeight = 1e-5;
 /// the mean length of its two pieces. The second sum matters only where the samples do not
 /// determine the slopes: with knots at the samples, slopes that alternate about the true ones fit
 /// equally well and would overestimate the stiffness.
+/// @pre the absolute tolerance is a number: see settled.
 std::vector<double> fit_slopes(const std::vector<ForceSample>& samples,
                                const std::vector<double>& knots, const CurveFitSettings& settings);
 

@@ -53,7 +53,8 @@ void check_curves(const Body& body, const Curves& curves) {
 
 void check_settings(const FitSettings& settings) {
   const auto positive = [](double value) { return std::isfinite(value) && value > 0; };
-  if (!positive(settings.relative_tolerance) || !positive(settings.absolute_tolerance)) {
+  if (!positive(settings.relative_tolerance) ||
+      !(std::isnan(settings.absolute_tolerance) || positive(settings.absolute_tolerance))) {
     refuse("fit settings", "a tolerance is not positive", "give positive tolerances");
   }
   if (settings.max_knots < 2) {

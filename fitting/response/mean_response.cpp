@@ -66,9 +66,10 @@ bool within_tolerance(const ResponseCurve& curve, const std::vector<ForceSample>
 }
 
 /// On the knots of the heaviest curve if that is within tolerance, else on knots of its own.
-ResponseCurve mean_curve(const CurveList& curves, const CurveFitSettings& settings,
+ResponseCurve mean_curve(const CurveList& curves, const CurveFitSettings& given,
                          const std::string& where) {
   const std::vector<ForceSample> samples = mean_samples(curves);
+  const CurveFitSettings settings = settled(given, samples);
   std::vector<double> knots;
   for (const auto& piece : heaviest(curves).curve.pieces()) knots.push_back(piece.start);
   ResponseCurve curve;

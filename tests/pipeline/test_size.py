@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""The same block of 0.4 mm, of 5 cm and of 6.4 m, from its surface to the certificate.
+"""The same block of 0.4 mm, of 5 cm and of 6.4 m, from its surface to a session.
 
 Usage: test_size.py PALPATE. A hyperelastic solid has no length of its own: where every length of the case is
 s times as long, every force is s^2 times and every stiffness s times as large. Powers of two scale without
-rounding, so that the meshes are the same, too.
+rounding, so that the meshes are the same, too. The case gives no length but those of its supports, no force and
+no stiffness: the defaults are those of the body.
 """
 import re
 import subprocess
@@ -20,48 +21,75 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from bodies import CASE, SIZE, block, write_case  # noqa: E402
 
 PALPATE = None
+BEYOND_DEPTH, CONTACT, SLIDING = 64, 1, 8
+
+
+def by_default(case):
+    """The case without what it may leave out. What is added keeps the test quick."""
+    for section in ("tool", "fit", "simulate", "indentation", "mesh"):
+        case = re.sub(rf"^\[{section}\]\n(?:.+\n)*\n?", "", case, flags=re.MULTILINE)
+    return case + ("\n[mesh]\ninterior_coarsening = 3.0\n"
+                   "\n[[press]]\nshape = \"sphere\"\ncentre = [\"25 mm\", \"25 mm\", \"20 mm\"]\nradius = \"8 mm\"\n"
+                   "\n[indentation]\nincrements = 4\nlateral_increments = 2\n")
 
 
 def resized(case, scale):
-    """The case with every length `scale` times as long, and its forces to match."""
-    def longer(match):
-        number, unit = float(match[1]), match[2]
-        return f'{number * (scale**2 if unit == "mN" else scale):.17g} {unit}"'
-    return re.sub(r"(-?[\d.]+) (mm|mN)\"", longer, case)
+    """The case with every length `scale` times as long."""
+    return re.sub(r"(-?[\d.]+) mm\"", lambda match: f'{float(match[1]) * scale:.17g} mm"', case)
 
 
 class Size(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        cls.reference = cls.build(1)
+        cls.reference = cls.run_on(1)
 
     @classmethod
     def tearDownClass(cls):
         cls.folder.cleanup()
 
     @classmethod
-    def build(cls, scale):
-        """Forces and displacements of every sample, SI, and the certified bound, N/m."""
+    def run_on(cls, scale):
+        """What the stages make of the block, SI: forces, bounds, the fit, a session."""
         root = Path(cls.folder.name) / f"{scale:g}"
         root.mkdir()
         vertices, triangles = block(SIZE, 5)
         surface = [tuple(scale * x for x in vertex) for vertex in vertices], triangles
-        case = write_case(root, resized(CASE, scale), surface)
-        done = subprocess.run([PALPATE, "build", case, "--out", root / "out", "--threads", "2"],
-                              capture_output=True, text=True, check=False)
-        assert done.returncode == 0, done.stdout + done.stderr
-        with h5py.File(root / "out" / "curves.h5") as curves, h5py.File(root / "out" / "library.h5") as library:
+        case = write_case(root, resized(by_default(CASE), scale), surface)
+        said = ""
+        for stage in ("build", "simulate"):
+            done = subprocess.run([PALPATE, stage, case, "--out", root / "out"] + ["--threads", "2"] * (stage == "build"),
+                                  capture_output=True, text=True, check=False)
+            assert done.returncode == 0, done.stdout + done.stderr
+            said += done.stdout
+        with h5py.File(root / "out" / "curves.h5") as curves, h5py.File(root / "out" / "library.h5") as library, \
+                h5py.File(root / "out" / "recording.h5") as session:
             return {"force": curves["sample/force"][:], "displacement": curves["sample/displacement"][:],
-                    "bound": library["certificate"].attrs["slip"]}
+                    "knots": library["response/normal_offset"][:], "error": library["response/normal_error"][:],
+                    "bound": library["certificate"].attrs["stick"],
+                    "depth": session["step/depth"][:], "commanded": session["step/force"][:],
+                    "status": session["step/status"][:], "said": said}
 
     def assert_scales(self, scale):
-        body = self.build(scale)
-        for name, power in (("displacement", 1), ("force", 2)):
+        body = self.run_on(scale)
+        for name, power, tolerance in (("displacement", 1, 1e-4), ("force", 2, 1e-4), ("error", 2, 0.02),
+                                       ("depth", 1, 5e-3), ("commanded", 2, 5e-3)):
             expected = scale**power * self.reference[name]
-            self.assertEqual(body[name].shape, expected.shape)
-            np.testing.assert_allclose(body[name], expected, rtol=0, atol=1e-4 * np.abs(expected).max())
+            with self.subTest(name):
+                self.assertEqual(body[name].shape, expected.shape)
+                np.testing.assert_allclose(body[name], expected, rtol=0, atol=tolerance * np.abs(expected).max())
+        np.testing.assert_array_equal(body["knots"], self.reference["knots"])
         self.assertAlmostEqual(body["bound"] / (scale * self.reference["bound"]), 1, delta=0.01)
+
+    def test_the_fit_follows_every_curve_and_the_session_stays_within_them(self):
+        said = self.reference["said"]
+        worst = float(re.search(r"normal .* median, ([\d.]+) % worst", said)[1])
+        self.assertLess(worst, 5)
+        self.assertNotIn("miss their curves", said)
+        status = self.reference["status"]
+        self.assertTrue(np.any(status & CONTACT))
+        self.assertTrue(np.any(status & SLIDING))
+        self.assertFalse(np.any(status & BEYOND_DEPTH))
 
     def test_four_tenths_of_a_millimetre(self):
         self.assert_scales(1 / 128)

@@ -123,10 +123,16 @@ void describe_mesh(V& v, mesher::Settings& s) {
        "`isotropic` remeshes the skin and keeps its sharp edges; `delaunay` also meshes detail "
        "finer than a patch and rounds sharp edges; `auto` takes the first that makes a sound mesh"},
       kMeshMethods);
-  v.quantity(s.patch_spacing, Dimension::Length,
-             {"patch_spacing", "edge length of the response surface", kOptional, kPositive});
-  v.quantity(s.element_size, Dimension::Length,
-             {"element_size", "edge length of the boundary facets", kOptional, kPositive});
+  v.quantity_or_auto(
+      s.patch_spacing, Dimension::Length,
+      {"patch_spacing",
+       "edge length of the response surface; `auto`: a fifteenth of the diagonal of the box around "
+       "the body",
+       kOptional, kPositive});
+  v.quantity_or_auto(
+      s.element_size, Dimension::Length,
+      {"element_size", "edge length of the boundary facets; `auto`: half of `patch_spacing`",
+       kOptional, kPositive});
   v.number(s.interior_coarsening, {"interior_coarsening",
                                    "target ratio of the largest interior edge to `element_size`",
                                    kOptional,

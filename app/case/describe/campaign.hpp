@@ -17,9 +17,11 @@ void describe_tool(V& v, fem::IndentationSettings& s) {
                    "rigid tool; `disc`: end of an upright cylinder; `cylinder`: on its side, with "
                    "hemispherical ends"},
                   kToolShapes);
-  v.quantity(s.tool.radius, Dimension::Length,
-             {"radius", "radius of the sphere, the disc or the cross-section of the cylinder",
-              kOptional, kPositive});
+  v.quantity_or_auto(s.tool.radius, Dimension::Length,
+                     {"radius",
+                      "radius of the sphere, the disc or the cross-section of the cylinder; "
+                      "`auto`: half of `patch_spacing`",
+                      kOptional, kPositive});
   describe_choice(
       v, s.friction,
       {"friction",
@@ -42,21 +44,28 @@ void describe_tool(V& v, fem::IndentationSettings& s) {
 
 template <class V>
 void describe_indentation(V& v, fem::IndentationSettings& s) {
-  v.quantity(s.depth, Dimension::Length,
-             {"depth", "depth at the end of the normal path", kOptional, kPositive});
+  v.quantity_or_auto(
+      s.depth, Dimension::Length,
+      {"depth",
+       "depth at the end of the normal path; `auto`: 0.4 of `patch_spacing`, but at most a fifth "
+       "of the smallest dimension of the body",
+       kOptional, kPositive});
   v.integer(s.increments,
             {"increments", "increments of the normal path", kOptional, {.low = 2, .high = 1000}});
-  v.quantity(s.lateral_travel, Dimension::Length,
-             {"lateral_travel", "travel at the end of each lateral path", kOptional, kPositive});
+  v.quantity_or_auto(
+      s.lateral_travel, Dimension::Length,
+      {"lateral_travel", "travel at the end of each lateral path; `auto`: half of `depth`",
+       kOptional, kPositive});
   v.integer(s.lateral_increments, {"lateral_increments",
                                    "increments of each lateral path",
                                    kOptional,
                                    {.low = 2, .high = 1000}});
-  v.quantities(s.lateral_depths, Dimension::Length,
-               {"lateral_depths",
-                "depths of the lateral paths, each at most `depth`; without this key a third, two "
-                "thirds and all of `depth`",
-                kOptional, kPositive});
+  v.quantities_or_auto(
+      s.lateral_depths, Dimension::Length,
+      {"lateral_depths",
+       "depths of the lateral paths, each at most `depth`; `auto`: a third, two thirds and all of "
+       "`depth`",
+       kOptional, kPositive});
   v.quantities(
       s.azimuths, Dimension::Angle,
       {"azimuths", "directions of the lateral paths in the tangent plane", kOptional, kAny});
@@ -78,9 +87,11 @@ void describe(V& v, SamplingSection& s) {
                    "`element_size`) or adaptive"},
                   kSamplingMethods);
   if (!v.when("method", std::string(name_in(kSamplingMethods, s.method)), "adaptive")) return;
-  v.quantity(
+  v.quantity_or_auto(
       s.initial_spacing, Dimension::Length,
-      {"initial_spacing", "distance between the sites of the first round", kOptional, kPositive});
+      {"initial_spacing",
+       "distance between the sites of the first round; `auto`: three times `patch_spacing`",
+       kOptional, kPositive});
   v.number(s.tolerance,
            {"tolerance",
             "sites are added until the 95th-percentile relative error of the normal forces at "

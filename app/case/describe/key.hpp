@@ -43,6 +43,9 @@ struct Key {
 
 using Choices = std::vector<std::string_view>;
 
+/// What a case file writes for kAuto.
+inline constexpr std::string_view kAutoText = "auto";
+
 constexpr auto kRequired = Presence::Required;
 constexpr auto kOptional = Presence::Optional;
 

@@ -13,10 +13,12 @@ void describe_fit(V& v, fitting::FitSettings& s) {
                                   "tolerated error of a response, relative to the local force",
                                   kOptional,
                                   {.low = 0, .high = 1}});
-  v.quantity(s.absolute_tolerance, Dimension::Force,
-             {"absolute_tolerance",
-              "tolerated error of a response; the larger of the two tolerances applies", kOptional,
-              kPositive});
+  v.quantity_or_auto(
+      s.absolute_tolerance, Dimension::Force,
+      {"absolute_tolerance",
+       "tolerated error of a response; the larger of the two tolerances applies; `auto`: 0.005 of "
+       "the largest force of each curve",
+       kOptional, kPositive});
   v.integer(
       s.max_knots,
       {"max_knots", "largest number of knots of a response", kOptional, {.low = 2, .high = 1000}});

@@ -168,22 +168,6 @@ TEST(CertifiedLipschitzBound, IsInfiniteWhereTheBoundMayNotBeEnforceable) {
   EXPECT_TRUE(std::isinf(certified_lipschitz_bound(certificate(100, 200, 180, 150))));
 }
 
-TEST(LipschitzBoundText, IsRoundedUpToAValidSetting) {
-  EXPECT_EQ(lipschitz_bound_text(104.41), "104.5 N/m");
-  EXPECT_EQ(lipschitz_bound_text(104.5), "104.5 N/m");
-}
-
-TEST(Verdict, NamesTheRateTheReasonAndWhatThrottledSlidesBring) {
-  const Certificate c = certificate(100, 400, 104.4);
-  EXPECT_EQ(verdict(c, {"device", kNaN, kNaN, kNaN, kNaN}),
-            "damping unknown: not certified for this device");
-  EXPECT_EQ(verdict(c, {"device", 0.1, kInfinity, 0, 0}), "not certified: the slide has no bound");
-  EXPECT_EQ(verdict(c, {"device", 0.1, 8000, 0, 0}),
-            "certified passive from 8000 Hz; from 2088 Hz with lipschitz_bound = 104.4 N/m");
-  EXPECT_EQ(verdict(certificate(100, 400), {"device", 0.1, 8000, 0, 0}),
-            "certified passive from 8000 Hz");
-}
-
 TEST(LibraryOfSchemaOne, HasOtherNamesForTheBoundsOfTheCertificate) {
   const TemporaryFolder folder;
   const auto path = folder / "library.h5";

@@ -10,6 +10,7 @@ import { significant } from './units.js';
 
 const MAX_PIXELS = 3.2e6;
 const DISC = 8;          // radius, pixels
+const FLAG = 5;          // half the size of a symbol, pixels
 const MOST_LABELS = 30;  // numbers that can be read side by side
 
 function label(context, text, x, y, scale) {
@@ -33,7 +34,8 @@ export class BodyView {
     this.marked = [];
     this.discs = [];
     this.path = null;
-    this.show = { nodes: true, borders: true, path: true, inclusions: true };
+    this.show = { nodes: true, borders: true, path: true, inclusions: true, flags: true };
+    this.flags = [];  // {vertex, symbol: 'cross' | 'triangle'}
     this.inclusions = [];  // Outlines
     this.canvas = el('canvas', { tabindex: '0', role: 'img', 'aria-label': 'The body in three dimensions. Arrow keys turn it.' });
     this.tip = el('div', { class: 'tip' });
@@ -162,6 +164,7 @@ export class BodyView {
     };
     if (this.show.inclusions) this.drawInclusions(context, project);
     if (this.show.nodes) this.drawNodes(context, place);
+    if (this.show.flags) this.drawFlags(context, place);
     if (this.show.path && this.path) this.drawPath(context, place);
     for (const mark of this.marked) this.drawMark(context, place, mark);
     this.drawDiscs(context, place);
@@ -197,6 +200,33 @@ export class BodyView {
       context.arc(x, y, 1.4 * this.scale, 0, 7);
       context.fill();
     }
+  }
+
+  /** Symbols at vertices that a reader has to know of; those on the far side are drawn faint. */
+  drawFlags(context, place) {
+    const r = FLAG * this.scale;
+    for (const { vertex, symbol } of this.flags) {
+      const { x, y, seen } = place(this.model.vertices.position, 3 * vertex);
+      context.globalAlpha = seen ? 1 : 0.25;
+      for (const [stroke, width] of [['#fff', 4.5], [colour('warn'), 2.2]]) {
+        context.strokeStyle = stroke;
+        context.lineWidth = width * this.scale;
+        context.beginPath();
+        if (symbol === 'cross') {
+          for (const side of [-1, 1]) {
+            context.moveTo(x - r, y - side * r);
+            context.lineTo(x + r, y + side * r);
+          }
+        } else {
+          context.moveTo(x, y - 1.3 * r);
+          context.lineTo(x + 1.2 * r, y + 0.9 * r);
+          context.lineTo(x - 1.2 * r, y + 0.9 * r);
+          context.closePath();
+        }
+        context.stroke();
+      }
+    }
+    context.globalAlpha = 1;
   }
 
   /** Single vertices in the colour of their value, and the value itself where there are few. Those

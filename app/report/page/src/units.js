@@ -26,10 +26,18 @@ const scaled = (steps) => (value) => {
   return significant(value / factor) + NBSP + unit;
 };
 export const length = (m) => significant(m * 1e3) + NBSP + 'mm';
-export const force = scaled([[1, 'N'], [1e-3, 'mN']]);
+export const force = scaled([[1, 'N'], [1e-3, 'mN'], [1e-6, '\u00b5N']]);
 export const stiffness = (k) => significant(k) + NBSP + 'N/m';
+/** Rounded up to four significant digits: an upper bound stays one. */
+function roundedUp(value) {
+  const unit = 10 ** (Math.floor(Math.log10(value)) - 3);
+  return significant(value > 0 ? Math.ceil(value / unit - 1e-9) * unit : value, 4);
+}
 /** A bound of the certificate: where there is none it reads null or infinite. */
-export const bound = (k) => (Number.isFinite(k) ? stiffness(k) : 'not certified: no bound');
+export const bound = (k) => (Number.isFinite(k) ? `${roundedUp(k)}${NBSP}N/m` : 'no bound');
+export const lowestRate = (f) => `${roundedUp(f)}${NBSP}Hz`;
+/** A position in the unit of the page. */
+export const place = (p) => `(${p.map((x) => significant(x * 1e3)).join(', ')})${NBSP}mm`;
 export const energy = (j) => (j === 0 ? `0${NBSP}J` : scaled([[1, 'J'], [1e-3, 'mJ'], [1e-6, '\u00b5J'], [1e-9, 'nJ'], [1e-12, 'pJ']])(j));
 export const time = scaled([[1, 's'], [1e-3, 'ms'], [1e-6, '\u00b5s'], [1e-9, 'ns']]);
 export const frequency = scaled([[1e6, 'MHz'], [1e3, 'kHz'], [1, 'Hz']]);

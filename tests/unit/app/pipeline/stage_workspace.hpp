@@ -18,6 +18,10 @@ struct StageWorkspace {
     std::ofstream(folder / "block.toml") << R"([surface]
 file = "block.off"
 unit = "mm"
+[mesh]
+patch_spacing = "10 mm"
+[indentation]
+depth = "6 mm"
 [[support]]
 shape = "sphere"
 centre = ["0 mm", "0 mm", "0 mm"]

@@ -58,13 +58,14 @@ SamplingRound sampling_round() {
 
 Certified certified() {
   Certified event;
+  event.guarantee = "guaranteed by the runtime";
   event.friction = 0.3;
   event.stick_bound = 150.26;
   event.slip_bound = kInfinity;
   event.min_enforceable_bound = 160.01;
   event.enforced_bound = 170;
   event.limited_by = "a slide in triangle 7";
-  event.devices = {{"pen", "certified passive from 900 Hz"}};
+  event.devices = {{"pen", "passive from 900 Hz on"}};
   event.file = "out/library.h5";
   return event;
 }
@@ -77,12 +78,17 @@ StiffnessAtRate stiffness(double certifiable, double library, double enforceable
 TEST(TextSink, PrintsTheStagesOfABuild) {
   EXPECT_EQ(text_of({StageStarted{"mesh", "out/body.h5", "missing"},
                      LogLine{"mesh", "remeshed"}, MeshFinished{10, 20, 30, 5, "out/body.h5"},
-                     StageUpToDate{"fit", "out/library.h5"}, FitFinished{4, 1, 2, "l.h5"},
+                     StageUpToDate{"fit", "out/library.h5"},
+                     FitFinished{4, 1, 2, {0.004, 0.1, 7}, {0.02, 0.5, 3}, {0.03, 0.6, 3}, "l.h5"},
                      FileWritten{"convergence", "c.csv"}, Warning{"precompute", "careful"}}),
             "mesh: creating out/body.h5 (missing)\n"
             "  remeshed\n"
             "mesh: 10 nodes, 20 tetrahedra, 30 response triangles, 5 sites -> out/body.h5\n"
             "fit: out/library.h5 is up to date\n"
+            "  error of the fit over the largest force of a site: normal 0.40 % median, 10 % worst "
+            "(site 7)\n"
+            "    lateral 2.0 % median, 50 % worst (site 3); to any single path 3.0 % median, 60 % "
+            "worst (site 3)\n"
             "fit: 4 responses fitted, 1 interpolated, 2 holes -> l.h5\n"
             "convergence: c.csv\n"
             "warning: careful\n");
@@ -161,18 +167,24 @@ TEST(TextSink, PrintsAdaptiveSampling) {
 }
 
 TEST(TextSink, PrintsTheCertificateAndBoundsThatDoNotExist) {
-  EXPECT_EQ(text_of({certified()}),
-            "  L_stick: 150.3 N/m, L_slip: no bound at mu = 0.3\n"
-            "  smallest enforceable bound L_min: 160.1 N/m; the runtime enforces 170.0 N/m\n"
-            "  limited by: a slide in triangle 7\n"
-            "  pen: certified passive from 900 Hz\n"
-            "certify: out/library.h5\n");
+  EXPECT_EQ(
+      text_of({certified()}),
+      "certify: guaranteed by the runtime\n"
+      "  pen: passive from 900 Hz on\n"
+      "  L_stick: 150.3 N/m at a fixed contact point, L_slip: no bound while sliding, at mu = "
+      "0.3\n"
+      "  smallest enforceable bound L_min: 160.1 N/m; the runtime enforces 170.0 N/m\n"
+      "  limited by: a slide in triangle 7\n"
+      "certify: out/library.h5\n");
+  Certified no_device = certified();
+  no_device.devices.clear();
+  EXPECT_THAT(text_of({no_device}), HasSubstr("no rate is guaranteed on any device"));
 }
 
 TEST(TextSink, PrintsTheCertifiableStiffnessAndItsRemedies) {
   EXPECT_THAT(text_of({stiffness(NAN, 100, 90)}), HasSubstr("its damping is unknown"));
   EXPECT_THAT(text_of({stiffness(200, 100, 90)}), HasSubstr("2.00 times its forces"));
-  EXPECT_THAT(text_of({stiffness(95, 100, 90)}), HasSubstr("throttled to 90.0 N/m"));
+  EXPECT_THAT(text_of({stiffness(95, 100, 90)}), HasSubstr("throttled to 90.00 N/m"));
   EXPECT_THAT(text_of({stiffness(80, 100, kInfinity)}), HasSubstr("no bound can be enforced"));
   EXPECT_THAT(text_of({stiffness(45, 100, 90)}),
               HasSubstr("3 of 20 triangles exceed it, most of all triangle 7"));
@@ -185,13 +197,13 @@ TEST(TextSink, PrintsTheCertifiableStiffnessAndItsRemedies) {
 TEST(TextSink, PrintsSearchesAndStudies) {
   EXPECT_THAT(text_of({SteepestForce{"sliding", 0, 0, -1, 0, 0}}), HasSubstr("nothing to search"));
   EXPECT_THAT(text_of({SteepestForce{"sticking", 90, 100, 3, 0.95, 400}}),
-              HasSubstr("90.0 N/m in triangle 3, 0.90 of the bound"));
+              HasSubstr("90.00 N/m in triangle 3, 0.90 of the bound"));
   EXPECT_THAT(text_of({SteepestForce{"sliding", 90, kInfinity, 3, 0.95, 400}}),
               HasSubstr("there is no bound"));
   EXPECT_THAT(text_of({ConvergenceLevel{0.004, 12000, 61}}),
               HasSubstr("elements of 4 mm, 12000 unknowns, 1 min 01 s"));
   EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, true, 1.5, 0.08, 0.25}}),
-              HasSubstr("100.00 90.00 -> 80.00 mN, order 1.50"));
+              HasSubstr("100.0 90.00 -> 80.00 mN, order 1.50"));
   EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, false, NAN, 0.09, 0.1}}),
               HasSubstr("spread 10.0 %"));
   EXPECT_THAT(text_of({MergeFinished{9, 3, {9, 0, 0}, "c.h5"}}),
@@ -225,7 +237,7 @@ TEST(JsonSink, WritesNullForNumbersThatAreNotFinite) {
   const Json event = json_of(certified());
   EXPECT_TRUE(event["L_slip"].is_null());
   EXPECT_EQ(event["L_stick"], 150.26);
-  EXPECT_EQ(event["devices"]["pen"], "certified passive from 900 Hz");
+  EXPECT_EQ(event["devices"]["pen"], "passive from 900 Hz on");
   EXPECT_TRUE(json_of(stiffness(NAN, 1, 1))["certifiable_stiffness"].is_null());
 }
 

@@ -16,6 +16,8 @@ class Freshness : public ::testing::Test {
     std::ofstream(folder_ / "ball.toml") << R"([surface]
 file = "ball.off"
 unit = "mm"
+[mesh]
+patch_spacing = "8 mm"
 [[support]]
 shape = "sphere"
 centre = ["0 mm", "0 mm", "0 mm"]

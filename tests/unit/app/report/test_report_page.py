@@ -10,6 +10,7 @@ import html.parser
 import json
 import math
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -194,18 +195,26 @@ class ReportPage(unittest.TestCase):
         data = json.loads(self.full.by_id["data"])
         worst = max(data["certificate"][name] for name in ("stick", "slip"))
         said = self.full.by_id["certificate"]
-        self.assertIn(f"certified passive from {2 * worst / 1.9:.0f} Hz", said)  # omega.3
-        self.assertIn(f"certified passive from {2 * worst / 0.6:.0f} Hz", said)  # Touch X
-        self.assertEqual(said.count("damping unknown: not certified for this device"), 1)
-        self.assertEqual(self.full.by_id["certified"].split("\u00a0")[0], f"{worst:.0f}")
+        rates = [float(r) for r in re.findall(r"passive from ([\d.]+) Hz on, by the curves themselves", said)]
+        self.assertEqual(len(rates), 2)
+        for rate, damping in zip(rates, (1.9, 0.6)):  # omega.3, Touch X
+            self.assertGreaterEqual(rate, 2 * worst / damping * (1 - 1e-12))
+            self.assertAlmostEqual(rate / (2 * worst / damping), 1, delta=1e-3)
+        self.assertEqual(said.count("no guarantee: its damping is unknown"), 1)
+        self.assertIn("omega.3; the force changes by at most", self.full.text)
+        self.assertTrue(self.full.by_id["guarantee"].startswith("Guaranteed by the curves themselves"))
+        shown = self.full.by_id["guaranteed"].replace("\u202f", "")  # the lowest rate of all devices
+        self.assertAlmostEqual(float(re.search(r"from ([\d.]+)", shown)[1]) / (2 * worst / 1.9), 1, delta=1e-3)
 
-    def test_a_slide_without_bound_is_not_certified(self):
+    def test_a_slide_without_bound_is_no_guarantee(self):
         said = self.unbounded.by_id["certificate"]
-        self.assertIn("not certified: no bound; while sliding", said)
-        self.assertEqual(said.count("not certified: the slide has no bound"), 2)
-        self.assertEqual(said.count("damping unknown: not certified for this device"), 1)
-        self.assertNotIn("certified passive from", said)
-        self.assertEqual(self.unbounded.by_id["certified"], "none")
+        self.assertIn("no bound; while sliding", said)
+        self.assertEqual(said.count("no guarantee at any rate: slides have no bound"), 2)
+        self.assertEqual(said.count("no guarantee: its damping is unknown"), 1)
+        self.assertNotIn("passive from", said)
+        self.assertEqual(self.unbounded.by_id["guaranteed"], "nothing")
+        self.assertTrue(self.unbounded.by_id["guarantee"].startswith("Nothing is guaranteed"))
+        self.assertNotIn("ertified", self.unbounded.text)  # no such word where nothing is
 
     def test_the_page_answers_the_reader(self):
         """Turn, colour by L_slip, click the middle of the body, drag the depth to 3 mm, as a reader would."""

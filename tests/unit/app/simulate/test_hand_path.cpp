@@ -9,7 +9,7 @@
 namespace palpate::app {
 namespace {
 
-constexpr double kClearance = 0.004;  // m, of the start above the surface
+constexpr double kClearance = 0.003;  // m, of the start above the surface: the depth of the press
 
 /// A straight path along x on the plane z = 0.
 std::vector<PathPoint> straight(double length) {

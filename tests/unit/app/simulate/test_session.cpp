@@ -28,6 +28,7 @@ class Session : public testing::Test {
     write_library(file_, library_);
     script_.press_depth = 0.004;
     script_.slide_length = 0.02;
+    script_.device = kPublishedDevice;
   }
   std::vector<RecordedStep> played() {
     std::vector<RecordedStep> steps;

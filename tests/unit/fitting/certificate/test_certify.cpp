@@ -6,6 +6,7 @@
 
 #include "fitting/certificate/certify.hpp"
 #include "format/error.hpp"
+#include "format/guarantee.hpp"
 #include "tests/support/surfaces.hpp"
 
 namespace palpate::fitting {
@@ -63,7 +64,8 @@ TEST(Certificate, RateOfADeviceFollowsTheWorstBound) {
   EXPECT_NEAR(device.lowest_rate, 2 * 162 / 0.081, 1e-9);  // 4 kHz
   EXPECT_NEAR(device.linear_limit, 54, 1e-9);
   EXPECT_NEAR(device.no_delay_limit, 162, 1e-9);
-  EXPECT_EQ(verdict(library.certificate, device), "certified passive from 4000 Hz");
+  EXPECT_EQ(verdict(library.certificate, device),
+            "passive from 4000 Hz on, by the curves themselves");
   for (const double refused : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
     settings.devices[0].damping = refused;
     EXPECT_THROW(certify(library, settings), Error);
@@ -84,7 +86,7 @@ TEST(Certificate, ADeviceOfUnknownDampingIsNotCertified) {
        {device.damping, device.lowest_rate, device.linear_limit, device.no_delay_limit}) {
     EXPECT_TRUE(std::isnan(value)) << value;
   }
-  EXPECT_EQ(verdict(library.certificate, device), "damping unknown: not certified for this device");
+  EXPECT_EQ(verdict(library.certificate, device), "no guarantee: its damping is unknown");
 }
 
 TEST(Certificate, AHoleIsABorder) {
@@ -113,8 +115,10 @@ TEST(Certificate, DepthBeyondTheRadiusOfCurvatureHasNoBoundAndAReason) {
   EXPECT_NEAR(library.certificate.min_lipschitz_bound, 100 * std::hypot(1, 0.3), 1e-9);
   EXPECT_DOUBLE_EQ(library.certificate.lipschitz_bound, 400);
   EXPECT_DOUBLE_EQ(library.certificate.devices.at(0).lowest_rate, 2 * 400 / 0.081);
-  EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
-            "certified passive from 9877 Hz; from 2578 Hz with lipschitz_bound = 104.5 N/m");
+  EXPECT_EQ(
+      verdict(library.certificate, library.certificate.devices.at(0)),
+      "passive from 9877 Hz on, with slides throttled; from 2578 Hz on with lipschitz_bound = "
+      "104.5 N/m");
   EXPECT_TRUE(std::isinf(library.certificate.slip));
   const std::string& line = library.certificate.limited_by;
   EXPECT_NE(line.find("no bound of the slide: pressed 10 mm deep"), std::string::npos) << line;
@@ -163,7 +167,7 @@ TEST(Certificate, ACoupledResponseThatIsFlatWhereSlipBeginsHasNoEnforceableBound
     EXPECT_EQ(std::isinf(library.certificate.devices.at(0).lowest_rate), flat);
     if (flat) {
       EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
-                "not certified: the slide has no bound");
+                "no guarantee at any rate: slides have no bound");
     }
   }
 }

@@ -223,6 +223,27 @@ TEST(CurveFit, AllZeroForcesAreAFlatCurve) {
   EXPECT_EQ(runtime::CompiledCurve(fit.curve).max_slope(), 0);
 }
 
+/// The tolerance is a share of the curve's own force: a curve a thousandfold softer is fitted
+/// alike.
+TEST(CurveFit, WithoutAnAbsoluteToleranceFollowsSoftCurvesAsWellAsStiffOnes) {
+  std::size_t knots = 0;
+  for (const double scale : {1.0, 1.0 / 1024, 1.0 / (1 << 24), 4096.0}) {
+    const Samples samples = sampled(12, kDepth, [&](double d) { return scale * hertz(d); });
+    CurveFitSettings settings;
+    settings.zero_first_slope = true;
+    const CurveFit fit = fit_curve(samples, settings, "test");
+    EXPECT_LE(fit.largest_error, 0.01 * scale * hertz(kDepth)) << scale;
+    EXPECT_LE(fit.worst_ratio, 1) << scale;
+    for (const ForceSample& sample : samples) {
+      const double error =
+          runtime::CompiledCurve(fit.curve).force(sample.displacement) - sample.force;
+      EXPECT_LE(std::abs(error), std::max(0.01 * sample.force, 0.005 * scale * hertz(kDepth)));
+    }
+    if (knots == 0) knots = fit.curve.knot.size();
+    EXPECT_EQ(fit.curve.knot.size(), knots) << scale;
+  }
+}
+
 TEST(CurveFit, RefusesWhatIsNotANumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(fit_curve({{0.001, nan}}, {}, "site 4"), Error);

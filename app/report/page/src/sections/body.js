@@ -3,12 +3,13 @@
 import { BodyView } from '../body-view.js';
 import { cssGradient, roundTicks } from '../colormap.js';
 import { FIXED, HOLE, RESPONSE, SITE } from '../data.js';
-import { el, paragraph } from '../dom.js';
+import { el, paragraph, table } from '../dom.js';
 import { Model } from '../model.js';
 import { Outline } from '../outline.js';
 import { secantStiffness, responseForce } from '../response.js';
 import { colour } from '../theme.js';
 import { errorOfVertices, errorsAt } from './comparison.js';
+import { misfits, positionOf } from './fit.js';
 import * as units from '../units.js';
 
 /** The fields the picture can be coloured with: {label, unit, values(depth), sparse, from}. `sparse`:
@@ -54,7 +55,7 @@ function extent(values) {
 function rangeText(field, depth, span, unbounded) {
   const at = field.deep ? ` at d = ${units.length(depth)}` : '';
   const values = span ? `${units.significant(span[0])} to ${units.significant(span[1])} ${field.unit}` : 'no value';
-  const grey = unbounded ? ` ${units.count(unbounded)} ${unbounded === 1 ? 'triangle is' : 'triangles are'} not certified: no bound (grey).` : '';
+  const grey = unbounded ? ` ${units.count(unbounded)} ${unbounded === 1 ? 'triangle has' : 'triangles have'} no bound (grey).` : '';
   return `${field.label}${at}: ${values}.${grey}`;
 }
 
@@ -85,6 +86,15 @@ class ColourBar {
   }
 }
 
+const PARTIAL = 1, FAILED = 2;
+
+/** Vertices with a symbol: where a site ended early, and where the fit misses it. */
+function flags(v) {
+  const early = Array.from(v.site_status, (status, vertex) => ({ vertex, status })).filter((n) => n.status === PARTIAL || n.status === FAILED);
+  return [...early.map((n) => ({ vertex: n.vertex, symbol: 'cross' })),
+    ...misfits(v).map((n) => ({ vertex: n.vertex, symbol: 'triangle' }))];
+}
+
 /** Stand where the stiffest node faces the viewer. */
 function facing(data, model) {
   const v = data.chosen.stiffest;
@@ -107,6 +117,7 @@ export function bodySection(data, nodes, curves) {
     describe: (found) => describe(data, found, depth),
   });
   view.path = data.session?.drawn ?? null;
+  view.flags = flags(data.vertices);
   view.inclusions = data.inclusions.map((inclusion) => new Outline(inclusion));
   const bar = new ColourBar();
   const depthText = el('output', {}), range = el('p', { class: 'note', id: 'field-range' });
@@ -138,7 +149,7 @@ export function bodySection(data, nodes, curves) {
     paragraph('The colour shows a property of the responses on the boundary of the body. Drag to turn, click a node to see its curves.', 'lead'),
     el('div', { class: 'split' },
       el('div', {}, controls(options, view, depthControl, (n) => { name = n; refresh(); }),
-        el('div', { class: 'view' }, view.element, bar.element), range, keys(data)),
+        el('div', { class: 'view' }, view.element, bar.element), range, keys(data), endedEarly(data.vertices)),
       curves.element));
 }
 
@@ -149,13 +160,23 @@ function controls(options, view, depthControl, choose) {
     el('label', {}, 'Colour', el('select', { id: 'field', onchange: (e) => choose(e.target.value) },
       Object.entries(options).map(([key, f]) => el('option', { value: key }, f.label)))),
     depthControl,
-    check('nodes', 'nodes'), check('patches', 'borders'),
+    check('nodes', 'nodes'), view.flags.length ? check('marked sites', 'flags') : null, check('patches', 'borders'),
     view.path ? check('contact path', 'path') : null,
     view.inclusions.length ? check('inclusions', 'inclusions') : null,
     el('span', {},
       el('button', { type: 'button', 'aria-label': 'Zoom in', onclick: () => view.zoomBy(1.25) }, '+'), ' ',
       el('button', { type: 'button', 'aria-label': 'Zoom out', onclick: () => view.zoomBy(0.8) }, '\u2212'), ' ',
       el('button', { type: 'button', onclick: () => view.reset() }, 'Reset')));
+}
+
+/** Which sites ended early, where and why. */
+function endedEarly(v) {
+  const nodes = Object.keys(v.reasons).map(Number).filter((n) => v.site_status[n] === PARTIAL || v.site_status[n] === FAILED);
+  if (!nodes.length) return null;
+  const row = (n) => [String(n), SITE[v.site_status[n]], units.place(positionOf(v, n)), v.reasons[n], RESPONSE[v.response_status[n]]];
+  return el('details', { id: 'ended-early' },
+    el('summary', { class: 'warn' }, `${units.count(nodes.length)} ${nodes.length === 1 ? 'site' : 'sites'} ended early (crosses)`),
+    table(['Node', 'Site', 'Position', 'Reason', 'Response'], nodes.map(row), [0]));
 }
 
 function keys(data) {
@@ -168,6 +189,8 @@ function keys(data) {
   return el('div', { class: 'keys' },
     kinds.has(FIXED) ? key('body-fixed', 'fixed by a support') : null,
     kinds.has(1) ? key('body-hole', 'no response (a hole, a support or outside the press zones)') : null,
+    flags(data.vertices).some((f) => f.symbol === 'cross') ? el('span', {}, '\u2715 site ended early') : null,
+    flags(data.vertices).some((f) => f.symbol === 'triangle') ? el('span', {}, '\u25b3 fit misses the computed states') : null,
     data.inclusions.length ? el('span', {}, `dashed line: outline of ${data.inclusions.map((i) => i.region).join(', ')}, inside the body`) : null,
     data.session?.drawn ? el('span', {}, 'white line: path of the contact point') : null);
 }

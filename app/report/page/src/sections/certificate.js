@@ -21,18 +21,21 @@ function notCovered(data) {
 }
 
 function devices(c) {
-  if (c.devices.length === 0) return paragraph('No device profile was given: the bounds are valid, but no rate is certified.');
-  return table(['Device', 'Damping, N\u00b7s/m', 'Verdict', 'Linear limit at 1 kHz, N/m', 'Without delay, N/m'],
-    c.devices.map((d) => [d.device, units.significant(d.damping), d.verdict, units.significant(d.linear_limit), units.significant(d.no_delay_limit)]), [1, 3, 4]);
+  if (c.devices.length === 0) return paragraph('No device profile was given: the bounds are valid, but no rate is guaranteed on any device.', 'warn');
+  return table(['Device', 'Guarantee', 'Damping, N\u00b7s/m', 'Linear limit at 1 kHz, N/m', 'Without delay, N/m'],
+    c.devices.map((d) => [d.device, d.verdict, units.significant(d.damping), units.significant(d.linear_limit), units.significant(d.no_delay_limit)]), [2, 3, 4]);
 }
 
 export function certificateSection(data) {
   const c = data.certificate;
   const head = el('h2', {}, 'Passivity certificate');
-  if (!c) return el('section', { id: 'certificate' }, head, paragraph('This library has not been certified: it is unknown at which rate a device renders it passively. Run palpate certify.'));
+  if (!c) return el('section', { id: 'certificate' }, head, paragraph('Nothing is guaranteed: this library has not been certified, and it is unknown at which rate a device renders it passively. Run palpate certify.'));
   const free = c.triangle_sliding_passive.reduce((n, x) => n + x, 0);
   return el('section', { id: 'certificate' }, head,
-    paragraph('The rendered body never returns more energy than it absorbed if the enforced bound \u2264 \u03c3\u2080(B) / 2T, with \u03c3\u2080(B) the smallest damping of the device and 1/T the rate of its force loop.', 'lead'),
+    el('p', { id: 'guarantee', class: c.guaranteed_by === 'nothing' ? 'warn' : 'lead' }, `${c.guarantee[0].toUpperCase()}${c.guarantee.slice(1)}.`),
+    el('h3', {}, 'Devices'), devices(c),
+    paragraph('Passive: the rendered body never returns more energy than it absorbed. It is where the enforced bound \u2264 \u03c3\u2080(B) / 2T, with \u03c3\u2080(B) the smallest damping of the device and 1/T the rate of its force loop.', 'note'),
+    el('h3', {}, 'Bounds'),
     definitions([
       ['L_stick', `${units.bound(c.stick)}; fixed contact point`],
       ['L_slip', `${units.bound(c.slip)}; while sliding, \u03bc = ${units.significant(c.friction)}`],
@@ -43,7 +46,6 @@ export function certificateSection(data) {
       ['Worst triangle', c.worst_triangle < 0 ? 'none' : `${c.worst_triangle}: ${c.limited_by || 'cause not recorded'}`],
       ['Sliding', `${units.count(free)} of ${units.count(c.triangle_slip.length)} triangles need no energy correction while sliding`],
     ], 'facts'),
-    el('h3', {}, 'Devices'), devices(c),
     el('h3', {}, 'Not covered'), el('ul', {}, notCovered(data).map((text) => el('li', {}, text))),
     paragraph('Both bounds can be chosen as the colour of the body above.', 'note'));
 }

@@ -20,6 +20,25 @@ function fitPanel(v) {
     paragraph(`${summary('Normal', normal)}. ${summary('Lateral', lateral)}.`, 'note'));
 }
 
+const MOST_NAMED = 5;
+
+/** Nodes whose response visibly misses what was computed, the worst first. */
+export function misfits(v) {
+  const nodes = [];
+  v.misfit.forEach((error, vertex) => { if (error > v.visible_misfit) nodes.push({ vertex, error }); });
+  return nodes.sort((a, b) => b.error - a.error);
+}
+
+export const positionOf = (v, vertex) => Array.from(v.position.subarray(3 * vertex, 3 * vertex + 3));
+
+function misfitSentence(v) {
+  const nodes = misfits(v);
+  if (!nodes.length) return null;
+  const named = nodes.slice(0, MOST_NAMED).map((n) => `node ${n.vertex} at ${units.place(positionOf(v, n.vertex))} by ${units.percent(n.error)}`).join('; ');
+  const more = nodes.length > MOST_NAMED ? `; and ${units.count(nodes.length - MOST_NAMED)} more` : '';
+  return el('p', { id: 'misfits', class: 'warn' }, `${units.count(nodes.length)} ${nodes.length === 1 ? 'node misses its' : 'nodes miss their'} computed states by more than ${units.percent(v.visible_misfit)} of the largest force: ${named}${more}. They are marked by triangles on the body.`);
+}
+
 function balancePanel(balance) {
   if (!balance.worst) return el('div', {}, el('h3', {}, 'Energy balance'), paragraph('The curves have no stored energy.'));
   const of = (kind) => Array.from(balance.difference).filter((_, i) => balance.kind[i] === kind).map((x) => 100 * x);
@@ -35,5 +54,6 @@ export function fitSection(data) {
   return el('section', { id: 'fit' },
     el('h2', {}, 'Errors of the curves'),
     paragraph('The distance of the fit from the computed states, and the difference between the work of the tool and the energy stored in the body and its contact.', 'lead'),
+    misfitSentence(data.vertices),
     el('div', { class: 'pair' }, fitPanel(data.vertices), balancePanel(data.balance)));
 }

@@ -14,12 +14,18 @@ function tile(term, value, note, id, kind) {
     note ? el('p', { class: 'note' }, note) : null);
 }
 
-function certified(certificate) {
-  if (!certificate) return tile('Certified stiffness', '\u2013', 'The library has not been certified.', 'certified');
-  const { stick, slip, lipschitz_bound: limit } = certificate;
-  const bounded = Number.isFinite(limit);
-  return tile('Certified stiffness', bounded ? units.stiffness(limit) : 'none',
-    `L_stick ${units.bound(stick)}, L_slip ${units.bound(slip)}`, 'certified', bounded ? undefined : 'warn');
+const BY = { curves: 'by the curves themselves', limiter: 'by the runtime, which throttles slides' };
+
+/** What is guaranteed, on which device, from which rate, and by what. */
+function guaranteed(certificate) {
+  const term = 'Guaranteed passive';
+  if (!certificate) return tile(term, 'nothing', 'The library has not been certified.', 'guaranteed', 'warn');
+  const by = BY[certificate.guaranteed_by];
+  if (!by) return tile(term, 'nothing', 'Slides have no bound: see the certificate.', 'guaranteed', 'warn');
+  const rated = certificate.devices.filter((d) => Number.isFinite(d.lowest_rate)).sort((a, b) => a.lowest_rate - b.lowest_rate);
+  const limit = `the force changes by at most ${units.bound(certificate.lipschitz_bound)}, ${by}`;
+  if (!rated.length) return tile(term, 'at no rate', `${certificate.devices.length ? 'No device of known damping' : 'No device profile'} was given; ${limit}.`, 'guaranteed', 'warn');
+  return tile(term, ['from ', units.lowestRate(rated[0].lowest_rate)], `on ${rated[0].device}; ${limit}`, 'guaranteed');
 }
 
 function keyFigures(data, nodes) {
@@ -32,7 +38,7 @@ function keyFigures(data, nodes) {
     tile('Deepest press', units.length(key.deepest), `requested ${units.length(key.depth)}`, 'deepest'),
     tile('Largest force', units.force(key.max_force), 'of any computed state', 'max-force'),
     tile('Stiffness', range, `secant, over ${units.length(key.depth)}; softest to stiffest node`, 'stiffness-range'),
-    certified(data.certificate),
+    guaranteed(data.certificate),
     tile('Library', key.library_bytes ? units.bytes(key.library_bytes) : '\u2013',
       `${units.count(data.body.vertices)} nodes, ${units.count(data.body.triangles)} triangles`, 'library-bytes'));
 }

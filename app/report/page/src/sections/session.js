@@ -13,9 +13,16 @@ function accountSentence(session) {
     : `The energy account was violated: absorbed \u2212 (stored + tank) fell to ${units.energy(least)} at ${units.significant(time)} s. The session was not passive.`);
 }
 
+/** Forces beyond the deepest sample are guesses: a reader sees it before the account. */
+function beyondSentence({ session, key }) {
+  const { beyond_depth: beyond, contact } = session.counts;
+  if (!beyond) return [];
+  return [el('p', { id: 'beyond', class: 'warn' }, `${units.count(beyond)} of ${units.count(contact)} steps in contact went beyond the deepest sample (${units.length(key.depth)} was asked for): their forces are extrapolated, not computed. The energy account below does not judge them.`)];
+}
+
 function countsSentence(counts, steps) {
   const fraction = (n) => `${units.count(n)} (${units.percent(n / steps)})`;
-  const warnings = [['beyond_depth', 'beyond the deepest sample'], ['bad_input', 'with bad input'], ['dropped', 'that dropped a contact'], ['at_border', 'at a border']]
+  const warnings = [['bad_input', 'with bad input'], ['dropped', 'that dropped a contact'], ['at_border', 'at a border']]
     .filter(([k]) => counts[k] > 0).map(([k, text]) => `${units.count(counts[k])} ${text}`);
   return `Steps in contact: ${fraction(counts.contact)}; collisions accepted: ${units.count(counts.activated)}; sliding: ${fraction(counts.sliding)}; ` +
     `limited by the energy rule: ${units.count(counts.energy_limited)}${warnings.length ? `; ${warnings.join(', ')}` : ''}.`;
@@ -31,6 +38,7 @@ export function sessionSection(data) {
   const drawn = d.time.length < session.steps ? ` Drawn: ${units.count(d.time.length)} of ${units.count(session.steps)} steps, including all extremes; the numbers are of all steps.` : '';
   return el('section', { id: 'session' }, head,
     paragraph(`${session.device || 'Unnamed device'}, ${units.frequency(session.rate)}, \u03bc = ${units.significant(session.friction)}, ${units.duration(session.duration)}, ${units.count(session.steps)} steps; largest force ${units.force(session.max_force)}.${drawn}`, 'lead'),
+    ...beyondSentence(data),
     accountSentence(session),
     timePlot('Force commanded to the device', 'Force (N)', d.time, [
       { label: 'x', colour: 'series-1', values: d.fx }, { label: 'y', colour: 'series-2', values: d.fy },

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The lengths that a case leaves to be derived: each follows from another one, the first from the
+// size of the body, so that a case without lengths suits bodies of every size.
+#pragma once
+
+#include "app/case/case.hpp"
+
+namespace palpate::app {
+
+/// Whether a length of the case is to be derived from the size of its body.
+bool needs_body_size(const Case& c);
+
+/// Gives every length that is `auto` its value, as docs/cases.md states. Without a size, lengths
+/// that depend on it stay `auto`.
+void derive_lengths(Case& c, const std::optional<BodySize>& body);
+
+}  // namespace palpate::app

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Numbers as a reader wants them: as many significant digits for a small body as for a large one.
+#pragma once
+
+#include <string>
+
+namespace palpate {
+
+/// Three significant digits, or as many as asked for, without an exponent from 1e-4 to 1e6:
+/// "1240", "12.4", "0.00124". Whole digits are never cut. "unknown" for NaN.
+std::string number_text(double value, int digits = 3);
+
+/// A value >= 0 with four significant digits that is not below it: an upper bound stays one.
+std::string rounded_up_text(double value);
+
+/// "12.4 N", "0.124 mN" or "3.4 uN".
+std::string force_text(double newtons);
+
+/// Two significant digits of a fraction: "0.43 %", "17 %"; "below 0.01 %" for what is less.
+std::string percent_text(double fraction);
+
+}  // namespace palpate

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "format/number_text.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <random>
+
+namespace palpate {
+namespace {
+
+TEST(NumberText, HasThreeSignificantDigitsAtEverySize) {
+  EXPECT_EQ(number_text(1.2345), "1.23");
+  EXPECT_EQ(number_text(0.0012345), "0.00123");
+  EXPECT_EQ(number_text(123.45), "123");
+  EXPECT_EQ(number_text(-0.5), "-0.500");
+  EXPECT_EQ(number_text(9.996), "10.0");
+  EXPECT_EQ(number_text(12345), "12345");
+  EXPECT_EQ(number_text(1.2345e-7), "1.23e-07");
+  EXPECT_EQ(number_text(1.2345e8), "1.23e+08");
+  EXPECT_EQ(number_text(0), "0");
+  EXPECT_EQ(number_text(std::nan("")), "unknown");
+  EXPECT_EQ(number_text(std::numeric_limits<double>::infinity()), "infinite");
+}
+
+TEST(NumberText, RoundsBoundsUpAndByLessThanAThousandth) {
+  std::mt19937 engine(1);
+  std::uniform_real_distribution<double> exponent(-9, 9);
+  for (int i = 0; i < 10000; ++i) {
+    const double value = std::pow(10, exponent(engine));
+    const double text = std::strtod(rounded_up_text(value).c_str(), nullptr);
+    ASSERT_GE(text, value);
+    ASSERT_LE(text, value * 1.0010001);
+  }
+  EXPECT_EQ(rounded_up_text(99.999), "100.0");
+  EXPECT_EQ(rounded_up_text(2.5), "2.500");
+  EXPECT_EQ(rounded_up_text(0), "0");
+}
+
+TEST(NumberText, ForcesHaveTheUnitOfTheirSize) {
+  EXPECT_EQ(force_text(2.5), "2.50 N");
+  EXPECT_EQ(force_text(0.0834), "83.4 mN");
+  EXPECT_EQ(force_text(8.34e-6), "8.34 uN");
+  EXPECT_EQ(force_text(0), "0 N");
+}
+
+TEST(NumberText, FractionsArePercents) {
+  EXPECT_EQ(percent_text(0.1734), "17 %");
+  EXPECT_EQ(percent_text(0.0042), "0.42 %");
+  EXPECT_EQ(percent_text(1e-6), "below 0.01 %");
+  EXPECT_EQ(percent_text(0), "0 %");
+}
+
+}  // namespace
+}  // namespace palpate
