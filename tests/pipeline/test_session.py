@@ -222,7 +222,7 @@ class Session(unittest.TestCase):
         readers = {"replay": ["replay", recording, "--library", out / "library.h5"],
                    "export": ["export", "recording", recording], "inspect": ["inspect", recording]}
         peaks, steps = {name: [] for name in ("simulate", *readers)}, []
-        for press_speed in (1, 0.2):
+        for press_speed in (1, 0.1):
             commands = {"simulate": self.scripted(out, press_speed), **readers}
             for name, command in commands.items():
                 code, used = self.peak(*command)

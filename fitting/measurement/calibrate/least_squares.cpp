@@ -9,8 +9,8 @@
 #include "fitting/measurement/calibrate/descent.hpp"
 #include "fitting/measurement/calibrate/intervals.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/numbers.hpp"
-#include "format/text.hpp"
 
 namespace palpate::calibrate {
 namespace {
@@ -31,7 +31,7 @@ void add_warnings(Calibration& result) {
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
     const Estimate& e = result.estimates[i];
     if (e.at_bound) {
-      warn(e.name + " is at its bound " + three_digits(e.value) +
+      warn(e.name + " is at its bound " + number_text(e.value) +
            ": the interval says nothing there; widen the bound or choose another law");
       continue;
     }
@@ -41,21 +41,21 @@ void add_warnings(Calibration& result) {
     for (std::size_t j = 0; j < i; ++j) {
       const double c = result.correlation[i][j];
       if (!(std::abs(c) > kStrongCorrelation)) continue;
-      warn(result.estimates[j].name + " and " + e.name + " are correlated by " + three_digits(c) +
+      warn(result.estimates[j].name + " and " + e.name + " are correlated by " + number_text(c) +
            ": the data hardly distinguish them");
     }
   }
   if (result.widened) {
-    warn("the residuals are " + three_digits(result.scatter) +
+    warn("the residuals are " + number_text(result.scatter) +
          " times the stated uncertainty: the model does not describe the data within it; the "
          "intervals are widened by that factor, as if the misfit were noise");
   }
   if (result.correlated) {
     warn("the residuals of neighbouring points are alike (correlation " +
-         three_digits(result.lag_one) + " after the fit, " + three_digits(result.autocorrelation) +
-         " before it, Durbin-Watson " + three_digits(result.durbin_watson) +
+         number_text(result.lag_one) + " after the fit, " + number_text(result.autocorrelation) +
+         " before it, Durbin-Watson " + number_text(result.durbin_watson) +
          "): the model misses the shape of the data; the intervals are up to " +
-         three_digits(result.correlation_widening) +
+         number_text(result.correlation_widening) +
          " times as wide for it, as if the misfit were correlated noise");
   }
   if (!result.converged) warn("the iteration did not converge");
@@ -71,8 +71,8 @@ void check_problem(const LeastSquares& problem, const std::string& where) {
   for (const Constant& c : problem.constants) {
     if (c.start >= c.low && c.start <= c.high) continue;
     refuse(where,
-           "the start " + three_digits(c.start) + " of " + c.name + " is not within " +
-               three_digits(c.low) + " .. " + three_digits(c.high),
+           "the start " + number_text(c.start) + " of " + c.name + " is not within " +
+               number_text(c.low) + " .. " + number_text(c.high),
            "choose a start within the bounds");
   }
 }
@@ -111,7 +111,7 @@ void warn_of_other_minimum(const std::vector<Calibration>& found, Calibration& b
     for (std::size_t i = 0; i < other.estimates.size(); ++i) {
       const double a = best.estimates[i].value, b = other.estimates[i].value;
       apart = apart || std::abs(a - b) > 0.01 * (std::abs(a) + std::abs(b));
-      text += (text.empty() ? "" : ", ") + other.estimates[i].name + " = " + three_digits(b);
+      text += (text.empty() ? "" : ", ") + other.estimates[i].name + " = " + number_text(b);
     }
     if (!apart) continue;
     best.warnings.push_back("another set of constants fits as well: " + text);

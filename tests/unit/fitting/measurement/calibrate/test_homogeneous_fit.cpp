@@ -211,7 +211,7 @@ TEST(Homogeneous, WarnsOfABoundAndOfUnexplainedResiduals) {
   settings.constants = {{"young", true, 1000, 100, 2000}};
   const auto calibration = fit_homogeneous({test}, settings).calibration;
   EXPECT_TRUE(calibration.estimates[0].at_bound);
-  EXPECT_THAT(calibration.warnings, Contains(HasSubstr("young is at its bound 2e+03")));
+  EXPECT_THAT(calibration.warnings, Contains(HasSubstr("young is at its bound 2000")));
   EXPECT_THAT(calibration.warnings, Contains(HasSubstr("times the stated uncertainty")));
 }
 
@@ -245,7 +245,7 @@ TEST(Homogeneous, RefusesWhatCannotBeFitted) {
   settings.constants = {{"C11", true, 1, 0, 2}};
   EXPECT_THAT(refusal({test}, settings), HasSubstr("constant 'C11'"));
   settings.constants = {{"C10", true, 3, 0, 2}};
-  EXPECT_THAT(refusal({test}, settings), HasSubstr("the start 3 of C10 is not within 0 .. 2"));
+  EXPECT_THAT(refusal({test}, settings), HasSubstr("the start 3.00 of C10 is not within 0 .. 2.00"));
 }
 
 }  // namespace

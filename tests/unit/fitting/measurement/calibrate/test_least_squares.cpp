@@ -63,7 +63,7 @@ TEST(LeastSquares, RefusesProblemsThatHaveNoSolution) {
   EXPECT_THAT(refusal(problem), HasSubstr("0 values cannot determine 1 constants"));
   problem = line.problem();
   problem.constants[0].start = 11;
-  EXPECT_THAT(refusal(problem), HasSubstr("the start 11 of k is not within -10 .. 10"));
+  EXPECT_THAT(refusal(problem), HasSubstr("the start 11.0 of k is not within -10.0 .. 10.0"));
   problem = line.problem();
   problem.model = [](const double*, double*, double*) { return false; };
   EXPECT_THAT(refusal(problem), HasSubstr("the model has no value near the start"));
