@@ -133,7 +133,7 @@ Body mesh(const Settings& settings) {
   check_settings(settings);
   if (!settings.volume_mesh.path.empty()) return body_of_volume_mesh(settings);
   if (!settings.image.path.empty()) return body_of_image(settings);
-  const Surface skin = read_surface(settings.surface, settings.log);
+  const Surface skin = read_surface(settings.surface, settings.log, settings.on_repair);
   const std::vector<Surface> inclusions = read_inclusions(settings);
   check_sizes(settings, skin);
   return body_of(discretize(settings, skin, inclusions), settings, {skin});

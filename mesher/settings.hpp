@@ -13,9 +13,13 @@
 #include <vector>
 
 #include "format/vec3.hpp"
+#include "mesher/geometry/surface.hpp"
 #include "mesher/repair/repair_settings.hpp"
 
 namespace palpate::mesher {
+
+/// Receives the faces of a file that a repair kept, and the surface that it made of them.
+using OnRepair = std::function<void(const Surface& kept, const Surface& repaired)>;
 
 /// A triangulated surface on disk (OFF, OBJ, PLY, STL, VTP, VTK), the length of its unit, and how
 /// its faults are repaired.
@@ -134,6 +138,7 @@ struct Settings {
   double depth = 0;            ///< m, of the planned indentation; 0 skips the check
   double lateral_travel = 0;   ///< m, of the planned drags; 0 skips the check
   std::function<void(std::string_view)> log;  ///< receives one line for each step; may be empty
+  OnRepair on_repair;  ///< called where the outer surface was repaired; may be empty
 
   /// The file that the body is made of.
   const std::filesystem::path& source() const {

@@ -9,9 +9,10 @@
 namespace palpate::app {
 
 /// The body of the settings. Where a surface is refused for some of its faces, these are written to
-/// `faulty-faces.vtp` in the folder, in the unit of the surface file, and the message names it; a
-/// file of an earlier refusal is removed.
+/// `faulty-faces.vtp` in the folder, in the unit of the surface file, and the message names it.
+/// Where the outer surface was repaired, `repair.json` shows it beside that of the file. Files of
+/// an earlier run are removed.
 /// @throws Error as mesher::mesh
-Body mesh_surface(const mesher::Settings& settings, const std::filesystem::path& folder);
+Body mesh_surface(mesher::Settings settings, const std::filesystem::path& folder);
 
 }  // namespace palpate::app

@@ -9,6 +9,7 @@
 #include "app/report/embed.hpp"
 #include "app/report/figures.hpp"
 #include "app/report/inclusions.hpp"
+#include "app/report/repair_file.hpp"
 #include "app/report/surface_map.hpp"
 #include "fitting/response/fit_errors.hpp"
 #include "format/error.hpp"
@@ -301,6 +302,7 @@ json page_data(const ReportInput& input) {
           {"certificate", certificate_data(library)},
           {"comparison", comparison_data(input.comparison, library.responses.size())},
           {"fidelity", fidelity_data(input.fidelity, input.library_sha256)},
+          {"repair", repair_data(input.repair, input.body->provenance)},
           {"session", input.session == nullptr ? json() : session_data(*input.session)},
           {"provenance", provenance_data(input)}};
 }

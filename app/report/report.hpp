@@ -29,6 +29,8 @@ struct ReportInput {
   /// the library of this digest.
   std::string fidelity{};
   std::string library_sha256{};
+  /// Text of repair.json (`palpate mesh`, where it repaired the surface); empty: none.
+  std::string repair{};
 };
 
 /// Writes one self-contained HTML file, which needs JavaScript but neither network nor WebGL. Text

@@ -140,7 +140,7 @@ Surface checked(Soup soup, const std::string& where, const Log& log) {
 }
 
 Surface repaired(const Soup& soup, const RepairSettings& settings, const std::string& where,
-                 const Log& log) {
+                 const Log& log, const OnRepair& on_repair) {
   RepairReport report;
   Surface surface;
   guard_cgal(where, "mend the surface in a mesh editor",
@@ -152,10 +152,11 @@ Surface repaired(const Soup& soup, const RepairSettings& settings, const std::st
                  " mm^3; the surface moved by at most ", millimetres(report.moved), " at ",
                  millimetres(report.moved_at), "; what was added is at most ",
                  millimetres(report.added), " from it, at ", millimetres(report.added_at)));
+  if (on_repair) on_repair(report.kept, surface);
   return surface;
 }
 
-Surface sound_surface(const SurfaceFile& file, const Log& log) {
+Surface sound_surface(const SurfaceFile& file, const Log& log, const OnRepair& on_repair) {
   const std::string where = file.path.string();
   Soup soup = read_faces(file.path);
   scale_to_metres(soup, file, log);
@@ -163,8 +164,8 @@ Surface sound_surface(const SurfaceFile& file, const Log& log) {
   check_entries(soup, where);
   const bool repairs = file.repair.mode == RepairMode::Wrap ||
                        (file.repair.mode == RepairMode::Auto && !is_sound(soup));
-  Surface surface =
-      repairs ? repaired(soup, file.repair, where, log) : checked(std::move(soup), where, log);
+  Surface surface = repairs ? repaired(soup, file.repair, where, log, on_repair)
+                            : checked(std::move(soup), where, log);
   turn_outward(surface, where, log);
   const Bounds box = bounds(surface.points);
   note(log, text(where, ": ", surface.points.size(), " points, ", surface.triangles.size(),
@@ -180,9 +181,9 @@ Soup read_faces(const std::filesystem::path& path) {
   return soup;
 }
 
-Surface read_surface(const SurfaceFile& file, const Log& log) {
+Surface read_surface(const SurfaceFile& file, const Log& log, const OnRepair& on_repair) {
   try {
-    return sound_surface(file, log);
+    return sound_surface(file, log, on_repair);
   } catch (const FaultySurface& fault) {
     FaultyFaces faces = fault.faces();
     for (Vec3& x : faces.points) x = (1 / file.unit) * x;

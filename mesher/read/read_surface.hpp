@@ -16,9 +16,10 @@ Soup read_faces(const std::filesystem::path& path);
 
 /// Reads a surface, scales it to metres, repairs it as `tidy` and, unless the settings forbid it,
 /// `repair` do, splits polygons into triangles and orients them outward. The log states each step.
+/// @param on_repair called where `repair` changed the surface; may be empty
 /// @throws Error(Geometry), with the path as `where`, for a surface that does not enclose one
 ///   volume: FaultySurface with the faces, in the unit of the file, where some of them are at
 ///   fault.
-Surface read_surface(const SurfaceFile& file, const Log& log);
+Surface read_surface(const SurfaceFile& file, const Log& log, const OnRepair& on_repair = {});
 
 }  // namespace palpate::mesher

@@ -87,6 +87,7 @@ class Repair {
     Surface surface = settings_.mode == RepairMode::Wrap ? wrapped_on_request() : repaired();
     report_.area_after = area(surface);
     report_.volume = signed_volume(surface);
+    report_.kept = kept_;
     if (!soup_.names.empty()) {
       hand_on_names(surface, original_, names_of_triangles());
       surface.known_names = soup_.known_names;

@@ -22,6 +22,7 @@ struct RepairReport {
   Vec3 moved_at{};   ///< m, where
   double added = 0;  ///< m, largest distance of the result from the parts that were kept
   Vec3 added_at{};   ///< m, where: the middle of the largest hole
+  Surface kept;      ///< the faces of the file that were kept; may have borders and crossings
 };
 
 /// A closed, outward-oriented surface from faces with faults.

@@ -12,6 +12,7 @@ import { fidelitySection } from './sections/fidelity.js';
 import { fitSection } from './sections/fit.js';
 import { headerSection } from './sections/header.js';
 import { recordSection } from './sections/record.js';
+import { repairSection } from './sections/repair.js';
 import { sessionSection } from './sections/session.js';
 import { watchTheme } from './theme.js';
 
@@ -44,6 +45,7 @@ try {
   const nodes = new Nodes(data);
   place('header', () => headerSection(data, nodes));
   place('body', () => bodySection(data, nodes, new Curves(data, nodes)));
+  if (data.repair) place('repair', () => repairSection(data));
   place('fit', () => fitSection(data));
   place('fidelity', () => fidelitySection(data) ?? '');
   if (data.comparison) place('comparison', () => comparisonSection(data));

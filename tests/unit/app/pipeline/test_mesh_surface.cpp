@@ -5,9 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "format/error.hpp"
+#include "format/sha256.hpp"
 #include "mesher/geometry/soup.hpp"
 #include "mesher/read/file/file.hpp"
 #include "mesher/read/vtk/read_vtk_xml.hpp"
@@ -49,6 +51,22 @@ TEST(MeshSurface, WritesTheFaultyFacesInTheUnitOfTheFileAndNamesIt) {
       mesher::read_vtk_xml(mesher::read_bytes(faulty), faulty.string()), faulty.string());
   EXPECT_EQ(soup.polygons.size(), 3U);  // each face has one of the border edges
   EXPECT_NEAR(mesher::largest_dimension(soup.points), 50, 1e-9);
+}
+
+TEST(MeshSurface, ShowsWhatARepairMoved) {
+  const samples::TemporaryFolder folder;
+  const auto file = folder.path() / "open.off", picture = folder.path() / "repair.json";
+  std::ofstream(file) << off_text(false);
+  mesher::Settings settings = settings_for(file);
+  settings.surface.repair.mode = mesher::RepairMode::Auto;
+  mesh_surface(settings, folder.path());
+  const auto json = nlohmann::json::parse(mesher::read_bytes(picture));
+  EXPECT_EQ(json.at("surface_sha256"), sha256_of_file(file));
+  EXPECT_TRUE(json.at("repaired").contains("distance"));
+
+  std::ofstream(file) << off_text(true);
+  mesh_surface(settings, folder.path());
+  EXPECT_FALSE(std::filesystem::exists(picture));  // a sound surface is not repaired
 }
 
 TEST(MeshSurface, RemovesTheFileOfAnEarlierRefusal) {

@@ -68,7 +68,7 @@ function sparseText(field, ofVertex, single) {
   return ` ${units.count(known)} of ${units.count(ofVertex.length)} nodes were compared.${discs} Grey: not compared.`;
 }
 
-class ColourBar {
+export class ColourBar {
   constructor() {
     this.unit = el('div', { class: 'unit' });
     this.scale = el('div', { class: 'scale' });
