@@ -131,7 +131,7 @@ struct Settings {
   double patch_spacing = 0.010;      ///< m, edge length of the response surface
   double element_size = 0.005;       ///< m, edge length of the boundary facets
   double interior_coarsening = 1.5;  ///< target of the largest interior edge over element_size
-  double support_coarsening = 1;     ///< largest edge at fixed supports over element_size
+  double support_coarsening = 1;     ///< largest edge at supports over element_size
   double feature_angle = std::numbers::pi / 4;  ///< rad; sharper edges of the input stay sharp
   bool curved_facets = true;   ///< writes Body::curved_edges; without, facets are flat
   double tool_radius = 0.005;  ///< m, smallest distance of sites from supports

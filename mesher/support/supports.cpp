@@ -184,11 +184,16 @@ std::function<double(const Vec3&)> coarsening_at_supports(const Settings& settin
   const Labels labels{skin};
   const MarkInside inside{settings, labels, skin};
   for (const Zone& support : settings.supports) add_marks(fixed, inside.marks_of(support));
-  std::vector<bool> is_fixed;
-  for (const Triangle& t : skin.triangles) is_fixed.push_back(all_marked(t, fixed));
+  std::vector<bool> is_supported;
+  for (const Triangle& t : skin.triangles) is_supported.push_back(all_marked(t, fixed));
+  for (const Springs& springs : settings.foundation) {
+    const Marks sprung = inside.marks_of(springs.where);
+    for (std::size_t t = 0; t < skin.triangles.size(); ++t)
+      if (all_marked(skin.triangles[t], sprung)) is_supported[t] = true;
+  }
   const auto query = std::make_shared<SurfaceQuery>(skin);
   return [=, coarsening = settings.support_coarsening](const Vec3& x) {
-    return is_fixed[to_index(query->closest(x).triangle)] ? coarsening : 1.0;
+    return is_supported[to_index(query->closest(x).triangle)] ? coarsening : 1.0;
   };
 }
 

@@ -45,8 +45,8 @@ struct Labels {
 Marks fix_nodes(Body& body, const Settings& settings, const Labels& labels,
                 const Surface& boundary);
 
-/// Settings::support_coarsening near triangles of the skin whose corners all lie inside one of the
-/// fixed supports, 1 elsewhere; empty where it is 1.
+/// Settings::support_coarsening near triangles of the skin whose corners all lie inside the fixed
+/// supports or inside one foundation, 1 elsewhere; empty where it is 1.
 /// @throws Error as fix_nodes.
 std::function<double(const Vec3&)> coarsening_at_supports(const Settings& settings,
                                                           const Surface& skin);

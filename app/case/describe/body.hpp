@@ -139,7 +139,7 @@ void describe_mesh(V& v, mesher::Settings& s) {
                                    {.low = 1}});
   v.number(s.support_coarsening,
            {"support_coarsening",
-            "target ratio of the edges at fixed supports to `element_size`; above 1, Delaunay "
+            "target ratio of the edges at supports to `element_size`; above 1, Delaunay "
             "refinement makes the mesh",
             kOptional,
             {.low = 1}});

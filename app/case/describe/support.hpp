@@ -22,7 +22,7 @@ void describe_support_shape(V& v, const std::string& shape, mesher::Support& whe
     v.point(plane.point, Dimension::Length, {"point", "a point of the plane", kRequired});
     v.direction(
         plane.normal,
-        {"normal", "normal of the plane, towards the supported side; of any length", kRequired});
+        {"normal", "normal of the plane, towards the side that counts; of any length", kRequired});
   }
   if (v.when("shape", shape, "box")) {
     auto& box = alternative<mesher::BoxSupport>(where);
@@ -43,7 +43,7 @@ void describe_support_shape(V& v, const std::string& shape, mesher::Support& whe
     describe_length_unit(v, support.surface.unit,
                          {"unit", "length unit of the coordinates in the file", kRequired});
     v.quantity(support.distance, Dimension::Length,
-               {"distance", "nodes inside the surface or nearer to it than this are supported",
+               {"distance", "what lies inside the surface or nearer to it than this counts",
                 kRequired, kNotNegative});
   }
   if (v.when("shape", shape, "label")) {

@@ -76,6 +76,10 @@ TEST(Discretize, SupportsMayBeCoarserThanTheRest) {
   const Discretization d = discretize(s, plate, {});
   EXPECT_LT(bottom_over_top(d), 0.6);
   EXPECT_NEAR(measure_quality(d.volume.nodes, d.volume.tetrahedra).volume, 3e-4, 0.01 * 3e-4);
+  // Springs under the bottom do the same.
+  s.foundation = {{s.supports.front(), 1e6, 1e6}};
+  s.supports.clear();
+  EXPECT_EQ(discretize(s, plate, {}).skin.boundary.triangles, d.skin.boundary.triangles);
   s.method = MeshMethod::Isotropic;
   EXPECT_THROW(discretize(s, plate, {}), Error);
 }
