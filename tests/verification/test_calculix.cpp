@@ -3,6 +3,8 @@
 // export site --calculix` writes: a bonded patch and rigid tools in contact, pressed into a block.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -10,6 +12,7 @@
 #include <sstream>
 
 #include "app/export/deck.hpp"
+#include "app/export/mesh_file.hpp"
 #include "fem/campaign/bonded_patch.hpp"
 #include "fem/campaign/indentation.hpp"
 #include "format/to_index.hpp"
@@ -47,25 +50,37 @@ fem::CampaignSettings settings_of(const fem::LawConstants& law, fem::Dilatation 
   return settings;
 }
 
-/// Force of the patch on the body after each increment, as CalculiX prints it.
-std::vector<Vec3> run_calculix(const Deck& deck) {
+/// What CalculiX prints of a deck.
+std::string printed_by_calculix(const std::string& deck) {
   std::string name = (fs::temp_directory_path() / "palpate-ccx-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
   const fs::path folder = name;
-  std::ofstream(folder / "site.inp") << calculix_deck(deck);
+  std::ofstream(folder / "site.inp") << deck;
   const std::string command =
       "cd " + folder.string() + " && OMP_NUM_THREADS=1 timeout 550 ccx site > site.log 2>&1";
   EXPECT_EQ(std::system(command.c_str()), 0) << "install ccx (Debian package calculix-ccx)";
-  std::ifstream printed(folder / "site.dat");
-  std::vector<Vec3> forces;
-  for (std::string line; std::getline(printed, line);) {
-    if (line.find("total force") == std::string::npos) continue;
-    Vec3 force{};
-    printed >> force[0] >> force[1] >> force[2];
-    forces.push_back(force);
-  }
+  std::ostringstream printed;
+  printed << std::ifstream(folder / "site.dat").rdbuf();
   fs::remove_all(folder);
-  return forces;
+  return printed.str();
+}
+
+/// The numbers below each line with this text.
+template <std::size_t N>
+std::vector<std::array<double, N>> numbers_below(const std::string& title,
+                                                 const std::string& text) {
+  std::vector<std::array<double, N>> found;
+  std::istringstream printed(text);
+  for (std::string line; std::getline(printed, line);) {
+    if (line.find(title) == std::string::npos) continue;
+    for (double& x : found.emplace_back()) printed >> x;
+  }
+  return found;
+}
+
+/// Force of the patch on the body after each increment, as CalculiX prints it.
+std::vector<Vec3> run_calculix(const Deck& deck) {
+  return numbers_below<3>("total force", printed_by_calculix(calculix_deck(deck)));
 }
 
 constexpr auto kProblem =
@@ -90,6 +105,42 @@ void compare(const std::string& what, const Body& body, const fem::CampaignSetti
                   "CalculiX, deck of palpate export", allowed});
   }
   EXPECT_LT(worst, allowed);
+}
+
+double volume_of(const Body& body, const Tetrahedron& t) {
+  const auto from_first = [&](std::size_t k) {
+    return body.nodes[to_index(t[k])] - body.nodes[to_index(t[0])];
+  };
+  return dot(cross(from_first(1), from_first(2)), from_first(3)) / 6;
+}
+
+/// The mesh that `palpate export mesh` writes, with the lines that a user adds: each region weighs
+/// what it does, and the set of the support holds it.
+TEST(CalculixMesh, RegionsHaveTheirVolumeAndTheSupportCarriesTheWeight) {
+  const Body body = block(4);
+  std::string deck = abaqus_mesh(body) + "*MATERIAL, NAME=SOFT\n*ELASTIC\n10000., 0.45\n";
+  deck += "*DENSITY\n1000.\n*BOUNDARY\nfixed, 1, 3\n";
+  for (const char* region : {"upper", "lower"})
+    deck += std::string("*SOLID SECTION, ELSET=") + region + ", MATERIAL=SOFT\n";
+  deck += "*STEP\n*STATIC\n*DLOAD\nupper, GRAV, 10., 0., 0., -1.\nlower, GRAV, 10., 0., 0., -1.\n";
+  for (const char* region : {"upper", "lower"})
+    deck += std::string("*EL PRINT, ELSET=") + region + ", TOTALS=ONLY\nEVOL\n";
+  deck += "*NODE PRINT, NSET=fixed, TOTALS=ONLY\nRF\n*END STEP\n";
+  const std::string printed = printed_by_calculix(deck);
+  const auto volumes = numbers_below<1>("total volume", printed);
+  ASSERT_EQ(volumes.size(), 2U) << printed;
+  for (const auto& volume : volumes) EXPECT_NEAR(volume[0], 0.5 * 13.5e-6, 1e-12);
+  // A quarter of the weight of each tetrahedron at a fixed corner goes straight into the ground,
+  // and is no force of the body on it.
+  double carried = 1000 * 10 * 13.5e-6;
+  for (const Tetrahedron& t : body.tetrahedra)
+    for (const std::int32_t v : t)
+      if (std::binary_search(body.fixed_nodes.begin(), body.fixed_nodes.end(), v))
+        carried -= 1000 * 10 * volume_of(body, t) / 4;
+  const auto forces = numbers_below<3>("total force", printed);
+  ASSERT_EQ(forces.size(), 1U);
+  EXPECT_NEAR(forces[0][2], carried, 1e-5 * carried);
+  EXPECT_NEAR(std::hypot(forces[0][0], forces[0][1]), 0, 1e-8);
 }
 
 class Calculix : public testing::TestWithParam<fem::LawConstants> {};
