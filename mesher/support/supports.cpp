@@ -245,8 +245,8 @@ void check_supports(const Body& body, const Settings& settings, const Surface& b
           ? std::string()
           : text(" and ", counted(body.foundation.size(), "facet"), " on springs");
   throw Error(ErrorKind::Geometry, settings.source().string(),
-              text("rigid-body motion is not constrained by the supports, ", body.fixed_nodes.size(),
-                   " fixed nodes of ", boundary.points.size(), springs),
+              text("rigid-body motion is not constrained by the supports, ",
+                   body.fixed_nodes.size(), " fixed nodes of ", boundary.points.size(), springs),
               text(springs.empty() ? "place a support on the body, which spans "
                                    : "give tangential_stiffness, or fix a part of the body, which "
                                      "spans ",
