@@ -16,6 +16,16 @@ inline constexpr int kExitDone = 0;
 inline constexpr int kExitUsage = 2;
 inline constexpr int kExitSomeSitesFailed = 4;
 
+/// Exit code of a campaign. Some sites that ended early leave a usable library: they are a warning,
+/// unless the caller is strict.
+template <class Counts>
+int exit_code_of(const Counts& counts, bool strict) {
+  const bool good = counts.all_complete() || (!strict && counts.usable());
+  return good ? kExitDone : kExitSomeSitesFailed;
+}
+inline constexpr const char* kStrictHelp =
+    "Exit with 4 if any site ended early, even if the library is usable without it";
+
 using Action = std::function<int()>;
 
 void add_init_command(CLI::App& root, Action& action);

@@ -24,11 +24,13 @@ void add_build_command(CLI::App& root, Action& action) {
   command->add_option("--until", *last, "Last stage: mesh, precompute, fit or certify")
       ->check(CLI::IsMember(stages))
       ->option_text("STAGE");
-  command->callback([options, last, stages, &action] {
-    action = [options, last, stages] {
+  const auto strict = std::make_shared<bool>(false);
+  command->add_flag("--strict", *strict, kStrictHelp);
+  command->callback([options, last, stages, strict, &action] {
+    action = [options, last, stages, strict] {
       const SiteCounts counts =
           run_build(open_workspace(*options), stages.at(*last), event_sink(*options));
-      return counts.all_complete() ? kExitDone : kExitSomeSitesFailed;
+      return exit_code_of(counts, *strict);
     };
   });
 }

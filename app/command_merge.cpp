@@ -15,11 +15,13 @@ void add_merge_command(CLI::App& root, Action& action) {
   const auto options = add_stage_options(*command);
   const auto parts = std::make_shared<std::vector<std::string>>();
   command->add_option("PARTS", *parts, "Parts (default: every curves.I-of-N.h5 in the folder)");
-  command->callback([options, parts, &action] {
-    action = [options, parts] {
+  const auto strict = std::make_shared<bool>(false);
+  command->add_flag("--strict", *strict, kStrictHelp);
+  command->callback([options, parts, strict, &action] {
+    action = [options, parts, strict] {
       const SiteCounts counts =
           run_merge(open_workspace(*options), {parts->begin(), parts->end()}, event_sink(*options));
-      return counts.all_complete() ? kExitDone : kExitSomeSitesFailed;
+      return exit_code_of(counts, *strict);
     };
   });
 }

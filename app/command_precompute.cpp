@@ -33,6 +33,7 @@ void add_precompute_command(CLI::App& root, Action& action) {
   struct Options {
     std::string shard;
     int convergence = 0;
+    bool strict = false;
     std::vector<std::int32_t> sites;
   };
   const auto common = add_stage_options(*command, ThreadsOption::Present);
@@ -46,6 +47,7 @@ void add_precompute_command(CLI::App& root, Action& action) {
                       "forces; writes convergence.csv");
   command->add_option("--sites", options->sites, "Sites of --convergence (default: three)")
       ->delimiter(',');
+  command->add_flag("--strict", options->strict, kStrictHelp);
   command->callback([common, options, &action] {
     action = [common, options] {
       Workspace space = open_workspace(*common);
@@ -55,7 +57,7 @@ void add_precompute_command(CLI::App& root, Action& action) {
       }
       if (!options->shard.empty()) space.shard = parse_shard(options->shard);
       const SiteCounts counts = run_precompute(space, event_sink(*common));
-      return counts.all_complete() ? kExitDone : kExitSomeSitesFailed;
+      return exit_code_of(counts, options->strict);
     };
   });
 }

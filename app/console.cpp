@@ -10,6 +10,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <optional>
 
 #include "app/pipeline/events.hpp"
 
@@ -119,22 +120,24 @@ std::string duration_text(double seconds) {
 
 void ProgressDisplay::show(const Progress& p) {
   const Clock::time_point now = Clock::now();
+  const double elapsed = std::chrono::duration<double>(now - start_).count();
+  const bool starts = p.done <= p.known && p.running == 0;
+  if (starts) return remaining_.begin(elapsed);
+  remaining_.update(elapsed, p.done - p.known, p.running, p.total - p.known);
   const double since_last = std::chrono::duration<double>(now - last_).count();
   const double interval = output_.terminal ? kSecondsBetweenBars : kSecondsBetweenLines;
   const bool finished = p.done >= p.total;
   if (!finished && since_last < interval) return;
   last_ = now;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const auto done = static_cast<double>(p.done), total = static_cast<double>(p.total),
-             known = static_cast<double>(p.known), running = static_cast<double>(p.running);
-  const double work = (done - known + 0.5 * running) / std::fmax(1, total - known);
-  const std::string time = finished           ? duration_text(elapsed)
-                           : p.done > p.known ? duration_text(elapsed * (1 - work) / work) + " left"
-                                              : std::string("remaining time unknown");
+  const std::optional<double> left = remaining_.left(elapsed);
+  const std::string time = finished ? duration_text(elapsed)
+                           : left   ? duration_text(*left) + " left"
+                                    : std::string("remaining time unknown");
   const std::string text =
       fmt::format("{}: {} of {} sites, {} incomplete, {}", label_, p.done, p.total, p.failed, time);
   if (!output_.terminal) return output_.line(text);
-  const double fraction = p.total > 0 ? done / total : 1;
+  const double fraction =
+      p.total > 0 ? static_cast<double>(p.done) / static_cast<double>(p.total) : 1;
   output_.write(
       fmt::format("\r{}\x1b[K{}", bar_line(fraction, text, output_.columns), finished ? "\n" : ""));
   bar_open_ = !finished;

@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 
+#include "app/remaining_time.hpp"
+
 namespace palpate::app {
 
 struct Progress;
@@ -73,8 +75,7 @@ class ProgressDisplay {
  public:
   ProgressDisplay(std::string label, TextOutput output)
       : label_(std::move(label)), output_(std::move(output)) {}
-  /// The estimate of the remaining time counts running sites as half done, so that it starts with
-  /// the first batch, and leaves out the sites that an earlier run computed.
+  /// The first progress of a campaign, before its first site, starts the clock of the estimate.
   void show(const Progress& progress);
   /// Ends the line of a bar, before other text is printed.
   void interrupt();
@@ -87,6 +88,7 @@ class ProgressDisplay {
   Clock::time_point start_ = Clock::now();
   Clock::time_point last_ = start_;
   bool bar_open_ = false;
+  RemainingTime remaining_;
 };
 
 }  // namespace palpate::app

@@ -85,7 +85,7 @@ int parse_and_run(int count, char** arguments) {
                 "palpate"};
   root.footer(
       "Exit codes: 0 success, 1 internal error, 2 usage or configuration, 3 unusable geometry,\n"
-      "4 finished, but some sites are incomplete.\n"
+      "4 finished, but too many sites ended early (with --strict: any).\n"
       "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose stand before or "
       "after "
       "it.\n"

@@ -81,7 +81,7 @@ void describe(V& v, const SiteFinished& e) {
 
 template <class V>
 void describe(V& v, const Progress& e) {
-  v.event("progress", "follows each `site`");
+  v.event("progress", "stands before the first `site` and follows each");
   v.field("done", e.done, "finished sites, with those of the journal");
   v.field("failed", e.failed, "how many of them failed or stopped early");
   v.field("running", e.running, "sites in the current batch");

@@ -85,7 +85,10 @@ struct SamplingFinished {
 /// Sites by status: they decide the exit code.
 struct SiteCounts {
   std::size_t complete = 0, partial = 0, failed = 0;
+  std::size_t without_response = 0;  ///< of partial and failed: their curves cannot be fitted
   bool all_complete() const { return partial == 0 && failed == 0; }
+  /// Whether a library of these sites is usable: at most a twentieth of them is without a response.
+  bool usable() const { return 20 * without_response <= complete + partial + failed; }
 };
 
 struct CampaignFinished {

@@ -51,6 +51,20 @@ CampaignFinished campaign_finished(const Curves& curves, const fem::CampaignRepo
   return event;
 }
 
+/// Sites that ended early do not make a library useless: what they mean for it.
+void warn_of_early_ends(const SiteCounts& counts, const EventSink& emit) {
+  if (counts.all_complete()) return;
+  const std::size_t early = counts.partial + counts.failed;
+  emit(Warning{
+      "precompute",
+      fmt::format(
+          "{} of {} sites ended early, {} of them without a response ({}); the report marks "
+          "them on the body",
+          early, counts.complete + early, counts.without_response,
+          counts.usable() ? "the library is usable"
+                          : "too many: look at the supports, the tool and the depth")});
+}
+
 std::vector<std::pair<std::string, std::string>> facts_of(const Workspace& space,
                                                           const fem::CampaignReport& report,
                                                           std::size_t known) {
@@ -140,6 +154,7 @@ SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
   journal.remove();
   remove_hold_out(space);
   emit(campaign_finished(curves, report, space.precomputed()));
+  warn_of_early_ends(count_sites(curves), emit);
   return count_sites(curves);
 }
 

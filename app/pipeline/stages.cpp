@@ -117,6 +117,7 @@ void emit_log(const std::string& stage, std::string_view text, const EventSink& 
 SiteCounts count_sites(const Curves& curves) {
   SiteCounts counts;
   for (const SiteCurves& site : curves.sites) {
+    if (!fitting::usable(site, curves.depth)) ++counts.without_response;
     switch (site.status) {
       case SiteStatus::Complete:
         ++counts.complete;

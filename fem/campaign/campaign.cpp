@@ -82,6 +82,7 @@ class OpenSites {
   }
 
   void run() {
+    if (settings_.progress) settings_.progress(progress_);
     const SiteThreads size =
         site_threads(*context_.rest_factor, settings_.threads, open_.size(), settings_.memory,
                      bytes_of_site(context_, curves_.sites[open_.front()].vertex));

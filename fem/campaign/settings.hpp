@@ -65,7 +65,8 @@ struct CampaignSettings {
   int threads = 1;
   double memory = 0;  ///< bytes the process may use; 0: no bound. Limits the concurrent sites
   std::vector<SiteCurves> known;  ///< results of an earlier run of the campaign: not repeated
-  /// Called for each site as it finishes, and then with the progress; from one thread at a time.
+  /// Called for each site as it finishes, and then with the progress, which also stands before the
+  /// first site; from one thread at a time.
   /// After an exception no further site starts; it is rethrown once the running sites are done.
   std::function<void(const SiteCurves&)> finished;
   std::function<void(const CampaignProgress&)> progress;

@@ -62,14 +62,6 @@ void check_settings(const FitSettings& settings) {
   }
 }
 
-/// Whether a site has a normal response over at least half of the requested depth, and a lateral
-/// one.
-bool usable(const SiteCurves& site, double depth) {
-  if (site.status == SiteStatus::Failed) return false;
-  return normal_reach(site) >= 0.5 * depth * (1 - 1e-9) && normal_reach(site) > 0 &&
-         !lateral_paths(site).empty();
-}
-
 /// Largest distance of the lateral response from any single path. It includes the loss by averaging
 /// over azimuths and, when decoupled, over depths.
 double lateral_error(const NodeResponse& node, ResponseKind kind, const SiteCurves& site) {
@@ -179,6 +171,12 @@ std::vector<std::int32_t> vertices_of(const Curves& curves) {
 }
 
 }  // namespace
+
+bool usable(const SiteCurves& site, double depth) {
+  if (site.status == SiteStatus::Failed) return false;
+  return normal_reach(site) >= 0.5 * depth * (1 - 1e-9) && normal_reach(site) > 0 &&
+         !lateral_paths(site).empty();
+}
 
 Library fit(const Body& body, const Curves& curves, const FitSettings& settings) {
   check_settings(settings);

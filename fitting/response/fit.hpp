@@ -9,6 +9,10 @@
 
 namespace palpate::fitting {
 
+/// Whether a site has a normal response over at least half of the requested depth, and a lateral
+/// one: its curves can be fitted.
+bool usable(const SiteCurves& site, double depth);
+
 /// Fits the responses of every site. They are monotone, passive and C1 by construction (see
 /// ResponseCurve and docs/theory-fitting.md).
 /// A site is usable when its normal path reaches half of the requested depth and a lateral path has

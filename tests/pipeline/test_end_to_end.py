@@ -83,8 +83,13 @@ class Pipeline(unittest.TestCase):
         curves = self.summary("curves.h5")
         self.assertEqual(curves["sites"], self.summary("body.h5")["sites"])
         self.assertGreater(curves["sites"], 8)
-        expected = SOME_SITES_FAILED if curves["sites_not_complete"] else 0
-        self.assertEqual(self.built.returncode, expected)
+        responses = self.summary("library.h5")["responses_fitted"]
+        usable = 20 * (curves["sites"] - responses) <= curves["sites"]
+        self.assertEqual(self.built.returncode, 0 if usable else SOME_SITES_FAILED)
+        strict = palpate("build", self.case, "--out", self.out, "--strict")
+        self.assertEqual(strict.returncode, SOME_SITES_FAILED if curves["sites_not_complete"] else 0)
+        if curves["sites_not_complete"]:
+            self.assertIn("ended early", self.built.stdout)
         self.assertLess(curves["sites_not_complete"], 5, curves["failures"])
         self.assertEqual(len(curves["failures"]), curves["sites_not_complete"])
         for failure in curves["failures"]:

@@ -31,6 +31,11 @@ TEST(Stages, CountSitesByStatus) {
   EXPECT_EQ(counts.failed, 4U);
   EXPECT_FALSE(counts.all_complete());
   EXPECT_TRUE(SiteCounts{}.all_complete());
+  EXPECT_GE(counts.without_response, counts.failed);
+  EXPECT_FALSE(counts.usable());
+  EXPECT_TRUE((SiteCounts{236, 0, 2, 2}.usable()));
+  EXPECT_TRUE((SiteCounts{19, 0, 1, 1}.usable()));
+  EXPECT_FALSE((SiteCounts{18, 0, 1, 1}.usable()));
 }
 
 TEST(Stages, NameTheStageOfAMissingInput) {

@@ -125,7 +125,7 @@ TEST(Campaign, ReportsItsProgress) {
   settings.progress = [&](const CampaignProgress& p) { seen.push_back(p.done * 100 + p.total); };
   CampaignReport report;
   const Curves curves = run_campaign(body, settings, report);
-  EXPECT_THAT(seen, testing::ElementsAre(102, 202));
+  EXPECT_THAT(seen, testing::ElementsAre(2, 102, 202));
   EXPECT_EQ(curves.sites[0].vertex, sites[0]);  // ascending
   EXPECT_GT(report.unknowns, 0);
 }
