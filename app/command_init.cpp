@@ -17,13 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct InitOptions {
   std::string file, output, unit;
   int sites = 200;
 };
 
 /// `liver.stl` -> `liver.toml`, in the current folder.
-fs::path case_path(const Options& options) {
+fs::path case_path(const InitOptions& options) {
   if (!options.output.empty()) return options.output;
   fs::path name = fs::path(options.file).filename().replace_extension(".toml");
   return name.stem().extension() == ".nii" ? name.stem().replace_extension(".toml") : name;
@@ -37,7 +37,7 @@ std::string name_instead_of(const std::string& stem) {
   return name == stem ? std::string() : name;
 }
 
-int write_first_case(const Options& options) {
+int write_first_case(const InitOptions& options) {
   const fs::path target = case_path(options);
   if (fs::exists(target))
     refuse(target.string(), "the file exists", "remove it, or give another name with -o");
@@ -62,7 +62,7 @@ void add_init_command(CLI::App& root, Action& action) {
   CLI::App* command =
       root.add_subcommand("init", "Surface, volume mesh or segmentation -> a first case that runs");
   command->footer("Example: palpate init data/bodies/sofa/liver.obj -o liver.toml");
-  const auto options = std::make_shared<Options>();
+  const auto options = std::make_shared<InitOptions>();
   command
       ->add_option("FILE", options->file,
                    "Surface (OFF, OBJ, PLY, STL, VTP, VTK), volume mesh or segmentation")

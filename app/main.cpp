@@ -41,6 +41,7 @@ int run(const Action& action) {
 
 void add_commands(CLI::App& root, Action& action) {
   add_init_command(root, action);
+  add_check_command(root, action);
   add_build_command(root, action);
   add_mesh_command(root, action);
   add_precompute_command(root, action);

@@ -43,24 +43,6 @@ std::string first_bytes(const std::filesystem::path& path) {
   return bytes;
 }
 
-/// @param raw largest dimension in units of the file
-void find_unit(BodyFile& body, const std::string& given, double raw) {
-  if (!given.empty()) {
-    body.unit = length_unit(given);
-    body.unit_source = UnitSource::Given;
-    return;
-  }
-  if (const auto stated = mesher::stated_unit(first_bytes(body.path))) {
-    body.unit = *stated;
-    body.unit_source = UnitSource::Stated;
-    return;
-  }
-  if (!(raw > 0)) refuse_geometry(body.path.string(), "the body has no extent", "export it again");
-  const mesher::UnitGuess guess = mesher::guess_unit(raw);
-  body.unit = guess.likely;
-  body.other_unit = guess.another;
-}
-
 bool has_separate_parts(const mesher::FaultySurface& error) {
   const auto& faults = error.faces().faults;
   return std::find(faults.begin(), faults.end(), mesher::Fault::SeparatePart) != faults.end();
@@ -180,6 +162,23 @@ Unit length_unit(const std::string& symbol) {
   for (const Unit& unit : units_of(Dimension::Length))
     if (unit.symbol == symbol) return unit;
   refuse("--unit " + symbol, "no unit of length", "use one of " + unit_list(Dimension::Length));
+}
+
+void find_unit(BodyFile& body, const std::string& given, double raw) {
+  if (!given.empty()) {
+    body.unit = length_unit(given);
+    body.unit_source = UnitSource::Given;
+    return;
+  }
+  if (const auto stated = mesher::stated_unit(first_bytes(body.path))) {
+    body.unit = *stated;
+    body.unit_source = UnitSource::Stated;
+    return;
+  }
+  if (!(raw > 0)) refuse_geometry(body.path.string(), "the body has no extent", "export it again");
+  const mesher::UnitGuess guess = mesher::guess_unit(raw);
+  body.unit = guess.likely;
+  body.other_unit = guess.another;
 }
 
 BodyFile read_body_file(const std::filesystem::path& path, const std::string& unit) {

@@ -39,6 +39,11 @@ struct BodyFile {
 /// The unit of length of this name. @throws Error(Configuration) for another word.
 Unit length_unit(const std::string& symbol);
 
+/// Writes the unit of a body and where it is from.
+/// @param given by the user, or empty
+/// @param raw largest dimension in units of the file
+void find_unit(BodyFile& body, const std::string& given, double raw);
+
 /// Reads a surface, a volume mesh or a segmentation by its ending.
 /// @param unit empty: what the file states, or else a guess (mesher::guess_unit)
 /// @throws Error as the readers of the mesher; Error(Configuration) for an unknown unit.

@@ -16,27 +16,9 @@ std::string mm(double metres) {
   return fmt::format("{:.6g} mm", std::abs(value) < 1e-9 ? 0.0 : value);
 }
 
-/// The largest extent in words: "215 mm".
-std::string length_of(const BodyFile& body, double unit_si) {
-  const double size = mesher::largest_dimension(body.surface.points) / body.unit.si * unit_si;
-  return fmt::format("{:.3g} mm", 1e3 * size);
-}
-
-std::string unit_reason(const BodyFile& body) {
-  const std::string size = fmt::format("the body is {} long", length_of(body, body.unit.si));
-  switch (body.unit_source) {
-    case UnitSource::Given:
-      return "as given: " + size;
-    case UnitSource::Stated:
-      return "stated by the file: " + size;
-    case UnitSource::Guessed:
-      break;
-  }
-  std::string reason = "a GUESS from the size: " + size;
-  if (body.other_unit)
-    reason += fmt::format(" ({} if the unit is {})", length_of(body, body.other_unit->si),
-                          body.other_unit->symbol);
-  return reason;
+/// In units of the file.
+double raw_size(const BodyFile& body) {
+  return mesher::largest_dimension(body.surface.points) / body.unit.si;
 }
 
 class Text {
@@ -65,7 +47,7 @@ void write_source(Text& text, const BodyFile& body, const std::string& file) {
                : body.kind == BodyKind::Image ? "[image]"
                                               : "[volume_mesh]");
   text.key("file", toml_string(file), "relative to this case");
-  text.key("unit", toml_string(unit), unit_reason(body));
+  text.key("unit", toml_string(unit), unit_reason(body, raw_size(body)));
   if (body.has_parts)
     text.key("parts", "\"largest\"", "the file has several; the others are left out");
   for (const std::int32_t label : body.labels) {
@@ -146,7 +128,7 @@ std::vector<std::string> regions_of(const BodyFile& body) {
 std::vector<std::string> remarks_of(const BodyFile& body, const Base& base) {
   std::vector<std::string> remarks;
   remarks.push_back(fmt::format(
-      "unit: {}, {}{}", body.unit.symbol, unit_reason(body),
+      "unit: {}, {}{}", body.unit.symbol, unit_reason(body, raw_size(body)),
       body.unit_source == UnitSource::Guessed ? "; if that is wrong, give --unit" : ""));
   remarks.push_back(
       fmt::format("support: {} towards ({:.2g}, {:.2g}, {:.2g})",
@@ -159,6 +141,20 @@ std::vector<std::string> remarks_of(const BodyFile& body, const Base& base) {
 }
 
 }  // namespace
+
+std::string unit_reason(const BodyFile& body, double raw) {
+  const auto length = [raw](const Unit& unit) {
+    return fmt::format("{:.3g} mm", 1e3 * raw * unit.si);
+  };
+  const std::string size = fmt::format("the body is {} long", length(body.unit));
+  if (body.unit_source == UnitSource::Given) return "as given: " + size;
+  if (body.unit_source == UnitSource::Stated) return "stated by the file: " + size;
+  std::string reason = "a GUESS from the size: " + size;
+  if (body.other_unit)
+    reason +=
+        fmt::format(" ({} if the unit is {})", length(*body.other_unit), body.other_unit->symbol);
+  return reason;
+}
 
 FirstCase first_case(const BodyFile& body, const Base& base, const FirstSizes& sizes,
                      const std::string& file, const std::string& name) {

@@ -17,6 +17,10 @@ struct FirstCase {
   std::vector<std::string> remarks;  ///< for the terminal: unit, base, sizes, what to check
 };
 
+/// Where the unit is from, and what it makes of the size.
+/// @param raw largest dimension in units of the file
+std::string unit_reason(const BodyFile& body, double raw);
+
 /// A short case with a comment on each line that says why.
 /// @param file path of the body as the case names it
 /// @param name of the case; empty: that of its file

@@ -7,29 +7,16 @@
 #include <utility>
 
 #include "format/error.hpp"
-#include "mesher/geometry/faulty_faces.hpp"
+#include "mesher/geometry/soup_edges.hpp"
 
 namespace palpate::mesher {
 namespace {
 
-using PointPair = std::pair<std::size_t, std::size_t>;
-
-PointPair sorted_edge(std::size_t a, std::size_t b) {
+SoupEdge sorted_edge(std::size_t a, std::size_t b) {
   return {std::min(a, b), std::max(a, b)};
 }
 
-std::map<PointPair, std::vector<std::size_t>> polygons_of_edges(const Soup& soup) {
-  std::map<PointPair, std::vector<std::size_t>> result;
-  for (std::size_t p = 0; p < soup.polygons.size(); ++p) {
-    const auto& corners = soup.polygons[p];
-    for (std::size_t k = 0; k < corners.size(); ++k) {
-      result[sorted_edge(corners[k], corners[(k + 1) % corners.size()])].push_back(p);
-    }
-  }
-  return result;
-}
-
-bool runs_along(const std::vector<std::size_t>& corners, const PointPair& edge) {
+bool runs_along(const std::vector<std::size_t>& corners, const SoupEdge& edge) {
   for (std::size_t k = 0; k < corners.size(); ++k) {
     if (corners[k] == edge.first && corners[(k + 1) % corners.size()] == edge.second) return true;
   }
@@ -129,9 +116,20 @@ std::size_t drop_unused_points(Soup& soup) {
   return dropped;
 }
 
-/// Points whose polygons do not form a single fan: sheets that meet in a point only.
-std::vector<std::size_t> pinched_points(
-    const Soup& soup, const std::map<PointPair, std::vector<std::size_t>>& edges) {
+}  // namespace
+
+PolygonsOfEdges polygons_of_edges(const Soup& soup) {
+  PolygonsOfEdges result;
+  for (std::size_t p = 0; p < soup.polygons.size(); ++p) {
+    const auto& corners = soup.polygons[p];
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+      result[sorted_edge(corners[k], corners[(k + 1) % corners.size()])].push_back(p);
+    }
+  }
+  return result;
+}
+
+std::vector<std::size_t> pinched_points(const Soup& soup, const PolygonsOfEdges& edges) {
   std::vector<std::vector<std::size_t>> around(soup.points.size());
   for (std::size_t p = 0; p < soup.polygons.size(); ++p) {
     for (const std::size_t v : soup.polygons[p]) around[v].push_back(p);
@@ -142,7 +140,7 @@ std::vector<std::size_t> pinched_points(
     for (std::size_t i = 0; i < fan.size(); ++i) {
       const auto& corners = soup.polygons[fan[i]];
       for (std::size_t k = 0; k < corners.size(); ++k) {
-        const PointPair edge = sorted_edge(corners[k], corners[(k + 1) % corners.size()]);
+        const SoupEdge edge = sorted_edge(corners[k], corners[(k + 1) % corners.size()]);
         if (edge.first != v && edge.second != v) continue;
         for (const std::size_t q : edges.at(edge)) {
           if (std::find(fan.begin(), fan.end(), q) == fan.end()) fan.push_back(q);
@@ -154,8 +152,16 @@ std::vector<std::size_t> pinched_points(
   return pinched;
 }
 
-FaultyFaces faces_at_edges(const Soup& soup,
-                           const std::map<PointPair, std::vector<std::size_t>>& edges) {
+std::vector<SoupEdge> discordant_edges(const Soup& soup, const PolygonsOfEdges& edges) {
+  std::vector<SoupEdge> result;
+  for (const auto& [edge, polygons] : edges)
+    if (polygons.size() == 2 && runs_along(soup.polygons[polygons[0]], edge) ==
+                                    runs_along(soup.polygons[polygons[1]], edge))
+      result.push_back(edge);
+  return result;
+}
+
+FaultyFaces faces_at_edges(const Soup& soup, const PolygonsOfEdges& edges) {
   FaultyFaces faulty;
   for (const auto& [edge, polygons] : edges) {
     if (polygons.size() == 2) continue;
@@ -173,8 +179,6 @@ FaultyFaces faces_at_points(const Soup& soup, const std::vector<std::size_t>& po
       faulty.add(soup.points, corners, Fault::NonManifoldPoint);
   return faulty;
 }
-
-}  // namespace
 
 void tidy(Soup& soup, const std::string& where, const Log& log) {
   if (const std::size_t n = merge_equal_points(soup); n > 0) {
@@ -276,7 +280,7 @@ void orient(Soup& soup, const std::string& where, const Log& log) {
       const std::size_t p = front[i];
       const auto& corners = soup.polygons[p];
       for (std::size_t k = 0; k < corners.size(); ++k) {
-        const PointPair edge{corners[k], corners[(k + 1) % corners.size()]};
+        const SoupEdge edge{corners[k], corners[(k + 1) % corners.size()]};
         const auto& pair = edges.at(sorted_edge(edge.first, edge.second));
         const std::size_t q = pair[0] == p ? pair[1] : pair[0];
         // Neighbours agree when they run along their common edge in opposite directions.

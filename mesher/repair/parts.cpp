@@ -92,6 +92,12 @@ double largest_fraction(const Surface& surface) {
   return all > 0 ? largest / all : 0;
 }
 
+std::vector<std::string> describe_parts(const Surface& surface) {
+  std::vector<std::string> parts;
+  for (const Part& p : parts_of(surface)) parts.push_back(described(p));
+  return parts;
+}
+
 void keep_parts(Surface& surface, const RepairSettings& settings, double extent,
                 const std::string& where, Steps& steps) {
   std::vector<Part> kept;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mesher/geometry/surface.hpp"
 #include "mesher/repair/points.hpp"
@@ -12,6 +13,9 @@ namespace palpate::mesher {
 
 /// The area of the largest part over that of all; 0 without faces.
 double largest_fraction(const Surface& surface);
+
+/// Place, area and volume of each part, the largest area first.
+std::vector<std::string> describe_parts(const Surface& surface);
 
 /// Removes parts that are small against the extent (m) or in area, and with largest_part all parts
 /// but that of the largest area.

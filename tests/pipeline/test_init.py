@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""`palpate init` on real surfaces, volume meshes and segmentations: the case that it writes is meshed.
+"""`palpate init` on real surfaces, volume meshes and segmentations: the case that it writes is meshed. And
+`palpate check`.
 
 Usage: test_init.py PALPATE SOURCE_FOLDER
 """
@@ -118,6 +119,36 @@ class Init(unittest.TestCase):
             self.assertEqual(done.returncode, code, done.stderr)
             self.assertEqual(len(done.stderr.splitlines()), 1)
             self.assertFalse((self.root / "case.toml").exists())
+
+
+class Check(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.root = Path(self.folder.name)
+
+    def tearDown(self):
+        self.folder.cleanup()
+
+    def test_sound_repairable_and_refused(self):
+        surfaces = SOURCES / "tests/data/surfaces"
+        for code, file, words in (
+                (0, SOURCES / "data/bodies/organ.off", "check: sound"),
+                (0, surfaces / "sofa/head.obj", "fault: 40 border edges"),
+                (3, surfaces / "surfice/cortex_5124.obj", "2 separate parts"),
+                (3, surfaces / "trimesh/empty.stl", "")):
+            done = palpate("check", file)
+            self.assertEqual(done.returncode, code, done.stdout + done.stderr)
+            self.assertIn(words, done.stdout)
+            self.assertEqual(len(done.stderr.splitlines()), 0 if code == 0 else 1)
+
+    def test_files_are_written_on_request_and_are_what_check_says(self):
+        head = SOURCES / "tests/data/surfaces/sofa/head.obj"
+        done = palpate("check", head, "--out", self.root / "mended.ply", "--faults", self.root / "faults.vtp")
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        self.assertIn("fault", (self.root / "faults.vtp").read_text(encoding="utf-8"))
+        again = palpate("check", self.root / "mended.ply", "--unit", "cm")
+        self.assertIn("check: sound", again.stdout)
+        self.assertEqual(palpate("check", head, "--out", self.root / "mended.stl").returncode, 2)
 
 
 if __name__ == "__main__":
