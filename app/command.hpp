@@ -29,6 +29,7 @@ inline constexpr const char* kStrictHelp =
 using Action = std::function<int()>;
 
 void add_init_command(CLI::App& root, Action& action);
+void add_doctor_command(CLI::App& root, Action& action);
 void add_check_command(CLI::App& root, Action& action);
 void add_mesh_command(CLI::App& root, Action& action);
 void add_merge_command(CLI::App& root, Action& action);

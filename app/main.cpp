@@ -62,6 +62,7 @@ void add_commands(CLI::App& root, Action& action) {
   add_experiment_command(root, action);
   add_manual_command(root, action);
   add_completion_command(root, action);
+  add_doctor_command(root, action);
 }
 
 void add_common_options(CLI::App& root) {

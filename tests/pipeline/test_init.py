@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """`palpate init` on real surfaces, volume meshes and segmentations: the case that it writes is meshed. And
-`palpate check`.
+`palpate check` and `palpate doctor`.
 
 Usage: test_init.py PALPATE SOURCE_FOLDER
 """
@@ -149,6 +149,15 @@ class Check(unittest.TestCase):
         again = palpate("check", self.root / "mended.ply", "--unit", "cm")
         self.assertIn("check: sound", again.stdout)
         self.assertEqual(palpate("check", head, "--out", self.root / "mended.stl").returncode, 2)
+
+
+class Doctor(unittest.TestCase):
+    def test_a_line_for_each_subject(self):
+        done = palpate("doctor")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for subject in ("processors", "memory", "BLAS kernel", "real-time rights", "loop of 1 kHz", "ParaView",
+                        "disk"):
+            self.assertRegex(done.stdout, rf"(?m)^(ok|missing) .*{subject}")
 
 
 if __name__ == "__main__":
