@@ -67,7 +67,8 @@ std::string synopsis(const CLI::App& command) {
     if (!option->get_positional()) continue;
     const std::string name = italic(option->get_name(true));
     const std::string more = option->get_items_expected_max() > 1 ? "..." : "";
-    text += option->get_required() ? " " + name + more : " [" + name + more + "]";
+    text += option->get_required() ? fmt::format(" {}{}", name, more)
+                                   : fmt::format(" [{}{}]", name, more);
   }
   return text;
 }
