@@ -57,8 +57,8 @@ std::string verdict(const Certificate& certificate, const DeviceCertificate& dev
   if (std::isnan(device.lowest_rate)) return "no guarantee: its damping is unknown";
   if (std::isinf(device.lowest_rate)) return "no guarantee at any rate: slides have no bound";
   const bool by_curves = guaranteed_by(certificate) == GuaranteedBy::Curves;
-  const std::string said = "passive " + from(device.lowest_rate) +
-                           (by_curves ? ", by the curves themselves" : ", with slides throttled");
+  std::string said = "passive " + from(device.lowest_rate) +
+                     (by_curves ? ", by the curves themselves" : ", with slides throttled");
   const double throttled_rate = 2 * certificate.min_lipschitz_bound / device.damping;
   if (!(throttled_rate < 0.995 * device.lowest_rate)) return said;  // also when it is not known
   return said + "; " + from(throttled_rate) +
