@@ -89,7 +89,7 @@ class Pipeline(unittest.TestCase):
         strict = palpate("build", self.case, "--out", self.out, "--strict")
         self.assertEqual(strict.returncode, SOME_SITES_FAILED if curves["sites_not_complete"] else 0)
         if curves["sites_not_complete"]:
-            self.assertIn("ended early", self.built.stdout)
+            self.assertIn("ended early", self.built.stderr)
         self.assertLess(curves["sites_not_complete"], 5, curves["failures"])
         self.assertEqual(len(curves["failures"]), curves["sites_not_complete"])
         for failure in curves["failures"]:

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/command.hpp"
 #include "app/pipeline/stages.hpp"
 
 #include <gmock/gmock.h>
@@ -36,6 +37,14 @@ TEST(Stages, CountSitesByStatus) {
   EXPECT_TRUE((SiteCounts{236, 0, 2, 2}.usable()));
   EXPECT_TRUE((SiteCounts{19, 0, 1, 1}.usable()));
   EXPECT_FALSE((SiteCounts{18, 0, 1, 1}.usable()));
+}
+
+TEST(Stages, AUsableLibrarySucceedsUnlessTheCallerIsStrict) {
+  const SiteCounts all{238, 0, 0, 0}, two_missing{236, 2, 0, 2}, many_missing{200, 0, 38, 38};
+  EXPECT_EQ(exit_code_of(all, true), kExitDone);
+  EXPECT_EQ(exit_code_of(two_missing, false), kExitDone);
+  EXPECT_EQ(exit_code_of(two_missing, true), kExitSomeSitesFailed);
+  EXPECT_EQ(exit_code_of(many_missing, false), kExitSomeSitesFailed);
 }
 
 TEST(Stages, NameTheStageOfAMissingInput) {
