@@ -16,7 +16,8 @@ class SettingsCheck {
   /// Throws Error(Configuration) unless `good`: "<where>: <what> is <value>; give <range>".
   void operator()(bool good, const char* what, double value, const char* range) const {
     if (good) return;
-    refuse(where_, std::string(what) + " is " + std::to_string(value), std::string("give ") + range);
+    refuse(where_, std::string(what) + " is " + std::to_string(value),
+           std::string("give ") + range);
   }
 
  private:

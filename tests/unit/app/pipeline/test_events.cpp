@@ -76,22 +76,22 @@ StiffnessAtRate stiffness(double certifiable, double library, double enforceable
 }
 
 TEST(TextSink, PrintsTheStagesOfABuild) {
-  EXPECT_EQ(text_of({StageStarted{"mesh", "out/body.h5", "missing"},
-                     LogLine{"mesh", "remeshed"}, MeshFinished{10, 20, 30, 5, "out/body.h5"},
-                     StageUpToDate{"fit", "out/library.h5"},
-                     FitFinished{4, 1, 2, {0.004, 0.1, 7}, {0.02, 0.5, 3}, {0.03, 0.6, 3}, "l.h5"},
-                     FileWritten{"convergence", "c.csv"}, Warning{"precompute", "careful"}}),
-            "mesh: creating out/body.h5 (missing)\n"
-            "  remeshed\n"
-            "mesh: 10 nodes, 20 tetrahedra, 30 response triangles, 5 sites -> out/body.h5\n"
-            "fit: out/library.h5 is up to date\n"
-            "  error of the fit over the largest force of a site: normal 0.40 % median, 10 % worst "
-            "(site 7)\n"
-            "    lateral 2.0 % median, 50 % worst (site 3); to any single path 3.0 % median, 60 % "
-            "worst (site 3)\n"
-            "fit: 4 responses fitted, 1 interpolated, 2 holes -> l.h5\n"
-            "convergence: c.csv\n"
-            "warning: careful\n");
+  EXPECT_EQ(
+      text_of({StageStarted{"mesh", "out/body.h5", "missing"}, LogLine{"mesh", "remeshed"},
+               MeshFinished{10, 20, 30, 5, "out/body.h5"}, StageUpToDate{"fit", "out/library.h5"},
+               FitFinished{4, 1, 2, {0.004, 0.1, 7}, {0.02, 0.5, 3}, {0.03, 0.6, 3}, "l.h5"},
+               FileWritten{"convergence", "c.csv"}, Warning{"precompute", "careful"}}),
+      "mesh: creating out/body.h5 (missing)\n"
+      "  remeshed\n"
+      "mesh: 10 nodes, 20 tetrahedra, 30 response triangles, 5 sites -> out/body.h5\n"
+      "fit: out/library.h5 is up to date\n"
+      "  error of the fit over the largest force of a site: normal 0.40 % median, 10 % worst "
+      "(site 7)\n"
+      "    lateral 2.0 % median, 50 % worst (site 3); to any single path 3.0 % median, 60 % "
+      "worst (site 3)\n"
+      "fit: 4 responses fitted, 1 interpolated, 2 holes -> l.h5\n"
+      "convergence: c.csv\n"
+      "warning: careful\n");
 }
 
 TEST(TextSink, SendsWarningsToTheStandardError) {

@@ -151,8 +151,7 @@ TEST(Supports, AreRefusedWhereTheyLeaveRigidMotionsOrNoSite) {
   const BoxSupport base{{-1, -1, -1}, {1, 1, 0}};
   s.supports.clear();
   s.foundation = {{base, 1e6, 0}};  // springs in one direction only: it can slide
-  expect_refused(s, "supported.off", "on springs",
-                 "tangential_stiffness");
+  expect_refused(s, "supported.off", "on springs", "tangential_stiffness");
   s.foundation = {{SphereSupport{{1, 1, 1}, 0.01}, 1e6, 1e6}};
   expect_refused(s, "supported.off", "contain no facet", "place them on the body");
   s.foundation = {{base, 0, 0}};

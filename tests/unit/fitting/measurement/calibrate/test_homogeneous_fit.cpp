@@ -245,7 +245,8 @@ TEST(Homogeneous, RefusesWhatCannotBeFitted) {
   settings.constants = {{"C11", true, 1, 0, 2}};
   EXPECT_THAT(refusal({test}, settings), HasSubstr("constant 'C11'"));
   settings.constants = {{"C10", true, 3, 0, 2}};
-  EXPECT_THAT(refusal({test}, settings), HasSubstr("the start 3.00 of C10 is not within 0 .. 2.00"));
+  EXPECT_THAT(refusal({test}, settings),
+              HasSubstr("the start 3.00 of C10 is not within 0 .. 2.00"));
 }
 
 }  // namespace
