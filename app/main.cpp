@@ -88,9 +88,8 @@ int parse_and_run(int count, char** arguments) {
   root.footer(
       "Exit codes: 0 success, 1 internal error, 2 usage or configuration, 3 unusable geometry,\n"
       "4 finished, but too many sites ended early (with --strict: any).\n"
-      "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose stand before or "
-      "after "
-      "it.\n"
+      "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose stand before or\n"
+      "after it.\n"
       "Example: palpate build data/cases/liver.toml");
   root.require_subcommand(1);
   root.fallthrough();  // inherited by the subcommands
@@ -104,7 +103,8 @@ int parse_and_run(int count, char** arguments) {
     root.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // CLI11 starts at the back
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return root.exit(error);
-    return fail(std::string("command line: ") + error.what() + "; see palpate --help", kExitUsage);
+    return fail(std::string("command line: ") + error.what() + "; see '" + help_for(root) + "'",
+                kExitUsage);
   }
   return finish(run(action));
 }

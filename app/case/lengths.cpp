@@ -10,11 +10,7 @@ namespace palpate::app {
 namespace {
 
 constexpr double kPatchesInDiagonal = 15;
-constexpr double kElementOverPatch = 0.5;
-constexpr double kRadiusOverPatch = 0.5;
-constexpr double kDepthOverPatch = 0.4;
 constexpr double kDepthOverThickness = 0.2;
-constexpr double kTravelOverDepth = 0.5;
 constexpr double kSpacingOverPatch = 3;
 
 /// Fills lengths that are `auto` and notes what it chose.

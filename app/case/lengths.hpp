@@ -7,6 +7,11 @@
 
 namespace palpate::app {
 
+inline constexpr double kElementOverPatch = 0.5;
+inline constexpr double kRadiusOverPatch = 0.65;  ///< a tool that covers more than one element
+inline constexpr double kDepthOverPatch = 0.4;    ///< the contact stays smaller than the tool
+inline constexpr double kTravelOverDepth = 0.5;
+
 /// Whether a length of the case is to be derived from the size of its body.
 bool needs_body_size(const Case& c);
 

@@ -74,4 +74,13 @@ std::string unknown_word(const CLI::App& root, const std::vector<std::string>& w
   return {};
 }
 
+std::string help_for(const CLI::App& root) {
+  std::string command = root.get_name() + " help";
+  for (const CLI::App* here = &root; !here->get_subcommands().empty();) {
+    here = here->get_subcommands().back();
+    command += " " + here->get_name();
+  }
+  return command;
+}
+
 }  // namespace palpate::app

@@ -19,4 +19,7 @@ std::vector<std::string> help_as_option(std::vector<std::string> words);
 /// expected.
 std::string unknown_word(const CLI::App& root, const std::vector<std::string>& words);
 
+/// The command that explains the subcommand that was parsed last: "palpate help export site".
+std::string help_for(const CLI::App& root);
+
 }  // namespace palpate::app

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/case/toml_string.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::app {
 namespace {
@@ -61,9 +62,12 @@ void write_mesh(Text& text, const BodyFile& body, const FirstSizes& sizes) {
   const double area = sizes.pressable_area / body.area_excess;
   text.section("[mesh]");
   text.length("patch_spacing", sizes.patch_spacing,
-              fmt::format("{} {:.0f} sites on {:.3g} cm^2; halve it for four times as many",
-                          sizes.is_thin ? "smaller for a thin body: some" : "some",
-                          area / (0.866 * sizes.patch_spacing * sizes.patch_spacing), 1e4 * area));
+              fmt::format("{}some {:.0f} sites on {} cm^2; halve it for four times as many",
+                          sizes.is_thin       ? "smaller for a thin body: "
+                          : sizes.is_coarsest ? "the largest that shows the shape: "
+                                              : "",
+                          area / (kAreaOfVertex * sizes.patch_spacing * sizes.patch_spacing),
+                          number_text(1e4 * area)));
   text.length("element_size", sizes.element_size,
               body.kind == BodyKind::VolumeMesh ? "no effect: the mesh is used as it is"
                                                 : "half a patch; smaller is more accurate");
@@ -110,8 +114,9 @@ void write_paths(Text& text, const FirstSizes& sizes) {
   text.section("[tool]");
   text.length("radius", sizes.tool_radius, "a sphere that covers more than one element");
   text.section("[indentation]");
-  text.length("depth", sizes.depth,
-              fmt::format("the body is {:.3g} mm thick in the median", 1e3 * sizes.thickness));
+  text.length(
+      "depth", sizes.depth,
+      fmt::format("the body is {} mm thick in the median", number_text(1e3 * sizes.thickness)));
   text.length("lateral_travel", sizes.lateral_travel, "half the depth");
   text.key("lateral_depths", fmt::format("[\"{}\"]", mm(sizes.depth / 2)),
            "one lateral path a site; more are more accurate");
@@ -143,9 +148,7 @@ std::vector<std::string> remarks_of(const BodyFile& body, const Base& base) {
 }  // namespace
 
 std::string unit_reason(const BodyFile& body, double raw) {
-  const auto length = [raw](const Unit& unit) {
-    return fmt::format("{:.3g} mm", 1e3 * raw * unit.si);
-  };
+  const auto length = [raw](const Unit& unit) { return number_text(1e3 * raw * unit.si) + " mm"; };
   const std::string size = fmt::format("the body is {} long", length(body.unit));
   if (body.unit_source == UnitSource::Given) return "as given: " + size;
   if (body.unit_source == UnitSource::Stated) return "stated by the file: " + size;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "app/case/lengths.hpp"
 #include "format/to_index.hpp"
 #include "mesher/geometry/queries.hpp"
 
@@ -13,15 +14,9 @@ namespace {
 
 using mesher::Surface;
 
-// Area of an equilateral triangle over its edge squared, twice: a vertex for two triangles.
-constexpr double kAreaOfVertex = 0.866;
 constexpr double kFewestPatches = 6;  // along the extent
 constexpr double kFinestForThickness = 2;
-constexpr double kElements = 0.5;  // of a patch
-constexpr double kTool = 0.65;     // of a patch: 1.3 elements
-constexpr double kDepthOfTool = 0.6;
 constexpr double kDepthOfThickness = 0.3, kDepthOfThinPlaces = 0.6;
-constexpr double kTravel = 0.5;  // of the depth
 
 double rounded(double value) {
   const double step = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -77,16 +72,17 @@ FirstSizes first_sizes(const Surface& surface, const Base& base, int sites) {
   const double thin = below.empty() ? extent : below[below.size() / 10];
 
   const double even = std::sqrt(sizes.pressable_area / (kAreaOfVertex * sites));
-  const double spread =
-      faces.empty() ? extent / kFewestPatches : std::min(even, extent / kFewestPatches);
+  const double coarsest = extent / kFewestPatches;
+  const double spread = faces.empty() ? coarsest : std::min(even, coarsest);
+  sizes.is_coarsest = spread < even;
   sizes.is_thin = sizes.thickness < spread;
   sizes.patch_spacing =
       rounded(std::max(std::min(spread, sizes.thickness), spread / kFinestForThickness));
-  sizes.element_size = rounded(kElements * sizes.patch_spacing);
-  sizes.tool_radius = rounded(kTool * sizes.patch_spacing);
-  sizes.depth = rounded(std::min({kDepthOfTool * sizes.tool_radius,
+  sizes.element_size = rounded(kElementOverPatch * sizes.patch_spacing);
+  sizes.tool_radius = rounded(kRadiusOverPatch * sizes.patch_spacing);
+  sizes.depth = rounded(std::min({kDepthOverPatch * sizes.patch_spacing,
                                   kDepthOfThickness * sizes.thickness, kDepthOfThinPlaces * thin}));
-  sizes.lateral_travel = rounded(kTravel * sizes.depth);
+  sizes.lateral_travel = rounded(kTravelOverDepth * sizes.depth);
   return sizes;
 }
 

@@ -7,6 +7,9 @@
 
 namespace palpate::app {
 
+/// Area of an equilateral triangle over its edge squared, twice: a vertex for two triangles.
+inline constexpr double kAreaOfVertex = 0.866;
+
 /// Lengths in m, rounded to two digits.
 struct FirstSizes {
   double patch_spacing = 0;
@@ -17,6 +20,7 @@ struct FirstSizes {
   double pressable_area = 0;  ///< m^2, that off the base
   double thickness = 0;       ///< m, of the body below the surface, in the median
   bool is_thin = false;       ///< the thickness, not the number of sites, sets the patches
+  bool is_coarsest = false;   ///< fewer sites would need patches that do not show the shape
 };
 
 /// Patches so large that about `sites` response vertices lie off the base, but at most a sixth of

@@ -4,18 +4,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "format/error.hpp"
+#include "format/numbers.hpp"
 #include "mesher/read/image/label_image.hpp"
 #include "mesher/read/mesh/read_volume_mesh.hpp"
 #include "mesher/read/read_surface.hpp"
 
 namespace palpate::app {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 class Box {
  public:

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "app/simulate/surface_path.hpp"
 #include "format/error.hpp"
+#include "format/numbers.hpp"
 #include "format/to_index.hpp"
 #include "runtime/response_curve.hpp"
 
@@ -51,8 +51,7 @@ Typical typical_of(const Library& library) {
 
 /// Diagonal of the box around the triangles whose corners all have a response, m.
 double diagonal_of(const Library& library) {
-  constexpr double kFar = std::numeric_limits<double>::infinity();
-  Vec3 low{kFar, kFar, kFar}, high{-kFar, -kFar, -kFar};
+  Vec3 low{kInfinity, kInfinity, kInfinity}, high = -low;
   for (const Triangle& triangle : library.triangles) {
     const bool touchable = std::all_of(triangle.begin(), triangle.end(), [&](std::int32_t v) {
       return library.responses[to_index(v)].status != ResponseStatus::Hole;
@@ -81,7 +80,7 @@ void derive_device(runtime::SimulatedDeviceSettings& device, const Typical& body
 }  // namespace
 
 double depth_of_responses(const Library& library) {
-  double depth = std::numeric_limits<double>::infinity();
+  double depth = kInfinity;
   for (const NodeResponse& node : library.responses)
     if (node.status != ResponseStatus::Hole)
       depth = std::min(depth, static_cast<double>(node.normal.knot.back()));

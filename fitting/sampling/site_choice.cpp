@@ -2,16 +2,14 @@
 #include "fitting/sampling/site_choice.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 
 #include "fitting/response/interpolate.hpp"
 #include "fitting/response/surface_interpolation.hpp"
+#include "format/numbers.hpp"
 
 namespace palpate::fitting {
 namespace {
-
-constexpr double kFar = std::numeric_limits<double>::infinity();
 
 std::vector<Vec3> positions_of(const Body& body) {
   std::vector<Vec3> positions;
@@ -25,7 +23,9 @@ class ExpectedErrors {
  public:
   ExpectedErrors(const Body& body, const std::vector<std::int32_t>& computed,
                  const Library& library)
-      : open_(sites_not_computed(body, computed)), library_(library), gap_(open_.size(), kFar) {
+      : open_(sites_not_computed(body, computed)),
+        library_(library),
+        gap_(open_.size(), kInfinity) {
     for (std::size_t i = 0; i < open_.size(); ++i)
       for (const std::int32_t c : computed)
         gap_[i] = std::min(gap_[i], distance(open_[i], static_cast<std::size_t>(c)));
@@ -38,7 +38,7 @@ class ExpectedErrors {
     double largest = target;
     for (std::size_t i = 0; i < open_.size(); ++i) {
       // A vertex without a computed neighbour comes first: nothing is known there.
-      const double expected = gap_[i] == kFar ? kFar : rate_[i] * gap_[i] * gap_[i];
+      const double expected = gap_[i] == kInfinity ? kInfinity : rate_[i] * gap_[i] * gap_[i];
       if (gap_[i] == 0 || expected <= largest) continue;
       largest = expected;
       worst = i;
@@ -86,7 +86,7 @@ class ExpectedErrors {
 std::vector<std::int32_t> spread_sites(const Body& body, double spacing) {
   const std::vector<Vec3> positions = positions_of(body);
   const std::vector<std::size_t> sites = sites_of(body);
-  std::vector<double> gap(sites.size(), kFar);
+  std::vector<double> gap(sites.size(), kInfinity);
   std::vector<std::int32_t> chosen;
   for (;;) {
     const auto farthest = std::max_element(gap.begin(), gap.end());

@@ -20,7 +20,7 @@ void describe_tool(V& v, fem::IndentationSettings& s) {
   v.quantity_or_auto(s.tool.radius, Dimension::Length,
                      {"radius",
                       "radius of the sphere, the disc or the cross-section of the cylinder; "
-                      "`auto`: half of `patch_spacing`",
+                      "`auto`: 0.65 of `patch_spacing`",
                       kOptional, kPositive});
   describe_choice(
       v, s.friction,

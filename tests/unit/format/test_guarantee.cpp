@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <limits>
+#include "format/numbers.hpp"
 
 namespace palpate {
 namespace {
@@ -13,11 +13,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// A certificate of two triangles, the second without bounds of its own.
-Certificate certificate(double stick, double slip, double min_bound = kNaN) {
+Certificate certificate(double stick, double slip, double min_bound = kUnknown) {
   Certificate c;
   c.stick = stick;
   c.slip = slip;
@@ -72,7 +69,7 @@ TEST(Guarantee, IsNothingWithoutABound) {
     EXPECT_EQ(verdict(c, {"pen", 0.1, kInfinity, 0, 0}),
               "no guarantee at any rate: slides have no bound");
   }
-  EXPECT_EQ(verdict(certificate(100, 200), {"pen", kNaN, kNaN, kNaN, kNaN}),
+  EXPECT_EQ(verdict(certificate(100, 200), {"pen", kUnknown, kUnknown, kUnknown, kUnknown}),
             "no guarantee: its damping is unknown");
 }
 

@@ -49,7 +49,7 @@ TEST(Lengths, OfABlockAreThoseOfThePage) {
   const fem::IndentationSettings& paths = c.campaign.indentation;
   EXPECT_DOUBLE_EQ(c.mesh.patch_spacing, patch);
   EXPECT_DOUBLE_EQ(c.mesh.element_size, patch / 2);
-  EXPECT_DOUBLE_EQ(paths.tool.radius, patch / 2);
+  EXPECT_DOUBLE_EQ(paths.tool.radius, 0.65 * patch);
   EXPECT_DOUBLE_EQ(paths.depth, 0.4 * patch);
   EXPECT_DOUBLE_EQ(paths.lateral_travel, 0.2 * patch);
   EXPECT_THAT(c.derived, HasSubstr("patch_spacing = 35.9 mm"));
@@ -67,7 +67,7 @@ TEST(Lengths, ThatAreGivenStayAndTheOthersFollowThem) {
     return {};
   });
   EXPECT_DOUBLE_EQ(c.mesh.patch_spacing, 0.008);
-  EXPECT_DOUBLE_EQ(c.campaign.indentation.tool.radius, 0.004);
+  EXPECT_DOUBLE_EQ(c.campaign.indentation.tool.radius, 0.0052);
   EXPECT_DOUBLE_EQ(c.campaign.indentation.lateral_travel, 0.002);
   EXPECT_EQ(c.campaign.indentation.lateral_depths, (std::vector<double>{0.001, 0.0033}));
 }

@@ -12,6 +12,8 @@
 #include <memory>
 #include <string>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace palpate::app {
 namespace {
 
@@ -44,7 +46,9 @@ class Completion : public ::testing::Test {
 
  private:
   CLI::App root_{"", "palpate"};
-  std::string text_, script_ = ::testing::TempDir() + "palpate_completion.bash";
+  std::string text_;
+  samples::TemporaryFolder folder_;
+  std::string script_ = (folder_ / "palpate.bash").string();
 };
 
 TEST_F(Completion, OffersSubcommands) {

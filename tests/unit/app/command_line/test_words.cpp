@@ -33,8 +33,9 @@ class CommandWords : public ::testing::Test {
 
   std::string unknown(const Words& words) const { return unknown_word(root_, words); }
 
+  CLI::App root_{"", "palpate"};
+
  private:
-  CLI::App root_;
   std::string case_, out_;
   int threads_ = 0;
 };
@@ -57,6 +58,12 @@ TEST_F(CommandWords, NamesTheNearestWord) {
             "unknown option '--quite'; the nearest is '--quiet'");
   EXPECT_EQ(unknown({"export", "site", "--jsn"}),
             "unknown option '--jsn'; the nearest is '--json'");
+}
+
+TEST_F(CommandWords, ExplainTheCommandThatWasParsed) {
+  EXPECT_EQ(help_for(root_), "palpate help");
+  EXPECT_THROW(root_.parse("export site --jsn"), CLI::ParseError);
+  EXPECT_EQ(help_for(root_), "palpate help export site");
 }
 
 TEST_F(CommandWords, TurnsHelpIntoAnOption) {

@@ -29,6 +29,13 @@ TEST(FirstSizes, OfACylinderFollowItsAreaAndThickness) {
   EXPECT_NEAR(sites, 200, 20);
 }
 
+TEST(FirstSizes, ShowTheShapeHoweverFewSitesAreAskedFor) {
+  const FirstSizes sizes = sizes_of("data/bodies/cylinder.off", 1e-3, 10);
+  EXPECT_TRUE(sizes.is_coarsest);
+  EXPECT_NEAR(sizes.patch_spacing, 0.08 / 6, 1e-3 * 0.5);  // a sixth of the diameter
+  EXPECT_FALSE(sizes_of("data/bodies/cylinder.off", 1e-3, 200).is_coarsest);
+}
+
 TEST(FirstSizes, ScaleWithTheBody) {
   const FirstSizes large = sizes_of("data/bodies/organ.off", 1e-2, 150);
   const FirstSizes small = sizes_of("data/bodies/organ.off", 1e-3, 150);
