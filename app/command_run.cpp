@@ -73,7 +73,7 @@ std::function<runtime::HandTarget(double)> scripted_hand(const Library& library,
   };
 }
 
-/// Without a profile, only the damping and friction of the simulated device are known.
+/// Without a profile, only the constants of the simulated device are known.
 fitting::DeviceProfile profile_of(const RunOptions& options) {
   if (!options.profile.empty()) return read_device_profile(options.profile);
   fitting::DeviceProfile profile;
@@ -81,6 +81,7 @@ fitting::DeviceProfile profile_of(const RunOptions& options) {
   if (profile.name == kSimulatedDevice) {
     profile.damping = kPublishedDevice.damping;
     profile.coulomb_friction = kPublishedDevice.coulomb_friction;
+    profile.delay = profile.position_resolution = profile.force_resolution = 0;
   }
   return profile;
 }
@@ -135,11 +136,12 @@ void require_good_end(const LiveOutcome& outcome, const std::string& device,
 
 void settle(RunOptions& options, const Library& library, const palpate_library& body) {
   const fitting::DeviceProfile profile = profile_of(options);
-  if (!options.uncertified) {
-    require_certified(library, options.library, profile, options.live.loop.rate);
-  }
   LiveSettings& live = options.live;
   if (live.contact.friction < 0) live.contact.friction = library.certificate.friction;
+  const auto reason =
+      why_not_certified(library, options.library, profile, live.loop.rate, live.contact.friction);
+  if (!options.uncertified) require_certified(reason);
+  if (reason) say("run: not certified: {}: {}", reason->where, reason->problem);
   live.contact.lipschitz_bound = lipschitz_bound_for(library, profile, live.loop.rate);
   if (live.contact.lipschitz_bound < body.lipschitz_bound) {
     say("run: the enforced Lipschitz bound is lowered to {} N/m, which is certified at this rate",
@@ -147,6 +149,11 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
   }
   if (profile.peak_force > 0) {
     live.safety.max_force = std::min(live.safety.max_force, profile.peak_force);
+  }
+  if (!reason) {
+    say("run: certified passive on {}, at {:g} Hz with a lipschitz_bound of {} N/m and mu = {:g}",
+        profile.name, live.loop.rate, number_text(live.contact.lipschitz_bound, 4),
+        live.contact.friction);
   }
   for (std::size_t i = 0; i < 3; ++i) live.pose.position[i] = 1e-3 * options.at_mm[i];
   live.loop.watchdog = live.safety.watchdog;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "format/number_text.hpp"
 
@@ -20,10 +22,33 @@ std::string curves_alone(const Certificate& c) {
   return "the curves alone reach " + lipschitz_bound_text(std::max(c.stick, c.slip));
 }
 
-/// Rounded up, but for the rounding of the arithmetic: 4000.0000000001 Hz is 4000 Hz.
+// Against the rounding of the arithmetic: 4000.0000000001 Hz is 4000 Hz.
+constexpr double kExact = 1 - 1e-12;
+
 std::string from(double rate) {
-  constexpr double kExact = 1 - 1e-12;
   return "from " + rounded_up_text(kExact * rate) + " Hz on";
+}
+
+std::string not_certified_without(const std::vector<std::string>& unknown, double rate) {
+  return "not certified: its " + list_in_words(unknown) +
+         (unknown.size() == 1 ? " is unknown" : " are unknown") +
+         (std::isfinite(rate) ? "; its damping suffices " + from(rate) : "");
+}
+
+/// Empty where no rate is certified with this bound.
+std::string certified_from(const DeviceConstants& device, double bound, double rate) {
+  const bool holds = std::isfinite(rate) && judge_passivity(device, bound, rate).by_friction;
+  return holds ? from(rate) : "";
+}
+
+/// All constants are known, and a condition does not hold at any rate.
+std::string why_not(const DeviceConstants& constants, double bound,
+                    const DeviceCertificate& device) {
+  if (std::isinf(device.lowest_rate))
+    return "not certified at any rate: its damping does not make up for its delay";
+  return "not certified at any rate: its dry friction allows positions in steps of " +
+         number_text(1e6 * largest_position_step(constants, bound)) + " um, not of " +
+         number_text(1e6 * device.position_resolution) + " um";
 }
 
 }  // namespace
@@ -54,15 +79,45 @@ std::string guarantee_text(const Certificate& certificate) {
 }
 
 std::string verdict(const Certificate& certificate, const DeviceCertificate& device) {
-  if (std::isnan(device.lowest_rate)) return "no guarantee: its damping is unknown";
-  if (std::isinf(device.lowest_rate)) return "no guarantee at any rate: slides have no bound";
-  const bool by_curves = guaranteed_by(certificate) == GuaranteedBy::Curves;
-  std::string said = "passive " + from(device.lowest_rate) +
-                     (by_curves ? ", by the curves themselves" : ", with slides throttled");
-  const double throttled_rate = 2 * certificate.min_lipschitz_bound / device.damping;
-  if (!(throttled_rate < 0.995 * device.lowest_rate)) return said;  // also when it is not known
-  return said + "; " + from(throttled_rate) +
-         " with lipschitz_bound = " + lipschitz_bound_text(certificate.min_lipschitz_bound);
+  const DeviceConstants constants = device.constants();
+  const std::vector<std::string> unknown = unknown_constants(constants);
+  if (!unknown.empty()) return not_certified_without(unknown, device.lowest_rate);
+  const double bound = certified_lipschitz_bound(certificate);
+  if (std::isinf(bound)) return "not certified at any rate: slides have no bound";
+  const double smallest = certificate.min_lipschitz_bound;
+  const std::string by = guaranteed_by(certificate) == GuaranteedBy::Curves
+                             ? ", by the curves themselves"
+                             : ", with slides throttled";
+  const std::string whole = certified_from(constants, bound, device.lowest_rate);
+  const double throttled = lowest_rate(constants, smallest);
+  std::string with_throttling;  // not where it gains nothing or is not known
+  if (whole.empty() || throttled < 0.995 * device.lowest_rate) {
+    with_throttling = certified_from(constants, smallest, throttled);
+    if (!with_throttling.empty())
+      with_throttling += " with lipschitz_bound = " + lipschitz_bound_text(smallest);
+  }
+  if (whole.empty() && with_throttling.empty()) return why_not(constants, bound, device);
+  std::string said = "certified passive " + (whole.empty() ? with_throttling : whole + by);
+  if (!whole.empty() && !with_throttling.empty()) said += "; " + with_throttling;
+  return said +
+         " (Mahvash & Hayward 2005, eq. 5: " + rounded_up_text(kExact * device.published_rate) +
+         " Hz)";
+}
+
+bool is_certified(const Certificate& certificate, const DeviceCertificate& device) {
+  constexpr double kFrom = 1 + 1e-9;  // the lowest rate itself is rounded
+  return judge_passivity(device.constants(), certified_lipschitz_bound(certificate),
+                         kFrom * device.lowest_rate)
+      .certified();
+}
+
+CertifiedRange certified_range(const Library& library) {
+  const Certificate& c = library.certificate;
+  if (c.triangles.empty()) return {};
+  const bool known = std::isfinite(c.min_lipschitz_bound);
+  const bool from_zero = known && library.kind == ResponseKind::Decoupled;
+  return {from_zero ? 0 : c.friction, c.friction, std::max(c.stick, c.slip),
+          known ? c.min_lipschitz_bound : kInfinity};
 }
 
 std::string lipschitz_bound_text(double lipschitz_bound) {

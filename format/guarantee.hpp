@@ -20,9 +20,32 @@ GuaranteedBy guaranteed_by(const Certificate& certificate);
 /// One line: what is guaranteed of the force, and by what. Nothing stands before a missing bound.
 std::string guarantee_text(const Certificate& certificate);
 
-/// One line for a device: the rate from which it is passive and by what, also with slides throttled
-/// as far as possible; or that there is no guarantee, and why.
+/// One line for a device: the rate from which it is certified passive and by what, also with slides
+/// throttled as far as possible; or that it is not certified, with every unknown constant.
 std::string verdict(const Certificate& certificate, const DeviceCertificate& device);
+
+/// Is the device certified from its lowest rate on, with the enforced bound?
+bool is_certified(const Certificate& certificate, const DeviceCertificate& device);
+
+/// For which settings of a state the runtime keeps the change of the force within its bound.
+struct CertifiedRange {
+  /// Friction coefficients. Decoupled responses: from 0 to that of the certificate, as L_min grows
+  /// with it. Coupled ones, and where L_min is not known: that of the certificate alone.
+  double low_friction = 1, high_friction = 0;
+  double curves = kInfinity;  ///< N/m: from there on the responses keep the bound by themselves
+  double min_lipschitz_bound = kInfinity;  ///< N/m, L_min: from there on by throttled slides
+
+  bool covers(double friction) const noexcept {
+    return friction >= low_friction && friction <= high_friction;
+  }
+  bool enforces(double lipschitz_bound) const noexcept {
+    return lipschitz_bound < kInfinity &&
+           (lipschitz_bound >= curves || lipschitz_bound >= min_lipschitz_bound);
+  }
+};
+
+/// Without a certificate it contains nothing.
+CertifiedRange certified_range(const Library& library);
 
 /// A Lipschitz bound as text in N/m, rounded up, so that the text is a valid setting.
 std::string lipschitz_bound_text(double lipschitz_bound);

@@ -36,12 +36,24 @@ constexpr auto kDeviceColumns = std::make_tuple(
     column("damping", &DeviceCertificate::damping, "N s/m",
            "Smallest damping singular value sigma_0(B).", rules::kKnownBound),
     column("lowest_rate", &DeviceCertificate::lowest_rate, "Hz",
-           "Lowest certified rate, 2 L/sigma_0(B).", rules::kKnownBound),
+           "Rate from which on damping makes up for hold and delay.", rules::kKnownBound),
     column("linear_limit", &DeviceCertificate::linear_limit, "N/m",
            "Stiffest linear wall at 1 kHz with one sample of delay, 2 b/(3 T).",
            rules::kKnownBound),
     column("no_delay_limit", &DeviceCertificate::no_delay_limit, "N/m",
-           "Stiffest linear wall at 1 kHz without delay, 2 b/T.", rules::kKnownBound));
+           "Stiffest linear wall at 1 kHz without delay, 2 b/T.", rules::kKnownBound),
+    column("coulomb_friction", &DeviceCertificate::coulomb_friction, "N",
+           "Smallest dry friction sigma_0(S).", rules::kKnownBound, true),
+    column("delay", &DeviceCertificate::delay, "s", "Delay beyond that of the loop.",
+           rules::kKnownBound, true),
+    column("position_resolution", &DeviceCertificate::position_resolution, "m",
+           "Step of the reported position along an axis.", rules::kKnownBound, true),
+    column("force_resolution", &DeviceCertificate::force_resolution, "N",
+           "Step of the force along an axis.", rules::kKnownBound, true),
+    column("published_rate", &DeviceCertificate::published_rate, "Hz",
+           "2 L/sigma_0(B), of Mahvash & Hayward 2005, eq. 5.", rules::kKnownBound, true),
+    column("largest_position_step", &DeviceCertificate::largest_position_step, "m",
+           "Largest position_resolution that dry friction certifies.", rules::kKnownBound, true));
 
 /// Curves of all nodes end to end; node l owns the knots offset[l] .. offset[l+1]-1.
 struct FlatCurves {

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "format/numbers.hpp"
+#include "format/passivity.hpp"
 #include "format/provenance.hpp"
 #include "format/vec3.hpp"
 
@@ -70,14 +72,24 @@ struct TriangleCertificate {
   bool sliding_passive = false;  ///< the paper's slide needs no energy correction here
 };
 
-/// What a device profile yields on this library. NaN where the damping is unknown.
+/// What a device profile yields on this library. NaN: unknown.
 struct DeviceCertificate {
   std::string device;      ///< profile name
   double damping = 0;      ///< sigma_0(B), N s/m
-  double lowest_rate = 0;  ///< Hz, 2 L/sigma_0(B), L the enforced bound; infinite: no rate
+  double lowest_rate = 0;  ///< Hz, for the enforced bound L, (C7); infinite: no rate
   double linear_limit =
       0;  ///< N/m at 1 kHz, 2 b/(3 T): exact linear limit with one sample of delay
-  double no_delay_limit = 0;  ///< N/m at 1 kHz, 2 b/T
+  double no_delay_limit = 0;                ///< N/m at 1 kHz, 2 b/T
+  double coulomb_friction = kUnknown;       ///< sigma_0(S), N
+  double delay = kUnknown;                  ///< tau, s
+  double position_resolution = kUnknown;    ///< q, m
+  double force_resolution = kUnknown;       ///< r, N
+  double published_rate = kUnknown;         ///< Hz, 2 L/sigma_0(B) [Mahvash & Hayward 2005, eq. 5]
+  double largest_position_step = kUnknown;  ///< m, that dry friction certifies for L, (C8)
+
+  DeviceConstants constants() const {
+    return {damping, coulomb_friction, delay, position_resolution, force_resolution};
+  }
 };
 
 struct Certificate {

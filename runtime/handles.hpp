@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "format/guarantee.hpp"
 #include "format/library.hpp"
 #include "runtime/collision.hpp"
 #include "runtime/contact_state.hpp"
@@ -20,6 +21,7 @@ struct palpate_library {
         lipschitz_bound(palpate::enforced_lipschitz_bound(library.certificate)),
         min_lipschitz_bound(std::isfinite(info.min_lipschitz_bound) ? info.min_lipschitz_bound
                                                                     : info.stick),
+        certified_range(palpate::certified_range(library)),
         certified(!library.certificate.triangles.empty()) {}
   palpate_library(const palpate_library&) = delete;  // the tree points into the surface
   palpate_library& operator=(const palpate_library&) = delete;
@@ -32,11 +34,19 @@ struct palpate_library {
   palpate_library_info info;
   double lipschitz_bound;      ///< N/m, enforced by default
   double min_lipschitz_bound;  ///< N/m, smallest setting of a state
+  palpate::CertifiedRange certified_range;
   bool certified;
 };
 
 struct palpate_state : palpate::runtime::PosedContact {
   palpate_state(const palpate_library& library, const palpate::runtime::ContactSettings& settings,
                 double search_rate = 0)
-      : PosedContact(library.surface, library.tree, settings, search_rate) {}
+      : PosedContact(library.surface, library.tree, settings, search_rate),
+        certified_range(library.certified_range),
+        friction(settings.friction),
+        lipschitz_bound(settings.lipschitz_bound) {}
+
+  // Of the library and the settings, for certification.
+  palpate::CertifiedRange certified_range;
+  double friction, lipschitz_bound;
 };

@@ -20,6 +20,7 @@
 #include "format/guarantee.hpp"
 #include "palpate_version.hpp"
 #include "runtime/c_boundary.hpp"
+#include "runtime/certified_state.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/status.hpp"
 
@@ -288,6 +289,33 @@ void palpate_state_destroy(palpate_state* state) {
 
 void palpate_state_reset(palpate_state* state) {
   if (state != nullptr) state->contact.reset();
+}
+
+void palpate_device_constants_default(palpate_device_constants* device) {
+  if (device == nullptr) return;
+  constexpr double kUnknown = palpate::kUnknown;
+  *device = {sizeof(palpate_device_constants), kUnknown, kUnknown, kUnknown, kUnknown, kUnknown};
+}
+
+int palpate_state_certified(const palpate_state* state, const palpate_device_constants* device,
+                            double rate) {
+  if (state == nullptr || device == nullptr)
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_state_certified: null pointer");
+  if (device->size < sizeof(palpate_device_constants)) {
+    return fail(PALPATE_ERROR_ARGUMENT,
+                "palpate_state_certified: fill the constants with palpate_device_constants_default "
+                "first");
+  }
+  if (!(rate > 0 && std::isfinite(rate)))
+    return fail(PALPATE_ERROR_ARGUMENT, "palpate_state_certified: the rate must be above 0");
+  return guarded(PALPATE_ERROR_MEMORY, [&] {
+    const std::string reason = palpate::runtime::why_not_certified(
+        *state,
+        {device->damping, device->coulomb_friction, device->delay, device->position_resolution,
+         device->force_resolution},
+        rate);
+    return reason.empty() ? 1 : fail(0, reason.c_str());
+  });
 }
 
 int palpate_state_set_pose(palpate_state* state, const double position[3],

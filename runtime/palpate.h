@@ -110,13 +110,15 @@ enum {
 
 typedef struct palpate_settings {
   uint32_t size;   /* sizeof(palpate_settings), set by palpate_settings_default */
-  double friction; /* mu, friction coefficient; negative (default) = that of the certificate */
+  /* mu, friction coefficient; negative (default) = that of the certificate. Above it, and for
+   * coupled responses at any other value, lipschitz_bound may be exceeded and nothing is certified.
+   */
+  double friction;
   double tank_cap; /* J, cap of the energy tank; default 0.005; 0 = no tank (Theorem 2) */
   /* N/m, Lipschitz bound of the force: between two steps the force changes by at most this times
    * the travel of the tip. 0 (default) = lipschitz_bound of the library, or no bound where it has
-   * no certificate; any other value must be at least min_lipschitz_bound of the library. A device
-   * of smallest damping b (N s/m) renders the body passively at the period T (s) if this is at most
-   * b/(2 T). */
+   * no certificate; any other value must be at least min_lipschitz_bound of the library.
+   * palpate_state_certified says whether a device renders this bound passively. */
   double lipschitz_bound;
   /* Hz, rate of a thread that finds the triangles near the tool and delivers them to the step; 100
    * is enough. 0 (default) = no thread: each step searches the whole body. At most 10000. */
@@ -198,6 +200,24 @@ PALPATE_API uint32_t palpate_step(palpate_state* state, const double position[3]
                                   const double velocity[3], double dt, double force[3]);
 /* Fills the fields that fit into observation->size bytes. Real-time safe. */
 PALPATE_API int palpate_observe(const palpate_state* state, palpate_observation* observation);
+
+/* What decides whether a device renders passively (docs/theory-certificate.md). NaN: unknown. */
+typedef struct palpate_device_constants {
+  uint32_t size;              /* set by palpate_device_constants_default */
+  double damping;             /* N s/m, smallest viscous damping */
+  double coulomb_friction;    /* N, smallest dry friction */
+  double delay;               /* s, from position to force, beyond one sample of the loop */
+  double position_resolution; /* m, step of the reported position along an axis */
+  double force_resolution;    /* N, step of the force along an axis */
+} palpate_device_constants;
+
+/* Sets size and every constant to NaN. */
+PALPATE_API void palpate_device_constants_default(palpate_device_constants* device);
+/* Is rendering this state on this device at this rate (Hz) certified passive? 1: it is; 0: it is
+ * not, and palpate_last_error says why, with every unknown constant; negative: an error. The force
+ * ramp and the clamp of a loop, and missed steps, are not covered. Not for the real-time thread. */
+PALPATE_API int palpate_state_certified(const palpate_state* state,
+                                        const palpate_device_constants* device, double rate);
 
 /* A force loop in a real-time thread of its own, for programs that have none. While it runs the
  * state belongs to it. docs/devices.md, "Safety", describes its safety functions. */

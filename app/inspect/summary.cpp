@@ -193,7 +193,13 @@ Json summary_of(const Certificate& certificate) {
                        {"damping", with_unit(d.damping, "N s/m")},
                        {"lowest_certified_rate", with_unit(d.lowest_rate, "Hz")},
                        {"linear_limit_at_1_kHz", with_unit(d.linear_limit, "N/m")},
-                       {"no_delay_limit_at_1_kHz", with_unit(d.no_delay_limit, "N/m")}});
+                       {"no_delay_limit_at_1_kHz", with_unit(d.no_delay_limit, "N/m")},
+                       {"coulomb_friction", with_unit(d.coulomb_friction, "N")},
+                       {"delay", with_unit(d.delay, "s")},
+                       {"position_resolution", with_unit(d.position_resolution, "m")},
+                       {"force_resolution", with_unit(d.force_resolution, "N")},
+                       {"largest_position_step", with_unit(d.largest_position_step, "m")},
+                       {"rate_of_mahvash_hayward_2005", with_unit(d.published_rate, "Hz")}});
   }
   const auto passive = std::count_if(certificate.triangles.begin(), certificate.triangles.end(),
                                      [](const auto& t) { return t.sliding_passive; });

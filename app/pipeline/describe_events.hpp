@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "app/pipeline/events.hpp"
+#include "format/passivity.hpp"
 
 namespace palpate::app {
 
@@ -170,7 +171,12 @@ void describe(V& v, const StiffnessAtRate& e) {
   v.field("device", e.device, "name of the device");
   v.field("rate", e.rate, "sampling rate, Hz");
   v.field("certifiable_stiffness", e.certifiable_stiffness,
-          "largest certified bound, N/m; null where the damping is unknown");
+          "largest bound that damping certifies, N/m; null where damping or delay is unknown");
+  v.field("certifiable_by_friction", e.certifiable_by_friction,
+          "the same by dry friction at the resolution of the device; null: unknown or no limit");
+  v.field("published_stiffness", e.published_stiffness,
+          "sigma_0(B)/(2T) of Mahvash & Hayward 2005, eq. 5, N/m");
+  v.field("unknown", list_in_words(e.unknown), "constants of the device that are not known");
   v.field("library_bound", e.library_bound, "larger of L_stick and L_slip of the library, N/m");
   v.field("L_min", e.min_enforceable_bound, "smallest bound that the runtime can enforce, N/m");
   v.field("triangles_over", e.triangles_over, "triangles whose bound exceeds it");

@@ -16,6 +16,15 @@ void describe(V& v, DeviceProfile& p) {
       {"damping", "smallest viscous damping over all directions", app::kOptional, app::kPositive});
   v.quantity(p.coulomb_friction, Dimension::Force,
              {"coulomb_friction", "dry friction", app::kOptional, app::kNotNegative});
+  v.quantity(p.delay, Dimension::Time,
+             {"delay", "delay between position and force, beyond a sample of the loop",
+              app::kOptional, app::kNotNegative});
+  v.quantity(p.position_resolution, Dimension::Length,
+             {"position_resolution", "step of the reported position along an axis", app::kOptional,
+              app::kNotNegative});
+  v.quantity(
+      p.force_resolution, Dimension::Force,
+      {"force_resolution", "step of the force along an axis", app::kOptional, app::kNotNegative});
   v.quantity(p.peak_force, Dimension::Force,
              {"peak_force", "largest force", app::kOptional, app::kPositive});
   v.text(p.source, {"source", "source of the values", app::kRequired});

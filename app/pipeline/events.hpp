@@ -133,11 +133,16 @@ struct Certified {
 struct StiffnessAtRate {
   std::string device;
   double rate = 0;                                                          ///< Hz
-  double certifiable_stiffness = std::numeric_limits<double>::quiet_NaN();  ///< N/m
+  double certifiable_stiffness = std::numeric_limits<double>::quiet_NaN();  ///< N/m, by damping
   double library_bound = 0;          ///< N/m, max(L_stick, L_slip)
   double min_enforceable_bound = 0;  ///< N/m
   std::size_t triangles_over = 0, triangles = 0;
   std::int32_t worst_triangle = -1;
+  /// N/m, by dry friction at the resolution of the device.
+  double certifiable_by_friction = std::numeric_limits<double>::quiet_NaN();
+  /// N/m, sigma_0(B)/(2T) [Mahvash & Hayward 2005, eq. 5].
+  double published_stiffness = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::string> unknown{};  ///< constants of the device that are not known
 };
 
 /// A library was changed until it is certified at a rate.

@@ -24,6 +24,7 @@
 #include "format/guarantee.hpp"
 #include "format/library.hpp"
 #include "format/number_text.hpp"
+#include "format/passivity.hpp"
 #include "format/to_index.hpp"
 #include "mesher/geometry/text.hpp"
 
@@ -232,23 +233,36 @@ StiffnessAtRate stiffness_at_rate(const Certificate& certificate,
   event.min_enforceable_bound = certificate.min_lipschitz_bound;
   event.triangles = certificate.triangles.size();
   event.worst_triangle = certificate.worst_triangle;
-  if (std::isnan(device.damping)) return event;
-  const double bound = fitting::certifiable_stiffness(device.damping, rate);
+  const DeviceConstants constants = device.constants();
+  event.unknown = unknown_constants(constants);
+  const double bound = certifiable_stiffness(constants, rate);
+  event.published_stiffness = 0.5 * device.damping * rate;
   event.certifiable_stiffness = bound;
+  event.certifiable_by_friction = certifiable_stiffness_by_friction(constants);
+  if (std::isnan(bound)) return event;
   event.triangles_over = static_cast<std::size_t>(
       std::count_if(certificate.triangles.begin(), certificate.triangles.end(),
                     [&](const auto& t) { return std::max(t.stick, t.slip) > bound; }));
   return event;
 }
 
+/// Largest Lipschitz bound for which both conditions hold, N/m; NaN: a constant is unknown.
+double certifiable_by_both(const DeviceConstants& device, double rate) {
+  const double by_friction = certifiable_stiffness_by_friction(device);
+  return std::isnan(by_friction) ? kUnknown
+                                 : std::min(certifiable_stiffness(device, rate), by_friction);
+}
+
 void write_softened(const Workspace& space, const RateOptions& options, Library library,
                     const fitting::CertifySettings& settings, const EventSink& emit) {
-  const bool one = settings.devices.size() == 1 && !std::isnan(settings.devices[0].damping);
-  if (!one) {
-    throw Error(ErrorKind::Configuration, "--soften", "needs exactly one device of known damping",
+  const double bound = settings.devices.size() == 1
+                           ? certifiable_by_both(settings.devices[0].constants(), options.rate)
+                           : kUnknown;
+  if (!(bound > 0)) {
+    throw Error(ErrorKind::Configuration, "--soften",
+                "needs exactly one device of which all constants are known and certify something",
                 "name its profile with --device");
   }
-  const double bound = fitting::certifiable_stiffness(settings.devices[0].damping, options.rate);
   const fitting::Softening soft = fitting::soften(library, settings, bound);
   ProvenanceStep step = make_stage_step(space, Stage::Certify, {});
   step.facts.emplace_back("softened_for_hz", fmt::format("{}", options.rate));
@@ -271,7 +285,7 @@ void run_certify_at_rate(const Workspace& space, const RateOptions& options,
   if (!options.device.empty()) settings.devices = {read_device_profile(options.device)};
   if (settings.devices.empty()) {
     throw Error(ErrorKind::Configuration, "--rate",
-                "the certifiable stiffness depends on the damping of a device, and there is none",
+                "the certifiable stiffness depends on the constants of a device, and there is none",
                 "name its profile with --device, or in certify.devices of the case");
   }
   Library with_certificate = library;

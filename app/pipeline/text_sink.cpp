@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/pipeline/text_sink.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "format/guarantee.hpp"
 #include "format/number_text.hpp"
+#include "format/passivity.hpp"
 
 namespace palpate::app {
 namespace {
@@ -144,10 +146,15 @@ void TextSink::print(const Certified& e) {
 }
 
 void TextSink::print(const StiffnessAtRate& e) {
-  if (std::isnan(e.certifiable_stiffness))
-    return line("  {}: no guarantee: its damping is unknown", e.device);
-  const double bound = e.certifiable_stiffness;
-  line("  {} at {} Hz: certifiable stiffness {}", e.device, e.rate, stiffness_text(bound));
+  if (!std::isnan(e.certifiable_stiffness))
+    line("  {} at {} Hz: certifiable stiffness {} (Mahvash & Hayward 2005, eq. 5: {})", e.device,
+         e.rate, stiffness_text(e.certifiable_stiffness), stiffness_text(e.published_stiffness));
+  if (!e.unknown.empty())
+    return line("  {}: not certified: its {} {} unknown", e.device, list_in_words(e.unknown),
+                e.unknown.size() == 1 ? "is" : "are");
+  const double bound = std::min(e.certifiable_stiffness, e.certifiable_by_friction);
+  if (bound < e.certifiable_stiffness)
+    line("    its dry friction certifies {} at its resolution", stiffness_text(bound));
   if (e.library_bound <= bound)
     return line("    the library, {}, is certified; {:.2f} times its forces would be, too",
                 bound_text(e.library_bound), bound / e.library_bound);

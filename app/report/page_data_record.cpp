@@ -55,7 +55,10 @@ json certificate_data(const Library& library) {
     devices.push_back({{"device", d.device},
                        {"verdict", verdict(c, d)},
                        {"damping", d.damping},
+                       {"certified", is_certified(c, d)},
                        {"lowest_rate", d.lowest_rate},
+                       {"published_rate", d.published_rate},
+                       {"largest_position_step", d.largest_position_step},
                        {"linear_limit", d.linear_limit},
                        {"no_delay_limit", d.no_delay_limit}});
   }

@@ -101,10 +101,12 @@ void add_devices(Certificate& certificate, const CertifySettings& settings) {
                   "the damping is not positive",
                   "give the smallest damping in N s/m, or omit it if unknown");
     }
-    // An unknown damping (NaN) makes the whole row unknown.
-    certificate.devices.push_back({device.name, device.damping, 2 * bound / device.damping,
-                                   2 * device.damping / (3 * kReferencePeriod),
-                                   2 * device.damping / kReferencePeriod});
+    const DeviceConstants constants = device.constants();
+    certificate.devices.push_back(
+        {device.name, device.damping, lowest_rate(constants, bound),
+         2 * device.damping / (3 * kReferencePeriod), 2 * device.damping / kReferencePeriod,
+         device.coulomb_friction, device.delay, device.position_resolution, device.force_resolution,
+         published_rate(device.damping, bound), largest_position_step(constants, bound)});
   }
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "format/numbers.hpp"
+#include "format/passivity.hpp"
 
 namespace palpate::fitting {
 
@@ -14,6 +15,13 @@ struct DeviceProfile {
   double coulomb_friction = kUnknown;  ///< N
   double peak_force = kUnknown;        ///< N
   std::string source;
+  double delay = kUnknown;  ///< s, from the position to the force, beyond that of the loop
+  double position_resolution = kUnknown;  ///< m, step of the reported position along an axis
+  double force_resolution = kUnknown;     ///< N, step of the force along an axis
+
+  DeviceConstants constants() const {
+    return {damping, coulomb_friction, delay, position_resolution, force_resolution};
+  }
 };
 
 }  // namespace palpate::fitting

@@ -66,10 +66,6 @@ Softening summarize(const Library& before, const Library& after, double max_slop
 
 }  // namespace
 
-double certifiable_stiffness(double damping, double rate) {
-  return 0.5 * damping * rate;
-}
-
 Softening soften(Library& library, const CertifySettings& settings, double bound) {
   certify(library, settings);
   if (certified_lipschitz_bound(library.certificate) <= bound) return {};

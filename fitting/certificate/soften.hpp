@@ -10,14 +10,6 @@
 
 namespace palpate::fitting {
 
-/// Certifiable stiffness of a device at a sampling rate, N/m: sigma_0(B) rate/2
-/// [Mahvash & Hayward 2005, Theorem 1].
-/// All bounds are proportional to the forces: a library with bound L is certified after its forces
-/// are multiplied by this value over L.
-/// @param damping  sigma_0(B), N s/m
-/// @param rate     Hz
-double certifiable_stiffness(double damping, double rate);
-
 /// Changes made by soften().
 struct Softening {
   double max_slope = std::numeric_limits<double>::infinity();  ///< N/m; infinite: nothing changed

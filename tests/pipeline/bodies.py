@@ -114,6 +114,10 @@ slide_speed = "25 mm/s"
 
 DEVICE = """name = "bench"
 damping = "0.5 N s/m"
+coulomb_friction = "0.1 N"
+delay = "0 s"
+position_resolution = "1 um"
+force_resolution = "1 mN"
 source = "made up for a test"
 """
 

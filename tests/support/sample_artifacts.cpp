@@ -279,8 +279,9 @@ Library library(unsigned seed) {
   certificate.basis = "simulated shape, measured scale";
   certificate.triangles[2].slip = std::numeric_limits<double>::infinity();
   const double unknown = std::numeric_limits<double>::quiet_NaN();
-  certificate.devices = {{"Phantom Premium", 0.0048, 637.5, 3.2, 9.6},
-                         {"somebody's own", unknown, unknown, unknown, unknown}};
+  certificate.devices = {
+      {"Phantom Premium", 0.0048, 637.5, 3.2, 9.6, 0.04, 2e-4, 3e-5, 1e-3, 850, 4e-5},
+      {"somebody's own", unknown, unknown, unknown, unknown}};
   library.provenance.steps = {step("mesh"), step("precompute"), step("fit"), step("certify")};
   return library;
 }
@@ -380,7 +381,9 @@ std::string dump(const Library& library) {
     out << t.stick << t.slip << t.kappa << t.cos_theta << t.sliding_passive;
   }
   for (const DeviceCertificate& d : c.devices) {
-    out << d.device << d.damping << d.lowest_rate << d.linear_limit << d.no_delay_limit;
+    out << d.device << d.damping << d.lowest_rate << d.linear_limit << d.no_delay_limit
+        << d.coulomb_friction << d.delay << d.position_resolution << d.force_resolution
+        << d.published_rate << d.largest_position_step;
   }
   return (out << library.provenance).text();
 }

@@ -13,6 +13,14 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
 
+/// A device whose constants are known, without steps or delay, with this certificate.
+DeviceCertificate pen(double damping, double lipschitz_bound) {
+  DeviceCertificate device{"pen", damping, 0, 0, 0, 0.01, 0, 0, 0, 0, 0};
+  device.lowest_rate = lowest_rate(device.constants(), lipschitz_bound);
+  device.published_rate = published_rate(damping, lipschitz_bound);
+  return device;
+}
+
 /// A certificate of two triangles, the second without bounds of its own.
 Certificate certificate(double stick, double slip, double min_bound = kUnknown) {
   Certificate c;
@@ -36,11 +44,12 @@ TEST(Guarantee, IsByTheCurvesWhereTheyKeepTheBound) {
   EXPECT_EQ(guarantee_text(c),
             "guaranteed by the curves themselves: the force changes by at most 201.4 N/m times the "
             "travel of the tool");
-  EXPECT_EQ(verdict(c, {"pen", 0.081, 4972.3, 0, 0}),
-            "passive from 4973 Hz on, by the curves themselves; from 4593 Hz on with "
-            "lipschitz_bound = 186.0 N/m");
-  EXPECT_EQ(verdict(certificate(100, 400), {"pen", 0.1, 8000, 0, 0}),
-            "passive from 8000 Hz on, by the curves themselves");
+  EXPECT_EQ(verdict(c, pen(0.081, 201.38)),
+            "certified passive from 3730 Hz on, by the curves themselves; from 3445 Hz on with "
+            "lipschitz_bound = 186.0 N/m (Mahvash & Hayward 2005, eq. 5: 4973 Hz)");
+  EXPECT_EQ(verdict(certificate(100, 400), pen(0.1, 400)),
+            "certified passive from 6000 Hz on, by the curves themselves (Mahvash & Hayward 2005, "
+            "eq. 5: 8000 Hz)");
 }
 
 TEST(Guarantee, IsByTheLimiterWhereTheCurvesHaveNoBound) {
@@ -50,8 +59,8 @@ TEST(Guarantee, IsByTheLimiterWhereTheCurvesHaveNoBound) {
               StartsWith("guaranteed by the runtime, which throttles slides: the force changes by "
                          "at most 400.0 N/m"));
   EXPECT_THAT(guarantee_text(c), HasSubstr("no bound while sliding in 1 of 2 triangles"));
-  EXPECT_THAT(verdict(c, {"pen", 0.1, 8000, 0, 0}),
-              StartsWith("passive from 8000 Hz on, with slides throttled"));
+  EXPECT_THAT(verdict(c, pen(0.1, 400)),
+              StartsWith("certified passive from 6000 Hz on, with slides throttled"));
 }
 
 TEST(Guarantee, StatesByHowMuchTheCurvesExceedTheLimiter) {
@@ -66,11 +75,68 @@ TEST(Guarantee, IsNothingWithoutABound) {
        {Certificate{}, certificate(100, kInfinity), certificate(100, kInfinity, kInfinity)}) {
     EXPECT_EQ(guaranteed_by(c), GuaranteedBy::Nothing);
     EXPECT_THAT(guarantee_text(c), StartsWith("nothing is guaranteed"));
-    EXPECT_EQ(verdict(c, {"pen", 0.1, kInfinity, 0, 0}),
-              "no guarantee at any rate: slides have no bound");
+    EXPECT_EQ(verdict(c, pen(0.1, kInfinity)), "not certified at any rate: slides have no bound");
   }
-  EXPECT_EQ(verdict(certificate(100, 200), {"pen", kUnknown, kUnknown, kUnknown, kUnknown}),
-            "no guarantee: its damping is unknown");
+  EXPECT_EQ(
+      verdict(certificate(100, 200), {"pen", kUnknown, kUnknown, kUnknown, kUnknown}),
+      "not certified: its damping, delay, dry friction, position resolution and force resolution "
+      "are unknown");
+}
+
+TEST(Verdict, NamesWhatIsMissingAndCertifiesNothingWithout) {
+  const Certificate c = certificate(100, 200, 120);
+  DeviceCertificate device = pen(0.1, 200);
+  EXPECT_TRUE(is_certified(c, device));
+  device.position_resolution = device.force_resolution = kUnknown;
+  EXPECT_FALSE(is_certified(c, device));
+  EXPECT_EQ(verdict(c, device),
+            "not certified: its position resolution and force resolution are unknown; its damping "
+            "suffices from 3000 Hz on");
+}
+
+TEST(Verdict, CertifiesNoRateWhereDryFrictionDoesNotPayForTheResolution) {
+  const Certificate c = certificate(100, 200, 120);
+  DeviceCertificate device = pen(0.1, 200);
+  device.position_resolution = 70e-6;  // 0.01 N pay for 58 um at 200 N/m and for 96 um at 120 N/m
+  EXPECT_FALSE(is_certified(c, device));
+  EXPECT_THAT(verdict(c, device), StartsWith("certified passive from 1800 Hz on with "
+                                             "lipschitz_bound = 120.0 N/m"));
+  device.position_resolution = 1e-4;
+  EXPECT_EQ(verdict(c, device),
+            "not certified at any rate: its dry friction allows positions in steps of 57.7 um, not "
+            "of 100 um");
+  device.position_resolution = 0;
+  device.delay = 0.1 / 200;
+  device.lowest_rate = lowest_rate(device.constants(), 200);
+  EXPECT_THAT(verdict(certificate(100, 200), device), HasSubstr("make up for its delay"));
+}
+
+TEST(CertifiedRange, OfFrictionEndsAtThatOfTheCertificate) {
+  Library library;
+  library.certificate = certificate(100, 200, 120);
+  library.certificate.friction = 0.3;
+  for (const double mu : {0.0, 0.1, 0.3}) EXPECT_TRUE(certified_range(library).covers(mu)) << mu;
+  for (const double mu : {-0.1, 0.3001, 1.0, kUnknown})
+    EXPECT_FALSE(certified_range(library).covers(mu)) << mu;
+  library.kind = ResponseKind::Coupled;
+  EXPECT_TRUE(certified_range(library).covers(0.3));
+  EXPECT_FALSE(certified_range(library).covers(0.1));
+  library.kind = ResponseKind::Decoupled;
+  library.certificate.min_lipschitz_bound = kUnknown;  // schema 1
+  EXPECT_FALSE(certified_range(library).covers(0.1));
+  EXPECT_FALSE(certified_range({}).covers(0));
+}
+
+TEST(CertifiedRange, OfBoundsBeginsAtTheSmallestEnforceable) {
+  Library library;
+  library.certificate = certificate(100, 200, 120);
+  EXPECT_TRUE(certified_range(library).enforces(120));
+  EXPECT_FALSE(certified_range(library).enforces(119));
+  EXPECT_FALSE(certified_range(library).enforces(kInfinity));
+  library.certificate.min_lipschitz_bound = kUnknown;
+  EXPECT_TRUE(certified_range(library).enforces(200));
+  EXPECT_FALSE(certified_range(library).enforces(199));
+  EXPECT_FALSE(certified_range({}).enforces(1e9));
 }
 
 }  // namespace

@@ -28,9 +28,15 @@ TEST(Inspect, GivesTheVerdictOfEachDevice) {
   const auto summary = summary_of(samples::library(4));
   const auto& devices = summary["certificate"]["devices"];
   ASSERT_EQ(devices.size(), 2u);
-  EXPECT_EQ(devices[0]["verdict"], "passive from 637.5 Hz on, with slides throttled");
+  EXPECT_EQ(
+      devices[0]["verdict"],
+      "certified passive from 637.5 Hz on, with slides throttled (Mahvash & Hayward 2005, eq. 5: "
+      "850.0 Hz)");
   EXPECT_EQ(devices[0]["lowest_certified_rate"]["value"], 637.5);
-  EXPECT_EQ(devices[1]["verdict"], "no guarantee: its damping is unknown");
+  EXPECT_EQ(devices[1]["verdict"],
+            "not certified: its damping, delay, dry friction, position resolution and force "
+            "resolution are "
+            "unknown");
   EXPECT_TRUE(devices[1]["damping"]["value"].is_null());
   const std::string text = summary_text(summary);
   EXPECT_LT(text.find("guarantee: guaranteed by the runtime"), text.find("certificate:"));
@@ -40,13 +46,13 @@ TEST(Inspect, GivesTheVerdictOfEachDevice) {
 
 TEST(Inspect, CallsAnInfiniteBoundNoBound) {
   Library library = samples::library(4);
-  library.certificate.slip = kInfinity;
+  library.certificate.slip = library.certificate.min_lipschitz_bound = kInfinity;
   library.certificate.devices[0].lowest_rate = kInfinity;
   const auto summary = summary_of(library);
   EXPECT_TRUE(summary["certificate"]["L_slip"]["value"].is_null());
   const std::string text = summary_text(summary);
   EXPECT_THAT(text, HasSubstr("L slip: no bound\n"));
-  EXPECT_THAT(text, HasSubstr("verdict: no guarantee at any rate: slides have no bound\n"));
+  EXPECT_THAT(text, HasSubstr("verdict: not certified at any rate: slides have no bound\n"));
   EXPECT_THAT(text, HasSubstr("lowest certified rate: no bound\n"));
   EXPECT_THAT(text, Not(ContainsRegex("[^a-z](inf|nan)[^a-z]")));
 }

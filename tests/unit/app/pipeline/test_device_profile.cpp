@@ -84,6 +84,20 @@ std::string refusal(const std::string& text) {
   return "accepted";
 }
 
+TEST(DeviceProfile, ReadsDelayAndResolutionsAndLeavesThemUnknown) {
+  const samples::TemporaryFolder folder;
+  const auto file = folder / "device.toml";
+  std::ofstream(file) << "name = \"x\"\nsource = \"y\"\ndelay = \"0.2 ms\"\n"
+                         "position_resolution = \"30 um\"\n";
+  const DeviceConstants device = read_device_profile(file).constants();
+  EXPECT_DOUBLE_EQ(device.delay, 2e-4);
+  EXPECT_DOUBLE_EQ(device.position_resolution, 3e-5);
+  EXPECT_TRUE(std::isnan(device.force_resolution));
+  const std::string head = "name = \"x\"\nsource = \"y\"\n";
+  EXPECT_EQ(refusal(head + "delay = \"0 s\"\n"), "accepted");
+  EXPECT_THAT(refusal(head + "delay = \"-1 ms\"\n"), HasSubstr("delay"));
+}
+
 TEST(DeviceProfile, RefusesADampingThatIsNone) {
   const std::string head = "name = \"x\"\nsource = \"y\"\ndamping = ";
   EXPECT_EQ(refusal(head + "\"0.1 N s/m\"\n"), "accepted");

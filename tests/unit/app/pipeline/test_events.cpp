@@ -72,6 +72,9 @@ Certified certified() {
 
 StiffnessAtRate stiffness(double certifiable, double library, double enforceable) {
   StiffnessAtRate event{"pen", 1000, certifiable, library, enforceable, 3, 20, 7};
+  event.certifiable_by_friction = kInfinity;
+  event.published_stiffness = 0.75 * certifiable;
+  if (std::isnan(certifiable)) event.unknown = {"damping"};
   return event;
 }
 
@@ -183,6 +186,14 @@ TEST(TextSink, PrintsTheCertificateAndBoundsThatDoNotExist) {
 
 TEST(TextSink, PrintsTheCertifiableStiffnessAndItsRemedies) {
   EXPECT_THAT(text_of({stiffness(NAN, 100, 90)}), HasSubstr("its damping is unknown"));
+  StiffnessAtRate coarse = stiffness(200, 100, 90);
+  coarse.certifiable_by_friction = 50;
+  EXPECT_THAT(text_of({coarse}), HasSubstr("its dry friction certifies 50.00 N/m"));
+  coarse.unknown = {"delay", "dry friction"};
+  EXPECT_THAT(text_of({coarse}),
+              HasSubstr("not certified: its delay and dry friction are unknown"));
+  EXPECT_THAT(text_of({coarse}), Not(HasSubstr("is certified")));
+  EXPECT_THAT(text_of({stiffness(200, 100, 90)}), HasSubstr("2005, eq. 5: 150.0 N/m"));
   EXPECT_THAT(text_of({stiffness(200, 100, 90)}), HasSubstr("2.00 times its forces"));
   EXPECT_THAT(text_of({stiffness(95, 100, 90)}), HasSubstr("throttled to 90.00 N/m"));
   EXPECT_THAT(text_of({stiffness(80, 100, kInfinity)}), HasSubstr("no bound can be enforced"));

@@ -272,8 +272,11 @@ void make_certificate(Library& library) {
   c.limited_by = "sup g' at the deepest depth, and the stiffness changing along the surface";
   for (const auto& [name, damping] :
        {std::pair{"omega.3", 1.9}, std::pair{"Touch X", 0.6}, std::pair{"unmeasured", kUnknown}}) {
-    c.devices.push_back({name, damping, 2 * std::max(c.stick, c.slip) / damping, 2000 * damping / 3,
-                         2000 * damping});
+    const double bound = std::max(c.stick, c.slip);
+    const DeviceConstants device{damping, 0.1, 0, 1e-5, 1e-3};
+    c.devices.push_back({name, damping, lowest_rate(device, bound), 2000 * damping / 3,
+                         2000 * damping, 0.1, 0, 1e-5, 1e-3, published_rate(damping, bound),
+                         largest_position_step(device, bound)});
   }
 }
 

@@ -18,6 +18,11 @@ CertifySettings with_friction(double mu) {
   return settings;
 }
 
+/// A device of which everything is known.
+DeviceProfile viscous() {
+  return {"viscous", 0.081, 0.01, 10, "", 0, 0, 0};
+}
+
 TEST(Certificate, FlatPlateOfEqualSpringsHasTheClosedForm) {
   // Nothing changes along the surface and nothing turns: L_stick = k, and at limiting friction the
   // force grows along n + mu t, whose length is sqrt(1 + mu^2).
@@ -57,15 +62,19 @@ TEST(Certificate, RateOfADeviceFollowsTheWorstBound) {
   Library library = flat_triangle();
   set_equal_responses(library, node_response(linear_curve(162), linear_curve(162)));
   CertifySettings settings = with_friction(0);
-  settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
+  settings.devices.push_back(viscous());
   certify(library, settings);
   ASSERT_EQ(library.certificate.devices.size(), 1u);
   const DeviceCertificate& device = library.certificate.devices[0];
-  EXPECT_NEAR(device.lowest_rate, 2 * 162 / 0.081, 1e-9);  // 4 kHz
+  EXPECT_NEAR(device.lowest_rate, 1.5 * 162 / 0.081, 1e-9);   // 3 kHz
+  EXPECT_NEAR(device.published_rate, 2 * 162 / 0.081, 1e-9);  // 4 kHz
+  EXPECT_NEAR(device.largest_position_step, 2 * 0.01 / (std::sqrt(3.0) * 162), 1e-15);
   EXPECT_NEAR(device.linear_limit, 54, 1e-9);
   EXPECT_NEAR(device.no_delay_limit, 162, 1e-9);
-  EXPECT_EQ(verdict(library.certificate, device),
-            "passive from 4000 Hz on, by the curves themselves");
+  EXPECT_EQ(
+      verdict(library.certificate, device),
+      "certified passive from 3000 Hz on, by the curves themselves (Mahvash & Hayward 2005, eq. 5: "
+      "4000 Hz)");
   for (const double refused : {0.0, -1.0, std::numeric_limits<double>::infinity()}) {
     settings.devices[0].damping = refused;
     EXPECT_THROW(certify(library, settings), Error);
@@ -86,7 +95,26 @@ TEST(Certificate, ADeviceOfUnknownDampingIsNotCertified) {
        {device.damping, device.lowest_rate, device.linear_limit, device.no_delay_limit}) {
     EXPECT_TRUE(std::isnan(value)) << value;
   }
-  EXPECT_EQ(verdict(library.certificate, device), "no guarantee: its damping is unknown");
+  EXPECT_EQ(
+      verdict(library.certificate, device),
+      "not certified: its damping, delay, dry friction, position resolution and force resolution "
+      "are unknown");
+}
+
+TEST(Certificate, NamesTheConstantThatIsMissing) {
+  Library library = flat_triangle();
+  set_equal_responses(library, node_response(linear_curve(162), linear_curve(162)));
+  CertifySettings settings = with_friction(0);
+  settings.devices.push_back(viscous());
+  settings.devices[0].coulomb_friction = kUnknown;
+  certify(library, settings);
+  EXPECT_EQ(verdict(library.certificate, library.certificate.devices[0]),
+            "not certified: its dry friction is unknown; its damping suffices from 3000 Hz on");
+  settings.devices[0] = viscous();
+  settings.devices[0].delay = kUnknown;
+  certify(library, settings);
+  EXPECT_EQ(verdict(library.certificate, library.certificate.devices[0]),
+            "not certified: its delay is unknown");
 }
 
 TEST(Certificate, AHoleIsABorder) {
@@ -109,16 +137,15 @@ TEST(Certificate, DepthBeyondTheRadiusOfCurvatureHasNoBoundAndAReason) {
   Library library = sphere(0.005, 2);
   set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
   CertifySettings settings = with_friction(0.3);
-  settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
+  settings.devices.push_back(viscous());
   certify(library, settings);
   // The runtime throttles such slides: to 4 L_stick by default, to |M_0| on request.
   EXPECT_NEAR(library.certificate.min_lipschitz_bound, 100 * std::hypot(1, 0.3), 1e-9);
   EXPECT_DOUBLE_EQ(library.certificate.lipschitz_bound, 400);
-  EXPECT_DOUBLE_EQ(library.certificate.devices.at(0).lowest_rate, 2 * 400 / 0.081);
-  EXPECT_EQ(
-      verdict(library.certificate, library.certificate.devices.at(0)),
-      "passive from 9877 Hz on, with slides throttled; from 2578 Hz on with lipschitz_bound = "
-      "104.5 N/m");
+  EXPECT_NEAR(library.certificate.devices.at(0).lowest_rate, 1.5 * 400 / 0.081, 1e-9);
+  EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
+            "certified passive from 7408 Hz on, with slides throttled; from 1934 Hz on with "
+            "lipschitz_bound = 104.5 N/m (Mahvash & Hayward 2005, eq. 5: 9877 Hz)");
   EXPECT_TRUE(std::isinf(library.certificate.slip));
   const std::string& line = library.certificate.limited_by;
   EXPECT_NE(line.find("no bound of the slide: pressed 10 mm deep"), std::string::npos) << line;
@@ -146,7 +173,7 @@ TEST(Certificate, ACoupledResponseThatIsFlatWhereSlipBeginsHasNoEnforceableBound
   const ResponseCurve plateau{{0.0f, 0.001f, 0.002f, 0.003f, 0.004f}, {90, 0, 0, 90, 90}};
   const ResponseCurve rising{{0.0f, 0.001f, 0.002f, 0.003f, 0.004f}, {90, 20, 20, 90, 90}};
   CertifySettings settings = with_friction(0.3);
-  settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
+  settings.devices.push_back(viscous());
   for (const bool flat : {false, true}) {
     Library library = flat_triangle();
     library.kind = ResponseKind::Coupled;
@@ -167,7 +194,7 @@ TEST(Certificate, ACoupledResponseThatIsFlatWhereSlipBeginsHasNoEnforceableBound
     EXPECT_EQ(std::isinf(library.certificate.devices.at(0).lowest_rate), flat);
     if (flat) {
       EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
-                "no guarantee at any rate: slides have no bound");
+                "not certified at any rate: slides have no bound");
     }
   }
 }
@@ -176,10 +203,10 @@ TEST(Certificate, AppliesToTheEnforcedBoundThatIsSet) {
   Library library = sphere(0.005, 2);
   set_equal_responses(library, node_response(linear_curve(100), linear_curve(80)));
   CertifySettings settings = with_friction(0.3);
-  settings.devices.push_back({"viscous", 0.081, 0.01, 10, ""});
+  settings.devices.push_back(viscous());
   settings.enforced_bound = 110;  // above L_min
   certify(library, settings);
-  EXPECT_DOUBLE_EQ(library.certificate.devices.at(0).lowest_rate, 2 * 110 / 0.081);
+  EXPECT_NEAR(library.certificate.devices.at(0).lowest_rate, 1.5 * 110 / 0.081, 1e-9);
   settings.enforced_bound = 101;  // below L_min: the runtime cannot enforce it
   certify(library, settings);
   EXPECT_TRUE(std::isinf(library.certificate.devices.at(0).lowest_rate));

@@ -10,7 +10,7 @@ function notCovered(data) {
   const list = [
     `Depths beyond ${units.length(c.depth)}: the curves are extrapolated linearly there, outside of ${c.lipschitz_bound >= c.min_lipschitz_bound ? 'L_stick and L_slip; the runtime enforces its bound there too' : 'the bounds'}.`,
     'Several simultaneous contacts: their bounds add up.',
-    'Effects of the device other than its damping: flexible links, backlash, amplifier limits, quantized positions, filtered velocities, missed samples.',
+    'Quantized positions while the contact point slides, and flexible links, backlash, amplifier limits and missed samples of the device.',
     'Accuracy: the bounds are those of the rendered force, not of its error against the real body.',
   ];
   if (c.holes > 0) list.push(`${nodes(c.holes)} without a response: their triangles form a border and have no bounds.`);
@@ -22,8 +22,8 @@ function notCovered(data) {
 
 function devices(c) {
   if (c.devices.length === 0) return paragraph('No device profile was given: the bounds are valid, but no rate is guaranteed on any device.', 'warn');
-  return table(['Device', 'Guarantee', 'Damping, N\u00b7s/m', 'Linear limit at 1 kHz, N/m', 'Without delay, N/m'],
-    c.devices.map((d) => [d.device, d.verdict, units.significant(d.damping), units.significant(d.linear_limit), units.significant(d.no_delay_limit)]), [2, 3, 4]);
+  return table(['Device', 'Guarantee', 'Damping, N\u00b7s/m', 'Mahvash & Hayward 2005, Hz', 'Linear limit at 1 kHz, N/m', 'Without delay, N/m'],
+    c.devices.map((d) => [d.device, d.verdict, units.significant(d.damping), units.significant(d.published_rate), units.significant(d.linear_limit), units.significant(d.no_delay_limit)]), [2, 3, 4, 5]);
 }
 
 export function certificateSection(data) {
@@ -34,7 +34,7 @@ export function certificateSection(data) {
   return el('section', { id: 'certificate' }, head,
     el('p', { id: 'guarantee', class: c.guaranteed_by === 'nothing' ? 'warn' : 'lead' }, `${c.guarantee[0].toUpperCase()}${c.guarantee.slice(1)}.`),
     el('h3', {}, 'Devices'), devices(c),
-    paragraph('Passive: the rendered body never returns more energy than it absorbed. It is where the enforced bound \u2264 \u03c3\u2080(B) / 2T, with \u03c3\u2080(B) the smallest damping of the device and 1/T the rate of its force loop.', 'note'),
+    paragraph('Passive: the rendered body never returns more energy than it absorbed. It is where \u03c3\u2080(B) \u2265 L (3/2 T + \u221a(\u03c4 T)), with L the enforced bound, \u03c3\u2080(B) the smallest damping of the device, \u03c4 its delay and 1/T the rate of its force loop, and where its dry friction makes up for the steps of its positions and forces: \u03c3\u2080(S) \u2265 \u221a3/2 (L q + r).', 'note'),
     el('h3', {}, 'Bounds'),
     definitions([
       ['L_stick', `${units.bound(c.stick)}; fixed contact point`],

@@ -22,9 +22,9 @@ function guaranteed(certificate) {
   if (!certificate) return tile(term, 'nothing', 'The library has not been certified.', 'guaranteed', 'warn');
   const by = BY[certificate.guaranteed_by];
   if (!by) return tile(term, 'nothing', 'Slides have no bound: see the certificate.', 'guaranteed', 'warn');
-  const rated = certificate.devices.filter((d) => Number.isFinite(d.lowest_rate)).sort((a, b) => a.lowest_rate - b.lowest_rate);
+  const rated = certificate.devices.filter((d) => d.certified).sort((a, b) => a.lowest_rate - b.lowest_rate);
   const limit = `the force changes by at most ${units.bound(certificate.lipschitz_bound)}, ${by}`;
-  if (!rated.length) return tile(term, 'at no rate', `${certificate.devices.length ? 'No device of known damping' : 'No device profile'} was given; ${limit}.`, 'guaranteed', 'warn');
+  if (!rated.length) return tile(term, 'at no rate', `${certificate.devices.length ? 'No device with all constants known' : 'No device profile'} was given; ${limit}.`, 'guaranteed', 'warn');
   return tile(term, ['from ', units.lowestRate(rated[0].lowest_rate)], `on ${rated[0].device}; ${limit}`, 'guaranteed');
 }
 
