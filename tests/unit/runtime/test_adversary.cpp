@@ -8,9 +8,11 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "fitting/certificate/certify.hpp"
@@ -76,6 +78,17 @@ Vec3 near_surface(const Library& library, Random& random, double height) {
     in = in + (n[l] / sum) * library.inward[static_cast<std::size_t>(t[l])];
   }
   return point - (height / norm(in)) * in;
+}
+
+/// Vertices of the edges that belong to one triangle.
+std::vector<std::size_t> border_vertices(const Library& library) {
+  std::map<std::pair<std::int32_t, std::int32_t>, int> uses;
+  for (const Triangle& t : library.triangles)
+    for (std::size_t l = 0; l < 3; ++l) ++uses[std::minmax({t[l], t[(l + 1) % 3]})];
+  std::vector<std::size_t> border;
+  for (const auto& [edge, count] : uses)
+    if (count == 1) border.push_back(static_cast<std::size_t>(edge.first));
+  return border;
 }
 
 /// Wanders while triangles are delivered and taken away at random: all, none, the ones nearby, or
@@ -282,6 +295,153 @@ Bargain search_for_energy(const Library& library, const palpate_library& body,
   return bargain;
 }
 
+// The sampled loop
+
+/// What a device with the damping of (C1) gives and takes on the straight path between samples
+/// whose forces act d samples late: the work on the body, plus (d + 1/2) L |x_{k+1} - x_k|^2, the
+/// least that this damping dissipates there, whatever the period.
+class SampledLoop {
+ public:
+  static constexpr std::size_t kDelays = 3;
+
+  SampledLoop(WatchedContact& contact, double lipschitz_bound)
+      : contact_(contact), bound_(lipschitz_bound) {}
+
+  void step(const Vec3& x) {
+    if (begun_) account(x - last_);
+    contact_.step(x);
+    std::rotate(force_.begin(), force_.end() - 1, force_.end());
+    force_[0] = contact_.seen().force;
+    last_ = x;
+    begun_ = true;
+  }
+  /// Energy returned with d samples of delay over L sum |x_{k+1} - x_k|^2: at most d + 1/2.
+  double ratio(std::size_t d) const { return squares_ > 0 ? -work_[d] / (bound_ * squares_) : 0; }
+
+  std::array<double, kDelays> lowest{};  ///< J: least balance at any time so far
+
+ private:
+  void account(const Vec3& travel) {
+    squares_ += dot(travel, travel);
+    for (std::size_t d = 0; d < kDelays; ++d) {
+      work_[d] += dot(force_[d], travel);
+      const double damped = (static_cast<double>(d) + 0.5) * bound_ * squares_;
+      lowest[d] = std::min(lowest[d], work_[d] + damped);
+    }
+  }
+
+  WatchedContact& contact_;
+  double bound_;
+  Vec3 last_{};
+  bool begun_ = false;
+  std::array<Vec3, kDelays> force_{};  ///< f_k, f_{k-1}, ...
+  std::array<double, kDelays> work_{};
+  double squares_ = 0;  ///< m^2
+};
+
+/// One sample moved: anew, or by nanometres up to centimetres, or all samples alike.
+std::vector<Vec3> varied(std::vector<Vec3> motion, const Library& library, Random& random) {
+  const Vec3 shift = std::pow(10, between(random, -6, -2)) * random_unit(random);
+  Vec3& one = motion[random() % motion.size()];
+  const auto kind = random() % 8;
+  if (kind == 0) {
+    one = near_surface(library, random, between(random, -0.008, 0.002));
+  } else if (kind == 1) {
+    for (Vec3& x : motion) x = x + shift;
+  } else if (kind == 2) {
+    one = motion[random() % motion.size()];
+  } else {
+    one = one + shift;
+  }
+  return motion;
+}
+
+/// To and fro along the inward direction of a vertex, at constant speed, deep enough to stay in
+/// contact.
+std::vector<Vec3> stab(const Library& library, Random& random, std::size_t samples) {
+  const std::size_t v = random() % library.positions.size();
+  const double low = between(random, 0.002, 0.006), high = low + between(random, 0.0005, 0.003);
+  std::vector<Vec3> motion;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double s = 2 * static_cast<double>(i) / static_cast<double>(samples);
+    const double depth = low + (s < 1 ? s : 2 - s) * (high - low);
+    motion.push_back(library.positions[v] + depth * library.inward[v]);
+  }
+  return motion;
+}
+
+struct Annealed {
+  double ratio = 0;                                   ///< best, with one sample of delay
+  std::array<double, SampledLoop::kDelays> lowest{};  ///< J, of all tries
+};
+
+/// From where a contact with x begins: 1 mm above the surface there.
+Vec3 outside(const Vec3& x, const palpate_library& body) {
+  const runtime::SurfacePoint p = body.tree.nearest(x, 1);
+  return body.surface.position(p) - 0.001 * body.surface.normal(p);
+}
+
+/// Simulated annealing for the closed motion, repeated, that returns most energy per damping.
+Annealed anneal(const Library& library, const palpate_library& body,
+                const ContactSettings& settings, double lipschitz_bound, int tries) {
+  constexpr int kRepeats = 30, kStarts = 100;
+  constexpr std::size_t kSamples = 16;
+  Random random(21);
+  Annealed found;
+  const auto play_samples = [&](const std::vector<Vec3>& motion) {
+    WatchedContact contact(library, body, settings);
+    SampledLoop loop(contact, lipschitz_bound);
+    loop.step(outside(motion.front(), body));
+    for (int r = 0; r < kRepeats; ++r)
+      for (const Vec3& x : motion) loop.step(x);
+    for (std::size_t d = 0; d < SampledLoop::kDelays; ++d)
+      found.lowest[d] = std::min(found.lowest[d], loop.lowest[d]);
+    return loop.ratio(1);
+  };
+  std::vector<Vec3> now;
+  double reached = -1;
+  for (int i = 0; i < kStarts; ++i) {
+    const std::vector<Vec3> start = stab(library, random, kSamples);
+    const double ratio = play_samples(start);
+    if (ratio <= reached) continue;
+    now = start;
+    reached = ratio;
+  }
+  for (int i = 0; i < tries; ++i) {
+    const double temperature = 0.01 * std::pow(1e-3, static_cast<double>(i) / tries);
+    const std::vector<Vec3> next = varied(now, library, random);
+    const double ratio = play_samples(next);
+    found.ratio = std::max(found.ratio, ratio);
+    if (between(random, 0, 1) >= std::exp((ratio - reached) / temperature)) continue;
+    now = next;
+    reached = ratio;
+  }
+  return found;
+}
+
+// Borders
+
+/// Presses at and beyond a border of the surface, up to four times as deep as the deepest sample,
+/// and drags there.
+void press_borders(WatchedContact& contact, const Library& library, Random& random, int steps) {
+  const std::vector<std::size_t> rim = border_vertices(library);
+  for (int i = 0; i < steps;) {
+    const std::size_t v = rim[random() % rim.size()];
+    const double deep = std::pow(4, between(random, -1, 1)) * library.certificate.depth;
+    const Vec3 over = library.positions[v] + between(random, 0, 0.01) * random_unit(random);
+    Vec3 x = over - 0.002 * library.inward[v];
+    contact.step(x);
+    for (int leg = 0; leg < 6; ++leg) {
+      const double depth = leg == 5 ? -0.002 : between(random, 0, deep);
+      const Vec3 to =
+          over + depth * library.inward[v] + between(random, 0, 0.01) * random_unit(random);
+      const int count = 1 + static_cast<int>(std::pow(10, between(random, 0, 2)));
+      const Vec3 step = (1.0 / count) * (to - x);
+      for (int k = 0; k < count && i < steps; ++k, ++i) contact.step(x = x + step);
+    }
+  }
+}
+
 // ---------------------------------------------------------------------------------------------
 
 void expect_sound(const WatchedContact& contact) {
@@ -369,6 +529,29 @@ TEST_P(Adversary, AnOptimiserFindsNoCycleThatReturnsEnergy) {
   EXPECT_LE(bargain.returned, 1e-12);
 }
 
+TEST_P(Adversary, AnAnnealedMotionGetsNoEnergyPastTheDampingOfTheTheorem) {
+  const double bound = library_.certificate.min_lipschitz_bound;
+  const Annealed found = anneal(library_, body_, settings(bound), bound, 400);
+  for (std::size_t d = 0; d < SampledLoop::kDelays; ++d) EXPECT_GE(found.lowest[d], -1e-12) << d;
+  EXPECT_LE(found.ratio, 1.5);
+  EXPECT_GT(found.ratio, 0);  // it does get energy out of the samples
+}
+
+TEST(AnnealedMotion, NearlyNeedsTheDampingOfTheTheoremOnAPlateOfLinearSprings) {
+  Library springs = plate(4, 0.04, [](const Vec3&) {
+    NodeResponse node = wall_response(200, 200);
+    node.normal = node.lateral = linear_curve(200);
+    return node;
+  });
+  springs = certified(springs, 0);
+  const palpate_library body(springs);
+  ASSERT_NEAR(body.lipschitz_bound, 200, 1e-3);
+  const Annealed found = anneal(springs, body, {0, 0, EnergyBudget::Enforced, 200}, 200, 3000);
+  for (std::size_t d = 0; d < SampledLoop::kDelays; ++d) EXPECT_GE(found.lowest[d], -1e-12) << d;
+  EXPECT_LE(found.ratio, 1.5);
+  EXPECT_GT(found.ratio, 1.15);
+}
+
 INSTANTIATE_TEST_SUITE_P(
     Bodies, Adversary,
     ::testing::Values(Case{"cylinder", 0, 0}, Case{"cylinder", 0.1, 5e-3}, Case{"hills", 0, 5e-3},
@@ -381,6 +564,44 @@ INSTANTIATE_TEST_SUITE_P(
              std::to_string(static_cast<int>(100 * about.param.friction)) +
              (about.param.tank_cap > 0 ? "_tank" : "_strict");
     });
+
+class Borders : public ::testing::TestWithParam<std::pair<const char*, double>> {};
+
+TEST_P(Borders, DeepPressesKeepTheBoundUpToTheFrictionOfTheCertificate) {
+  const auto [name, friction] = GetParam();
+  const Library library = certified(body_named(name), friction);
+  const palpate_library body(library);
+  for (const double mu : {friction, 0.5 * friction}) {
+    if (!body.certified_range.covers(mu)) continue;
+    for (const double bound : {body.lipschitz_bound, library.certificate.min_lipschitz_bound}) {
+      Random random(7);
+      WatchedContact contact(library, body, {mu, 5e-3, EnergyBudget::Enforced, bound});
+      press_borders(contact, library, random, 60000);
+      expect_sound(contact);
+      expect_no_jump(contact);
+      EXPECT_GT(contact.apart, 1000);
+    }
+  }
+}
+
+TEST(FrictionAboveTheCertificate, BreaksTheBoundAndIsNotCertified) {
+  const Library library = certified(body_named("coupled_rims"), 0.3);
+  const palpate_library body(library);
+  constexpr double kMore = 1.5;
+  EXPECT_FALSE(body.certified_range.covers(kMore));
+  Random random(7);
+  WatchedContact contact(
+      library, body,
+      {kMore, 5e-3, EnergyBudget::Enforced, library.certificate.min_lipschitz_bound});
+  press_borders(contact, library, random, 60000);
+  EXPECT_GT(contact.steepest_step, 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rims, Borders,
+                         ::testing::Values(std::pair{"cylinder", 0.1}, std::pair{"thin", 0.5},
+                                           std::pair{"coupled_rims", 0.3},
+                                           std::pair{"coupled_thin", 0.5}),
+                         [](const auto& about) { return std::string(about.param.first); });
 
 /// The same search on the rule of the paper alone.
 Bargain search_uncorrected(const char* name, double friction) {
