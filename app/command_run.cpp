@@ -141,7 +141,7 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
   const auto reason =
       why_not_certified(library, options.library, profile, live.loop.rate, live.contact.friction);
   if (!options.uncertified) require_certified(reason);
-  if (reason) say("run: not certified: {}: {}", reason->where, reason->problem);
+  if (reason) say("run: no guarantee: {}: {}", reason->where, reason->problem);
   live.contact.lipschitz_bound = lipschitz_bound_for(library, profile, live.loop.rate);
   if (live.contact.lipschitz_bound < body.lipschitz_bound) {
     say("run: the enforced Lipschitz bound is lowered to {} N/m, which is certified at this rate",

@@ -30,7 +30,7 @@ std::string from(double rate) {
 }
 
 std::string not_certified_without(const std::vector<std::string>& unknown, double rate) {
-  return "not certified: its " + list_in_words(unknown) +
+  return "no guarantee: its " + list_in_words(unknown) +
          (unknown.size() == 1 ? " is unknown" : " are unknown") +
          (std::isfinite(rate) ? "; its damping suffices " + from(rate) : "");
 }
@@ -45,8 +45,8 @@ std::string certified_from(const DeviceConstants& device, double bound, double r
 std::string why_not(const DeviceConstants& constants, double bound,
                     const DeviceCertificate& device) {
   if (std::isinf(device.lowest_rate))
-    return "not certified at any rate: its damping does not make up for its delay";
-  return "not certified at any rate: its dry friction allows positions in steps of " +
+    return "no guarantee at any rate: its damping does not make up for its delay";
+  return "no guarantee at any rate: its dry friction allows positions in steps of " +
          number_text(1e6 * largest_position_step(constants, bound)) + " um, not of " +
          number_text(1e6 * device.position_resolution) + " um";
 }
@@ -83,7 +83,7 @@ std::string verdict(const Certificate& certificate, const DeviceCertificate& dev
   const std::vector<std::string> unknown = unknown_constants(constants);
   if (!unknown.empty()) return not_certified_without(unknown, device.lowest_rate);
   const double bound = certified_lipschitz_bound(certificate);
-  if (std::isinf(bound)) return "not certified at any rate: slides have no bound";
+  if (std::isinf(bound)) return "no guarantee at any rate: slides have no bound";
   const double smallest = certificate.min_lipschitz_bound;
   const std::string by = guaranteed_by(certificate) == GuaranteedBy::Curves
                              ? ", by the curves themselves"

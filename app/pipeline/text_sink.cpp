@@ -150,7 +150,7 @@ void TextSink::print(const StiffnessAtRate& e) {
     line("  {} at {} Hz: certifiable stiffness {} (Mahvash & Hayward 2005, eq. 5: {})", e.device,
          e.rate, stiffness_text(e.certifiable_stiffness), stiffness_text(e.published_stiffness));
   if (!e.unknown.empty())
-    return line("  {}: not certified: its {} {} unknown", e.device, list_in_words(e.unknown),
+    return line("  {}: no guarantee: its {} {} unknown", e.device, list_in_words(e.unknown),
                 e.unknown.size() == 1 ? "is" : "are");
   const double bound = std::min(e.certifiable_stiffness, e.certifiable_by_friction);
   if (bound < e.certifiable_stiffness)

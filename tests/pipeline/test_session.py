@@ -24,7 +24,7 @@ import h5py
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from bodies import CASE, write_case  # noqa: E402
+from bodies import CASE, DEVICE, write_case  # noqa: E402
 
 PALPATE = None
 WRITE_PLATE = None
@@ -195,6 +195,28 @@ class Session(unittest.TestCase):
         self.assertEqual(certified.returncode, DONE, certified.stderr)
         self.library = out / "library.h5"
         return ["simulate", case, "--out", out]
+
+    def test_certified_is_said_of_what_is_and_of_nothing_else(self):
+        out = self.root / "out"
+        self.scripted(out, 40)
+        profile = self.root / "bench.toml"
+        profile.write_text(DEVICE.replace("0.5 N s/m", "50 N s/m"), encoding="ascii")
+        command = ["run", self.library, "--profile", profile, "--duration", 0.1, "--priority", 0,
+                   "--out", self.root / "felt.h5"]
+        felt = palpate(*command)
+        self.assertEqual(felt.returncode, DONE, felt.stderr)
+        self.assertIn("run: certified passive on bench", felt.stdout)
+        slippery = palpate(*command, "--friction", 0.9)
+        self.assertEqual(slippery.returncode, CONFIGURATION)
+        self.assertIn("friction coefficient of 0.9", slippery.stderr)
+        profile.write_text(profile.read_text(encoding="ascii").replace('delay = "0 s"\n', ""), encoding="ascii")
+        late = palpate(*command)
+        self.assertEqual(late.returncode, CONFIGURATION)
+        self.assertIn("its delay is unknown", late.stderr)
+        accepted = palpate(*command, "--uncertified")
+        self.assertEqual(accepted.returncode, DONE, accepted.stderr)
+        self.assertIn("no guarantee: bench: its delay is unknown", accepted.stdout)
+        self.assertNotIn("certified passive", accepted.stdout)
 
     def test_a_killed_simulation_keeps_its_steps(self):
         out = self.root / "out"

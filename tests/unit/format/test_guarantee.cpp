@@ -75,11 +75,11 @@ TEST(Guarantee, IsNothingWithoutABound) {
        {Certificate{}, certificate(100, kInfinity), certificate(100, kInfinity, kInfinity)}) {
     EXPECT_EQ(guaranteed_by(c), GuaranteedBy::Nothing);
     EXPECT_THAT(guarantee_text(c), StartsWith("nothing is guaranteed"));
-    EXPECT_EQ(verdict(c, pen(0.1, kInfinity)), "not certified at any rate: slides have no bound");
+    EXPECT_EQ(verdict(c, pen(0.1, kInfinity)), "no guarantee at any rate: slides have no bound");
   }
   EXPECT_EQ(
       verdict(certificate(100, 200), {"pen", kUnknown, kUnknown, kUnknown, kUnknown}),
-      "not certified: its damping, delay, dry friction, position resolution and force resolution "
+      "no guarantee: its damping, delay, dry friction, position resolution and force resolution "
       "are unknown");
 }
 
@@ -90,7 +90,7 @@ TEST(Verdict, NamesWhatIsMissingAndCertifiesNothingWithout) {
   device.position_resolution = device.force_resolution = kUnknown;
   EXPECT_FALSE(is_certified(c, device));
   EXPECT_EQ(verdict(c, device),
-            "not certified: its position resolution and force resolution are unknown; its damping "
+            "no guarantee: its position resolution and force resolution are unknown; its damping "
             "suffices from 3000 Hz on");
 }
 
@@ -103,7 +103,7 @@ TEST(Verdict, CertifiesNoRateWhereDryFrictionDoesNotPayForTheResolution) {
                                              "lipschitz_bound = 120.0 N/m"));
   device.position_resolution = 1e-4;
   EXPECT_EQ(verdict(c, device),
-            "not certified at any rate: its dry friction allows positions in steps of 57.7 um, not "
+            "no guarantee at any rate: its dry friction allows positions in steps of 57.7 um, not "
             "of 100 um");
   device.position_resolution = 0;
   device.delay = 0.1 / 200;

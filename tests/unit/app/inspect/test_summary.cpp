@@ -34,7 +34,7 @@ TEST(Inspect, GivesTheVerdictOfEachDevice) {
       "850.0 Hz)");
   EXPECT_EQ(devices[0]["lowest_certified_rate"]["value"], 637.5);
   EXPECT_EQ(devices[1]["verdict"],
-            "not certified: its damping, delay, dry friction, position resolution and force "
+            "no guarantee: its damping, delay, dry friction, position resolution and force "
             "resolution are "
             "unknown");
   EXPECT_TRUE(devices[1]["damping"]["value"].is_null());
@@ -52,7 +52,7 @@ TEST(Inspect, CallsAnInfiniteBoundNoBound) {
   EXPECT_TRUE(summary["certificate"]["L_slip"]["value"].is_null());
   const std::string text = summary_text(summary);
   EXPECT_THAT(text, HasSubstr("L slip: no bound\n"));
-  EXPECT_THAT(text, HasSubstr("verdict: not certified at any rate: slides have no bound\n"));
+  EXPECT_THAT(text, HasSubstr("verdict: no guarantee at any rate: slides have no bound\n"));
   EXPECT_THAT(text, HasSubstr("lowest certified rate: no bound\n"));
   EXPECT_THAT(text, Not(ContainsRegex("[^a-z](inf|nan)[^a-z]")));
 }

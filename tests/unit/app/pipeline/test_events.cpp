@@ -190,8 +190,7 @@ TEST(TextSink, PrintsTheCertifiableStiffnessAndItsRemedies) {
   coarse.certifiable_by_friction = 50;
   EXPECT_THAT(text_of({coarse}), HasSubstr("its dry friction certifies 50.00 N/m"));
   coarse.unknown = {"delay", "dry friction"};
-  EXPECT_THAT(text_of({coarse}),
-              HasSubstr("not certified: its delay and dry friction are unknown"));
+  EXPECT_THAT(text_of({coarse}), HasSubstr("no guarantee: its delay and dry friction are unknown"));
   EXPECT_THAT(text_of({coarse}), Not(HasSubstr("is certified")));
   EXPECT_THAT(text_of({stiffness(200, 100, 90)}), HasSubstr("2005, eq. 5: 150.0 N/m"));
   EXPECT_THAT(text_of({stiffness(200, 100, 90)}), HasSubstr("2.00 times its forces"));

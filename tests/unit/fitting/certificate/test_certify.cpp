@@ -97,7 +97,7 @@ TEST(Certificate, ADeviceOfUnknownDampingIsNotCertified) {
   }
   EXPECT_EQ(
       verdict(library.certificate, device),
-      "not certified: its damping, delay, dry friction, position resolution and force resolution "
+      "no guarantee: its damping, delay, dry friction, position resolution and force resolution "
       "are unknown");
 }
 
@@ -109,12 +109,12 @@ TEST(Certificate, NamesTheConstantThatIsMissing) {
   settings.devices[0].coulomb_friction = kUnknown;
   certify(library, settings);
   EXPECT_EQ(verdict(library.certificate, library.certificate.devices[0]),
-            "not certified: its dry friction is unknown; its damping suffices from 3000 Hz on");
+            "no guarantee: its dry friction is unknown; its damping suffices from 3000 Hz on");
   settings.devices[0] = viscous();
   settings.devices[0].delay = kUnknown;
   certify(library, settings);
   EXPECT_EQ(verdict(library.certificate, library.certificate.devices[0]),
-            "not certified: its delay is unknown");
+            "no guarantee: its delay is unknown");
 }
 
 TEST(Certificate, AHoleIsABorder) {
@@ -194,7 +194,7 @@ TEST(Certificate, ACoupledResponseThatIsFlatWhereSlipBeginsHasNoEnforceableBound
     EXPECT_EQ(std::isinf(library.certificate.devices.at(0).lowest_rate), flat);
     if (flat) {
       EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
-                "not certified at any rate: slides have no bound");
+                "no guarantee at any rate: slides have no bound");
     }
   }
 }
