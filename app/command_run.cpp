@@ -7,6 +7,7 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct RunOptions {
   DeviceChoice device;
   LiveSettings live;
   std::vector<double> at_mm{0, 0, 0};
+  std::optional<double> watchdog;
   bool list = false, uncertified = false;
 };
 
@@ -98,10 +100,10 @@ void summarize(const LiveOutcome& outcome, const std::string& file) {
   say("run: {} steps -> {}", c.steps, file);
   say_quantiles("wake-up latency", c.wake);
   say_quantiles("step duration", c.compute);
-  say("  steps that overran {}, stopped for speed {}, clamped {}, saturated {}, with stale "
-      "triangles {}, "
-      "not recorded {}",
-      c.overruns, c.cut_off, c.clamped, c.saturated, c.stale, c.unrecorded);
+  say("  steps that overran {}, cut off {}, clamped {}, saturated {}, not recorded {}", c.overruns,
+      c.cut_off, c.clamped, c.saturated, c.unrecorded);
+  say("  samples: late {}, older than the watchdog allows {}, rejected {}", c.stale, c.outdated,
+      c.rejected);
 }
 
 RecordingHeading heading_of(const RunOptions& options, const Library& library,
@@ -124,6 +126,10 @@ RecordingHeading heading_of(const RunOptions& options, const Library& library,
 /// @throws Error when the session ended because of a fault.
 void require_good_end(const LiveOutcome& outcome, const std::string& device,
                       const std::string& recording) {
+  if (outcome.counts.silent) {
+    throw Error(ErrorKind::Configuration, device, "the device sent no new sample for too long",
+                "check its cable and restart its service; the recording is in " + recording);
+  }
   if (outcome.counts.lost) {
     throw Error(ErrorKind::Configuration, device, "the device was disconnected",
                 "check cable and power; the recording is in " + recording);
@@ -156,7 +162,7 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
         live.contact.friction);
   }
   for (std::size_t i = 0; i < 3; ++i) live.pose.position[i] = 1e-3 * options.at_mm[i];
-  live.loop.watchdog = live.safety.watchdog;
+  set_watchdog(live, options.watchdog);
   options.device.rate = live.loop.rate;
 }
 
@@ -209,9 +215,10 @@ void add_loop_options(CLI::App& command, RunOptions& o) {
   command.add_option("--max-force", o.live.safety.max_force, "N, largest commanded force");
   command.add_option("--max-speed", o.live.safety.max_speed,
                      "m/s, speed of the device beyond which the force is switched off");
-  command.add_option("--ramp", o.live.safety.ramp, "s, duration of the force ramp");
-  command.add_option("--watchdog", o.live.safety.watchdog,
-                     "s without a step until the device is halted");
+  command.add_option("--ramp", o.live.safety.ramp, "s, duration of the force ramp at the start");
+  command.add_option("--watchdog", o.watchdog,
+                     "s without a step or a new sample until the force is cut off (default: 20 "
+                     "periods of the loop)");
   command
       .add_option("--priority", o.live.loop.realtime.priority,
                   "SCHED_FIFO priority; 0: ordinary scheduler")

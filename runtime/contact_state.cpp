@@ -40,6 +40,7 @@ void ContactState::reset() noexcept {
   last_.reset();
   tank_.empty();
   goal_ = 0;
+  suspended_ = false;
   seen_ = {};
 }
 
@@ -55,6 +56,17 @@ std::uint32_t ContactState::refuse() noexcept {
   return seen_.status;
 }
 
+std::uint32_t ContactState::suspend(const Vec3& x) noexcept {
+  if (!is_finite(x)) return refuse();
+  seen_.status = 0;
+  tank_.empty();
+  seen_.tank = 0;
+  drop();
+  last_ = x;
+  suspended_ = true;
+  return seen_.status;
+}
+
 std::uint32_t ContactState::step(const Vec3& x) noexcept {
   if (!is_finite(x)) return refuse();
   const Vec3 from = last_.value_or(x);
@@ -63,6 +75,7 @@ std::uint32_t ContactState::step(const Vec3& x) noexcept {
   if (!(travelled <= surface_->diagonal())) return refuse();
   seen_.status = 0;
   if (model_) touch(x, travelled);
+  if (suspended_) resume(x);
   if (!model_) detect(from, x);
   if (model_) seen_.status |= step_status::Contact;
   return seen_.status;
@@ -85,6 +98,13 @@ void ContactState::detect(const Vec3& from, const Vec3& x) noexcept {
   const Projection again = facing_from(closest);
   if (begin_at(again, x)) return;
   approaching_ = again.lateral < facing.lateral ? again.point : facing.point;
+}
+
+/// After a suspension the contact begins where the tip is, if it is inside.
+void ContactState::resume(const Vec3& x) noexcept {
+  suspended_ = false;
+  const SurfacePoint closest = closest_if_inside(x);
+  if (closest.element != kNoElement) approaching_ = closest;
 }
 
 SurfacePoint ContactState::entry(const Vec3& from, const Vec3& to) const noexcept {

@@ -76,6 +76,10 @@ class ContactState {
   std::uint32_t step(const Vec3& x) noexcept;
   /// A step with unusable input: force zero, the contact is dropped.
   std::uint32_t refuse() noexcept;
+  /// No contact at the tip position x (m), which counts as the last one: the contact is dropped,
+  /// its stored energy and the energy tank are discarded. The next step begins it anew where the
+  /// tip is then, also inside the body, with d0 = n . (x - c): without force and energy.
+  std::uint32_t suspend(const Vec3& x) noexcept;
   /// From the next step on the tool can meet, and slide onto, these triangles only, until the next
   /// call; null: all triangles. The delivery must outlive its use.
   void set_delivery(const Delivery* delivered) noexcept;
@@ -86,6 +90,7 @@ class ContactState {
 
  private:
   void detect(const Vec3& from, const Vec3& x) noexcept;
+  void resume(const Vec3& x) noexcept;
   bool begin_at(const Projection& facing, const Vec3& x) noexcept;
   SurfacePoint entry(const Vec3& from, const Vec3& to) const noexcept;
   SurfacePoint closest_if_inside(const Vec3& x) const noexcept;
@@ -148,7 +153,8 @@ class ContactState {
   std::optional<LocalModel> model_;          ///< touching
   std::optional<SurfacePoint> approaching_;  ///< entered, not yet active
   std::optional<Vec3> last_;                 ///< last usable tip position
-  double goal_ = 0;                          ///< offset the contact should return to, m
+  bool suspended_ = false;
+  double goal_ = 0;                  ///< offset the contact should return to, m
   mutable PiecesInUse pieces_;       ///< of the last evaluation; results do not depend on them
   std::int32_t ahead_ = kNoElement;  ///< element whose surroundings the last step prefetched
   ContactObservation seen_;

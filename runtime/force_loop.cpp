@@ -22,8 +22,29 @@ ForceLoop::ForceLoop(Device& device, PosedContact& contact, const SafetySettings
                      StepQueue* queue)
     : device_(device), contact_(contact), safety_(safety), queue_(queue) {}
 
-bool ForceLoop::tick(std::int64_t due) noexcept {
-  const std::int64_t began = monotonic_ns();
+GuardedStep guarded_step(Safety& safety, PosedContact& contact, const DeviceReading& reading,
+                         bool fresh, double dt) noexcept {
+  const Safety::Admission sample = safety.admit(reading, fresh, dt);
+  GuardedStep step{{}, sample.status, false};
+  switch (sample.action) {
+    case Safety::Action::Lost:
+      contact.contact.refuse();
+      step.lost = true;
+      return step;
+    case Safety::Action::Suspend:
+      step.status |= contact.suspend(sample.position);
+      break;
+    case Safety::Action::Step:
+      step.status |= contact.step(sample.position);
+      break;
+  }
+  const auto verdict = safety.limit(contact.command(), contact.contact.observation().energy);
+  step.status |= verdict.status;
+  step.force = verdict.force;
+  return step;
+}
+
+bool ForceLoop::tick(std::int64_t due, std::int64_t began) noexcept {
   heartbeat_.store(began, std::memory_order_relaxed);
   if (start_ == 0) start_ = last_ = began;
   const double dt = 1e-9 * static_cast<double>(began - last_);
@@ -31,17 +52,22 @@ bool ForceLoop::tick(std::int64_t due) noexcept {
   counts_.wake.add(began - due);
 
   DeviceReading reading;
-  std::uint32_t status = note(device_.read(reading));
-  if (counts_.lost) {
+  const DeviceStatus sample = device_.read(reading);
+  GuardedStep step;
+  if (sample == DeviceStatus::Lost) {
     contact_.contact.refuse();
-    record(reading, {}, status | step_status::Dropped, began);
-    return false;
+    step.lost = true;
+  } else {
+    step = guarded_step(safety_, contact_, reading, sample != DeviceStatus::Late, dt);
+    counts_.silent = step.lost;
   }
-  status |= contact_.step(reading.position);
-  const auto verdict = safety_.judge(contact_.command(), reading.velocity, dt);
-  status |= verdict.status | note(device_.command(verdict.force));
-  count(status);
-  record(reading, verdict.force, status, began);
+  step.status |= note(step.lost ? DeviceStatus::Lost : sample);
+  if (step.lost) step.status |= step_status::Dropped;
+  const DeviceStatus given = device_.command(step.force);
+  // A late answer to the command was counted with its sample.
+  if (!step.lost && given != DeviceStatus::Late) step.status |= note(given);
+  count(step.status);
+  record(reading, step.force, step.status, began);
   return !counts_.lost;
 }
 
@@ -66,7 +92,10 @@ void ForceLoop::count(std::uint32_t status) noexcept {
   const auto one_if = [status](std::uint32_t bits) { return (status & bits) != 0 ? 1U : 0U; };
   counts_.late += one_if(step_status::LoopLate);
   counts_.clamped += one_if(step_status::LoopClamped);
-  counts_.cut_off += one_if(step_status::LoopLate | step_status::LoopTooFast);
+  counts_.cut_off +=
+      one_if(step_status::LoopLate | step_status::LoopTooFast | step_status::LoopOutdated);
+  counts_.outdated += one_if(step_status::LoopOutdated);
+  counts_.rejected += one_if(step_status::LoopRejected);
   counts_.not_finite += one_if(step_status::LoopNotFinite);
 }
 

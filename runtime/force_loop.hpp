@@ -12,6 +12,7 @@
 #include "runtime/device.hpp"
 #include "runtime/latency_histogram.hpp"
 #include "runtime/posed_contact.hpp"
+#include "runtime/realtime.hpp"
 #include "runtime/safety.hpp"
 
 namespace palpate::runtime {
@@ -22,6 +23,17 @@ using StepQueue = moodycamel::BlockingReaderWriterCircularBuffer<RecordedStep>;
 /// Copies the observation of the last step (contact, deflections, energies) into `step`.
 void enter_observation(const PosedContact& contact, RecordedStep& step) noexcept;
 
+/// A sample through the safety functions and the contact to the force: a step of the force loop
+/// without its device, which a replay repeats. `lost`: no new sample for too long. noexcept,
+/// allocation-free.
+struct GuardedStep {
+  Vec3 force{};              ///< N, to command
+  std::uint32_t status = 0;  ///< step_status bits
+  bool lost = false;
+};
+GuardedStep guarded_step(Safety& safety, PosedContact& contact, const DeviceReading& reading,
+                         bool fresh, double dt) noexcept;
+
 /// Counts of the loop, to be read when it has stopped.
 struct LoopCounts {
   std::uint64_t steps = 0;
@@ -30,10 +42,13 @@ struct LoopCounts {
   std::uint64_t saturated = 0;  ///< the device gave less force than commanded
   std::uint64_t stale = 0;      ///< the device had no new sample
   std::uint64_t clamped = 0;
-  std::uint64_t cut_off = 0;  ///< steps without force: too fast or too late
+  std::uint64_t cut_off = 0;   ///< steps that the safety functions leave without their force
+  std::uint64_t outdated = 0;  ///< steps whose last new sample is older than the watchdog allows
+  std::uint64_t rejected = 0;  ///< samples farther away than a tip can have moved
   std::uint64_t not_finite = 0;
   std::uint64_t unrecorded = 0;  ///< steps for which the queue had no room
   bool lost = false;             ///< the device is lost
+  bool silent = false;           ///< lost because it sent no new sample for too long
   LatencyHistogram wake;         ///< from the time a step was due to its beginning
   LatencyHistogram compute;      ///< reading, stepping and commanding
 };
@@ -48,7 +63,9 @@ class ForceLoop {
 
   /// One step. due: when it should have begun, on the monotonic clock, ns. False when the device is
   /// lost: the loop is over.
-  bool tick(std::int64_t due) noexcept;
+  bool tick(std::int64_t due) noexcept { return tick(due, monotonic_ns()); }
+  /// The same at a time that the caller states: `began`, > 0, monotonic, ns.
+  bool tick(std::int64_t due, std::int64_t began) noexcept;
   void count_overrun() noexcept { ++counts_.overruns; }
 
   /// When the last step began, monotonic ns; 0 before the first. From any thread.

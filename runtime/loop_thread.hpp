@@ -15,8 +15,9 @@
 namespace palpate::runtime {
 
 struct LoopThreadSettings {
-  double rate = 1000;      ///< Hz; for a driver with its own thread: its expected rate
-  double watchdog = 0.02;  ///< s without a step after which the device is halted
+  double rate = 1000;  ///< Hz; for a driver with its own thread: its expected rate
+  /// s without a step after which the device is halted
+  double watchdog = default_watchdog(1000);
   RealtimeSettings realtime;
 };
 

@@ -56,6 +56,8 @@ static_assert(PALPATE_LOOP_NOT_FINITE == std::uint32_t{bits::LoopNotFinite});
 static_assert(PALPATE_LOOP_SATURATED == std::uint32_t{bits::LoopSaturated});
 static_assert(PALPATE_LOOP_STALE == std::uint32_t{bits::LoopStale});
 static_assert(PALPATE_LOOP_DEVICE_LOST == std::uint32_t{bits::LoopDeviceLost});
+static_assert(PALPATE_LOOP_OUTDATED == std::uint32_t{bits::LoopOutdated});
+static_assert(PALPATE_LOOP_REJECTED == std::uint32_t{bits::LoopRejected});
 
 constexpr double kDefaultTankCap = 5e-3;   // J
 constexpr double kMostSearchRate = 10000;  // Hz

@@ -76,8 +76,9 @@ enum {
    * body since the last step. The force is zero and the contact is dropped. Remedy: check the
    * device's reading, its units and its frame. */
   PALPATE_BAD_INPUT = 1u << 7,
-  /* The contact was dropped and its stored energy discarded, after PALPATE_BAD_INPUT. Remedy: leave
-   * the body and touch it again. */
+  /* The contact was dropped and its stored energy discarded: after PALPATE_BAD_INPUT, remedy: leave
+   * the body and touch it again; or in a cut-off of the force loop, after which it begins anew
+   * where the tip is. */
   PALPATE_DROPPED = 1u << 8,
   /* A slide was throttled so that the force changes by at most lipschitz_bound times the travel of
    * the tip; later steps make the rest. Remedy, if slides lag noticeably: a larger lipschitz_bound.
@@ -89,11 +90,12 @@ enum {
 
   /* Bits of the force loop (palpate_loop_*), also in recordings. */
 
-  /* The force is scaled down while it grows to its full value, at the start and after a cut-off. */
+  /* The force is scaled down: the ramp at the start. The scale rises while no energy is stored. */
   PALPATE_LOOP_RAMPING = 1u << 16,
   /* The force was shortened to max_force. Remedy: press less, or allow more force. */
   PALPATE_LOOP_CLAMPED = 1u << 17,
-  /* No force: the tip is faster than max_speed. Remedy: move slower; check the device's units. */
+  /* No force: the tip is faster than max_speed, by the velocity of the device or the difference of
+   * its positions. Remedy: move slower; check the device's units. */
   PALPATE_LOOP_TOO_FAST = 1u << 18,
   /* No force: too long since the last step. Remedy: real-time rights (missing_rights of the
    * report), a lower rate, or a processor of its own (core). */
@@ -105,7 +107,13 @@ enum {
   /* The device had no new sample; the last one was used again. Remedy: a lower rate of the loop. */
   PALPATE_LOOP_STALE = 1u << 22,
   /* The device is lost and the loop has ended. Remedy: check power and cable, start a new loop. */
-  PALPATE_LOOP_DEVICE_LOST = 1u << 23
+  PALPATE_LOOP_DEVICE_LOST = 1u << 23,
+  /* The last new sample is older than the watchdog limit: the force falls to zero. Remedy: check
+   * the device, its cable and its service. */
+  PALPATE_LOOP_OUTDATED = 1u << 24,
+  /* The sample is farther from the last than a tip of max_speed can travel: the last one was used
+   * again. Remedy: check the device's encoders, cable and units. */
+  PALPATE_LOOP_REJECTED = 1u << 25
 };
 
 typedef struct palpate_settings {
@@ -241,10 +249,12 @@ typedef struct palpate_loop_settings {
   int32_t priority; /* of SCHED_FIFO, 1 to 99; 0 = ordinary scheduler; default 80 */
   int32_t core;     /* processor of the thread; -1 (default) = any */
   double rate;      /* Hz; default 1000 */
-  double ramp;      /* s, time in which the force grows from zero to its full value; default 0.5 */
+  double ramp; /* s, time in which the force grows to its full value at the start; default 0.5 */
   double max_force; /* N, longer forces are shortened; default infinite */
   double max_speed; /* m/s, above it there is no force; default 3 */
-  double watchdog;  /* s without a step after which the device is halted; default 0.02 */
+  double watchdog;  /* s without a step after which the device is halted, and without a new sample
+                       after which the force falls to zero; after 50 times as long without a new
+                       sample the device is lost; 0 (default) = 20 periods */
   uint32_t record;  /* steps that wait for palpate_loop_take; 0 (default) = none are recorded */
 } palpate_loop_settings;
 
@@ -252,12 +262,14 @@ typedef struct palpate_loop_report {
   uint32_t size;         /* sizeof(palpate_loop_report), set by the caller */
   uint32_t lost, halted; /* 1: the device was lost; the watchdog halted it */
   /* Numbers of steps: all; those that ended after the next was due; and those with the bits LATE,
-   * LATE or TOO_FAST, CLAMPED, SATURATED, STALE, NOT_FINITE. */
+   * LATE or TOO_FAST or OUTDATED, CLAMPED, SATURATED, STALE, NOT_FINITE. */
   uint64_t steps, overruns, late, cut_off, clamped, saturated, stale, not_finite;
   double wake_median, wake_p999, wake_longest;          /* s, delay of the start of a step */
   double compute_median, compute_p999, compute_longest; /* s, duration of a step */
-  char missing_rights[256]; /* one line on what the system refused; empty: nothing */
-  uint64_t unrecorded;      /* steps for which the record had no room */
+  char missing_rights[256];    /* one line on what the system refused; empty: nothing */
+  uint64_t unrecorded;         /* steps for which the record had no room */
+  uint64_t outdated, rejected; /* steps with the bits OUTDATED, REJECTED */
+  uint32_t silent; /* 1: the device was lost because it sent no new sample for too long */
 } palpate_loop_report;
 
 /* What a step of the loop read, computed and commanded. */

@@ -50,12 +50,16 @@ class CallerDevice : public palpate::runtime::Device {
   std::atomic<bool> halted_{false};
 };
 
+double watchdog_of(const palpate_loop_settings& s) {
+  return s.watchdog == 0 ? palpate::runtime::default_watchdog(s.rate) : s.watchdog;
+}
+
 palpate::runtime::SafetySettings safety_of(const palpate_loop_settings& s) {
-  return {s.ramp, s.max_force, s.max_speed, s.watchdog};
+  return {s.ramp, s.max_force, s.max_speed, watchdog_of(s), 1 / s.rate};
 }
 
 palpate::runtime::LoopThreadSettings thread_of(const palpate_loop_settings& s) {
-  return {s.rate, s.watchdog, {s.priority, s.core}};
+  return {s.rate, watchdog_of(s), {s.priority, s.core}};
 }
 
 }  // namespace
@@ -128,6 +132,9 @@ palpate_loop_report report_on(const palpate_loop& loop) {
   const std::string missing = loop.thread.missing_rights();
   std::strncpy(report.missing_rights, missing.c_str(), sizeof report.missing_rights - 1);
   report.unrecorded = c.unrecorded;
+  report.outdated = c.outdated;
+  report.rejected = c.rejected;
+  report.silent = c.silent ? 1 : 0;
   return report;
 }
 
@@ -146,7 +153,7 @@ void palpate_loop_settings_default(palpate_loop_settings* settings) {
                safety.ramp,
                safety.max_force,
                safety.max_speed,
-               safety.watchdog,
+               0,
                0};
 }
 

@@ -41,6 +41,13 @@ class PosedContact {
     }
     return status;
   }
+  /// No contact with the tip at x in the world, m; see ContactState::suspend. @return status bits.
+  std::uint32_t suspend(const Vec3& x) noexcept {
+    const Vec3 in_body = pose.to_body(x);
+    const std::uint32_t status = contact.suspend(in_body);
+    if (search_ && !(status & step_status::BadInput)) search_->report({in_body, kNoElement});
+    return status;
+  }
   /// The force of the body on the tool, in the world, N: what to command to the device.
   Vec3 command() const noexcept {
     const Vec3& f = contact.observation().force;

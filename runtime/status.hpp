@@ -27,7 +27,9 @@ enum Bit : std::uint32_t {
   LoopNotFinite = 1U << 20,
   LoopSaturated = 1U << 21,
   LoopStale = 1U << 22,
-  LoopDeviceLost = 1U << 23
+  LoopDeviceLost = 1U << 23,
+  LoopOutdated = 1U << 24,
+  LoopRejected = 1U << 25
 };
 
 }  // namespace palpate::runtime::step_status

@@ -25,10 +25,13 @@ runtime::ContactSettings contact_settings(const RecordingHeading& recording) {
   return settings;
 }
 
-std::optional<runtime::Safety> safety_of(const SessionSettings& settings) {
+std::optional<runtime::Safety> safety_of(const RecordingHeading& recording) {
+  const SessionSettings& settings = recording.settings;
   if (!settings.guarded) return {};
-  return runtime::Safety(
-      {settings.ramp, settings.max_force, settings.max_speed, settings.watchdog});
+  runtime::SafetySettings safety{settings.ramp, settings.max_force, settings.max_speed,
+                                 settings.watchdog};
+  if (recording.rate > 0) safety.period = 1 / recording.rate;
+  return runtime::Safety(safety);
 }
 
 /// The step as the force loop made it, see ForceLoop::tick.
@@ -38,14 +41,15 @@ RecordedStep step_again(const RecordedStep& recorded, double dt, palpate_state& 
   step.force = {};
   if (recorded.status & PALPATE_LOOP_DEVICE_LOST && recorded.status & PALPATE_DROPPED) {
     state.contact.refuse();
+  } else if (safety) {
+    const bool fresh = (recorded.status & PALPATE_LOOP_STALE) == 0;
+    const runtime::GuardedStep guarded =
+        runtime::guarded_step(*safety, state, {recorded.position, recorded.velocity, 0}, fresh, dt);
+    step.force = guarded.force;
+    step.status = guarded.status | (recorded.status & kOfTheDevice);
   } else {
     step.status = state.step(recorded.position) | (recorded.status & kOfTheDevice);
     step.force = state.command();
-    if (safety) {
-      const auto verdict = safety->judge(step.force, recorded.velocity, dt);
-      step.force = verdict.force;
-      step.status |= verdict.status;
-    }
   }
   runtime::enter_observation(state, step);
   return step;
@@ -73,7 +77,7 @@ bool any_value(const RecordedStep& a, const RecordedStep& b, Visit&& visit) {
 }  // namespace
 
 Replay::Replay(const RecordingHeading& recorded, const palpate_library& body)
-    : state_(body, contact_settings(recorded)), safety_(safety_of(recorded.settings)) {
+    : state_(body, contact_settings(recorded)), safety_(safety_of(recorded)) {
   state_.pose.position = recorded.settings.body_position;
 }
 

@@ -12,6 +12,7 @@
 #include "runtime/devices/force_dimension.hpp"
 #include "runtime/devices/haply.hpp"
 #include "runtime/devices/open_haptics.hpp"
+#include "runtime/safety.hpp"
 
 namespace palpate::app {
 namespace {
@@ -86,8 +87,10 @@ std::unique_ptr<runtime::Device> make_device(
         runtime::OpenHapticsSettings{choice.driver, choice.unit});
   }
   if (choice.name == "haply") {
-    return std::make_unique<runtime::HaplyDevice>(
-        runtime::HaplySettings{choice.host, choice.port, choice.unit});
+    // A wait for a state must not look like a stall of the loop.
+    const double patience = 1e3 * runtime::default_watchdog(choice.rate) / 4;  // ms
+    return std::make_unique<runtime::HaplyDevice>(runtime::HaplySettings{
+        choice.host, choice.port, choice.unit, static_cast<int>(std::clamp(patience, 1.0, 5.0))});
   }
   return read_lab_device(choice.lab_file, choice.driver);
 }

@@ -70,6 +70,12 @@ void wait_for_the_end(const runtime::LoopThread& loop, const RecordingThread& re
 
 }  // namespace
 
+void set_watchdog(LiveSettings& live, std::optional<double> watchdog) {
+  live.safety.period = 1 / live.loop.rate;
+  live.safety.watchdog = watchdog.value_or(runtime::default_watchdog(live.loop.rate));
+  live.loop.watchdog = live.safety.watchdog;
+}
+
 SessionSettings session_settings(const LiveSettings& live) {
   SessionSettings settings;
   settings.tank_cap = live.contact.tank_cap;

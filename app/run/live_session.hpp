@@ -25,6 +25,10 @@ struct LiveSettings {
   double duration = 0;       ///< s; 0 = until stopped
 };
 
+/// Sets the watchdog of the loop and of its safety functions (s; none: that of the rate), and their
+/// period. After the rate.
+void set_watchdog(LiveSettings& live, std::optional<double> watchdog);
+
 /// The settings in the form of a recording.
 SessionSettings session_settings(const LiveSettings& live);
 

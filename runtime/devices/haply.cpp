@@ -36,7 +36,7 @@ void HaplyDevice::open() {
   halted_ = saturated_ = false;
   sent_ = sent_before_ = {};
   open_ = true;
-  awaiting_ = send_force({});
+  awaited_ = send_force({}) ? 1 : 0;
 }
 
 void HaplyDevice::find_device() {
@@ -88,15 +88,21 @@ bool HaplyDevice::gives_less(const Vec3& given) const noexcept {
 
 DeviceStatus HaplyDevice::read(DeviceReading& reading) noexcept {
   if (!open_) return DeviceStatus::Lost;
-  std::string_view text;
-  const WebSocket::Result result = socket_.receive(settings_.timeout_ms, text);
+  DeviceStatus status = DeviceStatus::Late;
+  do {  // the newest of the states that have come
+    std::string_view text;
+    const int timeout = status == DeviceStatus::Late ? settings_.timeout_ms : 0;
+    const WebSocket::Result result = socket_.receive(timeout, text);
+    if (result == WebSocket::Result::Nothing) break;
+    if (result == WebSocket::Result::Closed || !take_state(text)) {  // or unplugged: not listed
+      status = DeviceStatus::Lost;
+      break;
+    }
+    status = DeviceStatus::Good;
+    awaited_ = std::max(awaited_ - 1, 0);
+  } while (awaited_ > 0);
   reading = last_;
-  if (result == WebSocket::Result::Closed) return DeviceStatus::Lost;
-  if (result == WebSocket::Result::Nothing) return DeviceStatus::Late;
-  awaiting_ = false;
-  if (!take_state(text)) return DeviceStatus::Lost;  // unplugged: the service no longer lists it
-  reading = last_;
-  return DeviceStatus::Good;
+  return status;
 }
 
 bool HaplyDevice::send_force(const Vec3& force) noexcept {
@@ -126,10 +132,11 @@ bool HaplyDevice::send_force(const Vec3& force) noexcept {
 
 DeviceStatus HaplyDevice::command(const Vec3& force) noexcept {
   if (!open_) return DeviceStatus::Lost;
-  if (awaiting_) return DeviceStatus::Late;
-  sent_before_ = std::exchange(sent_, halted_ ? Vec3{} : force);
-  awaiting_ = send_force(sent_);
-  if (!awaiting_) return DeviceStatus::Lost;
+  const Vec3 given = halted_ ? Vec3{} : force;
+  if (awaited_ > 0 && !(norm(given) < norm(sent_))) return DeviceStatus::Late;
+  sent_before_ = std::exchange(sent_, given);
+  if (!send_force(sent_)) return DeviceStatus::Lost;
+  ++awaited_;
   return saturated_ ? DeviceStatus::Saturated : DeviceStatus::Good;
 }
 

@@ -16,15 +16,16 @@ struct HaplySettings {
   std::string host = "localhost";
   std::uint16_t port = 10001;
   std::string device_id;  ///< empty: the first Inverse3 of the inventory
-  int timeout_ms = 5;     ///< longest wait of a step for a state
+  int timeout_ms = 5;     ///< longest wait of a step for a state; less than the watchdog limit
 };
 
 /// The service sends an inventory first, then exactly one state for each message: command() sends a
 /// force, and the next read() waits for the state that answers it, up to the timeout. When the
-/// state is late, read() repeats the last one (Late), and command() sends no force until it has
-/// come. The device is Saturated when the force that the service reports is less than nine tenths
-/// of the lesser of the last two sent; which of them it answers is not documented. Sockets need
-/// system calls, so a loop with this device is not free of them.
+/// state is late, read() repeats the last one (Late), and until it has come command() sends only
+/// forces smaller than the last one sent, so that a silent service is told to let go. The device is
+/// Saturated when the force that the service reports is less than nine tenths of the lesser of the
+/// last two sent; which of them it answers is not documented. Sockets need system calls, so a loop
+/// with this device is not free of them.
 class HaplyDevice : public Device {
  public:
   explicit HaplyDevice(HaplySettings settings);
@@ -49,7 +50,7 @@ class HaplyDevice : public Device {
   Vec3 sent_{}, sent_before_{};  ///< N
   bool saturated_ = false;       ///< in the last state
   bool open_ = false;
-  bool awaiting_ = false;  ///< the state that answers the last force has not come
+  int awaited_ = 0;  ///< states that answer the forces sent and have not come
   std::atomic<bool> halted_{false};
 };
 

@@ -2,7 +2,9 @@
 // A force loop on a plate, with a device that does what a test tells it.
 #pragma once
 
+#include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "runtime/force_loop.hpp"
@@ -38,10 +40,16 @@ struct LoopRig {
       : state(plate_body(), {0.3, 5e-3}), queue(room), loop(device, state, safety, &queue) {
     device.place = pressing;
   }
+  /// A step `dt` (s) after the last, by a clock of the test.
+  bool step(double dt) {
+    now += std::llround(1e9 * dt);
+    return loop.tick(now, now);
+  }
   ScriptedDevice device;
   palpate_state state;
   runtime::StepQueue queue;
   runtime::ForceLoop loop;
+  std::int64_t now = 1;  ///< ns
 };
 
 }  // namespace palpate::test

@@ -89,6 +89,17 @@ TEST(LoopThread, TheWatchdogHaltsADeviceWhoseLoopHangs) {
   EXPECT_TRUE(thread.halted());
 }
 
+TEST(LoopThread, TheWatchdogOfASlowLoopIsAsPatientAsItsPeriod) {
+  // 20 periods of 0.1 s: no step for 20 ms is what such a loop is like.
+  LoopRig rig;
+  LoopThread thread(rig.loop, rig.device, ordinary(10, runtime::default_watchdog(10)));
+  while (rig.loop.heartbeat() == 0) std::this_thread::yield();
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  thread.stop();
+  EXPECT_FALSE(thread.halted());
+  EXPECT_DOUBLE_EQ(runtime::default_watchdog(4000), 0.005);
+}
+
 /// A driver whose thread takes its time before the first call.
 class LateStarter : public ScriptedDevice {
  public:

@@ -140,6 +140,73 @@ TEST_F(PalpateLoop, CountsTheStepsForWhichTheRecordHasNoRoom) {
   palpate_loop_end(nullptr);
 }
 
+/// Presses into the body, and then has no new sample for ever.
+struct SilentDevice : OwnDevice {
+  static int read_or_not(void* self, double position[3], double velocity[3]) {
+    auto& d = *static_cast<SilentDevice*>(self);
+    if (d.reads < 120) return read(self, position, velocity);
+    position[0] = 0.03, position[1] = 0.033, position[2] = 0.0005 - 2e-5 * d.reads;
+    velocity[0] = velocity[1] = velocity[2] = 0;
+    return 1;
+  }
+  palpate_device functions() {
+    return {sizeof(palpate_device), this, read_or_not, command, nullptr};
+  }
+};
+
+TEST_F(PalpateLoop, ADeviceWithoutNewSamplesLosesItsForceAndTheLoopEnds) {
+  SilentDevice own;
+  const palpate_device device = own.functions();
+  palpate_loop_settings settings;
+  palpate_loop_settings_default(&settings);
+  settings.priority = 0;
+  settings.ramp = 0;
+  settings.rate = 100;  // 20 periods are long enough for a busy machine
+  settings.watchdog = 0.05;
+  settings.record = 10000;
+  palpate_loop* loop = nullptr;
+  ASSERT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_OK);
+  for (int i = 0; i < 60000 && palpate_loop_running(loop); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(palpate_loop_running(loop), 0);
+  palpate_loop_end(loop);
+  palpate_loop_step step{};
+  step.size = sizeof step;
+  double last = 1;
+  while (palpate_loop_take(loop, &step) == 1) last = std::abs(step.force[2]);
+  EXPECT_TRUE(step.status & PALPATE_LOOP_DEVICE_LOST);
+  EXPECT_TRUE(step.status & PALPATE_LOOP_OUTDATED);
+  EXPECT_EQ(last, 0);
+  EXPECT_EQ(own.last, 0);
+  EXPECT_GT(own.largest, 0.01);
+  palpate_loop_report report{};
+  report.size = sizeof report;
+  EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
+  EXPECT_EQ(report.lost, 1U);
+  EXPECT_EQ(report.silent, 1U);
+  EXPECT_GT(report.outdated, 100U);
+}
+
+TEST_F(PalpateLoop, TheWatchdogIsTwentyPeriodsByDefault) {
+  // At 10 Hz two seconds: twenty milliseconds would halt the device between two steps.
+  OwnDevice own;
+  const palpate_device device = own.functions();
+  palpate_loop_settings settings;
+  palpate_loop_settings_default(&settings);
+  EXPECT_EQ(settings.watchdog, 0);
+  settings.priority = 0;
+  settings.rate = 10;
+  palpate_loop* loop = nullptr;
+  ASSERT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_OK);
+  std::this_thread::sleep_for(std::chrono::milliseconds(450));
+  palpate_loop_report report{};
+  report.size = sizeof report;
+  EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
+  EXPECT_EQ(report.halted, 0U);
+  EXPECT_EQ(report.late, 0U);
+}
+
 TEST_F(PalpateLoop, RefusesSettingsOutOfRange) {
   OwnDevice own;
   palpate_device device = own.functions();

@@ -97,6 +97,36 @@ TEST(LiveSession, RecordsUntilTheDeviceIsLost) {
   EXPECT_TRUE(recording.steps.back().status & PALPATE_LOOP_DEVICE_LOST);
 }
 
+/// Has no new sample after some steps.
+class SilentDevice : public runtime::VirtualDevice {
+ public:
+  using VirtualDevice::VirtualDevice;
+  runtime::DeviceStatus read(runtime::DeviceReading& reading) noexcept override {
+    const runtime::DeviceStatus status = VirtualDevice::read(reading);
+    return ++reads_ > 25 ? runtime::DeviceStatus::Late : status;
+  }
+
+ private:
+  int reads_ = 0;
+};
+
+TEST(LiveSession, EndsWhenTheDeviceFallsSilent) {
+  const palpate_library body(wall_plate());
+  SilentDevice device(with_hand(), 1000, [](double) { return runtime::HandTarget{}; });
+  LiveSettings settings = quick(0);
+  settings.loop.rate = 200;
+  set_watchdog(settings, {});
+  EXPECT_DOUBLE_EQ(settings.safety.watchdog, 0.1);
+  set_watchdog(settings, 0.02);
+  settings.loop.watchdog = 10;  // whatever the pace of this machine
+  const std::atomic<bool> stop{false};
+  const auto [outcome, recording] = play_live(device, body, settings, stop);
+  EXPECT_TRUE(outcome.counts.lost);
+  EXPECT_TRUE(outcome.counts.silent);
+  EXPECT_TRUE(recording.steps.back().status & PALPATE_LOOP_DEVICE_LOST);
+  EXPECT_FALSE(recording.steps.back().status & PALPATE_CONTACT);
+}
+
 /// Remembers the last force.
 class ListeningDevice : public runtime::VirtualDevice {
  public:

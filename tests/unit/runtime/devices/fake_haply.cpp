@@ -134,6 +134,7 @@ bool FakeHaplyService::answer(int connection, const std::string& message) {
   if (command.at("device_id") != "049D") return false;
   const auto& force = command.at("commands").at("set_cursor_force").at("values");
   world_.send_force({force.at("x"), force.at("y"), force.at("z")});
+  if (silent_) return true;
   world_.wait_for_device();
   while (world_.late && !stop_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   if (world_.forces % 10 == 3) send_frame(connection, 0x89, "are you there");

@@ -12,8 +12,8 @@
 namespace palpate::test {
 
 /// Sends the inventory, then one state for each message, as the service is documented to. `late`
-/// withholds the answers until it is cleared; `unplugged` leaves the device out of them; hang_up()
-/// ends the connection. A ping comes now and then, and states in two parts.
+/// withholds the answers until it is cleared, fall_silent() for ever; `unplugged` leaves the device
+/// out of them; hang_up() ends the connection. A ping comes now and then, and states in two parts.
 class FakeHaplyService {
  public:
   explicit FakeHaplyService(FakeWorld& world);
@@ -21,6 +21,8 @@ class FakeHaplyService {
 
   std::uint16_t port() const { return port_; }
   void hang_up() { hang_up_ = true; }
+  /// From now on takes forces, and answers none.
+  void fall_silent() { silent_ = true; }
   int pongs() const { return pongs_; }
 
  private:
@@ -32,7 +34,7 @@ class FakeHaplyService {
   FakeWorld& world_;
   int listener_ = -1;
   std::uint16_t port_ = 0;
-  std::atomic<bool> stop_{false}, hang_up_{false};
+  std::atomic<bool> stop_{false}, hang_up_{false}, silent_{false};
   std::atomic<int> pongs_{0};
   std::thread thread_;
 };
