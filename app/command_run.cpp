@@ -19,6 +19,7 @@
 #include "app/record/session_recorder.hpp"
 #include "app/run/certified.hpp"
 #include "app/run/device_choice.hpp"
+#include "app/run/force_clamp.hpp"
 #include "app/run/live_session.hpp"
 #include "app/simulate/script.hpp"
 #include "format/error.hpp"
@@ -33,7 +34,7 @@ struct RunOptions {
   DeviceChoice device;
   LiveSettings live;
   std::vector<double> at_mm{0, 0, 0};
-  std::optional<double> watchdog;
+  std::optional<double> watchdog, max_force;
   bool list = false, uncertified = false;
 };
 
@@ -153,9 +154,6 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
     say("run: the enforced Lipschitz bound is lowered to {} N/m, which is certified at this rate",
         number_text(live.contact.lipschitz_bound, 4));
   }
-  if (profile.peak_force > 0) {
-    live.safety.max_force = std::min(live.safety.max_force, profile.peak_force);
-  }
   if (!reason) {
     say("run: certified passive on {}, at {:g} Hz with a lipschitz_bound of {} N/m and mu = {:g}",
         profile.name, live.loop.rate, number_text(live.contact.lipschitz_bound, 4),
@@ -164,6 +162,17 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
   for (std::size_t i = 0; i < 3; ++i) live.pose.position[i] = 1e-3 * options.at_mm[i];
   set_watchdog(live, options.watchdog);
   options.device.rate = live.loop.rate;
+}
+
+/// The driver states its force once the device is open.
+void clamp_force(RunOptions& options, const runtime::Device& device) {
+  const ForceClamp clamp = force_clamp(profile_of(options), options.max_force, device.peak_force());
+  options.live.safety.max_force = clamp.max_force;
+  if (clamp.origin.empty()) {
+    say("run: no largest force is known: give --max-force or a profile with continuous_force");
+  } else {
+    say("run: forces are clamped to {} N: {}", number_text(clamp.max_force, 4), clamp.origin);
+  }
 }
 
 int run(RunOptions options) {
@@ -179,6 +188,7 @@ int run(RunOptions options) {
   const auto device = make_device(options.device, scripted_hand(library, options.live.pose));
   recover_and_report(options.recording);
   device->open();
+  clamp_force(options, *device);
   SessionRecorder recorder(options.recording, heading_of(options, library, device->name()));
   const StopOnInterrupt stop_on_interrupt;
   say("run: {} at {:g} Hz; end with Ctrl-C", options.device.name, options.live.loop.rate);
@@ -212,7 +222,9 @@ void add_loop_options(CLI::App& command, RunOptions& o) {
       ->check(CLI::NonNegativeNumber);
   command.add_option("--friction", o.live.contact.friction,
                      "Friction coefficient (default: that of the certificate)");
-  command.add_option("--max-force", o.live.safety.max_force, "N, largest commanded force");
+  command.add_option("--max-force", o.max_force,
+                     "N, largest commanded force (default: the continuous, or else the peak force "
+                     "of the profile)");
   command.add_option("--max-speed", o.live.safety.max_speed,
                      "m/s, speed of the device beyond which the force is switched off");
   command.add_option("--ramp", o.live.safety.ramp, "s, duration of the force ramp at the start");

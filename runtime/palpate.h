@@ -242,6 +242,9 @@ typedef struct palpate_device {
   int (*command)(void* context, const double force[3]);
   /* No force from now on. Called from any thread, by the watchdog. May be NULL. */
   void (*halt)(void* context);
+  /* N, largest force that the device sustains: the clamp of a loop whose max_force is infinite. 0:
+   * not known. */
+  double continuous_force;
 } palpate_device;
 
 typedef struct palpate_loop_settings {
@@ -250,7 +253,8 @@ typedef struct palpate_loop_settings {
   int32_t core;     /* processor of the thread; -1 (default) = any */
   double rate;      /* Hz; default 1000 */
   double ramp; /* s, time in which the force grows to its full value at the start; default 0.5 */
-  double max_force; /* N, longer forces are shortened; default infinite */
+  double max_force; /* N, longer forces are shortened; infinite (default) = continuous_force of the
+                       device, where it is known */
   double max_speed; /* m/s, above it there is no force; default 3 */
   double watchdog;  /* s without a step after which the device is halted, and without a new sample
                        after which the force falls to zero; after 50 times as long without a new

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The force loop of the C interface.
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -54,8 +55,11 @@ double watchdog_of(const palpate_loop_settings& s) {
   return s.watchdog == 0 ? palpate::runtime::default_watchdog(s.rate) : s.watchdog;
 }
 
-palpate::runtime::SafetySettings safety_of(const palpate_loop_settings& s) {
-  return {s.ramp, s.max_force, s.max_speed, watchdog_of(s), 1 / s.rate};
+palpate::runtime::SafetySettings safety_of(const palpate_loop_settings& s,
+                                           const palpate_device& device) {
+  const bool by_device = std::isinf(s.max_force) && device.continuous_force > 0;
+  const double max_force = by_device ? device.continuous_force : s.max_force;
+  return {s.ramp, max_force, s.max_speed, watchdog_of(s), 1 / s.rate};
 }
 
 palpate::runtime::LoopThreadSettings thread_of(const palpate_loop_settings& s) {
@@ -68,7 +72,7 @@ struct palpate_loop {
   palpate_loop(palpate_state& state, const palpate_device& functions,
                const palpate_loop_settings& settings)
       : device(functions),
-        loop(device, state, safety_of(settings), queue_of(settings)),
+        loop(device, state, safety_of(settings, functions), queue_of(settings)),
         thread(loop, device, thread_of(settings)) {}
 
  private:
@@ -87,6 +91,7 @@ namespace {
 
 // Smallest valid sizes of the structs.
 constexpr std::uint32_t kFirstLoopSettings = offsetof(palpate_loop_settings, record);
+constexpr std::uint32_t kFirstDevice = offsetof(palpate_device, continuous_force);
 constexpr std::uint32_t kFirstReport = offsetof(palpate_loop_report, unrecorded);
 constexpr std::uint32_t kFirstStep = sizeof(palpate_loop_step);
 
@@ -164,11 +169,12 @@ int palpate_loop_start(palpate_state* state, const palpate_device* device,
   *loop = nullptr;
   if (state == nullptr || device == nullptr)
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_loop_start: null pointer");
-  if (device->size < sizeof(palpate_device) || device->read == nullptr ||
-      device->command == nullptr) {
+  if (device->size < kFirstDevice || device->read == nullptr || device->command == nullptr) {
     return fail(PALPATE_ERROR_ARGUMENT,
                 "palpate_loop_start: the device needs its size, read and command");
   }
+  palpate_device reached{};
+  palpate::runtime::give(*device, &reached, device->size);
   palpate_loop_settings chosen;
   palpate_loop_settings_default(&chosen);
   if (settings != nullptr) {
@@ -179,7 +185,7 @@ int palpate_loop_start(palpate_state* state, const palpate_device* device,
     palpate::runtime::give(*settings, &chosen, settings->size);
   }
   return palpate::runtime::guarded(PALPATE_ERROR_ARGUMENT, [&] {
-    *loop = new palpate_loop(*state, *device, chosen);
+    *loop = new palpate_loop(*state, reached, chosen);
     return static_cast<int>(PALPATE_OK);
   });
 }

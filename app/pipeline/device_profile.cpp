@@ -25,6 +25,9 @@ void describe(V& v, DeviceProfile& p) {
   v.quantity(
       p.force_resolution, Dimension::Force,
       {"force_resolution", "step of the force along an axis", app::kOptional, app::kNotNegative});
+  v.quantity(p.continuous_force, Dimension::Force,
+             {"continuous_force", "largest force that the device sustains", app::kOptional,
+              app::kPositive});
   v.quantity(p.peak_force, Dimension::Force,
              {"peak_force", "largest force", app::kOptional, app::kPositive});
   v.text(p.source, {"source", "source of the values", app::kRequired});

@@ -13,6 +13,7 @@ struct DeviceProfile {
   std::string name;
   double damping = kUnknown;           ///< smallest viscous damping over directions, N s/m
   double coulomb_friction = kUnknown;  ///< N
+  double continuous_force = kUnknown;  ///< N, sustained without a limit of time
   double peak_force = kUnknown;        ///< N
   std::string source;
   double delay = kUnknown;  ///< s, from the position to the force, beyond that of the loop

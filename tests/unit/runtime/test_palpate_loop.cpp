@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
+#include <limits>
 #include <thread>
 #include <vector>
 
@@ -31,7 +33,7 @@ struct OwnDevice {
     d.last = std::abs(force[2]);
     return 0;
   }
-  palpate_device functions() { return {sizeof(palpate_device), this, read, command, nullptr}; }
+  palpate_device functions() { return {sizeof(palpate_device), this, read, command, nullptr, 0}; }
   int reads = 0, lasts = 150;
   double largest = 0, last = 1;
 };
@@ -150,7 +152,7 @@ struct SilentDevice : OwnDevice {
     return 1;
   }
   palpate_device functions() {
-    return {sizeof(palpate_device), this, read_or_not, command, nullptr};
+    return {sizeof(palpate_device), this, read_or_not, command, nullptr, 0};
   }
 };
 
@@ -186,6 +188,40 @@ TEST_F(PalpateLoop, ADeviceWithoutNewSamplesLosesItsForceAndTheLoopEnds) {
   EXPECT_EQ(report.lost, 1U);
   EXPECT_EQ(report.silent, 1U);
   EXPECT_GT(report.outdated, 100U);
+}
+
+/// Largest force of a loop over the device of these settings and this continuous force.
+double largest_force(palpate_state* state, double max_force, double continuous,
+                     std::uint32_t device_size = sizeof(palpate_device)) {
+  palpate_state_reset(state);
+  OwnDevice own;
+  palpate_device device = own.functions();
+  device.continuous_force = continuous;
+  device.size = device_size;
+  palpate_loop_settings settings;
+  palpate_loop_settings_default(&settings);
+  settings.priority = 0;
+  settings.rate = 2000;
+  settings.ramp = 0;
+  settings.watchdog = 10;
+  settings.max_force = max_force;
+  palpate_loop* loop = nullptr;
+  EXPECT_EQ(palpate_loop_start(state, &device, &settings, &loop), PALPATE_OK);
+  for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_EQ(palpate_loop_stop(loop, nullptr), PALPATE_OK);
+  return own.largest;
+}
+
+TEST_F(PalpateLoop, TheClampIsByDefaultTheContinuousForceOfTheDevice) {
+  constexpr double kNoClamp = std::numeric_limits<double>::infinity();
+  ASSERT_GT(largest_force(state_, kNoClamp, 0), 0.09);
+  EXPECT_NEAR(largest_force(state_, kNoClamp, 0.05), 0.05, 1e-12);
+  EXPECT_NEAR(largest_force(state_, 0.08, 0.05), 0.08, 1e-12);
+  // A program of an older header states none, whatever lies behind its struct.
+  EXPECT_GT(largest_force(state_, kNoClamp, 0.05, offsetof(palpate_device, continuous_force)),
+            0.09);
 }
 
 TEST_F(PalpateLoop, TheWatchdogIsTwentyPeriodsByDefault) {
