@@ -197,7 +197,10 @@ PALPATE_API void palpate_state_reset(palpate_state* state);
 /* Sets the pose of the body: x_world = rotation x_body + position. rotation: three rows,
  * orthonormal and right-handed. Positions, forces and observations are in the world; until the
  * first call world and body coincide. May be called between steps, also in contact: the body then
- * moves against the tool, and `absorbed` includes the work of that motion. Real-time safe. */
+ * moves against the tool, and `absorbed` includes the work of that motion. The force changes by at
+ * most lipschitz_bound times the travel of the tip in the body plus the angle of the turn (rad)
+ * times the distance from the tip to the contact point: move the body in small steps. Real-time
+ * safe. */
 PALPATE_API int palpate_state_set_pose(palpate_state* state, const double position[3],
                                        const double rotation[9]);
 

@@ -3,6 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <random>
+
 #include "runtime/handles.hpp"
 #include "tests/support/bodies.hpp"
 
@@ -34,6 +40,88 @@ TEST(PosedContact, WithASearchThreadMeetsNothingBeforeTheFirstDelivery) {
   PosedContact contact(body.surface, body.tree, {0.3, 5e-3}, 1e-3);  // once in 1000 s
   for (int i = 0; i < 20; ++i) contact.step({0.033, 0.031, 5e-4 - 1e-4 * i});
   EXPECT_EQ(norm(contact.command()), 0);
+}
+
+/// The rotation followed by a turn of `angle` (rad) about the unit `axis`.
+std::array<Vec3, 3> turned(const std::array<Vec3, 3>& rotation, const Vec3& axis, double angle) {
+  std::array<Vec3, 3> result{};
+  for (std::size_t j = 0; j < 3; ++j) {
+    const Vec3 v{rotation[0][j], rotation[1][j], rotation[2][j]};
+    const Vec3 w = std::cos(angle) * v + std::sin(angle) * cross(axis, v) +
+                   ((1 - std::cos(angle)) * dot(axis, v)) * axis;
+    for (std::size_t i = 0; i < 3; ++i) result[i][j] = w[i];
+  }
+  return result;
+}
+
+/// A tip that trembles in a body which turns about it, by microradians up to a radian a step, and
+/// sometimes shifts: whatever the command, the force follows in bounded steps.
+class Turning {
+ public:
+  static constexpr double kBound = 250;  // N/m; the walls are at most 170 (1 + mu^2)^(1/2)
+  explicit Turning(const palpate_library& body) : contact(body.surface, body.tree, settings(), 0) {}
+
+  void touch(double depth) {
+    contact.pose = {};
+    for (const double height : {2e-3, -depth / 2, -depth}) {
+      in_body_ = {0.03 + height, 1e-3, 2e-3};
+      contact.step(in_body_);
+    }
+  }
+  /// @return change of the force over its bound, L (path in the body + angle times arm).
+  double step() {
+    const runtime::ContactObservation was = contact.contact.observation();
+    const Vec3 before = contact.command();
+    const double angle = std::pow(10, between(-6, 0));
+    const double size = moves_++ % 2 == 0 ? 0 : std::pow(10, between(-8, -4));
+    const Vec3 arm = in_body_ - was.contact_point - was.lateral_offset;
+    const Vec3 target = in_body_ + size * unit();
+    runtime::Pose& pose = contact.pose;
+    const Vec3 tip = pose.to_world(in_body_);
+    pose.rotation = turned(pose.rotation, unit(), angle);
+    pose.position = tip - pose.turn(target);  // brings `target` to the tip, which rests
+    contact.step(tip);
+    in_body_ = target;
+    return norm(contact.command() - before) / (kBound * (size + angle * norm(arm)) + 1e-9);
+  }
+
+  runtime::PosedContact contact;
+
+ private:
+  static runtime::ContactSettings settings() {
+    runtime::ContactSettings settings;
+    settings.friction = 0.3;
+    settings.lipschitz_bound = kBound;
+    return settings;
+  }
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  Vec3 unit() {
+    std::normal_distribution<double> any;
+    const Vec3 v{any(random_), any(random_), any(random_)};
+    return (1 / norm(v)) * v;
+  }
+
+  std::mt19937 random_{11};
+  Vec3 in_body_{};
+  int moves_ = 0;
+};
+
+TEST(PosedContact, ARotationOfTheBodyChangesTheForceAsAMotionDoes) {
+  const palpate_library body(
+      bumpy_sphere(3, 0.03, 0.1, [](const Vec3&) { return wall_response(170, 120); }));
+  Turning tool(body);
+  double largest_force = 0, largest_ratio = 0;
+  for (int touch = 0; touch < 40; ++touch) {
+    tool.touch(1e-3 + 1e-4 * touch);
+    for (int i = 0; i < 100; ++i) {
+      largest_ratio = std::max(largest_ratio, tool.step());
+      largest_force = std::max(largest_force, norm(tool.contact.command()));
+    }
+  }
+  EXPECT_GT(largest_force, 0.1);
+  EXPECT_LE(largest_ratio, 1);
 }
 
 }  // namespace
