@@ -8,6 +8,7 @@
 //                       tolerance and BLAS kernel, one thread
 //   errors [CELLS...]   of the force against the tolerance asked for
 //   growth [CELLS...]   time and memory against the size of the mesh, cells an edge
+//   poisson [CELLS...]  time and error near nu = 1/2, with and without refined elements
 //   elements [CELLS...] constant, nodal and no pressures
 //   sites               time against the number of sites
 //   threads [SITES...]  one thread against two
@@ -288,6 +289,46 @@ void elements(const std::vector<int>& cells) {
   }
 }
 
+/// A site whose bulk modulus grows: time, solves and error.
+void against_poisson(int cells, bool refined) {
+  const Body body = block(cells);
+  double first = 0;
+  for (const double poisson : {0.45, 0.49, 0.4951, 0.499, 0.4999, 0.49999}) {
+    CampaignSettings s = settings(poisson);
+    s.indentation.refine_under_tool = refined;
+    s.sites = inner_sites(body, 16);
+    CampaignReport report;
+    const Curves curves = run_campaign(body, s, report);
+    const SiteCurves& site = curves.sites[s.sites.size() / 2];
+    double solves = 0;
+    for (const CurveSample& sample : site.paths.front().samples) solves += sample.iterations;
+    const double each = report.cpu_seconds / 16;
+    if (first == 0) first = each;
+    std::string wrong = "-";
+    if (!refined) {
+      const SiteCurves exact = direct(body, s, 1e-8, s.sites[s.sites.size() / 2]);
+      char text[32];
+      std::snprintf(text, sizeof text, "%.1e", error(site.paths.front(), exact.paths.front()));
+      wrong = text;
+    }
+    std::printf("| %lld | %s | %.5f | %.3f s | %.2f | %.1f | %s | %.5f N |\n",
+                static_cast<long long>(report.unknowns / 3), refined ? "yes" : "no", poisson, each,
+                each / first, solves / static_cast<double>(site.paths.front().samples.size()),
+                wrong.c_str(), last_force(site));
+    std::fflush(stdout);
+  }
+}
+
+void against_poisson(const std::vector<int>& cells) {
+  std::printf(
+      "normal path to 4 mm, 16 sites, one thread\n"
+      "| free nodes | refined | nu | processor time, a site | over nu = 0.45 | solves, an "
+      "increment "
+      "| error | force |\n|---|---|---|---|---|---|---|---|\n");
+  for (const int each : cells)
+    for (const bool refined : {false, true}) against_poisson(each, refined);
+}
+
 int usage() {
   std::fputs(
       "usage: bench_precompute newton [8|26] | errors [CELLS...] | growth [CELLS...] | elements "
@@ -308,6 +349,8 @@ int run(const std::string& part, const std::vector<int>& numbers) {
     growth(numbers.empty() ? std::vector<int>{8, 12, 18, 24, 28} : numbers);
   } else if (part == "elements") {
     elements(numbers.empty() ? std::vector<int>{8, 12} : numbers);
+  } else if (part == "poisson") {
+    against_poisson(numbers.empty() ? std::vector<int>{12} : numbers);
   } else if (part == "sites") {
     against_sites();
   } else if (part == "threads") {

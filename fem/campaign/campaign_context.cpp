@@ -103,7 +103,10 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
   contact_stiffness = fem::contact_stiffness(b, settings, model);
   if (engine == Engine::Direct) return;
   std::vector<double> K;
-  model.stiffness(rest, K);
+  // The solvers of the sites see the relaxed laws.
+  DilatationMultipliers multipliers = model.multipliers();
+  model.take_pressures(rest, multipliers);
+  model.stiffness(rest, K, &multipliers);
   const FactorResources resources{settings.memory, settings.threads};
   rest_factor = cache != nullptr ? cache->factor_of(model.pattern(), K, body.name, resources)
                                  : std::make_shared<RestFactor>(model.pattern(), permutation, K,

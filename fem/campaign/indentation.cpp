@@ -105,7 +105,8 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
                      .tool_radius = tool_radius,
                      .energy_at_rest = context_.at_rest.energy,
                      .follows_work = true,
-                     .tool_at = [&](double depth) { return site.tool_at(depth); }});
+                     .tool_at = [&](double depth) { return site.tool_at(depth); }},
+                    site.body.rest());
   CurvePath path;
   path.kind = PathKind::Normal;
   path.direction = to_vec3(site.inward);
@@ -163,7 +164,8 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
        .tool_radius = context_.indentation.tool.radius,
        .energy_at_rest = context_.at_rest.energy,
        .follows_work = false,
-       .tool_at = [&](double s) { return site.tool_at(lateral_depth, s * direction); }});
+       .tool_at = [&](double s) { return site.tool_at(lateral_depth, s * direction); }},
+      u);
   CurvePath path;
   path.kind = PathKind::Lateral;
   path.lateral_depth = lateral_depth;

@@ -29,8 +29,9 @@ struct PathProblem {
 /// the surface, the body meets itself, or the law loses ellipticity.
 class PathDriver {
  public:
-  explicit PathDriver(PathProblem problem) : problem_(std::move(problem)) {
-    problem_.equilibrium.restart();
+  /// `u`: the equilibrium at travel 0.
+  PathDriver(PathProblem problem, const Displacement& u) : problem_(std::move(problem)) {
+    problem_.equilibrium.start_path(problem_.tool_at(0), u);
   }
 
   /// From `from`, where `states` end, to `to`. True: u is the equilibrium and `sample` is filled

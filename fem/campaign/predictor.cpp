@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/campaign/predictor.hpp"
 
+#include "fem/solve/extrapolation.hpp"
+
 namespace palpate::fem {
 
 namespace {
@@ -16,14 +18,12 @@ void Predictor::add(double s, const Displacement& u) {
 }
 
 Displacement Predictor::extrapolate(double s, std::size_t count) const {
-  const auto first = states_.size() - count;
+  const auto first = states_.end() - static_cast<std::ptrdiff_t>(count);
+  std::vector<double> travel;
+  for (auto state = first; state != states_.end(); ++state) travel.push_back(state->s);
+  const std::vector<double> weights = extrapolation_weights(travel, s);
   Displacement u = Displacement::Zero(3, states_.back().u.cols());
-  for (auto i = first; i < states_.size(); ++i) {
-    double weight = 1;
-    for (auto j = first; j < states_.size(); ++j)
-      if (j != i) weight *= (s - states_[j].s) / (states_[i].s - states_[j].s);
-    u += weight * states_[i].u;
-  }
+  for (std::size_t i = 0; i < count; ++i) u += weights[i] * first[static_cast<std::ptrdiff_t>(i)].u;
   return u;
 }
 

@@ -40,6 +40,7 @@ NewtonResult SiteEquilibrium::solve(const ToolContact& contact, bool direct_allo
   const int before = result.iterations;
   result = shared_ ? solve_direct_alone(contact, u) : solve_direct(contact, u);
   result.iterations += before;
+  if (shared_ && result.converged) shared_->accept(contact.tool().tip, u);
   return result;
 }
 
@@ -51,8 +52,8 @@ std::optional<double> SiteEquilibrium::work_between(const ToolContact& contact,
   return direct_ ? direct_->work_between(contact, from, before, after) : std::nullopt;
 }
 
-void SiteEquilibrium::restart() {
-  if (shared_) shared_->restart();
+void SiteEquilibrium::start_path(const Tool& tool, const Displacement& u) {
+  if (shared_) shared_->start_path(tool.tip, u);
 }
 
 NewtonResult SiteEquilibrium::solve_shared(const ToolContact& contact, Displacement& u) {

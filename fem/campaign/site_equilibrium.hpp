@@ -31,8 +31,8 @@ class SiteEquilibrium {
   std::optional<double> work_between(const ToolContact& contact, const Eigen::Vector3d& from,
                                      const Displacement& before, const Displacement& after);
 
-  /// To be called at the start of a path.
-  void restart();
+  /// To be called at the start of a path: the tool and the equilibrium there.
+  void start_path(const Tool& tool, const Displacement& u);
 
  private:
   NewtonResult solve_shared(const ToolContact& contact, Displacement& u);

@@ -234,6 +234,15 @@ ElementKinematics<Lanes> SolidModel::kinematics_of(const Block& block,
 
 namespace {
 
+/// f of the law of a block, relaxed where its region has multipliers.
+template <class Block, class F>
+auto with_law(const Solid& solid, const Block& block, const DilatationMultipliers* multipliers,
+              F&& f) {
+  const Law& law = solid.laws[to_index(block.region)];
+  if (multipliers == nullptr || !multipliers->relax(block.region)) return f(law);
+  return f(multipliers->relaxed(law, block.region, block.element));
+}
+
 double smallest(const ElementKinematics<Lanes>& k) {
   return std::min({k.J[0].minCoeff(), k.J[1].minCoeff(), k.J[2].minCoeff(), k.J[3].minCoeff()});
 }
@@ -283,10 +292,11 @@ SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
   return state;
 }
 
-PointPressures<Lanes> SolidModel::pressures(const Block& block, const ElementKinematics<Lanes>& k,
+template <class L>
+PointPressures<Lanes> SolidModel::pressures(const L& law, const Block& block,
+                                            const ElementKinematics<Lanes>& k,
                                             const PointState& points) const {
-  if (!has_nodal_pressure(solid_->dilatation))
-    return own_pressures(solid_->laws[to_index(block.region)], solid_->dilatation, k);
+  if (!has_nodal_pressure(solid_->dilatation)) return own_pressures(law, solid_->dilatation, k);
   std::array<Lanes, 4> corner;
   for (std::size_t c = 0; c < 4; ++c)
     for (int lane = 0; lane < kLanes; ++lane) {
@@ -343,21 +353,24 @@ double SolidModel::work_of_gravity(const Displacement& u) const {
   return work;
 }
 
-SolidModel::State SolidModel::energy(const Displacement& u) const {
+SolidModel::State SolidModel::energy(const Displacement& u,
+                                     const DilatationMultipliers* multipliers) const {
   State state;
   for (const Block& block : blocks_) {
     const auto k = kinematics_of(block, u);
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
-    const Lanes energy =
-        element_energy(solid_->laws[to_index(block.region)], solid_->dilatation, block.geometry, k);
+    const Lanes energy = with_law(*solid_, block, multipliers, [&](const auto& law) -> Lanes {
+      return element_energy(law, solid_->dilatation, block.geometry, k);
+    });
     state.energy += energy.head(block.count).sum();
   }
   state.energy += point_state(u).energy + foundation_.energy(u) - work_of_gravity(u);
   return checked(state);
 }
 
-SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) const {
+SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f,
+                                     const DilatationMultipliers* multipliers) const {
   State state;
   f.setZero(pattern_.n);
   const PointState points = point_state(u);
@@ -365,12 +378,14 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) 
     const auto k = kinematics_of(block, u);
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
-    const Law& law = solid_->laws[to_index(block.region)];
-    const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
-    state.energy += energy.head(block.count).sum();
-    scatter(block,
-            element_forces(law, solid_->dilatation, block.geometry, k, pressures(block, k, points)),
-            f);
+    with_law(*solid_, block, multipliers, [&](const auto& law) {
+      const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
+      state.energy += energy.head(block.count).sum();
+      scatter(block,
+              element_forces(law, solid_->dilatation, block.geometry, k,
+                             pressures(law, block, k, points)),
+              f);
+    });
   }
   state.energy += points.energy + foundation_.energy(u) - work_of_gravity(u);
   foundation_.add_forces(equation_, u, f);
@@ -379,21 +394,53 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f) 
   return checked(state);
 }
 
-void SolidModel::stiffness(const Displacement& u, std::vector<double>& values) const {
+void SolidModel::stiffness(const Displacement& u, std::vector<double>& values,
+                           const DilatationMultipliers* multipliers) const {
   values.assign(to_index(pattern_.nonzeros()), 0.0);
   ElementMatrix<Lanes> K;
   const int* position = scatter_.data();
   const PointState points = point_state(u);
   for (const Block& block : blocks_) {
     const auto k = kinematics_of(block, u);
-    element_stiffness(solid_->laws[to_index(block.region)], solid_->dilatation, block.geometry, k,
-                      pressures(block, k, points), K);
+    with_law(*solid_, block, multipliers, [&](const auto& law) {
+      element_stiffness(law, solid_->dilatation, block.geometry, k,
+                        pressures(law, block, k, points), K);
+    });
     for (std::size_t entry = 0; entry < kElementEntries; ++entry, position += kLanes)
       for (int lane = 0; lane < block.count; ++lane)
         if (position[lane] >= 0) values[to_index(position[lane])] += K[entry][lane];
   }
   add_point_stiffness(u, points, values);
   foundation_.add_stiffness(equation_, pattern_, values);
+}
+
+DilatationMultipliers SolidModel::multipliers() const {
+  if (solid_->dilatation != Dilatation::Mean) return {};
+  return {solid_->laws, mesh().tetrahedra.size()};
+}
+
+template <class Pressure>
+void SolidModel::set(const Displacement& u, DilatationMultipliers& multipliers,
+                     Pressure&& pressure) const {
+  for (const Block& block : blocks_) {
+    if (!multipliers.relax(block.region)) continue;
+    const Lanes p = pressure(block, kinematics_of(block, u).mean_J);
+    for (int lane = 0; lane < block.count; ++lane)
+      multipliers.values[to_index(block.element[to_index(lane)])] = p[lane];
+  }
+}
+
+void SolidModel::update(const Displacement& u, DilatationMultipliers& multipliers) const {
+  set(u, multipliers, [&](const Block& block, const Lanes& J) {
+    const Law& law = solid_->laws[to_index(block.region)];
+    return multipliers.relaxed(law, block.region, block.element).pressure(J);
+  });
+}
+
+void SolidModel::take_pressures(const Displacement& u, DilatationMultipliers& multipliers) const {
+  set(u, multipliers, [&](const Block& block, const Lanes& J) {
+    return solid_->laws[to_index(block.region)].pressure(J);
+  });
 }
 
 SolidModel::Compressed SolidModel::most_compressed(const Displacement& u) const {
@@ -462,7 +509,7 @@ void SolidModel::element_fields(const Displacement& u, std::vector<double>& ener
     const auto k = kinematics_of(block, u);
     const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
     const Lanes density = energy / block.geometry.volume;
-    const Lanes p = mean_stress(law, pressures(block, k, points), block.geometry, k);
+    const Lanes p = mean_stress(law, pressures(law, block, k, points), block.geometry, k);
     for (int lane = 0; lane < block.count; ++lane) {
       energy_density[to_index(block.element[to_index(lane)])] = density[lane];
       pressure[to_index(block.element[to_index(lane)])] = p[lane];

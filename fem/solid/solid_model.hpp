@@ -11,6 +11,7 @@
 #include "fem/laws/law.hpp"
 #include "fem/laws/material.hpp"
 #include "fem/mesh/quadratic_mesh.hpp"
+#include "fem/solid/dilatation_multipliers.hpp"
 #include "fem/solid/element.hpp"
 #include "fem/solid/foundation.hpp"
 #include "fem/solid/gravity.hpp"
@@ -63,11 +64,21 @@ class SolidModel {
     double min_J = 1;
   };
 
-  State energy(const Displacement& u) const;
+  /// With `multipliers`, here and below: that of the relaxed laws.
+  State energy(const Displacement& u, const DilatationMultipliers* multipliers = nullptr) const;
   /// Internal forces on the unknowns, N, with those of the foundation, less the weight.
-  State forces(const Displacement& u, Eigen::VectorXd& f) const;
+  State forces(const Displacement& u, Eigen::VectorXd& f,
+               const DilatationMultipliers* multipliers = nullptr) const;
   /// Values of pattern(), N/m.
-  void stiffness(const Displacement& u, std::vector<double>& values) const;
+  void stiffness(const Displacement& u, std::vector<double>& values,
+                 const DilatationMultipliers* multipliers = nullptr) const;
+
+  /// Multipliers of 0; none with other pressures than those of the elements.
+  DilatationMultipliers multipliers() const;
+  /// The step of the method of multipliers at `u`.
+  void update(const Displacement& u, DilatationMultipliers& multipliers) const;
+  /// Sets the multipliers to dU/dJ at `u`, which they are in every equilibrium.
+  void take_pressures(const Displacement& u, DilatationMultipliers& multipliers) const;
 
   /// Element means: strain energy density, J/m^3, and the mean of the Cauchy stress, Pa (tension
   /// positive), which for a law with a volumetric part is its dU/dJ.
@@ -133,8 +144,13 @@ class SolidModel {
   /// The smallest eigenvalue of the acoustic tensor at the points of each element of a block, Pa;
   /// where it is positive, a positive lower value.
   Lanes min_acoustic_eigenvalues(const Block& block, const ElementKinematics<Lanes>& k) const;
-  PointPressures<Lanes> pressures(const Block& block, const ElementKinematics<Lanes>& k,
+  template <class L>
+  PointPressures<Lanes> pressures(const L& law, const Block& block,
+                                  const ElementKinematics<Lanes>& k,
                                   const PointState& points) const;
+  /// Sets the multipliers of each block to pressure(block, mean J).
+  template <class Pressure>
+  void set(const Displacement& u, DilatationMultipliers& multipliers, Pressure&& pressure) const;
   void add_point_stiffness(const Displacement& u, const PointState& points,
                            std::vector<double>& values) const;
 

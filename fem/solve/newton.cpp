@@ -25,9 +25,10 @@ double imbalance(const SolidModel& model, const Eigen::VectorXd& residual, doubl
   return std::max(residual.norm(), sum.norm());
 }
 
-Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u) {
+Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u,
+                     const DilatationMultipliers* multipliers) {
   Equilibrium now;
-  const SolidModel::State state = model.forces(u, now.residual);
+  const SolidModel::State state = model.forces(u, now.residual, multipliers);
   now.energy = state.energy + contact.energy(u);
   now.min_J = state.min_J;
   contact.add_forces(model, u, now.residual);
@@ -47,7 +48,7 @@ void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& 
 }
 
 void NewtonSolver::shifted_stiffness(const Displacement& u, double patch, double all) {
-  model_.stiffness(u, K_);
+  model_.stiffness(u, K_, multipliers_);
   const auto& start = model_.pattern().start;
   for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[to_index(start[i])] *= 1 + all;
   const std::vector<int>& ours = patch_->unknowns();
@@ -110,7 +111,7 @@ bool NewtonSolver::line_search(const ToolContact& contact, const Eigen::VectorXd
   for (int halvings = 0; halvings < 12; ++halvings, step *= 0.5) {
     Displacement trial = u;
     add_step(model_, step, d, trial);
-    Equilibrium next = evaluate(model_, contact, trial);
+    Equilibrium next = evaluate(model_, contact, trial, multipliers_);
     if (!(next.min_J > 0)) continue;
     const bool lower =
         next.energy <= now.energy + 1e-4 * step * slope + kEnergyNoise * std::abs(now.energy);
@@ -127,7 +128,7 @@ NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions
                                  Displacement& u) {
   constexpr double kGoodContraction = 0.3;
   NewtonResult result;
-  Equilibrium now = evaluate(model_, contact, u);
+  Equilibrium now = evaluate(model_, contact, u, multipliers_);
   if (!(now.min_J > 0)) {
     result.reason = "an element is inverted at the start of the increment";
     return result;

@@ -36,7 +36,8 @@ struct Equilibrium {
 /// which has no fixed node to take the resultant, at least the norm of its sum. 0 up to
 /// `options.round_off`: without contact there is no tool force to compare with.
 double imbalance(const SolidModel& model, const Eigen::VectorXd& residual, double round_off);
-Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u);
+Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const Displacement& u,
+                     const DilatationMultipliers* multipliers = nullptr);
 
 /// Minimizes the energy of body and contact over the unknowns of a model. Each iteration replaces
 /// the solid by its quadratic model, with a Cholesky factorization of its tangent A, and leaves the
@@ -53,8 +54,9 @@ Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const 
 class NewtonSolver {
  public:
   /// `permutation`: elimination order for the pattern of the model, see Cholesky.
-  explicit NewtonSolver(const SolidModel& model, const std::vector<int>* permutation = nullptr)
-      : model_(model), permutation_(permutation) {}
+  explicit NewtonSolver(const SolidModel& model, const std::vector<int>* permutation = nullptr,
+                        const DilatationMultipliers* multipliers = nullptr)
+      : model_(model), permutation_(permutation), multipliers_(multipliers) {}
 
   NewtonResult solve(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
 
@@ -81,6 +83,7 @@ class NewtonSolver {
 
   const SolidModel& model_;
   const std::vector<int>* permutation_;
+  const DilatationMultipliers* multipliers_;
   std::optional<ContactPatch> patch_;
   std::optional<Cholesky> factor_;
   SolveWorkspace workspace_;

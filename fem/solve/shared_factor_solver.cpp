@@ -13,6 +13,13 @@ namespace {
 constexpr double kRotated = 5e-3;
 /// Factor on the sensitivity of the force from step to step.
 constexpr double kDecay = 0.5;
+/// The multipliers step where the error of the force has fallen below this part of that after their
+/// last step.
+constexpr double kNextMultipliers = 0.3;
+/// Error of the force that the last step of the multipliers may leave, over the tolerance. What it
+/// adds to the residual are pressures, and the force does not change by them in first order: along
+/// a path the body moves with almost no change of volume (bench_precompute poisson).
+constexpr double kMultiplierTolerance = 5;
 
 /// a - b on the first `count` unknowns.
 Eigen::VectorXd difference(const SolidModel& model, Eigen::Index count, const Displacement& a,
@@ -38,7 +45,7 @@ bool SharedFactorSolver::relax_window(const ToolContact& contact, const NewtonOp
 }
 
 Equilibrium SharedFactorSolver::evaluated(const ToolContact& contact, const Displacement& u) const {
-  Equilibrium now = evaluate(whole_, contact, u);
+  Equilibrium now = evaluate(whole_, contact, u, &multipliers_);
   if (prolongation_ != nullptr) now.residual = prolongation_->reduced(now.residual);
   return now;
 }
@@ -103,10 +110,54 @@ bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& o
   return false;
 }
 
+void SharedFactorSolver::start_path(const Eigen::Vector3d& tip, const Displacement& u) {
+  restart();
+  if (!multipliers_.any()) return;
+  whole_.take_pressures(u, multipliers_);
+  multiplier_path_.start(tip, multipliers_.values);
+}
+
+void SharedFactorSolver::accept(const Eigen::Vector3d& tip, const Displacement& u) {
+  restart();
+  if (!multipliers_.any()) return;
+  whole_.take_pressures(u, multipliers_);
+  if (multiplier_path_.empty()) return multiplier_path_.start(tip, multipliers_.values);
+  multiplier_path_.add(tip, multipliers_.values);
+}
+
+SharedFactorSolver::Verdict SharedFactorSolver::judge(const ToolContact& contact,
+                                                      const NewtonOptions& options, double force,
+                                                      Equilibrium& now, Displacement& u,
+                                                      NewtonResult& result) {
+  const bool balanced = force_error() <= options.tolerance;
+  if (!multipliers_.any()) return balanced ? Verdict::Converged : Verdict::GoOn;
+  if (!balanced && force_error() > kNextMultipliers * error_after_multipliers_)
+    return Verdict::GoOn;
+  whole_.update(u, multipliers_);
+  if (!relax_window(contact, options, u, result)) return Verdict::Failed;
+  now = evaluated(contact, u);
+  error_ = imbalance(whole_, now.residual, options.round_off) / force;
+  error_after_multipliers_ = force_error();
+  const double allowed = (balanced ? kMultiplierTolerance : 1) * options.tolerance;
+  return force_error() <= allowed ? Verdict::Converged : Verdict::GoOn;
+}
+
 NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonOptions& options,
                                        Displacement& u) {
+  if (!multipliers_.any()) return equilibrate(contact, options, u);
+  const Eigen::Vector3d& tip = contact.tool().tip;
+  if (multiplier_path_.empty()) start_path(tip, u);
+  multipliers_.values = multiplier_path_.predict(tip);
+  const NewtonResult result = equilibrate(contact, options, u);
+  if (result.converged) multiplier_path_.add(tip, multipliers_.values);
+  return result;
+}
+
+NewtonResult SharedFactorSolver::equilibrate(const ToolContact& contact,
+                                             const NewtonOptions& options, Displacement& u) {
   NewtonResult result;
   error_ = 0.1;
+  error_after_multipliers_ = 1;
   rotation_ = mean_rotation(whole_.mesh(), u);
   rotated_ = (rotation_ - Eigen::Matrix3d::Identity()).norm() > kRotated;
   if (!relax_window(contact, options, u, result)) return result;
@@ -120,7 +171,9 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
       sensitivity_ =
           std::max((force - before).norm() / (scale * last_error), kDecay * sensitivity_);
     before = force;
-    if (std::max(1.0, sensitivity_) * error_ <= options.tolerance) {
+    const Verdict verdict = judge(contact, options, scale, now, u, result);
+    if (verdict == Verdict::Failed) return result;
+    if (verdict == Verdict::Converged) {
       result.converged = true;
       result.reason.clear();
       return result;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <deque>
 #include <functional>
 
 #include "fem/solid/prolongation.hpp"
+#include "fem/solve/multiplier_path.hpp"
 #include "fem/solve/newton.hpp"
 
 namespace palpate::fem {
@@ -17,6 +19,12 @@ namespace palpate::fem {
 /// outer block of K0^-1 is S0^-1. phi is therefore minimized by L-BFGS [Nocedal & Wright 2006,
 /// alg. 7.5] with K0^-1 as the initial inverse Hessian, a solve with the factor that all sites
 /// share. One thread; the rest solve may be shared.
+///
+/// Near incompressibility S0 knows nothing of how the constraint on the volume turns with the
+/// deformation, and the number of steps would grow like kappa/mu. There the method of multipliers
+/// [Nocedal & Wright 2006, sec. 17.3] minimizes Pi with the relaxed laws of DilatationMultipliers,
+/// and K0 is their stiffness. The multipliers step whenever the residual has fallen enough below
+/// that after their last step, and the residual after the last of them is judged.
 class SharedFactorSolver {
  public:
   /// Largest number of curvature pairs, for a no-slip press and for a body on springs.
@@ -32,7 +40,8 @@ class SharedFactorSolver {
   SharedFactorSolver(const SolidModel& whole, const SolidModel& window, RestSolve rest_solve,
                      std::size_t pairs, const Prolongation* prolongation = nullptr)
       : whole_(whole),
-        newton_(window),
+        multipliers_(whole.multipliers()),
+        newton_(window, nullptr, &multipliers_),
         rest_solve_(std::move(rest_solve)),
         prolongation_(prolongation),
         most_pairs_(pairs) {}
@@ -47,8 +56,12 @@ class SharedFactorSolver {
     return newton_.work_between(contact, from, before, after);
   }
 
-  /// Discards the curvature pairs, as at the start of a path.
+  /// Discards the curvature pairs.
   void restart() { pairs_.clear(); }
+  /// To be called at the start of a path from the equilibrium `u`, with the tip of the tool there.
+  void start_path(const Eigen::Vector3d& tip, const Displacement& u);
+  /// To be called where another solver has found the next equilibrium `u` of the path.
+  void accept(const Eigen::Vector3d& tip, const Displacement& u);
 
  private:
   /// A step and the change of the residual. A preconditioner: single precision costs no accuracy.
@@ -57,6 +70,16 @@ class SharedFactorSolver {
     float sy;
   };
 
+  /// The method of solve() with the present multipliers to start with.
+  NewtonResult equilibrate(const ToolContact& contact, const NewtonOptions& options,
+                           Displacement& u);
+  enum class Verdict { GoOn, Converged, Failed };
+  /// Whether the equilibrium is good enough. Where the multipliers are due, they step before that,
+  /// and `now` and the errors are those after it. `force`: of the tool, N.
+  Verdict judge(const ToolContact& contact, const NewtonOptions& options, double force,
+                Equilibrium& now, Displacement& u, NewtonResult& result);
+  /// Estimate of the error of the tool force, relative to it.
+  double force_error() const { return std::max(1.0, sensitivity_) * error_; }
   bool relax_window(const ToolContact& contact, const NewtonOptions& options, Displacement& u,
                     NewtonResult& result);
   void remember(const Eigen::VectorXd& s, const Eigen::VectorXd& y);
@@ -70,6 +93,8 @@ class SharedFactorSolver {
             Equilibrium& now, Displacement& u, NewtonResult& result);
 
   const SolidModel& whole_;
+  DilatationMultipliers multipliers_;
+  MultiplierPath multiplier_path_;
   NewtonSolver newton_;
   RestSolve rest_solve_;
   const Prolongation* prolongation_;
@@ -80,7 +105,8 @@ class SharedFactorSolver {
   /// Change of the tool force in the last steps over the residual before them, both over the tool
   /// force: an estimate of the error of the force for a residual.
   double sensitivity_ = 1;
-  double error_ = 0;  ///< |residual| over |tool force| at the present iterate
+  double error_ = 0;                    ///< |residual| over |tool force| at the present iterate
+  double error_after_multipliers_ = 0;  ///< force_error() after their last step
 };
 
 }  // namespace palpate::fem

@@ -15,10 +15,13 @@ namespace palpate::fem {
 inline constexpr double kYoung = 10e3, kToolRadius = 0.005;
 
 struct PressedBody {
-  explicit PressedBody(double window_radius)
-      : window(whole, Eigen::Vector3d::Zero(), window_radius), factor(whole.pattern()) {
+  explicit PressedBody(double window_radius, double poisson = 0.45)
+      : whole(body, {NeoHookean::from_young_poisson(kYoung, poisson, "t")}),
+        window(whole, Eigen::Vector3d::Zero(), window_radius),
+        factor(whole.pattern()) {
+    const DilatationMultipliers multipliers = whole.multipliers();
     std::vector<double> K;
-    whole.stiffness(rest(), K);
+    whole.stiffness(rest(), K, &multipliers);
     factor.factorize(K);
   }
 
@@ -41,8 +44,7 @@ struct PressedBody {
   Body body =
       test::make_block(test::graded(0.016, 0.005, 0.0025, 1.8),
                        test::graded(0.016, 0.005, 0.0025, 1.8), {-0.016, -0.007, -0.0025, 0});
-  SolidModel whole{body, {NeoHookean::from_young_poisson(kYoung, 0.45, "t")}};
-  SolidModel window;
+  SolidModel whole, window;
   ToolContact contact{
       whole.mesh(), Eigen::Vector3d::Zero(), 0.012, {5000 * kYoung / kToolRadius, kYoung}};
   Cholesky factor;

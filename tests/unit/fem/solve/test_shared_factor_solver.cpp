@@ -53,6 +53,36 @@ TEST(SharedFactorSolver, FindsTheEquilibriumOfNewtonsMethodInFewIterations) {
   }
 }
 
+/// Without multipliers an increment takes hundreds of steps at nu = 0.4999.
+TEST(SharedFactorSolver, FindsNearlyIncompressibleEquilibriaInFewIterations) {
+  for (const double poisson : {0.499, 0.49999}) {
+    PressedBody p(2 * kToolRadius, poisson);
+    SharedFactorSolver solver = solver_of(p);
+    Displacement u = p.rest();
+    p.press(0);
+    solver.start_path(p.contact.tool().tip, u);
+    for (const double depth : {0.0007, 0.0014}) {
+      p.press(depth);
+      const NewtonResult result = solver.solve(p.contact, {.tolerance = kTolerance}, u);
+      ASSERT_TRUE(result.converged) << result.reason;
+      EXPECT_LE(result.iterations, 25) << depth;
+      expect_same_state(p, u, by_newton(p, u));
+    }
+  }
+}
+
+/// As after an increment that Newton's method had to find.
+TEST(SharedFactorSolver, GoesOnFromAnEquilibriumOfAnotherSolver) {
+  PressedBody p(2 * kToolRadius, 0.4999);
+  SharedFactorSolver solver = solver_of(p);
+  p.press(0.001);
+  Displacement u = by_newton(p, p.rest());
+  solver.accept(p.contact.tool().tip, u);
+  p.press(0.0014);
+  ASSERT_TRUE(solver.solve(p.contact, {.tolerance = kTolerance}, u).converged);
+  expect_same_state(p, u, by_newton(p, u));
+}
+
 /// Contact beyond the window is stiffness that K0 does not have: the solver may fail, with a
 /// reason, and Newton's method takes over as in a campaign. What it finds is the equilibrium all
 /// the same.
