@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/solve/multiplier_path.hpp"
 
-#include <utility>
-
 #include "fem/solve/extrapolation.hpp"
 
 namespace palpate::fem {
@@ -13,21 +11,21 @@ constexpr std::size_t kMostStates = 4;
 
 }  // namespace
 
-void MultiplierPath::start(const Eigen::Vector3d& tip, std::vector<double> multipliers) {
+void MultiplierPath::start(const Eigen::Vector3d& tip, const std::vector<double>& multipliers) {
   travel_.assign(1, 0.0);
-  multipliers_.assign(1, std::move(multipliers));
+  multipliers_.assign(1, multipliers);
   tip_ = tip;
 }
 
-void MultiplierPath::add(const Eigen::Vector3d& tip, std::vector<double> multipliers) {
+void MultiplierPath::add(const Eigen::Vector3d& tip, const std::vector<double>& multipliers) {
   const double travel = travel_to(tip);
-  if (!(travel > travel_.back())) return start(tip, std::move(multipliers));
+  if (!(travel > travel_.back())) return start(tip, multipliers);
   if (travel_.size() == kMostStates) {
     travel_.erase(travel_.begin());
     multipliers_.erase(multipliers_.begin());
   }
   travel_.push_back(travel);
-  multipliers_.push_back(std::move(multipliers));
+  multipliers_.push_back(multipliers);
   tip_ = tip;
 }
 

@@ -11,9 +11,9 @@ namespace palpate::fem {
 class MultiplierPath {
  public:
   /// The first equilibrium of a path, and the tip of the tool there, m.
-  void start(const Eigen::Vector3d& tip, std::vector<double> multipliers);
+  void start(const Eigen::Vector3d& tip, const std::vector<double>& multipliers);
   /// The next one.
-  void add(const Eigen::Vector3d& tip, std::vector<double> multipliers);
+  void add(const Eigen::Vector3d& tip, const std::vector<double>& multipliers);
 
   /// Those for the next tip of the tool. There must be a start.
   std::vector<double> predict(const Eigen::Vector3d& tip) const;

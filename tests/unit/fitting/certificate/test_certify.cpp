@@ -20,7 +20,14 @@ CertifySettings with_friction(double mu) {
 
 /// A device of which everything is known.
 DeviceProfile viscous() {
-  return {"viscous", 0.081, 0.01, 10, "", 0, 0, 0};
+  return {.name = "viscous",
+          .damping = 0.081,
+          .coulomb_friction = 0.01,
+          .peak_force = 10,
+          .source = "",
+          .delay = 0,
+          .position_resolution = 0,
+          .force_resolution = 0};
 }
 
 TEST(Certificate, FlatPlateOfEqualSpringsHasTheClosedForm) {
