@@ -22,7 +22,14 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Without delay, and with steps of nothing.
 fitting::DeviceProfile device_with(double damping) {
-  return {"a device", damping, 0.01, kNan, "", 0, 0, 0};
+  return {.name = "a device",
+          .damping = damping,
+          .coulomb_friction = 0.01,
+          .peak_force = kNan,
+          .source = "",
+          .delay = 0,
+          .position_resolution = 0,
+          .force_resolution = 0};
 }
 
 Library certified_plate() {
