@@ -182,6 +182,8 @@ const char* palpate_status_text(int status) {
       return "not a valid response library: rebuild it with this version";
     case PALPATE_ERROR_MEMORY:
       return "out of memory";
+    case PALPATE_ERROR_UNCERTIFIED:
+      return "the loop is not certified passive on the device at this rate";
     default:
       return "unknown status";
   }

@@ -50,7 +50,10 @@ enum {
   PALPATE_ERROR_ARGUMENT = -1, /* a null pointer or a value out of range: see palpate_last_error */
   PALPATE_ERROR_FILE = -2,     /* the file cannot be read: check path and access rights */
   PALPATE_ERROR_FORMAT = -3,   /* not a valid response library: make it again with this version */
-  PALPATE_ERROR_MEMORY = -4    /* out of memory: free memory or load a smaller library */
+  PALPATE_ERROR_MEMORY = -4,   /* out of memory: free memory or load a smaller library */
+  /* the loop is not certified passive on the device: a higher rate, a softer library, or set
+   * uncertified */
+  PALPATE_ERROR_UNCERTIFIED = -5
 };
 
 /* Status bits of a step. Bits without "Remedy" belong to normal operation. */
@@ -117,7 +120,7 @@ enum {
 };
 
 typedef struct palpate_settings {
-  uint32_t size;   /* sizeof(palpate_settings), set by palpate_settings_default */
+  uint32_t size; /* sizeof(palpate_settings), set by palpate_settings_default */
   /* mu, friction coefficient; negative (default) = that of the certificate. Above it, and for
    * coupled responses at any other value, lipschitz_bound may be exceeded and nothing is certified.
    */
@@ -263,6 +266,10 @@ typedef struct palpate_loop_settings {
                        after which the force falls to zero; after 50 times as long without a new
                        sample the device is lost; 0 (default) = 20 periods */
   uint32_t record;  /* steps that wait for palpate_loop_take; 0 (default) = none are recorded */
+  /* Constants of the device for the certificate, read by palpate_loop_start; NULL (default): not
+   * known, and the loop is not certified. */
+  const palpate_device_constants* constants;
+  uint32_t uncertified; /* 1: start although constants do not certify the rate; default 0 */
 } palpate_loop_settings;
 
 typedef struct palpate_loop_report {
@@ -276,7 +283,8 @@ typedef struct palpate_loop_report {
   char missing_rights[256];    /* one line on what the system refused; empty: nothing */
   uint64_t unrecorded;         /* steps for which the record had no room */
   uint64_t outdated, rejected; /* steps with the bits OUTDATED, REJECTED */
-  uint32_t silent; /* 1: the device was lost because it sent no new sample for too long */
+  uint32_t silent;    /* 1: the device was lost because it sent no new sample for too long */
+  uint32_t certified; /* palpate_loop_certified */
 } palpate_loop_report;
 
 /* What a step of the loop read, computed and commanded. */
@@ -298,9 +306,13 @@ typedef struct palpate_loop palpate_loop;
 /* Sets size and every default. */
 PALPATE_API void palpate_loop_settings_default(palpate_loop_settings* settings);
 /* Starts the loop. The state and the context of the device must outlive it. settings may be NULL:
- * the defaults. On failure *loop is NULL. */
+ * the defaults. On failure *loop is NULL. PALPATE_ERROR_UNCERTIFIED where the constants of the
+ * device do not certify the rate and uncertified is 0: the comparison of `palpate run`. */
 PALPATE_API int palpate_loop_start(palpate_state* state, const palpate_device* device,
                                    const palpate_loop_settings* settings, palpate_loop** loop);
+/* Is the loop certified passive at its rate, on the device of its constants? 1, or 0 and
+ * palpate_last_error says why not; missed steps, the force ramp and the clamp are not covered. */
+PALPATE_API int palpate_loop_certified(const palpate_loop* loop);
 /* 1 until the loop is stopped or the device is lost, then 0. */
 PALPATE_API int palpate_loop_running(const palpate_loop* loop);
 /* Takes the oldest recorded step: 1, or 0 when there is none. Call it from one thread at a time. It

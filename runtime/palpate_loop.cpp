@@ -8,8 +8,11 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
+#include "format/error.hpp"
 #include "runtime/c_boundary.hpp"
+#include "runtime/certified_state.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/palpate.h"
@@ -70,8 +73,9 @@ palpate::runtime::LoopThreadSettings thread_of(const palpate_loop_settings& s) {
 
 struct palpate_loop {
   palpate_loop(palpate_state& state, const palpate_device& functions,
-               const palpate_loop_settings& settings)
-      : device(functions),
+               const palpate_loop_settings& settings, std::string why_not_certified)
+      : not_certified(std::move(why_not_certified)),
+        device(functions),
         loop(device, state, safety_of(settings, functions), queue_of(settings)),
         thread(loop, device, thread_of(settings)) {}
 
@@ -81,6 +85,7 @@ struct palpate_loop {
   }
 
  public:
+  std::string not_certified;  ///< why; empty: it is certified
   CallerDevice device;
   std::optional<palpate::runtime::StepQueue> record;
   palpate::runtime::ForceLoop loop;
@@ -114,6 +119,25 @@ palpate_loop_step translate(const palpate::RecordedStep& recorded) noexcept {
   return step;
 }
 
+/// Why the loop is not certified passive; empty when it is.
+std::string why_not_certified(const palpate_state& state, const palpate_loop_settings& settings) {
+  palpate_device_constants constants;
+  palpate_device_constants_default(&constants);
+  if (settings.constants != nullptr) {
+    if (settings.constants->size < sizeof constants) {
+      throw palpate::Error(palpate::ErrorKind::Configuration, "palpate_loop_start",
+                           "the constants of the device have no size",
+                           "fill them with palpate_device_constants_default first");
+    }
+    constants = *settings.constants;
+  }
+  return palpate::runtime::why_not_certified(
+      state,
+      {constants.damping, constants.coulomb_friction, constants.delay,
+       constants.position_resolution, constants.force_resolution},
+      settings.rate);
+}
+
 palpate_loop_report report_on(const palpate_loop& loop) {
   constexpr double kNanosecond = 1e-9;
   const palpate::runtime::LoopCounts& c = loop.loop.counts();
@@ -140,6 +164,7 @@ palpate_loop_report report_on(const palpate_loop& loop) {
   report.outdated = c.outdated;
   report.rejected = c.rejected;
   report.silent = c.silent ? 1 : 0;
+  report.certified = loop.not_certified.empty() ? 1 : 0;
   return report;
 }
 
@@ -159,6 +184,8 @@ void palpate_loop_settings_default(palpate_loop_settings* settings) {
                safety.max_force,
                safety.max_speed,
                0,
+               0,
+               nullptr,
                0};
 }
 
@@ -185,9 +212,18 @@ int palpate_loop_start(palpate_state* state, const palpate_device* device,
     palpate::runtime::give(*settings, &chosen, settings->size);
   }
   return palpate::runtime::guarded(PALPATE_ERROR_ARGUMENT, [&] {
-    *loop = new palpate_loop(*state, reached, chosen);
+    std::string reason = why_not_certified(*state, chosen);
+    if (!reason.empty() && chosen.constants != nullptr && chosen.uncertified == 0)
+      return fail(PALPATE_ERROR_UNCERTIFIED, ("palpate_loop_start: " + reason).c_str());
+    *loop = new palpate_loop(*state, reached, chosen, std::move(reason));
     return static_cast<int>(PALPATE_OK);
   });
+}
+
+int palpate_loop_certified(const palpate_loop* loop) {
+  using palpate::runtime::fail;
+  if (loop == nullptr) return fail(PALPATE_ERROR_ARGUMENT, "palpate_loop_certified: loop is null");
+  return loop->not_certified.empty() ? 1 : fail(0, loop->not_certified.c_str());
 }
 
 int palpate_loop_running(const palpate_loop* loop) {

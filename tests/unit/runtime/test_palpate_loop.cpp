@@ -11,7 +11,9 @@
 #include <thread>
 #include <vector>
 
+#include "runtime/handles.hpp"
 #include "runtime/palpate.h"
+#include "tests/support/bodies.hpp"
 #include "tests/unit/runtime/api_fixture.hpp"
 
 namespace palpate::test {
@@ -222,6 +224,60 @@ TEST_F(PalpateLoop, TheClampIsByDefaultTheContinuousForceOfTheDevice) {
   // A program of an older header states none, whatever lies behind its struct.
   EXPECT_GT(largest_force(state_, kNoClamp, 0.05, offsetof(palpate_device, continuous_force)),
             0.09);
+}
+
+/// A plate of L = 200 N/m at mu = 0.3, by a certificate written by hand.
+Library plate_of_200() {
+  Library library = plate(8, 0.08, [](const Vec3&) { return wall_response(kStiffness, 120); });
+  Certificate& c = library.certificate;
+  c.friction = 0.3;
+  c.stick = 170;
+  c.slip = c.lipschitz_bound = 200;
+  c.min_lipschitz_bound = 180;
+  c.triangles.resize(library.triangles.size());
+  return library;
+}
+
+/// Starts a loop on that plate and ends it. @return result of the start; `report`: of the loop.
+int start_loop_at(double rate, const palpate_device_constants* constants, std::uint32_t uncertified,
+                  palpate_loop_report& report) {
+  const palpate_library body(plate_of_200());
+  palpate_state state(body, {.friction = 0.3, .lipschitz_bound = 200});
+  OwnDevice own;
+  const palpate_device device = own.functions();
+  palpate_loop_settings settings;
+  palpate_loop_settings_default(&settings);
+  settings.priority = 0;
+  settings.rate = rate;
+  settings.constants = constants;
+  settings.uncertified = uncertified;
+  palpate_loop* loop = nullptr;
+  const int started = palpate_loop_start(&state, &device, &settings, &loop);
+  report = {};
+  report.size = sizeof report;
+  EXPECT_EQ(loop != nullptr, started == PALPATE_OK);
+  if (loop == nullptr) return started;
+  const int certified = palpate_loop_certified(loop);
+  EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
+  EXPECT_EQ(report.certified, static_cast<std::uint32_t>(certified));
+  return started;
+}
+
+TEST_F(PalpateLoop, ComparesItsRateWithTheCertificate) {
+  // (C7) without delay: 1.5 L/b = 300 Hz at 1 N s/m.
+  const palpate_device_constants constants{
+      sizeof(palpate_device_constants), 1, 0.1, 0, 10e-6, 1e-3};
+  palpate_loop_report report;
+  EXPECT_EQ(start_loop_at(301, &constants, 0, report), PALPATE_OK);
+  EXPECT_EQ(report.certified, 1U);
+  EXPECT_EQ(start_loop_at(299, &constants, 0, report), PALPATE_ERROR_UNCERTIFIED);
+  EXPECT_NE(std::strstr(palpate_last_error(), "damping"), nullptr) << palpate_last_error();
+  EXPECT_EQ(start_loop_at(299, &constants, 1, report), PALPATE_OK);
+  EXPECT_EQ(report.certified, 0U);
+  EXPECT_EQ(start_loop_at(301, nullptr, 0, report), PALPATE_OK);
+  EXPECT_EQ(report.certified, 0U);
+  EXPECT_NE(std::strstr(palpate_last_error(), "unknown of the device"), nullptr);
+  EXPECT_EQ(palpate_loop_certified(nullptr), PALPATE_ERROR_ARGUMENT);
 }
 
 TEST_F(PalpateLoop, TheWatchdogIsTwentyPeriodsByDefault) {
