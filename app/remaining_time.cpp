@@ -2,12 +2,22 @@
 #include "app/remaining_time.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
 #include <queue>
+#include <utility>
 
 namespace palpate::app {
 namespace {
+
+/// A site that still runs after the mean is expected to take so many times what it took so far.
+constexpr double kLate = 1.2;
+
+/// s of one second of service of each of n sites.
+double seconds(std::size_t n) {
+  return std::sqrt(static_cast<double>(std::max<std::size_t>(n, 1)));
+}
 
 double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
@@ -17,54 +27,73 @@ double sum(const std::vector<double>& values) {
 
 void RemainingTime::begin(double now) {
   *this = {};
-  began_ = now;
+  last_ = now;
+}
+
+double RemainingTime::served(double now) const {
+  return served_ + (now - last_) / seconds(starts_.size());
 }
 
 void RemainingTime::update(double now, std::int64_t done, std::int64_t running,
                            std::int64_t total) {
   total_ = total;
   // Before the first finish every site that runs or has just finished started at the beginning.
-  if (durations_.empty())
-    starts_.assign(static_cast<std::size_t>(std::max<std::int64_t>(running + done - done_, 0)),
-                   began_);
+  if (services_.empty())
+    starts_.assign(static_cast<std::size_t>(std::max<std::int64_t>(running + done - done_, 0)), 0);
+  served_ = served(now);
+  last_ = now;
   for (; done_ < done; ++done_) {
-    durations_.push_back(now - (starts_.empty() ? began_ : starts_.front()));
+    services_.push_back(served_ - (starts_.empty() ? 0 : starts_.front()));
     if (!starts_.empty()) starts_.pop_front();
     // Its place is taken at once.
     const auto unstarted = total_ - done_ - 1 - static_cast<std::int64_t>(starts_.size());
-    if (unstarted > 0) starts_.push_back(now);
+    if (unstarted > 0) starts_.push_back(served_);
   }
 }
 
 /// Later sites tell more of those to come, so the first half of the finished ones does not count.
-/// A site that has run longer than the mean counts with its age: the quick ones finish first.
-double RemainingTime::mean_duration(double now) const {
-  std::vector<double> recent(
-      durations_.begin() + static_cast<std::ptrdiff_t>(durations_.size() / 2), durations_.end());
+/// A site that has been served more than the mean counts with more than that: the quick ones finish
+/// first.
+double RemainingTime::mean_service(double served) const {
+  std::vector<double> recent(services_.begin() + static_cast<std::ptrdiff_t>(services_.size() / 2),
+                             services_.end());
   const double mean = sum(recent) / static_cast<double>(recent.size());
   for (const double start : starts_)
-    if (now - start > mean) recent.push_back(now - start);
+    if (served - start > mean) recent.push_back(kLate * (served - start));
   return sum(recent) / static_cast<double>(recent.size());
 }
 
+/// running: service that each site still needs. Each that ends makes room for one of the unstarted.
+double RemainingTime::time_of(std::vector<double> running, std::int64_t unstarted,
+                              double mean) const {
+  if (running.empty()) return 0;
+  // A whole round of all places leaves them as they were.
+  const auto places = static_cast<std::int64_t>(running.size());
+  double time = static_cast<double>(unstarted / places) * mean * seconds(running.size());
+  unstarted %= places;
+  std::priority_queue<double, std::vector<double>, std::greater<>> ends(std::greater<>{},
+                                                                        std::move(running));
+  for (double at = 0; !ends.empty();) {
+    const double end = ends.top();
+    time += (end - at) * seconds(ends.size());
+    at = end;
+    ends.pop();
+    if (unstarted-- > 0) ends.push(at + mean);
+  }
+  return time;
+}
+
 std::optional<double> RemainingTime::left(double now) const {
-  if (durations_.empty()) return {};
-  const double mean = mean_duration(now);
-  // When each place becomes free; the sites that have not started take the first that is.
-  std::priority_queue<double, std::vector<double>, std::greater<>> free;
-  double last = 0;
+  if (services_.empty()) return {};
+  const double here = served(now);
+  const double mean = mean_service(here);
+  std::vector<double> running;
   for (const double start : starts_) {
-    free.push(std::max(0.0, mean - (now - start)));
-    last = std::max(last, std::max(0.0, mean - (now - start)));
+    const double age = here - start;
+    running.push_back(age > mean ? (kLate - 1) * age : mean - age);
   }
   const auto unstarted = total_ - done_ - static_cast<std::int64_t>(starts_.size());
-  for (std::int64_t i = 0; i < unstarted && !free.empty(); ++i) {
-    const double end = free.top() + mean;
-    free.pop();
-    free.push(end);
-    last = std::max(last, end);
-  }
-  return last;
+  return time_of(std::move(running), std::max<std::int64_t>(unstarted, 0), mean);
 }
 
 }  // namespace palpate::app

@@ -8,10 +8,15 @@
 
 namespace palpate::app {
 
-/// Time that a campaign still takes, from when its sites finished. Sites run side by side; the time
-/// before the first one starts, in which the stiffness matrix is factorized, counts for nothing.
-/// Which site a finish belongs to is not told: the one that runs longest. That leaves the mean
-/// duration as it is.
+/// Time that a campaign still takes, from when its sites finished. The time before the first site
+/// starts, in which the stiffness matrix is factorized, counts for nothing.
+///
+/// Sites that run share processors and block solves. While n run, each is served at the rate
+/// 1/sqrt(n): between 1, of sites that do not disturb each other, and 1/n, of sites that share
+/// nothing but the processor; a block solve takes little less for few sites than for many. The
+/// service of a site, the integral of dt / sqrt(n) from its start to its end, thus depends little
+/// on how many run, and a last group of few sites takes less time than a full one. Which site a
+/// finish belongs to is not told: the one that runs longest. That leaves the mean as it is.
 class RemainingTime {
  public:
   /// The first site starts. `now`: s, of any clock.
@@ -24,12 +29,15 @@ class RemainingTime {
   std::optional<double> left(double now) const;
 
  private:
-  double mean_duration(double now) const;
+  double served(double now) const;
+  double mean_service(double served) const;
+  double time_of(std::vector<double> running, std::int64_t unstarted, double mean) const;
 
-  double began_ = 0;
+  double last_ = 0;    ///< s, of the last update
+  double served_ = 0;  ///< s, integral of dt / sqrt(n) until then
   std::int64_t done_ = 0, total_ = 0;
-  std::deque<double> starts_;      ///< of running sites, the oldest first
-  std::vector<double> durations_;  ///< of finished sites
+  std::deque<double> starts_;     ///< of running sites, as the integral, the oldest first
+  std::vector<double> services_;  ///< s, of finished sites
 };
 
 }  // namespace palpate::app
