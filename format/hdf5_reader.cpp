@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "format/hdf5_handle.hpp"
+#include "format/regular_file.hpp"
 #include "format/seal.hpp"
 
 namespace palpate::hdf5 {
@@ -48,7 +49,7 @@ void require_readable_file(const fs::path& path, const std::string& remedy) {
   std::error_code problem;
   const fs::file_status status = fs::status(path, problem);
   if (!fs::exists(status)) fail("does not exist", "check the path, or " + remedy);
-  if (!fs::is_regular_file(status)) fail("is not a regular file", "check the path, or " + remedy);
+  require_regular_file(path, "check the path, or " + remedy);
   if (!std::ifstream(path, std::ios::binary)) {
     fail("cannot be read (" + std::generic_category().message(errno) + ")",
          "check its permissions");

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "format/error.hpp"
+#include "format/regular_file.hpp"
 
 namespace palpate {
 namespace {
@@ -118,8 +119,7 @@ std::string sha256_of_file(const std::filesystem::path& path, std::uint64_t firs
                 "cannot be read (" + std::generic_category().message(error_number) + ")",
                 "check the path and the permissions");
   };
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) fail(EISDIR);
+  require_regular_file(path, "name a file");
   std::ifstream file(path, std::ios::binary);
   if (!file) fail(errno);
   Hasher hasher;

@@ -12,6 +12,7 @@
 
 #include "format/disk_error.hpp"
 #include "format/error.hpp"
+#include "format/regular_file.hpp"
 #include "format/site_record.hpp"
 
 namespace palpate {
@@ -39,6 +40,7 @@ std::string_view take_line(std::string_view& bytes) {
 }
 
 std::string bytes_of(const fs::path& path) {
+  require_regular_file(path, "name the journal of a campaign");
   std::ifstream file(path, std::ios::binary);
   if (!file) throw_disk_error(path, "cannot be read", errno);
   return {std::istreambuf_iterator<char>(file), {}};

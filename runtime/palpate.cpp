@@ -18,6 +18,7 @@
 
 #include "format/error.hpp"
 #include "format/guarantee.hpp"
+#include "format/regular_file.hpp"
 #include "palpate_version.hpp"
 #include "runtime/c_boundary.hpp"
 #include "runtime/certified_state.hpp"
@@ -196,6 +197,11 @@ int palpate_library_load(const char* path, palpate_library** library) {
   if (path == nullptr || *path == '\0')
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load: path is null or empty");
   return guarded(PALPATE_ERROR_FORMAT, [&] {
+    if (const std::string kind = palpate::other_kind_of_file(path); !kind.empty()) {
+      const std::string text =
+          std::string(path) + ": is not a regular file but " + kind + "; name a library.h5";
+      return fail(PALPATE_ERROR_FILE, text.c_str());
+    }
     if (!std::ifstream(path, std::ios::binary)) {
       const std::string text = std::string(path) + ": cannot be opened; check path and rights";
       return fail(PALPATE_ERROR_FILE, text.c_str());

@@ -3,6 +3,7 @@
 // remedy: the check itself, and what every reader must refuse.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <string>
@@ -59,7 +60,14 @@ std::vector<Case> common_cases() {
           std::filesystem::remove(path);
           std::filesystem::create_directory(path);
         },
-        ".h5", "is not a regular file");
+        ".h5", "is not a regular file but a folder");
+    add(
+        name + "IsAFifo", kind,
+        [](const Path& path) {
+          std::filesystem::remove(path);
+          ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
+        },
+        ".h5", "is not a regular file but a FIFO");
   }
   return cases;
 }

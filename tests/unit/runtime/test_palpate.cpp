@@ -3,6 +3,7 @@
 #include "runtime/palpate.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <array>
@@ -119,6 +120,18 @@ TEST_F(PalpateApi, RefusesAFileWithTheReason) {
   EXPECT_EQ(none, nullptr);
   EXPECT_EQ(palpate_library_load(nullptr, &none), PALPATE_ERROR_ARGUMENT);
   EXPECT_EQ(palpate_library_load(path_.c_str(), nullptr), PALPATE_ERROR_ARGUMENT);
+}
+
+TEST_F(PalpateApi, RefusesWhatIsNoRegularFileWithoutWaitingForIt) {
+  // Whoever opens a FIFO without a writer waits for ever.
+  const auto fifo = folder_ / "fifo.h5";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  palpate_library* none = nullptr;
+  EXPECT_EQ(palpate_library_load(fifo.c_str(), &none), PALPATE_ERROR_FILE);
+  EXPECT_NE(std::strstr(palpate_last_error(), "a FIFO"), nullptr);
+  EXPECT_EQ(palpate_library_load("/dev/zero", &none), PALPATE_ERROR_FILE);
+  EXPECT_NE(std::strstr(palpate_last_error(), "a device"), nullptr);
+  EXPECT_EQ(none, nullptr);
 }
 
 TEST_F(PalpateApi, RefusesSettingsOutOfRange) {
