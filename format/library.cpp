@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "format/library.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "format/artifact.hpp"
 #include "format/columns.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate {
 namespace {
@@ -175,6 +177,18 @@ void check_surface(const Checks& checks, const Library& library) {
                  "is not finite and not negative");
 }
 
+/// A bound below L_min that slides can exceed would be promised and not kept.
+void check_enforceable(const Checks& checks, const Certificate& c) {
+  const double smallest = std::min(c.min_lipschitz_bound, std::max(c.stick, c.slip));
+  if (c.triangles.empty() || std::isinf(c.min_lipschitz_bound) || !(c.lipschitz_bound < smallest))
+    return;
+  checks.fail("/certificate@lipschitz_bound",
+              "is " + number_text(c.lipschitz_bound) +
+                  " N/m, below the smallest bound that the runtime can enforce "
+                  "(min_lipschitz_bound), " +
+                  number_text(c.min_lipschitz_bound) + " N/m: the certificate is false");
+}
+
 void check_certificate(const Checks& checks, const Library& library) {
   const Certificate& certificate = library.certificate;
   const auto check = [&](const char* name, double value, const Rule& rule) {
@@ -192,6 +206,7 @@ void check_certificate(const Checks& checks, const Library& library) {
   check("slip", certificate.slip, rules::kBound);
   check_if_known("min_lipschitz_bound", certificate.min_lipschitz_bound);
   check_if_known("lipschitz_bound", certificate.lipschitz_bound);
+  check_enforceable(checks, certificate);
   check("worst_triangle", certificate.worst_triangle,
         Rule{-1, triangles - 1, false, false, "-1 or a triangle"});
   check("holes", certificate.holes, rules::up_to(vertices, "a number of vertices"));
