@@ -39,6 +39,7 @@ struct LoopCounts {
   std::uint64_t steps = 0;
   std::uint64_t late = 0;       ///< gaps longer than the watchdog allows
   std::uint64_t overruns = 0;   ///< steps that ended after the next was due
+  std::uint64_t missed = 0;     ///< periods without a step, after overruns
   std::uint64_t saturated = 0;  ///< the device gave less force than commanded
   std::uint64_t stale = 0;      ///< the device had no new sample
   std::uint64_t clamped = 0;
@@ -66,7 +67,11 @@ class ForceLoop {
   bool tick(std::int64_t due) noexcept { return tick(due, monotonic_ns()); }
   /// The same at a time that the caller states: `began`, > 0, monotonic, ns.
   bool tick(std::int64_t due, std::int64_t began) noexcept;
-  void count_overrun() noexcept { ++counts_.overruns; }
+  /// missed: periods that pass without a step.
+  void count_overrun(std::int64_t missed) noexcept {
+    ++counts_.overruns;
+    counts_.missed += static_cast<std::uint64_t>(missed);
+  }
 
   /// When the last step began, monotonic ns; 0 before the first. From any thread.
   std::int64_t heartbeat() const noexcept { return heartbeat_.load(std::memory_order_relaxed); }

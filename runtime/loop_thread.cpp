@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "runtime/settings_check.hpp"
@@ -11,7 +12,8 @@
 namespace palpate::runtime {
 namespace {
 
-constexpr double kMostRate = 100000;  // Hz
+constexpr double kMostRate = 100000;   // Hz
+constexpr double kMostDuration = 1e9;  // s: in ns it fits 64 bits
 
 }  // namespace
 
@@ -22,6 +24,8 @@ LoopThread::LoopThread(ForceLoop& loop, Device& device, const LoopThreadSettings
           "1 to 100000");
   require(std::isfinite(settings.watchdog) && settings.watchdog > 0, "watchdog (s)",
           settings.watchdog, "a finite value above 0");
+  require(settings.duration >= 0 && settings.duration <= kMostDuration, "duration (s)",
+          settings.duration, "0 (until it is stopped) to 1e9");
   period_ = std::llround(1e9 / settings.rate);
   if (device.has_own_thread()) {
     device.start_calls([this] { return foreign_step(); });
@@ -52,21 +56,30 @@ std::string LoopThread::missing_rights() const {
   return missing_;
 }
 
+/// The time counts from the first step: locking the memory before it takes a while.
+void LoopThread::begin(std::int64_t first_due) noexcept {
+  due_ = first_due;
+  const auto periods = std::llround(settings_.duration * settings_.rate);
+  end_ = settings_.duration > 0 ? first_due + periods * period_
+                                : std::numeric_limits<std::int64_t>::max();
+}
+
 void LoopThread::run() {
   std::string missing = become_realtime(settings_.realtime);
   {
     const std::scoped_lock lock(mutex_);
     missing_ = std::move(missing);
   }
-  due_ = monotonic_ns() + period_;
-  while (!stop_) {
+  begin(monotonic_ns() + period_);
+  while (!stop_ && due_ < end_) {
     sleep_until(due_);
     if (!loop_.tick(due_)) break;
     due_ += period_;
     const std::int64_t now = monotonic_ns();
     if (now <= due_) continue;
-    loop_.count_overrun();
-    due_ += (now - due_ + period_ - 1) / period_ * period_;
+    const std::int64_t missed = (now - due_ + period_ - 1) / period_;
+    loop_.count_overrun(std::min(missed, (end_ - due_) / period_));
+    due_ += missed * period_;
   }
   finish();
   running_ = false;
@@ -75,8 +88,12 @@ void LoopThread::run() {
 /// A step from the thread of the driver, which keeps its own time: due one period after the last.
 bool LoopThread::foreign_step() noexcept {
   const std::int64_t now = monotonic_ns();
-  due_ = std::min(due_ == 0 ? now : due_ + period_, now);
-  if (!stop_ && loop_.tick(due_)) return true;
+  if (due_ == 0) {
+    begin(now);
+  } else {
+    due_ = std::min(due_ + period_, now);
+  }
+  if (!stop_ && now < end_ - period_ / 2 && loop_.tick(due_)) return true;
   finish();
   running_ = false;
   return false;

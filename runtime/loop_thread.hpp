@@ -19,11 +19,13 @@ struct LoopThreadSettings {
   /// s without a step after which the device is halted
   double watchdog = default_watchdog(1000);
   RealtimeSettings realtime;
+  double duration = 0;  ///< s from the first step, rounded to periods; 0: until it is stopped
 };
 
 /// Runs a ForceLoop until it is stopped or the device is lost. Steps are due at absolute times, so
 /// that they do not drift. A step that ends after the next was due is an overrun: the missed steps
-/// are skipped, not made up for in a burst. When no step begins for longer than the watchdog
+/// are skipped, not made up for in a burst. A loop of N periods thus takes N steps less those that
+/// it misses. When no step begins for longer than the watchdog
 /// allows, the device is halted for the rest of the session.
 class LoopThread {
  public:
@@ -42,6 +44,7 @@ class LoopThread {
   std::string missing_rights() const;
 
  private:
+  void begin(std::int64_t first_due) noexcept;
   void run();
   bool foreign_step() noexcept;
   void watch();
@@ -52,6 +55,7 @@ class LoopThread {
   LoopThreadSettings settings_;
   std::int64_t period_ = 0;  ///< ns
   std::int64_t due_ = 0;     ///< monotonic, ns
+  std::int64_t end_ = 0;     ///< monotonic, ns: no step is due from here on
   std::atomic<bool> stop_{false}, running_{true}, halted_{false};
   mutable std::mutex mutex_;
   std::condition_variable wake_;

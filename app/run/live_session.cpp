@@ -9,6 +9,7 @@ namespace palpate::app {
 namespace {
 
 constexpr std::size_t kQueueRoom = 1 << 15;  // steps: 30 s at 1 kHz, in case the writer is delayed
+constexpr double kGrace = 1;                 // s
 constexpr auto kNap = std::chrono::milliseconds(5);
 
 /// Takes the steps off the queue and writes them down, in a thread of its own, until the loop has
@@ -58,12 +59,16 @@ class RecordingThread {
   std::thread thread_;
 };
 
-void wait_for_the_end(const runtime::LoopThread& loop, const RecordingThread& recording,
-                      double duration, const std::atomic<bool>& stop) {
-  const auto start = std::chrono::steady_clock::now();
-  const std::chrono::duration<double> most(duration);
-  while (loop.running() && !recording.failed() && !stop) {
-    if (duration > 0 && std::chrono::steady_clock::now() - start >= most) return;
+/// The loop ends by itself when its time is over, unless the thread of a driver does not call it.
+void wait_for_the_end(const runtime::LoopThread& thread, const runtime::ForceLoop& loop,
+                      const RecordingThread& recording, double duration,
+                      const std::atomic<bool>& stop) {
+  using Clock = std::chrono::steady_clock;
+  const std::chrono::duration<double> most(duration + kGrace);
+  std::optional<Clock::time_point> start;
+  while (thread.running() && !recording.failed() && !stop) {
+    if (!start && loop.heartbeat() != 0) start = Clock::now();
+    if (duration > 0 && start && Clock::now() - *start >= most) return;
     std::this_thread::sleep_for(kNap);
   }
 }
@@ -100,8 +105,10 @@ LiveOutcome run_live(runtime::Device& device, const palpate_library& body,
   LiveOutcome outcome;
   {
     RecordingThread recording(queue, recorder);
-    runtime::LoopThread thread(loop, device, settings.loop);
-    wait_for_the_end(thread, recording, settings.duration, stop);
+    runtime::LoopThreadSettings timing = settings.loop;
+    timing.duration = settings.duration;
+    runtime::LoopThread thread(loop, device, timing);
+    wait_for_the_end(thread, loop, recording, settings.duration, stop);
     thread.stop();
     device.close();
     outcome.missing_rights = thread.missing_rights();

@@ -22,7 +22,7 @@ struct LiveSettings {
   runtime::LoopThreadSettings loop;
   runtime::Pose pose;        ///< of the body in the frame of the device
   double search_rate = 100;  ///< Hz
-  double duration = 0;       ///< s; 0 = until stopped
+  double duration = 0;       ///< s from the first step; 0 = until stopped
 };
 
 /// Sets the watchdog of the loop and of its safety functions (s; none: that of the rate), and their

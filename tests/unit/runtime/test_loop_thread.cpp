@@ -73,6 +73,34 @@ TEST(LoopThread, MissedStepsAreLeftOutNotMadeUpFor) {
   EXPECT_GE(counts.overruns + 1, counts.steps);
 }
 
+TEST(LoopThread, OfADurationTakesOneStepInEachPeriodAndEndsByItself) {
+  // The steps of a period that a busy machine missed are counted, so that the sum is exact.
+  LoopRig rig;
+  LoopThreadSettings settings = ordinary(1000, 10);
+  settings.duration = 0.25;
+  LoopThread thread(rig.loop, rig.device, settings);
+  wait_until_over(thread);
+  ASSERT_FALSE(thread.running());
+  thread.stop();
+  EXPECT_EQ(rig.loop.counts().steps + rig.loop.counts().missed, 250U);
+  EXPECT_EQ(rig.device.commanded.back(), Vec3{});
+}
+
+TEST(LoopThread, OfADurationCountsTheMissedPeriodsUpToItsEnd) {
+  // The fifth step takes longer than the rest of the session.
+  LoopRig rig;
+  rig.device.before_read = [&](int step) {
+    if (step == 4) std::this_thread::sleep_for(std::chrono::milliseconds(60));
+  };
+  LoopThreadSettings settings = ordinary(1000, 10);
+  settings.duration = 0.04;
+  LoopThread thread(rig.loop, rig.device, settings);
+  wait_until_over(thread);
+  thread.stop();
+  EXPECT_LE(rig.loop.counts().steps, 6U);
+  EXPECT_EQ(rig.loop.counts().steps + rig.loop.counts().missed, 40U);
+}
+
 TEST(LoopThread, TheWatchdogHaltsADeviceWhoseLoopHangs) {
   LoopRig rig;
   std::atomic<bool> hang{true};

@@ -66,6 +66,15 @@ TEST(LiveSession, PressesAndRecordsInTheFrameOfTheDevice) {
   }
 }
 
+TEST(LiveSession, LastsAsLongAsItIsToldFromItsFirstStep) {
+  const palpate_library body(wall_plate());
+  runtime::VirtualDevice device(with_hand(), 1000, [](double) { return runtime::HandTarget{}; });
+  const std::atomic<bool> stop{false};
+  const auto [outcome, recording] = play_live(device, body, quick(0.3), stop);
+  EXPECT_EQ(outcome.counts.steps + outcome.counts.missed, 300U);
+  EXPECT_EQ(recording.steps.size(), outcome.counts.steps);
+}
+
 TEST(LiveSession, EndsWhenStopIsSet) {
   const palpate_library body(wall_plate());
   runtime::VirtualDevice device(with_hand(), 1000, [](double) { return runtime::HandTarget{}; });
