@@ -20,6 +20,7 @@
 #include "app/run/certified.hpp"
 #include "app/run/device_choice.hpp"
 #include "app/run/force_clamp.hpp"
+#include "app/run/limits.hpp"
 #include "app/run/live_session.hpp"
 #include "app/simulate/script.hpp"
 #include "format/error.hpp"
@@ -35,6 +36,7 @@ struct RunOptions {
   LiveSettings live;
   std::vector<double> at_mm{0, 0, 0};
   std::optional<double> watchdog, max_force;
+  std::optional<double> friction;  ///< none: that of the certificate
   bool list = false, uncertified = false;
 };
 
@@ -101,8 +103,9 @@ void summarize(const LiveOutcome& outcome, const std::string& file) {
   say("run: {} steps -> {}", c.steps, file);
   say_quantiles("wake-up latency", c.wake);
   say_quantiles("step duration", c.compute);
-  say("  steps that overran {}, cut off {}, clamped {}, saturated {}, not recorded {}", c.overruns,
-      c.cut_off, c.clamped, c.saturated, c.unrecorded);
+  say("  steps that overran {} (periods missed {}), cut off {}, clamped {}, saturated {}, not "
+      "recorded {}",
+      c.overruns, c.missed, c.cut_off, c.clamped, c.saturated, c.unrecorded);
   say("  samples: late {}, older than the watchdog allows {}, rejected {}", c.stale, c.outdated,
       c.rejected);
 }
@@ -141,10 +144,20 @@ void require_good_end(const LiveOutcome& outcome, const std::string& device,
   }
 }
 
+/// @throws Error(Configuration) for a value out of range.
+void enter_options(RunOptions& options) {
+  LiveSettings& live = options.live;
+  live.contact.friction = options.friction.value_or(0);
+  for (std::size_t i = 0; i < 3; ++i) live.pose.position[i] = 1e-3 * options.at_mm[i];
+  if (options.watchdog) live.safety.watchdog = *options.watchdog;
+  if (options.max_force) live.safety.max_force = *options.max_force;
+  require_within_limits(live);
+}
+
 void settle(RunOptions& options, const Library& library, const palpate_library& body) {
   const fitting::DeviceProfile profile = profile_of(options);
   LiveSettings& live = options.live;
-  if (live.contact.friction < 0) live.contact.friction = library.certificate.friction;
+  if (!options.friction) live.contact.friction = library.certificate.friction;
   const auto reason =
       why_not_certified(library, options.library, profile, live.loop.rate, live.contact.friction);
   if (!options.uncertified) require_certified(reason);
@@ -159,7 +172,6 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
         profile.name, live.loop.rate, number_text(live.contact.lipschitz_bound, 4),
         live.contact.friction);
   }
-  for (std::size_t i = 0; i < 3; ++i) live.pose.position[i] = 1e-3 * options.at_mm[i];
   set_watchdog(live, options.watchdog);
   options.device.rate = live.loop.rate;
 }
@@ -182,6 +194,7 @@ int run(RunOptions options) {
                 "name a library.h5, or list the devices with --list");
   }
   require_known_device(options.device.name);
+  enter_options(options);
   const Library library = read_library(options.library);
   const palpate_library body(library);
   settle(options, library, body);
@@ -218,9 +231,8 @@ void add_device_options(CLI::App& command, RunOptions& o) {
 void add_loop_options(CLI::App& command, RunOptions& o) {
   command.add_option("--rate", o.live.loop.rate,
                      "Sampling rate of the force loop, Hz (default: 1000)");
-  command.add_option("--duration", o.live.duration, "s; 0: until Ctrl-C")
-      ->check(CLI::NonNegativeNumber);
-  command.add_option("--friction", o.live.contact.friction,
+  command.add_option("--duration", o.live.duration, "s from the first step; 0: until Ctrl-C");
+  command.add_option("--friction", o.friction,
                      "Friction coefficient (default: that of the certificate)");
   command.add_option("--max-force", o.max_force,
                      "N, largest commanded force (default: the continuous, or else the peak force "
@@ -235,8 +247,9 @@ void add_loop_options(CLI::App& command, RunOptions& o) {
       .add_option("--priority", o.live.loop.realtime.priority,
                   "SCHED_FIFO priority; 0: ordinary scheduler")
       ->check(CLI::Range(0, 99));
-  command.add_option("--core", o.live.loop.realtime.core, "CPU core of the force loop");
-  command.add_option("--search-rate", o.live.search_rate, "Rate of the search thread, Hz");
+  command.add_option("--core", o.live.loop.realtime.core, "CPU core of the force loop")
+      ->check(CLI::Range(0, 4095));
+  command.add_option("--search-rate", o.live.search_rate, "Rate of the search thread, Hz; 0: none");
   command
       .add_option("--at-mm", o.at_mm,
                   "Position of the origin of the body in device coordinates: X Y Z")
@@ -251,7 +264,6 @@ void add_run_command(CLI::App& root, Action& action) {
   command->footer(
       "Example: palpate run out/cylinder/library.h5 --device force-dimension --profile my.toml");
   const auto options = std::make_shared<RunOptions>();
-  options->live.contact.friction = -1;
   command->add_option("LIBRARY", options->library, "Response library (library.h5)");
   add_device_options(*command, *options);
   add_loop_options(*command, *options);
