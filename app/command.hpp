@@ -15,6 +15,7 @@ namespace palpate::app {
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitUsage = 2;
 inline constexpr int kExitSomeSitesFailed = 4;
+inline constexpr int kExitIncomplete = 4;  ///< the recording of a damaged journal
 
 /// Exit code of a campaign. Some sites that ended early leave a usable library: they are a warning,
 /// unless the caller is strict.

@@ -28,8 +28,9 @@ int recover_session(const RecoverOptions& options) {
                   "name another file with --out");
     }
   }
-  report(recover(journal, out));
-  return kExitDone;
+  const Recovered recovered = recover(journal, out);
+  report(recovered);
+  return recovered.gaps.empty() ? kExitDone : kExitIncomplete;
 }
 
 }  // namespace
@@ -37,7 +38,11 @@ int recover_session(const RecoverOptions& options) {
 void add_recover_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
       "recover", "Writes the recording of an interrupted session from its journal");
-  command->footer("Example: palpate recover recording.journal");
+  command->footer(
+      "Steps behind damaged bytes are recovered too; each gap is a warning, the exit code is 4, "
+      "and\n"
+      "the journal is kept as recording.journal.damaged.\n"
+      "Example: palpate recover recording.journal");
   const auto options = std::make_shared<RecoverOptions>();
   command->add_option("JOURNAL", options->journal, "Journal of run or simulate (recording.journal)")
       ->required();

@@ -87,7 +87,7 @@ int parse_and_run(int count, char** arguments) {
                 "palpate"};
   root.footer(
       "Exit codes: 0 success, 1 internal error, 2 usage or configuration, 3 unusable geometry,\n"
-      "4 finished, but too many sites ended early (with --strict: any).\n"
+      "4 finished, but too many sites ended early (with --strict: any) or a journal was damaged.\n"
       "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose stand before or\n"
       "after it.\n"
       "Example: palpate build data/cases/liver.toml");

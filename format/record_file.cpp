@@ -105,4 +105,9 @@ void RecordFile::remove() {
   if (::unlink(path_.c_str()) != 0) throw_disk_error(path_, "cannot be removed", errno);
 }
 
+void RecordFile::rename(const fs::path& to) {
+  if (::rename(path_.c_str(), to.c_str()) != 0) throw_disk_error(path_, "cannot be renamed", errno);
+  path_ = to;
+}
+
 }  // namespace palpate

@@ -38,6 +38,7 @@ class RecordFile {
   void append_durably(std::string_view bytes);  ///< the same, on the disk when it returns
   void synchronize();                           ///< what was appended is on the disk
   void remove();
+  void rename(const std::filesystem::path& to);
 
  private:
   void write_behind_end(std::string_view bytes);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -39,33 +40,58 @@ class SessionJournal {
   std::uint64_t steps_ = 0;
 };
 
-/// Reads a journal from the front, record by record, up to the first that is not whole.
+/// Damaged bytes of a journal, between whole records or behind the last.
+struct JournalGap {
+  std::uint64_t offset = 0, bytes = 0;   ///< in the file
+  std::optional<std::uint64_t> steps;    ///< lost; none where the bytes are not whole records
+  std::optional<std::int64_t> since_ns;  ///< time of the last step in front of it
+  std::optional<std::int64_t> until_ns;  ///< time of the first step behind it
+};
+
+/// "12 steps (2084 bytes at byte 9123) after 1.500 s before 1.513 s"
+std::string gap_text(const JournalGap& gap);
+
+/// Reads a journal record by record. A record whose digest is not that of its bytes is passed over
+/// to the next whole one, wherever that begins. Not thread-safe.
 class SessionJournalReader {
  public:
-  /// @throws Error(Configuration) when the file is no journal of a session.
+  /// @throws Error(Configuration) when the file is no journal of a session or has no whole heading.
   explicit SessionJournalReader(const std::filesystem::path& path);
 
   const RecordingHeading& heading() const { return heading_; }
-  /// The steps of the next record; false behind the last whole one.
+  /// The steps of the next whole record; false behind the last.
   bool next(std::vector<RecordedStep>& steps);
-  /// Behind the last whole record: one that a crash cut short, or damage. After next() was false.
-  std::uint64_t broken_bytes() const { return size_ - good_; }
+  /// Behind the last whole record: the front of one that the end of the session cut short. After
+  /// next() was false.
+  std::uint64_t incomplete_bytes() const { return incomplete_; }
+  /// The damage that was passed so far.
+  const std::vector<JournalGap>& gaps() const { return gaps_; }
 
  private:
+  bool pass_damage();
+  void close_gap(const std::vector<RecordedStep>& steps);
+
   std::string where_;
   std::ifstream file_;
-  std::uint64_t size_ = 0, good_ = 0;
+  std::uint64_t size_ = 0, good_ = 0, incomplete_ = 0;
+  bool at_end_ = false;
+  std::optional<std::int64_t> last_time_ns_;
+  std::vector<JournalGap> gaps_;
   RecordingHeading heading_;
 };
 
 /// Is this the journal of a session (by its first bytes)?
 bool is_session_journal(const std::filesystem::path& path);
 
+/// Is this such a journal with more in it than the front of a heading?
+bool holds_session(const std::filesystem::path& path);
+
 struct SessionSummary {
   RecordingHeading heading;
   std::uint64_t steps = 0;
   std::int64_t last_time_ns = 0;
-  std::uint64_t broken_bytes = 0;
+  std::uint64_t incomplete_bytes = 0;  ///< of a record that was being written
+  std::vector<JournalGap> gaps;        ///< damage
 };
 SessionSummary summarize_session(const std::filesystem::path& journal);
 

@@ -319,12 +319,15 @@ Json summary_of(const JournalContents& journal) {
 
 /// A running or interrupted session.
 Json summary_of(const SessionSummary& session) {
+  Json gaps = Json::array();
+  for (const JournalGap& gap : session.gaps) gaps.push_back(gap_text(gap));
   return {{"device", session.heading.device},
           {"library_sha256", session.heading.library_sha256},
           {"rate", with_unit(session.heading.rate, "Hz")},
           {"steps", session.steps},
           {"duration", with_unit(static_cast<double>(session.last_time_ns) * 1e-9, "s")},
-          {"incomplete_bytes_at_end", session.broken_bytes}};
+          {"incomplete_bytes_at_end", session.incomplete_bytes},
+          {"gaps", gaps}};
 }
 
 std::string artifact_kind(const std::filesystem::path& file) {

@@ -10,6 +10,10 @@ void report(const Recovered& recovered) {
       recovered.recording.string());
   if (recovered.dropped_bytes > 0)
     say("  {} bytes of an incomplete record were dropped", recovered.dropped_bytes);
+  if (recovered.gaps.empty()) return;
+  for (const JournalGap& gap : recovered.gaps)
+    warn("the journal is damaged: the recording lacks " + gap_text(gap));
+  say("  the damaged journal is now {}", recovered.kept_journal.string());
 }
 
 void recover_and_report(const std::filesystem::path& recording) {

@@ -7,7 +7,8 @@
 
 namespace palpate::app {
 
-void report(const Recovered& recovered);  ///< on the standard output
+/// On the standard output; each gap is a warning.
+void report(const Recovered& recovered);
 /// recover_interrupted with its report.
 void recover_and_report(const std::filesystem::path& recording);
 

@@ -26,6 +26,16 @@ fs::path free_name(const fs::path& recording) {
   }
 }
 
+/// <journal>.damaged, or the first <journal>.damaged-<n> that is free.
+fs::path name_for_damaged(const fs::path& journal) {
+  const std::string name = journal.string() + ".damaged";
+  if (!fs::exists(name)) return name;
+  for (int n = 2;; ++n) {
+    fs::path numbered = name + "-" + std::to_string(n);
+    if (!fs::exists(numbered)) return numbered;
+  }
+}
+
 /// A stage that ends now, of this build, without inputs of its own.
 std::string now() {
   return make_provenance_step("now", "", {}).utc;
@@ -50,18 +60,25 @@ Recovered recover(const fs::path& journal, const fs::path& recording) {
   Provenance provenance = summary.heading.provenance;
   provenance.steps.push_back(make_provenance_step(
       "recover", "", {},
-      {{"dropped_bytes", std::to_string(summary.broken_bytes)},
+      {{"dropped_bytes", std::to_string(summary.incomplete_bytes)},
        {"reason", "the session was interrupted; these are the steps of its journal"}}));
-  Recovered result{recording, 0, summary.broken_bytes};
+  for (const JournalGap& gap : summary.gaps)
+    provenance.steps.back().facts.emplace_back("gap", gap_text(gap));
+  Recovered result{recording, 0, summary.incomplete_bytes, summary.gaps, {}};
   result.steps = write_recording_of(journal, recording, provenance);
-  locked.remove();
+  if (result.gaps.empty()) {
+    locked.remove();
+  } else {
+    result.kept_journal = name_for_damaged(journal);
+    locked.rename(result.kept_journal);
+  }
   return result;
 }
 
 std::optional<Recovered> recover_interrupted(const fs::path& recording) {
   const fs::path journal = journal_of(recording);
   std::error_code ignored;
-  if (!fs::exists(journal, ignored) || !is_session_journal(journal)) return {};
+  if (!fs::exists(journal, ignored) || !holds_session(journal)) return {};
   return recover(journal, free_name(recording));
 }
 

@@ -21,12 +21,15 @@ std::filesystem::path journal_of(const std::filesystem::path& recording);
 struct Recovered {
   std::filesystem::path recording;
   std::uint64_t steps = 0;
-  std::uint64_t dropped_bytes = 0;  ///< of a record that was being written
+  std::uint64_t dropped_bytes = 0;     ///< of a record that was being written
+  std::vector<JournalGap> gaps;        ///< damage
+  std::filesystem::path kept_journal;  ///< recording.journal.damaged, where there are gaps
 };
 
-/// Makes the recording of an interrupted session and removes its journal. The provenance of the
-/// recording has a stage `recover`. @throws Error when the disk refuses (the journal stays), or
-/// Configuration when the file is not a journal or its session is still running.
+/// Makes the recording of an interrupted session and removes its journal; a damaged journal is
+/// renamed instead, so that nothing is lost that palpate cannot read. The provenance of the
+/// recording has a stage `recover` that states the gaps. @throws Error when the disk refuses (the
+/// journal stays), or Configuration when the file is not a journal or its session is still running.
 Recovered recover(const std::filesystem::path& journal, const std::filesystem::path& recording);
 
 /// The same for the journal that an earlier session left beside `recording`, under a free name:

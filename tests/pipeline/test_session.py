@@ -305,6 +305,66 @@ class Session(unittest.TestCase):
             self.assertIn(missing, absent.stderr)
         self.assertEqual(sorted(os.listdir(self.root)), ["plate.h5"])  # no journal of what never began
 
+    def test_a_damaged_byte_costs_its_record_and_the_journal_is_kept(self):
+        """The file is taken apart by its page, not by the program."""
+        out, journal = self.root / "recording.h5", self.root / "recording.journal"
+        process = self.start(out)
+        self.wait_for_steps(journal, 2 * RATE)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        content = bytearray(journal.read_bytes())
+        starts, at = [], len(b"palpate.session 1\n")
+        while at + 68 <= len(content):
+            length = struct.unpack_from("<I", content, at)[0]
+            starts.append((at, length))
+            at += 68 + length
+        whole = sum(length // 168 for _, length in starts[1:])
+        victim, length = starts[2]
+        content[victim + 1000] ^= 4
+        journal.write_bytes(content)
+        recovered = palpate("recover", journal)
+        self.assertEqual(recovered.returncode, 4, recovered.stdout + recovered.stderr)
+        self.assertIn(f"lacks {length // 168} steps ({length + 68} bytes at byte {victim})", recovered.stderr)
+        kept = self.root / "recording.journal.damaged"
+        self.assertEqual(kept.read_bytes(), content)
+        self.assertFalse(journal.exists())
+        with h5py.File(out) as file:
+            self.assertEqual(len(file["step/time"]), whole - length // 168)
+            facts = file[f"provenance/{sorted(file['provenance'])[-1]}"].attrs
+            self.assertIn("gap", facts["fact_name"])
+
+    def test_options_out_of_range_are_refused_before_anything_is_written(self):
+        for option, value in (("--friction", "nan"), ("--friction", "inf"), ("--friction", "1e9"), ("--friction", "-1"),
+                              ("--search-rate", "nan"), ("--search-rate", "1e12"), ("--search-rate", "-5"),
+                              ("--max-force", "-1"), ("--max-force", "nan"), ("--watchdog", "1e9"), ("--watchdog", "-1"),
+                              ("--duration", "nan"), ("--duration", "-1"), ("--ramp", "nan"), ("--rate", "nan"),
+                              ("--max-speed", "nan"), ("--at-mm", "nan 0 0"), ("--at-mm", "0 1e300 0")):
+            base = ["run", self.library, "--uncertified", "--priority", 0, "--out", self.root / "recording.h5"]
+            if option != "--duration":
+                base += ["--duration", 0.05]
+            refused = palpate(*base, option, *value.split(), timeout=60)
+            self.assertEqual(refused.returncode, CONFIGURATION, (option, value, refused.stderr))
+            self.assertEqual(len(refused.stderr.splitlines()), 1, refused.stderr)
+            self.assertIn(f"error: {option}: ", refused.stderr)
+            self.assertEqual(os.listdir(self.root), ["plate.h5"], (option, value))
+
+    def test_a_duration_is_that_of_the_session(self):
+        out = self.root / "recording.h5"
+        done = palpate(*self.run_arguments(out, 0.5))
+        self.assertEqual(done.returncode, DONE, done.stderr)
+        missed = int(re.search(r"periods missed (\d+)", done.stdout).group(1))
+        with h5py.File(out) as file:
+            self.assertEqual(len(file["step/time"]) + missed, 500)
+
+    def test_a_fifo_as_library_is_refused_at_once(self):
+        fifo = self.root / "fifo.h5"
+        os.mkfifo(fifo)
+        for command in (["run", fifo], ["inspect", fifo], ["compare", fifo, fifo, "--out", self.root / "out"],
+                        ["run", "/dev/zero"], ["run", self.root]):
+            refused = palpate(*command, timeout=60)
+            self.assertNotEqual(refused.returncode, DONE, command)
+            self.assertEqual(len(refused.stderr.splitlines()), 1, refused.stderr)
+
     def test_recover_overwrites_nothing_it_was_not_told_to(self):
         (self.root / "recording.h5").write_text("an older recording", encoding="ascii")
         journal = self.root / "recording.journal"

@@ -102,17 +102,77 @@ TEST_F(SessionJournalTest, CutAnywhereItGivesEveryWholeRecord) {
     while (records + 1 < sizes.size() && sizes[records + 1] <= length) ++records;
     const SessionSummary summary = summarize_session(path_);
     ASSERT_EQ(summary.steps, 7 * records) << length;
-    ASSERT_EQ(summary.broken_bytes, length - sizes[records]) << length;
+    ASSERT_EQ(summary.incomplete_bytes, length - sizes[records]) << length;
   }
   EXPECT_EQ(recovered(), expected(21));
 }
 
-TEST_F(SessionJournalTest, AChangedByteEndsWhatIsBelieved) {
+TEST_F(SessionJournalTest, WhereverAByteIsDamagedOnlyItsRecordIsLost) {
+  // Steps 7 to 14: length (4 bytes), steps, digest (64).
+  const auto sizes = write_some();
+  const std::string whole = bytes_of(path_);
+  for (const std::uintmax_t at : {sizes[1], sizes[1] + 1, sizes[1] + 3, sizes[1] + 4,
+                                  sizes[1] + 100, sizes[2] - 64, sizes[2] - 1}) {
+    std::string bytes = whole;
+    bytes[at] ^= 1;
+    std::ofstream(path_, std::ios::binary) << bytes;
+    const SessionSummary summary = summarize_session(path_);
+    ASSERT_EQ(summary.steps, 14U) << at;
+    ASSERT_EQ(summary.incomplete_bytes, 0U) << at;
+    ASSERT_EQ(summary.gaps.size(), 1U) << at;
+    const JournalGap& gap = summary.gaps.front();
+    EXPECT_EQ(gap.offset, sizes[1]) << at;
+    EXPECT_EQ(gap.bytes, sizes[2] - sizes[1]) << at;
+    EXPECT_EQ(gap.steps, 7U) << at;
+    EXPECT_EQ(gap.since_ns, session_.steps[6].time_ns) << at;
+    EXPECT_EQ(gap.until_ns, session_.steps[14].time_ns) << at;
+  }
+  Recording rest = session_;
+  rest.steps = steps(0, 7);
+  const auto last = steps(14, 21);
+  rest.steps.insert(rest.steps.end(), last.begin(), last.end());
+  EXPECT_EQ(recovered(), samples::dump(rest));
+}
+
+TEST_F(SessionJournalTest, BytesThatAreMissingOrTooManyAreAGap) {
+  const auto sizes = write_some();
+  const std::string whole = bytes_of(path_);
+  std::ofstream(path_, std::ios::binary)
+      << whole.substr(0, sizes[1] + 50) << whole.substr(sizes[1] + 60);
+  EXPECT_EQ(summarize_session(path_).steps, 14U);
+  EXPECT_EQ(summarize_session(path_).gaps.at(0).steps, std::nullopt);
+  std::ofstream(path_, std::ios::binary)
+      << whole.substr(0, sizes[1]) << std::string(3'000'000, '\0') << whole.substr(sizes[1]);
+  EXPECT_EQ(summarize_session(path_).steps, 21U);
+  EXPECT_EQ(summarize_session(path_).gaps.at(0).bytes, 3'000'000U);
+}
+
+TEST_F(SessionJournalTest, DamageInTheLastRecordIsNotTakenForACrash) {
   const auto sizes = write_some();
   std::string bytes = bytes_of(path_);
-  bytes[sizes[1] + 100] ^= 1;
+  bytes[sizes[2] + 100] ^= 1;
   std::ofstream(path_, std::ios::binary) << bytes;
-  EXPECT_EQ(recovered(), expected(7));
+  const SessionSummary summary = summarize_session(path_);
+  EXPECT_EQ(summary.steps, 14U);
+  ASSERT_EQ(summary.gaps.size(), 1U);
+  EXPECT_EQ(summary.gaps.front().steps, 7U);
+  EXPECT_EQ(summary.gaps.front().until_ns, std::nullopt);
+}
+
+TEST_F(SessionJournalTest, StepsBehindADamagedHeadingAreNotOverwritten) {
+  write_some();
+  std::string bytes = bytes_of(path_);
+  bytes[30] ^= 1;
+  std::ofstream(path_, std::ios::binary) << bytes;
+  EXPECT_TRUE(holds_session(path_));
+  try {
+    summarize_session(path_);
+    ADD_FAILURE() << "read without its heading";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("heading is damaged"));
+  }
+  EXPECT_THROW(SessionJournal(path_, session_), Error);
+  EXPECT_EQ(bytes_of(path_), bytes);
 }
 
 TEST_F(SessionJournalTest, AnAbsurdLengthIsDamageAndTakesNoMemory) {
@@ -120,7 +180,7 @@ TEST_F(SessionJournalTest, AnAbsurdLengthIsDamageAndTakesNoMemory) {
   std::string bytes = bytes_of(path_);
   for (std::size_t i = 0; i < 4; ++i) bytes[sizes[0] + i] = '\xff';
   std::ofstream(path_, std::ios::binary) << bytes;
-  EXPECT_EQ(summarize_session(path_).steps, 0U);
+  EXPECT_EQ(summarize_session(path_).steps, 14U);
 }
 
 TEST_F(SessionJournalTest, AKilledProcessLosesNothingThatWasAppended) {
