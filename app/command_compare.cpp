@@ -27,7 +27,7 @@ struct CompareOptions {
   std::vector<double> depths_mm;
   CaseOptions fem;  ///< with a case: its library is compared with direct solutions
   FidelityOptions fidelity;
-  double floor_mn = 20;
+  double floor_mn = 0;
   std::vector<std::string> libraries;
 };
 
@@ -136,9 +136,14 @@ void add_fem_options(CLI::App& command, CompareOptions& options, CLI::Option* se
       ->capture_default_str();
   only_with_fem(
       command.add_option(
-          "--floor-mN", options.floor_mn,
-          "Errors are relative to the direct force, or to this force if it is larger, mN"))
+          "--floor", options.fidelity.floor_fraction,
+          "Errors are relative to the direct force, or to this fraction of the force of the body "
+          "(median of the largest direct forces) if that is larger"))
       ->capture_default_str()
+      ->check(CLI::Range(1e-6, 1.0));
+  only_with_fem(command.add_option("--floor-mN", options.floor_mn,
+                                   "The same as a force, mN, instead of a fraction"))
+      ->excludes("--floor")
       ->check(CLI::Range(1e-6, 1e6));
   only_with_fem(command.add_option("--library", options.libraries,
                                    "Libraries to compare (default: that of the case)"));
@@ -156,7 +161,7 @@ void add_compare_command(CLI::App& root, Action& action) {
   command->footer(
       "Examples:\n"
       "  palpate compare out/pad-measured/curves.h5 out/pad/curves.h5 --out out/pad\n"
-      "  palpate compare --fem data/cases/liver.toml --out out/liver");
+      "  palpate compare --fem data/cases/liver.toml");
   const auto options = std::make_shared<CompareOptions>();
   CLI::Option* reference = command->add_option("REFERENCE", options->reference,
                                                "curves.h5 or library.h5 taken as the reference");
@@ -168,8 +173,9 @@ void add_compare_command(CLI::App& root, Action& action) {
                       "body.h5 of the reference, to match sites by position");
   command->add_option("--model-body", options->model_body,
                       "body.h5 of the model, to match sites by position");
-  command->add_option("--out", options->out, "Folder of the tables; with --fem, of the artifacts")
-      ->required();
+  command->add_option("--out", options->out,
+                      "Folder of the tables; with --fem, of the artifacts (default with --fem: "
+                      "output.folder of the case, or out/NAME)");
   command
       ->add_option("--jnd", options->settings.jnd, "Just noticeable relative difference of force")
       ->capture_default_str()
@@ -187,6 +193,7 @@ void add_compare_command(CLI::App& root, Action& action) {
   command->callback([options, &action] {
     if (options->reference.empty() && options->fem.case_file.empty())
       throw CLI::RequiredError("REFERENCE and MODEL, or --fem CASE");
+    if (options->out.empty() && options->fem.case_file.empty()) throw CLI::RequiredError("--out");
     action = [options] {
       return options->fem.case_file.empty() ? compare_sets(*options) : compare_with_fem(*options);
     };

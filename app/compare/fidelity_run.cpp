@@ -141,14 +141,17 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
   std::string text = skin_text(fidelity::find_skin(body, points)), states;
   const Curves direct = solve_direct(space, body, direct_settings(space, points));
 
-  nlohmann::ordered_json json = fidelity_heading(options, space.c.certify.friction, points);
+  const fidelity::FidelitySettings settings{
+      options.floor > 0 ? options.floor : fidelity::relative_floor(direct, options.floor_fraction),
+      space.c.certify.friction};
+  text += floor_text(options, settings.floor);
+  nlohmann::ordered_json json = fidelity_heading(options, settings, points);
   bool complete = true;
   for (std::size_t i = 0; i < files.size(); ++i) {
     const fs::path& file = files[i];
     const Library& library = libraries[i];
-    const fidelity::Fidelity result =
-        fidelity::measure({library, fidelity::RenderedBody(file), points, direct, sampled},
-                          {options.floor, space.c.certify.friction});
+    const fidelity::Fidelity result = fidelity::measure(
+        {library, fidelity::RenderedBody(file), points, direct, sampled}, settings);
     complete = complete && result.left_out.empty();
     std::error_code none;
     const LibrarySize size{bytes_per_node(library), fs::file_size(file, none)};

@@ -14,7 +14,8 @@ namespace palpate::app {
 struct FidelityOptions {
   int off_node = 24, at_node = 8;
   std::uint32_t seed = 1;
-  double floor = 0.02;  ///< N
+  double floor_fraction = 0.01;  ///< of the force of the body, see fidelity::relative_floor
+  double floor = 0;              ///< N, instead of the fraction; 0: the fraction
   /// Libraries compared with the same direct solutions; empty: the library of the case.
   std::vector<std::filesystem::path> libraries;
 };

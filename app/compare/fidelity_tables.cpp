@@ -5,6 +5,7 @@
 
 #include <iterator>
 
+#include "format/number_text.hpp"
 #include "format/sha256.hpp"
 
 namespace palpate::app {
@@ -49,7 +50,14 @@ std::string fidelity_states_csv(const std::string& file, const fidelity::Fidelit
   return csv;
 }
 
-Json fidelity_heading(const FidelityOptions& options, double friction,
+std::string floor_text(const FidelityOptions& options, double floor) {
+  std::string text = "errors are relative to the direct force, or to " + force_text(floor);
+  if (!(options.floor > 0))
+    text += " (" + percent_text(options.floor_fraction) + " of the median of the largest forces)";
+  return text + " where that is larger\n";
+}
+
+Json fidelity_heading(const FidelityOptions& options, const fidelity::FidelitySettings& settings,
                       const std::vector<fidelity::HoldOutPoint>& points) {
   Json list = Json::array();
   for (const fidelity::HoldOutPoint& p : points) {
@@ -60,10 +68,12 @@ Json fidelity_heading(const FidelityOptions& options, double friction,
                     {"at_node", p.node},
                     {"skin_m", p.skin}});
   }
-  return {{"kind", "palpate.fidelity"}, {"relative_to", "max(|direct force|, floor)"},
-          {"floor_N", options.floor},   {"friction", friction},
-          {"seed", options.seed},       {"points", list},
-          {"libraries", Json::array()}};
+  Json heading{{"kind", "palpate.fidelity"}, {"relative_to", "max(|direct force|, floor)"},
+               {"floor_N", settings.floor},  {"friction", settings.friction},
+               {"seed", options.seed},       {"points", list}};
+  if (!(options.floor > 0)) heading["floor_fraction"] = options.floor_fraction;
+  heading["libraries"] = Json::array();
+  return heading;
 }
 
 Json fidelity_json(const std::filesystem::path& file, const fidelity::Fidelity& fidelity,

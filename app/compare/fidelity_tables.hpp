@@ -18,6 +18,8 @@ struct LibrarySize {
   std::uintmax_t file = 0;     ///< bytes
 };
 
+/// One line: what errors are relative to. floor: N.
+std::string floor_text(const FidelityOptions& options, double floor);
 /// Plain text, one line per row.
 std::string fidelity_text(const std::string& file, const fidelity::Fidelity& fidelity,
                           const LibrarySize& size);
@@ -25,7 +27,8 @@ std::string fidelity_text(const std::string& file, const fidelity::Fidelity& fid
 std::string fidelity_states_csv(const std::string& file, const fidelity::Fidelity& fidelity,
                                 bool heading);
 /// Common to all libraries: settings and points.
-nlohmann::ordered_json fidelity_heading(const FidelityOptions& options, double friction,
+nlohmann::ordered_json fidelity_heading(const FidelityOptions& options,
+                                        const fidelity::FidelitySettings& settings,
                                         const std::vector<fidelity::HoldOutPoint>& points);
 nlohmann::ordered_json fidelity_json(const std::filesystem::path& file,
                                      const fidelity::Fidelity& fidelity, const LibrarySize& size);

@@ -278,6 +278,20 @@ class Decoupling {
 
 }  // namespace
 
+double relative_floor(const Curves& direct, double fraction) {
+  std::vector<double> largest;
+  for (const SiteCurves& site : direct.sites)
+    for (const CurvePath& path : site.paths) {
+      if (path.kind != PathKind::Normal || path.samples.size() < 2) continue;
+      double most = 0;
+      for (const CurveSample& sample : path.samples) most = std::max(most, norm(sample.force));
+      largest.push_back(most);
+    }
+  if (largest.empty()) return 0;
+  std::sort(largest.begin(), largest.end());
+  return fraction * largest[fitting::nearest_rank(largest.size(), 0.5)];
+}
+
 Fidelity measure(const FidelityInput& input, const FidelitySettings& settings) {
   const std::vector<HoldOutPoint>& points = input.points;
   Fidelity result;

@@ -64,6 +64,10 @@ struct FidelityInput {
   const Curves& sampled;
 };
 
+/// N: the fraction of the force of the body, which is the median over the presses of the largest
+/// force of their normal paths; 0 without one. A floor for bodies of any stiffness.
+double relative_floor(const Curves& direct, double fraction);
+
 /// Presses the library at the points and compares the forces with the direct solutions.
 Fidelity measure(const FidelityInput& input, const FidelitySettings& settings);
 

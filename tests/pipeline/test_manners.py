@@ -120,6 +120,15 @@ class Manners(unittest.TestCase):
         self.assertIn("holds the artifacts of case 'block', not of 'other'", refused.stderr)
         self.assertEqual((self.out / "body.h5").read_bytes(), before)
 
+    def test_compare_with_direct_solutions_looks_where_build_writes(self):
+        name = re.search(r'^name = "(.*)"', self.case.read_text(encoding="utf-8"), re.MULTILINE).group(1)
+        refused = palpate("compare", "--fem", self.case, cwd=self.root)
+        self.assertEqual(refused.returncode, USAGE, refused.stderr)
+        self.assertIn(f"out/{name}/body.h5: the file does not exist", refused.stderr)
+        refused = palpate("compare", "a.h5", "b.h5")
+        self.assertEqual(refused.returncode, USAGE)
+        self.assertIn("--out is required", refused.stderr)
+
     def test_a_reader_that_ends_early_ends_nothing_else(self):
         out = self.root / "head"
         line = f'"{PALPATE}" build "{self.case}" --out "{out}" | head -1; exit "${{PIPESTATUS[0]}}"'

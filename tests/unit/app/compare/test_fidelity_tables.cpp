@@ -54,6 +54,13 @@ TEST(FidelityStates, HaveTheErrorOfTheWholeVector) {
   EXPECT_EQ(titled.substr(titled.find('\n') + 1), untitled);
 }
 
+TEST(FidelityText, StatesTheFloorAndWhereItComesFrom) {
+  FidelityOptions options;
+  EXPECT_THAT(floor_text(options, 0.0042), HasSubstr("4.20 mN (1.0 % of the median"));
+  options.floor = 0.02;
+  EXPECT_THAT(floor_text(options, 0.02), HasSubstr("or to 20.0 mN where"));
+}
+
 TEST(FidelityJson, NamesTheLibraryByItsBytes) {
   const samples::TemporaryFolder folder;
   std::ofstream(folder / "library.h5") << "abc";
@@ -64,11 +71,13 @@ TEST(FidelityJson, NamesTheLibraryByItsBytes) {
   EXPECT_EQ(json.at("left_out").size(), 1u);
   FidelityOptions options;
   options.seed = 9;
-  const auto heading = fidelity_heading(options, 0.3, {fidelity::HoldOutPoint{}});
+  const auto heading = fidelity_heading(options, {0.02, 0.3}, {fidelity::HoldOutPoint{}});
   EXPECT_EQ(heading.at("seed"), 9);
   EXPECT_EQ(heading.at("friction"), 0.3);
   EXPECT_EQ(heading.at("points").size(), 1u);
   EXPECT_TRUE(heading.at("libraries").empty());
+  EXPECT_EQ(heading.at("floor_N"), 0.02);
+  EXPECT_EQ(heading.at("floor_fraction"), 0.01);
 }
 
 }  // namespace

@@ -234,5 +234,24 @@ TEST(Fidelity, AFailedPressIsReportedAndLeftOut) {
   EXPECT_EQ(fidelity.states.size(), 4u);
 }
 
+/// A body a thousand times softer has the same relative errors, its floor included.
+TEST(RelativeFloor, FollowsTheForcesOfTheBody) {
+  const std::vector<HoldOutPoint> points(5);
+  const auto linear = [](double stiffness) {
+    return [stiffness](const HoldOutPoint&, double depth, double) {
+      return stiffness * depth * kDown;
+    };
+  };
+  // The deepest sample is at 4 mm; lateral paths run at 9 mm and do not count.
+  const Curves stiff = direct_of(points, {0.009}, linear(kNormal));
+  const Curves soft = direct_of(points, {0.009}, linear(1e-3 * kNormal));
+  EXPECT_NEAR(relative_floor(stiff, 0.01), 0.01 * kNormal * 0.004, 1e-12);
+  EXPECT_NEAR(relative_floor(soft, 0.01), 1e-3 * relative_floor(stiff, 0.01), 1e-15);
+}
+
+TEST(RelativeFloor, IsNoneWithoutAPress) {
+  EXPECT_EQ(relative_floor(Curves{}, 0.01), 0);
+}
+
 }  // namespace
 }  // namespace palpate::fidelity
