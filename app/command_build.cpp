@@ -6,6 +6,7 @@
 
 #include "app/case_options.hpp"
 #include "app/command.hpp"
+#include "app/pipeline/estimate.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stages.hpp"
 
@@ -26,8 +27,14 @@ void add_build_command(CLI::App& root, Action& action) {
       ->option_text("STAGE");
   const auto strict = std::make_shared<bool>(false);
   command->add_flag("--strict", *strict, kStrictHelp);
-  command->callback([options, last, stages, strict, &action] {
-    action = [options, last, stages, strict] {
+  const auto estimate = std::make_shared<bool>(false);
+  command->add_flag("--estimate", *estimate, kEstimateHelp);
+  command->callback([options, last, stages, strict, estimate, &action] {
+    action = [options, last, stages, strict, estimate] {
+      if (*estimate) {
+        estimate_build(open_workspace(*options), event_sink(*options));
+        return kExitDone;
+      }
       const SiteCounts counts =
           run_build(open_workspace(*options), stages.at(*last), event_sink(*options));
       return exit_code_of(counts, *strict);

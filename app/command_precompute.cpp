@@ -7,6 +7,7 @@
 #include "app/case_options.hpp"
 #include "app/command.hpp"
 #include "app/pipeline/convergence.hpp"
+#include "app/pipeline/estimate.hpp"
 #include "app/pipeline/stages.hpp"
 #include "format/error.hpp"
 
@@ -33,7 +34,7 @@ void add_precompute_command(CLI::App& root, Action& action) {
   struct Options {
     std::string shard;
     int convergence = 0;
-    bool strict = false;
+    bool strict = false, estimate = false;
     std::vector<std::int32_t> sites;
   };
   const auto common = add_stage_options(*command, ThreadsOption::Present);
@@ -48,6 +49,7 @@ void add_precompute_command(CLI::App& root, Action& action) {
   command->add_option("--sites", options->sites, "Sites of --convergence (default: three)")
       ->delimiter(',');
   command->add_flag("--strict", options->strict, kStrictHelp);
+  command->add_flag("--estimate", options->estimate, kEstimateHelp);
   command->callback([common, options, &action] {
     action = [common, options] {
       Workspace space = open_workspace(*common);
@@ -56,6 +58,10 @@ void add_precompute_command(CLI::App& root, Action& action) {
         return kExitDone;
       }
       if (!options->shard.empty()) space.shard = parse_shard(options->shard);
+      if (options->estimate) {
+        estimate_precompute(space, event_sink(*common));
+        return kExitDone;
+      }
       const SiteCounts counts = run_precompute(space, event_sink(*common));
       return exit_code_of(counts, options->strict);
     };

@@ -83,6 +83,15 @@ double RemainingTime::time_of(std::vector<double> running, std::int64_t unstarte
   return time;
 }
 
+double RemainingTime::campaign(std::int64_t sites, std::int64_t places) const {
+  if (services_.empty()) return 0;
+  const double mean = sum(services_) / static_cast<double>(services_.size());
+  const std::int64_t first = std::min(sites, places);
+  return time_of(
+      std::vector<double>(static_cast<std::size_t>(std::max<std::int64_t>(first, 0)), mean),
+      sites - first, mean);
+}
+
 std::optional<double> RemainingTime::left(double now) const {
   if (services_.empty()) return {};
   const double here = served(now);

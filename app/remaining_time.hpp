@@ -27,6 +27,9 @@ class RemainingTime {
   void update(double now, std::int64_t done, std::int64_t running, std::int64_t total);
   /// s; none before the first site is finished.
   std::optional<double> left(double now) const;
+  /// s, of a campaign of so many such sites, `places` of them at a time; 0 before the first site is
+  /// finished.
+  double campaign(std::int64_t sites, std::int64_t places) const;
 
  private:
   double served(double now) const;

@@ -228,6 +228,22 @@ void describe(V& v, const ConvergenceOfForce& e) {
 }
 
 template <class V>
+void describe(V& v, const Estimate& e) {
+  v.event("estimate", "`--estimate`: what a campaign will take, from trial sites");
+  v.field("sites", e.sites, "sites to be computed");
+  v.field("adaptive", e.adaptive, "whether adaptive sampling may need fewer");
+  v.field("nodes", e.nodes, "nodes of the mesh");
+  v.field("unknowns", e.unknowns, "degrees of freedom");
+  v.field("seconds", e.seconds, "duration of the campaign, s");
+  v.field("set_up_seconds", e.set_up_seconds, "of that, before the first site, s");
+  v.field("threads", e.threads, "threads");
+  v.field("memory_bytes", e.memory_bytes, "memory of the process");
+  v.field("library_bytes", e.library_bytes, "size of `library.h5`; 0: unknown");
+  v.field("trial_sites", e.trial_sites, "computed for the estimate");
+  v.field("trial_seconds", e.trial_seconds, "duration of the estimate, s");
+}
+
+template <class V>
 void describe(V& v, const FileWritten& e) {
   v.event("file", "another file is written");
   v.field("stage", e.stage, "the stage");

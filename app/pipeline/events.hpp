@@ -180,6 +180,20 @@ struct ConvergenceOfForce {
   double error = 0;             ///< of the first level, relative; without an order: the spread
 };
 
+/// What a campaign will take, from trial sites. Nothing was written.
+struct Estimate {
+  std::size_t sites = 0;
+  bool adaptive = false;  ///< `sites` is the most that adaptive sampling may compute
+  std::size_t nodes = 0;
+  std::int64_t unknowns = 0;
+  double seconds = 0, set_up_seconds = 0;  ///< of the campaign; of that, before its first site
+  int threads = 1;
+  double memory_bytes = 0;   ///< of the process
+  double library_bytes = 0;  ///< of library.h5; 0: unknown
+  std::size_t trial_sites = 0;
+  double trial_seconds = 0;
+};
+
 struct FileWritten {
   std::string stage;
   std::filesystem::path file;
@@ -189,7 +203,7 @@ using Event =
     std::variant<StageStarted, StageUpToDate, LogLine, Warning, MeshFinished, CampaignStarted,
                  SiteFinished, Progress, SamplingRound, SamplingFinished, CampaignFinished,
                  MergeFinished, FitFinished, Certified, StiffnessAtRate, Softened, SteepestForce,
-                 ConvergenceLevel, ConvergenceOfForce, FileWritten>;
+                 ConvergenceLevel, ConvergenceOfForce, Estimate, FileWritten>;
 
 /// Receives the events of a stage, from one thread at a time.
 using EventSink = std::function<void(const Event&)>;

@@ -212,6 +212,18 @@ void TextSink::print(const ConvergenceOfForce& e) {
        e.quantity, forces, 100 * e.error);
 }
 
+void TextSink::print(const Estimate& e) {
+  line(
+      "estimate: {}{} sites on {} nodes ({} unknowns) take {} on {} threads, {} of it before the "
+      "first site",
+      e.adaptive ? "at most " : "", e.sites, e.nodes, e.unknowns, duration_text(e.seconds),
+      e.threads, duration_text(e.set_up_seconds));
+  line("  memory {:.2g} GB, library.h5 {}", 1e-9 * e.memory_bytes,
+       e.library_bytes > 0 ? fmt::format("{:.2g} MB", 1e-6 * e.library_bytes) : "of unknown size");
+  line("  from {} trial sites in {}; nothing was written", e.trial_sites,
+       duration_text(e.trial_seconds));
+}
+
 void TextSink::print(const FileWritten& e) {
   line("{}: {}", e.stage, e.file.string());
 }

@@ -33,6 +33,7 @@ class TextSink {
   void print(const SteepestForce& e);
   void print(const ConvergenceLevel& e);
   void print(const ConvergenceOfForce& e);
+  void print(const Estimate& e);
   void print(const FileWritten& e);
 
   template <class... Args>

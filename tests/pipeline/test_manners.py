@@ -120,6 +120,23 @@ class Manners(unittest.TestCase):
         self.assertIn("holds the artifacts of case 'block', not of 'other'", refused.stderr)
         self.assertEqual((self.out / "body.h5").read_bytes(), before)
 
+    def test_an_estimate_writes_nothing_and_is_of_the_size_of_what_is_built(self):
+        out = self.root / "estimated"
+        said = palpate("build", self.case, "--out", out, "--estimate", "--json", "--threads", 2)
+        self.assertEqual(said.returncode, DONE, said.stderr)
+        self.assertFalse(out.exists())
+        estimate = [e for e in map(json.loads, said.stdout.splitlines()) if e["event"] == "estimate"][0]
+        again = palpate("precompute", self.case, "--out", self.out, "--estimate", "--json", "--threads", 2)
+        self.assertEqual(again.returncode, DONE, again.stderr)
+        inspected = json.loads(palpate("inspect", "--json", self.out / "body.h5").stdout)
+        for e in (estimate, json.loads(again.stdout.splitlines()[-1])):
+            self.assertEqual(e["nodes"], inspected["nodes"])
+            self.assertGreater(e["seconds"], e["set_up_seconds"])
+            self.assertGreater(e["memory_bytes"], 1e7)
+            size = (self.out / "library.h5").stat().st_size
+            self.assertLess(abs(e["library_bytes"] - size), 0.2 * size)
+        self.assertIn(f"{estimate['sites']} sites complete", self.printed)
+
     def test_compare_with_direct_solutions_looks_where_build_writes(self):
         name = re.search(r'^name = "(.*)"', self.case.read_text(encoding="utf-8"), re.MULTILINE).group(1)
         refused = palpate("compare", "--fem", self.case, cwd=self.root)

@@ -135,6 +135,18 @@ TEST(RemainingTime, IsRightForGroupsThatShareAProcessor) {
     }
 }
 
+/// 8 sites at a time for 10 s each; then 64 of them, 16 at a time.
+TEST(RemainingTime, GivesTheTimeOfALargerCampaign) {
+  RemainingTime trial;
+  trial.begin(3);
+  for (std::int64_t done = 1; done <= 8; ++done) trial.update(13, done, 8 - done, 8);
+  EXPECT_NEAR(trial.campaign(8, 8), 10, 1e-9);
+  EXPECT_NEAR(trial.campaign(64, 8), 80, 1e-9);
+  // Twice as many at a time take sqrt(2) times as long for a group, and half as many groups.
+  EXPECT_NEAR(trial.campaign(64, 16), 4 * 10 * std::sqrt(2), 1e-9);
+  EXPECT_EQ(RemainingTime().campaign(64, 16), 0);
+}
+
 TEST(RemainingTime, IsUnknownBeforeTheFirstSite) {
   RemainingTime time;
   time.begin(0);

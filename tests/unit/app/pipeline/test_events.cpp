@@ -216,6 +216,11 @@ TEST(TextSink, PrintsSearchesAndStudies) {
               HasSubstr("100.0 90.00 -> 80.00 mN, order 1.50"));
   EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, false, NAN, 0.09, 0.1}}),
               HasSubstr("spread 10.0 %"));
+  EXPECT_THAT(
+      text_of({Estimate{104, true, 8240, 24720, 113, 12, 2, 1.24e9, 158e3, 8, 20}}),
+      testing::AllOf(HasSubstr("at most 104 sites on 8240 nodes (24720 unknowns) take 1 min 53 s"),
+                     HasSubstr("memory 1.2 GB, library.h5 0.16 MB"),
+                     HasSubstr("8 trial sites in 20 s; nothing was written")));
   EXPECT_THAT(text_of({MergeFinished{9, 3, {9, 0, 0}, "c.h5"}}),
               HasSubstr("9 sites of 3 parts, 9 complete"));
 }
