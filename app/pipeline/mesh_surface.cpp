@@ -50,6 +50,7 @@ Body mesh_surface(mesher::Settings settings, const std::filesystem::path& folder
   const std::filesystem::path faults = folder / "faulty-faces.vtp", repair = folder / "repair.json";
   std::filesystem::remove(faults);
   std::filesystem::remove(repair);
+  std::filesystem::remove(folder / "preview.html");  // of another body
   std::optional<mesher::RepairPicture> picture;
   settings.on_repair = [&](const mesher::Surface& kept, const mesher::Surface& repaired) {
     picture = mesher::picture_of_repair(kept, repaired, kPictureCells);

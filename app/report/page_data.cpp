@@ -55,27 +55,6 @@ void check_together(const ReportInput& input) {
           "the numbers of triangles of the certificate and of the library differ");
 }
 
-json body_data(const Body& body) {
-  std::vector<std::int64_t> count(body.region_names.size(), 0);
-  for (const std::int32_t region : body.tetrahedron_region) ++count.at(to_index(region));
-  json regions = json::array();
-  for (std::size_t r = 0; r < count.size(); ++r)
-    regions.push_back({{"name", body.region_names[r]}, {"tetrahedra", count[r]}});
-  std::vector<Vec3> vertices;
-  for (const std::int32_t n : body.response.node) vertices.push_back(body.nodes[to_index(n)]);
-  return {{"name", body.name},
-          {"nodes", body.nodes.size()},
-          {"tetrahedra", body.tetrahedra.size()},
-          {"facets", body.boundary.size()},
-          {"fixed_nodes", body.fixed_nodes.size()},
-          {"vertices", body.response.node.size()},
-          {"triangles", body.response.triangles.size()},
-          {"sites", std::count(body.response.is_site.begin(), body.response.is_site.end(), 1)},
-          {"facet_edge", median_edge(body.nodes, body.boundary)},
-          {"patch_edge", median_edge(vertices, body.response.triangles)},
-          {"regions", regions}};
-}
-
 /// Facet kinds of the picture.
 enum FacetKind : std::uint8_t { Touchable = 0, NoResponse = 1, Fixed = 2 };
 
@@ -133,18 +112,6 @@ json surface_data(const Body& body, const Library& library) {
           {"point_natural", fraction_column(natural)},
           {"triangles", index_column(flat(body.response.triangles))},
           {"library_triangle", column(in_library)}};
-}
-
-json inclusion_data(const Body& body) {
-  json list = json::array();
-  for (const Inclusion& inclusion : inclusions(body)) {
-    std::vector<float> points;
-    for (const std::int32_t n : inclusion.node) append(points, body.nodes[to_index(n)]);
-    list.push_back({{"region", body.region_names[to_index(inclusion.region)]},
-                    {"points", column(points)},
-                    {"facets", index_column(flat(inclusion.facets))}});
-  }
-  return list;
 }
 
 /// Curves of all vertices in sequence, delimited by offsets.
@@ -276,6 +243,39 @@ json key_figures(const ReportInput& input) {
 }
 
 }  // namespace
+
+json body_data(const Body& body) {
+  std::vector<std::int64_t> count(body.region_names.size(), 0);
+  for (const std::int32_t region : body.tetrahedron_region) ++count.at(to_index(region));
+  json regions = json::array();
+  for (std::size_t r = 0; r < count.size(); ++r)
+    regions.push_back({{"name", body.region_names[r]}, {"tetrahedra", count[r]}});
+  std::vector<Vec3> vertices;
+  for (const std::int32_t n : body.response.node) vertices.push_back(body.nodes[to_index(n)]);
+  return {{"name", body.name},
+          {"nodes", body.nodes.size()},
+          {"tetrahedra", body.tetrahedra.size()},
+          {"facets", body.boundary.size()},
+          {"fixed_nodes", body.fixed_nodes.size()},
+          {"vertices", body.response.node.size()},
+          {"triangles", body.response.triangles.size()},
+          {"sites", std::count(body.response.is_site.begin(), body.response.is_site.end(), 1)},
+          {"facet_edge", median_edge(body.nodes, body.boundary)},
+          {"patch_edge", median_edge(vertices, body.response.triangles)},
+          {"regions", regions}};
+}
+
+json inclusion_data(const Body& body) {
+  json list = json::array();
+  for (const Inclusion& inclusion : inclusions(body)) {
+    std::vector<float> points;
+    for (const std::int32_t n : inclusion.node) append(points, body.nodes[to_index(n)]);
+    list.push_back({{"region", body.region_names[to_index(inclusion.region)]},
+                    {"points", column(points)},
+                    {"facets", index_column(flat(inclusion.facets))}});
+  }
+  return list;
+}
 
 json page_data(const ReportInput& input) {
   check_together(input);

@@ -11,6 +11,10 @@ namespace palpate::report {
 /// @throws Error(Configuration) when the artifacts do not fit together.
 nlohmann::json page_data(const ReportInput& input);
 
+/// Name, sizes and regions of a body.
+nlohmann::json body_data(const Body& body);
+/// Surfaces of the regions inside.
+nlohmann::json inclusion_data(const Body& body);
 /// Data of the sections of the page.
 nlohmann::json session_data(const SessionDigest& session);
 nlohmann::json certificate_data(const Library& library);

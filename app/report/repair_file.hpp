@@ -3,6 +3,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,5 +28,10 @@ std::string repair_text(const std::string& surface_sha256, const DistanceMap& fi
 /// another file.
 /// @throws Error(Configuration) when the text is not a repair.json.
 nlohmann::json repair_data(const std::string& text, const Provenance& body);
+
+/// The repaired surface with its distance from the file; none without a text or where the body was
+/// made of another file.
+/// @throws Error(Configuration) when the text is not a repair.json.
+std::optional<DistanceMap> repaired_surface(const std::string& text, const Provenance& body);
 
 }  // namespace palpate::report

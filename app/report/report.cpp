@@ -13,8 +13,7 @@ namespace palpate {
 
 namespace {
 
-std::string render(const ReportInput& input) {
-  const nlohmann::json data = report::page_data(input);
+std::string render(const nlohmann::json& data) {
   std::string html;
   html += report::page_before_title();
   html += app::escape_markup(data["title"].get<std::string>());
@@ -26,8 +25,12 @@ std::string render(const ReportInput& input) {
 
 }  // namespace
 
+void report::write_page(const nlohmann::json& data, const std::filesystem::path& path) {
+  write_file_crash_safely(path, render(data));
+}
+
 void write_report(const ReportInput& input, const std::filesystem::path& path) {
-  write_file_crash_safely(path, render(input));
+  report::write_page(report::page_data(input), path);
 }
 
 }  // namespace palpate

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "app/report/session_digest.hpp"
@@ -38,5 +39,10 @@ struct ReportInput {
 /// @throws Error(Configuration) when the artifacts do not belong together, Error(Internal) when the
 ///   file cannot be written. Not real-time safe.
 void write_report(const ReportInput& input, const std::filesystem::path& path);
+
+namespace report {
+/// The page with these data, which have a "title"; as write_report.
+void write_page(const nlohmann::json& data, const std::filesystem::path& path);
+}  // namespace report
 
 }  // namespace palpate

@@ -48,6 +48,7 @@ class TriangleGrid {
     for (std::size_t m = 0; m < triangles_.size(); ++m) insert(static_cast<std::int32_t>(m));
   }
 
+  std::pair<std::int32_t, NearestPoint> nearest(const Vec3& p) const { return search(p, nullptr); }
   /// Nearest triangle whose normal has a positive component along `normal`; when there is none,
   /// the nearest of all.
   std::pair<std::int32_t, NearestPoint> nearest(const Vec3& p, const Vec3& normal) const {
@@ -174,6 +175,22 @@ NearestPoint nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, co
     if (candidate.distance2 < best.distance2) best = candidate;
   }
   return best;
+}
+
+std::vector<double> nearest_values(const std::vector<Vec3>& points,
+                                   const std::vector<Vec3>& corners,
+                                   const std::vector<Triangle>& triangles,
+                                   const std::vector<double>& values) {
+  const TriangleGrid grid(corners, triangles);
+  std::vector<double> result;
+  for (const Vec3& x : points) {
+    const auto [triangle, point] = grid.nearest(x);
+    double value = 0;
+    for (std::size_t i = 0; triangle >= 0 && i < 3; ++i)
+      value += point.natural[i] * values[to_index(triangles[to_index(triangle)][i])];
+    result.push_back(value);
+  }
+  return result;
 }
 
 SurfaceMap map_boundary(const Body& body) {

@@ -27,6 +27,13 @@ struct SurfaceMap {
   std::vector<Vec3> natural;                 ///< (P) natural coordinates in it
 };
 
+/// Value at each of the points of a field that is given at the corners of triangles: that of the
+/// nearest point of these.
+std::vector<double> nearest_values(const std::vector<Vec3>& points,
+                                   const std::vector<Vec3>& corners,
+                                   const std::vector<Triangle>& triangles,
+                                   const std::vector<double>& values);
+
 /// Uses the nearest of the triangles with the same orientation, so that the two sides of thin
 /// bodies do not mix.
 SurfaceMap map_boundary(const Body& body);

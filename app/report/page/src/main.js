@@ -11,6 +11,7 @@ import { Curves } from './sections/curves.js';
 import { fidelitySection } from './sections/fidelity.js';
 import { fitSection } from './sections/fit.js';
 import { headerSection } from './sections/header.js';
+import { previewSection } from './sections/preview.js';
 import { recordSection } from './sections/record.js';
 import { repairSection } from './sections/repair.js';
 import { sessionSection } from './sections/session.js';
@@ -39,9 +40,7 @@ function place(name, make) {
   }
 }
 
-try {
-  watchTheme();
-  const data = readData();
+function showReport(data) {
   const nodes = new Nodes(data);
   place('header', () => headerSection(data, nodes));
   place('body', () => bodySection(data, nodes, new Curves(data, nodes)));
@@ -52,6 +51,16 @@ try {
   place('session', () => sessionSection(data));
   place('certificate', () => certificateSection(data));
   place('record', () => recordSection(data));
+}
+
+try {
+  watchTheme();
+  const data = readData();
+  if (data.preview) {
+    place('preview', () => previewSection(data));
+  } else {
+    showReport(data);
+  }
 } catch (error) {
   count();
   report.append(el('p', { class: 'failure' }, `The report cannot be shown: ${error.message}`));

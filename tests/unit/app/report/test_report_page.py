@@ -373,6 +373,31 @@ class ReportPage(unittest.TestCase):
         self.assertIn(hostile, self.bare.text)
         self.assertNotIn("img", [tag for tag, _ in self.bare.tags])
 
+    def test_previews_show_supports_press_zones_and_what_repair_moved(self):
+        data = {}
+        for name in ("preview", "preview-repaired"):
+            page = drawn(self.path / f"{name}.html")
+            self.assertEqual((page.root["data-ready"], page.root["data-errors"]), ("ok", "0"), name)
+            data[name] = json.loads(page.by_id["data"])
+        plain = data["preview"]
+        self.assertIsNone(plain["distance"])
+        sites = sum(s == 0 for s in column(plain["vertices"]["response_status"]))
+        self.assertEqual(sites, plain["body"]["sites"])
+        repaired = data["preview-repaired"]
+        for z, moved in zip(column(repaired["surface"]["points"])[2::3], column(repaired["distance"])):
+            self.assertAlmostEqual(moved, 0.002 * min(max(z / 0.04, 0), 1), delta=1e-6)
+        # Press zones are green; what repair moved is in the colours of the scale, up to yellow.
+        green, yellow = {}, {}
+        for name in data:
+            picture = self.path / f"{name}.png"
+            browse(self.path / f"{name}.html", "--window-size=900,1000", f"--screenshot={picture}")
+            pixels = list(png_pixels(picture.read_bytes()))
+            green[name] = sum(r < 60 and 110 < g < 180 and 80 < b < 150 for r, g, b in pixels)
+            yellow[name] = sum(r > 150 and g > 170 and b < 80 for r, g, b in pixels)
+        self.assertGreater(green["preview"], 1000)
+        self.assertEqual(yellow["preview"], 0)
+        self.assertGreater(yellow["preview-repaired"], 50)
+
     def test_the_hot_spot_is_seen(self):
         """The top of the colour map must cover some of the body, its bottom much more."""
         picture = self.path / "view.png"

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "app/report/preview.hpp"
+#include "app/report/repair_file.hpp"
 #include "app/report/report.hpp"
 #include "format/numbers.hpp"
 #include "tests/unit/app/report/synthetic.hpp"
@@ -138,6 +140,21 @@ palpate::ProvenanceStep sampling_step() {
   return step;
 }
 
+/// The body as it is, and as if repair had moved its upper half, by up to 2 mm.
+void write_previews(palpate::Body body, const std::filesystem::path& folder) {
+  palpate::report::write_preview(body, "", folder / "preview.html");
+  palpate::ProvenanceStep step;
+  step.stage = "mesh";
+  step.inputs = {{"lump.off", std::string(64, 'a')}};
+  body.provenance.steps = {step};
+  palpate::report::DistanceMap moved{body.nodes, body.boundary, {}};
+  for (const palpate::Vec3& x : body.nodes)
+    moved.distance.push_back(0.002 * std::clamp(x[2] / 0.04, 0.0, 1.0));
+  palpate::report::write_preview(body,
+                                 palpate::report::repair_text(step.inputs[0].sha256, moved, moved),
+                                 folder / "preview-repaired.html");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -152,6 +169,8 @@ int main(int argc, char** argv) {
   palpate::ReportInput input{&all.body, &all.curves,          &all.library,
                              &session,  "Lump with a nodule", 356129};
   palpate::write_report(input, folder / "full.html");
+
+  write_previews(all.body, folder);
 
   input.comparison = comparison_of({{all.curves.sites.front().vertex, 1.0}}, "<b>curves</b>.h5");
   palpate::write_report(input, folder / "compared.html");

@@ -10,7 +10,7 @@ const MM = 1e3;
 const LEAST = 0.01;  // of the scale; what lies nearer is grey, so that its shape is seen
 
 /** A surface without responses: each point has a value of its own. */
-class PlainModel extends Model {
+export class PlainModel extends Model {
   constructor({ points, facets }) {
     super({ surface: { points, facets }, vertices: { position: points, response_status: [] } });
     // Both sides of an open surface are seen.
@@ -26,7 +26,7 @@ class PlainModel extends Model {
   triangleOf(facet) { return facet; }
 }
 
-const largest = (values) => values.reduce((most, x) => Math.max(most, x), 0);
+export const largest = (values) => values.reduce((most, x) => Math.max(most, x), 0);
 
 /** From the middle to the point with the largest distance. */
 function facing(model, distance) {
