@@ -10,8 +10,20 @@
 #include "app/pipeline/json_sink.hpp"
 #include "app/pipeline/size_of_body.hpp"
 #include "app/pipeline/text_sink.hpp"
+#include "format/position_text.hpp"
 
 namespace palpate::app {
+
+namespace {
+
+/// That of the file of the body; a header that states its own is in mm.
+Unit unit_of_coordinates(const mesher::Settings& mesh) {
+  if (!mesh.volume_mesh.path.empty()) return unit_of_length(mesh.volume_mesh.unit);
+  if (!mesh.image.path.empty()) return unit_of_length(mesh.image.unit);
+  return unit_of_length(mesh.surface.unit);
+}
+
+}  // namespace
 
 std::shared_ptr<CaseOptions> add_case_options(CLI::App& command, ThreadsOption threads) {
   auto options = std::make_shared<CaseOptions>();
@@ -48,6 +60,7 @@ Workspace open_workspace(const CaseOptions& options) {
   Workspace space = make_workspace(options.case_file, options.out,
                                    options.threads > 0 ? options.threads : processors,
                                    [&](const Case& c) { return size_of_body(c.mesh, folder); });
+  print_positions_in(unit_of_coordinates(space.c.mesh));
   space.memory = static_cast<double>(options.memory);
   return space;
 }

@@ -162,7 +162,7 @@ void exclude_thin_sites(Body& body, const Settings& settings, const Surface& bou
   std::sort(sites.begin(), sites.end(), thinner);
   const std::size_t thinnest = sites.front();
   const std::string at_the_thinnest =
-      text(millimetres(thickness[thinnest]), " at ", millimetres(boundary.points[thinnest]));
+      text(millimetres(thickness[thinnest]), " at ", position_text(boundary.points[thinnest]));
   if (2 * thin.size() > sites.size()) {
     const double typical = thickness[sites[sites.size() / 2]];
     refuse_geometry(settings.source().string(),
@@ -196,11 +196,12 @@ void check_elements(const VolumeMesh& mesh, const std::string& where) {
     const double fraction = volume(mesh.nodes, element) / regular;
     if (fraction > kSmallestVolume) continue;
     const Vec3 centroid = 0.25 * (corner(0) + corner(1) + corner(2) + corner(3));
-    throw Error(ErrorKind::Geometry, where,
-                text("a tetrahedron near ", millimetres(centroid), " is degenerate: its volume is ",
-                     fraction, " of that of a regular one with the same longest edge, ",
-                     millimetres(longest)),
-                "change patch_spacing or element_size a little, or smooth the surface there");
+    throw Error(
+        ErrorKind::Geometry, where,
+        text("a tetrahedron near ", position_text(centroid), " is degenerate: its volume is ",
+             fraction, " of that of a regular one with the same longest edge, ",
+             millimetres(longest)),
+        "change patch_spacing or element_size a little, or smooth the surface there");
   }
 }
 

@@ -93,7 +93,7 @@ void check_discretization(const Discretization& d, const Settings& settings, con
   const Quality quality = measure_quality(d.volume.nodes, d.volume.tetrahedra);
   if (quality.largest_dihedral > kLargestDihedral)
     refuse_geometry(where,
-                    text("a tetrahedron at ", millimetres(quality.largest_dihedral_at),
+                    text("a tetrahedron at ", position_text(quality.largest_dihedral_at),
                          " has a dihedral angle of ", quality.largest_dihedral, " degrees, over ",
                          kLargestDihedral),
                     "change patch_spacing or element_size a little, or smooth the surface there");

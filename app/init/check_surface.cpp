@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "format/position_text.hpp"
 #include "mesher/read/read_surface.hpp"
 #include "mesher/repair/diagnosis.hpp"
 
@@ -43,6 +44,7 @@ SurfaceCheck check_surface(const std::filesystem::path& path, const std::string&
   check.faces = listed.polygons.size();
   check.raw_size = mesher::largest_dimension(listed.points);
   find_unit(check.file, unit, check.raw_size);
+  print_positions_in(check.file.unit);
   mesher::SurfaceFile file{path, check.file.unit.si, ""};
   file.repair.largest_part = largest_part;
   try {

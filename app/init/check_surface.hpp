@@ -25,7 +25,8 @@ struct SurfaceCheck {
   bool is_sound() const { return faults.empty() && !refusal; }
 };
 
-/// Reads, examines and repairs as `palpate mesh` does with the defaults of [surface].
+/// Reads, examines and repairs as `palpate mesh` does with the defaults of [surface]. Positions in
+/// messages are from now on in the unit of the file.
 /// @param unit empty: as read_body_file
 /// @param largest_part as `parts = "largest"`
 /// @throws Error(Geometry) for a file that has no faces to be examined.

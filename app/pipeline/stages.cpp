@@ -25,6 +25,7 @@
 #include "format/library.hpp"
 #include "format/number_text.hpp"
 #include "format/passivity.hpp"
+#include "format/position_text.hpp"
 #include "format/to_index.hpp"
 #include "mesher/geometry/text.hpp"
 
@@ -173,10 +174,10 @@ void warn_of_misfit(const char* kind, const Library& library,
       "fit",
       fmt::format(
           "{} of {} {} responses miss their curves by more than {}, most of all that of site {} at "
-          "({:.3g}, {:.3g}, {:.3g}) mm, by {} of its largest force; give a smaller [fit] "
+          "{}, by {} of its largest force; give a smaller [fit] "
           "absolute_tolerance or more max_knots, and look at the curves of the site in the report",
           count, errors.size(), kind, percent_text(fitting::kVisibleFitError), worst.vertex,
-          1e3 * at[0], 1e3 * at[1], 1e3 * at[2], percent_text(worst.worst))});
+          position_text(at), percent_text(worst.worst))});
 }
 
 }  // namespace

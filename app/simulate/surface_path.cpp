@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "format/error.hpp"
+#include "format/position_text.hpp"
 
 namespace palpate::app {
 namespace {
@@ -172,9 +173,9 @@ std::size_t triangle_near(const Library& library, const TouchableSurface& surfac
 
 [[noreturn]] void refuse_interrupted(const Vec3& end, const Vec3& to) {
   throw Error(ErrorKind::Configuration, "simulate.path",
-              fmt::format("the surface with responses ends at ({:.4g}, {:.4g}, {:.4g}) mm, {:.3g} "
+              fmt::format("the surface with responses ends at {}, {:.3g} "
                           "mm before the end of the slide",
-                          1e3 * end[0], 1e3 * end[1], 1e3 * end[2], 1e3 * norm(to - end)),
+                          position_text(end), 1e3 * norm(to - end)),
               "choose two points without a hole, a support or a ridge between them");
 }
 

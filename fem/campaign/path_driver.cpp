@@ -25,7 +25,7 @@ std::string about_inversion(const SolidModel& model, const Displacement& u) {
   if (J > kNearInversion) return {};
   char text[96];
   std::snprintf(text, sizeof text, " (an element at %s is about to invert: det F = %.2f)",
-                point_in_millimetres(X).c_str(), J);
+                point_text(X).c_str(), J);
   return text;
 }
 
@@ -88,8 +88,8 @@ std::string PathDriver::fault_of(const CurveSample& sample, const Displacement& 
   if (sample.displacement > kLargestStep * problem_.tool_radius && sample.contact_area == 0)
     return "the tool has lost the surface";
   if (const int entering = problem_.self_contact.entering_node(u); entering >= 0)
-    return "the surface meets itself at " +
-           point_in_millimetres(problem_.model.mesh().X.col(entering)) + ", which is not modelled";
+    return "the surface meets itself at " + point_text(problem_.model.mesh().X.col(entering)) +
+           ", which is not modelled";
   if (const auto loss = problem_.model.ellipticity_loss(u)) return loss->reason();
   return {};
 }

@@ -3,6 +3,8 @@
 
 #include <cstdio>
 
+#include "format/position_text.hpp"
+
 namespace palpate::fem {
 
 std::string in_millimetres(double metres) {
@@ -11,10 +13,8 @@ std::string in_millimetres(double metres) {
   return text;
 }
 
-std::string point_in_millimetres(const Eigen::Vector3d& X) {
-  char text[64];
-  std::snprintf(text, sizeof text, "(%.1f, %.1f, %.1f) mm", 1e3 * X[0], 1e3 * X[1], 1e3 * X[2]);
-  return text;
+std::string point_text(const Eigen::Vector3d& X) {
+  return position_text({X[0], X[1], X[2]});
 }
 
 }  // namespace palpate::fem

@@ -9,7 +9,7 @@ namespace palpate::fem {
 
 /// Metres as "2.500 mm".
 std::string in_millimetres(double metres);
-/// Metres as "(1.0, -2.5, 30.0) mm".
-std::string point_in_millimetres(const Eigen::Vector3d& X);
+/// Metres as "(1, -2.5, 30) mm", in the unit of position_text.
+std::string point_text(const Eigen::Vector3d& X);
 
 }  // namespace palpate::fem

@@ -477,7 +477,7 @@ Lanes SolidModel::min_acoustic_eigenvalues(const Block& block,
 }
 
 std::string SolidModel::EllipticityLoss::reason() const {
-  return "strong ellipticity is lost in the element at " + point_in_millimetres(X) +
+  return "strong ellipticity is lost in the element at " + point_text(X) +
          ": further results would depend on the mesh";
 }
 

@@ -90,7 +90,7 @@ class WeightPath {
   [[noreturn]] void refuse_unstable() const {
     std::string problem = "the body buckles or collapses: its stiffness vanishes near " +
                           percent(critical_part()) + " of its weight";
-    if (weakest_) problem += ", and it moves most at " + point_in_millimetres(weakest_->X);
+    if (weakest_) problem += ", and it moves most at " + point_text(weakest_->X);
     refuse_geometry("gravity on " + owner_, problem,
                     "support it there, or check the direction and the unit of "
                     "gravity.acceleration, the density and the stiffness");
@@ -107,7 +107,7 @@ class WeightPath {
     const SolidModel::Compressed worst = model_.most_compressed(u);
     refuse_geometry("gravity on " + owner_,
                     "there is no stable equilibrium" + beyond + "; the element at " +
-                        point_in_millimetres(worst.X) + " is compressed most",
+                        point_text(worst.X) + " is compressed most",
                     "check the units of gravity.acceleration, the density and the stiffness, and "
                     "the supports");
   }

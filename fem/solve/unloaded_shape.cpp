@@ -130,7 +130,7 @@ class UnloadedShape {
       return true;
     }
     const Tetrahedron& t = given_.tetrahedra[worst];
-    return failed("its element at " + point_in_millimetres(x_(Eigen::all, t).rowwise().mean()) +
+    return failed("its element at " + point_text(x_(Eigen::all, t).rowwise().mean()) +
                   " would be inverted without weight");
   }
 

@@ -14,6 +14,7 @@
 #include "fitting/certificate/triangle_bounds.hpp"
 #include "format/error.hpp"
 #include "format/guarantee.hpp"
+#include "format/position_text.hpp"
 
 namespace palpate::fitting {
 namespace {
@@ -85,12 +86,11 @@ std::string largest_bound_text(const Library& library, std::size_t index,
   for (const std::int32_t v : triangle) {
     centre = centre + (1.0 / 3) * library.positions[static_cast<std::size_t>(v)];
   }
-  std::array<char, 160> where{};
-  std::snprintf(where.data(), where.size(), "triangle %zu near (%.4g, %.4g, %.4g) mm: ", index,
-                1e3 * centre[0], 1e3 * centre[1], 1e3 * centre[2]);
+  const std::string where =
+      "triangle " + std::to_string(index) + " near " + position_text(centre) + ": ";
   const double bound = std::max(bounds.certificate.stick, bounds.certificate.slip);
   const std::string size = std::isfinite(bound) ? lipschitz_bound_text(bound) + " in " : "";
-  return size + (where.data() + cause(bounds, depth));
+  return size + (where + cause(bounds, depth));
 }
 
 void add_devices(Certificate& certificate, const CertifySettings& settings) {

@@ -260,7 +260,7 @@ void check_manifold(const Soup& soup, const std::string& where) {
     throw FaultySurface(
         where,
         text("the surface is not manifold: sheets meet only in ", counted(pinched.size(), "point"),
-             ", the first of them at ", millimetres(soup.points[pinched.front()])),
+             ", the first of them at ", position_text(soup.points[pinched.front()])),
         "separate the sheets or join them along an edge in a mesh editor",
         faces_at_points(soup, pinched));
   }

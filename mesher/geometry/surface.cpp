@@ -21,7 +21,7 @@ Bounds bounds(const std::vector<Vec3>& points) {
 
 std::string extent_of(const std::vector<Vec3>& points) {
   const Bounds box = bounds(points);
-  return text(millimetres(box.low), " to ", millimetres(box.high));
+  return text(position_text(box.low), " to ", position_text(box.high));
 }
 
 double largest_dimension(const std::vector<Vec3>& points) {

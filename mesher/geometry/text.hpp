@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "format/vec3.hpp"
+#include "format/position_text.hpp"
 
 namespace palpate::mesher {
 
@@ -24,11 +24,6 @@ std::string text(const Part&... parts) {
 /// "12.5 mm"
 inline std::string millimetres(double metres) {
   return text(1e3 * metres, " mm");
-}
-
-/// "(12.5, 0, -3) mm"
-inline std::string millimetres(const Vec3& x) {
-  return text("(", 1e3 * x[0], ", ", 1e3 * x[1], ", ", 1e3 * x[2], ") mm");
 }
 
 /// "1 vertex", "2 vertices"

@@ -109,7 +109,7 @@ void check_geometry(const Surface& surface, const std::string& where) {
     for (const std::int32_t t : flat) add(t, Fault::ZeroArea);
     throw FaultySurface(where,
                         text(counted(flat.size(), "triangle"), " of zero area, the first at ",
-                             millimetres(faulty.points.front())),
+                             position_text(faulty.points.front())),
                         "remove degenerate faces in a mesh editor", faulty);
   }
   if (const auto pairs = self_intersections(surface); !pairs.empty()) {
@@ -119,7 +119,7 @@ void check_geometry(const Surface& surface, const std::string& where) {
     }
     throw FaultySurface(where,
                         text("the surface self-intersects: ", counted(pairs.size(), "pair"),
-                             " of triangles, the first at ", millimetres(faulty.points.front())),
+                             " of triangles, the first at ", position_text(faulty.points.front())),
                         "resolve the self-intersections in a mesh editor", faulty);
   }
 }
@@ -150,8 +150,8 @@ Surface repaired(const Soup& soup, const RepairSettings& settings, const std::st
   note(log, text(where, ": repaired: area ", 1e6 * report.area_before, " to ",
                  1e6 * report.area_after, " mm^2, volume ", 1e9 * report.volume,
                  " mm^3; the surface moved by at most ", millimetres(report.moved), " at ",
-                 millimetres(report.moved_at), "; what was added is at most ",
-                 millimetres(report.added), " from it, at ", millimetres(report.added_at)));
+                 position_text(report.moved_at), "; what was added is at most ",
+                 millimetres(report.added), " from it, at ", position_text(report.added_at)));
   if (on_repair) on_repair(report.kept, surface);
   return surface;
 }
@@ -168,8 +168,9 @@ Surface sound_surface(const SurfaceFile& file, const Log& log, const OnRepair& o
                             : checked(std::move(soup), where, log);
   turn_outward(surface, where, log);
   const Bounds box = bounds(surface.points);
-  note(log, text(where, ": ", surface.points.size(), " points, ", surface.triangles.size(),
-                 " triangles, watertight, ", millimetres(box.low), " to ", millimetres(box.high)));
+  note(log,
+       text(where, ": ", surface.points.size(), " points, ", surface.triangles.size(),
+            " triangles, watertight, ", position_text(box.low), " to ", position_text(box.high)));
   return surface;
 }
 

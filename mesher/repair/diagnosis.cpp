@@ -49,7 +49,7 @@ class Examination {
   }
 
   std::string middle_of(const SoupEdge& edge) const {
-    return millimetres(0.5 * (soup_.points[edge.first] + soup_.points[edge.second]));
+    return position_text(0.5 * (soup_.points[edge.first] + soup_.points[edge.second]));
   }
 
   void count_edges() {
@@ -71,7 +71,7 @@ class Examination {
     if (pinched.empty()) return;
     add_faces(faces_at_points(soup_, pinched));
     tell(counted(pinched.size(), "point"), " in which sheets meet, the first at ",
-         millimetres(soup_.points[pinched.front()]));
+         position_text(soup_.points[pinched.front()]));
   }
 
   void count_orientations() {
@@ -97,14 +97,14 @@ class Examination {
     std::string list;
     for (std::size_t i = 0; i < std::min(kListed, holes.size()); ++i)
       list += text(i > 0 ? "; " : "", millimetres(holes[i].diameter), " at ",
-                   millimetres(holes[i].centre));
+                   position_text(holes[i].centre));
     tell(counted(holes.size(), "hole"), ", the largest first: ", list,
          holes.size() > kListed ? "; ..." : "");
   }
 
   void count_flat_and_crossing(const Surface& connected) {
     const auto first_point = [&](std::int32_t t) {
-      return millimetres(connected.points[to_index(connected.triangles[to_index(t)][0])]);
+      return position_text(connected.points[to_index(connected.triangles[to_index(t)][0])]);
     };
     const std::vector<std::int32_t> flat = degenerate_triangles(connected);
     if (!flat.empty())
@@ -124,7 +124,7 @@ class Examination {
         found_.faces.add(surface, surface.triangles[to_index(t)], Fault::SelfIntersection);
     const Triangle& first = surface.triangles[to_index(pairs.front().first)];
     tell(counted(pairs.size(), "pair"), " of faces that cross, the first at ",
-         millimetres(surface.points[to_index(first[0])]));
+         position_text(surface.points[to_index(first[0])]));
   }
 
   void list_parts(const Surface& connected) {

@@ -170,7 +170,7 @@ class Repair {
       largest = std::max(largest, hole.diameter);
       if (hole.diameter > settings_.max_hole * extent_ && !hole.is_flat())
         report_.warnings.push_back(
-            text("a hole of ", millimetres(hole.diameter), " at ", millimetres(hole.centre),
+            text("a hole of ", millimetres(hole.diameter), " at ", position_text(hole.centre),
                  ", larger than max_hole = ", settings_.max_hole,
                  " of the extent, was filled with a patch of ", 1e6 * hole.area,
                  " mm^2; if the body goes on there, close the surface in a mesh editor"));
@@ -198,9 +198,10 @@ class Repair {
   static Shortcoming crossings_left(const Surface& surface) {
     const std::vector<TrianglePair> pairs = self_intersections(surface);
     const Triangle& first = surface.triangles[to_index(pairs.front().first)];
-    return {text("the surface self-intersects: ", counted(pairs.size(), "pair"),
-                 " of triangles, the first near ", millimetres(surface.points[to_index(first[0])])),
-            faces_of(surface, pairs)};
+    return {
+        text("the surface self-intersects: ", counted(pairs.size(), "pair"),
+             " of triangles, the first near ", position_text(surface.points[to_index(first[0])])),
+        faces_of(surface, pairs)};
   }
 
   void turn_outward(Surface& surface) {
@@ -223,9 +224,10 @@ class Repair {
   Shortcoming measured(const Surface& surface) {
     Change moved = measure(surface);
     if (moved.distance <= most_moved()) return {};
-    const std::string problem = text(
-        "local repairs move the surface by ", millimetres(moved.distance), " at ",
-        millimetres(moved.at), ", more than max_change = ", settings_.max_change, " of its extent");
+    const std::string problem =
+        text("local repairs move the surface by ", millimetres(moved.distance), " at ",
+             position_text(moved.at), ", more than max_change = ", settings_.max_change,
+             " of its extent");
     // A wrap would move more than this.
     if (moved.distance > kLittleMore * most_moved() || moved.far_fraction() > kFewFar)
       return {problem, std::move(moved.far_faces)};
@@ -263,7 +265,7 @@ class Repair {
         text(problem, "; its alpha wrap replaces it, which bridges what is narrower than ",
              millimetres(alpha), ": ", 100 * moved.far_fraction(),
              " % of the area of the file lies farther than max_change from it, at most ",
-             millimetres(moved.distance), " at ", millimetres(moved.at)));
+             millimetres(moved.distance), " at ", position_text(moved.at)));
   }
 
   [[noreturn]] void refuse_wrap(Shortcoming& left, const Change& moved, double alpha) const {
@@ -276,7 +278,7 @@ class Repair {
         text(left.problem, "; ", 100 * moved.far_fraction(),
              " % of its area lies farther than max_change = ", settings_.max_change,
              " of its extent from its alpha wrap of ", millimetres(alpha), ", at most ",
-             millimetres(moved.distance), " at ", millimetres(moved.at)),
+             millimetres(moved.distance), " at ", position_text(moved.at)),
         "raise surface.max_change, set surface.repair = \"wrap\" to take that wrap, or mend the "
         "surface there in a mesh editor",
         left.faces);

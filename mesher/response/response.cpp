@@ -113,7 +113,7 @@ std::size_t exclude_sites_at_supports(ResponseSurface& response, const Surface& 
 std::string most_turned(const InwardDirections& directions, const NestedSurface& nested) {
   const Vec3& x = nested.response.points[directions.turned_most];
   return text(", by ", std::lround(directions.largest_turn * 57.29577951308232),
-              " degrees at most, near ", millimetres(x));
+              " degrees at most, near ", position_text(x));
 }
 
 }  // namespace
@@ -169,7 +169,7 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
       log,
       text(counted(directions.unresolved.size(), "response vertex", "response vertices"),
            " cannot be sites: no direction points into all triangles around them; the first is at ",
-           millimetres(nested.response.points[to_index(directions.unresolved.front())])));
+           position_text(nested.response.points[to_index(directions.unresolved.front())])));
 }
 
 void check_sites(const Body& body, const Settings& settings, const Surface& boundary) {

@@ -84,7 +84,7 @@ VolumeMesh mesh_request(const Oracle& oracle, std::vector<SizeSource> sizes, con
                       settings.most_volume_change,
                       settings.largest_dihedral,
                       settings.most_nodes,
-                      [=](const Vec3& x) { return millimetres(frame.metres(x)); },
+                      [=](const Vec3& x) { return position_text(frame.metres(x)); },
                       where,
                       settings.log};
   VolumeMesh mesh = refine_until_sound(std::move(request), report);

@@ -85,7 +85,7 @@ std::vector<Triangle> boundary_of(const VolumeMesh& volume, const std::string& w
         where,
         text("the surface of the tetrahedra meets itself in ", counted(found.edges.size(), "edge"),
              " and ", counted(found.points, "node"), ", the first at ",
-             millimetres(volume.nodes[to_index(found.nodes.front())])),
+             position_text(volume.nodes[to_index(found.nodes.front())])),
         "separate the parts there, or join them over a face");
   }
   // By their corners, so that the response surface does not depend on the order of the tetrahedra.

@@ -19,7 +19,7 @@ import unittest
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
-from bodies import CASE, write_case  # noqa: E402
+from bodies import CASE, SIZE, block, write_case, write_off  # noqa: E402
 
 PALPATE = None
 DONE, INTERNAL, USAGE = 0, 1, 2
@@ -119,6 +119,21 @@ class Manners(unittest.TestCase):
         self.assertEqual(refused.returncode, USAGE, refused.stderr)
         self.assertIn("holds the artifacts of case 'block', not of 'other'", refused.stderr)
         self.assertEqual((self.out / "body.h5").read_bytes(), before)
+
+    def test_positions_are_in_the_unit_of_the_surface(self):
+        folder = self.root / "metres"
+        folder.mkdir()
+        case = write_case(folder, CASE.replace('unit = "mm"', 'unit = "cm"'))
+        vertices, triangles = block(SIZE, 5)
+        write_off(folder / "block.off", ([[0.1 * x for x in v] for v in vertices], triangles))
+        said = palpate("mesh", case, "--out", folder / "out")
+        self.assertEqual(said.returncode, DONE, said.stderr)
+        self.assertIn("watertight, (0, 0, 0) cm to (5, 5, 2) cm", said.stdout)
+        self.assertNotIn(") mm", said.stdout)
+        checked = palpate("check", folder / "block.off", "--unit", "cm")
+        self.assertNotIn(") mm", checked.stdout + checked.stderr)
+        built = palpate("build", case, "--out", folder / "out", "--threads", 2)
+        self.assertRegex(built.stdout, r"in triangle \d+ near \([-\d.]+, [-\d.]+, [-\d.]+\) cm")
 
     def test_an_estimate_writes_nothing_and_is_of_the_size_of_what_is_built(self):
         out = self.root / "estimated"

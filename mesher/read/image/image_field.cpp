@@ -83,8 +83,8 @@ LabelField image_field(const ImageFile& file, const Log& log) {
   const Vec3 size = field.box.high - field.box.low;
   check_body_size(std::max({size[0], size[1], size[2]}), 1, where, log);
   note(log, text(where, ": ", image.size[0], " x ", image.size[1], " x ", image.size[2],
-                 " voxels, the body within ", millimetres(field.box.low), " to ",
-                 millimetres(field.box.high)));
+                 " voxels, the body within ", position_text(field.box.low), " to ",
+                 position_text(field.box.high)));
   return field;
 }
 

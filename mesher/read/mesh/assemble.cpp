@@ -85,7 +85,7 @@ void orient(MeshEntities& entities, const std::string& where, const Log& log) {
     const double size = volume(entities.nodes, corners_of(t));
     if (!(std::abs(size) > kFlat * longest * longest * longest)) {
       refuse_geometry(where,
-                      text("tetrahedron ", t.number, " at ", millimetres(centroid(entities, t)),
+                      text("tetrahedron ", t.number, " at ", position_text(centroid(entities, t)),
                            " has no volume"),
                       "remove degenerate elements or mesh the body again");
     }
@@ -116,7 +116,7 @@ void check_repetition(const MeshEntities& entities, const std::string& where) {
       where,
       text(counted(repeated, "tetrahedron", "tetrahedra"), " listed twice: first number ", t.number,
            ", a copy of ", entities.tetrahedra[sorted[first - 1].second].number, ", at ",
-           millimetres(centroid(entities, t))),
+           position_text(centroid(entities, t))),
       "remove the copies; an element in several groups belongs in one region only");
 }
 
@@ -146,7 +146,7 @@ void check_parts(const MeshEntities& entities, const Adjacency& joined, const st
       text("the tetrahedra form ", joined.parts,
            " parts that no common face joins; the smallest has ",
            counted(size[smallest], "tetrahedron", "tetrahedra"), ", at ",
-           millimetres(centroid(entities, entities.tetrahedra[first[smallest]]))),
+           position_text(centroid(entities, entities.tetrahedra[first[smallest]]))),
       has_coincident_nodes(entities)
           ? "merge the nodes of equal coordinates (Gmsh: Coherence Mesh; meshes that share faces)"
           : "keep one part for each file");
@@ -158,7 +158,9 @@ std::vector<Triangle> checked_boundary(const MeshEntities& entities, const std::
   std::vector<Tetrahedron> tetrahedra;
   for (const ListedTetrahedron& t : entities.tetrahedra) tetrahedra.push_back(corners_of(t));
   const Adjacency joined = adjacency(tetrahedra);
-  const auto place = [&](std::int32_t node) { return millimetres(entities.nodes[to_index(node)]); };
+  const auto place = [&](std::int32_t node) {
+    return position_text(entities.nodes[to_index(node)]);
+  };
   if (joined.overlap) {
     refuse_geometry(where,
                     text("tetrahedra overlap at ", counted(joined.overlaps, "face"),

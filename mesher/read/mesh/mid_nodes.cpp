@@ -34,7 +34,7 @@ std::map<Edge, MidNode> mid_nodes(const MeshEntities& entities, const std::strin
       refuse_geometry(
           where,
           text("tetrahedra ", entry->second.element, " and ", t.number,
-               " have different mid-nodes on their common edge at ", millimetres(middle)),
+               " have different mid-nodes on their common edge at ", position_text(middle)),
           "merge the nodes of the parts, or export a linear mesh");
     }
   }
@@ -52,7 +52,7 @@ void report(const Straightened& inside, const std::string& where, const Log& log
   if (inside.count == 0) return;
   note(log, text(where, ": ", counted(inside.count, "edge"),
                  " inside the body curved in the file, by at most ", inside.largest,
-                 " of its length, at ", millimetres(inside.at),
+                 " of its length, at ", position_text(inside.at),
                  ": only edges of the boundary stay curved"));
 }
 
@@ -77,8 +77,8 @@ std::vector<CurvedEdge> curved_boundary_edges(const MeshEntities& entities,
     if (!(bulge <= kMostBulge)) {
       refuse_geometry(where,
                       text("the mid-node of an edge of tetrahedron ", mid.element, " lies ", bulge,
-                           " of the length of the edge from halfway, at ", millimetres(mid.middle),
-                           ", more than ", kMostBulge),
+                           " of the length of the edge from halfway, at ",
+                           position_text(mid.middle), ", more than ", kMostBulge),
                       "refine the mesh there, or export a linear mesh");
     }
     curved.push_back({ends, mid.middle});

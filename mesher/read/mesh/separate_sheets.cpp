@@ -58,12 +58,12 @@ void tell(const MeshEntities& entities, const ManifoldChange& change, const std:
         change.halved_edges == 0 ? "" : text(", ", counted(change.halved_edges, "edge"), " halved");
     note(log, text(where, ": elements that met only in a node or an edge are separated: ",
                    counted(change.copies, "node"), " added", halved, ", the first at ",
-                   millimetres(first), "; they transmit no force to each other there"));
+                   position_text(first), "; they transmit no force to each other there"));
   }
   if (change.filled_tips > 0) {
     note(log, text(where, ": the boundary touched itself in a node: filled the tip of ",
                    counted(change.filled_tips, "void"), " there, the last at ",
-                   millimetres(entities.nodes.back())));
+                   position_text(entities.nodes.back())));
   }
 }
 

@@ -8,7 +8,7 @@ namespace {
 
 TEST(Millimetres, AreWrittenFromMetres) {
   EXPECT_EQ(in_millimetres(0.0025), "2.500 mm");
-  EXPECT_EQ(point_in_millimetres({0.001, -0.0025, 0.03}), "(1.0, -2.5, 30.0) mm");
+  EXPECT_EQ(point_text({0.001, -0.0025, 0.03}), "(1, -2.5, 30) mm");
 }
 
 }  // namespace

@@ -11,7 +11,6 @@ TEST(Text, CountsAndLengthsAsAUserReadsThem) {
   EXPECT_EQ(counted(2, "edge"), "2 edges");
   EXPECT_EQ(counted(0, "vertex", "vertices"), "0 vertices");
   EXPECT_EQ(millimetres(0.0125), "12.5 mm");
-  EXPECT_EQ(millimetres(Vec3{0.0125, 0, -0.003}), "(12.5, 0, -3) mm");
 }
 
 TEST(Text, NoteDoesNothingWithoutALog) {
