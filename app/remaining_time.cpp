@@ -69,7 +69,8 @@ double RemainingTime::time_of(std::vector<double> running, std::int64_t unstarte
   if (running.empty()) return 0;
   // A whole round of all places leaves them as they were.
   const auto places = static_cast<std::int64_t>(running.size());
-  double time = static_cast<double>(unstarted / places) * mean * seconds(running.size());
+  const std::int64_t rounds = unstarted / places;
+  double time = static_cast<double>(rounds) * mean * seconds(running.size());
   unstarted %= places;
   std::priority_queue<double, std::vector<double>, std::greater<>> ends(std::greater<>{},
                                                                         std::move(running));
