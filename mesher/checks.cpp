@@ -161,8 +161,8 @@ void exclude_thin_sites(Body& body, const Settings& settings, const Surface& bou
   const auto thinner = [&](std::size_t a, std::size_t b) { return thickness[a] < thickness[b]; };
   std::sort(sites.begin(), sites.end(), thinner);
   const std::size_t thinnest = sites.front();
-  const std::string at_the_thinnest =
-      text(millimetres(thickness[thinnest]), " at ", position_text(boundary.points[thinnest]));
+  const std::string at_the_thinnest = text(millimetres(std::max(thickness[thinnest], 0.0)), " at ",
+                                           position_text(boundary.points[thinnest]));
   if (2 * thin.size() > sites.size()) {
     const double typical = thickness[sites[sites.size() / 2]];
     refuse_geometry(settings.source().string(),

@@ -165,11 +165,12 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
   for (const std::int32_t v : directions.unresolved) {
     response.is_site[to_index(v)] = 0;
   }
-  warn(
-      log,
-      text(counted(directions.unresolved.size(), "response vertex", "response vertices"),
-           " cannot be sites: no direction points into all triangles around them; the first is at ",
-           position_text(nested.response.points[to_index(directions.unresolved.front())])));
+  const bool one = directions.unresolved.size() == 1;
+  warn(log,
+       text(counted(directions.unresolved.size(), "response vertex", "response vertices"),
+            one ? " becomes a hole" : " become holes",
+            ": no direction points into all triangles around ", one ? "it, at " : "one, first at ",
+            position_text(nested.response.points[to_index(directions.unresolved.front())])));
 }
 
 void check_sites(const Body& body, const Settings& settings, const Surface& boundary) {
