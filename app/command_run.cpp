@@ -168,7 +168,7 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
         number_text(live.contact.lipschitz_bound, 4));
   }
   if (!reason) {
-    say("run: certified passive on {}, at {:g} Hz with a lipschitz_bound of {} N/m and mu = {:g}",
+    say("run: certified passive on {}, at {:g} Hz with a Lipschitz bound of {} N/m and mu = {:g}",
         profile.name, live.loop.rate, number_text(live.contact.lipschitz_bound, 4),
         live.contact.friction);
   }

@@ -17,7 +17,7 @@ std::string fault_of(const palpate_state& state) {
            number_text(range.high_friction);
   }
   if (!range.enforces(state.lipschitz_bound))
-    return "the runtime cannot enforce the lipschitz_bound of the state";
+    return "the runtime cannot enforce the Lipschitz bound of the state";
   return "";
 }
 
@@ -30,12 +30,12 @@ std::string why_not_certified(const palpate_state& state, const DeviceConstants&
   if (!verdict.unknown.empty()) return "unknown of the device: " + list_in_words(verdict.unknown);
   const std::string bound = lipschitz_bound_text(state.lipschitz_bound);
   if (!verdict.by_damping) {
-    return "the damping certifies a lipschitz_bound of " +
+    return "the damping certifies a Lipschitz bound of " +
            number_text(certifiable_stiffness(device, rate), 4) + " N/m at this rate, not of " +
            bound;
   }
   if (!verdict.by_friction) {
-    return "the dry friction certifies a lipschitz_bound of " +
+    return "the dry friction certifies a Lipschitz bound of " +
            number_text(certifiable_stiffness_by_friction(device), 4) + " N/m, not of " + bound;
   }
   return "";

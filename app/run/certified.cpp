@@ -57,7 +57,7 @@ NotCertified too_slow(const Library& library, const fitting::DeviceProfile& prof
   if (!judge_passivity(device, bound, rate).by_friction) {
     return {profile.name,
             fmt::format("{:g} N of dry friction allow positions in steps of {} um with a "
-                        "lipschitz_bound of {}, not of {} um",
+                        "Lipschitz bound of {}, not of {} um",
                         device.coulomb_friction,
                         number_text(1e6 * largest_position_step(device, bound)),
                         lipschitz_bound_text(bound), number_text(1e6 * device.position_resolution)),
@@ -69,7 +69,7 @@ NotCertified too_slow(const Library& library, const fitting::DeviceProfile& prof
             "soften the body (palpate certify --rate --soften)"};
   }
   return {profile.name,
-          fmt::format("{:g} Hz is not certified: a lipschitz_bound of {} on {:g} N s/m needs {} Hz",
+          fmt::format("{:g} Hz is not certified: a Lipschitz bound of {} on {:g} N s/m needs {} Hz",
                       rate, lipschitz_bound_text(bound), device.damping, rounded_up_text(needed)),
           "raise --rate, soften the body (palpate certify --rate --soften)"};
 }
