@@ -148,7 +148,7 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
   const Eigen::Vector3d& tip = contact.tool().tip;
   if (multiplier_path_.empty()) start_path(tip, u);
   multipliers_.values = multiplier_path_.predict(tip);
-  const NewtonResult result = equilibrate(contact, options, u);
+  NewtonResult result = equilibrate(contact, options, u);
   if (result.converged) multiplier_path_.add(tip, multipliers_.values);
   return result;
 }
