@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <fstream>
 #include <map>
 #include <set>
@@ -66,17 +67,21 @@ void read_skin(BodyFile& body, const std::string& given) {
 }
 
 /// The mesh in the first unit in which its size is one of a body: the reader refuses others.
+/// @throws Error of the first unit in which the fault is not the size.
 mesher::VolumeMesh read_in_some_unit(mesher::VolumeMeshFile& file) {
-  constexpr std::array units = {1e-3, 1.0, 1e-6};
-  for (const double unit : units) {
+  std::exception_ptr fault;
+  bool is_of_size = true;
+  for (const double unit : {1e-3, 1.0, 1e-6}) {
     file.unit = unit;
     try {
       return mesher::read_volume_mesh(file, {});
-    } catch (const Error&) {
-      if (unit == units.back()) throw;
+    } catch (const Error& error) {
+      if (!is_of_size) continue;
+      fault = std::current_exception();
+      is_of_size = error.problem().starts_with("the largest dimension");
     }
   }
-  return {};
+  std::rethrow_exception(fault);
 }
 
 void read_volume(BodyFile& body, const std::string& given) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <regex>
 #include <string>
@@ -65,11 +66,16 @@ UnitGuess guess_unit(double raw) {
 std::optional<Unit> stated_unit(std::string_view first_bytes) {
   const std::string text = lower(std::string(first_bytes));
   if (text.find("3d slicer output") != std::string::npos) return unit_named("mm");
-  static const std::regex statement("\\bunits?\\s*(?:=|:|\\s)\\s*\"?([a-z]+)");
+  static const std::regex statement("\\bunits?(\\s*[=:]|\\s)\\s*\"?([a-z]+)");
   std::smatch found;
   for (auto from = text.begin(); std::regex_search(from, text.end(), found, statement);
-       from = found[0].second)
-    if (const auto unit = unit_of_word(found[1].str())) return unit;
+       from = found[0].second) {
+    const std::string word = found[2].str();
+    // "0.5 units in the z direction" states nothing.
+    const bool is_sentence = found[1].length() == 1 && std::isspace(*found[1].first) != 0;
+    if (is_sentence && word == "in") continue;
+    if (const auto unit = unit_of_word(word)) return unit;
+  }
   return {};
 }
 

@@ -5,11 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <numbers>
 #include <string>
 
 #include "format/error.hpp"
 #include "tests/support/source_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace palpate::app {
 namespace {
@@ -47,6 +50,21 @@ TEST(BodyFile, OfAVolumeMeshHasItsBoundaryAndRegions) {
   EXPECT_FALSE(body.regions.empty());
   EXPECT_GT(mesher::signed_volume(body.surface), 0);
   EXPECT_EQ(read("tests/data/meshes/vtk/box_4.vtk").kind, BodyKind::Surface);
+}
+
+/// Two tetrahedra, 1.3 units apart: in micrometres their size would be a fault, too.
+TEST(BodyFile, NamesTheFaultOfAVolumeMeshInAUnitThatFits) {
+  const samples::TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "two.node";
+  std::ofstream(file) << "8 3 0 0\n1 0 0 0\n2 .3 0 0\n3 0 .3 0\n4 0 0 .3\n"
+                         "5 1 0 0\n6 1.3 0 0\n7 1 .3 0\n8 1 0 .3\n";
+  std::ofstream(folder.path() / "two.ele") << "2 4 0\n1 1 2 3 4\n2 5 6 7 8\n";
+  try {
+    read_body_file(file, "");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.problem(), testing::HasSubstr("2 parts"));
+  }
 }
 
 TEST(BodyFile, OfASegmentationHasTheFacesOfItsVoxels) {

@@ -54,6 +54,8 @@ TEST(StatedUnit, IsReadFromCommentsAndHeaders) {
 TEST(StatedUnit, IsNoneWhereTheFileSpeaksOfOtherThings) {
   EXPECT_FALSE(stated_unit("solid unit of the liver"));
   EXPECT_FALSE(stated_unit("solid united in mesh"));
+  EXPECT_FALSE(stated_unit("<!-- a displacement of 0.5 units in the z direction -->"));
+  EXPECT_EQ(stated_unit("0.5 units in z; units = in")->symbol, "in");
   EXPECT_FALSE(stated_unit(std::string(80, '\0')));
 }
 

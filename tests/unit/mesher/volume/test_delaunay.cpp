@@ -302,6 +302,27 @@ TEST(Delaunay, CoarserWhereTheSurfaceMayBeCoarser) {
   EXPECT_GT(coarse, 2.5 * fine);
 }
 
+/// A spheroid of semi-axes a = 15 mm and c = 60 mm: the radius of curvature is a^2/c = 3.75 mm at
+/// the poles, where a facet of circumradius r lies r^2/(2 R) from the surface, and 15 mm and 240 mm
+/// at the equator. Elements of 8 mm would cut the tips off.
+TEST(Delaunay, FacetsAreSmallerWhereTheSurfaceCurves) {
+  Surface spheroid = test::sphere({0, 0, 0}, 0.015, 128);
+  for (Vec3& x : spheroid.points) x[2] *= 4;
+  DelaunayReport report;
+  const Surface boundary = boundary_surface(mesh_of(solid(spheroid), 0.008, report));
+  double pole = 0, equator = 0;  // mean areas of the facets
+  int at_pole = 0, at_equator = 0;
+  for (const Triangle& t : boundary.triangles) {
+    const double area = norm(area_vector(boundary.points, t)) / 2;
+    const double z = std::abs(boundary.points[to_index(t[0])][2]);
+    if (z > 0.055) pole += area, ++at_pole;
+    if (z < 0.03) equator += area, ++at_equator;
+  }
+  ASSERT_GT(at_pole, 20);
+  ASSERT_GT(at_equator, 20);
+  EXPECT_LT(pole / at_pole, 0.5 * equator / at_equator);
+}
+
 TEST(Delaunay, LabelsOfAFieldBecomeRegions) {
   LabelField field;
   field.box = {{-0.02, -0.02, -0.02}, {0.02, 0.02, 0.02}};
