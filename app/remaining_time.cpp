@@ -13,6 +13,8 @@ namespace {
 
 /// A site that still runs after the mean is expected to take so many times what it took so far.
 constexpr double kLate = 1.2;
+/// All sites over the finished ones that say something of the others that run beside them.
+constexpr std::int64_t kFirst = 10;
 
 /// s of one second of service of each of n sites.
 double seconds(std::size_t n) {
@@ -95,6 +97,10 @@ double RemainingTime::campaign(std::int64_t sites, std::int64_t places) const {
 
 std::optional<double> RemainingTime::left(double now) const {
   if (services_.empty()) return {};
+  const auto unstarted =
+      std::max<std::int64_t>(total_ - done_ - static_cast<std::int64_t>(starts_.size()), 0);
+  // Where all the others run already, the first ones that finish are the quick ones.
+  if (unstarted == 0 && kFirst * done_ < total_) return {};
   const double here = served(now);
   const double mean = mean_service(here);
   std::vector<double> running;
@@ -102,8 +108,7 @@ std::optional<double> RemainingTime::left(double now) const {
     const double age = here - start;
     running.push_back(age > mean ? (kLate - 1) * age : mean - age);
   }
-  const auto unstarted = total_ - done_ - static_cast<std::int64_t>(starts_.size());
-  return time_of(std::move(running), std::max<std::int64_t>(unstarted, 0), mean);
+  return time_of(std::move(running), unstarted, mean);
 }
 
 }  // namespace palpate::app

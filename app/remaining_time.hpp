@@ -25,7 +25,8 @@ class RemainingTime {
   /// @param running  sites that run now
   /// @param total  sites to do since the start
   void update(double now, std::int64_t done, std::int64_t running, std::int64_t total);
-  /// s; none before the first site is finished.
+  /// s; none before the first site is finished, nor where all others run already and less than a
+  /// tenth is finished.
   std::optional<double> left(double now) const;
   /// s, of a campaign of so many such sites, `places` of them at a time; 0 before the first site is
   /// finished.

@@ -185,12 +185,16 @@ def without_copies(files, seen):
             yield path
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def parse_arguments(description):
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("palpate")
     parser.add_argument("folders", nargs="+", type=pathlib.Path)
     parser.add_argument("--details", type=argparse.FileType("w"))
-    arguments = parser.parse_args()
+    return parser.parse_args()
+
+
+def main():
+    arguments = parse_arguments(__doc__)
     vtk.vtkObject.GlobalWarningDisplayOff()
     print("| collection | files | bodies | of them repaired | wrapped | Delaunay | too thin | refused | other | longest, s |")
     print("|---|---|---|---|---|---|---|---|---|---|")

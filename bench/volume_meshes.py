@@ -8,13 +8,12 @@ The case is the one that `init` writes, without a change. A copy of an earlier f
 bodies at the first try, bodies whose boundary was separated where it touches itself, refusals, and the longest time of
 the processor. --details has a line a file, with the message of a refusal.
 """
-import argparse
 import collections
 import pathlib
 import subprocess
 import tempfile
 
-from surfaces import LIMIT_S, processor_seconds, without_copies
+from surfaces import LIMIT_S, parse_arguments, processor_seconds, without_copies
 
 ENDINGS = (".feb", ".inp", ".mesh", ".msh", ".vtk", ".vtu")
 # What `init` says of files that hold no solid of tetrahedra alone: other elements, surfaces, wires, points.
@@ -54,11 +53,7 @@ def outcome_of(palpate, path):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("palpate")
-    parser.add_argument("folders", nargs="+", type=pathlib.Path)
-    parser.add_argument("--details", type=argparse.FileType("w"))
-    arguments = parser.parse_args()
+    arguments = parse_arguments(__doc__)
     print("| collection | files | of tetrahedra | bodies | of them separated | refused | other | longest, s |")
     print("|---|---|---|---|---|---|---|---|")
     seen = set()

@@ -210,6 +210,18 @@ Library plate(int n, double side, const Responses& responses) {
   return finish(std::move(positions), std::move(inward), grid(n, n, false), responses);
 }
 
+Library plate_of_200(ResponseKind kind) {
+  Library library = plate(8, 0.08, [](const Vec3&) { return wall_response(170, 120); });
+  if (kind == ResponseKind::Coupled) library = coupled(std::move(library));
+  Certificate& c = library.certificate;
+  c.friction = 0.3;
+  c.stick = 170;
+  c.slip = c.lipschitz_bound = 200;
+  c.min_lipschitz_bound = 180;
+  c.triangles.resize(library.triangles.size());
+  return library;
+}
+
 Library thin_body(int n, double side, double thickness, const Responses& responses) {
   Library top = plate(n, side, responses);
   const auto shift = static_cast<std::int32_t>(top.positions.size());

@@ -43,6 +43,10 @@ Library cylinder(int around, int along, double radius, double length, const Resp
 /// lies below, so the inward direction is -z.
 Library plate(int n, double side, const Responses& responses);
 
+/// A plate of 80 mm of springs of 170 N/m, whose certificate is written by hand: L = 200 N/m,
+/// L_min = 180 N/m, mu = 0.3.
+Library plate_of_200(ResponseKind kind = ResponseKind::Decoupled);
+
 /// Two parallel plates, `thickness` apart, each facing away from the other: a thin body, open at
 /// the rim.
 Library thin_body(int n, double side, double thickness, const Responses& responses);

@@ -75,6 +75,16 @@ TEST(RemainingTime, IsRightAfterTheFirstSiteOfEqualOnes) {
 }
 
 /// The first sites are three times as expensive: the estimate follows the later ones.
+/// The quickest of sites that all run at once says nothing of the slow ones.
+TEST(RemainingTime, IsUnknownWhileFewOfTheSitesThatRunHaveFinished) {
+  RemainingTime time;
+  time.begin(0);
+  time.update(60, 1, 31, 32);
+  EXPECT_FALSE(time.left(60));
+  time.update(70, 4, 28, 32);
+  EXPECT_TRUE(time.left(70));
+}
+
 TEST(RemainingTime, FollowsLaterSitesThatAreCheaper) {
   std::vector<double> durations(200, 10);
   std::fill(durations.begin(), durations.begin() + 10, 30.0);

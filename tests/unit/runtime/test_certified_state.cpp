@@ -19,19 +19,6 @@ using ::testing::HasSubstr;
 constexpr DeviceConstants kBench{1, 0.1, 0, 10e-6, 1e-3};
 constexpr double kRate = 1000;
 
-/// A plate of 170 N/m whose certificate is written by hand: L = 200 N/m, L_min = 180 N/m, mu = 0.3.
-Library certified_plate(ResponseKind kind = ResponseKind::Decoupled) {
-  Library library = plate(8, 0.08, [](const Vec3&) { return wall_response(kStiffness, 120); });
-  if (kind == ResponseKind::Coupled) library = coupled(std::move(library));
-  Certificate& c = library.certificate;
-  c.friction = 0.3;
-  c.stick = 170;
-  c.slip = c.lipschitz_bound = 200;
-  c.min_lipschitz_bound = 180;
-  c.triangles.resize(library.triangles.size());
-  return library;
-}
-
 std::string reason(const palpate_library& body, double friction, double bound,
                    const DeviceConstants& device = kBench, double rate = kRate) {
   return why_not_certified(palpate_state(body, {.friction = friction, .lipschitz_bound = bound}),
@@ -39,18 +26,18 @@ std::string reason(const palpate_library& body, double friction, double bound,
 }
 
 TEST(CertifiedState, NeedsTheFrictionOfTheCertificate) {
-  const palpate_library body(certified_plate());
+  const palpate_library body(plate_of_200());
   EXPECT_EQ(reason(body, 0.3, 200), "");
   EXPECT_EQ(reason(body, 0.1, 200), "");
   EXPECT_THAT(reason(body, 0.6, 200), HasSubstr("is not covered by the certificate, which is valid "
                                                 "up to 0.3"));
-  const palpate_library pad(certified_plate(ResponseKind::Coupled));
+  const palpate_library pad(plate_of_200(ResponseKind::Coupled));
   EXPECT_EQ(reason(pad, 0.3, 200), "");
   EXPECT_THAT(reason(pad, 0.1, 200), HasSubstr("valid at 0.3"));
 }
 
 TEST(CertifiedState, NeedsABoundThatDampingAndDryFrictionPayFor) {
-  const palpate_library body(certified_plate());
+  const palpate_library body(plate_of_200());
   EXPECT_THAT(reason(body, 0.3, 170), HasSubstr("cannot enforce"));
   EXPECT_THAT(reason(body, 0.3, kInfinity), HasSubstr("cannot enforce"));
   const double lowest = 1.5 * 200;  // Hz, at 1 N s/m
@@ -71,7 +58,7 @@ TEST_F(PalpateApi, SaysWhetherAStateIsCertifiedAndWhyNot) {
   palpate_device_constants_default(&device);
   EXPECT_EQ(palpate_state_certified(state_, &device, kRate), 0);
   EXPECT_THAT(palpate_last_error(), HasSubstr("no certificate"));
-  const palpate_library body(certified_plate());
+  const palpate_library body(plate_of_200());
   palpate_state state(body, {.friction = 0.3, .lipschitz_bound = 200});
   EXPECT_EQ(palpate_state_certified(&state, &device, kRate), 0);
   EXPECT_THAT(palpate_last_error(), HasSubstr("unknown of the device: damping"));

@@ -40,21 +40,37 @@ struct OwnDevice {
   double largest = 0, last = 1;
 };
 
-TEST_F(PalpateLoop, RunsUntilTheDeviceIsLost) {
-  OwnDevice own;
-  const palpate_device device = own.functions();
+/// Of a loop at the ordinary priority.
+palpate_loop_settings settings_at(double rate) {
   palpate_loop_settings settings;
   palpate_loop_settings_default(&settings);
   settings.priority = 0;
-  settings.rate = 2000;
+  settings.rate = rate;
+  return settings;
+}
+
+/// Without ramp, and with a watchdog that a busy machine does not wake.
+palpate_loop_settings patient_settings() {
+  palpate_loop_settings settings = settings_at(2000);
   settings.ramp = 0;
   settings.watchdog = 10;
+  return settings;
+}
+
+/// Until the device is lost, at most ten seconds.
+void wait_for_end(palpate_loop* loop) {
+  for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+TEST_F(PalpateLoop, RunsUntilTheDeviceIsLost) {
+  OwnDevice own;
+  const palpate_device device = own.functions();
+  palpate_loop_settings settings = patient_settings();
   palpate_loop* loop = nullptr;
   ASSERT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_OK)
       << palpate_last_error();
-  for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  wait_for_end(loop);
   palpate_loop_report report{};
   report.size = sizeof report;
   EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
@@ -73,19 +89,12 @@ struct RecordedLoop {
   RecordedLoop(palpate_state* state, std::uint32_t room) {
     OwnDevice own;
     const palpate_device device = own.functions();
-    palpate_loop_settings settings;
-    palpate_loop_settings_default(&settings);
+    palpate_loop_settings settings = patient_settings();
     EXPECT_EQ(settings.record, 0U);
-    settings.priority = 0;
-    settings.rate = 2000;
-    settings.ramp = 0;
-    settings.watchdog = 10;
     settings.record = room;
     palpate_loop* loop = nullptr;
     EXPECT_EQ(palpate_loop_start(state, &device, &settings, &loop), PALPATE_OK);
-    for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    }
+    wait_for_end(loop);
     palpate_loop_end(loop);
     palpate_loop_step step{};
     EXPECT_EQ(palpate_loop_take(loop, &step), 0);  // its size is not set
@@ -200,18 +209,11 @@ double largest_force(palpate_state* state, double max_force, double continuous,
   palpate_device device = own.functions();
   device.continuous_force = continuous;
   device.size = device_size;
-  palpate_loop_settings settings;
-  palpate_loop_settings_default(&settings);
-  settings.priority = 0;
-  settings.rate = 2000;
-  settings.ramp = 0;
-  settings.watchdog = 10;
+  palpate_loop_settings settings = patient_settings();
   settings.max_force = max_force;
   palpate_loop* loop = nullptr;
   EXPECT_EQ(palpate_loop_start(state, &device, &settings, &loop), PALPATE_OK);
-  for (int i = 0; i < 10000 && palpate_loop_running(loop); ++i) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  }
+  wait_for_end(loop);
   EXPECT_EQ(palpate_loop_stop(loop, nullptr), PALPATE_OK);
   return own.largest;
 }
@@ -226,29 +228,14 @@ TEST_F(PalpateLoop, TheClampIsByDefaultTheContinuousForceOfTheDevice) {
             0.09);
 }
 
-/// A plate of L = 200 N/m at mu = 0.3, by a certificate written by hand.
-Library plate_of_200() {
-  Library library = plate(8, 0.08, [](const Vec3&) { return wall_response(kStiffness, 120); });
-  Certificate& c = library.certificate;
-  c.friction = 0.3;
-  c.stick = 170;
-  c.slip = c.lipschitz_bound = 200;
-  c.min_lipschitz_bound = 180;
-  c.triangles.resize(library.triangles.size());
-  return library;
-}
-
-/// Starts a loop on that plate and ends it. @return result of the start; `report`: of the loop.
+/// Starts a loop on plate_of_200() and ends it. @return result of the start; `report`: of the loop.
 int start_loop_at(double rate, const palpate_device_constants* constants, std::uint32_t uncertified,
                   palpate_loop_report& report) {
   const palpate_library body(plate_of_200());
   palpate_state state(body, {.friction = 0.3, .lipschitz_bound = 200});
   OwnDevice own;
   const palpate_device device = own.functions();
-  palpate_loop_settings settings;
-  palpate_loop_settings_default(&settings);
-  settings.priority = 0;
-  settings.rate = rate;
+  palpate_loop_settings settings = settings_at(rate);
   settings.constants = constants;
   settings.uncertified = uncertified;
   palpate_loop* loop = nullptr;
@@ -284,11 +271,8 @@ TEST_F(PalpateLoop, TheWatchdogIsTwentyPeriodsByDefault) {
   // At 10 Hz two seconds: twenty milliseconds would halt the device between two steps.
   OwnDevice own;
   const palpate_device device = own.functions();
-  palpate_loop_settings settings;
-  palpate_loop_settings_default(&settings);
+  palpate_loop_settings settings = settings_at(10);
   EXPECT_EQ(settings.watchdog, 0);
-  settings.priority = 0;
-  settings.rate = 10;
   palpate_loop* loop = nullptr;
   ASSERT_EQ(palpate_loop_start(state_, &device, &settings, &loop), PALPATE_OK);
   std::this_thread::sleep_for(std::chrono::milliseconds(450));
