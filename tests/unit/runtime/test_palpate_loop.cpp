@@ -40,7 +40,7 @@ struct OwnDevice {
   double largest = 0, last = 1;
 };
 
-/// Of a loop at the ordinary priority.
+/// A loop at the ordinary priority.
 palpate_loop_settings settings_at(double rate) {
   palpate_loop_settings settings;
   palpate_loop_settings_default(&settings);

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "mesher/read/mesh/read_febio.hpp"
 
+#include <array>
+#include <set>
+
+#include "mesher/read/file/file.hpp"
 #include "tests/unit/mesher/read/mesh_files.hpp"
 
 namespace palpate::mesher {
@@ -55,6 +59,30 @@ TEST(ReadFebio, ReadsFormats3And4) {
     EXPECT_EQ(mesh.groups.at("second"), (std::vector<std::int32_t>{1}));
     EXPECT_EQ(mesh.tetrahedra.size(), 2U);
   }
+}
+
+/// A box of 4.95665 x 4.52124 x 0.704593 from the origin, with sets of nodes and faces for its
+/// sides. febio-python wrote the file, to which FEBio is the reader.
+TEST(ReadFebio, ReadsABoxOfAnotherProgram) {
+  const std::filesystem::path file = test::mesh_file("febio_python/plate.feb");
+  const std::array<double, 3> size{4.95665, 4.52124, 0.704593};
+  const VolumeMesh mesh = test::read_file("febio_python/plate.feb");
+  EXPECT_EQ(mesh.nodes.size(), 1403U);
+  EXPECT_EQ(mesh.region_names, std::vector<std::string>{"SMGNN_BENCHMARK"});
+  EXPECT_NEAR(test::region_sizes(mesh).at("SMGNN_BENCHMARK").volume, size[0] * size[1] * size[2],
+              1e-6);
+  const MeshEntities raw = read_febio(read_bytes(file), "plate.feb");
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const bool upper : {false, true}) {
+      std::string side = std::string(1, "XYZ"[axis]) + (upper ? "P" : "N");
+      std::vector<std::int32_t> on_side;
+      for (std::size_t n = 0; n < raw.nodes.size(); ++n)
+        if (raw.nodes[n][axis] == (upper ? size[axis] : 0))
+          on_side.push_back(static_cast<std::int32_t>(n));
+      EXPECT_EQ(raw.node_sets.at(side + "_NODES"), on_side);
+      const auto& corners = raw.node_sets.at(side + "_FACES");  // of every face
+      EXPECT_EQ(std::set(corners.begin(), corners.end()), std::set(on_side.begin(), on_side.end()));
+    }
 }
 
 TEST(ReadFebio, NamesTheLineOfAFault) {
