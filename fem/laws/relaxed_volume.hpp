@@ -31,22 +31,22 @@ struct RelaxedVolume {
     law.add_tangent(F, cof, J, a, A);
   }
 
-  /// s for a dilatation J.
-  Lanes volume_ratio(const Lanes& J) const {
+  /// s, the dilatation that the law sees, for that of the element, J.
+  Lanes law_dilatation(const Lanes& J) const {
     const Lanes b = p + kappa_a * J;
     const double a = 0.5 * kappa + kappa_a;
     return (b + (b * b + 2 * a * kappa).sqrt()) / (2 * a);
   }
   /// U_p, J/m^3.
   Lanes volumetric_energy(const Lanes& J) const {
-    const Lanes s = volume_ratio(J), gap = J - s;
+    const Lanes s = law_dilatation(J), gap = J - s;
     return law.volumetric_energy(s) + p * gap + 0.5 * kappa_a * gap * gap;
   }
   /// dU_p/dJ, Pa.
-  Lanes pressure(const Lanes& J) const { return law.pressure(volume_ratio(J)); }
+  Lanes pressure(const Lanes& J) const { return law.pressure(law_dilatation(J)); }
   /// d2U_p/dJ2, Pa.
   Lanes pressure_slope(const Lanes& J) const {
-    const Lanes slope = law.pressure_slope(volume_ratio(J));
+    const Lanes slope = law.pressure_slope(law_dilatation(J));
     return kappa_a * slope / (kappa_a + slope);
   }
 };

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""The same block of 0.4 mm, of 5 cm and of 6.4 m, from its surface to a session.
+"""The same block of 0.4 mm and 0.6 kPa, of 5 cm and 10 kPa, and of 6.4 m and 5 MPa, from its surface to a session.
 
-Usage: test_size.py PALPATE. A hyperelastic solid has no length of its own: where every length of the case is
-s times as long, every force is s^2 times and every stiffness s times as large. Powers of two scale without
-rounding, so that the meshes are the same, too. The case gives no length but those of its supports, no force and
+Usage: test_size.py PALPATE. A hyperelastic solid has no length and no force of its own: where every length of the
+case is s times as long and Young's modulus m times as large, every force is m s^2 times and every stiffness m s
+times as large. Powers of two scale without rounding, so that the meshes are the same, too. The case gives no length but those of its supports, no force and
 no stiffness: the defaults are those of the body.
 """
 import re
@@ -33,8 +33,10 @@ def by_default(case):
                    "\n[indentation]\nincrements = 4\nlateral_increments = 2\n")
 
 
-def resized(case, scale):
-    """The case with every length `scale` times as long."""
+def resized(case, scale, modulus):
+    """The case with every length `scale` times as long and a modulus `modulus` times as large; nearly incompressible."""
+    case = case.replace('young = "10 kPa"', f'young = "{10 * modulus:.17g} kPa"')
+    case = re.sub(r"poisson = [\d.]+", "poisson = 0.499", case)
     return re.sub(r"(-?[\d.]+) mm\"", lambda match: f'{float(match[1]) * scale:.17g} mm"', case)
 
 
@@ -42,20 +44,20 @@ class Size(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
-        cls.reference = cls.run_on(1)
+        cls.reference = cls.run_on(1, 1)
 
     @classmethod
     def tearDownClass(cls):
         cls.folder.cleanup()
 
     @classmethod
-    def run_on(cls, scale):
+    def run_on(cls, scale, modulus):
         """What the stages make of the block, SI: forces, bounds, the fit, a session."""
         root = Path(cls.folder.name) / f"{scale:g}"
         root.mkdir()
         vertices, triangles = block(SIZE, 5)
         surface = [tuple(scale * x for x in vertex) for vertex in vertices], triangles
-        case = write_case(root, resized(by_default(CASE), scale), surface)
+        case = write_case(root, resized(by_default(CASE), scale, modulus), surface)
         said = ""
         for stage in ("build", "simulate"):
             done = subprocess.run([PALPATE, stage, case, "--out", root / "out"] + ["--threads", "2"] * (stage == "build"),
@@ -70,16 +72,17 @@ class Size(unittest.TestCase):
                     "depth": session["step/depth"][:], "commanded": session["step/force"][:],
                     "status": session["step/status"][:], "said": said}
 
-    def assert_scales(self, scale):
-        body = self.run_on(scale)
-        for name, power, tolerance in (("displacement", 1, 1e-4), ("force", 2, 1e-4), ("error", 2, 0.02),
-                                       ("depth", 1, 5e-3), ("commanded", 2, 5e-3)):
-            expected = scale**power * self.reference[name]
+    def assert_scales(self, scale, modulus):
+        body = self.run_on(scale, modulus)
+        force = modulus * scale**2
+        for name, factor, tolerance in (("displacement", scale, 1e-4), ("force", force, 1e-4), ("error", force, 0.02),
+                                        ("depth", scale, 5e-3), ("commanded", force, 5e-3)):
+            expected = factor * self.reference[name]
             with self.subTest(name):
                 self.assertEqual(body[name].shape, expected.shape)
                 np.testing.assert_allclose(body[name], expected, rtol=0, atol=tolerance * np.abs(expected).max())
         np.testing.assert_array_equal(body["knots"], self.reference["knots"])
-        self.assertAlmostEqual(body["bound"] / (scale * self.reference["bound"]), 1, delta=0.01)
+        self.assertAlmostEqual(body["bound"] / (modulus * scale * self.reference["bound"]), 1, delta=0.01)
 
     def test_the_fit_follows_every_curve_and_the_session_stays_within_them(self):
         said = self.reference["said"]
@@ -91,11 +94,11 @@ class Size(unittest.TestCase):
         self.assertTrue(np.any(status & SLIDING))
         self.assertFalse(np.any(status & BEYOND_DEPTH))
 
-    def test_four_tenths_of_a_millimetre(self):
-        self.assert_scales(1 / 128)
+    def test_four_tenths_of_a_millimetre_of_fat(self):
+        self.assert_scales(1 / 128, 1 / 16)
 
-    def test_six_metres(self):
-        self.assert_scales(128)
+    def test_six_metres_of_rubber(self):
+        self.assert_scales(128, 512)
 
 
 if __name__ == "__main__":

@@ -32,7 +32,7 @@ class RelaxedVolumeOf : public testing::TestWithParam<double> {
   }
 };
 
-TEST_P(RelaxedVolumeOf, IsTheLeastEnergyOfAllVolumeRatios) {
+TEST_P(RelaxedVolumeOf, IsTheLeastEnergyOfAllDilatationsOfTheLaw) {
   for (const double J : {0.7, 0.98, 1.0, 1.01, 1.5})
     EXPECT_NEAR(relaxed.volumetric_energy(all(J))[0], least_energy(J),
                 1e-9 * std::max(kPenalty, std::abs(least_energy(J))));
@@ -59,7 +59,7 @@ TEST(RelaxedVolume, IsTheLawWhereTheMultiplierIsThePressure) {
   for (const double J : {0.9, 0.999, 1.002, 1.2}) {
     const Lanes dilatation = Lanes::Constant(J), p = law.pressure(dilatation);
     const RelaxedVolume relaxed{law, 5e6, kPenalty, p};
-    EXPECT_NEAR(relaxed.volume_ratio(dilatation)[0], J, 1e-14);
+    EXPECT_NEAR(relaxed.law_dilatation(dilatation)[0], J, 1e-14);
     EXPECT_NEAR(relaxed.pressure(dilatation)[0], p[0], 1e-10 * std::abs(p[0]));
     EXPECT_NEAR(relaxed.volumetric_energy(dilatation)[0], law.volumetric_energy(dilatation)[0],
                 1e-10 * law.volumetric_energy(dilatation)[0]);
