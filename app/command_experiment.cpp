@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -10,23 +11,50 @@
 #include "app/console.hpp"
 #include "app/experiment/energy_balance.hpp"
 #include "app/experiment/phase_plane.hpp"
+#include "app/experiment/sling_device.hpp"
 #include "app/experiment/slingshot.hpp"
+#include "app/experiment/touch_picture.hpp"
 #include "app/pipeline/workspace.hpp"
 
 namespace palpate::app {
 namespace {
 
-constexpr double kPublishedBelow = 168, kPublishedAbove = 179;  // N/m, figure 12
-
 struct ExperimentOptions {
   std::string out = "out/experiment";
   double tolerance = 0.5;  // N/m
   bool margins = false;
+  bool choices = false;
+  bool real_time = false;
 };
+
+constexpr double kOffAxis = 0.01;  // m
+
+SlingshotSetup on_cylinder(double off_axis, double friction) {
+  return {VirtualBody::Cylinder, off_axis, friction, published::kRate, 0};
+}
+
+/// The lines of motion of the tables.
+const std::array<SlingshotSetup, 4> kLines{on_cylinder(0, 0.3), on_cylinder(kOffAxis, 0.3),
+                                           on_cylinder(kOffAxis, 0.1), on_cylinder(kOffAxis, 0)};
+
+/// Which constants are published, which are fitted to what, and which are a choice.
+void list_constants() {
+  const SlingDevice device;
+  say("  published: released {:g} mm outside, impact at {:g} m/s, about {:g} N at rest, {:g} Hz, "
+      "passive up to {:g} N/m",
+      -1e3 * published::kRelease, published::kImpact, published::kRestForce, published::kRate,
+      published::kMargin);
+  say("  fitted to these on the wall: mass {:g} kg (impact), damping {:g} N s/m (passive up to), "
+      "anchor of the band {:g} mm (force at rest)",
+      device.mass, device.damping, 1e3 * device.anchor);
+  say("  chosen, because neither published nor determined: band {:g} N/m, dry friction {:g} N, "
+      "radius 40 mm of the cylinder, (35) as its lateral response",
+      device.band, device.friction);
+}
 
 void draw_figure_12(const std::filesystem::path& out) {
   std::vector<PhasePlane> planes;
-  for (const double k : {kPublishedBelow, kPublishedAbove}) {
+  for (const double k : {published::kAtRest, published::kOscillating}) {
     const SlingshotOutcome o = sling({}, k, true);
     say("  k = {:g} N/m: impact at {:.3f} m/s, {} after {:.1f} s, amplitude {:.3f} m/s", k,
         o.impact, o.decayed ? "at rest" : "sustained oscillation", o.seconds, o.amplitude);
@@ -38,6 +66,11 @@ void draw_figure_12(const std::filesystem::path& out) {
   write_phase_planes(out / "phase_planes.svg", planes);
 }
 
+void draw_figure_11(const std::filesystem::path& out) {
+  constexpr double kDepth = 0.008;  // m
+  write_touch_picture(out / "touch.svg", kLines[1], published::kMargin, kDepth);
+}
+
 void wall_margins(double tolerance) {
   say("wall: smallest stiffness with sustained oscillation, N/m");
   say("  {:>8} {:>10} {:>16}", "rate", "simulated", "energy balance");
@@ -45,40 +78,91 @@ void wall_margins(double tolerance) {
     SlingshotSetup setup;
     setup.rate = rate;
     say("  {:>5g} Hz {:>10.1f} {:>16.1f}", rate, passivity_margin(setup, 20, 800, tolerance),
-        bonded_margin_by_energy_balance(rate, 0));
+        bonded_margin_by_energy_balance(setup.device, rate, 0));
   }
 }
 
+SlingshotSetup with_two_rates(SlingshotSetup setup) {
+  setup.search_rate = published::kSearchRate;
+  return setup;
+}
+
+/// In closed form: friction fixes the contact point.
+double no_slip_margin_off_axis(const SlingDevice& device) {
+  constexpr double kRadius = 0.04;  // m
+  return bonded_margin_by_energy_balance(device, published::kRate, std::asin(kOffAxis / kRadius));
+}
+
 void cylinder_margins(double tolerance) {
-  say("cylinder, 2000 Hz: the same, with the search in the force loop and at 100 Hz");
-  say("  {:>8} {:>5} {:>10} {:>10} {:>16}", "off axis", "mu", "one rate", "two rates",
-      "energy balance");
-  struct Line {
-    double off_axis, friction;
-  };
-  for (const auto& [off_axis, friction] :
-       {Line{0, 0.3}, Line{0.01, 0.3}, Line{0.01, 0.1}, Line{0.01, 0.0}}) {
-    SlingshotSetup one{VirtualBody::Cylinder, off_axis, friction, 2000, 0};
-    SlingshotSetup two = one;
-    two.search_rate = 100;
-    say("  {:>5g} mm {:>5g} {:>10.1f} {:>10.1f} {:>16.1f}", 1e3 * off_axis, friction,
-        passivity_margin(one, 100, 600, tolerance), passivity_margin(two, 100, 600, tolerance),
+  say("cylinder, {:g} Hz: the same, with the search in the force loop and at {:g} Hz, and with a "
+      "Lipschitz bound of k enforced",
+      published::kRate, published::kSearchRate);
+  say("  {:>8} {:>5} {:>10} {:>10} {:>10} {:>16}", "off axis", "mu", "one rate", "two rates",
+      "bounded", "energy balance");
+  for (const SlingshotSetup& one : kLines) {
+    SlingshotSetup bounded = one;
+    bounded.bounded = true;
+    const auto margin = [tolerance](const SlingshotSetup& setup) {
+      return passivity_margin(setup, 100, 600, tolerance);
+    };
+    say("  {:>5g} mm {:>5g} {:>10.1f} {:>10.1f} {:>10.1f} {:>16.1f}", 1e3 * one.off_axis,
+        one.friction, margin(one), margin(with_two_rates(one)), margin(bounded),
         margin_by_played_swings(one));
   }
-  constexpr double kOffAxis = 0.01, kRadius = 0.04;  // m
-  say("  {:>5g} mm bonded, closed form {:>27.1f}", 1e3 * kOffAxis,
-      bonded_margin_by_energy_balance(2000, std::asin(kOffAxis / kRadius)));
+  say("  {:>5g} mm no-slip, closed form {:>38.1f}", 1e3 * kOffAxis, no_slip_margin_off_axis({}));
+}
+
+/// Does the agreement of wall and cylinder depend on what the paper does not determine?
+void other_choices(double tolerance) {
+  say("other bands and dry frictions, mass, anchor and damping fitted again: margins, N/m");
+  say("  {:>8} {:>6} {:>8} {:>12} {:>6} {:>8} {:>10} {:>16}", "band N/m", "dry N", "mass kg",
+      "damping Ns/m", "wall", "on axis", "10 mm off", "energy balance");
+  for (const auto& [band, friction] : {std::pair{10.0, 0.01}, std::pair{20.0, 0.0},
+                                       std::pair{20.0, 0.03}, std::pair{40.0, 0.01}}) {
+    SlingshotSetup wall, on_axis = kLines[0], off_axis = kLines[1];
+    wall.device = on_axis.device = off_axis.device = fitted_device(band, friction);
+    const auto margin = [tolerance](const SlingshotSetup& setup) {
+      return passivity_margin(setup, 100, 300, tolerance);
+    };
+    say("  {:>8g} {:>6g} {:>8.4f} {:>12.4f} {:>6.1f} {:>8.1f} {:>10.1f} {:>16.1f}", band, friction,
+        wall.device.mass, wall.device.damping, margin(wall), margin(on_axis), margin(off_axis),
+        no_slip_margin_off_axis(wall.device));
+  }
+}
+
+/// The cylinder with the search in a thread of its own: 3 % below and above the margin of the
+/// simulation in lockstep.
+void shots_in_real_time(double tolerance) {
+  say("cylinder in real time, the search in a thread of its own at {:g} Hz",
+      published::kSearchRate);
+  for (const SlingshotSetup& line : kLines) {
+    SlingshotSetup setup = with_two_rates(line);
+    const double margin = passivity_margin(setup, 100, 600, tolerance);
+    setup.real_time = true;
+    for (const double k : {0.97 * margin, 1.03 * margin}) {
+      const SlingshotOutcome o = sling(setup, k);
+      say("  {:g} mm off, mu = {:g}, k = {:.1f} N/m ({:+.0f} % of the margin): {} after {:.0f} s, "
+          "{} of {} steps late",
+          1e3 * line.off_axis, line.friction, k, 100 * (k / margin - 1),
+          o.decayed ? "at rest" : "sustained oscillation", o.seconds, o.late, o.steps);
+    }
+  }
 }
 
 int experiment(const ExperimentOptions& options) {
   prepare_output(options.out);
   say("experiment: a device hits a virtual wall [Mahvash & Hayward 2005, section VI-B], simulated");
+  list_constants();
   draw_figure_12(options.out);
+  draw_figure_11(options.out);
   if (options.margins) {
     wall_margins(options.tolerance);
     cylinder_margins(options.tolerance);
   }
-  say("  -> {}", (std::filesystem::path(options.out) / "phase_planes.svg").string());
+  if (options.choices) other_choices(options.tolerance);
+  if (options.real_time) shots_in_real_time(options.tolerance);
+  for (const char* picture : {"phase_planes.svg", "touch.svg"})
+    say("  -> {}", (std::filesystem::path(options.out) / picture).string());
   return kExitDone;
 }
 
@@ -94,7 +178,12 @@ void add_experiment_command(CLI::App& root, Action& action) {
   const auto options = std::make_shared<ExperimentOptions>();
   command->add_option("--out", options->out, "Folder of the figures (default: out/experiment)");
   command->add_flag("--margins", options->margins,
-                    "Also compute the passivity margins of wall and cylinder (about a minute)");
+                    "Also compute the passivity margins of wall and cylinder (about two minutes)");
+  command->add_flag("--choices", options->choices,
+                    "Also compute them for other values of what the paper does not determine");
+  command->add_flag("--real-time", options->real_time,
+                    "Also shoot below and above each margin of the cylinder in real time, with the "
+                    "search in a thread (about ten minutes)");
   command
       ->add_option("--tolerance", options->tolerance,
                    "Tolerance of the margins, N/m (default: 0.5)")

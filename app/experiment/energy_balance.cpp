@@ -30,11 +30,12 @@ Response response_at(double k, double d) {
 /// the band.
 class BondedBody {
  public:
-  BondedBody(double k, double angle) : k_(k), cos_(std::cos(angle)), sin_(std::sin(angle)) {
-    double low = 0, high = kAnchor;
+  BondedBody(const SlingDevice& device, double k, double angle)
+      : device_(device), k_(k), cos_(std::cos(angle)), sin_(std::sin(angle)) {
+    double low = 0, high = device_.anchor;
     for (int i = 0; i < 60; ++i) {
       const double middle = (low + high) / 2;
-      (at(middle).force < kBand * (kAnchor - middle) ? low : high) = middle;
+      (at(middle).force < device_.band * (device_.anchor - middle) ? low : high) = middle;
     }
     rest_ = high;
   }
@@ -48,15 +49,18 @@ class BondedBody {
   }
   /// With the band, J.
   double potential(double x) const {
-    return at(x).energy + kBand * (x - kAnchor) * (x - kAnchor) / 2;
+    return at(x).energy + device_.band * (x - device_.anchor) * (x - device_.anchor) / 2;
   }
   double rest() const { return rest_; }  ///< m, where band and body balance
 
   /// No swing is larger than the one that the release begins.
-  bool within_release(double turn) const { return potential(turn) <= potential(kRelease); }
+  bool within_release(double turn) const {
+    return potential(turn) <= potential(published::kRelease);
+  }
   double gain_of_swing(double period, double turn) const;
 
  private:
+  SlingDevice device_;
   double k_, cos_, sin_;
   double rest_ = 0;
 };
@@ -65,7 +69,7 @@ class BondedBody {
 double BondedBody::gain_of_swing(double period, double turn) const {
   constexpr int kPoints = 2000;
   const double energy = potential(turn);
-  double low = kRelease, high = rest_;  // the other turning point lies between
+  double low = published::kRelease, high = rest_;  // the other turning point lies between
   for (int i = 0; i < 60; ++i) {
     const double middle = (low + high) / 2;
     (potential(middle) > energy ? low : high) = middle;
@@ -78,19 +82,20 @@ double BondedBody::gain_of_swing(double period, double turn) const {
   for (int i = 0; i < kPoints; ++i) {
     const double phi = std::numbers::pi * (i + 0.5) / kPoints;
     const double x = m + r * std::cos(phi);
-    const double v = std::sqrt(std::max(0.0, 2 * (energy - potential(x)) / kMass));
+    const double v = std::sqrt(std::max(0.0, 2 * (energy - potential(x)) / device_.mass));
     const double slope = at(x).slope;  // the band is no sample of ours
     const double dx = r * std::sin(phi) * std::numbers::pi / kPoints;
-    gain += 2 * ((1.5 * period * slope - kDamping) * v - kFriction) * dx;  // dt = dx/v, both ways
+    gain += 2 * ((1.5 * period * slope - device_.damping) * v - device_.friction) *
+            dx;  // dt = dx/v, both ways
   }
   return gain;
 }
 
 }  // namespace
 
-double bonded_margin_by_energy_balance(double rate, double angle) {
+double bonded_margin_by_energy_balance(const SlingDevice& device, double rate, double angle) {
   const auto best_gain = [&](double k) {
-    const BondedBody body(k, angle);
+    const BondedBody body(device, k, angle);
     double best = -1;
     for (double turn = body.rest() + 5e-4; body.within_release(turn); turn += 1e-4) {
       best = std::max(best, body.gain_of_swing(1 / rate, turn));
@@ -113,7 +118,8 @@ class Swing {
   /// force: against the motion, at equal distances from `low` to `turn`, band included. The lower
   /// turning point is where the work up to `turn` vanishes: beyond `low` only if the swing is wider
   /// than that, then one step further is taken.
-  Swing(const std::vector<double>& force, double low, double turn) {
+  Swing(const SlingDevice& device, const std::vector<double>& force, double low, double turn)
+      : device_(device) {
     const std::size_t last = force.size() - 1;
     const double dx = (turn - low) / static_cast<double>(last);
     std::vector<double> x{turn}, v{0};
@@ -128,7 +134,7 @@ class Swing {
         break;
       }
       x.push_back(here);
-      v.push_back(std::sqrt(2 * kinetic / kMass));
+      v.push_back(std::sqrt(2 * kinetic / device.mass));
     }
     if (v.back() > 0) {
       x.push_back(low - std::clamp(kinetic / std::max(-force[0], 1e-9), 1e-5, 2e-3));
@@ -160,21 +166,22 @@ class Swing {
     double sum = 0;
     for (std::size_t i = 1; i < position_.size(); ++i) {
       const double v = (velocity_[i] + velocity_[i - 1]) / 2;
-      sum += 2 * (kDamping * v + kFriction) * (position_[i] - position_[i - 1]);
+      sum += 2 * (device_.damping * v + device_.friction) * (position_[i] - position_[i - 1]);
     }
     return sum;
   }
 
  private:
+  SlingDevice device_;
   std::vector<double> position_, velocity_, time_;
 };
 
 /// The swing of the mass between the body and the band that turns at depth `turn`; none when it
 /// would begin beyond the release. The force is felt slowly, there and back, until the contact and
 /// the lower turning point have settled.
-std::optional<Swing> settled_swing(LineOfTouch& line, double turn) {
+std::optional<Swing> settled_swing(LineOfTouch& line, const SlingDevice& device, double turn) {
   constexpr int kPoints = 800, kPasses = 5;
-  double low = kRelease;
+  double low = published::kRelease;
   std::optional<Swing> swing;
   for (int pass = 0; pass < kPasses; ++pass) {
     const double dx = (turn - low) / kPoints;
@@ -183,11 +190,11 @@ std::optional<Swing> settled_swing(LineOfTouch& line, double turn) {
       force[static_cast<std::size_t>(i)] = line.force(low + i * dx);
     for (int i = kPoints; i >= 0; --i) {
       double& f = force[static_cast<std::size_t>(i)];
-      f = (f + line.force(low + i * dx)) / 2 + kBand * (low + i * dx - kAnchor);
+      f = (f + line.force(low + i * dx)) / 2 + device.band * (low + i * dx - device.anchor);
     }
-    swing.emplace(force, low, turn);
+    swing.emplace(device, force, low, turn);
     low = swing->low();
-    if (!swing->is_one() || low < kRelease) return {};
+    if (!swing->is_one() || low < published::kRelease) return {};
   }
   return swing;
 }
@@ -213,9 +220,9 @@ double gain_of_played(LineOfTouch& line, const Swing& swing, double rate) {
 double best_played_gain(const SlingshotSetup& setup, double k) {
   constexpr double kShallowest = 0.009, kStep = 4e-4;  // m
   double best = -1;
-  for (double turn = kShallowest; turn < kAnchor; turn += kStep) {
+  for (double turn = kShallowest; turn < setup.device.anchor; turn += kStep) {
     LineOfTouch line(setup, k);
-    const auto swing = settled_swing(line, turn);
+    const auto swing = settled_swing(line, setup.device, turn);
     if (swing) best = std::max(best, gain_of_played(line, *swing, setup.rate));
     if (!swing && turn > 2 * kShallowest) break;
   }

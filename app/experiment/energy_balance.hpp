@@ -11,7 +11,7 @@ namespace palpate::app {
 /// which the largest value over all amplitudes of the integral of (1.5 T W''(x) - b) v^2 - S |v| dt
 /// is zero, T the period and W the energy of the responses (35), normal and lateral. In closed form
 /// but for the integral. At angle 0 it is the wall (34).
-double bonded_margin_by_energy_balance(double rate, double angle);
+double bonded_margin_by_energy_balance(const SlingDevice& device, double rate, double angle);
 
 /// For any body, with friction: each swing of the mass between body and band, from the quasi-static
 /// force, is played to the force loop at its rate. Its gain is the work of the sampled and delayed

@@ -9,9 +9,10 @@
 namespace palpate::app::slingshot {
 namespace {
 
-constexpr double kRadius = 0.04;          // m
-constexpr double kLength = 0.2;           // m
-constexpr int kAround = 25, kAlong = 20;  // patches of 10 mm
+// The paper counts about 500 patches and gives neither radius nor length.
+constexpr int kAround = 18, kAlong = 14;                                       // 504 triangles
+constexpr double kRadius = 0.04;                                               // m
+constexpr double kLength = kAlong * 2 * std::numbers::pi * kRadius / kAround;  // m
 
 /// Both responses are (35), as the normal one in the paper, which names no other.
 NodeResponse response_of(double k) {
@@ -56,23 +57,44 @@ double wall_force(double k, double x) {
 LineOfTouch::LineOfTouch(const SlingshotSetup& setup, double k) : setup_(setup), k_(k) {
   if (setup.body == VirtualBody::Wall) return;
   constexpr double kTankCap = 5e-3;  // J
+  runtime::ContactSettings settings{setup.friction, kTankCap};
+  if (setup.bounded) settings.lipschitz_bound = k;
   body_ = std::make_unique<palpate_library>(cylinder(k));
-  contact_.emplace(body_->surface, body_->tree, runtime::ContactSettings{setup.friction, kTankCap});
+  contact_.emplace(body_->surface, body_->tree, settings);
   entry_ = std::sqrt(kRadius * kRadius - setup.off_axis * setup.off_axis);
   if (setup.search_rate <= 0) return;
+  if (setup.real_time) {
+    thread_ =
+        std::make_unique<runtime::SearchThread>(body_->surface, body_->tree, setup.search_rate);
+    contact_->set_delivery(&delivered_);
+    return;
+  }
   const auto period = static_cast<int>(std::lround(setup.rate / setup.search_rate));
   search_ = std::make_unique<runtime::LockstepSearch>(body_->surface, body_->tree, period);
 }
 
+Vec3 LineOfTouch::tip(double depth) const {
+  return {entry_ - depth, setup_.off_axis, kLength / 2};
+}
+
+const palpate_library* LineOfTouch::body() const {
+  return body_.get();
+}
+
+const runtime::ContactObservation& LineOfTouch::seen() const {
+  return contact_->observation();
+}
+
 double LineOfTouch::force(double depth) {
   if (!contact_) return wall_force(k_, depth);
-  const Vec3 tip{entry_ - depth, setup_.off_axis, kLength / 2};
   if (search_) {
-    search_->step(*contact_, tip);
+    search_->step(*contact_, tip(depth));
   } else {
-    contact_->step(tip);
+    if (thread_ && thread_->receive(delivered_)) contact_->set_delivery(&delivered_);
+    contact_->step(tip(depth));
+    if (thread_) thread_->report({tip(depth), seen().point.element});
   }
-  return -contact_->observation().force[0];
+  return -seen().force[0];
 }
 
 }  // namespace palpate::app::slingshot

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The device and the bodies of the published experiment.
+// The bodies of the published experiment.
 #pragma once
 
 #include <memory>
@@ -9,16 +9,11 @@
 #include "runtime/contact_state.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/lockstep_search.hpp"
+#include "runtime/search_thread.hpp"
 
 namespace palpate::app::slingshot {
 
-inline constexpr double kMass = 0.0845;    // kg
-inline constexpr double kDamping = 0.081;  // N s/m
-inline constexpr double kFriction = 0.01;  // N
-inline constexpr double kBand = 20;        // N/m
-inline constexpr double kAnchor = 0.0584;  // m
-inline constexpr double kRelease = -0.03;  // m
-inline constexpr double kCurved = 0.005;   // m: the wall is quadratic up to here
+inline constexpr double kCurved = 0.005;  // m: the wall is quadratic up to here
 
 /// Force of the wall (34) at depth x, N.
 double wall_force(double k, double x);
@@ -30,6 +25,10 @@ class LineOfTouch {
   LineOfTouch(const SlingshotSetup& setup, double k);
   double force(double depth);
 
+  Vec3 tip(double depth) const;                     ///< m
+  const palpate_library* body() const;              ///< the cylinder; null: the wall
+  const runtime::ContactObservation& seen() const;  ///< of the last sample on the cylinder
+
  private:
   SlingshotSetup setup_;
   double k_;
@@ -37,6 +36,8 @@ class LineOfTouch {
   std::unique_ptr<palpate_library> body_;
   std::optional<runtime::ContactState> contact_;
   std::unique_ptr<runtime::LockstepSearch> search_;
+  runtime::Delivery delivered_;
+  std::unique_ptr<runtime::SearchThread> thread_;
 };
 
 }  // namespace palpate::app::slingshot

@@ -7,10 +7,13 @@
 #include <cmath>
 #include <string_view>
 
+#include "app/experiment/svg.hpp"
 #include "format/crash_safe_file.hpp"
 
 namespace palpate::app {
 namespace {
+
+using svg::label, svg::line, svg::rectangle;
 
 constexpr double kWidth = 420, kHeight = 340;  // of a panel, in units of the picture
 constexpr double kLeft = 56, kRight = 10, kAbove = 34, kBelow = 46;  // beside its frame
@@ -25,41 +28,26 @@ double down(double velocity) {
   return kAbove + (kHeight - kAbove - kBelow) * (1 - velocity / kFastest) / 2;
 }
 
-std::string line(double x1, double y1, double x2, double y2, std::string_view colour) {
-  return fmt::format(R"(<line x1="{:.1f}" y1="{:.1f}" x2="{:.1f}" y2="{:.1f}" stroke="{}"/>)", x1,
-                     y1, x2, y2, colour);
-}
-
-std::string label(double x, double y, const std::string& text, std::string_view more = "") {
-  return fmt::format(R"(<text x="{:.1f}" y="{:.1f}" text-anchor="middle"{}>{}</text>)", x, y, more,
-                     text);
-}
-
-std::string rectangle(double x1, double y1, double x2, double y2, std::string_view more) {
-  return fmt::format(R"(<rect x="{:.1f}" y="{:.1f}" width="{:.1f}" height="{:.1f}" {}/>)", x1, y1,
-                     x2 - x1, y2 - y1, more);
-}
-
 /// The frame, numbers outside of it where no curve hides them, and where the body is.
 std::string axes() {
   const double left = across(kLowX), right = across(kHighX);
   const double top = down(kFastest), bottom = down(-kFastest);
-  std::string svg = rectangle(across(0), top, right, bottom, R"(fill="#f3ead9")");
-  svg += label(across(kHighX) - 22, top + 16, "inside", R"( fill="#8a6d3b")");
-  svg +=
+  std::string shapes = rectangle(across(0), top, right, bottom, R"(fill="#f3ead9")");
+  shapes += label(across(kHighX) - 22, top + 16, "inside", R"( fill="#8a6d3b")");
+  shapes +=
       line(left, down(0), right, down(0), "#ccc") + line(across(0), top, across(0), bottom, "#ccc");
   for (int mm = -30; mm <= 30; mm += 10) {
-    svg += line(across(1e-3 * mm), bottom, across(1e-3 * mm), bottom + 4, "#444");
-    svg += label(across(1e-3 * mm), bottom + 17, fmt::format("{}", mm));
+    shapes += line(across(1e-3 * mm), bottom, across(1e-3 * mm), bottom + 4, "#444");
+    shapes += label(across(1e-3 * mm), bottom + 17, fmt::format("{}", mm));
   }
   for (const double v : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-    svg += line(left - 4, down(v), left, down(v), "#444");
-    svg += label(left - 18, down(v) + 4, fmt::format("{:.1f}", v));
+    shapes += line(left - 4, down(v), left, down(v), "#444");
+    shapes += label(left - 18, down(v) + 4, fmt::format("{:.1f}", v));
   }
-  svg += label((left + right) / 2, bottom + 36, "position (mm)");
+  shapes += label((left + right) / 2, bottom + 36, "position (mm)");
   const double middle = (top + bottom) / 2;
-  return svg + label(14, middle, "velocity (m/s)",
-                     fmt::format(" transform=\"rotate(-90 14 {:.1f})\"", middle));
+  return shapes + label(14, middle, "velocity (m/s)",
+                        fmt::format(" transform=\"rotate(-90 14 {:.1f})\"", middle));
 }
 
 std::string frame() {
@@ -81,17 +69,14 @@ std::string curve(const std::vector<PhasePoint>& path) {
 }  // namespace
 
 void write_phase_planes(const std::filesystem::path& file, const std::vector<PhasePlane>& planes) {
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" font-family=\"sans-serif\" "
-      "font-size=\"11\">\n",
-      kWidth * static_cast<double>(planes.size()), kHeight);
-  svg += rectangle(0, 0, kWidth * static_cast<double>(planes.size()), kHeight, R"(fill="#fff")");
+  std::string panels;
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    svg += fmt::format("<g transform=\"translate({},0)\">\n", kWidth * static_cast<double>(i));
-    svg += axes() + curve(planes[i].path) + frame() +
-           label((across(kLowX) + across(kHighX)) / 2, 20, planes[i].title) + "\n</g>\n";
+    panels += fmt::format("<g transform=\"translate({},0)\">\n", kWidth * static_cast<double>(i));
+    panels += axes() + curve(planes[i].path) + frame() +
+              label((across(kLowX) + across(kHighX)) / 2, 20, planes[i].title) + "\n</g>\n";
   }
-  write_file_crash_safely(file, svg + "</svg>\n");
+  write_file_crash_safely(
+      file, svg::picture(kWidth * static_cast<double>(planes.size()), kHeight, panels));
 }
 
 void write_phase_csv(const std::filesystem::path& file, const std::vector<PhasePoint>& path) {

@@ -2,8 +2,10 @@
 #include "app/experiment/slingshot.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <string>
+#include <thread>
 
 #include "app/experiment/line_of_touch.hpp"
 #include "format/error.hpp"
@@ -19,6 +21,7 @@ constexpr double kWindow = 0.5;     // s
 constexpr double kRest = 2e-3;      // m/s
 constexpr double kDrift = 2e-5;     // m/s
 constexpr double kLongest = 400;    // s
+constexpr double kGrown = 1.5;      // of the energy of the release
 constexpr std::size_t kMeanOf = 5;  // windows
 
 /// Watches the velocity in windows and decides whether the oscillation lasts.
@@ -54,24 +57,43 @@ class Verdict {
   std::vector<double> amplitudes_;
 };
 
+/// Energy of device and band, J; what the body stores comes on top.
+double energy_of(const SlingDevice& device, double x, double v) {
+  const double stretch = device.anchor - x;
+  return (device.mass * v * v + device.band * stretch * stretch) / 2;
+}
+
+/// Waits for `seconds` after `begin`. @return whether that was more than `tolerated` (s) ago.
+bool wait_until(std::chrono::steady_clock::time_point begin, double seconds, double tolerated) {
+  const std::chrono::duration<double> due(seconds);
+  std::this_thread::sleep_until(begin + due);
+  return std::chrono::steady_clock::now() - begin > due + std::chrono::duration<double>(tolerated);
+}
+
 }  // namespace
 
 SlingshotOutcome sling(const SlingshotSetup& setup, double k, bool keep_path) {
   LineOfTouch line(setup, k);
-  runtime::SimulatedDevice device({kMass, kDamping, kFriction, kBand, 0, 1});
-  device.place({kRelease, 0, 0}, {});
-  device.set_target({kAnchor, 0, 0}, {});
+  const SlingDevice& d = setup.device;
+  runtime::SimulatedDevice device({d.mass, d.damping, d.friction, d.band, 0, 1});
+  device.place({published::kRelease, 0, 0}, {});
+  device.set_target({d.anchor, 0, 0}, {});
   Verdict verdict(setup.rate);
   SlingshotOutcome outcome;
   const double period = 1 / setup.rate;
+  const auto begin = std::chrono::steady_clock::now();
+  const double released = energy_of(d, published::kRelease, 0);
   while (outcome.seconds < kLongest && !verdict.at_rest() && !verdict.steady()) {
     const double x = device.position()[0];
     const double v = device.velocity()[0];
+    if (line.body() && energy_of(d, x, v) > kGrown * released) return outcome;
     if (keep_path) outcome.path.push_back({x, v});
     if (x > 0 && outcome.impact == 0) outcome.impact = v;
     device.step(period, {-line.force(x), 0, 0});
     verdict.see(v);
     outcome.seconds += period;
+    ++outcome.steps;
+    if (setup.real_time) outcome.late += wait_until(begin, outcome.seconds, period) ? 1 : 0;
   }
   outcome.decayed = verdict.at_rest();
   outcome.amplitude = verdict.amplitude();

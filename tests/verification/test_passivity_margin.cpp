@@ -32,7 +32,8 @@ TEST(PassivityMargin, OfTheWallEqualsTheEnergyBalanceAtEveryRate) {
     setup.rate = rate;
     const double simulated = passivity_margin(setup, 20, 800, 0.2);
     EXPECT_NEAR(simulated, expected, kTolerance) << rate << " Hz";
-    EXPECT_NEAR(simulated, bonded_margin_by_energy_balance(rate, 0), kTolerance) << rate << " Hz";
+    EXPECT_NEAR(simulated, bonded_margin_by_energy_balance({}, rate, 0), kTolerance)
+        << rate << " Hz";
   }
   EXPECT_NEAR(passivity_margin({}, 100, 300, 0.2), 170, kTolerance);  // published
 }
@@ -40,12 +41,16 @@ TEST(PassivityMargin, OfTheWallEqualsTheEnergyBalanceAtEveryRate) {
 TEST(PassivityMargin, OfTheCylinderEqualsThatOfTheWall) {
   const SlingshotSetup one{VirtualBody::Cylinder, 0, 0.3, 2000, 0};
   EXPECT_NEAR(passivity_margin(one, 160, 180, 0.2), 170.6, kTolerance);
+  // At a fixed contact point the force is within the bound k: to enforce it changes nothing.
+  SlingshotSetup bounded = one;
+  bounded.bounded = true;
+  EXPECT_NEAR(passivity_margin(bounded, 160, 180, 0.2), 170.6, kTolerance);
 }
 
 TEST(PassivityMargin, WithoutSlipOffTheAxisIsThatOfTwoSprings) {
   // The contact point is fixed by friction: the line crosses the surface at asin(10 mm / 40 mm).
   const SlingshotSetup no_slip{VirtualBody::Cylinder, 0.01, 0.3, 2000, 0};
-  const double balance = bonded_margin_by_energy_balance(2000, std::asin(0.25));
+  const double balance = bonded_margin_by_energy_balance({}, 2000, std::asin(0.25));
   EXPECT_GT(balance, 175);  // it differs from the margin on the axis
   EXPECT_NEAR(passivity_margin(no_slip, 160, 200, 0.2), balance, kTolerance);
 }
@@ -84,6 +89,18 @@ INSTANTIATE_TEST_SUITE_P(
                       SlingshotSetup{VirtualBody::Cylinder, 0.01, 0.3, 2000, 100},
                       SlingshotSetup{VirtualBody::Cylinder, 0.01, 0.1, 2000, 100},
                       SlingshotSetup{VirtualBody::Cylinder, 0.01, 0, 2000, 100}));
+
+/// Paced by the clock, with the search in a thread: far below the margin the device comes to rest,
+/// far above it oscillates as widely as in lockstep.
+TEST(TwoRatesInRealTime, DecayAndOscillateAsInLockstep) {
+  SlingshotSetup setup{VirtualBody::Cylinder, 0.01, 0.3, 2000, 100};
+  const double lockstep = sling(setup, 400).amplitude;
+  setup.real_time = true;
+  EXPECT_TRUE(sling(setup, 60).decayed);
+  const SlingshotOutcome oscillating = sling(setup, 400);
+  EXPECT_FALSE(oscillating.decayed);
+  EXPECT_NEAR(oscillating.amplitude, lockstep, 0.02 * lockstep);
+}
 
 }  // namespace
 }  // namespace palpate::app

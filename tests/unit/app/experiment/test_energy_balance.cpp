@@ -7,8 +7,6 @@
 
 #include <numbers>
 
-#include "app/experiment/line_of_touch.hpp"
-
 namespace palpate::app {
 namespace {
 
@@ -17,8 +15,8 @@ namespace {
 TEST(BondedMargin, ExceedsThatOfALinearSpringWithoutFriction) {
   double last = 0;
   for (const double rate : {500.0, 1000.0, 2000.0, 8000.0}) {
-    const double linear = slingshot::kDamping * rate / 1.5;
-    const double margin = bonded_margin_by_energy_balance(rate, 0);
+    const double linear = SlingDevice{}.damping * rate / 1.5;
+    const double margin = bonded_margin_by_energy_balance({}, rate, 0);
     EXPECT_GT(margin, linear) << rate;
     EXPECT_GT(margin, 1.9 * last) << rate;  // at least about in proportion to the rate
     last = margin;
@@ -29,11 +27,11 @@ TEST(BondedMargin, ExceedsThatOfALinearSpringWithoutFriction) {
 /// that only the curved part makes a difference; and the angles mirror there.
 TEST(BondedMargin, IsSymmetricAboutTheDiagonalOfTheTwoSprings) {
   constexpr double kQuarter = std::numbers::pi / 4;
-  const double less = bonded_margin_by_energy_balance(2000, kQuarter - 0.2);
-  const double more = bonded_margin_by_energy_balance(2000, kQuarter + 0.2);
+  const double less = bonded_margin_by_energy_balance({}, 2000, kQuarter - 0.2);
+  const double more = bonded_margin_by_energy_balance({}, 2000, kQuarter + 0.2);
   EXPECT_NEAR(less, more, 0.05);
-  EXPECT_NEAR(bonded_margin_by_energy_balance(2000, 0),
-              bonded_margin_by_energy_balance(2000, 2 * kQuarter), 0.05);
+  EXPECT_NEAR(bonded_margin_by_energy_balance({}, 2000, 0),
+              bonded_margin_by_energy_balance({}, 2000, 2 * kQuarter), 0.05);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace palpate::app {
 namespace {
 
-using namespace slingshot;
+constexpr SlingDevice kDevice;
 
 TEST(Slingshot, ComesToRestWhereTheBandBalancesASoftWall) {
   constexpr double k = 40;
@@ -20,22 +20,27 @@ TEST(Slingshot, ComesToRestWhereTheBandBalancesASoftWall) {
   ASSERT_TRUE(outcome.decayed);
   EXPECT_LT(outcome.seconds, 60);
   ASSERT_GT(outcome.path.size(), 1000u);
-  EXPECT_EQ(outcome.path.front().position, kRelease);
+  EXPECT_EQ(outcome.path.front().position, published::kRelease);
   EXPECT_EQ(outcome.path.front().velocity, 0);
-  // kBand (anchor - x) = k (x - kCurved/2); dry friction leaves it within S over both stiffnesses,
-  // and the last window still moved a little.
-  const double balance = (kBand * kAnchor + k * kCurved / 2) / (k + kBand);
-  EXPECT_NEAR(outcome.path.back().position, balance, 2 * kFriction / (k + kBand));
+  // kDevice.band (anchor - x) = k (x - slingshot::kCurved/2); dry friction leaves it within S over
+  // both stiffnesses, and the last window still moved a little.
+  const double balance =
+      (kDevice.band * kDevice.anchor + k * slingshot::kCurved / 2) / (k + kDevice.band);
+  EXPECT_NEAR(outcome.path.back().position, balance, 2 * kDevice.friction / (k + kDevice.band));
 }
 
 /// The first touch: band and friction alone act until then.
 TEST(Slingshot, HitsTheWallWithTheEnergyOfTheBand) {
-  const auto stored = [](double x) { return 0.5 * kBand * (kAnchor - x) * (kAnchor - x); };
-  const double work = stored(kRelease) - stored(0) + kFriction * kRelease;
-  const double without_damping = std::sqrt(2 * work / kMass);
+  const auto stored = [](double x) {
+    return 0.5 * kDevice.band * (kDevice.anchor - x) * (kDevice.anchor - x);
+  };
+  const double work =
+      stored(published::kRelease) - stored(0) + kDevice.friction * published::kRelease;
+  const double without_damping = std::sqrt(2 * work / kDevice.mass);
   const double impact = sling({}, 40).impact;
   // Damping takes b times the way times a speed below the last one.
-  const double damped = std::sqrt(2 * (work + kDamping * kRelease * without_damping) / kMass);
+  const double damped = std::sqrt(
+      2 * (work + kDevice.damping * published::kRelease * without_damping) / kDevice.mass);
   EXPECT_LT(impact, without_damping);
   EXPECT_GT(impact, damped - 0.001);
 }
@@ -45,6 +50,18 @@ TEST(Slingshot, OscillatesAgainstAStiffWallForEver) {
   EXPECT_FALSE(outcome.decayed);
   EXPECT_GT(outcome.amplitude, 0.3);
   EXPECT_TRUE(outcome.path.empty());  // not asked for
+}
+
+/// With little damping nothing limits the swing: it does not pass for decayed on the far side.
+TEST(Slingshot, GrowsUntilItWouldPassThroughTheCylinder) {
+  SlingshotSetup setup{VirtualBody::Cylinder, 0.01, 0.3, 2000, 0};
+  setup.device = {0.085, 0.0293, 0.03, 20, 0.0584};
+  for (const double k : {190.0, 200.0, 220.0}) {
+    const SlingshotOutcome outcome = sling(setup, k, true);
+    EXPECT_FALSE(outcome.decayed) << k;
+    for (const PhasePoint& p : outcome.path)
+      ASSERT_LT(p.position, 0.07) << k;  // the far side is at 0.077
+  }
 }
 
 TEST(PassivityMargin, IsRefusedWhereItDoesNotLieInTheRange) {
