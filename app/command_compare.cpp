@@ -9,10 +9,10 @@
 #include "app/compare/tables.hpp"
 #include "app/console.hpp"
 #include "app/pipeline/workspace.hpp"
+#include "format/artifact.hpp"
 #include "format/body.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
-#include "format/hdf5_file.hpp"
 #include "format/sha256.hpp"
 
 namespace palpate::app {
@@ -51,7 +51,7 @@ void add_positions(compare::ComparedSet& set, const fs::path& file) {
 
 /// Reads curves.h5 or library.h5.
 compare::ComparedSet read_set(const fs::path& file, const std::string& body) {
-  const std::string kind = hdf5::Reader(file, "give curves.h5 or library.h5").text("/", "artifact");
+  const std::string kind = artifact_kind(file, "give curves.h5 or library.h5");
   if (kind == "palpate.curves") {
     compare::ComparedSet set = compare::set_of(read_curves(file), file.string());
     if (!body.empty()) add_positions(set, body);

@@ -14,6 +14,7 @@
 #include "fem/solid/pressure_smoothness.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
+#include "format/flat_library.hpp"
 
 namespace palpate::app {
 namespace {
@@ -60,6 +61,13 @@ int export_curves(const Workspace& space) {
 int export_library(const Workspace& space) {
   write(vtkhdf::library_grid(read_library(space.library()), space.c.campaign.indentation.depth),
         space.out / "library.vtkhdf");
+  return kExitDone;
+}
+
+int export_runtime(const Workspace& space) {
+  const std::filesystem::path file = space.out / "library.plib";
+  write_flat_library(file, read_library(space.library()));
+  say("export: {}, {} kB", file.string(), (std::filesystem::file_size(file) + 999) / 1000);
   return kExitDone;
 }
 
@@ -193,8 +201,9 @@ CLI::App* add_part(CLI::App& parent, Action& action, const char* name, const cha
 }  // namespace
 
 void add_export_command(CLI::App& root, Action& action) {
-  CLI::App* command = root.add_subcommand(
-      "export", "Exports artifacts to ParaView (VTKHDF), CSV, CalculiX and FEBio");
+  CLI::App* command = root.add_subcommand("export",
+                                          "Exports artifacts to ParaView (VTKHDF), CSV, CalculiX "
+                                          "and FEBio, and libraries for the runtime");
   command->footer("Example: palpate export site data/cases/cylinder.toml --vertex 12");
   command->require_subcommand(1);
   add_part(*command, action, "body", "body.h5 -> body.vtkhdf", export_body);
@@ -209,6 +218,8 @@ void add_export_command(CLI::App& root, Action& action) {
   add_part(*command, action, "library",
            "library.h5 -> library.vtkhdf, with the forces at the depth of the case",
            export_library);
+  add_part(*command, action, "runtime",
+           "library.h5 -> library.plib, which the runtime loads without HDF5", export_runtime);
   add_recording_part(*command, action);
   const auto options = std::make_shared<SiteOptions>();
   CLI::App* site =

@@ -32,6 +32,10 @@ function(palpate_fuzzed target)
   endif()
 endfunction()
 
+if(NOT PALPATE_HDF5)
+  return()
+endif()
+
 # Eigen chooses alignment, and with it how memory is freed, by the instruction set. Sixteen bytes are what
 # libraries built for any processor (Ceres) take; every target that sees Eigen links this one. The runtime
 # and the format never do.

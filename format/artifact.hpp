@@ -2,6 +2,7 @@
 // What all artifacts have in common on disk: the root attributes and the provenance.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 #include "format/checks.hpp"
@@ -10,6 +11,10 @@
 
 namespace palpate {
 
+/// Kind of an artifact, "palpate.<kind>". A flat library is a library.
+/// @throws Error(Configuration) where the file is no artifact, with `remedy`.
+std::string artifact_kind(const std::filesystem::path& file, const std::string& remedy);
+
 /// Root attributes `artifact`, `schema`, `description`, `creator`.
 void write_root(hdf5::Writer& writer, const std::string& artifact, int schema,
                 const std::string& description);
@@ -17,6 +22,5 @@ void write_root(hdf5::Writer& writer, const std::string& artifact, int schema,
 /// Group /provenance with one group <NN>_<stage> per step.
 void write_provenance(hdf5::Writer& writer, const Provenance& provenance);
 Provenance read_provenance(const hdf5::Reader& reader);
-void check_provenance(const Checks& checks, const Provenance& provenance);
 
 }  // namespace palpate

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "format/error.hpp"
-#include "format/hdf5_file.hpp"
 #include "format/numbers.hpp"
 #include "format/vec3.hpp"
 
@@ -52,8 +51,10 @@ inline constexpr double kUnitTolerance = 1e-6;
 /// Throws with file, dataset, row and remedy at the first value that breaks a rule.
 class Checks {
  public:
-  /// For data just read: the file is at fault.
-  explicit Checks(const hdf5::Reader& reader)
+  /// For data just read: the file is at fault. `Reader`: hdf5::Reader or FlatReader.
+  template <class Reader>
+  requires requires(const Reader& reader) { reader.remedy(); }
+  explicit Checks(const Reader& reader)
       : file_(reader.file().string()), remedy_(reader.remedy()), kind_(ErrorKind::Configuration) {}
   /// For data about to be written: the caller is at fault.
   explicit Checks(const std::filesystem::path& target)

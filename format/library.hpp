@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// library.h5: surface + responses + certificate + provenance, all that a user ships.
-// Normative page: format/schema/library.md.
+// A response library: surface + responses + certificate + provenance, all that a user ships.
+// Normative pages: format/schema/library.md (library.h5), format/schema/flat.md.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "format/numbers.hpp"
@@ -139,8 +140,13 @@ struct Library {
 
 void write_library(const std::filesystem::path& path, const Library& library);  ///< see write_body
 
-/// Read and check: indices, finite numbers, unit directions, knots increasing from 0, slopes
-/// non-negative and finite, equal lengths, schema. @throws Error.
+/// Read a library.h5 or a flat library, and check: indices, finite numbers, unit directions, knots
+/// increasing from 0, slopes non-negative and finite, equal lengths, schema. @throws Error.
 Library read_library(const std::filesystem::path& path);
+
+/// The same from a file in memory; errors say "library in memory". An HDF5 file goes by way of a
+/// temporary file in TMPDIR.
+Library library_from_bytes(std::string_view bytes);
+inline constexpr const char* kInMemory = "library in memory";
 
 }  // namespace palpate

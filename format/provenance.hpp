@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace palpate {
+
+class Checks;
 
 /// One input file of a stage.
 struct InputDigest {
@@ -36,6 +39,12 @@ struct Provenance {
 ProvenanceStep make_provenance_step(std::string stage, std::string resolved_case,
                                     const std::vector<std::filesystem::path>& inputs,
                                     std::vector<std::pair<std::string, std::string>> facts = {});
+
+/// Name of the group of a step in a file: /provenance/<NN>_<stage>.
+std::string provenance_group(std::size_t position, const std::string& stage);
+
+/// At most 100 steps, each with a stage, and digests that are some.
+void check_provenance(const Checks& checks, const Provenance& provenance);
 
 /// "palpate <version> (<git revision>)" of this build.
 std::string creator_text();

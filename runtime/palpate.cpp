@@ -2,19 +2,15 @@
 // The C interface: checks arguments and turns exceptions into statuses.
 #include "runtime/palpate.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "format/error.hpp"
 #include "format/guarantee.hpp"
@@ -73,52 +69,6 @@ constexpr std::uint32_t kFirstInfo = offsetof(palpate_library_info, min_lipschit
 static_assert(sizeof(palpate_settings) >= kFirstContactSettings);
 
 constexpr double kRigid = 1e-9;  // tolerance of orthonormality of a rotation
-
-/// The bytes as a temporary file that exists as long as the object: the reader needs a path.
-class MemoryFile {
- public:
-  MemoryFile(const void* bytes, std::size_t size)
-      : path_((std::filesystem::temp_directory_path() / "palpate-XXXXXX").string()) {
-    const int file = mkostemp(path_.data(), O_CLOEXEC);
-    if (file < 0) fail_to("create", path_);
-    const char* from = static_cast<const char*>(bytes);
-    bool good = true;
-    while (good && size > 0) {
-      const ssize_t count = write(file, from, size);
-      good = count > 0;
-      from += count;
-      size -= static_cast<std::size_t>(std::max<ssize_t>(count, 0));
-    }
-    close(file);
-    if (good) return;
-    unlink(path_.c_str());
-    fail_to("write", path_);
-  }
-  ~MemoryFile() { unlink(path_.c_str()); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  [[noreturn]] static void fail_to(const char* what, const std::string& path) {
-    throw palpate::Error(palpate::ErrorKind::Internal, path,
-                         std::string("cannot ") + what + " the temporary file",
-                         "set TMPDIR to a folder with room");
-  }
-
-  std::string path_;
-};
-
-/// The library in that file; errors name the bytes instead of the file.
-palpate::Library read_from(const MemoryFile& file) {
-  try {
-    return palpate::read_library(file.path());
-  } catch (const palpate::Error& e) {
-    std::string where = e.where();
-    if (where.rfind(file.path(), 0) == 0) where.replace(0, file.path().size(), "library in memory");
-    throw palpate::Error(e.kind(), where, e.problem(), e.remedy());
-  }
-}
 
 palpate_observation translate(const ContactObservation& seen) noexcept {
   palpate_observation o{};
@@ -199,7 +149,7 @@ int palpate_library_load(const char* path, palpate_library** library) {
   return guarded(PALPATE_ERROR_FORMAT, [&] {
     if (const std::string kind = palpate::other_kind_of_file(path); !kind.empty()) {
       const std::string text =
-          std::string(path) + ": is not a regular file but " + kind + "; name a library.h5";
+          std::string(path) + ": is not a regular file but " + kind + "; name a library";
       return fail(PALPATE_ERROR_FILE, text.c_str());
     }
     if (!std::ifstream(path, std::ios::binary)) {
@@ -218,8 +168,8 @@ int palpate_library_load_memory(const void* bytes, size_t size, palpate_library*
   if (bytes == nullptr || size == 0)
     return fail(PALPATE_ERROR_ARGUMENT, "palpate_library_load_memory: bytes is null or size is 0");
   return guarded(PALPATE_ERROR_FORMAT, [&] {
-    const MemoryFile file(bytes, size);
-    *library = new palpate_library(read_from(file));
+    *library = new palpate_library(
+        palpate::library_from_bytes(std::string_view(static_cast<const char*>(bytes), size)));
     return static_cast<int>(PALPATE_OK);
   });
 }

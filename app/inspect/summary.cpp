@@ -7,10 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "format/artifact.hpp"
 #include "format/body.hpp"
 #include "format/curves.hpp"
 #include "format/guarantee.hpp"
-#include "format/hdf5_file.hpp"
 #include "format/library.hpp"
 #include "format/recording.hpp"
 #include "format/session_journal.hpp"
@@ -330,11 +330,6 @@ Json summary_of(const SessionSummary& session) {
           {"gaps", gaps}};
 }
 
-std::string artifact_kind(const std::filesystem::path& file) {
-  const hdf5::Reader reader(file, "give an artifact of palpate");
-  return reader.text("/", "artifact");
-}
-
 bool is_quantity(const Json& value) {
   return value.is_object() && value.contains("value") && value.contains("unit");
 }
@@ -402,7 +397,7 @@ Json summarize_artifact(const std::filesystem::path& file) {
     summary.update(summary_of(read_site_journal(file)));
     return summary;
   }
-  const std::string kind = artifact_kind(file);
+  const std::string kind = artifact_kind(file, "give an artifact of palpate");
   const auto head = [&](int schema) {
     return Json{{"file", file.string()}, {"artifact", kind}, {"schema", schema}};
   };

@@ -6,8 +6,10 @@ Usage: end_to_end_test.py PALPATE. The block is pressed at a few sites only, so 
 what is asserted are laws that hold whatever the numbers.
 """
 import csv
+import hashlib
 import json
 import math
+import struct
 import subprocess
 import sys
 import tempfile
@@ -217,6 +219,20 @@ class Pipeline(unittest.TestCase):
         self.run_ok("export", "site", self.case, "--out", self.out, "--vertex", site)
         self.assertGreater(vtk_points(vtkHDFReader, self.out / f"site-{site}.vtkhdf"), 0)
 
+    def test_the_flat_library_is_as_its_page_says_and_the_same_library(self):
+        self.run_ok("export", "runtime", self.case, "--out", self.out)
+        flat = flat_entries((self.out / "library.plib").read_bytes())
+        compared = 0
+        with h5py.File(self.out / "library.h5") as file:
+            for name, values in flat.items():
+                if name in file and file[name].dtype.kind in "fiu":
+                    self.assertEqual(values, file[name][()].ravel().tolist(), name)
+                    compared += 1
+        self.assertGreater(compared, 15)
+        flat_text, text = (self.run_ok("inspect", self.out / name)
+                           for name in ("library.plib", "library.h5"))
+        self.assertEqual(flat_text.replace("library.plib", "library.h5"), text)
+
     def test_a_site_is_exported_for_other_solvers(self):
         site = next(iter(rows_of_export(self)))["vertex"]
         decks = ("export", "site", self.case, "--out", self.out, "--vertex", site, "--calculix", "--febio")
@@ -348,6 +364,22 @@ class Pipeline(unittest.TestCase):
             for axis in "xyz":
                 name = f"force_{axis}_N"
                 self.assertAlmostEqual(float(a[name]), float(b[name]), delta=1e-5)
+
+
+def flat_entries(data):
+    """The numbers of each entry of a flat library, read as format/schema/flat.md says."""
+    magic, version, count, size = struct.unpack_from("<8sIIQ", data)
+    assert (magic, version) == (b"\x89PLP\r\n\x1a\n", 1)
+    assert data[size:] == b"\npalpate-sha256:%s\n" % hashlib.sha256(data[:size]).hexdigest().encode()
+    entries = {}
+    for i in range(count):
+        name, kind, columns, offset, rows = struct.unpack_from("<56sIIQQ", data, 64 + 128 * i)
+        assert offset % 64 == 0
+        if kind != 6:
+            letter = {1: "B", 2: "i", 3: "q", 4: "f", 5: "d"}[kind]
+            numbers = struct.unpack_from(f"<{rows * columns}{letter}", data, offset)
+            entries[name.rstrip(b"\0").decode()] = list(numbers)
+    return entries
 
 
 def rows_of_export(test):

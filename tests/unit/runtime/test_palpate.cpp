@@ -17,6 +17,7 @@
 #include <thread>
 #include <vector>
 
+#include "format/flat_library.hpp"
 #include "tests/unit/runtime/api_fixture.hpp"
 
 namespace palpate::test {
@@ -178,6 +179,40 @@ TEST_F(PalpateApi, LoadsFromMemory) {
   EXPECT_EQ(palpate_library_load_memory(nullptr, 10, &copy), PALPATE_ERROR_ARGUMENT);
   EXPECT_EQ(palpate_library_load("", &copy), PALPATE_ERROR_ARGUMENT);
   EXPECT_EQ(copy, nullptr);
+}
+
+/// The same library as a flat file, from disk and from memory: the same forces, bit for bit.
+TEST_F(PalpateApi, LoadsAFlatLibraryWithTheSameForces) {
+  const std::string flat = (folder_ / "library.plib").string();
+  write_flat_library(flat, read_library(path_));
+  std::ifstream file(flat, std::ios::binary);
+  const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), {});
+  std::array<palpate_library*, 2> libraries{};
+  ASSERT_EQ(palpate_library_load(flat.c_str(), &libraries[0]), PALPATE_OK) << palpate_last_error();
+  ASSERT_EQ(palpate_library_load_memory(bytes.data(), bytes.size(), &libraries[1]), PALPATE_OK);
+  for (palpate_library* library : libraries) {
+    palpate_state_reset(state_);
+    palpate_state* other = nullptr;
+    ASSERT_EQ(palpate_state_create(library, &settings_, &other), PALPATE_OK);
+    const double velocity[3] = {0, 0, 0};
+    double largest = 0;
+    for (int i = 0; i < 600; ++i) {
+      const double depth = 0.006 * std::sin(0.01 * i) - 0.001;
+      const Vec3 x{0.02 + 6e-5 * i, 0.03 + 0.01 * std::cos(0.02 * i), -depth};
+      Vec3 force{};
+      palpate_step(other, x.data(), velocity, kDt, force.data());
+      step(x);
+      ASSERT_EQ(force, force_) << i;
+      largest = std::max(largest, norm(force));
+    }
+    EXPECT_GT(largest, 0.1);  // N
+    palpate_state_destroy(other);
+    palpate_library_destroy(library);
+  }
+  palpate_library* damaged = nullptr;
+  EXPECT_EQ(palpate_library_load_memory(bytes.data(), bytes.size() - 1, &damaged),
+            PALPATE_ERROR_FORMAT);
+  EXPECT_EQ(std::string(palpate_last_error()).rfind("library in memory: has ", 0), 0U);
 }
 
 TEST_F(PalpateApi, AMovedBodyGivesTheMovedForces) {

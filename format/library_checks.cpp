@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "format/library_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "format/library_columns.hpp"
+#include "format/number_text.hpp"
+
+namespace palpate {
+namespace {
+
+const ResponseCurve& get(const NodeResponse& node, CurveMember which) {
+  return which(const_cast<NodeResponse&>(node));
+}
+
+/// Checks of the offsets come first: the other loops rely on them.
+void check_offset(const Checks& checks, const std::string& name,
+                  const std::vector<std::int64_t>& offset, std::size_t total) {
+  if (offset.front() != 0) checks.fail_row(name, 0, "is not 0");
+  for (std::size_t row = 1; row < offset.size(); ++row) {
+    if (offset[row] < offset[row - 1]) checks.fail_row(name, row, "is below the row before it");
+  }
+  checks.require(
+      offset.back() == static_cast<std::int64_t>(total), name,
+      "ends at " + std::to_string(offset.back()) + ", " + std::to_string(total) + " knots found");
+}
+
+void check_surface(const Checks& checks, const Library& library) {
+  const std::size_t vertices = library.positions.size();
+  checks.require(vertices > 0, "/surface/position", "is empty");
+  checks.vectors("/surface/position", library.positions, rules::kFinite);
+  checks.same_size("/surface/inward", library.inward.size(), vertices);
+  checks.vectors("/surface/inward", library.inward, rules::kUnit);
+  checks.corners("/surface/triangles", library.triangles, vertices);
+  checks.same_size("/response/status", library.responses.size(), vertices);
+  checks.require(std::isfinite(library.tool_radius) && library.tool_radius >= 0, "/@tool_radius",
+                 "is not finite and not negative");
+}
+
+/// A bound below L_min that slides can exceed would be promised and not kept.
+void check_enforceable(const Checks& checks, const Certificate& c) {
+  const double smallest = std::min(c.min_lipschitz_bound, std::max(c.stick, c.slip));
+  if (c.triangles.empty() || std::isinf(c.min_lipschitz_bound) || !(c.lipschitz_bound < smallest))
+    return;
+  checks.fail("/certificate@lipschitz_bound",
+              "is " + number_text(c.lipschitz_bound) +
+                  " N/m, below the smallest bound that the runtime can enforce "
+                  "(min_lipschitz_bound), " +
+                  number_text(c.min_lipschitz_bound) + " N/m: the certificate is false");
+}
+
+void check_certificate(const Checks& checks, const Library& library) {
+  const Certificate& certificate = library.certificate;
+  const auto check = [&](const char* name, double value, const Rule& rule) {
+    const bool fits = value >= rule.low && value <= rule.high;
+    if (!fits) checks.fail(std::string("/certificate@") + name, std::string("is not ") + rule.text);
+  };
+  const auto check_if_known = [&](const char* name, double value) {
+    if (!std::isnan(value)) check(name, value, rules::kBound);
+  };
+  const auto triangles = static_cast<double>(library.triangles.size());
+  const auto vertices = static_cast<double>(library.positions.size());
+  check("friction", certificate.friction, rules::kNonNegative);
+  check("depth", certificate.depth, rules::kNonNegative);
+  check("stick", certificate.stick, rules::kBound);
+  check("slip", certificate.slip, rules::kBound);
+  check_if_known("min_lipschitz_bound", certificate.min_lipschitz_bound);
+  check_if_known("lipschitz_bound", certificate.lipschitz_bound);
+  check_enforceable(checks, certificate);
+  check("worst_triangle", certificate.worst_triangle,
+        Rule{-1, triangles - 1, false, false, "-1 or a triangle"});
+  check("holes", certificate.holes, rules::up_to(vertices, "a number of vertices"));
+  check("interpolated", certificate.interpolated, rules::up_to(vertices, "a number of vertices"));
+  if (!certificate.triangles.empty()) {
+    checks.same_size("/certificate/triangle/stick", certificate.triangles.size(),
+                     library.triangles.size());
+  }
+  check_columns(checks, "/certificate/triangle", certificate.triangles, kTriangleColumns);
+  check_columns(checks, "/certificate/device", certificate.devices, kDeviceColumns);
+}
+
+}  // namespace
+
+FlatCurves flatten(const std::vector<NodeResponse>& responses, CurveMember which) {
+  FlatCurves flat;
+  flat.offset.push_back(0);
+  for (const NodeResponse& response : responses) {
+    const ResponseCurve& curve = get(response, which);
+    flat.knot.insert(flat.knot.end(), curve.knot.begin(), curve.knot.end());
+    flat.slope.insert(flat.slope.end(), curve.slope.begin(), curve.slope.end());
+    flat.offset.push_back(static_cast<std::int64_t>(flat.knot.size()));
+  }
+  return flat;
+}
+
+void unflatten(const FlatCurves& flat, CurveMember which, std::vector<NodeResponse>& responses) {
+  for (std::size_t vertex = 0; vertex < responses.size(); ++vertex) {
+    const auto first = flat.offset[vertex];
+    const auto last = flat.offset[vertex + 1];
+    ResponseCurve& curve = which(responses[vertex]);
+    curve.knot.assign(flat.knot.begin() + first, flat.knot.begin() + last);
+    curve.slope.assign(flat.slope.begin() + first, flat.slope.begin() + last);
+  }
+}
+
+std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses) {
+  std::vector<float> bases;
+  bases.reserve(responses.size());
+  for (const NodeResponse& response : responses) bases.push_back(response.coupling.base);
+  return bases;
+}
+
+void check_curves(const Checks& checks, const std::string& stem, const FlatCurves& flat,
+                  const std::vector<NodeResponse>& responses) {
+  checks.same_size(stem + "slope", flat.slope.size(), flat.knot.size());
+  check_offset(checks, stem + "offset", flat.offset, flat.knot.size());
+  checks.numbers(stem + "knot", flat.knot, rules::kNonNegative);
+  checks.numbers(stem + "slope", flat.slope, rules::kNonNegative);
+  for (std::size_t vertex = 0; vertex < responses.size(); ++vertex) {
+    const auto first = static_cast<std::size_t>(flat.offset[vertex]);
+    const auto last = static_cast<std::size_t>(flat.offset[vertex + 1]);
+    const bool may_be_empty = responses[vertex].status == ResponseStatus::Hole;
+    if (last - first < 2 && !(may_be_empty && last == first)) {
+      checks.fail_row(stem + "offset", vertex, "leaves the curve of this vertex under 2 knots");
+    }
+    for (std::size_t k = first; k < last; ++k) {
+      if (k == first && flat.knot[k] != 0) checks.fail_row(stem + "knot", k, "begins not at 0");
+      if (k > first && !(flat.knot[k] > flat.knot[k - 1])) {
+        checks.fail_row(stem + "knot", k, "is not above the knot before it");
+      }
+    }
+  }
+}
+
+void check_library(const Checks& checks, const Library& library) {
+  check_surface(checks, library);
+  check_certificate(checks, library);
+}
+
+void check_for_writing(const Checks& checks, const Library& library) {
+  check_surface(checks, library);
+  check_columns(checks, "/response", library.responses, kResponseColumns);
+  for (std::size_t vertex = 0; vertex < library.responses.size(); ++vertex) {
+    for (const CurveMember which : {normal_of, lateral_of, coupling_of}) {
+      const ResponseCurve& curve = get(library.responses[vertex], which);
+      if (curve.knot.size() != curve.slope.size()) {
+        checks.fail_row("/response/status", vertex, "knots and slopes differ in number");
+      }
+    }
+  }
+  check_curves(checks, "/response/normal_", flatten(library.responses, normal_of),
+               library.responses);
+  check_curves(checks, "/response/lateral_", flatten(library.responses, lateral_of),
+               library.responses);
+  if (library.kind == ResponseKind::Coupled) {
+    check_curves(checks, "/response/coupling_", flatten(library.responses, coupling_of),
+                 library.responses);
+    checks.numbers("/response/coupling_base", coupling_bases(library.responses), rules::kPositive);
+  }
+  check_certificate(checks, library);
+  check_provenance(checks, library.provenance);
+}
+
+}  // namespace palpate

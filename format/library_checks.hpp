@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// What every file of a response library is checked for, before it is written and after it is read.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "format/checks.hpp"
+#include "format/library.hpp"
+
+namespace palpate {
+
+/// Curves of all nodes end to end; node l owns the knots offset[l] .. offset[l+1]-1.
+struct FlatCurves {
+  std::vector<std::int64_t> offset;
+  std::vector<float> knot;
+  std::vector<float> slope;
+};
+
+/// One of the curves of a node.
+using CurveMember = ResponseCurve& (*)(NodeResponse&);
+inline ResponseCurve& normal_of(NodeResponse& node) {
+  return node.normal;
+}
+inline ResponseCurve& lateral_of(NodeResponse& node) {
+  return node.lateral;
+}
+inline ResponseCurve& coupling_of(NodeResponse& node) {
+  return node.coupling.curve;
+}
+FlatCurves flatten(const std::vector<NodeResponse>& responses, CurveMember which);
+/// The curves of the nodes from those of all; they have passed check_curves().
+void unflatten(const FlatCurves& flat, CurveMember which, std::vector<NodeResponse>& responses);
+
+/// w(0) of each node.
+std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses);
+
+/// Curves of all nodes; `stem`: "/response/normal_" and its like.
+void check_curves(const Checks& checks, const std::string& stem, const FlatCurves& flat,
+                  const std::vector<NodeResponse>& responses);
+/// Surface, tool and certificate of a library that was read.
+void check_library(const Checks& checks, const Library& library);
+/// All of it, and the provenance.
+void check_for_writing(const Checks& checks, const Library& library);
+
+}  // namespace palpate
