@@ -10,6 +10,7 @@
 //   growth [CELLS...]   time and memory against the size of the mesh, cells an edge
 //   poisson [CELLS...]  time and error near nu = 1/2, with and without refined elements
 //   elements [CELLS...] constant, nodal and no pressures
+//   profile [CELLS...]  parts of the processor time of a site, with and without refined elements
 //   sites               time against the number of sites
 //   threads [SITES...]  one thread against two
 #include <sys/resource.h>
@@ -27,6 +28,7 @@
 #include "fem/campaign/campaign.hpp"
 #include "fem/campaign/indentation.hpp"
 #include "fem/factor/cholesky.hpp"
+#include "fem/solve/profile.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -329,10 +331,51 @@ void against_poisson(const std::vector<int>& cells) {
     for (const bool refined : {false, true}) against_poisson(each, refined);
 }
 
+/// The parts of the processor time of the sites, in milliseconds a site, and their sum over it.
+void profile(int cells) {
+  const Body body = block(cells);
+  std::array<Profile, 2> profiles;
+  std::array<double, 2> seconds{};
+  for (const bool refined : {false, true}) {
+    CampaignSettings s = settings(0.49);
+    s.indentation.refine_under_tool = refined;
+    s.sites = inner_sites(body, 16);
+    active_profile = &profiles.at(refined);
+    CampaignReport report;
+    run_campaign(body, s, report);
+    active_profile = nullptr;
+    seconds.at(refined) = report.cpu_seconds;
+  }
+  const auto row = [&](const char* name, const auto& of) {
+    std::printf("| %s |", name);
+    for (std::size_t i = 0; i < 2; ++i)
+      std::printf(" %.1f ms | %.1f %% |", 1e3 * of(i) / 16, 100 * of(i) / seconds.at(i));
+    std::printf("\n");
+  };
+  const int per_edge = 2 * cells + 1;
+  std::printf("| %d nodes | undivided | | refined | |\n|---|---|---|---|---|\n",
+              per_edge * per_edge * (cells + 1));
+  std::array<double, 2> sum{};
+  for (std::size_t p = 0; p < kParts; ++p) {
+    const auto part = static_cast<Part>(p);
+    row(name_of(part), [&](std::size_t i) { return profiles.at(i).seconds(part); });
+    for (std::size_t i = 0; i < 2; ++i) sum.at(i) += profiles.at(i).seconds(part);
+  }
+  row("sum of the parts", [&](std::size_t i) { return sum.at(i); });
+  row("all", [&](std::size_t i) { return seconds.at(i); });
+}
+
+void profile(const std::vector<int>& cells) {
+  std::printf(
+      "normal path to 4 mm in 10 increments, nu = 0.49, 16 sites, one thread; processor time, a "
+      "site\n");
+  for (const int each : cells) profile(each);
+}
+
 int usage() {
   std::fputs(
       "usage: bench_precompute newton [8|26] | errors [CELLS...] | growth [CELLS...] | elements "
-      "[CELLS...] | poisson [CELLS...] | sites | threads [SITES...]\n",
+      "[CELLS...] | poisson [CELLS...] | profile [CELLS...] | sites | threads [SITES...]\n",
       stderr);
   return 2;
 }
@@ -350,6 +393,8 @@ int run(const std::string& part, const std::vector<int>& numbers) {
     elements(numbers.empty() ? std::vector<int>{8, 12} : numbers);
   } else if (part == "poisson") {
     against_poisson(numbers.empty() ? std::vector<int>{12} : numbers);
+  } else if (part == "profile") {
+    profile(numbers.empty() ? std::vector<int>{18} : numbers);
   } else if (part == "sites") {
     against_sites();
   } else if (part == "threads") {

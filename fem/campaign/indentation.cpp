@@ -15,6 +15,7 @@
 #include "fem/mesh/millimetres.hpp"
 #include "fem/mesh/tangent_frame.hpp"
 #include "fem/mesh/to_eigen.hpp"
+#include "fem/solve/profile.hpp"
 
 namespace palpate::fem {
 
@@ -47,6 +48,7 @@ std::vector<double> normal_increments(const IndentationSettings& settings,
 }
 
 SiteBody body_of_site(const CampaignContext& context, const Eigen::Vector3d& X) {
+  const PartTimer timer(Part::SiteMesh);
   const IndentationSettings& settings = context.indentation;
   const SiteMesh mesh = context.engine == Engine::Direct ? SiteMesh::WholeBody
                         : settings.refine_under_tool     ? SiteMesh::RefinedWindow

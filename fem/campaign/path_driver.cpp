@@ -6,6 +6,7 @@
 
 #include "fem/mesh/millimetres.hpp"
 #include "fem/mesh/to_eigen.hpp"
+#include "fem/solve/profile.hpp"
 
 namespace palpate::fem {
 
@@ -33,6 +34,7 @@ std::string about_inversion(const SolidModel& model, const Displacement& u) {
 
 bool PathDriver::advance(double from, double to, Predictor& states, Displacement& u,
                          CurveSample& sample, std::string& reason) {
+  const PartTimer timer(Part::Vectors);
   work_ = problem_.follows_work ? std::optional(0.0) : std::nullopt;
   // A tool that moves by a large part of its size at once could pass the surface unnoticed.
   double at = from, step = std::min(to - from, kLargestStep * problem_.tool_radius);
@@ -83,6 +85,7 @@ PathDriver::Outcome PathDriver::equilibrate(double s, int halvings, Displacement
 }
 
 std::string PathDriver::fault_of(const CurveSample& sample, const Displacement& u) const {
+  const PartTimer timer(Part::BodyPasses);
   if (sample.penetration > kLargestPenetration * problem_.tool_radius)
     return "the tool cuts into a part of the surface that cannot yield (is it fixed there?)";
   if (sample.displacement > kLargestStep * problem_.tool_radius && sample.contact_area == 0)
@@ -96,7 +99,9 @@ std::string PathDriver::fault_of(const CurveSample& sample, const Displacement& 
 
 void PathDriver::record(double s, const Displacement& u, CurveSample& sample) const {
   const ToolContact& contact = problem_.contact;
+  const PartTimer timer(Part::BodyPasses);
   const SolidModel::State state = problem_.model.energy(u);
+  const PartTimer inner(Part::Contact);
   sample.displacement = s;
   sample.force = to_vec3(contact.tool_force(u));
   sample.strain_energy = state.energy - problem_.energy_at_rest;

@@ -2,6 +2,7 @@
 #include "fem/campaign/predictor.hpp"
 
 #include "fem/solve/extrapolation.hpp"
+#include "fem/solve/profile.hpp"
 
 namespace palpate::fem {
 
@@ -30,6 +31,7 @@ Displacement Predictor::extrapolate(double s, std::size_t count) const {
 Displacement Predictor::predict(const SolidModel& model, double s) const {
   for (std::size_t count = states_.size(); count > 1; --count) {
     Displacement u = extrapolate(s, count);
+    const PartTimer timer(Part::BodyPasses);
     if (model.energy(u).min_J > kSmallestJ) return u;
   }
   return last();

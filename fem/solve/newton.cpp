@@ -7,6 +7,7 @@
 
 #include "fem/contact/increment_work.hpp"
 #include "fem/factor/dense_cholesky.hpp"
+#include "fem/solve/profile.hpp"
 
 namespace palpate::fem {
 
@@ -29,6 +30,7 @@ Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const 
                      const DilatationMultipliers* multipliers) {
   Equilibrium now;
   const SolidModel::State state = model.forces(u, now.residual, multipliers);
+  const PartTimer timer(Part::Contact);
   now.energy = state.energy + contact.energy(u);
   now.min_J = state.min_J;
   contact.add_forces(model, u, now.residual);
@@ -36,8 +38,12 @@ Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const 
 }
 
 void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& u) {
-  if (patch_ && patch_->covers(contact, u)) return;
-  patch_.emplace(contact, model_, u);
+  {
+    const PartTimer timer(Part::Contact);
+    if (patch_ && patch_->covers(contact, u)) return;
+    patch_.emplace(contact, model_, u);
+  }
+  const PartTimer timer(Part::WindowAnalysis);
   factor_.emplace(model_.pattern(), permutation_, patch_->unknowns());
   const std::vector<int>& ours = patch_->unknowns();
   index_in_patch_.clear();
@@ -48,6 +54,7 @@ void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& 
 }
 
 void NewtonSolver::shifted_stiffness(const Displacement& u, double patch, double all) {
+  const PartTimer timer(Part::WindowPasses);
   model_.stiffness(u, K_, multipliers_);
   const auto& start = model_.pattern().start;
   for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[to_index(start[i])] *= 1 + all;
@@ -61,6 +68,7 @@ void NewtonSolver::shifted_stiffness(const Displacement& u, double patch, double
 }
 
 bool NewtonSolver::factorize(const Displacement& u) {
+  const PartTimer timer(Part::WindowFactor);
   // A pressed body is stable against the tool, not without it: A is often indefinite on the patch.
   // Away from equilibrium a large pressure can make the rest indefinite, too; raising the whole
   // diagonal still gives a direction of descent.
@@ -87,10 +95,12 @@ bool NewtonSolver::factorize(const Displacement& u) {
 
 Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displacement& u,
                                         const Eigen::VectorXd& residual, double tolerance) {
+  const PartTimer timer(Part::WindowSolves);
   Eigen::VectorXd load = -residual, y(load.size()), d(load.size());
   contact.add_forces(model_, u, load);  // leaves the internal forces
   factor_->solve_forward(load.data(), y.data(), workspace_);
   if (const Eigen::Index count = root_.rows(); count > 0) {
+    const PartTimer inner(Part::Contact);
     patch_->start_from(contact, u);
     Eigen::VectorXd x(count), ordered = root_.triangularView<Eigen::Lower>() * y.tail(count);
     for (Eigen::Index i = 0; i < count; ++i) x[in_patch(i)] = ordered[i];
@@ -105,6 +115,7 @@ Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displa
 
 bool NewtonSolver::line_search(const ToolContact& contact, const Eigen::VectorXd& d,
                                Equilibrium& now, Displacement& u) const {
+  const PartTimer timer(Part::WindowPasses);
   const double slope = now.residual.dot(d);
   const double norm = now.residual.norm();
   double step = 1;
@@ -126,6 +137,7 @@ bool NewtonSolver::line_search(const ToolContact& contact, const Eigen::VectorXd
 
 NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions& options,
                                  Displacement& u) {
+  const PartTimer timer(Part::WindowPasses);
   constexpr double kGoodContraction = 0.3;
   NewtonResult result;
   Equilibrium now = evaluate(model_, contact, u, multipliers_);
@@ -164,6 +176,7 @@ std::optional<double> NewtonSolver::work_between(const ToolContact& contact,
                                                  const Displacement& before,
                                                  const Displacement& after) {
   if (!factorized_) return std::nullopt;
+  const PartTimer timer(Part::Contact);
   return fem::work_between(*patch_, patch_stiffness_, contact, from, before, after);
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fem/solid/rigid_motion.hpp"
+#include "fem/solve/profile.hpp"
 
 namespace palpate::fem {
 
@@ -45,6 +46,7 @@ bool SharedFactorSolver::relax_window(const ToolContact& contact, const NewtonOp
 }
 
 Equilibrium SharedFactorSolver::evaluated(const ToolContact& contact, const Displacement& u) const {
+  const PartTimer timer(Part::BodyPasses);
   Equilibrium now = evaluate(whole_, contact, u, &multipliers_);
   if (prolongation_ != nullptr) now.residual = prolongation_->reduced(now.residual);
   return now;
@@ -71,6 +73,7 @@ Eigen::VectorXd SharedFactorSolver::direction(const Eigen::VectorXd& residual) {
 }
 
 void SharedFactorSolver::solve_rotated(Eigen::VectorXd& q, Eigen::VectorXd& d) const {
+  const PartTimer timer(Part::SharedSolves);
   if (!rotated_) return rest_solve_(q, d);
   const auto rotate = [](const Eigen::Matrix3d& R, Eigen::VectorXd& v) {
     Eigen::Map<Eigen::Matrix3Xd> nodes(v.data(), 3, v.size() / 3);
@@ -133,7 +136,10 @@ SharedFactorSolver::Verdict SharedFactorSolver::judge(const ToolContact& contact
   if (!multipliers_.any()) return balanced ? Verdict::Converged : Verdict::GoOn;
   if (!balanced && force_error() > kNextMultipliers * error_after_multipliers_)
     return Verdict::GoOn;
-  whole_.update(u, multipliers_);
+  {
+    const PartTimer timer(Part::BodyPasses);
+    whole_.update(u, multipliers_);
+  }
   if (!relax_window(contact, options, u, result)) return Verdict::Failed;
   now = evaluated(contact, u);
   error_ = imbalance(whole_, now.residual, options.round_off) / force;
@@ -155,6 +161,7 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
 
 NewtonResult SharedFactorSolver::equilibrate(const ToolContact& contact,
                                              const NewtonOptions& options, Displacement& u) {
+  const PartTimer timer(Part::Vectors);
   NewtonResult result;
   error_ = 0.1;
   error_after_multipliers_ = 1;
