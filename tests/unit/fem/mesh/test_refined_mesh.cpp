@@ -147,10 +147,73 @@ TEST(RefinedMesh, IsConformingWithTheSameVolumeAndSurface) {
   EXPECT_EQ(all.mesh.tetrahedra.size(), 8 * whole.tetrahedra.size());
 }
 
+/// Children with a corner within `reach` of the origin, half as far at each further level.
+ElementChoice within(double reach) {
+  return [reach](const std::array<Eigen::Vector3d, 4>& corners, int level) {
+    return std::ranges::any_of(corners, [&](const Eigen::Vector3d& x) {
+      return x.norm() <= reach * std::pow(0.5, level);
+    });
+  };
+}
+
+double total_volume(const QuadraticMesh& mesh) {
+  double sum = 0;
+  for (const Tetrahedron10& t : mesh.tetrahedra) sum += volume(mesh, t);
+  return sum;
+}
+
+/// Of the regular tetrahedron 1, of a flat one 0.
+double worst_shape(const QuadraticMesh& mesh) {
+  double worst = 1;
+  for (const Tetrahedron10& t : mesh.tetrahedra) {
+    double squares = 0;
+    for (const auto& [i, j] : kTetEdges)
+      squares += (mesh.X.col(t[i]) - mesh.X.col(t[j])).squaredNorm();
+    worst = std::min(worst, 12 * std::pow(3 * volume(mesh, t), 2.0 / 3) / squares);
+  }
+  return worst;
+}
+
+TEST(RefinedMesh, IsConformingAtEveryNumberOfLevels) {
+  const QuadraticMesh whole = make_quadratic_mesh(block_of(6));
+  const std::vector<int> some = elements_around(whole, 0.006);
+  std::size_t fewest = whole.tetrahedra.size();
+  std::vector<double> shapes;
+  for (const int levels : {1, 2, 3, 4, 5}) {
+    const RefinedMesh refined = refine_elements(whole, some, levels, within(0.006));
+    expect_conforming(refined.mesh);
+    EXPECT_NEAR(total_volume(refined.mesh), 0.03 * 0.03 * 0.015, 1e-12);
+    EXPECT_NEAR(area(refined.mesh), area(whole), 1e-12);
+    EXPECT_GT(refined.mesh.tetrahedra.size(), fewest + 300);
+    fewest = refined.mesh.tetrahedra.size();
+    shapes.push_back(worst_shape(refined.mesh));
+    double smallest = 1;
+    for (const Tetrahedron10& t : refined.mesh.tetrahedra)
+      smallest = std::min(smallest, (refined.mesh.X.col(t[0]) - refined.mesh.X.col(t[1])).norm());
+    EXPECT_NEAR(smallest, 0.005 * std::pow(0.5, levels), 1e-9);
+  }
+  EXPECT_GT(shapes[4], 0.99 * shapes[1]);  // children of closures are not divided again
+}
+
+// Far from what a tool asks for: any child may be divided, beside any that is not.
+TEST(RefinedMesh, IsConformingWhateverIsChosen) {
+  const QuadraticMesh whole = make_quadratic_mesh(block_of(4));
+  for (const std::size_t every : {7U, 23U, 61U}) {
+    std::size_t asked = 0;
+    const RefinedMesh refined = refine_elements(
+        whole, {5, 100, 101}, 4,
+        [&](const std::array<Eigen::Vector3d, 4>&, int) { return asked++ % every == 0; });
+    expect_conforming(refined.mesh);
+    EXPECT_NEAR(total_volume(refined.mesh), 0.03 * 0.03 * 0.015, 1e-12);
+    EXPECT_NEAR(area(refined.mesh), area(whole), 1e-12);
+  }
+}
+
 // A quadratic field is represented by an element and by its children.
 TEST(RefinedMesh, ProlongsQuadraticFieldsExactly) {
   const QuadraticMesh whole = make_quadratic_mesh(block_of(4));
-  const RefinedMesh refined = refine_elements(whole, elements_around(whole, 0.005));
+  const RefinedMesh refined =
+      refine_elements(whole, elements_around(whole, 0.005), 3, within(0.005));
   const auto field = [](const Eigen::Vector3d& X) {
     return 3 + 2 * X[0] - X[2] + 40 * X[0] * X[1] - 7 * X[2] * X[2];
   };
@@ -189,7 +252,8 @@ Body domed_block(int across) {
 // Curved edges make the top the paraboloid itself; the children lie on it, too.
 TEST(RefinedMesh, FollowsACurvedSurface) {
   const QuadraticMesh whole = make_quadratic_mesh(domed_block(4));
-  const RefinedMesh refined = refine_elements(whole, elements_around(whole, 0.005));
+  const RefinedMesh refined =
+      refine_elements(whole, elements_around(whole, 0.005), 3, within(0.005));
   int on_top = 0;
   for (const QuadraticMesh* mesh : {&whole, &refined.mesh})
     for (const Facet& f : mesh->facets) {
