@@ -15,7 +15,8 @@ namespace palpate::app {
 inline constexpr int kExitDone = 0;
 inline constexpr int kExitUsage = 2;
 inline constexpr int kExitSomeSitesFailed = 4;
-inline constexpr int kExitIncomplete = 4;  ///< the recording of a damaged journal
+inline constexpr int kExitIncomplete =
+    4;  ///< the recording of a damaged journal, or a session of guesses
 
 /// Exit code of a campaign. Some sites that ended early leave a usable library: they are a warning,
 /// unless the caller is strict.
@@ -26,6 +27,9 @@ int exit_code_of(const Counts& counts, bool strict) {
 }
 inline constexpr const char* kStrictHelp =
     "Exit with 4 if any site ended early, even if the library is usable without it";
+
+inline constexpr const char* kStrictSessionHelp =
+    "Exit with 4 if any step went beyond the deepest sample, where forces are extrapolated";
 
 using Action = std::function<int()>;
 

@@ -37,7 +37,7 @@ struct RunOptions {
   std::vector<double> at_mm{0, 0, 0};
   std::optional<double> watchdog, max_force;
   std::optional<double> friction;  ///< none: that of the certificate
-  bool list = false, uncertified = false;
+  bool list = false, uncertified = false, strict = false;
 };
 
 std::atomic<bool> interrupted{false};
@@ -97,7 +97,7 @@ void say_quantiles(const char* what, const runtime::LatencyHistogram& h) {
       1e-3 * static_cast<double>(h.largest()));
 }
 
-void summarize(const LiveOutcome& outcome, const std::string& file) {
+void summarize(const LiveOutcome& outcome, const DepthWatch& depths, const std::string& file) {
   const runtime::LoopCounts& c = outcome.counts;
   if (!outcome.missing_rights.empty()) say("  missing permissions: {}", outcome.missing_rights);
   say("run: {} steps -> {}", c.steps, file);
@@ -106,6 +106,8 @@ void summarize(const LiveOutcome& outcome, const std::string& file) {
   say("  steps that overran {} (periods missed {}), cut off {}, clamped {}, saturated {}, not "
       "recorded {}",
       c.overruns, c.missed, c.cut_off, c.clamped, c.saturated, c.unrecorded);
+  say("  steps in contact {}, extrapolated beyond the computed depth {}", depths.contact(),
+      depths.beyond());
   say("  samples: late {}, older than the watchdog allows {}, rejected {}", c.stale, c.outdated,
       c.rejected);
 }
@@ -125,6 +127,13 @@ RecordingHeading heading_of(const RunOptions& options, const Library& library,
                                        options.live.loop.rate, options.uncertified),
                            {options.library}));
   return heading;
+}
+
+/// Before the summary: forces beyond the deepest sample are guesses.
+void warn_of_depth(const DepthWatch& depths, const Library& library) {
+  if (depths.beyond() == 0) return;
+  warn(depths.warning(depth_of_responses(library),
+                      "press less deep, or compute to a larger [indentation] depth"));
 }
 
 /// @throws Error when the session ended because of a fault.
@@ -208,9 +217,10 @@ int run(RunOptions options) {
   const LiveOutcome outcome = run_live(*device, body, options.live, recorder, interrupted);
   if (outcome.not_recorded) throw_with_journal(*outcome.not_recorded, recorder.journal());
   recorder.finish();
-  summarize(outcome, options.recording);
+  warn_of_depth(recorder.depths(), library);
+  summarize(outcome, recorder.depths(), options.recording);
   require_good_end(outcome, device->name(), options.recording);
-  return kExitDone;
+  return options.strict && recorder.depths().beyond() > 0 ? kExitIncomplete : kExitDone;
 }
 
 void add_device_options(CLI::App& command, RunOptions& o) {
@@ -255,6 +265,7 @@ void add_loop_options(CLI::App& command, RunOptions& o) {
                   "Position of the origin of the body in device coordinates: X Y Z")
       ->expected(3);
   command.add_option("--out", o.recording, "Recording (default: recording.h5)");
+  command.add_flag("--strict", o.strict, kStrictSessionHelp);
 }
 
 }  // namespace

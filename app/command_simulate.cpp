@@ -18,52 +18,46 @@ namespace {
 
 /// Statistics of a session, updated after each step.
 struct Summary {
-  std::int64_t steps = 0, contact = 0, sliding = 0, throttled = 0, limited = 0, beyond = 0;
-  double deepest = 0, largest = 0, absorbed = 0;
+  std::int64_t steps = 0, sliding = 0, throttled = 0, limited = 0;
+  double largest = 0, absorbed = 0;
   runtime::LatencyHistogram latency;
 
   void see(const RecordedStep& step) {
     const auto one_if = [&](std::uint32_t bit) { return (step.status & bit) != 0 ? 1 : 0; };
     ++steps;
-    contact += one_if(PALPATE_CONTACT);
     sliding += one_if(PALPATE_SLIDING);
     throttled += one_if(PALPATE_FORCE_LIMITED);
     limited += one_if(PALPATE_ENERGY_LIMITED);
-    beyond += one_if(PALPATE_BEYOND_DEPTH);
-    deepest = std::max(deepest, step.depth);
     largest = std::max(largest, norm(step.force));
     absorbed = step.absorbed;
     latency.add(step.latency_ns);
   }
 };
 
-/// Forces beyond the deepest sample are guesses: a reader hears it before anything else.
-void warn_of_depth(const Summary& s, double known) {
-  if (s.beyond == 0) return;
-  say("  WARNING: {} of {} steps in contact went beyond the deepest sample: their forces are "
-      "extrapolated, not computed. Every response is known to {} mm, the deepest step is {} mm; "
-      "give "
-      "a smaller [simulate] press_depth, or compute to a larger [indentation] depth",
-      s.beyond, s.contact, number_text(1e3 * known), number_text(1e3 * s.deepest));
-}
-
-void print(const Summary& s, double rate, const std::filesystem::path& file) {
+void print(const Summary& s, const DepthWatch& depths, double rate,
+           const std::filesystem::path& file) {
   say("simulate: {} steps at {} Hz, deepest {} mm, largest force {} -> {}", s.steps, rate,
-      number_text(1e3 * s.deepest), force_text(s.largest), file.string());
+      number_text(1e3 * depths.deepest()), force_text(s.largest), file.string());
   say("  steps in contact {}, sliding {}, throttled {}, limited by the energy tank {}, "
       "extrapolated "
       "beyond the computed depth {}",
-      s.contact, s.sliding, s.throttled, s.limited, s.beyond);
+      depths.contact(), s.sliding, s.throttled, s.limited, depths.beyond());
   say("  absorbed by the body: {} mJ; force step: median {:.2f} us, 99 % within {:.2f} us",
       number_text(1e3 * s.absorbed), s.latency.quantile(0.5) * 1e-3,
       s.latency.quantile(0.99) * 1e-3);
 }
 
-int simulate(const CaseOptions& options, const std::string& library_option,
-             double lipschitz_bound) {
+struct SimulateOptions {
+  std::string library;
+  double lipschitz_bound = 0;  ///< N/m; 0: that of the library
+  bool strict = false;
+};
+
+int simulate(const CaseOptions& options, const SimulateOptions& session_options) {
   Workspace space = open_workspace(options);
-  const std::filesystem::path file =
-      library_option.empty() ? space.library() : std::filesystem::path(library_option);
+  const std::filesystem::path file = session_options.library.empty()
+                                         ? space.library()
+                                         : std::filesystem::path(session_options.library);
   if (!std::filesystem::exists(file)) {
     throw Error(ErrorKind::Configuration, file.string(), "the file does not exist",
                 "make it with `palpate build`");
@@ -72,7 +66,7 @@ int simulate(const CaseOptions& options, const std::string& library_option,
   prepare_output(space.out);
   recover_and_report(space.recording());
   space.c.simulate = settled(space.c.simulate, library);
-  ScriptedSession session(file, library, space.c.simulate, lipschitz_bound);
+  ScriptedSession session(file, library, space.c.simulate, session_options.lipschitz_bound);
   RecordingHeading heading = session.heading();
   heading.provenance = library.provenance;
   heading.provenance.steps.push_back(
@@ -88,9 +82,14 @@ int simulate(const CaseOptions& options, const std::string& library_option,
     throw_with_journal(error, recorder.journal());
   }
   recorder.finish();
-  warn_of_depth(summary, depth_of_responses(library));
-  print(summary, heading.rate, space.recording());
-  return kExitDone;
+  const DepthWatch& depths = recorder.depths();
+  // Before anything else: forces beyond the deepest sample are guesses.
+  if (depths.beyond() > 0)
+    warn(depths.warning(depth_of_responses(library),
+                        "give a smaller [simulate] press_depth, or compute to a larger "
+                        "[indentation] depth"));
+  print(summary, depths, heading.rate, space.recording());
+  return session_options.strict && depths.beyond() > 0 ? kExitIncomplete : kExitDone;
 }
 
 }  // namespace
@@ -101,19 +100,18 @@ void add_simulate_command(CLI::App& root, Action& action) {
       "Scripted press, slide and release on library.h5 with a simulated device -> recording.h5");
   command->footer("Example: palpate simulate data/cases/cylinder.toml --out out/cylinder");
   const auto options = add_case_options(*command);
-  const auto library = std::make_shared<std::string>();
-  command->add_option("--library", *library, "Response library (default: library.h5 of the case)");
-  const auto lipschitz_bound = std::make_shared<double>(0);
+  const auto session = std::make_shared<SimulateOptions>();
+  command->add_option("--library", session->library,
+                      "Response library (default: library.h5 of the case)");
   command
       ->add_option(
-          "--lipschitz-bound", *lipschitz_bound,
+          "--lipschitz-bound", session->lipschitz_bound,
           "N/m: Lipschitz bound of the force that the runtime enforces, at least the L_min "
           "of the library (default: that of the library)")
       ->check(CLI::PositiveNumber);
-  command->callback([options, library, lipschitz_bound, &action] {
-    action = [options, library, lipschitz_bound] {
-      return simulate(*options, *library, *lipschitz_bound);
-    };
+  command->add_flag("--strict", session->strict, kStrictSessionHelp);
+  command->callback([options, session, &action] {
+    action = [options, session] { return simulate(*options, *session); };
   });
 }
 

@@ -16,6 +16,7 @@
 #include "format/session_journal.hpp"
 #include "format/site_journal.hpp"
 #include "format/site_record.hpp"
+#include "runtime/palpate.h"
 
 namespace palpate::app {
 namespace {
@@ -254,13 +255,15 @@ Json summary_of(const Library& library) {
 
 Json summary_of(RecordingReader& reader) {
   double depth = 0, force = 0;
-  std::int64_t slowest = 0;
+  std::int64_t slowest = 0, contact = 0, beyond = 0;
   RecordedStep last;
   for (auto steps = reader.next(); !steps.empty(); steps = reader.next()) {
     for (const RecordedStep& step : steps) {
       depth = std::max(depth, step.depth);
       force = std::max(force, norm(step.force));
       slowest = std::max(slowest, step.latency_ns);
+      contact += (step.status & PALPATE_CONTACT) != 0 ? 1 : 0;
+      beyond += (step.status & PALPATE_BEYOND_DEPTH) != 0 ? 1 : 0;
     }
     last = steps.back();
   }
@@ -270,6 +273,8 @@ Json summary_of(RecordingReader& reader) {
           {"rate", with_unit(recording.rate, "Hz")},
           {"friction", recording.friction},
           {"steps", reader.steps()},
+          {"steps_in_contact", contact},
+          {"steps_extrapolated_beyond_depth", beyond},
           {"duration", with_unit(static_cast<double>(last.time_ns) * 1e-9, "s")},
           {"max_depth", with_unit(depth, "m")},
           {"max_force", with_unit(force, "N")},

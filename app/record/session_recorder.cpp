@@ -90,6 +90,7 @@ SessionRecorder::SessionRecorder(fs::path recording, const RecordingHeading& hea
 }
 
 void SessionRecorder::add(const RecordedStep& step) {
+  depths_.see(step);
   waiting_.push_back(step);
   if (waiting_.size() == kMostWaiting) write_waiting();
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/record/depth_watch.hpp"
 #include "format/error.hpp"
 #include "format/recording.hpp"
 #include "format/session_journal.hpp"
@@ -55,6 +56,7 @@ class SessionRecorder {
   void finish();
 
   std::uint64_t steps() const { return journal_.steps() + waiting_.size(); }
+  const DepthWatch& depths() const { return depths_; }  ///< of all steps
   const std::filesystem::path& journal() const { return journal_.path(); }
 
  private:
@@ -65,6 +67,7 @@ class SessionRecorder {
   Provenance provenance_;
   SessionJournal journal_;
   std::vector<RecordedStep> waiting_;
+  DepthWatch depths_;
   Clock::time_point written_ = Clock::now(), synchronized_ = written_;
 };
 

@@ -28,7 +28,7 @@ from bodies import CASE, DEVICE, write_case  # noqa: E402
 
 PALPATE = None
 WRITE_PLATE = None
-DONE, INTERNAL, CONFIGURATION = 0, 1, 2
+DONE, INTERNAL, CONFIGURATION, INCOMPLETE = 0, 1, 2, 4
 RATE = 1000  # Hz
 
 
@@ -217,6 +217,38 @@ class Session(unittest.TestCase):
         self.assertEqual(accepted.returncode, DONE, accepted.stderr)
         self.assertIn("no guarantee: bench: its delay is unknown", accepted.stdout)
         self.assertNotIn("certified passive", accepted.stdout)
+
+    def test_a_session_beyond_the_deepest_sample_says_so_and_does_not_flatter(self):
+        """The plate is known to 20 mm; its samples end there whatever the script asks for."""
+        out = self.root / "out"
+        for depth in (12, 30):
+            command = self.scripted(out, 40)
+            case = Path(command[1])
+            case.write_text(case.read_text(encoding="utf-8").replace('press_depth = "1 mm"', f'press_depth = "{depth} mm"'),
+                            encoding="utf-8")
+            felt = palpate(*command)
+            strict = palpate(*command, "--strict")
+            self.assertEqual(felt.returncode, DONE, felt.stderr)
+            with h5py.File(out / "recording.h5") as file:
+                deep = int(np.count_nonzero(file["step/depth"][:] > 0.020))
+            shown = json.loads(palpate("inspect", "--json", out / "recording.h5").stdout)
+            self.assertEqual(shown["steps_extrapolated_beyond_depth"], deep)
+            if depth < 20:
+                self.assertEqual((deep, felt.stderr, strict.returncode), (0, "", DONE))
+                continue
+            self.assertGreater(deep, 1000)
+            self.assertEqual(strict.returncode, INCOMPLETE)
+            self.assertIn(f"warning: {deep} of {shown['steps_in_contact']} steps in contact went beyond the deepest sample",
+                          felt.stderr)
+            self.assertIn("every response is known to 20.0 mm", felt.stderr)
+            self.assertIn(f"extrapolated beyond the computed depth {deep}", felt.stdout)
+            self.assertNotIn("beyond the deepest sample", felt.stdout)
+
+    def test_a_live_session_states_its_steps_beyond_the_deepest_sample(self):
+        felt = palpate(*self.run_arguments(self.root / "felt.h5", 1), "--strict")
+        self.assertEqual(felt.returncode, DONE, felt.stderr)
+        self.assertRegex(felt.stdout, r"steps in contact \d+, extrapolated beyond the computed depth 0\n")
+        self.assertNotIn("warning: ", felt.stderr)
 
     def test_a_killed_simulation_keeps_its_steps(self):
         out = self.root / "out"

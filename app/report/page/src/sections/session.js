@@ -8,8 +8,9 @@ const scale = (column, factor) => Float64Array.from(column, (x) => x * factor);
 function accountSentence(session) {
   const { least, time } = session.margin;
   const holds = least >= -1e-12;
+  const guessed = session.counts.beyond_depth > 0 ? ', with extrapolated forces' : '';
   return el('p', { id: 'account', class: holds ? undefined : 'warn' }, holds
-    ? `In every step the absorbed energy covered the stored energy: absorbed \u2212 (stored + tank) was at least ${units.energy(Math.max(0, least))}. The session was passive.`
+    ? `In every step the absorbed energy covered the stored energy: absorbed \u2212 (stored + tank) was at least ${units.energy(Math.max(0, least))}. The session was passive${guessed}.`
     : `The energy account was violated: absorbed \u2212 (stored + tank) fell to ${units.energy(least)} at ${units.significant(time)} s. The session was not passive.`);
 }
 
@@ -17,7 +18,7 @@ function accountSentence(session) {
 function beyondSentence({ session, key }) {
   const { beyond_depth: beyond, contact } = session.counts;
   if (!beyond) return [];
-  return [el('p', { id: 'beyond', class: 'warn' }, `${units.count(beyond)} of ${units.count(contact)} steps in contact went beyond the deepest sample (${units.length(key.depth)} was asked for): their forces are extrapolated, not computed. The energy account below does not judge them.`)];
+  return [el('p', { id: 'beyond', class: 'warn' }, `${units.count(beyond)} of ${units.count(contact)} steps in contact went beyond the deepest sample (${units.length(key.depth)} was asked for): their forces are extrapolated, not computed. The energy account below holds for these guesses too, but says nothing about the body.`)];
 }
 
 function countsSentence(counts, steps) {
