@@ -5,10 +5,9 @@
 #include <memory>
 #include <string>
 
-#include "app/case/case.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
-#include "app/init/first_case.hpp"
+#include "app/init/counted_case.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 
@@ -43,13 +42,9 @@ int write_first_case(const InitOptions& options) {
     refuse(target.string(), "the file exists", "remove it, or give another name with -o");
   const BodyFile body = read_body_file(options.file, options.unit);
   const Base base = find_base(body.surface);
-  const int sites = static_cast<int>(options.sites * body.area_excess);
-  const FirstSizes sizes = first_sizes(body.surface, base, sites);
-  const fs::path folder = fs::absolute(target).parent_path();
+  // Never writes a case that would be refused.
   const FirstCase first =
-      first_case(body, base, sizes, fs::proximate(options.file, folder).generic_string(),
-                 name_instead_of(target.stem().string()));
-  parse_case(first.toml, target.string());  // never writes a case that would be refused
+      counted_case(body, base, options.sites, name_instead_of(target.stem().string()), target);
   write_file_crash_safely(target, first.toml);
   for (const std::string& remark : first.remarks) say("  {}", remark);
   say("init: {}; next: palpate build {}", target.string(), target.string());

@@ -60,14 +60,17 @@ void write_source(Text& text, const BodyFile& body, const std::string& file) {
 
 void write_mesh(Text& text, const BodyFile& body, const FirstSizes& sizes) {
   const double area = sizes.pressable_area / body.area_excess;
+  const std::string sites =
+      sizes.sites ? std::to_string(*sizes.sites)
+                  : fmt::format("some {:.0f}",
+                                area / (kAreaOfVertex * sizes.patch_spacing * sizes.patch_spacing));
   text.section("[mesh]");
   text.length("patch_spacing", sizes.patch_spacing,
-              fmt::format("{}some {:.0f} sites on {} cm^2; halve it for four times as many",
+              fmt::format("{}{} sites on {} cm^2; halve it for up to four times as many",
                           sizes.is_thin       ? "smaller for a thin body: "
                           : sizes.is_coarsest ? "the largest that shows the shape: "
                                               : "",
-                          area / (kAreaOfVertex * sizes.patch_spacing * sizes.patch_spacing),
-                          number_text(1e4 * area)));
+                          sites, number_text(1e4 * area)));
   text.length("element_size", sizes.element_size,
               body.kind == BodyKind::VolumeMesh ? "no effect: the mesh is used as it is"
                                                 : "half a patch; smaller is more accurate");

@@ -2,6 +2,9 @@
 // Sizes of a mesh, a tool and its paths that suit a body.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "app/init/base.hpp"
 #include "mesher/geometry/surface.hpp"
 
@@ -17,10 +20,11 @@ struct FirstSizes {
   double tool_radius = 0;
   double depth = 0;
   double lateral_travel = 0;
-  double pressable_area = 0;  ///< m^2, that off the base
-  double thickness = 0;       ///< m, of the body below the surface, in the median
-  bool is_thin = false;       ///< the thickness, not the number of sites, sets the patches
-  bool is_coarsest = false;   ///< fewer sites would need patches that do not show the shape
+  double pressable_area = 0;          ///< m^2, that off the base
+  double thickness = 0;               ///< m, of the body below the surface, in the median
+  bool is_thin = false;               ///< the thickness, not the number of sites, sets the patches
+  bool is_coarsest = false;           ///< fewer sites would need patches that do not show the shape
+  std::optional<std::int64_t> sites;  ///< of the meshed body, where it was meshed
 };
 
 /// Patches so large that about `sites` response vertices lie off the base, but at most a sixth of

@@ -53,8 +53,12 @@ class Init(unittest.TestCase):
 
     def assert_serves(self, file, sites=80):
         """Init and mesh: sizes fit the body, some nodes are fixed, and about so many sites are left."""
-        case, keys, _ = self.init(file, "--sites", sites)
+        case, keys, said = self.init(file, "--sites", sites)
         nodes, made, fixed = self.mesh(case)
+        self.assertEqual(int(re.search(r"sites: (\d+)", said).group(1)), made)
+        self.assertRegex(case.read_text(encoding="utf-8"), rf"patch_spacing = .*\b{made} sites on ")
+        if "instead of" not in said:
+            self.assertLess(abs(made - sites), 0.3 * sites)
         extent = np.ptp(nodes, axis=0).max()
         self.assertLess(metres(keys["mesh"]["patch_spacing"]), extent / 5)
         self.assertGreater(metres(keys["mesh"]["patch_spacing"]), extent / 100)
