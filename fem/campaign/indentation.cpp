@@ -128,19 +128,22 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
   for (const double depth : normal_increments(context_.indentation, stops)) {
     CurveSample sample;
     std::string reason;
-    if (!driver.advance(from, depth, states, u, sample, reason)) {
-      stop_early(curves, "normal path " + reason);
-      break;
-    }
+    const bool found = driver.advance(from, depth, states, u, sample, reason);
+    if (!found) stop_early(curves, "normal path " + reason);
+    if (!found && !(driver.reached() > from)) break;
     path.samples.push_back(sample);
     work.push_back(driver.work());
     if (observer_) observer_(site.contact, u, sample);
     if (no_slip) site.contact.bond(u);
+    from = driver.reached();
     for (const double stop : stops)
-      if (same_depth(stop, depth))
+      if (same_depth(stop, from))
         site.lateral_starts.emplace(stop, Site::LateralStart{u, site.contact, 0.0});
-    from = depth;
+    if (!found) break;
   }
+  // A site that ended above every lateral depth has its lateral response where it ended.
+  if (site.lateral_starts.empty() && !stops.empty() && from > 0)
+    site.lateral_starts.emplace(from, Site::LateralStart{u, site.contact, 0.0});
   pressed_ = u.leftCols(context_.model.mesh().nodes());
   fill_work(path, 0, work);
   for (auto& [depth, start] : site.lateral_starts)
@@ -182,12 +185,13 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
   for (const double s : plan.travels) {
     CurveSample sample;
     std::string reason;
-    if (!driver.advance(from, s, states, u, sample, reason)) {
+    const bool arrived = driver.advance(from, s, states, u, sample, reason);
+    if (!arrived)
       stop_early(curves, "lateral path at depth " + in_millimetres(lateral_depth) + " " + reason);
-      break;
-    }
+    if (!arrived && !(driver.reached() > from)) break;
     path.samples.push_back(sample);
     if (lateral_observer_) lateral_observer_(plan, contact, u, sample);
+    if (!arrived) break;
     from = s;
   }
   fill_work(path, start.work, {});
@@ -209,6 +213,24 @@ SitePlan SiteSolver::plan_of_settings(const Vec3& inward) const {
   return plan;
 }
 
+/// The lateral paths of the plan that can start. Where the press ended above all of them, those of
+/// the least depth, moved to where it ended.
+std::vector<LateralPlan> SiteSolver::within_reach(const SitePlan& plan, const Site& site) {
+  std::vector<LateralPlan> paths;
+  for (const LateralPlan& lateral : plan.lateral)
+    if (site.lateral_starts.count(lateral.lateral_depth) > 0) paths.push_back(lateral);
+  if (!paths.empty() || site.lateral_starts.empty() || plan.lateral.empty()) return paths;
+  const auto shallowest = std::min_element(
+      plan.lateral.begin(), plan.lateral.end(),
+      [](const auto& a, const auto& b) { return a.lateral_depth < b.lateral_depth; });
+  for (LateralPlan lateral : plan.lateral) {
+    if (lateral.lateral_depth != shallowest->lateral_depth) continue;
+    lateral.lateral_depth = site.lateral_starts.begin()->first;
+    paths.push_back(lateral);
+  }
+  return paths;
+}
+
 SiteCurves SiteSolver::solve(std::int32_t vertex) {
   return solve(vertex, plan_of_settings(context_.press_point(vertex).inward));
 }
@@ -220,7 +242,8 @@ SiteCurves SiteSolver::solve(std::int32_t vertex, const SitePlan& plan) {
   curves.status = SiteStatus::Complete;
   Site site(context_, context_.press_point(vertex), batch_);
   run_normal_path(site, plan.stops, curves);
-  for (const LateralPlan& lateral : plan.lateral) run_lateral_path(site, lateral, curves);
+  for (const LateralPlan& lateral : within_reach(plan, site))
+    run_lateral_path(site, lateral, curves);
   if (curves.paths.front().samples.size() < 2) curves.status = SiteStatus::Failed;
   curves.cpu_seconds = thread_cpu_seconds() - start;
   return curves;

@@ -55,6 +55,7 @@ class SiteSolver {
   struct Site;  ///< geometry and solvers of one site
 
   SitePlan plan_of_settings(const Vec3& inward) const;
+  static std::vector<LateralPlan> within_reach(const SitePlan& plan, const Site& site);
   void run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves);
   void run_lateral_path(Site& site, const LateralPlan& plan, SiteCurves& curves);
 

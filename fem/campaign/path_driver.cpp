@@ -39,26 +39,34 @@ bool PathDriver::advance(double from, double to, Predictor& states, Displacement
   // A tool that moves by a large part of its size at once could pass the surface unnoticed.
   double at = from, step = std::min(to - from, kLargestStep * problem_.tool_radius);
   int halvings = 0;
-  sample.iterations = 0;
+  CurveSample here;
+  here.iterations = 0;
   std::string failure;  // of the last attempt: dropped when a smaller step succeeds
   while (at < to) {
     const double next = to - at <= 1.001 * step ? to : at + step;
     Displacement trial = states.predict(problem_.model, next);
-    const Outcome outcome = equilibrate(next, halvings, trial, sample, failure);
+    const Outcome outcome = equilibrate(next, halvings, trial, here, failure);
     if (outcome == Outcome::Found) {
       add_work(at, states.last(), trial);
       u = trial;
       states.add(next, u);
       at = next;
+      sample = here;
       continue;
     }
-    if (outcome == Outcome::Meaningless || ++halvings > kMaxHalvings) {
+    if (++halvings > kMaxHalvings) {
       reason = "at " + in_millimetres(next) + ": " + failure;
       if (outcome == Outcome::NotFound) reason += about_inversion(problem_.model, states.last());
+      reached_ = at;
+      problem_.contact.move_to(problem_.tool_at(at));
       return false;
     }
+    // What lies beyond the onset of a fault is no state to go on from.
+    if (outcome == Outcome::Meaningless)
+      problem_.equilibrium.start_path(problem_.tool_at(at), states.last());
     step *= 0.5;
   }
+  reached_ = to;
   return true;
 }
 
@@ -87,9 +95,9 @@ PathDriver::Outcome PathDriver::equilibrate(double s, int halvings, Displacement
 std::string PathDriver::fault_of(const CurveSample& sample, const Displacement& u) const {
   const PartTimer timer(Part::BodyPasses);
   if (sample.penetration > kLargestPenetration * problem_.tool_radius)
-    return "the tool cuts into a part of the surface that cannot yield (is it fixed there?)";
+    return "the tool penetrates a constrained region (a support within its reach?)";
   if (sample.displacement > kLargestStep * problem_.tool_radius && sample.contact_area == 0)
-    return "the tool has lost the surface";
+    return "the tool lost contact";
   if (const int entering = problem_.self_contact.entering_node(u); entering >= 0)
     return "the surface meets itself at " + point_text(problem_.model.mesh().X.col(entering)) +
            ", which is not modelled";

@@ -25,8 +25,9 @@ struct PathProblem {
 };
 
 /// Follows a path in increments, each predicted from the last, and halves those that fail. The path
-/// ends where the equilibrium found is no indentation: the tool cuts into fixed surface or has lost
-/// the surface, the body meets itself, or the law loses ellipticity.
+/// ends where no equilibrium is found, or where that which is found is no indentation: the tool
+/// penetrates a constrained region or lost contact, the body meets itself, or the law loses
+/// ellipticity. The onset of either is found to a 32nd of the increment.
 class PathDriver {
  public:
   /// `u`: the equilibrium at travel 0.
@@ -35,10 +36,13 @@ class PathDriver {
   }
 
   /// From `from`, where `states` end, to `to`. True: u is the equilibrium and `sample` is filled
-  /// but for the work. False: `reason` says why, one clause.
+  /// but for the work. False: `reason` says why, one clause; where reached() lies beyond `from`, u,
+  /// `sample` and the tool of the contact are those of the last equilibrium before it.
   bool advance(double from, double to, Predictor& states, Displacement& u, CurveSample& sample,
                std::string& reason);
 
+  /// m, end of the last advance().
+  double reached() const { return reached_; }
   /// J, of the tool in the last advance(); nothing where it could not be integrated.
   std::optional<double> work() const { return work_; }
 
@@ -46,7 +50,7 @@ class PathDriver {
   enum class Outcome {
     Found,
     NotFound,    ///< a smaller step may help
-    Meaningless  ///< found, but no indentation: smaller steps lead to the same
+    Meaningless  ///< found, but no indentation: smaller steps lead to its onset
   };
 
   Outcome equilibrate(double s, int halvings, Displacement& u, CurveSample& sample,
@@ -58,6 +62,7 @@ class PathDriver {
 
   PathProblem problem_;
   std::optional<double> work_;
+  double reached_ = 0;
 };
 
 }  // namespace palpate::fem

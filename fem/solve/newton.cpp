@@ -162,7 +162,8 @@ NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions
     const Eigen::VectorXd d = direction(contact, u, now.residual, kPatchTolerance * allowed);
     const bool moved = line_search(contact, d, now, u);
     if (!moved && !stale) {
-      result.reason = "no step along the Newton direction keeps det F > 0 and lowers the energy";
+      result.reason =
+          "line search failed: no step keeps every element from inversion and lowers the energy";
       return result;
     }
     stale = options.reuse_factor && moved && now.residual.norm() < kGoodContraction * before;

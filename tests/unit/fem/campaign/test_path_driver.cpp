@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "fem/campaign/indentation.hpp"
 #include "tests/support/block_body.hpp"
 
@@ -50,6 +52,45 @@ TEST(PathDriver, EndsThePathWhereStrongEllipticityIsLost) {
   EXPECT_EQ(sound.status, SiteStatus::Complete) << sound.reason;
 }
 
+/// The depth at which a law that softens loses ellipticity does not hang on the increments.
+TEST(PathDriver, ReachesTheOnsetOfAFaultInCoarseIncrementsToo) {
+  const Body body = test::make_block(test::even(-0.016, 0.016, 4), test::even(-0.016, 0.016, 4),
+                                     test::even(-0.012, 0, 3));
+  const auto press = [&](int increments) {
+    CampaignSettings settings =
+        pressing({"yeoh", {{"C10", 1.5e3}, {"C20", -2.5e3}, {"C30", 1.6e3}, {"poisson", 0.45}}});
+    settings.indentation.depth = 0.005;
+    settings.indentation.increments = increments;
+    settings.indentation.lateral_depths = {0.0049};  // beyond the onset
+    settings.indentation.lateral_travel = 2e-5;
+    settings.indentation.lateral_increments = 2;
+    return fem::press(body, settings, Engine::SharedFactor);
+  };
+  const SiteCurves coarse = press(1), fine = press(50);
+  const CurveSample &end = coarse.paths.front().samples.back(),
+                    &onset = fine.paths.front().samples.back();
+  EXPECT_EQ(coarse.status, SiteStatus::Partial);
+  EXPECT_LT(onset.displacement, 0.0045);
+  EXPECT_GT(end.displacement, 0.001);
+  // The largest step is a quarter of the radius; the fine path ends within its own increment.
+  EXPECT_NEAR(end.displacement, onset.displacement, 0.002 / 32 + 0.005 / 50 / 32);
+  const auto& samples = fine.paths.front().samples;
+  const auto above = std::find_if(samples.begin(), samples.end(), [&](const CurveSample& sample) {
+    return sample.displacement >= end.displacement;
+  });
+  ASSERT_NE(above, samples.end());
+  const CurveSample& below = *(above - 1);
+  const double t =
+      (end.displacement - below.displacement) / (above->displacement - below.displacement);
+  const double force = (1 - t) * norm(below.force) + t * norm(above->force);
+  EXPECT_NEAR(norm(end.force), force, 1e-3 * force);
+  // No lateral depth was reached: the lateral path is where the press ended.
+  ASSERT_EQ(coarse.paths.size(), 2u);
+  EXPECT_EQ(coarse.paths[1].kind, PathKind::Lateral);
+  EXPECT_EQ(coarse.paths[1].lateral_depth, end.displacement);
+  EXPECT_EQ(norm(coarse.paths[1].samples.front().force), norm(end.force));
+}
+
 /// The tool reaches over a fixed rim that the penalty cannot push away.
 TEST(PathDriver, EndsThePathWhereTheToolCutsIntoFixedSurface) {
   Body body = test::make_block(test::even(-0.016, 0.016, 8), test::even(-0.016, 0.016, 8),
@@ -63,7 +104,7 @@ TEST(PathDriver, EndsThePathWhereTheToolCutsIntoFixedSurface) {
   const SiteCurves curves =
       solve_site(CampaignContext(body, settings, Engine::SharedFactor), site, nullptr);
   EXPECT_NE(curves.status, SiteStatus::Complete);
-  EXPECT_THAT(curves.reason, HasSubstr("the tool cuts into a part of the surface"));
+  EXPECT_THAT(curves.reason, HasSubstr("the tool penetrates a constrained region"));
 }
 
 constexpr double kRadius = 0.005;
