@@ -10,10 +10,12 @@
 #include <string_view>
 #include <vector>
 
+#include "fitting/certificate/bounded_depth.hpp"
 #include "fitting/certificate/range.hpp"
 #include "fitting/certificate/triangle_bounds.hpp"
 #include "format/error.hpp"
 #include "format/guarantee.hpp"
+#include "format/number_text.hpp"
 #include "format/position_text.hpp"
 
 namespace palpate::fitting {
@@ -93,6 +95,25 @@ std::string largest_bound_text(const Library& library, std::size_t index,
   return size + (where + cause(bounds, depth));
 }
 
+/// How much of the library has no bound, and down to which depth all of it has one.
+std::string where_bounded(const Library& library, const std::vector<TriangleBounds>& bounds,
+                          const Certificate& certificate) {
+  const auto unbounded =
+      std::count_if(certificate.triangles.begin(), certificate.triangles.end(),
+                    [](const TriangleCertificate& t) { return std::isinf(t.slip); });
+  if (unbounded == 0) return {};
+  std::string text;
+  if (unbounded > 1) {
+    text = "; " + std::to_string(unbounded) + " of " + std::to_string(bounds.size()) +
+           " triangles have no bound";
+  }
+  const double depth = bounded_depth(library, bounds, certificate.depth, certificate.friction);
+  if (!(depth > 0)) return text + "; at no depth have all slides a bound";
+  constexpr double kRoundedDown = 0.995;  // three digits never state more than was found
+  return text + "; down to " + number_text(1e3 * kRoundedDown * depth) +
+         " mm every slide has a bound";
+}
+
 void add_devices(Certificate& certificate, const CertifySettings& settings) {
   const double bound = certified_lipschitz_bound(certificate);
   for (const DeviceProfile& device : settings.devices) {
@@ -156,13 +177,7 @@ void certify(Library& library, const CertifySettings& settings) {
     throw Error(ErrorKind::Configuration, "library '" + library.name + "'",
                 "every triangle touches a hole", "fill the holes or compute more sites");
   }
-  const auto unbounded =
-      std::count_if(certificate.triangles.begin(), certificate.triangles.end(),
-                    [](const TriangleCertificate& t) { return std::isinf(t.slip); });
-  if (unbounded > 1) {
-    certificate.limited_by += "; " + std::to_string(unbounded) + " of " +
-                              std::to_string(bounds.size()) + " triangles have no bound";
-  }
+  certificate.limited_by += where_bounded(library, bounds, certificate);
   certificate.basis = basis_of(library.provenance);
   count_vertices(library, certificate);
   certificate.lipschitz_bound = settings.enforced_bound;
