@@ -4,7 +4,6 @@
 #include <array>
 #include <atomic>
 #include <cmath>
-#include <csignal>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -19,9 +18,11 @@
 #include "app/record/session_recorder.hpp"
 #include "app/run/certified.hpp"
 #include "app/run/device_choice.hpp"
+#include "app/run/device_options.hpp"
 #include "app/run/force_clamp.hpp"
 #include "app/run/limits.hpp"
 #include "app/run/live_session.hpp"
+#include "app/run/stop_on_interrupt.hpp"
 #include "app/simulate/script.hpp"
 #include "format/error.hpp"
 #include "format/number_text.hpp"
@@ -39,34 +40,6 @@ struct RunOptions {
   std::optional<double> friction;  ///< none: that of the certificate
   bool list = false, uncertified = false, strict = false;
 };
-
-std::atomic<bool> interrupted{false};
-
-/// While this object exists, SIGINT, SIGTERM and SIGHUP end the session instead of the process.
-class StopOnInterrupt {
- public:
-  StopOnInterrupt() {
-    interrupted = false;
-    struct sigaction action {};
-    action.sa_handler = [](int) { interrupted = true; };
-    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &before_[i]);
-  }
-  ~StopOnInterrupt() {
-    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
-  }
-  StopOnInterrupt(const StopOnInterrupt&) = delete;
-  StopOnInterrupt& operator=(const StopOnInterrupt&) = delete;
-
- private:
-  static constexpr std::array<int, 3> kSignals{SIGINT, SIGTERM, SIGHUP};
-  std::array<struct sigaction, 3> before_{};
-};
-
-int list_devices() {
-  say("devices:");
-  for (const DeviceName& device : device_names()) say("  {:<16} {}", device.name, device.about);
-  return kExitDone;
-}
 
 /// A hand that presses and slides at the middle of the body, for the simulated device.
 std::function<runtime::HandTarget(double)> scripted_hand(const Library& library,
@@ -214,7 +187,8 @@ int run(RunOptions options) {
   SessionRecorder recorder(options.recording, heading_of(options, library, device->name()));
   const StopOnInterrupt stop_on_interrupt;
   say("run: {} at {:g} Hz; end with Ctrl-C", options.device.name, options.live.loop.rate);
-  const LiveOutcome outcome = run_live(*device, body, options.live, recorder, interrupted);
+  const LiveOutcome outcome =
+      run_live(*device, body, options.live, recorder, stop_on_interrupt.interrupted());
   if (outcome.not_recorded) throw_with_journal(*outcome.not_recorded, recorder.journal());
   recorder.finish();
   warn_of_depth(recorder.depths(), library);
@@ -224,15 +198,8 @@ int run(RunOptions options) {
 }
 
 void add_device_options(CLI::App& command, RunOptions& o) {
-  command.add_option("--device", o.device.name, "Device; see --list")
-      ->default_val(kSimulatedDevice);
+  add_device_choice(command, o.device);
   command.add_flag("--list", o.list, "List the devices and exit");
-  command.add_option("--driver", o.device.driver, "Path of the vendor library, if not installed");
-  command.add_option("--unit", o.device.unit,
-                     "Which of several devices: number, name or serial number");
-  command.add_option("--lab", o.device.lab_file, "Configuration of a lab-built device (TOML)");
-  command.add_option("--host", o.device.host, "Address of the Haply Inverse Service");
-  command.add_option("--port", o.device.port, "Address of the Haply Inverse Service");
   command.add_option("--profile", o.profile, "Device profile (TOML), see data/devices");
   command.add_flag("--uncertified", o.uncertified,
                    "Render although the device is not certified passive at this rate");

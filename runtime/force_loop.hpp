@@ -11,6 +11,7 @@
 #include "format/recording.hpp"
 #include "runtime/device.hpp"
 #include "runtime/latency_histogram.hpp"
+#include "runtime/loop_body.hpp"
 #include "runtime/posed_contact.hpp"
 #include "runtime/realtime.hpp"
 #include "runtime/safety.hpp"
@@ -57,24 +58,26 @@ struct LoopCounts {
 /// The force loop: reads the device, steps the contact, passes the force through Safety, commands
 /// it, records. LoopThread or the thread of a vendor's driver calls tick(), which is noexcept,
 /// allocation-free and lock-free except for the calls of the device's driver.
-class ForceLoop {
+class ForceLoop final : public LoopBody {
  public:
   /// All must outlive the loop; queue may be null.
   ForceLoop(Device& device, PosedContact& contact, const SafetySettings& safety, StepQueue* queue);
 
   /// One step. due: when it should have begun, on the monotonic clock, ns. False when the device is
   /// lost: the loop is over.
-  bool tick(std::int64_t due) noexcept { return tick(due, monotonic_ns()); }
+  bool tick(std::int64_t due) noexcept override { return tick(due, monotonic_ns()); }
   /// The same at a time that the caller states: `began`, > 0, monotonic, ns.
   bool tick(std::int64_t due, std::int64_t began) noexcept;
   /// missed: periods that pass without a step.
-  void count_overrun(std::int64_t missed) noexcept {
+  void count_overrun(std::int64_t missed) noexcept override {
     ++counts_.overruns;
     counts_.missed += static_cast<std::uint64_t>(missed);
   }
 
   /// When the last step began, monotonic ns; 0 before the first. From any thread.
-  std::int64_t heartbeat() const noexcept { return heartbeat_.load(std::memory_order_relaxed); }
+  std::int64_t heartbeat() const noexcept override {
+    return heartbeat_.load(std::memory_order_relaxed);
+  }
   const LoopCounts& counts() const noexcept { return counts_; }
 
  private:

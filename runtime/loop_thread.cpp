@@ -17,7 +17,7 @@ constexpr double kMostDuration = 1e9;  // s: in ns it fits 64 bits
 
 }  // namespace
 
-LoopThread::LoopThread(ForceLoop& loop, Device& device, const LoopThreadSettings& settings)
+LoopThread::LoopThread(LoopBody& loop, Device& device, const LoopThreadSettings& settings)
     : loop_(loop), device_(device), settings_(settings) {
   const SettingsCheck require("force loop");
   require(settings.rate > 0 && settings.rate <= kMostRate, "rate (Hz)", settings.rate,

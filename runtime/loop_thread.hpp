@@ -9,8 +9,10 @@
 #include <string>
 #include <thread>
 
-#include "runtime/force_loop.hpp"
+#include "runtime/device.hpp"
+#include "runtime/loop_body.hpp"
 #include "runtime/realtime.hpp"
+#include "runtime/safety.hpp"
 
 namespace palpate::runtime {
 
@@ -22,7 +24,7 @@ struct LoopThreadSettings {
   double duration = 0;  ///< s from the first step, rounded to periods; 0: until it is stopped
 };
 
-/// Runs a ForceLoop until it is stopped or the device is lost. Steps are due at absolute times, so
+/// Runs a loop until it is stopped or the device is lost. Steps are due at absolute times, so
 /// that they do not drift. A step that ends after the next was due is an overrun: the missed steps
 /// are skipped, not made up for in a burst. A loop of N periods thus takes N steps less those that
 /// it misses. When no step begins for longer than the watchdog
@@ -30,7 +32,7 @@ struct LoopThreadSettings {
 class LoopThread {
  public:
   /// Starts at once. The device is open. @throws Error(Configuration) for settings out of range.
-  LoopThread(ForceLoop& loop, Device& device, const LoopThreadSettings& settings);
+  LoopThread(LoopBody& loop, Device& device, const LoopThreadSettings& settings);
   ~LoopThread();  ///< stops
   LoopThread(const LoopThread&) = delete;
   LoopThread& operator=(const LoopThread&) = delete;
@@ -50,7 +52,7 @@ class LoopThread {
   void watch();
   void finish() noexcept;
 
-  ForceLoop& loop_;
+  LoopBody& loop_;
   Device& device_;
   LoopThreadSettings settings_;
   std::int64_t period_ = 0;  ///< ns

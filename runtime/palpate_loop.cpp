@@ -13,6 +13,7 @@
 #include "format/error.hpp"
 #include "runtime/c_boundary.hpp"
 #include "runtime/certified_state.hpp"
+#include "runtime/force_loop.hpp"
 #include "runtime/handles.hpp"
 #include "runtime/loop_thread.hpp"
 #include "runtime/palpate.h"

@@ -41,6 +41,7 @@ MAY_INCLUDE = {
     "fitting/measurement": {"format"},
     "fitting/measurement/records": {"format", "fitting/measurement"},
     "fitting/measurement/calibrate": {"format", "fem/laws", "fitting/measurement", "fitting/measurement/records"},
+    "fitting/measurement/identify": {"format", "fitting/measurement"},
     "fitting/measurement/compare": {"format", "runtime", "fitting/measurement", "fitting/measurement/records"},
     "runtime": {"format"},
     "runtime/devices": {"format", "runtime"},

@@ -218,6 +218,41 @@ class Session(unittest.TestCase):
         self.assertIn("no guarantee: bench: its delay is unknown", accepted.stdout)
         self.assertNotIn("certified passive", accepted.stdout)
 
+    def test_an_identified_device_is_certified_by_its_own_profile(self):
+        subprocess.run([WRITE_PLATE, self.library, "0.3"], check=True)
+        profile = self.root / "measured.toml"
+        measure = ["identify", "--seconds", 4, "--out", profile]
+        incomplete = palpate(*measure)
+        self.assertEqual(incomplete.returncode, INCOMPLETE, incomplete.stderr)
+        self.assertIn("force resolution is left out", incomplete.stderr)
+        self.assertNotIn("force_resolution =", profile.read_text(encoding="utf-8"))
+        self.assertIn("it exists", palpate(*measure).stderr)
+        profile.unlink()
+        measured = palpate(*measure, "--force-resolution-mN", 0)
+        self.assertEqual(measured.returncode, DONE, measured.stderr)
+        values = dict(re.findall(r'^(\w+) = "([0-9.e-]+) ', profile.read_text(encoding="utf-8"), re.MULTILINE))
+        # The simulated device: 0.081 N s/m, 0.01 N, no delay beyond the sample of the loop, no steps.
+        self.assertLessEqual(float(values["damping"]), 0.081)
+        self.assertGreater(float(values["damping"]), 0.95 * 0.081)
+        self.assertLessEqual(float(values["coulomb_friction"]), 0.01)
+        self.assertGreater(float(values["coulomb_friction"]), 0.95 * 0.01)
+        self.assertLess(float(values["delay"]), 5e-5)
+        self.assertLess(float(values["position_resolution"]), 1e-5)  # an upper estimate
+        felt = palpate("run", self.library, "--profile", profile, "--rate", 6000, "--duration", 0.1, "--priority", 0,
+                       "--out", self.root / "identified.h5")
+        self.assertEqual(felt.returncode, DONE, felt.stderr)
+        self.assertIn("run: certified passive on simulated, at 6000 Hz", felt.stdout)
+
+    def test_identify_writes_nothing_when_the_motion_does_not_end_well(self):
+        profile = self.root / "never.toml"
+        for options, said in ((("--box-mm", 1, "--max-force", 5), "left the box"),
+                              (("--max-speed", 0.01), "faster than 0.01 m/s"),
+                              (("--seconds", "nan"), "out of range"), (("--axes", ""), "names no axes")):
+            refused = palpate("identify", "--out", profile, *options)
+            self.assertEqual(refused.returncode, CONFIGURATION, options)
+            self.assertIn(said, refused.stderr)
+            self.assertFalse(profile.exists())
+
     def test_a_session_beyond_the_deepest_sample_says_so_and_does_not_flatter(self):
         """The plate is known to 20 mm; its samples end there whatever the script asks for."""
         out = self.root / "out"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The thread of the force loop. Wake-up times depend on the machine and are not asserted; the
 // treatment of late steps is.
+#include "runtime/force_loop.hpp"
 #include "runtime/loop_thread.hpp"
 
 #include <gtest/gtest.h>

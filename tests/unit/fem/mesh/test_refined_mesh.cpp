@@ -162,7 +162,7 @@ double total_volume(const QuadraticMesh& mesh) {
   return sum;
 }
 
-/// Of the regular tetrahedron 1, of a flat one 0.
+/// 1 for a regular tetrahedron, 0 for a flat one.
 double worst_shape(const QuadraticMesh& mesh) {
   double worst = 1;
   for (const Tetrahedron10& t : mesh.tetrahedra) {

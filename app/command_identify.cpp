@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/case/case.hpp"
+#include "app/command.hpp"
+#include "app/console.hpp"
+#include "app/identify/device_findings.hpp"
+#include "app/identify/excitation_loop.hpp"
+#include "app/run/device_options.hpp"
+#include "app/run/stop_on_interrupt.hpp"
+#include "fitting/measurement/identify/estimate.hpp"
+#include "format/crash_safe_file.hpp"
+#include "format/error.hpp"
+#include "format/provenance.hpp"
+#include "runtime/devices/device_virtual.hpp"
+#include "runtime/loop_thread.hpp"
+
+namespace palpate::app {
+namespace {
+
+struct IdentifyOptions {
+  DeviceChoice device;
+  std::string axes = "xyz", name, out = "device.toml";
+  double rate = 1000;    // Hz
+  double max_force = 1;  // N
+  double box_mm = 20;
+  double max_speed = 0.7;  // m/s
+  double seconds = 10;     // along each axis
+  double largest_delay_ms = 30;
+  std::optional<double> force_resolution_mn;
+  bool list = false;
+};
+
+void require_in_range(const char* option, double value, double low, double high) {
+  if (value >= low && value <= high) return;
+  refuse(option, fmt::format("{:g} is out of range", value),
+         fmt::format("give {:g} to {:g}", low, high));
+}
+
+/// Before the device is opened.
+void require_valid(const IdentifyOptions& o) {
+  require_known_device(o.device.name);
+  require_in_range("--rate", o.rate, 100, 20000);
+  require_in_range("--max-force", o.max_force, 1e-3, 20);
+  require_in_range("--box-mm", o.box_mm, 1, 200);
+  require_in_range("--max-speed", o.max_speed, 0.01, 3);
+  require_in_range("--seconds", o.seconds, 3, 120);
+  require_in_range("--largest-delay-ms", o.largest_delay_ms, 1, 100);
+  if (o.force_resolution_mn)
+    require_in_range("--force-resolution-mN", *o.force_resolution_mn, 0, 1e4);
+  const bool good =
+      !o.axes.empty() && o.axes.find_first_not_of("xyz") == std::string::npos && o.axes.size() <= 3;
+  if (!good) refuse("--axes", "'" + o.axes + "' names no axes", "give some of xyz");
+  if (std::filesystem::exists(o.out))
+    refuse(o.out, "it exists", "remove it, or name another file with --out");
+}
+
+/// The simulated device hangs free here: a hand would add its own damping.
+std::unique_ptr<runtime::Device> device_of(const IdentifyOptions& options) {
+  if (options.device.name != kSimulatedDevice) return make_device(options.device, {});
+  runtime::SimulatedDeviceSettings settings = kPublishedDevice;
+  settings.hand_stiffness = settings.hand_damping = 0;
+  return std::make_unique<runtime::VirtualDevice>(settings, options.rate,
+                                                  [](double) { return runtime::HandTarget{}; });
+}
+
+ExcitationLoopSettings loop_settings(const IdentifyOptions& o, std::size_t axis) {
+  ExcitationLoopSettings s;
+  s.excitation = {axis, o.max_force, 1e-3 * o.box_mm, o.seconds};
+  s.safety.max_force = o.max_force;
+  s.safety.max_speed = o.max_speed;
+  s.safety.period = 1 / o.rate;
+  s.safety.watchdog = runtime::default_watchdog(o.rate);
+  s.rate = o.rate;
+  s.counted_time = o.device.name == kSimulatedDevice;
+  return s;
+}
+
+/// @throws Error where the motion ended before its time.
+void require_complete(const IdentifyOptions& o, ExcitationEnd end, bool halted, std::size_t axis) {
+  const std::string where = o.device.name + ", axis " + axis_name(axis);
+  const auto fail = [&where](const std::string& problem, const std::string& remedy) {
+    refuse(where, problem, remedy);
+  };
+  if (halted)
+    fail("no step began for 20 periods, so that the device was halted",
+         "close other programs, or lower --rate");
+  switch (end) {
+    case ExcitationEnd::LeftBox:
+      fail(fmt::format("the tip left the box of {:g} mm around its start", o.box_mm),
+           "turn the gravity compensation of the device on, hold the weight, lower --max-force, or "
+           "raise --box-mm");
+      break;
+    case ExcitationEnd::TooFast:
+      fail(fmt::format("the tip was faster than {:g} m/s", o.max_speed),
+           "lower --max-force, or raise --max-speed");
+      break;
+    case ExcitationEnd::Lost:
+      fail("the device was disconnected", "check cable and power");
+      break;
+    case ExcitationEnd::Silent:
+      fail("the device sent no new sample for too long", "check its cable and restart its service");
+      break;
+    case ExcitationEnd::Running:
+      refuse("identify", "it was interrupted; nothing was written", "run it again");
+    case ExcitationEnd::Done:
+      break;
+  }
+}
+
+AxisFinding measure_axis(const IdentifyOptions& o, runtime::Device& device, std::size_t axis,
+                         const StopOnInterrupt& stop) {
+  say("identify: {}: {:g} s with up to {:g} N; keep the hand off the handle", axis_name(axis),
+      o.seconds, o.max_force);
+  ExcitationLoop loop(device, loop_settings(o, axis));
+  bool halted = false;
+  {
+    runtime::LoopThread thread(loop, device, {o.rate, runtime::default_watchdog(o.rate), {}, 0});
+    while (thread.running() && !thread.halted() && !stop.interrupted())
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    thread.stop();
+    halted = thread.halted();
+  }
+  require_complete(o, loop.end(), halted, axis);
+  if (loop.missed() > 0) say("  {} periods were missed", loop.missed());
+  if (loop.stale() > 0) say("  {} steps had no new sample", loop.stale());
+  return {axis, identify::estimate_axis(loop.record(), 1e-3 * o.largest_delay_ms),
+          identify::position_step(loop.record())};
+}
+
+void say_axis(const AxisFinding& found) {
+  const identify::AxisEstimate& e = found.estimate;
+  if (!e.problem.empty()) {
+    warn(fmt::format("identify: along {} {}", axis_name(found.axis), e.problem));
+    return;
+  }
+  const identify::Measured& b = e.damping[found.axis];
+  say("  travel {:.1f} mm, misfit {:.2g} N; mass {:.4g} kg, damping {:.4g} +- {:.2g} N s/m, dry "
+      "friction {:.4g} +- {:.2g} N",
+      1e3 * e.travel, e.residual, e.mass.value, b.value, b.deviation, e.friction.value,
+      e.friction.deviation);
+  say("  delay {:.3f} +- {:.3f} ms, one sample of the loop included; steps of the position at most "
+      "{:.3g} um",
+      1e3 * e.delay.value, 1e3 * e.delay.deviation, 1e6 * found.position_step);
+}
+
+DeviceFindings findings_of(const IdentifyOptions& o, const std::string& device,
+                           const std::vector<AxisFinding>& axes) {
+  DeviceFindings findings = combine(axes, o.rate);
+  findings.profile.name = o.name.empty() ? device : o.name;
+  findings.profile.source = fmt::format(
+      "palpate identify of {}, {}, at {:g} Hz, {:g} s and {:g} N along {}", device,
+      make_provenance_step("identify", "", {}).utc, o.rate, o.seconds, o.max_force, o.axes);
+  if (o.force_resolution_mn) {
+    findings.profile.force_resolution = 1e-3 * *o.force_resolution_mn;
+    findings.profile.source += "; force_resolution: as given";
+  } else {
+    findings.missing.push_back({"force resolution",
+                                "it cannot be measured; give that of the manual "
+                                "with --force-resolution-mN"});
+  }
+  return findings;
+}
+
+int identify_device(const IdentifyOptions& options) {
+  if (options.list) return list_devices();
+  require_valid(options);
+  const auto device = device_of(options);
+  device->open();
+  const std::string name = device->name();
+  std::vector<AxisFinding> axes;
+  {
+    const StopOnInterrupt stop;
+    for (const char letter : options.axes) {
+      axes.push_back(measure_axis(options, *device, static_cast<std::size_t>(letter - 'x'), stop));
+      say_axis(axes.back());
+    }
+  }
+  device->close();
+  const DeviceFindings findings = findings_of(options, name, axes);
+  for (const Missing& m : findings.missing)
+    warn(fmt::format("identify: {} is left out: {}", m.constant, m.reason));
+  write_file_crash_safely(options.out, profile_text(findings, axes));
+  say("identify: {}", options.out);
+  return findings.missing.empty() ? kExitDone : kExitIncomplete;
+}
+
+}  // namespace
+
+void add_identify_command(CLI::App& root, Action& action) {
+  CLI::App* command = root.add_subcommand(
+      "identify", "Measure damping, friction, delay and resolution of a device: its profile");
+  command->footer(
+      "Example: palpate identify --device force-dimension --force-resolution-mN 2 --out my.toml");
+  const auto o = std::make_shared<IdentifyOptions>();
+  add_device_choice(*command, o->device);
+  command->add_flag("--list", o->list, "List the devices and exit");
+  command->add_option("--axes", o->axes, "Axes to measure, for a device that lacks some (xyz)");
+  command->add_option("--rate", o->rate, "Sampling rate of the force loop, Hz (1000)");
+  command->add_option("--max-force", o->max_force, "N, largest component of the force (1)");
+  command->add_option("--box-mm", o->box_mm,
+                      "Distance from the start beyond which the force is switched off (20)");
+  command->add_option("--max-speed", o->max_speed,
+                      "m/s, speed beyond which the force is switched off (0.7)");
+  command->add_option("--seconds", o->seconds, "Duration along each axis (10)");
+  command->add_option("--largest-delay-ms", o->largest_delay_ms,
+                      "Delays are searched up to this one (30)");
+  command->add_option("--force-resolution-mN", o->force_resolution_mn,
+                      "Step of the force along an axis, of the manual: it cannot be measured");
+  command->add_option("--name", o->name, "Name in the profile (default: that of the device)");
+  command->add_option("--out", o->out, "Profile to write (default: device.toml)");
+  command->callback([o, &action] { action = [o] { return identify_device(*o); }; });
+}
+
+}  // namespace palpate::app

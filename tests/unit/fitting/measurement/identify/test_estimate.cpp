@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Simulated devices of known constants, moved by the excitation.
+#include "fitting/measurement/identify/estimate.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/fitting/measurement/identify/moved_device.hpp"
+
+namespace palpate::identify {
+namespace {
+
+using samples::moved;
+using samples::MovedDevice;
+
+constexpr double kLargestDelay = 0.03;  // s
+
+void expect_recovered(const MovedDevice& d, std::size_t axis, double tolerance) {
+  const AxisEstimate e = estimate_axis(moved(d, axis), kLargestDelay);
+  ASSERT_EQ(e.problem, "");
+  EXPECT_NEAR(e.mass.value, d.mass[axis], tolerance * d.mass[axis]);
+  EXPECT_NEAR(e.damping[axis].value, d.damping[axis], tolerance * d.damping[axis]);
+  EXPECT_NEAR(e.friction.value, d.friction[axis], tolerance * d.friction[axis]);
+  EXPECT_NEAR(e.bias.value, d.bias[axis], tolerance * (d.bias[axis] + d.friction[axis]));
+  EXPECT_NEAR(e.delay.value, d.delay, tolerance * d.delay);
+}
+
+TEST(AxisEstimate, WithoutNoiseIsExact) {
+  expect_recovered({}, 0, 1e-3);
+}
+
+TEST(AxisEstimate, RecoversTheConstantsOfOtherDevicesWithinFivePercent) {
+  MovedDevice light;
+  light.mass = {0.06, 0.08, 0.0845};
+  light.damping = {0.15, 0.1, 0.081};
+  light.friction = {0.04, 0.03, 0.01};
+  light.bias = {0, 0, 0.05};
+  light.resolution = 1e-5;
+  light.delay = 2.7e-3;
+  light.jitter = 1e-4;
+  for (std::size_t axis = 0; axis < 3; ++axis) expect_recovered(light, axis, 0.05);
+
+  MovedDevice heavy;
+  heavy.mass = {0.25, 0.25, 0.3};
+  heavy.damping = {0.8, 0.8, 1.2};
+  heavy.friction = {0.1, 0.1, 0.15};
+  heavy.delay = 7.3e-3;
+  heavy.resolution = 2e-6;
+  heavy.max_force = 4;
+  for (std::size_t axis = 0; axis < 3; ++axis) expect_recovered(heavy, axis, 0.05);
+}
+
+/// What the certificate takes is on the safe side, as often as the deviations promise.
+TEST(AxisEstimate, BoundsAreOnTheSafeSideInRepeatedMeasurements) {
+  int damping = 0, friction = 0, delay = 0;
+  constexpr int kRuns = 20;
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
+    MovedDevice d;
+    d.noise = 0.005;
+    d.resolution = 1e-5;
+    d.delay = 1.6e-3;
+    d.seed = seed;
+    const AxisEstimate e = estimate_axis(moved(d, 0), kLargestDelay);
+    damping += e.damping[0].low() < d.damping[0] ? 1 : 0;
+    friction += e.friction.low() < d.friction[0] ? 1 : 0;
+    delay += e.delay.high() > d.delay ? 1 : 0;
+  }
+  EXPECT_GE(damping, 18);
+  EXPECT_GE(friction, 18);
+  EXPECT_GE(delay, 18);
+}
+
+TEST(AxisEstimate, SaysWhatIsWrongWithMotionThatTellsNothing) {
+  MovedDevice stuck;
+  stuck.friction = {2, 2, 2};
+  EXPECT_NE(estimate_axis(moved(stuck, 0), kLargestDelay).problem.find("moves too little"),
+            std::string::npos);
+  MovedDevice brief;
+  brief.seconds = 1.5;
+  EXPECT_NE(estimate_axis(moved(brief, 0), kLargestDelay).problem, "");
+  MotionRecord reversed = moved({}, 0);
+  for (Vec3& x : reversed.position) x = -x;
+  EXPECT_NE(estimate_axis(reversed, kLargestDelay).problem.find("does not follow"),
+            std::string::npos);
+  EXPECT_NE(estimate_axis({}, kLargestDelay).problem, "");
+}
+
+TEST(PositionStep, IsThatOfTheGridOrSmall) {
+  MovedDevice d;
+  EXPECT_LT(position_step(moved(d, 0)), 4e-6);
+  for (const double step : {1e-5, 3e-5, 1e-4}) {
+    d.resolution = step;
+    const double found = position_step(moved(d, 0));
+    EXPECT_GE(found, 0.95 * step);
+    EXPECT_LE(found, 1.15 * step);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::identify
