@@ -159,7 +159,7 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
                    close == 1 ? "is no site" : "are no sites"));
   }
   note(log, text("inward directions: ", directions.adjusted, " of ", response.inward.size(),
-                 " adjusted so that they can be interpolated",
+                 " adjusted for interpolation",
                  directions.adjusted == 0 ? std::string() : most_turned(directions, nested)));
   if (directions.unresolved.empty()) return;
   for (const std::int32_t v : directions.unresolved) {
