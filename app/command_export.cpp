@@ -8,6 +8,7 @@
 #include "app/export/csv.hpp"
 #include "app/export/deck.hpp"
 #include "app/export/mesh_file.hpp"
+#include "app/pipeline/freshness.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/vtkhdf/grids.hpp"
 #include "fem/campaign/bonded_patch.hpp"
@@ -117,9 +118,20 @@ OwnSolution press_tool(const Body& body, fem::CampaignSettings settings, std::in
   return own;
 }
 
+/// The body of the case: a site solved on the mesh of another one has forces of neither.
+Body body_of_case(const Workspace& space) {
+  Body body = read_body(space.body());
+  const std::string stale = stale_reason(space, Stage::Mesh, body.provenance);
+  if (!stale.empty())
+    throw Error(ErrorKind::Configuration, space.body().string(), "it is out of date: " + stale,
+                "run `palpate mesh` with this case and folder, or export with the case that the "
+                "body was meshed for");
+  return body;
+}
+
 /// Input files of the site for other programs, and the solution of palpate for comparison.
 int export_decks(const Workspace& space, const SiteOptions& options) {
-  const Body body = read_body(space.body());
+  const Body body = body_of_case(space);
   const fem::CampaignSettings settings = campaign_settings(space);
   const bool patch = options.patch || options.patch_radius > 0;
   const double radius =
@@ -148,7 +160,7 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
 
 /// Solves the site again, because the campaign does not store the displacement field.
 int export_site(const Workspace& space, std::int32_t vertex) {
-  const Body body = read_body(space.body());
+  const Body body = body_of_case(space);
   const fem::DeformedState state = fem::deformed_state(body, campaign_settings(space), vertex);
   const vtkhdf::DeformedFields fields{state.displacement, state.strain_energy_density,
                                       state.pressure, state.smooth_pressure};

@@ -9,6 +9,7 @@ import csv
 import hashlib
 import json
 import math
+import re
 import struct
 import subprocess
 import sys
@@ -246,6 +247,19 @@ class Pipeline(unittest.TestCase):
             forces[what] = math.hypot(*(float(f) for f in rows[-1].split(",")[1:4]))
         # What is moved as a whole resists more than what a sphere touches.
         self.assertGreater(forces["patch"], forces["tool"])
+
+    def test_a_site_of_a_body_that_was_meshed_for_another_case_is_not_exported(self):
+        site = next(iter(rows_of_export(self)))["vertex"]
+        other = self.root / "other_mesh.toml"
+        other.write_text(re.sub(r'element_size = "[^"]*"', 'element_size = "4.1 mm"', CASE), encoding="utf-8")
+        self.assertNotEqual(other.read_text(encoding="utf-8"), CASE)
+        files = set(self.out.iterdir())
+        for options in ((), ("--calculix",), ("--febio", "--patch")):
+            refused = palpate("export", "site", other, "--out", self.out, "--vertex", site, *options)
+            self.assertEqual(refused.returncode, 2, refused.stdout)
+            self.assertIn("the case has changed", refused.stderr)
+            self.assertIn("palpate mesh", refused.stderr)
+        self.assertEqual(set(self.out.iterdir()), files)
 
     def test_provenance_names_every_stage_and_input(self):
         steps = self.summary("library.h5")["provenance"]
