@@ -62,6 +62,20 @@ TEST(FebioDeck, OfAToolIsWellFormedAndCountsRight) {
   EXPECT_THAT(text, HasSubstr("<value lc=\"1\">-2.000000000000e-03</value>"));
 }
 
+/// What FEBio 4.11 needs to run the deck as it is written: a small first step, retries, full
+/// Newton, and a tenth of the penalty of palpate.
+TEST(FebioDeck, OfAToolStepsFromAFiftiethOfThePathAndMeetsEveryIncrement) {
+  const Deck deck = sphere_deck();
+  const std::string text = febio_deck(deck);
+  EXPECT_THAT(text, HasSubstr("<time_steps>50</time_steps>\n<step_size>0.02</step_size>"));
+  EXPECT_THAT(text, HasSubstr("<max_ups>0</max_ups>"));
+  EXPECT_THAT(text, HasSubstr("<dtmax lc=\"2\">1</dtmax>"));
+  const std::string curve = text.substr(text.find("name=\"increments\""));
+  EXPECT_EQ(count(curve, "<pt>"), static_cast<std::size_t>(deck.increments) + 1);
+  const std::size_t value = text.find("<penalty>") + 9;
+  EXPECT_DOUBLE_EQ(std::stod(text.substr(value)), 0.1 * deck.tool->stiffness);
+}
+
 TEST(FebioDeck, NamesTheLawThatTheProgramLacks) {
   const fem::LawConstants fung("demiray-fung", {{"mu", 1e3}, {"b", 1}, {"poisson", 0.45}});
   EXPECT_THAT(refusal_of(febio_deck, fung), HasSubstr("FEBio has no law like demiray-fung"));
