@@ -289,7 +289,7 @@ class Writer {
   }
 
   /// The tool is moved without turning. With the penalty of palpate Newton's method of FEBio does
-  /// not converge; a tenth lets the tool in by micrometres, which changes the force by about 0.1 %.
+  /// not converge; a tenth of it lets the tool in ten times as deep.
   void contact(const PressingTool& tool) {
     add("<Rigid>\n<rigid_bc name=\"upright\" "
         "type=\"rigid_fixed\">\n<rb>{}</rb>\n<Ru_dof>1</Ru_dof>\n"
