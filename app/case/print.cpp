@@ -32,6 +32,9 @@ class Printer {
     line(key, list(values, toml_string));
   }
   void flag(bool value, const Key& key) { line(key, value ? "true" : "false"); }
+  void flag_or_count(int value, const Key& key) {
+    value > 1 ? integer(value, key) : flag(value == 1, key);
+  }
   void integer(int value, const Key& key) { line(key, std::to_string(value)); }
   void number(double value, const Key& key) { line(key, print_number(value)); }
   void quantity(double value, Dimension dimension, const Key& key) {

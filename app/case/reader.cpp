@@ -170,6 +170,21 @@ void TableReader::flag(bool& value, const Key& key) {
   value = *found;
 }
 
+void TableReader::flag_or_count(int& value, const Key& key) {
+  const toml::node* node = find(key);
+  if (node == nullptr) return;
+  if (const auto flag = node->value_exact<bool>()) {
+    value = *flag ? 1 : 0;
+    return;
+  }
+  const auto count = node->value_exact<std::int64_t>();
+  if (!count)
+    wrong_type(*node, key, "true, false or an integer", fmt::format("{} = true", key.name));
+  check_range(static_cast<double>(*count), std::to_string(*count), key, *node,
+              range_text(key.range));
+  value = static_cast<int>(*count);
+}
+
 void TableReader::integer(int& value, const Key& key) {
   const toml::node* node = find(key);
   if (node == nullptr) return;

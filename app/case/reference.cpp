@@ -30,6 +30,11 @@ class Documenter {
     row(key, "list of strings", "`[]`");
   }
   void flag(bool value, const Key& key) { row(key, "`true`, `false`", fmt::format("`{}`", value)); }
+  void flag_or_count(int value, const Key& key) {
+    const std::string shown = value > 1 ? std::to_string(value) : fmt::format("{}", value == 1);
+    row(key, fmt::format("`true`, `false` or integer, {}", range_text(key.range)),
+        fmt::format("`{}`", shown));
+  }
   void integer(int value, const Key& key) {
     row(key, fmt::format("integer, {}", range_text(key.range)), fmt::format("`{}`", value));
   }

@@ -152,7 +152,7 @@ void against_tolerance(int cells, const Press& press) {
   CampaignSettings s = settings(0.45);
   s.indentation.tool.shape = press.shape;
   s.indentation.friction = press.friction;
-  s.indentation.refine_under_tool = press.refined;
+  s.indentation.refine_under_tool = press.refined ? 1 : 0;
   s.indentation.lateral_depths = {0.002};
   s.sites = inner_sites(body, 16);
   s.indentation.force_tolerance = 1e-8;
@@ -297,7 +297,7 @@ void against_poisson(int cells, bool refined) {
   double first = 0;
   for (const double poisson : {0.45, 0.49, 0.499, 0.4999, 0.49999}) {
     CampaignSettings s = settings(poisson);
-    s.indentation.refine_under_tool = refined;
+    s.indentation.refine_under_tool = refined ? 1 : 0;
     s.sites = inner_sites(body, 16);
     CampaignReport report;
     const Curves curves = run_campaign(body, s, report);
@@ -338,7 +338,7 @@ void profile(int cells) {
   std::array<double, 2> seconds{};
   for (const bool refined : {false, true}) {
     CampaignSettings s = settings(0.49);
-    s.indentation.refine_under_tool = refined;
+    s.indentation.refine_under_tool = refined ? 1 : 0;
     s.sites = inner_sites(body, 16);
     active_profile = &profiles.at(refined);
     CampaignReport report;

@@ -76,7 +76,7 @@ int main(int, char** arguments) {
       for (const bool curved : {false, true}) {
         Body body = test::even_cap(cap, h);
         if (curved) test::curve_onto_sphere(cap.radius, body);
-        press.refine_under_tool = refined;
+        press.refine_under_tool = refined ? 1 : 0;
         const char* what =
             refined ? (curved ? "curved, refined" : "flat, refined") : (curved ? "curved" : "flat");
         print_row(h, what, test::spread_of_force(cap, body, press, kNear), reference);

@@ -168,8 +168,10 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
       {"rest_factor_bytes", std::to_string(static_cast<long long>(context.rest_factor->bytes()))},
       {"blas_kernel", blas_kernel()},
       {"solver", solver_versions()}};
-  if (settings.indentation.refine_under_tool)
-    report.facts.emplace_back("under_the_tool", "elements divided into eight");
+  if (const int times = settings.indentation.refine_under_tool; times > 0)
+    report.facts.emplace_back(
+        "under_the_tool",
+        "elements divided into eight" + (times > 1 ? ", " + std::to_string(times) + " times" : ""));
   add_supports(context, settings, report);
   return curves;
 }

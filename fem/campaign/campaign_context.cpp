@@ -43,7 +43,7 @@ namespace {
 
 /// Refined elements have energies of elements alone: no nodal pressure, springs or weight.
 void check_refinement(const Body& body, const CampaignSettings& settings, Engine engine) {
-  if (!settings.indentation.refine_under_tool) return;
+  if (settings.indentation.refine_under_tool == 0) return;
   const auto refuse = [&](const char* with) {
     throw Error(ErrorKind::Configuration, body.name,
                 std::string("elements cannot be refined under the tool ") + with,

@@ -51,9 +51,9 @@ SiteBody body_of_site(const CampaignContext& context, const Eigen::Vector3d& X) 
   const PartTimer timer(Part::SiteMesh);
   const IndentationSettings& settings = context.indentation;
   const SiteMesh mesh = context.engine == Engine::Direct ? SiteMesh::WholeBody
-                        : settings.refine_under_tool     ? SiteMesh::RefinedWindow
+                        : settings.refine_under_tool > 0 ? SiteMesh::RefinedWindow
                                                          : SiteMesh::Window;
-  return {context.model, context.rest, X, settings.tool, mesh};
+  return {context.model, context.rest, X, settings.tool, mesh, settings.refine_under_tool};
 }
 
 /// A path of the site ended early; every path that did adds its reason.

@@ -34,9 +34,10 @@ struct IndentationSettings {
       0.002, 0.004, 0.006};           ///< m, where lateral paths start; each at most `depth`
   std::vector<double> azimuths{0.0};  ///< rad, from the first tangent direction of the site
   double force_tolerance = 1e-4;      ///< relative error of the tool force allowed to the solver
-  /// Divide the elements around the tool into eight, for each site anew: for contacts smaller than
-  /// a facet.
-  bool refine_under_tool = false;
+  /// How often the elements around the tool are divided into eight, for each site anew: for
+  /// contacts smaller than a facet. Each further time within half the distance from the site.
+  int refine_under_tool = 0;
+  static constexpr int kMaxRefinements = 6;
 };
 
 /// A point of the boundary where the tool is pressed, and the direction of its normal path.

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "format/to_index.hpp"
@@ -34,13 +35,24 @@ double distance(const Eigen::Vector3d& x, const std::array<Eigen::Vector3d, 3>& 
   return above ? std::abs((x - corner[0]).dot(normal)) : nearest;
 }
 
+/// Distance of a point outside of a tetrahedron, or on its boundary.
+double distance(const Eigen::Vector3d& x, const std::array<Eigen::Vector3d, 4>& corner) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t without = 0; without < 4; ++without)
+    nearest = std::min(nearest,
+                       distance(x, std::array{corner[(without + 1) % 4], corner[(without + 2) % 4],
+                                              corner[(without + 3) % 4]}));
+  return nearest;
+}
+
 /// The elements behind the facets within `reach` of a point, and those with three corners among the
 /// corners of these facets.
 std::vector<int> elements_near(const QuadraticMesh& mesh, const Eigen::Vector3d& site,
                                double reach) {
   std::vector<bool> corner_of_near(to_index(mesh.nodes()), false);
   for (const Facet& f : mesh.facets)
-    if (distance(site, {mesh.X.col(f[0]), mesh.X.col(f[1]), mesh.X.col(f[2])}) <= reach)
+    if (distance(site, std::array<Eigen::Vector3d, 3>{mesh.X.col(f[0]), mesh.X.col(f[1]),
+                                                      mesh.X.col(f[2])}) <= reach)
       for (std::size_t c = 0; c < 3; ++c) corner_of_near[to_index(f[c])] = true;
   std::vector<int> elements;
   for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
@@ -63,17 +75,21 @@ SolidModel window_at(const SolidModel& body, const Eigen::Vector3d& site,
 }
 
 SiteBody::SiteBody(const SolidModel& body, const Displacement& rest, const Eigen::Vector3d& site,
-                   const ToolGeometry& tool, SiteMesh mesh)
+                   const ToolGeometry& tool, SiteMesh mesh, int levels)
     : whole_(&body), rest_(rest) {
   if (mesh == SiteMesh::Window) window_.emplace(window_at(body, site, tool));
-  if (mesh == SiteMesh::RefinedWindow) refine(site, tool);
+  if (mesh == SiteMesh::RefinedWindow) refine(site, tool, levels);
 }
 
 /// The window has every new node and the nodes of its parent: seen from outside the window, the
 /// refined body at rest is then nearly the one that was factorized.
-void SiteBody::refine(const Eigen::Vector3d& site, const ToolGeometry& tool) {
+void SiteBody::refine(const Eigen::Vector3d& site, const ToolGeometry& tool, int levels) {
   const QuadraticMesh& mesh = whole_->mesh();
-  RefinedMesh refined = refine_elements(mesh, elements_near(mesh, site, tool.extent()));
+  const auto near = [&](const std::array<Eigen::Vector3d, 4>& corners, int level) {
+    return distance(site, corners) <= std::ldexp(tool.extent(), -level);
+  };
+  RefinedMesh refined =
+      refine_elements(mesh, elements_near(mesh, site, tool.extent()), levels, near);
   std::vector<bool> free = nodes_within(mesh, site, window_radius(tool));
   for (const RefinedMesh::NewNode& node : refined.new_nodes)
     for (const int neighbour : mesh.tetrahedra[to_index(node.parent)])

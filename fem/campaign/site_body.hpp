@@ -20,7 +20,7 @@ SolidModel window_at(const SolidModel& body, const Eigen::Vector3d& site, const 
 enum class SiteMesh {
   WholeBody,     ///< the body alone
   Window,        ///< the body and a window, on the mesh of the body
-  RefinedWindow  ///< the same with the elements around the tool divided into eight
+  RefinedWindow  ///< the same with the elements around the tool divided into eight, several times
 };
 
 /// The body and the window around the tool. The factor of the campaign serves a refined mesh too:
@@ -28,9 +28,11 @@ enum class SiteMesh {
 /// construction.
 class SiteBody {
  public:
-  /// `body` must outlive this. `rest`: the displacement of the body before the touch.
+  /// `body` must outlive this. `rest`: the displacement of the body before the touch. `levels`: how
+  /// often elements are divided into eight, first those under the tool, then always those of their
+  /// children that are within half the distance from the site.
   SiteBody(const SolidModel& body, const Displacement& rest, const Eigen::Vector3d& site,
-           const ToolGeometry& tool, SiteMesh mesh);
+           const ToolGeometry& tool, SiteMesh mesh, int levels = 1);
 
   const SolidModel& whole() const { return refined_ ? *refined_ : *whole_; }
   const QuadraticMesh& mesh() const { return whole().mesh(); }
@@ -43,7 +45,7 @@ class SiteBody {
   double bytes() const;  ///< without what the sites of a campaign share
 
  private:
-  void refine(const Eigen::Vector3d& site, const ToolGeometry& tool);
+  void refine(const Eigen::Vector3d& site, const ToolGeometry& tool, int levels);
 
   const SolidModel* whole_;
   std::optional<SolidModel> refined_, window_;

@@ -113,10 +113,13 @@ template <class V>
 void describe_solver(V& v, fem::CampaignSettings& s) {
   describe_choice(v, s.dilatation, {"element", "finite element, see [below](#elements)"},
                   kElements);
-  v.flag(s.indentation.refine_under_tool,
-         {"refine_under_tool",
-          "divides the elements under the tool into eight at each site, for contacts smaller than "
-          "a facet"});
+  v.flag_or_count(
+      s.indentation.refine_under_tool,
+      {"refine_under_tool",
+       "divides the elements under the tool into eight at each site, for contacts smaller than a "
+       "facet; a number: as often, each time within half the distance from the site",
+       kOptional,
+       {.low = 0, .high = fem::IndentationSettings::kMaxRefinements}});
 }
 
 template <class V>

@@ -33,6 +33,16 @@ TEST(ResolvedCase, IsExactForAnyNumberAndText) {
             std::get<mesher::PlaneSupport>(c.supports[0].where.shape).normal);
 }
 
+// The text of a case is part of what identifies its curves.
+TEST(ResolvedCase, WritesZeroAndOneAsFlags) {
+  Case c = parse_case(kGood, "ball.toml");
+  for (const auto& [times, text] : {std::pair{0, "false"}, {1, "true"}, {2, "2"}, {6, "6"}}) {
+    c.campaign.indentation.refine_under_tool = times;
+    EXPECT_THAT(resolved_toml(c), HasSubstr(std::string("refine_under_tool = ") + text + "\n"));
+    EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);
+  }
+}
+
 TEST(ResolvedCase, HasTheNamedSectionsOnly) {
   const Case c = parse_case(kGood, "ball.toml");
   Case other = c;

@@ -53,6 +53,31 @@ TEST(CaseReader, RejectsNumbersThatAreNotFinite) {
   EXPECT_THAT(message_with("[0, 0, -1]", "[0, 0, nan]"), HasSubstr("support[0].normal"));
 }
 
+TEST(CaseReader, ReadsAFlagOrACount) {
+  const auto refinements = [](const std::string& value) {
+    return parse_case(kGood + "\n[solver]\nrefine_under_tool = " + value + "\n", "ball.toml")
+        .campaign.indentation.refine_under_tool;
+  };
+  EXPECT_EQ(parse_case(kGood, "ball.toml").campaign.indentation.refine_under_tool, 0);
+  EXPECT_EQ(refinements("false"), 0);
+  EXPECT_EQ(refinements("true"), 1);
+  EXPECT_EQ(refinements("0"), 0);
+  EXPECT_EQ(refinements("1"), 1);
+  EXPECT_EQ(refinements("3"), 3);
+  const auto message = [&](const std::string& value) -> std::string {
+    try {
+      refinements(value);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(message("7"), HasSubstr("solver.refine_under_tool = 7 is out of range"));
+  EXPECT_THAT(message("-1"), HasSubstr("out of range"));
+  EXPECT_THAT(message("1.5"), HasSubstr("true, false or an integer"));
+  EXPECT_THAT(message("\"twice\""), HasSubstr("true, false or an integer"));
+}
+
 TEST(CaseReader, RejectsValuesOutOfRange) {
   EXPECT_THAT(message_with("\"10 kPa\"", "\"-10 kPa\""), HasSubstr("material[0].young = -10 kPa"));
   EXPECT_THAT(message_with("poisson = 0.49", "poisson = 0.5"), HasSubstr("out of range"));

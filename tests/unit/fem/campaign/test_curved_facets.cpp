@@ -15,7 +15,7 @@ TEST(CurvedFacets, MakeTheStiffnessOfABallIndependentOfThePosition) {
   press.tool.radius = 0.005;
   press.depth = 0.0015;
   press.increments = 3;
-  press.refine_under_tool = true;
+  press.refine_under_tool = 1;
   Body body = test::even_cap(cap, 0.005);
   const auto flat = test::spread_of_force(cap, body, press, 0.0075);
   test::curve_onto_sphere(cap.radius, body);

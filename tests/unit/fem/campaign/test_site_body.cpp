@@ -50,20 +50,24 @@ TEST_F(SiteBodies, WindowReachesARadiusBeyondTheTool) {
 
 /// Otherwise the factor of the unrefined body would not serve.
 TEST_F(SiteBodies, RefinedWindowContainsEveryNewNode) {
-  const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow);
   const int old_nodes = model.mesh().nodes();
-  ASSERT_GT(s.mesh().nodes(), old_nodes);
-  ASSERT_NE(s.prolongation(), nullptr);
-  for (int node = old_nodes; node < s.mesh().nodes(); ++node)
-    EXPECT_TRUE(s.window().equation(node) >= 0 || s.mesh().fixed[to_index(node)]);
-  EXPECT_GT(s.mesh().tetrahedra.size(), model.mesh().tetrahedra.size() + 100);
-  EXPECT_EQ(s.rest().leftCols(old_nodes), rest);
-  EXPECT_TRUE(s.rest().rightCols(s.mesh().nodes() - old_nodes).isZero(0));
+  std::size_t elements = model.mesh().tetrahedra.size();
+  for (const int levels : {1, 2, 3}) {
+    const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow, levels);
+    ASSERT_GT(s.mesh().nodes(), old_nodes);
+    ASSERT_NE(s.prolongation(), nullptr);
+    for (int node = old_nodes; node < s.mesh().nodes(); ++node)
+      EXPECT_TRUE(s.window().equation(node) >= 0 || s.mesh().fixed[to_index(node)]);
+    EXPECT_GT(s.mesh().tetrahedra.size(), elements + 100);
+    elements = s.mesh().tetrahedra.size();
+    EXPECT_EQ(s.rest().leftCols(old_nodes), rest);
+    EXPECT_TRUE(s.rest().rightCols(s.mesh().nodes() - old_nodes).isZero(0));
+  }
 }
 
 /// A homogeneous deformation has the same energy and nodal forces on both meshes.
 TEST_F(SiteBodies, RefinedBodyIsTheBodyUnderHomogeneousDeformation) {
-  const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow);
+  const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow, 3);
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
   G.col(2) = Eigen::Vector3d(0.1, -0.05, -0.08);  // vanishes at the fixed base
   const auto homogeneous = [&](const QuadraticMesh& mesh) {

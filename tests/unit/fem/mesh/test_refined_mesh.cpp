@@ -65,9 +65,9 @@ CampaignSettings pressed_by(double radius, double depth) {
   return s;
 }
 
-SiteCurves press(const Body& body, CampaignSettings settings, bool refine, double x = 0,
+SiteCurves press(const Body& body, CampaignSettings settings, int refinements, double x = 0,
                  double y = 0) {
-  settings.indentation.refine_under_tool = refine;
+  settings.indentation.refine_under_tool = refinements;
   settings.points = {{{x, y, 0}, {0, 0, -1}}};
   CampaignReport report;
   return run_campaign(body, settings, report).sites.front();
@@ -162,7 +162,7 @@ double total_volume(const QuadraticMesh& mesh) {
   return sum;
 }
 
-/// 1 for a regular tetrahedron, 0 for a flat one.
+/// 1 for the regular tetrahedron, 0 for a flat one.
 double worst_shape(const QuadraticMesh& mesh) {
   double worst = 1;
   for (const Tetrahedron10& t : mesh.tetrahedra) {
@@ -284,7 +284,7 @@ TEST(RefinedMesh, RefusesAnElementThatACurvedEdgeInverts) {
 TEST(RefineUnderTool, IsTheRefinedBodyWhereTheToolSpansItAll) {
   const Body coarse = block_of(4), fine = refined_body(coarse);
   const CampaignSettings settings = pressed_by(0.027, 0.003);
-  const SiteCurves ours = press(coarse, settings, true), reference = press(fine, settings, false);
+  const SiteCurves ours = press(coarse, settings, 1), reference = press(fine, settings, 0);
   ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
   ASSERT_EQ(ours.paths.size(), 2u);
   for (std::size_t p = 0; p < 2; ++p)
@@ -300,9 +300,9 @@ TEST(RefineUnderTool, HasTheForcesOfTheRefinedBodyInSmallContacts) {
   const Body coarse = block_of(6), fine = refined_body(coarse);
   const CampaignSettings settings = pressed_by(0.004, 0.0016);
   const double x = 0.0012, y = 0.0021;
-  const SiteCurves ours = press(coarse, settings, true, x, y),
-                   reference = press(fine, settings, false, x, y),
-                   unrefined = press(coarse, settings, false, x, y);
+  const SiteCurves ours = press(coarse, settings, 1, x, y),
+                   reference = press(fine, settings, 0, x, y),
+                   unrefined = press(coarse, settings, 0, x, y);
   ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
   for (std::size_t i = 1; i < reference.paths[0].samples.size(); ++i) {
     const Vec3& exact = reference.paths[0].samples[i].force;
@@ -312,8 +312,26 @@ TEST(RefineUnderTool, HasTheForcesOfTheRefinedBodyInSmallContacts) {
   EXPECT_GT(norm(unrefined.paths[0].samples[1].force - first), 0.05 * norm(first));
 }
 
+// A contact of a third of a facet.
+TEST(RefineUnderTool, TwiceHasTheForcesOfTheBodyRefinedTwice) {
+  const Body coarse = block_of(4), fine = refined_body(refined_body(coarse));
+  CampaignSettings settings = pressed_by(0.005, 0.0012);
+  settings.indentation.lateral_depths.clear();
+  const double x = 0.0012, y = 0.0021;
+  const SiteCurves once = press(coarse, settings, 1, x, y),
+                   twice = press(coarse, settings, 2, x, y),
+                   reference = press(fine, settings, 0, x, y);
+  ASSERT_EQ(twice.status, SiteStatus::Complete) << twice.reason;
+  for (std::size_t i = 1; i < reference.paths[0].samples.size(); ++i) {
+    const Vec3& exact = reference.paths[0].samples[i].force;
+    EXPECT_LT(norm(twice.paths[0].samples[i].force - exact), 0.015 * norm(exact)) << i;
+  }
+  const Vec3& first = reference.paths[0].samples[1].force;
+  EXPECT_GT(norm(once.paths[0].samples[1].force - first), 0.03 * norm(first));
+}
+
 TEST(RefineUnderTool, ConservesEnergyBetweenSmallAndLargeElements) {
-  const SiteCurves site = press(block_of(6), pressed_by(0.005, 0.003), true, 0.0012, 0.0021);
+  const SiteCurves site = press(block_of(6), pressed_by(0.005, 0.003), 1, 0.0012, 0.0021);
   ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
   for (const CurvePath& path : site.paths) {
     const CurveSample& end = path.samples.back();
@@ -326,14 +344,14 @@ TEST(RefineUnderTool, IsRefusedWithNodalPressuresAndWeight) {
   CampaignSettings settings = pressed_by(0.005, 0.002);
   settings.dilatation = Dilatation::Nodal;
   try {
-    press(body, settings, true);
+    press(body, settings, 1);
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("refined"));
   }
   settings.dilatation = Dilatation::Mean;
   settings.gravity = {{0, 0, -9.81}, 1000};
-  EXPECT_THROW(press(body, settings, true), Error);
+  EXPECT_THROW(press(body, settings, 1), Error);
 }
 
 }  // namespace
