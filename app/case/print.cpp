@@ -32,7 +32,8 @@ class Printer {
     line(key, list(values, toml_string));
   }
   void flag(bool value, const Key& key) { line(key, value ? "true" : "false"); }
-  void flag_or_count(int value, const Key& key) {
+  void flag_or_count(int value, std::string_view word, const Key& key) {
+    if (value < 0) return line(key, toml_string(std::string(word)));
     value > 1 ? integer(value, key) : flag(value == 1, key);
   }
   void integer(int value, const Key& key) { line(key, std::to_string(value)); }

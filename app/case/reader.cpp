@@ -170,16 +170,21 @@ void TableReader::flag(bool& value, const Key& key) {
   value = *found;
 }
 
-void TableReader::flag_or_count(int& value, const Key& key) {
+void TableReader::flag_or_count(int& value, std::string_view word, const Key& key) {
   const toml::node* node = find(key);
   if (node == nullptr) return;
   if (const auto flag = node->value_exact<bool>()) {
     value = *flag ? 1 : 0;
     return;
   }
+  if (node->value_exact<std::string>() == word) {
+    value = -1;
+    return;
+  }
   const auto count = node->value_exact<std::int64_t>();
   if (!count)
-    wrong_type(*node, key, "true, false or an integer", fmt::format("{} = true", key.name));
+    wrong_type(*node, key, fmt::format("true, false, '{}' or an integer", word),
+               fmt::format("{} = true", key.name));
   check_range(static_cast<double>(*count), std::to_string(*count), key, *node,
               range_text(key.range));
   value = static_cast<int>(*count);

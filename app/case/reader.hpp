@@ -47,8 +47,8 @@ class TableReader {
   void text(std::string& value, const Key& key, const Choices& choices = {});
   void texts(std::vector<std::string>& values, const Key& key);
   void flag(bool& value, const Key& key);
-  /// false is 0, true is 1.
-  void flag_or_count(int& value, const Key& key);
+  /// false is 0, true is 1, and `word` is -1.
+  void flag_or_count(int& value, std::string_view word, const Key& key);
   void integer(int& value, const Key& key);
   void number(double& value, const Key& key);
   void quantity(double& value, Dimension dimension, const Key& key);

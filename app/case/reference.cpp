@@ -30,9 +30,11 @@ class Documenter {
     row(key, "list of strings", "`[]`");
   }
   void flag(bool value, const Key& key) { row(key, "`true`, `false`", fmt::format("`{}`", value)); }
-  void flag_or_count(int value, const Key& key) {
-    const std::string shown = value > 1 ? std::to_string(value) : fmt::format("{}", value == 1);
-    row(key, fmt::format("`true`, `false` or integer, {}", range_text(key.range)),
+  void flag_or_count(int value, std::string_view word, const Key& key) {
+    const std::string shown = value < 0   ? fmt::format("\"{}\"", word)
+                              : value > 1 ? std::to_string(value)
+                                          : fmt::format("{}", value == 1);
+    row(key, fmt::format("`true`, `false`, `\"{}\"` or integer, {}", word, range_text(key.range)),
         fmt::format("`{}`", shown));
   }
   void integer(int value, const Key& key) {

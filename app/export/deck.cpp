@@ -52,7 +52,7 @@ Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int
                 "other programs have no tetrahedron of four nodes with pressures around its nodes",
                 "export with element = \"tet10-displacement\", which they have");
   }
-  if (settings.indentation.refine_under_tool > 0) {
+  if (settings.indentation.refine_under_tool != 0) {
     throw Error(
         ErrorKind::Configuration, body.name,
         "decks for other programs have the mesh of the body, without refinement under the tool",

@@ -10,6 +10,7 @@
 //   growth [CELLS...]   time and memory against the size of the mesh, cells an edge
 //   poisson [CELLS...]  time and error near nu = 1/2, with and without refined elements
 //   elements [CELLS...] constant, nodal and no pressures
+//   contact [CELLS]     forces on elements as large as the tool that are refined, or not
 //   profile [CELLS...]  parts of the processor time of a site, with and without refined elements
 //   sites               time against the number of sites
 //   threads [SITES...]  one thread against two
@@ -372,10 +373,74 @@ void profile(const std::vector<int>& cells) {
   for (const int each : cells) profile(each);
 }
 
+/// Depths over the tool radius.
+constexpr std::array kDepths{0.02, 0.06, 0.1, 0.2, 0.3, 0.4};
+
+/// The force over that of Hertz at several places in a facet: mean and standard deviation, and the
+/// processor time of a site.
+void contact_row(const Body& body, const std::string& name, CampaignSettings s) {
+  constexpr std::array<Vec3, 6> kPlaces{{{0, 0, 0},
+                                         {0.0012, 0.0007, 0},
+                                         {0.0025, 0.0003, 0},
+                                         {0.0026, 0.0024, 0},
+                                         {0.0035, 0.0014, 0},
+                                         {0.0017, 0.0034, 0}}};
+  s.points.clear();
+  for (const Vec3& place : kPlaces) s.points.push_back({place, {0, 0, -1}});
+  CampaignReport report;
+  const Curves curves = run_campaign(body, s, report);
+  std::printf("| %s | %.2f s |", name.c_str(), report.cpu_seconds / kPlaces.size());
+  const auto& material = s.materials.front().law;
+  const double R = s.indentation.tool.radius, young = rest_moduli(material).young,
+               poisson = rest_moduli(material).poisson;
+  for (const double depth : kDepths) {
+    double sum = 0, squares = 0;
+    for (const SiteCurves& site : curves.sites)
+      for (const CurveSample& sample : site.paths.front().samples)
+        if (std::abs(sample.displacement - depth * R) < 1e-9) {
+          const double d = sample.displacement;
+          const double over = norm(sample.force) /
+                              (4.0 / 3 * young / (1 - poisson * poisson) * std::sqrt(R * d) * d);
+          sum += over;
+          squares += over * over;
+        }
+    const double n = kPlaces.size(), mean = sum / n;
+    std::printf(" %.4f +- %.4f |", mean, std::sqrt(std::max(0.0, squares / n - mean * mean)));
+  }
+  std::printf("\n");
+  std::fflush(stdout);
+}
+
+void contact(int cells) {
+  std::printf(
+      "nu = 0.45, elements of 5 mm under a sphere of 5 mm, 20 increments to 0.4 R; six places in a "
+      "facet, force over that of Hertz\n| refined | processor time, a site |");
+  for (const double depth : kDepths) std::printf(" %.2f R |", depth);
+  std::printf("\n|---|---|---|---|---|---|---|---|\n");
+  const double half = 0.0025 * cells;
+  const Body body = test::make_block(test::even(-half, half, cells), test::even(-half, half, cells),
+                                     test::even(-half, 0, cells / 2));
+  CampaignSettings s = settings(0.45);
+  s.indentation.depth = 0.4 * s.indentation.tool.radius;
+  s.indentation.increments = 20;
+  const auto with = [&](int levels) {
+    s.indentation.refine_under_tool = levels;
+    return s;
+  };
+  for (const int levels : {0, 1, 2, 3}) contact_row(body, std::to_string(levels), with(levels));
+  for (const double size : {3.0, 2.0, 1.5, 1.0}) {
+    s.indentation.size_over_contact = size;
+    char name[32];
+    std::snprintf(name, sizeof name, "contact, %.1f", size);
+    contact_row(body, name, with(IndentationSettings::kByContact));
+  }
+}
+
 int usage() {
   std::fputs(
       "usage: bench_precompute newton [8|26] | errors [CELLS...] | growth [CELLS...] | elements "
-      "[CELLS...] | poisson [CELLS...] | profile [CELLS...] | sites | threads [SITES...]\n",
+      "[CELLS...] | poisson [CELLS...] | contact [CELLS] | profile [CELLS...] | sites | threads "
+      "[SITES...]\n",
       stderr);
   return 2;
 }
@@ -393,6 +458,8 @@ int run(const std::string& part, const std::vector<int>& numbers) {
     elements(numbers.empty() ? std::vector<int>{8, 12} : numbers);
   } else if (part == "poisson") {
     against_poisson(numbers.empty() ? std::vector<int>{12} : numbers);
+  } else if (part == "contact") {
+    contact(numbers.empty() ? 16 : numbers.front());
   } else if (part == "profile") {
     profile(numbers.empty() ? std::vector<int>{18} : numbers);
   } else if (part == "sites") {

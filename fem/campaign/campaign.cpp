@@ -168,6 +168,8 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
       {"rest_factor_bytes", std::to_string(static_cast<long long>(context.rest_factor->bytes()))},
       {"blas_kernel", blas_kernel()},
       {"solver", solver_versions()}};
+  if (settings.indentation.refine_under_tool == IndentationSettings::kByContact)
+    report.facts.emplace_back("under_the_tool", "elements divided as the contact asks for");
   if (const int times = settings.indentation.refine_under_tool; times > 0)
     report.facts.emplace_back(
         "under_the_tool",

@@ -47,13 +47,25 @@ std::vector<double> normal_increments(const IndentationSettings& settings,
   return depths;
 }
 
+/// A sphere of radius R at depth d touches a circle of radius sqrt(R d) about.
+SiteRefinement refinement_of(const IndentationSettings& settings) {
+  SiteRefinement refinement;
+  refinement.levels = settings.refine_under_tool;
+  if (settings.refine_under_tool != IndentationSettings::kByContact) return refinement;
+  const double R = settings.tool.radius;
+  refinement.min_contact_radius = std::sqrt(R * settings.depth / settings.increments);
+  refinement.max_contact_radius = std::sqrt(R * settings.depth);
+  refinement.size_over_distance = settings.size_over_contact;
+  return refinement;
+}
+
 SiteBody body_of_site(const CampaignContext& context, const Eigen::Vector3d& X) {
   const PartTimer timer(Part::SiteMesh);
   const IndentationSettings& settings = context.indentation;
-  const SiteMesh mesh = context.engine == Engine::Direct ? SiteMesh::WholeBody
-                        : settings.refine_under_tool > 0 ? SiteMesh::RefinedWindow
-                                                         : SiteMesh::Window;
-  return {context.model, context.rest, X, settings.tool, mesh, settings.refine_under_tool};
+  const SiteMesh mesh = context.engine == Engine::Direct  ? SiteMesh::WholeBody
+                        : settings.refine_under_tool != 0 ? SiteMesh::RefinedWindow
+                                                          : SiteMesh::Window;
+  return {context.model, context.rest, X, settings.tool, mesh, refinement_of(settings)};
 }
 
 /// A path of the site ended early; every path that did adds its reason.

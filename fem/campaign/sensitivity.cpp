@@ -37,7 +37,7 @@ struct Varied {
 
 /// With gravity the point of first touch would depend on the constants.
 void refuse_unsupported(const CampaignSettings& settings) {
-  if (settings.indentation.refine_under_tool > 0)
+  if (settings.indentation.refine_under_tool != 0)
     throw Error(ErrorKind::Configuration, "refine_under_tool",
                 "gradients are not computed with refined elements",
                 "calibrate without solver.refine_under_tool, with a smaller mesh.element_size");

@@ -38,6 +38,9 @@ struct IndentationSettings {
   /// contacts smaller than a facet. Each further time within half the distance from the site.
   int refine_under_tool = 0;
   static constexpr int kMaxRefinements = 6;
+  /// Instead of a number: as often as the contact of a sphere asks for, see SiteRefinement.
+  static constexpr int kByContact = -1;
+  double size_over_contact = 2;  ///< of elements under the tool, over the contact radius
 };
 
 /// A point of the boundary where the tool is pressed, and the direction of its normal path.

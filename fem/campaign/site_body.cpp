@@ -16,6 +16,13 @@ namespace {
 /// solves.
 constexpr double kWindowRadius = 2;
 
+/// h_b: growth of the size of elements with the distance, outside the largest contact.
+constexpr double kGrowthOutside = 0.5;
+/// A bound on how often the contact divides an element.
+constexpr int kMaxLevels = 12;
+
+using Corners = std::array<Eigen::Vector3d, 4>;
+
 /// Distance of a point from a segment.
 double distance(const Eigen::Vector3d& x, const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const double fraction = std::clamp((x - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
@@ -36,7 +43,7 @@ double distance(const Eigen::Vector3d& x, const std::array<Eigen::Vector3d, 3>& 
 }
 
 /// Distance of a point outside of a tetrahedron, or on its boundary.
-double distance(const Eigen::Vector3d& x, const std::array<Eigen::Vector3d, 4>& corner) {
+double distance(const Eigen::Vector3d& x, const Corners& corner) {
   double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t without = 0; without < 4; ++without)
     nearest = std::min(nearest,
@@ -63,6 +70,43 @@ std::vector<int> elements_near(const QuadraticMesh& mesh, const Eigen::Vector3d&
   return elements;
 }
 
+RefinedMesh refined_by_levels(const QuadraticMesh& mesh, const Eigen::Vector3d& site, double reach,
+                              int levels) {
+  const auto near = [&](const Corners& corners, int level) {
+    return distance(site, corners) <= std::ldexp(reach, -level);
+  };
+  return refine_elements(mesh, elements_near(mesh, site, reach), levels, near);
+}
+
+/// The edge of the regular tetrahedron with the same sum of squared edges.
+double size_of(const Corners& corner) {
+  double squares = 0;
+  for (const auto& [i, j] : kTetEdges) squares += (corner[i] - corner[j]).squaredNorm();
+  return std::sqrt(squares / 6);
+}
+
+RefinedMesh refined_by_contact(const QuadraticMesh& mesh, const Eigen::Vector3d& site,
+                               const SiteRefinement& refinement) {
+  const auto too_large = [&](const Corners& corners, int) {
+    // The site lies within twice its size from the centre of an element that it touches.
+    const double size = size_of(corners);
+    const auto allowed = [&](double s) {
+      return refinement.size_over_distance * std::max(refinement.min_contact_radius, s) +
+             kGrowthOutside * std::max(0.0, s - refinement.max_contact_radius);
+    };
+    const Eigen::Vector3d centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+    if (size <= allowed(std::max(0.0, (site - centre).norm() - 2 * size))) return false;
+    return size > allowed(distance(site, corners));
+  };
+  std::vector<int> elements;
+  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
+    const Tetrahedron10& t = mesh.tetrahedra[to_index(e)];
+    if (too_large({mesh.X.col(t[0]), mesh.X.col(t[1]), mesh.X.col(t[2]), mesh.X.col(t[3])}, 0))
+      elements.push_back(e);
+  }
+  return refine_elements(mesh, elements, kMaxLevels, too_large);
+}
+
 }  // namespace
 
 double window_radius(const ToolGeometry& tool) {
@@ -75,21 +119,20 @@ SolidModel window_at(const SolidModel& body, const Eigen::Vector3d& site,
 }
 
 SiteBody::SiteBody(const SolidModel& body, const Displacement& rest, const Eigen::Vector3d& site,
-                   const ToolGeometry& tool, SiteMesh mesh, int levels)
+                   const ToolGeometry& tool, SiteMesh mesh, const SiteRefinement& refinement)
     : whole_(&body), rest_(rest) {
   if (mesh == SiteMesh::Window) window_.emplace(window_at(body, site, tool));
-  if (mesh == SiteMesh::RefinedWindow) refine(site, tool, levels);
+  if (mesh == SiteMesh::RefinedWindow) refine(site, tool, refinement);
 }
 
 /// The window has every new node and the nodes of its parent: seen from outside the window, the
 /// refined body at rest is then nearly the one that was factorized.
-void SiteBody::refine(const Eigen::Vector3d& site, const ToolGeometry& tool, int levels) {
+void SiteBody::refine(const Eigen::Vector3d& site, const ToolGeometry& tool,
+                      const SiteRefinement& refinement) {
   const QuadraticMesh& mesh = whole_->mesh();
-  const auto near = [&](const std::array<Eigen::Vector3d, 4>& corners, int level) {
-    return distance(site, corners) <= std::ldexp(tool.extent(), -level);
-  };
-  RefinedMesh refined =
-      refine_elements(mesh, elements_near(mesh, site, tool.extent()), levels, near);
+  RefinedMesh refined = refinement.min_contact_radius > 0
+                            ? refined_by_contact(mesh, site, refinement)
+                            : refined_by_levels(mesh, site, tool.extent(), refinement.levels);
   std::vector<bool> free = nodes_within(mesh, site, window_radius(tool));
   for (const RefinedMesh::NewNode& node : refined.new_nodes)
     for (const int neighbour : mesh.tetrahedra[to_index(node.parent)])

@@ -23,16 +23,28 @@ enum class SiteMesh {
   RefinedWindow  ///< the same with the elements around the tool divided into eight, several times
 };
 
+/// How the elements around a site are divided, each by as often as its distance s from the site
+/// asks for. Either a number of levels: first the elements under the tool, then always those
+/// children that are within half the distance. Or by the contact: while their size is above
+///   h(s) = h_a max(a, s) + h_b max(0, s - b),  a and b the smallest and the largest contact
+///   radius.
+/// A contact of any radius r from a to b then has elements of h_a r at its edge and smaller ones
+/// inside, and each doubling of the radius costs as many elements as the one before.
+struct SiteRefinement {
+  int levels = 1;                   ///< where there is no contact radius
+  double min_contact_radius = 0;    ///< a, m; 0: by `levels`
+  double max_contact_radius = 0;    ///< b, m
+  double size_over_distance = 0.5;  ///< h_a
+};
+
 /// The body and the window around the tool. The factor of the campaign serves a refined mesh too:
 /// every new node lies inside the window, which each site solves by itself. Immutable after
 /// construction.
 class SiteBody {
  public:
-  /// `body` must outlive this. `rest`: the displacement of the body before the touch. `levels`: how
-  /// often elements are divided into eight, first those under the tool, then always those of their
-  /// children that are within half the distance from the site.
+  /// `body` must outlive this. `rest`: the displacement of the body before the touch.
   SiteBody(const SolidModel& body, const Displacement& rest, const Eigen::Vector3d& site,
-           const ToolGeometry& tool, SiteMesh mesh, int levels = 1);
+           const ToolGeometry& tool, SiteMesh mesh, const SiteRefinement& refinement = {});
 
   const SolidModel& whole() const { return refined_ ? *refined_ : *whole_; }
   const QuadraticMesh& mesh() const { return whole().mesh(); }
@@ -45,7 +57,8 @@ class SiteBody {
   double bytes() const;  ///< without what the sites of a campaign share
 
  private:
-  void refine(const Eigen::Vector3d& site, const ToolGeometry& tool, int levels);
+  void refine(const Eigen::Vector3d& site, const ToolGeometry& tool,
+              const SiteRefinement& refinement);
 
   const SolidModel* whole_;
   std::optional<SolidModel> refined_, window_;

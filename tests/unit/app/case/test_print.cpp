@@ -36,7 +36,8 @@ TEST(ResolvedCase, IsExactForAnyNumberAndText) {
 // The text of a case is part of what identifies its curves.
 TEST(ResolvedCase, WritesZeroAndOneAsFlags) {
   Case c = parse_case(kGood, "ball.toml");
-  for (const auto& [times, text] : {std::pair{0, "false"}, {1, "true"}, {2, "2"}, {6, "6"}}) {
+  for (const auto& [times, text] :
+       {std::pair{0, "false"}, {1, "true"}, {2, "2"}, {6, "6"}, {-1, "\"contact\""}}) {
     c.campaign.indentation.refine_under_tool = times;
     EXPECT_THAT(resolved_toml(c), HasSubstr(std::string("refine_under_tool = ") + text + "\n"));
     EXPECT_EQ(parse_case(resolved_toml(c), "resolved"), c);

@@ -64,6 +64,7 @@ TEST(CaseReader, ReadsAFlagOrACount) {
   EXPECT_EQ(refinements("0"), 0);
   EXPECT_EQ(refinements("1"), 1);
   EXPECT_EQ(refinements("3"), 3);
+  EXPECT_EQ(refinements("\"contact\""), fem::IndentationSettings::kByContact);
   const auto message = [&](const std::string& value) -> std::string {
     try {
       refinements(value);
@@ -74,8 +75,8 @@ TEST(CaseReader, ReadsAFlagOrACount) {
   };
   EXPECT_THAT(message("7"), HasSubstr("solver.refine_under_tool = 7 is out of range"));
   EXPECT_THAT(message("-1"), HasSubstr("out of range"));
-  EXPECT_THAT(message("1.5"), HasSubstr("true, false or an integer"));
-  EXPECT_THAT(message("\"twice\""), HasSubstr("true, false or an integer"));
+  EXPECT_THAT(message("1.5"), HasSubstr("true, false, 'contact' or an integer"));
+  EXPECT_THAT(message("\"twice\""), HasSubstr("true, false, 'contact' or an integer"));
 }
 
 TEST(CaseReader, RejectsValuesOutOfRange) {

@@ -189,7 +189,7 @@ class Change {
   void flag(bool& value, const Key& key) {
     if (is_next(key)) value = !value;
   }
-  void flag_or_count(int& value, const Key& key) {
+  void flag_or_count(int& value, std::string_view, const Key& key) {
     if (is_next(key)) ++value;
   }
   void integer(int& value, const Key& key) {

@@ -42,6 +42,21 @@ TEST(Settings, OfAnIndentationAreCheckedByName) {
   EXPECT_THAT(refusal([](S& s) { s.lateral_travel = -1; }), HasSubstr("lateral_travel"));
   EXPECT_THAT(refusal([](S& s) { s.lateral_increments = 0; }), HasSubstr("lateral_increments"));
   EXPECT_THAT(refusal([](S& s) { s.tool.radius = 0; }), HasSubstr("tool_radius"));
+  EXPECT_THAT(refusal([](S& s) { s.size_over_contact = 0; }), HasSubstr("size_over_contact"));
+}
+
+TEST(Settings, RefineByTheContactOfASphereOnly) {
+  const auto with = [](ToolShape shape) {
+    return [shape](IndentationSettings& s) {
+      s.refine_under_tool = IndentationSettings::kByContact;
+      s.tool.shape = shape;
+      s.tool.edge_radius = shape == ToolShape::Disc ? 0.001 : 0;
+      s.tool.length = shape == ToolShape::Cylinder ? 0.02 : 0;
+    };
+  };
+  EXPECT_EQ(refusal(with(ToolShape::Sphere)), "");
+  for (const ToolShape shape : {ToolShape::Disc, ToolShape::Cylinder})
+    EXPECT_THAT(refusal(with(shape)), testing::HasSubstr("contact of a sphere only"));
 }
 
 TEST(Settings, NeedNoLateralValuesWithoutLateralPaths) {

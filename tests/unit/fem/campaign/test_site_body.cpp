@@ -53,7 +53,7 @@ TEST_F(SiteBodies, RefinedWindowContainsEveryNewNode) {
   const int old_nodes = model.mesh().nodes();
   std::size_t elements = model.mesh().tetrahedra.size();
   for (const int levels : {1, 2, 3}) {
-    const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow, levels);
+    const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow, {.levels = levels});
     ASSERT_GT(s.mesh().nodes(), old_nodes);
     ASSERT_NE(s.prolongation(), nullptr);
     for (int node = old_nodes; node < s.mesh().nodes(); ++node)
@@ -65,9 +65,60 @@ TEST_F(SiteBodies, RefinedWindowContainsEveryNewNode) {
   }
 }
 
+double distance_of_centre(const QuadraticMesh& mesh, const Tetrahedron10& t,
+                          const Eigen::Vector3d& x) {
+  return (0.25 * (mesh.X.col(t[0]) + mesh.X.col(t[1]) + mesh.X.col(t[2]) + mesh.X.col(t[3])) - x)
+      .norm();
+}
+
+double longest_edge(const QuadraticMesh& mesh, const Tetrahedron10& t) {
+  double longest = 0;
+  for (const auto& [i, j] : kTetEdges)
+    longest = std::max(longest, (mesh.X.col(t[i]) - mesh.X.col(t[j])).norm());
+  return longest;
+}
+
+/// The elements that a contact of radius r meets are as small as r asks for, and where the smallest
+/// contact does not ask for it, no element is divided.
+TEST_F(SiteBodies, ContactDividesInProportionToTheDistance) {
+  const SiteRefinement asked{
+      .min_contact_radius = 0.0008, .max_contact_radius = 0.004, .size_over_distance = 1};
+  const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow, asked);
+  for (const Tetrahedron10& t : s.mesh().tetrahedra) {
+    const double r = distance_of_centre(s.mesh(), t, site), longest = longest_edge(s.mesh(), t);
+    if (r > 0.004) continue;
+    EXPECT_LT(longest, 1.5 * std::max(0.0008, r));
+    EXPECT_GT(longest, 0.15 * std::max(0.0008, r));
+  }
+  for (int node = model.mesh().nodes(); node < s.mesh().nodes(); ++node)
+    EXPECT_TRUE(s.window().equation(node) >= 0 || s.mesh().fixed[to_index(node)]);
+}
+
+/// With each halving of the smallest radius about as many elements are added.
+TEST_F(SiteBodies, ContactsOfAnyRadiusCostTheSame) {
+  std::vector<std::size_t> elements;
+  for (const double radius : {0.002, 0.001, 0.0005, 0.00025}) {
+    const SiteRefinement asked{
+        .min_contact_radius = radius, .max_contact_radius = 0.004, .size_over_distance = 1};
+    elements.push_back(
+        SiteBody(model, rest, site, tool, SiteMesh::RefinedWindow, asked).mesh().tetrahedra.size());
+  }
+  const auto first = elements[1] - elements[0], last = elements[3] - elements[2];
+  EXPECT_GT(first, 50u);
+  EXPECT_LT(last, 2 * first);
+  EXPECT_GT(last, first / 2);
+}
+
+TEST_F(SiteBodies, ContactLargerThanTheElementsDividesNone) {
+  const SiteRefinement asked{
+      .min_contact_radius = 0.02, .max_contact_radius = 0.03, .size_over_distance = 1};
+  const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow, asked);
+  EXPECT_EQ(s.mesh().tetrahedra.size(), model.mesh().tetrahedra.size());
+}
+
 /// A homogeneous deformation has the same energy and nodal forces on both meshes.
 TEST_F(SiteBodies, RefinedBodyIsTheBodyUnderHomogeneousDeformation) {
-  const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow, 3);
+  const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow, {.levels = 3});
   Eigen::Matrix3d G = Eigen::Matrix3d::Zero();
   G.col(2) = Eigen::Vector3d(0.1, -0.05, -0.08);  // vanishes at the fixed base
   const auto homogeneous = [&](const QuadraticMesh& mesh) {

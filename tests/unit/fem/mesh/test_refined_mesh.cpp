@@ -330,6 +330,36 @@ TEST(RefineUnderTool, TwiceHasTheForcesOfTheBodyRefinedTwice) {
   EXPECT_GT(norm(once.paths[0].samples[1].force - first), 0.03 * norm(first));
 }
 
+/// The force at a sample of the normal path.
+double force_at(const SiteCurves& site, std::size_t sample) {
+  return norm(site.paths[0].samples[sample].force);
+}
+
+// Facets larger than the tool, contacts from a sixth of a facet on, in different parts of facets.
+TEST(RefineUnderTool, ByContactTheForceDoesNotDependOnTheFacets) {
+  const Body coarse = block_of(4), fine = refined_body(refined_body(coarse));
+  CampaignSettings settings = pressed_by(0.005, 0.0012);
+  const double x = 0.0012, y = 0.0021;
+  const int by_contact = IndentationSettings::kByContact;
+  const SiteCurves ours = press(coarse, settings, by_contact, x, y);
+  ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
+  for (const CurvePath& path : ours.paths) {
+    const CurveSample& end = path.samples.back();
+    EXPECT_NEAR(end.strain_energy + end.contact_energy, end.tool_work, 0.005 * end.tool_work);
+  }
+  settings.indentation.lateral_depths.clear();
+  const SiteCurves beside = press(coarse, settings, by_contact, 0.0005, 0.0003),
+                   unrefined = press(coarse, settings, 0, x, y),
+                   reference = press(fine, settings, 0, x, y);
+  for (std::size_t i = 1; i < ours.paths[0].samples.size(); ++i) {
+    EXPECT_NEAR(force_at(beside, i), force_at(ours, i), 0.02 * force_at(ours, i)) << i;
+    // The elements of the reference are larger than its first contact.
+    const double allowed = (i > 1 ? 0.02 : 0.04) * force_at(ours, i);
+    EXPECT_NEAR(force_at(ours, i), force_at(reference, i), allowed) << i;
+  }
+  EXPECT_GT(std::abs(force_at(unrefined, 1) - force_at(ours, 1)), 0.1 * force_at(ours, 1));
+}
+
 TEST(RefineUnderTool, ConservesEnergyBetweenSmallAndLargeElements) {
   const SiteCurves site = press(block_of(6), pressed_by(0.005, 0.003), 1, 0.0012, 0.0021);
   ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;
