@@ -189,17 +189,20 @@ bool factorize_patch(const ContactPatch& patch, const ToolContact& contact,
 Eigen::VectorXd patch_minimum(const ContactPatch& patch, const ToolContact& contact,
                               const PatchStiffness& stiffness, const Eigen::VectorXd& load,
                               Eigen::VectorXd d, double tolerance, Eigen::MatrixXd& scratch) {
-  Eigen::MatrixXd S = stiffness.S;
+  // A copy only where the diagonal must be raised: S is most of the memory of a large patch.
+  Eigen::MatrixXd raised;
+  const Eigen::MatrixXd* S = &stiffness.S;
   Eigen::VectorXd contact_force;
   std::size_t fraction = 0;
   for (int iteration = 0; iteration < kPatchIterations; ++iteration) {
     const double contact_energy = patch.gradient(contact, d, contact_force);
-    const Eigen::VectorXd Sd = S * d, g = Sd - load + contact_force;
+    const Eigen::VectorXd Sd = *S * d, g = Sd - load + contact_force;
     if (g.norm() <= tolerance) break;
-    if (!factorize_patch(patch, contact, S, d, scratch)) {
+    if (!factorize_patch(patch, contact, *S, d, scratch)) {
       if (++fraction == kStiffeningFractions.size()) break;
-      S = stiffness.S;
-      S.diagonal() += kStiffeningFractions[fraction] * stiffness.stiffening;
+      raised = stiffness.S;
+      S = &raised;
+      raised.diagonal() += kStiffeningFractions[fraction] * stiffness.stiffening;
       continue;
     }
     const double energy = 0.5 * d.dot(Sd) - load.dot(d) + contact_energy;
@@ -210,7 +213,7 @@ Eigen::VectorXd patch_minimum(const ContactPatch& patch, const ToolContact& cont
     for (int halvings = 0; halvings < kPatchHalvings; ++halvings, length *= 0.5) {
       trial = d + length * step;
       const double next =
-          0.5 * trial.dot(S * trial) - load.dot(trial) + patch.energy(contact, trial);
+          0.5 * trial.dot(*S * trial) - load.dot(trial) + patch.energy(contact, trial);
       if (next <= energy + 1e-4 * length * slope + kEnergyNoise * std::abs(energy)) break;
     }
     d = trial;
