@@ -428,7 +428,7 @@ void contact(int cells) {
     return s;
   };
   for (const int levels : {0, 1, 2, 3}) contact_row(body, std::to_string(levels), with(levels));
-  for (const double size : {3.0, 2.0, 1.5, 1.0}) {
+  for (const double size : {3.0, 2.0, 1.5}) {
     s.indentation.size_over_contact = size;
     char name[32];
     std::snprintf(name, sizeof name, "contact, %.1f", size);
