@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
@@ -58,7 +59,7 @@ void require_valid(const IdentifyOptions& o) {
     require_in_range("--force-resolution-mN", *o.force_resolution_mn, 0, 1e4);
   const bool good =
       !o.axes.empty() && o.axes.find_first_not_of("xyz") == std::string::npos && o.axes.size() <= 3;
-  if (!good) refuse("--axes", "'" + o.axes + "' names no axes", "give some of xyz");
+  if (!good) refuse("--axes", "'" + o.axes + "' does not name axes once each", "give some of xyz");
   if (std::filesystem::exists(o.out))
     refuse(o.out, "it exists", "remove it, or name another file with --out");
 }
@@ -116,6 +117,14 @@ void require_complete(const IdentifyOptions& o, ExcitationEnd end, bool halted, 
   }
 }
 
+/// s, between two samples.
+double longest_period(const identify::MotionRecord& record) {
+  double longest = 0;
+  for (std::size_t i = 1; i < record.time.size(); ++i)
+    longest = std::max(longest, record.time[i] - record.time[i - 1]);
+  return longest;
+}
+
 AxisFinding measure_axis(const IdentifyOptions& o, runtime::Device& device, std::size_t axis,
                          const StopOnInterrupt& stop) {
   say("identify: {}: {:g} s with up to {:g} N; keep the hand off the handle", axis_name(axis),
@@ -130,6 +139,7 @@ AxisFinding measure_axis(const IdentifyOptions& o, runtime::Device& device, std:
     halted = thread.halted();
   }
   require_complete(o, loop.end(), halted, axis);
+  say("  longest period of the loop {:.3f} ms", 1e3 * longest_period(loop.record()));
   if (loop.missed() > 0) say("  {} periods were missed", loop.missed());
   if (loop.stale() > 0) say("  {} steps had no new sample", loop.stale());
   return {axis, identify::estimate_axis(loop.record(), 1e-3 * o.largest_delay_ms),
@@ -186,6 +196,8 @@ int identify_device(const IdentifyOptions& options) {
   }
   device->close();
   const DeviceFindings findings = findings_of(options, name, axes);
+  if (axes.size() < 3)
+    warn("identify: the profile is that of a device that moves along " + options.axes + " only");
   for (const Missing& m : findings.missing)
     warn(fmt::format("identify: {} is left out: {}", m.constant, m.reason));
   write_file_crash_safely(options.out, profile_text(findings, axes));

@@ -174,11 +174,11 @@ PALPATE_API const char* palpate_last_error(void);
 /* One line on a PALPATE_OK or PALPATE_ERROR_* value. */
 PALPATE_API const char* palpate_status_text(int status);
 
-/* Reads and checks a response library: library.h5, or a flat one (library.plib), which is all that a
- * build without HDF5 reads. On failure *library is NULL. */
+/* Reads and checks a response library: library.h5, or a flat one (library.plib), which is all that
+ * a build without HDF5 reads. On failure *library is NULL. */
 PALPATE_API int palpate_library_load(const char* path, palpate_library** library);
-/* The same from a library file in memory; library.h5 by way of a temporary file in TMPDIR. The bytes
- * are not used after the call. */
+/* The same from a library file in memory; library.h5 by way of a temporary file in TMPDIR. The
+ * bytes are not used after the call. */
 PALPATE_API int palpate_library_load_memory(const void* bytes, size_t size,
                                             palpate_library** library);
 /* Destroy its states first. NULL is allowed. */

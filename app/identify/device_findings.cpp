@@ -69,7 +69,7 @@ DeviceFindings combine(const std::vector<AxisFinding>& axes, double rate) {
 std::string profile_text(const DeviceFindings& findings, const std::vector<AxisFinding>& axes) {
   const fitting::DeviceProfile& p = findings.profile;
   std::string text =
-      "# Measured by palpate identify. The constants are on the safe side: two standard "
+      "# Measured by palpate identify. The constants are on the safe side: 2.5 standard "
       "deviations below (damping, dry\n# friction) or above (delay) the estimates.\n";
   for (const AxisFinding& a : axes) {
     const identify::AxisEstimate& e = a.estimate;
@@ -82,6 +82,7 @@ std::string profile_text(const DeviceFindings& findings, const std::vector<AxisF
         axis_name(a.axis), e.mass.value, b.value, b.deviation, e.friction.value,
         e.friction.deviation, 1e3 * e.delay.value, 1e3 * e.delay.deviation);
   }
+  if (axes.size() < 3) text += "# For a device that moves along these axes only.\n";
   for (const Missing& m : findings.missing)
     text += "# " + m.constant + " is missing: " + m.reason + "\n";
   text += "name = " + toml_string(p.name) + "\n";

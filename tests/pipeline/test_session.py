@@ -247,7 +247,7 @@ class Session(unittest.TestCase):
         profile = self.root / "never.toml"
         for options, said in ((("--box-mm", 1, "--max-force", 5), "left the box"),
                               (("--max-speed", 0.01), "faster than 0.01 m/s"),
-                              (("--seconds", "nan"), "out of range"), (("--axes", ""), "names no axes")):
+                              (("--seconds", "nan"), "out of range"), (("--axes", ""), "does not name axes"), (("--axes", "xx"), "does not name axes")):
             refused = palpate("identify", "--out", profile, *options)
             self.assertEqual(refused.returncode, CONFIGURATION, options)
             self.assertIn(said, refused.stderr)
