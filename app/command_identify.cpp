@@ -57,8 +57,10 @@ void require_valid(const IdentifyOptions& o) {
   require_in_range("--largest-delay-ms", o.largest_delay_ms, 1, 100);
   if (o.force_resolution_mn)
     require_in_range("--force-resolution-mN", *o.force_resolution_mn, 0, 1e4);
-  const bool good =
-      !o.axes.empty() && o.axes.find_first_not_of("xyz") == std::string::npos && o.axes.size() <= 3;
+  std::string once = o.axes;
+  std::sort(once.begin(), once.end());
+  const bool good = !once.empty() && once.find_first_not_of("xyz") == std::string::npos &&
+                    std::adjacent_find(once.begin(), once.end()) == once.end();
   if (!good) refuse("--axes", "'" + o.axes + "' does not name axes once each", "give some of xyz");
   if (std::filesystem::exists(o.out))
     refuse(o.out, "it exists", "remove it, or name another file with --out");
