@@ -17,6 +17,8 @@
 #include "fem/campaign/indentation.hpp"
 #include "format/to_index.hpp"
 #include "tests/support/block_body.hpp"
+#include "tests/support/prism_body.hpp"
+#include "tests/support/round_cap.hpp"
 #include "tests/support/sample_laws.hpp"
 #include "tests/verification/record.hpp"
 
@@ -272,6 +274,61 @@ TEST(CalculixTool, AgreesOnASphereWhateverTheContactStiffness) {
   test::verify({kToolProblem, "sphere of 5 mm, CalculiX with a tenth of the contact stiffness", "N",
                 their_force(deck), force, test::Reference::SameSolver,
                 "CalculiX with the full contact stiffness: CalculiX against itself", 0.01});
+}
+
+constexpr auto kCurvedProblem =
+    "A ball of 30 mm with curved facets of 4 mm, pressed by a sphere of 5 mm, nu = 0.45";
+
+/// The cap of a ball with its pole as the only response vertex.
+Body curved_cap(double size) {
+  const test::RoundCap cap;
+  Body body = test::even_cap(cap, size);
+  test::curve_onto_sphere(cap.radius, body);
+  std::int32_t pole = 0;
+  for (std::size_t v = 0; v < body.nodes.size(); ++v)
+    if (body.nodes[v][2] > body.nodes[to_index(pole)][2]) pole = static_cast<std::int32_t>(v);
+  body.response.node = {pole};
+  body.response.inward = {{0, 0, -1}};
+  body.response.is_site = {1};
+  return body;
+}
+
+/// Force at the pole after each increment of 0.5 mm, with elements divided so often, N.
+std::vector<double> forces_at_pole(const Body& body, fem::CampaignSettings settings, int levels) {
+  settings.indentation.refine_under_tool = levels;
+  const fem::CampaignContext context(body, settings, fem::Engine::SharedFactor);
+  const SiteCurves curves = fem::solve_site(context, 0, nullptr);
+  EXPECT_EQ(curves.status, SiteStatus::Complete) << curves.reason;
+  std::vector<double> forces;
+  for (const CurveSample& sample : curves.paths.front().samples) forces.push_back(-sample.force[2]);
+  return forces;
+}
+
+/// On one mesh the programs agree once the contact is as wide as a facet. Where they do not, at 0.5
+/// mm, refinement decides against both: coarse facets err by more than the programs differ.
+TEST(CalculixTool, AgreesOnCurvedFacetsAndBothErrThereUntilTheyAreDivided) {
+  const Body body = curved_cap(0.004);
+  auto settings = pressing({fem::ToolShape::Sphere, 0.005, 0, 0});
+  settings.indentation.depth = 0.0015;
+  settings.indentation.increments = 3;
+  const auto theirs = run_calculix(make_tool_deck(body, settings, 0));
+  ASSERT_EQ(theirs.size(), 3U);
+  const auto coarse = forces_at_pole(body, settings, 0), twice = forces_at_pole(body, settings, 2),
+             finest = forces_at_pole(curved_cap(0.003), settings, 3);
+  constexpr auto kFinest = "palpate, facets of 3 mm, divided three times";
+  constexpr std::array<const char*, 4> kDeep{"", "0.5 mm deep, ", "1.0 mm deep, ", "1.5 mm deep, "};
+  for (const std::size_t i : {2U, 3U})
+    test::verify({kCurvedProblem, std::string(kDeep[i]) + "one mesh", "N", coarse[i],
+                  -theirs[i - 1][2], test::Reference::OtherSolver, kDeck, 0.015});
+  for (const std::size_t i : {1U, 2U, 3U}) {
+    const std::string depth = kDeep[i];
+    test::verify({kCurvedProblem, depth + "CalculiX, not divided", "N", -theirs[i - 1][2],
+                  finest[i], test::Reference::OtherSolver, kFinest, 0.4});
+    test::verify({kCurvedProblem, depth + "palpate, not divided", "N", coarse[i], finest[i],
+                  test::Reference::SameSolver, kFinest, 0.25});
+    test::verify({kCurvedProblem, depth + "palpate, divided twice", "N", twice[i], finest[i],
+                  test::Reference::SameSolver, kFinest, 0.01});
+  }
 }
 
 }  // namespace

@@ -107,6 +107,10 @@ TEST_F(PalpateApi, RefusesATimeStepThatIsNotPositive) {
   EXPECT_EQ(palpate_step(nullptr, x, v, kDt, f), PALPATE_BAD_INPUT);
   EXPECT_EQ(palpate_step(state_, nullptr, v, kDt, f), PALPATE_BAD_INPUT);
   EXPECT_EQ(palpate_step(state_, x, v, kDt, nullptr), PALPATE_BAD_INPUT);
+  palpate_observation seen{};
+  seen.size = sizeof seen;
+  EXPECT_EQ(palpate_observe(nullptr, &seen), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_observe(state_, nullptr), PALPATE_ERROR_ARGUMENT);
 }
 
 TEST_F(PalpateApi, RefusesAFileWithTheReason) {

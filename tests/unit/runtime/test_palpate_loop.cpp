@@ -78,6 +78,9 @@ TEST_F(PalpateLoop, RunsUntilTheDeviceIsLost) {
   EXPECT_EQ(report.halted, 0U);
   EXPECT_EQ(report.steps, 151U);
   EXPECT_GT(report.compute_median, 0);
+  EXPECT_GE(report.wake_p999, report.wake_median);
+  // A quantile of the histogram is the upper end of its bin.
+  EXPECT_LE(report.wake_p999, 2 * report.wake_longest);
   EXPECT_GE(report.compute_longest, report.compute_median);
   // 100 k z^2 at the last position before it was lost, less the offset of one step.
   EXPECT_NEAR(own.largest, 100 * kStiffness * std::pow(0.0005 - 2e-5 * 149 + 2e-5, 2), 2e-3);

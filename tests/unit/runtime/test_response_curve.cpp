@@ -149,6 +149,7 @@ TEST(ResponseCurve, RejectsWhatIsNoPassiveResponse) {
   EXPECT_THROW(make({0.1F, 1.0F}, {0.0F, 1.0F}), Error);
   EXPECT_THROW(make({0.0F, 1.0F, 1.0F}, {0.0F, 1.0F, 1.0F}), Error);
   EXPECT_THROW(make({0.0F, 1.0F}, {0.0F, -1.0F}), Error);
+  EXPECT_THROW(make({0.0F, 1.0F}, {-1.0F, 1.0F}), Error);
   EXPECT_THROW(make({0.0F, 1.0F}, {0.0F, std::numeric_limits<float>::quiet_NaN()}), Error);
   EXPECT_THROW(make({0.0F, std::numeric_limits<float>::infinity()}, {0.0F, 1.0F}), Error);
 }
