@@ -106,6 +106,10 @@ void require_complete(const IdentifyOptions& o, ExcitationEnd end, bool halted, 
       fail(fmt::format("the tip was faster than {:g} m/s", o.max_speed),
            "lower --max-force, or raise --max-speed");
       break;
+    case ExcitationEnd::Saturated:
+      fail(fmt::format("the device gave less than the {:g} N that were commanded", o.max_force),
+           "lower --max-force");
+      break;
     case ExcitationEnd::Lost:
       fail("the device was disconnected", "check cable and power");
       break;

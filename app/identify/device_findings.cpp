@@ -82,6 +82,10 @@ std::string profile_text(const DeviceFindings& findings, const std::vector<AxisF
         axis_name(a.axis), e.mass.value, b.value, b.deviation, e.friction.value,
         e.friction.deviation, 1e3 * e.delay.value, 1e3 * e.delay.deviation);
   }
+  text +=
+      "# coulomb_friction supposes that dry friction acts along x, y and z; where it acts in "
+      "joints "
+      "between them, it can be smaller.\n";
   if (axes.size() < 3) text += "# For a device that moves along these axes only.\n";
   for (const Missing& m : findings.missing)
     text += "# " + m.constant + " is missing: " + m.reason + "\n";

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "runtime/realtime.hpp"
-#include "runtime/status.hpp"
 
 namespace palpate::app {
 
@@ -51,16 +50,15 @@ bool ExcitationLoop::tick(std::int64_t) noexcept {
     return stop(ExcitationEnd::Done);
 
   if (!fresh) {  // the last command goes on, as the record says
-    device_.command(record_.command.empty() ? Vec3{} : record_.command.back());
-    return true;
+    const Vec3 again = record_.command.empty() ? Vec3{} : record_.command.back();
+    return device_.command(again) == DeviceStatus::Lost ? stop(ExcitationEnd::Lost) : true;
   }
   const Vec3 wanted = excitation_.command(time, admission.position);
   if (excitation_.left_box()) return stop(ExcitationEnd::LeftBox);
   const Safety::Verdict verdict = safety_.limit(wanted, 0);
-  if ((verdict.status & runtime::step_status::LoopClamped) != 0) ++clamped_;
   const DeviceStatus done = device_.command(verdict.force);
   if (done == DeviceStatus::Lost) return stop(ExcitationEnd::Lost);
-  if (done == DeviceStatus::Saturated) ++clamped_;
+  if (done == DeviceStatus::Saturated) return stop(ExcitationEnd::Saturated);
   record_.time.push_back(time);
   record_.position.push_back(admission.position);
   record_.command.push_back(verdict.force);

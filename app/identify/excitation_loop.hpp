@@ -27,8 +27,9 @@ enum class ExcitationEnd : std::uint8_t {
   Done,
   LeftBox,  ///< the tip was farther from the start than the box
   TooFast,
-  Lost,   ///< the device
-  Silent  ///< it sent no new sample for too long
+  Saturated,  ///< the device gave less force than commanded: the force that acted is not known
+  Lost,       ///< the device
+  Silent      ///< it sent no new sample for too long
 };
 
 /// Reads the device, commands the excitation through the safety functions of the force loop, and
@@ -51,9 +52,8 @@ class ExcitationLoop final : public runtime::LoopBody {
   // To be read when the loop has stopped.
   ExcitationEnd end() const noexcept { return end_; }
   const identify::MotionRecord& record() const noexcept { return record_; }
-  std::uint64_t missed() const noexcept { return missed_; }    ///< periods without a step
-  std::uint64_t stale() const noexcept { return stale_; }      ///< steps without a new sample
-  std::uint64_t clamped() const noexcept { return clamped_; }  ///< by safety or the device
+  std::uint64_t missed() const noexcept { return missed_; }  ///< periods without a step
+  std::uint64_t stale() const noexcept { return stale_; }    ///< steps without a new sample
 
  private:
   bool stop(ExcitationEnd why) noexcept;
@@ -65,7 +65,7 @@ class ExcitationLoop final : public runtime::LoopBody {
   identify::MotionRecord record_;
   runtime::DeviceReading reading_;
   ExcitationEnd end_ = ExcitationEnd::Running;
-  std::uint64_t missed_ = 0, stale_ = 0, clamped_ = 0, steps_ = 0;
+  std::uint64_t missed_ = 0, stale_ = 0, steps_ = 0;
   std::int64_t start_ = 0, last_ = 0;  ///< monotonic, ns
   std::atomic<std::int64_t> heartbeat_{0};
 };

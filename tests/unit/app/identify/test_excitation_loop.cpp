@@ -89,6 +89,18 @@ TEST(ExcitationLoop, EndsWithoutForceWhenTheDeviceIsLostOrSilent) {
   EXPECT_GT(second.stale(), 0U);
 }
 
+/// What a saturated device gives is not known: constants from the commanded force would be wrong.
+TEST(ExcitationLoop, EndsWithoutForceWhenTheDeviceSaturates) {
+  ScriptedDevice device;
+  device.status_of_command = [](int i) {
+    return i < 300 ? DeviceStatus::Good : DeviceStatus::Saturated;
+  };
+  ExcitationLoop loop(device, settings(10));
+  EXPECT_EQ(run(loop), ExcitationEnd::Saturated);
+  EXPECT_EQ(norm(device.commanded.back()), 0);
+  EXPECT_EQ(device.reads, 301);
+}
+
 /// In a step without a new sample the last command goes on: the record stays that of what acted.
 TEST(ExcitationLoop, RepeatsTheLastCommandWithoutANewSample) {
   ScriptedDevice device;
