@@ -170,7 +170,7 @@ void say_axis(const AxisFinding& found) {
 
 DeviceFindings findings_of(const IdentifyOptions& o, const std::string& device,
                            const std::vector<AxisFinding>& axes) {
-  DeviceFindings findings = combine(axes, o.rate);
+  DeviceFindings findings = combine(axes);
   findings.profile.name = o.name.empty() ? device : o.name;
   findings.profile.source = fmt::format(
       "palpate identify of {}, {}, at {:g} Hz, {:g} s and {:g} N along {}", device,

@@ -43,7 +43,7 @@ std::string axis_name(std::size_t axis) {
   return std::string(1, static_cast<char>('x' + axis));
 }
 
-DeviceFindings combine(const std::vector<AxisFinding>& axes, double rate) {
+DeviceFindings combine(const std::vector<AxisFinding>& axes) {
   DeviceFindings findings;
   fitting::DeviceProfile& p = findings.profile;
   p.position_resolution = 0;
@@ -61,7 +61,7 @@ DeviceFindings combine(const std::vector<AxisFinding>& axes, double rate) {
   p.delay = 0;
   for (const AxisFinding& a : axes) {
     p.coulomb_friction = std::min(p.coulomb_friction, std::max(0.0, a.estimate.friction.low()));
-    p.delay = std::max(p.delay, a.estimate.delay.high() - 1 / rate);
+    p.delay = std::max(p.delay, a.estimate.delay.high());
   }
   return findings;
 }

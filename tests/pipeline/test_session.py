@@ -221,7 +221,7 @@ class Session(unittest.TestCase):
     def test_an_identified_device_is_certified_by_its_own_profile(self):
         subprocess.run([WRITE_PLATE, self.library, "0.3"], check=True)
         profile = self.root / "measured.toml"
-        measure = ["identify", "--seconds", 4, "--out", profile]
+        measure = ["identify", "--rate", 6000, "--seconds", 4, "--out", profile]
         incomplete = palpate(*measure)
         self.assertEqual(incomplete.returncode, INCOMPLETE, incomplete.stderr)
         self.assertIn("force resolution is left out", incomplete.stderr)
@@ -231,17 +231,17 @@ class Session(unittest.TestCase):
         measured = palpate(*measure, "--force-resolution-mN", 0)
         self.assertEqual(measured.returncode, DONE, measured.stderr)
         values = dict(re.findall(r'^(\w+) = "([0-9.e-]+) ', profile.read_text(encoding="utf-8"), re.MULTILINE))
-        # The simulated device: 0.081 N s/m, 0.01 N, no delay beyond the sample of the loop, no steps.
+        # The simulated device: 0.081 N s/m, 0.01 N, the delay of one sample of the loop, no steps.
         self.assertLessEqual(float(values["damping"]), 0.081)
         self.assertGreater(float(values["damping"]), 0.95 * 0.081)
         self.assertLessEqual(float(values["coulomb_friction"]), 0.01)
         self.assertGreater(float(values["coulomb_friction"]), 0.95 * 0.01)
-        self.assertLess(float(values["delay"]), 5e-5)
+        self.assertAlmostEqual(float(values["delay"]), 1 / 6000, delta=1e-5)
         self.assertLess(float(values["position_resolution"]), 1e-5)  # an upper estimate
-        felt = palpate("run", self.library, "--profile", profile, "--rate", 6000, "--duration", 0.1, "--priority", 0,
+        felt = palpate("run", self.library, "--profile", profile, "--rate", 8000, "--duration", 0.1, "--priority", 0,
                        "--out", self.root / "identified.h5")
         self.assertEqual(felt.returncode, DONE, felt.stderr)
-        self.assertIn("run: certified passive on simulated, at 6000 Hz", felt.stdout)
+        self.assertIn("run: certified passive on simulated, at 8000 Hz", felt.stdout)
 
     def test_identify_writes_nothing_when_the_motion_does_not_end_well(self):
         profile = self.root / "never.toml"
