@@ -29,11 +29,10 @@ struct DeviceFindings {
 };
 
 /// Damping: the smallest eigenvalue of the symmetric part of B, which is assembled from the rows of
-/// the axes, less two and a half of the largest deviation of its diagonal. Dry friction: the
-/// smallest lower bound of the axes, at least zero. Delay: the largest upper bound, whole: which
-/// part of it is a sample of the loop, and shrinks at a higher rate, does not show. Resolution: the
-/// largest of the axes. A constant is missing where an axis has a problem, and damping where it is
-/// not above zero.
+/// the axes, less two and a half deviations. Dry friction: the smallest lower bound of the axes, at
+/// least zero. Delay: the largest upper bound, whole: which part of it is a sample of the loop, and
+/// shrinks at a higher rate, does not show. Resolution: the largest of the axes. A constant is
+/// missing where an axis has a problem, and damping where it is not above zero.
 DeviceFindings combine(const std::vector<AxisFinding>& axes);
 
 /// "x", "y" or "z"

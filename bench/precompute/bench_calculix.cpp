@@ -34,11 +34,7 @@ constexpr double kRadius = 0.003;
 /// 60 x 60 x 30 mm with its base fixed, cells of `fine` in the middle of the top that grow
 /// outwards.
 Body block(double fine) {
-  const auto across = test::graded(0.03, 0.0075, fine, 1.6);
-  std::vector<double> down;
-  for (const double x : across)
-    if (x <= 0) down.push_back(x);
-  return test::make_block(across, across, down);
+  return test::graded_block(0.03, 0.0075, fine, 1.6);
 }
 
 fem::CampaignSettings settings() {

@@ -138,6 +138,14 @@ std::vector<double> graded(double half, double core, double fine, double growth)
   return values;
 }
 
+Body graded_block(double half, double core, double fine, double growth) {
+  const auto across = graded(half, core, fine, growth);
+  std::vector<double> down;
+  for (const double x : across)
+    if (x <= 0) down.push_back(x);
+  return make_block(across, across, down);
+}
+
 void deform(Body& body, const std::function<Vec3(const Vec3&)>& map) {
   for (auto& node : body.nodes) node = map(node);
 }

@@ -23,6 +23,10 @@ std::vector<double> even(double low, double high, int count);
 /// outwards by `growth`, fitted to end at `half`.
 std::vector<double> graded(double half, double core, double fine, double growth);
 
+/// A block with these coordinates across and the lower half of them down: twice as wide as high,
+/// and fine at the middle of its top.
+Body graded_block(double half, double core, double fine, double growth);
+
 /// The site nearest to the vertical line through (x, y); -1 without any.
 std::int32_t site_nearest(const Body& body, double x = 0, double y = 0);
 

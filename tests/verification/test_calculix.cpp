@@ -209,11 +209,7 @@ constexpr auto kDeck = "CalculiX, deck of palpate export, the same contact stiff
 
 /// 30 x 30 x 15 mm, base fixed, finer towards the middle of its top.
 Body graded_block() {
-  const auto across = test::graded(0.015, 0.006, 0.003, 1.7);
-  std::vector<double> down;
-  for (const double x : across)
-    if (x <= 0) down.push_back(x);
-  return test::make_block(across, across, down);
+  return test::graded_block(0.015, 0.006, 0.003, 1.7);
 }
 
 fem::CampaignSettings pressing(const fem::ToolGeometry& tool) {

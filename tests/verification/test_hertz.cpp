@@ -32,11 +32,7 @@ struct Grid {
 };
 
 Press press(const Grid& grid, double poisson, double depth, int increments) {
-  const auto across = test::graded(grid.half, grid.core, grid.fine, grid.growth);
-  std::vector<double> down;
-  for (const double x : across)
-    if (x <= 0) down.push_back(x);
-  const Body body = test::make_block(across, across, down);
+  const Body body = test::graded_block(grid.half, grid.core, grid.fine, grid.growth);
   std::int32_t centre = 0;
   for (std::size_t v = 0; v < body.response.node.size(); ++v) {
     const Vec3& x = body.nodes[to_index(body.response.node[v])];

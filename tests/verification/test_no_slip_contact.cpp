@@ -30,11 +30,7 @@ double force_at(const CurvePath& path, double depth) {
 /// positions on a mesh of this element size.
 double lateral_over_normal(double element, double poisson, int positions) {
   const double a = 1e-3, radius = 10 * a, depth = a * a / radius;
-  const auto across = test::graded(25 * a, 2.2 * a, element, 1.8);
-  std::vector<double> down;
-  for (const double x : across)
-    if (x <= 0) down.push_back(x);
-  const Body body = test::make_block(across, across, down);
+  const Body body = test::graded_block(25 * a, 2.2 * a, element, 1.8);
   CampaignSettings settings;
   settings.materials = {{"tissue", {kYoung, poisson}}};
   settings.indentation.tool.radius = radius;

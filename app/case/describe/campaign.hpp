@@ -116,9 +116,8 @@ void describe_solver(V& v, fem::CampaignSettings& s) {
   v.flag_or_count(
       s.indentation.refine_under_tool, "contact",
       {"refine_under_tool",
-       "divides the elements under the tool into eight at each site, for contacts smaller than a "
-       "facet; a number: as often, each time within half the distance from the site; `contact`: as "
-       "often as the contact of a sphere asks for at each depth",
+       "divides the elements under the tool: once, as often as a number says, or as the contact of "
+       "a sphere asks for (\"contact\")",
        kOptional,
        {.low = 0, .high = fem::IndentationSettings::kMaxRefinements}});
 }

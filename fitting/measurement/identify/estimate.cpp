@@ -203,16 +203,17 @@ Measured smallest_damping(const std::vector<std::size_t>& axes,
                           const std::vector<AxisEstimate>& estimates) {
   const auto n = static_cast<Eigen::Index>(axes.size());
   Eigen::MatrixXd b = Eigen::MatrixXd::Zero(n, n);
-  double deviation = 0;
-  for (std::size_t i = 0; i < axes.size(); ++i) {
-    deviation = std::max(deviation, estimates[i].damping[axes[i]].deviation);
+  double squares = 0;
+  for (std::size_t i = 0; i < axes.size(); ++i)
     for (std::size_t j = 0; j < axes.size(); ++j) {
-      const double entry = estimates[i].damping[axes[j]].value;
-      if (!std::isnan(entry)) b(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = entry;
+      const Measured& entry = estimates[i].damping[axes[j]];
+      if (std::isnan(entry.value)) continue;
+      b(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = entry.value;
+      squares += entry.deviation * entry.deviation;
     }
-  }
   const Eigen::MatrixXd symmetric = (b + b.transpose()) / 2;
-  return {Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric).eigenvalues()[0], deviation};
+  return {Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(symmetric).eigenvalues()[0],
+          std::sqrt(squares)};
 }
 
 double position_step(const MotionRecord& record) {

@@ -46,8 +46,9 @@ struct AxisEstimate {
 AxisEstimate estimate_axis(const MotionRecord& record, double largest_delay);
 
 /// sigma_0(B): the smallest eigenvalue of the symmetric part of B, whose rows are the estimates
-/// along `axes` (what was not determined is zero beside the diagonal), with the largest deviation
-/// of its diagonal.
+/// along `axes`; what was not determined is zero beside the diagonal. Its deviation is the root of
+/// the sum of the squares of those of all entries, as an eigenvalue moves by at most the Frobenius
+/// norm of the error [Weyl 1912].
 Measured smallest_damping(const std::vector<std::size_t>& axes,
                           const std::vector<AxisEstimate>& estimates);
 

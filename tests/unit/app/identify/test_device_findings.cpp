@@ -35,7 +35,7 @@ TEST(DeviceFindings, AreThoseOfTheWorstDirection) {
   const DeviceFindings found = combine(turned());
   EXPECT_TRUE(found.missing.empty());
   EXPECT_NEAR(found.damping, 1, 1e-9);
-  EXPECT_NEAR(found.profile.damping, 1 - 2.5 * 0.02, 1e-9);
+  EXPECT_NEAR(found.profile.damping, 1 - 2.5 * std::sqrt(3 * (1e-4 + 4e-4 + 1e-4)), 1e-9);
   EXPECT_NEAR(found.profile.coulomb_friction, 0.03 - 2.5 * 0.002, 1e-12);
   // Whole: a fixed latency does not shrink with the period of a faster loop.
   EXPECT_NEAR(found.profile.delay, 1.5e-3 + 2.5 * 2e-5, 1e-12);
