@@ -36,7 +36,7 @@ struct IdentifyOptions {
   double max_speed = 0.7;  // m/s
   double seconds = 10;     // along each axis
   double largest_delay_ms = 30;
-  std::optional<double> force_resolution_mn;
+  std::optional<double> force_resolution_mn, watchdog;
   bool list = false;
 };
 
@@ -55,6 +55,7 @@ void require_valid(const IdentifyOptions& o) {
   require_in_range("--max-speed", o.max_speed, 0.01, 3);
   require_in_range("--seconds", o.seconds, 3, 120);
   require_in_range("--largest-delay-ms", o.largest_delay_ms, 1, 100);
+  if (o.watchdog) require_in_range("--watchdog", *o.watchdog, 1e-3, 60);
   if (o.force_resolution_mn)
     require_in_range("--force-resolution-mN", *o.force_resolution_mn, 0, 1e4);
   std::string once = o.axes;
@@ -75,13 +76,17 @@ std::unique_ptr<runtime::Device> device_of(const IdentifyOptions& options) {
                                                   [](double) { return runtime::HandTarget{}; });
 }
 
+double watchdog_of(const IdentifyOptions& o) {
+  return o.watchdog.value_or(runtime::default_watchdog(o.rate));
+}
+
 ExcitationLoopSettings loop_settings(const IdentifyOptions& o, std::size_t axis) {
   ExcitationLoopSettings s;
   s.excitation = {axis, o.max_force, 1e-3 * o.box_mm, o.seconds};
   s.safety.max_force = o.max_force;
   s.safety.max_speed = o.max_speed;
   s.safety.period = 1 / o.rate;
-  s.safety.watchdog = runtime::default_watchdog(o.rate);
+  s.safety.watchdog = watchdog_of(o);
   s.rate = o.rate;
   s.counted_time = o.device.name == kSimulatedDevice;
   return s;
@@ -94,7 +99,8 @@ void require_complete(const IdentifyOptions& o, ExcitationEnd end, bool halted, 
     refuse(where, problem, remedy);
   };
   if (halted)
-    fail("no step began for 20 periods, so that the device was halted",
+    fail(fmt::format("no step began for {:g} ms, so that the device was halted",
+                     1e3 * watchdog_of(o)),
          "close other programs, or lower --rate");
   switch (end) {
     case ExcitationEnd::LeftBox:
@@ -138,7 +144,7 @@ AxisFinding measure_axis(const IdentifyOptions& o, runtime::Device& device, std:
   ExcitationLoop loop(device, loop_settings(o, axis));
   bool halted = false;
   {
-    runtime::LoopThread thread(loop, device, {o.rate, runtime::default_watchdog(o.rate), {}, 0});
+    runtime::LoopThread thread(loop, device, {o.rate, watchdog_of(o), {}, 0});
     while (thread.running() && !thread.halted() && !stop.interrupted())
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     thread.stop();
@@ -228,6 +234,8 @@ void add_identify_command(CLI::App& root, Action& action) {
                       "Distance from the start beyond which the force is switched off (20)");
   command->add_option("--max-speed", o->max_speed,
                       "m/s, speed beyond which the force is switched off (0.7)");
+  command->add_option("--watchdog", o->watchdog,
+                      "s without a step or a new sample until the force is cut off (20 periods)");
   command->add_option("--seconds", o->seconds, "Duration along each axis (10)");
   command->add_option("--largest-delay-ms", o->largest_delay_ms,
                       "Delays are searched up to this one (30)");

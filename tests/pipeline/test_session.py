@@ -221,7 +221,7 @@ class Session(unittest.TestCase):
     def test_an_identified_device_is_certified_by_its_own_profile(self):
         subprocess.run([WRITE_PLATE, self.library, "0.3"], check=True)
         profile = self.root / "measured.toml"
-        measure = ["identify", "--rate", 6000, "--seconds", 6, "--out", profile]
+        measure = ["identify", "--watchdog", 60, "--rate", 6000, "--seconds", 6, "--out", profile]
         incomplete = palpate(*measure)
         self.assertEqual(incomplete.returncode, INCOMPLETE, incomplete.stderr)
         self.assertIn("force resolution is left out", incomplete.stderr)
@@ -238,8 +238,8 @@ class Session(unittest.TestCase):
         self.assertGreater(float(values["coulomb_friction"]), 0.95 * 0.01)
         self.assertAlmostEqual(float(values["delay"]), 1 / 6000, delta=1e-5)
         self.assertLess(float(values["position_resolution"]), 1e-5)  # an upper estimate
-        felt = palpate("run", self.library, "--profile", profile, "--rate", 8000, "--duration", 0.1, "--priority", 0,
-                       "--out", self.root / "identified.h5")
+        felt = palpate("run", self.library, "--profile", profile, "--rate", 8000, "--watchdog", 60,
+                       "--duration", 0.1, "--priority", 0, "--out", self.root / "identified.h5")
         self.assertEqual(felt.returncode, DONE, felt.stderr)
         self.assertIn("run: certified passive on simulated, at 8000 Hz", felt.stdout)
 
@@ -247,8 +247,9 @@ class Session(unittest.TestCase):
         profile = self.root / "never.toml"
         for options, said in ((("--box-mm", 1, "--max-force", 5), "left the box"),
                               (("--max-speed", 0.01), "faster than 0.01 m/s"),
-                              (("--seconds", "nan"), "out of range"), (("--axes", ""), "does not name axes"), (("--axes", "xx"), "does not name axes")):
-            refused = palpate("identify", "--out", profile, *options)
+                              (("--seconds", "nan"), "out of range"), (("--axes", ""), "does not name axes"),
+                              (("--axes", "xx"), "does not name axes")):
+            refused = palpate("identify", "--watchdog", 60, "--out", profile, *options)
             self.assertEqual(refused.returncode, CONFIGURATION, options)
             self.assertIn(said, refused.stderr)
             self.assertFalse(profile.exists())
