@@ -16,6 +16,14 @@ constexpr int kDelaySteps = 60;             // of the search over delays
 constexpr double kTooUncertain = 0.25;      // deviation of the mass over the mass
 constexpr double kLeastTravelInSteps = 50;  // of the position
 
+/// Largest distance between two positions along an axis, m.
+double travel_of(const MotionRecord& record, std::size_t axis) {
+  double low = kInfinity, high = -kInfinity;
+  for (const Vec3& x : record.position)
+    low = std::min(low, x[axis]), high = std::max(high, x[axis]);
+  return record.position.empty() ? 0 : high - low;
+}
+
 struct Fit {
   Eigen::VectorXd solution, residual;
   double misfit = 0;  ///< sum of squares
@@ -60,14 +68,8 @@ class AxisEquations {
   }
 
  private:
-  /// Travel of another axis, in parts of that of the excited one.
   bool moves(std::size_t axis) const {
-    const auto span = [&](std::size_t a) {
-      double low = kInfinity, high = -kInfinity;
-      for (const Vec3& x : record_.position) low = std::min(low, x[a]), high = std::max(high, x[a]);
-      return high - low;
-    };
-    return span(axis) > kStill * span(record_.axis);
+    return travel_of(record_, axis) > kStill * travel_of(record_, record_.axis);
   }
 
   void fill() {
@@ -167,15 +169,6 @@ Eigen::VectorXd deviations(const AxisEquations& equations, const Fit& fit, doubl
   return independent.cwiseMax(correlated).cwiseMax(0).cwiseSqrt().cwiseQuotient(length);
 }
 
-double travel_of(const MotionRecord& record) {
-  double low = kInfinity, high = -kInfinity;
-  for (const Vec3& x : record.position) {
-    low = std::min(low, x[record.axis]);
-    high = std::max(high, x[record.axis]);
-  }
-  return record.position.empty() ? 0 : high - low;
-}
-
 /// Root mean square of the misfit as a force.
 double residual_force(const AxisEquations& equations, const Fit& fit) {
   const Eigen::VectorXd scale = equations.matrix().rightCols(1);  // weighted integral of phi
@@ -233,7 +226,7 @@ double position_step(const MotionRecord& record) {
 
 AxisEstimate estimate_axis(const MotionRecord& record, double largest_delay) {
   AxisEstimate estimate;
-  estimate.travel = travel_of(record);
+  estimate.travel = travel_of(record, record.axis);
   if (!(estimate.travel > kLeastTravelInSteps * position_step(record))) {
     estimate.problem = "it moves too little to be measured; raise --max-force or free the handle";
     return estimate;
