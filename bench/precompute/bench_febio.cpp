@@ -44,7 +44,8 @@ fem::CampaignSettings pressing(const fem::ToolGeometry& tool, int increments) {
   return settings;
 }
 
-/// N, the sum of the forces that FEBio prints last, along z; NaN where the run did not end well.
+/// N, the sum of the forces that FEBio prints last, along z. Ends the program where the run did not
+/// end well.
 double run_febio(const std::string& febio, const app::Deck& deck) {
   std::string name = (fs::temp_directory_path() / "palpate-febio-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
@@ -53,11 +54,12 @@ double run_febio(const std::string& febio, const app::Deck& deck) {
   const std::string command =
       "cd " + folder.string() + " && OMP_NUM_THREADS=1 '" + febio + "' -i site.feb > site.out 2>&1";
   if (std::system(command.c_str()) != 0) {
-    std::fprintf(stderr, "febio failed, see %s/site.out\n", name.c_str());
-    return std::nan("");
+    std::fprintf(stderr, "error: %s did not solve %s/site.feb; see site.out beside it\n",
+                 febio.c_str(), name.c_str());
+    std::exit(1);
   }
   std::ifstream printed(folder / (deck.tool ? "tool_forces.txt" : "patch_forces.txt"));
-  double sum = std::nan("");
+  double sum = 0;
   for (std::string line; std::getline(printed, line);) {
     if (line.rfind("*Step", 0) == 0) sum = 0;
     if (line.empty() || line.front() == '*') continue;
