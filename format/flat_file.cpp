@@ -96,6 +96,7 @@ std::string FlatWriter::file() const {
   const std::size_t begin = sizeof(Head) + entries_.size() * sizeof(flat::Entry);
   Head head;
   std::copy(kMagic.begin(), kMagic.end(), head.magic.begin());
+  head.version = version_;
   head.entries = static_cast<std::uint32_t>(entries_.size());
   head.size = begin + data_.size();
   std::string bytes;
@@ -118,10 +119,11 @@ void FlatReader::read_head() {
   if (!begins_flat(bytes_) || bytes_.size() < sizeof head)
     refuse(file_.string(), "is not a flat library (.plib)", remedy_);
   std::memcpy(&head, bytes_.data(), sizeof head);
-  if (head.version > kFlatVersion)
+  if (head.version > kLatestFlatVersion)
     refuse(file_.string(),
            "is of version " + std::to_string(head.version) +
-               " of the flat format; this program knows version " + std::to_string(kFlatVersion),
+               " of the flat format; this program knows version " +
+               std::to_string(kLatestFlatVersion),
            "update palpate, or export the library with this version");
   if (bytes_.size() != head.size + kSealSize)
     refuse(file_.string(),

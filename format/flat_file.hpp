@@ -18,6 +18,8 @@
 namespace palpate {
 
 inline constexpr std::uint32_t kFlatVersion = 1;
+/// Contains entries without which the others must not be used: earlier readers refuse it.
+inline constexpr std::uint32_t kLatestFlatVersion = 2;
 
 /// What an entry is made of; the numbers are those on disk.
 enum class FlatType : std::uint32_t {
@@ -77,6 +79,8 @@ bool is_flat_file(const std::filesystem::path& file);
 /// Collects the entries of a file.
 class FlatWriter {
  public:
+  explicit FlatWriter(std::uint32_t version = kFlatVersion) : version_(version) {}
+
   template <class T>
   void array(std::string_view name, const std::vector<T>& values) {
     using Row = flat::Row<T>;
@@ -94,6 +98,7 @@ class FlatWriter {
   void add(std::string_view name, FlatType type, std::uint32_t columns, std::uint64_t rows,
            std::string_view bytes);
 
+  std::uint32_t version_;
   std::vector<flat::Entry> entries_;  ///< offsets from the first byte behind the table
   std::string data_;
 };

@@ -174,7 +174,7 @@ void get_responses(const FlatReader& reader, Library& library) {
 
 std::string flat_bytes(const Library& library, const std::filesystem::path& target) {
   check_for_writing(Checks(target), library);
-  FlatWriter writer;
+  FlatWriter writer(library.relaxes() ? kLatestFlatVersion : kFlatVersion);
   const bool coupled = library.kind == ResponseKind::Coupled;
   writer.texts("/words", {library.name, library.tool_shape});
   writer.array("/coupled", std::vector<std::uint8_t>{coupled});
@@ -188,6 +188,11 @@ std::string flat_bytes(const Library& library, const std::filesystem::path& targ
   if (coupled) {
     put_curves(writer, "/response/coupling_", library.responses, coupling_of);
     writer.array("/response/coupling_base", coupling_bases(library.responses));
+  }
+  if (library.relaxes()) {
+    writer.array("/relaxation/time", library.relaxation_times);
+    writer.array("/response/relaxation_fraction", relaxation_fractions(library));
+    writer.number("/certificate/relaxation_rate", library.certificate.relaxation_rate);
   }
   put_certificate(writer, library.certificate);
   put_provenance(writer, library.provenance);
@@ -214,6 +219,13 @@ Library read_flat_library(std::string_view bytes, const std::filesystem::path& f
   library.triangles = reader.array<Triangle>("/surface/triangles");
   get_responses(reader, library);
   library.certificate = get_certificate(reader);
+  if (reader.has("/relaxation/time")) {
+    library.certificate.relaxation_rate = reader.number("/certificate/relaxation_rate");
+    library.relaxation_times = reader.array<double>("/relaxation/time");
+    const auto fractions = reader.array<float>("/response/relaxation_fraction");
+    check_relaxation(checks, library, fractions);
+    set_relaxation_fractions(fractions, library);
+  }
   library.provenance = get_provenance(reader);
   check_library(checks, library);
   return library;

@@ -36,8 +36,8 @@ std::string not_certified_without(const std::vector<std::string>& unknown, doubl
 }
 
 /// Empty where no rate is certified with this bound.
-std::string certified_from(const DeviceConstants& device, double bound, double rate) {
-  const bool holds = std::isfinite(rate) && judge_passivity(device, bound, rate).by_friction;
+std::string certified_from(const DeviceConstants& device, const RenderedForce& force, double rate) {
+  const bool holds = std::isfinite(rate) && judge_passivity(device, force, rate).by_friction;
   return holds ? from(rate) : "";
 }
 
@@ -88,11 +88,13 @@ std::string verdict(const Certificate& certificate, const DeviceCertificate& dev
   const std::string by = guaranteed_by(certificate) == GuaranteedBy::Curves
                              ? ", by the curves themselves"
                              : ", with slides throttled";
-  const std::string whole = certified_from(constants, bound, device.lowest_rate);
-  const double throttled = lowest_rate(constants, smallest);
+  const std::string whole =
+      certified_from(constants, rendered_force(certificate, bound), device.lowest_rate);
+  const RenderedForce softest = rendered_force(certificate, smallest);
+  const double throttled = lowest_rate(constants, softest);
   std::string with_throttling;  // not where it gains nothing or is not known
   if (whole.empty() || throttled < 0.995 * device.lowest_rate) {
-    with_throttling = certified_from(constants, smallest, throttled);
+    with_throttling = certified_from(constants, softest, throttled);
     if (!with_throttling.empty())
       with_throttling += " with lipschitz_bound = " + lipschitz_bound_text(smallest);
   }
@@ -106,9 +108,8 @@ std::string verdict(const Certificate& certificate, const DeviceCertificate& dev
 
 bool is_certified(const Certificate& certificate, const DeviceCertificate& device) {
   constexpr double kFrom = 1 + 1e-9;  // the lowest rate itself is rounded
-  return judge_passivity(device.constants(), certified_lipschitz_bound(certificate),
-                         kFrom * device.lowest_rate)
-      .certified();
+  const RenderedForce force = rendered_force(certificate, certified_lipschitz_bound(certificate));
+  return judge_passivity(device.constants(), force, kFrom * device.lowest_rate).certified();
 }
 
 CertifiedRange certified_range(const Library& library) {
@@ -117,7 +118,7 @@ CertifiedRange certified_range(const Library& library) {
   const bool known = std::isfinite(c.min_lipschitz_bound);
   const bool from_zero = known && library.kind == ResponseKind::Decoupled;
   return {from_zero ? 0 : c.friction, c.friction, std::max(c.stick, c.slip),
-          known ? c.min_lipschitz_bound : kInfinity};
+          known ? c.min_lipschitz_bound : kInfinity, c.relaxation_rate};
 }
 
 std::string lipschitz_bound_text(double lipschitz_bound) {

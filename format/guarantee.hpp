@@ -34,6 +34,7 @@ struct CertifiedRange {
   double low_friction = 1, high_friction = 0;
   double curves = kInfinity;  ///< N/m: from there on the responses keep the bound by themselves
   double min_lipschitz_bound = kInfinity;  ///< N/m, L_min: from there on by throttled slides
+  double relaxation_rate = kInfinity;      ///< K of (C9), 1/s
 
   bool covers(double friction) const noexcept {
     return friction >= low_friction && friction <= high_friction;

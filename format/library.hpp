@@ -3,6 +3,7 @@
 // Normative pages: format/schema/library.md (library.h5), format/schema/flat.md.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -21,6 +22,8 @@ namespace palpate {
 /// knows decoupled responses alone refuses coupled ones.
 inline constexpr int kLibrarySchema = 3;
 inline constexpr int kCoupledLibrarySchema = 4;
+/// Responses that relax, decoupled or coupled.
+inline constexpr int kRelaxingLibrarySchema = 5;
 /// Decoupled responses; the bounds of the certificate have other names. Read, never written.
 inline constexpr int kFirstLibrarySchema = 1;
 
@@ -55,6 +58,9 @@ struct CouplingCurve {
   ResponseCurve curve;  ///< knots in m, slopes in 1/m; empty in a decoupled library
 };
 
+/// Largest number of relaxation times of a library.
+inline constexpr std::size_t kMaxRelaxationTimes = 8;
+
 struct NodeResponse {
   ResponseStatus status = ResponseStatus::Hole;
   ResponseCurve normal;     ///< f^z(delta^z); slope[0] = 0 so that the slope is continuous at touch
@@ -62,6 +68,9 @@ struct NodeResponse {
   double normal_error = 0;  ///< largest |fit - sample|, N
   double lateral_error = 0;  ///< same, N
   CouplingCurve coupling{};  ///< of a coupled library only
+  /// (B) g_i in [0, 1), sum below 1: the fraction of the normal response that relaxes with each
+  /// time of the library. Empty at a hole.
+  std::vector<float> relaxation{};
 };
 
 /// Bounds of one triangle, `runtime` theory page, "certificate".
@@ -113,6 +122,7 @@ struct Certificate {
   std::int32_t interpolated = 0;
   std::vector<TriangleCertificate> triangles;  ///< (M)
   std::vector<DeviceCertificate> devices;
+  double relaxation_rate = 0;  ///< 1/s, K of (C9); 0 where the responses do not relax
 };
 
 /// N/m: the Lipschitz bound of the force that the runtime enforces by default: that of the
@@ -124,7 +134,14 @@ double enforced_lipschitz_bound(const Certificate& certificate);
 /// have no bound and L_min is not known.
 double certified_lipschitz_bound(const Certificate& certificate);
 
+/// The force of a library under a Lipschitz bound (N/m), as the conditions of passivity see it.
+inline RenderedForce rendered_force(const Certificate& certificate, double lipschitz_bound) {
+  return {lipschitz_bound, certificate.relaxation_rate};
+}
+
 struct Library {
+  bool relaxes() const { return !relaxation_times.empty(); }
+
   ResponseKind kind = ResponseKind::Decoupled;
   std::string name;
   std::string tool_shape;
@@ -134,7 +151,10 @@ struct Library {
   std::vector<Triangle>
       triangles;  ///< (M) only those whose vertices may all be touched or bound a hole
   std::vector<NodeResponse> responses;  ///< (V)
-  Certificate certificate;              ///< triangles empty until certified
+  /// (B) tau_i, s, increasing, at most kMaxRelaxationTimes; empty: elastic. The curves are those of
+  /// tissue that has had no time to relax.
+  std::vector<double> relaxation_times;
+  Certificate certificate;  ///< triangles empty until certified
   Provenance provenance;
 };
 

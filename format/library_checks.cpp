@@ -67,6 +67,7 @@ void check_certificate(const Checks& checks, const Library& library) {
   check("slip", certificate.slip, rules::kBound);
   check_if_known("min_lipschitz_bound", certificate.min_lipschitz_bound);
   check_if_known("lipschitz_bound", certificate.lipschitz_bound);
+  check("relaxation_rate", certificate.relaxation_rate, rules::kNonNegative);
   check_enforceable(checks, certificate);
   check("worst_triangle", certificate.worst_triangle,
         Rule{-1, triangles - 1, false, false, "-1 or a triangle"});
@@ -109,6 +110,48 @@ std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses) {
   bases.reserve(responses.size());
   for (const NodeResponse& response : responses) bases.push_back(response.coupling.base);
   return bases;
+}
+
+std::vector<float> relaxation_fractions(const Library& library) {
+  std::vector<float> fractions;
+  fractions.reserve(library.responses.size() * library.relaxation_times.size());
+  for (const NodeResponse& response : library.responses) {
+    std::vector<float> row = response.relaxation;
+    if (response.status == ResponseStatus::Hole) row.resize(library.relaxation_times.size());
+    fractions.insert(fractions.end(), row.begin(), row.end());
+  }
+  return fractions;
+}
+
+void set_relaxation_fractions(const std::vector<float>& fractions, Library& library) {
+  const auto times = static_cast<std::ptrdiff_t>(library.relaxation_times.size());
+  auto row = fractions.begin();
+  for (NodeResponse& response : library.responses) {
+    if (response.status != ResponseStatus::Hole) response.relaxation.assign(row, row + times);
+    row += times;
+  }
+}
+
+void check_relaxation(const Checks& checks, const Library& library,
+                      const std::vector<float>& fractions) {
+  const std::string times_name = "/relaxation/time", name = "/response/relaxation_fraction";
+  const std::vector<double>& times = library.relaxation_times;
+  checks.require(!times.empty() && times.size() <= kMaxRelaxationTimes, times_name,
+                 "has not 1 to " + std::to_string(kMaxRelaxationTimes) + " times");
+  checks.numbers(times_name, times, rules::kPositive);
+  for (std::size_t i = 1; i < times.size(); ++i)
+    if (!(times[i] > times[i - 1]))
+      checks.fail_row(times_name, i, "is not above the time before it");
+  checks.require(library.tool_radius > 0, "/@tool_radius",
+                 "is not above 0, which responses that relax need");
+  checks.same_size(name, fractions.size(), times.size() * library.responses.size());
+  checks.numbers(name, fractions, rules::kNonNegative);
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    double sum = 0;
+    for (std::size_t i = 0; i < times.size(); ++i)
+      sum += static_cast<double>(fractions[v * times.size() + i]);
+    if (!(sum < 1)) checks.fail_row(name, v, "has a sum of 1 or more: nothing is left in the end");
+  }
 }
 
 void check_curves(const Checks& checks, const std::string& stem, const FlatCurves& flat,
@@ -158,6 +201,7 @@ void check_for_writing(const Checks& checks, const Library& library) {
                  library.responses);
     checks.numbers("/response/coupling_base", coupling_bases(library.responses), rules::kPositive);
   }
+  if (library.relaxes()) check_relaxation(checks, library, relaxation_fractions(library));
   check_certificate(checks, library);
   check_provenance(checks, library.provenance);
 }

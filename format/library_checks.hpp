@@ -36,6 +36,14 @@ void unflatten(const FlatCurves& flat, CurveMember which, std::vector<NodeRespon
 /// w(0) of each node.
 std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses);
 
+/// g_i of every node, row by row: V times B numbers, zero at a hole.
+std::vector<float> relaxation_fractions(const Library& library);
+/// Gives the nodes those fractions, once check_relaxation() has passed.
+void set_relaxation_fractions(const std::vector<float>& fractions, Library& library);
+/// The relaxation times of a library, and its fractions row by row.
+void check_relaxation(const Checks& checks, const Library& library,
+                      const std::vector<float>& fractions);
+
 /// Curves of all nodes; `stem`: "/response/normal_" and its like.
 void check_curves(const Checks& checks, const std::string& stem, const FlatCurves& flat,
                   const std::vector<NodeResponse>& responses);

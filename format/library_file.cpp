@@ -46,6 +46,13 @@ void read_coupling(const hdf5::Reader& reader, std::vector<NodeResponse>& respon
   for (std::size_t v = 0; v < bases.size(); ++v) responses[v].coupling.base = bases[v];
 }
 
+void read_relaxation(const hdf5::Reader& reader, Library& library) {
+  library.relaxation_times = reader.dataset<double>("/relaxation/time", "s");
+  const auto fractions = reader.dataset<float>("/response/relaxation_fraction", "1");
+  check_relaxation(Checks(reader), library, fractions);
+  set_relaxation_fractions(fractions, library);
+}
+
 void write_surface(hdf5::Writer& writer, const Library& library) {
   writer.group("/surface", "The triangulation that carries the responses.");
   writer.dataset("/surface/position", library.positions, {"m", "Position of each vertex."});
@@ -60,6 +67,12 @@ void write_responses(hdf5::Writer& writer, const Library& library) {
   write_columns(writer, "/response", library.responses, kResponseColumns);
   write_flat(writer, "/response/normal_", "normal", flatten(library.responses, normal_of));
   write_flat(writer, "/response/lateral_", "lateral", flatten(library.responses, lateral_of));
+  if (library.relaxes()) {
+    writer.group("/relaxation", "How the normal responses relax under a deflection that stays.");
+    writer.dataset("/relaxation/time", library.relaxation_times, {"s", "Relaxation times."});
+    writer.dataset("/response/relaxation_fraction", relaxation_fractions(library),
+                   {"1", "Fraction that relaxes with each time, vertex by vertex."});
+  }
   if (library.kind == ResponseKind::Decoupled) return;
   writer.dataset("/response/coupling_base", coupling_bases(library.responses),
                  {"1", "w(0) of each vertex; 1 at a hole."});
@@ -78,6 +91,8 @@ void write_certificate(hdf5::Writer& writer, const Certificate& certificate) {
     writer.set_real(group, "min_lipschitz_bound", certificate.min_lipschitz_bound);
   if (!std::isnan(certificate.lipschitz_bound))
     writer.set_real(group, "lipschitz_bound", certificate.lipschitz_bound);
+  if (certificate.relaxation_rate > 0)
+    writer.set_real(group, "relaxation_rate", certificate.relaxation_rate);
   writer.set_integer(group, "worst_triangle", certificate.worst_triangle);
   writer.set_text(group, "limited_by", certificate.limited_by);
   writer.set_text(group, "basis", certificate.basis);
@@ -130,6 +145,8 @@ Certificate read_certificate(const hdf5::Reader& reader, const CertificateNames&
   certificate.slip = reader.real(group, "slip");
   certificate.min_lipschitz_bound = real_if_there(reader, group, names.min_lipschitz_bound);
   certificate.lipschitz_bound = real_if_there(reader, group, names.lipschitz_bound);
+  if (reader.has_attribute(group, "relaxation_rate"))
+    certificate.relaxation_rate = reader.real(group, "relaxation_rate");
   certificate.worst_triangle = read_int32(reader, group, "worst_triangle");
   certificate.limited_by = reader.text(group, "limited_by");
   if (reader.has_attribute(group, "basis")) certificate.basis = reader.text(group, "basis");
@@ -151,8 +168,12 @@ void write_library(const std::filesystem::path& path, const Library& library) {
   check_for_writing(Checks(path), library);
   hdf5::Writer writer(path);
   const bool coupled = library.kind == ResponseKind::Coupled;
-  write_root(writer, kLibraryArtifact, coupled ? kCoupledLibrarySchema : kLibrarySchema,
+  const int schema = library.relaxes() ? kRelaxingLibrarySchema
+                     : coupled         ? kCoupledLibrarySchema
+                                       : kLibrarySchema;
+  write_root(writer, kLibraryArtifact, schema,
              "A response library: surface, responses, certificate.");
+  if (library.relaxes()) writer.set_integer("/", "coupled", coupled ? 1 : 0);
   writer.set_text("/", "name", library.name);
   writer.set_text("/", "tool_shape", library.tool_shape);
   writer.set_real("/", "tool_radius", library.tool_radius);
@@ -169,8 +190,11 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kLibraryRemedy);
   Library library;
   const std::int64_t schema = reader.require_artifact(
-      kLibraryArtifact, {kFirstLibrarySchema, kLibrarySchema, kCoupledLibrarySchema});
-  if (schema == kCoupledLibrarySchema) library.kind = ResponseKind::Coupled;
+      kLibraryArtifact,
+      {kFirstLibrarySchema, kLibrarySchema, kCoupledLibrarySchema, kRelaxingLibrarySchema});
+  const bool relaxes = schema == kRelaxingLibrarySchema;
+  if (schema == kCoupledLibrarySchema || (relaxes && reader.integer("/", "coupled") == 1))
+    library.kind = ResponseKind::Coupled;
   library.name = reader.text("/", "name");
   library.tool_shape = reader.text("/", "tool_shape");
   library.tool_radius = reader.real("/", "tool_radius");
@@ -181,6 +205,7 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   read_flat(reader, "/response/normal_", library.responses, normal_of);
   read_flat(reader, "/response/lateral_", library.responses, lateral_of);
   if (library.kind == ResponseKind::Coupled) read_coupling(reader, library.responses);
+  if (relaxes) read_relaxation(reader, library);
   library.certificate = read_certificate(reader, certificate_names(schema));
   library.provenance = read_provenance(reader);
   check_library(Checks(reader), library);

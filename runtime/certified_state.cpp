@@ -26,13 +26,15 @@ std::string fault_of(const palpate_state& state) {
 std::string why_not_certified(const palpate_state& state, const DeviceConstants& device,
                               double rate) {
   if (std::string fault = fault_of(state); !fault.empty()) return fault;
-  const PassivityVerdict verdict = judge_passivity(device, state.lipschitz_bound, rate);
+  const double relaxation_rate = state.certified_range.relaxation_rate;
+  const PassivityVerdict verdict =
+      judge_passivity(device, {state.lipschitz_bound, relaxation_rate}, rate);
   if (!verdict.unknown.empty()) return "unknown of the device: " + list_in_words(verdict.unknown);
   const std::string bound = lipschitz_bound_text(state.lipschitz_bound);
   if (!verdict.by_damping) {
     return "the damping certifies a Lipschitz bound of " +
-           number_text(certifiable_stiffness(device, rate), 4) + " N/m at this rate, not of " +
-           bound;
+           number_text(certifiable_stiffness(device, rate, relaxation_rate), 4) +
+           " N/m at this rate, not of " + bound;
   }
   if (!verdict.by_friction) {
     return "the dry friction certifies a Lipschitz bound of " +

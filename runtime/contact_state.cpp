@@ -32,16 +32,26 @@ double fraction_within(const Vec3& near, const Vec3& far, double allowed) noexce
 
 ContactState::ContactState(const Surface& surface, const CollisionTree& tree,
                            const ContactSettings& settings) noexcept
-    : surface_(&surface), tree_(&tree), settings_(settings), tank_(settings.tank_cap) {}
+    : surface_(&surface),
+      tree_(&tree),
+      settings_(settings),
+      tank_(settings.tank_cap),
+      memory_(surface) {}
 
 void ContactState::reset() noexcept {
   model_.reset();
   approaching_.reset();
   last_.reset();
   tank_.empty();
+  memory_.forget();
   goal_ = 0;
   suspended_ = false;
   seen_ = {};
+}
+
+void ContactState::forget() noexcept {
+  memory_.forget();
+  seen_.energy = 0;
 }
 
 void ContactState::set_delivery(const Delivery* delivered) noexcept {
@@ -67,8 +77,9 @@ std::uint32_t ContactState::suspend(const Vec3& x) noexcept {
   return seen_.status;
 }
 
-std::uint32_t ContactState::step(const Vec3& x) noexcept {
+std::uint32_t ContactState::step(const Vec3& x, double dt) noexcept {
   if (!is_finite(x)) return refuse();
+  dt_ = dt;
   const Vec3 from = last_.value_or(x);
   const double travelled = norm(x - from);
   last_ = x;
@@ -76,6 +87,7 @@ std::uint32_t ContactState::step(const Vec3& x) noexcept {
   seen_.status = 0;
   if (model_) touch(x, travelled);
   if (suspended_) resume(x);
+  if (!model_ && memory_.remembers()) relax_freely();
   if (!model_) detect(from, x);
   if (model_) seen_.status |= step_status::Contact;
   return seen_.status;
@@ -129,6 +141,7 @@ SurfacePoint ContactState::closest_if_inside(const Vec3& x) const noexcept {
 bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
   if (facing.lateral > kRelaxed) return false;
   LocalModel model(*surface_, facing.point, 0);
+  recall_at_point(model);
   const double depth = model.deflection(x).geometric;
   if (!(depth >= 0 && depth <= surface_->deepest())) return false;
   model.set_offset(depth);
@@ -136,7 +149,7 @@ bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
   seen_.status |= step_status::Activated;
   Candidate first{model, {}, {}, depth, 0};
   respond(first, x);
-  commit(first, 0);
+  commit(first, seen_.energy);
   return true;
 }
 
@@ -154,7 +167,7 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
   }
   const double energy_before = fixed.response.energy;  // E_{i-1}(x_i)
   seen_.absorbed += energy_before - seen_.energy;
-  const Candidate next = choose(x, fixed);
+  Candidate next = choose(x, fixed);
   seen_.status |= next.status;
   if (release(next, x, energy_before)) return;
   if (next.model.contact_point() != model_->contact_point()) seen_.status |= step_status::Sliding;
@@ -169,7 +182,13 @@ bool ContactState::exceeds_friction(const LocalResponse& r, double tolerated) co
 /// Lateral deflection at which a response that exceeds friction slips, m.
 double ContactState::slip_limit(const LocalModel& model, const Deflection& at,
                                 const LocalResponse& response) const noexcept {
-  return model.slip_limit_below(at, response, settings_.friction, pieces_);
+  return model.lateral_below(at, response, settings_.friction * response.friction_normal_force,
+                             pieces_);
+}
+
+/// Is there no normal contact: the tip is outside, or above the skin, which lags behind it?
+bool ContactState::is_lost(const FixedContact& fixed) const noexcept {
+  return !(fixed.deflection.depth > 0) || (memory_.relaxes() && fixed.response.recalled.scale == 0);
 }
 
 /// Does the force change by at most `allowed` (N; infinite: any change)?
@@ -227,6 +246,7 @@ ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fi
   std::uint32_t status = 0;
   Candidate next{slide(x, fixed, fractions, status), {}, {}, goal_, 0};
   next.status = status;
+  recall_at_point(next.model);
   next.deflection = next.model.deflection(x);
   double recovery = fractions.recovery;
   if (!(next.deflection.depth > 0)) {
@@ -280,7 +300,7 @@ LocalModel ContactState::slide(const Vec3& x, const FixedContact& fixed,
                                const SlideFractions& fractions,
                                std::uint32_t& status) const noexcept {
   if (fractions.follow == 0) return slip_at_fixed_point(fixed, fractions.slip);
-  if (!(fixed.deflection.depth > 0) && fractions.follow == 1) return relax(x, status);
+  if (is_lost(fixed) && fractions.follow == 1) return stay_opposite(x, status);
   const bool apart = model_->lateral_offset() != Vec3{};
   if (!apart && !(fixed.excess > 0)) return *model_;
   return follow(fixed, fractions.follow, apart, status);
@@ -313,7 +333,7 @@ Vec3 ContactState::lag(const FixedContact& fixed) const noexcept {
 
 /// Out of normal contact there is no friction: c follows the tip until x - c is parallel to n, and
 /// where it cannot, s does.
-LocalModel ContactState::relax(const Vec3& x, std::uint32_t& status) const noexcept {
+LocalModel ContactState::stay_opposite(const Vec3& x, std::uint32_t& status) const noexcept {
   const Projection p = project(*surface_, model_->point(), x, kRelaxedPasses, kRelaxed, delivered_);
   if (p.at_border) status |= step_status::AtBorder;
   if (p.awaiting) status |= step_status::Awaiting;
@@ -344,18 +364,19 @@ bool ContactState::release(const Candidate& moved, const Vec3& x, double energy_
     if (moved.status & step_status::Awaiting) return false;
     if (closest_if_inside(x).element != kNoElement) return false;
   }
-  tank_.settle(energy_before, 0);
+  tank_.settle(energy_before, memory_.now().locked);
   seen_.status |= step_status::Released;
   free_contact();
   return true;
 }
 
-void ContactState::commit(const Candidate& next, double energy_before) noexcept {
+void ContactState::commit(Candidate& next, double energy_before) noexcept {
+  tank_.settle(energy_before, next.response.energy);
+  if (memory_.relaxes()) relax(next);
   const bool same_element = model_ && model_->point().element == next.model.point().element;
   model_ = next.model;
   if (ahead_ != kNoElement || !same_element) look_ahead(next.deflection);
   goal_ = next.goal;
-  tank_.settle(energy_before, next.response.energy);
   if (next.deflection.depth > next.model.deepest()) seen_.status |= step_status::BeyondDepth;
   seen_.point = next.model.point();
   seen_.contact_point = next.model.contact_point();
@@ -366,6 +387,42 @@ void ContactState::commit(const Candidate& next, double energy_before) noexcept 
   seen_.energy = next.response.energy;
   seen_.force = next.response.force;
   seen_.tank = tank_.level();
+}
+
+/// Gives the model what the tissue at its contact point remembers.
+void ContactState::recall_at_point(LocalModel& model) const noexcept {
+  if (!memory_.relaxes()) return;
+  const double slid = norm(model.contact_point() - remembering_point_);
+  model.set_memory(memory_.carried_to(model.point(), slid));
+}
+
+/// The time of the step passes with the tip where it is. What friction then no longer holds slips.
+void ContactState::relax(Candidate& at) noexcept {
+  memory_.carry(at.model.point(), at.model.memory());
+  remembering_point_ = at.model.contact_point();
+  memory_.pass(at.response.recalled.coordinate, dt_);
+  const double energy_before = at.response.energy;
+  const double held = std::max(settings_.friction * at.response.friction_normal_force,
+                               at.response.lateral_force);  // N
+  const double normal_before = at.response.friction_normal_force;
+  at.model.replace_memory(memory_.now(), at.response);
+  seen_.relaxed += energy_before - at.response.energy;
+  seen_.recalled = 1 - at.response.recalled.scale;
+  if (at.deflection.depth > 0 && at.response.recalled.scale == 0)
+    seen_.status |= step_status::SkinLags;
+  const double lost = settings_.friction * (normal_before - at.response.friction_normal_force);
+  if (!(at.response.lateral_force > held - lost)) return;
+  const double rho = at.model.lateral_below(at.deflection, at.response, held - lost, pieces_);
+  at.model.slip_to(rho, at.deflection, at.response, pieces_);
+}
+
+/// The same without a tool: the skin moves back.
+void ContactState::relax_freely() noexcept {
+  const double energy_before = memory_.now().locked;
+  memory_.pass(0, dt_);
+  seen_.energy = memory_.now().locked;
+  seen_.relaxed += energy_before - seen_.energy;
+  dt_ = 0;
 }
 
 /// Prefetches what the contact point may reach in the next steps.
@@ -381,14 +438,18 @@ void ContactState::free_contact() noexcept {
   model_.reset();
   const std::uint32_t status = seen_.status;
   const double absorbed = seen_.absorbed;
+  const double relaxed = seen_.relaxed;
   seen_ = {};
   seen_.status = status;
   seen_.absorbed = absorbed;
+  seen_.relaxed = relaxed;
+  seen_.energy = memory_.now().locked;
   seen_.tank = tank_.level();
 }
 
 void ContactState::drop() noexcept {
   approaching_.reset();
+  forget();
   if (!model_) return;
   seen_.status |= step_status::Dropped;
   free_contact();

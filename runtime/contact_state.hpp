@@ -10,6 +10,7 @@
 #include "runtime/collision.hpp"
 #include "runtime/energy_rule.hpp"
 #include "runtime/local_model.hpp"
+#include "runtime/relaxation.hpp"
 #include "runtime/surface.hpp"
 
 namespace palpate::runtime {
@@ -36,10 +37,12 @@ struct ContactObservation {
   Deflection deflection;
   double offset = 0;      ///< d0, m
   Vec3 lateral_offset{};  ///< s, m
-  double energy = 0;      ///< E_i(x_i), J
+  double energy = 0;      ///< E_i(x_i), J; of a memory also without contact
   double tank = 0;        ///< J
   double absorbed = 0;    ///< J
   Vec3 force{};           ///< f, of the tool ON the body, N
+  double relaxed = 0;     ///< J, dissipated by relaxation since the start
+  double recalled = 0;    ///< 1 - psi: fraction of the instantaneous normal force that has relaxed
 };
 
 /// The contact of one tip with one surface, advanced one sample of the force loop at a time:
@@ -51,7 +54,7 @@ struct ContactObservation {
 /// normally ends in the same step; it lasts only where no point of the surface faces the tip
 /// (beyond a border). On activation d0 = n . (x - c), so that E = 0.
 ///
-/// At every instant absorbed >= tank + E >= 0.
+/// At every instant absorbed >= tank + E + relaxed >= 0.
 ///
 /// Between two steps |f_i(x_i) - f_{i-1}(x_{i-1})| <= L |x_i - x_{i-1}| with L the Lipschitz bound,
 /// except where a contact is dropped. With a fixed contact point this is true for every L >= L_min.
@@ -63,6 +66,9 @@ struct ContactObservation {
 /// delivered, in a throttled slide) the lateral offset s takes the motion that c does not make, so
 /// that the lateral force does not exceed mu g; c moves to c + s as soon as it can.
 ///
+/// Tissue that relaxes (theory-runtime, "Relaxation") does so at the end of a step, at the tip
+/// where it then is: the force changes by that as well, also where the tip rests.
+///
 /// step() is noexcept, allocation-free and bounded. One object belongs to one thread at a time; the
 /// surface and the tree may be shared.
 class ContactState {
@@ -72,8 +78,9 @@ class ContactState {
 
   /// Advances to the tip position x (m) and returns the status bits. A position that is not finite,
   /// or farther from the last than the diagonal of the body, drops the contact: force zero,
-  /// BadInput.
-  std::uint32_t step(const Vec3& x) noexcept;
+  /// BadInput. dt: s since the last step, >= 0, in which the tissue relaxes; elastic responses do
+  /// not depend on it.
+  std::uint32_t step(const Vec3& x, double dt = 0) noexcept;
   /// A step with unusable input: force zero, the contact is dropped.
   std::uint32_t refuse() noexcept;
   /// No contact at the tip position x (m), which counts as the last one: the contact is dropped,
@@ -83,6 +90,8 @@ class ContactState {
   /// From the next step on the tool can meet, and slide onto, these triangles only, until the next
   /// call; null: all triangles. The delivery must outlive its use.
   void set_delivery(const Delivery* delivered) noexcept;
+  /// The tissue is as new. @pre no contact
+  void forget() noexcept;
   /// Resets the contact, the last position and the energies.
   void reset() noexcept;
 
@@ -120,6 +129,7 @@ class ContactState {
 
   void touch(const Vec3& x, double travelled) noexcept;
   bool exceeds_friction(const LocalResponse& r, double tolerated) const noexcept;
+  bool is_lost(const FixedContact& fixed) const noexcept;
   bool may_change_to(const Candidate& c, double allowed) const noexcept;
   double slip_limit(const LocalModel& model, const Deflection& at,
                     const LocalResponse& response) const noexcept;
@@ -133,14 +143,17 @@ class ContactState {
   LocalModel follow(const FixedContact& fixed, double fraction, bool apart,
                     std::uint32_t& status) const noexcept;
   Vec3 lag(const FixedContact& fixed) const noexcept;
-  LocalModel relax(const Vec3& x, std::uint32_t& status) const noexcept;
+  LocalModel stay_opposite(const Vec3& x, std::uint32_t& status) const noexcept;
   LocalModel slip_at_fixed_point(const FixedContact& fixed, double fraction) const noexcept;
   void respond(Candidate& at, const Vec3& x) const noexcept;
   void enforce_budget(Candidate& moved, const Vec3& x, const FixedContact& fixed,
                       double recovery) const noexcept;
   void enforce_friction(Candidate& moved, double allowance) const noexcept;
   bool release(const Candidate& moved, const Vec3& x, double energy_before) noexcept;
-  void commit(const Candidate& next, double energy_before) noexcept;
+  void commit(Candidate& next, double energy_before) noexcept;
+  void recall_at_point(LocalModel& model) const noexcept;
+  void relax(Candidate& at) noexcept;
+  void relax_freely() noexcept;
   void look_ahead(const Deflection& at) noexcept;
   void free_contact() noexcept;
   void drop() noexcept;
@@ -154,6 +167,9 @@ class ContactState {
   std::optional<SurfacePoint> approaching_;  ///< entered, not yet active
   std::optional<Vec3> last_;                 ///< last usable tip position
   bool suspended_ = false;
+  Relaxation memory_;
+  Vec3 remembering_point_{};         ///< where the tissue of the memory is, m
+  double dt_ = 0;                    ///< s, of this step
   double goal_ = 0;                  ///< offset the contact should return to, m
   mutable PiecesInUse pieces_;       ///< of the last evaluation; results do not depend on them
   std::int32_t ahead_ = kNoElement;  ///< element whose surroundings the last step prefetched

@@ -35,9 +35,11 @@ GuardedStep guarded_step(Safety& safety, PosedContact& contact, const DeviceRead
       step.status |= contact.suspend(sample.position);
       break;
     case Safety::Action::Step:
-      step.status |= contact.step(sample.position);
+      step.status |= contact.step(sample.position, dt);
       break;
   }
+  // A scale that rises over a stored energy would return more than was paid.
+  if (safety.ramps() && !(step.status & step_status::Contact)) contact.contact.forget();
   const auto verdict = safety.limit(contact.command(), contact.contact.observation().energy);
   step.status |= verdict.status;
   step.force = verdict.force;

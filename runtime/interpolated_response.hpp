@@ -99,13 +99,14 @@ class InterpolatedResponse {
     }
     return value;
   }
-  /// For decoupled responses: g, h and the sum of their energies.
-  Value decoupled_at(double z, double rho, PiecesInUse& pieces) const noexcept {
+  /// For decoupled responses: g and h apart.
+  struct Decoupled {
+    CurveValue normal, lateral;
+  };
+  Decoupled decoupled_at(double z, double rho, PiecesInUse& pieces) const noexcept {
     look_up_depth(z, pieces);
     look_up_lateral(rho, pieces);
-    const CurveValue g = z > 0 ? mix(pieces.normal, z) : CurveValue{};
-    const CurveValue h = mix(pieces.lateral, rho);
-    return {g.force, h.force, g.energy + h.energy};
+    return {z > 0 ? mix(pieces.normal, z) : CurveValue{}, mix(pieces.lateral, rho)};
   }
 
   /// Smallest rho >= 0 with h(rho) = force, in closed form: the knots of the three curves are

@@ -9,6 +9,19 @@ double LocalModel::energy(const Deflection& d) const noexcept {
   return respond(d).energy;
 }
 
+void LocalModel::replace_memory(const NormalMemory& memory, LocalResponse& at) noexcept {
+  set_memory(memory);
+  const RecalledResponse before = at.recalled;
+  at.recalled = recall(memory, before.coordinate, before.instantaneous);
+  const double change = at.recalled.force - before.force;
+  at.normal_force += change;
+  at.friction_normal_force = at.recalled.force;
+  at.force = at.force + change * n_;
+  at.energy += at.recalled.energy - before.energy;
+  at.at_depth.friction_normal_force = at.recalled.force;
+  at.at_depth.energy = at.recalled.energy;
+}
+
 void LocalModel::slip_to(double rho, Deflection& d, LocalResponse& at,
                          PiecesInUse& pieces) noexcept {
   set_lateral_offset(lateral_offset_ + (d.lateral - rho) * d.tangent);

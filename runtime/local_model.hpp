@@ -2,8 +2,11 @@
 // The static conservative force field f_i(x) of a fixed contact point.
 #pragma once
 
+#include <cmath>
+
 #include "format/vec3.hpp"
 #include "runtime/interpolated_response.hpp"
+#include "runtime/normal_memory.hpp"
 #include "runtime/surface.hpp"
 
 namespace palpate::runtime {
@@ -22,8 +25,9 @@ struct LocalResponse {
   double lateral_force = 0;  ///< dE/drho, N; h(rho) of decoupled responses
   double energy = 0;  ///< E = sum n_l (G_l(z) + H_l(rho)), J [Mahvash & Hayward 2005, eq. 32]
   Vec3 force{};       ///< f = g n + h t, of the tool ON the body, N [eq. 28]
-  double friction_normal_force = 0;          ///< g(z), N: friction is limited to mu times it
+  double friction_normal_force = 0;  ///< g(z), or psi g(z), N: friction is limited to mu times it
   InterpolatedResponse::AtDepth at_depth{};  ///< for coupled responses only
+  RecalledResponse recalled{};               ///< for responses that relax only
 };
 
 /// With c, n = n(c), the offset d0 and the lateral offset s (s . n = 0) fixed:
@@ -34,7 +38,9 @@ struct LocalResponse {
 /// Coupled responses: E = sum n_l (G_l(z) + w_l(z) H_l(rho)), and again f = grad E. The
 /// friction-limited normal force is g(z), which the normal force is never below. The Jacobian of
 /// decoupled responses is g' n n^T + h' t t^T + (h/rho) b b^T with b = n x t: its norm does not
-/// exceed the largest stored slope. noexcept, allocation-free.
+/// exceed the largest stored slope.
+/// Responses that relax have a memory, which is fixed as well: V of (R18) replaces G, and psi g
+/// replaces g in every equation above. noexcept, allocation-free.
 class LocalModel {
  public:
   LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept
@@ -60,10 +66,17 @@ class LocalModel {
     LocalResponse r;
     if (response_.coupled()) {
       r.at_depth = response_.at_depth(d.depth, pieces);
+      if (relaxes_) recall_at_depth(r);
       respond_at_depth(d, pieces, r);
       return r;
     }
-    take(response_.decoupled_at(d.depth, d.lateral, pieces), d, r);
+    const InterpolatedResponse::Decoupled at = response_.decoupled_at(d.depth, d.lateral, pieces);
+    if (relaxes_) {
+      r.recalled = recall(memory_, std::sqrt(2 * at.normal.energy), at.normal.force);
+      take({r.recalled.force, at.lateral.force, r.recalled.energy + at.lateral.energy}, d, r);
+    } else {
+      take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
+    }
     r.friction_normal_force = r.normal_force;
     return r;
   }
@@ -72,15 +85,15 @@ class LocalModel {
     return respond(d, pieces);
   }
   double energy(const Deflection& d) const noexcept;
-  /// rho_s = h^{-1}(mu g(z)): the lateral deflection at which slip begins, m.
+  /// rho_s = h^{-1}(mu g(z)): the lateral deflection at which slip begins, m. Without memory.
   double slip_limit(const Deflection& d, double friction) const noexcept;
 
-  /// The same where the response is known and exceeds the limit: rho_s < rho.
-  double slip_limit_below(const Deflection& d, const LocalResponse& at, double friction,
-                          PiecesInUse& pieces) const noexcept {
+  /// The lateral deflection at which the lateral force is `limit` (N), where the response is known
+  /// and exceeds it, m.
+  double lateral_below(const Deflection& d, const LocalResponse& at, double limit,
+                       PiecesInUse& pieces) const noexcept {
     return response_.lateral_inverse_below(
-        friction * at.friction_normal_force, d.lateral,
-        response_.coupled() ? at.at_depth.weights : response_.natural(), pieces);
+        limit, d.lateral, response_.coupled() ? at.at_depth.weights : response_.natural(), pieces);
   }
 
   /// Slip along t with c fixed until the lateral deflection is `rho` (m, at most its present
@@ -95,6 +108,7 @@ class LocalModel {
   ///           - h (t . a' + (z + d0)(t . n')),
   /// with H_l times w_l(z), and dE/dz, dE/drho for g, h, where responses are coupled. In an
   /// ordinary slide the anchor moves with c, a' = d; where c catches up with the anchor, a' = 0.
+  /// Without memory.
   double energy_slope(const Deflection& at, const Vec3& d, const Vec3& anchor_rate) const noexcept;
   double energy_slope(const Deflection& at, const Vec3& d) const noexcept {
     return energy_slope(at, d, d);
@@ -108,6 +122,14 @@ class LocalModel {
   const Vec3& lateral_offset() const noexcept { return lateral_offset_; }
   /// Sets s to the part of the vector across n.
   void set_lateral_offset(const Vec3& s) noexcept { lateral_offset_ = s - dot(s, n_) * n_; }
+  /// The responses relax, and this is what they remember.
+  void set_memory(const NormalMemory& memory) noexcept {
+    memory_ = memory;
+    relaxes_ = true;
+  }
+  const NormalMemory& memory() const noexcept { return memory_; }
+  /// The response of another memory, from that of the present one at the same deflection.
+  void replace_memory(const NormalMemory& memory, LocalResponse& at) noexcept;
   bool coupled() const noexcept { return response_.coupled(); }
   double deepest() const noexcept { return response_.deepest(); }
   NodeCurves::InUse curves_in_use(const Deflection& d) const noexcept {
@@ -122,6 +144,12 @@ class LocalModel {
     r.energy = value.energy;
     r.force = value.normal * n_ + value.lateral * d.tangent;
   }
+  void recall_at_depth(LocalResponse& r) const noexcept {
+    r.recalled =
+        recall(memory_, std::sqrt(2 * r.at_depth.energy), r.at_depth.friction_normal_force);
+    r.at_depth.friction_normal_force = r.recalled.force;
+    r.at_depth.energy = r.recalled.energy;
+  }
   /// The part of coupled responses that depends on the lateral deflection.
   void respond_at_depth(const Deflection& d, PiecesInUse& pieces, LocalResponse& r) const noexcept {
     take(response_.coupled_at(r.at_depth, d.lateral, pieces), d, r);
@@ -135,6 +163,8 @@ class LocalModel {
   InterpolatedResponse response_;
   double offset_;
   Vec3 lateral_offset_{};
+  bool relaxes_ = false;
+  NormalMemory memory_;
 };
 
 }  // namespace palpate::runtime

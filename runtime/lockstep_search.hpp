@@ -20,13 +20,13 @@ class LockstepSearch {
   LockstepSearch& operator=(const LockstepSearch&) = delete;
 
   /// One step of the force loop at tip position x; the contact must use this search only.
-  std::uint32_t step(ContactState& contact, const Vec3& x) {
+  std::uint32_t step(ContactState& contact, const Vec3& x, double dt = 0) {
     const bool looks = steps_++ % period_ == 0;
     if (looks) {
       delivered_ = found_;
       contact.set_delivery(&delivered_);
     }
-    const std::uint32_t status = contact.step(x);
+    const std::uint32_t status = contact.step(x, dt);
     if (looks) found_ = search_.look({x, contact.observation().point.element});
     return status;
   }

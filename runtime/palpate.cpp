@@ -85,6 +85,8 @@ palpate_observation translate(const ContactObservation& seen) noexcept {
   o.absorbed = seen.absorbed;
   copy(seen.force, o.force_on_body);
   copy(seen.lateral_offset, o.lateral_offset);
+  o.relaxed = seen.relaxed;
+  o.recalled = seen.recalled;
   return o;
 }
 
@@ -302,7 +304,7 @@ uint32_t palpate_step(palpate_state* state, const double position[3], const doub
                       std::isfinite(dt) && dt > 0 && std::isfinite(velocity[0]) &&
                       std::isfinite(velocity[1]) && std::isfinite(velocity[2]);
   if (!usable) return state->contact.refuse();
-  const uint32_t status = state->step({position[0], position[1], position[2]});
+  const uint32_t status = state->step({position[0], position[1], position[2]}, dt);
   copy(state->command(), force);
   return status;
 }

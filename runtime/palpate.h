@@ -90,6 +90,9 @@ enum {
   /* The contact point waits at an edge for triangles that the search thread has not delivered.
    * Remedy: a higher search_rate. */
   PALPATE_AWAITING = 1u << 10,
+  /* The tool is inside the body but above the skin, which has relaxed and not yet come back: no
+   * force. Only where responses relax. */
+  PALPATE_SKIN_LAGS = 1u << 11,
 
   /* Bits of the force loop (palpate_loop_*), also in recordings. */
 
@@ -147,13 +150,16 @@ typedef struct palpate_observation {
   double depth;            /* z = n . (x - c) - d0, m */
   double lateral;          /* rho = |x - c - (z + d0) n - s|, m */
   double offset;           /* d0, depth offset, m */
-  double energy;           /* E_i(x), stored in the local model, J */
+  double energy;           /* E_i(x), stored in the local model and the memory of the tissue, J */
   double tank;             /* energy tank, J */
   double absorbed;         /* net work of the tool on the body since the state was created or reset,
                               J: the sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}) */
   double force_on_body[3]; /* f, N; palpate_step gives -f */
   double lateral_offset[3]; /* s, lateral offset, m: slip that the contact point has not followed,
                                at borders, at edges that await delivery, and in throttled slides */
+  double relaxed;  /* energy that relaxation has dissipated since the state was created or reset, J */
+  double recalled; /* fraction of the instantaneous normal force that has relaxed; 0 where responses
+                      are elastic, 1 where the skin lags */
 } palpate_observation;
 
 typedef struct palpate_library_info {
@@ -209,7 +215,7 @@ PALPATE_API int palpate_state_set_pose(palpate_state* state, const double positi
                                        const double rotation[9]);
 
 /* One step of the force loop. position (m), velocity (m/s): of the tool tip; dt (s): since the last
- * step, > 0. force (N): of the body on the tool, to command to the device; always finite. Returns
+ * step, > 0, in which tissue that relaxes does so. force (N): of the body on the tool, to command to the device; always finite. Returns
  * status bits. Real-time safe. */
 PALPATE_API uint32_t palpate_step(palpate_state* state, const double position[3],
                                   const double velocity[3], double dt, double force[3]);

@@ -30,12 +30,12 @@ class PosedContact {
   PosedContact(const PosedContact&) = delete;
   PosedContact& operator=(const PosedContact&) = delete;
 
-  /// One step with the tip at x in the world, m. @return status bits.
-  std::uint32_t step(const Vec3& x) noexcept {
+  /// One step with the tip at x in the world, m, dt (s) after the last. @return status bits.
+  std::uint32_t step(const Vec3& x, double dt) noexcept {
     const Vec3 in_body = pose.to_body(x);
-    if (!search_) return contact.step(in_body);
+    if (!search_) return contact.step(in_body, dt);
     if (search_->receive(delivery_)) contact.set_delivery(&delivery_);
-    const std::uint32_t status = contact.step(in_body);
+    const std::uint32_t status = contact.step(in_body, dt);
     if (!(status & step_status::BadInput)) {
       search_->report({in_body, contact.observation().point.element});
     }

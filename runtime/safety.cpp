@@ -94,7 +94,7 @@ Safety::Verdict Safety::limit(const Vec3& force, double energy) noexcept {
 
 double Safety::ramp(double energy, std::uint32_t& status) noexcept {
   if (energy <= kNoEnergy) ramped_ = std::min(ramped_ + dt_, settings_.ramp);
-  if (!(ramped_ < settings_.ramp)) return 1;
+  if (!ramps()) return 1;
   status |= step_status::LoopRamping;
   return ramped_ / settings_.ramp;
 }

@@ -75,6 +75,8 @@ class Safety {
   Admission admit(const DeviceReading& reading, bool fresh, double dt) noexcept;
   /// energy: stored in the contact after the step, J.
   Verdict limit(const Vec3& force, double energy) noexcept;
+  /// Whether the force is still scaled by the ramp at the start.
+  bool ramps() const noexcept { return ramped_ < settings_.ramp; }
 
  private:
   bool accept(const Vec3& position, std::uint32_t& status) noexcept;

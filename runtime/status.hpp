@@ -20,6 +20,7 @@ enum Bit : std::uint32_t {
   Dropped = 1U << 8,
   ForceLimited = 1U << 9,
   Awaiting = 1U << 10,
+  SkinLags = 1U << 11,
   LoopRamping = 1U << 16,
   LoopClamped = 1U << 17,
   LoopTooFast = 1U << 18,

@@ -62,6 +62,36 @@ CurveSizes sizes_of(const Library& library, std::size_t v) {
           static_cast<std::uint16_t>(r.lateral.knot.size()), static_cast<std::uint16_t>(coupling)};
 }
 
+std::array<double, kMaxRelaxationTimes> fractions_of(const Library& library, std::size_t v) {
+  std::array<double, kMaxRelaxationTimes> fractions{};
+  const std::vector<float>& stored = library.responses[v].relaxation;
+  std::copy(stored.begin(), stored.end(), fractions.begin());
+  return fractions;
+}
+
+void check_relaxation(const Library& library) {
+  const std::size_t times = library.relaxation_times.size();
+  const bool counts =
+      std::all_of(library.responses.begin(), library.responses.end(), [&](const NodeResponse& r) {
+        return r.relaxation.size() == times || r.status == ResponseStatus::Hole;
+      });
+  if (times <= kMaxRelaxationTimes && counts && library.tool_radius > 0) return;
+  throw Error(ErrorKind::Configuration, "library",
+              "its relaxation needs at most " + std::to_string(kMaxRelaxationTimes) +
+                  " times, a fraction for each at every vertex, and a radius of the tool",
+              "fit the curves again");
+}
+
+bool all_relax_alike(const Library& library) {
+  const std::vector<float>* first = nullptr;
+  for (const NodeResponse& response : library.responses) {
+    if (response.status == ResponseStatus::Hole) continue;
+    if (first == nullptr) first = &response.relaxation;
+    if (response.relaxation != *first) return false;
+  }
+  return true;
+}
+
 CompiledCurve coupling_of(const NodeResponse& response, std::size_t vertex) {
   const double base = static_cast<double>(response.coupling.base);
   if (!(std::isfinite(base) && base > 0)) {
@@ -78,6 +108,13 @@ Surface::Surface(const Library& library) : elements_(library.triangles.size()) {
   if (library.inward.size() != count || library.responses.size() != count) {
     throw Error(ErrorKind::Configuration, "library",
                 "positions, directions and responses differ in number", "build it again");
+  }
+  relaxation_times_ = library.relaxation_times;
+  tool_radius_ = library.tool_radius;
+  if (library.relaxes()) {
+    check_relaxation(library);
+    relaxes_alike_ = all_relax_alike(library);
+    curves_at_ = 2;
   }
   const std::vector<std::int32_t> record = build_nodes(library);
   for (std::size_t m = 0; m < elements_.size(); ++m) build_element(library, record, m);
@@ -105,27 +142,30 @@ std::vector<std::int32_t> Surface::build_nodes(const Library& library) {
   std::size_t lines = 0;
   for (const std::size_t v : order) {
     record[v] = static_cast<std::int32_t>(lines);
-    lines += 1 + NodeCurves::lines(sizes_of(library, v));
+    lines += curves_at_ + NodeCurves::lines(sizes_of(library, v));
     if (lines > std::numeric_limits<std::int32_t>::max()) {
       throw Error(ErrorKind::Configuration, "library", "its responses take more than 128 GB",
                   "fit with fewer knots");
     }
   }
   records_.resize(lines);
-  for (const std::size_t v : order) {
-    const NodeResponse& response = library.responses[v];
-    SurfaceNode node{library.positions[v], library.inward[v], {}};
-    CacheLine* const memory = &records_[static_cast<std::size_t>(record[v])];
-    if (response.status != ResponseStatus::Hole) {
-      const CompiledCurve normal(response.normal);
-      const bool coupled = library.kind == ResponseKind::Coupled;
-      node.curves = NodeCurves::write(memory + 1, normal, CompiledCurve(response.lateral),
-                                      coupled ? coupling_of(response, v) : CompiledCurve());
-      deepest_ = std::max(deepest_, normal.last_knot());
-    }
-    new (memory) SurfaceNode(node);
-  }
+  for (const std::size_t v : order)
+    build_node(library, v, &records_[static_cast<std::size_t>(record[v])]);
   return record;
+}
+
+void Surface::build_node(const Library& library, std::size_t v, CacheLine* memory) {
+  const NodeResponse& response = library.responses[v];
+  SurfaceNode node{library.positions[v], library.inward[v], {}};
+  if (response.status != ResponseStatus::Hole) {
+    const CompiledCurve normal(response.normal);
+    const bool coupled = library.kind == ResponseKind::Coupled;
+    node.curves = NodeCurves::write(memory + curves_at_, normal, CompiledCurve(response.lateral),
+                                    coupled ? coupling_of(response, v) : CompiledCurve());
+    deepest_ = std::max(deepest_, normal.last_knot());
+  }
+  new (memory) SurfaceNode(node);
+  if (library.relaxes()) new (memory + 1) NodeRelaxation{fractions_of(library, v)};
 }
 
 void Surface::build_element(const Library& library, const std::vector<std::int32_t>& record,
@@ -245,10 +285,23 @@ void Surface::prefetch_opposite(const Element& e, std::size_t l,
                           bits(e.vertices[(l + 1) % 3]) - bits(e.vertices[(l + 2) % 3]);
   const CacheLine* const record = &records_[v];
   __builtin_prefetch(record);
-  for (std::size_t k = 0; k < in_use.knots; ++k) __builtin_prefetch(record + 1 + k);
-  __builtin_prefetch(record + 1 + in_use.normal);
-  __builtin_prefetch(record + 1 + in_use.lateral);
-  if (in_use.coupling > 0) __builtin_prefetch(record + 1 + in_use.coupling);
+  const CacheLine* const curves = record + curves_at_;
+  for (std::size_t k = 0; k < in_use.knots; ++k) __builtin_prefetch(curves + k);
+  __builtin_prefetch(curves + in_use.normal);
+  __builtin_prefetch(curves + in_use.lateral);
+  if (in_use.coupling > 0) __builtin_prefetch(curves + in_use.coupling);
+  if (!relaxes_alike_) __builtin_prefetch(record + 1);
+}
+
+std::array<double, kMaxRelaxationTimes> Surface::fractions(const SurfacePoint& p) const noexcept {
+  std::array<double, kMaxRelaxationTimes> sum{};
+  const Element& e = element(p.element);
+  for (std::size_t l = 0; l < 3; ++l) {
+    const CacheLine* const record = &records_[static_cast<std::size_t>(e.vertices[l])];
+    const auto& node = *reinterpret_cast<const NodeRelaxation*>(record + 1);
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += p.natural[l] * node.fractions[i];
+  }
+  return sum;
 }
 
 }  // namespace palpate::runtime

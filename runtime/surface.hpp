@@ -34,6 +34,12 @@ struct alignas(kCacheLine) SurfaceNode {
 };
 static_assert(sizeof(SurfaceNode) == kCacheLine);
 
+/// g_i of a vertex of a library that relaxes: the cache line between its data and its curves.
+struct alignas(kCacheLine) NodeRelaxation {
+  std::array<double, kMaxRelaxationTimes> fractions{};
+};
+static_assert(sizeof(NodeRelaxation) == kCacheLine);
+
 /// A point of the surface: an element and natural coordinates n_l >= 0 that sum to 1.
 struct SurfacePoint {
   std::int32_t element = kNoElement;
@@ -95,8 +101,17 @@ class Surface {
   double diagonal() const noexcept { return norm(high_ - low_); }  ///< of the bounding box, m
   double deepest() const noexcept { return deepest_; }  ///< deepest sample of any node, m
 
+  /// tau_i, s; empty: the responses are elastic.
+  const std::vector<double>& relaxation_times() const noexcept { return relaxation_times_; }
+  /// Whether all nodes have the same fractions.
+  bool relaxes_alike() const noexcept { return relaxes_alike_; }
+  double tool_radius() const noexcept { return tool_radius_; }  ///< m
+  /// g_i at a point, interpolated; zero beyond the relaxation times. @pre they are not empty
+  std::array<double, kMaxRelaxationTimes> fractions(const SurfacePoint& p) const noexcept;
+
  private:
   std::vector<std::int32_t> build_nodes(const Library& library);
+  void build_node(const Library& library, std::size_t v, CacheLine* memory);
   void build_element(const Library& library, const std::vector<std::int32_t>& record,
                      std::size_t m);
   void connect();
@@ -115,6 +130,10 @@ class Surface {
   Table<Element> elements_;
   Vec3 low_{}, high_{};
   double deepest_ = 0;
+  std::vector<double> relaxation_times_;
+  bool relaxes_alike_ = true;
+  double tool_radius_ = 0;
+  std::size_t curves_at_ = 1;  ///< line of the curves of a node, counted from its first
 };
 
 }  // namespace palpate::runtime

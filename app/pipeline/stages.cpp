@@ -236,7 +236,7 @@ StiffnessAtRate stiffness_at_rate(const Certificate& certificate,
   event.worst_triangle = certificate.worst_triangle;
   const DeviceConstants constants = device.constants();
   event.unknown = unknown_constants(constants);
-  const double bound = certifiable_stiffness(constants, rate);
+  const double bound = certifiable_stiffness(constants, rate, certificate.relaxation_rate);
   event.published_stiffness = 0.5 * device.damping * rate;
   event.certifiable_stiffness = bound;
   event.certifiable_by_friction = certifiable_stiffness_by_friction(constants);
@@ -248,16 +248,17 @@ StiffnessAtRate stiffness_at_rate(const Certificate& certificate,
 }
 
 /// Largest Lipschitz bound for which both conditions hold, N/m; NaN: a constant is unknown.
-double certifiable_by_both(const DeviceConstants& device, double rate) {
+double certifiable_by_both(const DeviceConstants& device, double rate, double relaxation_rate) {
   const double by_friction = certifiable_stiffness_by_friction(device);
-  return std::isnan(by_friction) ? kUnknown
-                                 : std::min(certifiable_stiffness(device, rate), by_friction);
+  if (std::isnan(by_friction)) return kUnknown;
+  return std::min(certifiable_stiffness(device, rate, relaxation_rate), by_friction);
 }
 
 void write_softened(const Workspace& space, const RateOptions& options, Library library,
                     const fitting::CertifySettings& settings, const EventSink& emit) {
   const double bound = settings.devices.size() == 1
-                           ? certifiable_by_both(settings.devices[0].constants(), options.rate)
+                           ? certifiable_by_both(settings.devices[0].constants(), options.rate,
+                                                 library.certificate.relaxation_rate)
                            : kUnknown;
   if (!(bound > 0)) {
     throw Error(ErrorKind::Configuration, "--soften",

@@ -48,7 +48,7 @@ RecordedStep step_again(const RecordedStep& recorded, double dt, palpate_state& 
     step.force = guarded.force;
     step.status = guarded.status | (recorded.status & kOfTheDevice);
   } else {
-    step.status = state.step(recorded.position) | (recorded.status & kOfTheDevice);
+    step.status = state.step(recorded.position, dt) | (recorded.status & kOfTheDevice);
     step.force = state.command();
   }
   runtime::enter_observation(state, step);
@@ -79,10 +79,13 @@ bool any_value(const RecordedStep& a, const RecordedStep& b, Visit&& visit) {
 Replay::Replay(const RecordingHeading& recorded, const palpate_library& body)
     : state_(body, contact_settings(recorded)), safety_(safety_of(recorded)) {
   state_.pose.position = recorded.settings.body_position;
+  if (recorded.rate > 0) period_ = 1 / recorded.rate;
 }
 
 RecordedStep Replay::step(const RecordedStep& recorded) {
-  const double dt = 1e-9 * static_cast<double>(recorded.time_ns - last_.value_or(recorded.time_ns));
+  const double since =
+      1e-9 * static_cast<double>(recorded.time_ns - last_.value_or(recorded.time_ns));
+  const double dt = safety_ ? since : period_;
   last_ = recorded.time_ns;
   return step_again(recorded, dt, state_, safety_);
 }

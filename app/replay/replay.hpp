@@ -25,6 +25,7 @@ class Replay {
  private:
   palpate_state state_;
   std::optional<runtime::Safety> safety_;
+  double period_ = 0;                 ///< s, of a session without a device
   std::optional<std::int64_t> last_;  ///< time of the last step, ns
 };
 

@@ -54,7 +54,8 @@ NotCertified too_slow(const Library& library, const fitting::DeviceProfile& prof
     return {profile.name, "no rate is certified: the slide has no bound",
             "run `palpate certify` again, which states the reason"};
   }
-  if (!judge_passivity(device, bound, rate).by_friction) {
+  const RenderedForce force = rendered_force(c, bound);
+  if (!judge_passivity(device, force, rate).by_friction) {
     return {profile.name,
             fmt::format("{:g} N of dry friction allow positions in steps of {} um with a "
                         "Lipschitz bound of {}, not of {} um",
@@ -63,7 +64,7 @@ NotCertified too_slow(const Library& library, const fitting::DeviceProfile& prof
                         lipschitz_bound_text(bound), number_text(1e6 * device.position_resolution)),
             "soften the body (palpate certify --rate --soften)"};
   }
-  const double needed = lowest_rate(device, bound);
+  const double needed = lowest_rate(device, force);
   if (std::isinf(needed)) {
     return {profile.name, "no rate is certified: the damping does not make up for the delay",
             "soften the body (palpate certify --rate --soften)"};
@@ -80,8 +81,9 @@ double lipschitz_bound_for(const Library& library, const fitting::DeviceProfile&
                            double rate) {
   const DeviceConstants device = profile.constants();
   const double limit = enforced_lipschitz_bound(library.certificate);
-  const double bound =
-      std::min(certifiable_stiffness(device, rate), certifiable_stiffness_by_friction(device));
+  const double by_damping =
+      certifiable_stiffness(device, rate, library.certificate.relaxation_rate);
+  const double bound = std::min(by_damping, certifiable_stiffness_by_friction(device));
   return bound < limit && bound >= library.certificate.min_lipschitz_bound ? bound : limit;
 }
 
@@ -93,7 +95,9 @@ std::optional<NotCertified> why_not_certified(const Library& library,
   if (auto fault = fault_of(profile)) return fault;
   const double bound = lipschitz_bound_for(library, profile, rate);
   const bool enforced = certified_range(library).enforces(bound);
-  if (enforced && judge_passivity(profile.constants(), bound, rate).certified())
+  if (enforced &&
+      judge_passivity(profile.constants(), rendered_force(library.certificate, bound), rate)
+          .certified())
     return std::nullopt;
   return too_slow(library, profile, rate);
 }

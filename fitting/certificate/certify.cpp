@@ -114,8 +114,21 @@ std::string where_bounded(const Library& library, const std::vector<TriangleBoun
          " mm every slide has a bound";
 }
 
+/// K of (C9), 1/s: friction that relaxes with the normal force adds to its change.
+double relaxation_rate(const Library& library, double friction) {
+  double largest = 0;
+  for (const NodeResponse& response : library.responses) {
+    double rate = 0;
+    for (std::size_t i = 0; i < response.relaxation.size(); ++i)
+      rate += static_cast<double>(response.relaxation[i]) / library.relaxation_times[i];
+    largest = std::max(largest, rate);
+  }
+  return (1 + friction * friction) * largest;
+}
+
 void add_devices(Certificate& certificate, const CertifySettings& settings) {
   const double bound = certified_lipschitz_bound(certificate);
+  const RenderedForce force = rendered_force(certificate, bound);
   for (const DeviceProfile& device : settings.devices) {
     if (std::isinf(device.damping) || device.damping <= 0) {
       throw Error(ErrorKind::Configuration, "device profile '" + device.name + "'",
@@ -124,7 +137,7 @@ void add_devices(Certificate& certificate, const CertifySettings& settings) {
     }
     const DeviceConstants constants = device.constants();
     certificate.devices.push_back(
-        {device.name, device.damping, lowest_rate(constants, bound),
+        {device.name, device.damping, lowest_rate(constants, force),
          2 * device.damping / (3 * kReferencePeriod), 2 * device.damping / kReferencePeriod,
          device.coulomb_friction, device.delay, device.position_resolution, device.force_resolution,
          published_rate(device.damping, bound), largest_position_step(constants, bound)});
@@ -178,6 +191,7 @@ void certify(Library& library, const CertifySettings& settings) {
                 "every triangle touches a hole", "fill the holes or compute more sites");
   }
   certificate.limited_by += where_bounded(library, bounds, certificate);
+  certificate.relaxation_rate = relaxation_rate(library, settings.friction);
   certificate.basis = basis_of(library.provenance);
   count_vertices(library, certificate);
   certificate.lipschitz_bound = settings.enforced_bound;

@@ -44,6 +44,7 @@ ContactElement contact_element(const Library& library, std::size_t index, double
                          depth};
   if (library.kind == ResponseKind::Coupled)
     element.coupling = couplings_of(library, triangle, frame);
+  element.relaxes = library.relaxes();
   return element;
 }
 

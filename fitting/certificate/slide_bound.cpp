@@ -112,7 +112,7 @@ Hessian hessian(const ContactElement& element, const Range& z, const Range& rho)
     w_low = std::min(w_low, coupling_at(w, z.low));
     w_high = std::max(w_high, coupling_at(w, z.high));
   }
-  const Range g_z = element.normal.slope(z);
+  const Range g_z = element.normal_stiffness(z);
   const Range w_z = element.coupling->slope(z);
   const Range w_zz = element.coupling->curvature(z);
   const Range h_r = element.lateral.slope(rho);
@@ -140,7 +140,7 @@ Range coupled_limit(const ContactElement& element, const Range& z) {
 double along_limit(const ContactElement& element, const Hessian& E, const Range& z,
                    const Range& rho) {
   const double mu = element.friction;
-  const Range g_z = element.normal.slope(z);
+  const Range g_z = element.normal_stiffness(z);
   if (!(mu > 0)) return std::max(std::abs(E.zz.low), std::abs(E.zz.high));
   double growth = 0;
   for (const runtime::CompiledCurve& w : element.coupling->curves())
@@ -160,6 +160,7 @@ std::optional<SlideState> coupled_state(const ContactElement& element, const Ran
     state.rho = coupled_limit(element, z);
     if (state.rho.low == kInfinity) return std::nullopt;
     if (state.rho.high == kInfinity) return state;
+    if (element.relaxes) state.rho.low = 0;  // slip begins where psi g allows it, psi from 0 to 1
   }
   const Hessian E = hessian(element, z, state.rho);
   const Range g_z = element.normal.slope(z);
@@ -276,7 +277,8 @@ double min_bound_beyond(const ContactElement& element, double depth) {
   if (element.coupling->slope(beyond).high > 0) return kInfinity;
   const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
   return kRoundingFactor *
-         std::max(std::hypot(1.0, element.friction) * element.normal.slope(beyond).high, lateral);
+         std::max(std::hypot(1.0, element.friction) * element.normal_stiffness(beyond).high,
+                  lateral);
 }
 
 using CellBound = double (*)(const ContactElement&, const Range&);
@@ -359,7 +361,9 @@ double min_lipschitz_bound(const ContactElement& element) {
                   min_bound_beyond(element, deepest));
 }
 
-SlideBound slide_bound(const ContactElement& element) {
+SlideBound slide_bound(const ContactElement& with_memory) {
+  ContactElement element = with_memory;
+  element.relaxes = false;  // slides over fresh tissue
   const auto less = [](const Cell& a, const Cell& b) { return a.bound.total < b.bound.total; };
   std::priority_queue<Cell, std::vector<Cell>, decltype(less)> cells(less);
   const std::vector<double> ends = element.depth_cells();
@@ -379,7 +383,7 @@ SlideBound slide_bound(const ContactElement& element) {
 }
 
 bool slide_lowers_energy(const ContactElement& element) {
-  if (element.coupling) return false;
+  if (element.coupling || element.relaxes) return false;
   const std::vector<double> ends = element.normal.cells({0, element.depth}, 1);
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
     if (!energy_falls_in(element, {ends[k], ends[k + 1]}, 6)) return false;

@@ -16,7 +16,8 @@ double stick_bound(const ContactElement& element);
 /// responses that are flat where slip begins, or whose w grows beyond its last knot.
 double min_lipschitz_bound(const ContactElement& element);
 
-/// L_slip, N/m: Lipschitz bound while sliding, (10), in closed form for intervals of depth.
+/// L_slip, N/m: Lipschitz bound while sliding, (10), in closed form for intervals of depth. Of
+/// tissue that relaxes: over fresh tissue.
 struct SlideBound {
   double total = 0;      ///< sum of the causes; infinite where (10) gives no bound
   SlideCauses causes{};  ///< at the interval of depth with the largest bound
@@ -28,7 +29,7 @@ SlideBound slide_bound(const ContactElement& element);
 /// Whether a slide at limiting friction never raises the stored energy:
 ///   mu cos(theta) - sin(theta) >= |grad_c E|/g + kappa |rho_s - mu (z + d0)|
 /// for all z >= 0, z + d0 <= D, over the whole triangle. The condition is sufficient, not
-/// necessary. Always false for coupled responses.
+/// necessary. Always false for coupled responses and for responses that relax.
 bool slide_lowers_energy(const ContactElement& element);
 
 }  // namespace palpate::fitting

@@ -169,6 +169,21 @@ Library coupled(Library library) {
   return library;
 }
 
+Library relaxing(Library library, const std::vector<double>& times, bool alike) {
+  library.relaxation_times = times;
+  if (!(library.tool_radius > 0)) library.tool_radius = 0.005;
+  const double each = 0.5 / static_cast<double>(times.size());
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const Vec3& x = library.positions[v];
+    std::vector<float>& fractions = library.responses[v].relaxation;
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const double phase = 150 * x[0] + 90 * x[1] - 120 * x[2] + static_cast<double>(i);
+      fractions.push_back(static_cast<float>(each * (alike ? 1 : 1 + std::sin(phase) / 3)));
+    }
+  }
+  return library;
+}
+
 Library sphere(int level, double radius, const Responses& responses) {
   return bumpy_sphere(level, radius, 0, responses);
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "format/library.hpp"
 
@@ -27,6 +28,10 @@ inline constexpr double kSteepestUneven = 500 * 1.6;
 
 /// The same library with lateral responses that grow with depth, not alike everywhere; w(0) > 0.
 Library coupled(Library library);
+
+/// The same library with responses that relax: fractions of one half in all at the times given (s),
+/// alike everywhere, or up and down by a third over the surface.
+Library relaxing(Library library, const std::vector<double>& times, bool alike);
 
 /// Icosahedron subdivided `level` times, vertices on the sphere, directions radial.
 Library sphere(int level, double radius, const Responses& responses);

@@ -16,7 +16,7 @@ using ::testing::StartsWith;
 /// A device whose constants are known, without steps or delay, with this certificate.
 DeviceCertificate pen(double damping, double lipschitz_bound) {
   DeviceCertificate device{"pen", damping, 0, 0, 0, 0.01, 0, 0, 0, 0, 0};
-  device.lowest_rate = lowest_rate(device.constants(), lipschitz_bound);
+  device.lowest_rate = lowest_rate(device.constants(), {lipschitz_bound, 0});
   device.published_rate = published_rate(damping, lipschitz_bound);
   return device;
 }
@@ -107,7 +107,7 @@ TEST(Verdict, CertifiesNoRateWhereDryFrictionDoesNotPayForTheResolution) {
             "of 100 um");
   device.position_resolution = 0;
   device.delay = 0.1 / 200;
-  device.lowest_rate = lowest_rate(device.constants(), 200);
+  device.lowest_rate = lowest_rate(device.constants(), {200, 0});
   EXPECT_THAT(verdict(certificate(100, 200), device), HasSubstr("make up for its delay"));
 }
 

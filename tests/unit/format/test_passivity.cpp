@@ -53,39 +53,40 @@ TEST(DampingTime, IsAttainedByALinearWallForWholeSamplesOfDelay) {
   // damping_time() includes one sample of the loop.
   for (const double delay : {0.0, 1.0}) {
     const double returned = returned_by_the_best_motion(1 + delay);
-    EXPECT_LE(returned, damping_time(1, delay));
-    EXPECT_GE(returned, 0.985 * damping_time(1, delay)) << delay;
+    EXPECT_LE(returned, damping_time(1, delay, 0));
+    EXPECT_GE(returned, 0.985 * damping_time(1, delay, 0)) << delay;
   }
 }
 
 TEST(DampingTime, CoversEveryFractionOfASample) {
   for (const double delay : {0.025, 0.25, 0.5, 0.75, 1.25, 1.5, 2.0, 3.5}) {
-    EXPECT_LE(returned_by_the_best_motion(1 + delay), damping_time(1, delay)) << delay;
+    EXPECT_LE(returned_by_the_best_motion(1 + delay), damping_time(1, delay, 0)) << delay;
   }
   // "The delay plus half a period" would not do: 1.06 > 1.
   EXPECT_GT(returned_by_the_best_motion(0.5), 1.05);
 }
 
 TEST(LowestRate, IsOneAndAHalfBoundsOverTheDampingWithoutDelay) {
-  EXPECT_NEAR(lowest_rate(kPen, 170), 1.5 * 170 / 0.081, 1e-9);
+  EXPECT_NEAR(lowest_rate(kPen, {170, 0}), 1.5 * 170 / 0.081, 1e-9);
   EXPECT_NEAR(published_rate(0.081, 170), 2 * 170 / 0.081, 1e-9);
-  EXPECT_NEAR(certifiable_stiffness(kPen, 2000), 2000 * 0.081 / 1.5, 1e-12);
+  EXPECT_NEAR(certifiable_stiffness(kPen, 2000, 0), 2000 * 0.081 / 1.5, 1e-12);
 }
 
 TEST(LowestRate, IsThatFromWhichOnEveryRateIsCertified) {
   for (const double delay : {0.0, 20e-6, 200e-6, 3e-4, 3.4e-4, 4e-4}) {
     DeviceConstants device = kPen;
     device.delay = delay;
-    const double lowest = lowest_rate(device, 170);
+    const double lowest = lowest_rate(device, {170, 0});
     ASSERT_TRUE(std::isfinite(lowest)) << delay;
     for (const double more : {1.0001, 1.1, 1.5, 3.0, 100.0})
-      EXPECT_TRUE(judge_passivity(device, 170, more * lowest).certified()) << delay << " " << more;
-    EXPECT_NEAR(certifiable_stiffness(device, lowest * 1.0000001), 170, 1e-3) << delay;
-    EXPECT_FALSE(judge_passivity(device, 170, 0.999 * lowest).certified()) << delay;
+      EXPECT_TRUE(judge_passivity(device, {170, 0}, more * lowest).certified())
+          << delay << " " << more;
+    EXPECT_NEAR(certifiable_stiffness(device, lowest * 1.0000001, 0), 170, 1e-3) << delay;
+    EXPECT_FALSE(judge_passivity(device, {170, 0}, 0.999 * lowest).certified()) << delay;
   }
   DeviceConstants late = kPen;
   late.delay = 0.081 / 170;  // all of the damping goes into the delay
-  EXPECT_EQ(lowest_rate(late, 170), kInfinity);
+  EXPECT_EQ(lowest_rate(late, {170, 0}), kInfinity);
 }
 
 TEST(LargestPositionStep, IsThatOfAbbottAndOkamuraOnThreeAxes) {
@@ -94,32 +95,32 @@ TEST(LargestPositionStep, IsThatOfAbbottAndOkamuraOnThreeAxes) {
   EXPECT_NEAR(certifiable_stiffness_by_friction(device), 2 * 0.1 / 50e-6 / std::sqrt(3.0), 1e-6);
   const double step = largest_position_step(device, 500);
   device.position_resolution = step * 1.000001;
-  EXPECT_FALSE(judge_passivity(device, 500, 1e6).certified());
+  EXPECT_FALSE(judge_passivity(device, {500, 0}, 1e6).certified());
   device.position_resolution = step * 0.999999;
-  EXPECT_TRUE(judge_passivity(device, 500, 1e6).certified());
+  EXPECT_TRUE(judge_passivity(device, {500, 0}, 1e6).certified());
   device.force_resolution = 1e-3;  // the amplifier takes its part
-  EXPECT_FALSE(judge_passivity(device, 500, 1e6).certified());
+  EXPECT_FALSE(judge_passivity(device, {500, 0}, 1e6).certified());
   EXPECT_LT(largest_position_step(device, 500), step);
   device.force_resolution = 1;
   EXPECT_EQ(largest_position_step(device, 500), 0);
 }
 
 TEST(PassivityVerdict, IsNeverCertifiedWithAnUnknownConstant) {
-  EXPECT_TRUE(judge_passivity(kPen, 50, 1e4).certified());
-  EXPECT_THAT(judge_passivity(kPen, 50, 1e4).unknown, IsEmpty());
+  EXPECT_TRUE(judge_passivity(kPen, {50, 0}, 1e4).certified());
+  EXPECT_THAT(judge_passivity(kPen, {50, 0}, 1e4).unknown, IsEmpty());
   for (double DeviceConstants::*one :
        {&DeviceConstants::damping, &DeviceConstants::coulomb_friction, &DeviceConstants::delay,
         &DeviceConstants::position_resolution, &DeviceConstants::force_resolution}) {
     DeviceConstants device = kPen;
     device.*one = kUnknown;
-    const PassivityVerdict verdict = judge_passivity(device, 50, 1e4);
+    const PassivityVerdict verdict = judge_passivity(device, {50, 0}, 1e4);
     EXPECT_FALSE(verdict.certified());
     EXPECT_EQ(verdict.unknown.size(), 1u);
   }
   EXPECT_THAT(
-      judge_passivity({}, 50, 1e4).unknown,
+      judge_passivity({}, {50, 0}, 1e4).unknown,
       ElementsAre("damping", "delay", "dry friction", "position resolution", "force resolution"));
-  EXPECT_FALSE(judge_passivity(kPen, kInfinity, 1e9).certified());
+  EXPECT_FALSE(judge_passivity(kPen, {kInfinity, 0}, 1e9).certified());
 }
 
 TEST(ListInWords, ReadsAsASentence) {

@@ -48,6 +48,11 @@ inline Library body_named(const std::string& name) {
   if (name == "coupled_rims") return coupled(cylinder(25, 20, 0.04, 0.2, varying(0.3)));
   if (name == "coupled_cube") return coupled(cube(6, 0.06, varying(0.5)));
   if (name == "coupled_thin") return coupled(thin_body(8, 0.08, 0.0015, varying(0.5)));
+  if (name == "relaxing")
+    return relaxing(coupled(bumpy_sphere(3, 0.03, 0.25, varying(0.3))), {0.01, 0.1, 1}, false);
+  if (name == "relaxing_alike")
+    return relaxing(coupled(cylinder(25, 20, 0.04, 0.2, varying(0.3))), {0.05}, true);
+  if (name == "relaxing_cube") return relaxing(cube(6, 0.06, varying(0.5)), {0.02, 0.5}, false);
   if (name == "hills") return bumpy_sphere(3, 0.03, 0.25, varying(0.5));
   if (name == "cube") return cube(6, 0.06, varying(0.5));
   return thin_body(8, 0.08, 0.0015, varying(0.5));
@@ -98,7 +103,9 @@ inline auto adversary_cases() {
       AdversaryCase{"cube", 0.2, 5e-3}, AdversaryCase{"thin", 0, 0},
       AdversaryCase{"thin", 0.5, 5e-3}, AdversaryCase{"coupled", 0.3, 0},
       AdversaryCase{"coupled", 0.1, 5e-3}, AdversaryCase{"coupled_rims", 0.3, 5e-3},
-      AdversaryCase{"coupled_cube", 0.2, 5e-3}, AdversaryCase{"coupled_thin", 0.5, 0});
+      AdversaryCase{"coupled_cube", 0.2, 5e-3}, AdversaryCase{"coupled_thin", 0.5, 0},
+      AdversaryCase{"relaxing", 0.3, 5e-3}, AdversaryCase{"relaxing", 0, 0},
+      AdversaryCase{"relaxing_alike", 0.2, 0}, AdversaryCase{"relaxing_cube", 0.5, 5e-3});
 }
 
 inline std::string case_name(const ::testing::TestParamInfo<AdversaryCase>& about) {

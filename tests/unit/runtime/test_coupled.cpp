@@ -97,7 +97,8 @@ TEST_F(Coupled, SlipBeginsWhereTheLateralForceIsMuTimesTheGrip) {
     EXPECT_NEAR(r.lateral_force, mu * r.friction_normal_force, 1e-9);
     runtime::PiecesInUse pieces;
     const LocalResponse pressed = model.respond(there, pieces);
-    EXPECT_NEAR(model.slip_limit_below(there, pressed, mu, pieces), limit, 1e-12);
+    const double force = mu * pressed.friction_normal_force;
+    EXPECT_NEAR(model.lateral_below(there, pressed, force, pieces), limit, 1e-12);
   }
 }
 

@@ -181,9 +181,10 @@ TEST(InterpolatedResponse, RememberedPiecesGiveTheSumsOfTheCurvesFromWhateverSta
     if (trial % 19 == 0) rho = nodes->curves[corner][1].pieces()[1].start;
     const Sums want = sums_of(*nodes, natural, z, rho);
     const auto a = nodes->at(natural).decoupled_at(z, rho, decoupled);
-    EXPECT_NEAR(a.normal, want.g, 1e-12 * want.g);
-    EXPECT_NEAR(a.lateral, want.h, 1e-12 * want.h);
-    EXPECT_NEAR(a.energy, want.G + want.H, 1e-12 * (want.G + want.H));
+    EXPECT_NEAR(a.normal.force, want.g, 1e-12 * want.g);
+    EXPECT_NEAR(a.lateral.force, want.h, 1e-12 * want.h);
+    EXPECT_NEAR(a.normal.energy, want.G, 1e-12 * want.G);
+    EXPECT_NEAR(a.lateral.energy, want.H, 1e-12 * want.H);
     const InterpolatedResponse r = nodes->coupled_at(natural);
     const auto at = r.at_depth(z, coupled);
     const auto b = r.coupled_at(at, rho, coupled);

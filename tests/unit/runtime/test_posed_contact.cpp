@@ -23,9 +23,9 @@ TEST(PosedContact, CommandsAndObservesInTheWorld) {
   PosedContact contact(body.surface, body.tree, {0.3, 5e-3}, 0);
   contact.pose = {{{{0, 0, 1}, {1, 0, 0}, {0, 1, 0}}}, {1, 2, 3}};
   const auto at = [](double height) { return Vec3{1 + height, 2 + 0.033, 3 + 0.031}; };
-  contact.step(at(1e-4));
+  contact.step(at(1e-4), 1e-3);
   std::uint32_t status = 0;
-  for (int i = 1; i <= 40; ++i) status = contact.step(at(-1e-4 * i));
+  for (int i = 1; i <= 40; ++i) status = contact.step(at(-1e-4 * i), 1e-3);
   EXPECT_TRUE(status & runtime::step_status::Contact);
   const double z = 4e-3 - 1e-4;
   EXPECT_NEAR(norm(contact.command() - Vec3{100 * 170 * z * z, 0, 0}), 0, 1e-6);
@@ -38,7 +38,7 @@ TEST(PosedContact, CommandsAndObservesInTheWorld) {
 TEST(PosedContact, WithASearchThreadMeetsNothingBeforeTheFirstDelivery) {
   const palpate_library body(plate(8, 0.08, [](const Vec3&) { return wall_response(170, 120); }));
   PosedContact contact(body.surface, body.tree, {0.3, 5e-3}, 1e-3);  // once in 1000 s
-  for (int i = 0; i < 20; ++i) contact.step({0.033, 0.031, 5e-4 - 1e-4 * i});
+  for (int i = 0; i < 20; ++i) contact.step({0.033, 0.031, 5e-4 - 1e-4 * i}, 1e-3);
   EXPECT_EQ(norm(contact.command()), 0);
 }
 
@@ -65,7 +65,7 @@ class Turning {
     contact.pose = {};
     for (const double height : {2e-3, -depth / 2, -depth}) {
       in_body_ = {0.03 + height, 1e-3, 2e-3};
-      contact.step(in_body_);
+      contact.step(in_body_, 1e-3);
     }
   }
   /// @return change of the force over its bound, L (path in the body + angle times arm).
@@ -80,7 +80,7 @@ class Turning {
     const Vec3 tip = pose.to_world(in_body_);
     pose.rotation = turned(pose.rotation, unit(), angle);
     pose.position = tip - pose.turn(target);  // brings `target` to the tip, which rests
-    contact.step(tip);
+    contact.step(tip, 1e-3);
     in_body_ = target;
     return norm(contact.command() - before) / (kBound * (size + angle * norm(arm)) + 1e-9);
   }

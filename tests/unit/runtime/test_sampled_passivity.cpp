@@ -29,7 +29,7 @@ constexpr double kPeriod = 1e-3, kDamping = 0.1;
 /// Stiffness that the damping certifies with this delay in samples, N/m.
 double certified_stiffness(int delay) {
   if (delay == 0) return kDamping / (0.5 * kPeriod);  // Colgate & Schenkel 1997
-  return certifiable_stiffness({kDamping, 0, (delay - 1) * kPeriod, 0, 0}, 1 / kPeriod);
+  return certifiable_stiffness({kDamping, 0, (delay - 1) * kPeriod, 0, 0}, 1 / kPeriod, 0);
 }
 
 /// A wall that pulls as well, so that nothing but its sampling takes or gives energy. The mass is

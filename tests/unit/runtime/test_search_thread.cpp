@@ -51,22 +51,22 @@ TEST(SearchThread, DeliversTheTrianglesOfASlideToAForceLoop) {
   const auto wait = [] { std::this_thread::sleep_for(std::chrono::milliseconds(1)); };
   const auto stay_at = [&](const Vec3& x, std::uint32_t until, std::uint32_t without) {
     for (int i = 0; i < 5000; ++i) {
-      const std::uint32_t status = state.step(x);
+      const std::uint32_t status = state.step(x, 1e-3);
       if ((status & until) == until && !(status & without)) return;
       wait();
     }
     ADD_FAILURE() << "the triangles never came";
   };
   for (int i = 0; i < 100; ++i) {  // until the first delivery
-    state.step({0.02, 0.05, 0.0005});
+    state.step({0.02, 0.05, 0.0005}, 1e-3);
     if (!state.delivery().elements().empty()) break;
     wait();
   }
   stay_at({0.02, 0.05, -0.0001}, PALPATE_CONTACT, 0);
   const double offset = state.contact.observation().offset;
-  for (int i = 0; i <= 40; ++i) state.step({0.02, 0.05, -1e-4 * i});
+  for (int i = 0; i <= 40; ++i) state.step({0.02, 0.05, -1e-4 * i}, 1e-3);
   for (int i = 1; i <= 400; ++i) {
-    state.step({0.02 + 1e-4 * i, 0.05, -0.004});
+    state.step({0.02 + 1e-4 * i, 0.05, -0.004}, 1e-3);
     if (i % 20 == 0) wait();
   }
   stay_at({0.06, 0.05, -0.004}, PALPATE_CONTACT, PALPATE_AWAITING);

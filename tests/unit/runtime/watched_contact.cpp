@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "runtime/palpate.h"
 
@@ -43,34 +44,117 @@ double coupling_weight(const CouplingCurve& coupling, double z) {
 
 }  // namespace
 
-double model_energy(const Library& library, const runtime::ContactObservation& model,
-                    const Vec3& x) {
-  if (model.point.element < 0) return 0;
+ModelEnergy model_energy(const Library& library, const runtime::ContactObservation& model,
+                         const Vec3& x) {
+  if (model.point.element < 0) return {};
   const Triangle& t = library.triangles[static_cast<std::size_t>(model.point.element)];
   const Vec3 r = x - model.contact_point;
   const double depth = dot(r, model.normal);
   const double rho = norm(r - depth * model.normal - model.lateral_offset);
-  double energy = 0;
+  ModelEnergy energy;
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
     const double z = depth - model.offset;
     const double w = library.kind == ResponseKind::Coupled ? coupling_weight(node.coupling, z) : 1;
-    energy += model.point.natural[l] *
-              (curve_energy(node.normal, z) + w * curve_energy(node.lateral, rho));
+    energy.normal += model.point.natural[l] * curve_energy(node.normal, z);
+    energy.lateral += model.point.natural[l] * w * curve_energy(node.lateral, rho);
   }
   return energy;
+}
+
+std::vector<double> MemoryTwin::fractions(const runtime::SurfacePoint& p) const {
+  std::vector<double> sum(memory_.size());
+  const Triangle& t = library_.triangles[static_cast<std::size_t>(p.element)];
+  for (std::size_t l = 0; l < 3; ++l)
+    for (std::size_t i = 0; i < sum.size(); ++i)
+      sum[i] +=
+          p.natural[l] *
+          static_cast<double>(library_.responses[static_cast<std::size_t>(t[l])].relaxation[i]);
+  return sum;
+}
+
+MemoryTwin::Sums MemoryTwin::sums(const runtime::SurfacePoint& p) const {
+  if (memory_.empty() || p.element < 0) return {};
+  const std::vector<double> g = fractions(p);
+  double mean = 0, square = 0;
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    mean += g[i] * memory_[i];
+    square += g[i] * memory_[i] * memory_[i];
+  }
+  return {mean, std::max(square - mean * mean, 0.0) / 2};
+}
+
+double MemoryTwin::energy(const runtime::ContactObservation& model, const Vec3& x) const {
+  const ModelEnergy elastic = model_energy(library_, model, x);
+  if (memory_.empty()) return elastic.normal + elastic.lateral;
+  const Sums now = sums(model.point.element < 0 ? place_ : model.point);
+  const double stretch = std::max(std::sqrt(2 * elastic.normal) - now.recalled, 0.0);
+  return stretch * stretch / 2 + now.locked + elastic.lateral;
+}
+
+double MemoryTwin::pass(double y, double dt) {
+  const double skin = std::max(y, sums(place_).recalled);
+  const std::vector<double> g = fractions(place_);
+  double dissipated = 0;
+  for (std::size_t i = 0; i < memory_.size(); ++i) {
+    const double stretch = skin - memory_[i];
+    const double decay = std::exp(-dt / library_.relaxation_times[i]);
+    dissipated += g[i] * stretch * stretch * (1 - decay * decay) / 2;
+    memory_[i] = skin - stretch * decay;
+  }
+  return dissipated;
+}
+
+double MemoryTwin::step(const runtime::ContactObservation& before,
+                        const runtime::ContactObservation& after, const Vec3& x, double dt) {
+  if (memory_.empty()) return 0;
+  if (after.status & PALPATE_DROPPED) {
+    forget();
+    return 0;
+  }
+  double dissipated = 0;
+  const bool remembers = sums(place_).recalled > 0;
+  const bool alone = before.point.element < 0 || (after.status & PALPATE_RELEASED) != 0;
+  if (alone && remembers) {
+    dissipated = pass(0, dt);
+    dt = 0;
+  }
+  if (after.point.element < 0) return dissipated;
+  if (remembers) {
+    const double slid = norm(after.contact_point - point_);
+    double factor = std::exp(-slid / library_.tool_radius);
+    const double was = sums(place_).locked, is = sums(after.point).locked;
+    if (is > was) factor *= std::sqrt(was / is);
+    for (double& a : memory_) a *= factor;
+  }
+  place_ = after.point;
+  point_ = after.contact_point;
+  return dissipated + pass(std::sqrt(2 * model_energy(library_, after, x).normal), dt);
+}
+
+void MemoryTwin::forget() {
+  std::fill(memory_.begin(), memory_.end(), 0.0);
 }
 
 WatchedContact::WatchedContact(const Library& library, const palpate_library& body,
                                const runtime::ContactSettings& settings)
     : library_(library),
       contact_(body.surface, body.tree, settings),
+      memory_(library),
       bound_(std::min(settings.lipschitz_bound, enforced_lipschitz_bound(library.certificate))),
-      friction_(settings.friction) {}
+      friction_(settings.friction) {
+  for (const NodeResponse& node : library.responses)
+    largest_fraction_ = std::max(
+        largest_fraction_, std::accumulate(node.relaxation.begin(), node.relaxation.end(), 0.0));
+}
 
 std::uint32_t WatchedContact::step(const Vec3& x) {
+  return step(x, std::pow(10, std::uniform_real_distribution<double>(-5, 0)(random_)));
+}
+
+std::uint32_t WatchedContact::step(const Vec3& x, double dt) {
   const runtime::ContactObservation before = seen();
-  const std::uint32_t status = contact_.step(x);
+  const std::uint32_t status = contact_.step(x, dt);
   ++steps;
   contacts += status & PALPATE_ACTIVATED ? 1 : 0;
   slides += status & PALPATE_SLIDING ? 1 : 0;
@@ -81,19 +165,21 @@ std::uint32_t WatchedContact::step(const Vec3& x) {
   if (status & PALPATE_BAD_INPUT) {
     // The tip did not move as far as the body knows: what was stored is given up.
     if (is_finite(x)) last_ = x;
+    memory_.forget();
     return status;
   }
   cuts += status & PALPATE_DROPPED ? 1 : 0;
-  account(x, before);
+  account(x, dt, before);
   compare(x, before);
   last_ = x;
   return status;
 }
 
-void WatchedContact::account(const Vec3& x, const runtime::ContactObservation& before) {
-  const double energy_before = model_energy(library_, before, x);
-  const double energy_after = model_energy(library_, seen(), x);
-  work_ += energy_before - model_energy(library_, before, last_);
+void WatchedContact::account(const Vec3& x, double dt, const runtime::ContactObservation& before) {
+  const double energy_before = memory_.energy(before, x);
+  work_ += energy_before - memory_.energy(before, last_);
+  relaxed_ = memory_.step(before, seen(), x, dt);
+  const double energy_after = memory_.energy(seen(), x);
   lowest = std::min(lowest, work_);
   largest_gain = std::max(largest_gain, energy_after + seen().tank - energy_before - before.tank);
   largest_disagreement =
@@ -113,13 +199,16 @@ double WatchedContact::overdraft(const runtime::ContactObservation& model) const
     lateral += n * w * curve_at(node.lateral, model.deflection.lateral).force;
     friction_normal_force += n * curve_at(node.normal, model.deflection.depth).force;
   }
-  return lateral - friction_ * friction_normal_force;
+  return lateral - friction_ * (1 - model.recalled) * friction_normal_force;
 }
 
 void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& before) {
   const double travel = norm(x - last_);
   const double change = norm(seen().force - before.force);
-  steepest_step = std::max(steepest_step, change / (bound_ * travel + kForceTolerance));
+  const double by_relaxing =
+      std::sqrt(2 * (1 + friction_ * friction_) * bound_ * largest_fraction_ * relaxed_);
+  steepest_step =
+      std::max(steepest_step, change / (bound_ * travel + by_relaxing + kForceTolerance));
   longest_ = before.point.element < 0 ? travel : std::max(longest_, travel);
   if (seen().point.element < 0) return;
   const double over = overdraft(seen());

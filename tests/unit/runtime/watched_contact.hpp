@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <random>
+#include <vector>
 
 #include "format/library.hpp"
 #include "runtime/contact_state.hpp"
@@ -10,10 +12,43 @@
 
 namespace palpate::test {
 
-/// Energy of the local model that an observation describes, with the tip at x, J: the stored slopes
-/// integrated twice here, knot by knot, without the runtime's own evaluation.
-double model_energy(const Library& library, const runtime::ContactObservation& model,
-                    const Vec3& x);
+/// Energies of the local model that an observation describes, with the tip at x, of tissue without
+/// a memory, J: the stored slopes integrated twice here, knot by knot, without the runtime's own
+/// evaluation.
+struct ModelEnergy {
+  double normal = 0, lateral = 0;
+};
+ModelEnergy model_energy(const Library& library, const runtime::ContactObservation& model,
+                         const Vec3& x);
+
+/// What the tissue under a contact remembers, by equations (R17) to (R21) of docs/theory-runtime.md
+/// and the observations of the contact alone.
+class MemoryTwin {
+ public:
+  explicit MemoryTwin(const Library& library)
+      : library_(library), memory_(library.relaxation_times.size()) {}
+
+  /// Energy of a local model with the memory as it is, J.
+  double energy(const runtime::ContactObservation& model, const Vec3& x) const;
+  /// A step of dt (s) that led from one observation to the other, with the tip at x. @return what
+  /// relaxation has at least dissipated, J: sum g_i (y - a_i)^2 (1 - exp(-2 dt/tau_i))/2.
+  double step(const runtime::ContactObservation& before, const runtime::ContactObservation& after,
+              const Vec3& x, double dt);
+  void forget();
+
+ private:
+  struct Sums {
+    double recalled = 0, locked = 0;
+  };
+  std::vector<double> fractions(const runtime::SurfacePoint& p) const;
+  Sums sums(const runtime::SurfacePoint& p) const;
+  double pass(double y, double dt);
+
+  const Library& library_;
+  std::vector<double> memory_;   ///< a_i, sqrt(J)
+  runtime::SurfacePoint place_;  ///< of the tissue that remembers
+  Vec3 point_{};                 ///< the same, m
+};
 
 /// Steps a contact and keeps what the worst step did. The account is computed with model_energy.
 class WatchedContact {
@@ -21,7 +56,9 @@ class WatchedContact {
   WatchedContact(const Library& library, const palpate_library& body,
                  const runtime::ContactSettings& settings);
 
+  /// dt: s; by default a random one, from 10 us to 1 s.
   std::uint32_t step(const Vec3& x);
+  std::uint32_t step(const Vec3& x, double dt);
   void set_delivery(const runtime::Delivery* delivered) { contact_.set_delivery(delivered); }
 
   const runtime::ContactObservation& seen() const { return contact_.observation(); }
@@ -35,7 +72,8 @@ class WatchedContact {
   /// J, runtime's account against work(); of more than a joule, the relative difference.
   double largest_disagreement = 0;
   /// Largest |f_i(x_i) - f_{i-1}(x_{i-1})| over Lipschitz bound |x_i - x_{i-1}|, of the steps with
-  /// good input.
+  /// good input; the bound plus what relaxation may change, by the energy that it dissipates,
+  /// (C10).
   double steepest_step = 0;
   /// Largest excess of the lateral force over mu g; of decoupled responses over what one step of
   /// travel can give, (1 + mu) Lipschitz bound times the longest of the contact, of coupled ones
@@ -44,13 +82,17 @@ class WatchedContact {
   long apart = 0;  ///< steps in which the lateral offset was not zero
 
  private:
-  void account(const Vec3& x, const runtime::ContactObservation& before);
+  void account(const Vec3& x, double dt, const runtime::ContactObservation& before);
   void compare(const Vec3& x, const runtime::ContactObservation& before);
   double overdraft(const runtime::ContactObservation& model) const;
 
   const Library& library_;
   runtime::ContactState contact_;
-  double bound_ = 0;  ///< N/m
+  MemoryTwin memory_;
+  std::mt19937_64 random_{7};
+  double largest_fraction_ = 0;  ///< sum of g_i
+  double relaxed_ = 0;           ///< J, in this step
+  double bound_ = 0;             ///< N/m
   double friction_ = 0;
   double longest_ = 0;  ///< m, step of the contact
   Vec3 last_{};

@@ -274,7 +274,7 @@ void make_certificate(Library& library) {
        {std::pair{"omega.3", 1.9}, std::pair{"Touch X", 0.6}, std::pair{"unmeasured", kUnknown}}) {
     const double bound = std::max(c.stick, c.slip);
     const DeviceConstants device{damping, 0.1, 0, 1e-5, 1e-3};
-    c.devices.push_back({name, damping, lowest_rate(device, bound), 2000 * damping / 3,
+    c.devices.push_back({name, damping, lowest_rate(device, {bound, 0}), 2000 * damping / 3,
                          2000 * damping, 0.1, 0, 1e-5, 1e-3, published_rate(damping, bound),
                          largest_position_step(device, bound)});
   }

@@ -1,0 +1,274 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Tissue that relaxes, against closed forms, a differential equation and a balance of energy.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "runtime/contact_state.hpp"
+#include "runtime/handles.hpp"
+#include "runtime/palpate.h"
+#include "tests/support/bodies.hpp"
+
+namespace palpate::test {
+namespace {
+
+const std::vector<double> kTimes{0.02, 0.3};  // s, with a fraction of 1/4 each
+constexpr double kLongTerm = 0.5;             // g_inf
+constexpr double kInstant = 1e-12;            // s, as good as no time
+
+double prony(double t) {
+  return kLongTerm + 0.25 * std::exp(-t / kTimes[0]) + 0.25 * std::exp(-t / kTimes[1]);
+}
+
+NodeResponse spring(const Vec3&) {
+  NodeResponse node = wall_response(200, 120);
+  node.normal = linear_curve(200);
+  return node;
+}
+NodeResponse wall(const Vec3&) {
+  return wall_response(170, 120);
+}
+
+/// A tool on a plate that relaxes, pressed along -z.
+class Pressed {
+ public:
+  explicit Pressed(const Responses& responses, double friction = 0, double tank_cap = 0)
+      : library_(relaxing(plate(8, 0.08, responses), kTimes, true)),
+        body_(library_),
+        contact_(body_.surface, body_.tree, {friction, tank_cap}) {
+    to(-1e-9, kInstant);  // 1 nm outside
+    to(1e-12, kInstant);
+  }
+
+  /// Moves the tool to a depth (m), dt (s) after the last step. @return normal force, N
+  double to(double depth, double dt) {
+    depth_ = depth;
+    contact_.step({x_, 0.031, -depth}, dt);
+    return -seen().force[2];
+  }
+  /// In equal steps of dt.
+  double ramp(double depth, double time, int steps) {
+    const double from = depth_;
+    double force = 0;
+    for (int i = 1; i <= steps; ++i) force = to(from + (depth - from) * i / steps, time / steps);
+    return force;
+  }
+  double hold(double time, int steps = 1) { return ramp(depth_, time, steps); }
+  void slide(double distance, int steps, double dt) {
+    for (int i = 0; i < steps; ++i) {
+      x_ += distance / steps;
+      to(depth_, dt);
+    }
+  }
+  const runtime::ContactObservation& seen() const { return contact_.observation(); }
+  runtime::ContactState& contact() { return contact_; }
+  double radius() const { return library_.tool_radius; }
+
+ private:
+  Library library_;
+  palpate_library body_;
+  runtime::ContactState contact_;
+  double depth_ = 0, x_ = 0.022;
+};
+
+TEST(Relaxation, AHoldRelaxesAsThePronySeriesAtEveryDepthAndForEverySequenceOfSteps) {
+  for (const double depth : {1e-4, 2e-3, 6e-3}) {
+    Pressed tool(wall);
+    const double first = tool.ramp(depth, kInstant, 7);
+    double time = 0;
+    for (const double dt : {1e-4, 3e-3, 1e-6, 0.05, 0.2, 0.7}) {
+      time += dt;
+      EXPECT_NEAR(tool.to(depth, dt) / first, prony(time), 1e-9) << depth << " " << time;
+      EXPECT_NEAR(tool.seen().recalled, 1 - prony(time), 1e-9);
+    }
+  }
+}
+
+TEST(Relaxation, AFastPressFeelsTheCurveAndASlowOneItsLongTermFraction) {
+  const double curve = 170 * 100 * 4e-3 * 4e-3;
+  Pressed fast(wall), slow(wall);
+  EXPECT_NEAR(fast.ramp(4e-3, 1e-6, 20), curve, 1e-4 * curve);
+  EXPECT_NEAR(slow.ramp(4e-3, 3000, 20000), kLongTerm * curve, 1e-3 * curve);
+}
+
+/// f = (y - A) y' with y = sqrt(2 G(t)), by Runge-Kutta steps of the fourth order.
+double integrated_force(double speed, double time) {
+  constexpr int kSteps = 20000;
+  const auto y_at = [&](double t) {
+    return std::sqrt(2 * 170 * 100 / 3.0) * std::pow(speed * t, 1.5);
+  };
+  double a[2] = {0, 0};
+  const double h = time / kSteps;
+  for (int k = 0; k < kSteps; ++k)
+    for (int i = 0; i < 2; ++i) {
+      const auto rate = [&](double t, double v) {
+        return (y_at(t) - v) / kTimes[static_cast<std::size_t>(i)];
+      };
+      const double t = k * h;
+      const double k1 = rate(t, a[i]), k2 = rate(t + h / 2, a[i] + h / 2 * k1);
+      const double k3 = rate(t + h / 2, a[i] + h / 2 * k2), k4 = rate(t + h, a[i] + h * k3);
+      a[i] += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    }
+  const double z = speed * time, y = y_at(time);
+  return (y - 0.25 * (a[0] + a[1])) * 170 * 100 * z * z / y;
+}
+
+TEST(Relaxation, ARampConvergesToTheMaxwellElementsWithTheFirstOrderOfTheStep) {
+  for (const double time : {0.01, 0.1, 1.0}) {
+    const double exact = integrated_force(4e-3 / time, time);
+    double before = 0;
+    for (const int steps : {100, 200, 400, 800}) {
+      Pressed tool(wall);
+      const double error = std::abs(tool.ramp(4e-3, time, steps) - exact);
+      if (before > 0) {
+        EXPECT_NEAR(before / error, 2, 0.1) << time << " " << steps;
+      }
+      before = error;
+    }
+    EXPECT_LT(before, 2e-3 * exact);
+  }
+}
+
+TEST(Relaxation, WhenTheToolIsWithdrawnTheSkinLagsBehindAndComesBack) {
+  Pressed tool(spring);
+  tool.ramp(4e-3, kInstant, 4);
+  tool.hold(1000);
+  // y is proportional to the depth: the relaxed skin rests at 1 - g_inf of it.
+  const double skin = (1 - kLongTerm) * 4e-3;
+  EXPECT_GT(tool.ramp(1.001 * skin, kInstant, 50), 0);
+  EXPECT_FALSE(tool.seen().status & PALPATE_SKIN_LAGS);
+  EXPECT_EQ(tool.to(0.999 * skin, kInstant), 0);
+  EXPECT_TRUE(tool.seen().status & PALPATE_SKIN_LAGS);
+  EXPECT_TRUE(tool.seen().status & PALPATE_CONTACT);
+  // Back at the tool after a while, and then with more and more of the long-term force.
+  const double again = tool.hold(0.4, 4000);
+  EXPECT_GT(again, 0);
+  EXPECT_NEAR(tool.hold(1000), kLongTerm * 200 * 0.999 * skin, 1e-6);
+}
+
+TEST(Relaxation, FreeSkinRecoversAtTheRateOfItsLongTermStiffness) {
+  // One branch: A' = -g_inf A/tau while nothing touches.
+  Library library = relaxing(plate(8, 0.08, spring), {0.1}, true);
+  const palpate_library body(library);
+  runtime::ContactState contact(body.surface, body.tree, {0, 0});
+  const auto at = [&](double depth, double dt) {
+    contact.step({0.022, 0.031, -depth}, dt);
+    return -contact.observation().force[2];
+  };
+  at(-1e-9, kInstant);
+  at(1e-12, kInstant);
+  for (int i = 1; i <= 10; ++i) at(4e-4 * i, kInstant);
+  at(4e-3, 100);
+  EXPECT_EQ(at(-1e-6, kInstant), 0);
+  EXPECT_TRUE(contact.observation().status & PALPATE_RELEASED);
+  for (int i = 0; i < 20000; ++i) at(-1e-6, 1e-5);  // 0.2 s
+  const double skin = 0.5 * 4e-3 * std::exp(-0.5 * 0.2 / 0.1);
+  at(1e-12, kInstant);
+  EXPECT_EQ(at(0.995 * skin, kInstant), 0);
+  EXPECT_NEAR(at(skin + 1e-4, kInstant), 200 * 1e-4, 200 * 0.005 * skin);
+}
+
+TEST(Relaxation, WorkIsWhatIsStoredAndWhatIsDissipated) {
+  Pressed tool(wall);
+  double dt = 0, loop = 0, last = 0, force = 0;
+  for (int i = 0; i < 40000; ++i) {
+    dt = 1e-5 * (1 + std::sin(i));
+    const double depth = 2e-3 - 1.99e-3 * std::cos(2e-4 * i);
+    const double before = force;
+    force = tool.to(depth, dt);
+    loop += (force + before) / 2 * (depth - last);
+    last = depth;
+    const auto& seen = tool.seen();
+    EXPECT_NEAR(seen.absorbed, seen.energy + seen.relaxed, 1e-15);
+  }
+  EXPECT_GT(tool.seen().relaxed, 1e-5);
+  // The account is that of the forces over the path, but for the length of the steps.
+  EXPECT_NEAR(loop, tool.seen().absorbed, 0.01 * tool.seen().absorbed);
+}
+
+TEST(Relaxation, ASlideLeavesTheMemoryBehindOverTheRadiusOfTheTool) {
+  Pressed tool(wall, 0.3, 5e-3);
+  const double first = tool.ramp(3e-3, kInstant, 10);
+  tool.hold(1000);
+  EXPECT_NEAR(-tool.seen().force[2], kLongTerm * first, 1e-6);
+  const Vec3 from = tool.seen().contact_point;
+  tool.slide(0.008, 400, kInstant);
+  const double slid = norm(tool.seen().contact_point - from);
+  EXPECT_GT(slid, 0.004);
+  EXPECT_EQ(tool.seen().offset, 1e-12);  // friction has paid for the fresh tissue
+  EXPECT_NEAR(-tool.seen().force[2], (1 - kLongTerm * std::exp(-slid / tool.radius())) * first,
+              1e-6);
+  EXPECT_NEAR(norm(tool.seen().force - (tool.seen().force[2] * Vec3{0, 0, 1})),
+              -0.3 * tool.seen().force[2], 1e-3);
+}
+
+TEST(Relaxation, WithoutFrictionFreshTissueCostsDepthInsteadOfEnergy) {
+  Pressed tool(wall);
+  tool.ramp(3e-3, kInstant, 10);
+  tool.hold(1000);
+  const runtime::ContactObservation before = tool.seen();
+  tool.slide(0.02, 20000, kInstant);
+  const double paid = tool.seen().absorbed - before.absorbed;  // c follows a step late
+  EXPECT_LE(tool.seen().energy, before.energy + paid + 1e-15);
+  EXPECT_LT(paid, 0.03 * before.energy);
+  EXPECT_GT(tool.seen().offset, 2e-4);
+}
+
+TEST(Relaxation, FrictionLetsGoOfWhatANormalForceThatRelaxesNoLongerHolds) {
+  Pressed tool(wall, 0.3, 5e-3);
+  const double first = tool.ramp(3e-3, kInstant, 10);
+  tool.slide(0.003, 100, kInstant);
+  const auto lateral = [&] { return std::hypot(tool.seen().force[0], tool.seen().force[1]); };
+  EXPECT_GT(lateral(), 0.25 * first);
+  for (const double dt : {0.01, 0.1, 1.0}) {
+    tool.hold(dt);
+    EXPECT_LE(lateral(), -0.3 * tool.seen().force[2] + 0.02);
+  }
+}
+
+TEST(Relaxation, ElasticResponsesDoNotDependOnTime) {
+  const Library library = plate(8, 0.08, wall);
+  const palpate_library body(library);
+  runtime::ContactState one(body.surface, body.tree, {0.3, 5e-3});
+  runtime::ContactState other(body.surface, body.tree, {0.3, 5e-3});
+  for (int i = 0; i < 600; ++i) {
+    const Vec3 x{0.02 + 2e-5 * i, 0.031, 1e-3 - 2e-5 * std::min(i, 200)};
+    one.step(x, 1e-3 * i);
+    other.step(x);
+    EXPECT_EQ(one.observation().force, other.observation().force);
+    EXPECT_EQ(one.observation().relaxed, 0);
+    EXPECT_EQ(one.observation().recalled, 0);
+  }
+}
+
+TEST(Relaxation, WhatDropsTheContactMakesTheTissueAsNew) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const int way : {0, 1, 2}) {
+    Pressed tool(wall);
+    const double first = tool.ramp(3e-3, kInstant, 10);
+    tool.hold(1000);
+    if (way == 0) tool.contact().step({kNan, 0, 0}, 1e-3);
+    if (way == 1) tool.contact().suspend({0.022, 0.031, -3e-3});
+    if (way == 2) tool.contact().reset();
+    EXPECT_EQ(tool.seen().energy, 0);
+    tool.to(-1e-6, kInstant);
+    tool.to(1e-12, kInstant);
+    EXPECT_NEAR(tool.ramp(3e-3, kInstant, 10), first, 1e-9 * first) << way;
+  }
+}
+
+TEST(Relaxation, IsRefusedWhereNodesLackFractionsOrTheToolARadius) {
+  Library library = relaxing(plate(4, 0.04, wall), kTimes, true);
+  EXPECT_NO_THROW(palpate_library{library});
+  Library lacking = library;
+  lacking.responses[3].relaxation.pop_back();
+  EXPECT_ANY_THROW(palpate_library{lacking});
+  library.tool_radius = 0;
+  EXPECT_ANY_THROW(palpate_library{library});
+}
+
+}  // namespace
+}  // namespace palpate::test
