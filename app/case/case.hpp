@@ -73,6 +73,7 @@ struct SimulateSection {
                                           .hand_damping = kAuto};
   double press_depth = kAuto;  ///< m
   double press_speed = kAuto;  ///< m/s
+  double hold = kAuto;         ///< s
   SlidePath path = SlidePath::Longest;
   double slide_length = kAuto;  ///< m, of the longest path
   Vec3 from{};                  ///< m, of a path between two points

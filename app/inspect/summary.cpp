@@ -210,11 +210,29 @@ Json summary_of(const Certificate& certificate) {
           {"L_slip", with_unit(certificate.slip, "N/m")},
           {"L_min", with_unit(certificate.min_lipschitz_bound, "N/m")},
           {"enforced_bound", with_unit(enforced_lipschitz_bound(certificate), "N/m")},
+          {"relaxation_rate", with_unit(certificate.relaxation_rate, "1/s")},
           {"worst_triangle", certificate.worst_triangle},
           {"limited_by", certificate.limited_by},
           {"basis", certificate.basis},
           {"triangles_with_passive_sliding", passive},
           {"devices", devices}};
+}
+
+/// The relaxation of the responses: smallest, median and largest fraction at each time.
+Json relaxation_of(const Library& library) {
+  Json times = Json::array();
+  for (std::size_t i = 0; i < library.relaxation_times.size(); ++i) {
+    std::vector<double> fractions;
+    for (const NodeResponse& node : library.responses)
+      if (i < node.relaxation.size()) fractions.push_back(static_cast<double>(node.relaxation[i]));
+    std::sort(fractions.begin(), fractions.end());
+    if (fractions.empty()) continue;
+    times.push_back({{"time", with_unit(library.relaxation_times[i], "s")},
+                     {"min_fraction", fractions.front()},
+                     {"median_fraction", fractions[fractions.size() / 2]},
+                     {"max_fraction", fractions.back()}});
+  }
+  return times;
 }
 
 /// What is guaranteed on each device.
@@ -236,21 +254,23 @@ Json summary_of(const Library& library) {
     normal_error = std::max(normal_error, response.normal_error);
     lateral_error = std::max(lateral_error, response.lateral_error);
   }
-  return {{"name", library.name},
-          {"guarantee", guarantee_text(library.certificate)},
-          {"rates", rates_of(library.certificate)},
-          {"tool", library.tool_shape},
-          {"tool_radius", with_unit(library.tool_radius, "m")},
-          {"vertices", library.positions.size()},
-          {"triangles", library.triangles.size()},
-          {"responses_fitted", fitted},
-          {"responses_interpolated", interpolated},
-          {"holes", holes},
-          {"knots", knots},
-          {"max_normal_error", with_unit(normal_error, "N")},
-          {"max_lateral_error", with_unit(lateral_error, "N")},
-          {"bounding_box", box_of(library.positions)},
-          {"certificate", summary_of(library.certificate)}};
+  Json summary = {{"name", library.name},
+                  {"guarantee", guarantee_text(library.certificate)},
+                  {"rates", rates_of(library.certificate)},
+                  {"tool", library.tool_shape},
+                  {"tool_radius", with_unit(library.tool_radius, "m")},
+                  {"vertices", library.positions.size()},
+                  {"triangles", library.triangles.size()},
+                  {"responses_fitted", fitted},
+                  {"responses_interpolated", interpolated},
+                  {"holes", holes},
+                  {"knots", knots},
+                  {"max_normal_error", with_unit(normal_error, "N")},
+                  {"max_lateral_error", with_unit(lateral_error, "N")},
+                  {"bounding_box", box_of(library.positions)}};
+  if (library.relaxes()) summary["relaxation"] = relaxation_of(library);
+  summary["certificate"] = summary_of(library.certificate);
+  return summary;
 }
 
 Json summary_of(RecordingReader& reader) {

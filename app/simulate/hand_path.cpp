@@ -21,12 +21,13 @@ HandPath::HandPath(const SimulateSection& script, std::vector<PathPoint> path)
     : script_(script),
       path_(std::move(path)),
       press_end_(kPeakOverMean * 2 * script.press_depth / script.press_speed),
+      hold_end_(press_end_ + script.hold),
       slide_time_(kPeakOverMean * path_.back().distance / script.slide_speed) {}
 
 Vec3 HandPath::position(double time) const {
-  const double release = time - press_end_ - slide_time_;
+  const double release = time - hold_end_ - slide_time_;
   const double pressed = smooth(time / press_end_) - smooth(release / press_end_);
-  const double slid = slide_time_ > 0 ? smooth((time - press_end_) / slide_time_) : 0;
+  const double slid = slide_time_ > 0 ? smooth((time - hold_end_) / slide_time_) : 0;
   const PathPoint point = point_at(path_, slid * path_.back().distance);
   const double depth = (2 * pressed - 1) * script_.press_depth;
   return point.position + depth * point.inward;

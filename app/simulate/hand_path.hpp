@@ -15,14 +15,14 @@ struct HandState {
 };
 
 /// The scripted path of the hand: from above the surface, as high as the press is deep, down to the
-/// press depth, along the surface at that depth, and up again. Each part starts and ends at rest;
+/// press depth, a rest, along the surface at that depth, and up again. Each part starts and ends at rest;
 /// the speed of the script is its peak.
 class HandPath {
  public:
   /// @pre nothing that the path needs is `auto` in the script.
   HandPath(const SimulateSection& script, std::vector<PathPoint> path);
 
-  double duration() const { return press_end_ + slide_time_ + press_end_; }  ///< s
+  double duration() const { return hold_end_ + slide_time_ + press_end_; }  ///< s
   HandState at(double time) const;
 
  private:
@@ -31,6 +31,7 @@ class HandPath {
   SimulateSection script_;
   std::vector<PathPoint> path_;
   double press_end_;   ///< s, time of the press, and of the release
+  double hold_end_;    ///< s
   double slide_time_;  ///< s
 };
 

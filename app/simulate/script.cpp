@@ -17,6 +17,7 @@ constexpr double kPressOverDepth = 0.5;
 constexpr double kSlideOverDiagonal = 0.5;
 constexpr double kPressTime = 1, kSlideTime = 2;  // s, at the peak of the speed all the way
 constexpr double kPeakOverMean = 1.5;
+constexpr double kHoldOverTime = 2, kLongestHold = 5;  // s
 // The device of [Mahvash & Hayward 2005, section VI] on the stiffest wall that it renders, 170 N/m:
 // 84.5 g, 0.081 N s/m and 10 mN, rounded.
 constexpr double kMassOverStiffness = 5e-4;     // s^2
@@ -93,6 +94,8 @@ double depth_of_responses(const Library& library) {
 SimulateSection settled(SimulateSection script, const Library& library) {
   derive(script.press_depth, kPressOverDepth * depth_of_responses(library));
   derive(script.press_speed, kPeakOverMean * 2 * script.press_depth / kPressTime);
+  const double longest_time = library.relaxes() ? library.relaxation_times.back() : 0;
+  derive(script.hold, std::min(kHoldOverTime * longest_time, kLongestHold));
   derive(script.slide_length, kSlideOverDiagonal * diagonal_of(library));
   const double slide =
       script.path == SlidePath::Between ? norm(script.to - script.from) : script.slide_length;

@@ -10,6 +10,7 @@
 #include "fitting/response/curve_fit.hpp"
 #include "fitting/response/fill.hpp"
 #include "fitting/response/interpolate.hpp"
+#include "fitting/response/relaxation_share.hpp"
 #include "fitting/response/site_samples.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
@@ -49,6 +50,15 @@ void check_curves(const Body& body, const Curves& curves) {
     }
     mark = 1;
   }
+}
+
+void check_relaxation_times(const Curves& curves) {
+  const std::size_t times = curves.relaxation.times_s.size();
+  if (times <= kMaxRelaxationTimes) return;
+  refuse("relaxation of the regions",
+         std::to_string(times) + " relaxation times, a library has at most " +
+             std::to_string(kMaxRelaxationTimes),
+         "give regions the same times, or fewer");
 }
 
 void check_settings(const FitSettings& settings) {
@@ -121,6 +131,7 @@ Library surface_library(const Body& body, const Curves& curves) {
   }
   library.responses.resize(library.positions.size());
   library.provenance = curves.provenance;
+  library.relaxation_times = curves.relaxation.times_s;
   return library;
 }
 
@@ -181,12 +192,15 @@ bool usable(const SiteCurves& site, double depth) {
 Library fit(const Body& body, const Curves& curves, const FitSettings& settings) {
   check_settings(settings);
   check_curves(body, curves);
+  check_relaxation_times(curves);
   Library library = surface_library(body, curves);
   library.kind = settings.kind;
   std::size_t fitted = 0;
   for (const SiteCurves& site : curves.sites) {
     if (!usable(site, curves.depth)) continue;
-    library.responses[static_cast<std::size_t>(site.vertex)] = fit_site(site, settings);
+    NodeResponse& node = library.responses[static_cast<std::size_t>(site.vertex)];
+    node = fit_site(site, settings);
+    if (library.relaxes()) node.relaxation = relaxation_shares(site, curves.relaxation);
     ++fitted;
   }
   if (fitted == 0) {

@@ -105,6 +105,26 @@ double largest_difference(const ResponseCurve& a, const ResponseCurve& b) {
 
 }  // namespace
 
+namespace {
+
+/// The weighted mean of the fractions that relax, kept where a model allows them: not negative, and
+/// below 1 in sum.
+std::vector<float> mean_relaxation(const std::vector<WeightedResponse>& sources) {
+  constexpr double kMostRelaxed = 0.999;
+  std::vector<double> mean(sources.empty() ? 0 : sources.front().response->relaxation.size());
+  for (const WeightedResponse& source : sources)
+    for (std::size_t i = 0; i < mean.size(); ++i)
+      mean[i] += source.weight * static_cast<double>(source.response->relaxation[i]);
+  double sum = 0;
+  for (double& fraction : mean) sum += fraction = std::max(fraction, 0.0);
+  const double factor = sum > kMostRelaxed ? kMostRelaxed / sum : 1;
+  std::vector<float> fractions;
+  for (const double fraction : mean) fractions.push_back(static_cast<float>(factor * fraction));
+  return fractions;
+}
+
+}  // namespace
+
 NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
                            const FitSettings& settings, const std::string& where) {
   CurveFitSettings curve{settings.relative_tolerance, settings.absolute_tolerance,
@@ -118,6 +138,7 @@ NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
   response.lateral = mean_curve(lateral, curve, where);
   if (settings.kind == ResponseKind::Coupled)
     response.coupling = mean_coupling(sources, curve, where);
+  response.relaxation = mean_relaxation(sources);
   return response;
 }
 

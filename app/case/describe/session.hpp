@@ -80,6 +80,12 @@ void describe(V& v, SimulateSection& s) {
       s.press_speed, Dimension::Speed,
       {"press_speed", "largest speed of approach and press, and of release; `auto`: they take 1 s",
        kOptional, kPositive});
+  v.quantity_or_auto(
+      s.hold, Dimension::Time,
+      {"hold",
+       "rest between press and slide; `auto`: none, or where the tissue relaxes twice its longest "
+       "time, at most 5 s",
+       kOptional, kNotNegative});
   describe_slide(v, s);
 }
 

@@ -25,6 +25,7 @@ SimulateSection script() {
   SimulateSection script;
   script.press_depth = 0.003;
   script.press_speed = 0.01;
+  script.hold = 0;
   script.slide_length = 0.03;
   script.slide_speed = 0.03;
   return script;
@@ -59,6 +60,19 @@ TEST(HandPath, RestsBetweenItsParts) {
   EXPECT_NEAR(hand.duration(), 2 * press + slide, 1e-12);
   for (const double t : {0.0, press, press + slide, hand.duration()})
     EXPECT_LT(norm(hand.at(t).velocity), 1e-6) << t;
+}
+
+TEST(HandPath, HoldsBetweenPressAndSlide) {
+  SimulateSection holding = script();
+  holding.hold = 0.7;
+  const HandPath hand(holding, straight(0.03)), hasty(script(), straight(0.03));
+  EXPECT_NEAR(hand.duration(), hasty.duration() + 0.7, 1e-12);
+  const double press = 1.5 * (kClearance + 0.003) / 0.01;
+  for (const double t : {0.0, 0.3, 0.7}) {
+    EXPECT_NEAR(norm(hand.at(press + t).position - Vec3{0, 0, -0.003}), 0, 1e-12) << t;
+  }
+  for (const double t : {0.1, 1.0, 2.0})
+    EXPECT_NEAR(norm(hand.at(press + 0.7 + t).position - hasty.at(press + t).position), 0, 1e-12);
 }
 
 TEST(HandPath, WithoutASlideOnlyPresses) {

@@ -49,6 +49,12 @@ TEST(Script, KeepsWhatIsGiven) {
   EXPECT_DOUBLE_EQ(script.press_speed, 0.003);  // 1.5 times the mean of 2 mm in 1 s
 }
 
+TEST(Script, HoldsWhereTheTissueRelaxes) {
+  EXPECT_EQ(settled({}, plate_of(1)).hold, 0);
+  EXPECT_DOUBLE_EQ(settled({}, relaxing(plate_of(1), {0.1, 0.4}, true)).hold, 0.8);
+  EXPECT_DOUBLE_EQ(settled({}, relaxing(plate_of(1), {0.1, 40}, true)).hold, 5);
+}
+
 TEST(Script, RefusesALibraryWithoutResponses) {
   Library library = plate_of(1);
   for (NodeResponse& node : library.responses) node.status = ResponseStatus::Hole;
