@@ -91,6 +91,11 @@ SoughtConstant sought_constant(const fem::CampaignSettings& campaign, const std:
 
 InverseSettings inverse_settings(const BodyOptions& options, const Workspace& space) {
   InverseSettings settings;
+  for (const MaterialSection& material : space.c.materials)
+    if (!material.relaxation.empty() && material.moduli == fem::Moduli::LongTerm)
+      refuse("material of region '" + material.region + "'",
+             "a campaign has the instantaneous constants, and the case has those of the long term",
+             "calibrate a case with moduli = \"instantaneous\", or without relaxation");
   settings.campaign = campaign_settings(space);
   settings.depths = options.depths;
   settings.drags = options.drags;

@@ -88,6 +88,27 @@ constexpr auto kSampleColumns = std::make_tuple(
            "Sum of the tensile normal forces of bonded facets; NaN when unknown.",
            rules::kKnownNonNegative, true));
 
+struct RelaxationTime {
+  double time = 0;
+};
+struct RegionFraction {
+  double fraction = 0;
+};
+struct RegionEnergy {
+  double isochoric_energy = 0;
+};
+
+constexpr auto kTimeColumns = std::make_tuple(
+    column("time", &RelaxationTime::time, "s", "Of each branch, ascending.", rules::kPositive));
+constexpr auto kFractionColumns = std::make_tuple(
+    column("fraction", &RegionFraction::fraction, "1",
+           "Of the instantaneous isochoric stress: all branches of region 0, then of region 1, ...",
+           rules::kNonNegative));
+constexpr auto kEnergyColumns = std::make_tuple(
+    column("isochoric_energy", &RegionEnergy::isochoric_energy, "J",
+           "Stored at once in each region: all regions of sample 0, then of sample 1, ...",
+           rules::kFinite));
+
 /// The curves as they lie on disk.
 struct Flat {
   std::vector<SiteRow> sites;
@@ -168,6 +189,75 @@ void check_flat(const Checks& checks, const Flat& flat) {
   check_order(checks, flat);
 }
 
+std::vector<RegionEnergy> energies_of(const Flat& flat) {
+  std::vector<RegionEnergy> energies;
+  for (const CurveSample& sample : flat.samples)
+    for (const double energy : sample.isochoric_energy) energies.push_back({energy});
+  return energies;
+}
+
+void check_energies(const Checks& checks, const Flat& flat, const RegionRelaxation& relaxation) {
+  const std::size_t regions = relaxation.empty() ? 0 : relaxation.fractions.size();
+  for (std::size_t row = 0; row < flat.samples.size(); ++row)
+    if (flat.samples[row].isochoric_energy.size() != regions)
+      checks.fail_row("/relaxation/isochoric_energy", row,
+                      "has " + std::to_string(flat.samples[row].isochoric_energy.size()) +
+                          " regions, and the relaxation " + std::to_string(regions));
+}
+
+void write_relaxation(hdf5::Writer& writer, const RegionRelaxation& relaxation, const Flat& flat) {
+  if (relaxation.empty()) return;
+  std::vector<RelaxationTime> times;
+  std::vector<RegionFraction> fractions;
+  for (const double time : relaxation.times_s) times.push_back({time});
+  for (const std::vector<double>& region : relaxation.fractions)
+    for (const double fraction : region) fractions.push_back({fraction});
+  writer.group("/relaxation", "Prony series of the regions of the body, and their energies.");
+  writer.set_integer("/relaxation", "regions",
+                     static_cast<std::int64_t>(relaxation.fractions.size()));
+  write_columns(writer, "/relaxation", times, kTimeColumns);
+  write_columns(writer, "/relaxation", fractions, kFractionColumns);
+  write_columns(writer, "/relaxation", energies_of(flat), kEnergyColumns);
+}
+
+/// The series of each region is one that check_relaxation takes.
+void check_series(const Checks& checks, const RegionRelaxation& relaxation) {
+  for (std::size_t i = 1; i < relaxation.times_s.size(); ++i)
+    if (!(relaxation.times_s[i] > relaxation.times_s[i - 1]))
+      checks.fail_row("/relaxation/time", i, "is not above the row before it");
+  for (std::size_t region = 0; region < relaxation.fractions.size(); ++region) {
+    double sum = 0;
+    for (const double fraction : relaxation.fractions[region]) sum += fraction;
+    if (!(sum < 1))
+      checks.fail_row("/relaxation/fraction", region * relaxation.times_s.size(),
+                      "begins a region whose fractions do not sum to less than 1");
+  }
+}
+
+/// Fills the energies of `flat`.
+RegionRelaxation read_relaxation(const hdf5::Reader& reader, Flat& flat) {
+  RegionRelaxation relaxation;
+  if (!reader.has("/relaxation")) return relaxation;
+  for (const RelaxationTime& row : read_columns(reader, "/relaxation", kTimeColumns))
+    relaxation.times_s.push_back(row.time);
+  const std::size_t branches = relaxation.times_s.size();
+  const auto fractions = read_columns(reader, "/relaxation", kFractionColumns);
+  const std::int64_t regions = reader.integer("/relaxation", "regions");
+  if (branches == 0 || regions < 1 || static_cast<std::uint64_t>(regions) > fractions.size() ||
+      fractions.size() != static_cast<std::size_t>(regions) * branches)
+    reader.fail("/relaxation/fraction", "is not one row for each region and branch");
+  const auto count = static_cast<std::size_t>(regions);
+  for (std::size_t i = 0; i < fractions.size(); ++i) {
+    if (i % branches == 0) relaxation.fractions.emplace_back();
+    relaxation.fractions.back().push_back(fractions[i].fraction);
+  }
+  const auto energies =
+      read_columns(reader, "/relaxation", kEnergyColumns, count * flat.samples.size());
+  for (std::size_t i = 0; i < energies.size(); ++i)
+    flat.samples[i / count].isochoric_energy.push_back(energies[i].isochoric_energy);
+  return relaxation;
+}
+
 void check_heading(const Checks& checks, const Curves& curves) {
   const auto check = [&](const char* name, double value) {
     if (!(std::isfinite(value) && value >= 0)) checks.fail(name, "is not finite and not negative");
@@ -206,6 +296,8 @@ void write_curves(const std::filesystem::path& path, const Curves& curves) {
   const Flat flat = flatten(curves);
   check_heading(checks, curves);
   check_flat(checks, flat);
+  check_series(checks, curves.relaxation);
+  check_energies(checks, flat, curves.relaxation);
   hdf5::Writer writer(path);
   write_root(writer, kCurvesArtifact, kCurvesSchema,
              "Raw force-deflection curves, a status per site.");
@@ -224,6 +316,7 @@ void write_curves(const std::filesystem::path& path, const Curves& curves) {
   write_columns(writer, "/path", flat.paths, kPathColumns);
   writer.group("/sample", "One row for each converged state of the tool, path by path.");
   write_columns(writer, "/sample", flat.samples, kSampleColumns);
+  write_relaxation(writer, curves.relaxation, flat);
   write_provenance(writer, curves.provenance);
   writer.commit();
 }
@@ -247,10 +340,12 @@ Curves read_curves(const std::filesystem::path& path) {
   flat.reasons = reader.texts("/site/reason", flat.sites.size());
   flat.paths = read_columns(reader, "/path", kPathColumns);
   flat.samples = read_columns(reader, "/sample", kSampleColumns);
+  curves.relaxation = read_relaxation(reader, flat);
   curves.provenance = read_provenance(reader);
   const Checks checks(reader);
   check_heading(checks, curves);
   check_flat(checks, flat);
+  check_series(checks, curves.relaxation);
   unflatten(flat, curves);
   return curves;
 }

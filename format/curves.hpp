@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "format/provenance.hpp"
+#include "format/relaxation.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate {
@@ -50,6 +51,11 @@ struct CurveSample {
   /// N, sum over bonded facets of tensile normal forces, which an unbonded contact cannot carry;
   /// NaN when unknown.
   double tension = std::numeric_limits<double>::quiet_NaN();
+  /// J, isochoric strain energy of each region of the body, at once after a step; empty where the
+  /// tissue is elastic. By the envelope theorem it is m_r dE/dm_r, E the stored energy at a
+  /// position of the tool and m_r all isochoric moduli of region r together. What remains of
+  /// strain_energy, volumetric and of the foundation, does not relax.
+  std::vector<double> isochoric_energy = {};
 };
 
 /// The displacement of its samples begins at 0 and never decreases.
@@ -83,9 +89,12 @@ struct ToolDescription {
 
 struct Curves {
   ToolDescription tool;
-  double depth = 0;               ///< m, requested end of the normal paths
-  double lateral_travel = 0;      ///< m, requested end of the lateral paths
-  std::string body_sha256;        ///< of the body.h5 the vertices refer to
+  double depth = 0;           ///< m, requested end of the normal paths
+  double lateral_travel = 0;  ///< m, requested end of the lateral paths
+  std::string body_sha256;    ///< of the body.h5 the vertices refer to
+  /// The series of the regions of the body, in its order; empty for elastic tissue. The curves are
+  /// those at once after a step.
+  RegionRelaxation relaxation;
   std::vector<SiteCurves> sites;  ///< in strictly ascending order of vertex
   Provenance provenance;
 };

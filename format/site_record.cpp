@@ -63,6 +63,30 @@ CurvePath path_of(ByteReader& in) {
   return path;
 }
 
+std::size_t regions_of(const SiteCurves& site) {
+  for (const CurvePath& path : site.paths)
+    for (const CurveSample& sample : path.samples) return sample.isochoric_energy.size();
+  return 0;
+}
+
+/// Nothing for elastic tissue.
+void put_energies(ByteWriter& out, const SiteCurves& site) {
+  const std::size_t regions = regions_of(site);
+  if (regions == 0) return;
+  out.put(static_cast<std::uint32_t>(regions));
+  for (const CurvePath& path : site.paths)
+    for (const CurveSample& sample : path.samples)
+      for (std::size_t r = 0; r < regions; ++r) out.put(sample.isochoric_energy.at(r));
+}
+
+void take_energies(ByteReader& in, SiteCurves& site) {
+  if (in.at_end()) return;
+  const std::size_t regions = in.count(sizeof(double));
+  for (CurvePath& path : site.paths)
+    for (CurveSample& sample : path.samples)
+      for (std::size_t r = 0; r < regions; ++r) sample.isochoric_energy.push_back(in.get<double>());
+}
+
 }  // namespace
 
 std::string site_bytes(const SiteCurves& site) {
@@ -73,6 +97,7 @@ std::string site_bytes(const SiteCurves& site) {
   out.put(site.cpu_seconds);
   out.put(static_cast<std::uint32_t>(site.paths.size()));
   for (const CurvePath& path : site.paths) put(out, path);
+  put_energies(out, site);
   return std::move(out.bytes);
 }
 
@@ -86,6 +111,7 @@ SiteCurves site_from_bytes(std::string_view bytes, const std::string& where) {
   site.cpu_seconds = in.get<double>();
   site.paths.resize(in.count(kSmallestPathBytes));
   for (CurvePath& path : site.paths) path = path_of(in);
+  take_energies(in, site);
   in.expect_end();
   return site;
 }
@@ -99,6 +125,9 @@ std::string content_sha256(const Curves& curves) {
   out.put(curves.tool.length);
   out.put(curves.depth);
   out.put(curves.lateral_travel);
+  for (const double time : curves.relaxation.times_s) out.put(time);
+  for (const std::vector<double>& region : curves.relaxation.fractions)
+    for (const double fraction : region) out.put(fraction);
   for (SiteCurves site : curves.sites) {
     site.cpu_seconds = 0;
     out.bytes += site_bytes(site);

@@ -9,7 +9,8 @@
 
 namespace palpate {
 
-/// Little-endian, the fields in the order of their declaration, each list after its length.
+/// Little-endian, the fields in the order of their declaration, each list after its length; the
+/// isochoric energies of relaxing tissue follow all others, after the number of regions.
 std::string site_bytes(const SiteCurves& site);
 
 /// The reverse. @throws Error(Configuration) named after `where` when the bytes are not a site.

@@ -33,6 +33,8 @@ MAY_INCLUDE = {
     "fem/contact": {"format", "fem/laws", "fem/mesh", "fem/factor", "fem/solid"},
     "fem/solve": {"format", "fem/laws", "fem/mesh", "fem/factor", "fem/solid", "fem/contact"},
     "fem/campaign": {"format", "fem/laws", "fem/mesh", "fem/factor", "fem/solid", "fem/contact", "fem/solve"},
+    "fem/relaxation": {"format", "fem/laws", "fem/mesh", "fem/factor", "fem/solid", "fem/contact", "fem/solve",
+                       "fem/campaign"},
     "fitting": {"format", "runtime"},
     "fitting/response": {"format", "runtime"},
     "fitting/sampling": {"format", "fitting/response"},

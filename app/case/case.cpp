@@ -119,6 +119,21 @@ std::vector<std::string_view> regions_of(const Case& c, const SourceMap& sources
   return regions;
 }
 
+/// The law as written, the series, and the instantaneous law that both make.
+void check_material(const MaterialSection& material, const std::string& name,
+                    const SourceMap& sources) {
+  fem::check_law(material.law, sources.where(name + "region"));
+  if (material.relaxation.empty()) {
+    if (sources.has(name + "moduli"))
+      refuse(sources.where(name + "moduli"), fmt::format("{}moduli without relaxation", name),
+             "remove it: the moduli of elastic tissue are the same at all times");
+    return;
+  }
+  const std::string where = sources.where(name + "relaxation");
+  fem::check_law(fem::instantaneous_law(material.law, material.relaxation, material.moduli, where),
+                 where);
+}
+
 void check_materials(const Case& c, const SourceMap& sources) {
   const std::vector<std::string_view> regions = regions_of(c, sources);
   // Those of a volume mesh are in its file: check_regions of the mesh stage compares them.
@@ -135,13 +150,23 @@ void check_materials(const Case& c, const SourceMap& sources) {
       refuse(where, fmt::format("second material for region '{}'", region),
              "remove one of the two");
     }
-    fem::check_law(c.materials[i].law, where);
+    check_material(c.materials[i], prefix("material", i), sources);
   }
   for (const std::string_view region : regions) {
     if (!knows_regions || described.contains(region)) continue;
     refuse(sources.where("material"), fmt::format("region '{}' has no material", region),
            fmt::format("add [[material]] with region = \"{}\"", region));
   }
+}
+
+/// A body that lies under its weight has relaxed, and the campaign has instantaneous laws.
+void check_weight(const Case& c, const SourceMap& sources) {
+  if (!c.campaign.gravity.acts()) return;
+  for (std::size_t i = 0; i < c.materials.size(); ++i)
+    if (!c.materials[i].relaxation.empty())
+      refuse(sources.where(prefix("material", i) + "relaxation"),
+             "relaxation of a body under its weight",
+             "remove [gravity], or the relaxation: the preload of relaxed tissue is not modelled");
 }
 
 /// A disc without fillet has a discontinuous gap at its edge: frictionless contact does not
@@ -206,6 +231,7 @@ Case parsed(const toml::table& table, const std::string& file_name, const SizeOf
   check_name(c, sources);
   check_source(c, sources);
   check_materials(c, sources);
+  check_weight(c, sources);
   std::optional<BodySize> body;
   if (size && needs_body_size(c)) body = size(c);
   derive_lengths(c, body);

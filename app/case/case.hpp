@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "fem/campaign/campaign.hpp"
+#include "fem/laws/relaxation.hpp"
 #include "fitting/certificate/certify.hpp"
 #include "fitting/response/fit_settings.hpp"
 #include "mesher/settings.hpp"
@@ -21,8 +22,10 @@ namespace palpate::app {
 /// A quantity that is derived from others: "auto" in a case file. A list is empty instead.
 inline constexpr double kAuto = std::numeric_limits<double>::quiet_NaN();
 
-/// A [[material]] table: the law of a region, and the file that its fibre directions come from.
+/// A [[material]] table: the law of a region as written, with instantaneous or long-term moduli,
+/// and the file that its fibre directions come from.
 struct MaterialSection : fem::RegionMaterial {
+  fem::Moduli moduli = fem::Moduli::Instantaneous;  ///< of `law`, where the material relaxes
   std::filesystem::path fibre_file;  ///< of a sampled fibre field; as written in the case
   double fibre_unit = 1;             ///< m per unit of length of that file
 };
@@ -93,8 +96,8 @@ fem::CampaignSettings campaign_of_case();
 /// settings that a stage takes (app/case/describe/case.hpp), whose default is the default of the
 /// key, but for lengths: they are derived (app/case/lengths.hpp). What a case leaves out of these
 /// settings is set by app/pipeline/settings.hpp: the resolved paths, the list of supports without
-/// springs, the tool that the mesher checks for, the law of a region with its sampled fibres,
-/// threads and memory.
+/// springs, the tool that the mesher checks for, the instantaneous law of a region with its sampled
+/// fibres, threads and memory.
 struct Case {
   std::string name;
   /// [surface], [volume_mesh], [[inclusion]], [mesh], [[press]]; paths as written

@@ -12,9 +12,11 @@ bool reads_fibre_file(const MaterialSection& material) {
          material.law.fibres.kind == fem::FibreField::Kind::Sampled;
 }
 
-fem::RegionMaterial with_sampled_fibres(const MaterialSection& material,
-                                        const std::filesystem::path& folder) {
+fem::RegionMaterial campaign_material(const MaterialSection& material,
+                                      const std::filesystem::path& folder) {
   fem::RegionMaterial result = material;
+  result.law = fem::instantaneous_law(material.law, material.relaxation, material.moduli,
+                                      "material of region '" + material.region + "'");
   if (reads_fibre_file(material))
     result.law.fibres.samples = std::make_shared<const fem::FibreSamples>(
         read_fibre_file(folder / material.fibre_file, material.fibre_unit));

@@ -9,6 +9,7 @@
 
 #include "fem/contact/tool.hpp"
 #include "fem/laws/fibre_field.hpp"
+#include "fem/laws/relaxation.hpp"
 #include "fem/solid/dilatation.hpp"
 #include "fem/solid/gravity.hpp"
 #include "format/library.hpp"
@@ -34,6 +35,8 @@ inline constexpr std::array kElements{Named{fem::Dilatation::Mean, "tet10-pressu
                                       Named{fem::Dilatation::Nodal, "tet10-nodal-pressure"},
                                       Named{fem::Dilatation::Pointwise, "tet10-displacement"},
                                       Named{fem::Dilatation::LinearNodal, "tet4"}};
+inline constexpr std::array kModuli{Named{fem::Moduli::Instantaneous, "instantaneous"},
+                                    Named{fem::Moduli::LongTerm, "long-term"}};
 inline constexpr std::array kFibreFields{Named{fem::FibreField::Kind::Constant, "constant"},
                                          Named{fem::FibreField::Kind::Cylindrical, "cylindrical"},
                                          Named{fem::FibreField::Kind::Sampled, "file"},

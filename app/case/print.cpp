@@ -59,6 +59,19 @@ class Printer {
   }
   void direction(const Vec3& value, const Key& key) { line(key, list(value, print_number)); }
 
+  template <class S, class Body>
+  void tables(std::vector<S>& items, const Key& key, Body body) {
+    if (items.empty()) return;
+    line(key, list(items, [&body](S item) {
+           Printer inner(nullptr);
+           body(inner, item);
+           std::string keys = inner.out_.substr(0, inner.out_.size() - 1);
+           for (std::size_t end; (end = keys.find('\n')) != std::string::npos;)
+             keys.replace(end, 1, ", ");
+           return fmt::format("{{ {} }}", keys);
+         }));
+  }
+
   bool when(std::string_view, const std::string& value, std::string_view wanted) {
     return value == wanted;
   }

@@ -114,6 +114,14 @@ const toml::array& TableReader::as_array(const toml::node& node, const std::stri
          fmt::format("write {} with double brackets", title));
 }
 
+const toml::array& TableReader::tables_of(const toml::node& node, const Key& key) const {
+  const toml::array* array = node.as_array();
+  if (array == nullptr || array->empty() || !array->front().is_table())
+    wrong_type(node, key, "a list with at least one table",
+               fmt::format("{} = [{{ ... }}]", key.name));
+  return *array;
+}
+
 void TableReader::wrong_type(const toml::node& node, const Key& key, std::string_view wanted,
                              const std::string& example) const {
   refuse(sources_.where(node),

@@ -62,6 +62,18 @@ class TableReader {
     return value == wanted;
   }
 
+  /// A list of tables as the value of a key: [{ a = 1, b = "2 mm" }, ...].
+  template <class S, class Body>
+  void tables(std::vector<S>& list, const Key& key, Body body) {
+    const toml::node* node = find(key);
+    if (node == nullptr) return;
+    for (const toml::node& item : tables_of(*node, key)) {
+      const std::string name = fmt::format("{}[{}]", dotted(key), list.size());
+      S& s = list.emplace_back();
+      read(as_table(item, name), name, name + ".", [&](TableReader& inner) { body(inner, s); });
+    }
+  }
+
   /// Whether the file has the section; its name is known whether or not.
   bool has_section(std::string_view name, bool) {
     known_.push_back(name);
@@ -114,6 +126,7 @@ class TableReader {
   const toml::node* find(const Key& key);
   const toml::table& as_table(const toml::node& node, const std::string& title) const;
   const toml::array& as_array(const toml::node& node, const std::string& title) const;
+  const toml::array& tables_of(const toml::node& node, const Key& key) const;
   const toml::array& three(const toml::node& node, const Key& key, std::string_view example) const;
   double quantity_of(const toml::node& node, Dimension dimension, const Key& key) const;
   double number_of(const toml::node& node, const Key& key) const;

@@ -65,6 +65,15 @@ class Documenter {
   }
   void direction(const Vec3&, const Key& key) { row(key, "three numbers, not all 0", ""); }
 
+  template <class S, class Body>
+  void tables(std::vector<S>&, const Key& key, Body body) {
+    row(key, "list of tables with the keys below", "`[]`");
+    owner_ = fmt::format("{}.", key.name);
+    S defaults;
+    body(*this, defaults);
+    owner_.clear();
+  }
+
   /// Documents every alternative, with its condition.
   bool when(std::string_view key, const std::string&, std::string_view wanted) {
     condition_ = fmt::format(" (`{} = \"{}\"`)", key, wanted);
@@ -103,8 +112,8 @@ class Documenter {
     table_head();
   }
   void row(const Key& key, std::string_view values, std::string_view by_default) {
-    out_ += fmt::format("| `{}` | {}{} | {} | {} |\n", key.name, key.about, condition_, values,
-                        key.presence == kRequired ? "required" : by_default);
+    out_ += fmt::format("| `{}{}` | {}{} | {} | {} |\n", owner_, key.name, key.about, condition_,
+                        values, key.presence == kRequired ? "required" : by_default);
   }
   template <class Values>
   static std::string quoted(const Values& values, Dimension dimension) {
@@ -122,6 +131,7 @@ class Documenter {
 
   std::string out_;
   std::string condition_;
+  std::string owner_;  ///< key of the list of tables whose keys are documented
   std::string below_;  ///< what a cell is too small for, printed below the table
   std::vector<Dimension> used_;
 };

@@ -68,7 +68,11 @@ Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int
       throw Error(ErrorKind::Configuration, "region '" + region + "'", "it has no material",
                   "describe every region of the body in the case");
     }
-    fem::check_law(found->law, "material of region '" + region + "'");
+    const std::string where = "material of region '" + region + "'";
+    fem::check_law(found->law, where);
+    if (!found->relaxation.empty())
+      refuse(where, "decks for other programs have no relaxation",
+             "export a case without it: the instantaneous tissue, or that in the long term");
     deck.laws.push_back(found->law);
   }
   deck.direction = body.response.inward[to_index(vertex)];

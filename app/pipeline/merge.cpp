@@ -107,6 +107,7 @@ SiteCounts run_merge(const Workspace& space, std::vector<fs::path> parts, const 
     merged.tool = part.tool;
     merged.depth = part.depth;
     merged.lateral_travel = part.lateral_travel;
+    merged.relaxation = part.relaxation;
     collection.add(std::move(part), file);
   }
   merged.body_sha256 = body_sha256;

@@ -94,7 +94,7 @@ mesher::Settings mesh_settings(const Workspace& space) {
 fem::CampaignSettings campaign_settings(const Workspace& space) {
   fem::CampaignSettings settings = space.c.campaign;
   for (const MaterialSection& material : space.c.materials)
-    settings.materials.push_back(with_sampled_fibres(material, space.case_folder));
+    settings.materials.push_back(campaign_material(material, space.case_folder));
   settings.threads = space.threads;
   settings.memory = space.memory;
   return settings;

@@ -155,6 +155,7 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
   }
   const std::vector<std::size_t> open = copy_known(settings.known, curves);
   const CampaignContext context(body, settings, Engine::SharedFactor, cache);
+  curves.relaxation = context.relaxation;
   report.set_up_seconds = elapsed();
   if (!open.empty()) OpenSites(context, settings, open, curves).run();
 

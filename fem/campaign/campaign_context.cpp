@@ -92,6 +92,7 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
       unloaded(std::move(start.unloaded)),
       points(settings.points),
       indentation(settings.indentation),
+      relaxation(relaxation_of_regions(b, settings.materials)),
       engine(e),
       model(std::move(start.model)),
       permutation(std::move(start.permutation)),

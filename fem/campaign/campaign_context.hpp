@@ -40,6 +40,7 @@ struct CampaignContext {
   std::shared_ptr<const UnloadedBody> unloaded;
   std::vector<PressPoint> points;
   IndentationSettings indentation;
+  RegionRelaxation relaxation;  ///< of the regions of the body; empty where it is elastic
   Engine engine;
   SolidModel model;
   std::vector<int> permutation;  ///< elimination order of the whole body

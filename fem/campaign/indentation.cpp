@@ -119,6 +119,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
                      .tool_radius = tool_radius,
                      .energy_at_rest = context_.at_rest.energy,
                      .follows_work = true,
+                     .relaxes = !context_.relaxation.empty(),
                      .tool_at = [&](double depth) { return site.tool_at(depth); }},
                     site.body.rest());
   CurvePath path;
@@ -127,6 +128,8 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
   path.samples.emplace_back();
   path.samples.back().contact_energy = path.samples.back().tension = 0;
   path.samples.back().min_jacobian = context_.at_rest.min_J;
+  if (!context_.relaxation.empty())
+    path.samples.back().isochoric_energy.assign(context_.relaxation.fractions.size(), 0.0);
 
   Displacement u = site.body.rest();
   Predictor states;
@@ -181,6 +184,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
        .tool_radius = context_.indentation.tool.radius,
        .energy_at_rest = context_.at_rest.energy,
        .follows_work = false,
+       .relaxes = !context_.relaxation.empty(),
        .tool_at = [&](double s) { return site.tool_at(lateral_depth, s * direction); }},
       u);
   CurvePath path;

@@ -113,6 +113,7 @@ void PathDriver::record(double s, const Displacement& u, CurveSample& sample) co
   sample.displacement = s;
   sample.force = to_vec3(contact.tool_force(u));
   sample.strain_energy = state.energy - problem_.energy_at_rest;
+  if (problem_.relaxes) sample.isochoric_energy = problem_.model.isochoric_energies(u);
   sample.min_jacobian = state.min_J;
   sample.penetration = contact.penetration(u);
   sample.contact_area = contact.contact_area(u);

@@ -21,6 +21,7 @@ struct PathProblem {
   double tool_radius;                   ///< m
   double energy_at_rest;                ///< J, subtracted from the energy of the samples
   bool follows_work;                    ///< integrate the work of the tool within increments
+  bool relaxes;                         ///< samples have the energies of the regions
   std::function<Tool(double)> tool_at;  ///< the tool at a travel, m
 };
 

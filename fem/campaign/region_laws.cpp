@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "fem/laws/relaxation.hpp"
 #include "fem/solid/fibre_potential.hpp"
 #include "format/error.hpp"
 
@@ -51,6 +52,21 @@ std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMater
     laws.push_back(make_law(placed_on(body, static_cast<std::int32_t>(laws.size()), law), where));
   }
   return laws;
+}
+
+RegionRelaxation relaxation_of_regions(const Body& body,
+                                       const std::vector<RegionMaterial>& materials) {
+  std::vector<RelaxationSeries> series(body.region_names.size());
+  for (std::size_t region = 0; region < series.size(); ++region)
+    for (const RegionMaterial& material : materials) {
+      if (material.region != body.region_names[region] || material.relaxation.empty()) continue;
+      if (!has_isochoric_part(material.law.law))
+        refuse("material of region '" + material.region + "'",
+               "the law " + material.law.law + " has no isochoric part that could relax",
+               "remove relaxation, or choose another law");
+      series[region] = material.relaxation;
+    }
+  return over_one_list(series, "material of a region of " + body.name);
 }
 
 Gravity gravity_on(const Body& body, const CampaignSettings& settings) {

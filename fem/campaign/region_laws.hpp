@@ -14,6 +14,11 @@ namespace palpate::fem {
 /// twice, or constants out of range.
 std::vector<Law> laws_of_regions(const Body& body, const std::vector<RegionMaterial>& materials);
 
+/// The relaxation of each region of the body, in its order, over one list of times.
+/// @throws Error(Configuration) as check_relaxation, and for a law without an isochoric part.
+RegionRelaxation relaxation_of_regions(const Body& body,
+                                       const std::vector<RegionMaterial>& materials);
+
 /// The gravity of the settings with the density of each region of the body, in its order.
 Gravity gravity_on(const Body& body, const CampaignSettings& settings);
 

@@ -12,6 +12,7 @@
 #include "fem/solid/dilatation.hpp"
 #include "fem/solid/gravity.hpp"
 #include "format/curves.hpp"
+#include "format/relaxation.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate::fem {
@@ -20,6 +21,8 @@ struct RegionMaterial {
   std::string region;  ///< name of a region of the body
   LawConstants law;
   double density = 0;  ///< kg/m^3, at rest; 0: that of the gravity
+  /// How the isochoric stress relaxes; the constants of `law` are then the instantaneous ones.
+  RelaxationSeries relaxation = {};
 };
 
 struct IndentationSettings {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numeric>
 
+#include "fem/laws/scaled_isochoric.hpp"
 #include "fem/mesh/millimetres.hpp"
 #include "fem/mesh/to_eigen.hpp"
 #include "fem/solid/ellipticity.hpp"
@@ -234,11 +235,13 @@ ElementKinematics<Lanes> SolidModel::kinematics_of(const Block& block,
 
 namespace {
 
-/// f of the law of a block, relaxed where its region has multipliers.
+/// f of the law of a block: in a step of relaxation the scaled one, relaxed where its region has
+/// multipliers.
 template <class Block, class F>
-auto with_law(const Solid& solid, const Block& block, const DilatationMultipliers* multipliers,
-              F&& f) {
+auto with_law(const Solid& solid, const Block& block, const HistoryStress* step,
+              const DilatationMultipliers* multipliers, F&& f) {
   const Law& law = solid.laws[to_index(block.region)];
+  if (step != nullptr) return f(ScaledIsochoric{law, step->factor[to_index(block.region)]});
   if (multipliers == nullptr || !multipliers->relax(block.region)) return f(law);
   return f(multipliers->relaxed(law, block.region, block.element));
 }
@@ -353,6 +356,48 @@ double SolidModel::work_of_gravity(const Displacement& u) const {
   return work;
 }
 
+SolidModel SolidModel::relaxing(const SolidModel& body, const HistoryStress* step) {
+  SolidModel model = body;
+  model.step_ = step;
+  return model;
+}
+
+double SolidModel::energy_of_history(const Block& block, const ElementKinematics<Lanes>& k) const {
+  if (step() == nullptr) return 0;
+  const Lanes energy = history_energy(solid_->dilatation, block.geometry, k,
+                                      fem::gather(step()->stress, block.element));
+  return energy.head(block.count).sum();
+}
+
+StressField SolidModel::isochoric_stress(const Displacement& u) const {
+  StressField field(mesh().tetrahedra.size());
+  for (const Block& block : blocks_) {
+    const auto S = isochoric_stresses(solid_->laws[to_index(block.region)], block.geometry,
+                                      kinematics_of(block, u));
+    for (int lane = 0; lane < block.count; ++lane)
+      for (std::size_t q = 0; q < kTetPoints; ++q)
+        for (std::size_t entry = 0; entry < kStressEntries.size(); ++entry)
+          field[to_index(block.element[to_index(lane)])][q][entry] =
+              S[q][kStressEntries[entry]][lane];
+  }
+  return field;
+}
+
+std::vector<double> SolidModel::isochoric_energies(const Displacement& u) const {
+  std::vector<double> energies(solid_->laws.size(), 0.0);
+  for (const Block& block : blocks_) {
+    const auto k = kinematics_of(block, u);
+    const Law& law = solid_->laws[to_index(block.region)];
+    Lanes density = Lanes::Zero();
+    const std::size_t points = points_of(solid_->dilatation);
+    for (std::size_t q = 0; q < points; ++q)
+      density += law.psi(k.F[q], k.J[q], block.geometry.fibres) / static_cast<double>(points);
+    const Lanes energy = block.geometry.volume * density;
+    energies[to_index(block.region)] += energy.head(block.count).sum();
+  }
+  return energies;
+}
+
 SolidModel::State SolidModel::energy(const Displacement& u,
                                      const DilatationMultipliers* multipliers) const {
   State state;
@@ -360,10 +405,11 @@ SolidModel::State SolidModel::energy(const Displacement& u,
     const auto k = kinematics_of(block, u);
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
-    const Lanes energy = with_law(*solid_, block, multipliers, [&](const auto& law) -> Lanes {
-      return element_energy(law, solid_->dilatation, block.geometry, k);
-    });
-    state.energy += energy.head(block.count).sum();
+    const Lanes energy =
+        with_law(*solid_, block, step(), multipliers, [&](const auto& law) -> Lanes {
+          return element_energy(law, solid_->dilatation, block.geometry, k);
+        });
+    state.energy += energy.head(block.count).sum() + energy_of_history(block, k);
   }
   state.energy += point_state(u).energy + foundation_.energy(u) - work_of_gravity(u);
   return checked(state);
@@ -378,14 +424,19 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f,
     const auto k = kinematics_of(block, u);
     state.min_J = std::min(state.min_J, smallest(k));
     if (!(state.min_J > 0)) return state;
-    with_law(*solid_, block, multipliers, [&](const auto& law) {
+    with_law(*solid_, block, step(), multipliers, [&](const auto& law) {
       const Lanes energy = element_energy(law, solid_->dilatation, block.geometry, k);
-      state.energy += energy.head(block.count).sum();
+      state.energy += energy.head(block.count).sum() + energy_of_history(block, k);
       scatter(block,
               element_forces(law, solid_->dilatation, block.geometry, k,
                              pressures(law, block, k, points)),
               f);
     });
+    if (step() != nullptr)
+      scatter(block,
+              history_forces(solid_->dilatation, block.geometry, k,
+                             fem::gather(step()->stress, block.element)),
+              f);
   }
   state.energy += points.energy + foundation_.energy(u) - work_of_gravity(u);
   foundation_.add_forces(equation_, u, f);
@@ -402,10 +453,13 @@ void SolidModel::stiffness(const Displacement& u, std::vector<double>& values,
   const PointState points = point_state(u);
   for (const Block& block : blocks_) {
     const auto k = kinematics_of(block, u);
-    with_law(*solid_, block, multipliers, [&](const auto& law) {
+    with_law(*solid_, block, step(), multipliers, [&](const auto& law) {
       element_stiffness(law, solid_->dilatation, block.geometry, k,
                         pressures(law, block, k, points), K);
     });
+    if (step() != nullptr)
+      add_history_stiffness(solid_->dilatation, block.geometry,
+                            fem::gather(step()->stress, block.element), K);
     for (std::size_t entry = 0; entry < kElementEntries; ++entry, position += kLanes)
       for (int lane = 0; lane < block.count; ++lane)
         if (position[lane] >= 0) values[to_index(position[lane])] += K[entry][lane];

@@ -15,6 +15,7 @@
 #include "fem/solid/element.hpp"
 #include "fem/solid/foundation.hpp"
 #include "fem/solid/gravity.hpp"
+#include "fem/solid/history_stress.hpp"
 #include "fem/solid/nodal_pressure.hpp"
 #include "format/to_index.hpp"
 
@@ -57,6 +58,11 @@ class SolidModel {
   /// stiffness, no weight and no foundation, and its pattern() has only the number of unknowns.
   static SolidModel without_stiffness(const SolidModel& whole, QuadraticMesh mesh);
 
+  /// The same body in a step of its relaxation: with the energy of HistoryStress in place of the
+  /// isochoric one. `step` must outlive the model, and may change between calls; while it has no
+  /// factors, the model is that of `body`.
+  static SolidModel relaxing(const SolidModel& body, const HistoryStress* step);
+
   struct State {
     double energy = 0;  ///< J, strain energy and energy of the foundation less work of gravity
     /// Smallest det F at the Gauss points; 0 where the energy has no finite value. The rest is
@@ -79,6 +85,11 @@ class SolidModel {
   void update(const Displacement& u, DilatationMultipliers& multipliers) const;
   /// Sets the multipliers to dU/dJ at `u`, which they are in every equilibrium.
   void take_pressures(const Displacement& u, DilatationMultipliers& multipliers) const;
+
+  /// 2 dPsi_iso/dC of the laws at the Gauss points, Pa.
+  StressField isochoric_stress(const Displacement& u) const;
+  /// The isochoric strain energy of each region, J. What remains of energy() does not relax.
+  std::vector<double> isochoric_energies(const Displacement& u) const;
 
   /// Element means: strain energy density, J/m^3, and the mean of the Cauchy stress, Pa (tension
   /// positive), which for a law with a volumetric part is its dU/dJ.
@@ -154,7 +165,15 @@ class SolidModel {
   void add_point_stiffness(const Displacement& u, const PointState& points,
                            std::vector<double>& values) const;
 
+  /// The step of its relaxation that the model is in; null where it is elastic.
+  const HistoryStress* step() const {
+    return step_ != nullptr && !step_->factor.empty() ? step_ : nullptr;
+  }
+  /// Integral of H:(C - 1)/2 over the elements of a block, J; 0 where there is no step.
+  double energy_of_history(const Block& block, const ElementKinematics<Lanes>& k) const;
+
   std::shared_ptr<const Solid> solid_;
+  const HistoryStress* step_ = nullptr;
   std::vector<int> equation_;  ///< (nodes)
   int unknowns_ = 0;
   SparsePattern pattern_;

@@ -251,6 +251,18 @@ Curves curves(unsigned seed) {
   return curves;
 }
 
+Curves relaxing_curves(unsigned seed) {
+  Curves relaxing = curves(seed);
+  Random random(seed + 1);
+  relaxing.relaxation = {{0.1, random.between(1, 2), 30},
+                         {{random.between(0, 0.3), 0.2, 0.1}, {0, 0, random.between(0, 0.5)}}};
+  for (SiteCurves& site : relaxing.sites)
+    for (CurvePath& path : site.paths)
+      for (CurveSample& sample : path.samples)
+        sample.isochoric_energy = {random.between(0, 1), random.between(0, 1)};
+  return relaxing;
+}
+
 Library library(unsigned seed) {
   Random random(seed);
   const Body source = body(seed);
@@ -359,9 +371,13 @@ std::string dump(const Curves& curves) {
         out << s.displacement << s.force << s.strain_energy << s.tool_work << s.min_jacobian
             << s.penetration << s.contact_area << s.iterations << s.force_scatter
             << s.force_uncertainty << s.contact_energy << s.tension;
+        for (const double energy : s.isochoric_energy) out << energy;
       }
     }
   }
+  for (const double time : curves.relaxation.times_s) out << time;
+  for (const std::vector<double>& region : curves.relaxation.fractions)
+    for (const double fraction : region) out << fraction;
   return (out << curves.provenance).text();
 }
 

@@ -88,11 +88,39 @@ inline double& value_of(fem::LawConstants& law, std::string_view name) {
 }
 
 template <class V>
+void describe_relaxation(V& v, MaterialSection& s) {
+  v.tables(s.relaxation,
+           {"relaxation",
+            "Prony series of the isochoric stress, in ascending order of time; the volumetric "
+            "stress is elastic"},
+           [](auto& in, RelaxationBranch& branch) {
+             in.number(branch.fraction,
+                       {"fraction",
+                        "part of the instantaneous isochoric stress that relaxes; their sum is "
+                        "below 1",
+                        kRequired,
+                        {.low = 0, .high = 1, .low_open = true, .high_open = true}});
+             in.quantity(branch.time_s, Dimension::Time,
+                         {"time", "time in which that part falls to 1/e", kRequired, kPositive});
+           });
+  const bool relaxes = !s.relaxation.empty();
+  if (v.has_section("moduli", relaxes) || relaxes)
+    describe_choice(
+        v, s.moduli,
+        {"moduli",
+         "with `relaxation`: whether the constants of the law are those at once after a "
+         "step of strain or those in the long term",
+         kRequired},
+        kModuli);
+}
+
+template <class V>
 void describe(V& v, MaterialSection& s) {
   v.text(s.region, {"region", "region of the body; empty means that of the outer surface"});
   v.quantity(s.density, Dimension::Density,
              {"density", "reference density, for the weight; 0: that of `[gravity]`", kOptional,
               kNotNegative});
+  describe_relaxation(v, s);
   Choices laws;
   for (const fem::LawEntry& law : fem::law_table()) laws.push_back(law.name);
   v.text(s.law.law, {"law", "hyperelastic law, see [theory](theory-fem.md)"}, laws);

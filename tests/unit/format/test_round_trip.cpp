@@ -2,12 +2,14 @@
 // What is written is what is read, to the last bit.
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <regex>
 
 #include "format/sha256.hpp"
 #include "palpate_version.hpp"
 #include "tests/support/sample_artifacts.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/unit/format/refusal.hpp"
 
 namespace palpate {
 namespace {
@@ -40,7 +42,34 @@ TEST(RoundTrip, Curves) {
     const Curves curves = samples::curves(seed);
     write_curves(folder / "curves.h5", curves);
     EXPECT_EQ(dump(read_curves(folder / "curves.h5")), dump(curves));
+    const Curves relaxing = samples::relaxing_curves(seed);
+    write_curves(folder / "relaxing.h5", relaxing);
+    EXPECT_EQ(dump(read_curves(folder / "relaxing.h5")), dump(relaxing));
+    EXPECT_NE(dump(relaxing), dump(curves));
   }
+}
+
+TEST(RoundTrip, CurvesOfRelaxingTissueWithoutTheEnergyOfARegionAreRefused) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::function<void(Curves&)>& change, const std::string& where,
+                           const std::string& problem) {
+    Curves curves = samples::relaxing_curves(1);
+    change(curves);
+    expect_refusal([&] { write_curves(folder / "curves.h5", curves); }, ErrorKind::Internal, where,
+                   problem);
+  };
+  refused([](Curves& c) { c.sites[0].paths[0].samples[1].isochoric_energy.pop_back(); },
+          "/relaxation/isochoric_energy[1]", "has 1 regions, and the relaxation 2");
+  refused([](Curves& c) { c.relaxation = {}; }, "/relaxation/isochoric_energy[0]",
+          "has 2 regions, and the relaxation 0");
+  refused([](Curves& c) { c.relaxation.times_s[1] = 0.1; }, "/relaxation/time[1]",
+          "not above the row before");
+  refused(
+      [](Curves& c) {
+        c.relaxation.fractions[1][0] = 0.9;
+        c.relaxation.fractions[1][1] = 0.2;
+      },
+      "/relaxation/fraction[3]", "do not sum to less than 1");
 }
 
 TEST(RoundTrip, Library) {

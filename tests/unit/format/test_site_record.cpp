@@ -25,6 +25,16 @@ TEST(SiteRecord, ComesBackToTheBit) {
     EXPECT_EQ(dump(site_from_bytes(site_bytes(site), "a.journal")), dump(site));
 }
 
+TEST(SiteRecord, OfRelaxingTissueComesBackWithTheEnergiesOfItsRegions) {
+  const Curves curves = samples::relaxing_curves(3);
+  for (const SiteCurves& site : curves.sites)
+    EXPECT_EQ(dump(site_from_bytes(site_bytes(site), "a.journal")), dump(site));
+  const std::string whole = site_bytes(curves.sites[0]);
+  const std::size_t elastic = site_bytes(samples::curves(3).sites[0]).size();
+  for (std::size_t length = elastic + 1; length < whole.size(); ++length)
+    EXPECT_THROW(site_from_bytes(std::string_view(whole).substr(0, length), "a.journal"), Error);
+}
+
 /// A journal may be cut anywhere by a crash, and disks lie.
 TEST(SiteRecord, CutOrLengthenedIsRefused) {
   const std::string bytes = site_bytes(samples::curves(3).sites[0]);
@@ -57,6 +67,11 @@ TEST(ContentDigest, IsOfTheResultsAlone) {
     f = std::nextafter(f, 1e9);
   });
   expect_other([](Curves& c) { std::swap(c.sites[0], c.sites[1]); });
+  expect_other([](Curves& c) { c.relaxation = samples::relaxing_curves(3).relaxation; });
+  expect_other([](Curves& c) {
+    for (CurvePath& path : c.sites[0].paths)
+      for (CurveSample& sample : path.samples) sample.isochoric_energy = {1e-3};
+  });
 }
 
 }  // namespace

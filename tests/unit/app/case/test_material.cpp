@@ -68,7 +68,7 @@ TEST(MaterialSection, ReadsFibreFieldsThatDependOnTheBody) {
       "ball.toml");
   EXPECT_EQ(of_file.materials[0].law.fibres.kind, fem::FibreField::Kind::Sampled);
   EXPECT_TRUE(reads_fibre_file(of_file.materials[0]));
-  EXPECT_THROW(with_sampled_fibres(of_file.materials[0], "/nonexistent"), Error);
+  EXPECT_THROW(campaign_material(of_file.materials[0], "/nonexistent"), Error);
   EXPECT_EQ(parse_case(resolved_toml(of_file), "resolved"), of_file) << resolved_toml(of_file);
 }
 
@@ -84,6 +84,59 @@ TEST(MaterialSection, RejectsConstantsThatTheLawLacksOrThatAreInconsistent) {
               HasSubstr("material[0].b = -1"));
   EXPECT_THAT(message_of(with_material("law = \"mooney\"\n")),
               HasSubstr("is 'mooney', which is not one of neo-hookean, mooney-rivlin"));
+}
+
+constexpr const char* kSeries =
+    "relaxation = [{ fraction = 0.3, time = \"0.1 s\" }, { fraction = 0.2, time = \"2 s\" }]\n";
+constexpr const char* kElastic = "young = \"10 kPa\"\npoisson = 0.45\n";
+
+TEST(MaterialSection, RelaxationReachesTheCampaignWithTheInstantaneousModuli) {
+  const std::string keys = std::string(kElastic) + kSeries;
+  const RelaxationSeries series{{0.3, 0.1}, {0.2, 2}};
+  const Case at_once =
+      parse_case(with_material(keys + "moduli = \"instantaneous\"\n"), "ball.toml");
+  const fem::RegionMaterial same = campaign_material(at_once.materials[0], ".");
+  EXPECT_EQ(same.relaxation, series);
+  EXPECT_EQ(same.law.at("young"), 10e3);
+  EXPECT_EQ(parse_case(resolved_toml(at_once), "resolved"), at_once) << resolved_toml(at_once);
+
+  const Case relaxed = parse_case(with_material(keys + "moduli = \"long-term\"\n"), "ball.toml");
+  EXPECT_EQ(relaxed.materials[0].law.at("young"), 10e3);
+  EXPECT_NE(relaxed, at_once);
+  EXPECT_EQ(parse_case(resolved_toml(relaxed), "resolved"), relaxed) << resolved_toml(relaxed);
+  const fem::RegionMaterial twice = campaign_material(relaxed.materials[0], ".");
+  const fem::RestModuli rest = fem::rest_moduli(twice.law);
+  EXPECT_NEAR(rest.mu(), 2 * 10e3 / 2.9, 1e-9 * rest.mu());
+  EXPECT_NEAR(rest.kappa(), 10e3 / 0.3, 1e-9 * rest.kappa());
+}
+
+TEST(MaterialSection, RefusesRelaxationThatIsIncompleteOrInconsistent) {
+  const std::string series = kSeries, keys = kElastic + series;
+  EXPECT_THAT(message_of(with_material(keys)), HasSubstr("key 'material[0].moduli' is missing"));
+  EXPECT_THAT(message_of(with_material(keys + "moduli = \"initial\"\n")),
+              HasSubstr("not one of instantaneous, long-term"));
+  EXPECT_THAT(message_of(with_material(std::string(kElastic) + "moduli = \"long-term\"\n")),
+              HasSubstr("moduli without relaxation"));
+  const auto message = [](const std::string& list) {
+    return message_of(with_material(kElastic + ("moduli = \"long-term\"\nrelaxation = " + list)));
+  };
+  EXPECT_THAT(message("[]\n"), HasSubstr("a list with at least one table"));
+  EXPECT_THAT(message("[0.3]\n"), HasSubstr("a list with at least one table"));
+  EXPECT_THAT(message("[{ fraction = 0.3 }]\n"),
+              HasSubstr("key 'material[0].relaxation[0].time' is missing"));
+  EXPECT_THAT(message("[{ fraction = 0.3, time = 1 }]\n"), HasSubstr("a time with its unit"));
+  EXPECT_THAT(message("[{ fraction = 1, time = \"1 s\" }]\n"),
+              HasSubstr("material[0].relaxation[0].fraction = 1 is out of range"));
+  EXPECT_THAT(
+      message("[{ fraction = 0.5, time = \"1 s\" }, { fraction = 0.1, time = \"1 ms\" }]\n"),
+      HasSubstr("not above the time before it"));
+  EXPECT_THAT(message("[{ fraction = 0.99, time = \"1 s\" }]\n"), HasSubstr("Poisson's ratio -"));
+  const std::string unsplit = "law = \"saint-venant-kirchhoff\"\nmoduli = \"long-term\"\n";
+  EXPECT_THAT(message_of(with_material(unsplit + keys)), HasSubstr("no isochoric part"));
+  const std::string weight =
+      "[gravity]\nacceleration = [\"0 m/s^2\", \"0 m/s^2\", \"-9.81 m/s^2\"]\n";
+  EXPECT_THAT(message_of(with_material(keys + "moduli = \"long-term\"\n") + weight),
+              HasSubstr("relaxation of a body under its weight"));
 }
 
 }  // namespace

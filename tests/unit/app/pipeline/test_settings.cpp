@@ -53,6 +53,8 @@ label = "base"
 [[material]]
 young = "10 kPa"
 poisson = 0.45
+relaxation = [{ fraction = 0.3, time = "0.1 s" }, { fraction = 0.2, time = "2 s" }]
+moduli = "instantaneous"
 
 [[material]]
 region = "nodule"
@@ -148,6 +150,7 @@ class SettingsText {
   void add(const fem::RegionMaterial& m) {
     add(m.region, m.density, m.law.law);
     for (const auto& [name, value] : m.law.values) add(name, value);
+    for (const RelaxationBranch& branch : m.relaxation) add(branch.fraction, branch.time_s);
     const fem::FibreField& f = m.law.fibres;
     add(static_cast<int>(f.kind), f.angle, f.families);
     for (const Vec3& v :
@@ -210,6 +213,10 @@ class Change {
   }
   void point(Vec3& value, Dimension, const Key& key) { number(value[1], key); }
   void direction(Vec3& value, const Key& key) { number(value[1], key); }
+  template <class S, class Body>
+  void tables(std::vector<S>& list, const Key&, Body body) {
+    for (S& s : list) body(*this, s);
+  }
   bool when(std::string_view, const std::string& value, std::string_view wanted) {
     return value == wanted;
   }
