@@ -158,6 +158,12 @@ struct Library {
   Provenance provenance;
 };
 
+/// The schema of its library.h5.
+inline int schema_of(const Library& library) {
+  if (library.relaxes()) return kRelaxingLibrarySchema;
+  return library.kind == ResponseKind::Coupled ? kCoupledLibrarySchema : kLibrarySchema;
+}
+
 void write_library(const std::filesystem::path& path, const Library& library);  ///< see write_body
 
 /// Read a library.h5 or a flat library, and check: indices, finite numbers, unit directions, knots

@@ -168,10 +168,7 @@ void write_library(const std::filesystem::path& path, const Library& library) {
   check_for_writing(Checks(path), library);
   hdf5::Writer writer(path);
   const bool coupled = library.kind == ResponseKind::Coupled;
-  const int schema = library.relaxes() ? kRelaxingLibrarySchema
-                     : coupled         ? kCoupledLibrarySchema
-                                       : kLibrarySchema;
-  write_root(writer, kLibraryArtifact, schema,
+  write_root(writer, kLibraryArtifact, schema_of(library),
              "A response library: surface, responses, certificate.");
   if (library.relaxes()) writer.set_integer("/", "coupled", coupled ? 1 : 0);
   writer.set_text("/", "name", library.name);

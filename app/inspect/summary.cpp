@@ -428,7 +428,10 @@ Json summarize_artifact(const std::filesystem::path& file) {
   };
   if (kind == "palpate.body") return complete(head(kBodySchema), read_body(file));
   if (kind == "palpate.curves") return complete(head(kCurvesSchema), read_curves(file));
-  if (kind == "palpate.library") return complete(head(kLibrarySchema), read_library(file));
+  if (kind == "palpate.library") {
+    const Library library = read_library(file);
+    return complete(head(schema_of(library)), library);
+  }
   if (kind == "palpate.recording") {
     RecordingReader reader(file);
     Json summary = head(kRecordingSchema);

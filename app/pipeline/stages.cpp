@@ -19,6 +19,7 @@
 #include "fitting/response/couple.hpp"
 #include "fitting/response/fit.hpp"
 #include "fitting/response/fit_errors.hpp"
+#include "fitting/response/relaxation_share.hpp"
 #include "format/body.hpp"
 #include "format/error.hpp"
 #include "format/guarantee.hpp"
@@ -180,6 +181,25 @@ void warn_of_misfit(const char* kind, const Library& library,
           position_text(at), percent_text(worst.worst))});
 }
 
+/// Warns where one fraction for a node misses that tissue in layers relaxes otherwise when shallow.
+void warn_of_shares(const Curves& curves, const Library& library, const EventSink& emit) {
+  double largest = 0;
+  std::int32_t vertex = -1;
+  for (const SiteCurves& site : curves.sites) {
+    if (library.responses[to_index(site.vertex)].status != ResponseStatus::Fitted) continue;
+    const double error = fitting::largest_share_error(site, curves.relaxation);
+    if (error > largest) vertex = site.vertex;
+    largest = std::max(largest, error);
+  }
+  if (!(largest > fitting::kVisibleFitError)) return;
+  emit(Warning{"fit",
+               fmt::format("the part of the force that relaxes changes with depth, most of all at "
+                           "site {} at {}: by {} of the energy at the deepest sample; it is that "
+                           "of the deepest sample at every depth",
+                           vertex, position_text(library.positions[to_index(vertex)]),
+                           percent_text(largest))});
+}
+
 }  // namespace
 
 void run_fit(const Workspace& space, const EventSink& emit) {
@@ -209,6 +229,7 @@ void run_fit(const Workspace& space, const EventSink& emit) {
   const std::vector<SiteFitError> errors = fitting::fit_errors(library, curves);
   warn_of_misfit("normal", library, errors, &SiteFitError::normal, emit);
   warn_of_misfit("lateral", library, errors, &SiteFitError::lateral, emit);
+  if (library.relaxes()) warn_of_shares(curves, library, emit);
   emit(FitFinished{with_status(ResponseStatus::Fitted), with_status(ResponseStatus::Interpolated),
                    with_status(ResponseStatus::Hole), errors_of(errors, &SiteFitError::normal),
                    errors_of(errors, &SiteFitError::lateral),

@@ -309,6 +309,19 @@ Library coupled_library(unsigned seed) {
   return coupled;
 }
 
+Library relaxing_library(unsigned seed) {
+  Random random(seed + 2000);
+  Library relaxing = seed % 2 == 0 ? library(seed) : coupled_library(seed);
+  relaxing.relaxation_times = {random.between(0.01, 0.1), random.between(0.2, 1)};
+  relaxing.tool_radius = 0.004;
+  relaxing.certificate.relaxation_rate = random.between(1, 30);
+  for (NodeResponse& node : relaxing.responses)
+    if (node.status != ResponseStatus::Hole)
+      node.relaxation = {static_cast<float>(random.between(0, 0.4)),
+                         static_cast<float>(random.between(0, 0.4))};
+  return relaxing;
+}
+
 Recording recording(unsigned seed) {
   Random random(seed);
   Recording recording;
@@ -389,10 +402,13 @@ std::string dump(const Library& library) {
   for (const NodeResponse& r : library.responses) {
     out << static_cast<int>(r.status) << r.normal << r.lateral << r.normal_error << r.lateral_error;
     out << static_cast<double>(r.coupling.base) << r.coupling.curve;
+    for (const float fraction : r.relaxation) out << static_cast<double>(fraction);
   }
+  for (const double time : library.relaxation_times) out << time;
   const Certificate& c = library.certificate;
   out << c.friction << c.depth << c.stick << c.slip << c.min_lipschitz_bound << c.lipschitz_bound
-      << c.worst_triangle << c.limited_by << c.basis << c.holes << c.interpolated;
+      << c.worst_triangle << c.limited_by << c.basis << c.holes << c.interpolated
+      << c.relaxation_rate;
   for (const TriangleCertificate& t : c.triangles) {
     out << t.stick << t.slip << t.kappa << t.cos_theta << t.sliding_passive;
   }

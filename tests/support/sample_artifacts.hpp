@@ -22,6 +22,8 @@ std::string dump(const Body& body);
 std::string dump(const Curves& curves);
 /// The same with coupled responses.
 Library coupled_library(unsigned seed);
+/// The same with responses that relax, coupled where the seed is odd.
+Library relaxing_library(unsigned seed);
 std::string dump(const Library& library);
 std::string dump(const Recording& recording);
 

@@ -24,6 +24,8 @@ void write_sample(Kind kind, const Path& path) {
       return write_library(path, library(1));
     case Kind::CoupledLibrary:
       return write_library(path, coupled_library(1));
+    case Kind::RelaxingLibrary:
+      return write_library(path, relaxing_library(1));
     case Kind::Recording:
       return write_recording(path, recording(1));
   }
@@ -50,6 +52,7 @@ void read_sample(Kind kind, const Path& path) {
       return;
     case Kind::Library:
     case Kind::CoupledLibrary:
+    case Kind::RelaxingLibrary:
       static_cast<void>(read_library(path));
       return;
     case Kind::Recording:

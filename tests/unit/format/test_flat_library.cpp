@@ -23,7 +23,8 @@ using samples::TemporaryFolder;
 TEST(FlatLibrary, IsTheSameLibraryAsTheHdf5File) {
   const TemporaryFolder folder;
   for (unsigned seed = 0; seed < 5; ++seed) {
-    for (const Library& library : {samples::library(seed), samples::coupled_library(seed)}) {
+    for (const Library& library : {samples::library(seed), samples::coupled_library(seed),
+                                   samples::relaxing_library(seed)}) {
       write_library(folder / "library.h5", library);
       write_flat_library(folder / "library.plib", library);
       EXPECT_EQ(dump(read_library(folder / "library.plib")), dump(library));
@@ -92,6 +93,20 @@ TEST(FlatLibrary, IsCheckedAsTheHdf5FileIs) {
   expect_refused(good, "/surface/inward", 0, &far, 8);
   expect_refused(good, "/surface/triangles", 0, &corner, 4);
   expect_refused(good, "/coupled", 0, &status, 1);
+  const Library relaxing = samples::relaxing_library(2);
+  const double early = 1e-9;
+  expect_refused(relaxing, "/relaxation/time", 8, &early, 8);  // not above the one before
+  expect_refused(relaxing, "/response/relaxation_fraction", 4, &negative, 4);
+}
+
+/// A reader that knows elastic tissue alone must not take the curves without their relaxation.
+TEST(FlatLibrary, OfTissueThatRelaxesIsOfALaterVersion) {
+  const auto version = [](const Library& library) {
+    return static_cast<int>(flat_bytes(library, "a.plib")[8]);
+  };
+  EXPECT_EQ(version(samples::library(1)), 1);
+  EXPECT_EQ(version(samples::coupled_library(1)), 1);
+  EXPECT_EQ(version(samples::relaxing_library(1)), 2);
 }
 
 }  // namespace

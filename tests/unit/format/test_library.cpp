@@ -38,7 +38,21 @@ void link_elsewhere(const Path& path) {
 std::vector<Case> surface_and_response_cases() {
   const auto kind = Kind::Library;
   const auto coupled = Kind::CoupledLibrary;
+  const auto relaxing = Kind::RelaxingLibrary;
   return {
+      {"LibraryRelaxingTimeZero", relaxing, poke("/relaxation/time", 0, 0), "/relaxation/time[0]",
+       "finite and above 0"},
+      {"LibraryRelaxingTimesDescending", relaxing, poke("/relaxation/time", 1, 1e-6),
+       "/relaxation/time[1]", "is not above the time before it"},
+      {"LibraryRelaxingFractionNegative", relaxing, poke("/response/relaxation_fraction", 1, -0.1),
+       "/response/relaxation_fraction[1]", "finite and not negative"},
+      {"LibraryRelaxingAltogether", relaxing, poke("/response/relaxation_fraction", 1, 1),
+       "/response/relaxation_fraction[0]", "has a sum of 1 or more"},
+      {"LibraryRelaxingWithoutFractions", relaxing, remove("/response/relaxation_fraction"),
+       "/response/relaxation_fraction", "is missing"},
+      {"LibraryRelaxingWithoutAToolRadius", relaxing,
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "tool_radius", 0.0, H5T_NATIVE_DOUBLE); }),
+       "/@tool_radius", "is not above 0"},
       {"LibraryCoupledBaseZero", coupled, poke("/response/coupling_base", 0, 0),
        "/response/coupling_base[0]", "finite and above 0"},
       {"LibraryCoupledSlopeNegative", coupled, poke("/response/coupling_slope", 1, -1),

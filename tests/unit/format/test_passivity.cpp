@@ -89,6 +89,23 @@ TEST(LowestRate, IsThatFromWhichOnEveryRateIsCertified) {
   EXPECT_EQ(lowest_rate(late, {170, 0}), kInfinity);
 }
 
+TEST(LowestRate, CountsWhatRelaxationChangesAtRest) {
+  for (const double delay : {0.0, 20e-6, 2e-4}) {
+    DeviceConstants device = kPen;
+    device.delay = delay;
+    const double elastic = lowest_rate(device, {170, 0});
+    const double lowest = lowest_rate(device, {170, 30});
+    EXPECT_GT(lowest, elastic);
+    EXPECT_NEAR(lowest_rate(device, {170, 1e-12}), elastic, 1e-6 * elastic);
+    for (const double more : {1.0001, 1.5, 30.0})
+      EXPECT_TRUE(judge_passivity(device, {170, 30}, more * lowest).certified()) << delay;
+    EXPECT_FALSE(judge_passivity(device, {170, 30}, 0.999 * lowest).certified()) << delay;
+    EXPECT_NEAR(certifiable_stiffness(device, lowest, 30), 170, 1e-6) << delay;
+  }
+  // A hundredth of the time in which the tissue relaxes, and one sample: 1.5 T and 1 % of T.
+  EXPECT_NEAR(damping_time(1e-3, 0, 10), 1.51e-3, 1e-15);
+}
+
 TEST(LargestPositionStep, IsThatOfAbbottAndOkamuraOnThreeAxes) {
   DeviceConstants device{1, 0.1, 0, 50e-6, 0};
   // K <= 2 f_c/Delta on one axis; the error along a diagonal is sqrt(3) times larger.

@@ -82,6 +82,9 @@ TEST(RoundTrip, Library) {
     write_library(folder / "coupled.h5", coupled);
     EXPECT_EQ(dump(read_library(folder / "coupled.h5")), dump(coupled));
     EXPECT_NE(dump(coupled), dump(library));
+    const Library relaxing = samples::relaxing_library(seed);
+    write_library(folder / "relaxing.h5", relaxing);
+    EXPECT_EQ(dump(read_library(folder / "relaxing.h5")), dump(relaxing));
   }
 }
 

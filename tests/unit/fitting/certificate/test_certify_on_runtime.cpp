@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -116,6 +117,67 @@ TEST(CertifyOnRuntime, EnergyFallsAlongEverySlideOfACertifiedTriangle) {
   }
   EXPECT_GT(certified, 100);
   EXPECT_EQ(checked, 40 * certified);
+}
+
+/// Norm of the Jacobian of a local model by central differences.
+double steepness(const runtime::LocalModel& model, const Vec3& x) {
+  constexpr double kStep = 1e-7;
+  std::array<Vec3, 3> column{};
+  for (std::size_t j = 0; j < 3; ++j) {
+    Vec3 e{};
+    e[j] = kStep;
+    const auto force = [&](const Vec3& at) { return model.respond(model.deflection(at)).force; };
+    column[j] = (0.5 / kStep) * (force(x + e) - force(x - e));
+  }
+  // The largest eigenvalue of the symmetric matrix, by powers.
+  Vec3 v{0.5, 0.6, 0.7};
+  double norm_of = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Vec3 next = v[0] * column[0] + v[1] * column[1] + v[2] * column[2];
+    norm_of = norm(next);
+    if (!(norm_of > 0)) return 0;
+    v = (1 / norm_of) * next;
+  }
+  return norm_of;
+}
+
+TEST(CertifyOnRuntime, NoMemoryOfTheTissueMakesTheForceSteeper) {
+  std::mt19937 engine(59);
+  std::uniform_real_distribution<double> any(0, 1);
+  for (const bool coupled : {false, true}) {
+    double closest = 0;
+    for (int trial = 0; trial < 8; ++trial) {
+      Library library = random_triangle(engine, 0.2, 0.3);
+      if (coupled) couple(library, engine, 0.3);
+      library.tool_radius = 0.004;
+      library.relaxation_times = {0.1};
+      for (NodeResponse& node : library.responses) node.relaxation = {0.7F};
+      CertifySettings settings;
+      settings.friction = kFriction;
+      certify(library, settings);
+      const double bound = library.certificate.stick;
+      const runtime::Surface surface(library);
+      for (int i = 0; i < 100; ++i) {
+        const double a = any(engine), b = any(engine) * (1 - a);
+        runtime::LocalModel model(surface, {0, {a, b, 1 - a - b}}, 0);
+        const double z = library.certificate.depth * any(engine);
+        const Vec3 n = model.normal();
+        const Vec3 t = unit(cross(n, {0.3, 0.5, 0.1}));
+        const Vec3 pressed = model.contact_point() + z * n;
+        const double g = model.respond(model.deflection(pressed)).friction_normal_force;
+        const double y = std::sqrt(2 * model.respond(model.deflection(pressed)).energy);
+        // The memory of a deeper or a shallower press; friction holds what the normal force allows.
+        model.set_memory({any(engine) * y, 0, 1});
+        const double psi = model.respond(model.deflection(pressed)).friction_normal_force / g;
+        const double rho =
+            any(engine) * model.slip_limit(model.deflection(pressed), kFriction * psi);
+        const double steep = steepness(model, pressed + rho * t);
+        EXPECT_LE(steep, bound * (1 + 1e-4)) << coupled;
+        closest = std::max(closest, steep / bound);
+      }
+    }
+    EXPECT_GT(closest, coupled ? 0.5 : 0.8);
+  }
 }
 
 }  // namespace
