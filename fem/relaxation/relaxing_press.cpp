@@ -24,8 +24,11 @@ constexpr double kRoundOff = 0.1;
 constexpr double kTouching = 1e-6;
 /// A time step that fails is halved down to this part of its piece of the motion.
 constexpr double kSmallestPart = 1e-7;
-/// Part of the shortest time of relaxation with which a piece of the motion begins.
+/// Part of the shortest time of relaxation with which the motion begins.
 constexpr double kFirstStep = 0.02;
+/// Tolerance of the time steps over that of their equilibria, at least: their error is a difference
+/// of two of them.
+constexpr double kLeastTolerance = 2;
 constexpr double kSafety = 0.9, kMostGrowth = 2, kMostShrinking = 0.2;
 
 void check_motion(const std::vector<ToolMotion>& motion) {
@@ -88,38 +91,46 @@ class Press {
     RelaxingSample sample;
   };
 
+  /// Part of a piece of the motion with which it begins: the time step so far, at most one
+  /// increment of travel.
+  double first_part(double duration, double longest) const {
+    const bool unlimited = !(duration > 0) || first_step_ == 0;
+    return unlimited ? longest : std::min(longest, length_ / duration);
+  }
+
   /// @return why the piece was not followed to its end; else empty.
   std::string follow_piece(const ToolMotion& from, const ToolMotion& to,
                            std::vector<RelaxingSample>& samples) {
     const double duration = to.time_s - from.time_s, travel = std::abs(to.travel - from.travel);
     const double longest = travel > max_travel_ ? max_travel_ / travel : 1;
-    double done = 0;
-    double part = duration > 0 ? std::min(longest, first_step_ / duration) : longest;
-    if (first_step_ == 0) part = longest;
+    if (!(duration > 0)) length_ = first_step_;
+    double done = 0, part = first_part(duration, longest);
+    std::string reason = "its error stays above the tolerance";
     while (done < 1) {
       if (++steps_ > relaxing_.max_steps)
         return "the motion needs more than " + std::to_string(relaxing_.max_steps) + " steps";
+      if (part < kSmallestPart)
+        return "no time step after " + std::to_string(here_.sample.time_s) + " s: " + reason;
       const double next = done + part > 1 - 1e-9 ? 1 : done + part;
-      std::string reason;
       std::optional<State> end = step_to(at(from, to, next), reason);
       if (!end) {
         part *= 0.5;
-        if (part < kSmallestPart)
-          return "no equilibrium at " + std::to_string(here_.sample.time_s) + " s: " + reason;
         continue;
       }
       const double peak = std::max(peak_, norm(end->sample.force));
-      const double error = end->sample.time_error / (relaxing_.time_tolerance * peak);
-      if (peak > 0 && error > 1 && part > kSmallestPart) {
-        part *= std::max(kMostShrinking, kSafety / std::cbrt(error));
+      const double allowed = relaxing_.time_tolerance * peak, error = end->sample.time_error;
+      const double change = error > 0 ? kSafety * std::cbrt(allowed / error) : kMostGrowth;
+      if (error > allowed) {
+        reason = "its error stays above the tolerance";
+        part *= std::max(kMostShrinking, change);
         continue;
       }
       here_ = std::move(*end);
       peak_ = peak;
       samples.push_back(here_.sample);
       done = next;
-      const double growth = error > 0 ? kSafety / std::cbrt(error) : kMostGrowth;
-      part = std::min(longest, part * std::clamp(growth, kMostShrinking, kMostGrowth));
+      part = std::min(longest, part * std::clamp(change, kMostShrinking, kMostGrowth));
+      if (duration > 0) length_ = part * duration;
     }
     return {};
   }
@@ -156,6 +167,7 @@ class Press {
     step_ = from.branches.step(h);
     NewtonOptions options;
     options.tolerance = force_tolerance_;
+    options.reuse_factor = true;
     options.round_off = std::max(context_.round_off, kRoundOff * force_tolerance_ * peak_);
     const NewtonResult result = solver_.solve(state.contact, options, state.u);
     reason = result.reason;
@@ -178,18 +190,23 @@ class Press {
   SolidModel model_;
   NewtonSolver solver_;
   bool no_slip_;
-  double max_travel_;       ///< m, of one step
-  double force_tolerance_;  ///< relative
-  double first_step_;       ///< s
+  double max_travel_;            ///< m, of one step
+  double force_tolerance_;       ///< relative
+  double first_step_;            ///< s, after a step of the tool; 0: elastic
+  double length_ = first_step_;  ///< s, of the next time step
   State here_;
   Tool touching_;
   double peak_ = 0;  ///< N, largest force so far
   int steps_ = 0;
 };
 
-void check_settings(const Body& body, const CampaignSettings& settings) {
+void check_settings(const Body& body, const CampaignSettings& settings,
+                    const RelaxingSettings& relaxing) {
   if (settings.gravity.acts())
     refuse(body.name, "relaxation of a body under its weight", "remove gravity");
+  if (!(relaxing.time_tolerance > kLeastTolerance * settings.indentation.force_tolerance))
+    refuse(body.name, "the tolerance of the time steps is not above that of their equilibria",
+           "give a time tolerance of more than twice the force_tolerance");
   if (settings.indentation.refine_under_tool != 0)
     refuse(body.name, "elements cannot be refined under the tool of a body that relaxes",
            "remove solver.refine_under_tool and choose a smaller mesh.element_size");
@@ -201,7 +218,7 @@ RelaxingPress press_relaxing(const Body& body, const CampaignSettings& settings,
                              std::int32_t vertex, const std::vector<ToolMotion>& motion,
                              const RelaxingSettings& relaxing) {
   check_indentation(settings.indentation);
-  check_settings(body, settings);
+  check_settings(body, settings, relaxing);
   check_motion(motion);
   const CampaignContext context(body, settings, Engine::Direct);
   Press press(context, settings, relaxation_of_regions(body, settings.materials), vertex, relaxing);

@@ -42,11 +42,12 @@ struct RelaxingPress {
 /// Follows the motion with Newton's method on the whole body, as Engine::Direct. The materials of
 /// the settings have their instantaneous laws and their relaxation. Each time step is solved at
 /// once and in two halves; a third of the difference of the forces is its error, and the halves are
-/// kept. Tool steps are at most one increment of the settings.
+/// kept. Tool steps are at most one increment of the settings. Contact of the body with itself and
+/// loss of ellipticity are not looked for. One thread.
 /// @param vertex  response vertex, or index of a point of the settings.
 /// @throws Error(Configuration) for a motion that is empty, does not start at 0 s and a travel of
-/// at most 0, goes back in time or is not finite, as run_campaign for the settings, and for gravity
-/// or refinement under the tool.
+/// at most 0, goes back in time or is not finite, as run_campaign for the settings, for gravity or
+/// refinement under the tool, and for a time tolerance below twice the force_tolerance.
 RelaxingPress press_relaxing(const Body& body, const CampaignSettings& settings,
                              std::int32_t vertex, const std::vector<ToolMotion>& motion,
                              const RelaxingSettings& relaxing = {});

@@ -89,6 +89,25 @@ TEST(IsochoricEnergies, AreTheDerivativesOfTheStoredEnergyByTheModuli) {
   }
 }
 
+/// The energy of the relaxed body is a minimum over all displacements, so at most that of the
+/// relaxed moduli at the displacements of the instantaneous body; the difference is of second order
+/// in the fraction that relaxes.
+TEST(IsochoricEnergies, BoundTheEnergyInTheLongTermFromAbove) {
+  const Body body = skin_on_base();
+  const Curves at_once = skin_curves(body, skin_settings(1, 1));
+  const CurveSample& before = at_once.sites[0].paths[0].samples.back();
+  const auto excess = [&](double fraction) {
+    const Curves relaxed = skin_curves(body, skin_settings(1 - fraction, 1, false));
+    const double bound = stored_energy(before) - fraction * before.isochoric_energy[0];
+    return bound - stored_energy(relaxed.sites[0].paths[0].samples.back());
+  };
+  const double half = excess(0.5), quarter = excess(0.25);
+  EXPECT_GT(quarter, 0);
+  EXPECT_GT(half, 3 * quarter);
+  EXPECT_LT(half, 7 * quarter);
+  EXPECT_LT(half, 0.15 * 0.5 * before.isochoric_energy[0]);
+}
+
 TEST(IsochoricEnergies, OfElasticTissueAreNotStored) {
   const Curves curves = skin_curves(skin_on_base(), skin_settings(1, 1, false));
   EXPECT_TRUE(curves.relaxation.empty());

@@ -59,6 +59,37 @@ TEST(RelaxingPress, OfElasticTissueHasTheForceOfTheCampaign) {
               1e-5 * expected);
 }
 
+TEST(RelaxingPress, WithoutSlipBondsTheSurfaceAsTheCampaign) {
+  const Body body = block();
+  CampaignSettings settings = settings_of({}, 0.45);
+  settings.indentation.friction = ToolFriction::NoSlip;
+  const CampaignContext context(body, settings, Engine::Direct);
+  const SiteCurves curves = solve_site(context, test::site_nearest(body), nullptr);
+  ASSERT_EQ(curves.status, SiteStatus::Complete);
+  const double expected = -curves.paths.front().samples.back().force[2];
+  EXPECT_NEAR(force(end_of(body, settings, {{0, 0}, {0, kDepth}})), expected, 1e-4 * expected);
+}
+
+/// Work of the tool that presses and returns to where it was, by the trapezoidal rule.
+double work_of_return(const RelaxationSeries& series) {
+  const Body body = block();
+  const RelaxingPress press = press_relaxing(body, settings_of(series), test::site_nearest(body),
+                                             {{0, 0}, {0.1, kDepth}, {0.2, 0}}, {1e-3, 500});
+  EXPECT_TRUE(press.complete) << press.reason;
+  double work = 0;
+  for (std::size_t i = 1; i < press.samples.size(); ++i) {
+    const RelaxingSample &before = press.samples[i - 1], &after = press.samples[i];
+    work += 0.5 * (force(before) + force(after)) * (after.travel - before.travel);
+  }
+  return work;
+}
+
+TEST(RelaxingPress, AReturnDissipatesWhereTheTissueRelaxes) {
+  const double stored = 0.4 * kDepth * 0.1;  // of a force of about 0.1 N
+  EXPECT_NEAR(work_of_return({}), 0, 2e-3 * stored);
+  EXPECT_GT(work_of_return({{0.5, 0.1}}), 2e-2 * stored);
+}
+
 /// A nearly incompressible body with one series everywhere.
 TEST(RelaxingPress, AHeldStepRelaxesAsTheSeries) {
   const Body body = block();
@@ -115,6 +146,9 @@ TEST(RelaxingPress, RefusesAMotionThatIsNone) {
   CampaignSettings heavy = settings;
   heavy.gravity.acceleration = {0, 0, -9.81};
   EXPECT_THAT(message({{0, 0}, {1, 0}}, heavy), HasSubstr("under its weight"));
+  CampaignSettings loose = settings;
+  loose.indentation.force_tolerance = 1e-3;
+  EXPECT_THAT(message({{0, 0}, {1, 0}}, loose), HasSubstr("not above that of their equilibria"));
 }
 
 }  // namespace
