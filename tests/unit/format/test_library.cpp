@@ -35,9 +35,7 @@ void link_elsewhere(const Path& path) {
                      H5P_DEFAULT, H5P_DEFAULT);
 }
 
-std::vector<Case> surface_and_response_cases() {
-  const auto kind = Kind::Library;
-  const auto coupled = Kind::CoupledLibrary;
+std::vector<Case> relaxation_cases() {
   const auto relaxing = Kind::RelaxingLibrary;
   return {
       {"LibraryRelaxingTimeZero", relaxing, poke("/relaxation/time", 0, 0), "/relaxation/time[0]",
@@ -53,6 +51,13 @@ std::vector<Case> surface_and_response_cases() {
       {"LibraryRelaxingWithoutAToolRadius", relaxing,
        edit([](Hdf5Editor& e) { e.set_attribute("/", "tool_radius", 0.0, H5T_NATIVE_DOUBLE); }),
        "/@tool_radius", "is not above 0"},
+  };
+}
+
+std::vector<Case> surface_and_response_cases() {
+  const auto kind = Kind::Library;
+  const auto coupled = Kind::CoupledLibrary;
+  return {
       {"LibraryCoupledBaseZero", coupled, poke("/response/coupling_base", 0, 0),
        "/response/coupling_base[0]", "finite and above 0"},
       {"LibraryCoupledSlopeNegative", coupled, poke("/response/coupling_slope", 1, -1),
@@ -145,6 +150,7 @@ std::vector<Case> status_and_certificate_cases() {
   };
 }
 
+INSTANTIATE_TEST_SUITE_P(Relaxation, Rejection, ::testing::ValuesIn(relaxation_cases()), case_name);
 INSTANTIATE_TEST_SUITE_P(SurfacesAndResponses, Rejection,
                          testing::ValuesIn(surface_and_response_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(StatusAndCertificates, Rejection,
