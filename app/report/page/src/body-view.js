@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The turning picture of the body: colours, nodes, contact path, hovering and clicking.
+import { drawAxes, drawScaleBar } from './annotations.js';
 import { Camera } from './camera.js';
 import { viridis } from './colormap.js';
 import { FIXED, HOLE, TOUCHABLE } from './data.js';
@@ -74,9 +75,13 @@ export class BodyView {
     return camera;
   }
 
-  /** Pixels per metre and offset of the projection at this raster size. */
+  pixelsPerMetre(width, height) {
+    return (0.5 * Math.min(width, height) * this.camera.zoom) / this.model.radius;
+  }
+
+  /** The projection at this raster size. */
   project(width, height) {
-    const scale = (0.5 * Math.min(width, height) * this.camera.zoom) / this.model.radius;
+    const scale = this.pixelsPerMetre(width, height);
     const { rows } = this.camera;
     const { centre } = this.model;
     return (points, i, out, o) => {
@@ -140,7 +145,7 @@ export class BodyView {
   fill(at, light) {
     const { model, raster } = this;
     const { facets } = model;
-    this.greys = { hole: rgb('body-hole'), fixed: rgb('body-fixed') };
+    this.greys = { hole: rgb('body-hole'), fixed: Object.assign(rgb('body-fixed'), { hatch: Math.max(2, Math.round(3 * this.scale)) }) };
     const p = new Float32Array(9), shade = new Float32Array(3), t = new Float32Array(3);
     for (let f = 0; f < facets.length / 3; ++f) {
       if (!this.draws(f)) continue;
@@ -150,7 +155,7 @@ export class BodyView {
         shade[i] = light[v];
         t[i] = this.colourOf(f, v);
       }
-      raster.triangle(f, p, shade, t, this.greyOf(f));
+      raster.triangle(f, p, shade, t, this.greyOf(f, t));
     }
   }
 
@@ -163,11 +168,10 @@ export class BodyView {
     return (value - field.low) / (field.high - field.low || 1);
   }
 
-  /** The grey of a facet whose value is not known, else null. */
-  greyOf(facet) {
+  /** The grey of a facet whose values t are not all known, else null. */
+  greyOf(facet, t) {
     const kind = this.model.surface.facet_kind[facet];
-    const corners = this.model.facets.subarray(3 * facet, 3 * facet + 3);
-    if (kind === TOUCHABLE && corners.every((v) => Number.isFinite(this.colourOf(facet, v)))) return null;
+    if (kind === TOUCHABLE && Number.isFinite(t[0] + t[1] + t[2])) return null;
     return kind === FIXED ? this.greys.fixed : this.greys.hole;
   }
 
@@ -185,6 +189,15 @@ export class BodyView {
     if (this.show.path && this.path) this.drawPath(context, place);
     for (const mark of this.marked) this.drawMark(context, place, mark);
     this.drawDiscs(context, place);
+    this.annotate(context);
+  }
+
+  annotate(context) {
+    const { width, height } = this.raster;
+    const pixelsPerMetre = this.pixelsPerMetre(width, height);
+    const length = drawScaleBar(context, { width, height, pixelsPerMetre, scale: this.scale });
+    drawAxes(context, { width, height, rows: this.camera.rows, scale: this.scale });
+    this.canvas.dataset.bar = `${length} ${(length * pixelsPerMetre) / this.scale}`;  // m and pixels of the page
   }
 
   /** Outlines of what lies inside, as if the body were of glass. */

@@ -6,7 +6,7 @@ import { colour, rgb } from './theme.js';
 import { toolMesh } from './tool-mesh.js';
 import { add, across, dot, minus, times, unit } from './vectors.js';
 
-const FINEST = 3;  // halvings of a facet near the tool
+const FINEST = 4;  // halvings of a facet near the tool
 const STEP = 6;    // of an arrow key, pixels
 
 /** Natural coordinates of (x, y) in a triangle of [x, y, z] corners that faces the viewer, else null. */
@@ -21,7 +21,7 @@ function inside(x, y, [a, b, c]) {
 
 export class TouchView extends BodyView {
   /** tool: {shape, radius}; hand: {press(spot), drag(spot), lift(), deepen(steps), toggle()}, spot: {point, inward} of
-   *  the response surface. */
+   *  the response surface; without a hand the body is only turned. */
   constructor(model, { facing, tool, hand }) {
     super(model, { facing, onPick: () => {}, describe: () => [] });
     this.tool = tool;
@@ -30,10 +30,14 @@ export class TouchView extends BodyView {
     this.at = null;      // {tip, axis, force, unit: N of an arrow as long as the body}
     this.cursor = null;  // the last spot
     this.show = { nodes: false, borders: false, path: false, inclusions: true, flags: false };
+    if (hand) this.makeTouchable();
+    this.measureFacets();
+  }
+
+  makeTouchable() {
     this.canvas.classList.add('touchable');
     this.canvas.setAttribute('aria-label', 'The body to touch. Arrow keys move the tool, the space bar presses and '
       + 'lifts it, page up and page down change the depth, arrow keys with Shift turn the body.');
-    this.measureFacets();
   }
 
   /** Middle, reach and outward direction of each facet. */
@@ -93,13 +97,13 @@ export class TouchView extends BodyView {
       const p = facets[3 * f + i];
       return { x: Array.from(points.subarray(3 * p, 3 * p + 3)), light: light[p], t: this.colourOf(f, p) };
     });
-    const pieces = Math.max(1, Math.min(2 ** FINEST, Math.ceil((4 * this.reach[f]) / this.tool.radius)));
+    const pieces = Math.max(1, Math.min(2 ** FINEST, Math.ceil((6 * this.reach[f]) / this.tool.radius)));
     const corner = (i, j) => {
       const weights = [1 - (i + j) / pieces, i / pieces, j / pieces];
       const mix = (read) => corners.reduce((sum, c, k) => sum + weights[k] * read(c), 0);
       return this.imprint({ x: [0, 1, 2].map((k) => mix((c) => c.x[k])), light: mix((c) => c.light), t: mix((c) => c.t) });
     };
-    const grey = this.greyOf(f);
+    const grey = this.greyOf(f, corners.map((c) => c.t));
     for (let i = 0; i < pieces; ++i) {
       for (let j = 0; i + j < pieces; ++j) {
         this.piece(f, [corner(i, j), corner(i + 1, j), corner(i, j + 1)], grey);
@@ -146,7 +150,7 @@ export class TouchView extends BodyView {
     const project = this.project(this.raster.width, this.raster.height);
     const spot = new Float32Array(6);
     project(tip, 0, spot, 0);
-    project(add(tip, times(this.model.radius / full, force)), 0, spot, 3);
+    project(add(tip, times(this.model.radius / full, force)), 0, spot, 3);  // `full` N: half the body
     const [x, y, endX, endY] = [spot[0], spot[1], spot[3], spot[4]];
     const length = Math.hypot(endX - x, endY - y) || 1;
     const head = Math.min(10 * this.scale, length / 2);
@@ -212,7 +216,7 @@ export class TouchView extends BodyView {
     const { canvas } = this;
     canvas.addEventListener('pointerdown', (e) => {
       canvas.setPointerCapture(e.pointerId);
-      const spot = this.spotUnder(e);
+      const spot = this.hand ? this.spotUnder(e) : null;
       pressing = spot !== null;
       if (pressing) this.press(spot);
       else turning = [e.clientX, e.clientY];
@@ -252,7 +256,7 @@ export class TouchView extends BodyView {
 
   key(event) {
     const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-    if (event.shiftKey || ['+', '-', '='].includes(event.key)) return super.key(event);
+    if (!this.hand || event.shiftKey || ['+', '-', '='].includes(event.key)) return super.key(event);
     if (moves[event.key]) this.walk(moves[event.key]);
     else if (event.key === ' ') this.hand.toggle();
     else if (event.key === 'PageUp' || event.key === 'PageDown') this.hand.deepen(event.key === 'PageUp' ? -1 : 1);

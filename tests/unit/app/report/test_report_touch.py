@@ -3,10 +3,13 @@
 """test_report_touch.py <write_sample_report> <touch_forces> <chromium>
 
 Presses the body of a report in a browser as a reader would, and compares the forces of the page with those of the C
-interface for the same motion, with the curve of the node, and with the laws of friction and energy.
+interface for the same motion, with the curve of the node, and with the laws of friction and energy. Then the pictures:
+scale bar, supports, the session in time, and what can be taken along.
 """
 import base64
+import csv
 import html
+import io
 import json
 import math
 import pathlib
@@ -74,8 +77,8 @@ def curve_force(data, node, depth):
     return force
 
 
-def rows_of(csv):
-    lines = csv.strip().split("\n")
+def rows_of(text):
+    lines = text.strip().split("\n")
     names = lines[0].split(",")
     return [dict(zip(names, map(float, line.split(",")))) for line in lines[1:]]
 
@@ -85,7 +88,9 @@ def newtons(text):
     return float(number.replace("\u202f", "")) * {"N": 1, "mN": 1e-3, "\u00b5N": 1e-6}[unit]
 
 
-class Touch(unittest.TestCase):
+class Acted(unittest.TestCase):
+    """Opens the sample report, acts on it, and returns what the act said."""
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -98,20 +103,22 @@ class Touch(unittest.TestCase):
     def tearDownClass(cls):
         cls.folder.cleanup()
 
-    def act(self, script, text=None, *options):
+    def act(self, script, text=None, only="touch"):
         text = text or self.text
         cut = text.rindex("</body>")
         page = self.path / "acted.html"
         page.write_text(f"{text[:cut]}<script>{ACT % script}</script>{text[cut:]}")
         with tempfile.TemporaryDirectory() as profile:
             shown = subprocess.run([BROWSER, *FLAGS, f"--user-data-dir={profile}", "--virtual-time-budget=60000",
-                                    "--dump-dom", *options, page.as_uri() + "?only=touch"],
+                                    "--dump-dom", f"{page.as_uri()}?only={only}"],
                                    capture_output=True, timeout=150, check=True).stdout.decode()
         said = json.loads(html.unescape(re.search(r'<p id="said">(.*?)</p>', shown, re.S)[1]))
         self.assertNotIn("error", said)
         self.assertIn('data-errors="0"', shown)
         return said
 
+
+class Touch(Acted):
     def forces_of_the_c_interface(self, rows):
         lines = "".join(f"{r['x_m']!r} {r['y_m']!r} {r['z_m']!r}\n" for r in rows)
         out = subprocess.run([FORCES], input=lines.encode(), capture_output=True, check=True).stdout.decode()
@@ -192,6 +199,71 @@ class Touch(unittest.TestCase):
         said = self.act("said.text = document.getElementById('touch').innerText;", text)
         self.assertIn("built without the WebAssembly toolchain", said["text"])
         self.assertIn("scripts/setup", said["text"])
+
+
+PIXELS = """const context = canvas().getContext('2d');
+    const { width, height, data } = context.getImageData(0, 0, canvas().width, canvas().height);"""
+
+
+class Pictures(Acted):
+    def test_the_scale_bar_measures_the_body(self):
+        """The width of the silhouette by the bar is that of the points across the direction of view."""
+        said = self.act(PIXELS + """let [low, high] = [width, 0];
+            for (let i = 0; i < 0.85 * width * height; ++i) if (data[4 * i + 3] > 127) { low = Math.min(low, i % width); high = Math.max(high, i % width); }
+            said.seen = (high + 1 - low) / devicePixelRatio; said.bar = canvas().dataset.bar.split(' ').map(Number);""")
+        stiffest = self.data["chosen"]["stiffest"]
+        x, y, _ = (-c for c in column(self.data["vertices"]["inward"], "f")[3 * stiffest:3 * stiffest + 3])
+        azimuth = math.atan2(y, x) + 0.35
+        points = column(self.data["surface"]["points"], "f")
+        across = [-math.sin(azimuth) * a + math.cos(azimuth) * b for a, b in zip(points[0::3], points[1::3])]
+        metres, pixels = said["bar"]
+        self.assertAlmostEqual(said["seen"], (max(across) - min(across)) * pixels / metres, delta=2)
+        self.assertIn(round(metres / 10 ** math.floor(math.log10(metres) + 1e-9), 6), (1, 2, 5))
+
+    def test_supports_are_hatched(self):
+        """From below, pixels three apart on the grey support differ by the stripes; the rest of the body has none."""
+        said = self.act("for (let i = 0; i < 14; ++i) key('ArrowUp', {shiftKey: true});" + PIXELS + """
+            const stripes = (grey) => { let count = 0; for (let i = 0; i + 3 < width * height; ++i) {
+              const [p, q] = [4 * i, 4 * (i + 3)].map((k) => Array.from(data.subarray(k, k + 4)));
+              const like = (c) => c[3] === 255 && (Math.max(...c.slice(0, 3)) - Math.min(...c.slice(0, 3)) < 20) === grey;
+              if (like(p) && like(q) && q[1] < 0.8 * p[1] && q[1] > 0.6 * p[1]) count += 1; } return count; };
+            said.grey = stripes(true); said.coloured = stripes(false); said.all = width * height;""")
+        self.assertGreater(said["grey"], 0.02 * said["all"])
+        self.assertLess(said["coloured"], 0.1 * said["grey"])
+
+    def test_a_session_is_seen_in_time(self):
+        said = self.act("""const at = (time) => { const s = get('scrub'); s.value = time; s.dispatchEvent(new Event('input'));
+              const c = document.querySelector('.scrub canvas'), {data} = c.getContext('2d').getImageData(0, 0, c.width, c.height);
+              let arrow = 0; for (let i = 0; i < data.length; i += 4) arrow += data[i] === 213 && data[i + 1] === 94 && data[i + 2] === 0;
+              return {text: get('scrub-text').textContent, arrow}; };
+            said.contact = at(0.75); said.free = at(2.2);
+            get('scrub-play').click(); await frames(30); get('scrub-play').click(); said.played = Number(get('scrub').value);
+            said.label = get('scrub-play').textContent;""", only="session")
+        drawn = self.data["session"]["drawn"]
+        time, depth = column(drawn["time"], "f"), column(drawn["depth"], "f")
+        i = max(k for k, t in enumerate(time) if t <= 0.75 + 1e-6)
+        self.assertIn(f"{time[i]:.3f}\u00a0s: depth {1e3 * depth[i]:.2f}\u00a0mm", said["contact"]["text"])
+        self.assertGreater(said["contact"]["arrow"], 30)
+        self.assertIn("no contact, force 0", said["free"]["text"])
+        self.assertEqual(said["free"]["arrow"], 0)
+        self.assertGreater(said["played"], 2.4)
+        self.assertLess(said["played"], 3)
+        self.assertEqual(said["label"], "Play")
+
+    def test_curves_and_pictures_can_be_taken_along(self):
+        said = self.act("""const take = document.querySelectorAll('#curves .take button'); take[0].click(); said.csv = csv;
+            take[1].click(); await wait(500); said.plot = [csv.type, csv.size > 3000];
+            [...document.querySelectorAll('#body .controls button')].find((b) => b.textContent === 'PNG').click(); await wait(500);
+            said.body = [csv.type, csv.size > 10000];""", only="body")
+        self.assertEqual([said["plot"], said["body"]], [["image/png", True]] * 2)
+        names, *values = csv.reader(io.StringIO(said["csv"]))
+        self.assertEqual(names[0], "Depth (mm)")
+        softest = self.data["chosen"]["softest"]
+        at = names.index(f"node {softest}, fitted")
+        known = [(float(v[0]), float(v[at])) for v in values if v[at]]
+        self.assertGreater(len(known), 20)
+        for depth, force in known:
+            self.assertAlmostEqual(force, curve_force(self.data, softest, 1e-3 * depth), delta=1e-5)
 
 
 if __name__ == "__main__":

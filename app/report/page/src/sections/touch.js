@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The body to press with the pointer: the forces are those of the runtime, which runs in the page.
 import { el, paragraph } from '../dom.js';
-import { download } from '../download.js';
+import { download, downloadCanvas } from '../download.js';
 import { Hand, MOST_STEPS } from '../hand.js';
 import { Model } from '../model.js';
 import { Outline } from '../outline.js';
-import { responseForce, secantStiffness } from '../response.js';
+import { responseForce } from '../response.js';
 import * as status from '../runtime.js';
 import { Runtime } from '../runtime.js';
 import { TouchView } from '../touch-view.js';
 import { dot, minus, times } from '../vectors.js';
 import * as units from '../units.js';
 import { FrictionCone } from './friction-cone.js';
+import { secantField } from './secant-field.js';
 
 const STEPS = 20;  // of the depth by wheel and keys
 const TICK = 1 / 60;  // s, of the first frame
@@ -77,14 +78,6 @@ class Readings {
   }
 }
 
-function colours(data) {
-  const size = data.vertices.response_status.length;
-  const depth = data.key.depth || 1e-3;
-  const ofVertex = Float32Array.from({ length: size }, (_, v) => secantStiffness(data.normal, v, depth));
-  const known = ofVertex.filter(Number.isFinite);
-  return { ofVertex, low: known.reduce((a, b) => Math.min(a, b), Infinity), high: known.reduce((a, b) => Math.max(a, b), -Infinity) };
-}
-
 /** The body, the hand and the readings, joined by the frames of the browser. */
 class Touch {
   constructor(data) {
@@ -110,9 +103,9 @@ class Touch {
     });
     this.view.inclusions = data.inclusions.map((inclusion) => new Outline(inclusion));
     this.view.cursor = this.view.spotOfNode(start);
-    this.view.setField(colours(data));
+    this.view.setField(secantField(data));
     const largest = responseForce(data.normal, start, this.hand.deepest);
-    this.unit = 2 * (largest > 0 ? largest : 1);
+    this.unit = largest > 0 ? largest : 1;
   }
 
   press(spot) { this.hand.press(spot); this.run(); }
@@ -191,7 +184,8 @@ function controls(touch) {
       onclick: () => download('touch.csv', 'text/csv', hand.csv()) }, 'Steps as CSV'),
     el('span', {},
       el('button', { type: 'button', 'aria-label': 'Zoom in', onclick: () => touch.view.zoomBy(1.25) }, '+'), ' ',
-      el('button', { type: 'button', 'aria-label': 'Zoom out', onclick: () => touch.view.zoomBy(0.8) }, '\u2212')));
+      el('button', { type: 'button', 'aria-label': 'Zoom out', onclick: () => touch.view.zoomBy(0.8) }, '\u2212'), ' ',
+      el('button', { type: 'button', onclick: () => downloadCanvas('touch.png', touch.view.canvas) }, 'PNG')));
 }
 
 function friction(data) {
