@@ -2,7 +2,9 @@
 // Memory for large tables that are read at random places.
 #pragma once
 
+#if defined(__linux__)
 #include <sys/mman.h>
+#endif
 
 #include <cstddef>
 #include <cstdlib>
@@ -27,10 +29,14 @@ struct LargeMemory {
     const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
     void* memory = std::aligned_alloc(alignment, whole);
     if (memory == nullptr) throw std::bad_alloc();
+#if defined(__linux__)
     if (alignment == kPage) madvise(memory, whole, MADV_HUGEPAGE);  // optional
+#endif
     return static_cast<T*>(memory);
   }
-  void deallocate(T* memory, std::size_t) noexcept { std::free(memory); }
+  void deallocate(T* memory, std::size_t) noexcept {
+    std::free(memory);
+  }
   bool operator==(const LargeMemory&) const = default;
 
  private:

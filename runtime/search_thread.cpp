@@ -1,10 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/search_thread.hpp"
 
+#include <readerwriterqueue/readerwritercircularbuffer.h>
+
 #include <chrono>
+#include <condition_variable>
 #include <cstddef>
+#include <mutex>
+#include <thread>
 
 namespace palpate::runtime {
+
+struct SearchThread::Worker {
+  Worker(const Surface& surface, const CollisionTree& tree, double rate)
+      : search(surface, tree), thread([this, rate] { run(rate); }) {}
+  ~Worker();
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  void run(double rate);
+
+  Search search;
+  LatestReport latest;
+  moodycamel::BlockingReaderWriterCircularBuffer<Delivery> queue{4};
+  std::mutex mutex;
+  std::condition_variable wake;
+  bool stop = false;
+  std::thread thread;  ///< last member: it uses the others
+};
 
 // Every access is atomic, so there is no race to define away; release and acquire on the values
 // keep them between the two writes of the sequence, as a fence would.
@@ -31,34 +54,40 @@ bool LatestReport::read(TipReport& report) noexcept {
 }
 
 SearchThread::SearchThread(const Surface& surface, const CollisionTree& tree, double rate)
-    : search_(surface, tree), thread_([this, rate] { run(rate); }) {}
+    : worker_(std::make_unique<Worker>(surface, tree, rate)) {}
 
-SearchThread::~SearchThread() {
-  {
-    const std::scoped_lock lock(mutex_);
-    stop_ = true;
-  }
-  wake_.notify_one();
-  thread_.join();
+SearchThread::~SearchThread() = default;
+
+void SearchThread::report(const TipReport& tip) noexcept {
+  worker_->latest.write(tip);
 }
 
 bool SearchThread::receive(Delivery& delivery) noexcept {
   bool received = false;
-  while (queue_.try_dequeue(delivery)) received = true;
+  while (worker_->queue.try_dequeue(delivery)) received = true;
   return received;
 }
 
-void SearchThread::run(double rate) {
+SearchThread::Worker::~Worker() {
+  {
+    const std::scoped_lock lock(mutex);
+    stop = true;
+  }
+  wake.notify_one();
+  thread.join();
+}
+
+void SearchThread::Worker::run(double rate) {
   using Clock = std::chrono::steady_clock;
   const auto period =
       std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1 / rate));
   auto next = Clock::now();
-  std::unique_lock lock(mutex_);
-  while (!stop_) {
+  std::unique_lock lock(mutex);
+  while (!stop) {
     TipReport tip;
-    if (latest_.read(tip)) queue_.try_enqueue(search_.look(tip));  // full: the loop does not step
+    if (latest.read(tip)) queue.try_enqueue(search.look(tip));  // full: the loop does not step
     next += period;
-    wake_.wait_until(lock, next, [this] { return stop_; });
+    wake.wait_until(lock, next, [this] { return stop; });
   }
 }
 

@@ -2,14 +2,10 @@
 // The search in a thread of its own, at a low rate.
 #pragma once
 
-#include <readerwriterqueue/readerwritercircularbuffer.h>
-
 #include <array>
 #include <atomic>
-#include <condition_variable>
 #include <cstdint>
-#include <mutex>
-#include <thread>
+#include <memory>
 
 #include "runtime/delivery.hpp"
 #include "runtime/search.hpp"
@@ -33,30 +29,24 @@ class LatestReport {
 
 /// The force loop reports the position of the tip and receives the triangles near it, which the
 /// thread finds. Deliveries pass through a bounded queue without locks [Mahvash & Hayward 2005,
-/// VI-A].
+/// VI-A]. A build without threads has no_search_thread.cpp in place of search_thread.cpp.
 class SearchThread {
  public:
-  /// Starts the thread. rate: searches per second, Hz, > 0. @throws std::system_error.
+  /// Starts the thread. rate: searches per second, Hz, > 0. @throws std::system_error; in a build
+  /// without threads Error(Configuration).
   SearchThread(const Surface& surface, const CollisionTree& tree, double rate);
   ~SearchThread();  ///< stops the thread and waits for it
   SearchThread(const SearchThread&) = delete;
   SearchThread& operator=(const SearchThread&) = delete;
 
   /// Force loop only. Wait-free, no system call.
-  void report(const TipReport& tip) noexcept { latest_.write(tip); }
+  void report(const TipReport& tip) noexcept;
   /// Force loop only: the newest delivery, if there is one. Wait-free, no system call.
   bool receive(Delivery& delivery) noexcept;
 
  private:
-  void run(double rate);
-
-  Search search_;
-  LatestReport latest_;
-  moodycamel::BlockingReaderWriterCircularBuffer<Delivery> queue_{4};
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  bool stop_ = false;
-  std::thread thread_;  ///< last member: it uses the others
+  struct Worker;
+  std::unique_ptr<Worker> worker_;
 };
 
 }  // namespace palpate::runtime

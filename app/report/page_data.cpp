@@ -11,6 +11,7 @@
 #include "app/report/inclusions.hpp"
 #include "app/report/repair_file.hpp"
 #include "app/report/surface_map.hpp"
+#include "app/report/touch.hpp"
 #include "fitting/response/fit_errors.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
@@ -304,6 +305,7 @@ json page_data(const ReportInput& input) {
           {"fidelity", fidelity_data(input.fidelity, input.library_sha256)},
           {"repair", repair_data(input.repair, input.body->provenance)},
           {"session", input.session == nullptr ? json() : session_data(*input.session)},
+          {"touch", touch_data(library)},
           {"provenance", provenance_data(input)}};
 }
 

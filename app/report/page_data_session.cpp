@@ -36,8 +36,10 @@ json latency_data(const SessionDigest& session) {
           {"steps", latency.size()}};
 }
 
+/// Points are in the frame of the body.
 json drawn_columns(const SessionDigest& session) {
-  std::vector<float> time, fx, fy, fz, depth, lateral, energy, tank, absorbed, contact;
+  const Vec3& origin = session.heading().settings.body_position;
+  std::vector<float> time, position, fx, fy, fz, depth, lateral, energy, tank, absorbed, contact;
   std::vector<std::int32_t> element;
   for (const RecordedStep& step : session.drawn()) {
     const auto add = [](std::vector<float>& out, double x) {
@@ -52,13 +54,15 @@ json drawn_columns(const SessionDigest& session) {
     add(energy, step.energy);
     add(tank, step.tank);
     add(absorbed, step.absorbed);
-    for (const double x : step.contact_point) add(contact, x);
+    for (const double x : step.contact_point - origin) add(contact, x);
+    for (const double x : step.position - origin) add(position, x);
     element.push_back(step.element);
   }
-  return {{"time", column(time)},       {"fx", column(fx)},          {"fy", column(fy)},
-          {"fz", column(fz)},           {"depth", column(depth)},    {"lateral", column(lateral)},
-          {"energy", column(energy)},   {"tank", column(tank)},      {"absorbed", column(absorbed)},
-          {"contact", column(contact)}, {"element", column(element)}};
+  return {
+      {"time", column(time)},       {"fx", column(fx)},           {"fy", column(fy)},
+      {"fz", column(fz)},           {"depth", column(depth)},     {"lateral", column(lateral)},
+      {"energy", column(energy)},   {"tank", column(tank)},       {"absorbed", column(absorbed)},
+      {"contact", column(contact)}, {"element", column(element)}, {"position", column(position)}};
 }
 
 }  // namespace

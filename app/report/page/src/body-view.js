@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The turning picture of the body: colours, nodes, contact path, hovering and clicking.
+import { drawAxes, drawScaleBar } from './annotations.js';
 import { Camera } from './camera.js';
 import { viridis } from './colormap.js';
 import { FIXED, HOLE, TOUCHABLE } from './data.js';
@@ -74,9 +75,13 @@ export class BodyView {
     return camera;
   }
 
-  /** Pixels per metre and offset of the projection at this raster size. */
+  pixelsPerMetre(width, height) {
+    return (0.5 * Math.min(width, height) * this.camera.zoom) / this.model.radius;
+  }
+
+  /** The projection at this raster size. */
   project(width, height) {
-    const scale = (0.5 * Math.min(width, height) * this.camera.zoom) / this.model.radius;
+    const scale = this.pixelsPerMetre(width, height);
     const { rows } = this.camera;
     const { centre } = this.model;
     return (points, i, out, o) => {
@@ -115,9 +120,7 @@ export class BodyView {
     const size = model.points.length / 3;
     const at = new Float32Array(3 * size), light = new Float32Array(size);
     const project = this.project(width, height);
-    const [right, up, toward] = this.camera.rows;
-    // A lamp at the upper left shoulder of the viewer; never so dark that the colour misleads.
-    const lamp = toward.map((t, k) => 0.88 * t + 0.36 * up[k] - 0.3 * right[k]);
+    const lamp = this.lampDirection();
     for (let p = 0; p < size; ++p) {
       project(model.points, 3 * p, at, 3 * p);
       const n = 3 * p;
@@ -133,25 +136,43 @@ export class BodyView {
     }
   }
 
+  /** A lamp at the upper left shoulder of the viewer; never so dark that the colour misleads. */
+  lampDirection() {
+    const [right, up, toward] = this.camera.rows;
+    return toward.map((t, k) => 0.88 * t + 0.36 * up[k] - 0.3 * right[k]);
+  }
+
   fill(at, light) {
-    const { model, raster, field } = this;
+    const { model, raster } = this;
     const { facets } = model;
-    const kinds = model.surface.facet_kind;
-    const grey = { hole: rgb('body-hole'), fixed: rgb('body-fixed') };
-    const span = field.high - field.low || 1;
+    this.greys = { hole: rgb('body-hole'), fixed: Object.assign(rgb('body-fixed'), { hatch: Math.max(2, Math.round(3 * this.scale)) }) };
     const p = new Float32Array(9), shade = new Float32Array(3), t = new Float32Array(3);
-    for (let f = 0; f < kinds.length; ++f) {
-      let known = kinds[f] === TOUCHABLE;
+    for (let f = 0; f < facets.length / 3; ++f) {
+      if (!this.draws(f)) continue;
       for (let i = 0; i < 3; ++i) {
         const v = facets[3 * f + i];
         for (let k = 0; k < 3; ++k) p[3 * i + k] = at[3 * v + k];
         shade[i] = light[v];
-        const value = field.ofTriangle ? field.ofTriangle[model.triangleOf(f)] : this.pointValue[v];
-        known &&= Number.isFinite(value);
-        t[i] = (value - field.low) / span;
+        t[i] = this.colourOf(f, v);
       }
-      raster.triangle(f, p, shade, t, known ? null : kinds[f] === FIXED ? grey.fixed : grey.hole);
+      raster.triangle(f, p, shade, t, this.greyOf(f, t));
     }
+  }
+
+  draws() { return true; }
+
+  /** Coordinate in the colour map at a point of a facet. */
+  colourOf(facet, point) {
+    const { field } = this;
+    const value = field.ofTriangle ? field.ofTriangle[this.model.triangleOf(facet)] : this.pointValue[point];
+    return (value - field.low) / (field.high - field.low || 1);
+  }
+
+  /** The grey of a facet whose values t are not all known, else null. */
+  greyOf(facet, t) {
+    const kind = this.model.surface.facet_kind[facet];
+    if (kind === TOUCHABLE && Number.isFinite(t[0] + t[1] + t[2])) return null;
+    return kind === FIXED ? this.greys.fixed : this.greys.hole;
   }
 
   overlay(context) {
@@ -168,6 +189,15 @@ export class BodyView {
     if (this.show.path && this.path) this.drawPath(context, place);
     for (const mark of this.marked) this.drawMark(context, place, mark);
     this.drawDiscs(context, place);
+    this.annotate(context);
+  }
+
+  annotate(context) {
+    const { width, height } = this.raster;
+    const pixelsPerMetre = this.pixelsPerMetre(width, height);
+    const length = drawScaleBar(context, { width, height, pixelsPerMetre, scale: this.scale });
+    drawAxes(context, { width, height, rows: this.camera.rows, scale: this.scale });
+    this.canvas.dataset.bar = `${length} ${(length * pixelsPerMetre) / this.scale}`;  // m and pixels of the page
   }
 
   /** Outlines of what lies inside, as if the body were of glass. */

@@ -15,6 +15,7 @@ import { previewSection } from './sections/preview.js';
 import { recordSection } from './sections/record.js';
 import { repairSection } from './sections/repair.js';
 import { sessionSection } from './sections/session.js';
+import { touchSection } from './sections/touch.js';
 import { watchTheme } from './theme.js';
 
 // Attributes of the root element give the state of the page: data-ready "ok" or "failed", data-errors the
@@ -44,6 +45,7 @@ function showReport(data) {
   const nodes = new Nodes(data);
   place('header', () => headerSection(data, nodes));
   place('body', () => bodySection(data, nodes, new Curves(data, nodes)));
+  place('touch', () => touchSection(data));
   if (data.repair) place('repair', () => repairSection(data));
   place('fit', () => fitSection(data));
   place('fidelity', () => fidelitySection(data) ?? '');

@@ -2,6 +2,7 @@
 // The three kinds of plot of the report on uPlot: curves with markers, histograms, time series.
 import uPlot from '../vendor/uplot/uPlot.esm.js';
 import { el } from './dom.js';
+import { download, downloadCanvas, fileName } from './download.js';
 import { colour, onThemeChange } from './theme.js';
 
 const FONT = '12px system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif';
@@ -24,11 +25,24 @@ function axis(label, side) {
 
 const tickText = (v) => String(Number(v.toPrecision(6))).replace('-', '\u2212');
 
+const field = (text) => (/[",\n]/.test(text) ? `"${text.replaceAll('"', '""')}"` : text);
+
+/** Columns with their labels; an ordinate that is not known is empty. */
+function csv(labels, columns) {
+  const rows = Array.from(columns[0], (_, i) => columns.map((column) => column[i] ?? '').join(','));
+  return [labels.map(field).join(','), ...rows].join('\n') + '\n';
+}
+
 /** A figure that follows the width of its place and the colour scheme. */
 function figure(title, options, data, height = 240) {
   const place = el('div', {});
-  const element = el('div', { class: 'plot' }, title ? el('h3', {}, title) : null, place);
   let chart = null;
+  const labels = () => [options.axes[0].label, ...options.series.slice(1).map((s) => s.label)];
+  const name = fileName(title || options.axes[1].label);
+  const element = el('div', { class: 'plot' }, title ? el('h3', {}, title) : null, place,
+    el('div', { class: 'take' },
+      el('button', { type: 'button', class: 'plain', 'aria-label': `${title || 'Curves'} as CSV`, onclick: () => download(`${name}.csv`, 'text/csv', csv(labels(), data)) }, 'CSV'),
+      el('button', { type: 'button', class: 'plain', 'aria-label': `${title || 'Curves'} as PNG`, onclick: () => chart && downloadCanvas(`${name}.png`, chart.ctx.canvas) }, 'PNG')));
   const build = (spec, columns) => {
     chart?.destroy();
     const width = Math.max(240, Math.floor(place.getBoundingClientRect().width) || 480);

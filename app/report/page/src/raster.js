@@ -21,7 +21,8 @@ export class Raster {
 
   /**
    * One triangle. p: [x, y, z] of its corners in pixels, z toward the viewer; shade: light of each
-   * corner; t: colour-map coordinate of each corner, or grey: [r, g, b].
+   * corner; t: colour-map coordinate of each corner, or grey: [r, g, b], with a property `hatch` in stripes of so many
+   * pixels.
    */
   triangle(id, p, shade, t, grey) {
     const [ax, ay, az, bx, by, bz, cx, cy, cz] = p;
@@ -45,7 +46,8 @@ export class Raster {
         this.facet[i] = id;
         const light = a * shade[0] + b * shade[1] + c * shade[2];
         if (grey) {
-          this.pixel[i] = pack(grey[0] * light, grey[1] * light, grey[2] * light);
+          const shown = grey.hatch && Math.floor((x + y) / grey.hatch) % 3 === 0 ? 0.72 * light : light;
+          this.pixel[i] = pack(grey[0] * shown, grey[1] * shown, grey[2] * shown);
         } else {
           const k = 3 * Math.max(0, Math.min(255, Math.round(255 * (a * t[0] + b * t[1] + c * t[2]))));
           this.pixel[i] = pack(TABLE[k] * light, TABLE[k + 1] * light, TABLE[k + 2] * light);

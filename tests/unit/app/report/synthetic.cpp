@@ -324,6 +324,23 @@ Vec3 path_point(double s) {
 }
 
 /// Two presses that slide across the spot and back; friction takes a tenth of the power.
+/// The triangle whose middle is nearest to a point.
+std::int32_t nearest_triangle(const Library& library, const Vec3& point) {
+  std::int32_t nearest = -1;
+  double least = kInfinity;
+  for (std::size_t m = 0; m < library.triangles.size(); ++m) {
+    Vec3 middle{};
+    for (const std::int32_t v : library.triangles[m])
+      middle = middle + (1.0 / 3) * library.positions[static_cast<std::size_t>(v)];
+    const double away = norm(middle - point);
+    if (away < least) {
+      least = away;
+      nearest = static_cast<std::int32_t>(m);
+    }
+  }
+  return nearest;
+}
+
 Recording make_recording(const Library& library) {
   Recording recording;
   recording.device = "simulated";
@@ -332,14 +349,15 @@ Recording make_recording(const Library& library) {
   recording.provenance = library.provenance;
   recording.provenance.steps.push_back(step("simulate", "2026-01-31T12:30:00Z", "library.h5"));
   double before = 0, dissipated = 0;
+  std::int32_t element = -1;
   for (std::int64_t i = 0; i < 6000; ++i) {
     const double t = 1e-3 * static_cast<double>(i);
     const double s = 0.5 - 0.5 * std::cos(t * std::numbers::pi / 3);
     RecordedStep r;
     r.time_ns = i * 1000000;
     r.contact_point = path_point(s);
-    r.position = r.contact_point;
     r.depth = std::max(0.0, 0.0045 * std::sin(2 * std::numbers::pi * t / 3));
+    r.position = r.contact_point - (r.depth > 0 ? r.depth : -0.003) * unit(r.contact_point);
     const double c = hertz_factor(r.contact_point);
     const double magnitude = c * std::pow(r.depth, 1.5);
     r.energy = c * std::pow(r.depth, 2.5) / 2.5;
@@ -348,7 +366,8 @@ Recording make_recording(const Library& library) {
     r.absorbed = r.energy + dissipated;
     r.force = magnitude * unit(r.contact_point);
     r.lateral = 0.25 * r.depth;
-    r.element = r.depth > 0 ? static_cast<std::int32_t>(i % 7) : -1;
+    if (i % 20 == 0) element = nearest_triangle(library, r.contact_point);
+    r.element = r.depth > 0 ? element : -1;
     r.status = r.depth > 0 ? PALPATE_CONTACT | PALPATE_SLIDING : 0U;
     r.latency_ns = 900 + (i * 7919) % 701 + (i % 997 == 3 ? 20000 : 0);
     recording.steps.push_back(r);

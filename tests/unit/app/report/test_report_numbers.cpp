@@ -150,6 +150,21 @@ TEST_F(Report, AtMostHalfOfTheNodesAreSofterThanTheMedianAndAtMostHalfStiffer) {
   EXPECT_LE(stiffer, size / 2);
 }
 
+/// The device may have the body anywhere: on the page the tool is where it was on the body. The
+/// sums are of double precision, the columns of single.
+TEST(SessionData, IsInTheFrameOfTheBody) {
+  Recording recording = testing::synthetic(1, 1).recording;
+  const json there = report::session_data(report::digest(recording));
+  recording.settings.body_position = {0.5, -0.25, 1};
+  for (RecordedStep& step : recording.steps) {
+    step.contact_point = step.contact_point + recording.settings.body_position;
+    step.position = step.position + recording.settings.body_position;
+  }
+  const json moved = report::session_data(report::digest(recording));
+  EXPECT_EQ(moved["drawn"]["contact"], there["drawn"]["contact"]);
+  EXPECT_EQ(moved["drawn"]["position"], there["drawn"]["position"]);
+}
+
 TEST(SecantStiffness, OfAPiecewiseLinearSlopeInClosedForm) {
   NodeResponse response;
   response.status = ResponseStatus::Fitted;

@@ -154,8 +154,9 @@ class ReportPage(unittest.TestCase):
 
     def test_every_figure_is_on_the_page(self):
         canvases = [a for t, a in self.full.tags if t == "canvas"]
-        # the body, two curve panels, two fit histograms, three of the session, one of timings
-        self.assertEqual(len(canvases), 9)
+        # the body, two curve panels, two fit histograms, the tool in time and three plots of the session, one of timings
+        touch = json.loads(self.full.by_id["data"])["touch"] is not None
+        self.assertEqual(len(canvases), 10 + touch)
         for name in ("body", "curves", "fit", "session", "certificate", "record"):
             self.assertIn(name, self.full.by_id)
         self.assertIn("The session was passive", self.full.by_id["account"])

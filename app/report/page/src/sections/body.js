@@ -4,6 +4,7 @@ import { BodyView } from '../body-view.js';
 import { cssGradient, roundTicks } from '../colormap.js';
 import { FIXED, HOLE, RESPONSE, SITE } from '../data.js';
 import { el, paragraph, table } from '../dom.js';
+import { downloadCanvas } from '../download.js';
 import { Model } from '../model.js';
 import { Outline } from '../outline.js';
 import { secantStiffness, responseForce } from '../response.js';
@@ -166,7 +167,8 @@ function controls(options, view, depthControl, choose) {
     el('span', {},
       el('button', { type: 'button', 'aria-label': 'Zoom in', onclick: () => view.zoomBy(1.25) }, '+'), ' ',
       el('button', { type: 'button', 'aria-label': 'Zoom out', onclick: () => view.zoomBy(0.8) }, '\u2212'), ' ',
-      el('button', { type: 'button', onclick: () => view.reset() }, 'Reset')));
+      el('button', { type: 'button', onclick: () => view.reset() }, 'Reset'), ' ',
+      el('button', { type: 'button', onclick: () => downloadCanvas('body.png', view.canvas) }, 'PNG')));
 }
 
 /** Which sites ended early, where and why. */
@@ -187,7 +189,7 @@ function keys(data) {
   };
   const kinds = new Set(data.surface.facet_kind);
   return el('div', { class: 'keys' },
-    kinds.has(FIXED) ? key('body-fixed', 'fixed by a support') : null,
+    kinds.has(FIXED) ? key('body-fixed', 'hatched: fixed by a support') : null,
     kinds.has(1) ? key('body-hole', 'no response (a hole, a support or outside the press zones)') : null,
     flags(data.vertices).some((f) => f.symbol === 'cross') ? el('span', {}, '\u2715 site ended early') : null,
     flags(data.vertices).some((f) => f.symbol === 'triangle') ? el('span', {}, '\u25b3 fit misses the computed states') : null,

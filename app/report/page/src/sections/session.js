@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 import { el, paragraph } from '../dom.js';
 import { timePlot } from '../plot.js';
+import { scrubPanel } from './scrub.js';
 import * as units from '../units.js';
 
 const scale = (column, factor) => Float64Array.from(column, (x) => x * factor);
@@ -41,6 +42,7 @@ export function sessionSection(data) {
     paragraph(`${session.device || 'Unnamed device'}, ${units.frequency(session.rate)}, \u03bc = ${units.significant(session.friction)}, ${units.duration(session.duration)}, ${units.count(session.steps)} steps; largest force ${units.force(session.max_force)}.${drawn}`, 'lead'),
     ...beyondSentence(data),
     accountSentence(session),
+    scrubPanel(data),
     timePlot('Force commanded to the device', 'Force (N)', d.time, [
       { label: 'x', colour: 'series-1', values: d.fx }, { label: 'y', colour: 'series-2', values: d.fy },
       { label: 'z', colour: 'series-3', values: d.fz }, { label: 'magnitude', colour: 'series-5', values: magnitude }]),

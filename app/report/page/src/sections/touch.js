@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The body to press with the pointer: the forces are those of the runtime, which runs in the page.
+import { el, paragraph } from '../dom.js';
+import { download, downloadCanvas } from '../download.js';
+import { Hand, MOST_STEPS } from '../hand.js';
+import { Model } from '../model.js';
+import { Outline } from '../outline.js';
+import { responseForce } from '../response.js';
+import * as status from '../runtime.js';
+import { Runtime } from '../runtime.js';
+import { TouchView } from '../touch-view.js';
+import { dot, minus, times } from '../vectors.js';
+import * as units from '../units.js';
+import { FrictionCone } from './friction-cone.js';
+import { secantField } from './secant-field.js';
+
+const STEPS = 20;  // of the depth by wheel and keys
+const TICK = 1 / 60;  // s, of the first frame
+
+const HELP = 'Press on the body: the tool goes in along the inward normal to the depth of the slider; the wheel changes the depth while you press. '
+  + 'Drag to slide, release to lift. Drag beside the body to turn it. With the keyboard: space presses, arrows slide, page up and down change the depth.';
+const CAPTION = 'The forces are computed in this page by the runtime of palpate, 1000 steps a second. '
+  + 'The dent is the imprint of the tool on the undeformed skin, not the deformation of the body.';
+
+const bytesOf = (column) => new Uint8Array(column.buffer, column.byteOffset, column.byteLength);
+
+/** Normal force and lateral force on the body, N. */
+function forces(seen) {
+  const normal = dot(seen.forceOnBody, seen.normal);
+  return { normal, lateral: Math.hypot(...minus(seen.forceOnBody, times(normal, seen.normal))) };
+}
+
+const WORDS = [[status.BEYOND_DEPTH, 'beyond the deepest sample: extrapolated'], [status.AT_BORDER, 'at a border'],
+  [status.ENERGY_LIMITED, 'limited by the energy rule'], [status.FORCE_LIMITED, 'slide throttled'],
+  [status.SLIDING, 'sliding']];
+
+function stateText(seen) {
+  if (!seen || seen.element < 0) return 'no contact';
+  return WORDS.find(([bit]) => seen.status & bit)?.[1] ?? 'in contact, sticking';
+}
+
+/** The figures of the last step. */
+class Readings {
+  constructor(friction) {
+    this.cone = new FrictionCone(friction);
+    this.friction = friction;
+    const names = [['state', 'State'], ['depth', 'Depth'], ['normal', 'Normal force'], ['lateral', 'Lateral force'],
+      ['used', `Friction, \u03bc = ${units.significant(friction)}`], ['energy', 'Stored energy'], ['tank', 'Energy tank'],
+      ['absorbed', 'Absorbed'], ['margin', 'Absorbed \u2212 (stored + tank)']];
+    this.outputs = Object.fromEntries(names.map(([key]) => [key, el('output', { id: `touch-${key}` })]));
+    this.element = el('div', {},
+      el('dl', { class: 'facts' }, names.flatMap(([key, name]) => [el('dt', {}, name), el('dd', {}, this.outputs[key])])),
+      this.cone.element);
+    this.show(null, Infinity);
+  }
+
+  show(seen, least) {
+    const touching = seen !== null && seen.element >= 0;
+    const { normal, lateral } = touching ? forces(seen) : { normal: 0, lateral: 0 };
+    const put = (key, text) => { this.outputs[key].textContent = text; };
+    put('state', stateText(seen));
+    put('depth', units.scaledLength(touching ? seen.depth : 0));
+    put('normal', units.force(normal));
+    put('lateral', units.force(lateral));
+    put('used', normal > 0 && this.friction > 0 ? `${units.percent(lateral / (this.friction * normal))} of the cone` : '\u2013');
+    put('energy', units.energy(seen?.energy ?? 0));
+    put('tank', units.energy(seen?.tank ?? 0));
+    put('absorbed', units.energy(seen?.absorbed ?? 0));
+    this.showMargin(seen, least);
+    this.cone.show(normal, lateral);
+  }
+
+  showMargin(seen, least) {
+    const passive = !(least < -1e-12);
+    const now = seen ? seen.absorbed - seen.energy - seen.tank : 0;
+    this.outputs.margin.textContent = `${units.energy(Math.abs(now) < 1e-15 ? 0 : now)}; ${passive ? 'passive' : `violated: ${units.energy(least)}`}`;
+    this.outputs.margin.className = passive ? '' : 'warn';
+  }
+}
+
+/** The body, the hand and the readings, joined by the frames of the browser. */
+class Touch {
+  constructor(data) {
+    const runtime = new Runtime(bytesOf(data.touch.runtime));
+    const library = runtime.load(bytesOf(data.touch.library));
+    this.friction = data.certificate ? runtime.describe(library).friction : 0;
+    this.hand = new Hand(runtime.state(library, { friction: this.friction }), data.key.depth || runtime.describe(library).depth);
+    this.readings = new Readings(this.friction);
+    this.data = data;
+    this.makeView();
+    this.frame = (now) => this.tick(now);
+    this.running = false;
+  }
+
+  makeView() {
+    const { data } = this;
+    const start = Math.max(0, data.chosen.stiffest);
+    this.view = new TouchView(new Model(data), {
+      facing: data.chosen.stiffest < 0 ? [1, -1, 0.4] : Array.from(data.vertices.inward.subarray(3 * start, 3 * start + 3), (x) => -x),
+      tool: { shape: data.key.tool_shape, radius: data.key.tool_radius },
+      hand: { press: (spot) => this.press(spot), drag: (spot) => this.drag(spot), lift: () => this.lift(),
+        toggle: () => this.toggle(), deepen: (steps) => this.deepen(steps) },
+    });
+    this.view.inclusions = data.inclusions.map((inclusion) => new Outline(inclusion));
+    this.view.cursor = this.view.spotOfNode(start);
+    this.view.setField(secantField(data));
+    const largest = responseForce(data.normal, start, this.hand.deepest);
+    this.unit = largest > 0 ? largest : 1;
+  }
+
+  press(spot) { this.hand.press(spot); this.run(); }
+
+  drag(spot) { this.hand.drag(spot); this.run(); }
+
+  lift() { this.hand.lift(); this.run(); }
+
+  toggle() {
+    if (this.hand.pressed) this.lift();
+    else this.press(this.view.cursor);
+    this.onToggle?.(this.hand.pressed);
+  }
+
+  deepen(steps) { this.setDepth(this.hand.depth + (steps * this.hand.deepest) / STEPS); }
+
+  setDepth(depth) {
+    this.hand.depth = Math.max(0, Math.min(this.hand.deepest, depth));
+    this.onDepth?.(this.hand.depth);
+    if (this.hand.spot) this.run();
+  }
+
+  clear() {
+    this.hand.clear();
+    this.onToggle?.(false);
+    this.show();
+  }
+
+  run() {
+    if (this.running) return;
+    this.setRunning(true);
+    this.last = null;
+    requestAnimationFrame(this.frame);
+  }
+
+  setRunning(running) {
+    this.running = running;
+    this.onMove?.(running);
+  }
+
+  /** Frames go on until the tool rests. */
+  tick(now) {
+    this.hand.advance(this.last === null ? TICK : (now - this.last) / 1000);
+    this.last = now;
+    this.show();
+    this.setRunning(!this.hand.resting());
+    if (this.running) requestAnimationFrame(this.frame);
+    else this.view.draw();
+  }
+
+  show() {
+    const { hand } = this;
+    this.readings.show(hand.seen, hand.least);
+    this.view.place(hand.spot && { tip: hand.tip(), axis: hand.spot.inward, force: hand.force ?? [0, 0, 0], unit: this.unit });
+  }
+}
+
+function controls(touch) {
+  const { hand, data } = touch;
+  const depthText = el('output', { id: 'touch-set' }, units.scaledLength(hand.depth));
+  const slider = el('input', { type: 'range', min: 0, max: 1, step: 0.01, value: hand.depth / hand.deepest, 'aria-label': 'Depth of the press',
+    oninput: (e) => touch.setDepth(e.target.value * hand.deepest) });
+  touch.onDepth = (depth) => {
+    slider.value = depth / hand.deepest;
+    depthText.textContent = units.scaledLength(depth);
+  };
+  const node = el('input', { type: 'number', id: 'touch-node', min: 0, max: data.vertices.response_status.length - 1, 'aria-label': 'Node to press',
+    onchange: (e) => { if (e.target.value !== '') touch.view.cursor = touch.view.spotOfNode(Number(e.target.value)); } });
+  const press = el('button', { type: 'button', id: 'touch-press', onclick: () => touch.toggle() }, 'Press');
+  touch.onToggle = (pressed) => { press.textContent = pressed ? 'Lift' : 'Press'; };
+  return el('div', { class: 'controls' },
+    el('label', {}, 'Depth', slider, depthText),
+    el('label', {}, 'Node', node), press,
+    el('button', { type: 'button', onclick: () => touch.clear() }, 'Reset'),
+    el('button', { type: 'button', id: 'touch-csv', title: `Each step since the reset, at most ${MOST_STEPS / 1000} s`,
+      onclick: () => download('touch.csv', 'text/csv', hand.csv()) }, 'Steps as CSV'),
+    el('span', {},
+      el('button', { type: 'button', 'aria-label': 'Zoom in', onclick: () => touch.view.zoomBy(1.25) }, '+'), ' ',
+      el('button', { type: 'button', 'aria-label': 'Zoom out', onclick: () => touch.view.zoomBy(0.8) }, '\u2212'), ' ',
+      el('button', { type: 'button', onclick: () => downloadCanvas('touch.png', touch.view.canvas) }, 'PNG')));
+}
+
+function friction(data) {
+  return data.certificate ? '' : ' The library has no certificate and so no coefficient of friction: the tool slips without friction.';
+}
+
+export function touchSection(data) {
+  const section = (...content) => el('section', { id: 'touch' }, el('h2', {}, 'Touch it'), ...content);
+  if (!data.touch) {
+    return section(paragraph('This palpate was built without the WebAssembly toolchain, so the body cannot be touched here: run scripts/setup, build again and write the report anew.', 'note'));
+  }
+  const touch = new Touch(data);
+  const shape = ['sphere', 'disc'].includes(data.key.tool_shape) ? '' : ' The tool is drawn as a sphere of its radius.';
+  const element = section(
+    paragraph(HELP, 'lead'),
+    controls(touch),
+    el('div', { class: 'split' },
+      el('div', {}, touch.view.element, paragraph(CAPTION + shape + friction(data), 'note')),
+      touch.readings.element));
+  touch.onMove = (moving) => { element.dataset.moving = String(moving); };
+  return element;
+}

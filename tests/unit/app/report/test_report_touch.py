@@ -1,0 +1,270 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""test_report_touch.py <write_sample_report> <touch_forces> <chromium>
+
+Presses the body of a report in a browser as a reader would, and compares the forces of the page with those of the C
+interface for the same motion, with the curve of the node, and with the laws of friction and energy. Then the pictures:
+scale bar, supports, the session in time, and what can be taken along.
+"""
+import base64
+import csv
+import html
+import io
+import json
+import math
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+WRITER, FORCES, BROWSER = sys.argv[1:4]
+if BROWSER.endswith("-NOTFOUND"):
+    sys.exit("Chromium not found: install the Debian package chromium")
+FLAGS = ["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", "--hide-scrollbars", "--window-size=1300,900"]
+
+# Helpers of the acts. `csv` is what the page gives to download. Without a screen the browser makes hardly any frames:
+# a timer makes them, 60 in a second of the page's own time.
+ACT = """
+let csv = null;
+window.requestAnimationFrame = (f) => setTimeout(() => f(performance.now()), 1000 / 60);
+window.Blob = class { constructor(parts) { csv = parts[0]; } };
+URL.createObjectURL = () => '';
+HTMLAnchorElement.prototype.click = () => {};
+const wait = (ms) => new Promise((done) => setTimeout(done, ms));
+const frames = async (n) => { for (let i = 0; i < n; ++i) await new Promise(requestAnimationFrame); };
+const rest = async () => { do await frames(1); while (get('touch').dataset.moving === 'true'); };
+const get = (name) => document.getElementById(name);
+const canvas = () => document.querySelector('#touch canvas');
+const press = () => get('touch-press').click();
+const read = () => Object.fromEntries(['state', 'depth', 'normal', 'lateral', 'used', 'margin', 'set'].map((k) => [k, get(`touch-${k}`).textContent]));
+const pointer = (type, right, down) => {
+  const box = canvas().getBoundingClientRect();
+  canvas().setPointerCapture = () => {};
+  canvas().dispatchEvent(new PointerEvent(type, {clientX: box.left + right * box.width, clientY: box.top + down * box.height, pointerId: 1, button: 0, bubbles: true}));
+};
+const key = (name, more) => canvas().dispatchEvent(new KeyboardEvent('keydown', {key: name, ...more}));
+const steps = async () => { get('touch-csv').click(); await wait(50); return csv; };
+const goTo = (node) => { get('touch-node').value = node; get('touch-node').dispatchEvent(new Event('change')); };
+const deep = (part) => { const slider = document.querySelector('#touch input[type=range]'); slider.value = part; slider.dispatchEvent(new Event('input')); };
+addEventListener('load', async () => {
+  const said = {};
+  try {
+    await wait(200);
+    await (async () => { %s })();
+  } catch (error) { said.error = String(error.stack); }
+  document.body.append(Object.assign(document.createElement('p'), {id: 'said', textContent: JSON.stringify(said)}));
+});
+"""
+
+
+def column(value, code):
+    raw = base64.b64decode(next(iter(value.values())))
+    return struct.unpack(f"<{len(raw) // struct.calcsize(code)}{code}", raw)
+
+
+def curve_force(data, node, depth):
+    """Integral of the piecewise linear slope of the stored curve."""
+    offset = column(data["normal"]["offset"], "I")
+    knot, slope = (column(data["normal"][k], "f")[offset[node]:offset[node + 1]] for k in ("knot", "slope"))
+    force = 0.0
+    for x0, x1, s0, s1 in zip(knot, knot[1:], slope, slope[1:]):
+        end = min(depth, x1)
+        if end > x0:
+            force += (end - x0) * (s0 + s0 + (s1 - s0) * (end - x0) / (x1 - x0)) / 2
+    return force
+
+
+def rows_of(text):
+    lines = text.strip().split("\n")
+    names = lines[0].split(",")
+    return [dict(zip(names, map(float, line.split(",")))) for line in lines[1:]]
+
+
+def newtons(text):
+    number, unit = text.split("\u00a0")
+    return float(number.replace("\u202f", "")) * {"N": 1, "mN": 1e-3, "\u00b5N": 1e-6}[unit]
+
+
+class Acted(unittest.TestCase):
+    """Opens the sample report, acts on it, and returns what the act said."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.path = pathlib.Path(cls.folder.name)
+        subprocess.run([WRITER, cls.path], check=True)
+        cls.text = (cls.path / "full.html").read_text()
+        cls.data = json.loads(re.search(r'id="data">(.*?)</script>', cls.text, re.S)[1])
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def act(self, script, text=None, only="touch"):
+        text = text or self.text
+        cut = text.rindex("</body>")
+        page = self.path / "acted.html"
+        page.write_text(f"{text[:cut]}<script>{ACT % script}</script>{text[cut:]}")
+        with tempfile.TemporaryDirectory() as profile:
+            shown = subprocess.run([BROWSER, *FLAGS, f"--user-data-dir={profile}", "--virtual-time-budget=60000",
+                                    "--dump-dom", f"{page.as_uri()}?only={only}"],
+                                   capture_output=True, timeout=150, check=True).stdout.decode()
+        said = json.loads(html.unescape(re.search(r'<p id="said">(.*?)</p>', shown, re.S)[1]))
+        self.assertNotIn("error", said)
+        self.assertIn('data-errors="0"', shown)
+        return said
+
+
+class Touch(Acted):
+    def forces_of_the_c_interface(self, rows):
+        lines = "".join(f"{r['x_m']!r} {r['y_m']!r} {r['z_m']!r}\n" for r in rows)
+        out = subprocess.run([FORCES], input=lines.encode(), capture_output=True, check=True).stdout.decode()
+        return [tuple(map(float, line.split())) for line in out.splitlines()]
+
+    def check_against_the_c_interface(self, rows):
+        ours = [(r["force_x_N"], r["force_y_N"], r["force_z_N"]) for r in rows]
+        self.assertEqual(ours, self.forces_of_the_c_interface(rows))  # to the last bit
+
+    def test_a_press_at_a_node_gives_the_force_of_its_curve(self):
+        node = self.data["chosen"]["median"]
+        said = self.act(f"goTo({node}); deep(0.5); press(); await rest(); said.at = read(); said.csv = await steps();"
+                        "press(); await rest(); said.after = read();")
+        rows = rows_of(said["csv"])
+        depth = rows[-1]["depth_m"]
+        # The depth counts from the first step inside: what the tip travels in one step, 1/250 of the whole, is lost.
+        self.assertLess(depth, 0.5 * self.data["key"]["depth"])
+        self.assertGreater(depth, (0.5 - 1 / 250) * self.data["key"]["depth"])
+        self.assertEqual(said["at"]["state"], "in contact, sticking")
+        force = curve_force(self.data, node, depth)
+        self.assertGreater(force, 0)
+        self.assertAlmostEqual(newtons(said["at"]["normal"]) / force, 1, delta=0.005)  # three digits are shown
+        size = math.hypot(*(rows[-1][f"force_{axis}_N"] for axis in "xyz"))
+        self.assertAlmostEqual(size / force, 1, delta=1e-5)  # the data of the page are of single precision
+        self.assertEqual(said["after"]["state"], "no contact")
+        self.check_against_the_c_interface(rows)
+
+    def test_a_drag_slides_within_the_cone_and_passively(self):
+        said = self.act("""deep(0.6); pointer('pointerdown', 0.5, 0.5); await rest();
+            for (let i = 0; i <= 20; ++i) { pointer('pointermove', 0.5 + 0.009 * i, 0.5 - 0.0045 * i); await frames(3); }
+            said.at = read(); await rest(); pointer('pointerup', 0.68, 0.41); await rest(); said.csv = await steps();""")
+        rows = rows_of(said["csv"])
+        contact = [r for r in rows if int(r["status"]) & 1]
+        slid = [r for r in contact if int(r["status"]) & 8]
+        self.assertGreater(len(contact), 1000)
+        self.assertGreater(len(slid), 100)
+        travel = math.dist(*((r["x_m"], r["y_m"], r["z_m"]) for r in (contact[0], contact[-1])))
+        self.assertGreater(travel, self.data["key"]["tool_radius"])
+        self.assertGreater(max(r["lateral_m"] for r in contact), 1e-4)
+        used = float(said["at"]["used"].split("\u00a0")[0])
+        self.assertGreater(used, 10)
+        self.assertLess(used, 101)
+        for r in rows:
+            self.assertGreaterEqual(r["absorbed_J"] - r["energy_J"] - r["tank_J"], -1e-12)
+        self.assertTrue(said["at"]["margin"].endswith("passive"))
+        self.check_against_the_c_interface(rows)
+
+    def test_the_wheel_changes_the_depth_of_a_press_only(self):
+        said = self.act("""const wheel = () => canvas().dispatchEvent(new WheelEvent('wheel', {deltaY: -100, cancelable: true}));
+            said.free = wheel(); said.before = read().set;
+            pointer('pointerdown', 0.5, 0.5); await wait(100); said.pressed = wheel(); said.after = read().set;""")
+        self.assertTrue(said["free"])      # the page scrolls
+        self.assertFalse(said["pressed"])
+        self.assertGreater(float(said["after"].split("\u00a0")[0]), float(said["before"].split("\u00a0")[0]))
+
+    def test_the_keyboard_does_all_that_the_pointer_does(self):
+        said = self.act("""key(' '); await rest(); said.pressed = read();
+            key('PageDown'); key('PageDown'); await rest(); said.deeper = read();
+            for (let i = 0; i < 12; ++i) { key('ArrowRight'); await frames(2); }
+            await rest(); said.slid = read(); said.csv = await steps(); key(' '); await rest(); said.lifted = read();""")
+        self.assertEqual(said["pressed"]["state"], "in contact, sticking")
+        self.assertGreater(newtons(said["deeper"]["normal"]), 1.05 * newtons(said["pressed"]["normal"]))
+        self.assertGreater(newtons(said["slid"]["lateral"]), 0)
+        self.assertTrue(any(int(r["status"]) & 8 for r in rows_of(said["csv"])))
+        self.assertEqual(said["lifted"]["state"], "no contact")
+
+    def test_a_drag_beside_the_body_turns_it(self):
+        said = self.act("""pointer('pointerdown', 0.02, 0.02); await wait(300); said.state = read().state;
+            const before = canvas().toDataURL(); pointer('pointermove', 0.3, 0.1); pointer('pointerup', 0.3, 0.1);
+            said.turned = canvas().toDataURL() !== before; said.csv = await steps();""")
+        self.assertEqual(said["state"], "no contact")
+        self.assertTrue(said["turned"])
+        self.assertEqual(rows_of(said["csv"]), [])
+
+    def test_without_the_toolchain_the_page_says_so(self):
+        data = dict(self.data, touch=None)
+        text = re.sub(r'(id="data">).*?(</script>)', lambda m: m[1] + json.dumps(data) + m[2], self.text, flags=re.S)
+        said = self.act("said.text = document.getElementById('touch').innerText;", text)
+        self.assertIn("built without the WebAssembly toolchain", said["text"])
+        self.assertIn("scripts/setup", said["text"])
+
+
+PIXELS = """const context = canvas().getContext('2d');
+    const { width, height, data } = context.getImageData(0, 0, canvas().width, canvas().height);"""
+
+
+class Pictures(Acted):
+    def test_the_scale_bar_measures_the_body(self):
+        """The width of the silhouette by the bar is that of the points across the direction of view."""
+        said = self.act(PIXELS + """let [low, high] = [width, 0];
+            for (let i = 0; i < 0.85 * width * height; ++i) if (data[4 * i + 3] > 127) { low = Math.min(low, i % width); high = Math.max(high, i % width); }
+            said.seen = (high + 1 - low) / devicePixelRatio; said.bar = canvas().dataset.bar.split(' ').map(Number);""")
+        stiffest = self.data["chosen"]["stiffest"]
+        x, y, _ = (-c for c in column(self.data["vertices"]["inward"], "f")[3 * stiffest:3 * stiffest + 3])
+        azimuth = math.atan2(y, x) + 0.35
+        points = column(self.data["surface"]["points"], "f")
+        across = [-math.sin(azimuth) * a + math.cos(azimuth) * b for a, b in zip(points[0::3], points[1::3])]
+        metres, pixels = said["bar"]
+        self.assertAlmostEqual(said["seen"], (max(across) - min(across)) * pixels / metres, delta=2)
+        self.assertIn(round(metres / 10 ** math.floor(math.log10(metres) + 1e-9), 6), (1, 2, 5))
+
+    def test_supports_are_hatched(self):
+        """From below, pixels three apart on the grey support differ by the stripes; the rest of the body has none."""
+        said = self.act("for (let i = 0; i < 14; ++i) key('ArrowUp', {shiftKey: true});" + PIXELS + """
+            const stripes = (grey) => { let count = 0; for (let i = 0; i + 3 < width * height; ++i) {
+              const [p, q] = [4 * i, 4 * (i + 3)].map((k) => Array.from(data.subarray(k, k + 4)));
+              const like = (c) => c[3] === 255 && (Math.max(...c.slice(0, 3)) - Math.min(...c.slice(0, 3)) < 20) === grey;
+              if (like(p) && like(q) && q[1] < 0.8 * p[1] && q[1] > 0.6 * p[1]) count += 1; } return count; };
+            said.grey = stripes(true); said.coloured = stripes(false); said.all = width * height;""")
+        self.assertGreater(said["grey"], 0.02 * said["all"])
+        self.assertLess(said["coloured"], 0.1 * said["grey"])
+
+    def test_a_session_is_seen_in_time(self):
+        said = self.act("""const at = (time) => { const s = get('scrub'); s.value = time; s.dispatchEvent(new Event('input'));
+              const c = document.querySelector('.scrub canvas'), {data} = c.getContext('2d').getImageData(0, 0, c.width, c.height);
+              let arrow = 0; for (let i = 0; i < data.length; i += 4) arrow += data[i] === 213 && data[i + 1] === 94 && data[i + 2] === 0;
+              return {text: get('scrub-text').textContent, arrow}; };
+            said.contact = at(0.75); said.free = at(2.2);
+            get('scrub-play').click(); await frames(30); get('scrub-play').click(); said.played = Number(get('scrub').value);
+            said.label = get('scrub-play').textContent;""", only="session")
+        drawn = self.data["session"]["drawn"]
+        time, depth = column(drawn["time"], "f"), column(drawn["depth"], "f")
+        i = max(k for k, t in enumerate(time) if t <= 0.75 + 1e-6)
+        self.assertIn(f"{time[i]:.3f}\u00a0s: depth {1e3 * depth[i]:.2f}\u00a0mm", said["contact"]["text"])
+        self.assertGreater(said["contact"]["arrow"], 30)
+        self.assertIn("no contact, force 0", said["free"]["text"])
+        self.assertEqual(said["free"]["arrow"], 0)
+        self.assertGreater(said["played"], 2.4)
+        self.assertLess(said["played"], 3)
+        self.assertEqual(said["label"], "Play")
+
+    def test_curves_and_pictures_can_be_taken_along(self):
+        said = self.act("""const take = document.querySelectorAll('#curves .take button'); take[0].click(); said.csv = csv;
+            take[1].click(); await wait(500); said.plot = [csv.type, csv.size > 3000];
+            [...document.querySelectorAll('#body .controls button')].find((b) => b.textContent === 'PNG').click(); await wait(500);
+            said.body = [csv.type, csv.size > 10000];""", only="body")
+        self.assertEqual([said["plot"], said["body"]], [["image/png", True]] * 2)
+        names, *values = csv.reader(io.StringIO(said["csv"]))
+        self.assertEqual(names[0], "Depth (mm)")
+        softest = self.data["chosen"]["softest"]
+        at = names.index(f"node {softest}, fitted")
+        known = [(float(v[0]), float(v[at])) for v in values if v[at]]
+        self.assertGreater(len(known), 20)
+        for depth, force in known:
+            self.assertAlmostEqual(force, curve_force(self.data, softest, 1e-3 * depth), delta=1e-5)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

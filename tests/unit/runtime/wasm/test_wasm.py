@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""test_wasm.py <write_steps> <palpate.wasm> <runtime.js> <chromium>
+
+The runtime compiled to WebAssembly repeats, in a browser, what the C interface of this machine computes: every
+number of every step is the same to the last bit. A library that it cannot read ends in its message.
+"""
+import base64
+import html
+import json
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+
+WRITER, WASM, RUNTIME, BROWSER = sys.argv[1:5]
+if BROWSER.endswith("-NOTFOUND"):
+    sys.exit("Chromium not found: install the Debian package chromium")
+COLUMNS = 26  # numbers of a step
+LARGEST = 300_000  # bytes of palpate.wasm
+
+PAGE = """<!doctype html><html><body><p id="said"></p><script type="module">
+%(runtime)s
+const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+const WASM = '%(wasm)s';
+const flat = ({ force, status, seen }) => [status, seen.element, ...force, ...seen.contactPoint, ...seen.natural,
+  ...seen.normal, seen.depth, seen.lateral, seen.offset, seen.energy, seen.tank, seen.absorbed, ...seen.forceOnBody,
+  ...seen.lateralOffset];
+function repeat(played) {
+  const runtime = new Runtime(bytes(WASM));
+  const state = runtime.state(runtime.load(bytes(played.library)), { friction: played.friction });
+  const positions = new Float64Array(bytes(played.positions).buffer);
+  const out = [];
+  for (let i = 0; i < positions.length; i += 3) {
+    const step = state.step(positions.subarray(i, i + 3), [0, 0, 0], played.dt);
+    out.push(...flat({ ...step, seen: state.observe() }));
+  }
+  const result = new Uint8Array(Float64Array.from(out).buffer);
+  let text = '';
+  for (let i = 0; i < result.length; i += 8192) text += String.fromCharCode(...result.subarray(i, i + 8192));
+  return btoa(text);
+}
+function refused(library) {
+  try {
+    const runtime = new Runtime(bytes(WASM));
+    runtime.load(library);
+    return 'accepted';
+  } catch (error) {
+    return error.message;
+  }
+}
+function badSettings(played) {
+  const runtime = new Runtime(bytes(WASM));
+  const library = runtime.load(bytes(played.library));
+  try {
+    runtime.state(library, { friction: -3, tankCap: -1 });
+    return 'accepted';
+  } catch (error) {
+    return error.message;
+  }
+}
+const said = {};
+try {
+  const all = %(played)s;
+  said.steps = [];
+  for (const played of all) said.steps.push(repeat(played));
+  said.garbage = refused(new Uint8Array(100));
+  const damaged = bytes(all[0].library);
+  damaged[damaged.length >> 1] ^= 1;
+  said.damaged = refused(damaged);
+  said.settings = badSettings(all[0]);
+} catch (error) {
+  said.error = String(error.stack);
+}
+document.getElementById('said').textContent = JSON.stringify(said);
+</script></body></html>
+"""
+
+
+class Wasm(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        lines = subprocess.run([WRITER], capture_output=True, check=True).stdout.decode().splitlines()
+        cls.played = [json.loads(line) for line in lines]
+        wasm = base64.b64encode(pathlib.Path(WASM).read_bytes()).decode()
+        text = PAGE % {"runtime": pathlib.Path(RUNTIME).read_text(), "wasm": wasm, "played": json.dumps(cls.played)}
+        with tempfile.TemporaryDirectory() as folder:
+            page = pathlib.Path(folder) / "wasm.html"
+            page.write_text(text)
+            shown = subprocess.run(
+                [BROWSER, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
+                 f"--user-data-dir={folder}/profile", "--virtual-time-budget=60000", "--dump-dom", page.as_uri()],
+                capture_output=True, timeout=200, check=True).stdout.decode()
+        cls.said = json.loads(html.unescape(re.search(r'<p id="said">(.*?)</p>', shown, re.S)[1]))
+
+    def test_every_step_is_the_same_to_the_last_bit(self):
+        self.assertNotIn("error", self.said)
+        self.assertEqual(len(self.said["steps"]), 3)
+        for played, text in zip(self.played, self.said["steps"]):
+            ours, theirs = base64.b64decode(played["expected"]), base64.b64decode(text)
+            numbers = struct.unpack(f"<{len(ours) // 8}d", ours)
+            self.assertEqual(len(numbers), COLUMNS * 6000)
+            touched = [row for row in range(6000) if int(numbers[COLUMNS * row]) & 1]
+            sliding = [row for row in touched if int(numbers[COLUMNS * row]) & 8]
+            self.assertGreater(len(touched), 1000, played["name"])  # else there is nothing to compare
+            self.assertGreater(len(sliding), 100, played["name"])
+            self.assertEqual(ours, theirs, played["name"])
+
+    def test_an_unreadable_library_ends_in_its_message(self):
+        self.assertEqual(self.said["garbage"],
+                         "library in memory: is not a flat library (.plib); make it again with 'palpate export runtime'")
+        self.assertIn("is damaged", self.said["damaged"])
+
+    def test_refused_settings_end_in_their_message(self):
+        self.assertIn("tank_cap finite and not negative", self.said["settings"])
+
+    def test_it_stays_small(self):
+        self.assertLess(pathlib.Path(WASM).stat().st_size, LARGEST)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
