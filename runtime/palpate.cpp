@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "format/error.hpp"
 #include "format/guarantee.hpp"
@@ -87,6 +89,32 @@ palpate_observation translate(const ContactObservation& seen) noexcept {
   copy(seen.lateral_offset, o.lateral_offset);
   return o;
 }
+
+/// Copies an array of a library to the caller; `name`: the function, for the message.
+template <class Row, class Number>
+int give_array(const char* name, const palpate_library* library,
+               std::vector<Row> palpate_library::*rows, Number* to, std::size_t capacity) {
+  char text[160];
+  if (library == nullptr || to == nullptr) {
+    std::snprintf(text, sizeof text, "%s: null pointer", name);
+    return fail(PALPATE_ERROR_ARGUMENT, text);
+  }
+  const std::vector<Row>& all = library->*rows;
+  if (capacity < all.size()) {
+    std::snprintf(text, sizeof text, "%s: capacity is %zu, and there are %zu", name, capacity,
+                  all.size());
+    return fail(PALPATE_ERROR_ARGUMENT, text);
+  }
+  static_assert(sizeof(Row) % sizeof(Number) == 0);
+  if (!all.empty()) std::memcpy(to, all.data(), all.size() * sizeof(Row));
+  return PALPATE_OK;
+}
+
+// The statuses of the C interface are those of the format.
+static_assert(PALPATE_VERTEX_FITTED == static_cast<int>(palpate::ResponseStatus::Fitted));
+static_assert(PALPATE_VERTEX_INTERPOLATED ==
+              static_cast<int>(palpate::ResponseStatus::Interpolated));
+static_assert(PALPATE_VERTEX_HOLE == static_cast<int>(palpate::ResponseStatus::Hole));
 
 }  // namespace
 
@@ -187,6 +215,27 @@ int palpate_library_describe(const palpate_library* library, palpate_library_inf
   }
   give(library->info, info, info->size);
   return PALPATE_OK;
+}
+
+int palpate_library_vertices(const palpate_library* library, double* positions, size_t capacity) {
+  return give_array("palpate_library_vertices", library, &palpate_library::positions, positions,
+                    capacity);
+}
+
+int palpate_library_normals(const palpate_library* library, double* normals, size_t capacity) {
+  return give_array("palpate_library_normals", library, &palpate_library::inward, normals,
+                    capacity);
+}
+
+int palpate_library_triangles(const palpate_library* library, int32_t* triangles, size_t capacity) {
+  return give_array("palpate_library_triangles", library, &palpate_library::triangles, triangles,
+                    capacity);
+}
+
+int palpate_library_vertex_statuses(const palpate_library* library, uint8_t* statuses,
+                                    size_t capacity) {
+  return give_array("palpate_library_vertex_statuses", library, &palpate_library::statuses,
+                    statuses, capacity);
 }
 
 void palpate_settings_default(palpate_settings* settings) {

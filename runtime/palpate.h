@@ -187,6 +187,32 @@ PALPATE_API void palpate_library_destroy(palpate_library* library);
 PALPATE_API int palpate_library_describe(const palpate_library* library,
                                          palpate_library_info* info);
 
+/* Geometry of the response surface, in the frame of the body, in the order of the library file.
+ * palpate_library_describe gives the numbers of vertices and triangles, and the bounding box.
+ * Each function fills an array of the caller, which has room for `capacity` vertices or triangles;
+ * PALPATE_ERROR_ARGUMENT, and nothing written, where that is less than there are. Not for the
+ * real-time thread; any number of threads at a time. */
+
+/* positions: three coordinates a vertex, m. */
+PALPATE_API int palpate_library_vertices(const palpate_library* library, double* positions,
+                                         size_t capacity);
+/* normals: three components a vertex, the unit inward direction u_l, INTO the body: the response
+ * f^z acts along it. A mesh that is lit needs the opposite. */
+PALPATE_API int palpate_library_normals(const palpate_library* library, double* normals,
+                                        size_t capacity);
+/* triangles: three vertices a triangle, counted from 0, counter-clockwise seen from outside. Row m
+ * is the active element m of an observation. */
+PALPATE_API int palpate_library_triangles(const palpate_library* library, int32_t* triangles,
+                                          size_t capacity);
+/* statuses: where the response of each vertex comes from. Triangles at a hole cannot be touched. */
+enum {
+  PALPATE_VERTEX_FITTED = 0,       /* from the curves of this vertex */
+  PALPATE_VERTEX_INTERPOLATED = 1, /* from its neighbours */
+  PALPATE_VERTEX_HOLE = 2          /* no response */
+};
+PALPATE_API int palpate_library_vertex_statuses(const palpate_library* library, uint8_t* statuses,
+                                                size_t capacity);
+
 /* Sets size and every default. */
 PALPATE_API void palpate_settings_default(palpate_settings* settings);
 /* The library must outlive the state. settings may be NULL: the defaults. On failure *state is
