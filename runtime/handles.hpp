@@ -59,10 +59,12 @@ struct palpate_state : palpate::runtime::PosedContact {
   palpate_state(const palpate_library& library, const palpate::runtime::ContactSettings& settings,
                 double search_rate = 0)
       : PosedContact(library.surface, library.tree, settings, search_rate),
+        made_with(&library),
         certified_range(library.certified_range),
         friction(settings.friction),
         lipschitz_bound(settings.lipschitz_bound) {}
 
+  const palpate_library* made_with;
   // Of the library and the settings, for certification.
   palpate::CertifiedRange certified_range;
   double friction, lipschitz_bound;

@@ -30,6 +30,7 @@ using palpate::runtime::ContactObservation;
 using palpate::runtime::ContactSettings;
 using palpate::runtime::fail;
 using palpate::runtime::give;
+using palpate::runtime::give_array;
 using palpate::runtime::guarded;
 
 namespace {
@@ -90,26 +91,6 @@ palpate_observation translate(const ContactObservation& seen) noexcept {
   return o;
 }
 
-/// Copies an array of a library to the caller; `name`: the function, for the message.
-template <class Row, class Number>
-int give_array(const char* name, const palpate_library* library,
-               std::vector<Row> palpate_library::*rows, Number* to, std::size_t capacity) {
-  char text[160];
-  if (library == nullptr || to == nullptr) {
-    std::snprintf(text, sizeof text, "%s: null pointer", name);
-    return fail(PALPATE_ERROR_ARGUMENT, text);
-  }
-  const std::vector<Row>& all = library->*rows;
-  if (capacity < all.size()) {
-    std::snprintf(text, sizeof text, "%s: capacity is %zu, and there are %zu", name, capacity,
-                  all.size());
-    return fail(PALPATE_ERROR_ARGUMENT, text);
-  }
-  static_assert(sizeof(Row) % sizeof(Number) == 0);
-  if (!all.empty()) std::memcpy(to, all.data(), all.size() * sizeof(Row));
-  return PALPATE_OK;
-}
-
 // The statuses of the C interface are those of the format.
 static_assert(PALPATE_VERTEX_FITTED == static_cast<int>(palpate::ResponseStatus::Fitted));
 static_assert(PALPATE_VERTEX_INTERPOLATED ==
@@ -163,6 +144,8 @@ const char* palpate_status_text(int status) {
       return "out of memory";
     case PALPATE_ERROR_UNCERTIFIED:
       return "the loop is not certified passive on the device at this rate";
+    case PALPATE_ERROR_MISMATCH:
+      return "the deformation belongs to another library";
     default:
       return "unknown status";
   }
@@ -218,24 +201,24 @@ int palpate_library_describe(const palpate_library* library, palpate_library_inf
 }
 
 int palpate_library_vertices(const palpate_library* library, double* positions, size_t capacity) {
-  return give_array("palpate_library_vertices", library, &palpate_library::positions, positions,
-                    capacity);
+  return give_array("palpate_library_vertices", library == nullptr ? nullptr : &library->positions,
+                    positions, capacity);
 }
 
 int palpate_library_normals(const palpate_library* library, double* normals, size_t capacity) {
-  return give_array("palpate_library_normals", library, &palpate_library::inward, normals,
-                    capacity);
+  return give_array("palpate_library_normals", library == nullptr ? nullptr : &library->inward,
+                    normals, capacity);
 }
 
 int palpate_library_triangles(const palpate_library* library, int32_t* triangles, size_t capacity) {
-  return give_array("palpate_library_triangles", library, &palpate_library::triangles, triangles,
-                    capacity);
+  return give_array("palpate_library_triangles", library == nullptr ? nullptr : &library->triangles,
+                    triangles, capacity);
 }
 
 int palpate_library_vertex_statuses(const palpate_library* library, uint8_t* statuses,
                                     size_t capacity) {
-  return give_array("palpate_library_vertex_statuses", library, &palpate_library::statuses,
-                    statuses, capacity);
+  return give_array("palpate_library_vertex_statuses",
+                    library == nullptr ? nullptr : &library->statuses, statuses, capacity);
 }
 
 void palpate_settings_default(palpate_settings* settings) {
@@ -297,7 +280,7 @@ void palpate_state_destroy(palpate_state* state) {
 }
 
 void palpate_state_reset(palpate_state* state) {
-  if (state != nullptr) state->contact.reset();
+  if (state != nullptr) state->reset();
 }
 
 void palpate_device_constants_default(palpate_device_constants* device) {
@@ -339,7 +322,7 @@ int palpate_state_set_pose(palpate_state* state, const double position[3],
         PALPATE_ERROR_ARGUMENT,
         "palpate_state_set_pose: rotation must be orthonormal and right-handed, all finite");
   }
-  state->pose = pose;
+  state->set_pose(pose);
   return PALPATE_OK;
 }
 
@@ -350,7 +333,7 @@ uint32_t palpate_step(palpate_state* state, const double position[3], const doub
   const bool usable = position != nullptr && velocity != nullptr && force != nullptr &&
                       std::isfinite(dt) && dt > 0 && std::isfinite(velocity[0]) &&
                       std::isfinite(velocity[1]) && std::isfinite(velocity[2]);
-  if (!usable) return state->contact.refuse();
+  if (!usable) return state->refuse();
   const uint32_t status = state->step({position[0], position[1], position[2]});
   copy(state->command(), force);
   return status;

@@ -35,6 +35,7 @@ MAY_INCLUDE = {
     "fem/campaign": {"format", "fem/laws", "fem/mesh", "fem/factor", "fem/solid", "fem/contact", "fem/solve"},
     "fitting": {"format", "runtime"},
     "fitting/response": {"format", "runtime"},
+    "fitting/deformation": {"format", "runtime", "fitting/response"},
     "fitting/sampling": {"format", "fitting/response"},
     "fitting/certificate": {"format", "runtime", "fitting/measurement"},
     "fitting/fidelity": {"format", "runtime", "fitting/measurement", "fitting/measurement/compare"},
