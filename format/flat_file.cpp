@@ -36,6 +36,8 @@ std::size_t row_size_of(const flat::Entry& entry) {
   switch (entry.type) {
     case FlatType::UInt8:
       return entry.columns;
+    case FlatType::Int16:
+      return std::size_t{2} * entry.columns;
     case FlatType::Int32:
     case FlatType::Float32:
       return std::size_t{4} * entry.columns;

@@ -28,7 +28,8 @@ enum class FlatType : std::uint32_t {
   Int64 = 3,
   Float32 = 4,
   Float64 = 5,
-  Text = 6  ///< UTF-8; the length of each text in front of all of them
+  Text = 6,  ///< UTF-8; the length of each text in front of all of them
+  Int16 = 7
 };
 
 namespace flat {
@@ -36,6 +37,7 @@ namespace flat {
 template <class T>
 constexpr FlatType type_of() {
   if constexpr (std::is_same_v<T, std::uint8_t>) return FlatType::UInt8;
+  if constexpr (std::is_same_v<T, std::int16_t>) return FlatType::Int16;
   if constexpr (std::is_same_v<T, std::int32_t>) return FlatType::Int32;
   if constexpr (std::is_same_v<T, std::int64_t>) return FlatType::Int64;
   if constexpr (std::is_same_v<T, float>) return FlatType::Float32;

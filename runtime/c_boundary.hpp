@@ -3,10 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
+#include <cstdio>
 #include <cstring>
 #include <exception>
 #include <new>
+#include <vector>
 
 #include "format/vec3.hpp"
 #include "runtime/palpate.h"
@@ -41,6 +44,26 @@ void give(const Struct& whole, Struct* to, std::uint32_t size) noexcept {
   const std::uint32_t known = std::min<std::uint32_t>(size, sizeof(Struct));
   std::memcpy(to, &whole, known);
   to->size = size;
+}
+
+/// Copies an array to the caller, who has room for `capacity` rows; `name`: the function, for the
+/// message. `rows` null: the handle was.
+template <class Row, class Number>
+int give_array(const char* name, const std::vector<Row>* rows, Number* to,
+               std::size_t capacity) noexcept {
+  static_assert(sizeof(Row) % sizeof(Number) == 0);
+  char text[160];
+  if (rows == nullptr || to == nullptr) {
+    std::snprintf(text, sizeof text, "%s: null pointer", name);
+    return fail(PALPATE_ERROR_ARGUMENT, text);
+  }
+  if (capacity < rows->size()) {
+    std::snprintf(text, sizeof text, "%s: capacity is %zu, and there are %zu", name, capacity,
+                  rows->size());
+    return fail(PALPATE_ERROR_ARGUMENT, text);
+  }
+  if (!rows->empty()) std::memcpy(to, rows->data(), rows->size() * sizeof(Row));
+  return PALPATE_OK;
 }
 
 }  // namespace palpate::runtime

@@ -28,7 +28,7 @@ GuardedStep guarded_step(Safety& safety, PosedContact& contact, const DeviceRead
   GuardedStep step{{}, sample.status, false};
   switch (sample.action) {
     case Safety::Action::Lost:
-      contact.contact.refuse();
+      contact.refuse();
       step.lost = true;
       return step;
     case Safety::Action::Suspend:
@@ -57,7 +57,7 @@ bool ForceLoop::tick(std::int64_t due, std::int64_t began) noexcept {
   const DeviceStatus sample = device_.read(reading);
   GuardedStep step;
   if (sample == DeviceStatus::Lost) {
-    contact_.contact.refuse();
+    contact_.refuse();
     step.lost = true;
   } else {
     step = guarded_step(safety_, contact_, reading, sample != DeviceStatus::Late, dt);

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
+#include <vector>
 
 #include "format/guarantee.hpp"
 #include "format/library.hpp"
@@ -15,7 +17,11 @@
 
 struct palpate_library {
   explicit palpate_library(const palpate::Library& library)
-      : surface(library),
+      : positions(library.positions),
+        inward(library.inward),
+        triangles(library.triangles),
+        statuses(statuses_of(library)),
+        surface(library),
         tree(surface),
         info(describe(library, surface)),
         lipschitz_bound(palpate::enforced_lipschitz_bound(library.certificate)),
@@ -29,6 +35,17 @@ struct palpate_library {
   static palpate_library_info describe(const palpate::Library& library,
                                        const palpate::runtime::Surface& surface);
 
+  static std::vector<std::uint8_t> statuses_of(const palpate::Library& library) {
+    std::vector<std::uint8_t> statuses;
+    for (const palpate::NodeResponse& response : library.responses)
+      statuses.push_back(static_cast<std::uint8_t>(response.status));
+    return statuses;
+  }
+
+  // As in the file: the surface has them in an order of its own.
+  std::vector<palpate::Vec3> positions, inward;
+  std::vector<palpate::Triangle> triangles;
+  std::vector<std::uint8_t> statuses;
   palpate::runtime::Surface surface;
   palpate::runtime::CollisionTree tree;
   palpate_library_info info;
@@ -42,10 +59,12 @@ struct palpate_state : palpate::runtime::PosedContact {
   palpate_state(const palpate_library& library, const palpate::runtime::ContactSettings& settings,
                 double search_rate = 0)
       : PosedContact(library.surface, library.tree, settings, search_rate),
+        made_with(&library),
         certified_range(library.certified_range),
         friction(settings.friction),
         lipschitz_bound(settings.lipschitz_bound) {}
 
+  const palpate_library* made_with;
   // Of the library and the settings, for certification.
   palpate::CertifiedRange certified_range;
   double friction, lipschitz_bound;

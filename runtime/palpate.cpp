@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "format/error.hpp"
 #include "format/guarantee.hpp"
@@ -28,6 +30,7 @@ using palpate::runtime::ContactObservation;
 using palpate::runtime::ContactSettings;
 using palpate::runtime::fail;
 using palpate::runtime::give;
+using palpate::runtime::give_array;
 using palpate::runtime::guarded;
 
 namespace {
@@ -90,6 +93,12 @@ palpate_observation translate(const ContactObservation& seen) noexcept {
   return o;
 }
 
+// The statuses of the C interface are those of the format.
+static_assert(PALPATE_VERTEX_FITTED == static_cast<int>(palpate::ResponseStatus::Fitted));
+static_assert(PALPATE_VERTEX_INTERPOLATED ==
+              static_cast<int>(palpate::ResponseStatus::Interpolated));
+static_assert(PALPATE_VERTEX_HOLE == static_cast<int>(palpate::ResponseStatus::Hole));
+
 }  // namespace
 
 int palpate::runtime::fail(int status, const char* text) noexcept {
@@ -137,6 +146,8 @@ const char* palpate_status_text(int status) {
       return "out of memory";
     case PALPATE_ERROR_UNCERTIFIED:
       return "the loop is not certified passive on the device at this rate";
+    case PALPATE_ERROR_MISMATCH:
+      return "the deformation belongs to another library";
     default:
       return "unknown status";
   }
@@ -189,6 +200,27 @@ int palpate_library_describe(const palpate_library* library, palpate_library_inf
   }
   give(library->info, info, info->size);
   return PALPATE_OK;
+}
+
+int palpate_library_vertices(const palpate_library* library, double* positions, size_t capacity) {
+  return give_array("palpate_library_vertices", library == nullptr ? nullptr : &library->positions,
+                    positions, capacity);
+}
+
+int palpate_library_normals(const palpate_library* library, double* normals, size_t capacity) {
+  return give_array("palpate_library_normals", library == nullptr ? nullptr : &library->inward,
+                    normals, capacity);
+}
+
+int palpate_library_triangles(const palpate_library* library, int32_t* triangles, size_t capacity) {
+  return give_array("palpate_library_triangles", library == nullptr ? nullptr : &library->triangles,
+                    triangles, capacity);
+}
+
+int palpate_library_vertex_statuses(const palpate_library* library, uint8_t* statuses,
+                                    size_t capacity) {
+  return give_array("palpate_library_vertex_statuses",
+                    library == nullptr ? nullptr : &library->statuses, statuses, capacity);
 }
 
 void palpate_settings_default(palpate_settings* settings) {
@@ -250,7 +282,7 @@ void palpate_state_destroy(palpate_state* state) {
 }
 
 void palpate_state_reset(palpate_state* state) {
-  if (state != nullptr) state->contact.reset();
+  if (state != nullptr) state->reset();
 }
 
 void palpate_device_constants_default(palpate_device_constants* device) {
@@ -292,7 +324,7 @@ int palpate_state_set_pose(palpate_state* state, const double position[3],
         PALPATE_ERROR_ARGUMENT,
         "palpate_state_set_pose: rotation must be orthonormal and right-handed, all finite");
   }
-  state->pose = pose;
+  state->set_pose(pose);
   return PALPATE_OK;
 }
 
@@ -303,7 +335,7 @@ uint32_t palpate_step(palpate_state* state, const double position[3], const doub
   const bool usable = position != nullptr && velocity != nullptr && force != nullptr &&
                       std::isfinite(dt) && dt > 0 && std::isfinite(velocity[0]) &&
                       std::isfinite(velocity[1]) && std::isfinite(velocity[2]);
-  if (!usable) return state->contact.refuse();
+  if (!usable) return state->refuse();
   const uint32_t status = state->step({position[0], position[1], position[2]}, dt);
   copy(state->command(), force);
   return status;

@@ -21,7 +21,7 @@
  * the system, and their time is bounded. Call all other functions outside the real-time thread.
  *
  * Threads: a library is immutable and may be shared by threads. A state is one tool on one body; it
- * belongs to one thread at a time.
+ * belongs to one thread at a time; palpate_deform alone may read it from others.
  *
  * Structs begin with their size, in bytes. Fields are only ever added at the end: a program
  * compiled with an older header exchanges the fields that it knows. */
@@ -43,6 +43,7 @@ extern "C" {
 
 typedef struct palpate_library palpate_library;
 typedef struct palpate_state palpate_state;
+typedef struct palpate_deformation palpate_deformation;
 
 /* Results of calls. */
 enum {
@@ -53,7 +54,9 @@ enum {
   PALPATE_ERROR_MEMORY = -4,   /* out of memory: free memory or load a smaller library */
   /* the loop is not certified passive on the device: a higher rate, a softer library, or set
    * uncertified */
-  PALPATE_ERROR_UNCERTIFIED = -5
+  PALPATE_ERROR_UNCERTIFIED = -5,
+  /* the deformation belongs to another library: load the one that was made with this library */
+  PALPATE_ERROR_MISMATCH = -6
 };
 
 /* Status bits of a step. Bits without "Remedy" belong to normal operation. */
@@ -193,6 +196,32 @@ PALPATE_API void palpate_library_destroy(palpate_library* library);
 PALPATE_API int palpate_library_describe(const palpate_library* library,
                                          palpate_library_info* info);
 
+/* Geometry of the response surface, in the frame of the body, in the order of the library file.
+ * palpate_library_describe gives the numbers of vertices and triangles, and the bounding box.
+ * Each function fills an array of the caller, which has room for `capacity` vertices or triangles;
+ * PALPATE_ERROR_ARGUMENT, and nothing written, where that is less than there are. Not for the
+ * real-time thread; any number of threads at a time. */
+
+/* positions: three coordinates a vertex, m. */
+PALPATE_API int palpate_library_vertices(const palpate_library* library, double* positions,
+                                         size_t capacity);
+/* normals: three components a vertex, the unit inward direction u_l, INTO the body: the response
+ * f^z acts along it. A mesh that is lit needs the opposite. */
+PALPATE_API int palpate_library_normals(const palpate_library* library, double* normals,
+                                        size_t capacity);
+/* triangles: three vertices a triangle, counted from 0, counter-clockwise seen from outside. Row m
+ * is the active element m of an observation. */
+PALPATE_API int palpate_library_triangles(const palpate_library* library, int32_t* triangles,
+                                          size_t capacity);
+/* statuses: where the response of each vertex comes from. Triangles at a hole cannot be touched. */
+enum {
+  PALPATE_VERTEX_FITTED = 0,       /* from the curves of this vertex */
+  PALPATE_VERTEX_INTERPOLATED = 1, /* from its neighbours */
+  PALPATE_VERTEX_HOLE = 2          /* no response */
+};
+PALPATE_API int palpate_library_vertex_statuses(const palpate_library* library, uint8_t* statuses,
+                                                size_t capacity);
+
 /* Sets size and every default. */
 PALPATE_API void palpate_settings_default(palpate_settings* settings);
 /* The library must outlive the state. settings may be NULL: the defaults. On failure *state is
@@ -239,6 +268,47 @@ PALPATE_API void palpate_device_constants_default(palpate_device_constants* devi
  * ramp and the clamp of a loop, and missed steps, are not covered. Not for the real-time thread. */
 PALPATE_API int palpate_state_certified(const palpate_state* state,
                                         const palpate_device_constants* device, double rate);
+
+/* The skin as it is pressed, for a picture: docs/theory-deformation.md has its equations. Its mesh
+ * is finer than the response surface. It comes from a file of its own beside the library,
+ * deformation.pdef, which needs no HDF5. */
+
+typedef struct palpate_deformation_info {
+  uint32_t size; /* sizeof(palpate_deformation_info), set by the caller */
+  int32_t vertices, triangles;
+  int32_t sites, modes; /* that the displacements are blended from */
+  double depth;         /* m, deepest stored displacement; beyond it they go straight on */
+  double reach;         /* m, of the part of the displacement that moves with the contact point */
+} palpate_deformation_info;
+
+/* Reads and checks the file; the library must outlive the deformation. On failure *deformation is
+ * NULL: PALPATE_ERROR_FILE where there is no such file (the case asks for it by depths in
+ * [deformation]), PALPATE_ERROR_MISMATCH where it was made with another library. */
+PALPATE_API int palpate_deformation_load(const palpate_library* library, const char* path,
+                                         palpate_deformation** deformation);
+/* The same from a file in memory. The bytes are not used after the call. */
+PALPATE_API int palpate_deformation_load_memory(const palpate_library* library, const void* bytes,
+                                                size_t size, palpate_deformation** deformation);
+/* NULL is allowed. */
+PALPATE_API void palpate_deformation_destroy(palpate_deformation* deformation);
+/* Fills the fields that fit into info->size bytes. */
+PALPATE_API int palpate_deformation_describe(const palpate_deformation* deformation,
+                                             palpate_deformation_info* info);
+/* As palpate_library_vertices and palpate_library_triangles, for the mesh of the skin. */
+PALPATE_API int palpate_deformation_vertices(const palpate_deformation* deformation,
+                                             double* positions, size_t capacity);
+PALPATE_API int palpate_deformation_triangles(const palpate_deformation* deformation,
+                                              int32_t* triangles, size_t capacity);
+/* The vertices of the skin in the world, three coordinates each, m, as the last step of the state
+ * left them: with the contact point c displaced by n . (x - c) along n and by the lateral
+ * deflection across it, and no vertex inside the tool; at rest without contact. positions has room
+ * for `capacity` vertices; PALPATE_ERROR_ARGUMENT, and nothing written, where that is less than
+ * there are. May be called from any thread beside the one that steps the state, also of a
+ * palpate_loop, which it does not delay: for a state this is the exception to the rule that it
+ * belongs to one thread. Allocates nothing; its time grows with vertices times modes (about 1 ms
+ * for 10,000 vertices and 200 modes): not for the real-time thread. */
+PALPATE_API int palpate_deform(const palpate_state* state, const palpate_deformation* deformation,
+                               double* positions, size_t capacity);
 
 /* A force loop in a real-time thread of its own, for programs that have none. While it runs the
  * state belongs to it. docs/devices.md, "Safety", describes its safety functions. */

@@ -11,11 +11,13 @@
 #include "runtime/search_thread.hpp"
 #include "runtime/status.hpp"
 #include "runtime/surface.hpp"
+#include "runtime/touch.hpp"
 
 namespace palpate::runtime {
 
 /// A contact state in the frame of the body, seen from the world. step(), command() and observe()
-/// are noexcept, allocation-free and bounded. One object belongs to one thread at a time.
+/// are noexcept, allocation-free and bounded. One object belongs to one thread at a time, but for
+/// touch(): every step, and every change of the pose, publishes it.
 class PosedContact {
  public:
   /// The surface and the tree must outlive the contact. search_rate: Hz of the search thread; 0 =
@@ -33,10 +35,10 @@ class PosedContact {
   /// One step with the tip at x in the world, m, dt (s) after the last. @return status bits.
   std::uint32_t step(const Vec3& x, double dt) noexcept {
     const Vec3 in_body = pose.to_body(x);
-    if (!search_) return contact.step(in_body, dt);
-    if (search_->receive(delivery_)) contact.set_delivery(&delivery_);
+    if (search_ && search_->receive(delivery_)) contact.set_delivery(&delivery_);
     const std::uint32_t status = contact.step(in_body, dt);
-    if (!(status & step_status::BadInput)) {
+    publish();
+    if (search_ && !(status & step_status::BadInput)) {
       search_->report({in_body, contact.observation().point.element});
     }
     return status;
@@ -45,9 +47,28 @@ class PosedContact {
   std::uint32_t suspend(const Vec3& x) noexcept {
     const Vec3 in_body = pose.to_body(x);
     const std::uint32_t status = contact.suspend(in_body);
+    publish();
     if (search_ && !(status & step_status::BadInput)) search_->report({in_body, kNoElement});
     return status;
   }
+  /// A step with unusable input; see ContactState::refuse. @return status bits.
+  std::uint32_t refuse() noexcept {
+    const std::uint32_t status = contact.refuse();
+    publish();
+    return status;
+  }
+  /// See ContactState::reset. The pose remains.
+  void reset() noexcept {
+    contact.reset();
+    publish();
+  }
+  void set_pose(const Pose& now) noexcept {
+    pose = now;
+    publish();
+  }
+  /// The contact as it was published last. From any thread.
+  Touch touch() const noexcept { return published_.read(); }
+
   /// The force of the body on the tool, in the world, N: what to command to the device.
   Vec3 command() const noexcept {
     const Vec3& f = contact.observation().force;
@@ -69,6 +90,23 @@ class PosedContact {
   Pose pose;
 
  private:
+  void publish() noexcept {
+    const ContactObservation& seen = contact.observation();
+    Touch touch;
+    touch.pose = pose;
+    if (seen.point.element >= 0 && (seen.status & step_status::Contact) != 0) {
+      touch.point = seen.point;
+      touch.contact_point = seen.contact_point;
+      touch.normal = seen.normal;
+      touch.depth = seen.deflection.depth + seen.offset;
+      touch.lateral = seen.deflection.lateral * seen.deflection.tangent;
+      touch.tip =
+          seen.contact_point + touch.depth * seen.normal + touch.lateral + seen.lateral_offset;
+    }
+    published_.publish(touch);
+  }
+
+  PublishedTouch published_;
   Delivery delivery_;
   std::optional<SearchThread> search_;
 };

@@ -37,6 +37,7 @@ MAY_INCLUDE = {
                        "fem/campaign"},
     "fitting": {"format", "runtime"},
     "fitting/response": {"format", "runtime"},
+    "fitting/deformation": {"format", "runtime", "fitting/response"},
     "fitting/sampling": {"format", "fitting/response"},
     "fitting/certificate": {"format", "runtime", "fitting/measurement"},
     "fitting/fidelity": {"format", "runtime", "fitting/measurement", "fitting/measurement/compare"},

@@ -84,6 +84,12 @@ struct SimulateSection {
   double slide_speed = kAuto;   ///< m/s
 };
 
+/// What is kept of the displacement of the skin, for deformation.pdef.
+struct DeformationSection {
+  int depths = 0;  ///< 0: nothing
+  int modes = 200;
+};
+
 struct OutputSection {
   std::string folder;  ///< relative to the current folder; empty means "out/<name>"
 };
@@ -108,6 +114,7 @@ struct Case {
       campaign_of_case();  ///< [tool], [indentation], [solver], [gravity]
   SamplingSection sampling;
   fitting::FitSettings fit;
+  DeformationSection deformation;
   CertifySection certify;
   SimulateSection simulate;
   OutputSection output;

@@ -10,9 +10,11 @@
 #include "app/compare/fidelity_tables.hpp"
 #include "app/console.hpp"
 #include "app/pipeline/events.hpp"
+#include "app/pipeline/fields.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
 #include "fitting/fidelity/skin.hpp"
+#include "fitting/fidelity/skin_error.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 #include "format/sha256.hpp"
@@ -28,6 +30,11 @@ namespace fs = std::filesystem;
 constexpr double kLateralDepths[] = {0.2, 0.6, 0.9};
 constexpr double kAzimuths[] = {50, 185};  // degrees; unusual in campaigns
 constexpr int kMinIncrements = 6;
+constexpr int kDirectFields = 6;  ///< depths at which the direct skin is kept
+
+fs::path direct_fields(const Workspace& space) {
+  return space.out / "fidelity-fields";
+}
 
 /// Direct solutions: the paths of the case, at additional depths and other directions.
 fem::CampaignSettings direct_settings(const Workspace& space,
@@ -88,6 +95,7 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
       {direct_key(space, settings), static_cast<std::int64_t>(settings.points.size())});
   settings.known = journal.found();
   settings.finished = [&](const SiteCurves& site) { journal.append(site); };
+  if (space.c.deformation.depths > 0) keep_fields_in(direct_fields(space), kDirectFields, settings);
   ProgressDisplay display("direct", console().out);
   settings.progress = [&](const fem::CampaignProgress& p) {
     display.show({p.done, p.failed, p.running, p.total, p.known});
@@ -98,6 +106,19 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
       settings.points.size(), settings.known.size(), duration_text(report.seconds),
       duration_text(report.cpu_seconds));
   return direct;
+}
+
+/// The rows of the skin; none where the library has no deformation file.
+std::vector<fidelity::SkinErrorRow> skin_rows(const Workspace& space, const fs::path& library,
+                                              const fidelity::RenderedBody& rendered,
+                                              const std::vector<fidelity::HoldOutPoint>& points,
+                                              const Curves& direct) {
+  const fs::path file = library.parent_path() / space.deformation().filename();
+  if (space.c.deformation.depths == 0 || !fs::exists(file)) return {};
+  std::vector<SiteFields> fields;
+  for (const SiteCurves& site : direct.sites)
+    if (site.status != SiteStatus::Failed) fields.push_back(fields_of(direct_fields(space), site));
+  return fidelity::measure_skin(rendered, {rendered, file}, points, fields, direct.tool.radius);
 }
 
 /// Depths are measured from the skin. Its distance from the flat triangles is an error of geometry,
@@ -150,14 +171,17 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
   for (std::size_t i = 0; i < files.size(); ++i) {
     const fs::path& file = files[i];
     const Library& library = libraries[i];
-    const fidelity::Fidelity result = fidelity::measure(
-        {library, fidelity::RenderedBody(file), points, direct, sampled}, settings);
+    const fidelity::RenderedBody rendered(file);
+    const fidelity::Fidelity result =
+        fidelity::measure({library, rendered, points, direct, sampled}, settings);
+    const auto skin = skin_rows(space, file, rendered, points, direct);
     complete = complete && result.left_out.empty();
     std::error_code none;
     const LibrarySize size{bytes_per_node(library), fs::file_size(file, none)};
-    text += fidelity_text(file.string(), result, size);
+    text += fidelity_text(file.string(), result, size) + skin_error_text(skin);
     states += fidelity_states_csv(file.filename().string(), result, states.empty());
     json["libraries"].push_back(fidelity_json(file, result, size));
+    json["libraries"].back()["skin"] = skin_error_json(skin);
   }
   print_line(text);
   write_file_crash_safely(space.out / "fidelity.txt", text);

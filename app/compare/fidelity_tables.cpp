@@ -97,4 +97,27 @@ Json fidelity_json(const std::filesystem::path& file, const fidelity::Fidelity& 
           {"left_out", fidelity.left_out}};
 }
 
+std::string skin_error_text(const std::vector<fidelity::SkinErrorRow>& rows) {
+  if (rows.empty()) return {};
+  std::string text = fmt::format("  {:<51} {:>6} {:>8} {:>8} {:>8}\n",
+                                 "error of the skin, over the travel of the tip", "states",
+                                 "median", "95 %", "worst");
+  for (const fidelity::SkinErrorRow& row : rows)
+    text += fmt::format("  {:<51} {:>6} {:>6.2f} % {:>6.2f} % {:>6.2f} %\n", row.what, row.states,
+                        100 * row.median, 100 * row.p95, 100 * row.worst);
+  return text;
+}
+
+Json skin_error_json(const std::vector<fidelity::SkinErrorRow>& rows) {
+  Json list = Json::array();
+  for (const fidelity::SkinErrorRow& row : rows)
+    list.push_back({{"what", row.what},
+                    {"states", row.states},
+                    {"median", row.median},
+                    {"p95", row.p95},
+                    {"worst", row.worst},
+                    {"worst_point", row.worst_point}});
+  return list;
+}
+
 }  // namespace palpate::app

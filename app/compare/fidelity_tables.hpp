@@ -10,6 +10,7 @@
 
 #include "app/compare/fidelity_run.hpp"
 #include "fitting/fidelity/fidelity.hpp"
+#include "fitting/fidelity/skin_error.hpp"
 
 namespace palpate::app {
 
@@ -32,5 +33,9 @@ nlohmann::ordered_json fidelity_heading(const FidelityOptions& options,
                                         const std::vector<fidelity::HoldOutPoint>& points);
 nlohmann::ordered_json fidelity_json(const std::filesystem::path& file,
                                      const fidelity::Fidelity& fidelity, const LibrarySize& size);
+
+/// The errors of the skin in the same form; empty without rows.
+std::string skin_error_text(const std::vector<fidelity::SkinErrorRow>& rows);
+nlohmann::ordered_json skin_error_json(const std::vector<fidelity::SkinErrorRow>& rows);
 
 }  // namespace palpate::app

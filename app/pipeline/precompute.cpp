@@ -6,6 +6,7 @@
 
 #include "app/pipeline/adaptive.hpp"
 #include "app/pipeline/campaign_sites.hpp"
+#include "app/pipeline/fields.hpp"
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
@@ -135,6 +136,7 @@ SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
   emit(CampaignStarted{fem::blas_kernel(), journal.found().size(), journal.dropped_bytes(),
                        journal.moved_aside(), space.journal()});
   settings.known = journal.found();
+  keep_fields(space, settings);
   settings.finished = [&](const SiteCurves& site) {
     journal.append(site);
     emit(finished(site));

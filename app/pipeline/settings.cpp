@@ -44,6 +44,19 @@ void add_inputs(const fs::path& path, std::vector<fs::path>& inputs) {
   }
 }
 
+/// Adaptive sampling judges fitted responses. Without fields nothing is said of
+/// them.
+std::string campaign_case(const Workspace& space) {
+  std::string text =
+      is_adaptive(space)
+          ? resolved_sections(space.c, {"material", "tool", "indentation", "sampling", "solver",
+                                        "gravity", "fit"})
+          : resolved_sections(space.c, {"material", "tool", "indentation", "solver", "gravity"});
+  const int depths = space.c.deformation.depths;
+  if (depths > 0) text += "fields at " + std::to_string(depths) + " depths\n";
+  return text;
+}
+
 }  // namespace
 
 std::string stage_name(Stage stage) {
@@ -151,14 +164,11 @@ std::string stage_case(const Workspace& space, Stage stage) {
                                          "image_label", "inclusion", "layer", "mesh", "support",
                                          "press", "tool", "indentation"}) +
              (space.c.sampling.method == SamplingMethod::Nodes ? "every surface node\n" : "");
-    case Stage::Precompute:  // adaptive sampling judges fitted responses
-      return is_adaptive(space)
-                 ? resolved_sections(space.c, {"material", "tool", "indentation", "sampling",
-                                               "solver", "gravity", "fit"})
-                 : resolved_sections(space.c,
-                                     {"material", "tool", "indentation", "solver", "gravity"});
+    case Stage::Precompute:
+      return campaign_case(space);
     case Stage::Fit:
-      return resolved_sections(space.c, {"fit"}) + (is_adaptive(space) ? "interpolated\n" : "");
+      return resolved_sections(space.c, {"fit"}) + (is_adaptive(space) ? "interpolated\n" : "") +
+             (space.c.deformation.depths > 0 ? resolved_sections(space.c, {"deformation"}) : "");
     case Stage::Certify:
       return resolved_sections(space.c, {"certify"});
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/pipeline/device_profile.hpp"
+#include "app/pipeline/fields.hpp"
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/mesh_surface.hpp"
 #include "app/pipeline/settings.hpp"
@@ -209,6 +210,7 @@ void run_fit(const Workspace& space, const EventSink& emit) {
   Library library = fitting::fit(body, curves, fit_settings(space));
   append(library.provenance, curves.provenance, make_stage_step(space, Stage::Fit, {}));
   write_library(space.library(), library);
+  fit_deformation(space, body, curves, library, emit);
   // The coupling of such sites follows from the shape of the tool, not from their curves.
   const auto single = std::count_if(
       curves.sites.begin(), curves.sites.end(),

@@ -30,6 +30,9 @@ struct Workspace {
   /// The finished sites of an unfinished campaign.
   std::filesystem::path journal() const;
   std::filesystem::path library() const { return out / "library.h5"; }
+  /// The displacements of the skin that the campaign keeps, a file for each site.
+  std::filesystem::path fields() const { return out / "fields"; }
+  std::filesystem::path deformation() const { return out / "deformation.pdef"; }
   std::filesystem::path recording() const { return out / "recording.h5"; }
   std::filesystem::path report() const { return out / "report.html"; }
 };

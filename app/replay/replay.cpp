@@ -40,7 +40,7 @@ RecordedStep step_again(const RecordedStep& recorded, double dt, palpate_state& 
   RecordedStep step = recorded;
   step.force = {};
   if (recorded.status & PALPATE_LOOP_DEVICE_LOST && recorded.status & PALPATE_DROPPED) {
-    state.contact.refuse();
+    state.refuse();
   } else if (safety) {
     const bool fresh = (recorded.status & PALPATE_LOOP_STALE) == 0;
     const runtime::GuardedStep guarded =

@@ -99,7 +99,7 @@ LiveOutcome run_live(runtime::Device& device, const palpate_library& body,
                      const LiveSettings& settings, SessionRecorder& recorder,
                      const std::atomic<bool>& stop) {
   palpate_state state(body, settings.contact, settings.search_rate);
-  state.pose = settings.pose;
+  state.set_pose(settings.pose);
   runtime::StepQueue queue(kQueueRoom);
   runtime::ForceLoop loop(device, state, settings.safety, &queue);
   LiveOutcome outcome;

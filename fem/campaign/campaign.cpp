@@ -7,14 +7,19 @@
 #include <cstdio>
 #include <mutex>
 #include <numeric>
+#include <optional>
 
 #include "fem/campaign/indentation.hpp"
 #include "fem/campaign/parallel_sites.hpp"
 #include "fem/campaign/region_laws.hpp"
+#include "fem/campaign/site_fields.hpp"
 #include "fem/factor/cholesky.hpp"
 #include "fem/mesh/to_eigen.hpp"
 #include "fem/solid/pressure_smoothness.hpp"
 #include "format/error.hpp"
+#include "format/sha256.hpp"
+#include "format/site_record.hpp"
+#include "format/skin_mesh.hpp"
 #include "format/to_index.hpp"
 
 namespace palpate::fem {
@@ -74,6 +79,7 @@ class OpenSites {
   OpenSites(const CampaignContext& context, const CampaignSettings& settings,
             std::vector<std::size_t> open, Curves& curves)
       : context_(context), settings_(settings), open_(std::move(open)), curves_(curves) {
+    if (keeps_fields()) skin_ = skin_mesh(context.body);
     progress_.total = static_cast<std::int64_t>(curves.sites.size());
     progress_.done = progress_.total - static_cast<std::int64_t>(open_.size());
     progress_.known = progress_.done;
@@ -98,8 +104,15 @@ class OpenSites {
       const std::lock_guard lock(mutex_);
       ++progress_.running;
     }
-    SiteCurves site = SiteSolver(context_, &member).solve(result.vertex);
+    SiteSolver solver(context_, &member);
+    std::optional<FieldRecorder> recorder;
+    if (keeps_fields()) {
+      recorder.emplace(solver, context_, skin_.node, settings_.field_depths);
+      solver.also_across(context_.indentation.azimuths.size() == 1);
+    }
+    SiteCurves site = solver.solve(result.vertex);
     const std::lock_guard lock(mutex_);
+    if (recorder) give_fields(*recorder, site);
     --progress_.running;
     ++progress_.done;
     if (site.status != SiteStatus::Complete) ++progress_.failed;
@@ -108,8 +121,16 @@ class OpenSites {
     if (settings_.progress) settings_.progress(progress_);
   }
 
+  bool keeps_fields() const { return static_cast<bool>(settings_.fields); }
+  void give_fields(FieldRecorder& recorder, const SiteCurves& site) {
+    SiteFields fields = recorder.take(site.vertex);
+    fields.curves = sha256(site_bytes(site));
+    settings_.fields(std::move(fields));
+  }
+
   const CampaignContext& context_;
   const CampaignSettings& settings_;
+  SkinMesh skin_;
   std::vector<std::size_t> open_;
   Curves& curves_;
   std::mutex mutex_;

@@ -214,6 +214,16 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
   curves.paths.push_back(std::move(path));
 }
 
+/// In two increments: no force is read from this path.
+void SiteSolver::run_across(Site& site, const LateralPlan& plan, const SiteCurves& curves) {
+  const Eigen::Vector3d across = site.inward.cross(to_eigen(plan.direction));
+  SiteCurves aside;
+  aside.paths.push_back(curves.paths.front());
+  run_lateral_path(
+      site, {plan.lateral_depth, to_vec3(across), {plan.travels.back() / 2, plan.travels.back()}},
+      aside);
+}
+
 SitePlan SiteSolver::plan_of_settings(const Vec3& inward) const {
   const IndentationSettings& settings = context_.indentation;
   SitePlan plan{settings.lateral_depths, {}};
@@ -260,6 +270,8 @@ SiteCurves SiteSolver::solve(std::int32_t vertex, const SitePlan& plan) {
   run_normal_path(site, plan.stops, curves);
   for (const LateralPlan& lateral : within_reach(plan, site))
     run_lateral_path(site, lateral, curves);
+  if (also_across_)
+    for (const LateralPlan& lateral : within_reach(plan, site)) run_across(site, lateral, curves);
   if (curves.paths.front().samples.size() < 2) curves.status = SiteStatus::Failed;
   curves.cpu_seconds = thread_cpu_seconds() - start;
   return curves;

@@ -48,6 +48,10 @@ class SiteSolver {
                                              const Displacement&, const CurveSample&)>;
   void observe_lateral(LateralObserver observer) { lateral_observer_ = std::move(observer); }
 
+  /// Every lateral path is then followed by one across it, for its observer alone: the curves do
+  /// not have it. Where a site has a single azimuth, the skin would be known in one direction.
+  void also_across(bool wanted) { also_across_ = wanted; }
+
   /// The end of the normal path of the site last solved, on the nodes of the body.
   const Displacement& pressed_state() const { return pressed_; }
 
@@ -58,12 +62,14 @@ class SiteSolver {
   static std::vector<LateralPlan> within_reach(const SitePlan& plan, const Site& site);
   void run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves);
   void run_lateral_path(Site& site, const LateralPlan& plan, SiteCurves& curves);
+  void run_across(Site& site, const LateralPlan& plan, const SiteCurves& curves);
 
   const CampaignContext& context_;
   SolveBatch::Member* batch_;
   Displacement pressed_;
   Observer observer_;
   LateralObserver lateral_observer_;
+  bool also_across_ = false;
 };
 
 /// Solves one site alone. `pressed`: the displacement at the end of its normal path; may be null.

@@ -13,6 +13,7 @@
 #include "fem/solid/gravity.hpp"
 #include "format/curves.hpp"
 #include "format/relaxation.hpp"
+#include "format/site_fields.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate::fem {
@@ -76,6 +77,10 @@ struct CampaignSettings {
   /// first site; from one thread at a time.
   /// After an exception no further site starts; it is rethrown once the running sites are done.
   std::function<void(const SiteCurves&)> finished;
+  /// The displacement of the skin (SkinMesh::node) of each site, just before `finished`; null: it
+  /// is not kept.
+  std::function<void(SiteFields)> fields;
+  int field_depths = 0;  ///< number of depths that are kept, see fem::field_depths
   std::function<void(const CampaignProgress&)> progress;
 };
 

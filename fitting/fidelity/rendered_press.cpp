@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "format/error.hpp"
 #include "runtime/palpate.h"
@@ -61,6 +62,8 @@ class Tip {
     return seen;
   }
 
+  const palpate_state* state() const { return state_.get(); }
+
  private:
   std::unique_ptr<palpate_state, DestroyState> state_;
 };
@@ -81,9 +84,28 @@ RenderedBody::RenderedBody(const std::filesystem::path& file) {
   library_.reset(library);
 }
 
-std::vector<Vec3> RenderedBody::press(const Vec3& contact, const Vec3& inward,
-                                      const std::vector<Deflection>& deflections) const {
-  Tip tip(library_.get());
+RenderedSkin::RenderedSkin(const RenderedBody& body, const std::filesystem::path& file) {
+  palpate_deformation* deformation = nullptr;
+  check(palpate_deformation_load(body.library_.get(), file.c_str(), &deformation), file.string());
+  deformation_.reset(deformation);
+  palpate_deformation_info info{};
+  info.size = sizeof info;
+  check(palpate_deformation_describe(deformation, &info), file.string());
+  at_rest_.resize(static_cast<std::size_t>(info.vertices));
+  check(palpate_deformation_vertices(deformation, at_rest_.front().data(), at_rest_.size()),
+        file.string());
+}
+
+void RenderedSkin::Unload::operator()(palpate_deformation* deformation) const {
+  palpate_deformation_destroy(deformation);
+}
+
+namespace {
+
+/// Moves the tip to each deflection in order; `at(force)` is called at each.
+template <class At>
+void follow(Tip& tip, const Vec3& contact, const Vec3& inward,
+            const std::vector<RenderedBody::Deflection>& deflections, At at) {
   tip.move_to(contact - kApproach * inward);
   tip.move_to(contact + kApproach * inward);
   const palpate_observation touch = tip.observe();
@@ -92,14 +114,38 @@ std::vector<Vec3> RenderedBody::press(const Vec3& contact, const Vec3& inward,
   const Vec3 n = vector_of(touch.normal);
   if (norm(c - contact) > kNear || norm(n - inward) > kNear)
     disagree(contact, "the runtime uses another contact point or direction");
-  std::vector<Vec3> forces;
-  for (const Deflection& d : deflections) {
-    forces.push_back(tip.move_to(c + (d.depth + touch.offset) * n + d.lateral * d.tangent));
+  for (const RenderedBody::Deflection& d : deflections) {
+    const Vec3 force = tip.move_to(c + (d.depth + touch.offset) * n + d.lateral * d.tangent);
     const palpate_observation seen = tip.observe();
     if (std::abs(seen.depth - d.depth) > kExact || std::abs(seen.lateral - d.lateral) > kExact)
       disagree(contact, "the contact point moved");
+    at(force);
   }
+}
+
+}  // namespace
+
+std::vector<Vec3> RenderedBody::press(const Vec3& contact, const Vec3& inward,
+                                      const std::vector<Deflection>& deflections) const {
+  Tip tip(library_.get());
+  std::vector<Vec3> forces;
+  follow(tip, contact, inward, deflections, [&](const Vec3& force) { forces.push_back(force); });
   return forces;
+}
+
+std::vector<std::vector<Vec3>> RenderedBody::displace(
+    const RenderedSkin& skin, const Vec3& contact, const Vec3& inward,
+    const std::vector<Deflection>& deflections) const {
+  Tip tip(library_.get());
+  std::vector<std::vector<Vec3>> displacements;
+  follow(tip, contact, inward, deflections, [&](const Vec3&) {
+    std::vector<Vec3> u(skin.at_rest_.size());
+    check(palpate_deform(tip.state(), skin.deformation_.get(), u.front().data(), u.size()),
+          "rendered press");
+    for (std::size_t w = 0; w < u.size(); ++w) u[w] = u[w] - skin.at_rest_[w];
+    displacements.push_back(std::move(u));
+  });
+  return displacements;
 }
 
 }  // namespace palpate::fidelity

@@ -8,9 +8,29 @@
 
 #include "format/vec3.hpp"
 
+struct palpate_deformation;
 struct palpate_library;
 
 namespace palpate::fidelity {
+
+class RenderedBody;
+
+/// A deformation file, loaded through the public C interface for one body, which must outlive it.
+class RenderedSkin {
+ public:
+  /// @throws Error(Configuration) when the runtime refuses the file.
+  RenderedSkin(const RenderedBody& body, const std::filesystem::path& deformation);
+
+  const std::vector<Vec3>& at_rest() const { return at_rest_; }  ///< m
+
+ private:
+  friend class RenderedBody;
+  struct Unload {
+    void operator()(palpate_deformation* deformation) const;
+  };
+  std::unique_ptr<palpate_deformation, Unload> deformation_;
+  std::vector<Vec3> at_rest_;
+};
 
 /// A library file, loaded and pressed through the public C interface.
 class RenderedBody {
@@ -31,7 +51,14 @@ class RenderedBody {
   std::vector<Vec3> press(const Vec3& contact, const Vec3& inward,
                           const std::vector<Deflection>& deflections) const;
 
+  /// The same path, with the skin of a deformation file. @return the displacement of each vertex of
+  /// the skin from its position at rest, m, at each deflection.
+  std::vector<std::vector<Vec3>> displace(const RenderedSkin& skin, const Vec3& contact,
+                                          const Vec3& inward,
+                                          const std::vector<Deflection>& deflections) const;
+
  private:
+  friend class RenderedSkin;
   struct Unload {
     void operator()(palpate_library* library) const;
   };

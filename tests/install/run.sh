@@ -30,6 +30,21 @@ CHECK
 [ "$("$work/by_cmake/feel_cpp" "$work/plate.h5" 0 0 1)" = "$said" ] || { echo "the example in C++ differs"; exit 1; }
 [ "$("$python" "$examples/feel.py" "$library" "$work/plate.h5" 0 0 1)" = "$said" ] || { echo "the example in Python differs"; exit 1; }
 
+# The surface of the plate: 9 x 9 vertices at z = 0, 128 triangles of 1 cm legs, normals that point out of it (+z).
+"$work/by_cmake/surface_c" "$work/plate.h5" > "$work/plate.obj"
+"$python" - "$work/plate.obj" <<'CHECK' || { echo "the surface of the example in C is not the plate"; exit 1; }
+import sys
+lines = [line.split() for line in open(sys.argv[1])]
+v = [tuple(map(float, l[1:])) for l in lines if l[0] == "v"]
+n = [tuple(map(float, l[1:])) for l in lines if l[0] == "vn"]
+f = [[int(corner.split("//")[0]) - 1 for corner in l[1:]] for l in lines if l[0] == "f"]
+def twice_area(a, b, c):
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+assert len(set(v)) == 81 and max(x for x, _, _ in v) == 0.08 and all(z == 0 for _, _, z in v)
+assert all(normal == (0, 0, 1) for normal in n)
+assert len(f) == 128 and all(abs(twice_area(*(v[i] for i in t)) - 1e-4) < 1e-12 for t in f)
+CHECK
+
 pc=$(find "$prefix" -name palpate.pc)
 export PKG_CONFIG_PATH=$(dirname "$pc")
 "$cc" -std=c99 -Wall -Wextra -Wpedantic -Werror "$source/consumer/consumer.c" -o "$work/by_pkg_config" \

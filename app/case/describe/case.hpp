@@ -22,6 +22,19 @@ void describe(V& v, OutputSection& s) {
 }
 
 template <class V>
+void describe(V& v, DeformationSection& s) {
+  v.integer(s.depths, {"depths",
+                       "depths of a press at which the campaign keeps the displacement of the "
+                       "skin, for `deformation.pdef`; 0: it keeps none",
+                       kOptional,
+                       {.low = 0, .high = 32}});
+  v.integer(s.modes, {"modes",
+                      "largest number of shapes from which the displacements are blended",
+                      kOptional,
+                      {.low = 1, .high = 512}});
+}
+
+template <class V>
 void describe(V& v, Case& c) {
   v.text(c.name,
          {"name", "name of the body and of its output folder; empty means that of the case file"});
@@ -54,6 +67,8 @@ void describe(V& v, Case& c) {
             [&](auto& in) { describe_gravity(in, c.campaign.gravity); });
   v.section("fit", kOptional, "From raw curves to responses.",
             [&](auto& in) { describe_fit(in, c.fit); });
+  v.section("deformation", kOptional, "The skin as it is pressed, for pictures.",
+            [&](auto& in) { describe(in, c.deformation); });
   v.section("certify", kOptional, "Passivity certificate.",
             [&](auto& in) { describe(in, c.certify); });
   v.section("simulate", kOptional, "Scripted session of `palpate simulate`.",

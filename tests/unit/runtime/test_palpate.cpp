@@ -35,6 +35,52 @@ TEST_F(PalpateApi, DescribesTheLibrary) {
   EXPECT_STRNE(palpate_version(), "");
 }
 
+TEST_F(PalpateApi, GeometryIsThatOfTheLibraryFile) {
+  const Library file = read_library(path_);
+  const std::size_t vertices = file.positions.size(), triangles = file.triangles.size();
+  std::vector<Vec3> positions(vertices), normals(vertices);
+  std::vector<Triangle> rows(triangles);
+  std::vector<std::uint8_t> statuses(vertices, 9);
+  ASSERT_EQ(palpate_library_vertices(library_, positions[0].data(), vertices), PALPATE_OK);
+  ASSERT_EQ(palpate_library_normals(library_, normals[0].data(), vertices), PALPATE_OK);
+  ASSERT_EQ(palpate_library_triangles(library_, rows[0].data(), triangles), PALPATE_OK);
+  ASSERT_EQ(palpate_library_vertex_statuses(library_, statuses.data(), vertices), PALPATE_OK);
+  EXPECT_EQ(positions, file.positions);
+  EXPECT_EQ(normals, file.inward);
+  EXPECT_EQ(rows, file.triangles);
+  for (std::size_t v = 0; v < vertices; ++v)
+    EXPECT_EQ(statuses[v], static_cast<std::uint8_t>(file.responses[v].status));
+}
+
+TEST_F(PalpateApi, ThePointOfContactIsInTheActiveTriangleOfTheGeometry) {
+  std::vector<Vec3> positions(81);
+  std::vector<Triangle> rows(128);
+  ASSERT_EQ(palpate_library_vertices(library_, positions[0].data(), 81), PALPATE_OK);
+  ASSERT_EQ(palpate_library_triangles(library_, rows[0].data(), 128), PALPATE_OK);
+  step({0.031, 0.046, 0.0004});
+  step({0.031, 0.046, -0.002});
+  const palpate_observation seen = observe();
+  ASSERT_GE(seen.element, 0);
+  Vec3 point{};
+  for (std::size_t l = 0; l < 3; ++l)
+    point =
+        point +
+        seen.natural[l] *
+            positions[static_cast<std::size_t>(rows[static_cast<std::size_t>(seen.element)][l])];
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(point[i], seen.contact_point[i], 1e-15);
+}
+
+TEST_F(PalpateApi, ArraysOfTheGeometryAreNeverOverrun) {
+  std::vector<double> positions(std::size_t{3} * 81, -1);
+  EXPECT_EQ(palpate_library_vertices(library_, positions.data(), 80), PALPATE_ERROR_ARGUMENT);
+  EXPECT_NE(std::strstr(palpate_last_error(), "capacity is 80, and there are 81"), nullptr);
+  EXPECT_EQ(std::count(positions.begin(), positions.end(), -1.0), 3 * 81);
+  std::vector<std::int32_t> rows(std::size_t{3} * 128);
+  EXPECT_EQ(palpate_library_triangles(library_, rows.data(), 127), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_library_normals(nullptr, positions.data(), 81), PALPATE_ERROR_ARGUMENT);
+  EXPECT_EQ(palpate_library_vertex_statuses(library_, nullptr, 81), PALPATE_ERROR_ARGUMENT);
+}
+
 TEST_F(PalpateApi, PressSlideReleaseOnAPlate) {
   // Free, then inside by 0.1 mm in one step: activated without force.
   EXPECT_EQ(step({0.030, 0.033, 0.0004}), 0U);

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/campaign/site_fields.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "format/to_index.hpp"
+
+namespace palpate::fem {
+namespace {
+
+bool same_depth(double a, double b) {
+  return std::abs(a - b) < 1e-9 * b;
+}
+
+bool among(const std::vector<double>& depths, double depth) {
+  return std::any_of(depths.begin(), depths.end(), [&](double d) { return same_depth(depth, d); });
+}
+
+}  // namespace
+
+std::vector<double> field_depths(const IndentationSettings& settings, int count) {
+  std::vector<double> depths;
+  for (int k = 1; k <= count; ++k) {
+    const double fraction = static_cast<double>(k) / count;
+    const int nearest = static_cast<int>(std::lround(settings.increments * fraction * fraction));
+    depths.push_back(settings.depth * std::max(nearest, 1) / settings.increments);
+  }
+  depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
+  return depths;
+}
+
+FieldRecorder::FieldRecorder(SiteSolver& solver, const CampaignContext& context,
+                             const std::vector<std::int32_t>& nodes, int depths)
+    : context_(context), nodes_(nodes), depths_(field_depths(context.indentation, depths)) {
+  solver.observe([this](const ToolContact&, const Displacement& u, const CurveSample& sample) {
+    const double depth = sample.displacement;
+    if (among(depths_, depth)) fields_.normal.push_back({depth, since_rest(u)});
+    if (among(context_.indentation.lateral_depths, depth))
+      lateral_starts_.insert_or_assign(depth, since_rest(u));
+  });
+  solver.observe_lateral([this](const LateralPlan& plan, const ToolContact&, const Displacement& u,
+                                const CurveSample& sample) {
+    const auto start = std::find_if(
+        lateral_starts_.begin(), lateral_starts_.end(),
+        [&](const auto& entry) { return same_depth(entry.first, plan.lateral_depth); });
+    if (start == lateral_starts_.end()) return;
+    LateralField field{plan.lateral_depth, plan.direction, sample.displacement, since_rest(u)};
+    for (std::size_t i = 0; i < field.skin.size(); ++i) field.skin[i] -= start->second[i];
+    // Each state of a path replaces the one before.
+    const bool goes_on = !fields_.lateral.empty() && fields_.lateral.back().depth == field.depth &&
+                         fields_.lateral.back().direction == field.direction;
+    if (goes_on)
+      fields_.lateral.back() = std::move(field);
+    else
+      fields_.lateral.push_back(std::move(field));
+  });
+}
+
+SiteFields FieldRecorder::take(std::int32_t vertex) {
+  lateral_starts_.clear();
+  SiteFields taken = std::exchange(fields_, {});
+  taken.vertex = vertex;
+  return taken;
+}
+
+std::vector<float> FieldRecorder::since_rest(const Displacement& u) const {
+  std::vector<float> skin;
+  skin.reserve(3 * nodes_.size());
+  for (const std::int32_t node : nodes_)
+    for (Eigen::Index i = 0; i < 3; ++i)
+      skin.push_back(static_cast<float>(u(i, node) - context_.rest(i, node)));
+  return skin;
+}
+
+}  // namespace palpate::fem

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The part of a displacement field that is symmetric around its contact.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "format/deformation.hpp"
+#include "format/vec3.hpp"
+#include "runtime/local_displacement.hpp"
+
+namespace palpate::fitting {
+
+/// The skin around one contact, ready to separate many fields into their local part and the rest.
+///
+/// The local part of a press is P_n(s) n + P_r(s) e_r, of a lateral deflection as in
+/// runtime::FromContact, with profiles that are piecewise linear in the distance s. They are the
+/// least-squares profiles of the field, smoothed by a small penalty on their second differences and
+/// exact at s = 0 (the depth, or 1 per metre of a lateral deflection), less a smooth field that has
+/// the same value at the reach R_c: a translation, a dilation ~ s, a tilt ~ s, a shear ~ s^2. So
+/// the local part ends at R_c, what is left is smooth at the contact, and a rigid motion has no
+/// local part. Immutable.
+class LocalPart {
+ public:
+  /// `knots`: from 0 to the reach, m; must outlive this. `normals`: inward normals of the skin.
+  LocalPart(const std::vector<Vec3>& skin, const std::vector<Vec3>& normals,
+            const std::vector<double>& knots, const SiteFrame& frame);
+
+  /// Subtracts the local part of a press to `depth` from its field (3 W). @return P_n, then P_r at
+  /// the knots.
+  std::vector<float> take_press(Eigen::Ref<Eigen::VectorXf> field, double depth) const;
+
+  /// The same for the fields of lateral deflections along the two tangents, per metre. @return A,
+  /// then B, then C at the knots.
+  std::vector<float> take_lateral(Eigen::Ref<Eigen::VectorXf> first,
+                                  Eigen::Ref<Eigen::VectorXf> second) const;
+
+ private:
+  struct Near {
+    std::size_t vertex;
+    runtime::FromContact from;
+    runtime::KnotWeights knot;
+  };
+  Eigen::VectorXd profile(const std::vector<double>& samples, double at_contact) const;
+  void end_at_reach(Eigen::VectorXd& profile, double value, int power) const;
+  double value(const Eigen::VectorXd& profile, const Near& near) const;
+
+  const std::vector<double>& knots_;
+  Vec3 inward_, first_, second_;
+  std::vector<Near> near_;
+};
+
+}  // namespace palpate::fitting

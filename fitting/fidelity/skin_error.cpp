@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/fidelity/skin_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "fitting/measurement/nearest_rank.hpp"
+#include "format/error.hpp"
+
+namespace palpate::fidelity {
+namespace {
+
+constexpr double kNearRadii = 3;  ///< "near the tool", in tool radii
+
+/// The errors of one kind of state.
+class Errors {
+ public:
+  explicit Errors(std::string what) : what_(std::move(what)) {}
+
+  void add(double error, std::size_t point) { errors_.emplace_back(error, point); }
+  void add_state() { ++states_; }
+
+  SkinErrorRow row() {
+    SkinErrorRow row;
+    row.what = what_;
+    row.states = states_;
+    if (errors_.empty()) return row;
+    std::sort(errors_.begin(), errors_.end());
+    const auto at = [&](double fraction) {
+      return errors_[fitting::nearest_rank(errors_.size(), fraction)].first;
+    };
+    row.median = at(0.5);
+    row.p95 = at(0.95);
+    row.worst = errors_.back().first;
+    row.worst_point = errors_.back().second;
+    return row;
+  }
+
+ private:
+  std::string what_;
+  std::size_t states_ = 0;
+  std::vector<std::pair<double, std::size_t>> errors_;  ///< with the index of the point
+};
+
+Vec3 direct_at(const std::vector<float>& skin, std::size_t vertex) {
+  return {static_cast<double>(skin[3 * vertex]), static_cast<double>(skin[3 * vertex + 1]),
+          static_cast<double>(skin[3 * vertex + 2])};
+}
+
+/// A state: the deflection, and the direct displacement of the skin there.
+struct State {
+  RenderedBody::Deflection deflection;
+  std::vector<float> direct;
+};
+
+std::vector<State> presses(const SiteFields& fields) {
+  std::vector<State> states;
+  for (const NormalField& field : fields.normal)
+    states.push_back({{field.depth, 0, {}}, field.skin});
+  return states;
+}
+
+/// A lateral field is relative to the press at its start.
+std::vector<State> deflections(const SiteFields& fields) {
+  std::vector<State> states;
+  for (const LateralField& field : fields.lateral) {
+    const auto start =
+        std::find_if(fields.normal.begin(), fields.normal.end(), [&](const NormalField& press) {
+          return std::abs(press.depth - field.depth) < 1e-6 * field.depth;
+        });
+    if (start == fields.normal.end()) continue;
+    State state{{field.depth, field.travel, field.direction}, start->skin};
+    for (std::size_t i = 0; i < field.skin.size(); ++i) state.direct[i] += field.skin[i];
+    states.push_back(std::move(state));
+  }
+  return states;
+}
+
+class SkinMeasure {
+ public:
+  SkinMeasure(const RenderedBody& body, const RenderedSkin& skin, double tool_radius)
+      : body_(body), skin_(skin), near_(kNearRadii * tool_radius) {}
+
+  void compare(const HoldOutPoint& p, std::size_t point, const std::vector<State>& states,
+               Errors& near, Errors& all) const {
+    std::vector<RenderedBody::Deflection> path;
+    for (const State& state : states) path.push_back(state.deflection);
+    const auto rendered = body_.displace(skin_, p.position, p.inward, path);
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      const RenderedBody::Deflection& d = states[i].deflection;
+      near.add_state();
+      all.add_state();
+      if (states[i].direct.size() != 3 * rendered[i].size())
+        refuse("direct fields", "are of another body", "remove them and compare again");
+      for (std::size_t w = 0; w < rendered[i].size(); ++w) {
+        const double error =
+            norm(rendered[i][w] - direct_at(states[i].direct, w)) / std::hypot(d.depth, d.lateral);
+        all.add(error, point);
+        if (norm(skin_.at_rest()[w] - p.position) <= near_) near.add(error, point);
+      }
+    }
+  }
+
+ private:
+  const RenderedBody& body_;
+  const RenderedSkin& skin_;
+  double near_;
+};
+
+}  // namespace
+
+std::vector<SkinErrorRow> measure_skin(const RenderedBody& body, const RenderedSkin& skin,
+                                       const std::vector<HoldOutPoint>& points,
+                                       const std::vector<SiteFields>& direct, double tool_radius) {
+  const SkinMeasure measure(body, skin, tool_radius);
+  Errors near_press("press, within 3 tool radii"), all_press("press, whole skin"),
+      near_lateral("lateral, within 3 tool radii"), all_lateral("lateral, whole skin");
+  for (const SiteFields& fields : direct) {
+    const auto point = static_cast<std::size_t>(fields.vertex);
+    if (point >= points.size()) continue;
+    measure.compare(points[point], point, presses(fields), near_press, all_press);
+    measure.compare(points[point], point, deflections(fields), near_lateral, all_lateral);
+  }
+  return {near_press.row(), all_press.row(), near_lateral.row(), all_lateral.row()};
+}
+
+}  // namespace palpate::fidelity

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "runtime/skin_deformation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "format/error.hpp"
+#include "runtime/local_displacement.hpp"
+
+namespace palpate::runtime {
+namespace {
+
+constexpr std::size_t kBlock = 256;  // vertices displaced at a time, in the first-level cache
+
+std::size_t index(std::int64_t i) noexcept {
+  return static_cast<std::size_t>(i);
+}
+
+/// A value between two levels: level k with `weight`, level k + 1 with `next`.
+struct Levels {
+  std::size_t k = 0;
+  double weight = 0, next = 0;
+};
+
+/// Linear between depths; below the first proportional to the depth, beyond the last straight on.
+Levels levels_at(const std::vector<double>& depths, double z) noexcept {
+  if (z <= depths.front() || depths.size() == 1) return {0, z / depths.front(), 0};
+  const auto above = std::upper_bound(depths.begin() + 1, depths.end() - 1, z);
+  const auto k = static_cast<std::size_t>(above - depths.begin()) - 1;
+  const double t = (z - depths[k]) / (depths[k + 1] - depths[k]);
+  return {k, 1 - t, t};
+}
+
+/// The same for what is 1 at the contact at every depth: no extrapolation.
+Levels levels_within(const std::vector<double>& depths, double z) noexcept {
+  const double inside = std::clamp(z, depths.front(), depths.back());
+  return levels_at(depths, inside);
+}
+
+}  // namespace
+
+/// The sites that the contact blends.
+struct SkinDeformation::Blend {
+  std::array<std::size_t, 3 * kMostDonors> site;
+  std::array<double, 3 * kMostDonors> weight;
+  std::size_t count = 0;
+};
+
+/// What displaces the vertices at one touch.
+struct SkinDeformation::Shape {
+  std::array<float, kMostModes> mode{};  ///< amplitudes, times the scale
+  std::array<double, kPressComponents * kMostKnots> press{};
+  std::array<double, kLateralComponents * kMostKnots> lateral{};
+  Vec3 correction{};
+};
+
+SkinDeformation::SkinDeformation(Deformation deformation, std::vector<Triangle> triangles)
+    : d_(std::move(deformation)),
+      surface_(std::move(triangles)),
+      normals_(inward_normals(d_.positions, d_.triangles)) {
+  std::int64_t most = 0;
+  for (std::size_t v = 0; v + 1 < d_.donor_offset.size(); ++v)
+    most = std::max(most, d_.donor_offset[v + 1] - d_.donor_offset[v]);
+  if (d_.mode_count() <= kMostModes && d_.knots.size() <= kMostKnots && index(most) <= kMostDonors)
+    return;
+  throw Error(ErrorKind::Configuration, "deformation",
+              "it has more modes, knots or donors than this program can blend",
+              "make it again with this version");
+}
+
+SkinDeformation::Blend SkinDeformation::blend_at(const SurfacePoint& point) const noexcept {
+  Blend blend;
+  const Triangle& corners = surface_[index(point.element)];
+  for (std::size_t l = 0; l < 3; ++l) {
+    const std::size_t v = index(corners[l]);
+    for (std::size_t i = index(d_.donor_offset[v]); i < index(d_.donor_offset[v + 1]); ++i) {
+      const double weight = point.natural[l] * static_cast<double>(d_.donor_weight[i]);
+      const std::size_t site = index(d_.donor[i]);
+      std::size_t known = 0;
+      while (known < blend.count && blend.site[known] != site) ++known;
+      if (known == blend.count) {
+        blend.site[known] = site;
+        blend.weight[known] = 0;
+        ++blend.count;
+      }
+      blend.weight[known] += weight;
+    }
+  }
+  return blend;
+}
+
+void SkinDeformation::add_press(const Blend& blend, const Touch& touch,
+                                Shape& shape) const noexcept {
+  const std::size_t modes = d_.mode_count(), knots = d_.knots.size(), depths = d_.depths.size();
+  const Levels levels = levels_at(d_.depths, std::max(touch.depth, 0.0));
+  const auto add = [&](std::size_t site, std::size_t k, double weight) {
+    if (weight == 0) return;
+    const float* a = &d_.press_modes[(site * depths + k) * modes];
+    for (std::size_t m = 0; m < modes; ++m) shape.mode[m] += static_cast<float>(weight) * a[m];
+    const float* p = &d_.press_local[(site * depths + k) * kPressComponents * knots];
+    for (std::size_t j = 0; j < kPressComponents * knots; ++j)
+      shape.press[j] += weight * static_cast<double>(p[j]);
+  };
+  for (std::size_t i = 0; i < blend.count; ++i) {
+    add(blend.site[i], levels.k, blend.weight[i] * levels.weight);
+    add(blend.site[i], levels.k + 1, blend.weight[i] * levels.next);
+  }
+}
+
+void SkinDeformation::add_lateral(const Blend& blend, const Touch& touch,
+                                  Shape& shape) const noexcept {
+  if (d_.lateral_depths.empty() || norm(touch.lateral) == 0) return;
+  const std::size_t modes = d_.mode_count(), knots = d_.knots.size(),
+                    depths = d_.lateral_depths.size();
+  const Levels levels = levels_within(d_.lateral_depths, touch.depth);
+  // The shared part vanishes with the depth.
+  const double shared = std::clamp(touch.depth / d_.lateral_depths.front(), 0.0, 1.0);
+  const auto add = [&](std::size_t site, std::size_t k, double weight) {
+    if (weight == 0) return;
+    const SiteFrame& frame = d_.sites[site];
+    const Vec3 second = cross(frame.inward, frame.tangent);
+    const double along[kTangents] = {dot(touch.lateral, frame.tangent), dot(touch.lateral, second)};
+    for (std::size_t t = 0; t < kTangents; ++t) {
+      const float* a = &d_.lateral_modes[((site * depths + k) * kTangents + t) * modes];
+      const auto amplitude = static_cast<float>(weight * shared * along[t]);
+      for (std::size_t m = 0; m < modes; ++m) shape.mode[m] += amplitude * a[m];
+    }
+    const float* p = &d_.lateral_local[(site * depths + k) * kLateralComponents * knots];
+    for (std::size_t j = 0; j < kLateralComponents * knots; ++j)
+      shape.lateral[j] += weight * static_cast<double>(p[j]);
+  };
+  for (std::size_t i = 0; i < blend.count; ++i) {
+    add(blend.site[i], levels.k, blend.weight[i] * levels.weight);
+    add(blend.site[i], levels.k + 1, blend.weight[i] * levels.next);
+  }
+}
+
+Vec3 SkinDeformation::shared_part(const Shape& shape, std::size_t vertex) const noexcept {
+  Vec3 u{};
+  const std::size_t row = 3 * d_.positions.size();
+  for (std::size_t m = 0; m < d_.mode_count(); ++m)
+    for (std::size_t i = 0; i < 3; ++i)
+      u[i] += static_cast<double>(shape.mode[m]) *
+              static_cast<double>(d_.modes[m * row + 3 * vertex + i]);
+  return u;
+}
+
+/// The contact point moves with the tip: what the shared part would move it besides is taken back
+/// around it. There, the shared part is that of the corners of the triangle.
+void SkinDeformation::correct(const Touch& touch, Shape& shape) const noexcept {
+  const Triangle& corners = surface_[index(touch.point.element)];
+  const Vec3 wanted = std::max(touch.depth, 0.0) * touch.normal + touch.lateral;
+  Vec3 found = shape.press[0] * touch.normal + shape.lateral[0] * touch.lateral;
+  for (std::size_t l = 0; l < 3; ++l)
+    found =
+        found + touch.point.natural[l] * shared_part(shape, index(d_.vertex_of[index(corners[l])]));
+  shape.correction = wanted - found;
+}
+
+Vec3 SkinDeformation::local_part(const Touch& touch, const Shape& shape,
+                                 std::size_t vertex) const noexcept {
+  const Vec3 r = d_.positions[vertex] - touch.contact_point;
+  if (dot(r, r) >= d_.reach * d_.reach) return {};
+  const FromContact from(touch.contact_point, touch.normal, d_.positions[vertex], normals_[vertex]);
+  const KnotWeights knot = knot_weights(d_.knots, from.distance);
+  const auto at = [&](const auto& profiles, std::size_t component) {
+    const std::size_t j = component * d_.knots.size() + knot.below;
+    return (1 - knot.above_weight) * profiles[j] + knot.above_weight * profiles[j + 1];
+  };
+  const double s = from.distance / d_.reach;
+  const double bump = from.facing * (1 - s * s) * (1 - s * s);
+  return from.press(touch.normal, at(shape.press, 0), at(shape.press, 1)) +
+         from.lateral(touch.normal, touch.lateral, at(shape.lateral, 0), at(shape.lateral, 1),
+                      at(shape.lateral, 2)) +
+         bump * shape.correction;
+}
+
+/// The nearest point of the tool for a point inside it. The tool stands upright on the contact
+/// point's normal direction.
+Vec3 SkinDeformation::outside_of_tool(const Touch& touch, const Vec3& x) const noexcept {
+  const Vec3& n = touch.normal;
+  const double radius = d_.tool_radius;
+  if (d_.tool_shape == "sphere") {
+    const Vec3 r = x - (touch.tip - radius * n);
+    const double distance = norm(r);
+    if (distance >= radius) return x;
+    return touch.tip - radius * n + (distance > 0 ? (radius / distance) * r : radius * n);
+  }
+  if (d_.tool_shape != "disc") return x;
+  // The end of a disc: flat to the fillet, of the same radius as a torus from there.
+  const double below = dot(x - touch.tip, n);  // < 0 on the side of the tool
+  const Vec3 across = x - touch.tip - below * n;
+  const double distance = norm(across), fillet = d_.tool_edge_radius;
+  if (below >= 0 || below < -touch.depth - radius || distance >= radius) return x;
+  const double flat = radius - fillet, beyond = distance - flat;
+  if (beyond <= 0) return x - below * n;
+  const double end = -fillet + std::sqrt(std::max(fillet * fillet - beyond * beyond, 0.0));
+  return below < end ? x + (end - below) * n : x;
+}
+
+void SkinDeformation::displace(const Touch& touch, double* positions) const noexcept {
+  const std::size_t count = d_.positions.size(), row = 3 * count;
+  const bool touches = touch.point.element >= 0;
+  Shape shape;
+  const Blend blend = touches ? blend_at(touch.point) : Blend{};
+  if (blend.count > 0) {
+    add_press(blend, touch, shape);
+    add_lateral(blend, touch, shape);
+    for (std::size_t m = 0; m < d_.mode_count(); ++m) shape.mode[m] *= d_.mode_scale[m];
+    correct(touch, shape);
+  }
+  for (std::size_t begin = 0; begin < count; begin += kBlock) {
+    const std::size_t size = std::min(kBlock, count - begin);
+    std::array<float, 3 * kBlock> u{};
+    for (std::size_t m = 0; blend.count > 0 && m < d_.mode_count(); ++m) {
+      const float a = shape.mode[m];
+      const std::int16_t* mode = &d_.modes[m * row + 3 * begin];
+      for (std::size_t i = 0; i < 3 * size; ++i) u[i] += a * static_cast<float>(mode[i]);
+    }
+    for (std::size_t i = 0; i < size; ++i) {
+      Vec3 x = d_.positions[begin + i];
+      if (blend.count > 0) {
+        const Vec3 shared{static_cast<double>(u[3 * i]), static_cast<double>(u[3 * i + 1]),
+                          static_cast<double>(u[3 * i + 2])};
+        x = outside_of_tool(touch, x + shared + local_part(touch, shape, begin + i));
+      }
+      const Vec3 world = touch.pose.to_world(x);
+      std::copy(world.begin(), world.end(), positions + 3 * (begin + i));
+    }
+  }
+}
+
+}  // namespace palpate::runtime

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// What the campaign keeps of the skin, against the states of the same body solved by themselves.
+#include "fem/campaign/site_fields.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "fem/campaign/campaign.hpp"
+#include "format/sha256.hpp"
+#include "format/site_record.hpp"
+#include "format/skin_mesh.hpp"
+#include "format/to_index.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+CampaignSettings field_settings() {
+  CampaignSettings s;
+  s.materials = {{"tissue", {10e3, 0.49}}};
+  s.indentation.depth = 0.004;
+  s.indentation.increments = 8;
+  s.indentation.lateral_depths = {0.002};
+  s.indentation.lateral_travel = 0.001;
+  s.indentation.lateral_increments = 4;
+  return s;
+}
+
+TEST(SiteFieldsOfCampaign, DepthsAreIncrementsCloserTogetherNearTheTouch) {
+  IndentationSettings settings;
+  settings.depth = 0.006;
+  settings.increments = 12;
+  const auto depths = field_depths(settings, 4);
+  const std::vector<double> expected{0.0005, 0.0015, 0.0035, 0.006};
+  ASSERT_EQ(depths.size(), expected.size());
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(depths[i], expected[i], 1e-12);
+  settings.increments = 2;
+  EXPECT_EQ(field_depths(settings, 4), (std::vector<double>{0.003, 0.006}));
+  EXPECT_TRUE(field_depths(settings, 0).empty());
+}
+
+TEST(SiteFieldsOfCampaign, AreTheDisplacementsOfTheSkin) {
+  const Body body = test::make_block(test::graded(0.03, 0.005, 0.0025, 1.5),
+                                     test::graded(0.03, 0.005, 0.0025, 1.5),
+                                     {-0.03, -0.02, -0.012, -0.006, -0.003, 0});
+  const std::int32_t site = test::site_nearest(body);
+  const SkinMesh skin = skin_mesh(body);
+  CampaignSettings settings = field_settings();
+  settings.sites = {site};
+  CampaignReport report;
+  const Curves without = run_campaign(body, settings, report);
+  std::vector<SiteFields> kept;
+  settings.field_depths = 3;
+  settings.fields = [&](SiteFields fields) { kept.push_back(std::move(fields)); };
+  const Curves with = run_campaign(body, settings, report);
+  EXPECT_EQ(content_sha256(with), content_sha256(without));  // the curves are as they were
+
+  ASSERT_EQ(kept.size(), 1U);
+  const SiteFields& fields = kept.front();
+  EXPECT_EQ(fields.vertex, site);
+  EXPECT_EQ(fields.curves, sha256(site_bytes(with.sites.front())));
+  ASSERT_EQ(fields.normal.size(), 3U);
+  const auto at = [&](const std::vector<float>& u, std::size_t w) {
+    return Vec3{static_cast<double>(u[3 * w]), static_cast<double>(u[3 * w + 1]),
+                static_cast<double>(u[3 * w + 2])};
+  };
+  const auto contact = to_index(skin.vertex_of[to_index(site)]);
+  // To the size of the elements: the tool rests on the skin between its corners.
+  for (const NormalField& field : fields.normal)
+    EXPECT_NEAR(at(field.skin, contact)[2], -field.depth, 0.02 * 0.004);
+  // The end of the path, solved by itself.
+  const DeformedState direct = deformed_state(body, field_settings(), site);
+  for (std::size_t w = 0; w < skin.node.size(); ++w)
+    EXPECT_LT(norm(at(fields.normal.back().skin, w) - direct.displacement[to_index(skin.node[w])]),
+              1e-6);
+  // Fixed nodes stay.
+  for (std::size_t w = 0; w < skin.node.size(); ++w)
+    if (skin.positions[w][2] < -0.0299) {
+      EXPECT_EQ(norm(at(fields.normal.back().skin, w)), 0);
+    }
+
+  // Along the path of the curves and across it; the contact point does not slip on the tool.
+  ASSERT_EQ(fields.lateral.size(), 2U);
+  EXPECT_NEAR(dot(fields.lateral[0].direction, fields.lateral[1].direction), 0, 1e-12);
+  for (const LateralField& field : fields.lateral) {
+    EXPECT_EQ(field.depth, 0.002);
+    EXPECT_NEAR(field.travel, 0.001, 1e-12);
+    EXPECT_LT(norm(at(field.skin, contact) - 0.001 * field.direction), 2e-5);
+  }
+}
+
+}  // namespace
+}  // namespace palpate::fem

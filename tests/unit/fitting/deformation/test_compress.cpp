@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// From fields that are known in closed form to the skin that the runtime shows at a hold-out point.
+#include "fitting/deformation/compress.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/skin_deformation.hpp"
+#include "tests/unit/fitting/deformation/pressed_plate.hpp"
+
+namespace palpate::fitting {
+namespace {
+
+/// The tip z below and q beside a point of a triangle of the plate.
+runtime::Touch touch_at(const PressedPlate& plate, std::int32_t element, const Vec3& natural,
+                        double z, const Vec3& q = {}) {
+  runtime::Touch touch;
+  touch.point = {element, natural};
+  const Triangle& corners = plate.library.triangles[static_cast<std::size_t>(element)];
+  for (std::size_t l = 0; l < 3; ++l)
+    touch.contact_point =
+        touch.contact_point +
+        natural[l] * plate.library.positions[static_cast<std::size_t>(corners[l])];
+  touch.normal = kDown;
+  touch.depth = z;
+  touch.lateral = q;
+  touch.tip = touch.contact_point + z * kDown + q;
+  return touch;
+}
+
+std::vector<Vec3> shown(const runtime::SkinDeformation& skin, const runtime::Touch& touch) {
+  std::vector<Vec3> x(skin.positions().size());
+  skin.displace(touch, x.front().data());
+  return x;
+}
+
+/// The largest distance from the field to the skin as shown, over the travel of the tip.
+double worst_error(const runtime::SkinDeformation& skin, const runtime::Touch& touch,
+                   const SkinField& field) {
+  const auto x = shown(skin, touch);
+  double worst = 0;
+  for (std::size_t w = 0; w < x.size(); ++w) {
+    const Vec3& at_rest = skin.positions()[w];
+    const Vec3 direct = field(at_rest, touch.contact_point, touch.depth, touch.lateral);
+    worst = std::max(worst, norm(x[w] - at_rest - direct));
+  }
+  return worst / std::hypot(touch.depth, norm(touch.lateral));
+}
+
+constexpr Vec3 kMiddle{0.3, 0.3, 0.4};  // of a triangle: 5 mm from the nearest site
+
+TEST(Compress, ADimpleThatIsTheSameEverywhereMovesWithTheContact) {
+  const PressedPlate plate;
+  Deformation deformation = compressed(plate, dimple);
+  deformation.tool_radius = 0.001;  // narrower than the dimple: it moves no vertex
+  const runtime::SkinDeformation skin(deformation, plate.library.triangles);
+  for (const double z : {0.0005, 0.002, 0.0045, 0.006, 0.007})
+    EXPECT_LT(worst_error(skin, touch_at(plate, 70, kMiddle, z), dimple), 0.01) << z;
+  for (const Vec3& q : {Vec3{0.002, 0, 0}, Vec3{-0.001, 0.0015, 0}})
+    EXPECT_LT(worst_error(skin, touch_at(plate, 70, kMiddle, 0.006, q), dimple), 0.01);
+}
+
+TEST(Compress, ARigidMotionStaysRigid) {
+  const PressedPlate plate;
+  const SkinField rigid = [](const Vec3&, const Vec3&, double z, const Vec3& q) {
+    return z * kDown + q;
+  };
+  const runtime::SkinDeformation skin(compressed(plate, rigid), plate.library.triangles);
+  for (const double z : {0.001, 0.004, 0.006})
+    EXPECT_LT(worst_error(skin, touch_at(plate, 70, kMiddle, z), rigid), 1e-3);
+  EXPECT_LT(worst_error(skin, touch_at(plate, 70, kMiddle, 0.006, {0.001, 0.002, 0}), rigid), 1e-3);
+}
+
+/// A dimple that is deeper than linear in the depth and grows across the plate, on a far field.
+Vec3 uneven_dimple(const Vec3& x, const Vec3& c, double z, const Vec3& q) {
+  const double far = 0.1 * z * (1 + 5 * c[0]) * std::cos(20 * x[1]);
+  return dimple(x, c, z, (1 - 2 * c[1]) * q) +
+         far * (1 - std::exp(-dot(x - c, x - c) / 1e-4)) * kDown;
+}
+
+TEST(Compress, TheContactPointMovesWithTheTip) {
+  const PressedPlate plate;
+  const runtime::SkinDeformation skin(compressed(plate, uneven_dimple), plate.library.triangles);
+  // A corner of a triangle is a vertex of the skin: it goes where the tip is, at every depth.
+  for (const Vec3& corner : {Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}})
+    for (const double z : {0.0003, 0.0025, 0.006, 0.0065})
+      for (const Vec3& q : {Vec3{}, Vec3{0.001, -0.0005, 0}}) {
+        const runtime::Touch touch = touch_at(plate, 70, corner, z, q);
+        const auto x = shown(skin, touch);
+        double nearest = 1;
+        for (const Vec3& at : x) nearest = std::min(nearest, norm(at - touch.tip));
+        EXPECT_LT(nearest, 1e-7);
+      }
+}
+
+TEST(Compress, NoVertexIsInsideTheTool) {
+  const PressedPlate plate;
+  // Narrower than the tool: without care the skin would cut through it.
+  const SkinField narrow = [](const Vec3& x, const Vec3& c, double z, const Vec3& q) {
+    const double s = norm(x - c) / 0.002;
+    return std::exp(-s * s) * (z * kDown + q);
+  };
+  for (const char* shape : {"sphere", "disc"}) {
+    Deformation deformation = compressed(plate, narrow);
+    deformation.tool_shape = shape;
+    deformation.tool_edge_radius = 0.001;
+    const runtime::SkinDeformation skin(deformation, plate.library.triangles);
+    for (const double z : {0.001, 0.003, 0.006}) {
+      const runtime::Touch touch = touch_at(plate, 70, kMiddle, z, {0.001, 0, 0});
+      std::size_t moved = 0;
+      for (const Vec3& x : shown(skin, touch)) {
+        const double below = dot(x - touch.tip, kDown);
+        const double beside = norm(x - touch.tip - below * kDown);
+        if (shape[0] == 's')
+          EXPECT_GT(std::hypot(below + kRadius, beside), kRadius - 1e-9);
+        else
+          EXPECT_TRUE(below > -1e-9 || beside > 0.004 - 1e-9);
+        if (below > -0.5 * z) ++moved;
+      }
+      EXPECT_GT(moved, 0U) << "the tool must be in contact for this test";
+    }
+  }
+}
+
+TEST(Compress, ASiteWithoutAllItsFieldsIsInterpolated) {
+  const PressedPlate plate;
+  const auto fields = [&](std::int32_t vertex) {
+    SiteFields site = fields_at(plate, vertex, dimple);
+    if (vertex == 40) site.normal.pop_back();
+    if (vertex == 41) site.lateral.pop_back();
+    return site;
+  };
+  const Deformation d = compress(plate.body, plate.library, {"sphere", kRadius, "frictionless"},
+                                 plate.all_vertices(), fields, {});
+  EXPECT_EQ(d.sites.size(), 79U);
+  EXPECT_GT(d.donor_offset[41] - d.donor_offset[40], 2);
+  EXPECT_EQ(d.donor_offset[43] - d.donor_offset[42], 1);
+  const runtime::SkinDeformation skin(d, plate.library.triangles);
+  EXPECT_LT(worst_error(skin, touch_at(plate, 70, {1, 0, 0}, 0.003), dimple), 0.01);
+}
+
+TEST(Compress, FewModesSayWhatTheyLeaveOut) {
+  const PressedPlate plate;
+  const auto fields = [&](std::int32_t vertex) { return fields_at(plate, vertex, uneven_dimple); };
+  const ToolDescription tool{"sphere", kRadius, "frictionless"};
+  CompressSettings few, many;
+  few.modes = 1;
+  const Deformation one =
+      compress(plate.body, plate.library, tool, plate.all_vertices(), fields, few);
+  const Deformation all =
+      compress(plate.body, plate.library, tool, plate.all_vertices(), fields, many);
+  EXPECT_EQ(one.mode_count(), 1U);
+  EXPECT_GT(one.rms_left_out, 10 * all.rms_left_out);
+  EXPECT_LT(all.rms_left_out, 1e-3 * kDeepest);
+}
+
+}  // namespace
+}  // namespace palpate::fitting
