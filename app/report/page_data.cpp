@@ -306,6 +306,7 @@ json page_data(const ReportInput& input) {
           {"repair", repair_data(input.repair, input.body->provenance)},
           {"session", input.session == nullptr ? json() : session_data(*input.session)},
           {"touch", touch_data(library)},
+          {"relaxation", relaxation_data(library, chosen.median)},
           {"provenance", provenance_data(input)}};
 }
 

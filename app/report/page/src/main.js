@@ -13,6 +13,7 @@ import { fitSection } from './sections/fit.js';
 import { headerSection } from './sections/header.js';
 import { previewSection } from './sections/preview.js';
 import { recordSection } from './sections/record.js';
+import { relaxationSection } from './sections/relaxation.js';
 import { repairSection } from './sections/repair.js';
 import { sessionSection } from './sections/session.js';
 import { touchSection } from './sections/touch.js';
@@ -47,6 +48,7 @@ function showReport(data) {
   place('body', () => bodySection(data, nodes, new Curves(data, nodes)));
   place('touch', () => touchSection(data));
   if (data.repair) place('repair', () => repairSection(data));
+  if (data.relaxation) place('relaxation', () => relaxationSection(data));
   place('fit', () => fitSection(data));
   place('fidelity', () => fidelitySection(data) ?? '');
   if (data.comparison) place('comparison', () => comparisonSection(data));
