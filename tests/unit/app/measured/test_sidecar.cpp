@@ -47,6 +47,21 @@ TEST(Sidecar, OfTheShippedPadIsReadInSi) {
   EXPECT_FALSE(read_sidecar(folder / "robot.toml").robot_logs.empty());
 }
 
+/// A tool of tens of micrometres on a cell: every unit that records may have serves the sidecar.
+TEST(Sidecar, TakesQuantitiesInSmallUnits) {
+  const samples::TemporaryFolder folder;
+  std::ofstream(folder / "a.toml")
+      << "name = \"a\"\nspecimen = \"b\"\nsource = \"c\"\nlicence = \"d\"\n"
+         "[tool]\nradius = \"25000 nm\"\nfriction = \"frictionless\"\n"
+         "[machine]\ncompliance = \"2 um/mN\"\n"
+      << kColumns << "[contact]\nmethod = \"threshold\"\nthreshold = \"0.005 uN\"\n"
+      << kPress;
+  const Sidecar sidecar = read_sidecar(folder / "a.toml");
+  EXPECT_DOUBLE_EQ(sidecar.tool.radius, 25e-6);
+  EXPECT_DOUBLE_EQ(sidecar.machine.compliance, 2e-3);
+  EXPECT_DOUBLE_EQ(sidecar.contact.threshold, 5e-9);
+}
+
 TEST(Sidecar, RefusesWhatItCannotUse) {
   EXPECT_EQ(refusal(kHead + kColumns + kPress), "accepted");
   EXPECT_THAT(refusal(kHead + kColumns), HasSubstr("it names no record"));
