@@ -73,6 +73,15 @@ TEST(Sidecar, RefusesWhatItCannotUse) {
               HasSubstr("both vertex and site are given"));
   EXPECT_THAT(refusal(kHead + kColumns + "[contact]\nmethod = \"threshold\"\n" + kPress),
               HasSubstr("key 'contact.threshold' is missing"));
+  EXPECT_THAT(refusal(kHead + kColumns + "[contact]\nmethod = \"given\"\n" + kPress),
+              HasSubstr("key 'contact.position' is missing"));
+  EXPECT_EQ(refusal(kHead + kColumns + "[contact]\nmethod = \"given\"\n" + kPress +
+                    "contact = \"-0.2 mm\"\n"),
+            "accepted");
+  EXPECT_THAT(refusal(kHead + kColumns + kPress + "contact = \"0 mm\"\n"),
+              HasSubstr("say contact.method = \"given\""));
+  EXPECT_THAT(refusal(kHead + kColumns + "[contact]\nposition = \"0 mm\"\n" + kPress),
+              HasSubstr("say contact.method = \"given\""));
   EXPECT_THAT(refusal(kHead + kColumns + "[[robot]]\nfile = \"a.csv\"\n"),
               HasSubstr("key 'columns.x' is missing"));
   EXPECT_THAT(refusal("0,1\n", "a.csv"), HasSubstr("this is a record, not its sidecar"));
