@@ -286,6 +286,7 @@ class Importer {
                         {"distance_to_vertex_m", distance},
                         {"preamble", table.preamble},
                         {"cycles", curve.cycles},
+                        {"cycle", curve.cycle},
                         {"contact_m", curve.contact.displacement},
                         {"contact_uncertainty_m", curve.contact.uncertainty},
                         {"force_offset_N", b.offset},

@@ -67,6 +67,27 @@ std::vector<DepthForce> beyond(std::vector<DepthForce> branch, double contact) {
   return branch;
 }
 
+/// Without the samples of pauses, but for the first of each: runs in which the depth stays within a
+/// thousandth of the reach, or its noise, twenty times as long as the mean speed would take.
+std::vector<DepthForce> without_pauses(const std::vector<DepthForce>& branch) {
+  constexpr double kBand = 1e-3, kSlower = 20, kFewest = 10;
+  std::vector<double> depths;
+  for (const DepthForce& sample : branch) depths.push_back(sample.depth);
+  const double reach = depths.empty() ? 0 : depths.back() - depths.front();
+  if (!(reach > 0)) return branch;
+  const double band = std::max(kBand * reach, 4 * noise_of(depths));
+  const auto longest = static_cast<std::size_t>(
+      std::max(kFewest, kSlower * static_cast<double>(depths.size()) * band / reach));
+  std::vector<DepthForce> moving;
+  for (std::size_t i = 0, next = 0; i < branch.size(); i = next) {
+    next = i + 1;
+    while (next < branch.size() && std::abs(depths[next] - depths[i]) <= band) ++next;
+    moving.push_back(branch[i]);
+    if (next - i < longest) next = i + 1;
+  }
+  return moving;
+}
+
 double work_of(const std::vector<DepthForce>& branch) {
   double work = 0;
   for (std::size_t i = 1; i < branch.size(); ++i) {
@@ -141,6 +162,7 @@ PressCurve analyse_press(const PressRecord& record, const PressSettings& setting
   const BaselineAndContact found = baseline_and_contact(record, cycle, settings);
   PressCurve curve;
   curve.cycles = static_cast<int>(cycles.size());
+  curve.cycle = static_cast<int>(&cycle - cycles.data()) + 1;
   curve.baseline = found.baseline;
   curve.contact = found.contact;
   curve.common = found.common;
@@ -152,7 +174,7 @@ PressCurve analyse_press(const PressRecord& record, const PressSettings& setting
     curve.contact = contact_by_threshold(loading, settings.threshold, record.name);
     curve.common.replace_contact(curve.contact);
   }
-  curve.loading = beyond(loading, curve.contact.displacement);
+  curve.loading = without_pauses(beyond(loading, curve.contact.displacement));
   curve.unloading = beyond(unloading, curve.contact.displacement);
   if (curve.loading.size() < kFewestInContact) {
     refuse(record.name, "fewer than " + std::to_string(kFewestInContact) + " samples in contact",

@@ -104,9 +104,10 @@ struct PressCurve {
   Baseline baseline;
   ContactPoint contact;
   CommonErrors common;
-  std::vector<DepthForce> loading;    ///< from the contact on, in order of time
+  std::vector<DepthForce> loading;    ///< from the contact on, in order of time, without pauses
   std::vector<DepthForce> unloading;  ///< back to the contact, in order of time
   int cycles = 0;                     ///< presses found in the record
+  int cycle = 0;                      ///< which of them this is, from 1
   double rate = kUnknown;             ///< m/s, mean speed of loading
   double work_loading = 0;            ///< J
   double work_returned = 0;           ///< J; the rest is lost in the specimen
