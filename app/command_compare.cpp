@@ -13,6 +13,7 @@
 #include "format/body.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/sha256.hpp"
 
 namespace palpate::app {
@@ -70,16 +71,17 @@ void print(const compare::Comparison& comparison) {
   for (const compare::Summary& s : comparison.summaries) {
     say("  {}: {} curves, {} points", s.kind == PathKind::Normal ? "normal" : "lateral", s.curves,
         s.points);
-    say("    RMSE {:.4g} N ({:.2g} % of the largest force), bias {:.3g} N, limits of agreement "
-        "{:.3g} to {:.3g} N",
-        s.rmse, 100 * s.normalised_rmse, s.bias, s.agreement_low, s.agreement_high);
+    say("    RMSE {} ({:.2g} % of the largest force), bias {}, limits of agreement {} to {}",
+        force_text(s.rmse), 100 * s.normalised_rmse, force_text(s.bias),
+        force_text(s.agreement_low), force_text(s.agreement_high));
     say("    {:.2g} just noticeable differences (root mean square), noticeable at {} of the points",
         s.jnd_rms, percentage(s.noticeable));
     say("    scatter of the reference: {}; within the uncertainty: {} of the points",
-        std::isfinite(s.mean_scatter) ? fmt::format("{:.3g} N", s.mean_scatter) : "unknown",
+        std::isfinite(s.mean_scatter) ? force_text(s.mean_scatter) : "unknown",
         percentage(s.within_uncertainty));
-    say("    largest error: site {} at {:.2f} mm, {:.4g} N instead of {:.4g} N", s.worst_vertex,
-        1e3 * s.worst.displacement, s.worst.model, s.worst.reference);
+    say("    largest error: site {} at {}, {} instead of {}", s.worst_vertex,
+        length_text(s.worst.displacement), force_text(s.worst.model),
+        force_text(s.worst.reference));
   }
   if (!comparison.unmatched.empty()) {
     say("  unmatched sites: {} (listed in comparison.json)", comparison.unmatched.size());

@@ -6,6 +6,8 @@
 #include "app/measured/import.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "format/crash_safe_file.hpp"
+#include "format/number_text.hpp"
+#include "format/numbers.hpp"
 
 namespace palpate::app {
 namespace {
@@ -16,6 +18,11 @@ struct ImportOptions {
   std::string sidecar, body, out;
 };
 
+/// A value that is unknown stands as null.
+double number_of(const nlohmann::ordered_json& value) {
+  return value.is_null() ? kUnknown : value.get<double>();
+}
+
 int import_records(const ImportOptions& options) {
   const Import result = import_measurement(options.sidecar, options.body);
   const fs::path out = options.out;
@@ -23,16 +30,16 @@ int import_records(const ImportOptions& options) {
   write_curves(out / "curves.h5", result.curves);
   write_file_crash_safely(out / "import.json", result.account.dump(2) + "\n");
   for (const auto& site : result.account["sites"]) {
-    say("  site {}: {} repeats to {:.2f} mm, {:.4f} N +- {:.4f} N, contact point +- {:.0f} um",
-        site["vertex"].get<int>(), site["repeats"].get<int>(), 1e3 * site["depth_m"].get<double>(),
-        site["force_N"].get<double>(), site["force_uncertainty_N"].get<double>(),
-        1e6 * site["contact_uncertainty_m"].get<double>());
+    say("  site {}: {} repeats to {}, {} +- {}, contact point +- {}", site["vertex"].get<int>(),
+        site["repeats"].get<int>(), length_text(number_of(site["depth_m"])),
+        force_text(number_of(site["force_N"])), force_text(number_of(site["force_uncertainty_N"])),
+        length_text(number_of(site["contact_uncertainty_m"])));
     for (const auto& drag : site["lateral_paths"]) {
       if (drag["repeats"] == 0) continue;  // derived from the normal path, not measured
-      say("    drag at {:.2f} mm: {} repeats to {:.2f} mm, {:.4f} N +- {:.4f} N",
-          1e3 * drag["lateral_depth_m"].get<double>(), drag["repeats"].get<int>(),
-          1e3 * drag["travel_m"].get<double>(), drag["force_N"].get<double>(),
-          drag["force_uncertainty_N"].get<double>());
+      say("    drag at {}: {} repeats to {}, {} +- {}",
+          length_text(number_of(drag["lateral_depth_m"])), drag["repeats"].get<int>(),
+          length_text(number_of(drag["travel_m"])), force_text(number_of(drag["force_N"])),
+          force_text(number_of(drag["force_uncertainty_N"])));
     }
   }
   for (const auto& warning : result.account["warnings"]) {

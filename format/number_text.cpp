@@ -52,6 +52,13 @@ std::string force_text(double newtons) {
   return number_text(1e6 * newtons) + " uN";
 }
 
+std::string length_text(double metres) {
+  const double size = std::abs(metres);
+  if (size >= 1e-4 || size == 0 || !std::isfinite(size)) return number_text(1e3 * metres) + " mm";
+  if (size >= 1e-7) return number_text(1e6 * metres) + " um";
+  return number_text(1e9 * metres) + " nm";
+}
+
 std::string percent_text(double fraction) {
   constexpr double kLeast = 1e-4;
   if (fraction != 0 && std::abs(fraction) < kLeast) return "below 0.01 %";

@@ -16,6 +16,9 @@ std::string rounded_up_text(double value);
 /// "12.4 N", "0.124 mN" or "3.4 uN".
 std::string force_text(double newtons);
 
+/// "12.4 mm", "3.40 um" or "5.00 nm".
+std::string length_text(double metres);
+
 /// Two significant digits of a fraction: "0.43 %", "17 %"; "below 0.01 %" for what is less.
 std::string percent_text(double fraction);
 

@@ -17,6 +17,7 @@
 #include "fitting/measurement/records/repeats.hpp"
 #include "fitting/measurement/records/robot.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/numbers.hpp"
 #include "format/sha256.hpp"
 
@@ -76,9 +77,14 @@ class Importer {
     settings.compliance_uncertainty = s_.machine.compliance_uncertainty;
     settings.cycle = cycle;
     settings.exponent = s_.contact.exponent;
-    settings.method =
-        s_.contact.method == "fit" ? m::ContactMethod::Fit : m::ContactMethod::Threshold;
+    settings.method = s_.contact.method == "fit"         ? m::ContactMethod::Fit
+                      : s_.contact.method == "threshold" ? m::ContactMethod::Threshold
+                                                         : m::ContactMethod::Given;
     settings.threshold = s_.contact.threshold;
+    settings.contact_uncertainty = s_.contact.position_uncertainty;
+    settings.baseline =
+        s_.baseline.method == "fit" ? m::BaselineMethod::Fit : m::BaselineMethod::Zeroed;
+    settings.zero_uncertainty = s_.baseline.uncertainty;
     return settings;
   }
 
@@ -125,11 +131,15 @@ class Importer {
     m::PressRecord record{file.string(), column(table, s_.columns.time, Dimension::Time),
                           column(table, s_.columns.displacement, Dimension::Length),
                           column(table, s_.columns.force, Dimension::Force)};
-    m::orient(record);
+    const m::Signs signs = m::orient(record);
     double distance = 0;
     const int vertex = vertex_of(press, distance);
-    const m::PressCurve curve = m::analyse_press(record, press_settings(press.cycle));
+    m::PressSettings settings = press_settings(press.cycle);
+    const double given = std::isfinite(press.contact) ? press.contact : s_.contact.position;
+    settings.contact = signs.displacement * given;
+    const m::PressCurve curve = m::analyse_press(record, settings);
     check_depth(file.string(), curve);
+    warn_of_drift(press.file, curve);
     add_account(press.file, table, vertex, distance, curve);
     sites_[vertex].presses.push_back(curve);
     add_file(file);
@@ -157,6 +167,41 @@ class Importer {
     if (depth > kManyRadii * s_.tool.radius) {
       warn(fmt::format("{}: the tool goes {:.4g} mm deep, its radius is {:.4g} mm: check the units",
                        where, 1e3 * depth, 1e3 * s_.tool.radius));
+    }
+  }
+
+  static const char* drift_word(m::DriftState state) {
+    switch (state) {
+      case m::DriftState::Unknown:
+        return "unknown";
+      case m::DriftState::Fitted:
+        return "removed";
+      case m::DriftState::Undetermined:
+        return "not determined";
+      case m::DriftState::Suspected:
+        return "seen, not determined";
+    }
+    return "";
+  }
+
+  /// What the samples out of contact leave open about the force at the end of loading.
+  void warn_of_drift(const std::string& where, const m::PressCurve& curve) {
+    constexpr double kMatters = 0.05;  // of the force
+    const m::DepthForce& end = curve.loading.back();
+    if (curve.baseline.state == m::DriftState::Suspected) {
+      const double at_end = curve.common.suspected_drift * (end.time - curve.common.suspected_from);
+      warn(
+          fmt::format("{}: out of contact the force drifts, by {} until the deepest point, if it "
+                      "goes on; too few samples determine it: it is not removed, and counts as an "
+                      "uncertainty. Record the release, or a wait before the press, and the time",
+                      where, force_text(std::abs(at_end))));
+    } else if (curve.baseline.possible_drift * end.time > kMatters * std::abs(end.force)) {
+      warn(
+          fmt::format("{}: the samples out of contact do not exclude a drift of {} until the "
+                      "deepest point, {} of the force; none is removed, and the uncertainty has "
+                      "none. Record the release, or a wait before the press",
+                      where, force_text(curve.baseline.possible_drift * end.time),
+                      percent_text(curve.baseline.possible_drift * end.time / end.force)));
     }
   }
 
@@ -217,6 +262,7 @@ class Importer {
     settings.centre_to_tip = s_.tool.reference == "centre" ? s_.tool.radius : 0;
     const m::RobotCurves curves = m::analyse_robot_log(robot_log(file, table), *body_, settings);
     check_depth(file.string(), curves.press);
+    warn_of_drift(robot.file, curves.press);
     add_account(robot.file, table, curves.site.vertex, curves.site.distance, curves.press);
     records_.back()["tilt_rad"] = curves.tilt;
     records_.back()["touch_m"] = curves.touch;
@@ -240,12 +286,16 @@ class Importer {
                         {"distance_to_vertex_m", distance},
                         {"preamble", table.preamble},
                         {"cycles", curve.cycles},
+                        {"cycle", curve.cycle},
                         {"contact_m", curve.contact.displacement},
                         {"contact_uncertainty_m", curve.contact.uncertainty},
                         {"force_offset_N", b.offset},
                         {"drift_N_per_s", b.drift},
                         {"drift_uncertainty_N_per_s", json_number(b.drift_uncertainty)},
+                        {"drift", drift_word(b.state)},
+                        {"drift_not_excluded_N_per_s", json_number(b.possible_drift)},
                         {"noise_N", b.noise},
+                        {"noise_autocorrelation", b.autocorrelation},
                         {"rate_m_per_s", json_number(curve.rate)},
                         {"deepest_m", curve.loading.back().depth},
                         {"largest_force_N", curve.loading.back().force},

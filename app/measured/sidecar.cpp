@@ -59,13 +59,26 @@ void describe(V& v, DeclaredColumnSection& s) {
 
 template <class V>
 void describe(V& v, ContactSection& s) {
-  v.text(s.method, {"method", "how the contact point is found"}, {"fit", "threshold"});
+  v.text(s.method, {"method", "how the contact point is found"}, {"fit", "threshold", "given"});
   v.number(s.exponent, {"exponent",
                         "of the onset of force: 1.5 sphere, 1 flat punch, 2 cone",
                         kOptional,
                         {.low = 1, .high = 3}});
   v.quantity(s.threshold, Dimension::Force,
              {"threshold", "force taken for contact", kOptional, kPositive});
+  v.quantity(s.position, Dimension::Length,
+             {"position", "displacement of the record at the contact point that is given"});
+  v.quantity(s.position_uncertainty, Dimension::Length,
+             {"position_uncertainty", "standard, of the contact point that is given", kOptional,
+              kNotNegative});
+}
+
+template <class V>
+void describe(V& v, BaselineSection& s) {
+  v.text(s.method, {"method", "from the samples out of contact, or zeroed by the machine"},
+         {"fit", "zeroed"});
+  v.quantity(s.uncertainty, Dimension::Force,
+             {"uncertainty", "standard, of the zero of a zeroed force", kOptional, kNotNegative});
 }
 
 template <class V>
@@ -103,6 +116,8 @@ void describe(V& v, PressFileSection& s) {
   v.integer(s.table, {"table", "which table of the file, from 1; needed when it has several",
                       kOptional, kNotNegative});
   v.integer(s.cycle, {"cycle", "which press of the record; -1 is the last"});
+  v.quantity(s.contact, Dimension::Length,
+             {"contact", "displacement of this record at the contact point that is given"});
 }
 
 template <class V>
@@ -127,6 +142,7 @@ void describe(V& v, Sidecar& s) {
   v.section("columns", s.columns, kRequired, "");
   v.sections("column", s.declared, kOptional, "");
   v.section("contact", s.contact, kOptional, "");
+  v.section("baseline", s.baseline, kOptional, "");
   v.section("path", s.path, kOptional, "");
   v.section("placement", s.placement, kOptional, "");
   v.sections("fiducial", s.fiducials, kOptional, "");
@@ -167,6 +183,31 @@ void check_sites(const Sidecar& s, const SourceMap& sources) {
   }
 }
 
+void check_contact(const Sidecar& s, const SourceMap& sources) {
+  const bool given = s.contact.method == "given";
+  if (given && !s.robot_logs.empty()) {
+    refuse(sources.where("contact.method"), "the contact point of a robot log is not given",
+           "let it be found, or give presses along one axis as [[press]]");
+  }
+  for (std::size_t i = 0; i < s.presses.size(); ++i) {
+    const bool here = std::isfinite(s.presses[i].contact);
+    if (given && !here && !std::isfinite(s.contact.position)) {
+      refuse(sources.where("contact.method"), "key 'contact.position' is missing",
+             "give the displacement at the contact point, for all records or as 'contact' of each");
+    }
+    if (!given && here) {
+      refuse(sources.where(fmt::format("press[{}].contact", i)),
+             "a contact point is given, and contact.method says otherwise",
+             "say contact.method = \"given\"");
+    }
+  }
+  if (!given && std::isfinite(s.contact.position)) {
+    refuse(sources.where("contact.position"),
+           "a contact point is given, and contact.method says otherwise",
+           "say contact.method = \"given\"");
+  }
+}
+
 /// The first thing that newcomers give is the record itself.
 void check_is_no_record(const std::filesystem::path& path) {
   constexpr std::array<std::string_view, 5> records{".csv", ".tsv", ".txt", ".dat", ".raw"};
@@ -193,6 +234,7 @@ Sidecar read_sidecar(const std::filesystem::path& path) {
     refuse(sources.where("contact.method"), "key 'contact.threshold' is missing",
            "give the force that is taken for contact");
   }
+  check_contact(sidecar, sources);
   check_columns(sidecar, sources);
   check_sites(sidecar, sources);
   return sidecar;

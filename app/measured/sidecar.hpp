@@ -40,7 +40,14 @@ struct DeclaredColumnSection {
 struct ContactSection {
   std::string method = "fit";
   double exponent = 1.5;
-  double threshold = kNotGiven;  ///< N
+  double threshold = kNotGiven;     ///< N
+  double position = kNotGiven;      ///< m, as the record counts it
+  double position_uncertainty = 0;  ///< m, standard
+};
+
+struct BaselineSection {
+  std::string method = "fit";  ///< "fit" or "zeroed"
+  double uncertainty = 0;      ///< N, standard, of the zero
 };
 
 struct PathSection {
@@ -65,6 +72,7 @@ struct PressFileSection {
   Vec3 site{kNotGiven, kNotGiven, kNotGiven};  ///< m, in the frame of the body
   int table = 0;                               ///< of the file; 0: its only one
   int cycle = 1;
+  double contact = kNotGiven;  ///< m, as the record counts it
 };
 
 struct RobotFileSection {
@@ -80,6 +88,7 @@ struct Sidecar {
   ColumnsSection columns;
   std::vector<DeclaredColumnSection> declared;
   ContactSection contact;
+  BaselineSection baseline;
   PathSection path;
   PlacementSection placement;
   std::vector<FiducialSection> fiducials;

@@ -12,6 +12,12 @@
 namespace palpate::compare {
 namespace {
 
+std::string in_millimetres(double metres) {
+  char text[48];
+  std::snprintf(text, sizeof text, "%.4g mm", 1e3 * metres);
+  return text;
+}
+
 std::string path_name(PathKind kind, double lateral_depth) {
   if (kind == PathKind::Normal) return "normal path";
   char text[48];
@@ -315,8 +321,38 @@ double MonotoneCubic::integral(double end) const {
   return sum;
 }
 
+namespace {
+
+double radius_or_unknown(double radius) {
+  return radius > 0 ? radius : kUnknown;
+}
+
+void check_tools(const ComparedSet& reference, const ComparedSet& model) {
+  constexpr double kSameRadius = 0.01;
+  const char* const remedy = "compare results of one tool";
+  if (!reference.tool_shape.empty() && !model.tool_shape.empty() &&
+      reference.tool_shape != model.tool_shape) {
+    refuse(model.name,
+           "its tool is a " + model.tool_shape + ", that of " + reference.name + " a " +
+               reference.tool_shape,
+           remedy);
+  }
+  const double a = reference.tool_radius, b = model.tool_radius;
+  if (!(std::abs(a - b) > kSameRadius * std::max(a, b))) return;
+  refuse(model.name,
+         "its tool has a radius of " + in_millimetres(b) + ", that of " + reference.name + " " +
+             in_millimetres(a),
+         remedy);
+}
+
+}  // namespace
+
 ComparedSet set_of(const Curves& curves, std::string name) {
-  ComparedSet set{std::move(name), curves.body_sha256, {}};
+  ComparedSet set{.name = std::move(name),
+                  .body_sha256 = curves.body_sha256,
+                  .sites = {},
+                  .tool_shape = curves.tool.shape,
+                  .tool_radius = radius_or_unknown(curves.tool.radius)};
   for (const SiteCurves& site : curves.sites) {
     ComparedSite out;
     out.vertex = site.vertex;
@@ -329,7 +365,11 @@ ComparedSet set_of(const Curves& curves, std::string name) {
 }
 
 ComparedSet set_of(const Library& library, std::string name, int steps) {
-  ComparedSet set{std::move(name), "", {}};
+  ComparedSet set{.name = std::move(name),
+                  .body_sha256 = "",
+                  .sites = {},
+                  .tool_shape = library.tool_shape,
+                  .tool_radius = radius_or_unknown(library.tool_radius)};
   for (std::size_t v = 0; v < library.responses.size(); ++v) {
     const NodeResponse& response = library.responses[v];
     if (response.status == ResponseStatus::Hole) continue;
@@ -343,6 +383,7 @@ ComparedSet set_of(const Library& library, std::string name, int steps) {
 
 Comparison compare(const ComparedSet& reference, const ComparedSet& model,
                    const CompareSettings& settings) {
+  check_tools(reference, model);
   Comparison out{reference.name, model.name, {}, {}, {}};
   // Without positions on both sides the numbers of the vertices are all there is.
   const auto placed = [](const ComparedSet& set) {

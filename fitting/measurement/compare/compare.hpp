@@ -35,6 +35,8 @@ struct ComparedSet {
   std::string name;
   std::string body_sha256;  ///< empty when unknown
   std::vector<ComparedSite> sites;
+  std::string tool_shape;         ///< empty when unknown
+  double tool_radius = kUnknown;  ///< m
 };
 
 /// The curves of a campaign or of a measurement; of a lateral path the force less that at its
@@ -117,7 +119,8 @@ struct Comparison {
 /// Sites are matched by vertex when both refer to one body, by position otherwise.
 /// The uncertainty of a difference joins those of both curves where known, and the uncertainty of
 /// the contact point times the stiffness of the other.
-/// @throws Error(Configuration) when no curve has a partner.
+/// @throws Error(Configuration) when no curve has a partner; for tools of different shapes, or of
+///   radii that differ by more than 1 % (by which the force of a sphere differs by 0.5 %).
 Comparison compare(const ComparedSet& reference, const ComparedSet& model,
                    const CompareSettings& settings);
 

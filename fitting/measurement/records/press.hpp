@@ -3,9 +3,11 @@
 // what is uncertain about it. Theory and tests: docs/theory-measured.md.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
+#include "fitting/measurement/records/onset.hpp"
 #include "format/numbers.hpp"
 
 namespace palpate::measured {
@@ -20,8 +22,14 @@ struct PressRecord {
 };
 
 enum class ContactMethod {
-  Fit,       ///< least squares of the onset, see press_contact
-  Threshold  ///< the last crossing of a force, corrected by nothing: biased, for comparison
+  Fit,        ///< least squares of the onset, see fit_onset
+  Threshold,  ///< the last crossing of a force, corrected by nothing: biased, for comparison
+  Given       ///< known beforehand
+};
+
+enum class BaselineMethod {
+  Fit,    ///< from the samples out of contact
+  Zeroed  ///< the force is zero out of contact, as recorded
 };
 
 struct PressSettings {
@@ -30,15 +38,33 @@ struct PressSettings {
   int cycle = 1;                      ///< which press of the record; -1 is the last
   double exponent = 1.5;              ///< of the onset: 1.5 sphere, 1 flat punch, 2 cone
   ContactMethod method = ContactMethod::Fit;
-  double threshold = 0;  ///< N, Threshold only
+  double threshold = 0;            ///< N, Threshold only
+  double contact = 0;              ///< m, displacement at the contact point, Given only
+  double contact_uncertainty = 0;  ///< m, standard, Given only
+  BaselineMethod baseline = BaselineMethod::Fit;
+  double zero_uncertainty = 0;  ///< N, standard, of the zero of the force, Zeroed only
 };
 
-/// Force before contact: force = offset + drift (t - time of the first sample).
+/// What a record says about the drift of its force.
+enum class DriftState {
+  Unknown,       ///< nothing: it has no time, or too few samples out of contact
+  Fitted,        ///< it determines the drift, which is removed
+  Undetermined,  ///< it shows none, and would not show one that matters; none is removed
+  Suspected      ///< it shows one that it does not determine; none is removed, it is in u
+};
+
+/// Force before contact: force = offset + drift (t - start).
 struct Baseline {
   double offset = 0;                    ///< N
-  double drift = 0;                     ///< N/s; 0 when there is no time
+  double start = 0;                     ///< s
+  double drift = 0;                     ///< N/s; 0 unless Fitted
   double drift_uncertainty = kUnknown;  ///< N/s, standard
   double noise = 0;                     ///< N, standard deviation of one sample
+  double autocorrelation = 0;           ///< of neighbouring samples, of that noise
+  DriftState state = DriftState::Unknown;
+  /// N/s: the samples out of contact do not exclude a drift of that size (95 %); Undetermined and
+  /// Suspected only.
+  double possible_drift = kUnknown;
 };
 
 struct ContactPoint {
@@ -46,25 +72,50 @@ struct ContactPoint {
   double uncertainty = 0;   ///< m, standard: noise and choice of the fitted range
 };
 
+/// Baseline and contact point are errors that all samples of a press have in common.
+struct CommonErrors {
+  std::array<OnsetEstimate, 3> estimates;  ///< by the fitted range; the middle one is used
+  double compliance = 0;                   ///< m/N
+  double suspected_drift = 0;              ///< N/s (or N a sample), not removed
+  double suspected_from = 0;               ///< s, mean time of the samples of the baseline
+
+  /// Variance of v = h . (offset, drift, contact): with S the covariance of the three,
+  ///   h . S h + (spread^2 - chance)/12,
+  /// spread that of v between the ranges, chance what is expected of it without any misfit, the
+  /// difference of the variances of the smallest and the largest range [Hausman 1978].
+  double variance_of(const std::array<double, 3>& h) const;
+
+  /// N^2, what they add to the force at a depth, where the slope is k and time t after the start of
+  /// the press: variance_of(h) + ((1 + k C) suspected drift (t - from))^2, with
+  /// h = (-(1 + k C), -(1 + k C) t, k).
+  double variance(double time, double slope) const;
+
+  /// The contact point is another one, which has nothing to do with the baseline.
+  void replace_contact(const ContactPoint& contact);
+};
+
 struct DepthForce {
   double depth = 0;  ///< m, from the contact point, corrected for compliance
   double force = 0;  ///< N, corrected for baseline
+  double time = 0;   ///< s, from the start of the press; without a time the number of the sample
 };
 
 struct PressCurve {
   Baseline baseline;
   ContactPoint contact;
-  std::vector<DepthForce> loading;    ///< from the contact on, in order of time
+  CommonErrors common;
+  std::vector<DepthForce> loading;    ///< from the contact on, in order of time, without pauses
   std::vector<DepthForce> unloading;  ///< back to the contact, in order of time
   int cycles = 0;                     ///< presses found in the record
+  int cycle = 0;                      ///< which of them this is, from 1
   double rate = kUnknown;             ///< m/s, mean speed of loading
   double work_loading = 0;            ///< J
   double work_returned = 0;           ///< J; the rest is lost in the specimen
 };
 
-/// Sort out one press: the branches by the turning points of the displacement, baseline and drift
-/// from the samples out of contact (after the release as well, where the machine went back so far),
-/// the contact point with its uncertainty, the depth less what the machine itself yields.
+/// Sort out one press: the branches by the turning points of the displacement; baseline, drift and
+/// contact point with their joint uncertainty (docs/theory-measured.md); the depth less what the
+/// machine itself yields.
 /// @throws Error(Configuration) naming the record: columns of unequal length, time that goes
 ///   backwards, no press, no such cycle, a press that begins in contact, a force that never rises
 ///   above the noise, a machine that by its compliance would yield nearly all the travel.
@@ -72,14 +123,10 @@ PressCurve analyse_press(const PressRecord& record, const PressSettings& setting
 
 /// Turn the signs so that displacement grows into the body and force is positive in compression.
 /// Both follow from the record: the force is largest where the tool is deepest.
-void orient(PressRecord& record);
-
-/// The onset of force by least squares over the contact point c:
-///   f(x) = a0 + a1 z^p + a2 z^(p+1),   z = max(0, x - c),   a1 >= 0,
-/// the second term for what bends the curve later (size of the tool, large strain, thickness).
-/// Fitted up to three shares of the largest force; the standard uncertainty joins the one of the
-/// fit, widened for correlated residuals, and the spread between the shares.
-ContactPoint fit_contact(const std::vector<double>& displacement, const std::vector<double>& force,
-                         double exponent, const std::string& where);
+/// @return the signs that displacement and force were multiplied by.
+struct Signs {
+  double displacement = 1, force = 1;
+};
+Signs orient(PressRecord& record);
 
 }  // namespace palpate::measured

@@ -39,8 +39,10 @@ void join(const std::vector<GriddedPress>& presses, const std::vector<PressCurve
   double known = 0;  // variance of one press that its own record explains
   for (std::size_t r = 0; r < presses.size(); ++r) {
     forces.push_back(presses[r].force[at]);
-    const double shift = slope * curves[r].contact.uncertainty;
-    known += (presses[r].uncertainty[at] * presses[r].uncertainty[at] + shift * shift) / n;
+    const double rho = curves[r].baseline.autocorrelation, noise = presses[r].uncertainty[at];
+    known += (noise * noise * (1 + rho) / (1 - rho) +
+              curves[r].common.variance(presses[r].time[at], slope)) /
+             n;
   }
   force = mean(forces);
   const double scatter = deviation(forces);
@@ -64,9 +66,10 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
   GriddedPress press;
   const double half = 0.5 * (depths.size() > 1 ? depths[1] - depths[0] : depths[0]);
   for (const double depth : depths) {
-    std::vector<double> x, f;
+    std::vector<double> x, f, t;
     for (const DepthForce& sample : branch) {
       if (std::abs(sample.depth - depth) > half) continue;
+      t.push_back(sample.time);
       x.push_back(sample.depth - depth);
       f.push_back(sample.force);
     }
@@ -82,6 +85,7 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
     for (const double value : x) spread += (value - centre) * (value - centre);
     const double lever = spread > 0 ? centre * centre / spread : 0;
     press.force.push_back(line.offset);
+    press.time.push_back(mean(t));
     press.uncertainty.push_back(line.residual *
                                 std::sqrt(1 / static_cast<double>(x.size()) + lever));
   }

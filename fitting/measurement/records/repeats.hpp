@@ -23,7 +23,8 @@ CurveSample measured_sample();
 /// A press on a common grid of depths.
 struct GriddedPress {
   std::vector<double> force;        ///< N, local mean line at each depth
-  std::vector<double> uncertainty;  ///< N, standard, of that mean: noise alone
+  std::vector<double> uncertainty;  ///< N, standard, of that mean: independent noise alone
+  std::vector<double> time;         ///< s, mean over the samples, from the start of the press
 };
 
 /// The loading branch at the given depths: at each the value of a straight line through the samples
@@ -32,10 +33,12 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
                      const std::string& where);
 
 /// The loading branches as one normal path along `inward`, from the touch to the depth that all
-/// presses reach. With u_c the standard uncertainty of the contact points, k the slope, n presses:
+/// presses reach. With the slope k and n presses:
 ///   force_scatter      sample standard deviation between the presses, unknown for one
-///   force_uncertainty  u^2 = max(scatter^2/n, (noise^2 + k^2 u_c^2)/n) + (r f)^2 + (k f u_C)^2,
-/// where the last two, calibration r and compliance u_C, are common to all presses.
+///   force_uncertainty  u^2 = max(scatter^2, mean(noise^2 + v))/n + (r f)^2 + (k f u_C)^2,
+/// where v is the variance of baseline and contact point together (CommonErrors), the noise is
+/// widened for its autocorrelation, and the last two, calibration r and compliance u_C, are common
+/// to all presses.
 /// `contact_uncertainty` is the one of the mean contact point.
 /// @throws Error(Configuration) as on_grid; for presses of which one reaches five times as deep.
 CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,

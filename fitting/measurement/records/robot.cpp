@@ -111,7 +111,7 @@ DragCurve drag_curve(const RobotLog& log, const Parts& parts, const DragSpan& sp
     if (!drag.travel.empty() && travel < drag.travel.back()) continue;
     drag.travel.push_back(travel);
     const double drift =
-        press.baseline.drift * (log.time.empty() ? 0.0 : log.time[i] - log.time.front());
+        press.baseline.drift * (log.time.empty() ? 0.0 : log.time[i] - press.baseline.start);
     drag.force.push_back(log.force[i] - rest - drift * inward);
     depth += parts.along[i] - press.contact.displacement -
              settings.press.compliance * dot(drag.force.back(), inward);

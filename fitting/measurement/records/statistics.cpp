@@ -5,36 +5,9 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 namespace palpate::measured {
-namespace {
-
-/// Gaussian elimination with pivoting of an n x (n + 1) system; false when singular.
-template <std::size_t N>
-bool eliminate(std::array<std::array<double, N + 1>, N> m, std::array<double, N>& x) {
-  for (std::size_t k = 0; k < N; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < N; ++i) {
-      if (std::abs(m[i][k]) > std::abs(m[pivot][k])) pivot = i;
-    }
-    if (!(std::abs(m[pivot][k]) > 1e-300)) return false;
-    std::swap(m[k], m[pivot]);
-    for (std::size_t i = k + 1; i < N; ++i) {
-      const double factor = m[i][k] / m[k][k];
-      for (std::size_t j = k; j <= N; ++j) m[i][j] -= factor * m[k][j];
-    }
-  }
-  for (std::size_t i = N; i-- > 0;) {
-    x[i] = m[i][N];
-    for (std::size_t j = i + 1; j < N; ++j) x[i] -= m[i][j] * x[j];
-    x[i] /= m[i][i];
-  }
-  return true;
-}
-
-}  // namespace
 
 double mean(const std::vector<double>& values) {
   if (values.empty()) return 0;
@@ -77,16 +50,6 @@ LineFit fit_line(const std::vector<double>& x, const std::vector<double>& y) {
   return fit;
 }
 
-double correlation_factor(const std::vector<double>& residual) {
-  double squares = 0, products = 0;
-  for (std::size_t i = 0; i < residual.size(); ++i) {
-    squares += residual[i] * residual[i];
-    if (i > 0) products += residual[i] * residual[i - 1];
-  }
-  const double r = squares > 0 ? std::min(products / squares, 0.98) : 0;
-  return std::max(1.0, (1 + r) / (1 - r));
-}
-
 double minimise_scan(const std::function<double(double)>& value, double low, double high,
                      int cells) {
   const double width = (high - low) / cells;
@@ -119,33 +82,6 @@ double minimise_scan(const std::function<double(double)>& value, double low, dou
   }
   const double found = 0.5 * (a + b);
   return value(found) <= least ? found : best;
-}
-
-void Symmetric3::add(const std::array<double, 3>& row, double right) {
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) m_[i][j] += row[i] * row[j];
-    m_[i][3] += row[i] * right;
-  }
-}
-
-bool Symmetric3::solve(std::array<double, 3>& x) const {
-  return eliminate<3>(m_, x);
-}
-
-void Symmetric4::add(const std::array<double, 4>& row) {
-  for (std::size_t i = 0; i < 4; ++i) {
-    for (std::size_t j = 0; j < 4; ++j) m_[i][j] += row[i] * row[j];
-  }
-}
-
-double Symmetric4::inverse_first() const {
-  std::array<std::array<double, 5>, 4> system{};
-  for (std::size_t i = 0; i < 4; ++i) {
-    std::copy(m_[i].begin(), m_[i].end(), system[i].begin());
-  }
-  system[0][4] = 1;
-  std::array<double, 4> x{};
-  return eliminate<4>(system, x) ? x[0] : std::numeric_limits<double>::infinity();
 }
 
 double student_quantile(double probability, double freedom) {

@@ -53,5 +53,15 @@ TEST(NumberText, FractionsArePercents) {
   EXPECT_EQ(percent_text(0), "0 %");
 }
 
+TEST(NumberText, LengthsHaveTheUnitThatFits) {
+  EXPECT_EQ(length_text(0.0124), "12.4 mm");
+  EXPECT_EQ(length_text(0.25e-3), "0.250 mm");
+  EXPECT_EQ(length_text(-25e-6), "-25.0 um");
+  EXPECT_EQ(length_text(0.4e-6), "0.400 um");
+  EXPECT_EQ(length_text(7e-9), "7.00 nm");
+  EXPECT_EQ(length_text(0), "0 mm");
+  EXPECT_EQ(length_text(std::nan("")), "unknown mm");
+}
+
 }  // namespace
 }  // namespace palpate

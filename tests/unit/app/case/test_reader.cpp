@@ -18,7 +18,8 @@ TEST(CaseReader, RejectsBareNumberForADimensionalKey) {
 TEST(CaseReader, RejectsWrongOrMissingUnit) {
   EXPECT_THAT(message_with("\"8 mm\"", "\"8 kPa\""), HasSubstr("found '8 kPa'"));
   EXPECT_THAT(message_with("\"8 mm\"", "'8'"), HasSubstr("mesh.patch_spacing"));
-  EXPECT_THAT(message_with("\"10 kPa\"", "\"10 mm\""), HasSubstr("units: kPa, MPa, Pa"));
+  EXPECT_THAT(message_with("\"10 kPa\"", "\"10 mm\""),
+              HasSubstr("units: kPa, MPa, psi, kgf/cm^2, N/mm^2, Pa"));
   EXPECT_THAT(message_with("\"-15 mm\"", "\"-15\""), HasSubstr("support[0].point"));
   EXPECT_THAT(message_with("\"33.3 deg\"", "33.3"), HasSubstr("indentation.azimuths"));
 }

@@ -130,6 +130,60 @@ TEST_F(Imports, AreRefusedWithTheRecordThatIsWrong) {
               HasSubstr("add --body body.h5"));
 }
 
+/// A record that begins where the tool touches, the force set to zero there; the machine counts
+/// downwards.
+TEST_F(Imports, TakeTheContactPointAndTheZeroThatAreGiven) {
+  Bench bench;
+  bench.contact = bench.offset = 0;
+  measured::PressRecord record = measured::press_on(bench, 4);
+  {
+    std::ofstream file(folder_ / "a.csv");
+    file << "t (s),x (mm),f (N)\n";
+    for (std::size_t i = 0; i < record.time.size(); ++i)
+      file << record.time[i] << ',' << 12.5 - 1e3 * record.displacement[i] << ',' << record.force[i]
+           << '\n';
+  }
+  EXPECT_THAT(refusal(write_sidecar(press("a.csv", 0),
+                                    "[baseline]\nmethod = \"fit\"\n"
+                                    "[contact]\nmethod = \"given\"\n"
+                                    "position = \"12.5 mm\"\n")),
+              HasSubstr("baseline.method = \"zeroed\""));
+  const Import result = import_measurement(
+      write_sidecar(press("a.csv", 0) + "contact = \"12.5 mm\"\n",
+                    "[baseline]\nmethod = \"zeroed\"\nuncertainty = \"0.2 mN\"\n"
+                    "[contact]\nmethod = \"given\"\nposition_uncertainty = \"5 um\"\n"),
+      {});
+  const CurvePath& path = result.curves.sites[0].paths[0];
+  for (const CurveSample& sample : path.samples) {
+    const double force = measured::sneddon_force(sample.displacement, bench.radius, bench.modulus);
+    EXPECT_NEAR(-sample.force[2], force, 3.5 * sample.force_uncertainty + 1e-4);
+  }
+  EXPECT_DOUBLE_EQ(path.contact_uncertainty, 5e-6);
+  EXPECT_EQ(result.account.at("records").at(0).at("force_offset_N"), 0.0);
+}
+
+/// An approach of 1.5 s before 80 s of loading says nothing of drift.
+TEST_F(Imports, WarnOfADriftThatTheRecordDoesNotExclude) {
+  Bench bench;
+  bench.noise = 0.005;
+  bench.contact = 0.3e-3;
+  bench.speed = 0.1e-3;
+  bench.rate = 20;
+  const measured::PressRecord whole = measured::press_on(bench, 1);
+  std::ofstream file(folder_ / "a.csv");
+  file << "t (s),x (mm),f (N)\n";
+  for (std::size_t i = 0; i < whole.time.size() / 2; ++i)
+    file << whole.time[i] << ',' << 1e3 * whole.displacement[i] << ',' << whole.force[i] << '\n';
+  file.close();
+  const Import result = import_measurement(write_sidecar(press("a.csv", 0)), {});
+  const auto& record = result.account.at("records").at(0);
+  EXPECT_EQ(record.at("drift"), "not determined");
+  EXPECT_EQ(record.at("drift_N_per_s"), 0.0);
+  ASSERT_EQ(result.account.at("warnings").size(), 1u);
+  EXPECT_THAT(result.account.at("warnings").at(0).get<std::string>(),
+              HasSubstr("do not exclude a drift of"));
+}
+
 /// Metres that were written as millimetres: 4 m of depth for a tool of 5 mm.
 TEST_F(Imports, WarnOfADepthThatLooksLikeAWrongUnit) {
   Bench bench;

@@ -47,6 +47,21 @@ TEST(Sidecar, OfTheShippedPadIsReadInSi) {
   EXPECT_FALSE(read_sidecar(folder / "robot.toml").robot_logs.empty());
 }
 
+/// A tool of tens of micrometres on a cell: every unit that records may have serves the sidecar.
+TEST(Sidecar, TakesQuantitiesInSmallUnits) {
+  const samples::TemporaryFolder folder;
+  std::ofstream(folder / "a.toml")
+      << "name = \"a\"\nspecimen = \"b\"\nsource = \"c\"\nlicence = \"d\"\n"
+         "[tool]\nradius = \"25000 nm\"\nfriction = \"frictionless\"\n"
+         "[machine]\ncompliance = \"2 um/mN\"\n"
+      << kColumns << "[contact]\nmethod = \"threshold\"\nthreshold = \"0.005 uN\"\n"
+      << kPress;
+  const Sidecar sidecar = read_sidecar(folder / "a.toml");
+  EXPECT_DOUBLE_EQ(sidecar.tool.radius, 25e-6);
+  EXPECT_DOUBLE_EQ(sidecar.machine.compliance, 2e-3);
+  EXPECT_DOUBLE_EQ(sidecar.contact.threshold, 5e-9);
+}
+
 TEST(Sidecar, RefusesWhatItCannotUse) {
   EXPECT_EQ(refusal(kHead + kColumns + kPress), "accepted");
   EXPECT_THAT(refusal(kHead + kColumns), HasSubstr("it names no record"));
@@ -58,6 +73,15 @@ TEST(Sidecar, RefusesWhatItCannotUse) {
               HasSubstr("both vertex and site are given"));
   EXPECT_THAT(refusal(kHead + kColumns + "[contact]\nmethod = \"threshold\"\n" + kPress),
               HasSubstr("key 'contact.threshold' is missing"));
+  EXPECT_THAT(refusal(kHead + kColumns + "[contact]\nmethod = \"given\"\n" + kPress),
+              HasSubstr("key 'contact.position' is missing"));
+  EXPECT_EQ(refusal(kHead + kColumns + "[contact]\nmethod = \"given\"\n" + kPress +
+                    "contact = \"-0.2 mm\"\n"),
+            "accepted");
+  EXPECT_THAT(refusal(kHead + kColumns + kPress + "contact = \"0 mm\"\n"),
+              HasSubstr("say contact.method = \"given\""));
+  EXPECT_THAT(refusal(kHead + kColumns + "[contact]\nposition = \"0 mm\"\n" + kPress),
+              HasSubstr("say contact.method = \"given\""));
   EXPECT_THAT(refusal(kHead + kColumns + "[[robot]]\nfile = \"a.csv\"\n"),
               HasSubstr("key 'columns.x' is missing"));
   EXPECT_THAT(refusal("0,1\n", "a.csv"), HasSubstr("this is a record, not its sidecar"));

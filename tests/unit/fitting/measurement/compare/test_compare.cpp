@@ -178,6 +178,29 @@ TEST(Compare, CurvesOfDifferentBodiesAreNotMatchedByNumber) {
   EXPECT_NO_THROW(compared(a, b));
 }
 
+/// The force of a sphere at a depth grows as the root of its radius: curves of 0.1 and 0.25 mm
+/// differ by 58 % on one specimen.
+TEST(Compare, OtherToolsAreRefused) {
+  const auto refusal = [](const Curves& a, const Curves& b) -> std::string {
+    try {
+      compared(a, b);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  Curves a = curves_of(1), b = curves_of(1);
+  a.tool = {"sphere", 0.1e-3, "frictionless"};
+  b.tool = {"sphere", 0.25e-3, "frictionless"};
+  EXPECT_THAT(refusal(a, b), HasSubstr("radius of 0.25 mm, that of measured 0.1 mm"));
+  b.tool.radius = 0.1005e-3;
+  EXPECT_EQ(refusal(a, b), "accepted");
+  b.tool.shape = "disc";
+  EXPECT_THAT(refusal(a, b), HasSubstr("its tool is a disc, that of measured a sphere"));
+  b.tool = {};  // unknown
+  EXPECT_EQ(refusal(a, b), "accepted");
+}
+
 Library library_of(double shift, float stiffness) {
   Library library;
   for (int v = 0; v < 4; ++v) {

@@ -105,6 +105,41 @@ TEST(Press, BranchesAndLossAreTold) {
   EXPECT_NEAR(curve.rate, bench.speed, 0.03 * bench.speed);  // the hold is not part of it
 }
 
+/// A machine that waits for 20 s half way in, while the force relaxes by a fifth: the curve is that
+/// of the moving tool.
+TEST(Press, PausesInLoadingBelongToNoBranch) {
+  Bench bench;
+  bench.depth = 0.004;
+  const PressRecord smooth = press_on(bench, 17);
+  const double stop = bench.contact + 0.5 * bench.depth;
+  const double held = sneddon_force(0.5 * bench.depth, bench.radius, bench.modulus);
+  PressRecord record = smooth;
+  const auto at = std::find_if(record.displacement.begin(), record.displacement.end(),
+                               [&](double x) { return x >= stop; }) -
+                  record.displacement.begin();
+  for (std::size_t i = static_cast<std::size_t>(at); i < record.time.size(); ++i) {
+    record.time[i] += 20;
+  }
+  std::vector<double> t, x, f;
+  for (int i = 0; i < 1000; ++i) {
+    t.push_back(smooth.time[static_cast<std::size_t>(at)] + 0.02 * i);
+    x.push_back(stop);
+    f.push_back(bench.offset + held * (1 - 0.2 * (1 - std::exp(-0.02 * i / 2))));
+  }
+  record.time.insert(record.time.begin() + at, t.begin(), t.end());
+  record.displacement.insert(record.displacement.begin() + at, x.begin(), x.end());
+  record.force.insert(record.force.begin() + at, f.begin(), f.end());
+  const PressCurve curve = analyse_press(record, {});
+  const double largest = sneddon_force(bench.depth, bench.radius, bench.modulus);
+  for (const DepthForce& sample : curve.loading) {
+    EXPECT_NEAR(sample.force, sneddon_force(sample.depth, bench.radius, bench.modulus),
+                0.02 * largest);
+  }
+  const PressCurve without = analyse_press(smooth, {});
+  EXPECT_NEAR(static_cast<double>(curve.loading.size()),
+              static_cast<double>(without.loading.size()), 5);
+}
+
 TEST(Press, CyclesAreCounted) {
   Bench bench;
   bench.presses = 3;
@@ -114,6 +149,7 @@ TEST(Press, CyclesAreCounted) {
     settings.cycle = cycle;
     const PressCurve curve = analyse_press(record, settings);
     EXPECT_EQ(curve.cycles, 3);
+    EXPECT_EQ(curve.cycle, cycle > 0 ? cycle : 4 + cycle);
     EXPECT_NEAR(curve.contact.displacement, bench.contact, 100e-6) << cycle;
   }
   settings.cycle = 4;

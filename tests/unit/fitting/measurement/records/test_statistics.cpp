@@ -46,25 +46,6 @@ TEST(Statistics, ALineHasItsSlopeOffsetAndResidual) {
   EXPECT_NEAR(off.slope_uncertainty, std::sqrt(0.5 / 5), 1e-14);
 }
 
-TEST(Statistics, ThreeUnknownsAndTheInverseOfFour) {
-  Symmetric3 normal;
-  const std::array<double, 3> wanted{1, -2, 0.5};
-  for (const std::array<double, 3>& row :
-       {std::array<double, 3>{1, 0, 2}, {0, 1, 1}, {3, 1, 0}, {1, 1, 1}})
-    normal.add(row, row[0] * wanted[0] + row[1] * wanted[1] + row[2] * wanted[2]);
-  std::array<double, 3> x{};
-  ASSERT_TRUE(normal.solve(x));
-  for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(x[i], wanted[i], 1e-12);
-  EXPECT_FALSE(Symmetric3().solve(x));
-  Symmetric4 information;
-  information.add({2, 0, 0, 0});
-  EXPECT_TRUE(std::isinf(information.inverse_first()));
-  information.add({0, 1, 0, 0});
-  information.add({0, 0, 1, 0});
-  information.add({0, 0, 0, 1});
-  EXPECT_NEAR(information.inverse_first(), 0.25, 1e-14);
-}
-
 TEST(Statistics, AScanFindsTheLeastOfSeveralMinima) {
   const auto value = [](double x) { return std::cos(3 * x) + 0.1 * x; };
   EXPECT_NEAR(minimise_scan(value, 0, 6, 60), (M_PI - std::asin(0.1 / 3)) / 3, 1e-6);
