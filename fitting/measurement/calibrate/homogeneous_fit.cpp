@@ -37,7 +37,16 @@ double rms(const std::vector<double>& values) {
   return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-/// What each residual of a test, in nominal stress, is multiplied by.
+/// Deviations of the noise of each residual of a test under the factors below: what a test counts,
+/// by its weight and by the number of its samples, says nothing of its noise. `mean` is the mean
+/// number of samples of the tests.
+double deviation_of(const HomogeneousTest& test, Weighting weighting, double mean) {
+  const double samples =
+      weighting == Weighting::PerTest ? mean / static_cast<double>(test.nominal.size()) : 1;
+  return test.weight * std::sqrt(samples);
+}
+
+/// What each residual of a test, in nominal stress, is multiplied by before its deviation.
 std::vector<double> factors(const HomogeneousTest& test, const HomogeneousSettings& settings) {
   std::vector<double> ratio, measured;
   double largest = 0;
@@ -62,8 +71,7 @@ std::vector<double> factors(const HomogeneousTest& test, const HomogeneousSettin
     return 1.0;
   };
   std::vector<double> out;
-  for (std::size_t i = 0; i < measured.size(); ++i)
-    out.push_back(test.weight * ratio[i] / scale(i));
+  for (std::size_t i = 0; i < measured.size(); ++i) out.push_back(ratio[i] / scale(i));
   return out;
 }
 
@@ -166,9 +174,14 @@ LeastSquares problem_of(const std::vector<HomogeneousTest>& tests,
   problem.known_scatter = settings.weighting == Weighting::Uncertainty;
   std::vector<std::vector<double>> factor;
   for (const HomogeneousTest& test : tests) {
-    factor.push_back(factors(test, settings));
     problem.residuals += test.nominal.size();
     problem.series.push_back(test.nominal.size());
+  }
+  const double mean = static_cast<double>(problem.residuals) / static_cast<double>(tests.size());
+  for (const HomogeneousTest& test : tests) {
+    const double deviation = deviation_of(test, settings.weighting, mean);
+    problem.deviations.insert(problem.deviations.end(), test.nominal.size(), deviation);
+    for (double& f : factor.emplace_back(factors(test, settings))) f *= deviation;
   }
   const std::size_t n = problem.constants.size();
   problem.model = [&tests, law, factor, n](const double* c, double* r, double* J) {

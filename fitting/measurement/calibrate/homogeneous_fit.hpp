@@ -18,13 +18,13 @@ struct HomogeneousTest {
   std::vector<double> deformation;    ///< stretch, or amount of shear
   std::vector<double> nominal;        ///< Pa
   std::vector<double> uncertainty{};  ///< Pa, standard, of the nominal stress; empty: unknown
-  double weight = 1;                  ///< of its residuals
+  double weight = 1;                  ///< of its residuals, beside that of the weighting
 };
 
 enum class Weighting {
-  Absolute,    ///< residuals in Pa: large stresses decide
-  PerTest,     ///< over the root mean square stress of the test: tests count alike
-  Relative,    ///< over the stress itself, at least 5 % of the largest of its test
+  Absolute,  ///< residuals in Pa: large stresses decide
+  PerTest,   ///< over root mean square stress and root of the number of samples: tests count alike
+  Relative,  ///< over the stress itself, at least 5 % of the largest of its test
   Uncertainty  ///< over the stated standard uncertainty
 };
 

@@ -52,7 +52,9 @@ void add_warnings(Calibration& result) {
   }
   if (result.correlated) {
     warn("the residuals of neighbouring points are alike (correlation " +
-         number_text(result.lag_one) + " after the fit, " + number_text(result.autocorrelation) +
+         number_text(result.lag_one) + " after the fit, " +
+         (result.beyond_noise ? "more than in any noise, and not known"
+                              : number_text(result.autocorrelation)) +
          " before it, Durbin-Watson " + number_text(result.durbin_watson) +
          "): the model misses the shape of the data; the intervals are up to " +
          number_text(result.correlation_widening) +

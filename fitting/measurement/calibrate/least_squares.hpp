@@ -28,6 +28,9 @@ struct LeastSquares {
   /// Lengths of runs of residuals that follow each other along a curve, from the first residual on;
   /// what is left is on its own. Empty: residuals are taken for independent.
   std::vector<std::size_t> series;
+  /// Relative standard deviations of the noise of the residuals, where these are weighted by
+  /// something else than its inverse; empty: alike. The intervals count them.
+  std::vector<double> deviations;
   double confidence = 0.95;
   int max_iterations = 200;
   double tolerance = 1e-12;       ///< relative, of the cost
@@ -37,7 +40,7 @@ struct LeastSquares {
 struct Estimate {
   std::string name, unit;
   double value = 0;
-  double standard_error = 0;  ///< NaN at a bound
+  double standard_error = 0;  ///< NaN at a bound, infinite where the data do not see the constant
   double unit_error = 0;      ///< the same for independent residuals of unit scatter
   double low = 0, high = 0;   ///< of the confidence interval, by Student's t
   bool at_bound = false;
@@ -59,6 +62,7 @@ struct Calibration {
   /// at most.
   double lag_one = 0, durbin_watson = 2, autocorrelation = 0;
   bool correlated = false;
+  bool beyond_noise = false;  ///< the misfit is smoother than noise, see CorrelatedNoise
   double correlation_widening = 1;
   int freedom = 0;               ///< n - p
   double effective_freedom = 0;  ///< of the scatter: n - p, fewer where residuals are correlated
@@ -75,6 +79,7 @@ struct Calibration {
 /// a constant at its bound, residuals that a known scatter does not explain. Where residuals that
 /// follow each other are alike by more than chance, the covariance is s^2 (J^T J)^-1 J^T V J
 /// (J^T J)^-1 with the correlation V that they show, and that is warned of (correlated_noise.hpp).
+/// Residuals as many as constants leave the intervals without end.
 /// @throws Error(Configuration) naming `where` when there are fewer residuals than constants, a
 ///   start outside its bounds, or no value at the start.
 Calibration minimise(const LeastSquares& problem, const std::string& where);

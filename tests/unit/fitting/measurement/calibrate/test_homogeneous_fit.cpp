@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "format/error.hpp"
 #include "tests/support/source_folder.hpp"
@@ -198,6 +199,68 @@ TEST(Homogeneous, IntervalsCoverTheTruthWhereTheStatedUncertaintyIsTooSmall) {
     if (calibration.widened) ++widened;
   }
   EXPECT_GE(widened, kTrials - 1);
+  EXPECT_GE(inside, 273);  // 285 expected, three standard deviations are 11
+  EXPECT_LE(inside, 296);
+}
+
+/// Two tests that disagree, the second sampled twenty times as densely: by equal weights the
+/// modulus is sum_t (g_t . p_t / |p_t|^2) / sum_t (|g_t|^2 / |p_t|^2), whatever the number of
+/// samples.
+TEST(Homogeneous, TestsCountAlikeWhateverTheNumberOfTheirSamples) {
+  const auto curve = [](Mode mode, double mu, int samples) {
+    HomogeneousTest test{"t", mode, {}, {}, {}, 1};
+    for (int i = 0; i < samples; ++i) {
+      const double s = rest_of(mode) + 0.5 * (i / (samples / 10) + 1) / 10;  // ten, each repeated
+      test.deformation.push_back(s);
+      test.nominal.push_back(mu * (mode == Mode::Uniaxial ? s - 1 / (s * s) : s));
+    }
+    return test;
+  };
+  HomogeneousSettings settings;
+  settings.law = "neo-hookean";
+  double above = 0, below = 0;
+  for (const auto& [mode, mu] : {std::pair(Mode::Uniaxial, 600.0), {Mode::SimpleShear, 900.0}}) {
+    const HomogeneousTest test = curve(mode, mu, 10);
+    double gp = 0, gg = 0, pp = 0;
+    for (std::size_t i = 0; i < 10; ++i) {
+      const double p = test.nominal[i], g = p / mu;
+      gp += g * p;
+      gg += g * g;
+      pp += p * p;
+    }
+    above += gp / pp;
+    below += gg / pp;
+  }
+  for (const int samples : {10, 200}) {
+    const HomogeneousFit fit = fit_homogeneous(
+        {curve(Mode::Uniaxial, 600, 10), curve(Mode::SimpleShear, 900, samples)}, settings);
+    EXPECT_NEAR(fit.shear_modulus, above / below, 1e-6 * fit.shear_modulus) << samples;
+  }
+}
+
+/// Weights that say what counts, not what is noise, leave the intervals their coverage.
+TEST(Homogeneous, IntervalsCoverTheTruthOfUnequallySampledTests) {
+  constexpr int kTrials = 300;
+  std::mt19937 engine(19);
+  std::normal_distribution<double> noise(0, 1);
+  int inside = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<HomogeneousTest> tests;
+    for (const int samples : {8, 160}) {
+      HomogeneousTest test{"t", Mode::SimpleShear, {}, {}, {}, 1};
+      for (int i = 1; i <= samples; ++i) {
+        const double s = 0.5 * i / samples;
+        test.deformation.push_back(s);
+        test.nominal.push_back(1000 * s + 30 * noise(engine));
+      }
+      tests.push_back(test);
+    }
+    HomogeneousSettings settings;
+    settings.law = "neo-hookean";
+    const Estimate e = fit_homogeneous(tests, settings).calibration.estimates[0];
+    const double young = 1000 * 2 * (1 + kCasePoisson);
+    inside += e.low <= young && young <= e.high;
+  }
   EXPECT_GE(inside, 273);  // 285 expected, three standard deviations are 11
   EXPECT_LE(inside, 296);
 }
