@@ -109,7 +109,7 @@ calibrate::ConstantInfo constant_of(const ConstantSection& s, const std::string&
                                     const std::string& where) {
   std::string names;
   for (calibrate::ConstantInfo info :
-       calibrate::default_constants(calibrate::IncompressibleLaw(law), 1)) {
+       calibrate::default_constants(calibrate::IncompressibleLaw(law), {})) {
     names += (names.empty() ? "" : ", ") + info.name;
     if (info.name != s.name) continue;
     info.start = bound_of(s.start, info.is_stress, where);

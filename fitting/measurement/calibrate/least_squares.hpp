@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct Constant {
   std::string unit;  ///< "Pa" or "1"
   double start = 0;
   double low = 0, high = 0;  ///< may be infinite
+  bool may_vanish = false;   ///< 0 is a value like any other: an interval that holds it is no doubt
 };
 
 struct LeastSquares {
@@ -25,6 +27,9 @@ struct LeastSquares {
   /// True when each residual is divided by its known standard uncertainty; otherwise the scatter is
   /// estimated from the residuals.
   bool known_scatter = false;
+  /// Replaces constants by those of the same model that stand for it, where several sets are the
+  /// same; may be empty.
+  std::function<void(std::vector<double>& constants)> canonical;
   /// Lengths of runs of residuals that follow each other along a curve, from the first residual on;
   /// what is left is on its own. Empty: residuals are taken for independent.
   std::vector<std::size_t> series;
@@ -81,13 +86,19 @@ struct Calibration {
 /// (J^T J)^-1 with the correlation V that they show, and that is warned of (correlated_noise.hpp).
 /// Residuals as many as constants leave the intervals without end.
 /// @throws Error(Configuration) naming `where` when there are fewer residuals than constants, a
-///   start outside its bounds, or no value at the start.
+///   start outside its bounds, no value at the start, or an iteration that does not converge.
 Calibration minimise(const LeastSquares& problem, const std::string& where);
 
-/// The best of several starts, each a full set of constants; of equally good ends the earliest, and
-/// a warning that names another one.
+/// The best of several starts, each a full set of constants that is moved within the bounds; of
+/// equally good ends the earliest, and a warning that names another one. What has not converged
+/// does not count. @throws as above; when no start converges, with the best that was reached.
 Calibration minimise(LeastSquares problem, const std::vector<std::vector<double>>& starts,
                      const std::string& where);
+
+/// The same, or none where no start converges.
+std::optional<Calibration> converged_minimum(LeastSquares problem,
+                                             const std::vector<std::vector<double>>& starts,
+                                             const std::string& where);
 
 struct ProfileSettings {
   std::vector<std::size_t> of;  ///< indices of the constants; empty: all
