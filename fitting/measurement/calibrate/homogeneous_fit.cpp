@@ -187,7 +187,8 @@ HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
   HomogeneousFit fit;
   fit.calibration = solution.calibration;
   check_fit(solution.problem, fit.calibration, "fit of " + settings.law);
-  if (settings.profiles) add_profiles(solution.problem.squares, fit.calibration);
+  if (settings.profiles)
+    add_profiles(solution.problem.squares, fit.calibration, {.of = {}, .between = 4});
   const std::vector<double> c = law_values(law, fit.calibration);
   fit.law = law.for_case(c);
   fem::check_law(fit.law, "fit of " + settings.law);

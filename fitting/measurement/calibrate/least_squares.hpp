@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate::calibrate {
@@ -53,6 +54,9 @@ struct Estimate {
   /// end.
   double profile_low = std::numeric_limits<double>::quiet_NaN();
   double profile_high = std::numeric_limits<double>::quiet_NaN();
+  /// What a profile went through, by ascending values of the constant: the rise of the cost of the
+  /// best fit of all others, over the rise at which an interval ends.
+  std::vector<std::pair<double, double>> profile{};
 };
 
 struct Calibration {
@@ -103,6 +107,7 @@ std::optional<Calibration> converged_minimum(LeastSquares problem,
 struct ProfileSettings {
   std::vector<std::size_t> of;  ///< indices of the constants; empty: all
   double closeness = 1e-4;      ///< of an end, relative to its distance from the best fit
+  int between = 0;              ///< fits between the best one and each end, for a picture
 };
 
 /// Intervals that do not linearise: of each constant the values at which the best fit of all others

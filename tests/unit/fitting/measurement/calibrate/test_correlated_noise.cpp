@@ -175,6 +175,35 @@ TEST(CorrelatedNoise, OfUnequalWeightsIsLeftAlone) {
   EXPECT_LT(found, 50 + 21);
 }
 
+/// A parabola misses x^3 by four half waves that are smoother than noise. However many samples
+/// there are, they count for as many as half waves at least: the standard errors are no wider than
+/// for four.
+TEST(CorrelatedNoise, AMisfitThatIsSmootherThanNoiseIsSaidAndNotInflated) {
+  for (const int n : {20, 40, 100}) {
+    LeastSquares problem;
+    for (const char* name : {"a", "b", "c"}) problem.constants.push_back({name, "1", 0, -9, 9});
+    problem.residuals = static_cast<std::size_t>(n);
+    problem.series = {problem.residuals};
+    problem.model = [n](const double* c, double* r, double* J) {
+      for (int i = 0; i < n; ++i) {
+        const double x = static_cast<double>(i) / (n - 1);
+        r[i] = c[0] + x * (c[1] + x * c[2]) - x * x * x;
+        if (J != nullptr) J[3 * i] = 1, J[3 * i + 1] = x, J[3 * i + 2] = x * x;
+      }
+      return true;
+    };
+    const Calibration fit = minimise(problem, "parabola");
+    EXPECT_TRUE(fit.beyond_noise) << n;
+    EXPECT_THAT(fit.warnings, Contains(HasSubstr("more than in any noise")));
+    const double scatter = std::sqrt(2 * fit.cost / (n - 3));
+    EXPECT_NEAR(fit.scatter, scatter, 1e-6 * scatter);
+    for (const Estimate& e : fit.estimates) {
+      EXPECT_GT(e.standard_error, scatter * e.unit_error) << n;
+      EXPECT_LT(e.standard_error, std::sqrt(n / 4.0) * scatter * e.unit_error) << n;
+    }
+  }
+}
+
 /// Resampling between the samples of a curve adds nothing and takes nothing away: the interval
 /// stays what it was, twenty times as many points or not, although neighbours are now all alike.
 TEST(CorrelatedNoise, ResampledCurvesKeepTheirIntervals) {

@@ -458,6 +458,27 @@ TEST(Homogeneous, AFittedOffsetKeepsTheCoverageOfTheIntervals) {
   EXPECT_LT(*std::min_element(without.begin(), without.end()), 150);
 }
 
+/// Stresses a billion times smaller have constants a billion times smaller, to the last digits, and
+/// the same intervals relative to them: no tolerance or bound has a size of its own.
+TEST(Homogeneous, FitsScaleWithTheirStresses) {
+  const auto large = three_modes("treloar-1944");
+  for (const auto law : homogeneous_laws()) {
+    HomogeneousSettings settings;
+    settings.law = law;
+    const HomogeneousFit fit = fit_homogeneous(large, settings);
+    auto small = large;
+    for (HomogeneousTest& test : small)
+      for (double& stress : test.nominal) stress *= 1e-9;
+    const HomogeneousFit scaled = fit_homogeneous(small, settings);
+    EXPECT_NEAR(scaled.shear_modulus / fit.shear_modulus, 1e-9, 1e-14) << law;
+    for (std::size_t i = 0; i < large.size(); ++i)
+      EXPECT_NEAR(scaled.errors[i].relative, fit.errors[i].relative, 1e-6) << law;
+    for (std::size_t i = 0; i < fit.calibration.estimates.size(); ++i)
+      EXPECT_EQ(scaled.calibration.estimates[i].at_bound, fit.calibration.estimates[i].at_bound)
+          << law;
+  }
+}
+
 TEST(Homogeneous, RefusesWhatCannotBeFitted) {
   const auto refusal = [](const std::vector<HomogeneousTest>& tests, HomogeneousSettings settings) {
     try {
