@@ -12,8 +12,10 @@
 #include "app/console.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/workspace.hpp"
+#include "app/report/report.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/provenance.hpp"
 #include "format/sha256.hpp"
 
@@ -42,7 +44,9 @@ int calibrate_tests(const CalibrateOptions& options) {
   if (options.out.empty()) return kExitDone;
   std::vector<fs::path> files = file.files;
   files.insert(files.begin(), options.fit_file);
-  Json account = {{"name", file.name},
+  Json account = {{"artifact", "palpate.calibration"},
+                  {"schema", 1},
+                  {"name", file.name},
                   {"source", file.source},
                   {"licence", file.licence},
                   {"creator", creator_text()},
@@ -50,8 +54,10 @@ int calibrate_tests(const CalibrateOptions& options) {
   account.update(homogeneous_account(fit, file.settings, file.tests));
   prepare_output(options.out);
   const fs::path target = fs::path(options.out) / "calibration.json";
+  const fs::path page = fs::path(options.out) / "calibration.html";
   write_file_crash_safely(target, account.dump(2) + "\n");
-  say("calibrate: {}", target.string());
+  report::write_calibration(account.dump(), page);
+  say("calibrate: {}, {}", target.string(), page.string());
   return kExitDone;
 }
 
@@ -161,14 +167,15 @@ int calibrate_body(const BodyOptions& options) {
   const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(), [](const InversePath& p) {
     return p.kind == PathKind::Lateral;
   });
-  say("calibrate: {} sites, {} drags, RMS residual {:.4g} N ({:.2g} % of the largest force), {} "
-      "evaluations",
-      static_cast<std::ptrdiff_t>(fit.paths.size()) - drags, drags, fit.rms, 100 * fit.relative_rms,
-      fit.evaluations);
+  say("calibrate: {} sites, {} drags, RMS residual {} ({} of the largest force), {} evaluations",
+      static_cast<std::ptrdiff_t>(fit.paths.size()) - drags, drags, force_text(fit.rms),
+      percent_text(fit.relative_rms), fit.evaluations);
   if (fit.profile_evaluations > 0)
     say("calibrate: {} more evaluations for the profiles", fit.profile_evaluations);
   say_calibration(fit.calibration, options.confidence);
-  Json account = {{"name", space.c.name},
+  Json account = {{"artifact", "palpate.calibration"},
+                  {"schema", 1},
+                  {"name", space.c.name},
                   {"creator", creator_text()},
                   {"input_sha256", inputs_of({space.body(), options.measured})},
                   {"resolved_case", resolved_toml(space.c)}};
@@ -226,7 +233,8 @@ void add_calibrate_command(CLI::App& root, Action& action) {
   tests->footer("Example: palpate calibrate tests data/measured/treloar-1944/ogden.toml");
   const auto options = std::make_shared<CalibrateOptions>();
   tests->add_option("FIT", options->fit_file, "Fit file (TOML), see docs/measured.md")->required();
-  tests->add_option("--out", options->out, "Folder for calibration.json (default: print only)");
+  tests->add_option("--out", options->out,
+                    "Folder for calibration.json and calibration.html (default: print only)");
   add_body_part(*command, action);
   tests->callback([options, &action] { action = [options] { return calibrate_tests(*options); }; });
 }

@@ -39,6 +39,7 @@ int report(const CaseOptions& options) {
   input.library_bytes = std::filesystem::file_size(space.library());
   input.library_sha256 = sha256_of_file(space.library());
   input.comparison = text_if_there(space.out / "comparison.json");
+  input.calibration = text_if_there(space.out / "calibration.json");
   input.repair = text_if_there(space.out / "repair.json");
   input.fidelity = text_if_there(space.out / "fidelity.json");
   write_report(input, space.report());

@@ -8,6 +8,7 @@
 #include "app/case/material.hpp"
 #include "app/console.hpp"
 #include "app/json_number.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::app {
 
@@ -16,6 +17,8 @@ using Json = nlohmann::ordered_json;
 Json calibration_account(const calibrate::Calibration& calibration, double confidence) {
   Json constants = Json::array(), correlation = Json::array();
   for (const calibrate::Estimate& e : calibration.estimates) {
+    Json profile = Json::array();
+    for (const auto& [value, rise] : e.profile) profile.push_back({value, rise});
     constants.push_back({{"name", e.name},
                          {"unit", e.unit},
                          {"value", e.value},
@@ -24,6 +27,7 @@ Json calibration_account(const calibrate::Calibration& calibration, double confi
                          {"high", json_number(e.high)},
                          {"profile_low", json_number(e.profile_low)},
                          {"profile_high", json_number(e.profile_high)},
+                         {"profile", profile},
                          {"at_bound", e.at_bound}});
   }
   for (const auto& row : calibration.correlation) {
@@ -42,6 +46,7 @@ Json calibration_account(const calibrate::Calibration& calibration, double confi
           {"residual_lag_one_correlation", calibration.lag_one},
           {"residual_durbin_watson", calibration.durbin_watson},
           {"noise_autocorrelation", calibration.autocorrelation},
+          {"misfit_smoother_than_noise", calibration.beyond_noise},
           {"intervals_widened_for_correlation", calibration.correlation_widening},
           {"effective_degrees_of_freedom", calibration.effective_freedom},
           {"iterations", calibration.iterations},
@@ -98,14 +103,27 @@ void say_calibration(const calibrate::Calibration& calibration, double confidenc
   for (const std::string& warning : calibration.warnings) say("  warning: {}", warning);
 }
 
+namespace {
+
+/// "12.4 kPa", "0.124 Pa" or "1.24 mPa".
+std::string pressure_text(double pascal) {
+  const double size = std::abs(pascal);
+  if (size >= 1e6) return number_text(1e-6 * pascal) + " MPa";
+  if (size >= 1e3) return number_text(1e-3 * pascal) + " kPa";
+  if (size >= 1e-1 || size == 0) return number_text(pascal) + " Pa";
+  return number_text(1e3 * pascal) + " mPa";
+}
+
+}  // namespace
+
 void say_homogeneous(const calibrate::HomogeneousFit& fit) {
   say("  as the [[material]] of a case:");
   std::istringstream keys(material_keys(fit.law));
   for (std::string line; std::getline(keys, line);) say("    {}", line);
-  say("  shear modulus at rest: {:.4g} Pa", fit.shear_modulus);
+  say("  shear modulus at rest: {}", pressure_text(fit.shear_modulus));
   for (const calibrate::TestError& e : fit.errors) {
-    say("  {}: rms {:.4g} Pa ({:.2g} %), R2 {:.5f}, worst {:.4g} Pa at {:.4g}", e.name, e.rms,
-        100 * e.relative, e.r2, e.worst, e.worst_at);
+    say("  {}: rms {} ({}), R2 {:.5f}, worst {} at {:.4g}", e.name, pressure_text(e.rms),
+        percent_text(e.relative), e.r2, pressure_text(e.worst), e.worst_at);
   }
 }
 

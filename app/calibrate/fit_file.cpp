@@ -5,11 +5,66 @@
 #include <cmath>
 #include <limits>
 
+#include "app/calibrate/specimen_record.hpp"
 #include "app/case/reader.hpp"
-#include "fitting/measurement/records/csv_table.hpp"
 #include "format/error.hpp"
 
 namespace palpate::app {
+
+template <class V>
+void describe_record(V& v, TestSection& s) {
+  v.text(s.file, {"file", "record, relative to this file", kRequired});
+  v.text(s.stress_file, {"stress_file", "record of the stress or force, where it stands apart"});
+  v.texts(s.columns, {"columns", "names in order, of a file without a header"});
+  v.integer(s.table, {"table", "which table of the file, from 1; needed when it has several",
+                      kOptional, kNotNegative});
+  v.integer(s.first_row, {"first_row", "first row of numbers, from 1", kOptional, {.low = 1}});
+  v.integer(s.last_row, {"last_row", "last one; 0: of the record", kOptional, kNotNegative});
+  v.integer(s.cycle, {"cycle",
+                      "which cycle away from rest and back; 0 is all, -1 the last",
+                      kOptional,
+                      {.low = -1, .high = 1e6}});
+  v.text(s.branch, {"branch", "of the cycle"}, {"both", "loading", "unloading"});
+}
+
+template <class V>
+void describe_columns(V& v, TestSection& s) {
+  v.text(s.measure, {"measure", "which stress the record holds"}, {"nominal", "cauchy"});
+  v.text(s.deformation, {"deformation", "column"});
+  v.text(s.deformation_is, {"deformation_is", "what the column holds"},
+         {"stretch", "strain", "log strain", "shear"});
+  v.text(s.stress, {"stress", "column"});
+  v.text(s.displacement, {"displacement", "column of the travel, instead of the deformation"});
+  v.text(s.force, {"force", "column, instead of the stress"});
+  v.text(s.uncertainty, {"uncertainty", "column: standard uncertainty of stress or force"});
+  v.text(s.deformation_unit,
+         {"deformation_unit", "of deformation or travel, where the file has none"});
+  v.text(s.stress_unit, {"stress_unit", "of stress or force, where the file has none"});
+  v.text(s.deformation_sign, {"deformation_sign", "of strain, travel or shear"},
+         {"as recorded", "reversed"});
+  v.text(s.stress_sign, {"stress_sign", "of stress or force"}, {"as recorded", "reversed"});
+  v.text(s.zero, {"zero", "where the deformation is zero"}, {"as recorded", "first row"});
+}
+
+template <class V>
+void describe(V& v, TestSection& s) {
+  describe_record(v, s);
+  v.text(s.mode, {"mode", "deformation of the test", kRequired},
+         {"uniaxial", "equibiaxial", "pure shear", "simple shear"});
+  describe_columns(v, s);
+  v.quantity(s.gauge_length, Dimension::Length,
+             {"gauge_length", "length that the travel deforms; height of a shear specimen",
+              kOptional, kPositive});
+  v.text(s.area, {"area", "of the section, with its unit"});
+  v.quantity(s.width, Dimension::Length, {"width", "of the section", kOptional, kPositive});
+  v.quantity(s.thickness, Dimension::Length, {"thickness", "of the section", kOptional, kPositive});
+  v.quantity(s.diameter, Dimension::Length,
+             {"diameter", "of a round section", kOptional, kPositive});
+  v.number(s.weight, {"weight", "of the residuals of this test", kOptional, kPositive});
+  v.flag(s.offset,
+         {"offset", "whether a constant stress, an error of the zero, is fitted as well"});
+}
+
 namespace {
 
 struct LawSection {
@@ -19,17 +74,6 @@ struct LawSection {
 
 struct ConstantSection {
   std::string name, start, low, high;
-};
-
-struct TestSection {
-  std::string file, mode, measure = "nominal";
-  std::string deformation, stress;  ///< columns of stretch (or shear) and stress
-  std::string displacement, force;  ///< or of displacement and force, with a specimen
-  std::string uncertainty;          ///< column, of the stress or the force
-  double height = std::numeric_limits<double>::quiet_NaN();
-  double width = std::numeric_limits<double>::quiet_NaN();
-  double thickness = std::numeric_limits<double>::quiet_NaN();
-  double weight = 1;
 };
 
 struct FitDocument {
@@ -64,24 +108,6 @@ void describe(V& v, ConstantSection& s) {
 }
 
 template <class V>
-void describe(V& v, TestSection& s) {
-  v.text(s.file, {"file", "record, relative to this file", kRequired});
-  v.text(s.mode, {"mode", "deformation of the test", kRequired},
-         {"uniaxial", "equibiaxial", "pure shear", "simple shear"});
-  v.text(s.measure, {"measure", "which stress the record holds"}, {"nominal", "cauchy"});
-  v.text(s.deformation, {"deformation", "column of the stretch, or of the amount of shear"});
-  v.text(s.stress, {"stress", "column"});
-  v.text(s.displacement, {"displacement", "column, instead of the deformation"});
-  v.text(s.force, {"force", "column, instead of the stress"});
-  v.text(s.uncertainty, {"uncertainty", "column: standard uncertainty of stress or force"});
-  v.quantity(s.height, Dimension::Length,
-             {"height", "of the specimen along the displacement", kOptional, kPositive});
-  v.quantity(s.width, Dimension::Length, {"width", "of the section", kOptional, kPositive});
-  v.quantity(s.thickness, Dimension::Length, {"thickness", "of the section", kOptional, kPositive});
-  v.number(s.weight, {"weight", "of the residuals of this test", kOptional, kPositive});
-}
-
-template <class V>
 void describe(V& v, FitDocument& d) {
   v.text(d.name, {"name", "of the material", kRequired});
   v.text(d.source, {"source", "of the data", kRequired});
@@ -109,7 +135,7 @@ calibrate::ConstantInfo constant_of(const ConstantSection& s, const std::string&
                                     const std::string& where) {
   std::string names;
   for (calibrate::ConstantInfo info :
-       calibrate::default_constants(calibrate::IncompressibleLaw(law), 1)) {
+       calibrate::default_constants(calibrate::IncompressibleLaw(law), {})) {
     names += (names.empty() ? "" : ", ") + info.name;
     if (info.name != s.name) continue;
     info.start = bound_of(s.start, info.is_stress, where);
@@ -122,61 +148,11 @@ calibrate::ConstantInfo constant_of(const ConstantSection& s, const std::string&
          "its constants are " + names);
 }
 
-calibrate::Mode mode_of(const std::string& text) {
-  if (text == "uniaxial") return calibrate::Mode::Uniaxial;
-  if (text == "equibiaxial") return calibrate::Mode::Equibiaxial;
-  if (text == "pure shear") return calibrate::Mode::PureShear;
-  return calibrate::Mode::SimpleShear;
-}
-
 calibrate::Weighting weighting_of(const std::string& text) {
   if (text == "absolute") return calibrate::Weighting::Absolute;
   if (text == "relative") return calibrate::Weighting::Relative;
   if (text == "uncertainty") return calibrate::Weighting::Uncertainty;
   return calibrate::Weighting::PerTest;
-}
-
-void check_columns(const TestSection& s, const std::string& where) {
-  const bool by_stress = !s.deformation.empty() && !s.stress.empty();
-  const bool by_force = !s.displacement.empty() && !s.force.empty();
-  if (by_stress == by_force) {
-    refuse(where, "the columns are not clear",
-           "name either deformation and stress, or displacement and force");
-  }
-  if (!by_force) return;
-  if (std::isfinite(s.height) && std::isfinite(s.width) && std::isfinite(s.thickness)) return;
-  refuse(where, "a force needs the size of the specimen", "give height, width and thickness");
-}
-
-calibrate::HomogeneousTest test_of(const TestSection& s, const std::filesystem::path& file) {
-  const auto table = measured::read_csv(file);
-  calibrate::HomogeneousTest test;
-  test.name = s.file;
-  test.mode = mode_of(s.mode);
-  test.weight = s.weight;
-  const double rest = calibrate::rest_of(test.mode);
-  double area = 1;
-  if (!s.force.empty()) {
-    area = s.width * s.thickness;
-    test.deformation = measured::column_in_si(table, s.displacement, Dimension::Length);
-    for (double& x : test.deformation) x = rest + x / s.height;
-    test.nominal = measured::column_in_si(table, s.force, Dimension::Force);
-  } else {
-    test.deformation = measured::column_in_si(table, s.deformation, Dimension::Ratio);
-    test.nominal = measured::column_in_si(table, s.stress, Dimension::Pressure);
-  }
-  if (!s.uncertainty.empty()) {
-    test.uncertainty = measured::column_in_si(
-        table, s.uncertainty, s.force.empty() ? Dimension::Pressure : Dimension::Force);
-  }
-  for (std::size_t i = 0; i < test.nominal.size(); ++i) {
-    const double ratio = s.measure == "cauchy" && s.force.empty()
-                             ? calibrate::cauchy_over_nominal(test.mode, test.deformation[i])
-                             : 1;
-    test.nominal[i] /= area * ratio;
-    if (!test.uncertainty.empty()) test.uncertainty[i] /= area * ratio;
-  }
-  return test;
 }
 
 }  // namespace
@@ -202,9 +178,10 @@ FitFile read_fit_file(const std::filesystem::path& path) {
   }
   for (std::size_t i = 0; i < document.tests.size(); ++i) {
     const TestSection& test = document.tests[i];
-    check_columns(test, sources.where(fmt::format("test[{}].", i)));
-    fit.files.push_back(path.parent_path() / test.file);
-    fit.tests.push_back(test_of(test, fit.files.back()));
+    for (const std::string& file : {test.file, test.stress_file})
+      if (!file.empty()) fit.files.push_back(path.parent_path() / file);
+    fit.tests.push_back(
+        read_test(test, path.parent_path(), sources.where(fmt::format("test[{}].", i))));
   }
   return fit;
 }

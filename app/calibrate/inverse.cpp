@@ -124,7 +124,8 @@ class Inverse {
     for (Target& target : targets_) {
       if (!known_ || !(target.contact_uncertainty > 0)) continue;
       target.shift = static_cast<int>(problem.constants.size());
-      problem.constants.push_back({shift_name(target), "m", 0, -infinity, infinity});
+      problem.constants.push_back(
+          {shift_name(target), "m", 0, -infinity, infinity, /*may_vanish=*/true});
       ++problem.residuals;
     }
     for (const Target& target : targets_) {
@@ -385,11 +386,6 @@ class Inverse {
     fit.rms = std::sqrt(squares / static_cast<double>(count));
     fit.relative_rms = fit.rms / largest;
     fit.evaluations = evaluations_;
-    // A prior holds a shift, so that its interval may well be wider than its value.
-    std::erase_if(fit.calibration.warnings, [](const std::string& warning) {
-      return warning.starts_with("contact shift") &&
-             warning.find("determined") != std::string::npos;
-    });
   }
 
   const Body& body_;

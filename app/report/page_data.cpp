@@ -302,6 +302,7 @@ json page_data(const ReportInput& input) {
           {"balance", balance_data(*input.curves)},
           {"certificate", certificate_data(library)},
           {"comparison", comparison_data(input.comparison, library.responses.size())},
+          {"calibration", calibration_data(input.calibration)},
           {"fidelity", fidelity_data(input.fidelity, input.library_sha256)},
           {"repair", repair_data(input.repair, input.body->provenance)},
           {"session", input.session == nullptr ? json() : session_data(*input.session)},

@@ -20,6 +20,8 @@ nlohmann::json session_data(const SessionDigest& session);
 nlohmann::json certificate_data(const Library& library);
 /// @throws Error(Configuration) when the text is not a comparison of these vertices.
 nlohmann::json comparison_data(const std::string& text, std::size_t vertices);
+/// @throws Error(Configuration) when the text is not a calibration.
+nlohmann::json calibration_data(const std::string& text);
 /// Fidelity of the library of this digest; {"other_library": true} when the text is of another one.
 /// @throws Error(Configuration) when the text is not a fidelity.json.
 nlohmann::json fidelity_data(const std::string& text, const std::string& library_sha256);

@@ -30,6 +30,8 @@ struct ReportInput {
   /// the library of this digest.
   std::string fidelity{};
   std::string library_sha256{};
+  /// Text of calibration.json (`palpate calibrate body`); empty: none.
+  std::string calibration{};
   /// Text of repair.json (`palpate mesh`, where it repaired the surface); empty: none.
   std::string repair{};
 };
@@ -41,6 +43,10 @@ struct ReportInput {
 void write_report(const ReportInput& input, const std::filesystem::path& path);
 
 namespace report {
+/// The page of calibration.json alone. @throws Error(Configuration) when it cannot be read; as
+/// write_report.
+void write_calibration(const std::string& text, const std::filesystem::path& path);
+
 /// The page with these data, which have a "title"; as write_report.
 void write_page(const nlohmann::json& data, const std::filesystem::path& path);
 }  // namespace report

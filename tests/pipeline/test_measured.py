@@ -159,6 +159,22 @@ class Measured(unittest.TestCase):
             ratio = np.abs(a["sample/force"][()]).sum() / np.abs(b["sample/force"][()]).sum()
             self.assertAlmostEqual(ratio, factor, delta=1e-3)
 
+    def test_a_fit_that_is_none_is_an_error_and_not_written(self):
+        """Tension with its sign turned: no law of positive modulus fits it better than no stress does."""
+        folder = Path(self.folder.name)
+        (folder / "turned.csv").write_text("stretch (1),stress (kPa)\n1.1,-1\n1.2,-2\n1.3,-3\n1.4,-4\n1.5,-5\n")
+        fit = folder / "turned.toml"
+        fit.write_text('name = "a"\nsource = "b"\nlicence = "c"\n[fit]\nlaw = "gent"\n[[test]]\nfile = "turned.csv"\n'
+                       'mode = "uniaxial"\ndeformation = "stretch"\nstress = "stress"\n')
+        result = palpate("calibrate", "tests", fit, "--out", folder / "turned")
+        self.assertEqual(result.returncode, 2, result.stdout)
+        self.assertIn("fit of gent", result.stderr)
+        self.assertIn("; check signs", result.stderr)
+        self.assertFalse((folder / "turned").exists())
+        fit.write_text(fit.read_text() + 'stress_sign = "reversed"\n')
+        self.ok("calibrate", "tests", fit, "--out", folder / "turned")
+        self.assertTrue((folder / "turned/calibration.html").exists())
+
     def refuse(self, words, text, name="bad.toml", body=True):
         sidecar = Path(self.folder.name) / name
         sidecar.write_text(text.replace('file = "', f'file = "{self.presses.parent}/'), encoding="utf-8")

@@ -3,6 +3,7 @@
 
 #include <ceres/ceres.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace palpate::calibrate {
@@ -21,6 +22,30 @@ class Cost : public ceres::CostFunction {
  private:
   const LeastSquares& problem_;
 };
+
+/// Whether no constant that may move would lower the cost: the residuals are normal to every column
+/// of the Jacobian, or nothing beside what the constants contribute to the model.
+bool is_stationary(const LeastSquares& problem, const std::vector<double>& at,
+                   const std::vector<double>& r) {
+  constexpr double kNormal = 1e-6, kNothing = 1e-9;
+  const std::size_t n = at.size();
+  std::vector<double> J(r.size() * n), unused(r.size());
+  if (!problem.model(at.data(), unused.data(), J.data())) return false;
+  double squares = 0, largest = 0, steepest = 0;
+  for (const double value : r) squares += value * value;
+  for (std::size_t k = 0; k < n; ++k) {
+    double slope = 0, length = 0;
+    for (std::size_t row = 0; row < r.size(); ++row) {
+      slope += J[row * n + k] * r[row];
+      length += J[row * n + k] * J[row * n + k];
+    }
+    largest = std::max(largest, length * at[k] * at[k]);
+    const Constant& c = problem.constants[k];
+    const bool stopped = (at[k] <= c.low && slope > 0) || (at[k] >= c.high && slope < 0);
+    if (!stopped && length > 0) steepest = std::max(steepest, slope * slope / length);
+  }
+  return steepest <= kNormal * kNormal * squares || squares <= kNothing * kNothing * largest;
+}
 
 }  // namespace
 
@@ -45,13 +70,14 @@ std::optional<Minimum> descend(const LeastSquares& problem) {
     options.max_num_iterations = problem.max_iterations;
     options.function_tolerance = problem.tolerance;
     options.parameter_tolerance = problem.step_tolerance;
-    options.gradient_tolerance = 1e-14;
+    options.gradient_tolerance = 0;  // it is not relative
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
     ceres::Solve(options, &solver, &summary);
     if (!summary.IsSolutionUsable()) return std::nullopt;
     if (!problem.model(p, found.residuals.data(), nullptr)) return std::nullopt;
-    found.converged = summary.termination_type == ceres::CONVERGENCE;
+    found.converged = summary.termination_type == ceres::CONVERGENCE ||
+                      is_stationary(problem, found.at, found.residuals);
     found.iterations = static_cast<int>(summary.iterations.size()) - 1;
   }
   for (const double value : found.residuals) found.cost += 0.5 * value * value;

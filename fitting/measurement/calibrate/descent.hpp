@@ -13,7 +13,7 @@ namespace palpate::calibrate {
 struct Minimum {
   std::vector<double> at, residuals;
   double cost = 0;
-  bool converged = false;
+  bool converged = false;  ///< the cost, the step or the slope says that it does not get better
   int iterations = 0;
 };
 

@@ -5,81 +5,17 @@
 #include <cmath>
 #include <limits>
 
+#include "fitting/measurement/calibrate/homogeneous_problem.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::calibrate {
 namespace {
-
-constexpr double kLeastRelative = 0.05;  ///< of the largest stress, under Weighting::Relative
-
-void check_tests(const std::vector<HomogeneousTest>& tests, const HomogeneousSettings& settings) {
-  if (tests.empty()) refuse("calibration", "there are no tests", "give at least one");
-  for (const HomogeneousTest& test : tests) {
-    if (test.deformation.empty() || test.deformation.size() != test.nominal.size()) {
-      refuse(test.name, "deformations and stresses are not equally many", "give pairs");
-    }
-    if (settings.weighting == Weighting::Uncertainty &&
-        test.uncertainty.size() != test.nominal.size()) {
-      refuse(test.name, "it states no uncertainty",
-             "give a column with it, or choose another weighting");
-    }
-    for (const double s : test.deformation) {
-      if (test.mode == Mode::SimpleShear || s > 0) continue;
-      refuse(test.name, "a stretch of " + std::to_string(s) + " is not positive",
-             "give stretches, not strains (1 at rest)");
-    }
-  }
-}
 
 double rms(const std::vector<double>& values) {
   double squares = 0;
   for (const double value : values) squares += value * value;
   return std::sqrt(squares / static_cast<double>(values.size()));
-}
-
-/// What each residual of a test, in nominal stress, is multiplied by.
-std::vector<double> factors(const HomogeneousTest& test, const HomogeneousSettings& settings) {
-  std::vector<double> ratio, measured;
-  double largest = 0;
-  for (std::size_t i = 0; i < test.nominal.size(); ++i) {
-    ratio.push_back(settings.residual == Residual::Cauchy
-                        ? cauchy_over_nominal(test.mode, test.deformation[i])
-                        : 1);
-    measured.push_back(test.nominal[i] * ratio[i]);
-    largest = std::max(largest, std::abs(measured[i]));
-  }
-  const auto scale = [&](std::size_t i) {
-    switch (settings.weighting) {
-      case Weighting::Absolute:
-        break;
-      case Weighting::PerTest:
-        return std::max(rms(measured), 1e-300);
-      case Weighting::Relative:
-        return std::max({std::abs(measured[i]), kLeastRelative * largest, 1e-300});
-      case Weighting::Uncertainty:
-        return test.uncertainty[i] * ratio[i];
-    }
-    return 1.0;
-  };
-  std::vector<double> out;
-  for (std::size_t i = 0; i < measured.size(); ++i)
-    out.push_back(test.weight * ratio[i] / scale(i));
-  return out;
-}
-
-/// A first guess of the shear modulus: the stress over the strain measure of a neo-Hookean solid.
-double modulus_scale(const std::vector<HomogeneousTest>& tests) {
-  double above = 0, below = 0;
-  const IncompressibleLaw unit("neo-hookean", 0.5);
-  const double young = 3;  // of a shear modulus of one
-  for (const HomogeneousTest& test : tests) {
-    for (std::size_t i = 0; i < test.nominal.size(); ++i) {
-      const double g = unit.stress(&young, test.mode, test.deformation[i]);
-      above += g * test.nominal[i];
-      below += g * g;
-    }
-  }
-  return below > 0 && above > 0 ? above / below : 1;
 }
 
 TestError error_of(const HomogeneousTest& test, const std::vector<double>& predicted) {
@@ -113,31 +49,6 @@ double largest_strain(const std::vector<HomogeneousTest>& tests) {
   return largest;
 }
 
-std::string names_of(const std::vector<Constant>& constants) {
-  std::string names;
-  for (const Constant& constant : constants) names += (names.empty() ? "" : ", ") + constant.name;
-  return names;
-}
-
-std::vector<Constant> problem_constants(const IncompressibleLaw& law, double scale,
-                                        const HomogeneousSettings& settings) {
-  std::vector<Constant> out;
-  for (const ConstantInfo& info : default_constants(law, scale)) {
-    ConstantInfo used = info;
-    for (const ConstantInfo& given : settings.constants) {
-      if (given.name == info.name) used = given;
-    }
-    out.push_back({used.name, info.is_stress ? "Pa" : "1", used.start, used.low, used.high});
-  }
-  for (const ConstantInfo& given : settings.constants) {
-    const auto is_it = [&](const Constant& c) { return c.name == given.name; };
-    if (std::any_of(out.begin(), out.end(), is_it)) continue;
-    refuse("constant '" + given.name + "'", "the law " + std::string(law.name()) + " has no such",
-           "its constants are " + names_of(out));
-  }
-  return out;
-}
-
 void warn_of_instability(const std::vector<HomogeneousTest>& tests, HomogeneousFit& fit) {
   bool in_a_test = false;
   for (std::size_t i = 0; i < tests.size(); ++i) {
@@ -156,52 +67,112 @@ void warn_of_instability(const std::vector<HomogeneousTest>& tests, HomogeneousF
       ", within their strains; add a test in another mode, or bound the constants");
 }
 
-/// Residuals of all tests, and their derivatives by the constants.
-LeastSquares problem_of(const std::vector<HomogeneousTest>& tests,
-                        const HomogeneousSettings& settings, const IncompressibleLaw& law,
-                        double scale) {
-  LeastSquares problem;
-  problem.constants = problem_constants(law, scale, settings);
-  problem.confidence = settings.confidence;
-  problem.known_scatter = settings.weighting == Weighting::Uncertainty;
-  std::vector<std::vector<double>> factor;
-  for (const HomogeneousTest& test : tests) {
-    factor.push_back(factors(test, settings));
-    problem.residuals += test.nominal.size();
-    problem.series.push_back(test.nominal.size());
+/// Stability of the law over the range of a test, from rest on.
+StabilityLimit stability_of(const IncompressibleLaw& law, const std::vector<double>& c,
+                            const HomogeneousTest& test) {
+  const auto [low, high] = std::minmax_element(test.deformation.begin(), test.deformation.end());
+  const double rest = rest_of(test.mode);
+  return stability_in(law, c, {test.mode, std::min(*low, rest), std::max(*high, rest)});
+}
+
+std::vector<double> law_values(const IncompressibleLaw& law, const Calibration& calibration) {
+  std::vector<double> c;
+  for (std::size_t i = 0; i < law.constants().size(); ++i)
+    c.push_back(calibration.estimates[i].value);
+  return c;
+}
+
+/// A fit with the problem that it solves.
+struct Solution {
+  HomogeneousProblem problem;
+  Calibration calibration;
+};
+
+/// Whether a constant is at a bound that the table does not have.
+bool is_held(const Solution& fit, const HomogeneousProblem& wide) {
+  for (std::size_t i = 0; i < wide.squares.constants.size(); ++i) {
+    const Constant &own = fit.problem.squares.constants[i], &other = wide.squares.constants[i];
+    if (fit.calibration.estimates[i].at_bound && (other.low < own.low || other.high > own.high))
+      return true;
   }
-  const std::size_t n = problem.constants.size();
-  problem.model = [&tests, law, factor, n](const double* c, double* r, double* J) {
-    std::vector<double> slope(n);
-    std::size_t row = 0;
-    for (std::size_t t = 0; t < tests.size(); ++t) {
-      for (std::size_t i = 0; i < tests[t].nominal.size(); ++i, ++row) {
-        const double P = law.stress(c, tests[t].mode, tests[t].deformation[i],
-                                    J == nullptr ? nullptr : slope.data());
-        r[row] = (P - tests[t].nominal[i]) * factor[t][i];
-        if (!std::isfinite(r[row])) return false;
-        if (J == nullptr) continue;
-        for (std::size_t k = 0; k < n; ++k) J[row * n + k] = slope[k] * factor[t][i];
-      }
-    }
-    return true;
-  };
-  return problem;
+  return false;
+}
+
+/// Where the law is refused by a case, or is unstable in the range of a test; empty: nowhere.
+std::string fault_of(const IncompressibleLaw& law, const std::vector<double>& c,
+                     const std::vector<HomogeneousTest>& tests) {
+  try {
+    fem::check_law(law.for_case(c), "the law");
+  } catch (const Error& error) {
+    return error.problem();
+  }
+  for (const HomogeneousTest& test : tests) {
+    const double at = stability_of(law, c, test).unstable_at;
+    if (std::isfinite(at))
+      return "the law is unstable in the range of " + test.name + ": from a deformation of " +
+             number_text(at) + " on";
+  }
+  return {};
+}
+
+/// Exchange terms of Ogden's law as long as that makes the fit better.
+void exchange_terms(const HomogeneousProblem& problem, const IncompressibleLaw& law, bool any_sign,
+                    const std::string& where, Calibration& fit) {
+  constexpr int kMost = 3;
+  constexpr double kBetter = 0.9999;
+  for (int i = 0; i < kMost && problem.squares.canonical; ++i) {
+    auto starts = exchanged_terms(law, problem.samples, law_values(law, fit),
+                                  {.any_sign = any_sign, .offset = problem.offset});
+    for (std::vector<double>& start : starts) start.resize(problem.squares.constants.size(), 0);
+    const auto found = converged_minimum(problem.squares, starts, where);
+    if (!found || !(found->cost < kBetter * fit.cost)) return;
+    fit = *found;
+  }
+}
+
+/// The best fit within the bounds that make the law stable everywhere; where one of them holds it,
+/// that within the bounds of the table, if it is stable in the range of every test.
+Solution best_fit(const std::vector<HomogeneousTest>& tests, const HomogeneousSettings& settings,
+                  const IncompressibleLaw& law) {
+  constexpr double kBetter = 0.98;  // of the cost, or it does not matter
+  const std::string where = "fit of " + settings.law;
+  Solution fit{problem_of(tests, settings, law, false), {}};
+  const auto starts = fit.problem.starts(law, settings, false);
+  fit.calibration = minimise(fit.problem.squares, starts, where);
+  exchange_terms(fit.problem, law, false, where, fit.calibration);
+  HomogeneousProblem wide = problem_of(tests, settings, law, true);
+  if (!is_held(fit, wide)) return fit;
+  const auto found = converged_minimum(wide.squares, wide.starts(law, settings, true), where);
+  if (!found || !(found->cost < kBetter * fit.calibration.cost)) return fit;
+  const std::string fault = fault_of(law, law_values(law, *found), tests);
+  if (fault.empty()) return {std::move(wide), *found};
+  fit.calibration.warnings.push_back("constants beyond the bounds fit better (residuals " +
+                                     number_text(std::sqrt(found->cost / fit.calibration.cost)) +
+                                     " times as large) and are not taken: with them " + fault);
+  return fit;
+}
+
+/// @throws Error(Configuration) where no stress at all would fit as well.
+void check_fit(const HomogeneousProblem& problem, const Calibration& calibration,
+               const std::string& where) {
+  double squares = 0;
+  for (const WeightedSample& s : problem.samples) squares += std::pow(s.stress * s.factor, 2);
+  if (2 * calibration.cost < squares) return;
+  refuse(where, "the law fits the data no better than no stress at all",
+         "check signs, units and modes of the tests, or widen the bounds of the constants");
 }
 
 /// What the fitted constants make of the tests.
 void add_predictions(const std::vector<HomogeneousTest>& tests, const IncompressibleLaw& law,
                      const std::vector<double>& c, HomogeneousFit& fit) {
+  std::size_t next = law.constants().size();
   for (const HomogeneousTest& test : tests) {
     std::vector<double>& predicted = fit.predicted.emplace_back();
-    for (const double s : test.deformation) {
-      predicted.push_back(law.stress(c.data(), test.mode, s));
-    }
+    const double offset = test.offset ? fit.calibration.estimates[next++].value : 0;
+    for (const double s : test.deformation)
+      predicted.push_back(law.stress(c.data(), test.mode, s) + offset);
     fit.errors.push_back(error_of(test, predicted));
-    const auto [low, high] = std::minmax_element(test.deformation.begin(), test.deformation.end());
-    const double rest = rest_of(test.mode);
-    fit.stability.push_back(
-        stability_in(law, c, {test.mode, std::min(*low, rest), std::max(*high, rest)}));
+    fit.stability.push_back(stability_of(law, c, test));
   }
   fit.all_states = stability_of_states(law, c, largest_strain(tests));
   warn_of_instability(tests, fit);
@@ -212,18 +183,15 @@ void add_predictions(const std::vector<HomogeneousTest>& tests, const Incompress
 HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
                                const HomogeneousSettings& settings) {
   const IncompressibleLaw law(settings.law, settings.poisson);
-  check_tests(tests, settings);
-  const double scale = modulus_scale(tests);
-  const LeastSquares problem = problem_of(tests, settings, law, scale);
+  const Solution solution = best_fit(tests, settings, law);
   HomogeneousFit fit;
-  const std::string where = "fit of " + settings.law;
-  std::vector<std::vector<double>> starts;
-  if (settings.constants.empty()) starts = several_starts(law, scale);
-  fit.calibration = starts.empty() ? minimise(problem, where) : minimise(problem, starts, where);
-  if (settings.profiles) add_profiles(problem, fit.calibration);
-  std::vector<double> c;
-  for (const Estimate& e : fit.calibration.estimates) c.push_back(e.value);
+  fit.calibration = solution.calibration;
+  check_fit(solution.problem, fit.calibration, "fit of " + settings.law);
+  if (settings.profiles)
+    add_profiles(solution.problem.squares, fit.calibration, {.of = {}, .between = 4});
+  const std::vector<double> c = law_values(law, fit.calibration);
   fit.law = law.for_case(c);
+  fem::check_law(fit.law, "fit of " + settings.law);
   fit.shear_modulus = fem::rest_moduli(fit.law).mu();
   add_predictions(tests, law, c, fit);
   return fit;

@@ -18,13 +18,14 @@ struct HomogeneousTest {
   std::vector<double> deformation;    ///< stretch, or amount of shear
   std::vector<double> nominal;        ///< Pa
   std::vector<double> uncertainty{};  ///< Pa, standard, of the nominal stress; empty: unknown
-  double weight = 1;                  ///< of its residuals
+  double weight = 1;                  ///< of its residuals, beside that of the weighting
+  bool offset = false;  ///< whether a constant stress, an error of the zero, is fitted as well
 };
 
 enum class Weighting {
-  Absolute,    ///< residuals in Pa: large stresses decide
-  PerTest,     ///< over the root mean square stress of the test: tests count alike
-  Relative,    ///< over the stress itself, at least 5 % of the largest of its test
+  Absolute,  ///< residuals in Pa: large stresses decide
+  PerTest,   ///< over root mean square stress and root of the number of samples: tests count alike
+  Relative,  ///< over the stress itself, at least 5 % of the largest of its test
   Uncertainty  ///< over the stated standard uncertainty
 };
 
@@ -57,13 +58,17 @@ struct HomogeneousFit {
   std::vector<TestError> errors;
   std::vector<StabilityLimit> stability;
   StabilityOfStates all_states;
-  std::vector<std::vector<double>> predicted;  ///< nominal stress at the points of each test, Pa
+  /// Nominal stress at the points of each test, Pa, with its offset.
+  std::vector<std::vector<double>> predicted;
 };
 
-/// Joint least squares over all tests. Starts are scaled to the data. Laws with several minima are
-/// started from several exponents, and the best fit is the result.
+/// Joint least squares over all tests. Starts follow from the data (scan.hpp). The bounds first
+/// make the law stable in every deformation; where one of them holds the fit, constants within the
+/// table of laws are taken that fit better and are stable in Drucker's sense in the range of every
+/// test.
 /// @throws Error(Configuration) for a law that is unknown or cannot be calibrated from such tests,
-///   no data, a stretch that is not positive.
+///   no data, a stretch that is not positive, a fit that does not converge or explains nothing,
+///   constants that a case refuses.
 HomogeneousFit fit_homogeneous(const std::vector<HomogeneousTest>& tests,
                                const HomogeneousSettings& settings);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 #include "fitting/measurement/calibrate/descent.hpp"
 #include "fitting/measurement/calibrate/intervals.hpp"
@@ -26,7 +27,7 @@ bool is_at(double value, double bound) {
          std::abs(value - bound) <= kAtBound * std::max(1e-12, std::abs(bound));
 }
 
-void add_warnings(Calibration& result) {
+void add_warnings(const LeastSquares& problem, Calibration& result) {
   const auto warn = [&](const std::string& text) { result.warnings.push_back(text); };
   for (std::size_t i = 0; i < result.estimates.size(); ++i) {
     const Estimate& e = result.estimates[i];
@@ -35,7 +36,7 @@ void add_warnings(Calibration& result) {
            ": the interval says nothing there; widen the bound or choose another law");
       continue;
     }
-    if (!(0.5 * (e.high - e.low) < std::abs(e.value))) {
+    if (!problem.constants[i].may_vanish && !(0.5 * (e.high - e.low) < std::abs(e.value))) {
       warn(e.name + " is not determined: its interval is wider than its value");
     }
     for (std::size_t j = 0; j < i; ++j) {
@@ -52,13 +53,14 @@ void add_warnings(Calibration& result) {
   }
   if (result.correlated) {
     warn("the residuals of neighbouring points are alike (correlation " +
-         number_text(result.lag_one) + " after the fit, " + number_text(result.autocorrelation) +
+         number_text(result.lag_one) + " after the fit, " +
+         (result.beyond_noise ? "more than in any noise, and not known"
+                              : number_text(result.autocorrelation)) +
          " before it, Durbin-Watson " + number_text(result.durbin_watson) +
          "): the model misses the shape of the data; the intervals are up to " +
          number_text(result.correlation_widening) +
          " times as wide for it, as if the misfit were correlated noise");
   }
-  if (!result.converged) warn("the iteration did not converge");
 }
 
 void check_problem(const LeastSquares& problem, const std::string& where) {
@@ -79,8 +81,9 @@ void check_problem(const LeastSquares& problem, const std::string& where) {
 
 std::optional<Calibration> try_minimise(const LeastSquares& problem) {
   const std::size_t n = problem.constants.size();
-  const auto found = descend(problem);
+  auto found = descend(problem);
   if (!found) return std::nullopt;
+  if (problem.canonical) problem.canonical(found->at);
   std::vector<double> r(problem.residuals), J(problem.residuals * n);
   if (!problem.model(found->at.data(), r.data(), J.data())) return std::nullopt;
   Calibration result;
@@ -98,7 +101,7 @@ std::optional<Calibration> try_minimise(const LeastSquares& problem) {
     e.at_bound = is_at(value, c.low) || is_at(value, c.high);
   }
   add_intervals(problem, J, r, result);
-  add_warnings(result);
+  add_warnings(problem, result);
   return result;
 }
 
@@ -119,32 +122,67 @@ void warn_of_other_minimum(const std::vector<Calibration>& found, Calibration& b
   }
 }
 
+/// The best ends of descents from several starts: of those that converged, and of the others.
+struct Ends {
+  std::optional<Calibration> best, unfinished;
+};
+
+Ends ends_of(LeastSquares problem, const std::vector<std::vector<double>>& starts,
+             const std::string& where) {
+  check_problem(problem, where);
+  Ends ends;
+  std::vector<Calibration> found;
+  for (const std::vector<double>& start : starts) {
+    for (std::size_t i = 0; i < start.size(); ++i) {
+      Constant& c = problem.constants[i];
+      c.start = std::clamp(start[i], c.low, c.high);
+    }
+    const auto result = try_minimise(problem);
+    if (!result) continue;
+    auto& known = result->converged ? ends.best : ends.unfinished;
+    if (result->converged) found.push_back(*result);
+    if (!known || result->cost < known->cost * (1 - kSameCost)) known = result;
+  }
+  if (ends.best) warn_of_other_minimum(found, *ends.best);
+  return ends;
+}
+
+[[noreturn]] void refuse_divergence(const std::string& where, const Calibration& reached,
+                                    std::size_t starts) {
+  std::string values;
+  for (const Estimate& e : reached.estimates)
+    values += (values.empty() ? "" : ", ") + e.name + " = " + number_text(e.value);
+  const std::string who = starts == 1 ? "the iteration does not converge"
+                                      : "none of " + std::to_string(starts) + " starts converges";
+  refuse(
+      where,
+      who + "; after " + std::to_string(reached.iterations) + " iterations at " + values +
+          " the misfit still falls",
+      "choose a law with fewer constants, bound the constants, or add data that tell them apart");
+}
+
 }  // namespace
 
 Calibration minimise(const LeastSquares& problem, const std::string& where) {
   check_problem(problem, where);
   const auto result = try_minimise(problem);
-  if (result) return *result;
-  refuse(where, "the model has no value near the start", "choose another start");
+  if (!result) refuse(where, "the model has no value near the start", "choose another start");
+  if (!result->converged) refuse_divergence(where, *result, 1);
+  return *result;
 }
 
 Calibration minimise(LeastSquares problem, const std::vector<std::vector<double>>& starts,
                      const std::string& where) {
-  std::optional<Calibration> best;
-  std::vector<Calibration> found;
-  for (const std::vector<double>& start : starts) {
-    for (std::size_t i = 0; i < start.size(); ++i) problem.constants[i].start = start[i];
-    check_problem(problem, where);
-    const auto result = try_minimise(problem);
-    if (!result) continue;
-    found.push_back(*result);
-    if (!best || result->cost < best->cost * (1 - kSameCost)) best = result;
-  }
-  if (best) {
-    warn_of_other_minimum(found, *best);
-    return *best;
-  }
+  const Ends ends = ends_of(std::move(problem), starts, where);
+  if (ends.best) return *ends.best;
+  if (ends.unfinished) refuse_divergence(where, *ends.unfinished, starts.size());
   refuse(where, "the model has no value near any start", "give starts of the constants");
+}
+
+std::optional<Calibration> converged_minimum(LeastSquares problem,
+                                             const std::vector<std::vector<double>>& starts,
+                                             const std::string& where) {
+  return ends_of(std::move(problem), starts, where).best;
 }
 
 }  // namespace palpate::calibrate

@@ -4,7 +4,9 @@
 
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace palpate::calibrate {
@@ -14,6 +16,7 @@ struct Constant {
   std::string unit;  ///< "Pa" or "1"
   double start = 0;
   double low = 0, high = 0;  ///< may be infinite
+  bool may_vanish = false;   ///< 0 is a value like any other: an interval that holds it is no doubt
 };
 
 struct LeastSquares {
@@ -25,9 +28,15 @@ struct LeastSquares {
   /// True when each residual is divided by its known standard uncertainty; otherwise the scatter is
   /// estimated from the residuals.
   bool known_scatter = false;
+  /// Replaces constants by those of the same model that stand for it, where several sets are the
+  /// same; may be empty.
+  std::function<void(std::vector<double>& constants)> canonical;
   /// Lengths of runs of residuals that follow each other along a curve, from the first residual on;
   /// what is left is on its own. Empty: residuals are taken for independent.
   std::vector<std::size_t> series;
+  /// Relative standard deviations of the noise of the residuals, where these are weighted by
+  /// something else than its inverse; empty: alike. The intervals count them.
+  std::vector<double> deviations;
   double confidence = 0.95;
   int max_iterations = 200;
   double tolerance = 1e-12;       ///< relative, of the cost
@@ -37,7 +46,7 @@ struct LeastSquares {
 struct Estimate {
   std::string name, unit;
   double value = 0;
-  double standard_error = 0;  ///< NaN at a bound
+  double standard_error = 0;  ///< NaN at a bound, infinite where the data do not see the constant
   double unit_error = 0;      ///< the same for independent residuals of unit scatter
   double low = 0, high = 0;   ///< of the confidence interval, by Student's t
   bool at_bound = false;
@@ -45,6 +54,9 @@ struct Estimate {
   /// end.
   double profile_low = std::numeric_limits<double>::quiet_NaN();
   double profile_high = std::numeric_limits<double>::quiet_NaN();
+  /// What a profile went through, by ascending values of the constant: the rise of the cost of the
+  /// best fit of all others, over the rise at which an interval ends.
+  std::vector<std::pair<double, double>> profile{};
 };
 
 struct Calibration {
@@ -59,6 +71,7 @@ struct Calibration {
   /// at most.
   double lag_one = 0, durbin_watson = 2, autocorrelation = 0;
   bool correlated = false;
+  bool beyond_noise = false;  ///< the misfit is smoother than noise, see CorrelatedNoise
   double correlation_widening = 1;
   int freedom = 0;               ///< n - p
   double effective_freedom = 0;  ///< of the scatter: n - p, fewer where residuals are correlated
@@ -75,18 +88,26 @@ struct Calibration {
 /// a constant at its bound, residuals that a known scatter does not explain. Where residuals that
 /// follow each other are alike by more than chance, the covariance is s^2 (J^T J)^-1 J^T V J
 /// (J^T J)^-1 with the correlation V that they show, and that is warned of (correlated_noise.hpp).
+/// Residuals as many as constants leave the intervals without end.
 /// @throws Error(Configuration) naming `where` when there are fewer residuals than constants, a
-///   start outside its bounds, or no value at the start.
+///   start outside its bounds, no value at the start, or an iteration that does not converge.
 Calibration minimise(const LeastSquares& problem, const std::string& where);
 
-/// The best of several starts, each a full set of constants; of equally good ends the earliest, and
-/// a warning that names another one.
+/// The best of several starts, each a full set of constants that is moved within the bounds; of
+/// equally good ends the earliest, and a warning that names another one. What has not converged
+/// does not count. @throws as above; when no start converges, with the best that was reached.
 Calibration minimise(LeastSquares problem, const std::vector<std::vector<double>>& starts,
                      const std::string& where);
+
+/// The same, or none where no start converges.
+std::optional<Calibration> converged_minimum(LeastSquares problem,
+                                             const std::vector<std::vector<double>>& starts,
+                                             const std::string& where);
 
 struct ProfileSettings {
   std::vector<std::size_t> of;  ///< indices of the constants; empty: all
   double closeness = 1e-4;      ///< of an end, relative to its distance from the best fit
+  int between = 0;              ///< fits between the best one and each end, for a picture
 };
 
 /// Intervals that do not linearise: of each constant the values at which the best fit of all others

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <utility>
 
 #include "fitting/measurement/calibrate/descent.hpp"
 #include "fitting/measurement/calibrate/least_squares.hpp"
@@ -99,6 +100,14 @@ class ProfileEnd {
     return step > 0 ? kInfinity : -kInfinity;
   }
 
+  /// Fits between the best one and the end.
+  void fill(double end, int count) {
+    for (int i = 1; i <= count && std::isfinite(end); ++i)
+      excess_at(value_ + (end - value_) * i / (count + 1));
+  }
+
+  /// Values that were tried and their rise, over that at the end.
+  const std::vector<std::pair<double, double>>& points() const { return points_; }
   bool met_better_fit() const { return better_; }
   bool ended_without_a_model() const { return no_model_; }
 
@@ -109,6 +118,7 @@ class ProfileEnd {
     std::vector<double> others = predicted(value);
     const double cost = fixed_.cost(value, others);
     const double risen = cost - cost_;
+    if (std::isfinite(risen)) points_.emplace_back(value, risen / rise_);
     better_ = better_ || risen < -kSame * rise_;
     const double excess = std::sqrt(std::max(0.0, risen) / rise_) - 1;
     if (excess > 0) return excess;
@@ -160,6 +170,7 @@ class ProfileEnd {
   std::vector<Constant> bounds_;        ///< of the others
   double inside_ = 0, inside_excess_ = -1;
   bool better_ = false, no_model_ = false;
+  std::vector<std::pair<double, double>> points_;
 };
 
 /// What to say of the two ends of a constant.
@@ -203,6 +214,12 @@ void add_profiles(const LeastSquares& problem, Calibration& result,
     const double step = e.value != 0 ? std::min(half, std::abs(e.value)) : half;
     e.profile_low = below.find(-step);
     e.profile_high = above.find(step);
+    below.fill(e.profile_low, settings.between);
+    above.fill(e.profile_high, settings.between);
+    e.profile = below.points();
+    e.profile.emplace_back(e.value, 0);
+    e.profile.insert(e.profile.end(), above.points().begin(), above.points().end());
+    std::sort(e.profile.begin(), e.profile.end());
     warn_of_profile(e, below, above, result.warnings);
   }
 }

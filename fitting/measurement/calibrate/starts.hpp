@@ -19,12 +19,20 @@ struct ConstantInfo {
   double high = std::numeric_limits<double>::infinity();
 };
 
-/// The constants of a law with default starts and bounds. The bounds lie within the ranges of the
-/// table and exclude constants that make the law unstable in every deformation.
-/// @param scale  shear modulus at rest that the data suggest, Pa.
-std::vector<ConstantInfo> default_constants(const IncompressibleLaw& law, double scale);
+/// What the data say of the size of the constants.
+struct DataScale {
+  double modulus = 1;    ///< shear modulus at rest that they suggest, Pa
+  double invariant = 0;  ///< largest I1 - 3, which a limit of the law must exceed
+};
 
-/// Full sets of starts for the laws whose cost has several minima; none for the other laws.
-std::vector<std::vector<double>> several_starts(const IncompressibleLaw& law, double scale);
+/// The constants of a law with default starts and bounds. The bounds lie within the ranges of the
+/// table. Where a sign makes a law stable in every deformation (Mooney-Rivlin's C01, the moduli of
+/// Ogden's terms), it is a bound here and not one of wide_constants(). Gent's limit J_m lies beyond
+/// the data.
+std::vector<ConstantInfo> default_constants(const IncompressibleLaw& law, const DataScale& scale);
+
+/// The same with the ranges of the table where these are wider than what makes the law stable
+/// everywhere: the stability of a fit within them is to be checked.
+std::vector<ConstantInfo> wide_constants(const IncompressibleLaw& law, const DataScale& scale);
 
 }  // namespace palpate::calibrate

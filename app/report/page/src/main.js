@@ -5,6 +5,7 @@ import { readData } from './data.js';
 import { el } from './dom.js';
 import { Nodes } from './nodes.js';
 import { bodySection } from './sections/body.js';
+import { calibrationPage, calibrationSection } from './sections/calibration.js';
 import { certificateSection } from './sections/certificate.js';
 import { comparisonSection } from './sections/comparison.js';
 import { Curves } from './sections/curves.js';
@@ -52,6 +53,7 @@ function showReport(data) {
   place('fit', () => fitSection(data));
   place('fidelity', () => fidelitySection(data) ?? '');
   if (data.comparison) place('comparison', () => comparisonSection(data));
+  if (data.calibration) place('calibration', () => calibrationSection(data));
   place('session', () => sessionSection(data));
   place('certificate', () => certificateSection(data));
   place('record', () => recordSection(data));
@@ -62,6 +64,8 @@ try {
   const data = readData();
   if (data.preview) {
     place('preview', () => previewSection(data));
+  } else if (data.calibration && !data.body) {
+    place('calibration', () => calibrationPage(data));
   } else {
     showReport(data);
   }

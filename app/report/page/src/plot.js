@@ -68,6 +68,12 @@ const named = (name) => () => (name.startsWith('#') ? name : colour(name));
 /** Range from zero to a little above the largest value. */
 const fromZero = (_, low, high) => [Math.min(0, low ?? 0), high > 0 ? high * 1.05 : 1];
 
+/** Range of values with a margin. */
+const around = (_, low, high) => {
+  const margin = 0.04 * (high - low || Math.abs(high) || 1);
+  return [low - margin, high + margin];
+};
+
 /** Range of values of either sign, zero among them, with a margin. */
 const aroundZero = (_, low, high) => {
   const [least, most] = [Math.min(0, low ?? 0), Math.max(0, high ?? 0)];
@@ -78,13 +84,13 @@ const aroundZero = (_, low, high) => {
 /**
  * Several curves and markers, each with its own abscissae.
  * sets: [{label, colour, x, y, markers: bool, width, dash}]; every x ascending, later sets on top.
- * mark: abscissa of a dashed line. signed: ordinates of either sign.
+ * mark: abscissa of a dashed line. signed: ordinates of either sign. tight: abscissas need not show zero.
  */
-export function curvePlot(title, xLabel, yLabel, height, { signed = false } = {}) {
+export function curvePlot(title, xLabel, yLabel, height, { signed = false, tight = false } = {}) {
   const spec = (sets, mark) => ({
     legend: { show: false },
     cursor: { drag: { x: false, y: false }, points: { show: false } },
-    scales: { x: { time: false, range: fromZero }, y: { range: signed ? aroundZero : fromZero } },
+    scales: { x: { time: false, range: tight ? around : fromZero }, y: { range: signed ? aroundZero : fromZero } },
     axes: [axis(xLabel, 2), axis(yLabel, 3)],
     series: [{}, ...sets.map((s) => ({
       label: s.label,

@@ -29,6 +29,7 @@ export const length = (m) => significant(m * 1e3) + NBSP + 'mm';
 /** A length in the unit of its size. */
 export const scaledLength = (m) => (m !== 0 && Math.abs(m) < 1e-4 ? significant(m * 1e6) + NBSP + '\u00b5m' : length(m));
 export const force = scaled([[1, 'N'], [1e-3, 'mN'], [1e-6, '\u00b5N']]);
+export const pressure = scaled([[1e6, 'MPa'], [1e3, 'kPa'], [1, 'Pa'], [1e-3, 'mPa']]);
 export const stiffness = (k) => significant(k) + NBSP + 'N/m';
 /** Rounded up to four significant digits: an upper bound stays one. */
 function roundedUp(value) {

@@ -74,5 +74,20 @@ TEST(CalibrationAccount, IsSaidLineByLine) {
             "  warning: the data do not say b\n");
 }
 
+/// A gel of 0.4 Pa, of which a micro-indenter sees micronewtons, in units that fit.
+TEST(CalibrationAccount, SaysSmallStressesInTheirUnit) {
+  calibrate::HomogeneousSettings settings;
+  settings.law = "neo-hookean";
+  auto test = uniaxial(0.4);
+  for (std::size_t i = 0; i < test.nominal.size(); ++i)
+    test.nominal[i] += i % 2 == 0 ? 2e-3 : -2e-3;
+  const auto fit = calibrate::fit_homogeneous({test}, settings);
+  testing::internal::CaptureStdout();
+  say_homogeneous(fit);
+  const std::string text = testing::internal::GetCapturedStdout();
+  EXPECT_THAT(text, testing::HasSubstr("shear modulus at rest: 0.4"));
+  EXPECT_THAT(text, testing::ContainsRegex("tension: rms [12]\\.[0-9]+ mPa"));
+}
+
 }  // namespace
 }  // namespace palpate::app

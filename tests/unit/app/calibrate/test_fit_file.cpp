@@ -73,9 +73,9 @@ TEST_F(FitFiles, OfLawsThatCannotBeCalibratedAreRefused) {
 TEST_F(FitFiles, RefuseColumnsThatAreNotClear) {
   const std::string test = "[[test]]\nfile = \"table.csv\"\nmode = \"uniaxial\"\n";
   EXPECT_THAT(refusal("law = \"yeoh\"\n", test), HasSubstr("the columns are not clear"));
-  EXPECT_THAT(
-      refusal("law = \"yeoh\"\n", test + "displacement = \"stretch\"\nforce = \"stress\"\n"),
-      HasSubstr("a force needs the size of the specimen"));
+  EXPECT_THAT(refusal("law = \"yeoh\"\n", test + "displacement = \"stretch\"\nforce = \"stress\"\n"
+                                                 "gauge_length = \"1 cm\"\n"),
+              HasSubstr("a force needs the section of the specimen"));
 }
 
 }  // namespace

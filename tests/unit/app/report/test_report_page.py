@@ -128,6 +128,8 @@ class ReportPage(unittest.TestCase):
         cls.unbounded = drawn(path / "unbounded.html")
         cls.bare = drawn(path / "bare.html")
         cls.compared = drawn(path / "compared.html")
+        cls.calibration = drawn(path / "calibration.html")
+        cls.calibrated = drawn(path / "calibrated.html")
         cls.sparse = drawn(path / "sparse.html")
         cls.judged = drawn(path / "judged.html")
         cls.judged_other = drawn(path / "judged-other.html")
@@ -135,6 +137,19 @@ class ReportPage(unittest.TestCase):
     @classmethod
     def tearDownClass(cls):
         cls.folder.cleanup()
+
+    def test_a_calibration_has_data_intervals_correlations_and_profiles(self):
+        for page in (self.calibration, self.calibrated):
+            self.assertEqual(page.root["data-ready"], "ok")
+            text = page.by_id["calibration"].replace("\u00a0", " ").replace("\u202f", "")
+            for words in ("C104.20 kPa3.78 kPa to 4.62 kPa3.82 kPa to no end", "Data and fit", "Residuals",
+                          "Correlations", "\u22120.912", "Profile of C10", "Profile of C01",
+                          "pull.csv, uniaxial", "twist.csv, simple shear", "0.9999", "1.70 times as wide",
+                          "C01 <i>warned</i>"):
+                self.assertIn(words, text)
+            self.assertFalse([tag for tag, _ in page.tags if tag == "i" and not _])
+        self.assertIn("gel <b>bold</b>", self.calibration.text)
+        self.assertNotIn("calibration", self.full.by_id)
 
     def test_both_pages_are_drawn_without_an_error(self):
         for page in (self.full, self.unbounded, self.bare, self.compared, self.sparse, self.judged,

@@ -155,6 +155,60 @@ void write_previews(palpate::Body body, const std::filesystem::path& folder) {
                                  folder / "preview-repaired.html");
 }
 
+/// Two tests of one law, as `palpate calibrate tests` writes them, with hostile names.
+std::string calibration_text() {
+  using nlohmann::json;
+  const auto constant = [](const char* name, const char* unit, double value) {
+    json profile = json::array();
+    for (int i = -3; i <= 3; ++i) profile.push_back({value * (1 + 0.03 * i), i * i / 9.0});
+    return json{{"name", name},
+                {"unit", unit},
+                {"value", value},
+                {"standard_error", 0.05 * value},
+                {"low", 0.9 * value},
+                {"high", 1.1 * value},
+                {"profile_low", 0.91 * value},
+                {"profile_high", nullptr},
+                {"profile", profile},
+                {"at_bound", false}};
+  };
+  const auto test = [](const char* name, const char* mode, double rest) {
+    json x = json::array(), measured = json::array(), fitted = json::array();
+    for (int i = 0; i < 12; ++i) {
+      x.push_back(rest + 0.05 * (i % 10));  // two deformations twice
+      measured.push_back(2300.0 * i + (i % 2 == 0 ? 60 : -60));
+      fitted.push_back(2300.0 * i);
+    }
+    return json{{"test", name},
+                {"mode", mode},
+                {"rms_Pa", 60},
+                {"relative_rms", 0.004},
+                {"r2", 0.99991},
+                {"unstable_at", nullptr},
+                {"deformation", x},
+                {"measured_nominal_Pa", measured},
+                {"fitted_nominal_Pa", fitted}};
+  };
+  const json account{
+      {"artifact", "palpate.calibration"},
+      {"schema", 1},
+      {"name", "gel <b>bold</b>"},
+      {"source", "a laboratory"},
+      {"law", "mooney-rivlin"},
+      {"confidence", 0.95},
+      {"constants", json::array({constant("C10", "Pa", 4200), constant("C01", "Pa", -310)})},
+      {"correlation", json::array({json::array({1, -0.912}), json::array({-0.912, 1})})},
+      {"degrees_of_freedom", 22},
+      {"effective_degrees_of_freedom", 14.2},
+      {"residual_lag_one_correlation", 0.31},
+      {"residual_durbin_watson", 1.4},
+      {"intervals_widened_for_correlation", 1.7},
+      {"warnings", json::array({"C01 <i>warned</i>"})},
+      {"tests",
+       json::array({test("pull.csv", "uniaxial", 1), test("twist.csv", "simple shear", 0)})}};
+  return account.dump();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -171,6 +225,10 @@ int main(int argc, char** argv) {
   palpate::write_report(input, folder / "full.html");
 
   write_previews(all.body, folder);
+  palpate::report::write_calibration(calibration_text(), folder / "calibration.html");
+  input.calibration = calibration_text();
+  palpate::write_report(input, folder / "calibrated.html");
+  input.calibration.clear();
 
   input.comparison = comparison_of({{all.curves.sites.front().vertex, 1.0}}, "<b>curves</b>.h5");
   palpate::write_report(input, folder / "compared.html");

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <array>
+#include <Eigen/Dense>
 #include <cmath>
 #include <random>
 
@@ -105,66 +105,134 @@ TEST(CorrelatedNoise, IndependentNoiseIsLeftAlone) {
   EXPECT_LT(found, 50 + 21);
 }
 
-/// Dense algebra beside the recursions: V, M and the traces by their definitions.
+/// Dense algebra beside the recursions: N = D V D, M and the traces by their definitions, at the
+/// lag at which the residuals over their deviations are less alike than one half.
 TEST(CorrelatedNoise, IsTheMomentEstimateOfItsDefinition) {
-  const std::vector<double> J{1, 0.2, 1, 0.5, 1, 1.1, 1, 1.3, 1, 2.2, 1, 2.4,
-                              1, 3.5, 1, 0.4, 1, 0.9, 1, 1.9, 1, 2.7, 1, 0.1};
-  const std::vector<double> r{0.5, 0.6, 0.2, 0.1, -0.4, -0.6, -0.3, 0.1, 0.4, 0.5, 0.0, 0.9};
-  const CorrelatedNoise found = correlated_noise(J, 2, r, {6, 5});  // the last is on its own
-  constexpr std::array kFirstOfPairs{0U, 1U, 2U, 3U, 4U, 6U, 7U, 8U, 9U};
-  double pairs = 0, own = 0, steps = 0;
-  for (const std::size_t i : kFirstOfPairs) {
-    pairs += r[i] * r[i + 1];
-    steps += (r[i + 1] - r[i]) * (r[i + 1] - r[i]);
+  constexpr int n = 12;
+  using Dense = Eigen::MatrixXd;
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> J(n, 2);
+  J << 1, 0.2, 1, 0.5, 1, 1.1, 1, 1.3, 1, 2.2, 1, 2.4, 1, 3.5, 1, 0.4, 1, 0.9, 1, 1.9, 1, 2.7, 1,
+      0.1;
+  Eigen::VectorXd r(n), d(n);
+  r << 0.5, 0.6, 0.2, 0.1, -0.4, -0.6, -0.3, 0.1, 0.4, 0.5, 0.0, 0.9;
+  for (const bool alike : {true, false}) {
+    d.setOnes();
+    if (!alike) d.head(6).setConstant(0.7), d.segment(6, 5).setConstant(1.3);
+    const auto values = [](const auto& m) {
+      return std::vector<double>(m.data(), m.data() + m.size());
+    };
+    const CorrelatedNoise found = correlated_noise(values(J), 2, values(r), {6, 5},
+                                                   alike ? std::vector<double>{} : values(d));
+    const auto series = [](int i) { return i < 6 ? 0 : i < 11 ? 1 : 2; };  // the last is on its own
+    const auto pairs = [&](int lag) {
+      Dense A = Dense::Zero(n, n);
+      for (int i = 0; i + lag < n; ++i)
+        if (series(i) == series(i + lag)) A(i, i + lag) = A(i + lag, i) = lag == 0 ? 1 : 0.5;
+      A(11, 11) = 0;
+      return A;
+    };
+    const Eigen::VectorXd own = r.cwiseQuotient(d);
+    const double squares = own.dot(pairs(0) * own);
+    EXPECT_NEAR(found.lag_one, own.dot(pairs(1) * own) / squares, 1e-12);
+    ASSERT_TRUE(found.significant);
+    ASSERT_FALSE(found.beyond_noise);
+    const int lag = own.dot(pairs(1) * own) > 0.5 * squares ? 2 : 1;
+    Dense N = Dense::Zero(n, n);
+    for (int i = 0; i < n; ++i)
+      for (int j = 0; j < n; ++j)
+        if (series(i) == series(j))
+          N(i, j) = d[i] * d[j] * std::pow(found.autocorrelation, std::abs(i - j));
+    const Dense M = Dense::Identity(n, n) - J * (J.transpose() * J).inverse() * J.transpose();
+    const Dense W = M * N * M, over = Dense(d.cwiseInverse().asDiagonal());
+    EXPECT_NEAR((over * pairs(lag) * over * W).trace() / (over * pairs(0) * over * W).trace(),
+                own.dot(pairs(lag) * own) / squares, 1e-9);
+    EXPECT_NEAR(found.scatter, std::sqrt(r.squaredNorm() / W.trace()), 1e-9);
+    EXPECT_NEAR(found.freedom, W.trace() * W.trace() / (W * W).trace(), 1e-9);
+    EXPECT_NEAR(found.meat[1], (J.transpose() * N * J)(0, 1), 1e-9);
   }
-  for (std::size_t i = 0; i < 11; ++i) own += r[i] * r[i];
-  EXPECT_NEAR(found.lag_one, pairs / own, 1e-12);
-  EXPECT_NEAR(found.durbin_watson, steps / own, 1e-12);
-  ASSERT_TRUE(found.significant);
-  ASSERT_LT(found.autocorrelation, 0.97);  // below its bound, where it solves its equation
-  constexpr std::size_t n = 12;
-  using Dense = std::array<std::array<double, n>, n>;
-  const auto product = [](const Dense& a, const Dense& b) {
-    Dense c{};
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j)
-        for (std::size_t k = 0; k < n; ++k) c[i][j] += a[i][k] * b[k][j];
-    return c;
-  };
-  double a = 0, b = 0, d = 0;  // J^T J
-  for (std::size_t i = 0; i < n; ++i) {
-    a += J[2 * i] * J[2 * i];
-    b += J[2 * i] * J[2 * i + 1];
-    d += J[2 * i + 1] * J[2 * i + 1];
+}
+
+/// The deviation of the lag-one correlation of fitted noise whose variance differs from series to
+/// series, against draws: a test that is weighted tenfold is not taken for correlated.
+TEST(CorrelatedNoise, OfUnequalWeightsIsLeftAlone) {
+  constexpr int kTrials = 1000;
+  std::mt19937 engine(13);
+  int found = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Line line = correlated_line(2, 0, engine);
+    std::vector<double> deviations;
+    for (std::size_t i = 0; i < line.x.size(); ++i) {
+      const double weight = i < 20 ? 10 : 1;
+      line.x[i] *= weight;
+      line.y[i] *= weight;
+      deviations.push_back(weight);
+    }
+    LeastSquares problem = line.problem(true);
+    problem.deviations = deviations;
+    found += minimise(problem, "line").correlated;
   }
-  Dense M{}, V{};
-  const auto series = [](std::size_t i) { return i < 6 ? 0 : i < 11 ? 1 : 2; };
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = 0; j < n; ++j) {
-      const double *p = &J[2 * i], *q = &J[2 * j];
-      M[i][j] =
-          (i == j ? 1 : 0) -
-          (d * p[0] * q[0] - b * (p[0] * q[1] + p[1] * q[0]) + a * p[1] * q[1]) / (a * d - b * b);
-      const double apart = std::abs(static_cast<double>(i) - static_cast<double>(j));
-      if (series(i) == series(j)) V[i][j] = std::pow(found.autocorrelation, apart);
+  EXPECT_GT(found, 50 - 21);  // three standard deviations of 1000 draws are 21
+  EXPECT_LT(found, 50 + 21);
+}
+
+/// A parabola misses x^3 by four half waves that are smoother than noise. However many samples
+/// there are, they count for as many as half waves at least: the standard errors are no wider than
+/// for four.
+TEST(CorrelatedNoise, AMisfitThatIsSmootherThanNoiseIsSaidAndNotInflated) {
+  for (const int n : {20, 40, 100}) {
+    LeastSquares problem;
+    for (const char* name : {"a", "b", "c"}) problem.constants.push_back({name, "1", 0, -9, 9});
+    problem.residuals = static_cast<std::size_t>(n);
+    problem.series = {problem.residuals};
+    problem.model = [n](const double* c, double* r, double* J) {
+      for (int i = 0; i < n; ++i) {
+        const double x = static_cast<double>(i) / (n - 1);
+        r[i] = c[0] + x * (c[1] + x * c[2]) - x * x * x;
+        if (J != nullptr) J[3 * i] = 1, J[3 * i + 1] = x, J[3 * i + 2] = x * x;
+      }
+      return true;
+    };
+    const Calibration fit = minimise(problem, "parabola");
+    EXPECT_TRUE(fit.beyond_noise) << n;
+    EXPECT_THAT(fit.warnings, Contains(HasSubstr("more than in any noise")));
+    const double scatter = std::sqrt(2 * fit.cost / (n - 3));
+    EXPECT_NEAR(fit.scatter, scatter, 1e-6 * scatter);
+    for (const Estimate& e : fit.estimates) {
+      EXPECT_GT(e.standard_error, scatter * e.unit_error) << n;
+      EXPECT_LT(e.standard_error, std::sqrt(n / 4.0) * scatter * e.unit_error) << n;
     }
   }
-  const Dense W = product(product(M, V), M), WW = product(W, W);
-  double lag = 0, within = 0, all = 0, squares = 0, sum = 0;
-  for (const std::size_t i : kFirstOfPairs) lag += W[i][i + 1];
-  for (std::size_t i = 0; i < n; ++i) {
-    if (i < 11) within += W[i][i];
-    all += W[i][i];
-    squares += WW[i][i];
-    sum += r[i] * r[i];
+}
+
+/// Resampling between the samples of a curve adds nothing and takes nothing away: the interval
+/// stays what it was, twenty times as many points or not, although neighbours are now all alike.
+TEST(CorrelatedNoise, ResampledCurvesKeepTheirIntervals) {
+  constexpr int kTrials = 100, kTimes = 20;
+  std::mt19937 engine(14);
+  double sum = 0;
+  int inside = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const Line line = correlated_line(2, 0, engine);
+    Line dense;
+    for (std::size_t c = 0; c < line.series.size(); ++c) {
+      const std::size_t first = 20 * c;
+      for (std::size_t i = 0; i + kTimes < 20 * kTimes; ++i) {
+        const std::size_t at = first + i / kTimes;
+        const double part = static_cast<double>(i % kTimes) / kTimes;
+        dense.x.push_back((1 - part) * line.x[at] + part * line.x[at + 1]);
+        dense.y.push_back((1 - part) * line.y[at] + part * line.y[at + 1]);
+      }
+      dense.series.push_back(19 * kTimes);
+    }
+    const Estimate before = minimise(line.problem(true), "line").estimates[0];
+    const Calibration after = minimise(dense.problem(true), "line");
+    EXPECT_TRUE(after.correlated);
+    const Estimate& e = after.estimates[0];
+    sum += std::log((e.high - e.low) / (before.high - before.low)) / kTrials;
+    inside += e.low <= 2 && 2 <= e.high;
   }
-  EXPECT_NEAR(lag / within, found.lag_one, 1e-9);
-  EXPECT_NEAR(found.scatter, std::sqrt(sum / all), 1e-9);
-  EXPECT_NEAR(found.freedom, std::max(1.0, all * all / squares), 1e-9);
-  double meat = 0;
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) meat += J[2 * i] * V[i][j] * J[2 * j + 1];
-  EXPECT_NEAR(found.meat[1], meat, 1e-9);
+  EXPECT_NEAR(std::exp(sum), 1, 0.35);
+  EXPECT_GE(inside, 88);  // 95 expected, three standard deviations are 6.5
 }
 
 }  // namespace

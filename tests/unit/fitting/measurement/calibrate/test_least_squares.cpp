@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "fitting/measurement/calibrate/least_squares.hpp"
@@ -67,6 +68,54 @@ TEST(LeastSquares, RefusesProblemsThatHaveNoSolution) {
   problem = line.problem();
   problem.model = [](const double*, double*, double*) { return false; };
   EXPECT_THAT(refusal(problem), HasSubstr("the model has no value near the start"));
+}
+
+/// Rosenbrock's valley, with fewer iterations than it takes: no constants, but where they are.
+TEST(LeastSquares, RefusesWhatDoesNotConverge) {
+  LeastSquares problem;
+  problem.constants = {{"x", "1", -1.2, -10, 10}, {"y", "1", 1, -10, 10}};
+  problem.residuals = 2;
+  problem.max_iterations = 3;
+  problem.model = [](const double* c, double* r, double* J) {
+    r[0] = 10 * (c[1] - c[0] * c[0]);
+    r[1] = 1 - c[0];
+    if (J == nullptr) return true;
+    J[0] = -20 * c[0], J[1] = 10, J[2] = -1, J[3] = 0;
+    return true;
+  };
+  EXPECT_THAT(refusal(problem), HasSubstr("the iteration does not converge; after 3 iterations"));
+  EXPECT_FALSE(converged_minimum(problem, {{-1.2, 1}, {-5, 2}}, "valley"));
+  try {
+    minimise(problem, {{-1.2, 1}, {-5, 2}}, "valley");
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("valley: none of 2 starts converges"));
+    EXPECT_THAT(error.remedy(), HasSubstr("fewer constants"));
+  }
+  problem.max_iterations = 200;
+  const auto found = converged_minimum(problem, {{-1.2, 1}}, "valley");
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->estimates[0].value, 1, 1e-6);
+}
+
+/// Constants that are the same model in another order come out in one.
+TEST(LeastSquares, GivesTheCanonicalOneOfEqualSets) {
+  LeastSquares problem;
+  problem.constants = {{"a", "1", 1, -10, 10}, {"b", "1", 2, -10, 10}};
+  problem.residuals = 2;
+  problem.model = [](const double* c, double* r, double* J) {  // a + b = 3, a b = 2
+    r[0] = c[0] + c[1] - 3;
+    r[1] = c[0] * c[1] - 2;
+    if (J != nullptr) J[0] = J[1] = 1, J[2] = c[1], J[3] = c[0];
+    return true;
+  };
+  problem.canonical = [](std::vector<double>& c) { std::sort(c.begin(), c.end()); };
+  for (const std::vector<double>& start : {std::vector<double>{0.5, 5}, {5, 0.5}}) {
+    const Calibration fit = minimise(problem, {start}, "roots");
+    EXPECT_NEAR(fit.estimates[0].value, 1, 1e-6);
+    EXPECT_NEAR(fit.estimates[1].value, 2, 1e-6);
+    EXPECT_TRUE(minimise(problem, {{0.5, 5}, {5, 0.5}}, "roots").warnings == fit.warnings);
+  }
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <limits>
 
@@ -107,6 +109,27 @@ TEST(Profile, SaysWhatTheDataDoNotBound) {
   EXPECT_EQ(fit.estimates[1].profile_low, 0.5);
   EXPECT_TRUE(std::isinf(fit.estimates[1].profile_high));
   EXPECT_THAT(fit.warnings, Contains(HasSubstr("b is not bounded by the data")));
+}
+
+/// The points of a profile of a linear problem lie on its parabola: one at each end.
+TEST(Profile, HasThePointsThatItWentThrough) {
+  LeastSquares problem;
+  problem.constants = {{"k", "1", 1, -10, 10}};
+  problem.residuals = 4;
+  problem.model = [](const double* c, double* r, double* J) {
+    for (int i = 0; i < 4; ++i) {
+      r[i] = c[0] * (1 + i) - 2 * (1 + i) - (i % 2 == 0 ? 0.1 : -0.1);
+      if (J != nullptr) J[i] = 1 + i;
+    }
+    return true;
+  };
+  Calibration fit = minimise(problem, "line");
+  add_profiles(problem, fit, {.of = {}, .between = 3});
+  const Estimate& e = fit.estimates[0];
+  ASSERT_GE(e.profile.size(), 9U);
+  EXPECT_TRUE(std::is_sorted(e.profile.begin(), e.profile.end()));
+  for (const auto& [value, rise] : e.profile)
+    EXPECT_NEAR(rise, std::pow((value - e.value) / (e.high - e.value), 2), 1e-5);
 }
 
 }  // namespace

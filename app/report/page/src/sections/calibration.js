@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// A calibration: data and fit, residuals, intervals, correlations, profiles.
+import { definitions, el, paragraph, table } from '../dom.js';
+import { curvePlot } from '../plot.js';
+import * as units from '../units.js';
+
+const UNITS = { Pa: units.pressure, m: units.length };
+
+/** A value of a constant with its unit. */
+const shown = (unit) => UNITS[unit] ?? ((v) => units.significant(v));
+
+function interval(c, low, high) {
+  if (low === null && high === null) return '\u2013';
+  const end = (v) => (v === null ? 'no end' : shown(c.unit)(v));
+  return `${end(low)} to ${end(high)}`;
+}
+
+function constantRows(constants) {
+  return constants.map((c) => [c.name, shown(c.unit)(c.value),
+    c.at_bound ? 'at its bound' : interval(c, c.low, c.high), interval(c, c.profile_low, c.profile_high)]);
+}
+
+/** Largest of a list of numbers, in magnitude, as a unit of the axis. */
+function scaleOf(values, steps) {
+  const largest = Math.max(0, ...values.map((v) => Math.abs(v)));
+  return steps.find(([f]) => largest >= f) ?? steps[steps.length - 1];
+}
+
+const PRESSURES = [[1e6, 'MPa'], [1e3, 'kPa'], [1, 'Pa'], [1e-3, 'mPa']];
+const FORCES = [[1, 'N'], [1e-3, 'mN'], [1e-6, '\u00b5N']];
+
+/** What is compared: tests of specimens, or paths on a body, in one form. */
+function recordsOf(c) {
+  if (c.tests) {
+    return c.tests.map((t) => ({
+      name: `${t.test}, ${t.mode}`, x: t.deformation, measured: t.measured_nominal_Pa, fitted: t.fitted_nominal_Pa,
+      xLabel: t.mode === 'simple shear' ? 'Amount of shear' : 'Stretch', factor: 1, yName: 'Nominal stress', steps: PRESSURES,
+    }));
+  }
+  return c.paths.map((p) => ({
+    name: `node ${p.vertex}, ${p.kind}`, x: p.displacement_m, measured: p.measured_N, fitted: p.fitted_N,
+    xLabel: 'Displacement (mm)', factor: 1e3, yName: 'Force', steps: FORCES,
+  }));
+}
+
+const ascending = (x) => Array.from(x.keys()).sort((a, b) => x[a] - x[b]);
+
+/** Points may have equal abscissas; an invisible shift makes them distinct. */
+function distinct(x) {
+  const seen = new Set();
+  return x.map((v) => {
+    while (seen.has(v)) v += 1e-9 * (1 + Math.abs(v));
+    seen.add(v);
+    return v;
+  });
+}
+
+function recordFigures(c) {
+  const records = recordsOf(c);
+  const place = el('div', {});
+  const show = (i) => {
+    const r = records[i], order = ascending(r.x), x = distinct(order.map((k) => r.x[k] * r.factor));
+    const [unit, symbol] = scaleOf(r.measured, r.steps);
+    const off = order.map((k) => r.fitted[k] - r.measured[k]);
+    const [small, smallSymbol] = scaleOf(off, r.steps);
+    const data = curvePlot('Data and fit', r.xLabel, `${r.yName} (${symbol})`, 260, { signed: true, tight: true });
+    data.set([
+      { label: 'fit', colour: 'series-2', x, y: order.map((k) => r.fitted[k] / unit) },
+      { label: 'data', colour: 'series-1', markers: true, x, y: order.map((k) => r.measured[k] / unit) },
+    ]);
+    const residuals = curvePlot('Residuals', r.xLabel, `Fit less data (${smallSymbol})`, 180, { signed: true, tight: true });
+    residuals.set([
+      { label: 'zero', colour: 'muted', width: 1.5, x: [x[0], x[x.length - 1]], y: [0, 0] },
+      { label: 'residual', colour: 'series-1', markers: true, x, y: off.map((v) => v / small) },
+    ]);
+    place.replaceChildren(data.element, residuals.element);
+  };
+  const select = el('select', { id: 'calibrated-record', onchange: (e) => show(Number(e.target.value)) },
+    records.map((r, i) => el('option', { value: i }, r.name)));
+  show(0);
+  return [el('div', { class: 'controls' }, el('label', {}, 'Record', select)), place,
+    paragraph('Markers: the data. Line: the fit at the data.', 'note')];
+}
+
+/** The rise of the misfit with one constant fixed, over what chance allows: the interval ends at 1. */
+function profileFigures(constants) {
+  return constants.filter((c) => c.profile.length > 2).map((c) => {
+    const [unit, symbol] = c.unit === 'Pa' ? scaleOf(c.profile.map(([v]) => v), PRESSURES) : [1, ''];
+    const points = c.profile.filter(([, rise]) => rise < 4);
+    const x = distinct(points.map(([v]) => v / unit));
+    const figure = curvePlot(`Profile of ${c.name}`, symbol ? `${c.name} (${symbol})` : c.name, 'Rise of the misfit', 180, { tight: true });
+    figure.set([
+      { label: 'end', colour: 'muted', width: 1.5, dash: [6, 4], x: [x[0], x[x.length - 1]], y: [1, 1] },
+      { label: 'profile', colour: 'series-1', x, y: points.map(([, rise]) => rise) },
+      { label: 'fits', colour: 'series-1', markers: true, x, y: points.map(([, rise]) => rise) },
+    ]);
+    return figure.element;
+  });
+}
+
+function correlationTable(c) {
+  const names = c.constants.map((k) => k.name);
+  const cell = (v) => (v === null ? '\u2013' : v.toFixed(3).replace('-', '\u2212'));
+  return table(['', ...names], c.correlation.map((row, i) => [names[i], ...row.map(cell)]), names.map((_, i) => i + 1));
+}
+
+function testRows(c) {
+  return c.tests.map((t) => [t.test, t.mode, units.pressure(t.rms_Pa), units.percent(t.relative_rms),
+    t.r2 === null ? '\u2013' : t.r2.toFixed(4), t.unstable_at === null ? 'stable' : `unstable at ${units.significant(t.unstable_at)}`]);
+}
+
+export function calibrationSection(data) {
+  const c = data.calibration;
+  const profiles = profileFigures(c.constants);
+  return el('section', { id: 'calibration' },
+    el('h2', {}, 'Calibration'),
+    paragraph(c.law
+      ? `Constants of the law ${c.law}, from ${units.count(c.tests.length)} tests. Source: ${c.source}.`
+      : `Constants of regions of the body, from ${units.count(c.paths.length)} measured paths.`, 'lead'),
+    table(['Constant', 'Value', `${units.percent(c.confidence)} interval`, 'by its profile'], constantRows(c.constants), [1, 2, 3]),
+    recordFigures(c),
+    c.tests ? table(['Test', 'Mode', 'RMS error', 'of its RMS', 'R\u00b2', 'In its range'], testRows(c), [2, 3, 4]) : null,
+    c.constants.length > 1 ? [el('h3', {}, 'Correlations'), correlationTable(c)] : null,
+    profiles.length ? [el('h3', {}, 'Profiles'),
+      paragraph('The misfit with one constant fixed and all others refitted. The interval ends where its rise is 1 (dashed).', 'note'), profiles] : null,
+    definitions([
+      ['Degrees of freedom', `${units.count(c.degrees_of_freedom)}, effective ${units.significant(c.effective_degrees_of_freedom)}`],
+      ['Neighbouring residuals', `correlation ${units.significant(c.residual_lag_one_correlation)}, Durbin\u2013Watson ${units.significant(c.residual_durbin_watson)}; intervals ${units.significant(c.intervals_widened_for_correlation)} times as wide for it`],
+    ], 'facts'),
+    c.warnings.length ? [el('h3', {}, 'Warnings'), el('ul', {}, c.warnings.map((w) => el('li', {}, w)))] : null);
+}
+
+/** The page of a calibration of specimens, without a body. */
+export function calibrationPage(data) {
+  return el('div', {}, el('h1', {}, data.title), calibrationSection(data));
+}
