@@ -14,8 +14,9 @@ namespace {
 /// A coefficient of (J - 1)^4 and higher terms that adds nothing; zero would mean a default.
 constexpr double kNone = 1e20;
 /// Contact without slip: a friction coefficient and the tangential stiffness over that of the
-/// contact. With larger ones the iterations of CalculiX take several times as long or do not end.
-constexpr double kFriction = 5, kStick = 0.03;
+/// contact, of a no-slip press and of a surface that sticks once it is pressed. With larger ones
+/// the iterations of CalculiX take several times as long or do not end.
+constexpr double kFriction = 5, kStick = 0.03, kStickOncePressed = 0.01;
 /// Without friction: CalculiX changes only a friction that there is.
 constexpr double kSliding = 1e-6;
 
@@ -160,7 +161,8 @@ class Writer {
   }
 
   std::string friction(double coefficient) const {
-    return fmt::format("*FRICTION\n{:.10g},{:.10g}\n", coefficient, kStick * deck_.tool->stiffness);
+    const double stick = deck_.no_slip ? kStick : kStickOncePressed;
+    return fmt::format("*FRICTION\n{:.10g},{:.10g}\n", coefficient, stick * deck_.tool->stiffness);
   }
   std::string friction_of_press() const {
     if (deck_.no_slip) return friction(kFriction);

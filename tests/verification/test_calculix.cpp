@@ -324,9 +324,9 @@ Dragged their_drag(const Deck& deck) {
 }
 
 /// palpate ties nodes, by how much of the area around them is in contact, and they hold tension;
-/// CalculiX holds points of facets, new ones too, while they are pressed. Its friction is elastic:
-/// from a frictionless press a third of its tangential stiffness takes another 7 % off the lateral
-/// force, and rigid friction would add about 4 %.
+/// CalculiX holds points of facets, new ones too, while they are pressed. Its friction is elastic,
+/// which lowers the lateral force: from a frictionless press three times the tangential stiffness,
+/// with which it hardly converges, raises it by 7 %.
 void compare_drag(fem::ToolFriction friction, const std::string& what, const Dragged& bound) {
   const Body body = graded_block();
   auto settings = pressing({fem::ToolShape::Sphere, 0.005, 0, 0});
@@ -345,7 +345,7 @@ void compare_drag(fem::ToolFriction friction, const std::string& what, const Dra
 }
 
 TEST(CalculixDrag, AgreesFromAFrictionlessPress) {
-  compare_drag(fem::ToolFriction::Frictionless, "pressed without friction", {0.01, 0.02, 0.08});
+  compare_drag(fem::ToolFriction::Frictionless, "pressed without friction", {0.01, 0.02, 0.15});
 }
 
 /// In an increment of the press the surface meets the tool and sticks to it: CalculiX holds what it
