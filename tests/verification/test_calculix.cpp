@@ -348,9 +348,8 @@ TEST(CalculixDrag, AgreesFromAFrictionlessPress) {
   compare_drag(fem::ToolFriction::Frictionless, "pressed without friction", {0.01, 0.02, 0.15});
 }
 
-/// In an increment of the press the surface meets the tool and sticks to it: CalculiX holds what it
-/// meets from the start of the increment on, palpate from its end. Their forces are on either side
-/// of the limit of small increments.
+/// CalculiX holds points as they are pressed, palpate bonds the surface at the end of an increment.
+/// Five increments instead of two change the force of CalculiX by 0.1 %.
 TEST(CalculixDrag, AgreesFromANoSlipPress) {
   compare_drag(fem::ToolFriction::NoSlip, "pressed without slip", {0.06, 0.05, 0.09});
 }
