@@ -75,13 +75,14 @@ int export_runtime(const Workspace& space) {
 struct SiteOptions {
   std::int32_t vertex = -1;
   bool calculix = false, febio = false;
+  bool lateral = false;     ///< moves the tool sideways after the press
   bool patch = false;       ///< displaces a bonded patch instead of the tool
   double patch_radius = 0;  ///< mm; 0: that of the tool
 };
 
 /// The solution of palpate for a deck.
 struct OwnSolution {
-  std::string csv;
+  std::string csv, lateral_csv;
   std::string what;
   double depth = 0, force = 0;  ///< at the end
   std::string reason;           ///< why the curve ends early
@@ -91,7 +92,11 @@ OwnSolution press_patch(const Body& body, const fem::CampaignSettings& settings,
                         std::int32_t vertex, double radius, std::size_t nodes) {
   const fem::PatchCurve curve = fem::press_patch(body, settings, vertex, radius);
   OwnSolution own{"depth_m,force_x_N,force_y_N,force_z_N,strain_energy_J\n",
-                  fmt::format("bonded patch of {} nodes displaced", nodes), 0, 0, curve.reason};
+                  "",
+                  fmt::format("bonded patch of {} nodes displaced", nodes),
+                  0,
+                  0,
+                  curve.reason};
   for (const fem::PatchForce& s : curve.samples) {
     own.csv += fmt::format("{},{},{},{},{}\n", s.depth, s.force[0], s.force[1], s.force[2],
                            s.strain_energy);
@@ -101,20 +106,36 @@ OwnSolution press_patch(const Body& body, const fem::CampaignSettings& settings,
   return own;
 }
 
-OwnSolution press_tool(const Body& body, fem::CampaignSettings settings, std::int32_t vertex) {
+/// The samples of a path of the tool, `travel` being the name of their displacement.
+std::string csv_of(const CurvePath& path, const char* travel) {
+  std::string csv =
+      fmt::format("{},force_x_N,force_y_N,force_z_N,strain_energy_J,penetration_m\n", travel);
+  for (const CurveSample& s : path.samples) {
+    csv += fmt::format("{},{},{},{},{},{}\n", s.displacement, s.force[0], s.force[1], s.force[2],
+                       s.strain_energy, s.penetration);
+  }
+  return csv;
+}
+
+OwnSolution press_tool(const Body& body, fem::CampaignSettings settings, std::int32_t vertex,
+                       bool lateral) {
   settings.sites = {vertex};
   settings.indentation.lateral_depths.clear();
+  if (lateral) {
+    settings.indentation.lateral_depths = {settings.indentation.depth};
+    settings.indentation.azimuths.resize(1);
+  }
   fem::CampaignReport report;
   const Curves curves = fem::run_campaign(body, settings, report);
   const SiteCurves& site = curves.sites.front();
-  OwnSolution own{"depth_m,force_x_N,force_y_N,force_z_N,strain_energy_J,penetration_m\n",
-                  name_of(settings.indentation.tool.shape) + " pressed", 0, 0, site.reason};
-  for (const CurveSample& s : site.paths.front().samples) {
-    own.csv += fmt::format("{},{},{},{},{},{}\n", s.displacement, s.force[0], s.force[1],
-                           s.force[2], s.strain_energy, s.penetration);
-    own.depth = s.displacement;
-    own.force = norm(s.force);
-  }
+  const CurvePath& press = site.paths.front();
+  OwnSolution own{csv_of(press, "depth_m"),
+                  "",
+                  name_of(settings.indentation.tool.shape) + " pressed",
+                  press.samples.back().displacement,
+                  norm(press.samples.back().force),
+                  site.reason};
+  if (site.paths.size() > 1) own.lateral_csv = csv_of(site.paths.back(), "travel_m");
   return own;
 }
 
@@ -137,7 +158,7 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
   const double radius =
       options.patch_radius > 0 ? 1e-3 * options.patch_radius : settings.indentation.tool.radius;
   const Deck deck = patch ? make_patch_deck(body, settings, options.vertex, radius)
-                          : make_tool_deck(body, settings, options.vertex);
+                          : make_tool_deck(body, settings, options.vertex, options.lateral);
   const std::string stem = fmt::format("site-{}", options.vertex);
   const auto save = [&](const std::string& text, const std::string& name) {
     write_file_crash_safely(space.out / name, text);
@@ -148,10 +169,11 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
   const std::string febio = options.febio ? febio_deck(deck) : std::string();
   const OwnSolution own =
       patch ? press_patch(body, settings, options.vertex, radius, deck.patch.size())
-            : press_tool(body, settings, options.vertex);
+            : press_tool(body, settings, options.vertex, options.lateral);
   if (!calculix.empty()) save(calculix, stem + ".inp");
   if (!febio.empty()) save(febio, stem + ".feb");
   save(own.csv, stem + (patch ? "-patch.csv" : "-tool.csv"));
+  if (!own.lateral_csv.empty()) save(own.lateral_csv, stem + "-lateral.csv");
   say("site {}: {} by {:.2f} mm, force {:.4f} N by {}", options.vertex, own.what, 1e3 * own.depth,
       own.force, name_in(kElements, settings.dilatation));
   if (!own.reason.empty()) say("the curve ends early: {}", own.reason);
@@ -242,14 +264,20 @@ void add_export_command(CLI::App& root, Action& action) {
                  return decks ? export_decks(space, *options) : export_site(space, options->vertex);
                });
   site->add_option("--vertex", options->vertex, "Response vertex, as in curves.csv")->required();
-  site->add_flag("--calculix", options->calculix,
-                 "Write site-N.inp for CalculiX, with frictionless contact");
+  CLI::Option* calculix =
+      site->add_flag("--calculix", options->calculix, "Write site-N.inp for CalculiX");
   site->add_flag("--febio", options->febio, "Write site-N.feb for FEBio 4");
-  site->add_flag("--patch", options->patch,
-                 "Displace a bonded patch of surface nodes instead of the tool, without contact");
-  site->add_option("--patch-radius-mm", options->patch_radius,
-                   "Radius of the patch, mm (default: that of the tool)")
-      ->check(CLI::PositiveNumber);
+  CLI::Option* patch = site->add_flag(
+      "--patch", options->patch,
+      "Displace a bonded patch of surface nodes instead of the tool, without contact");
+  CLI::Option* radius = site->add_option("--patch-radius-mm", options->patch_radius,
+                                         "Radius of the patch, mm (default: that of the tool)")
+                            ->check(CLI::PositiveNumber);
+  site->add_flag("--lateral", options->lateral,
+                 "After the press move the tool along the first lateral path, without slip")
+      ->needs(calculix)
+      ->excludes(patch)
+      ->excludes(radius);
 }
 
 }  // namespace palpate::app

@@ -13,6 +13,12 @@ namespace {
 
 /// A coefficient of (J - 1)^4 and higher terms that adds nothing; zero would mean a default.
 constexpr double kNone = 1e20;
+/// Contact without slip: a friction coefficient and the tangential stiffness over that of the
+/// contact, of a no-slip press and of a surface that sticks once it is pressed. With larger ones
+/// the iterations of CalculiX take several times as long or do not end.
+constexpr double kFriction = 5, kStick = 0.03, kStickOncePressed = 0.01;
+/// Without friction: CalculiX changes only a friction that there is.
+constexpr double kSliding = 1e-6;
 
 std::string list(std::initializer_list<double> values) {
   std::string text;
@@ -77,7 +83,7 @@ class Writer {
       tool(*deck_.tool);
     else
       node_set("PATCH", deck_.patch);
-    step(deck_.tool ? "TOOL" : "PATCH");
+    steps(deck_.tool ? "TOOL" : "PATCH");
     return std::move(out_);
   }
 
@@ -150,22 +156,38 @@ class Writer {
     add("*SURFACE, NAME=TOOL, TYPE=ELEMENT\nTOOL,S1\n"
         "*SURFACE INTERACTION, NAME=CONTACT\n"
         "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n{:.10g}\n"
-        "*CONTACT PAIR, INTERACTION=CONTACT, TYPE=SURFACE TO SURFACE\nSKIN,TOOL\n",
-        tool.stiffness);
+        "{}*CONTACT PAIR, INTERACTION=CONTACT, TYPE=SURFACE TO SURFACE\nSKIN,TOOL\n",
+        tool.stiffness, friction_of_press());
   }
 
-  /// `moved`: the node set that is moved.
-  void step(const char* moved) {
-    const double first = 1.0 / deck_.increments;
-    add("*BOUNDARY\nHELD,1,3\n*STEP, NLGEOM, INC=10000\n*STATIC\n{0:.10g},1.,{1:.3g},{0:.10g}\n",
-        first, 1e-4 * first);
+  std::string friction(double coefficient) const {
+    const double stick = deck_.no_slip ? kStick : kStickOncePressed;
+    return fmt::format("*FRICTION\n{:.10g},{:.10g}\n", coefficient, stick * deck_.tool->stiffness);
+  }
+  std::string friction_of_press() const {
+    if (deck_.no_slip) return friction(kFriction);
+    return deck_.lateral ? friction(kSliding) : "";
+  }
+
+  /// `moved`: the node set that is moved to `target`.
+  void step(const char* moved, const Vec3& target, int increments, const std::string& changes) {
+    const double first = 1.0 / increments;
+    add("*STEP, NLGEOM, INC=10000\n*STATIC\n{0:.10g},1.,{1:.3g},{0:.10g}\n{2}", first, 1e-4 * first,
+        changes);
     // The default lets the forces be off by half a percent.
     add("*CONTROLS, PARAMETERS=FIELD\n1.e-5,1.e-3\n*BOUNDARY\n");
-    for (int i = 0; i < 3; ++i) {
-      add("{0},{1},{1},{2:.12e}\n", moved, i + 1,
-          deck_.depth * deck_.direction[static_cast<std::size_t>(i)]);
-    }
+    for (std::size_t i = 0; i < 3; ++i) add("{0},{1},{1},{2:.12e}\n", moved, i + 1, target[i]);
     add("*NODE PRINT, NSET={}, TOTALS=ONLY\nRF\n*END STEP\n", moved);
+  }
+
+  void steps(const char* moved) {
+    const Vec3 pressed = deck_.depth * deck_.direction;
+    add("*BOUNDARY\nHELD,1,3\n");
+    step(moved, pressed, deck_.increments, "");
+    if (!deck_.lateral) return;
+    const LateralMove& lateral = *deck_.lateral;
+    step(moved, pressed + lateral.travel * lateral.direction, lateral.increments,
+         deck_.no_slip ? "" : "*CHANGE FRICTION, INTERACTION=CONTACT\n" + friction(kFriction));
   }
 
   const Deck& deck_;

@@ -4,10 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "fem/campaign/bonded_patch.hpp"
 #include "fem/campaign/first_touch.hpp"
+#include "fem/mesh/tangent_frame.hpp"
+#include "fem/mesh/to_eigen.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
 
@@ -52,12 +55,6 @@ Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int
                 "other programs have no tetrahedron of four nodes with pressures around its nodes",
                 "export with element = \"tet10-displacement\", which they have");
   }
-  if (settings.indentation.refine_under_tool != 0) {
-    throw Error(
-        ErrorKind::Configuration, body.name,
-        "decks for other programs have the mesh of the body, without refinement under the tool",
-        "export a case without solver.refine_under_tool, on a smaller mesh.element_size");
-  }
   Deck deck;
   deck.region_names = body.region_names;
   for (const std::string& region : body.region_names) {
@@ -88,10 +85,20 @@ void check_pressing(const Body& body, const fem::IndentationSettings& press, std
                 fmt::format("response vertex {} is not a site", vertex),
                 fmt::format("choose a vertex outside the supports, from 0 to {}", count - 1));
   fem::check_tool(press.tool);
-  if (press.friction == fem::ToolFriction::NoSlip || (fem::Tool{press.tool}).has_sharp_edge())
+  if ((fem::Tool{press.tool}).has_sharp_edge())
     throw Error(ErrorKind::Configuration, "tool",
-                "contact without slip and sharp edges are treated differently by other programs",
-                "export a patch (--patch), or a tool without friction and with a rounded edge");
+                "sharp edges are treated differently by other programs",
+                "export a patch (--patch), or a tool with a rounded edge");
+}
+
+LateralMove first_lateral_move(const fem::IndentationSettings& press, const Vec3& inward) {
+  if (press.azimuths.empty())
+    throw Error(ErrorKind::Configuration, "indentation.azimuths", "there is no lateral path",
+                "name a direction, or export the press alone");
+  const auto [first, second] = fem::tangent_frame(fem::to_eigen(inward));
+  const double azimuth = press.azimuths.front();
+  return {fem::to_vec3(std::cos(azimuth) * first + std::sin(azimuth) * second),
+          press.lateral_travel, press.lateral_increments};
 }
 
 }  // namespace
@@ -105,6 +112,11 @@ fem::Facet facet_of(const fem::Tetrahedron10& element, std::int32_t side) {
 
 Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
                      double radius) {
+  if (settings.indentation.refine_under_tool != 0) {
+    throw Error(ErrorKind::Configuration, body.name,
+                "a bonded patch has the mesh of the body, without refinement under a tool",
+                "export the tool (without --patch), or a case without solver.refine_under_tool");
+  }
   fem::BondedPatch patch = fem::bonded_patch(body, vertex, radius);
   Deck deck = body_deck(body, settings, vertex);
   deck.title = fmt::format("{}: site {}, surface nodes within {:.6g} m moved inward by {:.6g} m",
@@ -114,17 +126,23 @@ Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, st
   return deck;
 }
 
-Deck make_tool_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex) {
+Deck make_tool_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
+                    bool lateral) {
   check_pressing(body, settings.indentation, vertex);
   Deck deck = body_deck(body, settings, vertex);
   const fem::ToolGeometry& tool = settings.indentation.tool;
   deck.title = fmt::format("{}: site {}, {} of radius {:.6g} m pressed in by {:.6g} m", body.name,
                            vertex, name_of(tool.shape), tool.radius, deck.depth);
-  const fem::CampaignContext context(body, settings, fem::Engine::Direct);
+  // Refined elements belong to a window, which the direct engine has not.
+  const bool refined = settings.indentation.refine_under_tool != 0;
+  const fem::CampaignContext context(body, settings,
+                                     refined ? fem::Engine::SharedFactor : fem::Engine::Direct);
   const fem::FirstTouch touch = fem::first_touch(context, vertex);
-  deck.mesh = context.model.mesh();
+  deck.mesh = touch.mesh;
   deck.tool = PressingTool{fem::make_tool_mesh(touch.tool, 2 * deck.depth + tool.radius),
                            sides_of(deck.mesh, touch.facets), context.contact_stiffness.contact};
+  deck.no_slip = settings.indentation.friction == fem::ToolFriction::NoSlip;
+  if (lateral) deck.lateral = first_lateral_move(settings.indentation, deck.direction);
   return deck;
 }
 

@@ -25,11 +25,18 @@ inline constexpr std::array<std::array<std::size_t, 3>, 4> kTetSides{
 /// The six nodes of a side, as seen from outside.
 fem::Facet facet_of(const fem::Tetrahedron10& element, std::int32_t side);
 
-/// A rigid tool without friction, at its first touch.
+/// A rigid tool at its first touch.
 struct PressingTool {
   fem::ToolMesh mesh;
   std::vector<ElementSide> skin;  ///< of the body, where it may meet the tool
   double stiffness = 0;           ///< N/m^3, pressure over penetration
+};
+
+/// The tool moved along a tangent after the press, at its depth, without slip.
+struct LateralMove {
+  Vec3 direction{};   ///< unit
+  double travel = 0;  ///< m, at the end
+  int increments = 1;
 };
 
 struct Deck {
@@ -37,6 +44,8 @@ struct Deck {
   fem::QuadraticMesh mesh;          ///< `held`: by the supports alone
   std::vector<std::int32_t> patch;  ///< nodes moved together; none where a tool is pressed
   std::optional<PressingTool> tool;
+  bool no_slip = false;  ///< of the tool while it is pressed
+  std::optional<LateralMove> lateral;
   std::vector<std::string> region_names;
   std::vector<fem::LawConstants> laws;  ///< of each region
   Vec3 direction{};                     ///< of the motion, unit
@@ -52,22 +61,25 @@ Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, st
                      double radius);
 
 /// The tool of the settings pressed in along the inward direction, with the contact stiffness of
-/// the campaign.
-/// @throws Error(Configuration) for linear elements, a vertex that is no site, a no-slip tool or
-/// one with a sharp edge, as fem::run_campaign.
-Deck make_tool_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex);
+/// the campaign. `lateral`: then the first lateral path of the settings, from the end of the press.
+/// @throws Error(Configuration) for linear elements, a vertex that is no site, a tool with a sharp
+/// edge, as fem::run_campaign.
+Deck make_tool_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
+                    bool lateral = false);
 
 /// Input of CalculiX: C3D10 elements, *HYPERELASTIC, face-to-face contact; the forces of the tool
 /// or the patch in each increment go to its .dat file. Its volumetric energy is kappa/2 (J - 1)^2,
 /// which agrees with that of palpate to second order in J - 1 (but for Arruda-Boyce, where it is
-/// the same).
+/// the same). Contact without slip is Coulomb friction with a coefficient of 5, which holds the
+/// points of facets that are pressed; palpate ties nodes.
 /// @throws Error(Configuration) naming the region and the law where CalculiX has none like it.
 std::string calculix_deck(const Deck& deck);
 
 /// Input of FEBio, file format 4.0: tet10 elements of four points, uncoupled laws with the same
 /// volumetric energy as here, sliding-elastic contact; the forces of the tool or the nodes of the
 /// patch go to a text file.
-/// @throws Error(Configuration) naming the region and the law where FEBio has none like it.
+/// @throws Error(Configuration) naming the region and the law where FEBio has none like it; for
+/// contact without slip.
 std::string febio_deck(const Deck& deck);
 
 }  // namespace palpate::app

@@ -334,6 +334,9 @@ class Writer {
 }  // namespace
 
 std::string febio_deck(const Deck& deck) {
+  if (deck.no_slip || deck.lateral)
+    throw Error(ErrorKind::Configuration, "tool", "FEBio decks have contact without friction",
+                "export for CalculiX (--calculix), or a press without friction");
   return Writer(deck).write();
 }
 

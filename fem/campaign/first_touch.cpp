@@ -5,6 +5,7 @@
 
 #include "fem/mesh/tangent_frame.hpp"
 #include "fem/mesh/to_eigen.hpp"
+#include "fem/solve/profile.hpp"
 
 namespace palpate::fem {
 
@@ -17,6 +18,18 @@ Tool tool_over(const CampaignContext& context, const PressPoint& point) {
   const auto [first, second] = tangent_frame(inward);
   return {settings.tool, context.rest_position(point.position), inward,
           std::cos(settings.tool_azimuth) * first + std::sin(settings.tool_azimuth) * second};
+}
+
+/// A sphere of radius R at depth d touches a circle of radius sqrt(R d) about.
+SiteRefinement refinement_of(const IndentationSettings& settings) {
+  SiteRefinement refinement;
+  refinement.levels = settings.refine_under_tool;
+  if (settings.refine_under_tool != IndentationSettings::kByContact) return refinement;
+  const double R = settings.tool.radius;
+  refinement.min_contact_radius = std::sqrt(R * settings.depth / settings.increments);
+  refinement.max_contact_radius = std::sqrt(R * settings.depth);
+  refinement.size_over_distance = settings.size_over_contact;
+  return refinement;
 }
 
 }  // namespace
@@ -41,9 +54,18 @@ Tool tool_at_first_touch(const CampaignContext& context, const ToolContact& cont
 
 FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex) {
   const PressPoint point = context.press_point(vertex);
-  const ToolContact contact =
-      contact_at(context, context.model.mesh(), context.reference_position(point.position));
-  return {tool_at_first_touch(context, contact, context.rest, point), contact.facets()};
+  const Eigen::Vector3d X = context.reference_position(point.position);
+  const bool refined = context.indentation.refine_under_tool != 0;
+  const SiteBody body =
+      site_body_at(context, X, refined ? SiteMesh::RefinedWindow : SiteMesh::WholeBody);
+  const ToolContact contact = contact_at(context, body.mesh(), X);
+  return {body.mesh(), tool_at_first_touch(context, contact, body.rest(), point), contact.facets()};
+}
+
+SiteBody site_body_at(const CampaignContext& context, const Eigen::Vector3d& X, SiteMesh mesh) {
+  const PartTimer timer(Part::SiteMesh);
+  const IndentationSettings& settings = context.indentation;
+  return {context.model, context.rest, X, settings.tool, mesh, refinement_of(settings)};
 }
 
 }  // namespace palpate::fem

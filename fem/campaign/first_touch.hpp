@@ -6,16 +6,22 @@
 #include <vector>
 
 #include "fem/campaign/campaign_context.hpp"
+#include "fem/campaign/site_body.hpp"
 #include "fem/contact/contact.hpp"
 
 namespace palpate::fem {
 
-/// The tool as it first touches the body, and the facets it may meet.
+/// The tool as it first touches the body, and the facets it may meet, on the mesh that the site
+/// presses: with the elements that the settings refine, whatever the engine.
 struct FirstTouch {
+  QuadraticMesh mesh;
   Tool tool;
   std::vector<Facet> facets;
 };
 FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex);
+
+/// The body around the point X; a refined window has the elements that the settings ask for.
+SiteBody site_body_at(const CampaignContext& context, const Eigen::Vector3d& X, SiteMesh mesh);
 
 /// The contact with the facets of `mesh` that the tool may reach from the point X on its paths.
 ToolContact contact_at(const CampaignContext& context, const QuadraticMesh& mesh,

@@ -10,12 +10,10 @@
 #include "fem/campaign/first_touch.hpp"
 #include "fem/campaign/path_driver.hpp"
 #include "fem/campaign/path_work.hpp"
-#include "fem/campaign/site_body.hpp"
 #include "fem/campaign/site_equilibrium.hpp"
 #include "fem/mesh/millimetres.hpp"
 #include "fem/mesh/tangent_frame.hpp"
 #include "fem/mesh/to_eigen.hpp"
-#include "fem/solve/profile.hpp"
 
 namespace palpate::fem {
 
@@ -47,25 +45,9 @@ std::vector<double> normal_increments(const IndentationSettings& settings,
   return depths;
 }
 
-/// A sphere of radius R at depth d touches a circle of radius sqrt(R d) about.
-SiteRefinement refinement_of(const IndentationSettings& settings) {
-  SiteRefinement refinement;
-  refinement.levels = settings.refine_under_tool;
-  if (settings.refine_under_tool != IndentationSettings::kByContact) return refinement;
-  const double R = settings.tool.radius;
-  refinement.min_contact_radius = std::sqrt(R * settings.depth / settings.increments);
-  refinement.max_contact_radius = std::sqrt(R * settings.depth);
-  refinement.size_over_distance = settings.size_over_contact;
-  return refinement;
-}
-
-SiteBody body_of_site(const CampaignContext& context, const Eigen::Vector3d& X) {
-  const PartTimer timer(Part::SiteMesh);
-  const IndentationSettings& settings = context.indentation;
-  const SiteMesh mesh = context.engine == Engine::Direct  ? SiteMesh::WholeBody
-                        : settings.refine_under_tool != 0 ? SiteMesh::RefinedWindow
-                                                          : SiteMesh::Window;
-  return {context.model, context.rest, X, settings.tool, mesh, refinement_of(settings)};
+SiteMesh mesh_of_site(const CampaignContext& context) {
+  if (context.engine == Engine::Direct) return SiteMesh::WholeBody;
+  return context.indentation.refine_under_tool != 0 ? SiteMesh::RefinedWindow : SiteMesh::Window;
 }
 
 /// A path of the site ended early; every path that did adds its reason.
@@ -80,7 +62,7 @@ struct SiteSolver::Site {
   Site(const CampaignContext& context, const PressPoint& point, SolveBatch::Member* batch)
       : X(context.reference_position(point.position)),
         inward(to_eigen(point.inward)),
-        body(body_of_site(context, X)),
+        body(site_body_at(context, X, mesh_of_site(context))),
         contact(contact_at(context, body.mesh(), X)),
         touching(tool_at_first_touch(context, contact, body.rest(), point)),
         equilibrium(context, body, batch),
@@ -298,8 +280,8 @@ double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
   const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
   const double starts = static_cast<double>(context.indentation.lateral_depths.size());
   const double numbers = 3 * nodes * (kDisplacements + starts) + unknowns * kVectors;
-  const SiteBody site =
-      body_of_site(context, context.reference_position(context.press_point(vertex).position));
+  const Eigen::Vector3d X = context.reference_position(context.press_point(vertex).position);
+  const SiteBody site = site_body_at(context, X, mesh_of_site(context));
   return sizeof(double) * (numbers + kWindowFill * site.window().pattern().nonzeros()) +
          unknowns * kPairs + site.bytes();
 }

@@ -248,6 +248,18 @@ class Pipeline(unittest.TestCase):
         # What is moved as a whole resists more than what a sphere touches.
         self.assertGreater(forces["patch"], forces["tool"])
 
+    def test_a_site_is_exported_with_its_lateral_path(self):
+        site = next(iter(rows_of_export(self)))["vertex"]
+        decks = ("export", "site", self.case, "--out", self.out, "--vertex", site, "--lateral")
+        self.run_ok(*decks, "--calculix")
+        deck = (self.out / f"site-{site}.inp").read_text(encoding="utf-8")
+        self.assertEqual(deck.count("*STEP"), 2)
+        press, lateral = ((self.out / f"site-{site}-{what}.csv").read_text(encoding="utf-8").splitlines()
+                          for what in ("tool", "lateral"))
+        self.assertEqual(lateral[0].split(",")[0], "travel_m")
+        self.assertEqual(lateral[1].split(",")[1:4], press[-1].split(",")[1:4], "it starts where the press ends")
+        self.assertEqual(palpate(*decks, "--febio").returncode, 2)
+
     def test_a_site_of_a_body_that_was_meshed_for_another_case_is_not_exported(self):
         site = next(iter(rows_of_export(self)))["vertex"]
         other = self.root / "other_mesh.toml"

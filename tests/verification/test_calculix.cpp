@@ -257,6 +257,23 @@ TEST(CalculixTool, AgreesOnALyingCylinder) {
   compare_tool("cylinder of 3 mm, 8 mm long", {fem::ToolShape::Cylinder, 0.003, 0, 0.008}, 0.01);
 }
 
+/// The elements that `solver.refine_under_tool` makes, which CalculiX gets as they are. It has no
+/// element with a pressure of its own: the default element of a campaign is compared with its
+/// displacement element, which is stiffer on the same mesh.
+TEST(CalculixTool, AgreesOnRefinedElementsAndWithTheDefaultOne) {
+  const Body body = graded_block();
+  auto settings = pressing({fem::ToolShape::Sphere, 0.005, 0, 0});
+  settings.indentation.refine_under_tool = 1;
+  const double force = their_force(make_tool_deck(body, settings, test::site_nearest(body)));
+  test::verify({kToolProblem, "sphere of 5 mm, elements under it divided once", "N",
+                own_force(body, settings), force, test::Reference::OtherSolver, kDeck, 0.01});
+  settings.dilatation = fem::Dilatation::Mean;
+  test::verify({kToolProblem,
+                "sphere of 5 mm, elements under it divided once, tet10-pressure here and "
+                "tet10-displacement in CalculiX",
+                "N", own_force(body, settings), force, test::Reference::OtherSolver, kDeck, 0.03});
+}
+
 /// The penetration lowers the force in proportion to one over the contact stiffness: a tenth of the
 /// stiffness changes it by nine times the error that is left at the full stiffness.
 TEST(CalculixTool, AgreesOnASphereWhateverTheContactStiffness) {
@@ -270,6 +287,71 @@ TEST(CalculixTool, AgreesOnASphereWhateverTheContactStiffness) {
   test::verify({kToolProblem, "sphere of 5 mm, CalculiX with a tenth of the contact stiffness", "N",
                 their_force(deck), force, test::Reference::SameSolver,
                 "CalculiX with the full contact stiffness: CalculiX against itself", 0.01});
+}
+
+constexpr auto kDragProblem =
+    "CalculiX with the tool moved sideways: a sphere of 5 mm, 2 mm deep, then 1 mm along a tangent "
+    "without slip, nu = 0.45, elements of 3 mm";
+constexpr auto kDragDeck = "CalculiX, deck of palpate export, friction with a coefficient of 5";
+
+/// The force along the motion grows with the travel, the normal one from the end of the press.
+struct Dragged {
+  double pressed, normal, lateral;  ///< N, of the tool on the body
+};
+
+Dragged own_drag(const Body& body, fem::CampaignSettings settings) {
+  settings.indentation.lateral_depths = {settings.indentation.depth};
+  const fem::CampaignContext context(body, settings, fem::Engine::SharedFactor);
+  const SiteCurves curves = fem::solve_site(context, test::site_nearest(body), nullptr);
+  EXPECT_EQ(curves.status, SiteStatus::Complete) << curves.reason;
+  const CurvePath &press = curves.paths.front(), &lateral = curves.paths.back();
+  EXPECT_EQ(lateral.kind, PathKind::Lateral);
+  const Vec3 end = lateral.samples.back().force;
+  return {-press.samples.back().force[2], -end[2], dot(end, lateral.direction)};
+}
+
+/// Steps end at the times 1 and 2, whatever increments CalculiX takes.
+Dragged their_drag(const Deck& deck) {
+  const std::string printed = printed_by_calculix(calculix_deck(deck));
+  const auto pressed = numbers_below<3>("set TOOL and time  0.1000000E+01", printed),
+             moved = numbers_below<3>("set TOOL and time  0.2000000E+01", printed);
+  if (pressed.size() != 1 || moved.size() != 1) {
+    ADD_FAILURE() << "CalculiX did not end its steps:\n" << printed;
+    return {};
+  }
+  const Vec3 end = moved.front();
+  return {-pressed.front()[2], -end[2], dot(end, deck.lateral->direction)};
+}
+
+/// palpate ties nodes, by how much of the area around them is in contact, and they hold tension;
+/// CalculiX holds points of facets, new ones too, while they are pressed. Its friction is elastic,
+/// which lowers the lateral force: from a frictionless press three times the tangential stiffness,
+/// with which it hardly converges, raises it by 7 %.
+void compare_drag(fem::ToolFriction friction, const std::string& what, const Dragged& bound) {
+  const Body body = graded_block();
+  auto settings = pressing({fem::ToolShape::Sphere, 0.005, 0, 0});
+  settings.indentation.friction = friction;
+  settings.indentation.lateral_travel = 0.001;
+  settings.indentation.lateral_increments = 2;
+  const Dragged ours = own_drag(body, settings);
+  const Dragged theirs = their_drag(make_tool_deck(body, settings, test::site_nearest(body), true));
+  const auto row = [&](const char* force, double a, double b, double allowed) {
+    test::verify({kDragProblem, what + ", " + force, "N", a, b, test::Reference::OtherSolver,
+                  kDragDeck, allowed});
+  };
+  row("normal force of the press", ours.pressed, theirs.pressed, bound.pressed);
+  row("normal force at the end", ours.normal, theirs.normal, bound.normal);
+  row("lateral force at the end", ours.lateral, theirs.lateral, bound.lateral);
+}
+
+TEST(CalculixDrag, AgreesFromAFrictionlessPress) {
+  compare_drag(fem::ToolFriction::Frictionless, "pressed without friction", {0.01, 0.02, 0.15});
+}
+
+/// CalculiX holds points as they are pressed, palpate bonds the surface at the end of an increment.
+/// Five increments instead of two change the force of CalculiX by 0.1 %.
+TEST(CalculixDrag, AgreesFromANoSlipPress) {
+  compare_drag(fem::ToolFriction::NoSlip, "pressed without slip", {0.06, 0.05, 0.09});
 }
 
 constexpr auto kCurvedProblem =

@@ -29,6 +29,28 @@ TEST(CalculixDeck, OfAToolMovesItsNodes) {
   EXPECT_THAT(text, HasSubstr(std::to_string(elements_of(deck)) + ","));
 }
 
+/// The press first, then the motion along the tangent at its depth; the surface sticks in the steps
+/// in which it does here.
+TEST(CalculixDeck, MovesTheToolSidewaysWithoutSlip) {
+  Deck deck = sphere_deck();
+  EXPECT_EQ(count(calculix_deck(deck), "*FRICTION"), 0u);
+  deck.lateral = LateralMove{{0, 1, 0}, 0.001, 4};
+  std::string text = calculix_deck(deck);
+  EXPECT_EQ(count(text, "*STEP"), 2u);
+  const std::string aside = text.substr(text.find("*END STEP"));
+  EXPECT_EQ(count(aside, "*CHANGE FRICTION, INTERACTION=CONTACT\n*FRICTION"), 1u);
+  EXPECT_THAT(aside, HasSubstr("*STATIC\n0.25,1.,"));
+  EXPECT_THAT(aside, HasSubstr("TOOL,2,2,1.000000000000e-03"));
+  EXPECT_THAT(aside, HasSubstr("TOOL,3,3,-2.000000000000e-03"));
+  EXPECT_THROW(febio_deck(deck), Error);
+  deck.no_slip = true;
+  text = calculix_deck(deck);
+  EXPECT_LT(text.find("*FRICTION"), text.find("*CONTACT PAIR"));
+  EXPECT_EQ(count(text, "*CHANGE FRICTION"), 0u);
+  deck.lateral.reset();
+  EXPECT_THROW(febio_deck(deck), Error);
+}
+
 TEST(CalculixDeck, NamesTheLawThatTheProgramLacks) {
   const fem::LawConstants fung("demiray-fung", {{"mu", 1e3}, {"b", 1}, {"poisson", 0.45}});
   EXPECT_THAT(refusal_of(calculix_deck, fung), HasSubstr("CalculiX has no law like demiray-fung"));

@@ -156,14 +156,39 @@ TEST(Decks, PressTheToolAgainstTheSkinThatItMayMeet) {
   }
 }
 
+/// The elements under the tool are divided, the body stays the same.
+TEST(Decks, HaveTheRefinedElementsOfTheSite) {
+  const Body body = block();
+  const std::int32_t site = test::site_nearest(body, 0.01, 0.01);
+  fem::CampaignSettings settings = pressed_by(kTools[0]);
+  const Deck coarse = make_tool_deck(body, settings, site);
+  settings.indentation.refine_under_tool = 2;
+  const Deck fine = make_tool_deck(body, settings, site);
+  const auto top = [](const Deck& deck, bool smallest) {
+    double sum = 0, least = 1;
+    for (const ElementSide& s : deck.tool->skin) {
+      const fem::Facet facet = facet_of(deck.mesh.tetrahedra[to_index(s.element)], s.side);
+      const Eigen::Vector3d area = corner_normal(deck.mesh.X, facet);
+      if (area[2] < 0.9 * area.norm()) continue;
+      sum += area[2];
+      least = std::min(least, area[2]);
+    }
+    return smallest ? least : sum;
+  };
+  EXPECT_NEAR(top(fine, false), top(coarse, false), 1e-12);
+  EXPECT_NEAR(top(fine, true), top(coarse, true) / 16, 1e-12);
+  EXPECT_EQ(fine.mesh.region.size(), fine.mesh.tetrahedra.size());
+  EXPECT_THROW(make_patch_deck(body, settings, site, 0.0052), Error);
+}
+
 TEST(Decks, RefuseToolsThatOtherProgramsHoldInTheirOwnWay) {
   const Body body = block();
   fem::CampaignSettings settings = pressed_by({fem::ToolShape::Disc, 0.004, 0, 0});
   EXPECT_THROW(make_tool_deck(body, settings, test::site_nearest(body, 0.01, 0.01)), Error);
-  settings = pressed_by(kTools[0]);
-  settings.indentation.friction = fem::ToolFriction::NoSlip;
-  EXPECT_THROW(make_tool_deck(body, settings, test::site_nearest(body, 0.01, 0.01)), Error);
   EXPECT_THROW(make_tool_deck(body, pressed_by(kTools[0]), -1), Error);
+  settings = pressed_by(kTools[0]);
+  settings.indentation.azimuths.clear();
+  EXPECT_THROW(make_tool_deck(body, settings, test::site_nearest(body, 0.01, 0.01), true), Error);
 }
 
 }  // namespace

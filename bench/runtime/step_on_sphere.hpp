@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+namespace palpate::bench {
+
+/// The force step of the C interface along trajectory(), on the octasphere of range(0) divisions
+/// with decoupled (range(1) = 0) or coupled responses.
+void step_on_sphere(benchmark::State& state);
+
+}  // namespace palpate::bench
