@@ -50,8 +50,10 @@ class Deformation(unittest.TestCase):
         self.assertEqual(len(rows), 4)
         for row in rows:
             self.assertGreater(row["states"], 3)
-            # Far below the displacement itself, on a coarse mesh of 12.5 mm patches.
-            self.assertLess(row["p95"], 0.1, row)
+            # The elements are larger than the contact: the direct skin under the tool depends on where it lies
+            # in the mesh by a tenth of the depth, which no blend of sites can know.
+            self.assertLess(row["median"], 0.05, row)
+            self.assertLess(row["p95"], 0.05 if "whole" in row["what"] else 0.2, row)
 
     def test_3_without_its_fields_it_is_refused_by_name(self):
         copy = self.root / "copy"

@@ -93,6 +93,7 @@ class SettingsText {
     add(c.sampling.initial_spacing, c.sampling.tolerance, c.sampling.hold_out_points,
         c.sampling.max_sites, static_cast<int>(c.sampling.method));
     add(c.certify.friction, c.certify.devices.size());
+    add(c.deformation.depths, c.deformation.modes);
     const SimulateSection& s = c.simulate;
     add(static_cast<int>(s.path));
     add(s.from);
