@@ -212,9 +212,11 @@ export class TouchView extends BodyView {
   }
 
   listen() {
-    let turning = null, pressing = false;
+    let turning = null, pressing = false, finger = null;
     const { canvas } = this;
     canvas.addEventListener('pointerdown', (e) => {
+      if (finger !== null) return;
+      finger = e.pointerId;
       canvas.setPointerCapture(e.pointerId);
       const spot = this.hand ? this.spotUnder(e) : null;
       pressing = spot !== null;
@@ -222,16 +224,18 @@ export class TouchView extends BodyView {
       else turning = [e.clientX, e.clientY];
     });
     canvas.addEventListener('pointermove', (e) => {
+      if (e.pointerId !== finger) return;
       if (pressing) this.drag(this.spotAt(...this.pixelOf(e)));
       if (!turning) return;
       this.camera.turn(0.008 * (e.clientX - turning[0]), 0.008 * (e.clientY - turning[1]));
       turning = [e.clientX, e.clientY];
       this.draw(true);
     });
-    const end = () => {
+    const end = (e) => {
+      if (e.pointerId !== finger) return;
       if (pressing) this.hand.lift();
       if (turning) this.draw();
-      [turning, pressing] = [null, false];
+      [turning, pressing, finger] = [null, false, null];
     };
     canvas.addEventListener('pointerup', end);
     canvas.addEventListener('pointercancel', end);

@@ -40,10 +40,10 @@ const get = (name) => document.getElementById(name);
 const canvas = () => document.querySelector('#touch canvas');
 const press = () => get('touch-press').click();
 const read = () => Object.fromEntries(['state', 'depth', 'normal', 'lateral', 'used', 'margin', 'set'].map((k) => [k, get(`touch-${k}`).textContent]));
-const pointer = (type, right, down) => {
+const pointer = (type, right, down, pointerId = 1) => {
   const box = canvas().getBoundingClientRect();
   canvas().setPointerCapture = () => {};
-  canvas().dispatchEvent(new PointerEvent(type, {clientX: box.left + right * box.width, clientY: box.top + down * box.height, pointerId: 1, button: 0, bubbles: true}));
+  canvas().dispatchEvent(new PointerEvent(type, {clientX: box.left + right * box.width, clientY: box.top + down * box.height, pointerId, button: 0, bubbles: true}));
 };
 const key = (name, more) => canvas().dispatchEvent(new KeyboardEvent('keydown', {key: name, ...more}));
 const steps = async () => { get('touch-csv').click(); await wait(50); return csv; };
@@ -165,6 +165,14 @@ class Touch(Acted):
             self.assertGreaterEqual(r["absorbed_J"] - r["energy_J"] - r["tank_J"], -1e-12)
         self.assertTrue(said["at"]["margin"].endswith("passive"))
         self.check_against_the_c_interface(rows)
+
+    def test_a_second_finger_does_not_move_the_tool(self):
+        said = self.act("""pointer('pointerdown', 0.5, 0.5); await rest(); pointer('pointerdown', 0.3, 0.5, 2);
+            pointer('pointermove', 0.3, 0.5, 2); await rest(); said.at = read(); pointer('pointerup', 0.3, 0.5, 2); await rest();
+            said.after = read(); pointer('pointerup', 0.5, 0.5); await rest(); said.lifted = read();""")
+        self.assertEqual(said["at"]["state"], "in contact, sticking")
+        self.assertEqual(said["at"], said["after"])
+        self.assertEqual(said["lifted"]["state"], "no contact")
 
     def test_the_wheel_changes_the_depth_of_a_press_only(self):
         said = self.act("""const wheel = () => canvas().dispatchEvent(new WheelEvent('wheel', {deltaY: -100, cancelable: true}));
