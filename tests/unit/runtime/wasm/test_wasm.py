@@ -3,7 +3,7 @@
 """test_wasm.py <write_steps> <palpate.wasm> <runtime.js> <chromium>
 
 The runtime compiled to WebAssembly repeats, in a browser, what the C interface of this machine computes: every
-number of every step is the same to the last bit. A library that it cannot read ends in its message.
+number of every step is the same to the last bit; where the tissue relaxes, to 1e-12. A library that it cannot read ends in its message.
 """
 import base64
 import html
@@ -20,6 +20,7 @@ WRITER, WASM, RUNTIME, BROWSER = sys.argv[1:5]
 if BROWSER.endswith("-NOTFOUND"):
     sys.exit("Chromium not found: install the Debian package chromium")
 COLUMNS = 26  # numbers of a step
+DEPTH, OFFSETS = 14, (16, 23, 24, 25)
 LARGEST = 300_000  # bytes of palpate.wasm
 
 PAGE = """<!doctype html><html><body><p id="said"></p><script type="module">
@@ -98,7 +99,7 @@ class Wasm(unittest.TestCase):
 
     def test_every_step_is_the_same_to_the_last_bit(self):
         self.assertNotIn("error", self.said)
-        self.assertEqual(len(self.said["steps"]), 3)
+        self.assertEqual(len(self.said["steps"]), 4)
         for played, text in zip(self.played, self.said["steps"]):
             ours, theirs = base64.b64decode(played["expected"]), base64.b64decode(text)
             numbers = struct.unpack(f"<{len(ours) // 8}d", ours)
@@ -107,7 +108,15 @@ class Wasm(unittest.TestCase):
             sliding = [row for row in touched if int(numbers[COLUMNS * row]) & 8]
             self.assertGreater(len(touched), 1000, played["name"])  # else there is nothing to compare
             self.assertGreater(len(sliding), 100, played["name"])
-            self.assertEqual(ours, theirs, played["name"])
+            if not played["name"].startswith("relaxing"):
+                self.assertEqual(ours, theirs, played["name"])
+                continue
+            # The decay of a memory in a step, exp(-dt/tau), is of the C library, whose last bit may differ.
+            for column in range(COLUMNS):
+                one, other = numbers[column::COLUMNS], struct.unpack(f"<{len(theirs) // 8}d", theirs)[column::COLUMNS]
+                # Offsets are small differences of lengths: they are measured by the depth of the press.
+                scale = max(map(abs, numbers[DEPTH::COLUMNS] if column in OFFSETS else one)) or 1
+                self.assertLess(max(abs(a - b) for a, b in zip(one, other)) / scale, 1e-12, (played["name"], column))
 
     def test_an_unreadable_library_ends_in_its_message(self):
         self.assertEqual(self.said["garbage"],

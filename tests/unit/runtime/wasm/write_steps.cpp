@@ -112,6 +112,9 @@ int main() {
   std::cout << played("plate", test::plate_of_200(), -1, kSteps) << '\n'
             << played("coupled plate", test::plate_of_200(ResponseKind::Coupled), 0.2, kSteps)
             << '\n'
-            << played("lump", lump, 0.4, kSteps) << '\n';
+            << played("lump", lump, 0.4, kSteps) << '\n'
+            << played("relaxing plate", test::relaxing(test::plate_of_200(), {0.01, 0.1, 1}, false),
+                      0.2, kSteps)
+            << '\n';
   return 0;
 }

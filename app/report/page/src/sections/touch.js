@@ -87,6 +87,7 @@ class Touch {
     this.hand = new Hand(runtime.state(library, { friction: this.friction }), data.key.depth || runtime.describe(library).depth);
     this.readings = new Readings(this.friction);
     this.data = data;
+    this.relaxes = Boolean(data.relaxation);  // the force of a tool at rest changes
     this.makeView();
     this.frame = (now) => this.tick(now);
     this.running = false;
@@ -151,7 +152,7 @@ class Touch {
     this.hand.advance(this.last === null ? TICK : (now - this.last) / 1000);
     this.last = now;
     this.show();
-    this.setRunning(!this.hand.resting());
+    this.setRunning(!this.hand.resting() || (this.relaxes && this.hand.touching()));
     if (this.running) requestAnimationFrame(this.frame);
     else this.view.draw();
   }
