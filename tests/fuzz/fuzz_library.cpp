@@ -182,7 +182,7 @@ void feel(const Library& library, const palpate_library& body) {
   const double reach = 0.05 + norm(span);
   double largest = 0;
   const auto step = [&](const Vec3& x) {
-    state.step(x);
+    state.step(x, 1e-3);
     const auto seen = state.observe();
     if (!std::isfinite(norm(state.command()))) fail("a force is not finite");
     largest = std::max(largest, std::abs(seen.energy));

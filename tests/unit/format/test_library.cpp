@@ -150,7 +150,7 @@ std::vector<Case> status_and_certificate_cases() {
   };
 }
 
-INSTANTIATE_TEST_SUITE_P(Relaxation, Rejection, ::testing::ValuesIn(relaxation_cases()), case_name);
+INSTANTIATE_TEST_SUITE_P(Relaxation, Rejection, ::testing::ValuesIn(relaxation_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(SurfacesAndResponses, Rejection,
                          testing::ValuesIn(surface_and_response_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(StatusAndCertificates, Rejection,

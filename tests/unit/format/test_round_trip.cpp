@@ -15,6 +15,7 @@ namespace palpate {
 namespace {
 
 using samples::dump;
+using samples::expect_refusal;
 using samples::TemporaryFolder;
 
 constexpr unsigned kSeeds = 5;

@@ -51,8 +51,8 @@ TEST(Script, KeepsWhatIsGiven) {
 
 TEST(Script, HoldsWhereTheTissueRelaxes) {
   EXPECT_EQ(settled({}, plate_of(1)).hold, 0);
-  EXPECT_DOUBLE_EQ(settled({}, relaxing(plate_of(1), {0.1, 0.4}, true)).hold, 0.8);
-  EXPECT_DOUBLE_EQ(settled({}, relaxing(plate_of(1), {0.1, 40}, true)).hold, 5);
+  EXPECT_DOUBLE_EQ(settled({}, test::relaxing(plate_of(1), {0.1, 0.4}, true)).hold, 0.8);
+  EXPECT_DOUBLE_EQ(settled({}, test::relaxing(plate_of(1), {0.1, 40}, true)).hold, 5);
 }
 
 TEST(Script, RefusesALibraryWithoutResponses) {
