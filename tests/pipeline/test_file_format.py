@@ -17,7 +17,8 @@ import numpy as np
 
 PROGRAM, SCHEMA = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
 # Sample files and the kind of artifact that each is.
-FILES = {"body": "body", "sprung": "body", "curved": "body", "curves": "curves", "library": "library", "coupled": "library", "recording": "recording"}
+FILES = {"body": "body", "sprung": "body", "curved": "body", "curves": "curves", "library": "library", "coupled": "library",
+         "relaxing": "library", "relaxing_curves": "curves", "recording": "recording"}
 
 
 def table_rows(page, columns):
@@ -34,15 +35,18 @@ def first_schema(meaning):
     return int(stated[1]) if stated else 1
 
 
-def documented_datasets(kind, schema):
-    return {row[0]: row[1:4] for row in table_rows(f"{kind}.md", 5)
-            if schema >= first_schema(row[4])}
+def is_in(file, name, meaning):
+    """Curves have the group of relaxation whatever their schema."""
+    return file.attrs["schema"] >= first_schema(meaning) and (not name.startswith("/relaxation") or "relaxation" in file)
 
 
-def documented_attributes(kind, schema):
+def documented_datasets(kind, file):
+    return {row[0]: row[1:4] for row in table_rows(f"{kind}.md", 5) if is_in(file, row[0], row[4])}
+
+
+def documented_attributes(kind, file):
     pages = ("common.md", f"{kind}.md")
-    return {row[0]: row[1] for page in pages for row in table_rows(page, 3)
-            if schema >= first_schema(row[2])}
+    return {row[0]: row[1] for page in pages for row in table_rows(page, 3) if is_in(file, row[0], row[2])}
 
 
 def datasets_of(file):
@@ -125,12 +129,12 @@ class FileFormat(unittest.TestCase):
 
     @for_each_kind
     def test_datasets_are_those_of_the_page(self, kind, file):
-        self.assertEqual(set(datasets_of(file)), set(documented_datasets(kind, file.attrs["schema"])))
+        self.assertEqual(set(datasets_of(file)), set(documented_datasets(kind, file)))
 
     @for_each_kind
     def test_types_shapes_and_units_are_those_of_the_page(self, kind, file):
         sizes = {}
-        for name, (dtype, shape, units) in documented_datasets(kind, file.attrs["schema"]).items():
+        for name, (dtype, shape, units) in documented_datasets(kind, file).items():
             dataset = file[name]
             self.assertEqual(type_name(dataset), dtype, name)
             self.assertEqual(dataset.attrs["units"], units, name)
@@ -142,7 +146,7 @@ class FileFormat(unittest.TestCase):
 
     @for_each_kind
     def test_attributes_are_those_of_the_page(self, kind, file):
-        documented = documented_attributes(kind, file.attrs["schema"])
+        documented = documented_attributes(kind, file)
         found = {}
         for group, item in groups_of(file).items():
             pattern = re.sub(r"^/provenance/\d\d_\w+$", "/provenance/*", group)
@@ -241,7 +245,7 @@ class FileFormat(unittest.TestCase):
                 np.testing.assert_equal(np.ravel(sample[name][k]), known.numbers(), name)
 
     def test_library_values(self):
-        for name in ("library", "coupled"):
+        for name in ("library", "coupled", "relaxing"):
             with self.subTest(name):
                 self.check_library_values(name)
 
@@ -249,7 +253,8 @@ class FileFormat(unittest.TestCase):
         known = Tokens(self.folder / f"{name}.txt")
         with h5py.File(self.folder / f"{name}.h5", "r") as file:
             coupled = known.number() == 1
-            self.assertEqual(file.attrs["schema"], 4 if coupled else 3)
+            relaxes = "relaxation" in file
+            self.assertEqual(file.attrs["schema"], 5 if relaxes else 4 if coupled else 3)
             self.assertEqual(file.attrs["name"], known.text())
             self.assertEqual(file.attrs["tool_shape"], known.text())
             self.assertEqual(file.attrs["tool_radius"], known.number())
@@ -273,6 +278,14 @@ class FileFormat(unittest.TestCase):
                 if coupled:
                     self.assertEqual(response["coupling_base"][i], base)
                 check_curve("coupling", i, coupled)
+                if relaxes:
+                    times = len(file["relaxation/time"])
+                    row = slice(i * times, (i + 1) * times)
+                    stored = response["status"][i] != 2
+                    self.assertEqual(response["relaxation_fraction"][row].tolist(),
+                                     [known.number() for _ in range(times)] if stored else [0] * times)
+            if relaxes:
+                self.assertEqual(file["relaxation/time"][()].tolist(), [known.number() for _ in range(2)])
             certificate = file["certificate"]
             for name in ("friction", "depth", "stick", "slip", "min_lipschitz_bound", "lipschitz_bound", "worst_triangle"):
                 self.assertEqual(certificate.attrs[name], known.number())
@@ -280,6 +293,7 @@ class FileFormat(unittest.TestCase):
             self.assertEqual(certificate.attrs["basis"], known.text())
             for name in ("holes", "interpolated"):
                 self.assertEqual(certificate.attrs[name], known.number())
+            self.assertEqual(certificate.attrs.get("relaxation_rate", 0), known.number())
             triangle = {name: data[()] for name, data in certificate["triangle"].items()}
             for i in range(len(triangle["stick"])):
                 for name in ("stick", "slip", "kappa", "cos_theta", "sliding_passive"):

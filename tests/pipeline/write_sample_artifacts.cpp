@@ -22,6 +22,8 @@ int main(int argc, char** argv) {
     palpate::write_curves(folder / "curves.h5", samples::curves(1));
     palpate::write_library(folder / "library.h5", samples::library(1));
     palpate::write_library(folder / "coupled.h5", samples::coupled_library(1));
+    palpate::write_library(folder / "relaxing.h5", samples::relaxing_library(1));
+    palpate::write_curves(folder / "relaxing_curves.h5", samples::relaxing_curves(1));
     palpate::write_recording(folder / "recording.h5", samples::recording(1));
     palpate::write_file_crash_safely(folder / "body.txt", samples::dump(samples::body(1)));
     palpate::write_file_crash_safely(folder / "sprung.txt", samples::dump(samples::sprung_body(1)));
@@ -30,6 +32,8 @@ int main(int argc, char** argv) {
     palpate::write_file_crash_safely(folder / "library.txt", samples::dump(samples::library(1)));
     palpate::write_file_crash_safely(folder / "coupled.txt",
                                      samples::dump(samples::coupled_library(1)));
+    palpate::write_file_crash_safely(folder / "relaxing.txt",
+                                     samples::dump(samples::relaxing_library(1)));
     palpate::write_file_crash_safely(folder / "recording.txt",
                                      samples::dump(samples::recording(1)));
   } catch (const std::exception& error) {
