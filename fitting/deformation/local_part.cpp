@@ -79,6 +79,8 @@ double LocalPart::value(const Eigen::VectorXd& profile, const Near& near) const 
          near.knot.above_weight * profile[below + 1];
 }
 
+// The fields are views that are written to.
+// NOLINTBEGIN(performance-unnecessary-value-param)
 std::vector<float> LocalPart::take_press(Eigen::Ref<Eigen::VectorXf> field, double depth) const {
   std::vector<double> along, outward;
   for (const Near& near : near_) {
@@ -128,5 +130,6 @@ std::vector<float> LocalPart::take_lateral(Eigen::Ref<Eigen::VectorXf> first,
   append(profiles, c);
   return profiles;
 }
+// NOLINTEND(performance-unnecessary-value-param)
 
 }  // namespace palpate::fitting

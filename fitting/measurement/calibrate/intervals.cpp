@@ -81,7 +81,7 @@ void take(const CorrelatedNoise& noise, Calibration& result) {
 
 /// Rows whose products are the covariances, of noise of unit scatter.
 MatrixXd covariance_root(const InverseNormal& unit, const CorrelatedNoise& noise, bool estimated) {
-  const MatrixXd whole = unit.root_of(noise.meat);
+  MatrixXd whole = unit.root_of(noise.meat);
   // Only the part of a stated scatter that the residuals show is known to be correlated.
   const double part = estimated ? 1 : std::min(1.0, noise.scatter * noise.scatter);
   if (part == 1 || !noise.significant) return whole;

@@ -311,7 +311,7 @@ std::vector<std::vector<double>> exchanged_terms(const IncompressibleLaw& law,
   std::vector<double> alphas = scanned_exponents(range_of(samples));
   const int scanned = static_cast<int>(alphas.size());
   const auto terms = static_cast<int>(law.constants().size() / 2);
-  for (int i = 0; i < terms; ++i) alphas.push_back(constants[static_cast<std::size_t>(2 * i + 1)]);
+  for (int i = 0; i < terms; ++i) alphas.push_back(constants[2 * static_cast<std::size_t>(i) + 1]);
   const Gram gram = gram_of(alphas, problem);
   std::vector<std::vector<double>> starts;
   for (int i = 0; i < terms; ++i) {

@@ -12,6 +12,7 @@
 #include "runtime/sliding.hpp"
 #include "runtime/surface.hpp"
 #include "tests/support/surfaces.hpp"
+#include "tests/unit/fitting/certificate/plain_model.hpp"
 
 namespace palpate::fitting {
 namespace {
