@@ -17,7 +17,8 @@ constexpr double kApproach =
 constexpr double kNear = 1e-5;   // m and rad, tolerance of the contact point and direction
 constexpr double kExact = 1e-9;  // m, tolerance of a deflection
 constexpr double kNoSlip = 1e9;  // friction coefficient without slip
-constexpr double kPeriod = 1e-3;  // s
+constexpr double kInstant =
+    1e-12;  // s: the direct presses are those of tissue that has had no time to relax
 
 void check(int status, const std::string& where) {
   if (status == PALPATE_OK) return;
@@ -51,7 +52,7 @@ class Tip {
   Vec3 move_to(const Vec3& x) {
     const Vec3 still{};
     Vec3 on_tool{};
-    palpate_step(state_.get(), x.data(), still.data(), kPeriod, on_tool.data());
+    palpate_step(state_.get(), x.data(), still.data(), kInstant, on_tool.data());
     return -1.0 * on_tool;
   }
 

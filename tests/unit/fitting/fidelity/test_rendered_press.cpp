@@ -46,6 +46,20 @@ TEST_F(RenderedPress, LargeLateralDeflectionsDoNotSlip) {
   EXPECT_NEAR(dot(forces.at(0), t), kLateral * 0.005, 1e-6);  // far beyond any friction cone
 }
 
+/// The direct presses are elastic: they are compared with tissue that has had no time to relax.
+TEST_F(RenderedPress, TakesNoTimeInWhichTissueCouldRelax) {
+  Library library = read_library(file_);
+  library.tool_radius = 0.005;
+  library.relaxation_times = {1e-3};
+  for (NodeResponse& node : library.responses) node.relaxation = {0.9F};
+  fitting::certify(library, {});
+  write_library(folder_ / "relaxing.h5", library);
+  const auto forces =
+      RenderedBody(folder_ / "relaxing.h5")
+          .press({0.003, 0.003, 0}, kDown, {{0.002, 0, {1, 0, 0}}, {0.004, 0, {1, 0, 0}}});
+  EXPECT_NEAR(norm(forces.at(1) - kNormal * 0.004 * kDown), 0, 1e-6);
+}
+
 TEST_F(RenderedPress, RefusesAPointBesideTheSurfaceAndAMissingFile) {
   EXPECT_THROW(RenderedBody(file_).press({0.1, 0.1, 0}, kDown, {{0.001, 0, {1, 0, 0}}}), Error);
   EXPECT_THROW(RenderedBody(folder_ / "none.h5"), Error);
