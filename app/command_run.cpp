@@ -14,6 +14,7 @@
 #include "app/console.hpp"
 #include "app/pipeline/device_profile.hpp"
 #include "app/pipeline/workspace.hpp"
+#include "app/record/relaxation_at_rate.hpp"
 #include "app/record/report_recovery.hpp"
 #include "app/record/session_recorder.hpp"
 #include "app/run/certified.hpp"
@@ -180,6 +181,9 @@ int run(RunOptions options) {
   const Library library = read_library(options.library);
   const palpate_library body(library);
   settle(options, library, body);
+  if (const std::string text = short_relaxation_warning(library, options.live.loop.rate);
+      !text.empty())
+    warn(text);
   const auto device = make_device(options.device, scripted_hand(library, options.live.pose));
   recover_and_report(options.recording);
   device->open();

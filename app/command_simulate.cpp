@@ -5,6 +5,7 @@
 #include "app/case_options.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/record/relaxation_at_rate.hpp"
 #include "app/record/report_recovery.hpp"
 #include "app/simulate/script.hpp"
 #include "app/simulate/session.hpp"
@@ -66,6 +67,9 @@ int simulate(const CaseOptions& options, const SimulateOptions& session_options)
   prepare_output(space.out);
   recover_and_report(space.recording());
   space.c.simulate = settled(space.c.simulate, library);
+  if (const std::string text = short_relaxation_warning(library, space.c.simulate.rate);
+      !text.empty())
+    warn(text);
   ScriptedSession session(file, library, space.c.simulate, session_options.lipschitz_bound);
   RecordingHeading heading = session.heading();
   heading.provenance = library.provenance;

@@ -79,7 +79,7 @@ std::uint32_t ContactState::suspend(const Vec3& x) noexcept {
 
 std::uint32_t ContactState::step(const Vec3& x, double dt) noexcept {
   if (!is_finite(x)) return refuse();
-  dt_ = dt;
+  dt_ = dt > 0 ? dt : 0;  // the clock of a recording may go back
   const Vec3 from = last_.value_or(x);
   const double travelled = norm(x - from);
   last_ = x;
@@ -141,7 +141,7 @@ SurfacePoint ContactState::closest_if_inside(const Vec3& x) const noexcept {
 bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
   if (facing.lateral > kRelaxed) return false;
   LocalModel model(*surface_, facing.point, 0);
-  recall_at_point(model);
+  set_memory_at_point(model);
   const double depth = model.deflection(x).geometric;
   if (!(depth >= 0 && depth <= surface_->deepest())) return false;
   model.set_offset(depth);
@@ -188,7 +188,7 @@ double ContactState::slip_limit(const LocalModel& model, const Deflection& at,
 
 /// Is there no normal contact: the tip is outside, or above the skin, which lags behind it?
 bool ContactState::is_lost(const FixedContact& fixed) const noexcept {
-  return !(fixed.deflection.depth > 0) || (memory_.relaxes() && fixed.response.recalled.scale == 0);
+  return !(fixed.deflection.depth > 0) || (memory_.relaxes() && fixed.response.relaxed.scale == 0);
 }
 
 /// Does the force change by at most `allowed` (N; infinite: any change)?
@@ -246,7 +246,7 @@ ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fi
   std::uint32_t status = 0;
   Candidate next{slide(x, fixed, fractions, status), {}, {}, goal_, 0};
   next.status = status;
-  recall_at_point(next.model);
+  set_memory_at_point(next.model);
   next.deflection = next.model.deflection(x);
   double recovery = fractions.recovery;
   if (!(next.deflection.depth > 0)) {
@@ -390,7 +390,7 @@ void ContactState::commit(Candidate& next, double energy_before) noexcept {
 }
 
 /// Gives the model what the tissue at its contact point remembers.
-void ContactState::recall_at_point(LocalModel& model) const noexcept {
+void ContactState::set_memory_at_point(LocalModel& model) const noexcept {
   if (!memory_.relaxes()) return;
   const double slid = norm(model.contact_point() - remembering_point_);
   model.set_memory(memory_.carried_to(model.point(), slid));
@@ -400,15 +400,15 @@ void ContactState::recall_at_point(LocalModel& model) const noexcept {
 void ContactState::relax(Candidate& at) noexcept {
   memory_.carry(at.model.point(), at.model.memory());
   remembering_point_ = at.model.contact_point();
-  memory_.pass(at.response.recalled.coordinate, dt_);
+  memory_.pass(at.response.relaxed.coordinate, dt_);
   const double energy_before = at.response.energy;
   const double held = std::max(settings_.friction * at.response.friction_normal_force,
                                at.response.lateral_force);  // N
   const double normal_before = at.response.friction_normal_force;
   at.model.replace_memory(memory_.now(), at.response);
-  seen_.relaxed += energy_before - at.response.energy;
-  seen_.recalled = 1 - at.response.recalled.scale;
-  if (at.deflection.depth > 0 && at.response.recalled.scale == 0)
+  seen_.dissipated += energy_before - at.response.energy;
+  seen_.relaxed_fraction = 1 - at.response.relaxed.scale;
+  if (at.deflection.depth > 0 && at.response.relaxed.scale == 0)
     seen_.status |= step_status::SkinLags;
   const double lost = settings_.friction * (normal_before - at.response.friction_normal_force);
   if (!(at.response.lateral_force > held - lost)) return;
@@ -421,7 +421,7 @@ void ContactState::relax_freely() noexcept {
   const double energy_before = memory_.now().locked;
   memory_.pass(0, dt_);
   seen_.energy = memory_.now().locked;
-  seen_.relaxed += energy_before - seen_.energy;
+  seen_.dissipated += energy_before - seen_.energy;
   dt_ = 0;
 }
 
@@ -438,11 +438,11 @@ void ContactState::free_contact() noexcept {
   model_.reset();
   const std::uint32_t status = seen_.status;
   const double absorbed = seen_.absorbed;
-  const double relaxed = seen_.relaxed;
+  const double dissipated = seen_.dissipated;
   seen_ = {};
   seen_.status = status;
   seen_.absorbed = absorbed;
-  seen_.relaxed = relaxed;
+  seen_.dissipated = dissipated;
   seen_.energy = memory_.now().locked;
   seen_.tank = tank_.level();
 }

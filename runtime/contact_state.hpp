@@ -41,8 +41,9 @@ struct ContactObservation {
   double tank = 0;        ///< J
   double absorbed = 0;    ///< J
   Vec3 force{};           ///< f, of the tool ON the body, N
-  double relaxed = 0;     ///< J, dissipated by relaxation since the start
-  double recalled = 0;    ///< 1 - psi: fraction of the instantaneous normal force that has relaxed
+  double dissipated = 0;  ///< J, by relaxation since the start
+  double relaxed_fraction =
+      0;  ///< 1 - psi: fraction of the instantaneous normal force that has relaxed
 };
 
 /// The contact of one tip with one surface, advanced one sample of the force loop at a time:
@@ -54,7 +55,7 @@ struct ContactObservation {
 /// normally ends in the same step; it lasts only where no point of the surface faces the tip
 /// (beyond a border). On activation d0 = n . (x - c), so that E = 0.
 ///
-/// At every instant absorbed >= tank + E + relaxed >= 0.
+/// At every instant absorbed >= tank + E + dissipated >= 0.
 ///
 /// Between two steps |f_i(x_i) - f_{i-1}(x_{i-1})| <= L |x_i - x_{i-1}| with L the Lipschitz bound,
 /// except where a contact is dropped. With a fixed contact point this is true for every L >= L_min.
@@ -78,8 +79,8 @@ class ContactState {
 
   /// Advances to the tip position x (m) and returns the status bits. A position that is not finite,
   /// or farther from the last than the diagonal of the body, drops the contact: force zero,
-  /// BadInput. dt: s since the last step, >= 0, in which the tissue relaxes; elastic responses do
-  /// not depend on it.
+  /// BadInput. dt: s since the last step, in which the tissue relaxes; none passes for dt <= 0 or
+  /// NaN. Elastic responses do not depend on it.
   std::uint32_t step(const Vec3& x, double dt = 0) noexcept;
   /// A step with unusable input: force zero, the contact is dropped.
   std::uint32_t refuse() noexcept;
@@ -151,7 +152,7 @@ class ContactState {
   void enforce_friction(Candidate& moved, double allowance) const noexcept;
   bool release(const Candidate& moved, const Vec3& x, double energy_before) noexcept;
   void commit(Candidate& next, double energy_before) noexcept;
-  void recall_at_point(LocalModel& model) const noexcept;
+  void set_memory_at_point(LocalModel& model) const noexcept;
   void relax(Candidate& at) noexcept;
   void relax_freely() noexcept;
   void look_ahead(const Deflection& at) noexcept;

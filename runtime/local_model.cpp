@@ -11,15 +11,15 @@ double LocalModel::energy(const Deflection& d) const noexcept {
 
 void LocalModel::replace_memory(const NormalMemory& memory, LocalResponse& at) noexcept {
   set_memory(memory);
-  const RecalledResponse before = at.recalled;
-  at.recalled = recall(memory, before.coordinate, before.instantaneous);
-  const double change = at.recalled.force - before.force;
+  const RelaxedResponse before = at.relaxed;
+  at.relaxed = relaxed_response(memory, before.coordinate, before.instantaneous);
+  const double change = at.relaxed.force - before.force;
   at.normal_force += change;
-  at.friction_normal_force = at.recalled.force;
+  at.friction_normal_force = at.relaxed.force;
   at.force = at.force + change * n_;
-  at.energy += at.recalled.energy - before.energy;
-  at.at_depth.friction_normal_force = at.recalled.force;
-  at.at_depth.energy = at.recalled.energy;
+  at.energy += at.relaxed.energy - before.energy;
+  at.at_depth.friction_normal_force = at.relaxed.force;
+  at.at_depth.energy = at.relaxed.energy;
 }
 
 void LocalModel::slip_to(double rho, Deflection& d, LocalResponse& at,

@@ -27,7 +27,7 @@ struct LocalResponse {
   Vec3 force{};       ///< f = g n + h t, of the tool ON the body, N [eq. 28]
   double friction_normal_force = 0;  ///< g(z), or psi g(z), N: friction is limited to mu times it
   InterpolatedResponse::AtDepth at_depth{};  ///< for coupled responses only
-  RecalledResponse recalled{};               ///< for responses that relax only
+  RelaxedResponse relaxed{};                 ///< for responses that relax only
 };
 
 /// With c, n = n(c), the offset d0 and the lateral offset s (s . n = 0) fixed:
@@ -66,14 +66,14 @@ class LocalModel {
     LocalResponse r;
     if (response_.coupled()) {
       r.at_depth = response_.at_depth(d.depth, pieces);
-      if (relaxes_) recall_at_depth(r);
+      if (relaxes_) relax_at_depth(r);
       respond_at_depth(d, pieces, r);
       return r;
     }
     const InterpolatedResponse::Decoupled at = response_.decoupled_at(d.depth, d.lateral, pieces);
     if (relaxes_) {
-      r.recalled = recall(memory_, std::sqrt(2 * at.normal.energy), at.normal.force);
-      take({r.recalled.force, at.lateral.force, r.recalled.energy + at.lateral.energy}, d, r);
+      r.relaxed = relaxed_response(memory_, std::sqrt(2 * at.normal.energy), at.normal.force);
+      take({r.relaxed.force, at.lateral.force, r.relaxed.energy + at.lateral.energy}, d, r);
     } else {
       take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
     }
@@ -144,11 +144,11 @@ class LocalModel {
     r.energy = value.energy;
     r.force = value.normal * n_ + value.lateral * d.tangent;
   }
-  void recall_at_depth(LocalResponse& r) const noexcept {
-    r.recalled =
-        recall(memory_, std::sqrt(2 * r.at_depth.energy), r.at_depth.friction_normal_force);
-    r.at_depth.friction_normal_force = r.recalled.force;
-    r.at_depth.energy = r.recalled.energy;
+  void relax_at_depth(LocalResponse& r) const noexcept {
+    r.relaxed = relaxed_response(memory_, std::sqrt(2 * r.at_depth.energy),
+                                 r.at_depth.friction_normal_force);
+    r.at_depth.friction_normal_force = r.relaxed.force;
+    r.at_depth.energy = r.relaxed.energy;
   }
   /// The part of coupled responses that depends on the lateral deflection.
   void respond_at_depth(const Deflection& d, PiecesInUse& pieces, LocalResponse& r) const noexcept {

@@ -10,13 +10,13 @@ namespace palpate::runtime {
 /// coordinate y = sqrt(2 G(z)) of the normal response and the memories a_i:
 ///   A = sum g_i a_i,   R = (sum g_i a_i^2 - A^2)/2 >= 0,   V = max(y - A, 0)^2/2 + R.
 struct NormalMemory {
-  double recalled = 0;  ///< A, sqrt(J)
-  double locked = 0;    ///< R, J: stored, but not within reach of the tool
-  double carried = 1;   ///< what a slide has left of the memories
+  double relaxed = 0;  ///< A, sqrt(J)
+  double locked = 0;   ///< R, J: stored, but not within reach of the tool
+  double carried = 1;  ///< what a slide has left of the memories
 };
 
 /// What a memory makes of the instantaneous normal response.
-struct RecalledResponse {
+struct RelaxedResponse {
   double coordinate = 0;     ///< y, sqrt(J)
   double instantaneous = 0;  ///< g, N, of tissue without a memory
   double scale = 1;          ///< psi = max(1 - A/y, 0); 0 where the skin lags behind the tool
@@ -25,9 +25,9 @@ struct RecalledResponse {
 };
 
 /// The instantaneous response has the coordinate y = sqrt(2 G) and the force g (N).
-inline RecalledResponse recall(const NormalMemory& memory, double y, double g) noexcept {
-  RecalledResponse r{y, g, 0, 0, memory.locked};
-  const double stretch = r.coordinate - memory.recalled;
+inline RelaxedResponse relaxed_response(const NormalMemory& memory, double y, double g) noexcept {
+  RelaxedResponse r{y, g, 0, 0, memory.locked};
+  const double stretch = r.coordinate - memory.relaxed;
   if (!(stretch > 0)) return r;
   r.scale = stretch / r.coordinate;
   r.force = r.scale * g;

@@ -88,8 +88,8 @@ palpate_observation translate(const ContactObservation& seen) noexcept {
   o.absorbed = seen.absorbed;
   copy(seen.force, o.force_on_body);
   copy(seen.lateral_offset, o.lateral_offset);
-  o.relaxed = seen.relaxed;
-  o.recalled = seen.recalled;
+  o.dissipated = seen.dissipated;
+  o.relaxed_fraction = seen.relaxed_fraction;
   return o;
 }
 

@@ -93,7 +93,7 @@ enum {
   /* The contact point waits at an edge for triangles that the search thread has not delivered.
    * Remedy: a higher search_rate. */
   PALPATE_AWAITING = 1u << 10,
-  /* The tool is inside the body but above the skin, which has relaxed and not yet come back: no
+  /* The tool is inside the body but above the skin, which has relaxed and not yet recovered: no
    * force. Only where responses relax. */
   PALPATE_SKIN_LAGS = 1u << 11,
 
@@ -160,8 +160,8 @@ typedef struct palpate_observation {
   double force_on_body[3]; /* f, N; palpate_step gives -f */
   double lateral_offset[3]; /* s, lateral offset, m: slip that the contact point has not followed,
                                at borders, at edges that await delivery, and in throttled slides */
-  double relaxed;  /* energy that relaxation has dissipated since the state was created or reset, J */
-  double recalled; /* fraction of the instantaneous normal force that has relaxed; 0 where responses
+  double dissipated; /* energy that relaxation has dissipated since the state was created or reset, J */
+  double relaxed_fraction; /* fraction of the instantaneous normal force that has relaxed; 0 where responses
                       are elastic, 1 where the skin lags */
 } palpate_observation;
 

@@ -20,7 +20,7 @@ NormalMemory Relaxation::carried_to(const SurfacePoint& p, double distance) cons
   NormalMemory there = surface_->relaxes_alike() ? now_ : sums(surface_->fractions(p));
   double factor = std::exp(-distance / surface_->tool_radius());
   if (there.locked > now_.locked) factor *= std::sqrt(now_.locked / there.locked);
-  there.recalled *= factor;
+  there.relaxed *= factor;
   there.locked *= factor * factor;
   there.carried = factor;
   return there;
@@ -43,7 +43,7 @@ void Relaxation::keep_decay(double dt) noexcept {
 
 void Relaxation::pass(double y, double dt) noexcept {
   keep_decay(dt);
-  const double skin = std::max(y, now_.recalled);
+  const double skin = std::max(y, now_.relaxed);
   for (std::size_t i = 0; i < surface_->relaxation_times().size(); ++i)
     memory_[i] = skin + (memory_[i] - skin) * decay_[i];
   now_ = sums(fractions_);

@@ -23,7 +23,7 @@ class Relaxation {
   /// Whether the responses of the surface relax at all.
   bool relaxes() const noexcept { return !surface_->relaxation_times().empty(); }
   /// Whether a memory is above zero.
-  bool remembers() const noexcept { return now_.recalled > 0; }
+  bool remembers() const noexcept { return now_.relaxed > 0; }
   /// A and R at the contact point.
   const NormalMemory& now() const noexcept { return now_; }
   /// The same after a slide of the contact point to p, `distance` (m) away: every memory is

@@ -40,6 +40,15 @@ Levels levels_within(const std::vector<double>& depths, double z) noexcept {
   return levels_at(depths, inside);
 }
 
+/// add(site, level, weight) for each blended site at the two levels.
+template <class Blend, class Add>
+void at_both_levels(const Blend& blend, const Levels& levels, const Add& add) noexcept {
+  for (std::size_t i = 0; i < blend.count; ++i) {
+    if (levels.weight != 0) add(blend.site[i], levels.k, blend.weight[i] * levels.weight);
+    if (levels.next != 0) add(blend.site[i], levels.k + 1, blend.weight[i] * levels.next);
+  }
+}
+
 }  // namespace
 
 /// The sites that the contact blends.
@@ -97,17 +106,13 @@ void SkinDeformation::add_press(const Blend& blend, const Touch& touch,
   const std::size_t modes = d_.mode_count(), knots = d_.knots.size(), depths = d_.depths.size();
   const Levels levels = levels_at(d_.depths, std::max(touch.depth, 0.0));
   const auto add = [&](std::size_t site, std::size_t k, double weight) {
-    if (weight == 0) return;
     const float* a = &d_.press_modes[(site * depths + k) * modes];
     for (std::size_t m = 0; m < modes; ++m) shape.mode[m] += static_cast<float>(weight) * a[m];
     const float* p = &d_.press_local[(site * depths + k) * kPressComponents * knots];
     for (std::size_t j = 0; j < kPressComponents * knots; ++j)
       shape.press[j] += weight * static_cast<double>(p[j]);
   };
-  for (std::size_t i = 0; i < blend.count; ++i) {
-    add(blend.site[i], levels.k, blend.weight[i] * levels.weight);
-    add(blend.site[i], levels.k + 1, blend.weight[i] * levels.next);
-  }
+  at_both_levels(blend, levels, add);
 }
 
 void SkinDeformation::add_lateral(const Blend& blend, const Touch& touch,
@@ -119,7 +124,6 @@ void SkinDeformation::add_lateral(const Blend& blend, const Touch& touch,
   // The shared part vanishes with the depth.
   const double shared = std::clamp(touch.depth / d_.lateral_depths.front(), 0.0, 1.0);
   const auto add = [&](std::size_t site, std::size_t k, double weight) {
-    if (weight == 0) return;
     const SiteFrame& frame = d_.sites[site];
     const Vec3 second = cross(frame.inward, frame.tangent);
     const double along[kTangents] = {dot(touch.lateral, frame.tangent), dot(touch.lateral, second)};
@@ -132,10 +136,7 @@ void SkinDeformation::add_lateral(const Blend& blend, const Touch& touch,
     for (std::size_t j = 0; j < kLateralComponents * knots; ++j)
       shape.lateral[j] += weight * static_cast<double>(p[j]);
   };
-  for (std::size_t i = 0; i < blend.count; ++i) {
-    add(blend.site[i], levels.k, blend.weight[i] * levels.weight);
-    add(blend.site[i], levels.k + 1, blend.weight[i] * levels.next);
-  }
+  at_both_levels(blend, levels, add);
 }
 
 Vec3 SkinDeformation::shared_part(const Shape& shape, std::size_t vertex) const noexcept {

@@ -19,6 +19,7 @@ namespace {
 
 /// The value as written, on one line and shortened.
 std::string shown(const toml::node& node) {
+  if (const auto* number = node.as_floating_point()) return print_number(number->get());
   std::ostringstream stream;
   stream << toml::node_view<const toml::node>(node);
   std::string text = stream.str();

@@ -193,12 +193,13 @@ void warn_of_shares(const Curves& curves, const Library& library, const EventSin
     largest = std::max(largest, error);
   }
   if (!(largest > fitting::kVisibleFitError)) return;
-  emit(Warning{"fit",
-               fmt::format("the part of the force that relaxes changes with depth, most of all at "
-                           "site {} at {}: by {} of the energy at the deepest sample; it is that "
-                           "of the deepest sample at every depth",
-                           vertex, position_text(library.positions[to_index(vertex)]),
-                           percent_text(largest))});
+  emit(Warning{
+      "fit",
+      fmt::format("the fraction of the force that relaxes varies with depth, most at site {} at "
+                  "{}: by {}, weighted by the stored energy; the library has that of the "
+                  "deepest sample",
+                  vertex, position_text(library.positions[to_index(vertex)]),
+                  percent_text(largest))});
 }
 
 }  // namespace

@@ -32,7 +32,8 @@ void control(benchmark::State& state) {
 
 BENCHMARK(control)->Iterations(kPasses)->UseManualTime()->Unit(benchmark::kMicrosecond);
 
-// n = 8, 25, 79, 250: 512, 5 000, 49 928 and 500 000 triangles; then coupled responses.
+// n = 8, 25, 79, 250: 512, 5 000, 49 928 and 500 000 triangles; then coupled responses, and both
+// kinds with three relaxation times.
 BENCHMARK(step_on_sphere)
     ->Args({8, 0})
     ->Args({25, 0})
@@ -40,6 +41,10 @@ BENCHMARK(step_on_sphere)
     ->Args({250, 0})
     ->Args({8, 1})
     ->Args({79, 1})
+    ->Args({8, 2})
+    ->Args({79, 2})
+    ->Args({8, 3})
+    ->Args({79, 3})
     ->Iterations(kPasses)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);

@@ -2,6 +2,7 @@
 #include "bench/runtime/step_on_sphere.hpp"
 
 #include <algorithm>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <utility>
@@ -14,19 +15,32 @@
 namespace palpate::bench {
 namespace {
 
+Library relaxing(Library library) {
+  library.tool_radius = 0.005;
+  library.relaxation_times = {0.01, 0.1, 1};
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const float fraction = 0.1F + 0.05F * static_cast<float>(v % 3);
+    library.responses[v].relaxation.assign(3, fraction);
+  }
+  return library;
+}
+
 /// The libraries are large; each is made once.
-const palpate_library& body_of(int n, ResponseKind kind) {
-  static std::map<std::pair<int, ResponseKind>, std::unique_ptr<palpate_library>> made;
-  auto& body = made[{n, kind}];
-  if (!body) body = std::make_unique<palpate_library>(octasphere(n, kind));
+const palpate_library& body_of(int n, std::int64_t variant) {
+  static std::map<std::pair<int, std::int64_t>, std::unique_ptr<palpate_library>> made;
+  auto& body = made[{n, variant}];
+  if (!body) {
+    const auto kind = variant % 2 == 0 ? ResponseKind::Decoupled : ResponseKind::Coupled;
+    Library library = octasphere(n, kind);
+    body = std::make_unique<palpate_library>(variant < 2 ? library : relaxing(library));
+  }
   return *body;
 }
 
 }  // namespace
 
 void step_on_sphere(benchmark::State& state) {
-  const auto kind = state.range(1) == 0 ? ResponseKind::Decoupled : ResponseKind::Coupled;
-  const palpate_library& body = body_of(static_cast<int>(state.range(0)), kind);
+  const palpate_library& body = body_of(static_cast<int>(state.range(0)), state.range(1));
   std::unique_ptr<palpate_state> tool;
   const auto step = [&](const Vec3& x) {
     static constexpr double kVelocity[3] = {0, 0, 0};

@@ -104,7 +104,7 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
   contact_stiffness = fem::contact_stiffness(b, settings, model);
   if (engine == Engine::Direct) return;
   std::vector<double> K;
-  // The solvers of the sites see the relaxed laws.
+  // The solvers of the sites see the augmented laws.
   DilatationMultipliers multipliers = model.multipliers();
   model.take_pressures(rest, multipliers);
   model.stiffness(rest, K, &multipliers);

@@ -41,12 +41,13 @@ DilatationMultipliers::DilatationMultipliers(const std::vector<Law>& laws, std::
     values.assign(elements, 0.0);
 }
 
-RelaxedVolume DilatationMultipliers::relaxed(const Law& law, int region,
-                                             const std::array<int, kLanes>& element) const {
-  RelaxedVolume relaxed{law, kappa_[to_index(region)], kappa_a_[to_index(region)], Lanes::Zero()};
+AugmentedVolume DilatationMultipliers::augmented(const Law& law, int region,
+                                                 const std::array<int, kLanes>& element) const {
+  AugmentedVolume augmented{law, kappa_[to_index(region)], kappa_a_[to_index(region)],
+                            Lanes::Zero()};
   for (int lane = 0; lane < kLanes; ++lane)
-    relaxed.p[lane] = values[to_index(element[to_index(lane)])];
-  return relaxed;
+    augmented.p[lane] = values[to_index(element[to_index(lane)])];
+  return augmented;
 }
 
 }  // namespace palpate::fem

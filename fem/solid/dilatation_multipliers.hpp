@@ -4,12 +4,12 @@
 #include <array>
 #include <vector>
 
-#include "fem/laws/relaxed_volume.hpp"
+#include "fem/laws/augmented_volume.hpp"
 #include "format/to_index.hpp"
 
 namespace palpate::fem {
 
-/// The multipliers of nearly incompressible elements, see RelaxedVolume: a solver sees a solid of
+/// The multipliers of nearly incompressible elements, see AugmentedVolume: a solver sees a solid of
 /// moderate bulk modulus, and the multipliers restore the true one. Regions whose Poisson's ratio
 /// is moderate have none and keep their law.
 class DilatationMultipliers {
@@ -24,7 +24,8 @@ class DilatationMultipliers {
   /// Whether the elements of a region have multipliers.
   bool relax(int region) const { return any() && kappa_a_[to_index(region)] > 0; }
   /// The law of a region that has multipliers, with those of eight of its elements.
-  RelaxedVolume relaxed(const Law& law, int region, const std::array<int, kLanes>& element) const;
+  AugmentedVolume augmented(const Law& law, int region,
+                            const std::array<int, kLanes>& element) const;
 
   std::vector<double> values;  ///< by element of the mesh, Pa; empty where no region has any
 

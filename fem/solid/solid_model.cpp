@@ -235,7 +235,7 @@ ElementKinematics<Lanes> SolidModel::kinematics_of(const Block& block,
 
 namespace {
 
-/// f of the law of a block: in a step of relaxation the scaled one, relaxed where its region has
+/// f of the law of a block: in a step of relaxation the scaled one, augmented where its region has
 /// multipliers.
 template <class Block, class F>
 auto with_law(const Solid& solid, const Block& block, const HistoryStress* step,
@@ -243,7 +243,7 @@ auto with_law(const Solid& solid, const Block& block, const HistoryStress* step,
   const Law& law = solid.laws[to_index(block.region)];
   if (step != nullptr) return f(ScaledIsochoric{law, step->factor[to_index(block.region)]});
   if (multipliers == nullptr || !multipliers->relax(block.region)) return f(law);
-  return f(multipliers->relaxed(law, block.region, block.element));
+  return f(multipliers->augmented(law, block.region, block.element));
 }
 
 double smallest(const ElementKinematics<Lanes>& k) {
@@ -487,7 +487,7 @@ void SolidModel::set(const Displacement& u, DilatationMultipliers& multipliers,
 void SolidModel::update(const Displacement& u, DilatationMultipliers& multipliers) const {
   set(u, multipliers, [&](const Block& block, const Lanes& J) {
     const Law& law = solid_->laws[to_index(block.region)];
-    return multipliers.relaxed(law, block.region, block.element).pressure(J);
+    return multipliers.augmented(law, block.region, block.element).pressure(J);
   });
 }
 

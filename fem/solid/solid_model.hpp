@@ -70,7 +70,7 @@ class SolidModel {
     double min_J = 1;
   };
 
-  /// With `multipliers`, here and below: that of the relaxed laws.
+  /// With `multipliers`, here and below: that of the augmented laws.
   State energy(const Displacement& u, const DilatationMultipliers* multipliers = nullptr) const;
   /// Internal forces on the unknowns, N, with those of the foundation, less the weight.
   State forces(const Displacement& u, Eigen::VectorXd& f,

@@ -138,6 +138,14 @@ std::vector<double> graded(double half, double core, double fine, double growth)
   return values;
 }
 
+Body uneven_cube() {
+  Body body = make_block(even(0, 1, 2), even(0, 1, 2), even(0, 1, 2));
+  body.fixed_nodes.clear();
+  for (Vec3& x : body.nodes)
+    if (x[0] == 0.5 && x[1] == 0.5 && x[2] == 0.5) x = {0.56, 0.45, 0.53};
+  return body;
+}
+
 Body graded_block(double half, double core, double fine, double growth) {
   const auto across = graded(half, core, fine, growth);
   std::vector<double> down;

@@ -23,6 +23,9 @@ std::vector<double> even(double low, double high, int count);
 /// outwards by `growth`, fitted to end at `half`.
 std::vector<double> graded(double half, double core, double fine, double growth);
 
+/// The unit cube in 2 x 2 x 2 cells with its inner node displaced; nothing is fixed.
+Body uneven_cube();
+
 /// A block with these coordinates across and the lower half of them down: twice as wide as high,
 /// and fine at the middle of its top.
 Body graded_block(double half, double core, double fine, double growth);

@@ -22,15 +22,6 @@ namespace {
 
 using test::Prescribed;
 
-/// The unit cube in 2 x 2 x 2 cells with its inner node displaced.
-Body unit_cube() {
-  Body body = test::make_block(test::even(0, 1, 2), test::even(0, 1, 2), test::even(0, 1, 2));
-  body.fixed_nodes.clear();
-  for (Vec3& x : body.nodes)
-    if (x[0] == 0.5 && x[1] == 0.5 && x[2] == 0.5) x = {0.56, 0.45, 0.53};
-  return body;
-}
-
 /// A face that is moved along one axis, by a function of the reference position.
 struct Motion {
   int face_axis;
@@ -43,7 +34,7 @@ struct Motion {
 class Block {
  public:
   explicit Block(const LawConstants& law)
-      : body_(unit_cube()),
+      : body_(test::uneven_cube()),
         model_(body_, {make_law(law, "block")}),
         u_(Displacement::Zero(3, model_.mesh().nodes())) {}
 

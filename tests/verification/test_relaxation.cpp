@@ -90,15 +90,6 @@ class RelaxingBody {
   Displacement u_;
 };
 
-/// The unit cube in 2 x 2 x 2 cells with its inner node displaced.
-Body unit_cube() {
-  Body body = test::make_block(test::even(0, 1, 2), test::even(0, 1, 2), test::even(0, 1, 2));
-  body.fixed_nodes.clear();
-  for (Vec3& x : body.nodes)
-    if (x[0] == 0.5 && x[1] == 0.5 && x[2] == 0.5) x = {0.56, 0.45, 0.53};
-  return body;
-}
-
 /// Force on the face at 1 across an axis, along another.
 double on_face(const RelaxingBody& body, int face_axis, int axis) {
   const Eigen::VectorXd f = body.forces();
@@ -134,7 +125,7 @@ TEST(RelaxingBlock, StretchedAlongAnAxisHasTheStressOfTheHereditaryIntegral) {
       }
     return list;
   };
-  RelaxingBody body(unit_cube());
+  RelaxingBody body(test::uneven_cube());
   body.follow([&](double part) { return prescribed_on(body, part); }, kTimes,
               [&](double t) {
                 const auto S1 = [&](double part) {
@@ -164,7 +155,7 @@ TEST(RelaxingBlock, ShearedHasTheStressOfTheHereditaryIntegral) {
     }
     return list;
   };
-  RelaxingBody body(unit_cube());
+  RelaxingBody body(test::uneven_cube());
   body.follow([&](double part) { return prescribed_on(body, part); }, kTimes,
               [&](double t) {
                 const auto S12 = [&](double part) {

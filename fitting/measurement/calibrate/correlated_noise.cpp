@@ -7,6 +7,7 @@
 #include <optional>
 #include <utility>
 
+#include "fitting/measurement/autoregressive.hpp"
 #include "fitting/measurement/records/statistics.hpp"
 
 namespace palpate::calibrate {
@@ -80,16 +81,7 @@ class Series {
  private:
   /// V x.
   MatrixXd smeared(const MatrixXd& x, double rho) const {
-    MatrixXd out = x;
-    Index first = 0;
-    for (const Index m : lengths_) {
-      MatrixXd before = x.middleRows(first, m), after = before;
-      for (Index i = 1; i < m; ++i) before.row(i) += rho * before.row(i - 1);
-      for (Index i = m - 1; i > 0; --i) after.row(i - 1) += rho * after.row(i);
-      out.middleRows(first, m) = before + after - x.middleRows(first, m);
-      first += m;
-    }
-    return out;
+    return fitting::autoregressive_product(x, rho, lengths_);
   }
 
   std::vector<Index> lengths_;

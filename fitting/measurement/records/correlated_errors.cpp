@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "fitting/measurement/autoregressive.hpp"
 #include "fitting/measurement/records/statistics.hpp"
 
 namespace palpate::measured {
@@ -15,21 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kMostCorrelated = 0.98;
-
-/// V J for V_ij = r^|i-j| within each stretch.
-MatrixXd correlated(const MatrixXd& J, double r, const std::vector<std::size_t>& stretches) {
-  MatrixXd out = J;
-  Index first = 0;
-  for (const std::size_t length : stretches) {
-    const auto m = static_cast<Index>(length);
-    MatrixXd before = J.middleRows(first, m), after = before;
-    for (Index i = 1; i < m; ++i) before.row(i) += r * before.row(i - 1);
-    for (Index i = m - 1; i > 0; --i) after.row(i - 1) += r * after.row(i);
-    out.middleRows(first, m) = before + after - J.middleRows(first, m);
-    first += m;
-  }
-  return out;
-}
 
 struct LagOne {
   double seen = 0;
@@ -81,8 +67,9 @@ ErrorEstimate estimate_errors(const MatrixXd& J, const VectorXd& residual,
   ErrorEstimate estimate;
   estimate.autocorrelation = noise_correlation(lag_one(residual, stretches), rows, columns);
   const MatrixXd inverse = (J.transpose() * J).ldlt().solve(MatrixXd::Identity(J.cols(), J.cols()));
-  const MatrixXd shape =
-      inverse * J.transpose() * correlated(J, estimate.autocorrelation, stretches) * inverse;
+  const MatrixXd shape = inverse * J.transpose() *
+                         fitting::autoregressive_product(J, estimate.autocorrelation, stretches) *
+                         inverse;
   const double freedom = rows - (shape * (J.transpose() * J)).trace();  // tr((J^T J)^-1 J^T V J)
   const double variance = residual.squaredNorm() / std::max(freedom, 1.0);
   estimate.deviation = std::sqrt(variance);

@@ -88,12 +88,12 @@ double MemoryTwin::energy(const runtime::ContactObservation& model, const Vec3& 
   const ModelEnergy elastic = model_energy(library_, model, x);
   if (memory_.empty()) return elastic.normal + elastic.lateral;
   const Sums now = sums(model.point.element < 0 ? place_ : model.point);
-  const double stretch = std::max(std::sqrt(2 * elastic.normal) - now.recalled, 0.0);
+  const double stretch = std::max(std::sqrt(2 * elastic.normal) - now.relaxed, 0.0);
   return stretch * stretch / 2 + now.locked + elastic.lateral;
 }
 
 double MemoryTwin::pass(double y, double dt) {
-  const double skin = std::max(y, sums(place_).recalled);
+  const double skin = std::max(y, sums(place_).relaxed);
   const std::vector<double> g = fractions(place_);
   double dissipated = 0;
   for (std::size_t i = 0; i < memory_.size(); ++i) {
@@ -113,7 +113,7 @@ double MemoryTwin::step(const runtime::ContactObservation& before,
     return 0;
   }
   double dissipated = 0;
-  const bool remembers = sums(place_).recalled > 0;
+  const bool remembers = sums(place_).relaxed > 0;
   const bool alone = before.point.element < 0 || (after.status & PALPATE_RELEASED) != 0;
   if (alone && remembers) {
     dissipated = pass(0, dt);
@@ -199,7 +199,7 @@ double WatchedContact::overdraft(const runtime::ContactObservation& model) const
     lateral += n * w * curve_at(node.lateral, model.deflection.lateral).force;
     friction_normal_force += n * curve_at(node.normal, model.deflection.depth).force;
   }
-  return lateral - friction_ * (1 - model.recalled) * friction_normal_force;
+  return lateral - friction_ * (1 - model.relaxed_fraction) * friction_normal_force;
 }
 
 void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& before) {

@@ -38,7 +38,7 @@ class MemoryTwin {
 
  private:
   struct Sums {
-    double recalled = 0, locked = 0;
+    double relaxed = 0, locked = 0;
   };
   std::vector<double> fractions(const runtime::SurfacePoint& p) const;
   Sums sums(const runtime::SurfacePoint& p) const;

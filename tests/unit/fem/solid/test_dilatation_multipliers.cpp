@@ -36,7 +36,7 @@ TEST(DilatationMultipliers, SoftenTheVolumeToThatOfAModerateSolid) {
                kappa = kYoung / (3 * (1 - 2 * poisson));
   const DilatationMultipliers multipliers({tissue(poisson)}, kLanes);
   const Law law = tissue(poisson);
-  const double slope = multipliers.relaxed(law, 0, {}).pressure_slope(Lanes::Constant(1))[0];
+  const double slope = multipliers.augmented(law, 0, {}).pressure_slope(Lanes::Constant(1))[0];
   const double moderate = 2 * mu * 1.49 / (3 * 0.02);  // kappa of Poisson's ratio 0.49
   EXPECT_NEAR(slope, 1 / (1 / kappa + 1 / moderate), 1e-9 * slope);
 }

@@ -13,7 +13,7 @@ namespace palpate::fem {
 ///   (kappa/2 + kappa_a) s^2 - (p + kappa_a J) s - kappa/2 = 0.
 /// p <- dU_p/dJ is the step of the method of multipliers. It leaves p as it is where J = s, and
 /// then U_p and its first derivative are those of U. The isochoric part is that of `law`.
-struct RelaxedVolume {
+struct AugmentedVolume {
   const Law& law;
   double kappa;    ///< bulk modulus at rest, Pa
   double kappa_a;  ///< of the penalty, Pa
