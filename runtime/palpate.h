@@ -160,9 +160,10 @@ typedef struct palpate_observation {
   double force_on_body[3]; /* f, N; palpate_step gives -f */
   double lateral_offset[3]; /* s, lateral offset, m: slip that the contact point has not followed,
                                at borders, at edges that await delivery, and in throttled slides */
-  double dissipated; /* energy that relaxation has dissipated since the state was created or reset, J */
-  double relaxed_fraction; /* fraction of the instantaneous normal force that has relaxed; 0 where responses
-                      are elastic, 1 where the skin lags */
+  double dissipated; /* energy that relaxation has dissipated since the state was created or reset,
+                        J */
+  double relaxed_fraction; /* fraction of the instantaneous normal force that has relaxed; 0 where
+                      responses are elastic, 1 where the skin lags */
 } palpate_observation;
 
 typedef struct palpate_library_info {
@@ -244,8 +245,8 @@ PALPATE_API int palpate_state_set_pose(palpate_state* state, const double positi
                                        const double rotation[9]);
 
 /* One step of the force loop. position (m), velocity (m/s): of the tool tip; dt (s): since the last
- * step, > 0, in which tissue that relaxes does so. force (N): of the body on the tool, to command to the device; always finite. Returns
- * status bits. Real-time safe. */
+ * step, > 0, in which tissue that relaxes does so. force (N): of the body on the tool, to command
+ * to the device; always finite. Returns status bits. Real-time safe. */
 PALPATE_API uint32_t palpate_step(palpate_state* state, const double position[3],
                                   const double velocity[3], double dt, double force[3]);
 /* Fills the fields that fit into observation->size bytes. Real-time safe. */

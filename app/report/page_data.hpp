@@ -25,8 +25,8 @@ nlohmann::json calibration_data(const std::string& text);
 /// Fidelity of the library of this digest; {"other_library": true} when the text is of another one.
 /// @throws Error(Configuration) when the text is not a fidelity.json.
 nlohmann::json fidelity_data(const std::string& text, const std::string& library_sha256);
-/// Presses of a vertex at three speeds, and one that is held, as the runtime renders them; null where
-/// the responses do not relax.
+/// Presses of a vertex at three speeds, and one that is held, as the runtime renders them; null
+/// where the responses do not relax.
 nlohmann::json relaxation_data(const Library& library, std::int32_t vertex);
 nlohmann::json provenance_data(const ReportInput& input);
 /// The [[material]] tables of a resolved case, each a list of [key, value].

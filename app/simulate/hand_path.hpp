@@ -15,8 +15,8 @@ struct HandState {
 };
 
 /// The scripted path of the hand: from above the surface, as high as the press is deep, down to the
-/// press depth, a rest, along the surface at that depth, and up again. Each part starts and ends at rest;
-/// the speed of the script is its peak.
+/// press depth, a rest, along the surface at that depth, and up again. Each part starts and ends at
+/// rest; the speed of the script is its peak.
 class HandPath {
  public:
   /// @pre nothing that the path needs is `auto` in the script.

@@ -22,9 +22,10 @@ namespace palpate::fem {
 ///
 /// Near incompressibility S0 knows nothing of how the constraint on the volume turns with the
 /// deformation, and the number of steps would grow like kappa/mu. There the method of multipliers
-/// [Nocedal & Wright 2006, sec. 17.3] minimizes Pi with the augmented laws of DilatationMultipliers,
-/// and K0 is their stiffness. The multipliers step whenever the residual has fallen enough below
-/// that after their last step, and the residual after the last of them is judged.
+/// [Nocedal & Wright 2006, sec. 17.3] minimizes Pi with the augmented laws of
+/// DilatationMultipliers, and K0 is their stiffness. The multipliers step whenever the residual has
+/// fallen enough below that after their last step, and the residual after the last of them is
+/// judged.
 class SharedFactorSolver {
  public:
   /// Largest number of curvature pairs, for a no-slip press and for a body on springs.

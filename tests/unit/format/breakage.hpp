@@ -21,7 +21,16 @@ using Break = std::function<void(const Path&)>;
 inline const double kNaN = std::numeric_limits<double>::quiet_NaN();
 inline const double kInfinity = std::numeric_limits<double>::infinity();
 
-enum class Kind { Body, SprungBody, CurvedBody, Curves, Library, CoupledLibrary, RelaxingLibrary, Recording };
+enum class Kind {
+  Body,
+  SprungBody,
+  CurvedBody,
+  Curves,
+  Library,
+  CoupledLibrary,
+  RelaxingLibrary,
+  Recording
+};
 
 /// Each kind is written once: a test copies it and breaks the copy.
 void copy_sample(Kind kind, const Path& path);
