@@ -393,14 +393,14 @@ void ContactState::commit(Candidate& next, double energy_before) noexcept {
 void ContactState::set_memory_at_point(LocalModel& model) const noexcept {
   if (!memory_.relaxes()) return;
   const double slid = norm(model.contact_point() - remembering_point_);
-  model.set_memory(memory_.carried_to(model.point(), slid));
+  model.set_memory(memory_.carried_to(model.point(), model.response(), slid));
 }
 
 /// The time of the step passes with the tip where it is. What friction then no longer holds slips.
 void ContactState::relax(Candidate& at) noexcept {
-  memory_.carry(at.model.point(), at.model.memory());
+  memory_.carry(at.model.point(), at.model.response(), at.model.memory());
   remembering_point_ = at.model.contact_point();
-  memory_.pass(at.response.relaxed.coordinate, dt_);
+  memory_.pass(at.response.relaxed.instant.force, dt_);
   const double energy_before = at.response.energy;
   const double held = std::max(settings_.friction * at.response.friction_normal_force,
                                at.response.lateral_force);  // N

@@ -53,7 +53,8 @@ Found find(const CurveView& curve, double d) noexcept {
   return {&curve.piece(k), curve.start(k), k + 1 < curve.size() ? curve.start(k + 1) : kInfinity};
 }
 
-/// Walks the three knot sequences in ascending order.
+/// Walks the three knot sequences of one kind of curve in ascending order.
+template <CurveView (NodeCurves::*kCurve)() const noexcept>
 class KnotMerge {
  public:
   KnotMerge(const InterpolatedResponse& response, const Vec3& weights) noexcept
@@ -61,7 +62,7 @@ class KnotMerge {
   /// On the piece that contains `at`.
   KnotMerge(const InterpolatedResponse& response, const Vec3& weights, double at) noexcept
       : response_(response), weights_(weights) {
-    for (std::size_t l = 0; l < 3; ++l) index_[l] = response_.node(l).lateral().piece_at(at);
+    for (std::size_t l = 0; l < 3; ++l) index_[l] = curve(l).piece_at(at);
     start_ = last_start();
   }
 
@@ -69,8 +70,8 @@ class KnotMerge {
   MergedPiece piece() const noexcept {
     std::array<const PackedPiece*, 3> pieces;
     for (std::size_t l = 0; l < 3; ++l) {
-      const CurveView curve = response_.node(l).lateral();
-      pieces[l] = curve.size() == 0 ? &kNothing : &curve.piece(index_[l]);
+      const CurveView view = curve(l);
+      pieces[l] = view.size() == 0 ? &kNothing : &view.piece(index_[l]);
     }
     return merged(pieces, weights_, start_);
   }
@@ -81,8 +82,8 @@ class KnotMerge {
   double end() const noexcept {
     double next = kInfinity;
     for (std::size_t l = 0; l < 3; ++l) {
-      const CurveView curve = response_.node(l).lateral();
-      if (index_[l] + 1 < curve.size()) next = std::min(next, curve.start(index_[l] + 1));
+      const CurveView view = curve(l);
+      if (index_[l] + 1 < view.size()) next = std::min(next, view.start(index_[l] + 1));
     }
     return next;
   }
@@ -90,9 +91,15 @@ class KnotMerge {
   void advance() noexcept {
     start_ = end();
     for (std::size_t l = 0; l < 3; ++l) {
-      const CurveView curve = response_.node(l).lateral();
-      if (index_[l] + 1 < curve.size() && curve.start(index_[l] + 1) <= start_) ++index_[l];
+      const CurveView view = curve(l);
+      if (index_[l] + 1 < view.size() && view.start(index_[l] + 1) <= start_) ++index_[l];
     }
+  }
+
+  /// The piece contains the answer of an inverse: it ends at the force or above, or has no end.
+  bool reaches(const MergedPiece& p, double force) const noexcept {
+    const double length = end() - start_;
+    return !std::isfinite(length) || p.force + length * (p.slope + length * p.curvature) >= force;
   }
 
   bool at_first() const noexcept { return !(start_ > 0); }
@@ -100,19 +107,20 @@ class KnotMerge {
   /// To the piece before; not allowed from the first.
   void retreat() noexcept {
     for (std::size_t l = 0; l < 3; ++l) {
-      const CurveView curve = response_.node(l).lateral();
-      if (index_[l] > 0 && curve.start(index_[l]) >= start_) --index_[l];
+      const CurveView view = curve(l);
+      if (index_[l] > 0 && view.start(index_[l]) >= start_) --index_[l];
     }
     start_ = last_start();
   }
 
  private:
+  CurveView curve(std::size_t l) const noexcept { return (response_.node(l).*kCurve)(); }
   /// Where the merged piece begins: the last of the starts of the three.
   double last_start() const noexcept {
     double start = 0;
     for (std::size_t l = 0; l < 3; ++l) {
-      const CurveView curve = response_.node(l).lateral();
-      if (curve.size() > 0) start = std::max(start, curve.start(index_[l]));
+      const CurveView view = curve(l);
+      if (view.size() > 0) start = std::max(start, view.start(index_[l]));
     }
     return start;
   }
@@ -123,22 +131,30 @@ class KnotMerge {
   double start_ = 0;
 };
 
+using LateralKnots = KnotMerge<&NodeCurves::lateral>;
+using NormalKnots = KnotMerge<&NodeCurves::normal>;
+
+/// The deflection at which the force is reached, on the piece that reaches it or after.
+template <typename Knots>
+double inverse_from(Knots& knots, double force) noexcept {
+  MergedPiece p = knots.piece();
+  for (; !knots.reaches(p, force); p = knots.piece()) knots.advance();
+  return knots.start() + std::min(solve_rising_quadratic(p, force), knots.end() - knots.start());
+}
+
 }  // namespace
 
 double InterpolatedResponse::lateral_inverse(double force, const Vec3& weights) const noexcept {
   if (!(force > 0.0)) return 0.0;
-  KnotMerge merge(*this, weights);
-  while (true) {
-    const MergedPiece p = merge.piece();
-    const double end = merge.end();
-    const double length = end - merge.start();
-    const bool last = !std::isfinite(end);
-    if (last || p.force + length * (p.slope + length * p.curvature) >= force) {
-      const double x = solve_rising_quadratic(p, force);
-      return merge.start() + (last ? x : std::min(x, length));
-    }
-    merge.advance();
-  }
+  LateralKnots knots(*this, weights);
+  return inverse_from(knots, force);
+}
+
+double InterpolatedResponse::normal_inverse(double force, double from) const noexcept {
+  if (!(force > 0.0)) return 0.0;
+  NormalKnots knots(*this, natural_, from);
+  while (knots.piece().force >= force && !knots.at_first()) knots.retreat();
+  return inverse_from(knots, force);
 }
 
 double InterpolatedResponse::lateral_inverse_below(double force, double from, const Vec3& weights,
@@ -149,7 +165,7 @@ double InterpolatedResponse::lateral_inverse_below(double force, double from, co
   if (here.force < force || !(pieces.lateral_from > 0)) {
     return std::min(pieces.lateral_from + solve_rising_quadratic(here, force), from);
   }
-  KnotMerge merge(*this, weights, from);
+  LateralKnots merge(*this, weights, from);
   double end = from;
   while (true) {
     const MergedPiece p = merge.piece();

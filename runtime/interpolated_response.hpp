@@ -124,6 +124,10 @@ class InterpolatedResponse {
     return lateral_inverse_below(force, from, natural_, pieces);
   }
 
+  /// Smallest z >= 0 with g(z) = force, in closed form as lateral_inverse; walks from the piece of
+  /// the depth `from` (m). Infinity when g never reaches the force.
+  double normal_inverse(double force, double from) const noexcept;
+
   /// Depth beyond which at least one of the three normal responses is a continuation, m.
   double deepest() const noexcept {
     return std::min({nodes_[0]->normal().last_knot(), nodes_[1]->normal().last_knot(),

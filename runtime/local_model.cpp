@@ -12,7 +12,7 @@ double LocalModel::energy(const Deflection& d) const noexcept {
 void LocalModel::replace_memory(const NormalMemory& memory, LocalResponse& at) noexcept {
   set_memory(memory);
   const RelaxedResponse before = at.relaxed;
-  at.relaxed = relaxed_response(memory, before.coordinate, before.instantaneous);
+  at.relaxed = relaxed_response(memory, before.instant);
   const double change = at.relaxed.force - before.force;
   at.normal_force += change;
   at.friction_normal_force = at.relaxed.force;

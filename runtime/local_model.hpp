@@ -66,13 +66,13 @@ class LocalModel {
     LocalResponse r;
     if (response_.coupled()) {
       r.at_depth = response_.at_depth(d.depth, pieces);
-      if (relaxes_) relax_at_depth(r);
+      if (relaxes_) relax_at_depth(d.depth, r);
       respond_at_depth(d, pieces, r);
       return r;
     }
     const InterpolatedResponse::Decoupled at = response_.decoupled_at(d.depth, d.lateral, pieces);
     if (relaxes_) {
-      r.relaxed = relaxed_response(memory_, std::sqrt(2 * at.normal.energy), at.normal.force);
+      r.relaxed = relaxed_response(memory_, {d.depth, at.normal.force, at.normal.energy});
       take({r.relaxed.force, at.lateral.force, r.relaxed.energy + at.lateral.energy}, d, r);
     } else {
       take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
@@ -130,6 +130,7 @@ class LocalModel {
   const NormalMemory& memory() const noexcept { return memory_; }
   /// The response of another memory, from that of the present one at the same deflection.
   void replace_memory(const NormalMemory& memory, LocalResponse& at) noexcept;
+  const InterpolatedResponse& response() const noexcept { return response_; }
   bool coupled() const noexcept { return response_.coupled(); }
   double deepest() const noexcept { return response_.deepest(); }
   NodeCurves::InUse curves_in_use(const Deflection& d) const noexcept {
@@ -144,9 +145,9 @@ class LocalModel {
     r.energy = value.energy;
     r.force = value.normal * n_ + value.lateral * d.tangent;
   }
-  void relax_at_depth(LocalResponse& r) const noexcept {
-    r.relaxed = relaxed_response(memory_, std::sqrt(2 * r.at_depth.energy),
-                                 r.at_depth.friction_normal_force);
+  void relax_at_depth(double depth, LocalResponse& r) const noexcept {
+    r.relaxed =
+        relaxed_response(memory_, {depth, r.at_depth.friction_normal_force, r.at_depth.energy});
     r.at_depth.friction_normal_force = r.relaxed.force;
     r.at_depth.energy = r.relaxed.energy;
   }

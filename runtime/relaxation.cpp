@@ -4,32 +4,66 @@
 #include <algorithm>
 #include <cmath>
 
+#include "format/numbers.hpp"
+
 namespace palpate::runtime {
+namespace {
 
-NormalMemory Relaxation::sums(const Branches& fractions) const noexcept {
-  double mean = 0, square = 0;
+constexpr int kReductions = 8;  // of the memories in one slide before they are lost
+constexpr NormalMemory kFresh{0, 0, 0, 0};
+
+/// A force that was reached before is reached again, in spite of rounding. G* is the largest F z -
+/// G, so that this changes it by less than its own rounding.
+constexpr double kReachable = 1 - 1e-12;
+
+/// G*(F), J. depth: where the search for g = F begins; on return its result.
+double conjugate(const InterpolatedResponse& response, double force, double& depth) noexcept {
+  const double reached = response.normal_inverse(kReachable * force, depth);
+  if (!(reached < kInfinity)) return kInfinity;
+  depth = reached;
+  return force * reached - response.normal(reached).energy;
+}
+
+}  // namespace
+
+/// Infinite where a force is beyond every depth of the response.
+NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Branches& fractions,
+                              double factor) const noexcept {
+  NormalMemory sum;
+  sum.carried = factor;
   for (std::size_t i = 0; i < surface_->relaxation_times().size(); ++i) {
-    mean += fractions[i] * memory_[i];
-    square += fractions[i] * memory_[i] * memory_[i];
+    if (!(fractions[i] > 0)) continue;
+    const double force = factor * memory_[i];
+    sum.relaxed += fractions[i] * force;
+    sum.stored += fractions[i] * conjugate(response, force, depth_[i]);
   }
-  return {mean, std::max(square - mean * mean, 0.0) / 2, 1};
+  sum.locked = sum.stored < kInfinity
+                   ? std::max(sum.stored - conjugate(response, sum.relaxed, skin_), 0.0)
+                   : kInfinity;
+  return sum;
 }
 
-NormalMemory Relaxation::carried_to(const SurfacePoint& p, double distance) const noexcept {
-  if (!remembers()) return {};
-  NormalMemory there = surface_->relaxes_alike() ? now_ : sums(surface_->fractions(p));
+NormalMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedResponse& response,
+                                    double distance) const noexcept {
+  if (distance == 0) return now_;
+  if (!remembers()) return kFresh;
+  const Branches fractions = surface_->relaxes_alike() ? fractions_ : surface_->fractions(p);
   double factor = std::exp(-distance / surface_->tool_radius());
-  if (there.locked > now_.locked) factor *= std::sqrt(now_.locked / there.locked);
-  there.relaxed *= factor;
-  there.locked *= factor * factor;
-  there.carried = factor;
-  return there;
+  for (int i = 0; i < kReductions; ++i) {
+    const NormalMemory there = sums(response, fractions, factor);
+    if (there.locked <= now_.locked) return there;
+    // The first guess is exact for a linear response, whose R is quadratic.
+    factor *= std::min(std::sqrt(now_.locked / there.locked), i == 0 ? 1.0 : 0.7);
+  }
+  return kFresh;
 }
 
-void Relaxation::carry(const SurfacePoint& p, const NormalMemory& carried) noexcept {
+void Relaxation::carry(const SurfacePoint& p, const InterpolatedResponse& response,
+                       const NormalMemory& carried) noexcept {
   if (carried.carried != 1)
-    for (double& a : memory_) a *= carried.carried;
+    for (double& force : memory_) force *= carried.carried;
   if (!surface_->relaxes_alike() || fractions_[0] == 0) fractions_ = surface_->fractions(p);
+  response_ = response;
   now_ = carried;
   now_.carried = 1;
 }
@@ -41,12 +75,13 @@ void Relaxation::keep_decay(double dt) noexcept {
   for (std::size_t i = 0; i < times.size(); ++i) decay_[i] = std::exp(-dt / times[i]);
 }
 
-void Relaxation::pass(double y, double dt) noexcept {
+void Relaxation::pass(double g, double dt) noexcept {
+  if (!response_) return;
   keep_decay(dt);
-  const double skin = std::max(y, now_.relaxed);
+  const double target = std::max(g, now_.relaxed);
   for (std::size_t i = 0; i < surface_->relaxation_times().size(); ++i)
-    memory_[i] = skin + (memory_[i] - skin) * decay_[i];
-  now_ = sums(fractions_);
+    memory_[i] = target + (memory_[i] - target) * decay_[i];
+  now_ = sums(*response_, fractions_, 1);
 }
 
 void Relaxation::forget() noexcept {

@@ -94,31 +94,18 @@ TEST(Relaxation, AFastPressFeelsTheCurveAndASlowOneItsLongTermFraction) {
   EXPECT_NEAR(slow.ramp(4e-3, 3000, 20000), kLongTerm * curve, 1e-3 * curve);
 }
 
-/// f = (y - A) y' with y = sqrt(2 G(t)), by Runge-Kutta steps of the fourth order.
-double integrated_force(double speed, double time) {
-  constexpr int kSteps = 20000;
-  const auto y_at = [&](double t) {
-    return std::sqrt(2 * 170 * 100 / 3.0) * std::pow(speed * t, 1.5);
-  };
-  double a[2] = {0, 0};
-  const double h = time / kSteps;
-  for (int k = 0; k < kSteps; ++k)
-    for (int i = 0; i < 2; ++i) {
-      const auto rate = [&](double t, double v) {
-        return (y_at(t) - v) / kTimes[static_cast<std::size_t>(i)];
-      };
-      const double t = k * h;
-      const double k1 = rate(t, a[i]), k2 = rate(t + h / 2, a[i] + h / 2 * k1);
-      const double k3 = rate(t + h / 2, a[i] + h / 2 * k2), k4 = rate(t + h, a[i] + h * k3);
-      a[i] += h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
-    }
-  const double z = speed * time, y = y_at(time);
-  return (y - 0.25 * (a[0] + a[1])) * 170 * 100 * z * z / y;
+constexpr double kWall = 170 * 100;  // N/m^2: the wall's force is kWall z^2
+
+/// f(t) = integral of g(t - s) d(kWall (v s)^2), the law of Fung for a ramp.
+double ramp_in_closed_form(double speed, double t) {
+  double force = kLongTerm * t * t;
+  for (const double tau : kTimes) force += 0.25 * 2 * tau * (t - tau * (1 - std::exp(-t / tau)));
+  return kWall * speed * speed * force;
 }
 
-TEST(Relaxation, ARampConvergesToTheMaxwellElementsWithTheFirstOrderOfTheStep) {
+TEST(Relaxation, ARampConvergesToTheLawOfFungWithTheFirstOrderOfTheStep) {
   for (const double time : {0.01, 0.1, 1.0}) {
-    const double exact = integrated_force(4e-3 / time, time);
+    const double exact = ramp_in_closed_form(4e-3 / time, time);
     double before = 0;
     for (const int steps : {100, 200, 400, 800}) {
       Pressed tool(wall);
@@ -132,11 +119,59 @@ TEST(Relaxation, ARampConvergesToTheMaxwellElementsWithTheFirstOrderOfTheStep) {
   }
 }
 
+/// The force of the law of Fung after a path, the convolution summed over its samples.
+double hereditary_force(const std::vector<double>& depths, double dt) {
+  double force = 0, last = 0;
+  for (std::size_t k = 0; k < depths.size(); ++k) {
+    const double elastic = kWall * depths[k] * depths[k];
+    force += prony(dt * (static_cast<double>(depths.size() - 1 - k) + 0.5)) * (elastic - last);
+    last = elastic;
+  }
+  return force;
+}
+
+TEST(Relaxation, CyclesOfAnySizeFollowTheConvolutionOfFung) {
+  constexpr double kDt = 1e-4;
+  for (const double swing : {0.1, 0.4}) {
+    Pressed tool(wall);
+    std::vector<double> depths;
+    double worst = 0;
+    for (int k = 1; k <= 4000; ++k) {
+      const double rise = std::min(k / 500.0, 1.0);
+      depths.push_back(4e-3 * rise * (1 - swing * (1 - std::cos(0.01 * k)) / 2));
+      const double force = tool.to(depths.back(), kDt);
+      if (k % 50 == 0) worst = std::max(worst, std::abs(force - hereditary_force(depths, kDt)));
+    }
+    EXPECT_LT(worst, 2e-3 * kWall * 16e-6) << swing;
+  }
+}
+
+TEST(Relaxation, TheEnergyIsThatOfConvexElements) {
+  // G = k z^3/3 has the conjugate G*(F) = (2/3) F^1.5/sqrt(k). After an instant press and a time t
+  // every branch has relaxed g (1 - exp(-t/tau)).
+  Pressed tool(wall);
+  const double g = tool.ramp(4e-3, kInstant, 7);
+  double dissipated = 0;
+  for (const double t : {0.01, 0.1, 1.0}) {
+    Pressed held(wall);
+    held.ramp(4e-3, kInstant, 7);
+    held.hold(t);
+    double energy = kWall * 64e-9 / 3;
+    for (const double tau : kTimes) {
+      const double relaxed = g * (1 - std::exp(-t / tau));
+      energy += 0.25 * (2.0 / 3 * std::pow(relaxed, 1.5) / std::sqrt(kWall) - relaxed * 4e-3);
+    }
+    EXPECT_NEAR(held.seen().energy, energy, 1e-7 * energy);  // knots are stored in single precision
+    EXPECT_GT(held.seen().dissipated, dissipated);
+    dissipated = held.seen().dissipated;
+  }
+}
+
 TEST(Relaxation, WhenTheToolIsWithdrawnTheSkinLagsBehindAndComesBack) {
   Pressed tool(spring);
   tool.ramp(4e-3, kInstant, 4);
   tool.hold(1000);
-  // y is proportional to the depth: the relaxed skin rests at 1 - g_inf of it.
+  // The force is proportional to the depth: the relaxed skin rests at 1 - g_inf of it.
   const double skin = (1 - kLongTerm) * 4e-3;
   EXPECT_GT(tool.ramp(1.001 * skin, kInstant, 50), 0);
   EXPECT_FALSE(tool.seen().status & PALPATE_SKIN_LAGS);
@@ -150,7 +185,7 @@ TEST(Relaxation, WhenTheToolIsWithdrawnTheSkinLagsBehindAndComesBack) {
 }
 
 TEST(Relaxation, FreeSkinRecoversAtTheRateOfItsLongTermStiffness) {
-  // One branch: A' = -g_inf A/tau while nothing touches.
+  // One branch: F' = -g_inf F/tau while nothing touches.
   Library library = relaxing(plate(8, 0.08, spring), {0.1}, true);
   const palpate_library body(library);
   runtime::ContactState contact(body.surface, body.tree, {0, 0});
