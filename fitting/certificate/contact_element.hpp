@@ -20,13 +20,8 @@ struct ContactElement {
   double friction = 0;
   double depth = 0;                                    ///< m, D: the bounds hold while z + d0 <= D
   std::optional<CurveTriple> coupling = std::nullopt;  ///< w, of coupled responses
-  bool relaxes = false;  ///< bounds at a fixed contact point hold whatever the tissue remembers
+  bool relaxes = false;  ///< slip may begin below mu g: bounds hold whatever the tissue remembers
 
-  /// Derivatives of the normal force by depth over an interval of depths. With a memory the force
-  /// is psi g and its derivative lies between g' and g^2/(2 G), hence between slopes up to there.
-  Range normal_stiffness(const Range& z) const {
-    return relaxes ? normal.slope({0, z.high}) : normal.slope(z);
-  }
   /// Ends of intervals of depth from 0 to D, or to `deepest`, that have no knot of a normal
   /// response or of w inside.
   std::vector<double> depth_cells() const { return depth_cells(depth); }

@@ -112,7 +112,7 @@ Hessian hessian(const ContactElement& element, const Range& z, const Range& rho)
     w_low = std::min(w_low, coupling_at(w, z.low));
     w_high = std::max(w_high, coupling_at(w, z.high));
   }
-  const Range g_z = element.normal_stiffness(z);
+  const Range g_z = element.normal.slope(z);
   const Range w_z = element.coupling->slope(z);
   const Range w_zz = element.coupling->curvature(z);
   const Range h_r = element.lateral.slope(rho);
@@ -140,7 +140,7 @@ Range coupled_limit(const ContactElement& element, const Range& z) {
 double along_limit(const ContactElement& element, const Hessian& E, const Range& z,
                    const Range& rho) {
   const double mu = element.friction;
-  const Range g_z = element.normal_stiffness(z);
+  const Range g_z = element.normal.slope(z);
   if (!(mu > 0)) return std::max(std::abs(E.zz.low), std::abs(E.zz.high));
   double growth = 0;
   for (const runtime::CompiledCurve& w : element.coupling->curves())
@@ -277,7 +277,7 @@ double min_bound_beyond(const ContactElement& element, double depth) {
   if (element.coupling->slope(beyond).high > 0) return kInfinity;
   const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
   return kRoundingFactor *
-         std::max(std::hypot(1.0, element.friction) * element.normal_stiffness(beyond).high,
+         std::max(std::hypot(1.0, element.friction) * element.normal.slope(beyond).high,
                   lateral);
 }
 
