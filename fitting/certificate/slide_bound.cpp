@@ -277,8 +277,7 @@ double min_bound_beyond(const ContactElement& element, double depth) {
   if (element.coupling->slope(beyond).high > 0) return kInfinity;
   const double lateral = element.coupling->greatest_force(depth) * element.lateral.max_slope();
   return kRoundingFactor *
-         std::max(std::hypot(1.0, element.friction) * element.normal.slope(beyond).high,
-                  lateral);
+         std::max(std::hypot(1.0, element.friction) * element.normal.slope(beyond).high, lateral);
 }
 
 using CellBound = double (*)(const ContactElement&, const Range&);
