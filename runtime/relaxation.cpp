@@ -10,6 +10,7 @@ namespace palpate::runtime {
 namespace {
 
 constexpr int kReductions = 8;  // of the memories in one slide before they are lost
+constexpr double kBelow = 1 - 1e-12;  // a reduction ends below its goal in spite of rounding
 constexpr NormalMemory kFresh{0, 0, 0, 0};
 
 /// A force that was reached before is reached again, in spite of rounding. G* is the largest F z -
@@ -52,8 +53,8 @@ NormalMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedRes
   for (int i = 0; i < kReductions; ++i) {
     const NormalMemory there = sums(response, fractions, factor);
     if (there.locked <= now_.locked) return there;
-    // The first guess is exact for a linear response, whose R is quadratic.
-    factor *= std::min(std::sqrt(now_.locked / there.locked), i == 0 ? 1.0 : 0.7);
+    // R of a power law f ~ z^n falls as factor^((n + 1)/n): this is enough for each.
+    factor *= kBelow * now_.locked / there.locked;
   }
   return kFresh;
 }

@@ -240,6 +240,20 @@ TEST(Relaxation, ASlideLeavesTheMemoryBehindOverTheRadiusOfTheTool) {
               -0.3 * tool.seen().force[2], 1e-3);
 }
 
+TEST(Relaxation, WhatASlideToSofterTissueLeavesDoesNotDependOnTheNumberOfSteps) {
+  const auto softer = [](const Vec3& at) { return wall_response(170 / (1 + 60 * at[0]), 120); };
+  std::vector<double> left;
+  for (const int steps : {200, 20000}) {
+    Pressed tool(softer, 0.3, 5e-3);
+    tool.ramp(3e-3, kInstant, 10);
+    tool.hold(1000);
+    tool.slide(0.004, steps, kInstant);
+    left.push_back(tool.seen().relaxed_fraction);
+  }
+  EXPECT_GT(left[0], 0.1);
+  EXPECT_NEAR(left[1], left[0], 0.01);
+}
+
 TEST(Relaxation, WithoutFrictionFreshTissueCostsDepthInsteadOfEnergy) {
   Pressed tool(wall);
   tool.ramp(3e-3, kInstant, 10);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "runtime/palpate.h"
@@ -51,12 +52,15 @@ ModelEnergy model_energy(const Library& library, const runtime::ContactObservati
   const Vec3 r = x - model.contact_point;
   const double depth = dot(r, model.normal);
   const double rho = norm(r - depth * model.normal - model.lateral_offset);
+  const double z = depth - model.offset;
   ModelEnergy energy;
+  energy.depth = z;
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
-    const double z = depth - model.offset;
     const double w = library.kind == ResponseKind::Coupled ? coupling_weight(node.coupling, z) : 1;
-    energy.normal += model.point.natural[l] * curve_energy(node.normal, z);
+    const CurvePoint g = curve_at(node.normal, z);
+    energy.normal += model.point.natural[l] * g.energy;
+    energy.normal_force += model.point.natural[l] * g.force;
     energy.lateral += model.point.natural[l] * w * curve_energy(node.lateral, rho);
   }
   return energy;
@@ -73,36 +77,92 @@ std::vector<double> MemoryTwin::fractions(const runtime::SurfacePoint& p) const 
   return sum;
 }
 
-MemoryTwin::Sums MemoryTwin::sums(const runtime::SurfacePoint& p) const {
+namespace {
+
+/// The interpolated normal response at a point.
+CurvePoint normal_at(const Library& library, const runtime::SurfacePoint& p, double z) {
+  CurvePoint sum;
+  const Triangle& t = library.triangles[static_cast<std::size_t>(p.element)];
+  for (std::size_t l = 0; l < 3; ++l) {
+    const CurvePoint at = curve_at(library.responses[static_cast<std::size_t>(t[l])].normal, z);
+    sum.force += p.natural[l] * at.force;
+    sum.energy += p.natural[l] * at.energy;
+  }
+  return sum;
+}
+
+/// G*(F) = max over z of F z - G(z), J; infinite where g stays below F. By halving and secants
+/// between depths on both sides of g = F.
+double conjugate(const Library& library, const runtime::SurfacePoint& p, double force) {
+  if (!(force > 0)) return 0;
+  double low = 0, high = 1e-3, f_low = 0;
+  CurvePoint at = normal_at(library, p, high);
+  for (; at.force < force; at = normal_at(library, p, high)) {
+    low = high;
+    f_low = at.force;
+    high *= 2;
+    if (high > 1e6) return std::numeric_limits<double>::infinity();
+  }
+  double f_high = at.force, best = std::max(force * high - at.energy, 0.0);
+  for (int i = 0; i < 60 && high - low > 1e-13; ++i) {
+    const double secant = low + (high - low) * (force - f_low) / std::max(f_high - f_low, 1e-300);
+    const double z = i % 3 == 2 ? (low + high) / 2 : secant;
+    at = normal_at(library, p, z);
+    best = std::max(best, force * z - at.energy);
+    if (std::abs(at.force - force) <= 1e-11 * force) break;
+    (at.force < force ? low : high) = z;
+    (at.force < force ? f_low : f_high) = at.force;
+  }
+  return best;
+}
+
+}  // namespace
+
+MemoryTwin::Sums MemoryTwin::sums(const runtime::SurfacePoint& p, double factor) const {
   if (memory_.empty() || p.element < 0) return {};
   const std::vector<double> g = fractions(p);
-  double mean = 0, square = 0;
+  Sums sum;
   for (std::size_t i = 0; i < g.size(); ++i) {
-    mean += g[i] * memory_[i];
-    square += g[i] * memory_[i] * memory_[i];
+    sum.relaxed += g[i] * factor * memory_[i];
+    sum.stored += g[i] * conjugate(library_, p, factor * memory_[i]);
   }
-  return {mean, std::max(square - mean * mean, 0.0) / 2};
+  sum.locked = std::max(sum.stored - conjugate(library_, p, sum.relaxed), 0.0);
+  return sum;
+}
+
+/// V of (R18).
+double MemoryTwin::normal_energy(const Sums& memory, const ModelEnergy& elastic) {
+  if (!(elastic.normal_force > memory.relaxed)) return memory.locked;
+  return elastic.normal - memory.relaxed * elastic.depth + memory.stored;
 }
 
 double MemoryTwin::energy(const runtime::ContactObservation& model, const Vec3& x) const {
   const ModelEnergy elastic = model_energy(library_, model, x);
   if (memory_.empty()) return elastic.normal + elastic.lateral;
-  const Sums now = sums(model.point.element < 0 ? place_ : model.point);
-  const double stretch = std::max(std::sqrt(2 * elastic.normal) - now.relaxed, 0.0);
-  return stretch * stretch / 2 + now.locked + elastic.lateral;
+  return normal_energy(sums(model.point.element < 0 ? place_ : model.point), elastic) +
+         elastic.lateral;
 }
 
-double MemoryTwin::pass(double y, double dt) {
-  const double skin = std::max(y, sums(place_).relaxed);
-  const std::vector<double> g = fractions(place_);
-  double dissipated = 0;
-  for (std::size_t i = 0; i < memory_.size(); ++i) {
-    const double stretch = skin - memory_[i];
-    const double decay = std::exp(-dt / library_.relaxation_times[i]);
-    dissipated += g[i] * stretch * stretch * (1 - decay * decay) / 2;
-    memory_[i] = skin - stretch * decay;
+double MemoryTwin::pass(const ModelEnergy& elastic, double dt) {
+  const Sums before = sums(place_);
+  const double target = std::max(elastic.normal_force, before.relaxed);
+  for (std::size_t i = 0; i < memory_.size(); ++i)
+    memory_[i] = target + (memory_[i] - target) * std::exp(-dt / library_.relaxation_times[i]);
+  return normal_energy(before, elastic) - normal_energy(sums(place_), elastic);
+}
+
+/// What a slide to p leaves of the memories: (R18) must not rise.
+double MemoryTwin::carried(const runtime::SurfacePoint& p, double slid) const {
+  const Sums was = sums(place_);
+  if (slid == 0) return 1;
+  if (!(was.relaxed > 0)) return 0;
+  double factor = std::exp(-slid / library_.tool_radius);
+  for (int i = 0; i < 8; ++i) {
+    const double is = sums(p, factor).locked;
+    if (is <= was.locked) return factor;
+    factor *= (1 - 1e-12) * was.locked / is;
   }
-  return dissipated;
+  return 0;
 }
 
 double MemoryTwin::step(const runtime::ContactObservation& before,
@@ -116,20 +176,17 @@ double MemoryTwin::step(const runtime::ContactObservation& before,
   const bool remembers = sums(place_).relaxed > 0;
   const bool alone = before.point.element < 0 || (after.status & PALPATE_RELEASED) != 0;
   if (alone && remembers) {
-    dissipated = pass(0, dt);
+    dissipated = pass({}, dt);
     dt = 0;
   }
   if (after.point.element < 0) return dissipated;
-  if (remembers) {
-    const double slid = norm(after.contact_point - point_);
-    double factor = std::exp(-slid / library_.tool_radius);
-    const double was = sums(place_).locked, is = sums(after.point).locked;
-    if (is > was) factor *= std::sqrt(was / is);
-    for (double& a : memory_) a *= factor;
+  if (place_.element >= 0) {
+    const double factor = carried(after.point, norm(after.contact_point - point_));
+    for (double& force : memory_) force *= factor;
   }
   place_ = after.point;
   point_ = after.contact_point;
-  return dissipated + pass(std::sqrt(2 * model_energy(library_, after, x).normal), dt);
+  return dissipated + pass(model_energy(library_, after, x), dt);
 }
 
 void MemoryTwin::forget() {

@@ -12,11 +12,12 @@
 
 namespace palpate::test {
 
-/// Energies of the local model that an observation describes, with the tip at x, of tissue without
-/// a memory, J: the stored slopes integrated twice here, knot by knot, without the runtime's own
-/// evaluation.
+/// The local model that an observation describes, with the tip at x, for tissue without a memory:
+/// the stored slopes integrated twice here, knot by knot, without the runtime's own evaluation.
 struct ModelEnergy {
-  double normal = 0, lateral = 0;
+  double normal = 0, lateral = 0;  ///< J
+  double depth = 0;                ///< m
+  double normal_force = 0;         ///< g, N
 };
 ModelEnergy model_energy(const Library& library, const runtime::ContactObservation& model,
                          const Vec3& x);
@@ -31,21 +32,25 @@ class MemoryTwin {
   /// Energy of a local model with the memory as it is, J.
   double energy(const runtime::ContactObservation& model, const Vec3& x) const;
   /// A step of dt (s) that led from one observation to the other, with the tip at x. @return what
-  /// relaxation has at least dissipated, J: sum g_i (y - a_i)^2 (1 - exp(-2 dt/tau_i))/2.
+  /// relaxation has dissipated, J.
   double step(const runtime::ContactObservation& before, const runtime::ContactObservation& after,
               const Vec3& x, double dt);
   void forget();
 
  private:
   struct Sums {
-    double relaxed = 0, locked = 0;
+    double relaxed = 0;  ///< F, N
+    double stored = 0;   ///< K, J
+    double locked = 0;   ///< R, J
   };
   std::vector<double> fractions(const runtime::SurfacePoint& p) const;
-  Sums sums(const runtime::SurfacePoint& p) const;
-  double pass(double y, double dt);
+  Sums sums(const runtime::SurfacePoint& p, double factor = 1) const;
+  static double normal_energy(const Sums& memory, const ModelEnergy& elastic);
+  double carried(const runtime::SurfacePoint& p, double slid) const;
+  double pass(const ModelEnergy& elastic, double dt);
 
   const Library& library_;
-  std::vector<double> memory_;   ///< a_i, sqrt(J)
+  std::vector<double> memory_;   ///< F_i, N
   runtime::SurfacePoint place_;  ///< of the tissue that remembers
   Vec3 point_{};                 ///< the same, m
 };
