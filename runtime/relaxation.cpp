@@ -9,7 +9,7 @@
 namespace palpate::runtime {
 namespace {
 
-constexpr int kReductions = 8;  // of the memories in one slide before they are lost
+constexpr int kReductions = 8;        // of the memories in one slide before they are lost
 constexpr double kBelow = 1 - 1e-12;  // a reduction ends below its goal in spite of rounding
 constexpr NormalMemory kFresh{0, 0, 0, 0};
 

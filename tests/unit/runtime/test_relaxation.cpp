@@ -247,7 +247,7 @@ TEST(Relaxation, WhatASlideToSofterTissueLeavesDoesNotDependOnTheNumberOfSteps) 
     Pressed tool(softer, 0.3, 5e-3);
     tool.ramp(3e-3, kInstant, 10);
     tool.hold(1000);
-    tool.slide(0.004, steps, kInstant);
+    tool.slide(0.002, steps, kInstant);
     left.push_back(tool.seen().relaxed_fraction);
   }
   EXPECT_GT(left[0], 0.1);
