@@ -139,28 +139,27 @@ double MemoryTwin::normal_energy(const Sums& memory, const ModelEnergy& elastic)
 double MemoryTwin::energy(const runtime::ContactObservation& model, const Vec3& x) const {
   const ModelEnergy elastic = model_energy(library_, model, x);
   if (memory_.empty()) return elastic.normal + elastic.lateral;
-  return normal_energy(sums(model.point.element < 0 ? place_ : model.point), elastic) +
-         elastic.lateral;
+  return normal_energy(now_, elastic) + elastic.lateral;
 }
 
 double MemoryTwin::pass(const ModelEnergy& elastic, double dt) {
-  const Sums before = sums(place_);
+  const Sums before = now_;
   const double target = std::max(elastic.normal_force, before.relaxed);
   for (std::size_t i = 0; i < memory_.size(); ++i)
     memory_[i] = target + (memory_[i] - target) * std::exp(-dt / library_.relaxation_times[i]);
-  return normal_energy(before, elastic) - normal_energy(sums(place_), elastic);
+  now_ = sums(place_);
+  return normal_energy(before, elastic) - normal_energy(now_, elastic);
 }
 
 /// What a slide to p leaves of the memories: (R18) must not rise.
 double MemoryTwin::carried(const runtime::SurfacePoint& p, double slid) const {
-  const Sums was = sums(place_);
   if (slid == 0) return 1;
-  if (!(was.relaxed > 0)) return 0;
+  if (!(now_.relaxed > 0)) return 0;
   double factor = std::exp(-slid / library_.tool_radius);
   for (int i = 0; i < 8; ++i) {
     const double is = sums(p, factor).locked;
-    if (is <= was.locked) return factor;
-    factor *= (1 - 1e-12) * was.locked / is;
+    if (is <= now_.locked) return factor;
+    factor *= (1 - 1e-12) * now_.locked / is;
   }
   return 0;
 }
@@ -173,9 +172,8 @@ double MemoryTwin::step(const runtime::ContactObservation& before,
     return 0;
   }
   double dissipated = 0;
-  const bool remembers = sums(place_).relaxed > 0;
   const bool alone = before.point.element < 0 || (after.status & PALPATE_RELEASED) != 0;
-  if (alone && remembers) {
+  if (alone && now_.relaxed > 0) {
     dissipated = pass({}, dt);
     dt = 0;
   }
@@ -184,6 +182,7 @@ double MemoryTwin::step(const runtime::ContactObservation& before,
     const double factor = carried(after.point, norm(after.contact_point - point_));
     for (double& force : memory_) force *= factor;
   }
+  if (place_.element < 0 || after.contact_point != point_) now_ = sums(after.point);
   place_ = after.point;
   point_ = after.contact_point;
   return dissipated + pass(model_energy(library_, after, x), dt);
@@ -191,6 +190,7 @@ double MemoryTwin::step(const runtime::ContactObservation& before,
 
 void MemoryTwin::forget() {
   std::fill(memory_.begin(), memory_.end(), 0.0);
+  now_ = {};
 }
 
 WatchedContact::WatchedContact(const Library& library, const palpate_library& body,

@@ -51,6 +51,7 @@ class MemoryTwin {
 
   const Library& library_;
   std::vector<double> memory_;   ///< F_i, N
+  Sums now_;                     ///< at place_
   runtime::SurfacePoint place_;  ///< of the tissue that remembers
   Vec3 point_{};                 ///< the same, m
 };
