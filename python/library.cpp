@@ -12,6 +12,8 @@
 
 #include "format/guarantee.hpp"
 #include "python/arrays.hpp"
+#include "python/artifacts.hpp"
+#include "python/deformation.hpp"
 #include "python/errors.hpp"
 #include "python/objects.hpp"
 #include "runtime/response_curve.hpp"
@@ -49,7 +51,7 @@ const NodeResponse& response(const LibraryObject& library, std::int64_t vertex) 
   return responses[static_cast<std::size_t>(vertex)];
 }
 
-std::string summary(const LibraryObject& library) {
+std::string library_text(const LibraryObject& library) {
   return "<palpate.Library '" + library.file.name +
          "': " + std::to_string(library.file.positions.size()) + " vertices, " +
          std::to_string(library.file.triangles.size()) + " triangles, " +
@@ -239,6 +241,12 @@ void define_info(py::class_<LibraryObject, Pointer>& library) {
                              "N/m, enforced by default; infinite without a certificate.")
       .def_property_readonly("certificate", of_file(&Library::certificate), "The Certificate.")
       .def_property_readonly(
+          "provenance",
+          [](const py::object& self) {
+            return references(self, self.cast<const LibraryObject&>().file.provenance.steps);
+          },
+          kProvenanceText)
+      .def_property_readonly(
           "certified", [](const LibraryObject& self) { return self.handle.certified; },
           "Whether the library has a certificate.");
 }
@@ -250,6 +258,16 @@ constexpr const char* kLibraryText =
     "which they keep.\n"
     "Raises FileError where the file cannot be opened, FormatError where it is not a valid "
     "library.";
+
+constexpr const char* kStateOfText =
+    "state(*, friction=None, tank_cap=0.005, lipschitz_bound=None, search_rate=0) -> State\n\n"
+    "One tool on this body. friction: coefficient, None: that of the certificate; tank_cap: J, of "
+    "the energy tank;\n"
+    "lipschitz_bound: N/m, at least min_lipschitz_bound, None: that of the library; search_rate: "
+    "Hz, of a thread that\n"
+    "finds triangles, 0: each step searches the whole body, and the forces repeat to the bit.\n"
+    "Raises ArgumentError for a value out of range, and without friction where the library has no "
+    "certificate.";
 
 }  // namespace
 
@@ -263,7 +281,15 @@ void define_library(py::module_& module) {
       .def("response", &response, py::arg("vertex"), py::return_value_policy::reference_internal,
            "response(vertex) -> Response\n\nThe responses of a vertex. Raises ArgumentError where "
            "there is no such vertex.")
-      .def("__repr__", &summary);
+      .def("state", &make_state, py::kw_only(), py::arg("friction") = py::none(),
+           py::arg("tank_cap") = 5e-3, py::arg("lipschitz_bound") = py::none(),
+           py::arg("search_rate") = 0.0, kStateOfText)
+      .def("deformation", &load_deformation, py::arg("path"),
+           "deformation(path) -> Deformation\n\n"
+           "deformation.pdef, which lies beside the library where the case asks for it. Raises "
+           "FileError, FormatError, or\n"
+           "MismatchError where it was made with another library.")
+      .def("__repr__", &library_text);
   define_geometry(library);
   define_info(library);
 }
