@@ -3,7 +3,8 @@
 
     import palpate
 
-    library = palpate.Library("library.h5")
+    palpate.build("liver.toml", "out/liver")               # from a case to library.h5
+    library = palpate.Library("out/liver/library.h5")
     state = library.state()
     force, status = state.step(position, velocity, dt)     # one step of a force loop
     run = state.run(positions, dt=1e-3)                    # a whole trajectory
@@ -12,6 +13,7 @@
 Units are SI: m, m/s, s, N, N/m, J, Hz. Vectors have three components in the frame of the world.
 Failures are exceptions derived from palpate.Error, whose text says where, what is wrong and what to do about it.
 """
+from ._command import Build, build, run_command
 from ._errors import ArgumentError, BusyError, CommandError, Error, FileError, FormatError, MismatchError
 from ._palpate import (Body, Certificate, CurvePath, Curves, Deformation, DeviceCertificate, Library, Observation,
                        ProvenanceStep, Recording, Response, ResponseCurve, Run, SiteCurves, State, Tool, __version__,
@@ -22,6 +24,7 @@ from ._status import Status
 __all__ = [
     "ArgumentError",
     "Body",
+    "Build",
     "BusyError",
     "Certificate",
     "CommandError",
@@ -46,9 +49,11 @@ __all__ = [
     "Status",
     "Tool",
     "__version__",
+    "build",
     "press",
     "read_body",
     "read_curves",
     "read_recording",
     "read_session",
+    "run_command",
 ]

@@ -36,8 +36,13 @@ class BusyError(Error, RuntimeError):
 
 
 class CommandError(Error, RuntimeError):
-    """The palpate command failed; `exit_code` is 1 internal, 2 configuration, 3 geometry, 4 incomplete."""
+    """The palpate command failed, with this message.
+
+    `exit_code`: 1 internal, 2 usage or configuration, 3 geometry, 4 incomplete. `build`: what `palpate.build` made all
+    the same, or None.
+    """
 
     def __init__(self, message="", exit_code=1):
         super().__init__(message)
         self.exit_code = exit_code
+        self.build = None
