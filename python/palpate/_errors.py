@@ -46,3 +46,7 @@ class CommandError(Error, RuntimeError):
         super().__init__(message)
         self.exit_code = exit_code
         self.build = None
+
+
+for _kind in (Error, ArgumentError, FileError, FormatError, MismatchError, BusyError, CommandError):
+    _kind.__module__ = "palpate"  # as a traceback names it
