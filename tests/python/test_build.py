@@ -2,9 +2,13 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """A case built from Python, and what is made of it: presses against the curves, a session run again, the skin.
 
-Usage: test_build.py PALPATE PIPELINE_FOLDER
+Usage: test_build.py PALPATE PIPELINE_FOLDER PAGE
 """
+import contextlib
+import inspect
+import io
 import os
+import re
 import sys
 import tempfile
 import unittest
@@ -15,6 +19,7 @@ import numpy as np
 import palpate
 
 PALPATE = None
+PAGE = None
 
 
 class Case(unittest.TestCase):
@@ -91,6 +96,29 @@ class Case(unittest.TestCase):
                              np.ascontiguousarray(getattr(recording, name)).tobytes(), name)
         self.assertGreater(np.abs(run.force).max(), 0.01)
         self.assertTrue(np.any(run.status & palpate.Status.SLIDING))
+
+    def test_the_programs_of_the_page_run(self):
+        text = PAGE.read_text(encoding="utf-8")
+        programs = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+        self.assertGreater(len(programs), 5)
+        palpate.run_command("simulate", self.case, "--out", self.root / "out")
+        site = next(s.vertex for s in self.curves.sites if s.vertex in self.library.triangles)
+        names, said = {"draw": lambda x, triangles: None}, io.StringIO()
+        here = os.getcwd()
+        self.addCleanup(os.chdir, here)
+        os.chdir(self.root)
+        with contextlib.redirect_stdout(said):
+            for program in programs:
+                for shown, used in (("data/cases/liver.toml", self.case), ("out/liver", self.root / "out"), ("564", site),
+                                    ("my.toml", self.case)):
+                    program = program.replace(shown, str(used))
+                exec(compile(program, PAGE.name, "exec"), names)  # noqa: S102: our own page
+        self.assertIn("\nTrue\n", said.getvalue())
+        self.assertIn("16 of 16", said.getvalue())
+        # A table names every exception.
+        for name in palpate.__all__:
+            if inspect.isclass(getattr(palpate, name)) and issubclass(getattr(palpate, name), palpate.Error):
+                self.assertIn(f"`{'palpate.' * (name == 'Error')}{name}`", text)
 
     def test_the_skin_goes_where_the_tip_is(self):
         skin = self.library.deformation(self.built.deformation)
@@ -182,8 +210,8 @@ class Command(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PALPATE, pipeline = sys.argv[1:3]
-    del sys.argv[1:3]
+    PALPATE, pipeline, PAGE = sys.argv[1], sys.argv[2], Path(sys.argv[3])
+    del sys.argv[1:4]
     sys.path.insert(0, pipeline)
     from bodies import write_case
     unittest.main()

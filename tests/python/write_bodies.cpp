@@ -35,6 +35,9 @@ int main(int argc, char** argv) {
   write_library(folder / "uncertified.h5", plate);
   write_library(folder / "plate.h5", certified(plate));
   write_flat_library(folder / "plate.plib", certified(plate));
+  const Library stiffer =
+      test::plate(8, 0.08, [](const Vec3&) { return test::wall_response(187, 132); });
+  write_library(folder / "stiffer.h5", certified(stiffer));
   const Library ball = test::bumpy_sphere(2, 0.03, 0.05, test::uneven);
   write_library(folder / "ball.h5", certified(ball));
   write_library(folder / "coupled.h5", certified(test::coupled(ball)));
