@@ -10,7 +10,7 @@ import sys
 from source_check import main
 
 STAGES = ("format", "mesher", "fem", "fitting", "runtime", "app")
-ROOMS = STAGES + ("tests", "bench")
+ROOMS = STAGES + ("python", "tests", "bench")
 
 # What the sources of a room or of a folder may include outside it. A folder that is not listed follows the
 # rules of the folder or room around it. Tests and benchmarks may include everything.
@@ -49,6 +49,7 @@ MAY_INCLUDE = {
     "runtime": {"format"},
     "runtime/devices": {"format", "runtime"},
     "app": set(STAGES),
+    "python": {"format", "runtime"},
 }
 
 # In these, no header and source of one name may include itself through others.
@@ -71,6 +72,7 @@ LIBRARIES = (
     (r"nlohmann/", "nlohmann-json"),
     (r"pugi(xml|config)\.hpp", "pugixml"),
     (r"zlib\.h", "zlib"),
+    (r"pybind11/", "pybind11"),
     (r"fmt/", "fmt"),
     (r"spdlog/", "spdlog"),
 )
@@ -86,6 +88,7 @@ MAY_USE = {
     "fitting/measurement": {"Eigen", "Ceres", "Boost.Math"} | TEXT,
     "runtime": {"readerwriterqueue"},
     "app": {"CLI11", "toml++", "nlohmann-json"} | TEXT,
+    "python": {"pybind11"},
 }
 
 # A file that sees these takes a minute to compile: no header may carry them out of its room.
@@ -196,10 +199,12 @@ SAMPLES = {
     "fitting/measurement/calibrate/good.cpp": '#include "fem/laws/law_table.hpp"\n#include <ceres/ceres.h>\n',
     "fem/solid/good.cpp": '#include "fem/mesh/good.hpp"\n#include "fem/solid/good.hpp"\n',
     "app/good.cpp": '#include "fem/campaign/campaign.hpp"\n',
+    "python/good.cpp": '#include <pybind11/numpy.h>\n#include "runtime/palpate.h"\n',
     # Rooms
     "fem/bad.cpp": '#include <vector>\n#include "mesher/mesher.hpp"\n',
     "fitting/bad.cpp": ' # include "fem/campaign/campaign.hpp"\n',
     "app/bad.cpp": '#include "mesher/inner.hpp"\n',
+    "python/bad.cpp": '#include "app/good.hpp"\n',
     # Folders of a room
     "fem/laws/bad.hpp": '#include "fem/solid/element.hpp"\n',
     "fem/solid/bad.hpp": '#include "fem/solve/newton.hpp"\n',
@@ -219,7 +224,7 @@ SAMPLES = {
 FAULTY = ["app/bad.cpp:1", "fem/bad.cpp:2", "fem/laws/bad.hpp:1", "fem/solid/bad.hpp:1", "fitting/bad.cpp:1",
           "fitting/certificate/bad.cpp:1", "fitting/measurement/bad.cpp:1",
           "fitting/measurement/compare/bad.cpp:1", "fitting/measurement/records/bad.cpp:1", "format/bad.cpp:1",
-          "mesher/one", "mesher/other", "runtime/bad.cpp:1", "runtime/bad.hpp:1"]
+          "mesher/one", "mesher/other", "python/bad.cpp:1", "runtime/bad.cpp:1", "runtime/bad.hpp:1"]
 
 if __name__ == "__main__":
     sys.exit(main(sys.argv[1:], faults, SAMPLES, FAULTY))

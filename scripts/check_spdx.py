@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""Each source file states its licence: Apache-2.0 in format/, runtime/ and examples/, AGPL elsewhere.
+"""Each source file states its licence: Apache-2.0 in format/, runtime/, python/ and examples/, AGPL elsewhere.
 
 A file of somebody else stands unchanged in a folder vendor/, with its licence in FILE.license beside it.
 
@@ -12,8 +12,8 @@ from pathlib import Path
 
 from source_check import main
 
-APACHE_ROOMS = ("format", "runtime", "examples")
-SUFFIXES = {".hpp", ".h", ".cpp", ".c", ".cmake", ".py", ".js", ".mjs", ".css", ".html", ".sh", ".in"}
+APACHE_ROOMS = ("format", "runtime", "python", "examples")
+SUFFIXES = {".hpp", ".h", ".cpp", ".c", ".cmake", ".py", ".pyi", ".js", ".mjs", ".css", ".html", ".sh", ".in"}
 SKIPPED = {"build", "out", "node_modules", "install", ".git"}
 TAG = "SPDX-License-Identifier: "
 LINES_SEARCHED = 3  # a script has its interpreter on the first line

@@ -9,7 +9,7 @@ import sys
 
 from source_check import main
 
-ROOMS = ("format", "mesher", "fem", "fitting", "runtime", "app", "tests", "bench", "examples")
+ROOMS = ("format", "mesher", "fem", "fitting", "runtime", "app", "python", "tests", "bench", "examples")
 SOURCES = (".hpp", ".h", ".cpp", ".c")
 MAX_LINES = 60  # from the line of the opening brace to that of the closing one
 

@@ -13,7 +13,7 @@ import sys
 
 from source_check import main
 
-ROOMS = ("format", "mesher", "fem", "fitting", "runtime", "app")
+ROOMS = ("format", "mesher", "fem", "fitting", "runtime", "app", "python")
 LIST = "scripts/tested_elsewhere.txt"
 
 
