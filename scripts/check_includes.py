@@ -45,6 +45,8 @@ MAY_INCLUDE = {
     "fitting/measurement/records": {"format", "fitting/measurement"},
     "fitting/measurement/calibrate": {"format", "fem/laws", "fitting/measurement", "fitting/measurement/records"},
     "fitting/measurement/identify": {"format", "fitting/measurement"},
+    "fitting/measurement/relaxation": {"format", "fitting/measurement", "fitting/measurement/calibrate",
+                                       "fitting/measurement/records"},
     "fitting/measurement/compare": {"format", "runtime", "fitting/measurement", "fitting/measurement/records"},
     "runtime": {"format"},
     "runtime/devices": {"format", "runtime"},
