@@ -39,6 +39,8 @@ int calibrate_tests(const CalibrateOptions& options) {
   const FitFile file = read_fit_file(options.fit_file);
   const calibrate::HomogeneousFit fit = calibrate::fit_homogeneous(file.tests, file.settings);
   say("calibrate: {} on {} tests of {}", file.settings.law, file.tests.size(), file.name);
+  for (std::size_t i = 0; i < file.tests.size(); ++i)
+    say("  {}: {}", file.tests[i].name, file.statements[i]);
   say_calibration(fit.calibration, file.settings.confidence);
   say_homogeneous(fit);
   if (options.out.empty()) return kExitDone;
@@ -49,6 +51,7 @@ int calibrate_tests(const CalibrateOptions& options) {
                   {"name", file.name},
                   {"source", file.source},
                   {"licence", file.licence},
+                  {"conversions", file.statements},
                   {"creator", creator_text()},
                   {"input_sha256", inputs_of(files)}};
   account.update(homogeneous_account(fit, file.settings, file.tests));

@@ -29,6 +29,8 @@ int import_records(const ImportOptions& options) {
   prepare_output(out);
   write_curves(out / "curves.h5", result.curves);
   write_file_crash_safely(out / "import.json", result.account.dump(2) + "\n");
+  if (result.account.contains("conversion"))
+    say("  {}", result.account["conversion"].get<std::string>());
   for (const auto& site : result.account["sites"]) {
     say("  site {}: {} repeats to {}, {} +- {}, contact point +- {}", site["vertex"].get<int>(),
         site["repeats"].get<int>(), length_text(number_of(site["depth_m"])),

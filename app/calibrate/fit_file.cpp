@@ -43,6 +43,8 @@ void describe_columns(V& v, TestSection& s) {
   v.text(s.deformation_sign, {"deformation_sign", "of strain, travel or shear"},
          {"as recorded", "reversed"});
   v.text(s.stress_sign, {"stress_sign", "of stress or force"}, {"as recorded", "reversed"});
+  v.text(s.load, {"load", "of the specimen, whatever the signs of the record"},
+         {"tension", "compression"});
   v.text(s.zero, {"zero", "where the deformation is zero"}, {"as recorded", "first row"});
 }
 
@@ -52,14 +54,7 @@ void describe(V& v, TestSection& s) {
   v.text(s.mode, {"mode", "deformation of the test", kRequired},
          {"uniaxial", "equibiaxial", "pure shear", "simple shear"});
   describe_columns(v, s);
-  v.quantity(s.gauge_length, Dimension::Length,
-             {"gauge_length", "length that the travel deforms; height of a shear specimen",
-              kOptional, kPositive});
-  v.text(s.area, {"area", "of the section, with its unit"});
-  v.quantity(s.width, Dimension::Length, {"width", "of the section", kOptional, kPositive});
-  v.quantity(s.thickness, Dimension::Length, {"thickness", "of the section", kOptional, kPositive});
-  v.quantity(s.diameter, Dimension::Length,
-             {"diameter", "of a round section", kOptional, kPositive});
+  describe_specimen(v, s.size);
   v.number(s.weight, {"weight", "of the residuals of this test", kOptional, kPositive});
   v.flag(s.offset,
          {"offset", "whether a constant stress, an error of the zero, is fitted as well"});
@@ -164,7 +159,7 @@ FitFile read_fit_file(const std::filesystem::path& path) {
   TableReader reader(table, "the fit file", "", sources);
   describe(reader, document);
   reader.finish();
-  FitFile fit{document.name, document.source, document.licence, {}, {}, {}};
+  FitFile fit{document.name, document.source, document.licence, {}, {}, {}, {}};
   fit.settings.law = calibrate::IncompressibleLaw(document.law.law).name();
   fit.settings.poisson = document.law.poisson;
   fit.settings.weighting = weighting_of(document.law.weighting);
@@ -180,8 +175,10 @@ FitFile read_fit_file(const std::filesystem::path& path) {
     const TestSection& test = document.tests[i];
     for (const std::string& file : {test.file, test.stress_file})
       if (!file.empty()) fit.files.push_back(path.parent_path() / file);
-    fit.tests.push_back(
-        read_test(test, path.parent_path(), sources.where(fmt::format("test[{}].", i))));
+    SpecimenTest specimen =
+        read_test(test, path.parent_path(), sources.where(fmt::format("test[{}].", i)));
+    fit.tests.push_back(std::move(specimen.test));
+    fit.statements.push_back(std::move(specimen.statement));
   }
   return fit;
 }

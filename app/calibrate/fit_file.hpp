@@ -14,6 +14,7 @@ struct FitFile {
   std::string name, source, licence;
   calibrate::HomogeneousSettings settings;
   std::vector<calibrate::HomogeneousTest> tests;
+  std::vector<std::string> statements;       ///< how each test follows from its record
   std::vector<std::filesystem::path> files;  ///< records of the tests
 };
 

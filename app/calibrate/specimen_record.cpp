@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/calibrate/specimen_record.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <numbers>
 #include <optional>
 
 #include "fitting/measurement/records/csv_table.hpp"
 #include "fitting/measurement/records/csv_text.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::app {
 namespace {
@@ -25,38 +27,12 @@ calibrate::Mode mode_of(const std::string& text) {
   return calibrate::Mode::SimpleShear;
 }
 
-/// "120 mm^2" in m^2.
-double area_of(const std::string& text, const std::string& where) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  std::string unit(end);
-  unit.erase(0, std::min(unit.find_first_not_of(' '), unit.size()));
-  if (end != text.c_str() && value > 0 && std::isfinite(value) && unit.ends_with("^2")) {
-    const auto length = measured::unit_in_si(unit.substr(0, unit.size() - 2), Dimension::Length);
-    if (length) return value * *length * *length;
-  }
-  refuse(where, "'" + text + "' is not an area with its unit", "write for example \"120 mm^2\"");
-}
-
-/// Section of the specimen, m^2.
-double section_area(const TestSection& s, const std::string& where) {
-  const bool rectangle = std::isfinite(s.width) && std::isfinite(s.thickness);
-  const int given =
-      (s.area.empty() ? 0 : 1) + (rectangle ? 1 : 0) + (std::isfinite(s.diameter) ? 1 : 0);
-  if (given != 1)
-    refuse(where, "a force needs the section of the specimen, once",
-           "give area, or width and thickness, or diameter");
-  if (!s.area.empty()) return area_of(s.area, where);
-  if (rectangle) return s.width * s.thickness;
-  return std::numbers::pi / 4 * s.diameter * s.diameter;
-}
-
 void check_columns(const TestSection& s, const std::string& where) {
   if (s.deformation.empty() == s.displacement.empty())
     refuse(where, "the columns are not clear", "name either deformation or displacement");
   if (s.stress.empty() == s.force.empty())
     refuse(where, "the columns are not clear", "name either stress or force");
-  if (!s.displacement.empty() && !std::isfinite(s.gauge_length))
+  if (!s.displacement.empty() && !std::isfinite(s.size.gauge_length))
     refuse(where, "a travel needs the length that it deforms", "give gauge_length");
   const bool shear = s.mode == "simple shear";
   if (!s.deformation_is.empty() && (shear != (s.deformation_is == "shear")))
@@ -142,24 +118,95 @@ void keep_rows(const TestSection& s, const std::string& where, Columns& c) {
   keep(c, first - 1, last - 1);
 }
 
+/// What the signs of the record are multiplied by.
+struct SpecimenSigns {
+  double deformation = 1, stress = 1;
+};
+
+bool is_stretch(const TestSection& s) {
+  return s.displacement.empty() && s.mode != "simple shear" &&
+         (s.deformation_is.empty() || s.deformation_is == "stretch");
+}
+
+/// The value of the column where the deformation is zero.
+double zero_of(const TestSection& s, const std::vector<double>& x) {
+  const double rest = is_stretch(s) ? 1 : 0;
+  return s.zero == "first row" ? x.front() : rest;
+}
+
+double farthest(const std::vector<double>& values, double from) {
+  double far = 0;
+  for (const double value : values)
+    if (std::abs(value - from) > std::abs(far)) far = value - from;
+  return far;
+}
+
+/// A load is on one side of rest: what reaches farther to the other than this part is another one.
+void check_one_side(const std::vector<double>& x, double zero, double far,
+                    const std::string& where) {
+  constexpr double kOtherSide = 0.25;
+  for (const double value : x)
+    if ((value - zero) * far < 0 && std::abs(value - zero) > kOtherSide * std::abs(far))
+      refuse(where, "the record goes to both sides of rest, and `load` says one",
+             "give deformation_sign and stress_sign, or rows of one load");
+}
+
+SpecimenSigns signs_of(const TestSection& s, const Columns& c, const std::string& where) {
+  if (s.load.empty())
+    return {s.deformation_sign == "reversed" ? -1.0 : 1.0,
+            s.stress_sign == "reversed" ? -1.0 : 1.0};
+  if (!s.deformation_sign.empty() || !s.stress_sign.empty())
+    refuse(where, "both a load and signs are given", "give `load`, or the signs");
+  if (s.mode == "simple shear")
+    refuse(where, "simple shear is neither tension nor compression", "leave `load` out");
+  const double zero = zero_of(s, c.deformation);
+  const double far = farthest(c.deformation, zero);
+  check_one_side(c.deformation, zero, far, where);
+  const double wanted = s.load == "tension" ? 1 : -1;
+  const SpecimenSigns signs{far * wanted < 0 ? -1.0 : 1.0,
+                            farthest(c.stress, 0) * wanted < 0 ? -1.0 : 1.0};
+  if (is_stretch(s) && signs.deformation < 0)
+    refuse(where, fmt::format("stretches that reach {:.4g} are no {}", 1 + far, s.load),
+           "correct `load`; a column that counts strain needs deformation_is = \"strain\"");
+  return signs;
+}
+
 /// Stretches, or amounts of shear, from what the record has.
-void deform(const TestSection& s, double rest, std::vector<double>& x) {
-  const double sign = s.deformation_sign == "reversed" ? -1 : 1;
-  const bool travel = !s.displacement.empty();
-  const bool is_stretch =
-      !travel && rest == 1 && (s.deformation_is.empty() || s.deformation_is == "stretch");
-  const double zero = s.zero == "first row" ? x.front() - (is_stretch ? 1 : 0) : 0;
+void deform(const TestSection& s, double rest, double sign, std::vector<double>& x) {
+  const double zero = zero_of(s, x);
   for (double& value : x) {
-    value -= zero;
-    if (travel)
-      value = rest + sign * value / s.gauge_length;
-    else if (is_stretch)
-      value = 1 + sign * (value - 1);
+    const double e = sign * (value - zero);
+    if (!s.displacement.empty())
+      value = rest + e / s.size.gauge_length;
     else if (s.deformation_is == "log strain")
-      value = std::exp(sign * value);
+      value = std::exp(e);
     else
-      value = rest + sign * value;
+      value = rest + e;
   }
+}
+
+/// How deformation and stress follow from the columns.
+std::string statement_of(const TestSection& s, const SpecimenSigns& signs, double area) {
+  const bool shear = s.mode == "simple shear";
+  const std::string name = s.displacement.empty() ? s.deformation : s.displacement;
+  const std::string shifted = s.zero == "first row" ? "(" + name + " - its first)" : name;
+  const char* sign = signs.deformation < 0 ? "-" : "+";
+  std::string text = shear ? "shear = " : "stretch = ";
+  const std::string lead = shear ? (signs.deformation < 0 ? "-" : "") : fmt::format("1 {} ", sign);
+  if (!s.displacement.empty())
+    text += fmt::format("{}{}/({})", lead, shifted, length_text(s.size.gauge_length));
+  else if (s.deformation_is == "log strain")
+    text += fmt::format("exp({}{})", signs.deformation < 0 ? "-" : "", shifted);
+  else if (is_stretch(s) && s.zero != "first row" && signs.deformation > 0)
+    text += name;
+  else
+    text += lead + (is_stretch(s) && s.zero != "first row" ? "(" + name + " - 1)" : shifted);
+  const char* minus = signs.stress < 0 ? "-" : "";
+  if (!s.force.empty())
+    return text + fmt::format(", nominal stress = {}{}/({})", minus, s.force, area_text(area));
+  if (s.measure == "cauchy")
+    return text + fmt::format(", Cauchy stress = {}{}, converted to nominal", minus, s.stress);
+  return text + fmt::format(", nominal stress = {}{}", minus, s.stress);
 }
 
 void keep_branch(const TestSection& s, double rest, const std::string& where, Columns& c) {
@@ -208,31 +255,33 @@ std::vector<Branch> branches_of(const std::vector<double>& deformation, double r
   return branches;
 }
 
-calibrate::HomogeneousTest read_test(const TestSection& s, const std::filesystem::path& folder,
-                                     const std::string& where) {
+SpecimenTest read_test(const TestSection& s, const std::filesystem::path& folder,
+                       const std::string& where) {
   check_columns(s, where);
-  const double area = s.force.empty() ? 1 : section_area(s, where);
+  const double area = s.force.empty() ? 1 : section_area(s.size, where);
   Columns c = read_columns(s, folder, where);
   keep_rows(s, where, c);
-  calibrate::HomogeneousTest test;
+  SpecimenTest specimen;
+  calibrate::HomogeneousTest& test = specimen.test;
   test.name = s.file;
   test.mode = mode_of(s.mode);
   test.weight = s.weight;
   test.offset = s.offset;
   const double rest = calibrate::rest_of(test.mode);
-  deform(s, rest, c.deformation);
+  const SpecimenSigns signs = signs_of(s, c, where);
+  specimen.statement = statement_of(s, signs, area);
+  deform(s, rest, signs.deformation, c.deformation);
   keep_branch(s, rest, where, c);
   test.deformation = c.deformation;
   test.uncertainty = c.uncertainty;
-  const double sign = s.stress_sign == "reversed" ? -1 : 1;
   for (std::size_t i = 0; i < c.stress.size(); ++i) {
     const double ratio = s.measure == "cauchy" && s.force.empty()
                              ? calibrate::cauchy_over_nominal(test.mode, test.deformation[i])
                              : 1;
-    test.nominal.push_back(sign * c.stress[i] / (area * ratio));
+    test.nominal.push_back(signs.stress * c.stress[i] / (area * ratio));
     if (!test.uncertainty.empty()) test.uncertainty[i] /= area * ratio;
   }
-  return test;
+  return specimen;
 }
 
 }  // namespace palpate::app

@@ -52,6 +52,7 @@ class Importer {
     Import result;
     result.curves = curves();
     account_["sites"] = sites_account(result.curves);
+    if (const std::string text = conversion(); !text.empty()) account_["conversion"] = text;
     account_["records"] = records_;
     account_["warnings"] = warnings_;
     result.account = account_;
@@ -64,9 +65,11 @@ class Importer {
   std::vector<double> column(const m::CsvTable& table, const std::string& name,
                              Dimension dimension) const {
     const ColumnsSection& c = s_.columns;
-    const std::string& unit = dimension == Dimension::Time     ? c.time_unit
-                              : dimension == Dimension::Length ? c.length_unit
-                                                               : c.force_unit;
+    const std::string& unit = dimension == Dimension::Time       ? c.time_unit
+                              : dimension == Dimension::Length   ? c.length_unit
+                              : dimension == Dimension::Ratio    ? c.strain_unit
+                              : dimension == Dimension::Pressure ? c.stress_unit
+                                                                 : c.force_unit;
     if (name.empty()) return {};
     return m::column_in_si(table, name, dimension, unit);
   }
@@ -125,13 +128,54 @@ class Importer {
     return press.vertex;
   }
 
+  /// The travel, or the strain times the length by which the machine had divided it.
+  std::vector<double> displacement_of(const m::CsvTable& table) const {
+    if (s_.columns.strain.empty()) return column(table, s_.columns.displacement, Dimension::Length);
+    return scaled(column(table, s_.columns.strain, Dimension::Ratio), s_.machine.size.gauge_length);
+  }
+
+  std::vector<double> force_of(const m::CsvTable& table) const {
+    if (s_.columns.stress.empty()) return column(table, s_.columns.force, Dimension::Force);
+    return scaled(column(table, s_.columns.stress, Dimension::Pressure),
+                  section_area(s_.machine.size, sidecar_file_.string()));
+  }
+
+  static std::vector<double> scaled(std::vector<double> values, double factor) {
+    for (double& value : values) value *= factor;
+    return values;
+  }
+
+  /// Signs that are found in the record, or those that the sidecar states.
+  m::Signs oriented(m::PressRecord& record) const {
+    const std::string &of_displacement = s_.columns.displacement_sign,
+                      &of_force = s_.columns.force_sign;
+    m::PressRecord turned = record;
+    m::Signs signs = m::orient(turned);
+    if (of_displacement != "found") signs.displacement = of_displacement == "reversed" ? -1 : 1;
+    if (of_force != "found") signs.force = of_force == "reversed" ? -1 : 1;
+    record.displacement = scaled(std::move(record.displacement), signs.displacement);
+    record.force = scaled(std::move(record.force), signs.force);
+    return signs;
+  }
+
+  /// How the columns became displacement and force, where they are not those.
+  std::string conversion() const {
+    std::string text;
+    if (!s_.columns.strain.empty())
+      text = fmt::format("displacement = '{}' x {}", s_.columns.strain,
+                         length_text(s_.machine.size.gauge_length));
+    if (!s_.columns.stress.empty())
+      text += fmt::format("{}force = '{}' x {}", text.empty() ? "" : ", ", s_.columns.stress,
+                          area_text(section_area(s_.machine.size, sidecar_file_.string())));
+    return text;
+  }
+
   void read_press(const PressFileSection& press) {
     const fs::path file = path_of(press.file);
     const m::CsvTable table = m::read_csv(file, declared_, press.table);
     m::PressRecord record{file.string(), column(table, s_.columns.time, Dimension::Time),
-                          column(table, s_.columns.displacement, Dimension::Length),
-                          column(table, s_.columns.force, Dimension::Force)};
-    const m::Signs signs = m::orient(record);
+                          displacement_of(table), force_of(table)};
+    const m::Signs signs = oriented(record);
     double distance = 0;
     const int vertex = vertex_of(press, distance);
     m::PressSettings settings = press_settings(press.cycle);

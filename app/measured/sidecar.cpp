@@ -33,6 +33,7 @@ void describe(V& v, MachineSection& s) {
   v.number(s.force_calibration,
            {"force_calibration", "relative standard uncertainty of the load cell", kOptional,
             kFraction});
+  describe_specimen(v, s.size);
 }
 
 template <class V>
@@ -40,6 +41,8 @@ void describe(V& v, ColumnsSection& s) {
   v.text(s.time, {"time", "name of the column"});
   v.text(s.displacement, {"displacement", "name of the column"});
   v.text(s.force, {"force", "name of the column"});
+  v.text(s.strain, {"strain", "name of the column, instead of the displacement"});
+  v.text(s.stress, {"stress", "name of the column, instead of the force"});
   v.text(s.x, {"x", "name of the column"});
   v.text(s.y, {"y", "name of the column"});
   v.text(s.z, {"z", "name of the column"});
@@ -49,6 +52,15 @@ void describe(V& v, ColumnsSection& s) {
   v.text(s.time_unit, {"time_unit", "where the file gives none"});
   v.text(s.length_unit, {"length_unit", "where the file gives none"});
   v.text(s.force_unit, {"force_unit", "where the file gives none"});
+  v.text(s.strain_unit, {"strain_unit", "where the file gives none"});
+  v.text(s.stress_unit, {"stress_unit", "where the file gives none"});
+  v.text(s.load, {"load", "of the records"}, {"compression", "tension"});
+  v.text(s.displacement_sign,
+         {"displacement_sign", "as recorded: it grows into the body; found: by the largest force"},
+         {"found", "as recorded", "reversed"});
+  v.text(s.force_sign,
+         {"force_sign", "as recorded: positive in compression; found: of the largest force"},
+         {"found", "as recorded", "reversed"});
 }
 
 template <class V>
@@ -152,6 +164,26 @@ void describe(V& v, Sidecar& s) {
 
 namespace {
 
+/// Strain and stress are those that the machine made of travel and force, by the sizes it was told.
+void check_converted(const Sidecar& s, const SourceMap& sources) {
+  const ColumnsSection& c = s.columns;
+  const std::string where = sources.where("columns");
+  if (!c.strain.empty() && !c.displacement.empty())
+    refuse(where, "both strain and displacement are named", "name the one that was measured");
+  if (!c.stress.empty() && !c.force.empty())
+    refuse(where, "both stress and force are named", "name the one that was measured");
+  if (c.strain.empty() == std::isfinite(s.machine.size.gauge_length))
+    refuse(where,
+           c.strain.empty() ? "a gauge length is given, and no column is a strain"
+                            : "a strain needs the length by which the machine divided the travel",
+           "give columns.strain together with machine.gauge_length");
+  if (!c.stress.empty())
+    section_area(s.machine.size, sources.where("machine"));
+  else if (has_section_keys(s.machine.size))
+    refuse(where, "the section of a specimen is given, and no column is a stress",
+           "give columns.stress together with machine.area, or leave the section out");
+}
+
 void check_columns(const Sidecar& s, const SourceMap& sources) {
   const ColumnsSection& c = s.columns;
   const auto need = [&](const std::string& value, const char* key, const char* what) {
@@ -159,9 +191,18 @@ void check_columns(const Sidecar& s, const SourceMap& sources) {
     refuse(sources.where("columns"), fmt::format("key 'columns.{}' is missing", key),
            fmt::format("name the column of the {}", what));
   };
+  if (c.load == "tension")
+    refuse(sources.where("columns.load"),
+           "a pull is no press: a library holds the forces of a tool "
+           "that touches the body from outside",
+           "give specimens in tension to `palpate calibrate tests`");
+  if (!s.robot_logs.empty() && (c.displacement_sign != "found" || c.force_sign != "found"))
+    refuse(sources.where("columns"), "signs are stated, and a robot log has three components",
+           "give placement.force_is for a robot log");
+  check_converted(s, sources);
   if (!s.presses.empty()) {
-    need(c.displacement, "displacement", "displacement");
-    need(c.force, "force", "force");
+    if (c.strain.empty()) need(c.displacement, "displacement", "displacement, or 'strain'");
+    if (c.stress.empty()) need(c.force, "force", "force, or 'stress'");
   }
   if (s.robot_logs.empty()) return;
   for (const auto& [value, key] : {std::pair{&c.x, "x"}, {&c.y, "y"}, {&c.z, "z"}}) {

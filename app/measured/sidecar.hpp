@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "app/measured/specimen_size.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate::app {
@@ -25,12 +26,16 @@ struct MachineSection {
   double compliance = 0;              ///< m/N
   double compliance_uncertainty = 0;  ///< m/N
   double force_calibration = 0;       ///< relative
+  SpecimenSize size;                  ///< by which it made strain and stress of travel and force
 };
 
 struct ColumnsSection {
   std::string time, displacement, force;  ///< names; time may be empty
+  std::string strain, stress;             ///< instead of displacement and force
   std::string x, y, z, fx, fy, fz;        ///< of a robot log
-  std::string time_unit, length_unit, force_unit;
+  std::string time_unit, length_unit, force_unit, strain_unit, stress_unit;
+  std::string load = "compression";  ///< or "tension", which no press is
+  std::string displacement_sign = "found", force_sign = "found";
 };
 
 struct DeclaredColumnSection {

@@ -30,7 +30,9 @@ class SpecimenRecords : public testing::Test {
         "fit.toml",
         "name = \"a\"\nsource = \"b\"\nlicence = \"c\"\n[fit]\nlaw = \"neo-hookean\"\n[[test]]\n" +
             keys);
-    return read_fit_file(folder_ / "fit.toml").tests.at(0);
+    const FitFile file = read_fit_file(folder_ / "fit.toml");
+    statement_ = file.statements.at(0);
+    return file.tests.at(0);
   }
   std::string refusal(const std::string& keys) const {
     try {
@@ -42,6 +44,7 @@ class SpecimenRecords : public testing::Test {
   }
 
   samples::TemporaryFolder folder_;
+  mutable std::string statement_;
 };
 
 /// Published tables: bare numbers, deformation and stress in a file each.
@@ -104,6 +107,36 @@ TEST_F(SpecimenRecords, HaveTravelAndForceOfASpecimen) {
   EXPECT_THAT(refusal("file = \"pull.csv\"\nmode = \"uniaxial\"\ndisplacement = \"x\"\n"
                       "force = \"F\"\ngauge_length = \"2 cm\"\narea = \"3 mm^2\"\nlast_row = 9\n"),
               HasSubstr("5 rows of numbers, not 1 to 9"));
+}
+
+/// Tension that a machine counts downwards, and compression that it counts upwards.
+TEST_F(SpecimenRecords, AreOfTheLoadThatIsStated) {
+  write("down.csv", "x (mm),F (mN)\n0,0\n-1,-2\n-2,-4\n-3,-6\n");
+  const std::string keys =
+      "file = \"down.csv\"\nmode = \"uniaxial\"\ndisplacement = \"x\"\nforce = \"F\"\n"
+      "gauge_length = \"20 mm\"\narea = \"10 mm^2\"\n";
+  EXPECT_NEAR(read(keys).deformation[3], 0.85, 1e-12);  // without a load, as recorded
+  const auto pull = read(keys + "load = \"tension\"\n");
+  EXPECT_NEAR(pull.deformation[3], 1.15, 1e-12);
+  EXPECT_NEAR(pull.nominal[3], 600, 1e-9);
+  write("down.csv", "x (mm),F (mN)\n0,0\n1,2\n2,4\n3,6\n");
+  const auto press = read(keys + "load = \"compression\"\n");
+  EXPECT_NEAR(press.deformation[3], 0.85, 1e-12);
+  EXPECT_NEAR(press.nominal[3], -600, 1e-9);
+  EXPECT_EQ(statement_, "stretch = 1 - x/(20.0 mm), nominal stress = -F/(10 mm^2)");
+  EXPECT_THAT(refusal(keys + "load = \"tension\"\nstress_sign = \"reversed\"\n"),
+              HasSubstr("both a load and signs"));
+  write("down.csv", "x (mm),F (mN)\n-2,-4\n0,0\n2,4\n3,6\n");
+  EXPECT_THAT(refusal(keys + "load = \"tension\"\n"), HasSubstr("both sides of rest"));
+  write("l.csv", "l (1),P (Pa)\n1,0\n1.1,20\n1.2,40\n");
+  const std::string stretch =
+      "file = \"l.csv\"\nmode = \"uniaxial\"\ndeformation = \"l\"\nstress = \"P\"\n";
+  EXPECT_THAT(refusal(stretch + "load = \"compression\"\n"),
+              HasSubstr("stretches that reach 1.2 are no compression"));
+  EXPECT_EQ(refusal(stretch + "load = \"tension\"\n"), "accepted");
+  EXPECT_THAT(refusal("file = \"l.csv\"\nmode = \"simple shear\"\ndeformation = \"l\"\n"
+                      "stress = \"P\"\nload = \"tension\"\n"),
+              HasSubstr("neither tension nor compression"));
 }
 
 /// Two cycles with noise at their turns, the second table of a file.

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <string>
@@ -85,6 +86,87 @@ TEST_F(Imports, GiveTheForceOfTheSpecimenAtItsDepth) {
   EXPECT_NEAR(record.at("rate_m_per_s").get<double>(), bench.speed, 0.05 * bench.speed);
   EXPECT_NEAR(record.at("returned_fraction").get<double>(), bench.loss, 0.03);
   EXPECT_TRUE(result.account.at("warnings").empty());
+}
+
+/// A machine that was told 20 mm and 80 mm^2, and divided by them.
+TEST_F(Imports, UndoTheSizesByWhichAMachineMadeStrainAndStress) {
+  const measured::PressRecord record = measured::press_on({}, 1);
+  {
+    std::ofstream file(folder_ / "a.csv"), converted(folder_ / "b.csv");
+    file.precision(17);
+    converted.precision(17);
+    file << "t (s),x (mm),f (N)\n";
+    converted << "t (s),strain (%),stress (kPa)\n";
+    for (std::size_t i = 0; i < record.time.size(); ++i) {
+      const double x = record.displacement[i], f = record.force[i];
+      file << record.time[i] << ',' << 1e3 * x << ',' << f << '\n';
+      converted << record.time[i] << ',' << -1e2 * x / 20e-3 << ',' << -1e-3 * f / 80e-6 << '\n';
+    }
+  }
+  const Import plain = import_measurement(write_sidecar(press("a.csv", 0)), {});
+  const auto write = [&](const std::string& columns, const std::string& machine) {
+    std::ofstream(folder_ / "converted.toml")
+        << "name = \"bench\"\nspecimen = \"gel\"\nsource = \"synthetic\"\nlicence = \"CC0-1.0\"\n"
+           "[tool]\nradius = \"5 mm\"\nfriction = \"frictionless\"\n[columns]\ntime = \"t\"\n"
+        << columns << "[machine]\n"
+        << machine << press("b.csv", 0);
+    return folder_ / "converted.toml";
+  };
+  const std::string columns = "strain = \"strain\"\nstress = \"stress\"\n";
+  const std::string length = "gauge_length = \"20 mm\"\n", area = "area = \"80 mm^2\"\n";
+  const Import result = import_measurement(write(columns, length + area), {});
+  EXPECT_EQ(result.account.at("conversion"),
+            "displacement = 'strain' x 20.0 mm, force = 'stress' x 80 mm^2");
+  EXPECT_FALSE(plain.account.contains("conversion"));
+  const auto &expected = plain.curves.sites[0].paths[0].samples,
+             &found = result.curves.sites[0].paths[0].samples;
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_NEAR(found[i].displacement, expected[i].displacement, 1e-9);
+    EXPECT_NEAR(found[i].force[2], expected[i].force[2], 1e-7);
+  }
+  EXPECT_THAT(refusal(write(columns, length)), HasSubstr("needs the section of the specimen"));
+  EXPECT_THAT(refusal(write(columns, area)), HasSubstr("a strain needs the length"));
+  EXPECT_THAT(refusal(write("displacement = \"strain\"\nstress = \"stress\"\n", length + area)),
+              HasSubstr("a gauge length is given, and no column is a strain"));
+  EXPECT_THAT(refusal(write("strain = \"strain\"\nforce = \"stress\"\n", length + area)),
+              HasSubstr("no column is a stress"));
+  EXPECT_THAT(refusal(write(columns + "force = \"stress\"\n", length + area)),
+              HasSubstr("both stress and force"));
+  EXPECT_THAT(refusal(write(columns + "load = \"tension\"\n", length + area)),
+              HasSubstr("palpate calibrate tests"));
+}
+
+/// A specimen that clings: the pull-off is stronger than the press, and is not taken for it.
+TEST_F(Imports, TakeTheSignsThatAreStated) {
+  const Bench bench;
+  measured::PressRecord record = measured::press_on(bench, 1);
+  const auto peak = static_cast<std::size_t>(
+      std::max_element(record.force.begin(), record.force.end()) - record.force.begin());
+  const double largest = record.force[peak];
+  for (std::size_t i = 0; i < record.force.size(); ++i) {
+    const double above = bench.contact - record.displacement[i];
+    if (i > peak && above > 0 && above < 0.5e-3) record.force[i] -= 1.5 * largest;
+  }
+  {
+    std::ofstream file(folder_ / "a.csv");
+    file.precision(17);
+    file << "t (s),x (mm),f (N)\n";
+    for (std::size_t i = 0; i < record.time.size(); ++i)
+      file << record.time[i] << ',' << 1e3 * record.displacement[i] << ',' << -record.force[i]
+           << '\n';
+  }
+  const std::string threshold =
+      "[contact]\nmethod = \"given\"\nposition = \"2.3 mm\"\nposition_uncertainty = \"10 um\"\n"
+      "[baseline]\nmethod = \"zeroed\"\nuncertainty = \"200 mN\"\n";
+  const Import result = import_measurement(
+      write_sidecar(press("a.csv", 0),
+                    "displacement_sign = \"as recorded\"\nforce_sign = \"reversed\"\n" + threshold),
+      {});
+  const CurveSample& end = result.curves.sites[0].paths[0].samples.back();
+  EXPECT_NEAR(-end.force[2],
+              measured::sneddon_force(end.displacement, bench.radius, bench.modulus) + bench.offset,
+              0.02 * largest);
 }
 
 /// One path with the scatter between the presses: of two, their difference over sqrt 2.
