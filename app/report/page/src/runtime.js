@@ -7,7 +7,8 @@ export const CONTACT = 1, SLIDING = 1 << 3, AT_BORDER = 1 << 4, ENERGY_LIMITED =
 
 // Where the fields of the structs lie, in bytes; the layout of wasm32 is that of x86-64.
 const SETTINGS = { size: 40, friction: 8, tank_cap: 16, lipschitz_bound: 24, search_rate: 32 };
-const OBSERVATION = 184;
+const OBSERVATION = 200;
+const SKIN = { size: 40, vertices: 4, triangles: 8 };
 const INFO = { size: 112, friction: 32, depth: 40, lipschitz_bound: 104 };
 const BAD_DESCRIPTOR = 8;  // of WASI: there are no files
 
@@ -54,13 +55,23 @@ export class Runtime {
 
   version() { return this.text(this.calls.palpate_version()); }
 
-  /** bytes: a flat library (.plib). @return its handle */
-  load(bytes) {
+  /** What the call makes of a file in memory. */
+  read(bytes, call) {
     const at = this.room(bytes.length);
     new Uint8Array(this.calls.memory.buffer, at, bytes.length).set(bytes);
-    const library = this.made((to) => this.calls.palpate_library_load_memory(at, bytes.length, to));
+    const handle = this.made((to) => call(at, bytes.length, to));
     this.calls.free(at);
-    return library;
+    return handle;
+  }
+
+  /** bytes: a flat library (.plib). @return its handle */
+  load(bytes) {
+    return this.read(bytes, (at, size, to) => this.calls.palpate_library_load_memory(at, size, to));
+  }
+
+  /** bytes: deformation.pdef of the library. */
+  loadSkin(library, bytes) {
+    return new Skin(this, this.read(bytes, (at, size, to) => this.calls.palpate_deformation_load_memory(library, at, size, to)));
   }
 
   describe(library) {
@@ -81,6 +92,27 @@ export class Runtime {
     const state = this.made((to) => this.calls.palpate_state_create(library, at, to));
     this.calls.free(at);
     return new State(this, state);
+  }
+}
+
+/** The skin as it is pressed. */
+class Skin {
+  constructor(runtime, handle) {
+    const { calls, scratch } = runtime;
+    this.runtime = runtime;
+    this.handle = handle;
+    runtime.view().setUint32(scratch, SKIN.size, true);
+    runtime.check(calls.palpate_deformation_describe(handle, scratch));
+    this.vertices = runtime.view().getInt32(scratch + SKIN.vertices, true);
+    this.triangles = runtime.view().getInt32(scratch + SKIN.triangles, true);
+    this.at = runtime.room(24 * this.vertices);
+  }
+
+  /** The vertices after the last step of the state, three coordinates each, m; valid until the next call. */
+  deform(state) {
+    const { calls } = this.runtime;
+    this.runtime.check(calls.palpate_deform(state.handle, this.handle, this.at, this.vertices));
+    return new Float64Array(calls.memory.buffer, this.at, 3 * this.vertices);
   }
 }
 
@@ -132,6 +164,8 @@ class State {
       absorbed: number(128),
       forceOnBody: vector(136),
       lateralOffset: vector(160),
+      dissipated: number(184),
+      relaxedFraction: number(192),
     };
   }
 }

@@ -3,7 +3,8 @@
 """test_wasm.py <write_steps> <palpate.wasm> <runtime.js> <chromium>
 
 The runtime compiled to WebAssembly repeats, in a browser, what the C interface of this machine computes: every
-number of every step is the same to the last bit; where the tissue relaxes, to 1e-12. A library that it cannot read ends in its message.
+number of every step, and every vertex of the skin as it is pressed, is the same to the last bit; where the tissue
+relaxes, to 1e-12. A library that it cannot read ends in its message.
 """
 import base64
 import html
@@ -32,17 +33,33 @@ const flat = ({ force, status, seen }) => [status, seen.element, ...force, ...se
   ...seen.lateralOffset];
 function repeat(played) {
   const runtime = new Runtime(bytes(WASM));
-  const state = runtime.state(runtime.load(bytes(played.library)), { friction: played.friction });
+  const library = runtime.load(bytes(played.library));
+  const state = runtime.state(library, { friction: played.friction });
+  const skin = runtime.loadSkin(library, bytes(played.skin));
   const positions = new Float64Array(bytes(played.positions).buffer);
   const out = [];
+  const deformed = [];
   for (let i = 0; i < positions.length; i += 3) {
     const step = state.step(positions.subarray(i, i + 3), [0, 0, 0], played.dt);
     out.push(...flat({ ...step, seen: state.observe() }));
+    if (i / 3 %% played.between_pictures === 0) deformed.push(...skin.deform(state));
   }
-  const result = new Uint8Array(Float64Array.from(out).buffer);
+  return { steps: text(out), deformed: text(deformed) };
+}
+function text(numbers) {
+  const result = new Uint8Array(Float64Array.from(numbers).buffer);
   let text = '';
   for (let i = 0; i < result.length; i += 8192) text += String.fromCharCode(...result.subarray(i, i + 8192));
   return btoa(text);
+}
+function otherSkin(one, other) {
+  try {
+    const runtime = new Runtime(bytes(WASM));
+    runtime.loadSkin(runtime.load(bytes(one.library)), bytes(other.skin));
+    return 'accepted';
+  } catch (error) {
+    return error.message;
+  }
 }
 function refused(library) {
   try {
@@ -66,8 +83,8 @@ function badSettings(played) {
 const said = {};
 try {
   const all = %(played)s;
-  said.steps = [];
-  for (const played of all) said.steps.push(repeat(played));
+  said.repeated = all.map(repeat);
+  said.otherSkin = otherSkin(all[0], all[2]);
   said.garbage = refused(new Uint8Array(100));
   const damaged = bytes(all[0].library);
   damaged[damaged.length >> 1] ^= 1;
@@ -99,9 +116,9 @@ class Wasm(unittest.TestCase):
 
     def test_every_step_is_the_same_to_the_last_bit(self):
         self.assertNotIn("error", self.said)
-        self.assertEqual(len(self.said["steps"]), 4)
-        for played, text in zip(self.played, self.said["steps"]):
-            ours, theirs = base64.b64decode(played["expected"]), base64.b64decode(text)
+        self.assertEqual(len(self.said["repeated"]), 4)
+        for played, repeated in zip(self.played, self.said["repeated"]):
+            ours, theirs = base64.b64decode(played["expected"]), base64.b64decode(repeated["steps"])
             numbers = struct.unpack(f"<{len(ours) // 8}d", ours)
             self.assertEqual(len(numbers), COLUMNS * 6000)
             touched = [row for row in range(6000) if int(numbers[COLUMNS * row]) & 1]
@@ -117,6 +134,26 @@ class Wasm(unittest.TestCase):
                 # Offsets are small differences of lengths: they are measured by the depth of the press.
                 scale = max(map(abs, numbers[DEPTH::COLUMNS] if column in OFFSETS else one)) or 1
                 self.assertLess(max(abs(a - b) for a, b in zip(one, other)) / scale, 1e-12, (played["name"], column))
+
+    def test_the_skin_is_the_same_to_the_last_bit(self):
+        for played, repeated in zip(self.played, self.said["repeated"]):
+            ours, theirs = (base64.b64decode(text["deformed"]) for text in (played, repeated))
+            count = len(ours) // 8
+            at = struct.unpack(f"<{count}d", ours)
+            pictures = 6000 // played["between_pictures"]
+            vertices = count // pictures
+            rest = at[:vertices]  # before the first touch
+            moved = [max(abs(a - b) for a, b in zip(at[vertices * k:], rest)) for k in range(pictures)]
+            self.assertGreater(max(moved), 0.003, played["name"])  # else there is nothing to compare
+            self.assertGreater(len(set(moved)), pictures // 4, played["name"])
+            if played["name"].startswith("relaxing"):  # as for the steps
+                other = struct.unpack(f"<{count}d", theirs)
+                self.assertLess(max(abs(a - b) for a, b in zip(at, other)), 1e-12 * max(moved), played["name"])
+            else:
+                self.assertEqual(ours, theirs, played["name"])
+
+    def test_the_skin_of_another_library_ends_in_its_message(self):
+        self.assertIn("belongs to another library", self.said["otherSkin"])
 
     def test_an_unreadable_library_ends_in_its_message(self):
         self.assertEqual(self.said["garbage"],
