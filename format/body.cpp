@@ -5,6 +5,7 @@
 
 #include "format/artifact.hpp"
 #include "format/edge.hpp"
+#include "format/error.hpp"
 
 namespace palpate {
 namespace {
@@ -17,8 +18,17 @@ double volume_of(const std::vector<Vec3>& nodes, const Tetrahedron& corners) {
   return dot(cross(at(1) - at(0), at(2) - at(0)), at(3) - at(0)) / 6;
 }
 
+/// What only a body with an inside has.
+void check_measured(const Checks& checks, const Body& body) {
+  checks.require(!body.boundary.empty(), "/boundary", "is empty");
+  checks.same_size("/tetrahedron_region", body.tetrahedron_region.size(), 0);
+  checks.same_size("/region_names", body.region_names.size(), 0);
+  checks.same_size("/fixed_nodes", body.fixed_nodes.size(), 0);
+  checks.same_size("/foundation/facet", body.foundation.size(), 0);
+  checks.same_size("/curved_edges/ends", body.curved_edges.size(), 0);
+}
+
 void check_tetrahedra(const Checks& checks, const Body& body) {
-  checks.require(!body.tetrahedra.empty(), "/tetrahedra", "is empty");
   checks.corners("/tetrahedra", body.tetrahedra, body.nodes.size());
   for (std::size_t row = 0; row < body.tetrahedra.size(); ++row) {
     const double volume = volume_of(body.nodes, body.tetrahedra[row]);
@@ -97,7 +107,11 @@ void check_response(const Checks& checks, const Body& body) {
 
 void check_body(const Checks& checks, const Body& body) {
   checks.vectors("/nodes", body.nodes, rules::kFinite);
-  check_tetrahedra(checks, body);
+  if (body.has_inside()) {
+    check_tetrahedra(checks, body);
+  } else {
+    check_measured(checks, body);
+  }
   checks.corners("/boundary", body.boundary, body.nodes.size());
   check_curved_edges(checks, body);
   check_fixed_nodes(checks, body);
@@ -159,6 +173,7 @@ std::vector<CurvedEdge> read_curved_edges(hdf5::Reader& reader) {
 
 /// The lowest schema whose readers know all that the body has.
 int schema_of(const Body& body) {
+  if (!body.has_inside()) return kMeasuredBodySchema;
   if (!body.curved_edges.empty()) return kCurvedBodySchema;
   return body.foundation.empty() ? kBodySchema : kSprungBodySchema;
 }
@@ -181,7 +196,8 @@ void write_body(const std::filesystem::path& path, const Body& body) {
   check_body(Checks(path), body);
   hdf5::Writer writer(path);
   write_root(writer, kBodyArtifact, schema_of(body),
-             "A tetrahedralized body, ready for indentation.");
+             body.has_inside() ? "A tetrahedralized body, ready for indentation."
+                               : "A measured surface, whose inside is unknown.");
   writer.set_text("/", "name", body.name);
   writer.dataset("/nodes", body.nodes, {"m", "Reference position X of each node."});
   writer.dataset("/tetrahedra", body.tetrahedra,
@@ -203,13 +219,15 @@ void write_body(const std::filesystem::path& path, const Body& body) {
 
 Body read_body(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kBodyRemedy);
-  const auto schema =
-      reader.require_artifact(kBodyArtifact, {kBodySchema, kSprungBodySchema, kCurvedBodySchema});
+  const auto schema = reader.require_artifact(
+      kBodyArtifact, {kBodySchema, kSprungBodySchema, kCurvedBodySchema, kMeasuredBodySchema});
   Body body;
   body.name = reader.text("/", "name");
   body.nodes = reader.dataset<Vec3>("/nodes", "m");
   body.tetrahedra = reader.dataset<Tetrahedron>("/tetrahedra", "1");
   body.tetrahedron_region = reader.dataset<std::int32_t>("/tetrahedron_region", "1");
+  Checks(reader).require(body.tetrahedra.empty() == (schema == kMeasuredBodySchema), "/tetrahedra",
+                         body.tetrahedra.empty() ? "is empty" : "is not empty");
   body.region_names = reader.texts("/region_names");
   body.boundary = reader.dataset<Triangle>("/boundary", "1");
   body.fixed_nodes = reader.dataset<std::int32_t>("/fixed_nodes", "1");
@@ -224,6 +242,12 @@ Body read_body(const std::filesystem::path& path) {
   body.provenance = read_provenance(reader);
   check_body(Checks(reader), body);
   return body;
+}
+
+void require_inside(const Body& body, const std::string& work) {
+  if (body.has_inside()) return;
+  refuse(work, "'" + body.name + "' is a measured surface, whose inside is unknown",
+         "give a body of tetrahedra, made with `palpate mesh`");
 }
 
 }  // namespace palpate

@@ -13,8 +13,9 @@
 namespace palpate {
 
 inline constexpr int kBodySchema = 1;
-inline constexpr int kSprungBodySchema = 2;  ///< of a body with a foundation
-inline constexpr int kCurvedBodySchema = 3;  ///< of a body with curved edges, with or without one
+inline constexpr int kSprungBodySchema = 2;    ///< of a body with a foundation
+inline constexpr int kCurvedBodySchema = 3;    ///< of a body with curved edges, with or without one
+inline constexpr int kMeasuredBodySchema = 4;  ///< of a measured surface, whose inside is unknown
 
 /// The coarse triangulation that carries the stored responses. Its vertices are nodes of the body.
 struct ResponseSurface {
@@ -48,6 +49,9 @@ inline constexpr double kMostBulge = 0.25;
 /// that a tool meets and the response surface. Positions in metres. The boundary facets are
 /// refinements of the triangles of the response surface, so every response vertex is a boundary
 /// node.
+///
+/// A measured surface has neither tetrahedra, regions, supports nor curved edges, for its inside is
+/// unknown: it can be felt, and not be solved. Its boundary is an open sheet.
 struct Body {
   std::string name;
   std::vector<Vec3> nodes;                       ///< (N) m
@@ -60,6 +64,8 @@ struct Body {
   std::vector<SprungFacet> foundation;           ///< ascending facets; empty: none
   ResponseSurface response;
   Provenance provenance;
+
+  bool has_inside() const { return !tetrahedra.empty(); }  ///< false for a measured surface
 };
 
 /// Write under a temporary name and rename, so that no half-written file ever bears `path`.
@@ -69,5 +75,8 @@ void write_body(const std::filesystem::path& path, const Body& body);
 /// Read and check everything: shapes, index ranges, finite numbers, unit directions, positive
 /// volumes, schema version. @throws Error naming the dataset and the first offending row.
 Body read_body(const std::filesystem::path& path);
+
+/// @throws Error(Configuration) for a measured surface, which `work` cannot be done with.
+void require_inside(const Body& body, const std::string& work);
 
 }  // namespace palpate

@@ -19,6 +19,7 @@ MAY_INCLUDE = {
     "mesher": {"format", "mesher/geometry", "mesher/read", "mesher/repair", "mesher/response", "mesher/skin",
                "mesher/support", "mesher/volume"},
     "mesher/geometry": {"format"},
+    "mesher/patch": {"format"},
     "mesher/read": {"format", "mesher", "mesher/geometry", "mesher/repair", "mesher/volume"},
     "mesher/repair": {"format", "mesher/geometry"},
     "mesher/response": {"format", "mesher", "mesher/geometry", "mesher/skin", "mesher/support"},

@@ -47,6 +47,7 @@ std::vector<std::int32_t> chosen_sites(const Body& body, std::vector<std::int32_
 
 /// The numbers of the results: the chosen response vertices, or the indices of the points.
 std::vector<std::int32_t> numbers_of_results(const Body& body, const CampaignSettings& settings) {
+  require_inside(body, "finite elements");
   if (settings.points.empty()) return chosen_sites(body, settings.sites);
   std::vector<std::int32_t> index(settings.points.size());
   std::iota(index.begin(), index.end(), 0);

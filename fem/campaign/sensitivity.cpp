@@ -270,6 +270,7 @@ std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSet
                                              const std::vector<RegionConstant>& constants,
                                              const std::vector<std::vector<LateralPlan>>& lateral,
                                              FactorCache* cache) {
+  require_inside(body, "finite elements");
   refuse_unsupported(settings);
   CampaignSettings normal = settings;
   normal.indentation.lateral_depths = depths;  // the states that the path must pass

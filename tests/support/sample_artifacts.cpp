@@ -228,6 +228,15 @@ Body curved_body(unsigned seed) {
   return curved;
 }
 
+Body measured_body(unsigned seed) {
+  Body measured = body(seed);
+  measured.tetrahedra.clear();
+  measured.tetrahedron_region.clear();
+  measured.region_names.clear();
+  measured.fixed_nodes.clear();
+  return measured;
+}
+
 Curves curves(unsigned seed) {
   Random random(seed);
   Curves curves;

@@ -12,6 +12,7 @@ namespace palpate::samples {
 Body body(unsigned seed);               ///< a jittered block of 3 x 3 x 3 cells, two regions
 Body sprung_body(unsigned seed);        ///< the same with a foundation
 Body curved_body(unsigned seed);        ///< the same with a foundation and curved edges
+Body measured_body(unsigned seed);      ///< its skin alone, as measured
 Curves curves(unsigned seed);           ///< 20 sites: complete, partial, failed without paths
 Curves relaxing_curves(unsigned seed);  ///< the same of tissue that relaxes, two regions
 Library library(unsigned seed);  ///< certified, with an interpolated node, a hole and two devices

@@ -34,7 +34,28 @@ TEST(RoundTrip, Body) {
     write_body(folder / "curved.h5", curved);
     EXPECT_EQ(dump(read_body(folder / "curved.h5")), dump(curved));
     EXPECT_NE(dump(curved), dump(sprung));
+    const Body measured = samples::measured_body(seed);
+    write_body(folder / "measured.h5", measured);
+    EXPECT_EQ(dump(read_body(folder / "measured.h5")), dump(measured));
   }
+}
+
+TEST(RoundTrip, AMeasuredSurfaceKnowsNothingOfItsInside) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::function<void(Body&)>& change, const std::string& where) {
+    Body body = samples::measured_body(1);
+    change(body);
+    expect_refusal([&] { write_body(folder / "measured.h5", body); }, ErrorKind::Internal, where,
+                   "");
+  };
+  refused([](Body& body) { body.fixed_nodes = {0}; }, "/fixed_nodes");
+  refused([](Body& body) { body.region_names = {"liver"}; }, "/region_names");
+  refused([](Body& body) { body.foundation = {{0, 1, 1}}; }, "/foundation/facet");
+  refused([](Body& body) { body.tetrahedron_region = {0}; }, "/tetrahedron_region");
+  refused([](Body& body) { body.boundary.clear(); }, "/boundary");
+  expect_refusal([] { require_inside(samples::measured_body(1), "precompute"); },
+                 ErrorKind::Configuration, "precompute", "whose inside is unknown");
+  EXPECT_NO_THROW(require_inside(samples::body(1), "precompute"));
 }
 
 TEST(RoundTrip, Curves) {
