@@ -15,6 +15,7 @@
 #include "python/artifacts.hpp"
 #include "python/deformation.hpp"
 #include "python/errors.hpp"
+#include "python/numbers.hpp"
 #include "python/objects.hpp"
 #include "runtime/response_curve.hpp"
 
@@ -62,10 +63,11 @@ std::string library_text(const LibraryObject& library) {
 }
 
 /// f(d) for an array of deflections of any shape.
-py::array_t<double> forces_of(const ResponseCurve& curve, const py::array_t<double>& deflections) {
+py::object forces_of(const ResponseCurve& curve, const py::object& deflections) {
   const runtime::CompiledCurve compiled =
       curve.knot.empty() ? runtime::CompiledCurve() : runtime::CompiledCurve(curve);
-  return py::vectorize([&compiled](double d) { return compiled.force(d); })(deflections);
+  return py::vectorize([&compiled](double d) { return compiled.force(d); })(
+      doubles_of(deflections, "ResponseCurve: deflections"));
 }
 
 void define_responses(py::module_& module) {

@@ -15,7 +15,7 @@ bool is_real(const py::array& array) {
   return kind == 'f' || kind == 'i' || kind == 'u';
 }
 
-std::string wanted_text(int rows, std::optional<int> columns) {
+std::string wanted_text(py::ssize_t rows, std::optional<py::ssize_t> columns) {
   const std::string first = rows < 0 ? "N" : std::to_string(rows);
   return columns ? "(" + first + ", " + std::to_string(*columns) + ")" : "(" + first + ",)";
 }
@@ -39,8 +39,8 @@ Doubles doubles_of(py::handle argument, const std::string& name) {
   return Doubles::ensure(array);
 }
 
-Doubles doubles_of(py::handle argument, const std::string& name, int rows,
-                   std::optional<int> columns) {
+Doubles doubles_of(py::handle argument, const std::string& name, py::ssize_t rows,
+                   std::optional<py::ssize_t> columns) {
   Doubles array = doubles_of(argument, name);
   const bool fits = array.ndim() == (columns ? 2 : 1) && (rows < 0 || array.shape(0) == rows) &&
                     (!columns || array.shape(1) == *columns);

@@ -20,8 +20,8 @@ using Doubles = pybind11::array_t<double, pybind11::array::c_style | pybind11::a
 Doubles doubles_of(pybind11::handle argument, const std::string& name);
 
 /// The same of one shape; -1 stands for any length. Throws ArgumentError for another shape.
-Doubles doubles_of(pybind11::handle argument, const std::string& name, int rows,
-                   std::optional<int> columns = {});
+Doubles doubles_of(pybind11::handle argument, const std::string& name, pybind11::ssize_t rows,
+                   std::optional<pybind11::ssize_t> columns = {});
 
 /// Three numbers.
 Vec3 vector_of(pybind11::handle argument, const std::string& name);

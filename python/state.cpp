@@ -181,7 +181,7 @@ Motion motion_of(const py::object& positions, const py::object& velocities, cons
                  bool strict) {
   Motion motion;
   motion.positions = doubles_of(positions, "State.run: positions", -1, 3);
-  const auto steps = static_cast<int>(motion.positions.shape(0));
+  const py::ssize_t steps = motion.positions.shape(0);
   motion.times = doubles_of(dt, "State.run: dt");
   if (motion.times.ndim() != 0) motion.times = doubles_of(dt, "State.run: dt", steps);
   if (strict) {

@@ -63,6 +63,8 @@ class Library(unittest.TestCase):
         np.testing.assert_allclose(response.normal(knots), at_knots, rtol=1e-12)
         self.assertEqual((response.status, len(response.coupling)), (0, 0))
         self.assertEqual(response.normal(np.zeros((2, 3))).shape, (2, 3))
+        with self.assertRaisesRegex(TypeError, "deflections.*complex128"):
+            response.normal(1j)
 
     def test_its_certificate(self):
         self.assertTrue(self.plate.certified)

@@ -4,7 +4,9 @@
 
 Usage: test_state.py WRITE_BODIES LIBPALPATE PALPATE_H
 """
+import os
 import re
+import signal
 import subprocess
 import sys
 import tempfile
@@ -291,6 +293,17 @@ class Threads(Bodies):
         self.assertGreater(refused, 0)
         self.assertGreaterEqual(done, refused)
         self.assertFalse(np.any(state.step((0.04, 0.04, 1e-3), REST, 1e-3)[0]))
+
+    def test_control_c_ends_a_run_between_steps(self):
+        state = self.plate.state()
+        positions = np.tile([0.04, 0.04, -1e-3], (1_000_000, 1))
+        timer = threading.Timer(0.05, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        with self.assertRaises(KeyboardInterrupt):
+            state.run(positions)
+            timer.join()  # should a machine be that fast
+        state.step((0.04, 0.04, 1e-3), REST, 1e-3)
+        self.assertTrue(state.step((0.04, 0.04, -1e-3), REST, 1e-3)[1] & palpate.Status.CONTACT)
 
 
 if __name__ == "__main__":
