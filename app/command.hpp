@@ -54,6 +54,7 @@ void add_run_command(CLI::App& root, Action& action);
 void add_recover_command(CLI::App& root, Action& action);
 void add_replay_command(CLI::App& root, Action& action);
 void add_experiment_command(CLI::App& root, Action& action);
+void add_play_command(CLI::App& root, Action& action);
 void add_report_command(CLI::App& root, Action& action);
 void add_manual_command(CLI::App& root, Action& action);
 void add_completion_command(CLI::App& root, Action& action);

@@ -52,6 +52,13 @@ int export_mesh(const Workspace& space, const std::string& name) {
   return kExitDone;
 }
 
+int export_surface(const Workspace& space) {
+  const std::filesystem::path file = space.out / "surface.off";
+  write_file_crash_safely(file, off_surface(read_body(space.body())));
+  say("export: {}", file.string());
+  return kExitDone;
+}
+
 int export_curves(const Workspace& space) {
   const std::filesystem::path file = space.out / "curves.csv";
   write_curves_csv(read_curves(space.curves()), file);
@@ -248,6 +255,9 @@ void add_export_command(CLI::App& root, Action& action) {
       ->add_option("--format", *format, "gmsh, vtu, inp or feb")
       ->check(CLI::IsMember({"gmsh", "vtu", "inp", "feb"}))
       ->capture_default_str();
+  add_part(*command, action, "surface",
+           "body.h5 -> surface.off, the response surface with the vertices of the library",
+           export_surface);
   add_part(*command, action, "curves", "curves.h5 -> curves.csv", export_curves);
   add_part(*command, action, "library",
            "library.h5 -> library.vtkhdf, with the forces at the depth of the case",

@@ -56,6 +56,7 @@ void add_commands(CLI::App& root, Action& action) {
   add_rescale_command(root, action);
   add_calibrate_command(root, action);
   add_report_command(root, action);
+  add_play_command(root, action);
   add_identify_command(root, action);
   add_run_command(root, action);
   add_recover_command(root, action);

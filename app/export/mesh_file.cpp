@@ -278,4 +278,13 @@ std::string febio_mesh(const Body& body) {
   return out + "</Mesh>\n</febio_spec>\n";
 }
 
+std::string off_surface(const Body& body) {
+  const ResponseSurface& surface = body.response;
+  std::string out = fmt::format("OFF\n{} {} 0\n", surface.node.size(), surface.triangles.size());
+  for (const std::int32_t node : surface.node)
+    add(out, "{}\n", coordinates(body.nodes[to_index(node)], " "));
+  for (const Triangle& t : surface.triangles) add(out, "3 {} {} {}\n", t[0], t[1], t[2]);
+  return out;
+}
+
 }  // namespace palpate::app

@@ -18,4 +18,7 @@ std::string vtu_mesh(const Body& body);     ///< cell array "region", names of r
 std::string abaqus_mesh(const Body& body);  ///< Abaqus and CalculiX; names of letters and digits
 std::string febio_mesh(const Body& body);   ///< format 4.0: the section Mesh
 
+/// The response surface as an OFF file, in metres; its vertices are those of the library.
+std::string off_surface(const Body& body);
+
 }  // namespace palpate::app

@@ -59,23 +59,6 @@ void check_together(const ReportInput& input) {
 /// Facet kinds of the picture.
 enum FacetKind : std::uint8_t { Touchable = 0, NoResponse = 1, Fixed = 2 };
 
-/// Index of each response triangle of the body in the library, -1 where the library lacks it.
-std::vector<std::int32_t> library_triangles(const Body& body, const Library& library) {
-  const auto key = [](Triangle t) {
-    std::sort(t.begin(), t.end());
-    return t;
-  };
-  std::map<Triangle, std::int32_t> index;
-  for (std::size_t m = 0; m < library.triangles.size(); ++m)
-    index[key(library.triangles[m])] = static_cast<std::int32_t>(m);
-  std::vector<std::int32_t> result;
-  for (const Triangle& t : body.response.triangles) {
-    const auto found = index.find(key(t));
-    result.push_back(found == index.end() ? -1 : found->second);
-  }
-  return result;
-}
-
 std::vector<std::uint8_t> facet_kinds(const Body& body, const Library& library,
                                       const SurfaceMap& map,
                                       const std::vector<std::int32_t>& in_library) {
@@ -96,38 +79,6 @@ std::vector<std::uint8_t> facet_kinds(const Body& body, const Library& library,
     kinds.push_back(touchable ? Touchable : all_fixed ? Fixed : NoResponse);
   }
   return kinds;
-}
-
-json surface_data(const Body& body, const Library& library) {
-  const SurfaceMap map = map_boundary(body);
-  const std::vector<std::int32_t> in_library = library_triangles(body, library);
-  std::vector<float> points;
-  std::vector<double> natural;  // the first two of each point; they sum to 1
-  for (const std::int32_t n : map.node) append(points, body.nodes[to_index(n)]);
-  for (const Vec3& n : map.natural) natural.insert(natural.end(), {n[0], n[1]});
-  return {{"points", column(points)},
-          {"facets", index_column(flat(map.facets))},
-          {"facet_triangle", index_column(map.facet_triangle)},
-          {"facet_kind", column(facet_kinds(body, library, map, in_library))},
-          {"point_triangle", index_column(map.triangle)},
-          {"point_natural", fraction_column(natural)},
-          {"triangles", index_column(flat(body.response.triangles))},
-          {"library_triangle", column(in_library)}};
-}
-
-/// Curves of all vertices in sequence, delimited by offsets.
-json response_columns(const Library& library, bool normal) {
-  std::vector<std::uint32_t> offset{0};
-  std::vector<float> knot, slope;
-  for (const NodeResponse& response : library.responses) {
-    const ResponseCurve& curve = normal ? response.normal : response.lateral;
-    if (response.status != ResponseStatus::Hole) {
-      knot.insert(knot.end(), curve.knot.begin(), curve.knot.end());
-      slope.insert(slope.end(), curve.slope.begin(), curve.slope.end());
-    }
-    offset.push_back(static_cast<std::uint32_t>(knot.size()));
-  }
-  return {{"offset", column(offset)}, {"knot", column(knot)}, {"slope", column(slope)}};
 }
 
 constexpr std::uint8_t kNotRun = 255;
@@ -244,6 +195,54 @@ json key_figures(const ReportInput& input) {
 }
 
 }  // namespace
+
+std::vector<std::int32_t> library_triangles(const std::vector<Triangle>& triangles,
+                                            const Library& library) {
+  const auto key = [](Triangle t) {
+    std::sort(t.begin(), t.end());
+    return t;
+  };
+  std::map<Triangle, std::int32_t> index;
+  for (std::size_t m = 0; m < library.triangles.size(); ++m)
+    index[key(library.triangles[m])] = static_cast<std::int32_t>(m);
+  std::vector<std::int32_t> result;
+  for (const Triangle& t : triangles) {
+    const auto found = index.find(key(t));
+    result.push_back(found == index.end() ? -1 : found->second);
+  }
+  return result;
+}
+
+json surface_data(const Body& body, const Library& library) {
+  const SurfaceMap map = map_boundary(body);
+  const std::vector<std::int32_t> in_library = library_triangles(body.response.triangles, library);
+  std::vector<float> points;
+  std::vector<double> natural;  // the first two of each point; they sum to 1
+  for (const std::int32_t n : map.node) append(points, body.nodes[to_index(n)]);
+  for (const Vec3& n : map.natural) natural.insert(natural.end(), {n[0], n[1]});
+  return {{"points", column(points)},
+          {"facets", index_column(flat(map.facets))},
+          {"facet_triangle", index_column(map.facet_triangle)},
+          {"facet_kind", column(facet_kinds(body, library, map, in_library))},
+          {"point_triangle", index_column(map.triangle)},
+          {"point_natural", fraction_column(natural)},
+          {"triangles", index_column(flat(body.response.triangles))},
+          {"library_triangle", column(in_library)}};
+}
+
+json response_columns(const Library& library, bool normal) {
+  std::vector<std::uint32_t> offset{0};
+  std::vector<float> knot, slope;
+  for (const NodeResponse& response : library.responses) {
+    const ResponseCurve& curve = normal ? response.normal : response.lateral;
+    if (response.status != ResponseStatus::Hole) {
+      knot.insert(knot.end(), curve.knot.begin(), curve.knot.end());
+      slope.insert(slope.end(), curve.slope.begin(), curve.slope.end());
+    }
+    offset.push_back(static_cast<std::uint32_t>(knot.size()));
+  }
+  return {{"offset", column(offset)}, {"knot", column(knot)}, {"slope", column(slope)}};
+}
 
 json body_data(const Body& body) {
   std::vector<std::int64_t> count(body.region_names.size(), 0);

@@ -2,7 +2,9 @@
 // The data of the page as one JSON value, in SI units.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "app/report/report.hpp"
 
@@ -13,6 +15,14 @@ nlohmann::json page_data(const ReportInput& input);
 
 /// Name, sizes and regions of a body.
 nlohmann::json body_data(const Body& body);
+/// Index of each of the triangles in the library, -1 where the library lacks it.
+std::vector<std::int32_t> library_triangles(const std::vector<Triangle>& triangles,
+                                            const Library& library);
+/// The boundary of a body on its response surface, for the picture.
+nlohmann::json surface_data(const Body& body, const Library& library);
+/// Curves of all vertices in sequence, delimited by offsets: of the normal or of the lateral
+/// responses.
+nlohmann::json response_columns(const Library& library, bool normal);
 /// Surfaces of the regions inside.
 nlohmann::json inclusion_data(const Body& body);
 /// Data of the sections of the page.

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: AGPL-3.0-or-later
-# run.sh BUILD_FOLDER SOURCE_FOLDER WRITE_PLATE CMAKE CC CXX PYTHON: install the runtime, move the installed tree, build an
+# run.sh BUILD_FOLDER SOURCE_FOLDER WRITE_PLATE CMAKE CC CXX PYTHON: install the runtime and its header, move the installed tree, build an
 # outside consumer against it with CMake and with pkg-config, and run both.
 set -euo pipefail
 build=$1 source=$2 write_plate=$3 cmake=$4 cc=$5 cxx=$6 python=$7
@@ -8,7 +8,9 @@ examples=$source/../../examples
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
-"$cmake" --install "$build" --component runtime --prefix "$work/first" > /dev/null
+for component in runtime development; do
+  "$cmake" --install "$build" --component $component --prefix "$work/first" > /dev/null
+done
 mv "$work/first" "$work/moved"
 prefix=$work/moved
 "$write_plate" "$work/plate.h5" 0.3

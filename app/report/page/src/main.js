@@ -12,6 +12,7 @@ import { Curves } from './sections/curves.js';
 import { fidelitySection } from './sections/fidelity.js';
 import { fitSection } from './sections/fit.js';
 import { headerSection } from './sections/header.js';
+import { playHeader } from './sections/play.js';
 import { previewSection } from './sections/preview.js';
 import { recordSection } from './sections/record.js';
 import { relaxationSection } from './sections/relaxation.js';
@@ -59,11 +60,20 @@ function showReport(data) {
   place('record', () => recordSection(data));
 }
 
+function showPlay(data) {
+  place('header', () => playHeader(data));
+  place('touch', () => touchSection(data));
+  if (data.relaxation) place('relaxation', () => relaxationSection(data));
+  place('certificate', () => certificateSection(data));
+}
+
 try {
   watchTheme();
   const data = readData();
   if (data.preview) {
     place('preview', () => previewSection(data));
+  } else if (data.play) {
+    showPlay(data);
   } else if (data.calibration && !data.body) {
     place('calibration', () => calibrationPage(data));
   } else {

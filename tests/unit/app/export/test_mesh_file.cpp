@@ -7,6 +7,7 @@
 #include "mesher/read/mesh/read_abaqus.hpp"
 #include "mesher/read/mesh/read_febio.hpp"
 #include "mesher/read/mesh/read_gmsh.hpp"
+#include "mesher/read/read_off.hpp"
 #include "mesher/read/vtk/read_vtk_xml.hpp"
 #include "tests/unit/mesher/read/mesh_files.hpp"
 
@@ -117,6 +118,18 @@ TEST(MeshFile, NamesForCalculixHaveLettersAndDigitsAndDiffer) {
   const std::string text = abaqus_mesh(body);
   for (const char* line : {"ELSET=a_b\n", "ELSET=A_B_2\n", "ELSET=R3_fixed\n", "NSET=fixed\n"})
     EXPECT_THAT(text, testing::HasSubstr(line));
+}
+
+TEST(MeshFile, SurfaceReadsBackWithTheVerticesOfTheLibrary) {
+  Body body = body_of("gmsh/ball_41.msh");
+  body.response.node = {3, 1, 0, 2};
+  body.response.triangles = {{0, 1, 2}, {2, 3, 0}};
+  body.nodes[3] = {0.1, -1.0 / 3, 1e-7};
+  const mesher::Soup soup = mesher::read_off(off_surface(body), "surface.off");
+  ASSERT_EQ(soup.points.size(), 4U);
+  for (std::size_t v = 0; v < 4; ++v)
+    EXPECT_EQ(soup.points[v], body.nodes[to_index(body.response.node[v])]);
+  EXPECT_EQ(soup.polygons, (std::vector<std::vector<std::size_t>>{{0, 1, 2}, {2, 3, 0}}));
 }
 
 }  // namespace

@@ -43,18 +43,21 @@ function keyFigures(data, nodes) {
       `${units.count(data.body.vertices)} nodes, ${units.count(data.body.triangles)} triangles`, 'library-bytes'));
 }
 
+/** A [[material]] table, a list of [key, value], as one line. */
+export function materialLine(pairs) {
+  const get = Object.fromEntries(pairs);
+  // A density of 0 stands for that of [gravity].
+  const shown = ([k, v]) => k !== 'region' && k !== 'law' && !(k === 'density' && v.startsWith('0 '));
+  const rest = pairs.filter(shown).map(([k, v]) => `${k} ${v}`);
+  return `${get.region ?? 'body'}: ${[get.law, ...rest].filter(Boolean).join(', ')}`;
+}
+
 /** [[material]] tables of the stage that solved, one line each. */
 function materialLines(data) {
   const steps = data.provenance.filter((s) => s.materials.length > 0);
   const step = steps.find((s) => s.stage === 'precompute') ?? steps[steps.length - 1];
   if (!step) return ['not recorded in the provenance'];
-  return step.materials.map((pairs) => {
-    const get = Object.fromEntries(pairs);
-    // A density of 0 stands for that of [gravity].
-    const shown = ([k, v]) => k !== 'region' && k !== 'law' && !(k === 'density' && v.startsWith('0 '));
-    const rest = pairs.filter(shown).map(([k, v]) => `${k} ${v}`);
-    return `${get.region ?? 'body'}: ${[get.law, ...rest].filter(Boolean).join(', ')}`;
-  });
+  return step.materials.map(materialLine);
 }
 
 export function headerSection(data, nodes) {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The head of a page that has a library alone.
+import { HOLE } from '../data.js';
+import { definitions, el, paragraph } from '../dom.js';
+import { secantField } from './secant-field.js';
+import { materialLine } from './header.js';
+import * as units from '../units.js';
+
+function originText(origin) {
+  return origin ? ` It was computed by palpate ${origin.version}, ${origin.utc.slice(0, 10)}.` : '';
+}
+
+export function playHeader(data) {
+  const { key, vertices, origin } = data;
+  const { low, high } = secantField(data);
+  const pressed = vertices.response_status.filter((status) => status !== HOLE).length;
+  const materials = origin?.materials ?? [];
+  return el('header', {},
+    el('h1', {}, data.title),
+    paragraph(`A response library, to be touched.${originText(origin)}`, 'lead'),
+    definitions([
+      ['Tool', `${key.tool_shape}, radius ${units.length(key.tool_radius)}, pressed at most ${units.length(key.depth)}`],
+      ['Stiffness', `${units.significant(low)} to ${units.significant(high)}\u00a0N/m, secant at that depth; the colour of the body`],
+      ['Nodes', `${units.count(pressed)} of ${units.count(vertices.response_status.length)} have responses; grey parts have none`],
+      ...(materials.length ? [['Materials', materials.flatMap((m, i) => (i ? [el('br'), materialLine(m)] : [materialLine(m)]))]] : []),
+    ], 'facts'));
+}

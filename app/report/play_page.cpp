@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/report/play_page.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "app/report/embed.hpp"
+#include "app/report/figures.hpp"
+#include "app/report/page_data.hpp"
+#include "app/report/report.hpp"
+#include "app/report/touch.hpp"
+#include "format/error.hpp"
+#include "format/to_index.hpp"
+
+namespace palpate::report {
+namespace {
+
+using nlohmann::json;
+
+/// As the page has them: what can be pressed, and what cannot.
+constexpr std::uint8_t kPressed = 0, kNotPressed = 1;
+
+bool responds(const Library& library, std::int32_t vertex) {
+  return library.responses[to_index(vertex)].status != ResponseStatus::Hole;
+}
+
+double depth_of(const Library& library) {
+  if (library.certificate.depth > 0) return library.certificate.depth;
+  double depth = kInfinity;
+  for (const NodeResponse& node : library.responses)
+    if (node.status != ResponseStatus::Hole)
+      depth = std::min(depth, static_cast<double>(node.normal.knot.back()));
+  return depth;
+}
+
+std::vector<float> columns_of(const std::vector<Vec3>& points) {
+  std::vector<float> out;
+  for (const Vec3& point : points)
+    for (const double x : point) out.push_back(static_cast<float>(x));
+  return out;
+}
+
+/// A part of the vertices, with a numbering of its own.
+struct Numbering {
+  std::vector<std::int32_t> vertex;  ///< of each point
+  std::vector<std::int32_t> point;   ///< of each vertex; -1: none
+};
+Numbering corners_of(const std::vector<Triangle>& triangles, std::size_t vertices) {
+  Numbering used{{}, std::vector<std::int32_t>(vertices, -1)};
+  for (const Triangle& t : triangles) {
+    for (const std::int32_t v : t) {
+      if (used.point.at(to_index(v)) >= 0) continue;
+      used.point[to_index(v)] = static_cast<std::int32_t>(used.vertex.size());
+      used.vertex.push_back(v);
+    }
+  }
+  return used;
+}
+
+/// The response surface in place of the boundary of the body: its points are vertices.
+json surface_of(const Library& library, const std::vector<Triangle>& triangles) {
+  const Numbering used = corners_of(triangles, library.positions.size());
+  std::vector<Vec3> points;
+  for (const std::int32_t v : used.vertex) points.push_back(library.positions[to_index(v)]);
+  const std::vector<std::int32_t> in_library = library_triangles(triangles, library);
+  std::vector<std::int32_t> facets, corners, own, point_triangle(points.size());
+  std::vector<double> natural(2 * points.size());
+  std::vector<std::uint8_t> kind;
+  for (std::size_t m = 0; m < triangles.size(); ++m) {
+    bool pressed = in_library[m] >= 0;
+    for (std::size_t l = 0; l < 3; ++l) {
+      const std::int32_t v = triangles[m][l];
+      const std::size_t p = to_index(used.point[to_index(v)]);
+      corners.push_back(v);
+      facets.push_back(static_cast<std::int32_t>(p));
+      point_triangle[p] = static_cast<std::int32_t>(m);
+      natural[2 * p] = l == 0 ? 1 : 0;
+      natural[2 * p + 1] = l == 1 ? 1 : 0;
+      pressed = pressed && responds(library, v);
+    }
+    kind.push_back(pressed ? kPressed : kNotPressed);
+    own.push_back(static_cast<std::int32_t>(m));
+  }
+  return {{"points", column(columns_of(points))},
+          {"facets", index_column(facets)},
+          {"facet_triangle", index_column(own)},
+          {"facet_kind", column(kind)},
+          {"point_triangle", index_column(point_triangle)},
+          {"point_natural", fraction_column(natural)},
+          {"triangles", index_column(corners)},
+          {"library_triangle", column(in_library)}};
+}
+
+json surface_of(const Library& library, const PlayBody& drawn) {
+  if (drawn.body == nullptr)
+    return surface_of(library, drawn.triangles.empty() ? library.triangles : drawn.triangles);
+  if (drawn.body->response.node.size() != library.positions.size())
+    refuse(library.name, "the body beside it is not the one that it was computed for",
+           "move body.h5 away, or run `palpate build` again");
+  return surface_data(*drawn.body, library);
+}
+
+json vertices_of(const Library& library) {
+  std::vector<std::uint8_t> status;
+  for (const NodeResponse& response : library.responses)
+    status.push_back(static_cast<std::uint8_t>(response.status));
+  return {{"position", column(columns_of(library.positions))},
+          {"inward", column(columns_of(library.inward))},
+          {"response_status", column(status)}};
+}
+
+/// The step that made the library, as the reader of the page knows it.
+json origin_of(const Library& library) {
+  if (library.provenance.steps.empty()) return nullptr;
+  const ProvenanceStep& last = library.provenance.steps.back();
+  json tables = json::array();
+  for (const ProvenanceStep& step : library.provenance.steps)
+    if (step.stage == "precompute") tables = materials(step.resolved_case);
+  return {{"version", last.version}, {"utc", last.utc}, {"materials", tables}};
+}
+
+}  // namespace
+
+json play_data(const Library& library, const PlayBody& drawn) {
+  const auto responds_at_all = [](const NodeResponse& node) {
+    return node.status != ResponseStatus::Hole;
+  };
+  if (std::none_of(library.responses.begin(), library.responses.end(), responds_at_all))
+    refuse(library.name, "no vertex of the library has a response",
+           "look at the failed sites with `palpate inspect`");
+  const double depth = depth_of(library);
+  const std::vector<PeakForce> no_samples(library.responses.size());
+  const ChosenVertices chosen = choose_vertices(library, no_samples, depth);
+  return {{"play", true},
+          {"title", library.name},
+          {"key",
+           {{"depth", depth},
+            {"deepest", depth},
+            {"tool_shape", library.tool_shape},
+            {"tool_radius", library.tool_radius}}},
+          {"surface", surface_of(library, drawn)},
+          {"inclusions", drawn.body == nullptr ? json::array() : inclusion_data(*drawn.body)},
+          {"vertices", vertices_of(library)},
+          {"normal", response_columns(library, true)},
+          {"chosen",
+           {{"softest", chosen.softest}, {"median", chosen.median}, {"stiffest", chosen.stiffest}}},
+          {"certificate", certificate_data(library)},
+          {"touch", touch_data(library)},
+          {"relaxation", relaxation_data(library, chosen.median)},
+          {"origin", origin_of(library)}};
+}
+
+void write_play_page(const Library& library, const PlayBody& drawn,
+                     const std::filesystem::path& path) {
+  const json data = play_data(library, drawn);
+  if (data["touch"].is_null())
+    refuse("play", "this palpate was built without the WebAssembly toolchain, which the page needs",
+           "run scripts/setup and build again");
+  write_page(data, path);
+}
+
+}  // namespace palpate::report

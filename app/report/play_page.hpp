@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The page to touch of a library, without the curves that it was made from.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "format/body.hpp"
+#include "format/library.hpp"
+
+namespace palpate::report {
+
+/// What is known of the body beside its library, to be drawn; both may be missing.
+struct PlayBody {
+  const Body* body = nullptr;  ///< that of the library: its boundary, inclusions and supports
+  std::vector<Triangle>
+      triangles{};  ///< the whole response surface, with the vertices of the library
+};
+
+/// Data of the page, in SI units. Without a body the triangles are drawn, and without these those
+/// of the library, which are the part that can be pressed. The depth is that of the certificate, or
+/// else the smallest that every response was computed to.
+/// @throws Error(Configuration) where no vertex has a response, or the body is another one.
+nlohmann::json play_data(const Library& library, const PlayBody& drawn = {});
+
+/// One self-contained HTML file, as that of write_report.
+/// @throws Error as play_data, Error(Configuration) where this program was built without the
+///   WebAssembly toolchain, Error(Internal) when the file cannot be written.
+void write_play_page(const Library& library, const PlayBody& drawn,
+                     const std::filesystem::path& path);
+
+}  // namespace palpate::report
