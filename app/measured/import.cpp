@@ -248,9 +248,8 @@ class Importer {
 
   void doubt_tool() {
     if (!body_ || s_.tool.radius <= extent_of(*body_)) return;
-    warn(
-        fmt::format("the radius of the tool, {}, is larger than the body, {}: check its unit",
-                    length_text(s_.tool.radius), length_text(extent_of(*body_))));
+    warn(fmt::format("the radius of the tool, {}, is larger than the body, {}: check its unit",
+                     length_text(s_.tool.radius), length_text(extent_of(*body_))));
   }
 
   /// A wrong unit shows in a tool that is deeper in the body than that is large, and a depth that
