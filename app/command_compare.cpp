@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 struct CompareOptions {
   std::string reference, model, reference_body, model_body, out;
   compare::CompareSettings settings;
-  double jnd_floor_mn = 5, site_tolerance_mm = 2;
+  double jnd_floor_mn = kUnknown, site_tolerance_mm = kUnknown;  ///< NaN: by the reference
   std::vector<double> depths_mm;
   CaseOptions fem;  ///< with a case: its library is compared with direct solutions
   FidelityOptions fidelity;
@@ -89,14 +89,21 @@ void print(const compare::Comparison& comparison) {
 }
 
 int compare_sets(CompareOptions options) {
-  options.settings.jnd_floor = 1e-3 * options.jnd_floor_mn;
-  options.settings.site_tolerance = 1e-3 * options.site_tolerance_mm;
   for (const double depth : options.depths_mm) options.settings.depths.push_back(1e-3 * depth);
   const auto reference = read_set(options.reference, options.reference_body);
   const auto model = read_set(options.model, options.model_body);
+  options.settings.jnd_floor = std::isfinite(options.jnd_floor_mn)
+                                   ? 1e-3 * options.jnd_floor_mn
+                                   : compare::jnd_floor_of(reference, options.settings.jnd);
+  options.settings.site_tolerance = std::isfinite(options.site_tolerance_mm)
+                                        ? 1e-3 * options.site_tolerance_mm
+                                        : compare::site_tolerance_of(reference);
   const compare::Comparison comparison = compare::compare(reference, model, options.settings);
   say("compare: {} against {}", options.model, options.reference);
   print(comparison);
+  if (options.settings.jnd_floor < compare::CompareSettings{}.jnd_floor)
+    say("  a difference of {} counts as noticeable near zero force: the forces are small",
+        force_text(options.settings.jnd_floor));
   const fs::path out = options.out;
   prepare_output(out);
   auto json = comparison_json(comparison, options.settings);
@@ -182,13 +189,15 @@ void add_compare_command(CLI::App& root, Action& action) {
       ->add_option("--jnd", options->settings.jnd, "Just noticeable relative difference of force")
       ->capture_default_str()
       ->check(CLI::Range(1e-3, 1.0));
-  command->add_option("--jnd-floor-mN", options->jnd_floor_mn, "Smallest noticeable difference, mN")
-      ->capture_default_str()
+  command
+      ->add_option("--jnd-floor-mN", options->jnd_floor_mn,
+                   "Smallest noticeable difference, mN (default: 5, or the just noticeable part of "
+                   "the largest force where that is less)")
       ->check(CLI::Range(1e-6, 1e6));
   command
       ->add_option("--site-tolerance-mm", options->site_tolerance_mm,
-                   "Largest distance between matched sites of two bodies, mm")
-      ->capture_default_str()
+                   "Largest distance between matched sites of two bodies, mm (default: 2, or twice "
+                   "the radius of the tool where that is less)")
       ->check(CLI::Range(1e-6, 1e6));
   command->add_option("--depths-mm", options->depths_mm,
                       "Depths at which stiffness is compared, mm (default: thirds of the range)");

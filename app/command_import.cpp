@@ -4,6 +4,7 @@
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/measured/import.hpp"
+#include "app/measured/request.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/number_text.hpp"
@@ -15,7 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ImportOptions {
-  std::string sidecar, body, out;
+  std::vector<std::string> inputs;
+  std::string body, out;
+  bool allow_refused = false;
 };
 
 /// A value that is unknown stands as null.
@@ -23,12 +26,25 @@ double number_of(const nlohmann::ordered_json& value) {
   return value.is_null() ? kUnknown : value.get<double>();
 }
 
+/// Each record that was taken or refused, where there are several.
+void say_records(const Import& result) {
+  const auto& records = result.account["records"];
+  if (records.size() + result.account["refused"].size() < 2) return;
+  for (const auto& record : records)
+    say("  imported {}: site {}", record["file"].get<std::string>(), record["vertex"].get<int>());
+  for (const auto& refused : result.account["refused"])
+    say("  refused {}: {}", refused["file"].get<std::string>(),
+        refused["reason"].get<std::string>());
+}
+
 int import_records(const ImportOptions& options) {
-  const Import result = import_measurement(options.sidecar, options.body);
+  const ImportRequest request = import_request(options.inputs);
+  const Import result = import_measurement(request.sidecar, options.body, request.records);
   const fs::path out = options.out;
   prepare_output(out);
   write_curves(out / "curves.h5", result.curves);
   write_file_crash_safely(out / "import.json", result.account.dump(2) + "\n");
+  say_records(result);
   if (result.account.contains("conversion"))
     say("  {}", result.account["conversion"].get<std::string>());
   for (const auto& site : result.account["sites"]) {
@@ -49,7 +65,9 @@ int import_records(const ImportOptions& options) {
   }
   say("import: {} records at {} sites -> {} (account in import.json)",
       result.account["records"].size(), result.curves.sites.size(), (out / "curves.h5").string());
-  return kExitDone;
+  if (result.refused == 0) return kExitDone;
+  say("import: {} refused, see above; the curves are those of the others", result.refused);
+  return options.allow_refused ? kExitDone : kExitSomeSitesFailed;
 }
 
 }  // namespace
@@ -61,10 +79,15 @@ void add_import_command(CLI::App& root, Action& action) {
       "Example: palpate import data/measured/pad/presses.toml --body out/pad/body.h5 "
       "--out out/pad-measured");
   const auto options = std::make_shared<ImportOptions>();
-  command->add_option("SIDECAR", options->sidecar, "Sidecar (TOML), see docs/measured.md")
+  command
+      ->add_option("SIDECAR", options->inputs,
+                   "Sidecar (TOML), see docs/measured.md; or records of it, or patterns of them "
+                   "('data/*.csv'), where it is the only TOML file beside them or stands in front")
       ->required();
   command->add_option("--body", options->body, "body.h5 that contains the sites");
   command->add_option("--out", options->out, "Folder of the artifacts")->required();
+  command->add_flag("--allow-refused", options->allow_refused,
+                    "Exit with 0 although records were refused, as long as one was imported");
   command->callback(
       [options, &action] { action = [options] { return import_records(*options); }; });
 }

@@ -76,6 +76,8 @@ LIBRARIES = (
     (r"pugi(xml|config)\.hpp", "pugixml"),
     (r"zlib\.h", "zlib"),
     (r"pybind11/", "pybind11"),
+    (r"minizip/", "minizip"),
+    (r"matio\.h", "matio"),
     (r"fmt/", "fmt"),
     (r"spdlog/", "spdlog"),
 )
@@ -89,6 +91,7 @@ MAY_USE = {
     "fem/laws": {"Eigen"} | TEXT,
     "fitting": {"Eigen"} | TEXT,
     "fitting/measurement": {"Eigen", "Ceres", "Boost.Math"} | TEXT,
+    "fitting/measurement/records": {"Eigen", "Boost.Math", "matio", "minizip", "pugixml"} | TEXT,
     "runtime": {"readerwriterqueue"},
     "app": {"CLI11", "toml++", "nlohmann-json"} | TEXT,
     "python": {"pybind11"},

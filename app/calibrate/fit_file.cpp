@@ -16,8 +16,7 @@ void describe_record(V& v, TestSection& s) {
   v.text(s.file, {"file", "record, relative to this file", kRequired});
   v.text(s.stress_file, {"stress_file", "record of the stress or force, where it stands apart"});
   v.texts(s.columns, {"columns", "names in order, of a file without a header"});
-  v.integer(s.table, {"table", "which table of the file, from 1; needed when it has several",
-                      kOptional, kNotNegative});
+  describe_table_choice(v, s.choice);
   v.integer(s.first_row, {"first_row", "first row of numbers, from 1", kOptional, {.low = 1}});
   v.integer(s.last_row, {"last_row", "last one; 0: of the record", kOptional, kNotNegative});
   v.integer(s.cycle, {"cycle",

@@ -10,6 +10,7 @@
 
 #include "fitting/measurement/compare/compare.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/numbers.hpp"
 
 namespace palpate::app {
@@ -98,8 +99,8 @@ std::string shift_name(const Target& target) {
   if (target.kind == PathKind::Normal) {
     return fmt::format("contact shift of site {}", target.vertex);
   }
-  return fmt::format("contact shift of the drag at {:.2f} mm of site {}",
-                     1e3 * target.lateral_depth, target.vertex);
+  return fmt::format("contact shift of the drag at {} of site {}",
+                     length_text(target.lateral_depth), target.vertex);
 }
 
 class Inverse {
@@ -179,8 +180,8 @@ class Inverse {
     const double radius = settings_.campaign.indentation.tool.radius;
     if (std::abs(measured.tool.radius - radius) > 1e-6 * radius) {
       refuse("measured curves",
-             fmt::format("they were made with a tool of {:.4g} mm radius, the case has {:.4g} mm",
-                         1e3 * measured.tool.radius, 1e3 * radius),
+             fmt::format("they were made with a tool of {} radius, the case has {}",
+                         length_text(measured.tool.radius), length_text(radius)),
              "set tool.radius of the case to that of the measurement");
     }
     double deepest = 0;

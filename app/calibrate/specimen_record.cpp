@@ -9,7 +9,6 @@
 #include <iterator>
 #include <optional>
 
-#include "fitting/measurement/records/csv_table.hpp"
 #include "fitting/measurement/records/csv_text.hpp"
 #include "format/error.hpp"
 #include "format/number_text.hpp"
@@ -63,23 +62,36 @@ measured::CsvTable bare_column(const std::filesystem::path& file, const std::str
   return table;
 }
 
+/// The columns that a test names, of its record or of that of the stress alone.
+std::vector<std::string> wanted_of(const TestSection& s, bool of_deformation, bool of_stress) {
+  std::vector<std::string> names;
+  if (of_deformation) names = {s.deformation, s.displacement};
+  if (of_stress) names.insert(names.end(), {s.stress, s.force, s.uncertainty});
+  std::erase(names, "");
+  return names;
+}
+
 measured::CsvTable table_of(const std::filesystem::path& file,
-                            const std::vector<std::string>& names, int table) {
+                            const std::vector<std::string>& names,
+                            const measured::TableChoice& choice,
+                            const std::vector<std::string>& wanted) {
   if (names.size() == 1) return bare_column(file, names[0]);
   std::vector<measured::DeclaredColumn> declared;
   for (const std::string& name : names) declared.push_back({name, {}});
-  return measured::read_csv(file, declared, table);
+  return measured::read_table(file, choice, declared, wanted);
 }
 
 Columns read_columns(const TestSection& s, const std::filesystem::path& folder,
                      const std::string& where) {
-  const auto table = table_of(folder / s.file, s.columns, s.table);
+  const bool apart = !s.stress_file.empty();
+  const auto table = table_of(folder / s.file, s.columns, s.choice, wanted_of(s, true, !apart));
   const bool by_force = !s.force.empty();
   const std::string& name = by_force ? s.force : s.stress;
   std::optional<measured::CsvTable> other;
-  if (!s.stress_file.empty())
+  if (apart)
     other = table_of(folder / s.stress_file,
-                     s.columns.empty() ? s.columns : std::vector<std::string>{name}, s.table);
+                     s.columns.empty() ? s.columns : std::vector<std::string>{name}, s.choice,
+                     wanted_of(s, false, true));
   const measured::CsvTable& of_stress = other ? *other : table;
   const Dimension dimension = by_force ? Dimension::Force : Dimension::Pressure;
   Columns c;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/measured/specimen_size.hpp"
+#include "app/measured/table_keys.hpp"
 #include "fitting/measurement/calibrate/homogeneous_fit.hpp"
 
 namespace palpate::app {
@@ -16,7 +17,7 @@ struct TestSection {
   std::string file, mode, measure = "nominal";
   std::string stress_file;           ///< where the stress or force stands alone in another file
   std::vector<std::string> columns;  ///< names in order, of a file without a header
-  int table = 0;                     ///< of the file, from 1; 0: its only one
+  measured::TableChoice choice;      ///< of the file
   std::string deformation, stress;   ///< columns of deformation and stress
   std::string displacement, force;   ///< or of travel and force, with a specimen
   std::string uncertainty;           ///< column, of the stress or the force

@@ -12,10 +12,10 @@
 #include <sstream>
 
 #include "app/json_number.hpp"
-#include "fitting/measurement/records/csv_table.hpp"
 #include "fitting/measurement/records/placement.hpp"
 #include "fitting/measurement/records/repeats.hpp"
 #include "fitting/measurement/records/robot.hpp"
+#include "fitting/measurement/records/table_file.hpp"
 #include "format/error.hpp"
 #include "format/number_text.hpp"
 #include "format/numbers.hpp"
@@ -46,11 +46,37 @@ class Importer {
     place_frame();
   }
 
+  /// Leaves out what is not among these files, and refuses what the sidecar does not name.
+  void restrict_to(const std::vector<fs::path>& records) {
+    std::map<fs::path, bool> named;
+    for (const fs::path& record : records) named[fs::weakly_canonical(record)] = false;
+    const auto is_left_out = [&](const auto& section) {
+      const auto found = named.find(fs::weakly_canonical(path_of(section.file)));
+      if (found == named.end()) return true;
+      found->second = true;
+      return false;
+    };
+    std::erase_if(s_.presses, is_left_out);
+    std::erase_if(s_.robot_logs, is_left_out);
+    for (const auto& [record, known] : named) {
+      if (known) continue;
+      put_off(record.string(),
+              Error(ErrorKind::Configuration, record.string(),
+                    "the sidecar " + sidecar_file_.string() + " does not name it",
+                    "add it as `file`, or a pattern as `files` of a [[press]] or [[robot]]"));
+    }
+  }
+
   Import run() {
-    for (const PressFileSection& press : s_.presses) read_press(press);
-    for (const RobotFileSection& robot : s_.robot_logs) read_robot(robot);
+    for (const PressFileSection& press : s_.presses)
+      attempt(press.file, [&] { read_press(press); });
+    for (const RobotFileSection& robot : s_.robot_logs)
+      attempt(robot.file, [&] { read_robot(robot); });
     Import result;
     result.curves = curves();
+    if (result.curves.sites.empty()) throw *first_refusal_;
+    result.refused = static_cast<int>(refused_.size());
+    account_["refused"] = refused_;
     account_["sites"] = sites_account(result.curves);
     if (const std::string text = conversion(); !text.empty()) account_["conversion"] = text;
     account_["records"] = records_;
@@ -60,6 +86,24 @@ class Importer {
   }
 
  private:
+  void put_off(const std::string& what, const Error& error) {
+    if (!first_refusal_) first_refusal_ = error;
+    refused_.push_back({{"file", what}, {"reason", error.what()}});
+  }
+
+  /// A record that is wrong does not take the others with it.
+  template <class Work>
+  bool attempt(const std::string& what, Work work) {
+    try {
+      work();
+      return true;
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::Configuration) throw;
+      put_off(what, error);
+      return false;
+    }
+  }
+
   fs::path path_of(const std::string& file) const { return sidecar_file_.parent_path() / file; }
 
   std::vector<double> column(const m::CsvTable& table, const std::string& name,
@@ -72,6 +116,19 @@ class Importer {
                                                                  : c.force_unit;
     if (name.empty()) return {};
     return m::column_in_si(table, name, dimension, unit);
+  }
+
+  static std::vector<std::string> named(std::vector<std::string> names) {
+    std::erase(names, "");
+    return names;
+  }
+  std::vector<std::string> wanted_of_press() const {
+    const ColumnsSection& c = s_.columns;
+    return named({c.time, c.displacement, c.strain, c.force, c.stress});
+  }
+  std::vector<std::string> wanted_of_robot() const {
+    const ColumnsSection& c = s_.columns;
+    return named({c.time, c.x, c.y, c.z, c.fx, c.fy, c.fz});
   }
 
   m::PressSettings press_settings(int cycle) const {
@@ -172,7 +229,7 @@ class Importer {
 
   void read_press(const PressFileSection& press) {
     const fs::path file = path_of(press.file);
-    const m::CsvTable table = m::read_csv(file, declared_, press.table);
+    const m::CsvTable table = m::read_table(file, press.choice, declared_, wanted_of_press());
     m::PressRecord record{file.string(), column(table, s_.columns.time, Dimension::Time),
                           displacement_of(table), force_of(table)};
     const m::Signs signs = oriented(record);
@@ -191,10 +248,8 @@ class Importer {
 
   void doubt_tool() {
     if (!body_ || s_.tool.radius <= extent_of(*body_)) return;
-    warn(
-        fmt::format("the radius of the tool, {:.4g} mm, is larger than the body, {:.4g} mm: check "
-                    "its unit",
-                    1e3 * s_.tool.radius, 1e3 * extent_of(*body_)));
+    warn(fmt::format("the radius of the tool, {}, is larger than the body, {}: check its unit",
+                     length_text(s_.tool.radius), length_text(extent_of(*body_))));
   }
 
   /// A wrong unit shows in a tool that is deeper in the body than that is large, and a depth that
@@ -203,14 +258,14 @@ class Importer {
     const double depth = curve.loading.back().depth;
     if (body_ && depth > extent_of(*body_)) {
       throw Error(ErrorKind::Configuration, where,
-                  fmt::format("the tool goes {:.4g} mm deep into a body of {:.4g} mm", 1e3 * depth,
-                              1e3 * extent_of(*body_)),
+                  fmt::format("the tool goes {} deep into a body of {}", length_text(depth),
+                              length_text(extent_of(*body_))),
                   "check the unit of the displacement");
     }
     constexpr double kManyRadii = 10;
     if (depth > kManyRadii * s_.tool.radius) {
-      warn(fmt::format("{}: the tool goes {:.4g} mm deep, its radius is {:.4g} mm: check the units",
-                       where, 1e3 * depth, 1e3 * s_.tool.radius));
+      warn(fmt::format("{}: the tool goes {} deep, its radius is {}: check the units", where,
+                       length_text(depth), length_text(s_.tool.radius)));
     }
   }
 
@@ -298,7 +353,7 @@ class Importer {
 
   void read_robot(const RobotFileSection& robot) {
     const fs::path file = path_of(robot.file);
-    const m::CsvTable table = m::read_csv(file, declared_, robot.table);
+    const m::CsvTable table = m::read_table(file, robot.choice, declared_, wanted_of_robot());
     m::RobotSettings settings;
     settings.press = press_settings(robot.cycle);
     settings.placement_tolerance = s_.placement.tolerance;
@@ -351,6 +406,23 @@ class Importer {
     return body_ ? body_->response.inward[static_cast<std::size_t>(vertex)] : kDown;
   }
 
+  /// The mean press of a site, and its drags or the lateral path that is made for want of them.
+  SiteCurves curves_of(int vertex, const SiteRecords& records,
+                       const m::RepeatSettings& settings) const {
+    SiteCurves site;
+    site.vertex = vertex;
+    site.status = SiteStatus::Complete;
+    site.paths.push_back(m::mean_path(records.presses, inward_of(vertex), settings,
+                                      fmt::format("site at vertex {}", vertex)));
+    if (records.drags.empty() && s_.path.lateral_ratio > 0)
+      site.paths.push_back(m::lateral_from_normal(site.paths.front(), s_.path.lateral_ratio));
+    for (CurvePath& path : m::lateral_paths(records.drags, inward_of(vertex),
+                                            {s_.path.lateral_samples, s_.machine.force_calibration},
+                                            fmt::format("drags of the site at vertex {}", vertex)))
+      site.paths.push_back(std::move(path));
+    return site;
+  }
+
   Curves curves() {
     Curves curves;
     curves.tool = {s_.tool.shape, s_.tool.radius, s_.tool.friction};
@@ -359,22 +431,12 @@ class Importer {
                                      s_.machine.compliance_uncertainty};
     for (const auto& [vertex, records] : sites_) {
       SiteCurves site;
-      site.vertex = vertex;
-      site.status = SiteStatus::Complete;
-      site.paths.push_back(m::mean_path(records.presses, inward_of(vertex), settings,
-                                        fmt::format("site at vertex {}", vertex)));
-      curves.depth = std::max(curves.depth, site.paths.back().samples.back().displacement);
-      if (records.drags.empty() && s_.path.lateral_ratio > 0) {
-        site.paths.push_back(m::lateral_from_normal(site.paths.front(), s_.path.lateral_ratio));
-        curves.lateral_travel =
-            std::max(curves.lateral_travel, site.paths.back().samples.back().displacement);
-      }
-      for (CurvePath& path :
-           m::lateral_paths(records.drags, inward_of(vertex),
-                            {s_.path.lateral_samples, s_.machine.force_calibration},
-                            fmt::format("drags of the site at vertex {}", vertex))) {
-        curves.lateral_travel = std::max(curves.lateral_travel, path.samples.back().displacement);
-        site.paths.push_back(std::move(path));
+      const bool usable = attempt(fmt::format("site {}", vertex),
+                                  [&] { site = curves_of(vertex, records, settings); });
+      if (!usable) continue;
+      for (const CurvePath& path : site.paths) {
+        double& reach = path.kind == PathKind::Normal ? curves.depth : curves.lateral_travel;
+        reach = std::max(reach, path.samples.back().displacement);
       }
       warn_of_doubt(site);
       curves.sites.push_back(std::move(site));
@@ -449,12 +511,17 @@ class Importer {
   std::map<int, SiteRecords> sites_;
   std::vector<fs::path> files_;
   Json account_ = Json::object(), records_ = Json::array(), warnings_ = Json::array();
+  Json refused_ = Json::array();
+  std::optional<Error> first_refusal_;
 };
 
 }  // namespace
 
-Import import_measurement(const fs::path& sidecar_file, const fs::path& body_file) {
-  return Importer(sidecar_file, body_file).run();
+Import import_measurement(const fs::path& sidecar_file, const fs::path& body_file,
+                          const std::vector<fs::path>& records) {
+  Importer importer(sidecar_file, body_file);
+  if (!records.empty()) importer.restrict_to(records);
+  return importer.run();
 }
 
 }  // namespace palpate::app

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "app/measured/sidecar.hpp"
 #include "format/body.hpp"
@@ -16,14 +17,19 @@ namespace palpate::app {
 struct Import {
   Curves curves;
   nlohmann::ordered_json account;
+  int refused = 0;  ///< records and sites that are not in the curves; the account has the reasons
 };
 
 /// Read all records of a sidecar and locate them on the body. Presses of one site are repeats: they
 /// become one path with their scatter; so do drags of one site, depth and direction stay apart.
 /// @param body_file  body.h5, or empty: the vertices of the sidecar are taken as they are, the
 ///   presses run along -z, and the curves refer to no body.
-/// @throws Error(Configuration) naming record and line.
+/// A record that cannot be used is left out and listed in the account, as long as another can.
+/// @param records  restricts the sidecar to these; empty: all. Those that it does not name are
+///   refused.
+/// @throws Error(Configuration) naming record and line, where nothing can be used.
 Import import_measurement(const std::filesystem::path& sidecar_file,
-                          const std::filesystem::path& body_file);
+                          const std::filesystem::path& body_file,
+                          const std::vector<std::filesystem::path>& records = {});
 
 }  // namespace palpate::app

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/case/reader.hpp"
+#include "app/measured/many_files.hpp"
 #include "format/error.hpp"
 
 namespace palpate::app {
@@ -122,11 +123,16 @@ void describe(V& v, FiducialSection& s) {
 
 template <class V>
 void describe(V& v, PressFileSection& s) {
-  v.text(s.file, {"file", "record, relative to the sidecar", kRequired});
+  v.text(s.file, {"file", "record, relative to the sidecar; with {names} of a list"});
+  v.text(s.files, {"files", "many records, instead: \"run-{n}-*.csv\""});
+  v.text(s.list, {"list", "table of what varies, with a row for each file"});
+  v.text(s.vertex_from, {"vertex_from", "vertex of each file: \"{n}\""});
+  v.texts(s.site_from, {"site_from", "point of each file: [\"{x} mm\", \"{y} mm\", \"20 mm\"]"});
+  v.text(s.cycle_from, {"cycle_from", "cycle of each file: \"{cycle}\""});
+  v.text(s.contact_from, {"contact_from", "contact of each file: \"{contact} mm\""});
   v.integer(s.vertex, {"vertex", "response vertex of the body", kOptional, kNotNegative});
   v.point(s.site, Dimension::Length, {"site", "point that was pressed, in the frame of the body"});
-  v.integer(s.table, {"table", "which table of the file, from 1; needed when it has several",
-                      kOptional, kNotNegative});
+  describe_table_choice(v, s.choice);
   v.integer(s.cycle, {"cycle", "which press of the record; -1 is the last"});
   v.quantity(s.contact, Dimension::Length,
              {"contact", "displacement of this record at the contact point that is given"});
@@ -134,9 +140,9 @@ void describe(V& v, PressFileSection& s) {
 
 template <class V>
 void describe(V& v, RobotFileSection& s) {
-  v.text(s.file, {"file", "log, relative to the sidecar", kRequired});
-  v.integer(s.table, {"table", "which table of the file, from 1; needed when it has several",
-                      kOptional, kNotNegative});
+  v.text(s.file, {"file", "log, relative to the sidecar"});
+  v.text(s.files, {"files", "many logs, instead: \"log-*.csv\""});
+  describe_table_choice(v, s.choice);
   v.integer(s.cycle, {"cycle", "which press of the log; -1 is the last"});
 }
 
@@ -213,12 +219,12 @@ void check_columns(const Sidecar& s, const SourceMap& sources) {
   }
 }
 
-void check_sites(const Sidecar& s, const SourceMap& sources) {
+void check_sites(const Sidecar& s) {
   for (std::size_t i = 0; i < s.presses.size(); ++i) {
     const PressFileSection& press = s.presses[i];
     const bool by_point = std::isfinite(press.site[0]);
     if (by_point != (press.vertex >= 0)) continue;
-    refuse(sources.where(fmt::format("press[{}].", i)),
+    refuse(press.where,
            by_point ? "both vertex and site are given" : "neither vertex nor site is given",
            "say once where the tool was pressed");
   }
@@ -237,8 +243,7 @@ void check_contact(const Sidecar& s, const SourceMap& sources) {
              "give the displacement at the contact point, for all records or as 'contact' of each");
     }
     if (!given && here) {
-      refuse(sources.where(fmt::format("press[{}].contact", i)),
-             "a contact point is given, and contact.method says otherwise",
+      refuse(s.presses[i].where, "a contact point is given, and contact.method says otherwise",
              "say contact.method = \"given\"");
     }
   }
@@ -271,13 +276,17 @@ Sidecar read_sidecar(const std::filesystem::path& path) {
   if (sidecar.presses.empty() && sidecar.robot_logs.empty()) {
     refuse(path.string(), "it names no record", "add [[press]] or [[robot]] with a file");
   }
+  constexpr double kUsualTolerance = 5e-3, kRadii = 4;
+  if (!std::isfinite(sidecar.placement.tolerance))
+    sidecar.placement.tolerance = std::min(kUsualTolerance, kRadii * sidecar.tool.radius);
+  expand_files(sidecar, path.parent_path(), sources);
   if (sidecar.contact.method == "threshold" && !std::isfinite(sidecar.contact.threshold)) {
     refuse(sources.where("contact.method"), "key 'contact.threshold' is missing",
            "give the force that is taken for contact");
   }
   check_contact(sidecar, sources);
   check_columns(sidecar, sources);
-  check_sites(sidecar, sources);
+  check_sites(sidecar);
   return sidecar;
 }
 

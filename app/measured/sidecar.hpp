@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/measured/specimen_size.hpp"
+#include "app/measured/table_keys.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate::app {
@@ -62,7 +63,7 @@ struct PathSection {
 };
 
 struct PlacementSection {
-  double tolerance = 0.005;          ///< m
+  double tolerance = kNotGiven;      ///< m; 5 mm, or four radii of the tool where that is less
   std::string frame = "fiducials";   ///< "fiducials" or "body"
   std::string force_is = "on body";  ///< "on body" or "on tool"
 };
@@ -71,18 +72,26 @@ struct FiducialSection {
   Vec3 robot{}, body{};  ///< m
 };
 
+/// A record, or many of them: read_sidecar makes a section of each file.
 struct PressFileSection {
-  std::string file;  ///< relative to the sidecar
+  std::string file;   ///< relative to the sidecar; of a list a text with placeholders
+  std::string files;  ///< pattern, instead
+  std::string list;   ///< table of what varies, with a row for each file
+  /// Texts with placeholders, of the pattern or the list, instead of the values below.
+  std::string vertex_from, cycle_from, contact_from;
+  std::vector<std::string> site_from;
+  measured::TableChoice choice;
   int vertex = -1;
   Vec3 site{kNotGiven, kNotGiven, kNotGiven};  ///< m, in the frame of the body
-  int table = 0;                               ///< of the file; 0: its only one
   int cycle = 1;
   double contact = kNotGiven;  ///< m, as the record counts it
+  std::string where;           ///< its place in the sidecar, for messages
 };
 
 struct RobotFileSection {
   std::string file;
-  int table = 0;
+  std::string files;  ///< pattern, instead
+  measured::TableChoice choice;
   int cycle = 1;
 };
 

@@ -37,10 +37,6 @@ struct Varied {
 
 /// With gravity the point of first touch would depend on the constants.
 void refuse_unsupported(const CampaignSettings& settings) {
-  if (settings.indentation.refine_under_tool != 0)
-    throw Error(ErrorKind::Configuration, "refine_under_tool",
-                "gradients are not computed with refined elements",
-                "calibrate without solver.refine_under_tool, with a smaller mesh.element_size");
   if (!settings.gravity.acts()) return;
   throw Error(ErrorKind::Configuration, "gravity",
               "gradients are not computed for a body under its weight",
@@ -112,6 +108,7 @@ class Differentiator {
 
   /// Records a state at which the surface is tied afterwards, in the order of the path.
   void record(const ToolContact& contact, const Displacement& u) {
+    if (constants_.empty()) return;
     bonded_.push_back({contact, u, residual_slopes(contact, u)});
   }
   std::size_t recorded() const { return bonded_.size(); }
@@ -265,45 +262,110 @@ double bytes_of(const CampaignContext& context, std::int32_t vertex) {
 
 }  // namespace
 
-std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSettings& settings,
-                                             const std::vector<double>& depths,
-                                             const std::vector<RegionConstant>& constants,
-                                             const std::vector<std::vector<LateralPlan>>& lateral,
-                                             FactorCache* cache) {
-  require_inside(body, "finite elements");
-  refuse_unsupported(settings);
+namespace {
+
+using SitePlans = std::vector<std::vector<LateralPlan>>;
+
+/// The settings of the paths that pass the wanted states.
+CampaignSettings settings_of_paths(const CampaignSettings& settings,
+                                   const std::vector<double>& depths, const SitePlans& lateral) {
   CampaignSettings normal = settings;
-  normal.indentation.lateral_depths = depths;  // the states that the path must pass
-  normal.indentation.depth = *std::max_element(depths.begin(), depths.end());
-  normal.indentation.azimuths.clear();  // no lateral paths
+  IndentationSettings& indentation = normal.indentation;
+  indentation.lateral_depths = depths;  // the states that the path must pass
+  indentation.depth = *std::max_element(depths.begin(), depths.end());
+  indentation.azimuths.clear();  // no lateral paths
   // An equilibrium without friction does not depend on the path: no increments between the depths.
-  if (normal.indentation.friction == ToolFriction::Frictionless) normal.indentation.increments = 1;
-  normal.indentation.lateral_travel = 0;  // only the reach of the contact candidates
+  // Refined elements resolve the contact at the depth of the first one.
+  if (indentation.friction == ToolFriction::Frictionless)
+    indentation.increments =
+        indentation.refine_under_tool == 0 ? 1 : static_cast<int>(depths.size());
+  indentation.lateral_travel = 0;  // only the reach of the contact candidates
   for (const auto& plans : lateral) {
     for (const LateralPlan& plan : plans) {
-      normal.indentation.depth = std::max(normal.indentation.depth, plan.lateral_depth);
-      normal.indentation.lateral_travel =
-          std::max(normal.indentation.lateral_travel, plan.travels.back());
+      indentation.depth = std::max(indentation.depth, plan.lateral_depth);
+      indentation.lateral_travel = std::max(indentation.lateral_travel, plan.travels.back());
     }
   }
-  check_indentation(normal.indentation);
+  check_indentation(indentation);
+  return normal;
+}
+
+/// All sites, differentiated by the adjoint; without constants only pressed.
+std::vector<SiteSensitivity> pressed_sites(const Body& body, const CampaignSettings& normal,
+                                           const std::vector<RegionConstant>& constants,
+                                           const SitePlans& lateral, FactorCache* cache) {
   const std::vector<LateralPlan> none;
-  std::vector<SiteSensitivity> results(settings.sites.size());
-  if (results.empty()) return results;
+  std::vector<SiteSensitivity> results(normal.sites.size());
   const CampaignContext context(body, normal, Engine::SharedFactor, cache);
   std::vector<Varied> derivatives;
   for (const RegionConstant& constant : constants) {
     derivatives.push_back(varied(body, normal, constant));
   }
-  const SiteThreads size = site_threads(*context.rest_factor, settings.threads, results.size(),
-                                        settings.memory, bytes_of(context, settings.sites.front()));
+  const SiteThreads size = site_threads(*context.rest_factor, normal.threads, results.size(),
+                                        normal.memory, bytes_of(context, normal.sites.front()));
   parallel_for_sites(
       *context.rest_factor, size, results.size(), [&](SolveBatch::Member& member, std::size_t i) {
-        results[i] = SiteDifferentiation(context, derivatives, member, settings.sites[i],
+        results[i] = SiteDifferentiation(context, derivatives, member, normal.sites[i],
                                          lateral.empty() ? none : lateral[i])
                          .run();
       });
   return results;
+}
+
+/// Adds (high - low)/width to the samples that all three have; a path that ended earlier on either
+/// side ends there.
+void add_differences(const std::vector<ForceSensitivity>& low,
+                     const std::vector<ForceSensitivity>& high, double width,
+                     std::vector<ForceSensitivity>& samples) {
+  samples.resize(std::min({samples.size(), low.size(), high.size()}));
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    samples[i].slope.push_back((high[i].force - low[i].force) / width);
+}
+
+/// Central differences of the forces, for refined elements: their mesh has no tangent of its own.
+/// It is the same for all constants, so that its error cancels. Steps of a hundredth leave the
+/// force tolerance a hundred times smaller than the force that is differentiated.
+std::vector<SiteSensitivity> by_differences(const Body& body, const CampaignSettings& normal,
+                                            const std::vector<RegionConstant>& constants,
+                                            const SitePlans& lateral, FactorCache* cache) {
+  constexpr double kStep = 1e-2;
+  std::vector<SiteSensitivity> results = pressed_sites(body, normal, {}, lateral, cache);
+  for (const RegionConstant& constant : constants) {
+    CampaignSettings more = normal, less = normal;
+    const double value = value_of(more, constant);
+    const bool poisson = constant.name == "poisson";
+    const double step = poisson      ? kStep * (0.5 - value)
+                        : value != 0 ? kStep * std::abs(value)
+                                     : kStep;
+    value_of(more, constant) = value + step;
+    value_of(less, constant) = poisson ? std::max(0.0, value - step) : value - step;
+    const double width = value_of(more, constant) - value_of(less, constant);
+    const auto high = pressed_sites(body, more, {}, lateral, cache);
+    const auto low = pressed_sites(body, less, {}, lateral, cache);
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      for (const SiteSensitivity* other : {&high[i], &low[i]})
+        if (results[i].reason.empty()) results[i].reason = other->reason;
+      add_differences(low[i].samples, high[i].samples, width, results[i].samples);
+      for (std::size_t p = 0; p < results[i].lateral.size(); ++p)
+        add_differences(low[i].lateral[p], high[i].lateral[p], width, results[i].lateral[p]);
+    }
+  }
+  return results;
+}
+
+}  // namespace
+
+std::vector<SiteSensitivity> run_sensitivity(const Body& body, const CampaignSettings& settings,
+                                             const std::vector<double>& depths,
+                                             const std::vector<RegionConstant>& constants,
+                                             const SitePlans& lateral, FactorCache* cache) {
+  require_inside(body, "finite elements");
+  refuse_unsupported(settings);
+  const CampaignSettings normal = settings_of_paths(settings, depths, lateral);
+  if (normal.sites.empty()) return {};
+  return normal.indentation.refine_under_tool != 0
+             ? by_differences(body, normal, constants, lateral, cache)
+             : pressed_sites(body, normal, constants, lateral, cache);
 }
 
 }  // namespace palpate::fem

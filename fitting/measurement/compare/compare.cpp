@@ -381,6 +381,19 @@ ComparedSet set_of(const Library& library, std::string name, int steps) {
   return set;
 }
 
+double jnd_floor_of(const ComparedSet& reference, double jnd) {
+  double largest = 0;
+  for (const ComparedSite& site : reference.sites)
+    for (const ComparedCurve& curve : site.curves)
+      for (const double force : curve.force) largest = std::max(largest, std::abs(force));
+  return std::min(CompareSettings{}.jnd_floor, jnd * largest);
+}
+
+double site_tolerance_of(const ComparedSet& reference) {
+  const double usual = CompareSettings{}.site_tolerance;
+  return reference.tool_radius > 0 ? std::min(usual, 2 * reference.tool_radius) : usual;
+}
+
 Comparison compare(const ComparedSet& reference, const ComparedSet& model,
                    const CompareSettings& settings) {
   check_tools(reference, model);

@@ -55,6 +55,14 @@ struct CompareSettings {
   std::vector<double> depths;  ///< m, where the stiffness is compared; empty: thirds of the range
 };
 
+/// The floor of the just noticeable difference, N: 5 mN, or `jnd` times the largest force of the
+/// reference where that is less, since the forces of a small body are felt enlarged.
+double jnd_floor_of(const ComparedSet& reference, double jnd);
+
+/// Sites of different bodies are one within this distance, m: 2 mm, or twice the radius of the tool
+/// where that is known and less.
+double site_tolerance_of(const ComparedSet& reference);
+
 /// Force and difference at one displacement of the reference.
 struct ComparedPoint {
   double displacement = 0;          ///< m

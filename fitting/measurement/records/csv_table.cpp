@@ -297,6 +297,10 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<DeclaredC
   return parse_csv(text.str(), path.string(), declared, table);
 }
 
+std::string unit_of_name(const std::string& name) {
+  return name_and_unit(name).unit;
+}
+
 std::vector<double> column_in_si(const CsvTable& table, const std::string& name,
                                  Dimension dimension, const std::string& declared_unit) {
   const auto is_it = [&](const CsvColumn& column) { return column.name == name; };

@@ -47,6 +47,10 @@ CsvTable parse_csv(std::string_view text, const std::string& file,
 CsvTable read_csv(const std::filesystem::path& path,
                   const std::vector<DeclaredColumn>& declared = {}, int table = 0);
 
+/// The unit that stands in the name of a column: "Load (N)", "Load [N]", "Load / N", "Load in N",
+/// "Load_N". Empty where none does.
+std::string unit_of_name(const std::string& name);
+
 /// The column with this name, in SI. `declared_unit` serves a column for which the file gives none;
 /// where both are given they must agree.
 /// @throws Error(Configuration) for an unknown name (the present ones are listed), a column without

@@ -9,6 +9,7 @@
 #include "fitting/measurement/records/cycles.hpp"
 #include "fitting/measurement/records/statistics.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::measured {
 namespace {
@@ -41,8 +42,8 @@ void check_compliance(const PressRecord& record, const Cycle& cycle, double comp
   const double yields = compliance * span(record.force), travel = span(record.displacement);
   if (yields <= kLargestShare * travel) return;
   refuse(record.name,
-         "by its compliance the machine would yield " + std::to_string(1e3 * yields) + " mm of " +
-             std::to_string(1e3 * travel) + " mm of travel",
+         "by its compliance the machine would yield " + length_text(yields) + " of " +
+             length_text(travel) + " of travel",
          "check the units of force, displacement and machine.compliance");
 }
 

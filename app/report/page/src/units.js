@@ -25,10 +25,18 @@ const scaled = (steps) => (value) => {
   const [factor, unit] = steps.find(([f]) => Math.abs(value) >= f) ?? steps[steps.length - 1];
   return significant(value / factor) + NBSP + unit;
 };
+/** Steps of units, the largest first, for the axis of a plot. */
+export const FORCES = [[1, 'N'], [1e-3, 'mN'], [1e-6, '\u00b5N'], [1e-9, 'nN']];
+export const LENGTHS = [[1e-3, 'mm'], [1e-6, '\u00b5m'], [1e-9, 'nm']];
+/** The step of the largest of some numbers, in magnitude. Below a tenth of a unit the next one serves. */
+export function stepOf(values, steps, least = 1) {
+  const largest = values.reduce((most, v) => Math.max(most, Math.abs(v)), 0);
+  return steps.find(([f]) => largest >= least * f) ?? steps[steps.length - 1];
+}
 export const length = (m) => significant(m * 1e3) + NBSP + 'mm';
 /** A length in the unit of its size. */
 export const scaledLength = (m) => (m !== 0 && Math.abs(m) < 1e-4 ? significant(m * 1e6) + NBSP + '\u00b5m' : length(m));
-export const force = scaled([[1, 'N'], [1e-3, 'mN'], [1e-6, '\u00b5N']]);
+export const force = scaled(FORCES);
 export const pressure = scaled([[1e6, 'MPa'], [1e3, 'kPa'], [1, 'Pa'], [1e-3, 'mPa']]);
 export const stiffness = (k) => significant(k) + NBSP + 'N/m';
 /** Rounded up to four significant digits: an upper bound stays one. */

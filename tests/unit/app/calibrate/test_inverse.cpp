@@ -260,7 +260,8 @@ TEST(Inverse, RefusesWhatDoesNotFitTogether) {
   };
   InverseSettings settings = settings_from(kTop, kBase);
   settings.campaign.indentation.tool.radius = 0.004;
-  EXPECT_THAT(refusal(curves, settings), HasSubstr("a tool of 8 mm radius, the case has 4 mm"));
+  EXPECT_THAT(refusal(curves, settings),
+              HasSubstr("a tool of 8.00 mm radius, the case has 4.00 mm"));
   settings.campaign.indentation.tool.shape = fem::ToolShape::Disc;
   EXPECT_THAT(refusal(curves, settings),
               HasSubstr("made with a sphere, the tool of the case is a disc"));

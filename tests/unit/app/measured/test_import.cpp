@@ -169,6 +169,35 @@ TEST_F(Imports, TakeTheSignsThatAreStated) {
               0.02 * largest);
 }
 
+/// One record that is cut off does not take the others with it, and is named with its reason.
+TEST_F(Imports, KeepTheRecordsThatAreGood) {
+  write_record("a-1.csv", {}, 1);
+  write_record("a-2.csv", {}, 2);
+  write_record("a-3.csv", {}, 3);
+  std::ofstream(folder_ / "a-2.csv") << "t (s),x (mm),f (N)\n0,0,0\n1,1,n/a\n";
+  const auto sidecar = write_sidecar("[[press]]\nfiles = \"a-{n}.csv\"\nvertex_from = \"{n}\"\n");
+  const Import result = import_measurement(sidecar, {});
+  ASSERT_EQ(result.curves.sites.size(), 2u);
+  EXPECT_EQ(result.curves.sites[1].vertex, 3);
+  EXPECT_EQ(result.refused, 1);
+  const auto& refused = result.account.at("refused").at(0);
+  EXPECT_EQ(refused.at("file"), "a-2.csv");
+  EXPECT_THAT(refused.at("reason").get<std::string>(), HasSubstr("a-2.csv"));
+  const ProvenanceStep& step = result.curves.provenance.steps.back();
+  EXPECT_EQ(step.inputs.size(), 3u);  // the sidecar and what was used
+  // Only some of the records that it names, and one that it does not.
+  std::ofstream(folder_ / "b.csv") << "t (s),x (mm),f (N)\n";
+  const Import one = import_measurement(sidecar, {}, {folder_ / "a-3.csv", folder_ / "b.csv"});
+  ASSERT_EQ(one.curves.sites.size(), 1u);
+  EXPECT_EQ(one.curves.sites[0].vertex, 3);
+  EXPECT_THAT(one.account.at("refused").at(0).at("reason").get<std::string>(),
+              HasSubstr("does not name it"));
+  // Where none is good the first reason is the error.
+  std::ofstream(folder_ / "a-1.csv") << "";
+  std::ofstream(folder_ / "a-3.csv") << "";
+  EXPECT_THAT(refusal(sidecar), HasSubstr("a-1.csv: the file is empty"));
+}
+
 /// One path with the scatter between the presses: of two, their difference over sqrt 2.
 TEST_F(Imports, MakeOnePathOfTheRepeatsOfASite) {
   Bench soft, stiff;
@@ -276,7 +305,7 @@ TEST_F(Imports, WarnOfADepthThatLooksLikeAWrongUnit) {
   const Import result = import_measurement(write_sidecar(press("a.csv", 0)), {});
   ASSERT_EQ(result.account.at("warnings").size(), 1u);
   EXPECT_THAT(result.account.at("warnings").at(0).get<std::string>(),
-              HasSubstr("its radius is 5 mm: check the units"));
+              HasSubstr("its radius is 5.00 mm: check the units"));
 }
 
 }  // namespace

@@ -90,6 +90,29 @@ TEST(Sensitivity, IsTheDerivativeByDifferences) {
   }
 }
 
+/// Euler's theorem: the forces are homogeneous of degree one in the moduli of all regions.
+TEST(Sensitivity, OfRefinedElementsIsHomogeneous) {
+  const Body body = layered();
+  CampaignSettings settings = settings_of(body, kTop, kBase, kPoisson);
+  const auto coarse = run_sensitivity(body, settings, kDepths, {}).front();
+  settings.indentation.refine_under_tool = IndentationSettings::kByContact;
+  settings.indentation.force_tolerance = 1e-7;
+  const auto fine = run_sensitivity(body, settings, kDepths, kConstants).front();
+  ASSERT_EQ(fine.samples.size(), 2U) << fine.reason;
+  for (std::size_t i = 0; i < 2; ++i) {
+    const ForceSensitivity& s = fine.samples[i];
+    EXPECT_NEAR(kTop * s.slope[0] + kBase * s.slope[1], s.force, 2e-4 * s.force);
+    EXPECT_GT(std::abs(s.force - coarse.samples[i].force), 1e-3 * s.force);  // another mesh
+    EXPECT_GT(s.slope[2], 0);  // a tool in a thin layer meets its bulk
+  }
+  // No slip: the ties of all increments are made anew for each difference.
+  settings.indentation.friction = ToolFriction::NoSlip;
+  const auto tied = run_sensitivity(body, settings, kDepths, kConstants).front();
+  ASSERT_EQ(tied.samples.size(), 2U) << tied.reason;
+  const ForceSensitivity& s = tied.samples[1];
+  EXPECT_NEAR(kTop * s.slope[0] + kBase * s.slope[1], s.force, 1e-3 * s.force);
+}
+
 TEST(Sensitivity, HoldsForConstantsOfAnyLaw) {
   const Body body = test::make_block(test::even(-0.016, 0.016, 4), test::even(-0.016, 0.016, 4),
                                      test::even(-0.012, 0, 3));

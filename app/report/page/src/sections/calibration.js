@@ -20,14 +20,7 @@ function constantRows(constants) {
     c.at_bound ? 'at its bound' : interval(c, c.low, c.high), interval(c, c.profile_low, c.profile_high)]);
 }
 
-/** Largest of a list of numbers, in magnitude, as a unit of the axis. */
-function scaleOf(values, steps) {
-  const largest = Math.max(0, ...values.map((v) => Math.abs(v)));
-  return steps.find(([f]) => largest >= f) ?? steps[steps.length - 1];
-}
-
 const PRESSURES = [[1e6, 'MPa'], [1e3, 'kPa'], [1, 'Pa'], [1e-3, 'mPa']];
-const FORCES = [[1, 'N'], [1e-3, 'mN'], [1e-6, '\u00b5N']];
 
 /** What is compared: tests of specimens, or paths on a body, in one form. */
 function recordsOf(c) {
@@ -37,10 +30,13 @@ function recordsOf(c) {
       xLabel: t.mode === 'simple shear' ? 'Amount of shear' : 'Stretch', factor: 1, yName: 'Nominal stress', steps: PRESSURES,
     }));
   }
-  return c.paths.map((p) => ({
-    name: `node ${p.vertex}, ${p.kind}`, x: p.displacement_m, measured: p.measured_N, fitted: p.fitted_N,
-    xLabel: 'Displacement (mm)', factor: 1e3, yName: 'Force', steps: FORCES,
-  }));
+  return c.paths.map((p) => {
+    const [unit, symbol] = units.stepOf(p.displacement_m, units.LENGTHS, 0.1);
+    return {
+      name: `node ${p.vertex}, ${p.kind}`, x: p.displacement_m, measured: p.measured_N, fitted: p.fitted_N,
+      xLabel: `Displacement (${symbol})`, factor: 1 / unit, yName: 'Force', steps: units.FORCES,
+    };
+  });
 }
 
 const ascending = (x) => Array.from(x.keys()).sort((a, b) => x[a] - x[b]);
@@ -60,9 +56,9 @@ function recordFigures(c) {
   const place = el('div', {});
   const show = (i) => {
     const r = records[i], order = ascending(r.x), x = distinct(order.map((k) => r.x[k] * r.factor));
-    const [unit, symbol] = scaleOf(r.measured, r.steps);
+    const [unit, symbol] = units.stepOf(r.measured, r.steps);
     const off = order.map((k) => r.fitted[k] - r.measured[k]);
-    const [small, smallSymbol] = scaleOf(off, r.steps);
+    const [small, smallSymbol] = units.stepOf(off, r.steps);
     const data = curvePlot('Data and fit', r.xLabel, `${r.yName} (${symbol})`, 260, { signed: true, tight: true });
     data.set([
       { label: 'fit', colour: 'series-2', x, y: order.map((k) => r.fitted[k] / unit) },
@@ -85,7 +81,7 @@ function recordFigures(c) {
 /** The rise of the misfit with one constant fixed, over what chance allows: the interval ends at 1. */
 function profileFigures(constants) {
   return constants.filter((c) => c.profile.length > 2).map((c) => {
-    const [unit, symbol] = c.unit === 'Pa' ? scaleOf(c.profile.map(([v]) => v), PRESSURES) : [1, ''];
+    const [unit, symbol] = c.unit === 'Pa' ? units.stepOf(c.profile.map(([v]) => v), PRESSURES) : [1, ''];
     const points = c.profile.filter(([, rise]) => rise < 4);
     const x = distinct(points.map(([v]) => v / unit));
     const figure = curvePlot(`Profile of ${c.name}`, symbol ? `${c.name} (${symbol})` : c.name, 'Rise of the misfit', 180, { tight: true });

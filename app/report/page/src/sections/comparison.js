@@ -30,17 +30,27 @@ export function errorsAt(data, vertex) {
     + (c.scatter_N === null ? '' : `, scatter ${units.force(c.scatter_N)}`));
 }
 
-const pathName = (curve) => (curve.kind === 'lateral' ? `lateral at ${units.length(curve.lateral_depth_m)}` : curve.kind);
+const pathName = (curve) => (curve.kind === 'lateral' ? `lateral at ${units.scaledLength(curve.lateral_depth_m)}` : curve.kind);
 
-function overlay(curve) {
-  const x = curve.points.map((p) => p.displacement_m * 1e3);
-  const band = (sign) => curve.points.map((p) => p.reference_N + sign * 2 * (p.uncertainty_N ?? 0));
+/** Units of length and force in which the curves of a comparison are drawn, all in the same. */
+function stepsOf(curves) {
+  const points = curves.flatMap((c) => c.points);
+  return {
+    length: units.stepOf(points.map((p) => p.displacement_m), units.LENGTHS, 0.1),
+    force: units.stepOf(points.map((p) => p.reference_N), units.FORCES, 0.1),
+  };
+}
+
+function overlay(curve, steps) {
+  const [length] = steps.length, [force] = steps.force;
+  const x = curve.points.map((p) => p.displacement_m / length);
+  const band = (sign) => curve.points.map((p) => (p.reference_N + sign * 2 * (p.uncertainty_N ?? 0)) / force);
   const known = curve.points.some((p) => p.uncertainty_N !== null);
   const thin = (sign) => ({ label: 'two standard uncertainties', colour: 'muted', width: 1, dash: [3, 3], x, y: band(sign) });
   return [
     ...(known ? [thin(-1), thin(1)] : []),
-    { label: 'model', colour: 'series-2', x, y: curve.points.map((p) => p.model_N) },
-    { label: 'reference', colour: 'series-1', markers: true, x, y: curve.points.map((p) => p.reference_N) },
+    { label: 'model', colour: 'series-2', x, y: curve.points.map((p) => p.model_N / force) },
+    { label: 'reference', colour: 'series-1', markers: true, x, y: curve.points.map((p) => p.reference_N / force) },
   ];
 }
 
@@ -54,12 +64,12 @@ function distinct(points) {
   });
 }
 
-function blandAltman(data, kind, summary) {
+function blandAltman(data, kind, summary, force) {
   const curves = data.comparison.curves.filter((c) => c.kind === kind);
-  const points = distinct(curves.flatMap((c) => c.points.map((p) => [(p.model_N + p.reference_N) / 2, difference(p)])));
+  const points = distinct(curves.flatMap((c) => c.points.map((p) => [(p.model_N + p.reference_N) / 2 / force, difference(p) / force])));
   const all = points.map(([x]) => x);
   const ends = [Math.min(...all), Math.max(...all)];
-  const line = (label, y, dash) => ({ label, colour: 'muted', width: 1.5, dash, x: ends, y: [y, y] });
+  const line = (label, y, dash) => ({ label, colour: 'muted', width: 1.5, dash, x: ends, y: [y / force, y / force] });
   const limit = (y) => line('limit of agreement', y, [6, 4]);
   return sorted([
     line('bias', summary.bias_N), limit(summary.agreement_low_N), limit(summary.agreement_high_N),
@@ -83,7 +93,7 @@ function summaryOf(s) {
     ['Bias', `${units.force(s.bias_N)}; limits of agreement ${units.force(s.agreement_low_N)} to ${units.force(s.agreement_high_N)}`],
     ['Perception', `${units.significant(s.rms_jnd)} just noticeable differences (root mean square); noticeable at ${percentOf(s.noticeable_fraction)} of the points`],
     ['Within the uncertainty', `${percentOf(s.within_uncertainty_fraction)} of the points`],
-    ['Worst', `node ${s.worst_vertex} at ${units.length(s.worst.displacement_m)}: ${units.force(s.worst.model_N)} for ${units.force(s.worst.reference_N)}`],
+    ['Worst', `node ${s.worst_vertex} at ${units.scaledLength(s.worst.displacement_m)}: ${units.force(s.worst.model_N)} for ${units.force(s.worst.reference_N)}`],
   ], 'facts');
 }
 
@@ -95,15 +105,16 @@ function curveRows(curves) {
 
 export function comparisonSection(data) {
   const c = data.comparison;
-  const plot = curvePlot('One curve: reference and model', 'Displacement (mm)', 'Force (N)', 240);
+  const steps = stepsOf(c.curves), [force, forceUnit] = steps.force;
+  const plot = curvePlot('One curve: reference and model', `Displacement (${steps.length[1]})`, `Force (${forceUnit})`, 240);
   const name = (curve) => `node ${curve.vertex}, ${pathName(curve)}`;
-  const show = (i) => plot.set(overlay(c.curves[i]));
+  const show = (i) => plot.set(overlay(c.curves[i], steps));
   const select = el('select', { id: 'compared-curve', onchange: (e) => show(Number(e.target.value)) },
     c.curves.map((curve, i) => el('option', { value: i }, name(curve))));
   show(0);
   const agreement = c.summaries.map((s) => {
-    const figure = curvePlot(`Difference over mean, ${s.kind} curves (Bland\u2013Altman)`, 'Mean force (N)', 'Model less reference (N)', 240, { signed: true });
-    figure.set(blandAltman(data, s.kind, s));
+    const figure = curvePlot(`Difference over mean, ${s.kind} curves (Bland\u2013Altman)`, `Mean force (${forceUnit})`, `Model less reference (${forceUnit})`, 240, { signed: true });
+    figure.set(blandAltman(data, s.kind, s, force));
     return el('div', {}, figure.element,
       paragraph('Line: bias. Dashed: limits of agreement, bias \u00b1 1.96 standard deviations of the differences.', 'note'),
       summaryOf(s));

@@ -157,6 +157,34 @@ TEST(Compare, JustNoticeableDifferencesHaveAFloor) {
   }
 }
 
+/// A sphere of 25 um that meets 8 uN: 5 mN would make nothing noticeable, and 2 mm every site one.
+TEST(Compare, FloorAndToleranceFitTheSizeOfTheReference) {
+  Curves micro = curves_of(1);
+  const ComparedSet large = set_of(micro, "large");
+  double largest = 0;
+  for (SiteCurves& site : micro.sites)
+    for (CurvePath& path : site.paths)
+      for (CurveSample& sample : path.samples) {
+        for (double& f : sample.force) f *= 1e-6;
+        largest = std::max(largest, norm(sample.force));
+      }
+  micro.tool = {"sphere", 25e-6, "frictionless"};
+  const ComparedSet small = set_of(micro, "small");
+  EXPECT_EQ(jnd_floor_of(large, 0.07), 0.005);
+  EXPECT_NEAR(jnd_floor_of(small, 0.07), 0.07 * largest, 1e-6 * largest);
+  EXPECT_EQ(site_tolerance_of(small), 50e-6);
+  EXPECT_EQ(site_tolerance_of(ComparedSet{}), 0.002);
+  CompareSettings settings;
+  settings.jnd_floor = jnd_floor_of(small, settings.jnd);
+  Curves stiffer = micro;
+  for (SiteCurves& site : stiffer.sites)
+    for (CurvePath& path : site.paths)
+      for (CurveSample& sample : path.samples)
+        for (double& f : sample.force) f *= 1.1;
+  const Comparison c = compared(micro, stiffer, settings);
+  EXPECT_NEAR(c.curves.front().worst.jnd, 0.1 / 0.07, 0.05);
+}
+
 TEST(Compare, WhatHasNoPartnerIsNamed) {
   Curves model = curves_of(1);
   model.sites.erase(model.sites.begin());

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fitting/measurement/records/table_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <set>
+#include <string_view>
+
+#include "fitting/measurement/records/mat_file.hpp"
+#include "fitting/measurement/records/workbook.hpp"
+#include "format/error.hpp"
+#include "format/foreign_hdf5.hpp"
+#include "format/matrix_path.hpp"
+
+namespace palpate::measured {
+namespace {
+
+enum class FileKind { Text, Hdf5, Mat, Workbook };
+
+/// Excel files of before 2007, and newer ones under a password.
+bool is_compound_document(const std::filesystem::path& file) {
+  constexpr std::string_view mark = "\xD0\xCF\x11\xE0";
+  std::array<char, mark.size()> head{};
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(head.data(), head.size());
+  return std::string_view(head.data(), head.size()) == mark;
+}
+
+FileKind kind_of(const std::filesystem::path& file) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(file, none)) return FileKind::Text;  // says what is wrong
+  if (std::filesystem::is_empty(file, none)) return FileKind::Text;
+  if (is_compound_document(file))
+    refuse(file.string(), "it is a spreadsheet of before 2007, or under a password",
+           "save it as .xlsx without a password, or as CSV");
+  if (is_zip(file)) return FileKind::Workbook;
+  if (hdf5::is_hdf5(file)) return FileKind::Hdf5;
+  return is_mat_file(file) ? FileKind::Mat : FileKind::Text;
+}
+
+void check_choice(const std::filesystem::path& file, const TableChoice& choice, FileKind kind) {
+  if (kind != FileKind::Workbook && !(choice.sheet.empty() && choice.range.empty()))
+    refuse(file.string(), "a sheet or range is chosen, and the file is no workbook",
+           "leave `sheet` and `range` out");
+  const bool by_path = kind == FileKind::Hdf5 || kind == FileKind::Mat;
+  if (by_path && choice.table != 0)
+    refuse(file.string(), "a table is chosen by its number",
+           "name the columns by their paths, as \"/run1/force\" or \"run.force\"");
+}
+
+std::string unit_in_name(const std::string& path) {
+  const std::string base = matrix_path(path, path).base;
+  return unit_of_name(base.substr(base.find_last_of("./") + 1));
+}
+
+/// Columns of a file in which each has a path.
+CsvTable columns_by_path(const std::filesystem::path& file, FileKind kind,
+                         const std::vector<DeclaredColumn>& declared,
+                         const std::vector<std::string>& wanted) {
+  CsvTable table;
+  table.file = file.string();
+  table.first_data_line = 1;
+  for (const std::string& path : std::set<std::string>(wanted.begin(), wanted.end())) {
+    CsvColumn column{path, "", {}};
+    if (kind == FileKind::Hdf5) {
+      hdf5::ForeignColumn found = hdf5::read_foreign_column(file, path);
+      column.values = std::move(found.values);
+      column.unit = std::move(found.unit);
+    } else {
+      column.values = read_mat_column(file, path);
+    }
+    const auto known = std::find_if(declared.begin(), declared.end(),
+                                    [&](const DeclaredColumn& d) { return d.name == path; });
+    if (column.unit.empty() && known != declared.end()) column.unit = known->unit;
+    if (column.unit.empty()) column.unit = unit_in_name(path);
+    table.columns.push_back(std::move(column));
+  }
+  return table;
+}
+
+}  // namespace
+
+CsvTable read_table(const std::filesystem::path& file, const TableChoice& choice,
+                    const std::vector<DeclaredColumn>& declared,
+                    const std::vector<std::string>& wanted) {
+  const FileKind kind = kind_of(file);
+  check_choice(file, choice, kind);
+  if (kind == FileKind::Text) return read_csv(file, declared, choice.table);
+  if (kind != FileKind::Workbook) return columns_by_path(file, kind, declared, wanted);
+  const SheetText sheet = read_sheet(file, {choice.sheet, choice.range});
+  return parse_csv(sheet.text, file.string() + ", sheet '" + sheet.sheet + "'", declared,
+                   choice.table);
+}
+
+}  // namespace palpate::measured
