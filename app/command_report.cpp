@@ -41,6 +41,7 @@ int report(const CaseOptions& options) {
   input.comparison = text_if_there(space.out / "comparison.json");
   input.calibration = text_if_there(space.out / "calibration.json");
   input.repair = text_if_there(space.out / "repair.json");
+  input.deformation = text_if_there(space.deformation());
   input.fidelity = text_if_there(space.out / "fidelity.json");
   write_report(input, space.report());
   say("report: {}{}", space.report().string(),

@@ -191,6 +191,8 @@ json key_figures(const ReportInput& input) {
           {"lateral_travel", curves.lateral_travel},
           {"tool_shape", curves.tool.shape},
           {"tool_radius", curves.tool.radius},
+          {"tool_edge_radius", curves.tool.edge_radius},
+          {"tool_length", curves.tool.length},
           {"tool_friction", curves.tool.friction}};
 }
 
@@ -213,8 +215,7 @@ std::vector<std::int32_t> library_triangles(const std::vector<Triangle>& triangl
   return result;
 }
 
-json surface_data(const Body& body, const Library& library) {
-  const SurfaceMap map = map_boundary(body);
+json surface_data(const Body& body, const Library& library, const SurfaceMap& map) {
   const std::vector<std::int32_t> in_library = library_triangles(body.response.triangles, library);
   std::vector<float> points;
   std::vector<double> natural;  // the first two of each point; they sum to 1
@@ -284,10 +285,11 @@ json page_data(const ReportInput& input) {
   for (const SiteCurves& site : input.curves->sites)
     peaks[to_index(site.vertex)] = peak_force(site, library.inward[to_index(site.vertex)]);
   const ChosenVertices chosen = choose_vertices(library, peaks, input.curves->depth);
+  const SurfaceMap map = map_boundary(*input.body);
   return {{"title", input.title.empty() ? library.name : input.title},
           {"body", body_data(*input.body)},
           {"key", key_figures(input)},
-          {"surface", surface_data(*input.body, library)},
+          {"surface", surface_data(*input.body, library, map)},
           {"inclusions", inclusion_data(*input.body)},
           {"vertices", vertex_data(input, peaks)},
           {"normal", response_columns(library, true)},
@@ -305,7 +307,7 @@ json page_data(const ReportInput& input) {
           {"fidelity", fidelity_data(input.fidelity, input.library_sha256)},
           {"repair", repair_data(input.repair, input.body->provenance)},
           {"session", input.session == nullptr ? json() : session_data(*input.session)},
-          {"touch", touch_data(library)},
+          {"touch", touch_data(*input.body, library, input.deformation, map.node)},
           {"relaxation", relaxation_data(library, chosen.median)},
           {"provenance", provenance_data(input)}};
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/report/report.hpp"
+#include "app/report/surface_map.hpp"
 
 namespace palpate::report {
 
@@ -19,7 +20,7 @@ nlohmann::json body_data(const Body& body);
 std::vector<std::int32_t> library_triangles(const std::vector<Triangle>& triangles,
                                             const Library& library);
 /// The boundary of a body on its response surface, for the picture.
-nlohmann::json surface_data(const Body& body, const Library& library);
+nlohmann::json surface_data(const Body& body, const Library& library, const SurfaceMap& map);
 /// Curves of all vertices in sequence, delimited by offsets: of the normal or of the lateral
 /// responses.
 nlohmann::json response_columns(const Library& library, bool normal);

@@ -98,7 +98,7 @@ json surface_of(const Library& library, const PlayBody& drawn) {
   if (drawn.body->response.node.size() != library.positions.size())
     refuse(library.name, "the body beside it is not the one that it was computed for",
            "move body.h5 away, or run `palpate build` again");
-  return surface_data(*drawn.body, library);
+  return surface_data(*drawn.body, library, map_boundary(*drawn.body));
 }
 
 json vertices_of(const Library& library) {

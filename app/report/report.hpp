@@ -34,6 +34,8 @@ struct ReportInput {
   std::string calibration{};
   /// Text of repair.json (`palpate mesh`, where it repaired the surface); empty: none.
   std::string repair{};
+  /// Bytes of deformation.pdef (a case with [deformation]); empty: none.
+  std::string deformation{};
 };
 
 /// Writes one self-contained HTML file, which needs JavaScript but neither network nor WebGL. Text

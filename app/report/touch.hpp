@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What the page needs to be touched: the runtime for the browser and the library that it loads.
+// What the page needs to be touched: the runtime for the browser, and the library and the skin that
+// it loads.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string_view>
+#include <vector>
 
+#include "format/body.hpp"
 #include "format/library.hpp"
 
 namespace palpate::report {
@@ -12,8 +17,18 @@ namespace palpate::report {
 /// palpate.wasm; empty where this program was built without the WebAssembly toolchain.
 std::string_view runtime_wasm();
 
-/// The runtime and the flat library as columns of bytes; null without a runtime, or where no vertex
-/// has a response.
+/// Bytes of the largest deformation.pdef that a page takes along.
+inline constexpr std::size_t kLargestSkin = 16'000'000;
+
+/// The runtime and the flat library as columns of bytes, with a "skin" of null; null without a
+/// runtime, or where no vertex has a response.
 nlohmann::json touch_data(const Library& library);
+
+/// The same with the "skin" of `deformation`, the bytes of deformation.pdef: the file
+/// and the skin vertex of each point of the picture (SurfaceMap::node); null where it is empty;
+/// {"problem", "bytes", "limit"} where the file is of another library or too large.
+/// @throws Error(Configuration) when it cannot be read.
+nlohmann::json touch_data(const Body& body, const Library& library, std::string_view deformation,
+                          const std::vector<std::int32_t>& points);
 
 }  // namespace palpate::report

@@ -32,6 +32,7 @@ export class BodyView {
     this.onPick = onPick;
     this.describe = describe;
     this.raster = new Raster();
+    this.shape = { points: model.points, normals: model.light };  // as drawn
     this.marked = [];
     this.discs = [];
     this.path = null;
@@ -121,11 +122,12 @@ export class BodyView {
     const at = new Float32Array(3 * size), light = new Float32Array(size);
     const project = this.project(width, height);
     const lamp = this.lampDirection();
+    const { points, normals } = this.shape;
     for (let p = 0; p < size; ++p) {
-      project(model.points, 3 * p, at, 3 * p);
+      project(points, 3 * p, at, 3 * p);
       const n = 3 * p;
-      const cosine = lamp[0] * model.light[n] + lamp[1] * model.light[n + 1] + lamp[2] * model.light[n + 2];
-      light[p] = 0.72 + 0.28 * Math.max(0, cosine);
+      const cosine = lamp[0] * normals[n] + lamp[1] * normals[n + 1] + lamp[2] * normals[n + 2];
+      light[p] = this.lightOf(cosine);
     }
     this.fill(at, light);
     if (!this.show.borders) return;
@@ -136,7 +138,10 @@ export class BodyView {
     }
   }
 
-  /** A lamp at the upper left shoulder of the viewer; never so dark that the colour misleads. */
+  /** Never so dark that the colour misleads. */
+  lightOf(cosine) { return 0.72 + 0.28 * Math.max(0, cosine); }
+
+  /** A lamp at the upper left shoulder of the viewer. */
   lampDirection() {
     const [right, up, toward] = this.camera.rows;
     return toward.map((t, k) => 0.88 * t + 0.36 * up[k] - 0.3 * right[k]);

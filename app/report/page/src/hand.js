@@ -11,14 +11,20 @@ const LONGEST_FRAME = 0.05;      // s; time that the browser withheld is not mad
 export const MOST_STEPS = 120000;  // of the record
 const NEAR = 1e-4;               // of the depth: then the tool has arrived
 
+/** s: a step in which tissue does not relax. */
+const NO_TIME = 1e-12;
+
 /** Where each number of a step of the record stands. */
 export const COLUMNS = ['time_s', 'x_m', 'y_m', 'z_m', 'force_x_N', 'force_y_N', 'force_z_N', 'depth_m', 'lateral_m',
-  'energy_J', 'tank_J', 'absorbed_J', 'status'];
+  'energy_J', 'tank_J', 'absorbed_J', 'dissipated_J', 'relaxed_fraction', 'status'];
 
 export class Hand {
-  /** state: of the runtime. depth: m, deepest press. */
-  constructor(state, depth) {
+  /** state: of the runtime. depth: m, deepest press. twin: where tissue relaxes, a second state that goes along without
+   *  relaxing, else null. */
+  constructor(state, depth, twin = null) {
     this.state = state;
+    this.twin = twin;
+    this.elastic = false;  // the tissue is not to relax
     this.deepest = depth;
     this.depth = depth / 2;
     this.clear();
@@ -26,13 +32,14 @@ export class Hand {
 
   clear() {
     this.state.reset();
+    this.twin?.reset();
     this.record = [];
     this.time = 0;
     this.least = Infinity;  // J, of absorbed - stored - tank
     this.spot = this.target = null;
     this.pressed = false;
     this.height = -CLEARANCE * this.deepest;
-    this.seen = this.force = null;
+    this.seen = this.force = this.elasticSeen = null;
   }
 
   press(spot) {
@@ -81,8 +88,13 @@ export class Hand {
     this.spot.point = mix(this.spot.point, this.target.point);
     this.spot.inward = unit(mix(this.spot.inward, this.target.inward));
     const tip = this.tip();
-    const { status, force } = this.state.step(tip, times(1 / DT, minus(tip, before)), DT);
+    const velocity = times(1 / DT, minus(tip, before));
+    const { status, force } = this.state.step(tip, velocity, this.elastic ? NO_TIME : DT);
     this.seen = this.state.observe();
+    if (this.twin) {
+      this.twin.step(tip, velocity, NO_TIME);
+      this.elasticSeen = this.twin.observe();
+    }
     this.force = force;
     this.time += DT;
     this.account(tip, status);
@@ -92,7 +104,8 @@ export class Hand {
     const { seen, force } = this;
     this.beyond = (status & BEYOND_DEPTH) !== 0;
     this.least = Math.min(this.least, seen.absorbed - seen.energy - seen.tank);
-    if (this.record.length < MOST_STEPS) this.record.push([this.time, ...tip, ...force, seen.depth, seen.lateral, seen.energy, seen.tank, seen.absorbed, status]);
+    if (this.record.length < MOST_STEPS) this.record.push([this.time, ...tip, ...force, seen.depth, seen.lateral, seen.energy, seen.tank, seen.absorbed,
+      seen.dissipated, seen.relaxedFraction, status]);
   }
 
   csv() {

@@ -1,6 +1,25 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The body as the view draws it: boundary facets, each on a triangle of the response surface.
 
+/** Unit normal of each point, the mean of its facets by area, into `out`. */
+export function normalsOf(points, facets, out) {
+  out.fill(0);
+  for (let f = 0; f < facets.length; f += 3) {
+    const a = 3 * facets[f], b = 3 * facets[f + 1], c = 3 * facets[f + 2];
+    const ux = points[b] - points[a], uy = points[b + 1] - points[a + 1], uz = points[b + 2] - points[a + 2];
+    const vx = points[c] - points[a], vy = points[c + 1] - points[a + 1], vz = points[c + 2] - points[a + 2];
+    const nx = uy * vz - uz * vy, ny = uz * vx - ux * vz, nz = ux * vy - uy * vx;
+    out[a] += nx; out[a + 1] += ny; out[a + 2] += nz;
+    out[b] += nx; out[b + 1] += ny; out[b + 2] += nz;
+    out[c] += nx; out[c + 1] += ny; out[c + 2] += nz;
+  }
+  for (let p = 0; p < out.length; p += 3) {
+    const size = Math.sqrt(out[p] * out[p] + out[p + 1] * out[p + 1] + out[p + 2] * out[p + 2]) || 1;
+    for (let k = 0; k < 3; ++k) out[p + k] /= size;
+  }
+  return out;
+}
+
 export class Model {
   constructor(data) {
     this.surface = data.surface;
@@ -8,7 +27,7 @@ export class Model {
     this.points = data.surface.points;
     this.facets = data.surface.facets;
     this.frame();
-    this.light = this.normals();
+    this.light = normalsOf(this.points, this.facets, new Float32Array(this.points.length));
     this.borders = this.patchBorders();
   }
 
@@ -24,24 +43,6 @@ export class Model {
       radius = Math.max(radius, Math.hypot(...this.centre.map((c, k) => this.points[i + k] - c)));
     }
     this.radius = radius || 1;
-  }
-
-  /** Unit normal of each point, the mean of its facets by area. */
-  normals() {
-    const { points, facets } = this;
-    const out = new Float32Array(points.length);
-    for (let f = 0; f < facets.length; f += 3) {
-      const [a, b, c] = [facets[f] * 3, facets[f + 1] * 3, facets[f + 2] * 3];
-      const u = [0, 1, 2].map((k) => points[b + k] - points[a + k]);
-      const v = [0, 1, 2].map((k) => points[c + k] - points[a + k]);
-      const n = [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]];
-      for (const p of [a, b, c]) for (let k = 0; k < 3; ++k) out[p + k] += n[k];
-    }
-    for (let p = 0; p < out.length; p += 3) {
-      const size = Math.hypot(out[p], out[p + 1], out[p + 2]) || 1;
-      for (let k = 0; k < 3; ++k) out[p + k] /= size;
-    }
-    return out;
   }
 
   /** Edges of the boundary between two response triangles: pairs of points. */

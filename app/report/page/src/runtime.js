@@ -108,6 +108,16 @@ class Skin {
     this.at = runtime.room(24 * this.vertices);
   }
 
+  /** Three vertices a triangle. */
+  facets() {
+    const { runtime, triangles } = this;
+    const at = runtime.room(12 * triangles);
+    runtime.check(runtime.calls.palpate_deformation_triangles(this.handle, at, triangles));
+    const copy = new Int32Array(runtime.calls.memory.buffer, at, 3 * triangles).slice();
+    runtime.calls.free(at);
+    return copy;
+  }
+
   /** The vertices after the last step of the state, three coordinates each, m; valid until the next call. */
   deform(state) {
     const { calls } = this.runtime;

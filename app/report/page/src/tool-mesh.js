@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The end of a tool, to scale, and the skin that it moves. Local coordinates: the tip is the origin, the third axis
 // points out of the body, along the shaft.
-import { add, dot, minus, times, unit } from './vectors.js';
+import { across, add, dot, minus, times, unit } from './vectors.js';
 
 const SECTORS = 28, RINGS = 9;
 const SHAFT = 5;  // length over radius
@@ -34,43 +34,95 @@ function sphereProfile(radius) {
   return profile;
 }
 
-const discProfile = (radius) => [
-  { r: 0, z: 0, n: [0, -1] }, { r: radius, z: 0, n: [0, -1] }, { r: radius, z: 0, n: [1, 0] }];
+/** The flat end, and the fillet of its edge. */
+function discProfile(radius, edge) {
+  const flat = radius - edge;
+  const profile = [{ r: 0, z: 0, n: [0, -1] }, { r: flat, z: 0, n: [0, -1] }];
+  for (let i = 1; i <= (edge > 0 ? RINGS : 0); ++i) {
+    const angle = (Math.PI / 2) * (i / RINGS);
+    profile.push({ r: flat + edge * Math.sin(angle), z: edge * (1 - Math.cos(angle)), n: [Math.sin(angle), -Math.cos(angle)] });
+  }
+  return [...profile, { r: radius, z: edge, n: [1, 0] }];
+}
 
 function shaft(radius) {
   const end = SHAFT * radius;
   return [{ r: radius, z: end, n: [1, 0] }, { r: radius, z: end, n: [0, 1] }, { r: 0, z: end, n: [0, 1] }];
 }
 
+/** A cylinder with hemispherical ends that lies along the first axis. */
+function lyingMesh(radius, length) {
+  const end = (side) => sphereProfile(radius).map(({ r, z, n }) => ({ r, z: side * (length / 2 + radius - z), n: [n[0], -side * n[1]] }));
+  const { points, normals, facets } = revolved([...end(-1), ...end(1).reverse()]);
+  const lie = ([x, y, z], height) => [z, x, y + height];  // a rotation: facets keep their outside
+  return { points: points.map((p) => lie(p, radius)), normals: normals.map((n) => lie(n, 0)), facets };
+}
+
 /** A point inside of the sphere moves along the axis onto its front. */
 function pushOutOfSphere(radius) {
-  return (x, tip, axis) => {
+  return (x, { tip, axis }) => {
     const centre = add(tip, times(-radius, axis));
     const from = minus(x, centre);
     const away = dot(from, from);
     const along = dot(from, axis);
-    const across = away - along * along;
-    if (across >= radius * radius) return null;
-    const front = Math.sqrt(radius * radius - across);
+    const square = away - along * along;
+    if (square >= radius * radius) return null;
+    const front = Math.sqrt(radius * radius - square);
     if (along >= front || along < -SHAFT * radius) return null;
     const point = add(x, times(front - along, axis));
     return { point, normal: unit(minus(centre, point)) };
   };
 }
 
-function pushOutOfDisc(radius) {
-  return (x, tip, axis) => {
+function pushOutOfDisc(radius, edge) {
+  return (x, { tip, axis }) => {
     const from = minus(x, tip);
     const along = dot(from, axis);
-    const across = dot(from, from) - along * along;
-    if (across >= radius * radius || along >= 0 || along < -SHAFT * radius) return null;
-    return { point: add(x, times(-along, axis)), normal: times(-1, axis) };
+    const out = minus(from, times(along, axis));
+    const distance = Math.hypot(...out), beyond = Math.max(0, distance - (radius - edge));
+    const front = beyond > 0 ? Math.sqrt(Math.max(0, edge * edge - beyond * beyond)) - edge : 0;
+    if (distance >= radius || along >= front || along < -SHAFT * radius) return null;
+    const slope = beyond > 0 ? times(-beyond / (edge * distance), out) : [0, 0, 0];
+    return { point: add(x, times(front - along, axis)), normal: unit(add(slope, times(-(front + edge || 1), axis))) };
   };
 }
 
-/** {points, normals, facets, push(x, tip, axis)}; push gives {point, normal of the skin there}, or null outside. */
-export function toolMesh(shape, radius) {
-  const disc = shape === 'disc';
-  const profile = [...(disc ? discProfile(radius) : sphereProfile(radius)), ...shaft(radius)];
-  return { ...revolved(profile), push: disc ? pushOutOfDisc(radius) : pushOutOfSphere(radius) };
+function pushOutOfCylinder(radius, length) {
+  return (x, { tip, axis, first }) => {
+    const from = minus(x, add(tip, times(-radius, axis)));
+    const along = dot(from, axis), lengthwise = dot(from, first);
+    const nearest = times(Math.max(-length / 2, Math.min(length / 2, lengthwise)), first);
+    const out = minus(minus(from, times(along, axis)), nearest);
+    const square = dot(out, out);
+    if (square >= radius * radius) return null;
+    const front = Math.sqrt(radius * radius - square);
+    if (along >= front || along < -SHAFT * radius) return null;
+    return { point: add(x, times(front - along, axis)), normal: unit(times(-1, add(out, times(front, axis)))) };
+  };
+}
+
+/** rad, of the axis of a cylinder from the first tangent (fem/mesh/tangent_frame.hpp), as the case has it. */
+function azimuthOf(provenance) {
+  const step = provenance.find((s) => s.stage === 'precompute');
+  const section = step?.resolved_case.split(/^(?=\[)/m).find((text) => text.startsWith('[tool]\n'));
+  const found = section?.match(/^azimuth = "(\S+) deg"$/m);
+  return found ? (Number(found[1]) * Math.PI) / 180 : 0;
+}
+
+/** The tool of the report, m and rad. */
+export const toolOf = ({ key, provenance }) => ({ shape: key.tool_shape, radius: key.tool_radius, edge: key.tool_edge_radius,
+  length: key.tool_length, azimuth: azimuthOf(provenance) });
+
+/** Where a tool stands: its tip, its axis into the body, and two directions across. */
+export function standing({ azimuth }, tip, axis) {
+  const [u, v] = across(axis);
+  const [c, s] = [Math.cos(azimuth), Math.sin(azimuth)];
+  return { tip, axis, first: minus(times(c, u), times(s, v)), second: add(times(s, u), times(c, v)) };
+}
+
+/** {points, normals, facets, push(x, stand)}; push gives {point, normal of the skin there}, or null outside. */
+export function toolMesh({ shape, radius, edge, length }) {
+  if (shape === 'disc') return { ...revolved([...discProfile(radius, edge), ...shaft(radius)]), push: pushOutOfDisc(radius, edge) };
+  if (shape === 'cylinder') return { ...lyingMesh(radius, length), push: pushOutOfCylinder(radius, length) };
+  return { ...revolved([...sphereProfile(radius), ...shaft(radius)]), push: pushOutOfSphere(radius) };
 }

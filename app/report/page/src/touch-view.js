@@ -2,9 +2,10 @@
 // The body with the tool on it. A press on the body places the tool, a drag beside it turns the picture.
 import { BodyView } from './body-view.js';
 import { HOLE, TOUCHABLE } from './data.js';
+import { normalsOf } from './model.js';
 import { colour, rgb } from './theme.js';
-import { toolMesh } from './tool-mesh.js';
-import { add, across, dot, minus, times, unit } from './vectors.js';
+import { standing, toolMesh } from './tool-mesh.js';
+import { add, dot, minus, times, unit } from './vectors.js';
 
 const FINEST = 4;  // halvings of a facet near the tool
 const STEP = 6;    // of an arrow key, pixels
@@ -20,14 +21,19 @@ function inside(x, y, [a, b, c]) {
 }
 
 export class TouchView extends BodyView {
-  /** tool: {shape, radius}; hand: {press(spot), drag(spot), lift(), deepen(steps), toggle()}, spot: {point, inward} of
-   *  the response surface; without a hand the body is only turned. */
-  constructor(model, { facing, tool, hand }) {
+  /** tool: toolOf(); hand: {press(spot), drag(spot), lift(), deepen(steps), toggle()}, spot: {point, inward} of the
+   *  response surface; without a hand the body is only turned. skinOfPoint: the skin vertex of each point of the model;
+   *  without it the skin shows the imprint of the tool. */
+  constructor(model, { facing, tool, hand, skinOfPoint = null }) {
     super(model, { facing, onPick: () => {}, describe: () => [] });
     this.tool = tool;
     this.hand = hand;
-    this.mesh = toolMesh(tool.shape, tool.radius);
-    this.at = null;      // {tip, axis, force, unit: N of an arrow as long as the body}
+    this.mesh = toolMesh(tool);
+    this.skinOfPoint = skinOfPoint;
+    this.rest = this.shape;
+    this.moved = skinOfPoint && { points: Float32Array.from(model.points), normals: Float32Array.from(model.light) };
+    // {tip, axis, force, unit: N of an arrow as long as the body, skin: its vertices as they are pressed, null at rest}
+    this.at = null;
     this.cursor = null;  // the last spot
     this.show = { nodes: false, borders: false, path: false, inclusions: true, flags: false };
     if (hand) this.makeTouchable();
@@ -59,16 +65,32 @@ export class TouchView extends BodyView {
 
   place(at) {
     this.at = at;
+    this.deform(at?.skin);
     this.draw(true);
+  }
+
+  /** The points of the picture to their vertices of the skin, three coordinates each. */
+  deform(skin) {
+    if (!this.moved || !skin) {
+      this.shape = this.rest;
+      return;
+    }
+    const { points, normals } = this.moved;
+    const { skinOfPoint } = this;
+    for (let p = 0, i = 0; p < skinOfPoint.length; ++p) {
+      for (let j = 3 * skinOfPoint[p], end = j + 3; j < end; ++j, ++i) points[i] = skin[j];
+    }
+    normalsOf(points, this.model.facets, normals);
+    this.shape = this.moved;
   }
 
   /** Facets that the tool may have pushed in. */
   nearFacets() {
     const near = new Set();
-    if (!this.at) return near;
+    if (!this.at || this.moved) return near;
     const { axis, tip } = this.at;
     const centre = this.centre();
-    const reach = Math.hypot(...minus(tip, centre)) + this.tool.radius;
+    const reach = Math.hypot(...minus(tip, centre)) + this.tool.radius + this.tool.length / 2;
     for (let f = 0; f < this.reach.length; ++f) {
       const away = Math.hypot(this.middle[3 * f] - centre[0], this.middle[3 * f + 1] - centre[1], this.middle[3 * f + 2] - centre[2]);
       if (away < reach + this.reach[f] && dot(this.outward.subarray(3 * f, 3 * f + 3), axis) < 0) near.add(f);
@@ -86,6 +108,7 @@ export class TouchView extends BodyView {
     if (!this.at) return;
     this.projectPoint = this.project(this.raster.width, this.raster.height);
     this.lamp = this.lampDirection();
+    this.stand = standing(this.tool, this.at.tip, this.at.axis);
     for (const f of this.near) this.fillImprinted(f, light);
     this.fillTool();
   }
@@ -114,12 +137,13 @@ export class TouchView extends BodyView {
 
   /** A corner inside the tool moves onto it; there the skin faces the middle of the tool. */
   imprint(corner) {
-    const moved = this.mesh.push(corner.x, this.at.tip, this.at.axis);
+    const moved = this.mesh.push(corner.x, this.stand);
     if (!moved) return corner;
-    return { x: moved.point, light: this.lightOf(moved.normal), t: corner.t };
+    return { x: moved.point, light: this.lightOf(dot(this.lamp, moved.normal)), t: corner.t };
   }
 
-  lightOf(normal) { return 0.72 + 0.28 * Math.max(0, dot(this.lamp, normal)); }
+  /** Shape before colour: dents are to be seen. */
+  lightOf(cosine) { return 0.5 + 0.5 * Math.max(0, cosine); }
 
   piece(id, corners, grey) {
     const p = new Float32Array(9);
@@ -128,12 +152,11 @@ export class TouchView extends BodyView {
   }
 
   fillTool() {
-    const { tip, axis } = this.at;
+    const { tip, axis, first: u, second: v } = this.stand;
     const grey = rgb('tool');
-    const [u, v] = across(axis);
     const put = (local) => [0, 1, 2].map((k) => tip[k] + local[0] * u[k] + local[1] * v[k] - local[2] * axis[k]);
     const turn = (local) => [0, 1, 2].map((k) => local[0] * u[k] + local[1] * v[k] - local[2] * axis[k]);
-    const corners = this.mesh.points.map((x, i) => ({ x: put(x), light: this.lightOf(turn(this.mesh.normals[i])), t: 0 }));
+    const corners = this.mesh.points.map((x, i) => ({ x: put(x), light: this.lightOf(dot(this.lamp, turn(this.mesh.normals[i]))), t: 0 }));
     for (const [a, b, c] of this.mesh.facets) this.piece(-1, [corners[a], corners[b], corners[c]], grey);
   }
 

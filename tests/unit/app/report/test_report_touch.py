@@ -47,6 +47,7 @@ const pointer = (type, right, down, pointerId = 1) => {
 };
 const key = (name, more) => canvas().dispatchEvent(new KeyboardEvent('keydown', {key: name, ...more}));
 const steps = async () => { get('touch-csv').click(); await wait(50); return csv; };
+const taken = (button) => { get(button).click(); return csv; };  // at once: between two frames
 const goTo = (node) => { get('touch-node').value = node; get('touch-node').dispatchEvent(new Event('change')); };
 const deep = (part) => { const slider = document.querySelector('#touch input[type=range]'); slider.value = part; slider.dispatchEvent(new Event('input')); };
 addEventListener('load', async () => {
@@ -55,7 +56,7 @@ addEventListener('load', async () => {
     await wait(200);
     await (async () => { %s })();
   } catch (error) { said.error = String(error.stack); }
-  document.body.append(Object.assign(document.createElement('p'), {id: 'said', textContent: JSON.stringify(said)}));
+  document.body.append(Object.assign(document.createElement('p'), {id: 'said', hidden: true, textContent: JSON.stringify(said)}));
 });
 """
 
@@ -88,6 +89,17 @@ def newtons(text):
     return float(number.replace("\u202f", "")) * {"N": 1, "mN": 1e-3, "\u00b5N": 1e-6}[unit]
 
 
+def by_the_c_interface(arguments, lines=""):
+    """Forces of the steps, and the vertices of the skin after the last."""
+    out = subprocess.run([FORCES, *arguments], input=lines.encode(), capture_output=True, check=True).stdout.decode()
+    return [[tuple(map(float, line.split())) for line in part.splitlines()] for part in out.split("skin\n")]
+
+
+def read_obj(text):
+    rows = [line.split() for line in text.splitlines()]
+    return ([tuple(map(float, r[1:])) for r in rows if r[0] == "v"], [tuple(map(int, r[1:])) for r in rows if r[0] == "f"])
+
+
 class Acted(unittest.TestCase):
     """Opens the sample report, acts on it, and returns what the act said."""
 
@@ -112,7 +124,7 @@ class Acted(unittest.TestCase):
             shown = subprocess.run([BROWSER, *FLAGS, f"--user-data-dir={profile}", "--virtual-time-budget=60000",
                                     "--dump-dom", f"{page.as_uri()}?only={only}"],
                                    capture_output=True, timeout=150, check=True).stdout.decode()
-        said = json.loads(html.unescape(re.search(r'<p id="said">(.*?)</p>', shown, re.S)[1]))
+        said = json.loads(html.unescape(re.search(r'<p id="said"[^>]*>(.*?)</p>', shown, re.S)[1]))
         self.assertNotIn("error", said)
         self.assertIn('data-errors="0"', shown)
         return said
@@ -121,8 +133,7 @@ class Acted(unittest.TestCase):
 class Touch(Acted):
     def forces_of_the_c_interface(self, rows):
         lines = "".join(f"{r['x_m']!r} {r['y_m']!r} {r['z_m']!r}\n" for r in rows)
-        out = subprocess.run([FORCES], input=lines.encode(), capture_output=True, check=True).stdout.decode()
-        return [tuple(map(float, line.split())) for line in out.splitlines()]
+        return by_the_c_interface([], lines)[0]
 
     def check_against_the_c_interface(self, rows):
         ours = [(r["force_x_N"], r["force_y_N"], r["force_z_N"]) for r in rows]
@@ -207,6 +218,91 @@ class Touch(Acted):
         said = self.act("said.text = document.getElementById('touch').innerText;", text)
         self.assertIn("built without the WebAssembly toolchain", said["text"])
         self.assertIn("scripts/setup", said["text"])
+
+
+class Skin(Acted):
+    PRESS_AND_DRAG = """deep(0.6); said.rest = taken('touch-obj'); pointer('pointerdown', 0.5, 0.5); await rest();
+            for (let i = 0; i <= 20; ++i) { pointer('pointermove', 0.5 + 0.009 * i, 0.5 - 0.0045 * i); await frames(3); }
+            said.csv = taken('touch-csv'); said.skin = taken('touch-obj');
+            pointer('pointerup', 0.68, 0.41); await rest(); said.lifted = taken('touch-obj');"""
+
+    def page(self, name):
+        return (self.path / name).read_text()
+
+    def test_a_press_and_a_drag_deform_the_skin_as_the_c_interface_does(self):
+        said = self.act(self.PRESS_AND_DRAG, self.page("skin.html"))
+        rows = rows_of(said["csv"])
+        self.assertTrue(any(int(r["status"]) & 8 for r in rows))
+        lines = "".join(f"{r['x_m']!r} {r['y_m']!r} {r['z_m']!r}\n" for r in rows)
+        forces, skin = by_the_c_interface([], lines)
+        self.assertTrue([(r["force_x_N"], r["force_y_N"], r["force_z_N"]) for r in rows] == forces)
+        shown, facets = read_obj(said["skin"])
+        self.assertTrue(shown == skin)  # to the last bit
+        rest = read_obj(said["rest"])[0]
+        self.assertTrue(read_obj(said["lifted"])[0] == rest)
+        depth = rows[-1]["depth_m"]
+        self.assertGreater(max(math.dist(a, b) for a, b in zip(shown, rest)), 0.8 * depth)
+        # The skin is watertight: each edge has a facet on either side.
+        edges = [(f[i], f[(i + 1) % 3]) for f in facets for i in range(3)]
+        self.assertTrue(set(edges) == {(b, a) for a, b in edges})
+        self.assertEqual(len(edges), len(set(edges)))
+
+    def test_the_picture_moves_where_the_skin_does(self):
+        """A press moves the skin of the whole body a little; an imprint ends at the tool."""
+        act = """deep(1); const shot = () => { const c = canvas(); return c.getContext('2d').getImageData(0, 0, c.width, c.height); };
+            goTo(NODE); const before = shot(); press(); await rest(); await frames(2); const after = shot();
+            const { width, height, data } = before; let moved = 0;
+            for (let y = 0; y < height; ++y) for (let x = 0; x < width; ++x) {
+              if (Math.hypot(x - width / 2, y - height / 2) < 0.3 * width) continue;
+              const i = 4 * (y * width + x); moved += Math.abs(data[i + 3] - after.data[i + 3]) > 100; }
+            said.moved = moved;"""
+        act = act.replace("NODE", str(self.data["chosen"]["stiffest"]))
+        self.assertGreater(self.act(act, self.page("skin.html"))["moved"], 200)
+        self.assertEqual(self.act(act)["moved"], 0)
+
+    def test_a_session_shows_the_skin_in_time(self):
+        """The contact is made anew from the recorded point and tip, which are of single precision."""
+        said = self.act("""const at = (time) => { const s = get('scrub'); s.value = time; s.dispatchEvent(new Event('input'));
+              return [get('scrub-text').textContent, taken('scrub-obj')]; };
+            said.pressed = at(0.75); said.sliding = at(1.1); said.free = at(2.2);""", self.page("skin.html"), only="session")
+        rest = read_obj(said["free"][1])[0]
+        for name in ("pressed", "sliding"):
+            text, skin = said[name]
+            step = round(1000 * float(text.split("\u00a0")[0]))
+            ours = by_the_c_interface(["session", str(step + 1)])[1]
+            shown = read_obj(skin)[0]
+            self.assertGreater(max(math.dist(a, b) for a, b in zip(shown, rest)), 0.002, name)
+            self.assertLess(max(math.dist(a, b) for a, b in zip(shown, ours)), 2e-6, name)
+
+    def test_without_its_skin_the_page_says_why(self):
+        caption = "said.text = get('touch-caption').textContent; said.obj = get('touch-obj') !== null;"
+        for page, words in (("full.html", "depths = 4 in [deformation]"), ("skin-other.html", "is of another library"),
+                            ("skin.html", "of the solved states")):
+            said = self.act(caption, self.page(page))
+            self.assertIn(words, said["text"])
+            self.assertEqual(said["obj"], page == "skin.html")
+
+    def test_a_press_that_is_held_relaxes(self):
+        hold = """goTo(NODE); deep(0.5); TOGGLE press(); await frames(40); said.early = await steps(); await frames(150);
+            said.csv = await steps(); const shown = (k) => get(`touch-${k}`).textContent;
+            said.relaxed = shown('relaxed'); said.elastic = shown('elastic'); said.normal = shown('normal'); said.dissipated = shown('dissipated');
+            press(); await rest();"""
+        hold = hold.replace("NODE", str(self.data["chosen"]["median"]))
+        said = self.act(hold.replace("TOGGLE", ""), self.page("skin-relaxing.html"))
+        rows = rows_of(said["csv"])
+        last = rows[-1]
+        # Half of the force is left after both relaxation times; the elastic twin keeps all of it.
+        elastic = newtons(said["elastic"])
+        self.assertAlmostEqual(elastic / curve_force(self.data, self.data["chosen"]["median"], last["depth_m"]), 1, delta=0.01)
+        self.assertAlmostEqual(newtons(said["normal"]) / elastic, 1 - last["relaxed_fraction"], delta=0.01)
+        self.assertGreater(last["relaxed_fraction"], 0.45)
+        self.assertLess(last["relaxed_fraction"], 0.5)
+        self.assertGreater(last["relaxed_fraction"], rows_of(said["early"])[-1]["relaxed_fraction"] + 0.05)
+        self.assertGreater(last["dissipated_J"], 0)
+        self.assertGreaterEqual(last["absorbed_J"] - last["energy_J"] - last["tank_J"], -1e-12)
+        said = self.act(hold.replace("TOGGLE", "get('touch-switch').click();"), self.page("skin-relaxing.html"))
+        self.assertLess(rows_of(said["csv"])[-1]["relaxed_fraction"], 1e-6)
+        self.assertAlmostEqual(newtons(said["normal"]) / elastic, 1, delta=0.005)
 
 
 PIXELS = """const context = canvas().getContext('2d');

@@ -1,29 +1,39 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // touch_forces: reads positions of a tip, m, three numbers a line, and writes the forces on the
-// tool that the C interface gives for them on the library of full.html, one step of 1 ms each.
+// tool that the C interface gives for them on the library of skin.html, one step of 1 ms each; then
+// a line "skin" and the vertices of the skin after the last step.
+// touch_forces session STEP: the same for the first STEP steps of the session of skin.html.
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
+#include <string>
 
-#include "format/flat_library.hpp"
-#include "runtime/palpate.h"
+#include "tests/unit/app/report/skins.hpp"
 #include "tests/unit/app/report/synthetic.hpp"
 
-int main() {
-  const std::string bytes = palpate::flat_bytes(palpate::testing::synthetic(3, 2).library, "lump");
-  palpate_library* library = nullptr;
-  palpate_state* state = nullptr;
-  if (palpate_library_load_memory(bytes.data(), bytes.size(), &library) != PALPATE_OK ||
-      palpate_state_create(library, nullptr, &state) != PALPATE_OK) {
-    std::cerr << palpate_last_error() << '\n';
-    return 1;
+namespace {
+
+void print(const palpate::Vec3& x) {
+  std::printf("%.17g %.17g %.17g\n", x[0], x[1], x[2]);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace palpate;
+  const testing::Synthetic all = testing::synthetic(3, 1);
+  testing::TouchedSkin skin(all.body, all.library);
+  Vec3 x, force;
+  if (argc == 3) {
+    const auto steps = static_cast<std::size_t>(std::atol(argv[2]));
+    for (std::size_t i = 0; i < steps; ++i)
+      skin.step(all.recording.steps.at(i).position, force.data());
   }
-  double x[3], force[3];
-  const double still[3] = {};
-  while (std::cin >> x[0] >> x[1] >> x[2]) {
-    palpate_step(state, x, still, 1e-3, force);
-    std::printf("%.17g %.17g %.17g\n", force[0], force[1], force[2]);
+  while (argc < 3 && std::cin >> x[0] >> x[1] >> x[2]) {
+    skin.step(x, force.data());
+    print(force);
   }
-  palpate_state_destroy(state);
-  palpate_library_destroy(library);
+  std::puts("skin");
+  for (const Vec3& vertex : skin.deformed()) print(vertex);
   return 0;
 }

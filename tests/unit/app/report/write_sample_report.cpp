@@ -13,6 +13,8 @@
 #include "app/report/repair_file.hpp"
 #include "app/report/report.hpp"
 #include "format/numbers.hpp"
+#include "tests/support/bodies.hpp"
+#include "tests/unit/app/report/skins.hpp"
 #include "tests/unit/app/report/synthetic.hpp"
 
 namespace {
@@ -209,6 +211,24 @@ std::string calibration_text() {
   return account.dump();
 }
 
+/// With the skin of a deformation, with that of another library, and where the tissue relaxes.
+void write_skins(const palpate::testing::Synthetic& all, const std::filesystem::path& folder) {
+  using namespace palpate;
+  testing::TouchedSkin skin(all.body, all.library);
+  const report::SessionDigest session = report::digest(testing::rendered(all.recording, skin));
+  ReportInput input{&all.body, &all.curves, &all.library, &session, "Lump", 356129};
+  input.deformation = testing::deformation_bytes(all.body, all.library);
+  write_report(input, folder / "skin.html");
+  Library other = all.library;
+  other.positions.front()[0] += 1e-6;
+  input.deformation = testing::deformation_bytes(all.body, other);
+  write_report(input, folder / "skin-other.html");
+  const Library relaxing = test::relaxing(all.library, {0.05, 0.6}, true);
+  input.library = &relaxing;
+  input.deformation = testing::deformation_bytes(all.body, relaxing);
+  write_report(input, folder / "skin-relaxing.html");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -235,6 +255,8 @@ int main(int argc, char** argv) {
   input.comparison = comparison_of(sparse_nodes(all.library), "curves.h5");
   palpate::write_report(input, folder / "sparse.html");
   input.comparison.clear();
+
+  write_skins(palpate::testing::synthetic(3, 1), folder);
 
   const palpate::Provenance before = all.curves.provenance;
   all.curves.provenance.steps.push_back(sampling_step());

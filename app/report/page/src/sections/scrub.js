@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // A recorded session in time: the tool on the body, where it was.
 import { el, paragraph } from '../dom.js';
+import { download } from '../download.js';
 import { Model } from '../model.js';
+import { toolOf } from '../tool-mesh.js';
 import { TouchView } from '../touch-view.js';
+import { objOf, touchable } from '../touchable.js';
 import { cross, dot, minus, times, add, unit } from '../vectors.js';
 import * as units from '../units.js';
 import { secantField } from './secant-field.js';
@@ -33,6 +36,40 @@ function axesOf(data) {
   });
 }
 
+const STICKS = 1e3;  // coefficient of friction of a contact that does not slide
+
+/** The skin at any step of a session: that of a contact at the recorded contact point with the recorded tip. */
+class SessionSkin {
+  constructor(data) {
+    const { runtime, library, skin, skinOfPoint } = touchable(data) ?? {};
+    this.skin = skin ?? null;
+    this.ofPoint = skinOfPoint ?? null;
+    if (!this.skin) return;
+    this.state = runtime.state(library, { friction: STICKS });
+    this.clearance = 1e-3 * runtime.describe(library).depth;
+  }
+
+  /** null without a contact, or without a deformation. */
+  at({ contact, position, element }, axes, i) {
+    if (!this.skin || element[i] < 0) return null;
+    this.touch(row(contact, i), row(position, i), axes[i]);
+    return this.skin.deform(this.state);
+  }
+
+  obj(drawn, axes, i) {
+    this.state.reset();  // without a contact: at rest
+    return objOf(this.skin, this.at(drawn, axes, i) ?? this.skin.deform(this.state));
+  }
+
+  /** Through the skin at the contact point, down to the depth of the tip, and sideways. */
+  touch(contact, tip, axis) {
+    const below = dot(minus(tip, contact), axis);
+    this.state.reset();
+    for (const depth of [-this.clearance, Math.min(this.clearance, below), below]) this.state.step(add(contact, times(depth, axis)), [0, 0, 0], 1e-3);
+    this.state.step(tip, [0, 0, 0], 1e-3);
+  }
+}
+
 class Scrub {
   constructor(data, axes) {
     this.drawn = data.session.drawn;
@@ -40,7 +77,8 @@ class Scrub {
     this.full = data.session.max_force || 1;
     this.end = this.drawn.time[this.drawn.time.length - 1];
     const first = Math.max(0, this.drawn.element.findIndex((m) => m >= 0));
-    this.view = new TouchView(new Model(data), { facing: times(-1, axes[first]), tool: { shape: data.key.tool_shape, radius: data.key.tool_radius }, hand: null });
+    this.skin = new SessionSkin(data);
+    this.view = new TouchView(new Model(data), { facing: times(-1, axes[first]), tool: toolOf(data), hand: null, skinOfPoint: this.skin.ofPoint });
     this.view.path = this.drawn;
     this.view.show.path = true;
     this.view.setField(secantField(data));
@@ -48,6 +86,8 @@ class Scrub {
     this.text = el('output', { id: 'scrub-text' });
     this.slider = el('input', { type: 'range', id: 'scrub', min: 0, max: this.end, step: 'any', value: this.drawn.time[first], 'aria-label': 'Time of the session',
       oninput: (e) => this.show(Number(e.target.value)) });
+    this.take = this.skin.skin && el('button', { type: 'button', id: 'scrub-obj', title: 'The skin at this time, in metres',
+      onclick: () => download('skin.obj', 'model/obj', this.skin.obj(this.drawn, this.axes, this.stepAt(this.time))) }, 'Skin as OBJ');
     this.button = el('button', { type: 'button', id: 'scrub-play', onclick: () => this.toggle() }, 'Play');
     this.show(this.drawn.time[first]);
   }
@@ -73,7 +113,7 @@ class Scrub {
     this.text.textContent = `${drawn.time[i].toFixed(3)}\u00a0s: ${contact ? `depth ${units.scaledLength(drawn.depth[i])}, ` : 'no contact, '}`
       + `force ${units.force(Math.hypot(...force))}, stored ${units.energy(drawn.energy[i])}`;
     const known = tip.every(Number.isFinite);
-    this.view.place(known ? { tip, axis: this.axes[i], force, unit: this.full } : null);
+    this.view.place(known ? { tip, axis: this.axes[i], force, unit: this.full, skin: this.skin.at(drawn, this.axes, i) } : null);
   }
 
   toggle() {
@@ -102,7 +142,7 @@ export function scrubPanel(data) {
   const scrub = new Scrub(data, axes);
   return el('div', { class: 'scrub' },
     el('h3', {}, 'The tool in time'),
-    el('div', { class: 'controls' }, scrub.button, scrub.slider, scrub.text),
+    el('div', { class: 'controls' }, scrub.button, scrub.slider, scrub.text, scrub.take),
     scrub.view.element,
-    paragraph('The tool to scale at the recorded positions, its imprint on the undeformed skin, and the commanded force. White line: path of the contact point.', 'note'));
+    paragraph(`The tool to scale at the recorded positions, ${scrub.skin.skin ? 'the skin as the runtime blends it from the solved states' : 'its imprint on the undeformed skin'}, and the commanded force. White line: path of the contact point.`, 'note'));
 }

@@ -7,27 +7,40 @@ import { Model } from '../model.js';
 import { Outline } from '../outline.js';
 import { responseForce } from '../response.js';
 import * as status from '../runtime.js';
-import { Runtime } from '../runtime.js';
+import { toolOf } from '../tool-mesh.js';
+import { objOf, touchable } from '../touchable.js';
 import { TouchView } from '../touch-view.js';
 import { dot, minus, times } from '../vectors.js';
 import * as units from '../units.js';
+import { ForceStrip } from './force-strip.js';
 import { FrictionCone } from './friction-cone.js';
 import { secantField } from './secant-field.js';
 
 const STEPS = 20;  // of the depth by wheel and keys
+const STEADY = 1e-6;  // of the force, in a frame
 const TICK = 1 / 60;  // s, of the first frame
 
 const HELP = 'Press on the body: the tool goes in along the inward normal to the depth of the slider; the wheel changes the depth while you press. '
   + 'Drag to slide, release to lift. Drag beside the body to turn it. With the keyboard: space presses, arrows slide, page up and down change the depth.';
-const CAPTION = 'The forces are computed in this page by the runtime of palpate, 1000 steps a second. '
-  + 'The dent is the imprint of the tool on the undeformed skin, not the deformation of the body.';
-
-const bytesOf = (column) => new Uint8Array(column.buffer, column.byteOffset, column.byteLength);
+const CAPTION = 'The forces are computed in this page by the runtime of palpate, 1000 steps a second. ';
+const DEFORMED = 'The skin is that of the solved states, blended by the runtime. ';
+const IMPRINT = 'The dent is the imprint of the tool on the undeformed skin, not the deformation of the body: ';
+const WHY_IMPRINT = {
+  none: () => 'the campaign kept no displacements. It keeps them for a case with depths = 4 in [deformation]. ',
+  other_library: () => 'deformation.pdef is of another library. Run palpate build again. ',
+  too_large: (skin) => `deformation.pdef has ${units.bytes(skin.bytes)}, and a page takes at most ${units.bytes(skin.limit)}. Fewer modes in [deformation] make it smaller. `,
+};
 
 /** Normal force and lateral force on the body, N. */
 function forces(seen) {
   const normal = dot(seen.forceOnBody, seen.normal);
   return { normal, lateral: Math.hypot(...minus(seen.forceOnBody, times(normal, seen.normal))) };
+}
+
+/** Where the skin in the picture comes from. */
+export function skinText(skin) {
+  if (skin?.file) return DEFORMED;
+  return IMPRINT + WHY_IMPRINT[skin?.problem ?? 'none'](skin);
 }
 
 const WORDS = [[status.BEYOND_DEPTH, 'beyond the deepest sample: extrapolated'], [status.AT_BORDER, 'at a border'],
@@ -41,20 +54,22 @@ function stateText(seen) {
 
 /** The figures of the last step. */
 class Readings {
-  constructor(friction) {
+  constructor(friction, relaxes) {
     this.cone = new FrictionCone(friction);
+    this.strip = relaxes ? new ForceStrip() : null;
     this.friction = friction;
     const names = [['state', 'State'], ['depth', 'Depth'], ['normal', 'Normal force'], ['lateral', 'Lateral force'],
       ['used', `Friction, \u03bc = ${units.significant(friction)}`], ['energy', 'Stored energy'], ['tank', 'Energy tank'],
-      ['absorbed', 'Absorbed'], ['margin', 'Absorbed \u2212 (stored + tank)']];
+      ['absorbed', 'Absorbed'], ...(relaxes ? [['relaxed', 'Relaxed'], ['dissipated', 'Dissipated'], ['elastic', 'Normal force, if elastic']] : []), ['margin', 'Absorbed \u2212 (stored + tank)']];
     this.outputs = Object.fromEntries(names.map(([key]) => [key, el('output', { id: `touch-${key}` })]));
     this.element = el('div', {},
       el('dl', { class: 'facts' }, names.flatMap(([key, name]) => [el('dt', {}, name), el('dd', {}, this.outputs[key])])),
-      this.cone.element);
-    this.show(null, Infinity);
+      this.cone.element, this.strip?.element);
+    this.show({ seen: null, least: Infinity, time: 0 });
   }
 
-  show(seen, least) {
+  show(hand) {
+    const { seen, least } = hand;
     const touching = seen !== null && seen.element >= 0;
     const { normal, lateral } = touching ? forces(seen) : { normal: 0, lateral: 0 };
     const put = (key, text) => { this.outputs[key].textContent = text; };
@@ -68,6 +83,15 @@ class Readings {
     put('absorbed', units.energy(seen?.absorbed ?? 0));
     this.showMargin(seen, least);
     this.cone.show(normal, lateral);
+    if (this.strip) this.showRelaxation(hand, touching, normal);
+  }
+
+  showRelaxation({ seen, elasticSeen, time }, touching, normal) {
+    const elastic = elasticSeen && elasticSeen.element >= 0 ? forces(elasticSeen).normal : 0;
+    this.outputs.relaxed.textContent = `${units.percent(touching ? seen.relaxedFraction : 0)} of the normal force`;
+    this.outputs.dissipated.textContent = units.energy(seen?.dissipated ?? 0);
+    this.outputs.elastic.textContent = units.force(elastic);
+    this.strip.add(time, normal, elastic);
   }
 
   showMargin(seen, least) {
@@ -81,13 +105,16 @@ class Readings {
 /** The body, the hand and the readings, joined by the frames of the browser. */
 class Touch {
   constructor(data) {
-    const runtime = new Runtime(bytesOf(data.touch.runtime));
-    const library = runtime.load(bytesOf(data.touch.library));
+    const { runtime, library, skin, skinOfPoint } = touchable(data);
+    this.skin = skin;
+    this.skinOfPoint = skinOfPoint;
     this.friction = data.certificate ? runtime.describe(library).friction : 0;
-    this.hand = new Hand(runtime.state(library, { friction: this.friction }), data.key.depth || runtime.describe(library).depth);
-    this.readings = new Readings(this.friction);
+    this.relaxes = Boolean(data.relaxation);
+    this.relaxed = 0;
+    const state = () => runtime.state(library, { friction: this.friction });
+    this.hand = new Hand(state(), data.key.depth || runtime.describe(library).depth, this.relaxes ? state() : null);
+    this.readings = new Readings(this.friction, this.relaxes);
     this.data = data;
-    this.relaxes = Boolean(data.relaxation);  // the force of a tool at rest changes
     this.makeView();
     this.frame = (now) => this.tick(now);
     this.running = false;
@@ -98,7 +125,8 @@ class Touch {
     const start = Math.max(0, data.chosen.stiffest);
     this.view = new TouchView(new Model(data), {
       facing: data.chosen.stiffest < 0 ? [1, -1, 0.4] : Array.from(data.vertices.inward.subarray(3 * start, 3 * start + 3), (x) => -x),
-      tool: { shape: data.key.tool_shape, radius: data.key.tool_radius },
+      tool: toolOf(data),
+      skinOfPoint: this.skinOfPoint,
       hand: { press: (spot) => this.press(spot), drag: (spot) => this.drag(spot), lift: () => this.lift(),
         toggle: () => this.toggle(), deepen: (steps) => this.deepen(steps) },
     });
@@ -152,15 +180,23 @@ class Touch {
     this.hand.advance(this.last === null ? TICK : (now - this.last) / 1000);
     this.last = now;
     this.show();
-    this.setRunning(!this.hand.resting() || (this.relaxes && this.hand.touching()));
+    this.setRunning(!this.hand.resting() || this.stillRelaxes());
     if (this.running) requestAnimationFrame(this.frame);
     else this.view.draw();
   }
 
+  /** Whether the force of a tool at rest has changed since the last frame. */
+  stillRelaxes() {
+    const before = this.relaxed;
+    this.relaxed = this.hand.touching() ? this.hand.seen.relaxedFraction : 0;
+    return Math.abs(this.relaxed - before) > STEADY;
+  }
+
   show() {
     const { hand } = this;
-    this.readings.show(hand.seen, hand.least);
-    this.view.place(hand.spot && { tip: hand.tip(), axis: hand.spot.inward, force: hand.force ?? [0, 0, 0], unit: this.unit });
+    this.readings.show(hand);
+    this.view.place(hand.spot && { tip: hand.tip(), axis: hand.touching() ? hand.seen.normal : hand.spot.inward, force: hand.force ?? [0, 0, 0],
+      unit: this.unit, skin: this.skin && hand.touching() ? this.skin.deform(hand.state) : null });
   }
 }
 
@@ -173,16 +209,20 @@ function controls(touch) {
     slider.value = depth / hand.deepest;
     depthText.textContent = units.scaledLength(depth);
   };
+  const elastic = touch.relaxes && el('label', { title: 'The tissue does not relax: the force is that of the first instant' },
+    el('input', { type: 'checkbox', id: 'touch-switch', onchange: (e) => { hand.elastic = e.target.checked; touch.clear(); } }), 'elastic');
   const node = el('input', { type: 'number', id: 'touch-node', min: 0, max: data.vertices.response_status.length - 1, 'aria-label': 'Node to press',
     onchange: (e) => { if (e.target.value !== '') touch.view.cursor = touch.view.spotOfNode(Number(e.target.value)); } });
   const press = el('button', { type: 'button', id: 'touch-press', onclick: () => touch.toggle() }, 'Press');
   touch.onToggle = (pressed) => { press.textContent = pressed ? 'Lift' : 'Press'; };
   return el('div', { class: 'controls' },
     el('label', {}, 'Depth', slider, depthText),
-    el('label', {}, 'Node', node), press,
+    el('label', {}, 'Node', node), press, elastic,
     el('button', { type: 'button', onclick: () => touch.clear() }, 'Reset'),
     el('button', { type: 'button', id: 'touch-csv', title: `Each step since the reset, at most ${MOST_STEPS / 1000} s`,
       onclick: () => download('touch.csv', 'text/csv', hand.csv()) }, 'Steps as CSV'),
+    touch.skin && el('button', { type: 'button', id: 'touch-obj', title: 'The skin as it is pressed now, in metres',
+      onclick: () => download('skin.obj', 'model/obj', objOf(touch.skin, touch.skin.deform(hand.state))) }, 'Skin as OBJ'),
     el('span', {},
       el('button', { type: 'button', 'aria-label': 'Zoom in', onclick: () => touch.view.zoomBy(1.25) }, '+'), ' ',
       el('button', { type: 'button', 'aria-label': 'Zoom out', onclick: () => touch.view.zoomBy(0.8) }, '\u2212'), ' ',
@@ -190,7 +230,7 @@ function controls(touch) {
 }
 
 function friction(data) {
-  return data.certificate ? '' : ' The library has no certificate and so no coefficient of friction: the tool slips without friction.';
+  return data.certificate ? '' : 'The library has no certificate and so no coefficient of friction: the tool slips without friction.';
 }
 
 export function touchSection(data) {
@@ -199,12 +239,11 @@ export function touchSection(data) {
     return section(paragraph('This palpate was built without the WebAssembly toolchain, so the body cannot be touched here: run scripts/setup, build again and write the report anew.', 'note'));
   }
   const touch = new Touch(data);
-  const shape = ['sphere', 'disc'].includes(data.key.tool_shape) ? '' : ' The tool is drawn as a sphere of its radius.';
   const element = section(
     paragraph(HELP, 'lead'),
     controls(touch),
     el('div', { class: 'split' },
-      el('div', {}, touch.view.element, paragraph(CAPTION + shape + friction(data), 'note')),
+      el('div', {}, touch.view.element, el('p', { class: 'note', id: 'touch-caption' }, CAPTION + skinText(data.touch.skin) + friction(data))),
       touch.readings.element));
   touch.onMove = (moving) => { element.dataset.moving = String(moving); };
   return element;
