@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fitting/fidelity/rendered_press.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <string>
@@ -49,10 +50,10 @@ class Tip {
   }
 
   /// Force on the body.
-  Vec3 move_to(const Vec3& x) {
+  Vec3 move_to(const Vec3& x, double dt = kInstant) {
     const Vec3 still{};
     Vec3 on_tool{};
-    palpate_step(state_.get(), x.data(), still.data(), kInstant, on_tool.data());
+    palpate_step(state_.get(), x.data(), still.data(), dt, on_tool.data());
     return -1.0 * on_tool;
   }
 
@@ -103,18 +104,24 @@ void RenderedSkin::Unload::operator()(palpate_deformation* deformation) const {
 
 namespace {
 
-/// Moves the tip to each deflection in order; `at(force)` is called at each.
-template <class At>
-void follow(Tip& tip, const Vec3& contact, const Vec3& inward,
-            const std::vector<RenderedBody::Deflection>& deflections, At at) {
+/// Brings the tip into contact at the point.
+palpate_observation touch_at(Tip& tip, const Vec3& contact, const Vec3& inward) {
   tip.move_to(contact - kApproach * inward);
   tip.move_to(contact + kApproach * inward);
   const palpate_observation touch = tip.observe();
   if ((touch.status & PALPATE_CONTACT) == 0) disagree(contact, "the runtime finds no contact");
-  const Vec3 c = vector_of(touch.contact_point);
-  const Vec3 n = vector_of(touch.normal);
-  if (norm(c - contact) > kNear || norm(n - inward) > kNear)
+  if (norm(vector_of(touch.contact_point) - contact) > kNear ||
+      norm(vector_of(touch.normal) - inward) > kNear)
     disagree(contact, "the runtime uses another contact point or direction");
+  return touch;
+}
+
+/// Moves the tip to each deflection in order; `at(force)` is called at each.
+template <class At>
+void follow_path(Tip& tip, const Vec3& contact, const Vec3& inward,
+                 const std::vector<RenderedBody::Deflection>& deflections, At at) {
+  const palpate_observation touch = touch_at(tip, contact, inward);
+  const Vec3 c = vector_of(touch.contact_point), n = vector_of(touch.normal);
   for (const RenderedBody::Deflection& d : deflections) {
     const Vec3 force = tip.move_to(c + (d.depth + touch.offset) * n + d.lateral * d.tangent);
     const palpate_observation seen = tip.observe();
@@ -130,7 +137,33 @@ std::vector<Vec3> RenderedBody::press(const Vec3& contact, const Vec3& inward,
                                       const std::vector<Deflection>& deflections) const {
   Tip tip(library_.get());
   std::vector<Vec3> forces;
-  follow(tip, contact, inward, deflections, [&](const Vec3& force) { forces.push_back(force); });
+  follow_path(tip, contact, inward, deflections,
+              [&](const Vec3& force) { forces.push_back(force); });
+  return forces;
+}
+
+std::vector<double> RenderedBody::follow(const Vec3& contact, const Vec3& inward,
+                                         const std::vector<double>& time,
+                                         const std::vector<double>& travel) const {
+  constexpr double kStep = 1e-3;  // s
+  std::vector<double> forces(time.size(), 0.0);
+  std::size_t first = 0;
+  while (first < time.size() && !(travel[first] > 0)) ++first;
+  if (first == time.size()) return forces;
+  Tip tip(library_.get());
+  const palpate_observation touch = touch_at(tip, contact, inward);
+  const Vec3 c = vector_of(touch.contact_point), n = vector_of(touch.normal);
+  for (std::size_t i = first; i < time.size(); ++i) {
+    const double from = i == first ? 0 : travel[i - 1];
+    const double took = i == 0 ? kStep : time[i] - time[i - 1];
+    const int steps = std::max(1, static_cast<int>(std::ceil(took / kStep)));
+    Vec3 force{};
+    for (int k = 1; k <= steps; ++k) {
+      const double x = from + (travel[i] - from) * k / steps;
+      force = tip.move_to(c + (x + touch.offset) * n, took / steps);
+    }
+    forces[i] = dot(force, n);
+  }
   return forces;
 }
 
@@ -139,7 +172,7 @@ std::vector<std::vector<Vec3>> RenderedBody::displace(
     const std::vector<Deflection>& deflections) const {
   Tip tip(library_.get());
   std::vector<std::vector<Vec3>> displacements;
-  follow(tip, contact, inward, deflections, [&](const Vec3&) {
+  follow_path(tip, contact, inward, deflections, [&](const Vec3&) {
     std::vector<Vec3> u(skin.at_rest_.size());
     check(palpate_deform(tip.state(), skin.deformation_.get(), u.front().data(), u.size()),
           "rendered press");

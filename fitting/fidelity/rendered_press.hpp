@@ -51,6 +51,14 @@ class RenderedBody {
   std::vector<Vec3> press(const Vec3& contact, const Vec3& inward,
                           const std::vector<Deflection>& deflections) const;
 
+  /// The tip follows a travel along `inward` over time, linear between the times, in steps of a
+  /// millisecond or less. Before the first positive travel it is out of contact.
+  /// @param time    s, strictly increasing. @param travel  m, from the contact point.
+  /// @return force on the body along `inward` at each time, N. @throws as press().
+  std::vector<double> follow(const Vec3& contact, const Vec3& inward,
+                             const std::vector<double>& time,
+                             const std::vector<double>& travel) const;
+
   /// The same path, with the skin of a deformation file. @return the displacement of each vertex of
   /// the skin from its position at rest, m, at each deflection.
   std::vector<std::vector<Vec3>> displace(const RenderedSkin& skin, const Vec3& contact,

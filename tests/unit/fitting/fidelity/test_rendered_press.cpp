@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "fitting/certificate/certify.hpp"
@@ -58,6 +59,32 @@ TEST_F(RenderedPress, TakesNoTimeInWhichTissueCouldRelax) {
       RenderedBody(folder_ / "relaxing.h5")
           .press({0.003, 0.003, 0}, kDown, {{0.002, 0, {1, 0, 0}}, {0.004, 0, {1, 0, 0}}});
   EXPECT_NEAR(norm(forces.at(1) - kNormal * 0.004 * kDown), 0, 1e-6);
+}
+
+/// A linear spring that relaxes: the closed form of a ramp and a hold, f = k v integral of g.
+TEST_F(RenderedPress, FollowsATravelOverTimeAsTheTissueRelaxes) {
+  Library library = read_library(file_);
+  library.tool_radius = 0.005;
+  library.relaxation_times = {0.2};
+  for (NodeResponse& node : library.responses) node.relaxation = {0.5F};
+  fitting::certify(library, {});
+  write_library(folder_ / "relaxing.h5", library);
+  constexpr double kDeep = 0.003, kRamp = 0.3, kStart = 0.1;
+  std::vector<double> time, travel;
+  for (int i = 0; i <= 300; ++i) {
+    time.push_back(0.005 * i);
+    travel.push_back(std::clamp(kDeep * (time.back() - kStart) / kRamp, -1e-4, kDeep));
+  }
+  const auto force =
+      RenderedBody(folder_ / "relaxing.h5").follow({0.003, 0.003, 0}, kDown, time, travel);
+  for (std::size_t i = 0; i < time.size(); ++i) {
+    const double t = time[i] - kStart, within = std::clamp(t, 0.0, kRamp);
+    const double memory =
+        0.5 * 0.2 / kRamp * (1 - std::exp(-within / 0.2)) * std::exp(-(t - within) / 0.2);
+    EXPECT_NEAR(force[i], kNormal * kDeep * (0.5 * within / kRamp + (t > 0 ? memory : 0)),
+                5e-3 * kNormal * kDeep)
+        << t;
+  }
 }
 
 TEST_F(RenderedPress, RefusesAPointBesideTheSurfaceAndAMissingFile) {
