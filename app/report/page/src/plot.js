@@ -35,7 +35,8 @@ function csv(labels, columns) {
 
 /** A figure that follows the width of its place and the colour scheme. */
 function figure(title, options, data, height = 240) {
-  const place = el('div', {});
+  const axes = `${options.axes[1].label} over ${options.axes[0].label}`;
+  const place = el('div', { role: 'group', 'aria-label': axes });
   let chart = null;
   const labels = () => [options.axes[0].label, ...options.series.slice(1).map((s) => s.label)];
   const name = fileName(title || options.axes[1].label);

@@ -78,6 +78,21 @@ def drawn(path):
     return page
 
 
+def small_comparison(page, target):
+    """The same page with the comparison of a sphere of some micrometres: 4 um and 10 uN."""
+    text = page.read_text(encoding="utf-8")
+    start = text.index(">", text.index('id="data"')) + 1
+    end = text.index("</script>", start)
+    data = json.loads(text[start:end])
+    for curve in data["comparison"]["curves"]:
+        for p in curve["points"]:
+            p["displacement_m"] *= 1e-3
+            for key in ("reference_N", "model_N"):
+                p[key] *= 1e-5
+    target.write_text(text[:start] + json.dumps(data).replace("<", "\\u003c") + text[end:], encoding="utf-8")
+    return target
+
+
 def column(value):
     (kind, text), = value.items()
     raw = base64.b64decode(text)
@@ -128,6 +143,7 @@ class ReportPage(unittest.TestCase):
         cls.unbounded = drawn(path / "unbounded.html")
         cls.bare = drawn(path / "bare.html")
         cls.compared = drawn(path / "compared.html")
+        cls.micro = drawn(small_comparison(path / "compared.html", path / "micro.html"))
         cls.calibration = drawn(path / "calibration.html")
         cls.calibrated = drawn(path / "calibrated.html")
         cls.sparse = drawn(path / "sparse.html")
@@ -195,6 +211,13 @@ class ReportPage(unittest.TestCase):
             self.assertNotIn(slip, self.compared.text)
         self.assertIn("Error against the reference", self.compared.text)
         self.assertNotIn("Error against the reference", self.full.text)
+
+    def test_a_comparison_has_the_units_of_its_size(self):
+        def axes(page):
+            return {a["aria-label"] for _, a in page.tags if a.get("role") == "group" and "aria-label" in a}
+        self.assertIn("Force (N) over Displacement (mm)", axes(self.compared))
+        self.assertIn("Force (\u00b5N) over Displacement (\u00b5m)", axes(self.micro))
+        self.assertIn("Model less reference (\u00b5N) over Mean force (\u00b5N)", axes(self.micro))
 
     def test_the_fidelity_is_shown_where_it_is_known(self):
         self.assertNotIn("fidelity", self.full.by_id)
