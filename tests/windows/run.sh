@@ -5,7 +5,12 @@
 set -euo pipefail
 source=$1 library=$2 cmake=$3 cc=$4 wine=$5
 work=$(mktemp -d)
-trap 'rm -rf "$work"' EXIT
+end() {
+  for server in "$(dirname "$(readlink -f "$wine")")"/wineserver*; do "$server" --kill > /dev/null 2>&1 || true; done
+  rm -rf "$work"
+}
+trap end EXIT
+export WINEPREFIX=$work/prefix WINEDEBUG=-all
 fail() { printf 'windows: %s\n' "$*"; exit 1; }
 
 "$cmake" -S "$source" -B "$work/build" -G Ninja --toolchain "$source/cmake/mingw-w64.cmake" -DPALPATE_HDF5=OFF \
@@ -26,7 +31,7 @@ x86_64-w64-mingw32-gcc-posix -std=c11 -D__USE_MINGW_ANSI_STDIO=1 -Wall -Wextra -
   -o "$work/steps.exe" "$dll"
 cp "$dll" "$work"
 "$cc" -std=c11 -D_POSIX_C_SOURCE=200809L -Wall -Wextra -Werror -I"$source/runtime" "$source/tests/windows/steps.c" -o "$work/steps" "$library"
-export WINEPREFIX=$work/prefix WINEDEBUG=-all LD_LIBRARY_PATH=$(dirname "$library")
+export LD_LIBRARY_PATH=$(dirname "$library")
 windows() { "$wine" "$work/steps.exe" "$@" | tr -d '\r'; }
 
 # Libraries that relax use exp() of the C library, which may round otherwise: gel is elastic.
