@@ -2,7 +2,9 @@
 #include "format/disk_error.hpp"
 
 #include <fcntl.h>
+#if !defined(_WIN32)
 #include <unistd.h>
+#endif
 
 #include <cerrno>
 #include <string>
@@ -21,7 +23,9 @@ struct Refusal {
 Refusal refusal_of(int error_number) {
   switch (error_number) {
     case ENOSPC:
+#if defined(EDQUOT)  // Windows has no quotas of this kind
     case EDQUOT:
+#endif
       return {ErrorKind::Internal, "free some space or name a folder on another disk"};
     case EFBIG:
       return {ErrorKind::Internal, "raise the file size limit (ulimit -f) or name another disk"};
@@ -50,6 +54,11 @@ void throw_disk_error(const std::filesystem::path& file, const char* action, int
               refusal.remedy);
 }
 
+#if defined(_WIN32)
+int sync_folder_of(const std::filesystem::path&) {
+  return 0;  // a folder is put on the disk with the rename
+}
+#else
 int sync_folder_of(const std::filesystem::path& file) {
   const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
   const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -59,5 +68,6 @@ int sync_folder_of(const std::filesystem::path& file) {
   // Some file systems cannot sync a folder; the rename itself is still atomic there.
   return result == EINVAL ? 0 : result;
 }
+#endif
 
 }  // namespace palpate

@@ -18,7 +18,11 @@ constexpr std::size_t kMostSteps = 100;  // two digits in the name of a group
 std::string utc_now() {
   const std::time_t now = std::time(nullptr);
   std::tm utc{};
+#if defined(_WIN32)
+  gmtime_s(&utc, &now);
+#else
   gmtime_r(&now, &utc);
+#endif
   std::array<char, 32> text{};
   const std::size_t length = std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
   return {text.data(), length};

@@ -4,6 +4,8 @@
 
 #if defined(__linux__)
 #include <sys/mman.h>
+#elif defined(_WIN32)
+#include <malloc.h>
 #endif
 
 #include <cstddef>
@@ -27,7 +29,11 @@ struct LargeMemory {
     const std::size_t bytes = count * sizeof(T);
     const std::size_t alignment = bytes < 2 * kPage ? kLine : kPage;
     const std::size_t whole = (bytes + alignment - 1) / alignment * alignment;
+#if defined(_WIN32)
+    void* memory = _aligned_malloc(whole, alignment);
+#else
     void* memory = std::aligned_alloc(alignment, whole);
+#endif
     if (memory == nullptr) throw std::bad_alloc();
 #if defined(__linux__)
     if (alignment == kPage) madvise(memory, whole, MADV_HUGEPAGE);  // optional
@@ -35,7 +41,11 @@ struct LargeMemory {
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t) noexcept {
+#if defined(_WIN32)
+    _aligned_free(memory);
+#else
     std::free(memory);
+#endif
   }
   bool operator==(const LargeMemory&) const = default;
 

@@ -31,7 +31,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(_WIN32)
+#if defined(_WIN32) && defined(PALPATE_EXPORTS)
+#define PALPATE_API __declspec(dllexport)
+#elif defined(_WIN32)
 #define PALPATE_API
 #else
 #define PALPATE_API __attribute__((visibility("default")))
