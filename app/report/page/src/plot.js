@@ -37,7 +37,7 @@ function csv(labels, columns) {
 function figure(title, options, data, height = 240) {
   const place = el('div', {});
   let chart = null;
-  const labels = () => [options.axes[0].label, ...options.series.slice(1).map((s) => s.label)];
+  const labels = () => [options.axes[0].label, ...options.series.slice(1).map((s) => `${s.label}, ${options.axes[1].label}`)];
   const name = fileName(title || options.axes[1].label);
   const element = el('div', { class: 'plot' }, title ? el('h3', {}, title) : null, place,
     el('div', { class: 'take' },
