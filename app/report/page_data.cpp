@@ -15,6 +15,7 @@
 #include "fitting/response/fit_errors.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
+#include "mesher/geometry/quality.hpp"
 
 namespace palpate::report {
 
@@ -79,6 +80,13 @@ std::vector<std::uint8_t> facet_kinds(const Body& body, const Library& library,
     kinds.push_back(touchable ? Touchable : all_fixed ? Fixed : NoResponse);
   }
   return kinds;
+}
+
+/// 1 for each facet on springs.
+std::vector<std::uint8_t> sprung_facets(const Body& body) {
+  std::vector<std::uint8_t> sprung(body.boundary.size(), 0);
+  for (const SprungFacet& spring : body.foundation) sprung.at(to_index(spring.facet)) = 1;
+  return sprung;
 }
 
 constexpr std::uint8_t kNotRun = 255;
@@ -196,6 +204,15 @@ json key_figures(const ReportInput& input) {
           {"tool_friction", curves.tool.friction}};
 }
 
+json quality_data(const Body& body) {
+  const mesher::Quality quality = mesher::measure_quality(body.nodes, body.tetrahedra);
+  return {{"smallest_dihedral", quality.smallest_dihedral},
+          {"largest_dihedral", quality.largest_dihedral},
+          {"largest_edge_ratio", quality.largest_edge_ratio},
+          {"longest_edge", quality.longest_edge},
+          {"volume", quality.volume}};
+}
+
 }  // namespace
 
 std::vector<std::int32_t> library_triangles(const std::vector<Triangle>& triangles,
@@ -225,6 +242,7 @@ json surface_data(const Body& body, const Library& library, const SurfaceMap& ma
           {"facets", index_column(flat(map.facets))},
           {"facet_triangle", index_column(map.facet_triangle)},
           {"facet_kind", column(facet_kinds(body, library, map, in_library))},
+          {"facet_sprung", column(sprung_facets(body))},
           {"point_triangle", index_column(map.triangle)},
           {"point_natural", fraction_column(natural)},
           {"triangles", index_column(flat(body.response.triangles))},
@@ -258,6 +276,8 @@ json body_data(const Body& body) {
           {"tetrahedra", body.tetrahedra.size()},
           {"facets", body.boundary.size()},
           {"fixed_nodes", body.fixed_nodes.size()},
+          {"sprung_facets", body.foundation.size()},
+          {"quality", quality_data(body)},
           {"vertices", body.response.node.size()},
           {"triangles", body.response.triangles.size()},
           {"sites", std::count(body.response.is_site.begin(), body.response.is_site.end(), 1)},

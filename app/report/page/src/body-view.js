@@ -2,6 +2,7 @@
 // The turning picture of the body: colours, nodes, contact path, hovering and clicking.
 import { drawAxes, drawScaleBar } from './annotations.js';
 import { Camera } from './camera.js';
+import { inRange } from './colour-range.js';
 import { viridis } from './colormap.js';
 import { FIXED, HOLE, TOUCHABLE } from './data.js';
 import { el } from './dom.js';
@@ -23,7 +24,7 @@ function label(context, text, x, y, scale) {
 }
 
 export class BodyView {
-  /** field: {ofVertex | ofTriangle, low, high, sparse}, sparse: known at some vertices only, those
+  /** field: {ofVertex | ofTriangle, low, high, log, sparse}; log: colours by the logarithm; sparse: known at some vertices only, those
    *  without known neighbours are drawn as discs; describe(vertex, triangle): lines of the tip. */
   constructor(model, { facing, onPick, describe }) {
     this.model = model;
@@ -149,8 +150,9 @@ export class BodyView {
 
   fill(at, light) {
     const { model, raster } = this;
-    const { facets } = model;
+    const { facets, sprung } = model;
     this.greys = { hole: rgb('body-hole'), fixed: Object.assign(rgb('body-fixed'), { hatch: Math.max(2, Math.round(3 * this.scale)) }) };
+    const springs = Math.max(3, Math.round(5 * this.scale));
     const p = new Float32Array(9), shade = new Float32Array(3), t = new Float32Array(3);
     for (let f = 0; f < facets.length / 3; ++f) {
       if (!this.draws(f)) continue;
@@ -160,7 +162,7 @@ export class BodyView {
         shade[i] = light[v];
         t[i] = this.colourOf(f, v);
       }
-      raster.triangle(f, p, shade, t, this.greyOf(f, t));
+      raster.triangle(f, p, shade, t, this.greyOf(f, t), sprung[f] ? springs : 0);
     }
   }
 
@@ -170,7 +172,7 @@ export class BodyView {
   colourOf(facet, point) {
     const { field } = this;
     const value = field.ofTriangle ? field.ofTriangle[this.model.triangleOf(facet)] : this.pointValue[point];
-    return (value - field.low) / (field.high - field.low || 1);
+    return inRange(field, value);
   }
 
   /** The grey of a facet whose values t are not all known, else null. */
@@ -267,7 +269,7 @@ export class BodyView {
   /** Single vertices in the colour of their value, and the value itself where there are few. Those
    *  on the far side are left out: a colour seen through the body would be read as one in front. */
   drawDiscs(context, place) {
-    const { ofVertex, low, high } = this.field;
+    const { ofVertex } = this.field;
     const seen = this.discs.map((v) => ({ v, ...place(this.model.vertices.position, 3 * v) })).filter((d) => d.seen);
     context.font = `${12 * this.scale}px system-ui, sans-serif`;
     context.textBaseline = 'middle';
@@ -275,7 +277,7 @@ export class BodyView {
       const value = ofVertex[v];
       context.beginPath();
       context.arc(x, y, DISC * this.scale, 0, 7);
-      context.fillStyle = `rgb(${viridis((value - low) / (high - low || 1)).map(Math.round).join(' ')})`;
+      context.fillStyle = `rgb(${viridis(inRange(this.field, value)).map(Math.round).join(' ')})`;
       context.fill();
       for (const [stroke, width] of [['#fff', 3], ['#000', 1]]) {
         context.strokeStyle = stroke;

@@ -30,3 +30,14 @@ export function roundTicks(low, high, n = 5) {
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * span; ++k) ticks.push(k * step);
   return ticks;
 }
+
+/** 1, 2 and 5 times powers of ten inside [low, high], low > 0; fewer over many decades, the ends where there are none. */
+export function logTicks(low, high) {
+  const decades = Math.log10(high / low);
+  const steps = decades > 3 ? [1] : [1, 2, 5];
+  const ticks = [];
+  for (let k = Math.floor(Math.log10(low)); 10 ** k <= high; ++k) {
+    for (const m of steps) if (m * 10 ** k >= low && m * 10 ** k <= high) ticks.push(m * 10 ** k);
+  }
+  return ticks.length > 1 ? ticks : [low, high];
+}

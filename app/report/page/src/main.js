@@ -48,7 +48,7 @@ function showReport(data) {
   const nodes = new Nodes(data);
   place('header', () => headerSection(data, nodes));
   place('body', () => bodySection(data, nodes, new Curves(data, nodes)));
-  place('touch', () => touchSection(data));
+  place('touch', () => touchSection(data, nodes));
   if (data.repair) place('repair', () => repairSection(data));
   if (data.relaxation) place('relaxation', () => relaxationSection(data));
   place('fit', () => fitSection(data));

@@ -26,6 +26,7 @@ export class Model {
     this.vertices = data.vertices;
     this.points = data.surface.points;
     this.facets = data.surface.facets;
+    this.sprung = data.surface.facet_sprung ?? new Uint8Array(this.facets.length / 3);  // 1: on springs
     this.frame();
     this.light = normalsOf(this.points, this.facets, new Float32Array(this.points.length));
     this.borders = this.patchBorders();

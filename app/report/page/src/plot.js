@@ -38,7 +38,7 @@ function figure(title, options, data, height = 240) {
   const axes = `${options.axes[1].label} over ${options.axes[0].label}`;
   const place = el('div', { role: 'group', 'aria-label': axes });
   let chart = null;
-  const labels = () => [options.axes[0].label, ...options.series.slice(1).map((s) => s.label)];
+  const labels = () => [options.axes[0].label, ...options.series.slice(1).map((s) => `${s.label}, ${options.axes[1].label}`)];
   const name = fileName(title || options.axes[1].label);
   const element = el('div', { class: 'plot' }, title ? el('h3', {}, title) : null, place,
     el('div', { class: 'take' },

@@ -22,9 +22,9 @@ export class Raster {
   /**
    * One triangle. p: [x, y, z] of its corners in pixels, z toward the viewer; shade: light of each
    * corner; t: colour-map coordinate of each corner, or grey: [r, g, b], with a property `hatch` in stripes of so many
-   * pixels.
+   * pixels; rows: 0, or pixels between level lines that mark a facet on springs.
    */
-  triangle(id, p, shade, t, grey) {
+  triangle(id, p, shade, t, grey, rows = 0) {
     // Not by destructuring, which is many times slower for typed arrays.
     const ax = p[0], ay = p[1], az = p[2], bx = p[3], by = p[4], bz = p[5], cx = p[6], cy = p[7], cz = p[8];
     const area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
@@ -45,7 +45,8 @@ export class Raster {
         if (z <= this.depth[i]) continue;
         this.depth[i] = z;
         this.facet[i] = id;
-        const light = a * shade[0] + b * shade[1] + c * shade[2];
+        const lit = a * shade[0] + b * shade[1] + c * shade[2];
+        const light = rows > 0 && y % rows < rows / 5 ? 0.62 * lit : lit;
         if (grey) {
           const shown = grey.hatch && Math.floor((x + y) / grey.hatch) % 3 === 0 ? 0.72 * light : light;
           this.pixel[i] = pack(grey[0] * shown, grey[1] * shown, grey[2] * shown);

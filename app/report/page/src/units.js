@@ -22,7 +22,8 @@ export const count = (n) => group(String(n));
 
 const scaled = (steps) => (value) => {
   if (value === null || value === undefined || !Number.isFinite(value)) return '\u2013';
-  const [factor, unit] = steps.find(([f]) => Math.abs(value) >= f) ?? steps[steps.length - 1];
+  const base = steps.find(([f]) => f === 1) ?? steps[0];  // for nothing
+  const [factor, unit] = value === 0 ? base : steps.find(([f]) => Math.abs(value) >= f) ?? steps[steps.length - 1];
   return significant(value / factor) + NBSP + unit;
 };
 /** Steps of units, the largest first, for the axis of a plot. */
@@ -49,6 +50,13 @@ export const bound = (k) => (Number.isFinite(k) ? `${roundedUp(k)}${NBSP}N/m` : 
 export const lowestRate = (f) => `${roundedUp(f)}${NBSP}Hz`;
 /** A position in the unit of the page. */
 export const place = (p) => `(${p.map((x) => significant(x * 1e3)).join(', ')})${NBSP}mm`;
+const ENERGIES = [[1e-3, 'mJ'], [1e-6, '\u00b5J'], [1e-9, 'nJ'], [1e-12, 'pJ']];
+/** {factor, name} of an axis whose largest value is given in SI. */
+const axisOf = (steps) => (largest) => {
+  const [size, name] = largest ? stepOf([largest], steps, 0.1) : steps[0];
+  return { factor: 1 / size, name };
+};
+export const axis = { force: axisOf(FORCES), length: axisOf(LENGTHS), energy: axisOf(ENERGIES) };
 export const energy = (j) => (j === 0 ? `0${NBSP}J` : scaled([[1, 'J'], [1e-3, 'mJ'], [1e-6, '\u00b5J'], [1e-9, 'nJ'], [1e-12, 'pJ']])(j));
 export const time = scaled([[1, 's'], [1e-3, 'ms'], [1e-6, '\u00b5s'], [1e-9, 'ns']]);
 export const frequency = scaled([[1e6, 'MHz'], [1e3, 'kHz'], [1, 'Hz']]);

@@ -429,7 +429,7 @@ class ReportPage(unittest.TestCase):
         green, yellow = {}, {}
         for name in data:
             picture = self.path / f"{name}.png"
-            browse(self.path / f"{name}.html", "--window-size=900,1000", f"--screenshot={picture}")
+            browse(self.path / f"{name}.html", "--window-size=900,1150", f"--screenshot={picture}")
             pixels = list(png_pixels(picture.read_bytes()))
             green[name] = sum(r < 60 and 110 < g < 180 and 80 < b < 150 for r, g, b in pixels)
             yellow[name] = sum(r > 150 and g > 170 and b < 80 for r, g, b in pixels)
@@ -440,7 +440,7 @@ class ReportPage(unittest.TestCase):
     def test_the_hot_spot_is_seen(self):
         """The top of the colour map must cover some of the body, its bottom much more."""
         picture = self.path / "view.png"
-        browse(self.path / "full.html", "--window-size=900,1000", f"--screenshot={picture}")
+        browse(self.path / "full.html", "--window-size=900,1150", f"--screenshot={picture}")
         pixels = list(png_pixels(picture.read_bytes()))
         hot = sum(r > 90 and g > 170 and b < 110 for r, g, b in pixels)
         cold = sum(45 < r < 80 and g < 75 and 60 < b < 140 for r, g, b in pixels)

@@ -19,6 +19,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import zlib
 
 WRITER, FORCES, BROWSER = sys.argv[1:4]
 if BROWSER.endswith("-NOTFOUND"):
@@ -122,7 +123,7 @@ class Acted(unittest.TestCase):
         page.write_text(f"{text[:cut]}<script>{ACT % script}</script>{text[cut:]}")
         with tempfile.TemporaryDirectory() as profile:
             shown = subprocess.run([BROWSER, *FLAGS, f"--user-data-dir={profile}", "--virtual-time-budget=60000",
-                                    "--dump-dom", f"{page.as_uri()}?only={only}"],
+                                    "--dump-dom", page.as_uri() + (f"?only={only}" if only else "")],
                                    capture_output=True, timeout=150, check=True).stdout.decode()
         said = json.loads(html.unescape(re.search(r'<p id="said"[^>]*>(.*?)</p>', shown, re.S)[1]))
         self.assertNotIn("error", said)
@@ -354,6 +355,119 @@ class Pictures(Acted):
         self.assertLess(said["played"], 3)
         self.assertEqual(said["label"], "Play")
 
+    def with_data(self, change, page="full.html"):
+        """The page with its data changed."""
+        text = (self.path / page).read_text()
+        data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.S)[1])
+        change(data)
+        return re.sub(r'(id="data">).*?(</script>)', lambda m: m[1] + json.dumps(data).replace("<", "\\u003c") + m[2], text, flags=re.S)
+
+    def test_one_stiff_node_does_not_take_the_colours(self):
+        node = self.data["chosen"]["median"]
+        def stiffen(data):
+            first, end = column(data["normal"]["offset"], "I")[node:node + 2]
+            slope = [k * (40 if first <= i < end else 1) for i, k in enumerate(column(data["normal"]["slope"], "f"))]
+            data["normal"]["slope"] = {"f4": base64.b64encode(struct.pack(f"<{len(slope)}f", *slope)).decode()}
+        said = self.act("""const choose = (range) => { get('colour-range').value = range; get('colour-range').dispatchEvent(new Event('change')); };
+            const look = () => ({range: get('colour-range').value, text: get('field-range').textContent,
+              ticks: [...document.querySelectorAll('#body .tick')].map((t) => [Number(t.textContent.replace('\u202f', '')), parseFloat(t.style.bottom)])});
+            said.first = look(); choose('log'); said.log = look(); choose('all'); said.all = look();""", self.with_data(stiffen), only="body")
+        depth = self.data["key"]["depth"]
+        count = len(column(self.data["vertices"]["response_status"], "B"))
+        known = sorted(k for v in range(count) if v != node and (k := curve_force(self.data, v, depth) / depth) > 0)
+        known.append(40 * curve_force(self.data, node, depth) / depth)
+        low, high = (known[math.ceil(q * len(known)) - 1] for q in (0.02, 0.98))
+        self.assertEqual(said["first"]["range"], "middle")
+        numbers = [float(x.replace("\u202f", "")) for x in re.search(r"The colours end at (\S+) to (\S+) N/m", said["first"]["text"]).groups()]
+        self.assertAlmostEqual(numbers[0] / low, 1, delta=0.006)
+        self.assertAlmostEqual(numbers[1] / high, 1, delta=0.006)
+        self.assertNotIn("colours end", said["all"]["text"])
+        least, most = known[0], known[-1]
+        for name, place in (("all", lambda k: (k - least) / (most - least)), ("log", lambda k: math.log(k / least) / math.log(most / least)),
+                            ("first", lambda k: (k - low) / (high - low))):
+            self.assertGreater(len(said[name]["ticks"]), 1)
+            for value, at in said[name]["ticks"]:
+                self.assertAlmostEqual(at / 100, place(value), delta=0.005, msg=name)
+        # Without it the whole range is shown.
+        self.assertEqual(self.act("said.range = get('colour-range').value;", only="body")["range"], "all")
+
+    def test_units_follow_the_size_of_the_forces(self):
+        """The lump a million times softer: the numbers of the curves are those in micronewtons."""
+        def soften(data):
+            for place, name in ((data["normal"], "slope"), (data["samples"], "force")):
+                values = [1e-6 * x for x in column(place[name], "f")]
+                place[name] = {"f4": base64.b64encode(struct.pack(f"<{len(values)}f", *values)).decode()}
+            data["key"]["max_force"] *= 1e-6
+        said = self.act("document.querySelector('#curves .take button').click(); said.csv = csv;", self.with_data(soften), only="body")
+        names, *values = csv.reader(io.StringIO(said["csv"]))
+        softest = self.data["chosen"]["softest"]
+        at = names.index(f"node {softest}, fitted, Force (\u00b5N)")
+        depth, force = max((float(v[0]), float(v[at])) for v in values if v[at])
+        self.assertAlmostEqual(force / curve_force(self.data, softest, 1e-3 * depth), 1, delta=1e-4)
+
+    def test_neighbours_lie_beside_a_node(self):
+        said = self.act("get('neighbours').click(); document.querySelector('#curves .take button').click(); said.csv = csv;"
+                        "said.last = [...document.querySelectorAll('#curves tbody tr')].pop().children[1].textContent;", only="body")
+        last = int(said["last"])
+        triangles = column(self.data["surface"]["triangles"], "H")
+        beside = {v for t in zip(*[iter(triangles)] * 3) if last in t for v in t} - {last}
+        status = column(self.data["vertices"]["response_status"], "B")
+        shown = {int(n) for n in re.findall(r"node (\d+), neighbour", said["csv"])}
+        self.assertEqual(shown, {v for v in beside if status[v] != 2})
+        self.assertGreater(len(shown), 3)
+
+    def test_a_chosen_node_is_the_next_to_be_pressed(self):
+        said = self.act("""const input = document.querySelector('#curves input[type=number]'); input.value = NODE;
+            input.dispatchEvent(new KeyboardEvent('keydown', {key: 'Enter'})); said.node = get('touch-node').value;
+            deep(0.5); press(); await rest(); said.csv = await steps();""".replace("NODE", "100"), only=None)
+        self.assertEqual(said["node"], "100")
+        place = column(self.data["vertices"]["position"], "f")[300:303]
+        first = next(r for r in rows_of(said["csv"]) if int(r["status"]) & 1)
+        self.assertLess(math.dist(place, (first["x_m"], first["y_m"], first["z_m"])), 1e-4)
+
+    def test_parts_on_springs_have_level_lines(self):
+        text = (self.path / "sprung.html").read_text()
+        data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.S)[1])
+        sprung = column(data["surface"]["facet_sprung"], "B")
+        points, facets = column(data["surface"]["points"], "f"), column(data["surface"]["facets"], "H")
+        for f, on in enumerate(sprung):
+            self.assertEqual(on, 1 if all(points[3 * v] > 0.01 for v in facets[3 * f:3 * f + 3]) else 0)
+        self.assertGreater(sum(sprung), 100)
+        lines = PIXELS + """let lines = 0; for (let x = 0; x < width; x += 5) for (let y = 1; y + 1 < height; ++y) {
+              const green = (row) => data[4 * (row * width + x) + 1], seen = (row) => data[4 * (row * width + x) + 3] === 255;
+              lines += seen(y - 1) && seen(y) && seen(y + 1) && green(y) < 0.85 * green(y - 1) && green(y) < 0.85 * green(y + 1); }
+            said.lines = lines;"""
+        self.assertGreater(self.act(lines, text)["lines"], 300)
+        self.assertLess(self.act(lines)["lines"], 30)
+        said = self.act("said.text = document.querySelector('header').innerText; said.keys = document.querySelector('#body .keys').innerText;", text, only=None)
+        self.assertIn(f"{sum(sprung)} facets on springs".replace(",", ""), said["text"].replace("\u202f", ""))
+        self.assertIn("rests on springs", said["keys"])
+
+    def test_the_quality_of_the_mesh_is_on_the_page(self):
+        """The volume is that inside the boundary."""
+        quality = self.data["body"]["quality"]
+        points, facets = column(self.data["surface"]["points"], "f"), column(self.data["surface"]["facets"], "H")
+        at = lambda v: points[3 * v:3 * v + 3]
+        volume = 0.0
+        for a, b, c in ((at(f[0]), at(f[1]), at(f[2])) for f in zip(*[iter(facets)] * 3)):
+            volume += (a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0])) / 6
+        self.assertAlmostEqual(quality["volume"] / volume, 1, delta=1e-5)
+        said = self.act("said.text = document.querySelector('header').innerText;", only="header")
+        self.assertIn(f"volume {1e6 * volume:.0f}\u00a0cm\u00b3", said["text"])
+        self.assertIn(f"dihedral angles {quality['smallest_dihedral']:.1f}\u00b0", said["text"])
+
+    def test_the_first_printed_page_shows_the_body(self):
+        with tempfile.TemporaryDirectory() as profile:
+            pdf = pathlib.Path(profile) / "report.pdf"
+            subprocess.run([BROWSER, *FLAGS, f"--user-data-dir={profile}/p", "--virtual-time-budget=10000", "--no-pdf-header-footer",
+                            f"--print-to-pdf={pdf}", (self.path / "full.html").as_uri()], capture_output=True, timeout=150, check=True)
+            raw = pdf.read_bytes()
+        objects = dict(re.findall(rb"\n(\d+) 0 obj(.*?)endobj", raw, re.S))
+        page = next(text for text in objects.values() if re.search(rb"/Type\s*/Page\b", text))
+        stream = objects[re.search(rb"/Contents (\d+) 0 R", page)[1]]
+        content = zlib.decompress(re.search(rb"stream\r?\n(.*?)\r?\nendstream", stream, re.S)[1])
+        self.assertRegex(content, rb"/X\d+ Do")  # a picture
+
     def test_curves_and_pictures_can_be_taken_along(self):
         said = self.act("""const take = document.querySelectorAll('#curves .take button'); take[0].click(); said.csv = csv;
             take[1].click(); await wait(500); said.plot = [csv.type, csv.size > 3000];
@@ -363,7 +477,7 @@ class Pictures(Acted):
         names, *values = csv.reader(io.StringIO(said["csv"]))
         self.assertEqual(names[0], "Depth (mm)")
         softest = self.data["chosen"]["softest"]
-        at = names.index(f"node {softest}, fitted")
+        at = names.index(f"node {softest}, fitted, Force (N)")
         known = [(float(v[0]), float(v[at])) for v in values if v[at]]
         self.assertGreater(len(known), 20)
         for depth, force in known:

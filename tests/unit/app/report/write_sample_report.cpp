@@ -157,6 +157,20 @@ void write_previews(palpate::Body body, const std::filesystem::path& folder) {
                                  folder / "preview-repaired.html");
 }
 
+/// The side where x > 10 mm rests on springs.
+void write_sprung(palpate::ReportInput input, palpate::Body body,
+                  const std::filesystem::path& folder) {
+  for (std::size_t f = 0; f < body.boundary.size(); ++f) {
+    const auto aside = [&](std::int32_t n) {
+      return body.nodes[static_cast<std::size_t>(n)][0] > 0.01;
+    };
+    if (std::all_of(body.boundary[f].begin(), body.boundary[f].end(), aside))
+      body.foundation.push_back({static_cast<std::int32_t>(f), 1e6, 1e6});
+  }
+  input.body = &body;
+  palpate::write_report(input, folder / "sprung.html");
+}
+
 /// Two tests of one law, as `palpate calibrate tests` writes them, with hostile names.
 std::string calibration_text() {
   using nlohmann::json;
@@ -256,6 +270,7 @@ int main(int argc, char** argv) {
   palpate::write_report(input, folder / "sparse.html");
   input.comparison.clear();
 
+  write_sprung(input, all.body, folder);
   write_skins(palpate::testing::synthetic(3, 1), folder);
 
   const palpate::Provenance before = all.curves.provenance;

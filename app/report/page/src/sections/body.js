@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The body in three dimensions beside the curves of the chosen nodes.
 import { BodyView } from '../body-view.js';
-import { cssGradient, roundTicks } from '../colormap.js';
+import { cssGradient, logTicks, roundTicks } from '../colormap.js';
+import { firstRange, inRange, rangeOf, RANGES } from '../colour-range.js';
 import { FIXED, HOLE, RESPONSE, SITE } from '../data.js';
 import { el, paragraph, table } from '../dom.js';
 import { downloadCanvas } from '../download.js';
@@ -42,22 +43,15 @@ function fields(data) {
   return list;
 }
 
-function extent(values) {
-  let [low, high] = [Infinity, -Infinity];
-  for (const v of values) {
-    if (!Number.isFinite(v)) continue;
-    low = Math.min(low, v);
-    high = Math.max(high, v);
-  }
-  return low > high ? null : [low, high];
-}
-
 /** Caption of the range of the colours; a missing bound is not reported as a hole. */
-function rangeText(field, depth, span, unbounded) {
+function rangeText(field, depth, span, unbounded, colours) {
   const at = field.deep ? ` at d = ${units.length(depth)}` : '';
-  const values = span ? `${units.significant(span[0])} to ${units.significant(span[1])} ${field.unit}` : 'no value';
+  const between = ({ low, high }) => `${units.significant(low)} to ${units.significant(high)} ${field.unit}`;
+  const values = span ? between(span) : 'no value';
+  const narrower = colours && (colours.low > span.low || colours.high < span.high)
+    ? ` The colours end at ${between(colours)}.` : '';
   const grey = unbounded ? ` ${units.count(unbounded)} ${unbounded === 1 ? 'triangle has' : 'triangles have'} no bound (grey).` : '';
-  return `${field.label}${at}: ${values}.${grey}`;
+  return `${field.label}${at}: ${values}.${narrower}${grey}`;
 }
 
 /** What the picture shows of a field that is known at some nodes only. */
@@ -77,11 +71,12 @@ export class ColourBar {
     this.element = el('div', { class: 'bar', 'aria-hidden': 'true' }, this.unit, this.scale);
   }
 
-  set(label, unit, low, high) {
+  set(label, unit, range) {
     this.unit.replaceChildren(label, el('br'), `(${unit})`);
-    this.scale.replaceChildren(...roundTicks(low, high).map((value) => {
+    const { low, high, log } = range;
+    this.scale.replaceChildren(...(log ? logTicks(low, high) : roundTicks(low, high)).map((value) => {
       const tick = el('span', { class: 'tick' }, units.significant(value, 4).replace(/\.0+$/, ''));
-      tick.style.bottom = `${high > low ? (100 * (value - low)) / (high - low) : 0}%`;
+      tick.style.bottom = `${100 * inRange(range, value)}%`;
       return tick;
     }));
   }
@@ -121,21 +116,27 @@ export function bodySection(data, nodes, curves) {
   view.flags = flags(data.vertices);
   view.inclusions = data.inclusions.map((inclusion) => new Outline(inclusion));
   const bar = new ColourBar();
-  const depthText = el('output', {}), range = el('p', { class: 'note', id: 'field-range' });
+  const depthText = el('output', {}), caption = el('p', { class: 'note', id: 'field-range' });
+  let chosen = false;
+  const choice = el('select', { id: 'colour-range', onchange: () => { chosen = true; refresh(); } },
+    Object.entries(RANGES).map(([key, text]) => el('option', { value: key }, text)));
   const depthControl = el('label', {}, 'Depth d', slider(top, depth, (e) => { depth = top * e.target.value; refresh(); }), depthText);
 
   const refresh = () => {
     const field = options[name];
     const ofVertex = field.ofVertex?.(depth), ofTriangle = field.ofTriangle?.();
-    const span = extent(ofVertex ?? ofTriangle);
-    const [least, high] = span ?? [0, 1];
-    const low = field.from ?? least;
-    view.setField({ ofVertex, ofTriangle, low, high, sparse: field.sparse });
-    bar.set(field.label, field.unit, low, high);
+    const values = ofVertex ?? ofTriangle;
+    const span = rangeOf(values, 'all');
+    if (!chosen) choice.value = field.from === undefined ? firstRange(values) : 'all';
+    const colours = rangeOf(values, choice.value);
+    const range = colours ?? { low: 0, high: 1, log: false };
+    if (field.from !== undefined && !range.log) range.low = Math.min(field.from, range.low);
+    view.setField({ ofVertex, ofTriangle, ...range, sparse: field.sparse });
+    bar.set(field.label, field.unit, range);
     depthText.textContent = units.length(depth);
     depthControl.style.display = field.deep ? '' : 'none';
     const unbounded = (ofTriangle ?? []).filter((bound) => bound === Infinity).length;
-    range.textContent = rangeText(field, depth, span, unbounded) + sparseText(field, ofVertex, view.discs.length);
+    caption.textContent = rangeText(field, depth, span, unbounded, colours) + sparseText(field, ofVertex, view.discs.length);
     curves.setDepth(depth);
   };
   nodes.onChange(() => {
@@ -149,17 +150,18 @@ export function bodySection(data, nodes, curves) {
     el('h2', {}, 'The body'),
     paragraph('The colour shows a property of the responses on the boundary of the body. Drag to turn, click a node to see its curves.', 'lead'),
     el('div', { class: 'split' },
-      el('div', {}, controls(options, view, depthControl, (n) => { name = n; refresh(); }),
-        el('div', { class: 'view' }, view.element, bar.element), range, keys(data), endedEarly(data.vertices)),
+      el('div', {}, controls(options, view, depthControl, choice, (n) => { name = n; refresh(); }),
+        el('div', { class: 'view' }, view.element, bar.element), caption, keys(data, model), endedEarly(data.vertices)),
       curves.element));
 }
 
-function controls(options, view, depthControl, choose) {
+function controls(options, view, depthControl, choice, choose) {
   const check = (label, key) => el('label', { class: 'screen' },
     el('input', { type: 'checkbox', checked: view.show[key], onchange: (e) => { view.show[key] = e.target.checked; view.draw(); } }), label);
   return el('div', { class: 'controls' },
     el('label', {}, 'Colour', el('select', { id: 'field', onchange: (e) => choose(e.target.value) },
       Object.entries(options).map(([key, f]) => el('option', { value: key }, f.label)))),
+    el('label', { class: 'screen' }, 'Range', choice),
     depthControl,
     check('nodes', 'nodes'), view.flags.length ? check('marked sites', 'flags') : null, check('patches', 'borders'),
     view.path ? check('contact path', 'path') : null,
@@ -181,7 +183,7 @@ function endedEarly(v) {
     table(['Node', 'Site', 'Position', 'Reason', 'Response'], nodes.map(row), [0]));
 }
 
-function keys(data) {
+function keys(data, model) {
   const key = (name, text) => {
     const chip = el('i');
     chip.style.background = `var(--${name})`;
@@ -190,6 +192,7 @@ function keys(data) {
   const kinds = new Set(data.surface.facet_kind);
   return el('div', { class: 'keys' },
     kinds.has(FIXED) ? key('body-fixed', 'hatched: fixed by a support') : null,
+    model.sprung.includes(1) ? el('span', {}, '\u2261 level lines: rests on springs') : null,
     kinds.has(1) ? key('body-hole', 'no response (a hole, a support or outside the press zones)') : null,
     flags(data.vertices).some((f) => f.symbol === 'cross') ? el('span', {}, '\u2715 site ended early') : null,
     flags(data.vertices).some((f) => f.symbol === 'triangle') ? el('span', {}, '\u25b3 fit misses the computed states') : null,

@@ -9,30 +9,50 @@ import * as units from '../units.js';
 const NORMAL = 0, LATERAL = 1;
 const STEPS = 96;
 
-/** Sampled paths of a node: [{x (mm), y (N)}] */
-function samples(data, vertex, kind) {
+/** Sampled paths of a node: [{x, y}] in the units of the axes. */
+function samples(data, vertex, kind, { length, force }) {
   const { samples: s } = data;
   const paths = [];
   for (let p = 0; p < s.vertex.length; ++p) {
     if (s.vertex[p] !== vertex || s.kind[p] !== kind) continue;
     const [from, to] = [s.offset[p], s.offset[p + 1]];
-    paths.push({ x: Array.from(s.displacement.subarray(from, to), (d) => d * 1e3), y: Array.from(s.force.subarray(from, to)) });
+    paths.push({ x: Array.from(s.displacement.subarray(from, to), (d) => d * length.factor), y: Array.from(s.force.subarray(from, to), (f) => f * force.factor) });
   }
   return paths;
 }
 
-function sets(data, shown, kind) {
+/** The response of a node as it is rendered, to its last knot; null without one. */
+function rendered(columns, vertex, { length, force }) {
+  const end = lastKnot(columns, vertex);
+  if (!(end > 0)) return null;
+  const x = Array.from({ length: STEPS + 1 }, (_, i) => (end * i) / STEPS);
+  return { x: x.map((d) => d * length.factor), y: x.map((d) => responseForce(columns, vertex, d) * force.factor) };
+}
+
+function sets(data, shown, beside, kind, axes) {
   const columns = kind === NORMAL ? data.normal : data.lateral;
   const out = [];
+  for (const vertex of beside) {
+    const line = rendered(columns, vertex, axes);
+    if (line) out.push({ label: `node ${vertex}, neighbour`, colour: 'muted', width: 1, ...line });
+  }
   for (const { vertex, colour } of shown) {
-    const end = lastKnot(columns, vertex);
-    if (end > 0) {
-      const x = Array.from({ length: STEPS + 1 }, (_, i) => (end * i) / STEPS);
-      out.push({ label: `node ${vertex}, fitted`, colour, x: x.map((d) => d * 1e3), y: x.map((d) => responseForce(columns, vertex, d)) });
-    }
-    for (const path of samples(data, vertex, kind)) out.push({ label: `node ${vertex}, computed`, colour, markers: true, ...path });
+    const line = rendered(columns, vertex, axes);
+    if (line) out.push({ label: `node ${vertex}, fitted`, colour, ...line });
+    for (const path of samples(data, vertex, kind, axes)) out.push({ label: `node ${vertex}, computed`, colour, markers: true, ...path });
   }
   return out;
+}
+
+/** The nodes that share a triangle with one. */
+export function neighboursOf({ surface }, vertex) {
+  const found = new Set();
+  for (let t = 0; t < surface.triangles.length; t += 3) {
+    const corners = surface.triangles.subarray(t, t + 3);
+    if (corners.includes(vertex)) corners.forEach((v) => found.add(v));
+  }
+  found.delete(vertex);
+  return [...found];
 }
 
 export class Curves {
@@ -40,8 +60,11 @@ export class Curves {
     this.data = data;
     this.nodes = nodes;
     this.depth = data.key.depth;
-    this.normal = curvePlot('Normal response: along the inward direction', 'Depth (mm)', 'Force (N)', 230);
-    this.lateral = curvePlot('Lateral response: along the travel, at a lateral depth', 'Lateral deflection (mm)', 'Force (N)', 210);
+    this.axes = { length: units.axis.length(data.key.depth), force: units.axis.force(data.key.max_force) };
+    const { length, force } = this.axes;
+    this.normal = curvePlot('Normal response: along the inward direction', `Depth (${length.name})`, `Force (${force.name})`, 230);
+    this.lateral = curvePlot('Lateral response: along the travel, at a lateral depth', `Lateral deflection (${length.name})`, `Force (${force.name})`, 210);
+    this.neighbours = false;
     this.legend = el('div', {});
     this.element = el('div', { id: 'curves' }, this.normal.element, el('div', { class: 'lateral' }, this.lateral.element), this.legend,
       paragraph('Markers: computed states. Lines: the fitted, rendered response. Dashed: the depth of the picture.', 'note'),
@@ -57,8 +80,9 @@ export class Curves {
 
   refresh() {
     const shown = this.nodes.shown();
-    this.normal.set(sets(this.data, shown, NORMAL), this.depth * 1e3);
-    this.lateral.set(sets(this.data, shown, LATERAL));
+    const beside = this.neighbours && shown.length ? neighboursOf(this.data, shown[shown.length - 1].vertex) : [];
+    this.normal.set(sets(this.data, shown, beside, NORMAL, this.axes), this.depth * this.axes.length.factor);
+    this.lateral.set(sets(this.data, shown, beside, LATERAL, this.axes));
     this.legend.replaceChildren(this.table(shown));
   }
 
@@ -82,6 +106,8 @@ export class Curves {
     const input = el('input', { type: 'number', min: 0, max: this.nodes.size - 1, step: 1, 'aria-label': 'Node number' });
     const show = () => { if (input.value !== '') this.nodes.pick(Number(input.value)); };
     input.addEventListener('keydown', (e) => { if (e.key === 'Enter') show(); });
-    return el('div', { class: 'controls' }, el('label', { class: 'screen' }, 'Show node', input, el('button', { type: 'button', onclick: show }, 'Show')));
+    return el('div', { class: 'controls' }, el('label', { class: 'screen' }, 'Show node', input, el('button', { type: 'button', onclick: show }, 'Show')),
+      el('label', { class: 'screen', title: 'Responses of the nodes that share a triangle with the last node of the table, as thin lines' },
+        el('input', { type: 'checkbox', id: 'neighbours', onchange: (e) => { this.neighbours = e.target.checked; this.refresh(); } }), 'neighbours'));
   }
 }

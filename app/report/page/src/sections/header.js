@@ -60,6 +60,11 @@ function materialLines(data) {
   return step.materials.map(materialLine);
 }
 
+/** Of all tetrahedra. */
+const quality = (q) => `dihedral angles ${units.significant(q.smallest_dihedral)}\u00b0 to ${units.significant(q.largest_dihedral)}\u00b0, `
+  + `longest over shortest edge of a tetrahedron at most ${units.significant(q.largest_edge_ratio)}, longest edge ${units.length(q.longest_edge)}; `
+  + `volume ${units.significant(q.volume * 1e6)}\u00a0cm\u00b3`;
+
 export function headerSection(data, nodes) {
   const { body, key } = data;
   const last = data.provenance[data.provenance.length - 1];
@@ -72,7 +77,8 @@ export function headerSection(data, nodes) {
     definitions([
       ['Tool', `${key.tool_shape}, radius ${units.length(key.tool_radius)}, normal path ${key.tool_friction}; lateral travel ${units.length(key.lateral_travel)}`],
       ['Mesh', `${units.count(body.tetrahedra)} tetrahedra, ${units.count(body.nodes)} nodes; boundary edge ${units.length(body.facet_edge)}, patch edge ${units.length(body.patch_edge)} (medians)`],
-      ['Supports', `${units.count(body.fixed_nodes)} fixed nodes; ${units.count(body.sites)} of ${units.count(body.vertices)} response nodes may be pressed`],
+      ['Quality', quality(body.quality)],
+      ['Supports', `${units.count(body.fixed_nodes)} fixed nodes; ${body.sprung_facets ? `${units.count(body.sprung_facets)} facets on springs; ` : ''}${units.count(body.sites)} of ${units.count(body.vertices)} response nodes may be pressed`],
       ['Regions', body.regions.map((r) => `${r.name} (${units.count(r.tetrahedra)} tetrahedra)`).join(', ')],
       ['Materials', lines(materialLines(data))],
     ], 'facts'));

@@ -73,7 +73,7 @@ export function previewSection(data) {
       pick.facet_kind = kinds.map((kind) => (kind === FIXED ? FIXED : TOUCHABLE));
       view.setField({ ofVertex: distance.map((d) => (d * MM < LEAST * moved ? NaN : d * MM)), low: 0, high: moved });
       bar.element.style.display = '';
-      bar.set('Moved by repair', 'mm', 0, moved);
+      bar.set('Moved by repair', 'mm', { low: 0, high: moved });
       legend.replaceChildren(...[el('span', {}, `colour: the surface lies up to ${units.length(moved / MM)} from the faces of the file`),
         key('body-hole', 'below a hundredth of that'), supports, el('span', {}, 'dots: sites')].filter(Boolean));
     },

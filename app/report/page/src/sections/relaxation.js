@@ -8,8 +8,8 @@ const COLOURS = ['series-1', 'series-3', 'series-5'];
 const WAYS = ['fast', 'medium', 'slow'];
 
 /** Press and release apart: both have ascending abscissae. */
-function branches(press, way, colour) {
-  const x = Array.from(press.depth, (d) => d * 1e3), y = Array.from(press.force);
+function branches(press, way, colour, { length, force }) {
+  const x = Array.from(press.depth, (d) => d * length.factor), y = Array.from(press.force, (f) => f * force.factor);
   const deepest = x.indexOf(Math.max(...x));
   const label = `${way}, ${units.duration(press.time)}`;
   return [
@@ -31,10 +31,11 @@ function legend(relaxation) {
 }
 
 export function relaxationSection({ relaxation }) {
-  const loops = curvePlot('The same press at three speeds', 'Depth (mm)', 'Force (N)', 240);
-  const held = curvePlot('A press that is held', 'Time (s)', 'Force (N)', 200);
-  loops.set(relaxation.presses.flatMap((press, i) => branches(press, WAYS[i], COLOURS[i])));
-  held.set([{ label: 'force', colour: 'series-1', x: Array.from(relaxation.hold.time), y: Array.from(relaxation.hold.force) }]);
+  const axes = { length: units.axis.length(relaxation.depth), force: units.axis.force(Math.max(...relaxation.presses[0].force)) };
+  const loops = curvePlot('The same press at three speeds', `Depth (${axes.length.name})`, `Force (${axes.force.name})`, 240);
+  const held = curvePlot('A press that is held', 'Time (s)', `Force (${axes.force.name})`, 200);
+  loops.set(relaxation.presses.flatMap((press, i) => branches(press, WAYS[i], COLOURS[i], axes)));
+  held.set([{ label: 'force', colour: 'series-1', x: Array.from(relaxation.hold.time), y: Array.from(relaxation.hold.force, (f) => f * axes.force.factor) }]);
   const force = relaxation.hold.force;
   return el('section', { id: 'relaxation' }, el('h2', {}, 'How the tissue relaxes'),
     paragraph(`Node ${relaxation.vertex}, pressed ${units.length(relaxation.depth)} deep by the runtime. Held, the force falls to ${units.percent(force[force.length - 1] / force[0])} of its first value in ${units.duration(relaxation.hold.time[relaxation.hold.time.length - 1])}.`, 'lead'),

@@ -74,7 +74,7 @@ export function repairSection({ repair }) {
     picture.setField({ ofVertex: map.distance.map((d) => (d * MM < LEAST * high ? NaN : d * MM)), low: 0, high });
   }
   const bar = new ColourBar();
-  bar.set('Distance', 'mm', 0, high);
+  bar.set('Distance', 'mm', { low: 0, high });
   const figure = (picture, title, text) => el('div', {}, el('h3', {}, title), picture.element, paragraph(text, 'note'));
   return section(
     paragraph('The surface of the file had faults. The colour is the distance between the two surfaces; grey: below a hundredth of the scale. Drag to turn both.', 'lead'),

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
+import { firstRange, rangeOf } from '../colour-range.js';
 import { secantStiffness } from '../response.js';
 
 /** The colours of a body that is touched: the secant stiffness over the whole depth. */
@@ -6,6 +7,5 @@ export function secantField(data) {
   const size = data.vertices.response_status.length;
   const depth = data.key.depth || 1e-3;
   const ofVertex = Float32Array.from({ length: size }, (_, v) => secantStiffness(data.normal, v, depth));
-  const known = ofVertex.filter(Number.isFinite);
-  return { ofVertex, low: known.reduce((a, b) => Math.min(a, b), Infinity), high: known.reduce((a, b) => Math.max(a, b), -Infinity) };
+  return { ofVertex, ...(rangeOf(ofVertex, firstRange(ofVertex)) ?? { low: 0, high: 1 }) };
 }

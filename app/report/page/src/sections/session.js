@@ -37,20 +37,23 @@ export function sessionSection(data) {
   if (!session.drawn) return el('section', { id: 'session' }, head, paragraph('The recording has no steps.'));
   const d = session.drawn;
   const magnitude = Float64Array.from(d.fx, (x, i) => Math.hypot(x, d.fy[i], d.fz[i]));
+  const most = (...columns) => columns.reduce((top, c) => c.reduce((m, x) => Math.max(m, Math.abs(x)), top), 0);
+  const force = units.axis.force(session.max_force), length = units.axis.length(most(d.depth, d.lateral));
+  const energy = units.axis.energy(most(d.absorbed, d.energy, d.tank));
   const drawn = d.time.length < session.steps ? ` Drawn: ${units.count(d.time.length)} of ${units.count(session.steps)} steps, including all extremes; the numbers are of all steps.` : '';
   return el('section', { id: 'session' }, head,
     paragraph(`${session.device || 'Unnamed device'}, ${units.frequency(session.rate)}, \u03bc = ${units.significant(session.friction)}, ${units.duration(session.duration)}, ${units.count(session.steps)} steps; largest force ${units.force(session.max_force)}.${drawn}`, 'lead'),
     ...beyondSentence(data),
     accountSentence(session),
     scrubPanel(data),
-    timePlot('Force commanded to the device', 'Force (N)', d.time, [
-      { label: 'x', colour: 'series-1', values: d.fx }, { label: 'y', colour: 'series-2', values: d.fy },
-      { label: 'z', colour: 'series-3', values: d.fz }, { label: 'magnitude', colour: 'series-5', values: magnitude }]),
-    timePlot('Deflection', 'Length (mm)', d.time, [
-      { label: 'depth', colour: 'series-1', values: scale(d.depth, 1e3) }, { label: 'lateral', colour: 'series-3', values: scale(d.lateral, 1e3) }], 160),
-    timePlot('Energy account', 'Energy (mJ)', d.time, [
-      { label: 'absorbed', colour: 'series-5', values: scale(d.absorbed, 1e3) },
-      { label: 'stored in the local model', colour: 'series-1', values: scale(d.energy, 1e3) },
-      { label: 'tank', colour: 'series-3', values: scale(d.tank, 1e3) }], 180),
+    timePlot('Force commanded to the device', `Force (${force.name})`, d.time, [
+      { label: 'x', colour: 'series-1', values: scale(d.fx, force.factor) }, { label: 'y', colour: 'series-2', values: scale(d.fy, force.factor) },
+      { label: 'z', colour: 'series-3', values: scale(d.fz, force.factor) }, { label: 'magnitude', colour: 'series-5', values: scale(magnitude, force.factor) }]),
+    timePlot('Deflection', `Length (${length.name})`, d.time, [
+      { label: 'depth', colour: 'series-1', values: scale(d.depth, length.factor) }, { label: 'lateral', colour: 'series-3', values: scale(d.lateral, length.factor) }], 160),
+    timePlot('Energy account', `Energy (${energy.name})`, d.time, [
+      { label: 'absorbed', colour: 'series-5', values: scale(d.absorbed, energy.factor) },
+      { label: 'stored in the local model', colour: 'series-1', values: scale(d.energy, energy.factor) },
+      { label: 'tank', colour: 'series-3', values: scale(d.tank, energy.factor) }], 180),
     paragraph(countsSentence(session.counts, session.steps), 'note'));
 }

@@ -137,6 +137,12 @@ class Touch {
     this.unit = largest > 0 ? largest : 1;
   }
 
+  /** The tool goes on from this node; one that is pressed is lifted first. */
+  goTo(vertex) {
+    if (this.hand.pressed) this.toggle();
+    this.view.cursor = this.view.spotOfNode(vertex);
+  }
+
   press(spot) { this.hand.press(spot); this.run(); }
 
   drag(spot) { this.hand.drag(spot); this.run(); }
@@ -212,7 +218,11 @@ function controls(touch) {
   const elastic = touch.relaxes && el('label', { title: 'The tissue does not relax: the force is that of the first instant' },
     el('input', { type: 'checkbox', id: 'touch-switch', onchange: (e) => { hand.elastic = e.target.checked; touch.clear(); } }), 'elastic');
   const node = el('input', { type: 'number', id: 'touch-node', min: 0, max: data.vertices.response_status.length - 1, 'aria-label': 'Node to press',
-    onchange: (e) => { if (e.target.value !== '') touch.view.cursor = touch.view.spotOfNode(Number(e.target.value)); } });
+    onchange: (e) => { if (e.target.value !== '') touch.goTo(Number(e.target.value)); } });
+  touch.onNode = (vertex) => {
+    node.value = vertex;
+    touch.goTo(vertex);
+  };
   const press = el('button', { type: 'button', id: 'touch-press', onclick: () => touch.toggle() }, 'Press');
   touch.onToggle = (pressed) => { press.textContent = pressed ? 'Lift' : 'Press'; };
   return el('div', { class: 'controls' },
@@ -233,7 +243,15 @@ function friction(data) {
   return data.certificate ? '' : 'The library has no certificate and so no coefficient of friction: the tool slips without friction.';
 }
 
-export function touchSection(data) {
+/** The node that the reader chose last is the next to be pressed. */
+function follow(nodes, touch) {
+  nodes?.onChange(() => {
+    const { picked } = nodes;
+    if (picked.length) touch.onNode(picked[picked.length - 1].vertex);
+  });
+}
+
+export function touchSection(data, nodes = null) {
   const section = (...content) => el('section', { id: 'touch' }, el('h2', {}, 'Touch it'), ...content);
   if (!data.touch) {
     return section(paragraph('This palpate was built without the WebAssembly toolchain, so the body cannot be touched here: run scripts/setup, build again and write the report anew.', 'note'));
@@ -245,6 +263,7 @@ export function touchSection(data) {
     el('div', { class: 'split' },
       el('div', {}, touch.view.element, el('p', { class: 'note', id: 'touch-caption' }, CAPTION + skinText(data.touch.skin) + friction(data))),
       touch.readings.element));
+  follow(nodes, touch);
   touch.onMove = (moving) => { element.dataset.moving = String(moving); };
   return element;
 }
