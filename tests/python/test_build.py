@@ -9,6 +9,7 @@ import inspect
 import io
 import os
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -96,6 +97,24 @@ class Case(unittest.TestCase):
                              np.ascontiguousarray(getattr(recording, name)).tobytes(), name)
         self.assertGreater(np.abs(run.force).max(), 0.01)
         self.assertTrue(np.any(run.status & palpate.Status.SLIDING))
+
+    def test_the_example_repeats_the_session(self):
+        palpate.run_command("simulate", self.case, "--out", self.root / "out")
+        example = PAGE.parent.parent / "examples/python/session.py"
+
+        def said(library):
+            return subprocess.run([sys.executable, example, self.root / "out/recording.h5", "--library", library],
+                                  capture_output=True, text=True, check=True).stdout
+
+        with_its_own = said(self.built.library)
+        self.assertIn("the same forces come again, to the bit", with_its_own)
+        recording = palpate.read_recording(self.root / "out/recording.h5")
+        self.assertIn(f"{len(recording)} steps on simulated", with_its_own)
+        self.assertIn(f"absorbed {1e3 * recording.absorbed[-1]:.4f} mJ", with_its_own)
+        softer = self.root / "softer.toml"
+        softer.write_text(self.case.read_text().replace('young = "10 kPa"', 'young = "9 kPa"'))
+        other = palpate.build(softer, self.root / "softer").library
+        self.assertIn("other forces come", said(other))
 
     def test_the_programs_of_the_page_run(self):
         text = PAGE.read_text(encoding="utf-8")
