@@ -14,7 +14,7 @@ from ._palpate import __version__
 
 _STAGES = ("mesh", "precompute", "fit", "certify")
 _INCOMPLETE = 4
-_checked = set()  # executables of this version
+_checked = set()  # (path, time of change) of executables of this version
 
 
 class Build(NamedTuple):
@@ -40,13 +40,19 @@ def _executable():
     found = str(beside) if os.access(beside, os.X_OK) else shutil.which("palpate")
     if found is None:
         raise FileError(f"palpate: the command is neither {beside} nor in PATH; install it, or add its folder to PATH")
-    if found not in _checked:
+    here = found, os.stat(found).st_mtime_ns
+    if here not in _checked:
         said = subprocess.run([found, "--version"], capture_output=True, text=True, check=False).stdout
         version = re.search(r"palpate (\d+\.\d+\.\d+)", said)
         if version is None or version.group(1) != __version__:
             raise MismatchError(f"{found}: is not of version {__version__}, as this package is; install both from one build")
-        _checked.add(found)
+        _checked.add(here)
     return found
+
+
+def _text(value):
+    """An argument of the command: a path, a text or a number."""
+    return str(value) if isinstance(value, (int, float)) else os.fspath(value)
 
 
 def _failure(code, text):
@@ -69,19 +75,28 @@ def run_command(*arguments):
     CommandError with its message where it fails, FileError where it is not installed, and MismatchError where it is of
     another version.
     """
-    done = subprocess.run([_executable(), *map(os.fspath, arguments)], stdin=subprocess.DEVNULL, capture_output=True,
-                          text=True, check=False)
+    done = subprocess.run([_executable(), *map(_text, arguments)], stdin=subprocess.DEVNULL, capture_output=True,
+                          encoding="utf-8", errors="replace", check=False)
     if done.returncode != 0:
         raise _failure(done.returncode, done.stderr)
     return done.stdout
 
 
 def _follow(process, see):
-    """Gives each event of the command to `see`; ends the command where that raises, or Ctrl-C does."""
+    """Gives each event of the command to `see`; ends the command where that raises, or Ctrl-C does.
+
+    Returns its exit code, and the last line that was no event: a command that dies leaves one.
+    """
+    broken = None
     try:
         for line in process.stdout:
-            see(json.loads(line))
-        return process.wait()
+            try:
+                event = json.loads(line)
+            except ValueError:
+                broken = line
+                continue
+            see(event)
+        return process.wait(), broken
     except BaseException:
         process.terminate()
         process.wait()
@@ -117,7 +132,7 @@ def build(case, out=None, *, until="certify", threads=None, memory=None, strict=
     command = [_executable(), "build", os.fspath(case), "--json", "--until", until]
     for option, value in (("--out", out), ("--threads", threads), ("--memory", memory)):
         if value is not None:
-            command += [option, str(os.fspath(value) if option == "--out" else value)]
+            command += [option, _text(value)]
     command += ["--strict"] if strict else []
     folder, warnings = [], []
 
@@ -130,13 +145,14 @@ def build(case, out=None, *, until="certify", threads=None, memory=None, strict=
             progress(event)
 
     with tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as said:
-        with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=said, text=True) as process:
-            code = _follow(process, see)
+        with subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=said, encoding="utf-8",
+                              errors="replace") as process:
+            code, broken = _follow(process, see)
         said.seek(0)
         text = said.read()
     made = _artifacts(folder[0], warnings) if folder else None
-    if code != 0:
-        failure = _failure(code, text)
+    if code != 0 or broken:
+        failure = _failure(code, text) if code != 0 else CommandError(f"palpate: printed what is no event: {broken!r}")
         failure.build = made
         raise failure
     return made

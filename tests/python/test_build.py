@@ -9,6 +9,7 @@ import inspect
 import io
 import os
 import re
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -96,6 +97,24 @@ class Case(unittest.TestCase):
                              np.ascontiguousarray(getattr(recording, name)).tobytes(), name)
         self.assertGreater(np.abs(run.force).max(), 0.01)
         self.assertTrue(np.any(run.status & palpate.Status.SLIDING))
+
+    def test_the_example_repeats_the_session(self):
+        palpate.run_command("simulate", self.case, "--out", self.root / "out")
+        example = PAGE.parent.parent / "examples/python/session.py"
+
+        def said(library):
+            return subprocess.run([sys.executable, example, self.root / "out/recording.h5", "--library", library],
+                                  capture_output=True, text=True, check=True).stdout
+
+        with_its_own = said(self.built.library)
+        self.assertIn("the same forces come again, to the bit", with_its_own)
+        recording = palpate.read_recording(self.root / "out/recording.h5")
+        self.assertIn(f"{len(recording)} steps on simulated", with_its_own)
+        self.assertIn(f"absorbed {1e3 * recording.absorbed[-1]:.4f} mJ", with_its_own)
+        softer = self.root / "softer.toml"
+        softer.write_text(self.case.read_text().replace('young = "10 kPa"', 'young = "9 kPa"'))
+        other = palpate.build(softer, self.root / "softer").library
+        self.assertIn("other forces come", said(other))
 
     def test_the_programs_of_the_page_run(self):
         text = PAGE.read_text(encoding="utf-8")
@@ -192,14 +211,36 @@ class Case(unittest.TestCase):
 
 
 class Command(unittest.TestCase):
-    def test_the_command_of_the_prefix_comes_first_and_must_be_of_the_version(self):
+    def put_beside(self, script):
+        """A command in the prefix of the package."""
         beside = Path(palpate.__file__).resolve().parents[4] / "bin" / "palpate"
         beside.parent.mkdir()
         self.addCleanup(lambda: (beside.unlink(), beside.parent.rmdir()))
-        beside.write_text("#!/bin/sh\necho palpate 99.0.0\n")
+        beside.write_text(f"#!/bin/sh\n{script}\n")
         beside.chmod(0o755)
+
+    def test_the_command_of_the_prefix_comes_first_and_must_be_of_the_version(self):
+        self.put_beside("echo palpate 99.0.0")
         with self.assertRaisesRegex(palpate.MismatchError, "bin/palpate: is not of version"):
             palpate.run_command("--version")
+
+    def test_a_command_that_dies_or_babbles(self):
+        self.put_beside(f"""case $1$3 in
+            --version*) echo palpate {palpate.__version__} ;;
+            build*) printf '{{"event":"log","text":"one"}}\\n{{"event":"lo'; . "$2" ;;
+            *) echo "$@" ;;
+        esac""")
+        self.assertEqual(palpate.run_command("certify", Path("a"), "--rate", 1000, 0.5), "certify a --rate 1000 0.5\n")
+        with tempfile.TemporaryDirectory() as folder:
+            how = Path(folder) / "how"
+            for script, text, code in (("kill -9 $$", "ended with code -9", -9), ("exit 1", "ended with code 1", 1),
+                                       ("true", "no event", 1)):
+                how.write_text(script)
+                events = []
+                with self.assertRaisesRegex(palpate.CommandError, text) as caught:
+                    palpate.build(how, progress=events.append)
+                self.assertEqual(caught.exception.exit_code, code)
+                self.assertEqual(events, [{"event": "log", "text": "one"}])
 
     def test_without_a_command_it_says_so(self):
         before = os.environ["PATH"]

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """The examples in Python run, and print what the closed forms of the plate say.
 
-Usage: test_examples.py WRITE_BODIES EXAMPLES
+Usage: test_examples.py WRITE_BODIES WRITE_SAMPLE_ARTIFACTS EXAMPLES
 """
 import importlib.util
 import re
@@ -13,6 +13,7 @@ import unittest
 from pathlib import Path
 
 WRITE_BODIES = None
+WRITE_SAMPLES = None
 EXAMPLES = None
 HAS_MATPLOTLIB = importlib.util.find_spec("matplotlib") is not None
 
@@ -47,7 +48,7 @@ class Examples(unittest.TestCase):
             self.assertIn("matplotlib", self.run_example(name, *arguments, "--plot", "plot.png").stderr)
 
     def test_every_example_is_run_here(self):
-        tested = {name for name in re.findall(r'"(\w+\.py)"', Path(__file__).read_text(encoding="utf-8"))}
+        tested = set(re.findall(r'"(\w+\.py)"', Path(__file__).read_text(encoding="utf-8")))
         self.assertEqual({path.name for path in EXAMPLES.glob("*.py")}, tested)
 
     def test_a_press(self):
@@ -73,6 +74,13 @@ class Examples(unittest.TestCase):
         self.assertIn("SLIDING", said)
         self.assert_plot("trajectory.py", self.plate, 40)
 
+    def test_a_session(self):
+        subprocess.run([WRITE_SAMPLES, self.root / "samples"], check=True)
+        said = self.said("session.py", self.root / "samples/recording.h5")  # random, with a reading that is NaN
+        self.assertIn("5000 steps", said)
+        self.assertRegex(said, r"CONTACT: \d+ steps")
+        self.assert_plot("session.py", self.root / "samples/recording.h5")
+
     def test_a_comparison(self):
         self.assertIn("worst 0.00 %", self.said("compare.py", self.plate, self.plate))
         stiffer = self.said("compare.py", self.plate, self.root / "stiffer.h5")
@@ -86,6 +94,6 @@ class Examples(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    WRITE_BODIES, EXAMPLES = sys.argv[1], Path(sys.argv[2])
-    del sys.argv[1:3]
+    WRITE_BODIES, WRITE_SAMPLES, EXAMPLES = sys.argv[1], sys.argv[2], Path(sys.argv[3])
+    del sys.argv[1:4]
     unittest.main()

@@ -5,6 +5,7 @@
 Usage: test_library.py WRITE_BODIES WRITE_SAMPLE_ARTIFACTS
 """
 import gc
+import importlib.metadata
 import os
 import re
 import subprocess
@@ -166,6 +167,7 @@ class Library(unittest.TestCase):
 
     def test_the_version_is_that_of_the_files(self):
         self.assertRegex(palpate.__version__, r"^\d+\.\d+\.\d+$")
+        self.assertEqual(importlib.metadata.version("palpate"), palpate.__version__)
         with h5py.File(self.root / "plate.h5") as file:
             creator = file.attrs["creator"]
         creator = creator.decode() if isinstance(creator, bytes) else creator
