@@ -50,12 +50,22 @@ class Importer {
     for (const PressFileSection& press : s_.presses) read_press(press);
     for (const RobotFileSection& robot : s_.robot_logs) read_robot(robot);
     Import result;
+    result.histories = histories(true);
     result.curves = curves();
     account_["sites"] = sites_account(result.curves);
     account_["records"] = records_;
     account_["warnings"] = warnings_;
     result.account = account_;
     return result;
+  }
+
+  /// @param placed  whether sites are looked up on the body.
+  Histories histories(bool placed) {
+    Histories histories;
+    for (const HistoryFileSection& history : s_.histories)
+      histories.records.push_back(read_history(history, placed));
+    add_origin(histories);
+    return histories;
   }
 
  private:
@@ -102,7 +112,8 @@ class Importer {
     account_["registration_rms_m"] = registration_.rms;
   }
 
-  int vertex_of(const PressFileSection& press, double& distance) const {
+  template <class Section>
+  int vertex_of(const Section& press, double& distance) const {
     distance = 0;
     const std::string where = path_of(press.file).string();
     if (press.vertex < 0) {
@@ -128,10 +139,8 @@ class Importer {
   void read_press(const PressFileSection& press) {
     const fs::path file = path_of(press.file);
     const m::CsvTable table = m::read_csv(file, declared_, press.table);
-    m::PressRecord record{file.string(), column(table, s_.columns.time, Dimension::Time),
-                          column(table, s_.columns.displacement, Dimension::Length),
-                          column(table, s_.columns.force, Dimension::Force)};
-    const m::Signs signs = m::orient(record);
+    m::Signs signs;
+    const m::PressRecord record = read_record(file, table, signs);
     double distance = 0;
     const int vertex = vertex_of(press, distance);
     m::PressSettings settings = press_settings(press.cycle);
@@ -143,6 +152,47 @@ class Importer {
     add_account(press.file, table, vertex, distance, curve);
     sites_[vertex].presses.push_back(curve);
     add_file(file);
+  }
+
+  /// The record with growing displacements and forces, and the signs that made it so.
+  m::PressRecord read_record(const fs::path& file, const m::CsvTable& table,
+                             m::Signs& signs) const {
+    m::PressRecord record{file.string(), column(table, s_.columns.time, Dimension::Time),
+                          column(table, s_.columns.displacement, Dimension::Length),
+                          column(table, s_.columns.force, Dimension::Force)};
+    signs = m::orient(record);
+    return record;
+  }
+
+  SiteHistory read_history(const HistoryFileSection& section, bool placed) {
+    const fs::path file = path_of(section.file);
+    const m::CsvTable table = m::read_csv(file, declared_, section.table);
+    m::Signs signs;
+    const m::PressRecord record = read_record(file, table, signs);
+    SiteHistory site;
+    double distance = 0;
+    if (placed && (section.vertex >= 0 || std::isfinite(section.site[0])))
+      site.vertex = vertex_of(section, distance);
+    m::HistorySettings settings{press_settings(1), std::nullopt, {}};
+    const double given = std::isfinite(section.contact) ? section.contact : s_.contact.position;
+    settings.press.contact = signs.displacement * given;
+    if (section.held == "travel") settings.control = m::Control::Travel;
+    if (section.held == "force") settings.control = m::Control::Force;
+    for (const PhaseSection& phase : section.phases)
+      settings.declared.push_back({m::phase_of_name(phase.kind).value(), phase.from, phase.to});
+    site.history = m::analyse_history(record, settings);
+    site.history.name = section.file;
+    add_file(file);
+    return site;
+  }
+
+  void add_origin(Histories& histories) const {
+    histories.name = s_.name;
+    histories.specimen = s_.specimen;
+    histories.source = s_.source;
+    histories.licence = s_.licence;
+    histories.tool = {s_.tool.shape, s_.tool.radius, s_.tool.friction};
+    if (body_) histories.body_sha256 = sha256_of_file(body_file_);
   }
 
   void doubt_tool() {
@@ -411,6 +461,10 @@ class Importer {
 
 Import import_measurement(const fs::path& sidecar_file, const fs::path& body_file) {
   return Importer(sidecar_file, body_file).run();
+}
+
+Histories import_histories(const fs::path& sidecar_file) {
+  return Importer(sidecar_file, {}).histories(false);
 }
 
 }  // namespace palpate::app

@@ -12,6 +12,7 @@ import { Curves } from './sections/curves.js';
 import { fidelitySection } from './sections/fidelity.js';
 import { fitSection } from './sections/fit.js';
 import { headerSection } from './sections/header.js';
+import { overTimePage } from './sections/over-time.js';
 import { previewSection } from './sections/preview.js';
 import { recordSection } from './sections/record.js';
 import { relaxationSection } from './sections/relaxation.js';
@@ -64,6 +65,8 @@ try {
   const data = readData();
   if (data.preview) {
     place('preview', () => previewSection(data));
+  } else if (data.over_time) {
+    place('over-time', () => overTimePage(data));
   } else if (data.calibration && !data.body) {
     place('calibration', () => calibrationPage(data));
   } else {
