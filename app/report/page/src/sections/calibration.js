@@ -43,7 +43,7 @@ function recordsOf(c) {
       const creep = r.held === 'force';
       return {
         name: r.file, x: r.time_s, measured: creep ? r.travel_m : r.force_N, fitted: creep ? r.fitted_m : r.fitted_N,
-        xLabel: 'Time (s)', factor: 1, yName: creep ? 'Travel' : 'Force', steps: creep ? LENGTHS : FORCES,
+        xLabel: 'Time (s)', factor: 1, dense: true, yName: creep ? 'Travel' : 'Force', steps: creep ? LENGTHS : FORCES,
       };
     });
   }
@@ -74,14 +74,13 @@ function recordFigures(c) {
     const off = order.map((k) => r.fitted[k] - r.measured[k]);
     const [small, smallSymbol] = scaleOf(off, r.steps);
     const data = curvePlot('Data and fit', r.xLabel, `${r.yName} (${symbol})`, 260, { signed: true, tight: true });
-    data.set([
-      { label: 'fit', colour: 'series-2', x, y: order.map((k) => r.fitted[k] / unit) },
-      { label: 'data', colour: 'series-1', markers: true, x, y: order.map((k) => r.measured[k] / unit) },
-    ]);
+    const fit = { label: 'fit', colour: 'series-2', x, y: order.map((k) => r.fitted[k] / unit) };
+    const measured = { label: 'data', colour: 'series-1', x, y: order.map((k) => r.measured[k] / unit) };
+    data.set(r.dense ? [measured, fit] : [fit, { ...measured, markers: true }]);
     const residuals = curvePlot('Residuals', r.xLabel, `Fit less data (${smallSymbol})`, 180, { signed: true, tight: true });
     residuals.set([
       { label: 'zero', colour: 'muted', width: 1.5, x: [x[0], x[x.length - 1]], y: [0, 0] },
-      { label: 'residual', colour: 'series-1', markers: true, x, y: off.map((v) => v / small) },
+      { label: 'residual', colour: 'series-1', markers: !r.dense, x, y: off.map((v) => v / small) },
     ]);
     place.replaceChildren(data.element, residuals.element);
   };
@@ -89,7 +88,7 @@ function recordFigures(c) {
     records.map((r, i) => el('option', { value: i }, r.name)));
   show(0);
   return [el('div', { class: 'controls' }, el('label', {}, 'Record', select)), place,
-    paragraph('Markers: the data. Line: the fit at the data.', 'note')];
+    paragraph(c.records ? 'Blue: the record. The other line: the fit.' : 'Markers: the data. Line: the fit at the data.', 'note')];
 }
 
 /** The rise of the misfit with one constant fixed, over what chance allows: the interval ends at 1. */
@@ -122,12 +121,12 @@ function testRows(c) {
 /** g(t) with its interval, over the logarithm of the time. */
 function relaxationFunction(c) {
   const x = c.relaxation_function.map((p) => Math.log10(p.time_s));
-  const figure = curvePlot('Relaxation function', 'log10 of the time (s)', 'Force after a step, over that at once', 240, { tight: true });
+  const figure = curvePlot('Relaxation function', 'log10 of the time (s)', 'g', 240, { tight: true });
   const line = (label, key, extra) => ({ label, colour: 'series-1', x, y: c.relaxation_function.map((p) => p[key]), ...extra });
   figure.set([line('g', 'value', {}), line('low', 'low', { dash: [5, 4], width: 1.5 }), line('high', 'high', { dash: [5, 4], width: 1.5 })]);
   const g = c.long_term_fraction;
   return [el('h3', {}, 'What relaxes'), figure.element,
-    paragraph(`Dashed: the ${units.percent(c.confidence)} interval. The records show what relaxes within ${units.time(c.shortest_time_shown_s)} to ${units.time(c.longest_time_shown_s)}, and say nothing of shorter and longer times. In the long term ${units.percent(g.value)} (${units.percent(g.low)} to ${units.percent(g.high)}) of the force are left.`, 'note'),
+    paragraph(`The force after a step, over that at once. Dashed: the ${units.percent(c.confidence)} interval. The records show what relaxes within ${units.time(c.shortest_time_shown_s)} to ${units.time(c.longest_time_shown_s)}, and say nothing of shorter and longer times. In the long term ${units.percent(g.value)} (${units.percent(g.low)} to ${units.percent(g.high)}) of the force are left.`, 'note'),
     el('pre', {}, c.case_material),
     table(['Terms', 'RMS error', 'AICc', 'BIC', 'Not taken'], c.tried.map((t) => [units.count(t.terms),
       t.relative_rms === null ? '\u2013' : units.percent(t.relative_rms), t.aicc === null ? '\u2013' : t.aicc.toFixed(1),
