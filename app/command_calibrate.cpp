@@ -239,6 +239,7 @@ void add_calibrate_command(CLI::App& root, Action& action) {
   tests->add_option("--out", options->out,
                     "Folder for calibration.json and calibration.html (default: print only)");
   add_body_part(*command, action);
+  add_calibrate_relaxation(*command, action);
   tests->callback([options, &action] { action = [options] { return calibrate_tests(*options); }; });
 }
 

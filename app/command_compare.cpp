@@ -6,6 +6,7 @@
 #include "app/case_options.hpp"
 #include "app/command.hpp"
 #include "app/compare/fidelity_run.hpp"
+#include "app/compare/history_run.hpp"
 #include "app/compare/tables.hpp"
 #include "app/console.hpp"
 #include "app/pipeline/workspace.hpp"
@@ -30,6 +31,7 @@ struct CompareOptions {
   FidelityOptions fidelity;
   double floor_mn = 0;
   std::vector<std::string> libraries;
+  std::string histories;  ///< with a case: records over time instead of hold-out points
 };
 
 void add_positions(compare::ComparedSet& set, const fs::path& file) {
@@ -89,6 +91,10 @@ void print(const compare::Comparison& comparison) {
 }
 
 int compare_sets(CompareOptions options) {
+  if (fs::path(options.reference).extension() == ".json") {
+    compare_histories(options.reference, options.model, options.out);
+    return kExitDone;
+  }
   for (const double depth : options.depths_mm) options.settings.depths.push_back(1e-3 * depth);
   const auto reference = read_set(options.reference, options.reference_body);
   const auto model = read_set(options.model, options.model_body);
@@ -120,6 +126,10 @@ int compare_with_fem(CompareOptions options) {
   options.fem.out = options.out;
   options.fidelity.floor = 1e-3 * options.floor_mn;
   for (const std::string& file : options.libraries) options.fidelity.libraries.emplace_back(file);
+  if (!options.histories.empty()) {
+    compare_histories_with_fem(open_workspace(options.fem), options.histories);
+    return kExitDone;
+  }
   const bool complete = run_fidelity(open_workspace(options.fem), options.fidelity);
   return complete ? kExitDone : kExitSomeSitesFailed;
 }
@@ -156,6 +166,9 @@ void add_fem_options(CLI::App& command, CompareOptions& options, CLI::Option* se
       ->check(CLI::Range(1e-6, 1e6));
   only_with_fem(command.add_option("--library", options.libraries,
                                    "Libraries to compare (default: that of the case)"));
+  only_with_fem(command.add_option(
+      "--histories", options.histories,
+      "histories.json: compare direct solutions with these records over time instead"));
   only_with_fem(command.add_option("--threads", options.fem.threads,
                                    "Threads (default: one for each processor)"))
       ->check(CLI::Range(1, 4096));
@@ -170,10 +183,12 @@ void add_compare_command(CLI::App& root, Action& action) {
   command->footer(
       "Examples:\n"
       "  palpate compare out/pad-measured/curves.h5 out/pad/curves.h5 --out out/pad\n"
+      "  palpate compare out/held/histories.json out/pad/library.h5 --out out/held\n"
       "  palpate compare --fem data/cases/liver.toml");
   const auto options = std::make_shared<CompareOptions>();
-  CLI::Option* reference = command->add_option("REFERENCE", options->reference,
-                                               "curves.h5 or library.h5 taken as the reference");
+  CLI::Option* reference = command->add_option(
+      "REFERENCE", options->reference,
+      "curves.h5, library.h5 or, over time, histories.json taken as the reference");
   CLI::Option* model = command->add_option("MODEL", options->model,
                                            "curves.h5 or library.h5 that is compared with it");
   reference->needs(model);

@@ -9,6 +9,7 @@
 #include "format/crash_safe_file.hpp"
 #include "format/number_text.hpp"
 #include "format/numbers.hpp"
+#include "format/sha256.hpp"
 
 namespace palpate::app {
 namespace {
@@ -37,12 +38,33 @@ void say_records(const Import& result) {
         refused["reason"].get<std::string>());
 }
 
+void say_history(const SiteHistory& site) {
+  const measured::History& h = site.history;
+  const bool force = h.control == measured::Control::Force;
+  say("  {}: the {} is held, {} samples, contact at {} +- {}", h.name, force ? "force" : "travel",
+      h.time.size(), length_text(h.contact.displacement), length_text(h.contact.uncertainty));
+  for (const measured::Phase& phase : h.phases)
+    say("    {} from {:.5g} s to {:.5g} s: to {}, {}", phase_name(phase.kind), h.time[phase.begin],
+        h.time[phase.end - 1], length_text(h.travel[phase.end - 1]),
+        force_text(h.force[phase.end - 1]));
+}
+
+void write_histories(const Histories& histories, const fs::path& sidecar, const fs::path& out) {
+  nlohmann::ordered_json json = histories_json(histories);
+  json["input_sha256"] = {{sidecar.filename().string(), sha256_of_file(sidecar)}};
+  write_file_crash_safely(out / "histories.json", json.dump() + "\n");
+  for (const SiteHistory& site : histories.records) say_history(site);
+  say("import: {} records over time -> {}", histories.records.size(),
+      (out / "histories.json").string());
+}
+
 int import_records(const ImportOptions& options) {
   const ImportRequest request = import_request(options.inputs);
   const Import result = import_measurement(request.sidecar, options.body, request.records);
   const fs::path out = options.out;
   prepare_output(out);
-  write_curves(out / "curves.h5", result.curves);
+  if (!result.curves.sites.empty()) write_curves(out / "curves.h5", result.curves);
+  if (!result.histories.records.empty()) write_histories(result.histories, request.sidecar, out);
   write_file_crash_safely(out / "import.json", result.account.dump(2) + "\n");
   say_records(result);
   if (result.account.contains("conversion"))
@@ -63,8 +85,9 @@ int import_records(const ImportOptions& options) {
   for (const auto& warning : result.account["warnings"]) {
     say("  warning: {}", warning.get<std::string>());
   }
-  say("import: {} records at {} sites -> {} (account in import.json)",
-      result.account["records"].size(), result.curves.sites.size(), (out / "curves.h5").string());
+  if (!result.curves.sites.empty())
+    say("import: {} records at {} sites -> {} (account in import.json)",
+        result.account["records"].size(), result.curves.sites.size(), (out / "curves.h5").string());
   if (result.refused == 0) return kExitDone;
   say("import: {} refused, see above; the curves are those of the others", result.refused);
   return options.allow_refused ? kExitDone : kExitSomeSitesFailed;
@@ -73,8 +96,9 @@ int import_records(const ImportOptions& options) {
 }  // namespace
 
 void add_import_command(CLI::App& root, Action& action) {
-  CLI::App* command =
-      root.add_subcommand("import", "Records of a testing machine or robot -> curves.h5");
+  CLI::App* command = root.add_subcommand(
+      "import",
+      "Records of a testing machine or robot -> curves.h5, and over time -> histories.json");
   command->footer(
       "Example: palpate import data/measured/pad/presses.toml --body out/pad/body.h5 "
       "--out out/pad-measured");

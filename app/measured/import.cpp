@@ -58,12 +58,13 @@ class Importer {
     };
     std::erase_if(s_.presses, is_left_out);
     std::erase_if(s_.robot_logs, is_left_out);
+    std::erase_if(s_.histories, is_left_out);
     for (const auto& [record, known] : named) {
       if (known) continue;
-      put_off(record.string(),
-              Error(ErrorKind::Configuration, record.string(),
-                    "the sidecar " + sidecar_file_.string() + " does not name it",
-                    "add it as `file`, or a pattern as `files` of a [[press]] or [[robot]]"));
+      put_off(record.string(), Error(ErrorKind::Configuration, record.string(),
+                                     "the sidecar " + sidecar_file_.string() + " does not name it",
+                                     "add it as `file`, or a pattern as `files` of a [[press]] or "
+                                     "[[robot]], or as a [[history]]"));
     }
   }
 
@@ -73,8 +74,9 @@ class Importer {
     for (const RobotFileSection& robot : s_.robot_logs)
       attempt(robot.file, [&] { read_robot(robot); });
     Import result;
+    result.histories = histories(true);
     result.curves = curves();
-    if (result.curves.sites.empty()) throw *first_refusal_;
+    if (result.curves.sites.empty() && first_refusal_) throw *first_refusal_;
     result.refused = static_cast<int>(refused_.size());
     account_["refused"] = refused_;
     account_["sites"] = sites_account(result.curves);
@@ -83,6 +85,15 @@ class Importer {
     account_["warnings"] = warnings_;
     result.account = account_;
     return result;
+  }
+
+  /// @param placed  whether sites are looked up on the body.
+  Histories histories(bool placed) {
+    Histories histories;
+    for (const HistoryFileSection& history : s_.histories)
+      histories.records.push_back(read_history(history, placed));
+    add_origin(histories);
+    return histories;
   }
 
  private:
@@ -162,7 +173,8 @@ class Importer {
     account_["registration_rms_m"] = registration_.rms;
   }
 
-  int vertex_of(const PressFileSection& press, double& distance) const {
+  template <class Section>
+  int vertex_of(const Section& press, double& distance) const {
     distance = 0;
     const std::string where = path_of(press.file).string();
     if (press.vertex < 0) {
@@ -229,10 +241,8 @@ class Importer {
 
   void read_press(const PressFileSection& press) {
     const fs::path file = path_of(press.file);
-    const m::CsvTable table = m::read_table(file, press.choice, declared_, wanted_of_press());
-    m::PressRecord record{file.string(), column(table, s_.columns.time, Dimension::Time),
-                          displacement_of(table), force_of(table)};
-    const m::Signs signs = oriented(record);
+    m::Signs signs;
+    const m::PressRecord record = read_record(file, press.choice, signs);
     double distance = 0;
     const int vertex = vertex_of(press, distance);
     m::PressSettings settings = press_settings(press.cycle);
@@ -244,6 +254,46 @@ class Importer {
     add_account(press.file, table, vertex, distance, curve);
     sites_[vertex].presses.push_back(curve);
     add_file(file);
+  }
+
+  /// The record with growing displacements and forces, and the signs that made it so.
+  m::PressRecord read_record(const fs::path& file, const m::TableChoice& choice,
+                             m::Signs& signs) const {
+    const m::CsvTable table = m::read_table(file, choice, declared_, wanted_of_press());
+    m::PressRecord record{file.string(), column(table, s_.columns.time, Dimension::Time),
+                          displacement_of(table), force_of(table)};
+    signs = oriented(record);
+    return record;
+  }
+
+  SiteHistory read_history(const HistoryFileSection& section, bool placed) {
+    const fs::path file = path_of(section.file);
+    m::Signs signs;
+    const m::PressRecord record = read_record(file, section.choice, signs);
+    SiteHistory site;
+    double distance = 0;
+    if (placed && (section.vertex >= 0 || std::isfinite(section.site[0])))
+      site.vertex = vertex_of(section, distance);
+    m::HistorySettings settings{press_settings(1), std::nullopt, {}};
+    const double given = std::isfinite(section.contact) ? section.contact : s_.contact.position;
+    settings.press.contact = signs.displacement * given;
+    if (section.held == "travel") settings.control = m::Control::Travel;
+    if (section.held == "force") settings.control = m::Control::Force;
+    for (const PhaseSection& phase : section.phases)
+      settings.declared.push_back({m::phase_of_name(phase.kind).value(), phase.from, phase.to});
+    site.history = m::analyse_history(record, settings);
+    site.history.name = section.file;
+    add_file(file);
+    return site;
+  }
+
+  void add_origin(Histories& histories) const {
+    histories.name = s_.name;
+    histories.specimen = s_.specimen;
+    histories.source = s_.source;
+    histories.licence = s_.licence;
+    histories.tool = {s_.tool.shape, s_.tool.radius, s_.tool.friction};
+    if (body_) histories.body_sha256 = sha256_of_file(body_file_);
   }
 
   void doubt_tool() {
@@ -522,6 +572,10 @@ Import import_measurement(const fs::path& sidecar_file, const fs::path& body_fil
   Importer importer(sidecar_file, body_file);
   if (!records.empty()) importer.restrict_to(records);
   return importer.run();
+}
+
+Histories import_histories(const fs::path& sidecar_file) {
+  return Importer(sidecar_file, {}).histories(false);
 }
 
 }  // namespace palpate::app

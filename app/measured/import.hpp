@@ -6,16 +6,19 @@
 #include <string>
 #include <vector>
 
+#include "app/measured/histories.hpp"
 #include "app/measured/sidecar.hpp"
 #include "format/body.hpp"
 #include "format/curves.hpp"
 
 namespace palpate::app {
 
-/// What `palpate import` makes: curves like those of a campaign, and an account of each record.
+/// What `palpate import` makes: curves like those of a campaign, records kept whole, and an account
+/// of each record.
 // NOLINTNEXTLINE(bugprone-exception-escape): moving the JSON value is not seen to be safe
 struct Import {
-  Curves curves;
+  Curves curves;        ///< without sites where the sidecar has histories alone
+  Histories histories;  ///< of the [[history]] records; may be none
   nlohmann::ordered_json account;
   int refused = 0;  ///< records and sites that are not in the curves; the account has the reasons
 };
@@ -31,5 +34,9 @@ struct Import {
 Import import_measurement(const std::filesystem::path& sidecar_file,
                           const std::filesystem::path& body_file,
                           const std::vector<std::filesystem::path>& records = {});
+
+/// The [[history]] records of a sidecar alone, without their sites: no body is needed.
+/// @throws Error(Configuration) as import_measurement.
+Histories import_histories(const std::filesystem::path& sidecar_file);
 
 }  // namespace palpate::app

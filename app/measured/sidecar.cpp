@@ -19,7 +19,8 @@ constexpr Range kCount{.low = 2, .high = 1000};
 
 template <class V>
 void describe(V& v, MeasuredToolSection& s) {
-  v.text(s.shape, {"shape", "shape of the rigid tool"}, {"sphere"});
+  v.text(s.shape, {"shape", "shape of the rigid tool"}, {"sphere", "plates"});
+  if (!v.when("shape", s.shape, "sphere")) return;
   v.quantity(s.radius, Dimension::Length, {"radius", "radius of the tool", kRequired, kPositive});
   v.text(s.friction, {"friction", "of the press", kRequired}, {"frictionless", "no-slip"});
   v.text(s.reference, {"reference", "point of the tool that a robot logs"}, {"tip", "centre"});
@@ -147,6 +148,28 @@ void describe(V& v, RobotFileSection& s) {
 }
 
 template <class V>
+void describe(V& v, PhaseSection& s) {
+  v.text(s.kind, {"kind", "what the machine does", kRequired},
+         {"approach", "rest", "ramp", "hold", "release"});
+  v.quantity(s.from, Dimension::Time, {"from", "time of the record", kRequired});
+  v.quantity(s.to, Dimension::Time, {"to", "time of the record", kRequired});
+}
+
+template <class V>
+void describe(V& v, HistoryFileSection& s) {
+  v.text(s.file, {"file", "record over time, relative to the sidecar", kRequired});
+  v.integer(s.vertex, {"vertex", "response vertex of the body", kOptional, kNotNegative});
+  v.point(s.site, Dimension::Length, {"site", "point that was pressed, in the frame of the body"});
+  describe_table_choice(v, s.choice);
+  v.quantity(s.contact, Dimension::Length,
+             {"contact", "displacement of this record at the contact point that is given"});
+  v.text(s.held, {"held", "what the machine holds: the travel (relaxation) or the force (creep)"},
+         {"recognised", "travel", "force"});
+  v.tables(s.phases, {"phases", "in order of time; recognised where they are not given"},
+           [](auto& in, PhaseSection& phase) { describe(in, phase); });
+}
+
+template <class V>
 void describe(V& v, Sidecar& s) {
   v.text(s.name, {"name", "of the measurement", kRequired});
   v.text(s.specimen, {"specimen", "what was pressed", kRequired});
@@ -166,6 +189,7 @@ void describe(V& v, Sidecar& s) {
   v.sections("fiducial", s.fiducials, kOptional, "");
   v.sections("press", s.presses, kOptional, "");
   v.sections("robot", s.robot_logs, kOptional, "");
+  v.sections("history", s.histories, kOptional, "");
 }
 
 namespace {
@@ -206,7 +230,8 @@ void check_columns(const Sidecar& s, const SourceMap& sources) {
     refuse(sources.where("columns"), "signs are stated, and a robot log has three components",
            "give placement.force_is for a robot log");
   check_converted(s, sources);
-  if (!s.presses.empty()) {
+  if (!s.histories.empty()) need(c.time, "time", "time");
+  if (!s.presses.empty() || !s.histories.empty()) {
     if (c.strain.empty()) need(c.displacement, "displacement", "displacement, or 'strain'");
     if (c.stress.empty()) need(c.force, "force", "force, or 'stress'");
   }
@@ -219,7 +244,12 @@ void check_columns(const Sidecar& s, const SourceMap& sources) {
   }
 }
 
-void check_sites(const Sidecar& s) {
+void check_sites(const Sidecar& s, const SourceMap& sources) {
+  for (std::size_t i = 0; i < s.histories.size(); ++i) {
+    if (!std::isfinite(s.histories[i].site[0]) || s.histories[i].vertex < 0) continue;
+    refuse(sources.where(fmt::format("history[{}].", i)), "both vertex and site are given",
+           "say once where the tool was pressed");
+  }
   for (std::size_t i = 0; i < s.presses.size(); ++i) {
     const PressFileSection& press = s.presses[i];
     const bool by_point = std::isfinite(press.site[0]);
@@ -230,28 +260,41 @@ void check_sites(const Sidecar& s) {
   }
 }
 
+/// The contact point of a record is given where the method says so, and nowhere else.
+void check_given(bool given, double here, double everywhere, const std::string& where,
+                 const SourceMap& sources) {
+  if (given && !std::isfinite(here) && !std::isfinite(everywhere)) {
+    refuse(sources.where("contact.method"), "key 'contact.position' is missing",
+           "give the displacement at the contact point, for all records or as 'contact' of each");
+  }
+  if (!given && std::isfinite(here)) {
+    refuse(where, "a contact point is given, and contact.method says otherwise",
+           "say contact.method = \"given\"");
+  }
+}
+
 void check_contact(const Sidecar& s, const SourceMap& sources) {
   const bool given = s.contact.method == "given";
   if (given && !s.robot_logs.empty()) {
     refuse(sources.where("contact.method"), "the contact point of a robot log is not given",
            "let it be found, or give presses along one axis as [[press]]");
   }
-  for (std::size_t i = 0; i < s.presses.size(); ++i) {
-    const bool here = std::isfinite(s.presses[i].contact);
-    if (given && !here && !std::isfinite(s.contact.position)) {
-      refuse(sources.where("contact.method"), "key 'contact.position' is missing",
-             "give the displacement at the contact point, for all records or as 'contact' of each");
-    }
-    if (!given && here) {
-      refuse(s.presses[i].where, "a contact point is given, and contact.method says otherwise",
-             "say contact.method = \"given\"");
-    }
-  }
+  for (const PressFileSection& press : s.presses)
+    check_given(given, press.contact, s.contact.position, press.where, sources);
+  for (std::size_t i = 0; i < s.histories.size(); ++i)
+    check_given(given, s.histories[i].contact, s.contact.position,
+                sources.where(fmt::format("history[{}].contact", i)), sources);
   if (!given && std::isfinite(s.contact.position)) {
     refuse(sources.where("contact.position"),
            "a contact point is given, and contact.method says otherwise",
            "say contact.method = \"given\"");
   }
+}
+
+void check_tool(const Sidecar& s, const SourceMap& sources) {
+  if (s.tool.shape == "sphere" || (s.presses.empty() && s.robot_logs.empty())) return;
+  refuse(sources.where("tool.shape"), "curves are those of a sphere, and the tool is plates",
+         "give the records as [[history]]");
 }
 
 /// The first thing that newcomers give is the record itself.
@@ -273,8 +316,9 @@ Sidecar read_sidecar(const std::filesystem::path& path) {
   TableReader reader(table, "the sidecar", "", sources);
   describe(reader, sidecar);
   reader.finish();
-  if (sidecar.presses.empty() && sidecar.robot_logs.empty()) {
-    refuse(path.string(), "it names no record", "add [[press]] or [[robot]] with a file");
+  if (sidecar.presses.empty() && sidecar.robot_logs.empty() && sidecar.histories.empty()) {
+    refuse(path.string(), "it names no record",
+           "add [[press]], [[robot]] or [[history]] with a file");
   }
   constexpr double kUsualTolerance = 5e-3, kRadii = 4;
   if (!std::isfinite(sidecar.placement.tolerance))
@@ -284,9 +328,10 @@ Sidecar read_sidecar(const std::filesystem::path& path) {
     refuse(sources.where("contact.method"), "key 'contact.threshold' is missing",
            "give the force that is taken for contact");
   }
+  check_tool(sidecar, sources);
   check_contact(sidecar, sources);
   check_columns(sidecar, sources);
-  check_sites(sidecar);
+  check_sites(sidecar, sources);
   return sidecar;
 }
 

@@ -17,7 +17,7 @@ namespace palpate::app {
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
 struct MeasuredToolSection {
-  std::string shape = "sphere";
+  std::string shape = "sphere";   ///< or "plates": histories of a specimen between plates
   double radius = 0;              ///< m
   std::string friction;           ///< "frictionless" or "no-slip"
   std::string reference = "tip";  ///< what a robot logs: "tip" or "centre"
@@ -95,6 +95,21 @@ struct RobotFileSection {
   int cycle = 1;
 };
 
+struct PhaseSection {
+  std::string kind;
+  double from = 0, to = 0;  ///< s, as the record counts them
+};
+
+struct HistoryFileSection {
+  std::string file;
+  int vertex = -1;
+  Vec3 site{kNotGiven, kNotGiven, kNotGiven};  ///< m, in the frame of the body
+  measured::TableChoice choice;
+  double contact = kNotGiven;        ///< m, as the record counts it
+  std::string held = "recognised";   ///< "travel", "force" or "recognised"
+  std::vector<PhaseSection> phases;  ///< empty: recognised
+};
+
 struct Sidecar {
   std::string name, specimen, source, licence, instrument, date, description;
   MeasuredToolSection tool;
@@ -108,6 +123,7 @@ struct Sidecar {
   std::vector<FiducialSection> fiducials;
   std::vector<PressFileSection> presses;
   std::vector<RobotFileSection> robot_logs;
+  std::vector<HistoryFileSection> histories;
 };
 
 /// @throws Error(Configuration) with file and line, as read_case.

@@ -10,7 +10,7 @@ nlohmann::json calibration_data(const std::string& text) {
   const bool known = !data.is_discarded() && data.is_object() &&
                      data.value("artifact", "") == "palpate.calibration" &&
                      data.value("schema", 0) == 1 && data.contains("constants") &&
-                     (data.contains("tests") || data.contains("paths"));
+                     (data.contains("tests") || data.contains("paths") || data.contains("records"));
   if (!known)
     throw Error(ErrorKind::Configuration, "calibration.json", "this version cannot read it",
                 "write it again with `palpate calibrate`, or remove it from the folder");

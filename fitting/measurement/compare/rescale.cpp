@@ -37,6 +37,7 @@ void multiply(Curves& curves, double factor) {
       for (CurveSample& sample : path.samples) {
         sample.force = factor * sample.force;
         sample.strain_energy *= factor;
+        for (double& energy : sample.isochoric_energy) energy *= factor;
         sample.tool_work *= factor;
         sample.contact_energy *= factor;
         sample.tension *= factor;

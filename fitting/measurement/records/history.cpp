@@ -74,13 +74,30 @@ int cycles_in(const History& history) {
   return cycles;
 }
 
+/// A drift that serves until the deepest point may be unknown by the end of a long hold, where it
+/// would pass for relaxation: it has to be known there to the noise of one sample, or to 1 % of the
+/// largest force.
+bool drift_is_determined(const PressRecord& record, const Baseline& b) {
+  constexpr double kPart = 0.01;
+  if (b.state != DriftState::Fitted) return b.drift == 0;
+  double largest = 0;
+  for (const double force : record.force) largest = std::max(largest, force - b.offset);
+  const double at_end = b.drift_uncertainty * (record.time.back() - record.time.front());
+  return at_end <= std::max(b.noise, kPart * largest);
+}
+
 }  // namespace
 
 History analyse_history(const PressRecord& record, const HistorySettings& settings) {
   check_values(record);
   PressSettings press = settings.press;
   press.cycle = 1;
-  const PressCurve curve = analyse_press(record, press);
+  PressCurve curve = analyse_press(record, press);
+  if (!drift_is_determined(record, curve.baseline)) {
+    PressRecord timeless = record;  // of which no drift is taken
+    timeless.time.clear();
+    curve = analyse_press(timeless, press);
+  }
   History history;
   history.name = record.name;
   history.time = record.time;

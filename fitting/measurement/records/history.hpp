@@ -37,7 +37,8 @@ struct History {
 };
 
 /// Baseline and contact point are those of analyse_press for the first press of the record; all
-/// samples are kept.
+/// samples are kept. A drift of the baseline is removed where it is known, by the end of the
+/// record, to the noise of one sample or to 1 % of the largest force; elsewhere none is.
 /// @throws Error(Configuration) naming the record: no time, times that do not increase, values that
 ///   are not finite, declared phases that overlap, go back or hold no sample; as analyse_press.
 History analyse_history(const PressRecord& record, const HistorySettings& settings);

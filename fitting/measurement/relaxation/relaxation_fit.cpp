@@ -224,6 +224,16 @@ void warn_of_unseen_times(const RelaxationFit& fit, std::vector<std::string>& wa
   }
 }
 
+void warn_of_wide_times(const ConstantPlaces& p, Calibration& c) {
+  constexpr double kWide = 4;
+  for (std::size_t i = 0; p.time && i < p.terms; ++i) {
+    const Estimate& e = c.estimates[*p.time + i];
+    if (e.at_bound || !(e.high > kWide * e.low)) continue;
+    c.warnings.push_back(e.name + " is not determined: its interval spans a factor of " +
+                         number_text(e.high / e.low));
+  }
+}
+
 void add_profiles_of_series(const LeastSquares& squares, const ConstantPlaces& p, Calibration& c) {
   ProfileSettings settings;
   settings.between = 4;
@@ -262,6 +272,7 @@ RelaxationFit fit_relaxation(const std::vector<RelaxationRecord>& records,
     fit.band.push_back({t, reader.relaxed(t)});
   }
   turn_into_seconds(places, fit.calibration);
+  warn_of_wide_times(places, fit.calibration);
   warn_of_unseen_times(fit, fit.calibration.warnings);
   return fit;
 }

@@ -82,14 +82,14 @@ struct RelaxationFit {
 /// and one shape of the elastic curve; each record has its own force. Where the force is held the
 /// travel is predicted, by the Volterra equation. Residuals are over the largest force (or travel)
 /// of the record. Fractions are not negative and sum to less than 1. Times are sought from a
-/// twentieth of the shortest ramp, or two samples, to three times the longest record, as
+/// fiftieth of the shortest ramp, or two samples, to three times the longest record, as
 /// logarithms.
 /// Terms are added while the criterion falls. It has the likelihood of noise whose neighbours are
 /// correlated, with the correlation that makes it largest. A series with a fraction at 0, a time at
 /// a bound, or two times within a fifth of each other is not taken.
 /// Intervals are those of least_squares.hpp, those of derived numbers by the delta method. Warned
-/// of: times shorter than half the ramp or longer than the record, and what else minimise() warns
-/// of.
+/// of: times shorter than a tenth of the ramp, or two samples, or longer than the record, times
+/// whose interval spans a factor of four, and what else minimise() warns of.
 /// @throws Error(Configuration) for no record, settings out of range, records that do not relax,
 ///   and fits that do not converge.
 RelaxationFit fit_relaxation(const std::vector<RelaxationRecord>& records,

@@ -54,8 +54,8 @@ RelaxationProblem::RelaxationProblem(const std::vector<RelaxationRecord>& record
     if (r.span() > longest_seen_) longest_record_ = models_.size();
     models_.emplace_back(r, largest_travel_);
     const double samples = 2 * r.interval();
-    shortest_time_ = std::min(shortest_time_, std::max(samples, 0.05 * r.ramp));
-    shortest_seen_ = std::min(shortest_seen_, std::max(samples, 0.5 * r.ramp));
+    shortest_time_ = std::min(shortest_time_, std::max(samples, 0.02 * r.ramp));
+    shortest_seen_ = std::min(shortest_seen_, std::max(samples, 0.1 * r.ramp));
     longest_seen_ = std::max(longest_seen_, r.span());
   }
   longest_time_ = 3 * longest_seen_;

@@ -13,6 +13,7 @@ import { fidelitySection } from './sections/fidelity.js';
 import { fitSection } from './sections/fit.js';
 import { headerSection } from './sections/header.js';
 import { playHeader } from './sections/play.js';
+import { overTimePage } from './sections/over-time.js';
 import { previewSection } from './sections/preview.js';
 import { recordSection } from './sections/record.js';
 import { relaxationSection } from './sections/relaxation.js';
@@ -74,6 +75,8 @@ try {
     place('preview', () => previewSection(data));
   } else if (data.play) {
     showPlay(data);
+  } else if (data.over_time) {
+    place('over-time', () => overTimePage(data));
   } else if (data.calibration && !data.body) {
     place('calibration', () => calibrationPage(data));
   } else {

@@ -308,5 +308,73 @@ TEST_F(Imports, WarnOfADepthThatLooksLikeAWrongUnit) {
               HasSubstr("its radius is 5.00 mm: check the units"));
 }
 
+/// The whole record beside its loading branch, which is the same with and without it.
+TEST_F(Imports, KeepRecordsOverTimeBesideTheirLoadingBranch) {
+  Bench bench;
+  bench.hold = 12;
+  write_record("a.csv", bench, 1);
+  const Import alone = import_measurement(write_sidecar(press("a.csv", 7)), {});
+  const Import both = import_measurement(
+      write_sidecar(press("a.csv", 7) + "[[history]]\nfile = \"a.csv\"\nvertex = 7\n"), {});
+  ASSERT_EQ(both.histories.records.size(), 1u);
+  EXPECT_EQ(both.histories.records[0].vertex, 7);
+  EXPECT_EQ(both.histories.specimen, "gel");
+  EXPECT_EQ(both.histories.tool.radius, 5e-3);
+  const measured::History& history = both.histories.records[0].history;
+  EXPECT_EQ(history.time.size(), measured::press_on(bench, 1).time.size());
+  EXPECT_TRUE(alone.histories.records.empty());
+  const auto &a = alone.curves.sites[0].paths[0].samples,
+             &b = both.curves.sites[0].paths[0].samples;
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].displacement, b[i].displacement);
+    EXPECT_EQ(a[i].force, b[i].force);
+  }
+  // A history alone makes no curve.
+  EXPECT_TRUE(import_measurement(write_sidecar("[[history]]\nfile = \"a.csv\"\n"), {})
+                  .curves.sites.empty());
+}
+
+/// A series needs no site: the records of a sidecar are read without the body.
+TEST_F(Imports, ReadRecordsOverTimeWithoutTheirSites) {
+  Bench bench;
+  bench.hold = 12;
+  write_record("a.csv", bench, 1);
+  const auto sidecar =
+      write_sidecar("[[history]]\nfile = \"a.csv\"\nsite = [\"0 mm\", \"0 mm\", \"0 mm\"]\n");
+  EXPECT_THAT(refusal(sidecar), HasSubstr("needs a body"));
+  const Histories histories = import_histories(sidecar);
+  ASSERT_EQ(histories.records.size(), 1u);
+  EXPECT_EQ(histories.records[0].vertex, -1);
+}
+
+TEST_F(Imports, TakeTheDeclaredPhasesOfARecordOverTime) {
+  Bench bench;
+  bench.hold = 12;
+  write_record("a.csv", bench, 1);
+  const std::string history =
+      "[[history]]\nfile = \"a.csv\"\nheld = \"travel\"\nphases = [{ kind = \"ramp\", from = "
+      "\"2.3 s\", to = \"6.3 s\" }, { kind = \"hold\", from = \"6.3 s\", to = \"18 s\" }]\n";
+  const Import import = import_measurement(write_sidecar(history), {});
+  ASSERT_EQ(import.histories.records[0].history.phases.size(), 2u);
+  EXPECT_EQ(import.histories.records[0].vertex, -1);
+  EXPECT_THAT(refusal(write_sidecar("[[history]]\nfile = \"a.csv\"\nphases = [{ kind = \"pause\", "
+                                    "from = \"1 s\", to = \"2 s\" }]\n")),
+              HasSubstr("pause"));
+}
+
+TEST_F(Imports, RefuseRecordsOverTimeWithATimeThatStandsStill) {
+  Bench bench;
+  bench.hold = 12;
+  write_record("a.csv", bench, 1);
+  std::ofstream(folder_ / "b.csv") << "t (s),x (mm),f (N)\n0,0,0\n0.1,0.1,0\n0.1,0.2,0.1\n0.2,0.3,"
+                                      "0.2\n0.3,0.4,0.3\n";
+  EXPECT_THAT(refusal(write_sidecar("[[history]]\nfile = \"b.csv\"\n")),
+              HasSubstr("does not increase at sample 3"));
+  EXPECT_THAT(refusal(write_sidecar("[[history]]\nfile = \"a.csv\"\nvertex = 1\nsite = [\"0 mm\", "
+                                    "\"0 mm\", \"0 mm\"]\n")),
+              HasSubstr("both vertex and site"));
+}
+
 }  // namespace
 }  // namespace palpate::app

@@ -87,5 +87,21 @@ TEST(Sidecar, RefusesWhatItCannotUse) {
   EXPECT_THAT(refusal("0,1\n", "a.csv"), HasSubstr("this is a record, not its sidecar"));
 }
 
+/// Between plates there is no curve of a tool, and a record over time needs its time.
+TEST(Sidecar, TakesRecordsOverTime) {
+  const std::string plates =
+      "name = \"a\"\nspecimen = \"b\"\nsource = \"c\"\nlicence = \"d\"\n[tool]\nshape = "
+      "\"plates\"\n";
+  const std::string timed = "[columns]\ntime = \"t\"\ndisplacement = \"x\"\nforce = \"f\"\n";
+  const std::string history = "[[history]]\nfile = \"a.csv\"\n";
+  EXPECT_EQ(refusal(plates + timed + history), "accepted");
+  EXPECT_EQ(refusal(kHead + timed + history), "accepted");
+  EXPECT_THAT(refusal(kHead + kColumns + history), HasSubstr("key 'columns.time' is missing"));
+  EXPECT_THAT(refusal(plates + timed + kPress), HasSubstr("the tool is plates"));
+  EXPECT_THAT(refusal(kHead + timed + history + "contact = \"1 mm\"\n"),
+              HasSubstr("contact.method says otherwise"));
+  EXPECT_THAT(refusal(kHead + timed + history + "held = \"both\"\n"), HasSubstr("both"));
+}
+
 }  // namespace
 }  // namespace palpate::app

@@ -4,7 +4,7 @@ import { definitions, el, paragraph, table } from '../dom.js';
 import { curvePlot } from '../plot.js';
 import * as units from '../units.js';
 
-const UNITS = { Pa: units.pressure, m: units.length };
+const UNITS = { Pa: units.pressure, m: units.length, N: units.force, s: units.time };
 
 /** A value of a constant with its unit. */
 const shown = (unit) => UNITS[unit] ?? ((v) => units.significant(v));
@@ -29,6 +29,15 @@ function recordsOf(c) {
       name: `${t.test}, ${t.mode}`, x: t.deformation, measured: t.measured_nominal_Pa, fitted: t.fitted_nominal_Pa,
       xLabel: t.mode === 'simple shear' ? 'Amount of shear' : 'Stretch', factor: 1, yName: 'Nominal stress', steps: PRESSURES,
     }));
+  }
+  if (c.records) {
+    return c.records.map((r) => {
+      const creep = r.held === 'force';
+      return {
+        name: r.file, x: r.time_s, measured: creep ? r.travel_m : r.force_N, fitted: creep ? r.fitted_m : r.fitted_N,
+        xLabel: 'Time (s)', factor: 1, dense: true, yName: creep ? 'Travel' : 'Force', steps: creep ? units.LENGTHS : units.FORCES,
+      };
+    });
   }
   return c.paths.map((p) => {
     const [unit, symbol] = units.stepOf(p.displacement_m, units.LENGTHS, 0.1);
@@ -60,14 +69,13 @@ function recordFigures(c) {
     const off = order.map((k) => r.fitted[k] - r.measured[k]);
     const [small, smallSymbol] = units.stepOf(off, r.steps);
     const data = curvePlot('Data and fit', r.xLabel, `${r.yName} (${symbol})`, 260, { signed: true, tight: true });
-    data.set([
-      { label: 'fit', colour: 'series-2', x, y: order.map((k) => r.fitted[k] / unit) },
-      { label: 'data', colour: 'series-1', markers: true, x, y: order.map((k) => r.measured[k] / unit) },
-    ]);
+    const fit = { label: 'fit', colour: 'series-2', x, y: order.map((k) => r.fitted[k] / unit) };
+    const measured = { label: 'data', colour: 'series-1', x, y: order.map((k) => r.measured[k] / unit) };
+    data.set(r.dense ? [measured, fit] : [fit, { ...measured, markers: true }]);
     const residuals = curvePlot('Residuals', r.xLabel, `Fit less data (${smallSymbol})`, 180, { signed: true, tight: true });
     residuals.set([
       { label: 'zero', colour: 'muted', width: 1.5, x: [x[0], x[x.length - 1]], y: [0, 0] },
-      { label: 'residual', colour: 'series-1', markers: true, x, y: off.map((v) => v / small) },
+      { label: 'residual', colour: 'series-1', markers: !r.dense, x, y: off.map((v) => v / small) },
     ]);
     place.replaceChildren(data.element, residuals.element);
   };
@@ -75,7 +83,7 @@ function recordFigures(c) {
     records.map((r, i) => el('option', { value: i }, r.name)));
   show(0);
   return [el('div', { class: 'controls' }, el('label', {}, 'Record', select)), place,
-    paragraph('Markers: the data. Line: the fit at the data.', 'note')];
+    paragraph(c.records ? 'Blue: the record. The other line: the fit.' : 'Markers: the data. Line: the fit at the data.', 'note')];
 }
 
 /** The rise of the misfit with one constant fixed, over what chance allows: the interval ends at 1. */
@@ -105,16 +113,39 @@ function testRows(c) {
     t.r2 === null ? '\u2013' : t.r2.toFixed(4), t.unstable_at === null ? 'stable' : `unstable at ${units.significant(t.unstable_at)}`]);
 }
 
+/** g(t) with its interval, over the logarithm of the time. */
+function relaxationFunction(c) {
+  const x = c.relaxation_function.map((p) => Math.log10(p.time_s));
+  const figure = curvePlot('Relaxation function', 'log10 of the time (s)', 'g', 240, { tight: true });
+  const line = (label, key, extra) => ({ label, colour: 'series-1', x, y: c.relaxation_function.map((p) => p[key]), ...extra });
+  figure.set([line('g', 'value', {}), line('low', 'low', { dash: [5, 4], width: 1.5 }), line('high', 'high', { dash: [5, 4], width: 1.5 })]);
+  const g = c.long_term_fraction;
+  return [el('h3', {}, 'What relaxes'), figure.element,
+    paragraph(`The force after a step, over that at once. Dashed: the ${units.percent(c.confidence)} interval. The records show what relaxes within ${units.time(c.shortest_time_shown_s)} to ${units.time(c.longest_time_shown_s)}, and say nothing of shorter and longer times. In the long term ${units.percent(g.value)} (${units.percent(g.low)} to ${units.percent(g.high)}) of the force are left.`, 'note'),
+    el('pre', {}, c.case_material),
+    table(['Terms', 'RMS error', 'AICc', 'BIC', 'Not taken'], c.tried.map((t) => [units.count(t.terms),
+      t.relative_rms === null ? '\u2013' : units.percent(t.relative_rms), t.aicc === null ? '\u2013' : t.aicc.toFixed(1),
+      t.bic === null ? '\u2013' : t.bic.toFixed(1), t.refused]), [0, 1, 2, 3]),
+    table(['Record', 'Held', 'RMS error', 'Elastic force at once', 'in the long term'], c.records.map((r) => [r.file, r.held,
+      units.percent(r.relative_rms), units.force(r.instantaneous_force_N.value), units.force(r.long_term_force_N.value)]), [2, 3, 4])];
+}
+
+function lead(c) {
+  if (c.relaxation) return `A Prony series from ${units.count(c.records.length)} records over time. Source: ${c.source}.`;
+  return c.law
+    ? `Constants of the law ${c.law}, from ${units.count(c.tests.length)} tests. Source: ${c.source}.`
+    : `Constants of regions of the body, from ${units.count(c.paths.length)} measured paths.`;
+}
+
 export function calibrationSection(data) {
   const c = data.calibration;
   const profiles = profileFigures(c.constants);
   return el('section', { id: 'calibration' },
     el('h2', {}, 'Calibration'),
-    paragraph(c.law
-      ? `Constants of the law ${c.law}, from ${units.count(c.tests.length)} tests. Source: ${c.source}.`
-      : `Constants of regions of the body, from ${units.count(c.paths.length)} measured paths.`, 'lead'),
+    paragraph(lead(c), 'lead'),
     table(['Constant', 'Value', `${units.percent(c.confidence)} interval`, 'by its profile'], constantRows(c.constants), [1, 2, 3]),
     recordFigures(c),
+    c.relaxation ? relaxationFunction(c) : null,
     c.tests ? table(['Test', 'Mode', 'RMS error', 'of its RMS', 'R\u00b2', 'In its range'], testRows(c), [2, 3, 4]) : null,
     c.constants.length > 1 ? [el('h3', {}, 'Correlations'), correlationTable(c)] : null,
     profiles.length ? [el('h3', {}, 'Profiles'),

@@ -22,6 +22,7 @@ Curves curves_of(const std::vector<std::int32_t>& vertices, double scale, double
       sample.force =
           scale * (1 + 0.01 * v) * std::pow(sample.displacement / 0.005, power) * kInward;
       sample.strain_energy = sample.tool_work = norm(sample.force) * sample.displacement / 2.5;
+      sample.isochoric_energy = {0.9 * sample.strain_energy};
       path.samples.push_back(sample);
     }
     curves.sites.push_back({v, SiteStatus::Complete, "", 0, {path}});
@@ -39,6 +40,8 @@ TEST(Rescale, TheMeasuredScaleReachesEverySite) {
   const CurveSample& end = r.curves.sites[4].paths[0].samples.back();
   EXPECT_NEAR(norm(end.force), 1.4 * 1.04, 1e-12);
   EXPECT_NEAR(end.strain_energy, 1.4 * 1.04 * 0.005 / 2.5, 1e-12);
+  // The part of the energy that relaxes stays the same.
+  EXPECT_NEAR(end.isochoric_energy[0], 0.9 * end.strain_energy, 1e-12);
 }
 
 TEST(Rescale, SitesThatDisagreeAreInTheUncertainty) {

@@ -47,6 +47,21 @@ TEST(History, KeepsAllSamplesFromTheContactPointOfThePress) {
   EXPECT_EQ(fault_of(record, settings), "");
 }
 
+/// A drift that an approach of two seconds shows to the noise of one sample would be off by many of
+/// them after a hold of a hundred.
+TEST(History, RemovesNoDriftThatALongHoldMakesUnknown) {
+  Bench bench;
+  bench.hold = 100;
+  PressRecord record = press_on(bench, 3);
+  const std::size_t kept = 5300;  // without the release
+  for (auto* column : {&record.time, &record.displacement, &record.force}) column->resize(kept);
+  const History history = analyse_history(record, {});
+  EXPECT_EQ(history.baseline.drift, 0);
+  const double deepest = sneddon_force(bench.depth, bench.radius, bench.modulus);
+  EXPECT_NEAR(history.force.back(), deepest, 5 * bench.noise);
+  EXPECT_NEAR(history.travel.back(), bench.depth, 2e-4);
+}
+
 TEST(History, TakesDeclaredPhases) {
   Bench bench;
   bench.hold = 20;

@@ -87,12 +87,22 @@ TEST(RelaxationFit, SaysWhatARecordDoesNotShow) {
   const RampAndHold slow{0.2, 1e-3, 0.4, {{0.5, 80}}};
   const RelaxationFit fit = fit_relaxation({record_on(slow, 30, 1000, {2e-4, 0, 2})}, {});
   EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("is longer than the record")));
-  const RampAndHold quick{0.2, 1e-3, 2, {{0.5, 0.3}}};
+  const RampAndHold quick{0.2, 1e-3, 2, {{0.5, 0.1}}};
   const RelaxationFit early = fit_relaxation({record_on(quick, 30, 3000, {2e-4, 0, 2})}, {});
   EXPECT_THAT(early.calibration.warnings,
               Contains(HasSubstr("is shorter than the record resolves")));
-  EXPECT_NEAR(early.shortest, 1, 1e-9);
+  EXPECT_NEAR(early.shortest, 0.2, 1e-9);
   EXPECT_NEAR(early.longest, 30, 0.1);
+}
+
+/// A weak term in noise: fitted, and said to be undetermined.
+TEST(RelaxationFit, SaysThatATimeInNoiseIsNotDetermined) {
+  const RampAndHold weak{0.2, 1e-3, 0.4, {{0.03, 3}}};
+  RelaxationSettings settings;
+  settings.terms = 1;
+  settings.fit_exponent = false;
+  const RelaxationFit fit = fit_relaxation({record_on(weak, 10, 200, {2e-2, 0, 8})}, settings);
+  EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("is not determined")));
 }
 
 TEST(RelaxationFit, RefusesAnElasticRecord) {

@@ -1,0 +1,164 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""Records over time, from the file to the series and back, by the real command, with the synthetic records of
+tests/data/relaxation: import, calibration, a library with the series that was found, and its comparison with the
+records over time.
+Usage: test_measured_relaxation.py PALPATE SOURCE_DIR
+"""
+import csv
+import json
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PALPATE, SOURCE = None, None
+SERIES = ((0.3, 0.25), (0.2, 4.0))  # as in make_records.py
+SIDECAR = """name = "relaxing pad"
+specimen = "synthetic"
+source = "this test"
+licence = "CC0-1.0"
+[tool]
+radius = "6 mm"
+friction = "frictionless"
+[columns]
+time = "time"
+displacement = "travel"
+force = "force"
+"""
+
+
+def palpate(*arguments):
+    return subprocess.run([PALPATE, *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+class MeasuredRelaxation(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.holder = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.holder.name)
+        cls.out = cls.folder / "pad"
+        cls.case = SOURCE / "data/cases/pad.toml"
+        cls.ok("mesh", cls.case, "--out", cls.out)
+        cls.sidecar = SOURCE / "tests/data/relaxation/records.toml"
+        cls.histories = cls.folder / "imported/histories.json"
+        cls.said = cls.ok("import", cls.sidecar, "--body", cls.out / "body.h5", "--out", cls.histories.parent)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.holder.cleanup()
+
+    @classmethod
+    def ok(cls, *arguments):
+        result = palpate(*arguments)
+        if result.returncode != 0 or result.stderr:
+            raise AssertionError(f"{arguments}: {result.stdout}{result.stderr}")
+        return result.stdout
+
+    def test_records_are_kept_whole_with_their_phases(self):
+        held, cycles = json.loads(self.histories.read_text())["records"]
+        self.assertEqual([p["kind"] for p in held["phases"]], ["approach", "ramp", "hold"])
+        self.assertAlmostEqual(held["phases"][2]["from_s"], 2.4, delta=0.05)
+        self.assertEqual(sum(p["kind"] == "release" for p in cycles["phases"]), 4)
+        self.assertEqual(len(held["time_s"]), 1621)
+        self.assertAlmostEqual(held["contact_m"], 4e-3, delta=5e-5)
+        self.assertIn("the travel is held", self.said)
+        self.assertFalse((self.histories.parent / "curves.h5").exists())
+
+    def test_the_series_is_found_and_printed_for_a_case(self):
+        out = self.folder / "series"
+        text = self.ok("calibrate", "relaxation", self.histories, "--out", out)
+        found = json.loads((out / "calibration.json").read_text())
+        self.assertEqual(len(found["relaxation"]), 2, text)
+        for term, (fraction, time) in zip(found["relaxation"], SERIES):
+            self.assertAlmostEqual(term["fraction"], fraction, delta=0.03)
+            self.assertAlmostEqual(term["time_s"] / time, 1, delta=0.15)
+        self.assertIn("relaxation = [{ fraction = ", text)
+        self.assertIn("say nothing of shorter and longer times", text)
+        page = (out / "calibration.html").read_text(encoding="utf-8")
+        self.assertIn("relaxation_function", page)
+        # The sidecar itself will do.
+        self.assertEqual(self.ok("calibrate", "relaxation", self.sidecar, "--no-profiles").splitlines()[0],
+                         text.splitlines()[0])
+
+    def case_with(self, keys):
+        text = (SOURCE / "data/cases/pad.toml").read_text(encoding="ascii").replace("../", f"{SOURCE}/data/")
+        case = self.folder / "pad.toml"
+        case.write_text(text.replace("poisson = 0.45\n", "poisson = 0.49\n" + keys), encoding="ascii")
+        return case
+
+    def library(self, case, name, curves):
+        out = self.folder / name
+        out.mkdir(exist_ok=True)
+        (out / "body.h5").write_bytes((self.folder / "simulated/body.h5").read_bytes())
+        if curves != out / "curves.h5":
+            (out / "curves.h5").write_bytes(curves.read_bytes())
+        self.ok("fit", case, "--out", out)
+        self.ok("certify", case, "--out", out)
+        return out / "library.h5"
+
+    def test_the_library_with_the_series_follows_the_records(self):
+        """Simulated shape with the series that was found, measured scale; against the measured presses alone, which
+        do not relax."""
+        text = self.ok("calibrate", "relaxation", self.histories, "--no-profiles")
+        keys = "".join(line.strip() + "\n" for line in re.findall(r"(?:relaxation|moduli) = .*", text))
+        case, presses, simulated = self.case_with(keys), self.folder / "presses", self.folder / "simulated"
+        self.ok("mesh", case, "--out", simulated)
+        body, records = simulated / "body.h5", self.folder / "records/histories.json"
+        self.ok("import", SOURCE / "data/measured/pad/presses.toml", "--body", body, "--out", presses)
+        self.ok("import", self.sidecar, "--body", body, "--out", records.parent)
+        self.ok("precompute", case, "--out", simulated)
+        self.ok("rescale", simulated / "curves.h5", presses / "curves.h5", "--out", self.folder / "scaled")
+        libraries = {"relaxing": self.library(case, "scaled", self.folder / "scaled/curves.h5"),
+                     "elastic": self.library(case, "alone", presses / "curves.h5")}
+        compared = {}
+        for name, library in libraries.items():
+            out = self.folder / f"over-time-{name}"
+            said = self.ok("compare", records, library, "--out", out)
+            self.assertIn("of the force is left", said)
+            compared[name] = json.loads((out / "over-time.json").read_text())["records"]
+            with open(out / "over-time.csv", encoding="ascii", newline="") as file:
+                rows = list(csv.DictReader(file))
+            self.assertEqual(len(rows), sum(len(r["time_s"]) for r in compared[name]))
+            self.assertIn("over_time", (out / "over-time.html").read_text(encoding="utf-8"))
+        for relaxing, elastic in zip(compared["relaxing"], compared["elastic"]):
+            self.assertLess(relaxing["normalised_rmse"], 0.1)
+            self.assertGreater(elastic["normalised_rmse"], 3 * relaxing["normalised_rmse"])
+        one = json.loads(records.read_text())
+        one["records"] = one["records"][:1]
+        (self.folder / "held").mkdir()
+        (self.folder / "held/histories.json").write_text(json.dumps(one), encoding="ascii")
+        hold = compared["relaxing"][0]["holds"][0]
+        self.assertAlmostEqual(hold["model_left"], hold["measured_left"], delta=0.04)
+        self.assertAlmostEqual(compared["elastic"][0]["holds"][0]["model_left"], 1, delta=1e-3)
+        # The same case by the finite element model, with the modulus of its file: what is left is a ratio.
+        self.ok("compare", "--fem", case, "--histories", self.folder / "held/histories.json", "--out", simulated)
+        direct = json.loads((simulated / "over-time.json").read_text())["records"]
+        self.assertEqual([r["model"] for r in direct], ["direct"])
+        self.assertAlmostEqual(direct[0]["holds"][0]["model_left"], hold["measured_left"], delta=0.03)
+        cycles = compared["relaxing"][1]
+        self.assertAlmostEqual(cycles["model_loss_J"] / cycles["measured_loss_J"], 1, delta=0.2)
+
+    def test_bad_records_are_refused_in_one_line(self):
+        for name, change, words in (
+                ("still", lambda rows: rows[:40] + [rows[39]] + rows[40:], "does not increase"),
+                ("short", lambda rows: rows[:125], "fewer than two cycles"),
+                ("nan", lambda rows: rows[:50] + ["0.98,nan,0"] + rows[51:], "nan.csv:51: "),
+                ("late", lambda rows: rows[:1] + rows[120:], "")):
+            with self.subTest(name):
+                rows = (SOURCE / "tests/data/relaxation/held.csv").read_text(encoding="ascii").splitlines()
+                (self.folder / f"{name}.csv").write_text("\n".join(change(rows)) + "\n", encoding="ascii")
+                sidecar = self.folder / f"{name}.toml"
+                sidecar.write_text(SIDECAR + f'[[history]]\nfile = "{name}.csv"\n', encoding="ascii")
+                result = palpate("calibrate", "relaxation", sidecar)
+                self.assertEqual(result.returncode, 2, result.stdout)
+                self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
+                self.assertIn(words, result.stderr)
+
+
+if __name__ == "__main__":
+    SOURCE = Path(sys.argv.pop(2))
+    PALPATE = sys.argv.pop(1)
+    unittest.main(verbosity=2)
