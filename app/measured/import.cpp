@@ -241,8 +241,9 @@ class Importer {
 
   void read_press(const PressFileSection& press) {
     const fs::path file = path_of(press.file);
+    const m::CsvTable table = m::read_table(file, press.choice, declared_, wanted_of_press());
     m::Signs signs;
-    const m::PressRecord record = read_record(file, press.choice, signs);
+    const m::PressRecord record = record_of(file, table, signs);
     double distance = 0;
     const int vertex = vertex_of(press, distance);
     m::PressSettings settings = press_settings(press.cycle);
@@ -257,9 +258,7 @@ class Importer {
   }
 
   /// The record with growing displacements and forces, and the signs that made it so.
-  m::PressRecord read_record(const fs::path& file, const m::TableChoice& choice,
-                             m::Signs& signs) const {
-    const m::CsvTable table = m::read_table(file, choice, declared_, wanted_of_press());
+  m::PressRecord record_of(const fs::path& file, const m::CsvTable& table, m::Signs& signs) const {
     m::PressRecord record{file.string(), column(table, s_.columns.time, Dimension::Time),
                           displacement_of(table), force_of(table)};
     signs = oriented(record);
@@ -268,8 +267,9 @@ class Importer {
 
   SiteHistory read_history(const HistoryFileSection& section, bool placed) {
     const fs::path file = path_of(section.file);
+    const m::CsvTable table = m::read_table(file, section.choice, declared_, wanted_of_press());
     m::Signs signs;
-    const m::PressRecord record = read_record(file, section.choice, signs);
+    const m::PressRecord record = record_of(file, table, signs);
     SiteHistory site;
     double distance = 0;
     if (placed && (section.vertex >= 0 || std::isfinite(section.site[0])))
