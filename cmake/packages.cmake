@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
-# Debian packages, one for each component; scripts/package makes them. `python` is installed where PALPATE_PYTHON is on.
+# Debian packages, one for each component; scripts/package makes them. `python` where the module is built.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME palpate)
 set(CPACK_PACKAGE_CONTACT "palpate maintainers <maintainers@users.noreply.h-seed-f341c0fe.example>")
@@ -10,7 +10,7 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
   OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
 set(CPACK_COMPONENTS_ALL runtime development command)
-if(PALPATE_PYTHON)
+if(TARGET palpate_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
 endif()
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -60,9 +60,18 @@ set(CPACK_DEBIAN_COMMAND_PACKAGE_RECOMMENDS "xdg-utils")
 palpate_package(python python3-palpate python "response libraries of soft bodies in Python"
 "Reads the artifacts of palpate as arrays of numpy, and steps response
 libraries.")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
+# The extension is of this minor version of Python. Without the command it computes no campaign.
+if(TARGET palpate_python)
+  get_directory_property(minor DIRECTORY ${PROJECT_SOURCE_DIR}/python DEFINITION Python_VERSION_MINOR)
+  math(EXPR next "${minor} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.${minor}), python3 (<< 3.${next}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS palpate)
+endif()
 
 set(CPACK_PRE_BUILD_SCRIPTS ${PROJECT_SOURCE_DIR}/cmake/packages/finish.cmake)
 set(CPACK_PALPATE_SOURCE ${PROJECT_SOURCE_DIR})
+if(PALPATE_HAS_PRIVATE_HDF5)
+  set(CPACK_PALPATE_HDF5_LICENCE ${PALPATE_HDF5_LICENCE})
+endif()
 set(CPACK_PALPATE_PACKAGES "runtime=${runtime};development=libpalpate-dev;command=palpate;python=python3-palpate")
 include(CPack)

@@ -40,6 +40,7 @@ nlohmann::json fidelity_data(const std::string& text, const std::string& library
 /// where the responses do not relax.
 nlohmann::json relaxation_data(const Library& library, std::int32_t vertex);
 nlohmann::json provenance_data(const ReportInput& input);
+nlohmann::json provenance_data(const std::vector<ProvenanceStep>& steps);
 /// The [[material]] tables of a resolved case, each a list of [key, value].
 nlohmann::json materials(const std::string& resolved_case);
 

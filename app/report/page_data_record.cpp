@@ -84,8 +84,12 @@ json certificate_data(const Library& library) {
 }
 
 json provenance_data(const ReportInput& input) {
+  return provenance_data(joined_chain(input));
+}
+
+json provenance_data(const std::vector<ProvenanceStep>& steps) {
   json chain = json::array();
-  for (const ProvenanceStep& step : joined_chain(input)) {
+  for (const ProvenanceStep& step : steps) {
     json inputs = json::array(), facts = json::array();
     for (const InputDigest& digest : step.inputs)
       inputs.push_back({{"name", digest.name}, {"sha256", digest.sha256}});

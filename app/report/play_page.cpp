@@ -110,16 +110,6 @@ json vertices_of(const Library& library) {
           {"response_status", column(status)}};
 }
 
-/// The step that made the library, as the reader of the page knows it.
-json origin_of(const Library& library) {
-  if (library.provenance.steps.empty()) return nullptr;
-  const ProvenanceStep& last = library.provenance.steps.back();
-  json tables = json::array();
-  for (const ProvenanceStep& step : library.provenance.steps)
-    if (step.stage == "precompute") tables = materials(step.resolved_case);
-  return {{"version", last.version}, {"utc", last.utc}, {"materials", tables}};
-}
-
 }  // namespace
 
 json play_data(const Library& library, const PlayBody& drawn) {
@@ -148,7 +138,7 @@ json play_data(const Library& library, const PlayBody& drawn) {
           {"certificate", certificate_data(library)},
           {"touch", touch_data(library)},
           {"relaxation", relaxation_data(library, chosen.median)},
-          {"origin", origin_of(library)}};
+          {"provenance", provenance_data(library.provenance.steps)}};
 }
 
 void write_play_page(const Library& library, const PlayBody& drawn,

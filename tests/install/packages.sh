@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: AGPL-3.0-or-later
-# packages.sh BUILD_FOLDER SOURCE_FOLDER CPACK CC: makes the Debian packages of a build, unpacks them into a root of their own
+# packages.sh BUILD_FOLDER SOURCE_FOLDER CPACK CC [PYTHON]: makes the Debian packages of a build, unpacks them into a root of their own
 # and uses them there: what they need, what they state, the command with its data, and a program built against the
 # development package alone.
 set -euo pipefail
-build=$1 source=$2 cpack=$3 cc=$4
+build=$1 source=$2 cpack=$3 cc=$4 python=${5:-/usr/bin/python3}
 examples=$source/examples
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -14,7 +14,9 @@ fail() { printf 'packages: %s\n' "$*"; exit 1; }
 rm -rf "$work/packages/_CPack_Packages"
 declare -A file
 for deb in "$work"/packages/*.deb; do file[$(dpkg-deb --field "$deb" Package)]=$deb; done
-for package in palpate libpalpate0 libpalpate-dev; do
+packages=(palpate libpalpate0 libpalpate-dev)
+[ -z "${file[python3-palpate]:-}" ] || packages+=(python3-palpate)
+for package in "${packages[@]}"; do
   [ -n "${file[$package]:-}" ] || fail "there is no $package among ${!file[*]}"
   dpkg-deb --extract "${file[$package]}" "$work/$package"
   dpkg-deb --extract "${file[$package]}" "$work/root"
@@ -32,7 +34,7 @@ dpkg-deb --ctrl-tarfile "${file[libpalpate0]}" | tar -xO ./shlibs | grep -qx "li
   fail "libpalpate0 has no shlibs file"
 
 # No file is in two packages, and each has its copyright and changelog.
-for package in palpate libpalpate0 libpalpate-dev; do
+for package in "${packages[@]}"; do
   (cd "$work/$package" && find . -type f -o -type l) >> "$work/files"
   grep -q "^License: " "$work/$package/usr/share/doc/$package/copyright" || fail "$package has no copyright"
   zcat "$work/$package/usr/share/doc/$package/changelog.gz" | head -n 1 | grep -qF "palpate ($version)" || fail "$package has no changelog"
@@ -66,6 +68,17 @@ export PKG_CONFIG_PATH=$lib/pkgconfig
 rm -rf "$work/palpate" && said=$(LD_LIBRARY_PATH=$(dirname "$(find "$work/libpalpate0" -name 'libpalpate.so.0')") "$work/feel" \
   "$root/share/palpate/libraries/gel.plib" 0 0 1)
 case $said in *" N, 3."*" mm deep") ;; *) fail "the example says: $said" ;; esac
+
+# Python finds the module where its package has it, and reads the libraries of the command.
+if [ -n "${file[python3-palpate]:-}" ]; then
+  field python3-palpate Depends | grep -qE 'python3 \(<< 3\.[0-9]+\)' || fail "python3-palpate needs $(field python3-palpate Depends)"
+  ! field python3-palpate Depends | grep -q libpalpate || fail "python3-palpate needs $(field python3-palpate Depends)"
+  folder=$(dirname "$(dirname "$(find "$root/lib" -path '*dist-packages/palpate/__init__.py')")")
+  said=$(cd "$work" && PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=$folder "$python" -c "
+import palpate
+print(len(palpate.Library('$root/share/palpate/libraries/gel.plib').vertices), palpate.__file__.startswith('$folder'))")
+  [ "$said" = "348 True" ] || fail "Python says: $said"
+fi
 
 if command -v lintian > /dev/null; then
   lintian --fail-on error --suppress-tags bad-distribution-in-changes-file "$work"/packages/*.deb > "$work/lintian" 2>&1 ||
