@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The head of a page that has a library alone.
+import { rangeOf } from '../colour-range.js';
 import { HOLE } from '../data.js';
 import { definitions, el, paragraph } from '../dom.js';
 import { secantField } from './secant-field.js';
@@ -12,7 +13,7 @@ function originText(origin) {
 
 export function playHeader(data) {
   const { key, vertices, origin } = data;
-  const { low, high } = secantField(data);
+  const { low, high } = rangeOf(secantField(data).ofVertex, 'all');
   const pressed = vertices.response_status.filter((status) => status !== HOLE).length;
   const materials = origin?.materials ?? [];
   return el('header', {},
