@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // The head of a page that has a library alone.
+import { rangeOf } from '../colour-range.js';
 import { HOLE } from '../data.js';
 import { definitions, el, paragraph } from '../dom.js';
 import { secantField } from './secant-field.js';
@@ -12,7 +13,7 @@ function originText(last) {
 
 export function playHeader(data) {
   const { key, vertices, provenance } = data;
-  const stiffness = secantField(data).ofVertex.filter(Number.isFinite);
+  const { low, high } = rangeOf(secantField(data).ofVertex, 'all');
   const pressed = vertices.response_status.filter((status) => status !== HOLE).length;
   const materials = provenance.find((step) => step.stage === 'precompute')?.materials ?? [];
   return el('header', {},
@@ -20,7 +21,7 @@ export function playHeader(data) {
     paragraph(`A response library, to be touched.${originText(provenance.at(-1))}`, 'lead'),
     definitions([
       ['Tool', `${key.tool_shape}, radius ${units.length(key.tool_radius)}, pressed at most ${units.length(key.depth)}`],
-      ['Stiffness', `${units.significant(Math.min(...stiffness))} to ${units.significant(Math.max(...stiffness))}\u00a0N/m, secant at that depth; the colour of the body`],
+      ['Stiffness', `${units.significant(low)} to ${units.significant(high)}\u00a0N/m, secant at that depth; the colour of the body`],
       ['Nodes', `${units.count(pressed)} of ${units.count(vertices.response_status.length)} have responses; grey parts have none`],
       ...(materials.length ? [['Materials', materials.flatMap((m, i) => (i ? [el('br'), materialLine(m)] : [materialLine(m)]))]] : []),
     ], 'facts'));
