@@ -26,9 +26,13 @@ void add_inspect_command(CLI::App& root, Action& action) {
   command->callback([options, &action] {
     action = [options] {
       const nlohmann::ordered_json summary = summarize_artifact(options->file);
-      std::string text = options->json ? summary.dump(2) : summary_text(summary);
+      if (options->json) {
+        print_line(summary.dump(2));
+        return kExitDone;
+      }
+      std::string text = summary_text(summary);
       if (text.ends_with('\n')) text.pop_back();
-      print_line(text);
+      print_text(text);
       return kExitDone;
     };
   });

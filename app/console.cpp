@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "app/pipeline/events.hpp"
+#include "app/wrapped_text.hpp"
 
 namespace palpate::app {
 namespace {
@@ -20,6 +21,7 @@ namespace {
 constexpr double kSecondsBetweenLines = 10;
 constexpr double kSecondsBetweenBars = 0.2;
 constexpr int kBarWidth = 30, kSmallestBar = 10;  // columns
+constexpr std::size_t kHanging = 2;               // blanks before what follows a break
 
 constexpr std::string_view kRed = "\x1b[1;31m", kYellow = "\x1b[1;33m", kPlain = "\x1b[0m";
 
@@ -70,7 +72,8 @@ std::string marked_line(std::string_view mark, std::string_view colour, std::str
 }  // namespace
 
 void TextOutput::line(std::string_view text) const {
-  write(std::string(text) + '\n');
+  write(wrapped(text, static_cast<std::size_t>(terminal ? std::max(0, columns) : 0), kHanging) +
+        '\n');
 }
 
 Console& console() {
@@ -79,7 +82,11 @@ Console& console() {
 }
 
 void print_line(std::string_view line) {
-  console().out.line(line);
+  console().out.write(std::string(line) + '\n');
+}
+
+void print_text(std::string_view text) {
+  console().out.line(text);
 }
 
 std::string error_line(std::string_view text, bool colour) {
@@ -123,10 +130,11 @@ void ProgressDisplay::show(const Progress& p) {
   const double elapsed = std::chrono::duration<double>(now - start_).count();
   const bool starts = p.done <= p.known && p.running == 0;
   if (starts) return remaining_.begin(elapsed);
-  remaining_.update(elapsed, p.done - p.known, p.running, p.total - p.known);
+  remaining_.update(elapsed, p.done - p.known, p.total - p.known, p.sites);
   const double since_last = std::chrono::duration<double>(now - last_).count();
   const double interval = output_.terminal ? kSecondsBetweenBars : kSecondsBetweenLines;
   const bool finished = p.done >= p.total;
+  if (!output_.terminal && p.between_sites) return;
   if (!finished && since_last < interval) return;
   last_ = now;
   const std::optional<double> left = remaining_.left(elapsed);
@@ -136,8 +144,9 @@ void ProgressDisplay::show(const Progress& p) {
   const std::string text =
       fmt::format("{}: {} of {} sites, {} incomplete, {}", label_, p.done, p.total, p.failed, time);
   if (!output_.terminal) return output_.line(text);
-  const double fraction =
-      p.total > 0 ? static_cast<double>(p.done) / static_cast<double>(p.total) : 1;
+  double sites = static_cast<double>(p.done);
+  for (const SiteProgress& site : p.sites) sites += site.fraction;
+  const double fraction = p.total > 0 ? std::min(1.0, sites / static_cast<double>(p.total)) : 1;
   output_.write(
       fmt::format("\r{}\x1b[K{}", bar_line(fraction, text, output_.columns), finished ? "\n" : ""));
   bar_open_ = !finished;

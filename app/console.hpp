@@ -22,6 +22,7 @@ struct TextOutput {
   int columns = 0;                              ///< width of the terminal; 0: unknown
   bool colour = false;                          ///< understands the colours of ECMA-48
 
+  /// One line; on a terminal lines that are wider than it are broken between words.
   void line(std::string_view text) const;
 };
 
@@ -42,11 +43,14 @@ struct Console {
 /// (no-color.org), and a TERM other than "dumb".
 Console& console();
 
-void print_line(std::string_view line);  ///< on the standard output
+/// On the standard output as it is: for programs.
+void print_line(std::string_view line);
+/// On the standard output, for people: broken to the width of a terminal.
+void print_text(std::string_view text);
 
 template <class... Args>
 void say(fmt::format_string<Args...> format, Args&&... args) {
-  print_line(fmt::format(format, std::forward<Args>(args)...));
+  print_text(fmt::format(format, std::forward<Args>(args)...));
 }
 
 /// "error: <text>" or "warning: <text>" on one line, the first word in colour.

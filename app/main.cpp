@@ -11,6 +11,7 @@
 
 #include "app/blas_kernel.hpp"
 #include "app/command.hpp"
+#include "app/command_line/help.hpp"
 #include "app/command_line/words.hpp"
 #include "app/console.hpp"
 #include "format/error.hpp"
@@ -93,6 +94,7 @@ int parse_and_run(int count, char** arguments) {
       "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose stand before or\n"
       "after it.\n"
       "Example: palpate build data/cases/liver.toml");
+  root.formatter(help_formatter(console().out.columns));  // inherited by the subcommands
   root.require_subcommand(1);
   root.fallthrough();  // inherited by the subcommands
   Action action;

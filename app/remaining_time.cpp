@@ -11,18 +11,34 @@
 namespace palpate::app {
 namespace {
 
-/// A site that still runs after the mean is expected to take so many times what it took so far.
-constexpr double kLate = 1.2;
-/// All sites over the finished ones that say something of the others that run beside them.
-constexpr std::int64_t kFirst = 10;
+/// Part of its service from which on a site that runs counts more by itself than by the others.
+constexpr double kTelling = 0.01;
 
 /// s of one second of service of each of n sites.
 double seconds(std::size_t n) {
   return std::sqrt(static_cast<double>(std::max<std::size_t>(n, 1)));
 }
 
-double sum(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
+double mean_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+/// Service at a fraction of the increments, between the increments of a site.
+double service_at(double fraction, const std::vector<std::pair<double, double>>& passed) {
+  std::pair<double, double> before{0, 0};
+  for (const auto& next : passed) {
+    if (fraction <= next.first) {
+      const double part = (fraction - before.first) / (next.first - before.first);
+      return before.second + part * (next.second - before.second);
+    }
+    before = next;
+  }
+  return before.second;
+}
+
+/// How far the past of a site tells its future.
+double weight(double part) {
+  return part / (part + kTelling);
 }
 
 }  // namespace
@@ -33,82 +49,125 @@ void RemainingTime::begin(double now) {
 }
 
 double RemainingTime::served(double now) const {
-  return served_ + (now - last_) / seconds(starts_.size());
+  return served_ + (now - last_) / seconds(running_.size());
 }
 
-void RemainingTime::update(double now, std::int64_t done, std::int64_t running,
-                           std::int64_t total) {
-  total_ = total;
-  // Before the first finish every site that runs or has just finished started at the beginning.
-  if (services_.empty())
-    starts_.assign(static_cast<std::size_t>(std::max<std::int64_t>(running + done - done_, 0)), 0);
+void RemainingTime::update(double now, std::int64_t done, std::int64_t total,
+                           const std::vector<SiteProgress>& running) {
   served_ = served(now);
   last_ = now;
-  for (; done_ < done; ++done_) {
-    services_.push_back(served_ - (starts_.empty() ? 0 : starts_.front()));
-    if (!starts_.empty()) starts_.pop_front();
-    // Its place is taken at once.
-    const auto unstarted = total_ - done_ - 1 - static_cast<std::int64_t>(starts_.size());
-    if (unstarted > 0) starts_.push_back(served_);
+  done_ = done;
+  total_ = total;
+  places_ = std::max(places_, running.size());
+  for (const SiteProgress& site : running) {
+    Running& seen = running_.try_emplace(site.vertex, Running{served_, {}}).first->second;
+    if (site.fraction <= (seen.passed.empty() ? 0 : seen.passed.back().first)) continue;
+    seen.passed.emplace_back(site.fraction, served_ - seen.start);
+    if (step_ == 0) step_ = site.fraction;
+  }
+  for (auto it = running_.begin(); it != running_.end();) {
+    const bool runs = std::any_of(running.begin(), running.end(), [&](const SiteProgress& site) {
+      return site.vertex == it->first;
+    });
+    if (!runs) finish(it->second, served_ - it->second.start);
+    it = runs ? std::next(it) : running_.erase(it);
   }
 }
 
-/// Later sites tell more of those to come, so the first half of the finished ones does not count.
-/// A site that has been served more than the mean counts with more than that: the quick ones finish
-/// first.
-double RemainingTime::mean_service(double served) const {
-  std::vector<double> recent(services_.begin() + static_cast<std::ptrdiff_t>(services_.size() / 2),
-                             services_.end());
-  const double mean = sum(recent) / static_cast<double>(recent.size());
-  for (const double start : starts_)
-    if (served - start > mean) recent.push_back(kLate * (served - start));
-  return sum(recent) / static_cast<double>(recent.size());
+/// A site that ended early does not tell how service is spread over the increments.
+void RemainingTime::finish(const Running& site, double service) {
+  services_.push_back(service);
+  if (site.passed.empty() || site.passed.back().first < 1 || service <= 0) return;
+  ++profiles_;
+  for (std::size_t i = 0; i <= kParts; ++i)
+    parts_[i] += service_at(static_cast<double>(i) / kParts, site.passed) / service;
 }
 
-/// running: service that each site still needs. Each that ends makes room for one of the unstarted.
-double RemainingTime::time_of(std::vector<double> running, std::int64_t unstarted,
-                              double mean) const {
-  if (running.empty()) return 0;
-  // A whole round of all places leaves them as they were.
-  const auto places = static_cast<std::int64_t>(running.size());
-  const std::int64_t rounds = unstarted / places;
-  double time = static_cast<double>(rounds) * mean * seconds(running.size());
-  unstarted %= places;
-  std::priority_queue<double, std::vector<double>, std::greater<>> ends(std::greater<>{},
-                                                                        std::move(running));
-  for (double at = 0; !ends.empty();) {
+/// Part of the service of a site that so many of its increments take.
+double RemainingTime::part_of_service(double fraction) const {
+  if (profiles_ == 0) return fraction;
+  const double place = fraction * kParts;
+  const auto i = std::min(static_cast<std::size_t>(place), kParts - 1);
+  const double within = place - static_cast<double>(i);
+  return ((1 - within) * parts_[i] + within * parts_[i + 1]) / static_cast<double>(profiles_);
+}
+
+/// By the increments that are done, and not less than the age of the site over the part that its
+/// next increment ends: 0 as long as nothing is known of increments.
+double RemainingTime::foretold_service(const Running& site, double served) const {
+  if (step_ == 0) return 0;
+  const double next = site.passed.empty() ? step_ : site.passed.back().first + step_;
+  const double least = (served - site.start) / part_of_service(std::min(1.0, next));
+  if (site.passed.empty()) return least;
+  return std::max(least, site.passed.back().second / part_of_service(site.passed.back().first));
+}
+
+/// The services of finished sites, of those whose increments tell something, and of those that take
+/// longer than the mean of these before they have told anything.
+std::vector<double> RemainingTime::likely_services(double served) const {
+  std::vector<double> services = services_, silent;
+  for (const auto& [vertex, site] : running_) {
+    const bool tells = !site.passed.empty() && part_of_service(site.passed.back().first) > kTelling;
+    (tells ? services : silent).push_back(foretold_service(site, served));
+  }
+  const double mean = services.empty() ? 0 : mean_of(services);
+  for (const double service : silent)
+    if (service > mean) services.push_back(service);
+  std::sort(services.begin(), services.end());
+  return services;
+}
+
+/// What its increments so far foretell, and the mean as long as they tell little.
+double RemainingTime::remaining_service(const Running& site, double served, double mean) const {
+  const double age = served - site.start;
+  const double part = site.passed.empty() ? 0 : part_of_service(site.passed.back().first);
+  const double foretold = std::max(0.0, foretold_service(site, served) - age);
+  const double by_mean = std::max({mean - age, age, part > 0 ? 0 : foretold});
+  return weight(part) * foretold + (1 - weight(part)) * (1 - part) * by_mean;
+}
+
+/// running: service that each site still needs. Each that ends makes room for one of the unstarted,
+/// whose services are those of `likely` in turn, so that a slow one may come last.
+double RemainingTime::time_of(const std::vector<double>& running, std::int64_t unstarted,
+                              const std::vector<double>& likely) {
+  constexpr double golden = 0.6180339887498949;
+  std::priority_queue<double, std::vector<double>, std::greater<>> ends(std::greater<>{}, running);
+  double time = 0, at = 0, turn = 0;
+  while (!ends.empty()) {
     const double end = ends.top();
     time += (end - at) * seconds(ends.size());
     at = end;
     ends.pop();
-    if (unstarted-- > 0) ends.push(at + mean);
+    if (unstarted-- <= 0) continue;
+    turn += golden;
+    turn -= std::floor(turn);
+    const auto place = static_cast<std::size_t>(turn * static_cast<double>(likely.size()));
+    ends.push(at + likely[std::min(place, likely.size() - 1)]);
   }
   return time;
 }
 
 double RemainingTime::campaign(std::int64_t sites, std::int64_t places) const {
-  if (services_.empty()) return 0;
-  const double mean = sum(services_) / static_cast<double>(services_.size());
-  const std::int64_t first = std::min(sites, places);
-  return time_of(
-      std::vector<double>(static_cast<std::size_t>(std::max<std::int64_t>(first, 0)), mean),
-      sites - first, mean);
+  const std::vector<double> likely = likely_services(served_);
+  if (likely.empty()) return 0;
+  const std::int64_t first = std::max<std::int64_t>(std::min(sites, places), 0);
+  return time_of(std::vector<double>(static_cast<std::size_t>(first), mean_of(likely)),
+                 sites - first, likely);
 }
 
 std::optional<double> RemainingTime::left(double now) const {
   if (services_.empty()) return {};
-  const auto unstarted =
-      std::max<std::int64_t>(total_ - done_ - static_cast<std::int64_t>(starts_.size()), 0);
-  // Where all the others run already, the first ones that finish are the quick ones.
-  if (unstarted == 0 && kFirst * done_ < total_) return {};
+  auto unstarted =
+      std::max<std::int64_t>(total_ - done_ - static_cast<std::int64_t>(running_.size()), 0);
   const double here = served(now);
-  const double mean = mean_service(here);
+  const std::vector<double> likely = likely_services(here);
+  const double mean = mean_of(likely);
   std::vector<double> running;
-  for (const double start : starts_) {
-    const double age = here - start;
-    running.push_back(age > mean ? (kLate - 1) * age : mean - age);
-  }
-  return time_of(std::move(running), unstarted, mean);
+  for (const auto& [vertex, site] : running_)
+    running.push_back(remaining_service(site, here, mean));
+  for (; running.size() < places_ && unstarted > 0; --unstarted)
+    running.push_back(mean);  // the place of a site that has just finished is taken at once
+  return time_of(running, unstarted, likely);
 }
 
 }  // namespace palpate::app

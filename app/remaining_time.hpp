@@ -1,47 +1,70 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <deque>
+#include <map>
 #include <optional>
+#include <utility>
 #include <vector>
+
+#include "format/site_progress.hpp"
 
 namespace palpate::app {
 
-/// Time that a campaign still takes, from when its sites finished. The time before the first site
-/// starts, in which the stiffness matrix is factorized, counts for nothing.
+/// Time that a campaign still takes, from what its sites took so far. The time before the first
+/// site starts, in which the stiffness matrix is factorized, counts for nothing.
 ///
 /// Sites that run share processors and block solves. While n run, each is served at the rate
 /// 1/sqrt(n): between 1, of sites that do not disturb each other, and 1/n, of sites that share
 /// nothing but the processor; a block solve takes little less for few sites than for many. The
 /// service of a site, the integral of dt / sqrt(n) from its start to its end, thus depends little
-/// on how many run, and a last group of few sites takes less time than a full one. Which site a
-/// finish belongs to is not told: the one that runs longest. That leaves the mean as it is.
+/// on how many run, and a last group of few sites takes less time than a full one.
+///
+/// Sites on thin parts need ten times the service of others, and the quick ones finish first. A
+/// site that runs therefore counts with the service that its increments so far foretell.
 class RemainingTime {
  public:
   /// The first site starts. `now`: s, of any clock.
   void begin(double now);
+  /// To be called at each start, increment and end of a site.
   /// @param done  sites finished since the start
-  /// @param running  sites that run now
   /// @param total  sites to do since the start
-  void update(double now, std::int64_t done, std::int64_t running, std::int64_t total);
-  /// s; none before the first site is finished, nor where all others run already and less than a
-  /// tenth is finished.
+  /// @param running  sites that run now
+  void update(double now, std::int64_t done, std::int64_t total,
+              const std::vector<SiteProgress>& running);
+  /// s; none before the first site is finished.
   std::optional<double> left(double now) const;
-  /// s, of a campaign of so many such sites, `places` of them at a time; 0 before the first site is
-  /// finished.
+  /// s, of a campaign of so many such sites, `places` of them at a time; 0 before the first
+  /// increment.
   double campaign(std::int64_t sites, std::int64_t places) const;
 
  private:
+  struct Running {
+    double start = 0;                               ///< as the integral
+    std::vector<std::pair<double, double>> passed;  ///< fraction of the increments, service
+  };
+
   double served(double now) const;
-  double mean_service(double served) const;
-  double time_of(std::vector<double> running, std::int64_t unstarted, double mean) const;
+  void finish(const Running& site, double service);
+  double part_of_service(double fraction) const;
+  double foretold_service(const Running& site, double served) const;
+  std::vector<double> likely_services(double served) const;
+  double remaining_service(const Running& site, double served, double mean) const;
+  static double time_of(const std::vector<double>& running, std::int64_t unstarted,
+                        const std::vector<double>& likely);
 
   double last_ = 0;    ///< s, of the last update
   double served_ = 0;  ///< s, integral of dt / sqrt(n) until then
   std::int64_t done_ = 0, total_ = 0;
-  std::deque<double> starts_;     ///< of running sites, as the integral, the oldest first
-  std::vector<double> services_;  ///< s, of finished sites
+  std::size_t places_ = 0;                   ///< largest number of sites that ran
+  double step_ = 0;                          ///< fraction of the increments that one is
+  std::map<std::int32_t, Running> running_;  ///< by vertex
+  std::vector<double> services_;             ///< s, of finished sites
+  /// Service of finished sites until i/kParts of their increments over all of it: sum and number.
+  static constexpr std::size_t kParts = 20;
+  std::array<double, kParts + 1> parts_{};
+  std::int64_t profiles_ = 0;
 };
 
 }  // namespace palpate::app

@@ -98,7 +98,10 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
   if (space.c.deformation.depths > 0) keep_fields_in(direct_fields(space), kDirectFields, settings);
   ProgressDisplay display("direct", console().out);
   settings.progress = [&](const fem::CampaignProgress& p) {
-    display.show({p.done, p.failed, p.running, p.total, p.known});
+    display.show({p.done, p.failed, p.running, p.total, p.known, p.sites, false});
+  };
+  settings.advanced = [&](const fem::CampaignProgress& p) {
+    display.show({p.done, p.failed, p.running, p.total, p.known, p.sites, true});
   };
   fem::CampaignReport report;
   Curves direct = fem::run_campaign(body, settings, report);
@@ -183,7 +186,7 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
     json["libraries"].push_back(fidelity_json(file, result, size));
     json["libraries"].back()["skin"] = skin_error_json(skin);
   }
-  print_line(text);
+  print_text(text);
   write_file_crash_safely(space.out / "fidelity.txt", text);
   write_file_crash_safely(space.out / "fidelity.json", json.dump(1) + "\n");
   write_file_crash_safely(space.out / "fidelity-states.csv", states);

@@ -384,10 +384,33 @@ bool holds_objects(const Json& value) {
   return value.is_array() && !value.empty() && value.front().is_object();
 }
 
-void print(const Json& object, const std::string& indent, std::string& out) {
+void multiply(Json& value, double factor) {
+  if (value.is_number()) value = factor * value.get<double>();
+  if (value.is_array())
+    for (Json& item : value) multiply(item, factor);
+}
+
+/// Lengths in mm and volumes in cm^3, as people read them.
+Json in_usual_units(Json value) {
+  if (!value.is_structured()) return value;
+  const std::string unit = value.is_object() && value.contains("unit") && value["unit"].is_string()
+                               ? value["unit"].get<std::string>()
+                               : std::string();
+  const bool is_length = unit == "m", is_volume = unit == "m^3";
+  for (auto& [name, item] : value.items()) {
+    if (is_length || is_volume) multiply(item, is_length ? 1e3 : 1e6);
+    item = in_usual_units(std::move(item));
+  }
+  if (is_length) value["unit"] = "mm";
+  if (is_volume) value["unit"] = "cm^3";
+  return value;
+}
+
+/// `files`: the names are those of files, and stay as they are.
+void print(const Json& object, const std::string& indent, std::string& out, bool files = false) {
   for (const auto& [name, value] : object.items()) {
     std::string label = name;
-    std::replace(label.begin(), label.end(), '_', ' ');
+    if (!files) std::replace(label.begin(), label.end(), '_', ' ');
     const bool is_tree = value.is_object() && !is_quantity(value);
     if (!is_tree && !holds_objects(value)) {
       const std::string text = scalar_text(value);
@@ -397,7 +420,7 @@ void print(const Json& object, const std::string& indent, std::string& out) {
     }
     out.append(indent).append(label).append(":").append(value.empty() ? " none\n" : "\n");
     if (is_tree) {
-      print(value, indent + "  ", out);
+      print(value, indent + "  ", out, name == "inputs");
       continue;
     }
     for (const Json& item : value) {
@@ -445,7 +468,7 @@ Json summarize_artifact(const std::filesystem::path& file) {
 
 std::string summary_text(const Json& summary) {
   std::string out;
-  print(summary, "", out);
+  print(in_usual_units(summary), "", out);
   return out;
 }
 

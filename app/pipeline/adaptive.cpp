@@ -71,6 +71,7 @@ class HoldOut {
     settings.known = journal.found();
     settings.finished = [&](const SiteCurves& site) { journal.append(site); };
     settings.progress = nullptr;
+    settings.advanced = nullptr;
     settings.fields = nullptr;
     direct_ = fem::run_campaign(body, settings, report_, &factors);
   }

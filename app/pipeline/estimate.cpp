@@ -52,12 +52,17 @@ Trial press_some(const Workspace& space, const Body& body, std::vector<std::int3
   const auto start = std::chrono::steady_clock::now();
   fem::CampaignSettings settings = campaign_settings(space);
   settings.sites = std::move(sites);
+  const auto elapsed = [start] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  settings.advanced = [&](const fem::CampaignProgress& p) {
+    trial.time.update(elapsed(), p.done, p.total, p.sites);
+  };
   settings.progress = [&](const fem::CampaignProgress& p) {
-    const double now =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const double now = elapsed();
     const double bytes = resident_bytes();
     trial.bytes_between = std::max(trial.bytes_between, bytes);
-    if (p.done > 0) return trial.time.update(now, p.done, p.running, p.total);
+    if (p.done > 0) return trial.time.update(now, p.done, p.total, p.sites);
     trial.bytes_before = bytes;
     trial.time.begin(now);
   };

@@ -14,6 +14,7 @@
 
 #include "fitting/fidelity/fidelity.hpp"
 #include "format/curves.hpp"
+#include "format/site_progress.hpp"
 
 namespace palpate::app {
 
@@ -63,7 +64,9 @@ struct Progress {
   std::int64_t done = 0;
   std::int64_t failed = 0;  ///< of `done`: failed or stopped early
   std::int64_t running = 0, total = 0;
-  std::int64_t known = 0;  ///< of `done`: found in the journal
+  std::int64_t known = 0;           ///< of `done`: found in the journal
+  std::vector<SiteProgress> sites;  ///< those that run
+  bool between_sites = false;       ///< none has finished since the last one
 };
 
 /// A round of adaptive sampling.

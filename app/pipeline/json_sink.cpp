@@ -40,6 +40,8 @@ class JsonVisitor {
 }  // namespace
 
 void JsonSink::operator()(const Event& event) const {
+  const auto* progress = std::get_if<Progress>(&event);
+  if (progress != nullptr && progress->between_sites) return;
   JsonVisitor visitor;
   std::visit([&](const auto& e) { describe(visitor, e); }, event);
   print_line_(visitor.text());

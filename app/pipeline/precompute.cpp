@@ -142,7 +142,10 @@ SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
     emit(finished(site));
   };
   settings.progress = [&](const fem::CampaignProgress& p) {
-    emit(Progress{p.done, p.failed, p.running, p.total, p.known});
+    emit(Progress{p.done, p.failed, p.running, p.total, p.known, p.sites, false});
+  };
+  settings.advanced = [&](const fem::CampaignProgress& p) {
+    emit(Progress{p.done, p.failed, p.running, p.total, p.known, p.sites, true});
   };
 
   auto [curves, report, facts] = is_adaptive(space)

@@ -78,8 +78,8 @@ class OpenSites {
  public:
   /// `open`: the indices of the sites of `curves` to be solved.
   OpenSites(const CampaignContext& context, const CampaignSettings& settings,
-            std::vector<std::size_t> open, Curves& curves)
-      : context_(context), settings_(settings), open_(std::move(open)), curves_(curves) {
+            const std::vector<std::size_t>& open, Curves& curves)
+      : context_(context), settings_(settings), open_(spread_out(open)), curves_(curves) {
     if (keeps_fields()) skin_ = skin_mesh(context.body);
     progress_.total = static_cast<std::int64_t>(curves.sites.size());
     progress_.done = progress_.total - static_cast<std::int64_t>(open_.size());
@@ -104,8 +104,11 @@ class OpenSites {
     {
       const std::lock_guard lock(mutex_);
       ++progress_.running;
+      progress_.sites.push_back({result.vertex, 0});
+      if (settings_.advanced) settings_.advanced(progress_);
     }
     SiteSolver solver(context_, &member);
+    solver.on_increment([&](double fraction) { advance(result.vertex, fraction); });
     std::optional<FieldRecorder> recorder;
     if (keeps_fields()) {
       recorder.emplace(solver, context_, skin_.node, settings_.field_depths);
@@ -115,11 +118,23 @@ class OpenSites {
     const std::lock_guard lock(mutex_);
     if (recorder) give_fields(*recorder, site);
     --progress_.running;
+    progress_.sites.erase(running_site(result.vertex));
     ++progress_.done;
     if (site.status != SiteStatus::Complete) ++progress_.failed;
     result = std::move(site);
     if (settings_.finished) settings_.finished(result);
     if (settings_.progress) settings_.progress(progress_);
+  }
+
+  std::vector<SiteProgress>::iterator running_site(std::int32_t vertex) {
+    return std::find_if(progress_.sites.begin(), progress_.sites.end(),
+                        [&](const SiteProgress& site) { return site.vertex == vertex; });
+  }
+
+  void advance(std::int32_t vertex, double fraction) {
+    const std::lock_guard lock(mutex_);
+    running_site(vertex)->fraction = fraction;
+    if (settings_.advanced) settings_.advanced(progress_);
   }
 
   bool keeps_fields() const { return static_cast<bool>(settings_.fields); }

@@ -23,6 +23,8 @@ namespace {
 constexpr double kTouching = 1e-6;
 /// Radius around the site within which self-contact is detected, over the extent of the tool.
 constexpr double kWatched = 4;
+/// Increments of a path across a lateral one.
+constexpr std::size_t kAcross = 2;
 
 double thread_cpu_seconds() {
   timespec now{};
@@ -131,6 +133,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
     path.samples.push_back(sample);
     work.push_back(driver.work());
     if (observer_) observer_(site.contact, u, sample);
+    increment_done();
     if (no_slip) site.contact.bond(u);
     from = driver.reached();
     for (const double stop : stops)
@@ -189,6 +192,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
     if (!arrived && !(driver.reached() > from)) break;
     path.samples.push_back(sample);
     if (lateral_observer_) lateral_observer_(plan, contact, u, sample);
+    increment_done();
     if (!arrived) break;
     from = s;
   }
@@ -196,14 +200,28 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
   curves.paths.push_back(std::move(path));
 }
 
-/// In two increments: no force is read from this path.
+std::size_t SiteSolver::count_increments(const SitePlan& plan) const {
+  std::size_t count = normal_increments(context_.indentation, plan.stops).size();
+  for (const LateralPlan& lateral : plan.lateral)
+    count += lateral.travels.size() + (also_across_ ? kAcross : 0);
+  return count;
+}
+
+void SiteSolver::increment_done() {
+  ++increments_done_;
+  if (on_increment_)
+    on_increment_(static_cast<double>(increments_done_) / static_cast<double>(increments_));
+}
+
+/// No force is read from this path.
 void SiteSolver::run_across(Site& site, const LateralPlan& plan, const SiteCurves& curves) {
   const Eigen::Vector3d across = site.inward.cross(to_eigen(plan.direction));
   SiteCurves aside;
   aside.paths.push_back(curves.paths.front());
-  run_lateral_path(
-      site, {plan.lateral_depth, to_vec3(across), {plan.travels.back() / 2, plan.travels.back()}},
-      aside);
+  LateralPlan turned{plan.lateral_depth, to_vec3(across), {}};
+  for (std::size_t i = 1; i <= kAcross; ++i)
+    turned.travels.push_back(plan.travels.back() * static_cast<double>(i) / kAcross);
+  run_lateral_path(site, turned, aside);
 }
 
 SitePlan SiteSolver::plan_of_settings(const Vec3& inward) const {
@@ -248,6 +266,8 @@ SiteCurves SiteSolver::solve(std::int32_t vertex, const SitePlan& plan) {
   SiteCurves curves;
   curves.vertex = vertex;
   curves.status = SiteStatus::Complete;
+  increments_ = count_increments(plan);
+  increments_done_ = 0;
   Site site(context_, context_.press_point(vertex), batch_);
   run_normal_path(site, plan.stops, curves);
   for (const LateralPlan& lateral : within_reach(plan, site))

@@ -52,6 +52,9 @@ class SiteSolver {
   /// not have it. Where a site has a single azimuth, the skin would be known in one direction.
   void also_across(bool wanted) { also_across_ = wanted; }
 
+  /// Called after every increment with the fraction of the site's increments that are done.
+  void on_increment(std::function<void(double)> call) { on_increment_ = std::move(call); }
+
   /// The end of the normal path of the site last solved, on the nodes of the body.
   const Displacement& pressed_state() const { return pressed_; }
 
@@ -63,6 +66,8 @@ class SiteSolver {
   void run_normal_path(Site& site, const std::vector<double>& stops, SiteCurves& curves);
   void run_lateral_path(Site& site, const LateralPlan& plan, SiteCurves& curves);
   void run_across(Site& site, const LateralPlan& plan, const SiteCurves& curves);
+  std::size_t count_increments(const SitePlan& plan) const;
+  void increment_done();
 
   const CampaignContext& context_;
   SolveBatch::Member* batch_;
@@ -70,6 +75,8 @@ class SiteSolver {
   Observer observer_;
   LateralObserver lateral_observer_;
   bool also_across_ = false;
+  std::function<void(double)> on_increment_;
+  std::size_t increments_ = 0, increments_done_ = 0;  ///< of the site being solved
 };
 
 /// Solves one site alone. `pressed`: the displacement at the end of its normal path; may be null.

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <deque>
 #include <exception>
 #include <mutex>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "fem/factor/memory.hpp"
 #include "format/to_index.hpp"
@@ -27,6 +29,19 @@ SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites,
           " cores (memory is reserved for the factor that one site may need of its own)",
       double_precision_factor);
   return size;
+}
+
+std::vector<std::size_t> spread_out(const std::vector<std::size_t>& indices) {
+  constexpr double golden = 0.6180339887498949;
+  std::vector<std::pair<double, std::size_t>> turns;  // of a circle, and which of them
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    const double turn = golden * static_cast<double>(k);
+    turns.emplace_back(turn - std::floor(turn), k);
+  }
+  std::sort(turns.begin(), turns.end());
+  std::vector<std::size_t> spread(indices.size());
+  for (std::size_t i = 0; i < turns.size(); ++i) spread[turns[i].second] = indices[i];
+  return spread;
 }
 
 void parallel_for_sites(const RestFactor& factor, const SiteThreads& size, std::size_t count,

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <vector>
 
 #include "fem/factor/rest_factor.hpp"
 
@@ -20,6 +21,11 @@ struct SiteThreads {
 /// @throws Error(Configuration) when one site for each core does not fit.
 SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites, double memory,
                          double bytes_per_site);
+
+/// The same indices such that those of any beginning lie evenly among all: neighbours on a body
+/// take alike long, and the first sites are to tell how long the others take. Multiples of the
+/// golden section modulo 1 are as even as can be.
+std::vector<std::size_t> spread_out(const std::vector<std::size_t>& indices);
 
 /// Calls `work` once for every index below `count`, concurrently. After the first exception no
 /// further index is started; it is rethrown once the running ones are done.

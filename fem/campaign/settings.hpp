@@ -14,6 +14,7 @@
 #include "format/curves.hpp"
 #include "format/relaxation.hpp"
 #include "format/site_fields.hpp"
+#include "format/site_progress.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate::fem {
@@ -56,8 +57,9 @@ struct PressPoint {
 /// State of a campaign, reported after each finished site.
 struct CampaignProgress {
   std::int64_t done = 0, failed = 0, total = 0;
-  std::int64_t known = 0;    ///< of `done`: results of an earlier run
-  std::int64_t running = 0;  ///< sites run concurrently, in batches, and finish in groups
+  std::int64_t known = 0;           ///< of `done`: results of an earlier run
+  std::int64_t running = 0;         ///< sites run concurrently, in batches, and finish in groups
+  std::vector<SiteProgress> sites;  ///< those that run
 };
 
 struct CampaignSettings {
@@ -82,6 +84,9 @@ struct CampaignSettings {
   std::function<void(SiteFields)> fields;
   int field_depths = 0;  ///< number of depths that are kept, see fem::field_depths
   std::function<void(const CampaignProgress&)> progress;
+  /// Called at the start and after every increment of every site, from one thread at a time; may be
+  /// null.
+  std::function<void(const CampaignProgress&)> advanced;
 };
 
 /// @throws Error(Configuration) when a length is not positive and finite, a lateral depth exceeds

@@ -214,6 +214,41 @@ class Manners(unittest.TestCase):
             for bar in bars:
                 self.assertLess(len(bar.replace("\x1b[K", "")), columns, bar)
 
+    def assert_no_line_is_wider(self, shown, columns, what):
+        """A digest or a path alone on its line may be wider: it is not broken."""
+        for line in re.split(r"\r?\n|\r", re.sub(r"\x1b\[[0-9;]*[mK]", "", shown)):
+            if len(line.split()) > 1:
+                self.assertLessEqual(len(line), columns, f"{what}: {line}")
+
+    def test_lines_fit_a_terminal_of_any_width(self):
+        out = self.root / "narrow"
+        slow = ["--rate", "1000", "--device", self.root / "device.toml"]
+        palpate("simulate", self.case, "--out", self.out)
+        files = [self.out / f"{name}.h5" for name in ("body", "curves", "library", "recording")]
+        for columns in (80, 60):
+            for words in (["build", self.case, "--out", out], ["fit", self.case, "--out", out],
+                          ["certify", self.case, "--out", out], ["certify", self.case, "--out", out, *slow],
+                          ["simulate", self.case, "--out", out], ["report", self.case, "--out", out],
+                          ["build", self.case, "--out", out / "estimated", "--estimate"],
+                          ["check", self.root / "block.off", "--unit", "mm"], ["doctor"],
+                          ["init", self.root / "block.off", "-o", self.root / f"first{columns}.toml"],
+                          ["biuld"], ["mesh", self.root / "block.off"], *(["inspect", file] for file in files)):
+                shown = on_a_terminal(words, columns)[1]
+                self.assertGreater(len(shown), 20)
+                self.assert_no_line_is_wider(shown, columns, words[0])
+
+    def test_help_fits_eighty_columns(self):
+        commands = re.findall(r"^  ([a-z]+) ", palpate("--help").stdout.split("Subcommands:")[1], re.MULTILINE)
+        self.assertGreater(len(commands), 20)
+        for command in ["", *commands]:
+            self.assert_no_line_is_wider(palpate(*command.split(), "--help").stdout, 80, command)
+
+    def test_programs_read_whole_lines(self):
+        certified = palpate("certify", self.case, "--out", self.out).stdout.splitlines()
+        self.assertGreater(max(map(len, certified)), 80)
+        shown = on_a_terminal(["inspect", self.out / "library.h5", "--json"], 40)[1]
+        self.assertEqual(json.loads(shown), json.loads(palpate("inspect", self.out / "library.h5", "--json").stdout))
+
     def test_manual_pages_say_what_help_says(self):
         pages = self.root / "man1"
         self.assertEqual(palpate("manual", pages).returncode, DONE)

@@ -15,7 +15,7 @@ void interrupt_after(std::int64_t done, int signal) {
   CampaignStarted started;
   started.journal = "out/liver/curves.journal";
   sink(started);
-  for (std::int64_t i = 0; i <= done; ++i) sink(Progress{i, 0, 2, 238, 0});
+  for (std::int64_t i = 0; i <= done; ++i) sink(Progress{i, 0, 2, 238, 0, {}});
   std::raise(signal);
 }
 
@@ -35,7 +35,7 @@ TEST(InterruptionDeathTest, IsSilentAfterTheCampaign) {
   const auto end = [] {
     const EventSink sink = with_interruption_note([](const Event&) {});
     sink(CampaignStarted{});
-    sink(Progress{5, 0, 0, 5, 0});
+    sink(Progress{5, 0, 0, 5, 0, {}});
     sink(CampaignFinished{});
     std::raise(SIGINT);
   };

@@ -57,6 +57,19 @@ TEST(Inspect, CallsAnInfiniteBoundNoBound) {
   EXPECT_THAT(text, Not(ContainsRegex("[^a-z](inf|nan)[^a-z]")));
 }
 
+TEST(Inspect, PrintsLengthsInMillimetresAndNamesOfFilesAsTheyAre) {
+  const nlohmann::ordered_json summary = {
+      {"tool_radius", {{"value", 0.012}, {"unit", "m"}}},
+      {"volume", {{"value", 2e-6}, {"unit", "m^3"}}},
+      {"bounding_box", {{"low", {-0.1, 0}}, {"high", {0.25, 1}}, {"unit", "m"}}},
+      {"provenance", {{{"inputs", {{"my_liver.stl", "0f"}}}}}}};
+  const std::string text = summary_text(summary);
+  EXPECT_THAT(text, HasSubstr("tool radius: 12 mm\n"));
+  EXPECT_THAT(text, HasSubstr("volume: 2 cm^3\n"));
+  EXPECT_THAT(text, HasSubstr("  low: -100, 0\n  high: 250, 1000\n  unit: mm\n"));
+  EXPECT_THAT(text, HasSubstr("my_liver.stl: 0f\n"));
+}
+
 TEST(Inspect, NamesTheSitesOfLargestContactErrors) {
   Curves curves;
   curves.tool = {"sphere", 0.005, "frictionless"};

@@ -3,12 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "app/pipeline/describe_events.hpp"
@@ -111,7 +113,7 @@ TEST(TextSink, SendsWarningsToTheStandardError) {
 TEST(TextSink, PrintsOnlyWarningsWhenQuietAndEverySiteWhenVerbose) {
   const std::vector<Event> events{LogLine{"mesh", "remeshed"}, Warning{"mesh", "a hole was filled"},
                                   SiteFinished{7, SiteStatus::Partial, "contact was lost", 1.5},
-                                  Progress{10, 1, 0, 10, 0}};
+                                  Progress{10, 1, 0, 10, 0, {}}};
   EXPECT_EQ(text_of(events, false, Verbosity::Quiet), "warning: a hole was filled\n");
   EXPECT_EQ(text_of(events, false, Verbosity::Verbose),
             "  remeshed\nwarning: a hole was filled\n"
@@ -120,9 +122,9 @@ TEST(TextSink, PrintsOnlyWarningsWhenQuietAndEverySiteWhenVerbose) {
 }
 
 TEST(TextSink, StartsALineForAWarningWhereABarIsOpen) {
-  const std::string shown = text_of(
-      {CampaignStarted{}, Progress{0, 0, 2, 10, 0}, Progress{10, 0, 0, 10, 0}, Warning{"fit", "w"}},
-      true);
+  const std::string shown = text_of({CampaignStarted{}, Progress{0, 0, 2, 10, 0, {}},
+                                     Progress{10, 0, 0, 10, 0, {}}, Warning{"fit", "w"}},
+                                    true);
   EXPECT_TRUE(shown.ends_with("0 s\x1b[K\nwarning: w\n")) << shown;
 }
 
@@ -152,13 +154,37 @@ TEST(TextSink, ListsTheFirstIncompleteSites) {
 }
 
 TEST(TextSink, PrintsProgressByLineAndByBar) {
-  const Progress done{10, 1, 0, 10, 0}, half{5, 0, 2, 10, 0};
+  const Progress done{10, 1, 0, 10, 0, {}}, half{5, 0, 2, 10, 0, {}};
   EXPECT_THAT(text_of({half}), IsEmpty());  // too soon after the start for a line
   EXPECT_THAT(text_of({done}), HasSubstr("precompute: 10 of 10 sites, 1 incomplete, 0 s\n"));
   const std::string bar = text_of({done}, true);
   EXPECT_THAT(bar, HasSubstr("\r[##############################] precompute: 10 of 10"));
   EXPECT_TRUE(bar.ends_with("\n"));
   EXPECT_THAT(text_of({SiteFinished{}}), IsEmpty());
+}
+
+/// Long before the first site of a batch is finished the bar moves.
+TEST(TextSink, MovesTheBarWithTheIncrementsOfSites) {
+  const Progress start{0, 0, 0, 10, 0, {}}, half{9, 0, 1, 10, 0, {{7, 0.6}}, true};
+  std::string shown;
+  const TextOutput output{[&](std::string_view text) { shown += text; }, true};
+  TextSink sink({output, output, Verbosity::Normal});
+  sink(start);
+  std::this_thread::sleep_for(std::chrono::milliseconds(250));  // bars are shown so often
+  sink(half);
+  EXPECT_THAT(shown, HasSubstr("[#############################.] precompute: 9 of 10 sites"));
+  EXPECT_THAT(text_of({start, half}), IsEmpty());
+}
+
+TEST(TextSink, BreaksLinesToTheWidthOfATerminal) {
+  std::string shown;
+  const TextOutput output{[&](std::string_view text) { shown += text; }, true, 30};
+  TextSink sink({output, output, Verbosity::Normal});
+  sink(LogLine{"mesh", "a line that is wider than thirty columns"});
+  sink(Warning{"mesh", "a warning that is wider than thirty columns"});
+  EXPECT_EQ(shown,
+            "  a line that is wider than\n    thirty columns\n"
+            "warning: a warning that is\n  wider than thirty columns\n");
 }
 
 TEST(TextSink, PrintsAdaptiveSampling) {
@@ -232,12 +258,23 @@ TEST(JsonSink, WritesOneObjectForEachEvent) {
   EXPECT_EQ(json_of(SiteFinished{7, SiteStatus::Partial, "line search failed", 1.5}),
             Json::parse(R"({"event": "site", "vertex": 7, "status": "partial",
                             "reason": "line search failed", "cpu_seconds": 1.5})"));
-  EXPECT_EQ(json_of(Progress{4, 1, 2, 10, 3}),
+  EXPECT_EQ(json_of(Progress{4, 1, 2, 10, 3, {}}),
             Json::parse(R"({"event": "progress", "done": 4, "failed": 1, "running": 2,
                             "total": 10})"));
   EXPECT_EQ(json_of(CampaignFinished{{8, 1, 1}, 2, 3.5, "curves.h5", {}}),
             Json::parse(R"({"event": "end", "complete": 8, "partial": 1, "failed": 1,
                             "seconds": 2.0, "cpu_seconds": 3.5, "file": "curves.h5"})"));
+}
+
+TEST(JsonSink, WritesProgressAfterSitesAlone) {
+  std::string out;
+  const JsonSink sink([&](std::string_view line) { out += line; });
+  Progress between{4, 0, 2, 10, 0, {{7, 0.5}, {9, 0.25}}, true};
+  sink(between);
+  EXPECT_THAT(out, IsEmpty());
+  between.between_sites = false;
+  sink(between);
+  EXPECT_THAT(out, HasSubstr("progress"));
 }
 
 TEST(JsonSink, WritesErrorsOfARoundAsObjects) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <filesystem>
 #include <iterator>
+#include <map>
 
 #include "fem/campaign/campaign.hpp"
 #include "fem/factor/rest_factor.hpp"
@@ -128,6 +129,32 @@ TEST(Campaign, ReportsItsProgress) {
   EXPECT_THAT(seen, testing::ElementsAre(2, 102, 202));
   EXPECT_EQ(curves.sites[0].vertex, sites[0]);  // ascending
   EXPECT_GT(report.unknowns, 0);
+}
+
+TEST(Campaign, TellsTheIncrementsOfTheSitesThatRun) {
+  const Body body = small_block();
+  CampaignSettings settings = quick();
+  std::map<std::int32_t, std::vector<double>> told;
+  settings.advanced = [&](const CampaignProgress& p) {
+    EXPECT_EQ(p.sites.size(), static_cast<std::size_t>(p.running));
+    for (const SiteProgress& site : p.sites) {
+      auto& fractions = told[site.vertex];
+      if (fractions.empty() || fractions.back() != site.fraction)
+        fractions.push_back(site.fraction);
+    }
+  };
+  CampaignReport report;
+  const Curves curves = run_campaign(body, settings, report);
+  ASSERT_EQ(told.size(), curves.sites.size());
+  for (const SiteCurves& site : curves.sites) {
+    const auto& fractions = told[site.vertex];
+    EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+    EXPECT_EQ(fractions.front(), 0);
+    EXPECT_EQ(fractions.back(), 1);
+    std::size_t samples = 0;  // an increment each, but the start of a path
+    for (const CurvePath& path : site.paths) samples += path.samples.size() - 1;
+    EXPECT_EQ(fractions.size(), samples + 1);
+  }
 }
 
 std::string refusal(const CampaignSettings& settings) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <stdexcept>
 #include <string>
@@ -88,6 +89,27 @@ TEST_F(ParallelSites, HasFewerThreadsWhereMemoryIsShort) {
   EXPECT_EQ(threads(1.5), 1);
   EXPECT_EQ(threads(40.5), kBatch);
   EXPECT_THROW(threads(0.5), Error);
+}
+
+/// The largest gap of any beginning is at most three times the mean one.
+TEST_F(ParallelSites, FirstOnesLieEvenlyAmongAll) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < 200; ++i) indices.push_back(5 * i + 7);
+  const std::vector<std::size_t> spread = spread_out(indices);
+  for (std::size_t count = 1; count <= spread.size(); ++count) {
+    std::vector<std::size_t> first(spread.begin(),
+                                   spread.begin() + static_cast<std::ptrdiff_t>(count));
+    std::sort(first.begin(), first.end());
+    EXPECT_EQ(std::adjacent_find(first.begin(), first.end()), first.end());
+    std::size_t before = 2, largest = 0;
+    for (const std::size_t index : first) {
+      largest = std::max(largest, index - before);
+      before = index;
+    }
+    largest = std::max(largest, std::size_t{1007} - before);
+    EXPECT_LE(largest, 3 * 1005 / count) << count;
+  }
+  EXPECT_TRUE(spread_out({}).empty());
 }
 
 }  // namespace
