@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kSetUp = 40;  // s, before the first site starts
 
-struct Estimate {
+struct NotedTime {
   std::int64_t done = 0;
   double left = 0, truth = 0;  ///< s
 };
@@ -54,7 +54,7 @@ class Player {
       estimates.push_back(estimate);
     }
   }
-  std::vector<Estimate> estimates;
+  std::vector<NotedTime> estimates;
 
  private:
   struct Site {
@@ -103,11 +103,11 @@ class Player {
   std::size_t next_ = 0;
   std::int64_t done_ = 0;
   double now_ = kSetUp;
-  std::vector<std::pair<double, Estimate>> seen_;
+  std::vector<std::pair<double, NotedTime>> seen_;
 };
 
-std::vector<Estimate> played(const std::vector<double>& durations, std::size_t places,
-                             Sharing slowness = alone) {
+std::vector<NotedTime> played(const std::vector<double>& durations, std::size_t places,
+                              Sharing slowness = alone) {
   return Player(durations, places, slowness).estimates;
 }
 
@@ -123,7 +123,7 @@ std::vector<double> scattered(std::size_t count, double spread) {
 TEST(RemainingTime, IsRightWithinThirtyPercentAfterATenthOfTheSites) {
   for (const std::size_t places : {1U, 2U, 8U, 32U}) {
     const auto estimates = played(scattered(320, 0.4), places);
-    for (const Estimate& e : estimates) {
+    for (const NotedTime& e : estimates) {
       if (e.done < 32 || e.truth < 24) continue;  // the end of the last sites is their own
       EXPECT_NEAR(e.left / e.truth, 1, 0.3) << places << " places, " << e.done << " done";
     }
@@ -143,7 +143,7 @@ TEST(RemainingTime, IsRightWhereSomeSitesTakeTenTimesAsLong) {
     std::vector<double> durations = scattered(320, 0.4);
     for (std::size_t i = 0; i < durations.size(); i += 5) durations[i] *= 10;
     const auto estimates = played(durations, places, sharing);
-    for (const Estimate& e : estimates) {
+    for (const NotedTime& e : estimates) {
       if (e.done < 32 || e.truth < 0.1 * estimates.front().truth) continue;
       EXPECT_NEAR(e.left / e.truth, 1, 0.3) << places << " places, " << e.done << " done";
     }
@@ -199,7 +199,7 @@ std::vector<double> in_order_of_campaign(const std::vector<double>& by_vertex) {
 TEST(RemainingTime, IsRightOnARecordedCampaign) {
   for (const std::size_t places : {1U, 2U, 8U, 32U}) {
     for (const Sharing slowness : {alone, sharing})
-      for (const Estimate& e : played(in_order_of_campaign(kTongue), places, slowness))
+      for (const NotedTime& e : played(in_order_of_campaign(kTongue), places, slowness))
         if (e.done >= 21 && e.truth > 6) {
           EXPECT_NEAR(e.left / e.truth, 1, 0.3) << places << " places, " << e.done << " done";
         }
@@ -212,7 +212,7 @@ TEST(RemainingTime, IsRightOnARecordedCampaignWithAThinPart) {
   for (std::size_t i = 0; i < by_vertex.size() / 4; ++i) by_vertex[i] *= 10;
   for (const std::size_t places : {32U, 64U}) {  // 16 for each processor
     const auto estimates = played(in_order_of_campaign(by_vertex), places, sharing);
-    for (const Estimate& e : estimates)
+    for (const NotedTime& e : estimates)
       if (e.done >= 21 &&
           e.done + static_cast<std::int64_t>(places) < 213) {  // the last group is its own
         EXPECT_NEAR(e.left / e.truth, 1, 0.3) << places << " places, " << e.done << " done";
@@ -223,7 +223,7 @@ TEST(RemainingTime, IsRightOnARecordedCampaignWithAThinPart) {
 /// 8 of 104 are left for the last of four groups.
 TEST(RemainingTime, IsRightForGroupsThatShareAProcessor) {
   const auto estimates = played(scattered(104, 0.1), 32, sharing);
-  for (const Estimate& e : estimates)
+  for (const NotedTime& e : estimates)
     if (e.done >= 10 && e.truth > 0.1 * estimates.front().truth) {
       EXPECT_NEAR(e.left / e.truth, 1, 0.3) << e.done << " done";
     }
