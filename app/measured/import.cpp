@@ -20,6 +20,7 @@
 #include "format/number_text.hpp"
 #include "format/numbers.hpp"
 #include "format/sha256.hpp"
+#include "format/to_index.hpp"
 
 namespace palpate::app {
 namespace {
@@ -41,6 +42,8 @@ class Importer {
   Importer(const fs::path& sidecar_file, const fs::path& body_file)
       : sidecar_file_(sidecar_file), body_file_(body_file), s_(read_sidecar(sidecar_file)) {
     if (!body_file.empty()) body_ = read_body(body_file);
+    if (body_ && !std::isfinite(s_.placement.tolerance))
+      s_.placement.tolerance = tolerance_on(*body_);
     for (const auto& column : s_.declared) declared_.push_back({column.name, column.unit});
     doubt_tool();
     place_frame();
@@ -352,6 +355,20 @@ class Importer {
                       where, force_text(curve.baseline.possible_drift * end.time),
                       percent_text(curve.baseline.possible_drift * end.time / end.force)));
     }
+  }
+
+  /// The mean edge of the response triangles or four radii of the tool, at most 5 mm: where no site
+  /// of a fine surface is that near, the frame or a unit is wrong.
+  double tolerance_on(const Body& body) const {
+    constexpr double kMost = 5e-3, kRadii = 4;
+    double sum = 0;
+    const auto corner = [&](std::int32_t v) {
+      return body.nodes[to_index(body.response.node[to_index(v)])];
+    };
+    for (const Triangle& t : body.response.triangles)
+      for (std::size_t i = 0; i < 3; ++i) sum += norm(corner(t[i]) - corner(t[(i + 1) % 3]));
+    const double edge = sum / (3 * static_cast<double>(body.response.triangles.size()));
+    return std::min(kMost, std::max(edge, kRadii * s_.tool.radius));
   }
 
   static double extent_of(const Body& body) {

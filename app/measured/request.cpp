@@ -2,6 +2,8 @@
 #include "app/measured/request.hpp"
 
 #include <algorithm>
+#include <fstream>
+#include <string>
 #include <system_error>
 
 #include "app/measured/file_pattern.hpp"
@@ -25,13 +27,21 @@ bool is_sidecar(const fs::path& file) {
   return file.extension() == ".toml";
 }
 
+/// A case lies there as well: a sidecar has the names of columns.
+bool names_columns(const fs::path& file) {
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);)
+    if (line.find("[columns]") != std::string::npos) return true;
+  return false;
+}
+
 /// The only sidecar beside a record.
 fs::path sidecar_beside(const fs::path& record) {
   const fs::path folder = record.has_parent_path() ? record.parent_path() : fs::path(".");
   std::vector<fs::path> found;
   std::error_code none;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, none))
-    if (is_sidecar(entry.path())) found.push_back(entry.path());
+    if (is_sidecar(entry.path()) && names_columns(entry.path())) found.push_back(entry.path());
   if (found.size() == 1) return found.front();
   std::sort(found.begin(), found.end());
   std::string names;

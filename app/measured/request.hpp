@@ -14,7 +14,8 @@ struct ImportRequest {
 };
 
 /// Patterns are replaced by the files that match. Where records are named without a sidecar it is
-/// the only TOML file of their folder.
+/// the only TOML file of their folder that
+/// names columns.
 /// @throws Error(Configuration): several sidecars, records without one, a pattern without a match.
 ImportRequest import_request(const std::vector<std::string>& inputs);
 

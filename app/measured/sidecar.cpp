@@ -320,9 +320,6 @@ Sidecar read_sidecar(const std::filesystem::path& path) {
     refuse(path.string(), "it names no record",
            "add [[press]], [[robot]] or [[history]] with a file");
   }
-  constexpr double kUsualTolerance = 5e-3, kRadii = 4;
-  if (!std::isfinite(sidecar.placement.tolerance))
-    sidecar.placement.tolerance = std::min(kUsualTolerance, kRadii * sidecar.tool.radius);
   expand_files(sidecar, path.parent_path(), sources);
   if (sidecar.contact.method == "threshold" && !std::isfinite(sidecar.contact.threshold)) {
     refuse(sources.where("contact.method"), "key 'contact.threshold' is missing",

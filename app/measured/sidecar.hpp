@@ -63,7 +63,7 @@ struct PathSection {
 };
 
 struct PlacementSection {
-  double tolerance = kNotGiven;      ///< m; 5 mm, or four radii of the tool where that is less
+  double tolerance = kNotGiven;      ///< m; if not given by the size of body and tool
   std::string frame = "fiducials";   ///< "fiducials" or "body"
   std::string force_is = "on body";  ///< "on body" or "on tool"
 };

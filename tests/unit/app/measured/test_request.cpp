@@ -28,11 +28,13 @@ TEST(ImportRequest, FindsTheSidecarBesideTheRecords) {
     return "accepted";
   };
   EXPECT_THAT(refusal({pattern}), HasSubstr("none lies beside it"));
-  std::ofstream(folder / "one.toml") << "\n";
+  std::ofstream(folder / "case.toml") << "[tool]\n";  // no sidecar
+  EXPECT_THAT(refusal({pattern}), HasSubstr("none lies beside it"));
+  std::ofstream(folder / "one.toml") << "[columns]\n";
   const ImportRequest request = import_request({pattern});
   EXPECT_EQ(request.sidecar, folder / "one.toml");
   EXPECT_THAT(request.records, ElementsAre(folder / "a.csv", folder / "b.csv"));
-  std::ofstream(folder / "two.toml") << "\n";
+  std::ofstream(folder / "two.toml") << "[columns]\n";
   EXPECT_THAT(refusal({pattern}), HasSubstr("several sidecars lie beside it: one.toml, two.toml"));
   const std::string two = (folder / "two.toml").string();
   EXPECT_EQ(import_request({two, pattern}).sidecar, two);
