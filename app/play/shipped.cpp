@@ -60,7 +60,7 @@ fs::path chosen_library(const std::string& word, const fs::path& shipped) {
   const std::vector<ShippedLibrary> libraries = shipped_libraries(shipped);
   for (const ShippedLibrary& library : libraries)
     if (library.name == word) return library.file;
-  const fs::path path = word;
+  fs::path path = word;
   if (!fs::is_directory(path)) {
     if (fs::exists(path)) return path;
     refuse(word, "there is no such library",
