@@ -54,6 +54,8 @@ export class BodyView {
     const { model } = this;
     this.pointValue = !field.ofVertex ? null
       : field.sparse ? model.interpolateWithin(field.ofVertex) : model.interpolate(field.ofVertex);
+    const known = this.pointValue ?? field.ofTriangle;
+    this.coordinate = Float32Array.from(known, (value) => inRange(field, value));  // of each point or triangle, in the colours
     this.discs = field.sparse ? model.singles(field.ofVertex) : [];
     this.draw();
   }
@@ -170,9 +172,7 @@ export class BodyView {
 
   /** Coordinate in the colour map at a point of a facet. */
   colourOf(facet, point) {
-    const { field } = this;
-    const value = field.ofTriangle ? field.ofTriangle[this.model.triangleOf(facet)] : this.pointValue[point];
-    return inRange(field, value);
+    return this.coordinate[this.field.ofTriangle ? this.model.triangleOf(facet) : point];
   }
 
   /** The grey of a facet whose values t are not all known, else null. */

@@ -109,9 +109,12 @@ function azimuthOf(provenance) {
   return found ? (Number(found[1]) * Math.PI) / 180 : 0;
 }
 
-/** The tool of the report, m and rad. */
-export const toolOf = ({ key, provenance }) => ({ shape: key.tool_shape, radius: key.tool_radius, edge: key.tool_edge_radius,
-  length: key.tool_length, azimuth: azimuthOf(provenance) });
+/** The tool of the report, m and rad. A page of a library alone knows shape and radius: an edge is sharp there. */
+export const toolOf = ({ key, provenance = [] }) => ({ shape: key.tool_shape, radius: key.tool_radius, edge: key.tool_edge_radius ?? 0,
+  length: key.tool_length ?? 0, azimuth: azimuthOf(provenance) });
+
+/** Whether the shape of a tool is drawn, or a sphere of its radius. */
+export const isDrawn = ({ shape, length }) => ['sphere', 'disc'].includes(shape) || (shape === 'cylinder' && length > 0);
 
 /** Where a tool stands: its tip, its axis into the body, and two directions across. */
 export function standing({ azimuth }, tip, axis) {
@@ -123,6 +126,6 @@ export function standing({ azimuth }, tip, axis) {
 /** {points, normals, facets, push(x, stand)}; push gives {point, normal of the skin there}, or null outside. */
 export function toolMesh({ shape, radius, edge, length }) {
   if (shape === 'disc') return { ...revolved([...discProfile(radius, edge), ...shaft(radius)]), push: pushOutOfDisc(radius, edge) };
-  if (shape === 'cylinder') return { ...lyingMesh(radius, length), push: pushOutOfCylinder(radius, length) };
+  if (shape === 'cylinder' && length > 0) return { ...lyingMesh(radius, length), push: pushOutOfCylinder(radius, length) };
   return { ...revolved([...sphereProfile(radius), ...shaft(radius)]), push: pushOutOfSphere(radius) };
 }

@@ -283,6 +283,16 @@ class Skin(Acted):
             self.assertIn(words, said["text"])
             self.assertEqual(said["obj"], page == "skin.html")
 
+    def test_a_library_alone_is_pressed_with_the_same_forces(self):
+        """It does not have the lengths of its tool."""
+        said = self.act(f"goTo({self.data['chosen']['median']}); deep(0.5); press(); await rest(); said.csv = taken('touch-csv');"
+                        "said.text = get('touch-caption').textContent;", self.page("play.html"), only=None)
+        rows = rows_of(said["csv"])
+        self.assertTrue(int(rows[-1]["status"]) & 1)
+        lines = "".join(f"{r['x_m']!r} {r['y_m']!r} {r['z_m']!r}\n" for r in rows)
+        self.assertTrue([(r["force_x_N"], r["force_y_N"], r["force_z_N"]) for r in rows] == by_the_c_interface([], lines)[0])
+        self.assertIn("imprint", said["text"])
+
     def test_a_press_that_is_held_relaxes(self):
         hold = """goTo(NODE); deep(0.5); TOGGLE press(); await frames(40); said.early = await steps(); await frames(150);
             said.csv = await steps(); const shown = (k) => get(`touch-${k}`).textContent;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "app/report/play_page.hpp"
 #include "app/report/preview.hpp"
 #include "app/report/repair_file.hpp"
 #include "app/report/report.hpp"
@@ -171,6 +172,31 @@ void write_sprung(palpate::ReportInput input, palpate::Body body,
   palpate::write_report(input, folder / "sprung.html");
 }
 
+/// With the skin of a deformation, with that of another library, and where the tissue relaxes.
+void write_skins(const palpate::testing::Synthetic& all, const std::filesystem::path& folder) {
+  using namespace palpate;
+  testing::TouchedSkin skin(all.body, all.library);
+  const report::SessionDigest session = report::digest(testing::rendered(all.recording, skin));
+  ReportInput input{&all.body, &all.curves, &all.library, &session, "Lump", 356129};
+  input.deformation = testing::deformation_bytes(all.body, all.library);
+  write_report(input, folder / "skin.html");
+  Library other = all.library;
+  other.positions.front()[0] += 1e-6;
+  input.deformation = testing::deformation_bytes(all.body, other);
+  write_report(input, folder / "skin-other.html");
+  const Library relaxing = test::relaxing(all.library, {0.05, 0.6}, true);
+  input.library = &relaxing;
+  input.deformation = testing::deformation_bytes(all.body, relaxing);
+  write_report(input, folder / "skin-relaxing.html");
+}
+
+void write_pages_to_touch(const palpate::ReportInput& input, const palpate::testing::Synthetic& all,
+                          const std::filesystem::path& folder) {
+  palpate::report::write_play_page(all.library, {}, folder / "play.html");
+  write_sprung(input, all.body, folder);
+  write_skins(palpate::testing::synthetic(3, 1), folder);
+}
+
 /// Two tests of one law, as `palpate calibrate tests` writes them, with hostile names.
 std::string calibration_text() {
   using nlohmann::json;
@@ -225,24 +251,6 @@ std::string calibration_text() {
   return account.dump();
 }
 
-/// With the skin of a deformation, with that of another library, and where the tissue relaxes.
-void write_skins(const palpate::testing::Synthetic& all, const std::filesystem::path& folder) {
-  using namespace palpate;
-  testing::TouchedSkin skin(all.body, all.library);
-  const report::SessionDigest session = report::digest(testing::rendered(all.recording, skin));
-  ReportInput input{&all.body, &all.curves, &all.library, &session, "Lump", 356129};
-  input.deformation = testing::deformation_bytes(all.body, all.library);
-  write_report(input, folder / "skin.html");
-  Library other = all.library;
-  other.positions.front()[0] += 1e-6;
-  input.deformation = testing::deformation_bytes(all.body, other);
-  write_report(input, folder / "skin-other.html");
-  const Library relaxing = test::relaxing(all.library, {0.05, 0.6}, true);
-  input.library = &relaxing;
-  input.deformation = testing::deformation_bytes(all.body, relaxing);
-  write_report(input, folder / "skin-relaxing.html");
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -270,8 +278,7 @@ int main(int argc, char** argv) {
   palpate::write_report(input, folder / "sparse.html");
   input.comparison.clear();
 
-  write_sprung(input, all.body, folder);
-  write_skins(palpate::testing::synthetic(3, 1), folder);
+  write_pages_to_touch(input, all, folder);
 
   const palpate::Provenance before = all.curves.provenance;
   all.curves.provenance.steps.push_back(sampling_step());

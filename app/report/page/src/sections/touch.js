@@ -7,7 +7,7 @@ import { Model } from '../model.js';
 import { Outline } from '../outline.js';
 import { responseForce } from '../response.js';
 import * as status from '../runtime.js';
-import { toolOf } from '../tool-mesh.js';
+import { isDrawn, toolOf } from '../tool-mesh.js';
 import { objOf, touchable } from '../touchable.js';
 import { TouchView } from '../touch-view.js';
 import { dot, minus, times } from '../vectors.js';
@@ -27,6 +27,7 @@ const DEFORMED = 'The skin is that of the solved states, blended by the runtime.
 const IMPRINT = 'The dent is the imprint of the tool on the undeformed skin, not the deformation of the body: ';
 const WHY_IMPRINT = {
   none: () => 'the campaign kept no displacements. It keeps them for a case with depths = 4 in [deformation]. ',
+  play: () => 'the report of a case with [deformation] shows that. ',
   other_library: () => 'deformation.pdef is of another library. Run palpate build again. ',
   too_large: (skin) => `deformation.pdef has ${units.bytes(skin.bytes)}, and a page takes at most ${units.bytes(skin.limit)}. Fewer modes in [deformation] make it smaller. `,
 };
@@ -38,9 +39,10 @@ function forces(seen) {
 }
 
 /** Where the skin in the picture comes from. */
-export function skinText(skin) {
+function skinText({ touch, play }) {
+  const { skin } = touch;
   if (skin?.file) return DEFORMED;
-  return IMPRINT + WHY_IMPRINT[skin?.problem ?? 'none'](skin);
+  return IMPRINT + WHY_IMPRINT[play ? 'play' : skin?.problem ?? 'none'](skin);
 }
 
 const WORDS = [[status.BEYOND_DEPTH, 'beyond the deepest sample: extrapolated'], [status.AT_BORDER, 'at a border'],
@@ -257,11 +259,12 @@ export function touchSection(data, nodes = null) {
     return section(paragraph('This palpate was built without the WebAssembly toolchain, so the body cannot be touched here: run scripts/setup, build again and write the report anew.', 'note'));
   }
   const touch = new Touch(data);
+  const shape = isDrawn(toolOf(data)) ? '' : 'The tool is drawn as a sphere of its radius. ';
   const element = section(
     paragraph(HELP, 'lead'),
     controls(touch),
     el('div', { class: 'split' },
-      el('div', {}, touch.view.element, el('p', { class: 'note', id: 'touch-caption' }, CAPTION + skinText(data.touch.skin) + friction(data))),
+      el('div', {}, touch.view.element, el('p', { class: 'note', id: 'touch-caption' }, CAPTION + skinText(data) + shape + friction(data))),
       touch.readings.element));
   follow(nodes, touch);
   touch.onMove = (moving) => { element.dataset.moving = String(moving); };
