@@ -284,7 +284,7 @@ class Skin(Acted):
             self.assertEqual(said["obj"], page == "skin.html")
 
     def test_a_library_alone_is_pressed_with_the_same_forces(self):
-        """It has neither provenance nor the lengths of its tool."""
+        """It does not have the lengths of its tool."""
         said = self.act(f"goTo({self.data['chosen']['median']}); deep(0.5); press(); await rest(); said.csv = taken('touch-csv');"
                         "said.text = get('touch-caption').textContent;", self.page("play.html"), only=None)
         rows = rows_of(said["csv"])
