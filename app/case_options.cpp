@@ -16,11 +16,11 @@ namespace palpate::app {
 
 namespace {
 
-/// That of the file of the body; a header that states its own is in mm.
+/// That of the file of the body; a header that states its own is in mm, and so are records.
 Unit unit_of_coordinates(const mesher::Settings& mesh) {
   if (!mesh.volume_mesh.path.empty()) return unit_of_length(mesh.volume_mesh.unit);
   if (!mesh.image.path.empty()) return unit_of_length(mesh.image.unit);
-  return unit_of_length(mesh.surface.unit);
+  return unit_of_length(mesh.surface.path.empty() ? 1e-3 : mesh.surface.unit);
 }
 
 }  // namespace

@@ -7,8 +7,10 @@
 #include "app/command.hpp"
 #include "app/compare/fidelity_run.hpp"
 #include "app/compare/history_run.hpp"
+#include "app/compare/leave_out.hpp"
 #include "app/compare/tables.hpp"
 #include "app/console.hpp"
+#include "app/pipeline/stage_input.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "format/artifact.hpp"
 #include "format/body.hpp"
@@ -27,7 +29,8 @@ struct CompareOptions {
   compare::CompareSettings settings;
   double jnd_floor_mn = kUnknown, site_tolerance_mm = kUnknown;  ///< NaN: by the reference
   std::vector<double> depths_mm;
-  CaseOptions fem;  ///< with a case: its library is compared with direct solutions
+  CaseOptions left_out;  ///< with a case: its sites are predicted from each other
+  CaseOptions fem;       ///< with a case: its library is compared with direct solutions
   FidelityOptions fidelity;
   double floor_mn = 0;
   std::vector<std::string> libraries;
@@ -90,6 +93,16 @@ void print(const compare::Comparison& comparison) {
   }
 }
 
+void write_comparison(const fs::path& out, const compare::Comparison& comparison,
+                      const compare::CompareSettings& settings,
+                      const nlohmann::ordered_json& digests) {
+  auto json = comparison_json(comparison, settings);
+  json["input_sha256"] = digests;
+  write_file_crash_safely(out / "comparison.json", json.dump(1) + "\n");
+  write_file_crash_safely(out / "comparison.csv", comparison_csv(comparison));
+  write_file_crash_safely(out / "comparison-points.csv", comparison_points_csv(comparison));
+}
+
 int compare_sets(CompareOptions options) {
   if (fs::path(options.reference).extension() == ".json") {
     compare_histories(options.reference, options.model, options.out);
@@ -112,13 +125,34 @@ int compare_sets(CompareOptions options) {
         force_text(options.settings.jnd_floor));
   const fs::path out = options.out;
   prepare_output(out);
-  auto json = comparison_json(comparison, options.settings);
-  json["input_sha256"] = {{"reference", sha256_of_file(options.reference)},
-                          {"model", sha256_of_file(options.model)}};
-  write_file_crash_safely(out / "comparison.json", json.dump(1) + "\n");
-  write_file_crash_safely(out / "comparison.csv", comparison_csv(comparison));
-  write_file_crash_safely(out / "comparison-points.csv", comparison_points_csv(comparison));
+  write_comparison(
+      out, comparison, options.settings,
+      {{"reference", sha256_of_file(options.reference)}, {"model", sha256_of_file(options.model)}});
   say("compare: {}, comparison.csv, comparison-points.csv", (out / "comparison.json").string());
+  return kExitDone;
+}
+
+/// The sites of a measured case, each predicted from the others. The comparison of the curves goes
+/// where the report of the case finds it.
+int compare_left_out(CompareOptions options) {
+  options.left_out.out = options.out;
+  options.settings.jnd_floor = 1e-3 * options.jnd_floor_mn;
+  const Workspace space = open_workspace(options.left_out);
+  const Library library = read_input(space.library(), "build", read_library);
+  const Curves curves = read_input(space.curves(), "build", read_curves);
+  const LeaveOut result = leave_sites_out(library, curves);
+  print_line(leave_out_text(result));
+  const LeaveOutSets sets = sets_of(result, library, curves);
+  const compare::Comparison comparison =
+      compare::compare(sets.measured, sets.predicted, options.settings);
+  prepare_output(space.out);
+  write_file_crash_safely(space.out / "leave-out.json",
+                          leave_out_json(result, library).dump(1) + "\n");
+  write_comparison(
+      space.out, comparison, options.settings,
+      {{"curves", sha256_of_file(space.curves())}, {"library", sha256_of_file(space.library())}});
+  say("compare: {}, comparison.json, comparison.csv, comparison-points.csv",
+      (space.out / "leave-out.json").string());
   return kExitDone;
 }
 
@@ -184,7 +218,8 @@ void add_compare_command(CLI::App& root, Action& action) {
       "Examples:\n"
       "  palpate compare out/pad-measured/curves.h5 out/pad/curves.h5 --out out/pad\n"
       "  palpate compare out/held/histories.json out/pad/library.h5 --out out/held\n"
-      "  palpate compare --fem data/cases/liver.toml");
+      "  palpate compare --fem data/cases/liver.toml\n"
+      "  palpate compare --leave-out data/cases/liver-patch.toml");
   const auto options = std::make_shared<CompareOptions>();
   CLI::Option* reference = command->add_option(
       "REFERENCE", options->reference,
@@ -193,12 +228,17 @@ void add_compare_command(CLI::App& root, Action& action) {
                                            "curves.h5 or library.h5 that is compared with it");
   reference->needs(model);
   add_fem_options(*command, *options, reference);
+  command
+      ->add_option("--leave-out", options->left_out.case_file,
+                   "Measured case whose sites are each predicted from the others")
+      ->excludes(reference)
+      ->excludes("--fem");
   command->add_option("--reference-body", options->reference_body,
                       "body.h5 of the reference, to match sites by position");
   command->add_option("--model-body", options->model_body,
                       "body.h5 of the model, to match sites by position");
   command->add_option("--out", options->out,
-                      "Folder of the tables; with --fem, of the artifacts (default with --fem: "
+                      "Folder of the tables; with a case, of the artifacts (default with a case: "
                       "output.folder of the case, or out/NAME)");
   command
       ->add_option("--jnd", options->settings.jnd, "Just noticeable relative difference of force")
@@ -217,10 +257,12 @@ void add_compare_command(CLI::App& root, Action& action) {
   command->add_option("--depths-mm", options->depths_mm,
                       "Depths at which stiffness is compared, mm (default: thirds of the range)");
   command->callback([options, &action] {
-    if (options->reference.empty() && options->fem.case_file.empty())
-      throw CLI::RequiredError("REFERENCE and MODEL, or --fem CASE");
-    if (options->out.empty() && options->fem.case_file.empty()) throw CLI::RequiredError("--out");
+    const bool has_case = !options->fem.case_file.empty() || !options->left_out.case_file.empty();
+    if (options->reference.empty() && !has_case)
+      throw CLI::RequiredError("REFERENCE and MODEL, --fem CASE or --leave-out CASE");
+    if (options->out.empty() && !has_case) throw CLI::RequiredError("--out");
     action = [options] {
+      if (!options->left_out.case_file.empty()) return compare_left_out(*options);
       return options->fem.case_file.empty() ? compare_sets(*options) : compare_with_fem(*options);
     };
   });

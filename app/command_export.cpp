@@ -13,6 +13,7 @@
 #include "app/vtkhdf/grids.hpp"
 #include "fem/campaign/bonded_patch.hpp"
 #include "fem/solid/pressure_smoothness.hpp"
+#include "format/body.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 #include "format/flat_library.hpp"
@@ -26,7 +27,9 @@ void write(const vtkhdf::Grid& grid, const std::filesystem::path& file) {
 }
 
 int export_body(const Workspace& space) {
-  write(vtkhdf::body_grid(read_body(space.body())), space.out / "body.vtkhdf");
+  const Body body = read_body(space.body());
+  require_inside(body, "export body");
+  write(vtkhdf::body_grid(body), space.out / "body.vtkhdf");
   return kExitDone;
 }
 
@@ -43,6 +46,7 @@ constexpr MeshFormat kMeshFormats[] = {{"gmsh", "msh", gmsh_mesh},
 
 int export_mesh(const Workspace& space, const std::string& name) {
   const Body body = read_body(space.body());
+  require_inside(body, "export mesh");
   for (const MeshFormat& format : kMeshFormats) {
     if (format.name != name) continue;
     const std::filesystem::path file = space.out / (std::string("body.") + format.ending);

@@ -4,8 +4,10 @@
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/measured/import.hpp"
+#include "app/measured/patch_body.hpp"
 #include "app/measured/request.hpp"
 #include "app/pipeline/workspace.hpp"
+#include "format/body.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/number_text.hpp"
 #include "format/numbers.hpp"
@@ -58,11 +60,26 @@ void write_histories(const Histories& histories, const fs::path& sidecar, const 
       (out / "histories.json").string());
 }
 
+/// The surface of the records alone. @return its file.
+fs::path write_patch(const fs::path& sidecar, const fs::path& out) {
+  PatchBody patch = patch_body(sidecar);
+  for (const std::string& warning : patch.warnings) say("  warning: {}", warning);
+  patch.body.provenance.steps.push_back(
+      make_provenance_step("mesh", "", measured_files(sidecar), {{"origin", "measured"}}));
+  const fs::path file = out / "body.h5";
+  write_body(file, patch.body);
+  say("import: surface of {} sites, {} apart -> {}", patch.body.nodes.size(),
+      length_text(patch.spacing), file.string());
+  return file;
+}
+
 int import_records(const ImportOptions& options) {
   const ImportRequest request = import_request(options.inputs);
-  const Import result = import_measurement(request.sidecar, options.body, request.records);
   const fs::path out = options.out;
   prepare_output(out);
+  const bool has_body = !options.body.empty() || !makes_body(read_sidecar(request.sidecar));
+  const fs::path body = has_body ? fs::path(options.body) : write_patch(request.sidecar, out);
+  const Import result = import_measurement(request.sidecar, body, request.records);
   if (!result.curves.sites.empty()) write_curves(out / "curves.h5", result.curves);
   if (!result.histories.records.empty()) write_histories(result.histories, request.sidecar, out);
   write_file_crash_safely(out / "import.json", result.account.dump(2) + "\n");
@@ -108,7 +125,10 @@ void add_import_command(CLI::App& root, Action& action) {
                    "Sidecar (TOML), see docs/measured.md; or records of it, or patterns of them "
                    "('data/*.csv'), where it is the only TOML file beside them or stands in front")
       ->required();
-  command->add_option("--body", options->body, "body.h5 that contains the sites");
+  command->add_option(
+      "--body", options->body,
+      "body.h5 that contains the sites (default with [[batch]] alone: the surface of "
+      "their contact points, written to the folder)");
   command->add_option("--out", options->out, "Folder of the artifacts")->required();
   command->add_flag("--allow-refused", options->allow_refused,
                     "Exit with 0 although records were refused, as long as one was imported");

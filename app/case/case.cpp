@@ -53,19 +53,31 @@ void check_region_of_inclusion(const mesher::SurfaceFile& inclusion, const std::
   }
 }
 
+/// The tool and the paths of a measured body are in its sidecar, and it has no inside.
+void check_measured(const SourceMap& sources) {
+  for (const char* section :
+       {"support", "material", "mesh", "press", "tool", "indentation", "sampling", "solver",
+        "gravity", "deformation", "inclusion", "layer", "mesh_region", "image_label"}) {
+    if (!sources.has(section)) continue;
+    refuse(sources.where(section), fmt::format("[{}] with [measured]", section),
+           "remove it: a measured body has no inside, and its tool is in the sidecar");
+  }
+}
+
 /// Exactly one source of the body, and no section of another.
 void check_source(const Case& c, const SourceMap& sources) {
   std::vector<std::string> given;
-  for (const char* section : {"surface", "volume_mesh", "image"})
+  for (const char* section : {"measured", "surface", "volume_mesh", "image"})
     if (sources.has(section)) given.emplace_back(section);
   if (given.size() > 1) {
     refuse(sources.where(given[1]), fmt::format("both [{}] and [{}] are given", given[0], given[1]),
            "remove one of the two");
   }
   if (given.empty()) {
-    refuse(sources.where(""), "none of [surface], [volume_mesh] and [image] is given",
+    refuse(sources.where(""), "none of [surface], [volume_mesh], [image] and [measured] is given",
            "add [surface] with file and unit");
   }
+  if (given[0] == "measured") return check_measured(sources);
   const auto belongs = [&](const char* list, bool is_empty, const char* section) {
     if (is_empty || given[0] == section) return;
     refuse(sources.where(list), fmt::format("[[{}]] with [{}]", list, given[0]),
@@ -230,6 +242,7 @@ Case parsed(const toml::table& table, const std::string& file_name, const SizeOf
   fill_defaults(c, file_name);
   check_name(c, sources);
   check_source(c, sources);
+  if (!c.records.empty()) return c;
   check_materials(c, sources);
   check_weight(c, sources);
   std::optional<BodySize> body;

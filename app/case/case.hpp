@@ -106,6 +106,7 @@ fem::CampaignSettings campaign_of_case();
 /// fibres, threads and memory.
 struct Case {
   std::string name;
+  std::filesystem::path records;  ///< sidecar of a measured body; as written; empty: none
   /// [surface], [volume_mesh], [[inclusion]], [mesh], [[press]]; paths as written
   mesher::Settings mesh = mesh_of_case();
   std::vector<mesher::Springs> supports;  ///< fixed nodes where both stiffnesses are 0

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "app/json_number.hpp"
+#include "app/measured/record_reader.hpp"
 #include "fitting/measurement/records/placement.hpp"
 #include "fitting/measurement/records/repeats.hpp"
 #include "fitting/measurement/records/robot.hpp"
@@ -76,6 +77,8 @@ class Importer {
       attempt(press.file, [&] { read_press(press); });
     for (const RobotFileSection& robot : s_.robot_logs)
       attempt(robot.file, [&] { read_robot(robot); });
+    for (const BatchFileSection& batch : s_.batches)
+      attempt(batch.file, [&] { read_batch(batch); });
     Import result;
     result.histories = histories(true);
     result.curves = curves();
@@ -163,7 +166,7 @@ class Importer {
   }
 
   void place_frame() {
-    if (s_.robot_logs.empty()) return;
+    if (s_.robot_logs.empty() && s_.batches.empty()) return;
     if (!body_) {
       throw Error(ErrorKind::Configuration, sidecar_file_.string(),
                   "robot logs are placed on a body, and none is given",
@@ -442,6 +445,45 @@ class Importer {
     add_file(file);
   }
 
+  void read_batch(const BatchFileSection& batch) {
+    const RecordReader reader(sidecar_file_);
+    const fs::path file = reader.path_of(batch.file);
+    const m::CsvTable table = reader.table(batch);
+    for (const m::BatchSite& site : reader.batch(batch, table)) {
+      const std::string where = batch.file + ", " + site.name;
+      const m::NearestSite near =
+          m::nearest_site(*body_, site.contact, s_.placement.tolerance, where);
+      check_depth(where, site.press);
+      warn_of_drift(where, site.press);
+      warn_of_lateral(where, site);
+      add_account(batch.file, table, near.vertex, near.distance, site.press);
+      Json& record = records_.back();
+      record["site"] = site.name;
+      record["touch_m"] = site.contact;
+      record["outward"] = site.outward;
+      record["lateral_fraction"] = site.lateral_fraction;
+      record["sideways_m"] = site.sideways;
+      sites_[near.vertex].presses.push_back(site.press);
+    }
+    add_file(file);
+  }
+
+  /// Only the part of the force along the press becomes a curve.
+  void warn_of_lateral(const std::string& where, const m::BatchSite& site) {
+    constexpr double kMuch = 0.25;
+    if (site.lateral_fraction > kMuch) {
+      warn(
+          fmt::format("{}: {} of the normal force acts across the normal at the deepest point, "
+                      "and is in no curve: check the normal",
+                      where, percent_text(site.lateral_fraction)));
+    }
+    const double depth = site.press.loading.back().depth;
+    if (site.sideways > kMuch * depth) {
+      warn(fmt::format("{}: the tool moves {} across the normal, and {} along it", where,
+                       length_text(site.sideways), length_text(depth)));
+    }
+  }
+
   void add_account(const std::string& file, const m::CsvTable& table, int vertex, double distance,
                    const m::PressCurve& curve) {
     const m::Baseline& b = curve.baseline;
@@ -473,14 +515,33 @@ class Importer {
     return body_ ? body_->response.inward[static_cast<std::size_t>(vertex)] : kDown;
   }
 
+  static std::string where_of(int vertex) { return fmt::format("site at vertex {}", vertex); }
+
+  /// The one press of a site, sample by sample.
+  CurvePath recorded_press(int vertex, const SiteRecords& records) const {
+    if (records.presses.size() > 1) {
+      throw Error(ErrorKind::Configuration, where_of(vertex),
+                  fmt::format("{} presses have it as their nearest site, and samples as recorded "
+                              "are not averaged",
+                              records.presses.size()),
+                  "give path.samples instead of as_recorded");
+    }
+    const MachineSection& machine = s_.machine;
+    return m::recorded_path(
+        records.presses.front(), inward_of(vertex),
+        {machine.force_noise, machine.force_calibration, machine.compliance_uncertainty},
+        where_of(vertex));
+  }
+
   /// The mean press of a site, and its drags or the lateral path that is made for want of them.
   SiteCurves curves_of(int vertex, const SiteRecords& records,
                        const m::RepeatSettings& settings) const {
     SiteCurves site;
     site.vertex = vertex;
     site.status = SiteStatus::Complete;
-    site.paths.push_back(m::mean_path(records.presses, inward_of(vertex), settings,
-                                      fmt::format("site at vertex {}", vertex)));
+    site.paths.push_back(s_.path.as_recorded ? recorded_press(vertex, records)
+                                             : m::mean_path(records.presses, inward_of(vertex),
+                                                            settings, where_of(vertex)));
     if (records.drags.empty() && s_.path.lateral_ratio > 0)
       site.paths.push_back(m::lateral_from_normal(site.paths.front(), s_.path.lateral_ratio));
     for (CurvePath& path : m::lateral_paths(records.drags, inward_of(vertex),

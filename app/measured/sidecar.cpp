@@ -35,7 +35,21 @@ void describe(V& v, MachineSection& s) {
   v.number(s.force_calibration,
            {"force_calibration", "relative standard uncertainty of the load cell", kOptional,
             kFraction});
+  v.quantity(s.force_noise, Dimension::Force,
+             {"force_noise", "standard deviation of a sample that is kept as recorded", kOptional,
+              kNotNegative});
   describe_specimen(v, s.size);
+}
+
+template <class V>
+void describe_batch_columns(V& v, ColumnsSection& s) {
+  v.text(s.site, {"site", "name of the column with the number of the site, in a batch"});
+  v.text(s.normal_x, {"normal_x", "name of the column, of the unit normal out of the body"});
+  v.text(s.normal_y, {"normal_y", "name of the column"});
+  v.text(s.normal_z, {"normal_z", "name of the column"});
+  v.text(s.contact_x, {"contact_x", "name of the column, of the logged point at first contact"});
+  v.text(s.contact_y, {"contact_y", "name of the column"});
+  v.text(s.contact_z, {"contact_z", "name of the column"});
 }
 
 template <class V>
@@ -51,6 +65,7 @@ void describe(V& v, ColumnsSection& s) {
   v.text(s.fx, {"fx", "name of the column"});
   v.text(s.fy, {"fy", "name of the column"});
   v.text(s.fz, {"fz", "name of the column"});
+  describe_batch_columns(v, s);
   v.text(s.time_unit, {"time_unit", "where the file gives none"});
   v.text(s.length_unit, {"length_unit", "where the file gives none"});
   v.text(s.force_unit, {"force_unit", "where the file gives none"});
@@ -98,6 +113,8 @@ void describe(V& v, BaselineSection& s) {
 template <class V>
 void describe(V& v, PathSection& s) {
   v.integer(s.samples, {"samples", "of the normal path", kOptional, kCount});
+  v.flag(s.as_recorded,
+         {"as_recorded", "the samples of a batch are those of the path, without averaging"});
   v.integer(s.lateral_samples, {"lateral_samples", "of a lateral path", kOptional, kCount});
   v.number(s.lateral_ratio,
            {"lateral_ratio",
@@ -170,6 +187,13 @@ void describe(V& v, HistoryFileSection& s) {
 }
 
 template <class V>
+void describe(V& v, BatchFileSection& s) {
+  v.text(s.file, {"file", "log of many sites, relative to the sidecar", kRequired});
+  describe_table_choice(v, s.choice);
+  v.texts(s.leave_out, {"leave_out", "numbers of sites that are not used"});
+}
+
+template <class V>
 void describe(V& v, Sidecar& s) {
   v.text(s.name, {"name", "of the measurement", kRequired});
   v.text(s.specimen, {"specimen", "what was pressed", kRequired});
@@ -190,6 +214,7 @@ void describe(V& v, Sidecar& s) {
   v.sections("press", s.presses, kOptional, "");
   v.sections("robot", s.robot_logs, kOptional, "");
   v.sections("history", s.histories, kOptional, "");
+  v.sections("batch", s.batches, kOptional, "");
 }
 
 namespace {
@@ -235,12 +260,29 @@ void check_columns(const Sidecar& s, const SourceMap& sources) {
     if (c.strain.empty()) need(c.displacement, "displacement", "displacement, or 'strain'");
     if (c.stress.empty()) need(c.force, "force", "force, or 'stress'");
   }
-  if (s.robot_logs.empty()) return;
+  if (s.robot_logs.empty() && s.batches.empty()) return;
   for (const auto& [value, key] : {std::pair{&c.x, "x"}, {&c.y, "y"}, {&c.z, "z"}}) {
     need(*value, key, "position");
   }
   for (const auto& [value, key] : {std::pair{&c.fx, "fx"}, {&c.fy, "fy"}, {&c.fz, "fz"}}) {
     need(*value, key, "force");
+  }
+  if (s.batches.empty()) return;
+  need(c.site, "site", "number of the site");
+  for (const auto& [value, key] :
+       {std::pair{&c.normal_x, "normal_x"}, {&c.normal_y, "normal_y"}, {&c.normal_z, "normal_z"}}) {
+    need(*value, key, "normal");
+  }
+  // All three, where the contact points are given, and none otherwise.
+  const bool given = s.contact.method == "given";
+  for (const auto& [value, key] : {std::pair{&c.contact_x, "contact_x"},
+                                   {&c.contact_y, "contact_y"},
+                                   {&c.contact_z, "contact_z"}}) {
+    if (given) need(*value, key, "contact point");
+    if (given || value->empty()) continue;
+    refuse(sources.where(std::string("columns.") + key),
+           "a contact point is given, and contact.method says otherwise",
+           "say contact.method = \"given\"");
   }
 }
 
@@ -316,9 +358,10 @@ Sidecar read_sidecar(const std::filesystem::path& path) {
   TableReader reader(table, "the sidecar", "", sources);
   describe(reader, sidecar);
   reader.finish();
-  if (sidecar.presses.empty() && sidecar.robot_logs.empty() && sidecar.histories.empty()) {
+  if (sidecar.presses.empty() && sidecar.robot_logs.empty() && sidecar.histories.empty() &&
+      sidecar.batches.empty()) {
     refuse(path.string(), "it names no record",
-           "add [[press]], [[robot]] or [[history]] with a file");
+           "add [[press]], [[robot]], [[batch]] or [[history]] with a file");
   }
   expand_files(sidecar, path.parent_path(), sources);
   if (sidecar.contact.method == "threshold" && !std::isfinite(sidecar.contact.threshold)) {
@@ -330,6 +373,22 @@ Sidecar read_sidecar(const std::filesystem::path& path) {
   check_columns(sidecar, sources);
   check_sites(sidecar, sources);
   return sidecar;
+}
+
+std::vector<std::filesystem::path> measured_files(const std::filesystem::path& sidecar_file) {
+  const Sidecar sidecar = read_sidecar(sidecar_file);
+  std::vector<std::filesystem::path> files{sidecar_file};
+  const auto add = [&](const auto& sections) {
+    for (const auto& section : sections) {
+      const auto file = sidecar_file.parent_path() / section.file;
+      if (std::find(files.begin(), files.end(), file) == files.end()) files.push_back(file);
+    }
+  };
+  add(sidecar.presses);
+  add(sidecar.robot_logs);
+  add(sidecar.batches);
+  add(sidecar.histories);
+  return files;
 }
 
 }  // namespace palpate::app

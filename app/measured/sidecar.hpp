@@ -27,6 +27,7 @@ struct MachineSection {
   double compliance = 0;              ///< m/N
   double compliance_uncertainty = 0;  ///< m/N
   double force_calibration = 0;       ///< relative
+  double force_noise = 0;             ///< N, standard, of a sample that is kept as recorded
   SpecimenSize size;                  ///< by which it made strain and stress of travel and force
 };
 
@@ -34,6 +35,9 @@ struct ColumnsSection {
   std::string time, displacement, force;  ///< names; time may be empty
   std::string strain, stress;             ///< instead of displacement and force
   std::string x, y, z, fx, fy, fz;        ///< of a robot log
+  std::string site;                       ///< of a batch; then what is stated at each site
+  std::string normal_x, normal_y, normal_z;
+  std::string contact_x, contact_y, contact_z;  ///< the logged point at first contact
   std::string time_unit, length_unit, force_unit, strain_unit, stress_unit;
   std::string load = "compression";  ///< or "tension", which no press is
   std::string displacement_sign = "found", force_sign = "found";
@@ -58,6 +62,7 @@ struct BaselineSection {
 
 struct PathSection {
   int samples = 24;
+  bool as_recorded = false;  ///< the samples of a batch are those of the path, `samples` is unused
   int lateral_samples = 12;
   double lateral_ratio = 0;  ///< of a lateral response made from the normal one; 0: none
 };
@@ -110,6 +115,12 @@ struct HistoryFileSection {
   std::vector<PhaseSection> phases;  ///< empty: recognised
 };
 
+struct BatchFileSection {
+  std::string file;
+  measured::TableChoice choice;
+  std::vector<std::string> leave_out;  ///< numbers of sites
+};
+
 struct Sidecar {
   std::string name, specimen, source, licence, instrument, date, description;
   MeasuredToolSection tool;
@@ -124,9 +135,13 @@ struct Sidecar {
   std::vector<PressFileSection> presses;
   std::vector<RobotFileSection> robot_logs;
   std::vector<HistoryFileSection> histories;
+  std::vector<BatchFileSection> batches;
 };
 
 /// @throws Error(Configuration) with file and line, as read_case.
 Sidecar read_sidecar(const std::filesystem::path& path);
+
+/// The sidecar and the records that it names.
+std::vector<std::filesystem::path> measured_files(const std::filesystem::path& sidecar_file);
 
 }  // namespace palpate::app

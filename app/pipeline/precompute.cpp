@@ -8,6 +8,7 @@
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/fields.hpp"
 #include "app/pipeline/freshness.hpp"
+#include "app/pipeline/measured_stages.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
 #include "app/pipeline/stages.hpp"
@@ -123,6 +124,7 @@ void refuse_adaptive_shard(const Workspace& space) {
 
 SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
   refuse_adaptive_shard(space);
+  if (is_measured(space)) return run_measured_curves(space, emit);
   const Body body = read_input(space.body(), "mesh", read_body);
   prepare_output(space.out);
   emit_warnings(space, body, emit);

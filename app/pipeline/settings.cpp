@@ -4,7 +4,9 @@
 #include <variant>
 
 #include "app/case/material.hpp"
+#include "app/measured/sidecar.hpp"
 #include "app/pipeline/device_profile.hpp"
+#include "format/error.hpp"
 
 namespace palpate::app {
 
@@ -77,6 +79,14 @@ bool is_adaptive(const Workspace& space) {
   return space.c.sampling.method == SamplingMethod::Adaptive;
 }
 
+bool is_measured(const Workspace& space) {
+  return !space.c.records.empty();
+}
+
+fs::path records_of(const Workspace& space) {
+  return space.case_folder / space.c.records;
+}
+
 mesher::Settings mesh_settings(const Workspace& space) {
   const Case& c = space.c;
   mesher::Settings settings = c.mesh;
@@ -105,6 +115,10 @@ mesher::Settings mesh_settings(const Workspace& space) {
 }
 
 fem::CampaignSettings campaign_settings(const Workspace& space) {
+  if (is_measured(space)) {
+    refuse("case " + space.c.name, "nothing is known of the inside of a measured body",
+           "finite elements need a case with [surface], [volume_mesh] or [image]");
+  }
   fem::CampaignSettings settings = space.c.campaign;
   for (const MaterialSection& material : space.c.materials)
     settings.materials.push_back(campaign_material(material, space.case_folder));
@@ -132,6 +146,7 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
   std::vector<fs::path> inputs;
   switch (stage) {
     case Stage::Mesh:
+      if (is_measured(space)) return measured_files(records_of(space));
       add_inputs(space.case_folder / space.c.mesh.source(), inputs);
       for (const mesher::SurfaceFile& inclusion : space.c.mesh.inclusions)
         inputs.push_back(space.case_folder / inclusion.path);
@@ -160,9 +175,9 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
 std::string stage_case(const Workspace& space, Stage stage) {
   switch (stage) {
     case Stage::Mesh:  // with the tool and its depth: the mesher checks the thickness of the body
-      return resolved_sections(space.c, {"", "surface", "volume_mesh", "mesh_region", "image",
-                                         "image_label", "inclusion", "layer", "mesh", "support",
-                                         "press", "tool", "indentation"}) +
+      return resolved_sections(space.c, {"", "measured", "surface", "volume_mesh", "mesh_region",
+                                         "image", "image_label", "inclusion", "layer", "mesh",
+                                         "support", "press", "tool", "indentation"}) +
              (space.c.sampling.method == SamplingMethod::Nodes ? "every surface node\n" : "");
     case Stage::Precompute:
       return campaign_case(space);

@@ -22,6 +22,10 @@ std::string stage_name(Stage stage);
 /// Whether sites are chosen adaptively and all other responses interpolated.
 bool is_adaptive(const Workspace& space);
 
+/// Whether surface and responses are measured, so that nothing is meshed or solved.
+bool is_measured(const Workspace& space);
+std::filesystem::path records_of(const Workspace& space);  ///< the sidecar of a measured body
+
 mesher::Settings mesh_settings(const Workspace& space);
 fem::CampaignSettings campaign_settings(const Workspace& space);
 fitting::FitSettings fit_settings(const Workspace& space);

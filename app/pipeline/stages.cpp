@@ -12,6 +12,7 @@
 #include "app/pipeline/device_profile.hpp"
 #include "app/pipeline/fields.hpp"
 #include "app/pipeline/freshness.hpp"
+#include "app/pipeline/measured_stages.hpp"
 #include "app/pipeline/mesh_surface.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
@@ -140,6 +141,7 @@ SiteCounts count_sites(const Curves& curves) {
 void run_mesh(const Workspace& space, const EventSink& emit) {
   prepare_output(space.out);
   refuse_body_of_another_case(space);
+  if (is_measured(space)) return run_measured_surface(space, emit);
   if (!space.c.derived.empty())
     emit(LogLine{"mesh", "lengths that the case leaves out: " + space.c.derived});
   mesher::Settings settings = mesh_settings(space);

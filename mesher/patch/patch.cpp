@@ -26,6 +26,7 @@ namespace {
 constexpr double kSamePlace = 0.1;        ///< of the spacing
 constexpr double kFlatterThanLine = 0.2;  ///< of the spacing, standard deviation across a line
 constexpr double kLongEdge = 2;           ///< of the spacing, at the border
+constexpr double kFlat = 0.25;            ///< of the spacing, height of a triangle over the border
 constexpr double kFarApart = 3;           ///< of the spacing
 constexpr double kLargestTilt = std::numbers::pi / 3;
 constexpr double kOffSurface = 0.05;     ///< of the spacing
@@ -201,19 +202,29 @@ class PatchMaker {
     return once;
   }
 
-  /// A hull has slivers where its outline is concave. The longest edge goes first; its triangle may
-  /// go where its third corner is inside, so that every point keeps a triangle and no two borders
-  /// meet [Duckham, Kulik, Worboys & Galton 2008].
+  /// Whether the third corner of a triangle lies nearly on its edge.
+  bool is_flat(const Edge& edge, std::size_t triangle) const {
+    const Triangle& corners = patch_.triangles[triangle];
+    const auto at = [&](std::size_t i) -> const Projected& { return plane_[to_index(corners[i])]; };
+    const double twice_area =
+        (at(1).x - at(0).x) * (at(2).y - at(0).y) - (at(2).x - at(0).x) * (at(1).y - at(0).y);
+    return std::abs(twice_area) < kFlat * patch_.spacing * length_of(edge);
+  }
+
+  /// A hull has slivers along its outline, and long triangles where that is concave. The longest
+  /// edge goes first; its triangle may go where its third corner is inside, so that every point
+  /// keeps a triangle and no two borders meet [Duckham, Kulik, Worboys & Galton 2008].
   void trim_border() {
     while (true) {
       const std::map<Edge, std::size_t> edges = border();
       std::vector<bool> at_border(points_.size(), false);
       for (const auto& [edge, triangle] : edges)
         at_border[to_index(edge[0])] = at_border[to_index(edge[1])] = true;
-      double longest = kLongEdge * patch_.spacing;
+      double longest = 0;
       std::ptrdiff_t goes = -1;
       for (const auto& [edge, triangle] : edges) {
-        if (length_of(edge) <= longest) continue;
+        const bool is_long = length_of(edge) > kLongEdge * patch_.spacing;
+        if (length_of(edge) <= longest || !(is_long || is_flat(edge, triangle))) continue;
         const Triangle& corners = patch_.triangles[triangle];
         const auto third = std::find_if(corners.begin(), corners.end(), [&](std::int32_t corner) {
           return corner != edge[0] && corner != edge[1];
@@ -299,6 +310,24 @@ class PatchMaker {
 
 Patch make_patch(const std::vector<ContactPoint>& points, const std::string& where) {
   return PatchMaker(points, where).make();
+}
+
+std::optional<PatchPlace> place_on(const Patch& patch, const std::vector<ContactPoint>& points,
+                                   const Vec3& position) {
+  constexpr double kOnEdge = 1e-9;
+  for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+    const auto corner = [&](std::size_t i) {
+      return points[to_index(patch.triangles[t][i % 3])].position;
+    };
+    PatchPlace place{t, {}};
+    const double area = dot(cross(corner(1) - corner(0), corner(2) - corner(0)), patch.mean_normal);
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vec3 opposite = cross(corner(i + 1) - position, corner(i + 2) - position);
+      place.natural[i] = dot(opposite, patch.mean_normal) / area;
+    }
+    if (*std::min_element(place.natural.begin(), place.natural.end()) >= -kOnEdge) return place;
+  }
+  return {};
 }
 
 }  // namespace palpate::mesher

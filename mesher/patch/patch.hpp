@@ -2,6 +2,7 @@
 // A response surface of measured contact points alone: an open patch whose vertices are the sites.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,8 @@ struct Patch {
 };
 
 /// Delaunay triangles of the points in the plane across the mean of their normals [CGAL]. Triangles
-/// at the border with an edge over twice the spacing are taken away as long as every point keeps a
-/// triangle and the patch stays one disc.
+/// at the border with an edge over twice the spacing, or a height below a quarter of it, are taken
+/// away as long as every point keeps a triangle and the patch stays one disc.
 ///
 /// A warning names the points that lie off the surface of their neighbours: with heights h and
 /// slopes s by the measured normals, the median over neighbours j of
@@ -40,5 +41,16 @@ struct Patch {
 ///   are no height field; a facet that the measured normals of its corners do not look out of; a
 ///   point with no other one within three spacings.
 Patch make_patch(const std::vector<ContactPoint>& points, const std::string& where);
+
+/// A place on a patch.
+struct PatchPlace {
+  std::size_t triangle = 0;
+  Vec3 natural{};  ///< natural coordinates in it
+};
+
+/// The place of the patch that a position lies over along the mean normal; nothing beyond its
+/// border.
+std::optional<PatchPlace> place_on(const Patch& patch, const std::vector<ContactPoint>& points,
+                                   const Vec3& position);
 
 }  // namespace palpate::mesher

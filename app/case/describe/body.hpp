@@ -155,10 +155,10 @@ void describe_mesh(V& v, mesher::Settings& s) {
 
 /// What the body is made of: one of three sections, and the lists that belong to it.
 template <class V>
-void describe_source(V& v, mesher::Settings& mesh) {
+void describe_source(V& v, mesher::Settings& mesh, bool is_measured) {
   const bool has_mesh = !mesh.volume_mesh.path.empty();
   const bool has_image = !mesh.image.path.empty();
-  const bool has_surface = !has_mesh && !has_image;
+  const bool has_surface = !has_mesh && !has_image && !is_measured;
   if (v.has_section("surface", has_surface)) {
     v.section("surface", kOptional,
               "Outer surface of the body; this section, `[volume_mesh]` or `[image]`.",

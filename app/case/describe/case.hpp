@@ -34,41 +34,68 @@ void describe(V& v, DeformationSection& s) {
                       {.low = 1, .high = 512}});
 }
 
+/// Surface and responses of measurements.
+template <class V>
+void describe_measured(V& v, Case& c) {
+  if (v.has_section("measured", !c.records.empty())) {
+    v.section("measured", kOptional,
+              "Body of measurements alone, instead of `[surface]`, `[volume_mesh]` or `[image]`. "
+              "Beside it there are only `[fit]`, `[certify]`, `[simulate]` and `[output]`.",
+              [&](auto& in) {
+                describe_path(in, c.records,
+                              {"records",
+                               "sidecar of the records (docs/measured.md), relative to "
+                               "the case",
+                               kRequired});
+              });
+  }
+}
+
 template <class V>
 void describe(V& v, Case& c) {
   v.text(c.name,
          {"name", "name of the body and of its output folder; empty means that of the case file"});
-  describe_source(v, c.mesh);
+  describe_measured(v, c);
+  describe_source(v, c.mesh, !c.records.empty());
+  const bool has_inside = c.records.empty();
+  const Presence of_inside = has_inside ? kRequired : kOptional;
   v.sections("inclusion", c.mesh.inclusions, kOptional,
              "Region of another material inside the body. Repeat for each.",
              [](auto& in, auto& s) { describe_inclusion(in, s); });
   v.sections("layer", c.mesh.layers, kOptional,
              "Layer below the outer surface, the outermost first. Repeat for each.",
              [](auto& in, auto& s) { describe_layer(in, s); });
-  v.section("mesh", kOptional, "Resolution.", [&](auto& in) { describe_mesh(in, c.mesh); });
-  v.sections("support", c.supports, kRequired,
+  if (v.has_section("mesh", has_inside))
+    v.section("mesh", kOptional, "Resolution.", [&](auto& in) { describe_mesh(in, c.mesh); });
+  v.sections("support", c.supports, of_inside,
              "Fixed nodes or an elastic foundation. Repeat for each.",
              [](auto& in, auto& s) { describe_support(in, s); });
   v.sections("press", c.mesh.press, kOptional,
              "Where the tool may be pressed: sites lie in one of these zones. Without a zone, "
              "everywhere.",
              [](auto& in, auto& s) { describe_press(in, s); });
-  v.sections("material", c.materials, kRequired, "Law and constants, one table for each region.",
+  v.sections("material", c.materials, of_inside, "Law and constants, one table for each region.",
              [](auto& in, auto& s) { describe(in, s); });
-  v.section("tool", kOptional, "Tool of the campaign.",
-            [&](auto& in) { describe_tool(in, c.campaign.indentation); });
-  v.section("indentation", kOptional, "Paths at each site.",
-            [&](auto& in) { describe_indentation(in, c.campaign.indentation); });
-  v.section("sampling", kOptional, "Choice of the sites.",
-            [&](auto& in) { describe(in, c.sampling); });
-  v.section("solver", kOptional, "Finite elements.",
-            [&](auto& in) { describe_solver(in, c.campaign); });
-  v.section("gravity", kOptional, "Preload: the body deforms under its weight before touch.",
-            [&](auto& in) { describe_gravity(in, c.campaign.gravity); });
+  if (v.has_section("tool", has_inside))
+    v.section("tool", kOptional, "Tool of the campaign.",
+              [&](auto& in) { describe_tool(in, c.campaign.indentation); });
+  if (v.has_section("indentation", has_inside))
+    v.section("indentation", kOptional, "Paths at each site.",
+              [&](auto& in) { describe_indentation(in, c.campaign.indentation); });
+  if (v.has_section("sampling", has_inside))
+    v.section("sampling", kOptional, "Choice of the sites.",
+              [&](auto& in) { describe(in, c.sampling); });
+  if (v.has_section("solver", has_inside))
+    v.section("solver", kOptional, "Finite elements.",
+              [&](auto& in) { describe_solver(in, c.campaign); });
+  if (v.has_section("gravity", has_inside))
+    v.section("gravity", kOptional, "Preload: the body deforms under its weight before touch.",
+              [&](auto& in) { describe_gravity(in, c.campaign.gravity); });
   v.section("fit", kOptional, "From raw curves to responses.",
             [&](auto& in) { describe_fit(in, c.fit); });
-  v.section("deformation", kOptional, "The skin as it is pressed, for pictures.",
-            [&](auto& in) { describe(in, c.deformation); });
+  if (v.has_section("deformation", has_inside))
+    v.section("deformation", kOptional, "The skin as it is pressed, for pictures.",
+              [&](auto& in) { describe(in, c.deformation); });
   v.section("certify", kOptional, "Passivity certificate.",
             [&](auto& in) { describe(in, c.certify); });
   v.section("simulate", kOptional, "Scripted session of `palpate simulate`.",

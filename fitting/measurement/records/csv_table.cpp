@@ -301,8 +301,9 @@ std::string unit_of_name(const std::string& name) {
   return name_and_unit(name).unit;
 }
 
-std::vector<double> column_in_si(const CsvTable& table, const std::string& name,
-                                 Dimension dimension, const std::string& declared_unit) {
+namespace {
+
+const CsvColumn& column_of(const CsvTable& table, const std::string& name) {
   const auto is_it = [&](const CsvColumn& column) { return column.name == name; };
   const auto count = std::count_if(table.columns.begin(), table.columns.end(), is_it);
   if (count != 1) {
@@ -315,7 +316,14 @@ std::vector<double> column_in_si(const CsvTable& table, const std::string& name,
                       : "several columns are named '" + name + "'",
            "the columns are " + names);
   }
-  const CsvColumn& column = *std::find_if(table.columns.begin(), table.columns.end(), is_it);
+  return *std::find_if(table.columns.begin(), table.columns.end(), is_it);
+}
+
+}  // namespace
+
+std::vector<double> column_in_si(const CsvTable& table, const std::string& name,
+                                 Dimension dimension, const std::string& declared_unit) {
+  const CsvColumn& column = column_of(table, name);
   const std::string where = table.file + ", column '" + name + "'";
   const std::string units =
       "units of " + std::string(dimension_name(dimension)) + " are " + record_unit_list(dimension);
@@ -337,6 +345,16 @@ std::vector<double> column_in_si(const CsvTable& table, const std::string& name,
   std::vector<double> values = column.values;
   for (double& value : values) value *= *si;
   return values;
+}
+
+std::vector<double> column_without_unit(const CsvTable& table, const std::string& name) {
+  const CsvColumn& column = column_of(table, name);
+  if (!column.unit.empty() && column.unit != "1" && column.unit != "-") {
+    refuse(table.file + ", column '" + name + "'",
+           "it has the unit '" + column.unit + "', and is a pure number",
+           "name the column of the site, or of a component of the unit normal");
+  }
+  return column.values;
 }
 
 }  // namespace palpate::measured

@@ -58,4 +58,8 @@ std::string unit_of_name(const std::string& name);
 std::vector<double> column_in_si(const CsvTable& table, const std::string& name,
                                  Dimension dimension, const std::string& declared_unit = {});
 
+/// The column with this name, of numbers that have no unit: of sites, of components of a direction.
+/// @throws Error(Configuration) as column_in_si; for a column with a unit.
+std::vector<double> column_without_unit(const CsvTable& table, const std::string& name);
+
 }  // namespace palpate::measured

@@ -270,5 +270,26 @@ TEST(Case, ShippedCasesAreValid) {
   EXPECT_GE(count, 1);
 }
 
+/// A case of records alone: no inside, no tool, no campaign.
+const std::string kMeasured = "[measured]\nrecords = \"bench.toml\"\n";
+
+TEST(MeasuredCase, HasNothingButRecordsAndALibrary) {
+  const Case c = parse_case(kMeasured + "[certify]\nfriction = 0.2\n", "organ.toml");
+  EXPECT_EQ(c.records, "bench.toml");
+  EXPECT_EQ(c.name, "organ");
+  EXPECT_EQ(parse_case(resolved_toml(c), "organ.toml"), c);
+  EXPECT_THAT(resolved_toml(c), testing::Not(HasSubstr("[indentation]")));
+}
+
+TEST(MeasuredCase, RefusesWhatNeedsAnInside) {
+  for (const std::string section : {"[tool]\nradius = \"4 mm\"\n", "[mesh]\n", "[solver]\n",
+                                    "[[material]]\nyoung = \"1 kPa\"\npoisson = 0.4\n"}) {
+    EXPECT_THAT(message_of(kMeasured + section), HasSubstr("with [measured]")) << section;
+  }
+  EXPECT_THAT(message_of(kMeasured + "[surface]\nfile = \"a.off\"\nunit = \"mm\"\n"),
+              HasSubstr("both [measured] and [surface] are given"));
+  EXPECT_THAT(message_of("[measured]\n"), HasSubstr("key 'measured.records' is missing"));
+}
+
 }  // namespace
 }  // namespace palpate::app

@@ -88,6 +88,22 @@ TEST(MeasuredPatch, IsTheSameInAnyFrame) {
   EXPECT_NEAR(turned.steepest, patch.steepest, 1e-9);
 }
 
+TEST(MeasuredPatch, FindsThePlaceBelowAPosition) {
+  const std::vector<ContactPoint> points = dome();
+  const Patch patch = make_patch(points, "robot.csv");
+  const Vec3 natural{0.2, 0.5, 0.3};
+  for (std::size_t t = 0; t < patch.triangles.size(); ++t) {
+    Vec3 x = 0.004 * patch.mean_normal;
+    for (std::size_t i = 0; i < 3; ++i)
+      x = x + natural[i] * points[to_index(patch.triangles[t][i])].position;
+    const auto place = place_on(patch, points, x);
+    ASSERT_TRUE(place.has_value()) << t;
+    EXPECT_EQ(place->triangle, t);
+    EXPECT_LT(norm(place->natural - natural), 1e-9);
+  }
+  EXPECT_FALSE(place_on(patch, points, {-0.01, 0.01, 0}).has_value());
+}
+
 TEST(MeasuredPatch, FollowsAConcaveOutline) {
   // An L of spacing 5 mm: the hull would span the corner that nobody touched.
   std::vector<ContactPoint> points;
@@ -101,6 +117,22 @@ TEST(MeasuredPatch, FollowsAConcaveOutline) {
   const Patch patch = make_patch(points, "robot.csv");
   // The L has 24 squares of 25 mm^2; the hull adds a triangle of 25 mm by 25 mm over two.
   EXPECT_NEAR(area_of(points, patch), 24 * 25e-6, 4 * 25e-6);
+}
+
+/// Points of a straight border bulge by nothing: the hull closes them with triangles of no height,
+/// which look anywhere.
+TEST(MeasuredPatch, HasNoSliversAlongAStraightBorder) {
+  std::vector<ContactPoint> points;
+  for (int i = 0; i < 63; ++i) {
+    const double x = kSpacing * (i % 9 - 4), y = kSpacing * (i / 9 - 3);
+    points.push_back(on_dome("site " + std::to_string(i), x + 0.12 * y, y - 0.15 * x));
+  }
+  const Patch patch = make_patch(points, "robot.csv");
+  EXPECT_LT(patch.largest_turn, 0.3);
+  for (const Triangle& t : patch.triangles) {
+    const auto at = [&](std::size_t i) { return points[to_index(t[i])].position; };
+    EXPECT_GT(norm(cross(at(1) - at(0), at(2) - at(0))), 0.3 * kSpacing * kSpacing);
+  }
 }
 
 TEST(MeasuredPatch, NamesASiteOffTheSurface) {

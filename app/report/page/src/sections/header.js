@@ -64,11 +64,26 @@ function materialLines(data) {
 const quality = (q) => `dihedral angles ${units.significant(q.smallest_dihedral)}\u00b0 to ${units.significant(q.largest_dihedral)}\u00b0, `
   + `longest over shortest edge of a tetrahedron at most ${units.significant(q.largest_edge_ratio)}, longest edge ${units.length(q.longest_edge)}; `
   + `volume ${units.significant(q.volume * 1e6)}\u00a0cm\u00b3`;
+const linesOf = (texts) => texts.flatMap((t, i) => (i ? [el('br'), t] : [t]));
+
+/** A measured surface has neither mesh nor supports nor material. */
+function bodyLines(data) {
+  const { body } = data;
+  if (!body.tetrahedra) {
+    return [['Surface', `measured at ${units.count(body.sites)} sites: ${units.count(body.triangles)} triangles, edge ${units.length(body.patch_edge)} (median); its inside is unknown`]];
+  }
+  return [
+    ['Mesh', `${units.count(body.tetrahedra)} tetrahedra, ${units.count(body.nodes)} nodes; boundary edge ${units.length(body.facet_edge)}, patch edge ${units.length(body.patch_edge)} (medians)`],
+    ['Quality', quality(body.quality)],
+    ['Supports', `${units.count(body.fixed_nodes)} fixed nodes; ${body.sprung_facets ? `${units.count(body.sprung_facets)} facets on springs; ` : ''}${units.count(body.sites)} of ${units.count(body.vertices)} response nodes may be pressed`],
+    ['Regions', body.regions.map((r) => `${r.name} (${units.count(r.tetrahedra)} tetrahedra)`).join(', ')],
+    ['Materials', linesOf(materialLines(data))],
+  ];
+}
 
 export function headerSection(data, nodes) {
   const { body, key } = data;
   const last = data.provenance[data.provenance.length - 1];
-  const lines = (texts) => texts.flatMap((t, i) => (i ? [el('br'), t] : [t]));
   return el('header', {},
     el('h1', {}, data.title),
     paragraph(last ? `Response library of \u201c${body.name}\u201d \u00b7 palpate ${last.version} (${last.git_revision}) \u00b7 ${last.utc}`
@@ -76,10 +91,6 @@ export function headerSection(data, nodes) {
     keyFigures(data, nodes),
     definitions([
       ['Tool', `${key.tool_shape}, radius ${units.length(key.tool_radius)}, normal path ${key.tool_friction}; lateral travel ${units.length(key.lateral_travel)}`],
-      ['Mesh', `${units.count(body.tetrahedra)} tetrahedra, ${units.count(body.nodes)} nodes; boundary edge ${units.length(body.facet_edge)}, patch edge ${units.length(body.patch_edge)} (medians)`],
-      ['Quality', quality(body.quality)],
-      ['Supports', `${units.count(body.fixed_nodes)} fixed nodes; ${body.sprung_facets ? `${units.count(body.sprung_facets)} facets on springs; ` : ''}${units.count(body.sites)} of ${units.count(body.vertices)} response nodes may be pressed`],
-      ['Regions', body.regions.map((r) => `${r.name} (${units.count(r.tetrahedra)} tetrahedra)`).join(', ')],
-      ['Materials', lines(materialLines(data))],
+      ...bodyLines(data),
     ], 'facts'));
 }

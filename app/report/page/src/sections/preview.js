@@ -94,9 +94,9 @@ export function previewSection(data) {
     el('div', { class: 'view' }, view.element, bar.element), legend,
     definitions([
       ['Sites', `${units.count(body.sites)} of ${units.count(body.vertices)} response vertices are pressed`],
-      ['Mesh', `${units.count(body.tetrahedra)} tetrahedra, ${units.count(body.nodes)} nodes; boundary edge ${units.length(body.facet_edge)}, patch edge ${units.length(body.patch_edge)} (medians)`],
+      ...(body.tetrahedra ? [['Mesh', `${units.count(body.tetrahedra)} tetrahedra, ${units.count(body.nodes)} nodes; boundary edge ${units.length(body.facet_edge)}, patch edge ${units.length(body.patch_edge)} (medians)`],
       ['Supports', `${units.count(body.fixed_nodes)} fixed nodes, ${units.count(data.sprung_facets)} facets on springs`],
-      ['Regions', body.regions.map((r) => `${r.name} (${units.count(r.tetrahedra)} tetrahedra)`).join(', ')],
+      ['Regions', body.regions.map((r) => `${r.name} (${units.count(r.tetrahedra)} tetrahedra)`).join(', ')]] : []),
       ['Repair', distance ? `moved the surface by up to ${units.length(moved / MM)}` : 'none was needed, or the file was not a surface'],
     ], 'facts'));
 }
