@@ -107,7 +107,7 @@ TEST(Case, TakesExactlyOneSourceOfTheBody) {
               HasSubstr("[[mesh_region]] with [surface]"));
   EXPECT_THAT(message_of(replaced(with_volume_mesh(),
                                   "[volume_mesh]\nfile = \"organ.msh\"\nunit = \"mm\"\n", "")),
-              HasSubstr("none of [surface], [volume_mesh] and [image]"));
+              HasSubstr("none of [surface], [volume_mesh], [image] and [measured]"));
   EXPECT_THAT(message_of(with_volume_mesh() +
                          "[[inclusion]]\nfile = \"a\"\nunit = \"m\"\nregion = \"b\"\n"),
               HasSubstr("[[inclusion]] with [volume_mesh]"));

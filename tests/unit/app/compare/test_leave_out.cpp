@@ -110,7 +110,12 @@ TEST(LeaveOut, ComparesCurvesOfThePredictedSitesAlone) {
 }
 
 TEST(LeaveOut, RefusesTwoRows) {
-  const Measured m = patch(linear, 0, 2);
+  Measured m = patch(linear, 0, 2);
+  // Both rows are bent outwards, so that no site lies between others of its row.
+  for (std::size_t i = 0; i < m.library.positions.size(); ++i) {
+    const double u = 2.0 * static_cast<double>(i % kColumns) / (kColumns - 1) - 1;
+    m.library.positions[i][1] += (i < kColumns ? -0.002 : 0.002) * (1 - u * u);
+  }
   samples::expect_refusal([&] { leave_sites_out(m.library, m.curves); }, ErrorKind::Configuration,
                           "patch", "no site has others all around it");
 }

@@ -166,7 +166,7 @@ TEST(Compare, FloorAndToleranceFitTheSizeOfTheReference) {
     for (CurvePath& path : site.paths)
       for (CurveSample& sample : path.samples) {
         for (double& f : sample.force) f *= 1e-6;
-        largest = std::max(largest, norm(sample.force));
+        largest = std::max(largest, std::abs(dot(sample.force, path.direction)));
       }
   micro.tool = {"sphere", 25e-6, "frictionless"};
   const ComparedSet small = set_of(micro, "small");
