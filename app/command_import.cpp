@@ -66,7 +66,8 @@ fs::path write_patch(const fs::path& sidecar, const fs::path& out) {
   for (const std::string& warning : patch.warnings) say("  warning: {}", warning);
   patch.body.provenance.steps.push_back(
       make_provenance_step("mesh", "", measured_files(sidecar), {{"origin", "measured"}}));
-  const fs::path file = out / "body.h5";
+  fs::path file = out / "body.h5";
+  prepare_output(out);
   write_body(file, patch.body);
   say("import: surface of {} sites, {} apart -> {}", patch.body.nodes.size(),
       length_text(patch.spacing), file.string());
@@ -76,10 +77,10 @@ fs::path write_patch(const fs::path& sidecar, const fs::path& out) {
 int import_records(const ImportOptions& options) {
   const ImportRequest request = import_request(options.inputs);
   const fs::path out = options.out;
-  prepare_output(out);
   const bool has_body = !options.body.empty() || !makes_body(read_sidecar(request.sidecar));
   const fs::path body = has_body ? fs::path(options.body) : write_patch(request.sidecar, out);
   const Import result = import_measurement(request.sidecar, body, request.records);
+  prepare_output(out);
   if (!result.curves.sites.empty()) write_curves(out / "curves.h5", result.curves);
   if (!result.histories.records.empty()) write_histories(result.histories, request.sidecar, out);
   write_file_crash_safely(out / "import.json", result.account.dump(2) + "\n");

@@ -89,10 +89,11 @@ int parse_and_run(int count, char** arguments) {
   CLI::App root{"palpate: precomputes the indentation of a soft body and renders it in real time",
                 "palpate"};
   root.footer(
-      "Exit codes: 0 success, 1 internal error, 2 usage or configuration, 3 unusable geometry,\n"
-      "4 finished, but too many sites ended early (with --strict: any) or a journal was damaged.\n"
-      "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose stand before or\n"
-      "after it.\n"
+      "Exit codes: 0 success, 1 internal error, 2 usage or configuration,\n"
+      "3 unusable geometry, 4 finished, but too many sites ended early (with\n"
+      "--strict: any), records were refused or a journal was damaged.\n"
+      "'palpate help SUBCOMMAND' explains a subcommand; --quiet and --verbose\n"
+      "stand before or after it.\n"
       "Example: palpate build data/cases/liver.toml");
   root.formatter(help_formatter(console().out.columns));  // inherited by the subcommands
   root.require_subcommand(1);

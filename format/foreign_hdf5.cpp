@@ -95,7 +95,7 @@ std::string text_attribute(hid_t object, const char* name) {
     const Handle memory(H5Tcopy(type.get()), H5Tclose);
     char* text = nullptr;
     if (H5Aread(attribute.get(), memory.get(), &text) < 0 || text == nullptr) return "";
-    const std::string value(text);
+    std::string value(text);
     H5free_memory(text);
     return value;
   }

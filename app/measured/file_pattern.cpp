@@ -169,7 +169,7 @@ std::string filled_in(const std::string& text, const NamedValues& values,
     if (value == values.end()) {
       std::string names;
       for (const auto& [known, ignored] : values)
-        names += (names.empty() ? "{" : ", {") + known + "}";
+        names.append(names.empty() ? "{" : ", {").append(known).append("}");
       refuse(where, "'" + text + "' uses {" + name + "}, which nothing gives",
              names.empty() ? "name it in `files`, or give a `list`" : "known are " + names);
     }

@@ -557,10 +557,10 @@ class Importer {
     if (body_) curves.body_sha256 = sha256_of_file(body_file_);
     const m::RepeatSettings settings{s_.path.samples, s_.machine.force_calibration,
                                      s_.machine.compliance_uncertainty};
-    for (const auto& [vertex, records] : sites_) {
+    for (const auto& entry : sites_) {
       SiteCurves site;
-      const bool usable = attempt(fmt::format("site {}", vertex),
-                                  [&] { site = curves_of(vertex, records, settings); });
+      const bool usable = attempt(fmt::format("site {}", entry.first),
+                                  [&] { site = curves_of(entry.first, entry.second, settings); });
       if (!usable) continue;
       for (const CurvePath& path : site.paths) {
         double& reach = path.kind == PathKind::Normal ? curves.depth : curves.lateral_travel;

@@ -226,9 +226,9 @@ class PatchMaker {
         const bool is_long = length_of(edge) > kLongEdge * patch_.spacing;
         if (length_of(edge) <= longest || !(is_long || is_flat(edge, triangle))) continue;
         const Triangle& corners = patch_.triangles[triangle];
-        const auto third = std::find_if(corners.begin(), corners.end(), [&](std::int32_t corner) {
-          return corner != edge[0] && corner != edge[1];
-        });
+        const auto third =
+            std::find_if(corners.begin(), corners.end(),
+                         [&ends = edge](std::int32_t c) { return c != ends[0] && c != ends[1]; });
         if (at_border[to_index(*third)]) continue;
         longest = length_of(edge);
         goes = static_cast<std::ptrdiff_t>(triangle);

@@ -53,7 +53,7 @@ palpate play | grep -qE '^  liver +[0-9]+ kB  A ' || fail "it plays: $(palpate p
 palpate play gel --no-open --out "$work/gel.html" > /dev/null
 [ "$(stat -c %s "$work/gel.html")" -gt 100000 ] || fail "its page is empty"
 palpate check "$root/share/palpate/bodies/organ.off" > /dev/null || fail "it cannot read its own data"
-for command in $(palpate --help | sed -n '/^Subcommands:/,$ s/^  \([a-z]\+\) .*/\1/p'); do
+for command in $(palpate --help | sed -n '/^Subcommands:/,$ s/^  \([a-z]\+\)  .*/\1/p'); do
   zcat "$root/share/man/man1/palpate-$command.1.gz" | grep -q '^\.TH' || fail "no manual page of palpate $command"
 done
 grep -q '\bplay\b' "$root/share/bash-completion/completions/palpate" || fail "completion does not know play"

@@ -81,7 +81,7 @@ class BadInput(unittest.TestCase):
 
     def test_case_has_no_body(self):
         without = CASE[:CASE.index("[surface]")] + CASE[CASE.index("[mesh]"):]
-        self.refuse_case(USAGE, ["block.toml", "none of [surface], [volume_mesh] and [image]", "add [surface]"], without)
+        self.refuse_case(USAGE, ["block.toml", "none of [surface], [volume_mesh], [image] and [measured]", "add [surface]"], without)
 
     def test_patches_as_large_as_the_body(self):
         case = CASE.replace('patch_spacing = "12.5 mm"', 'patch_spacing = "40 mm"')

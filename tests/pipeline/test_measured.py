@@ -240,7 +240,7 @@ class Measured(unittest.TestCase):
 
     def test_fit_files_of_the_shipped_tables(self):
         for fit in sorted((SOURCE / "data/measured").glob("*/*.toml")):
-            if fit.parent.name == "pad":
+            if fit.parent.name in ("pad", "liver-patch", "pig-liver"):  # records of bodies
                 continue
             with self.subTest(fit):
                 out = Path(self.folder.name) / "fits" / fit.parent.name / fit.stem

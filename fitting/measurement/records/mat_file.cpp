@@ -262,7 +262,7 @@ std::vector<double> read_mat_column(const std::filesystem::path& file, const std
     refuse(where, "the file has no variable '" + steps[0].field + "', or it is cut off there",
            "the file holds " + variables_of(opened.get()));
   const matvar_t& found = *follow(variable.get(), steps, where);
-  const std::vector<double> values = chosen_of(checked_numbers(found, where), found, parsed, where);
+  std::vector<double> values = chosen_of(checked_numbers(found, where), found, parsed, where);
   check_finite(values, where);
   return values;
 }

@@ -247,7 +247,7 @@ class Workbook {
 
   std::string value_of(const pugi::xml_node& cell) const {
     const std::string kind = cell.attribute("t").value();
-    const std::string value = child(cell, "v").text().get();
+    std::string value = child(cell, "v").text().get();
     if (kind == "s") return string_at(value);
     if (kind == "inlineStr") return text_of(child(cell, "is"));
     if (kind == "b") return value == "1" ? "TRUE" : "FALSE";
