@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/measured/file_pattern.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cctype>
 #include <fstream>
@@ -170,7 +172,7 @@ std::string filled_in(const std::string& text, const NamedValues& values,
       std::string names;
       for (const auto& [known, ignored] : values)
         names.append(names.empty() ? "{" : ", {").append(known).append("}");
-      refuse(where, "'" + text + "' uses {" + name + "}, which nothing gives",
+      refuse(where, fmt::format("'{}' uses {{{}}}, which nothing gives", text, name),
              names.empty() ? "name it in `files`, or give a `list`" : "known are " + names);
     }
     filled += value->second;

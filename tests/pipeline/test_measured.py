@@ -198,7 +198,9 @@ class Measured(unittest.TestCase):
                     text.replace("[path]", 'force_unit = "kN"\n\n[path]'))
         self.refuse(["needs a body"], text, body=False)
         self.refuse(["unknown key 'complience'"], text.replace("compliance =", "complience ="))
-        self.refuse(["this is a record", "TOML"], "Time,Load\n0,0\n", name="press.csv")
+        self.refuse(["several sidecars lie beside it", "bad.toml"], "Time,Load\n0,0\n", name="press.csv")
+        (Path(self.folder.name) / "without-sidecar").mkdir()
+        self.refuse(["this is a record", "TOML"], "Time,Load\n0,0\n", name="without-sidecar/press.csv")
         self.refuse(["cannot be read"], text.replace("press-20-20-1.csv", "press-none.csv"))
 
     def test_a_tool_larger_than_the_body_is_doubted(self):

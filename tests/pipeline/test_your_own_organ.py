@@ -116,7 +116,7 @@ class YourOwnOrgan(unittest.TestCase):
             self.assertLess(abs(volume / volumes[0] - 1), 0.1)
 
     def test_minimal_case_of_ten_lines(self):
-        (case,) = blocks(self.page, "toml")
+        case = blocks(self.page, "toml")[0]
         self.assertEqual(len(case.splitlines()), 10)
         (self.root / "minimal.toml").write_text(case, encoding="utf-8")
         self.run_line("palpate mesh minimal.toml")
