@@ -201,7 +201,21 @@ class Measured(unittest.TestCase):
         self.refuse(["several sidecars lie beside it", "bad.toml"], "Time,Load\n0,0\n", name="press.csv")
         (Path(self.folder.name) / "without-sidecar").mkdir()
         self.refuse(["this is a record", "TOML"], "Time,Load\n0,0\n", name="without-sidecar/press.csv")
-        self.refuse(["cannot be read"], text.replace("press-20-20-1.csv", "press-none.csv"))
+
+    def test_a_record_that_is_missing_does_not_take_the_others_with_it(self):
+        text = self.presses.read_text(encoding="utf-8").replace("press-20-20-1.csv", "press-none.csv")
+        sidecar = Path(self.folder.name) / "side" / "missing.toml"
+        sidecar.parent.mkdir(exist_ok=True)
+        sidecar.write_text(text.replace('file = "', f'file = "{self.presses.parent}/'), encoding="utf-8")
+        arguments = ["import", sidecar, "--body", self.out / "body.h5", "--out", Path(self.folder.name) / "others"]
+        result = palpate(*arguments)
+        self.assertEqual(result.returncode, 4, result.stderr)
+        self.assertRegex(result.stdout, r"refused \S*press-none.csv: .*cannot be read")
+        with h5py.File(Path(self.folder.name) / "others/curves.h5", "r") as file:
+            site = list(file["site/vertex"][()]).index(self.repeated_vertex())
+            self.assertEqual(len(file["site/vertex"]), 16)
+            self.assertEqual(file["path/repeats"][file["site/first_path"][site]], 2)  # of three
+        self.ok(*arguments, "--allow-refused")
 
     def test_a_tool_larger_than_the_body_is_doubted(self):
         sidecar = Path(self.folder.name) / "doubted.toml"
