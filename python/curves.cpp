@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <string>
 
+#include "format/status_name.hpp"
 #include "python/arrays.hpp"
 #include "python/artifacts.hpp"
 #include "python/errors.hpp"
@@ -23,18 +24,6 @@ namespace {
 Curves curves_of(const std::filesystem::path& path) {
   return read_file(path, "curves (curves.h5)",
                    [](const auto& file) { return palpate::read_curves(file); });
-}
-
-const char* status_name(SiteStatus status) {
-  switch (status) {
-    case SiteStatus::Complete:
-      return "complete";
-    case SiteStatus::Partial:
-      return "partial";
-    case SiteStatus::Failed:
-      return "failed";
-  }
-  return "";
 }
 
 template <class Field>

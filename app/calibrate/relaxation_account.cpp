@@ -115,7 +115,7 @@ Json relaxation_account(const cal::RelaxationFit& fit, const cal::RelaxationSett
 void say_relaxation(const cal::RelaxationFit& fit,
                     const std::vector<cal::RelaxationRecord>& records, double radius) {
   for (const cal::TriedSeries& t : fit.tried)
-    say("  {} terms: {}{}", t.terms,
+    say("  {} term{}: {}{}", t.terms, t.terms == 1 ? "" : "s",
         std::isfinite(t.bic) ? fmt::format("rms {}, AICc {:.1f}, BIC {:.1f}",
                                            percent_text(t.relative_rms), t.aicc, t.bic)
                              : std::string(),

@@ -6,21 +6,10 @@
 #include <iterator>
 
 #include "format/crash_safe_file.hpp"
+#include "format/status_name.hpp"
 
 namespace palpate::app {
 namespace {
-
-const char* status_name(SiteStatus status) {
-  switch (status) {
-    case SiteStatus::Complete:
-      return "complete";
-    case SiteStatus::Partial:
-      return "partial";
-    case SiteStatus::Failed:
-      return "failed";
-  }
-  return "";
-}
 
 void add_rows(const SiteCurves& site, std::size_t index, std::string& out) {
   const CurvePath& path = site.paths[index];

@@ -10,7 +10,10 @@
 #include "app/measured/sidecar.hpp"
 #include "fitting/measurement/records/batch.hpp"
 #include "fitting/measurement/records/csv_table.hpp"
+#include "fitting/measurement/records/history.hpp"
 #include "fitting/measurement/records/placement.hpp"
+#include "fitting/measurement/records/press.hpp"
+#include "fitting/measurement/records/robot.hpp"
 
 namespace palpate::app {
 
@@ -23,19 +26,43 @@ class RecordReader {
   const measured::Registration& registration() const { return registration_; }
   std::filesystem::path path_of(const std::string& file) const;
 
-  /// The table of a batch, whatever kind of file holds it.
+  /// The table of a section, whatever kind of file holds it.
+  measured::CsvTable table(const PressFileSection& section) const;
+  measured::CsvTable table(const HistoryFileSection& section) const;
+  measured::CsvTable table(const RobotFileSection& section) const;
   measured::CsvTable table(const BatchFileSection& section) const;
-  /// Empty where the sidecar names no column. @throws Error as measured::column_in_si.
-  std::vector<double> column(const measured::CsvTable& table, const std::string& name,
-                             Dimension dimension) const;
+
+  /// @throws Error as measured::column_in_si and measured::analyse_press.
+  measured::PressCurve press(const PressFileSection& section,
+                             const measured::CsvTable& table) const;
+  /// @throws Error as measured::column_in_si and measured::analyse_history.
+  measured::History history(const HistoryFileSection& section) const;
+  measured::RobotLog robot_log(const RobotFileSection& section,
+                               const measured::CsvTable& table) const;
   /// The presses of a batch. @throws Error as measured::split_batch.
   std::vector<measured::BatchSite> batch(const BatchFileSection& section,
                                          const measured::CsvTable& table) const;
 
- private:
   measured::PressSettings press_settings(int cycle) const;
+  /// How the columns became displacement and force; empty where they are those.
+  std::string conversion() const;
+
+ private:
+  std::vector<double> column(const measured::CsvTable& table, const std::string& name,
+                             Dimension dimension) const;
+  template <class Section>
+  measured::CsvTable read(const Section& section, std::vector<std::string> wanted) const;
+  std::vector<std::string> columns_of_press() const;
+  std::vector<double> displacement(const measured::CsvTable& table) const;
+  std::vector<double> force(const measured::CsvTable& table) const;
+  measured::Signs orient(measured::PressRecord& record) const;
+  measured::PressRecord record(const std::string& file, const measured::CsvTable& table,
+                               measured::Signs& signs) const;
   std::vector<Vec3> vectors(const measured::CsvTable& table,
                             const std::array<std::string, 3>& names, Dimension dimension) const;
+  std::vector<Vec3> positions(const measured::CsvTable& table,
+                              const std::array<std::string, 3>& names) const;
+  std::vector<Vec3> forces(const measured::CsvTable& table) const;
   std::vector<Vec3> normals(const measured::CsvTable& table) const;
 
   std::filesystem::path sidecar_file_;

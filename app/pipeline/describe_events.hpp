@@ -7,20 +7,9 @@
 
 #include "app/pipeline/events.hpp"
 #include "format/passivity.hpp"
+#include "format/status_name.hpp"
 
 namespace palpate::app {
-
-constexpr std::string_view status_name(SiteStatus status) {
-  switch (status) {
-    case SiteStatus::Complete:
-      return "complete";
-    case SiteStatus::Partial:
-      return "partial";
-    case SiteStatus::Failed:
-      return "failed";
-  }
-  return {};
-}
 
 template <class V>
 void describe(V& v, const StageStarted& e) {

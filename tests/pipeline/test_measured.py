@@ -7,7 +7,6 @@ library with simulated shape and measured scale. Usage: measured_test.py PALPATE
 import csv
 import json
 import math
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -16,7 +15,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-PALPATE, SOURCE = None, None
+import command
+
+SOURCE = None
 REPEATED = (0.020, 0.020, 0.020)
 
 # As in scripts/make_pad_records.py, in SI.
@@ -27,11 +28,9 @@ def law(depth):
     return 4 / 3 * MODULUS * np.sqrt(RADIUS) * depth**1.5 * (1 + 0.1 * depth / RADIUS)
 
 
-def palpate(*arguments):
-    return subprocess.run([PALPATE, *map(str, arguments)], capture_output=True, text=True, check=False)
-
-
 class Measured(unittest.TestCase):
+    ok = staticmethod(command.output_of)
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -45,13 +44,6 @@ class Measured(unittest.TestCase):
     @classmethod
     def tearDownClass(cls):
         cls.folder.cleanup()
-
-    @classmethod
-    def ok(cls, *arguments):
-        result = palpate(*arguments)
-        if result.returncode != 0 or result.stderr:
-            raise AssertionError(f"{arguments}: {result.stdout}{result.stderr}")
-        return result.stdout
 
     def repeated_vertex(self):
         with h5py.File(self.out / "body.h5", "r") as file:
@@ -166,7 +158,7 @@ class Measured(unittest.TestCase):
         fit = folder / "turned.toml"
         fit.write_text('name = "a"\nsource = "b"\nlicence = "c"\n[fit]\nlaw = "gent"\n[[test]]\nfile = "turned.csv"\n'
                        'mode = "uniaxial"\ndeformation = "stretch"\nstress = "stress"\n')
-        result = palpate("calibrate", "tests", fit, "--out", folder / "turned")
+        result = command.palpate("calibrate", "tests", fit, "--out", folder / "turned")
         self.assertEqual(result.returncode, 2, result.stdout)
         self.assertIn("fit of gent", result.stderr)
         self.assertIn("; check signs", result.stderr)
@@ -180,7 +172,7 @@ class Measured(unittest.TestCase):
         sidecar.write_text(text.replace('file = "', f'file = "{self.presses.parent}/'), encoding="utf-8")
         out = Path(self.folder.name) / "none"
         arguments = ["import", sidecar, "--out", out] + (["--body", self.out / "body.h5"] if body else [])
-        result = palpate(*arguments)
+        result = command.palpate(*arguments)
         self.assertEqual(result.returncode, 2, result.stdout)
         self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
         self.assertIn("; ", result.stderr)
@@ -208,7 +200,7 @@ class Measured(unittest.TestCase):
         sidecar.parent.mkdir(exist_ok=True)
         sidecar.write_text(text.replace('file = "', f'file = "{self.presses.parent}/'), encoding="utf-8")
         arguments = ["import", sidecar, "--body", self.out / "body.h5", "--out", Path(self.folder.name) / "others"]
-        result = palpate(*arguments)
+        result = command.palpate(*arguments)
         self.assertEqual(result.returncode, 4, result.stderr)
         self.assertRegex(result.stdout, r"refused \S*press-none.csv: .*cannot be read")
         with h5py.File(Path(self.folder.name) / "others/curves.h5", "r") as file:
@@ -224,6 +216,19 @@ class Measured(unittest.TestCase):
             sidecar.write_text(text.replace('radius = "6 mm"', f'radius = "{radius}"'), encoding="utf-8")
             out = self.ok("import", sidecar, "--out", Path(self.folder.name) / "doubted", "--body", self.out / "body.h5")
             self.assertEqual("the radius of the tool, 6000 mm, is larger than the body" in out, doubted, out)
+
+    def test_a_slice_under_a_sphere_of_25_um(self):
+        """Micrometres and micronewtons: the modulus of the record, which Hertz made, is in its interval."""
+        out, records = Path(self.folder.name) / "slice", Path(self.folder.name) / "slice-measured"
+        case = SOURCE / "data/cases/slice.toml"
+        self.ok("mesh", case, "--out", out)
+        text = self.ok("import", SOURCE / "data/measured/slice/press.toml", "--body", out / "body.h5", "--out", records)
+        self.assertRegex(text, r"to 12\.\d um, 0\.4\d+ uN")
+        self.ok("calibrate", "body", case, "--measured", records / "curves.h5", "--young", "brain", "--out", out)
+        (young,) = json.loads((out / "calibration.json").read_text())["constants"]
+        self.assertLess(young["low"], 1200)
+        self.assertGreater(young["high"], 1200)
+        self.assertLess(young["high"] - young["low"], 0.3 * 1200)
 
     def test_bad_records_are_refused(self):
         """Common mistakes in records: each is an error of one line that names the file and the remedy."""
@@ -247,7 +252,7 @@ class Measured(unittest.TestCase):
                 sidecar.parent.mkdir(exist_ok=True)
                 sidecar.write_text(text, encoding="utf-8")
                 out = Path(self.folder.name) / "none"
-                result = palpate("import", sidecar, "--out", out, "--body", self.out / "body.h5")
+                result = command.palpate("import", sidecar, "--out", out, "--body", self.out / "body.h5")
                 self.assertEqual(result.returncode, 2, result.stdout)
                 self.assertEqual(result.stderr.count("\n"), 1, result.stderr)
                 for word in words:
@@ -271,5 +276,5 @@ class Measured(unittest.TestCase):
 
 if __name__ == "__main__":
     SOURCE = Path(sys.argv.pop(2))
-    PALPATE = sys.argv.pop(1)
+    command.PALPATE = sys.argv.pop(1)
     unittest.main(verbosity=2)

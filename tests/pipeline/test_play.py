@@ -110,6 +110,7 @@ class Play(unittest.TestCase):
             shown, touched = acted(page)
             self.assertNotIn("error", touched)
             self.assertIn('data-errors="0"', shown)
+            self.assertEqual("relaxes by 0.25 in 50 ms and 0.25 in 600 ms, instantaneous moduli" in shown, name == "liver")
             self.assertEqual((touched["title"], touched["state"]), (name, "in contact, sticking"))
             names, *rows = (line.split(",") for line in touched["csv"].strip().split("\n"))
             rows = [dict(zip(names, map(float, row))) for row in rows]

@@ -6,7 +6,6 @@ data/measured/liver-patch, whose true force is known. Usage: test_robot_batch.py
 """
 import json
 import math
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -15,7 +14,9 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-PALPATE, SOURCE = None, None
+import command
+
+SOURCE = None
 
 
 def records_script():
@@ -25,11 +26,11 @@ def records_script():
     return make_liver_patch_records
 
 
-def palpate(*arguments):
-    return subprocess.run([PALPATE, *map(str, arguments)], capture_output=True, text=True, check=False)
-
-
 class RobotBatch(unittest.TestCase):
+    @staticmethod
+    def ok(*arguments):
+        return command.output_of(*arguments, may_warn=True)
+
     @classmethod
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory()
@@ -41,13 +42,6 @@ class RobotBatch(unittest.TestCase):
     @classmethod
     def tearDownClass(cls):
         cls.folder.cleanup()
-
-    @classmethod
-    def ok(cls, *arguments):
-        result = palpate(*arguments)
-        if result.returncode != 0:
-            raise AssertionError(f"{arguments}: {result.stdout}{result.stderr}")
-        return result.stdout
 
     def test_the_records_are_those_of_the_script(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -138,7 +132,7 @@ class RobotBatch(unittest.TestCase):
     def test_finite_elements_refuse_it(self):
         for arguments in (["precompute", self.case, "--convergence", "3"], ["compare", "--fem", self.case],
                           ["precompute", self.case, "--estimate"]):
-            result = palpate(*arguments, "--out", self.out)
+            result = command.palpate(*arguments, "--out", self.out)
             self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
             self.assertIn("inside", result.stderr)
 
@@ -153,7 +147,7 @@ class RobotBatch(unittest.TestCase):
             (folder / "probing.csv").write_text("\n".join([lines[0], *(",".join(row) for row in rows)]) + "\n")
             sidecar = (SOURCE / "data/measured/liver-patch/sidecar.toml").read_text()
             (folder / "sidecar.toml").write_text(sidecar)
-            result = palpate("import", folder / "sidecar.toml", "--out", folder / "out")
+            result = command.palpate("import", folder / "sidecar.toml", "--out", folder / "out")
             self.assertEqual(result.returncode, 2, result.stdout + result.stderr)
             self.assertRegex(result.stderr, wanted)
 
@@ -186,5 +180,5 @@ class RobotBatch(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    PALPATE, SOURCE = sys.argv[1], Path(sys.argv[2])
+    command.PALPATE, SOURCE = sys.argv[1], Path(sys.argv[2])
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -43,12 +43,19 @@ function keyFigures(data, nodes) {
       `${units.count(data.body.vertices)} nodes, ${units.count(data.body.triangles)} triangles`, 'library-bytes'));
 }
 
+/** Keys whose values are no plain words. */
+const WORDED = {
+  relaxation: (series) => `relaxes by ${[...series.matchAll(/fraction = ([^,]+), time = "([^"]+)"/g)]
+    .map(([, fraction, time]) => `${fraction} in ${time}`).join(' and ')}`,
+  moduli: (kind) => `${kind} moduli`,
+};
+
 /** A [[material]] table, a list of [key, value], as one line. */
 export function materialLine(pairs) {
   const get = Object.fromEntries(pairs);
   // A density of 0 stands for that of [gravity].
   const shown = ([k, v]) => k !== 'region' && k !== 'law' && !(k === 'density' && v.startsWith('0 '));
-  const rest = pairs.filter(shown).map(([k, v]) => `${k} ${v}`);
+  const rest = pairs.filter(shown).map(([k, v]) => WORDED[k]?.(v) ?? `${k} ${v}`);
   return `${get.region ?? 'body'}: ${[get.law, ...rest].filter(Boolean).join(', ')}`;
 }
 

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/measured/record_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "format/error.hpp"
+#include "format/number_text.hpp"
+#include "format/to_index.hpp"
+
+namespace palpate::app {
+namespace {
+
+namespace m = palpate::measured;
+
+double extent_of(const Body& body) {
+  Vec3 low = body.nodes.front(), high = low;
+  for (const Vec3& x : body.nodes) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      low[i] = std::min(low[i], x[i]);
+      high[i] = std::max(high[i], x[i]);
+    }
+  }
+  return norm(high - low);
+}
+
+}  // namespace
+
+double tolerance_on(const Body& body, double tool_radius) {
+  constexpr double kMost = 5e-3, kRadii = 4;
+  double sum = 0;
+  const auto corner = [&](std::int32_t v) {
+    return body.nodes[to_index(body.response.node[to_index(v)])];
+  };
+  for (const Triangle& t : body.response.triangles)
+    for (std::size_t i = 0; i < 3; ++i) sum += norm(corner(t[i]) - corner(t[(i + 1) % 3]));
+  const double edge = sum / (3 * static_cast<double>(body.response.triangles.size()));
+  return std::min(kMost, std::max(edge, kRadii * tool_radius));
+}
+
+RecordChecks::RecordChecks(const Sidecar& sidecar, const std::optional<Body>& body)
+    : tool_radius_(sidecar.tool.radius) {
+  if (!body) return;
+  extent_ = extent_of(*body);
+  if (tool_radius_ <= *extent_) return;
+  warn(fmt::format("the radius of the tool, {}, is larger than the body, {}: check its unit",
+                   length_text(tool_radius_), length_text(*extent_)));
+}
+
+void RecordChecks::check_depth(const std::string& where, const m::PressCurve& curve) {
+  const double depth = curve.loading.back().depth;
+  if (extent_ && depth > *extent_) {
+    throw Error(ErrorKind::Configuration, where,
+                fmt::format("the tool goes {} deep into a body of {}", length_text(depth),
+                            length_text(*extent_)),
+                "check the unit of the displacement");
+  }
+  constexpr double kManyRadii = 10;
+  if (depth > kManyRadii * tool_radius_) {
+    warn(fmt::format("{}: the tool goes {} deep, its radius is {}: check the units", where,
+                     length_text(depth), length_text(tool_radius_)));
+  }
+}
+
+void RecordChecks::check_drift(const std::string& where, const m::PressCurve& curve) {
+  constexpr double kMatters = 0.05;  // of the force
+  const m::DepthForce& end = curve.loading.back();
+  if (curve.baseline.state == m::DriftState::Suspected) {
+    const double at_end = curve.common.suspected_drift * (end.time - curve.common.suspected_from);
+    warn(
+        fmt::format("{}: out of contact the force drifts, by {} until the deepest point, if it "
+                    "goes on; too few samples determine it: it is not removed, and counts as an "
+                    "uncertainty. Record the release, or a wait before the press, and the time",
+                    where, force_text(std::abs(at_end))));
+  } else if (curve.baseline.possible_drift * end.time > kMatters * std::abs(end.force)) {
+    warn(
+        fmt::format("{}: the samples out of contact do not exclude a drift of {} until the "
+                    "deepest point, {} of the force; none is removed, and the uncertainty has "
+                    "none. Record the release, or a wait before the press",
+                    where, force_text(curve.baseline.possible_drift * end.time),
+                    percent_text(curve.baseline.possible_drift * end.time / end.force)));
+  }
+}
+
+void RecordChecks::check_lateral(const std::string& where, const m::BatchSite& site) {
+  constexpr double kMuch = 0.25;
+  if (site.lateral_fraction > kMuch) {
+    warn(
+        fmt::format("{}: {} of the normal force acts across the normal at the deepest point, "
+                    "and is in no curve: check the normal",
+                    where, percent_text(site.lateral_fraction)));
+  }
+  const double depth = site.press.loading.back().depth;
+  if (site.sideways > kMuch * depth) {
+    warn(fmt::format("{}: the tool moves {} across the normal, and {} along it", where,
+                     length_text(site.sideways), length_text(depth)));
+  }
+}
+
+void RecordChecks::check_force(const SiteCurves& site) {
+  for (const CurvePath& path : site.paths) {
+    const CurveSample& end = path.samples.back();
+    if (!(end.force_uncertainty > 0.5 * std::abs(dot(end.force, path.direction)))) continue;
+    warn(fmt::format("site {}: the force is uncertain by more than half of itself", site.vertex));
+    return;
+  }
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,17 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""The command that a pipeline test runs; the test sets PALPATE."""
+import subprocess
+
+PALPATE = None
+
+
+def palpate(*arguments):
+    return subprocess.run([PALPATE, *map(str, arguments)], capture_output=True, text=True, check=False)
+
+
+def output_of(*arguments, may_warn=False):
+    """What the command prints. It must succeed, and warn only where it may."""
+    result = palpate(*arguments)
+    if result.returncode != 0 or (result.stderr and not may_warn):
+        raise AssertionError(f"{arguments}: {result.stdout}{result.stderr}")
+    return result.stdout
