@@ -3,6 +3,7 @@
 
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/measured/histories.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "fitting/measurement/compare/rescale.hpp"
 #include "format/provenance.hpp"
@@ -16,9 +17,18 @@ struct RescaleOptions {
   std::string simulated, measured, out;
 };
 
+/// With records over time the part that relaxes during a press does not count as softness.
+compare::Rescaling rescaling(const Curves& simulated, const fs::path& measured) {
+  if (measured.extension() != ".json")
+    return compare::rescale(simulated, read_curves(measured), {});
+  const Histories histories = histories_with_sites(measured);
+  require_same_tool(histories, simulated.tool.shape, simulated.tool.radius, measured.string());
+  return compare::rescale_over_time(simulated, histories.records);
+}
+
 int rescale_curves(const RescaleOptions& options) {
   const Curves simulated = read_curves(options.simulated);
-  compare::Rescaling result = compare::rescale(simulated, read_curves(options.measured), {});
+  compare::Rescaling result = rescaling(simulated, options.measured);
   say("rescale: measured = {:.4f} +- {:.4f} of simulated, from {} sites", result.factor,
       result.uncertainty, result.sites.size());
   for (const compare::SiteScale& site : result.sites) {
@@ -48,7 +58,9 @@ void add_rescale_command(CLI::App& root, Action& action) {
   const auto options = std::make_shared<RescaleOptions>();
   command->add_option("SIMULATED", options->simulated, "curves.h5 of `palpate precompute`")
       ->required();
-  command->add_option("MEASURED", options->measured, "curves.h5 of `palpate import`")->required();
+  command
+      ->add_option("MEASURED", options->measured, "curves.h5 or histories.json of `palpate import`")
+      ->required();
   command->add_option("--out", options->out, "Folder of the new curves.h5")->required();
   command->callback(
       [options, &action] { action = [options] { return rescale_curves(*options); }; });

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """Make the surfaces in data/bodies: cylinder.off, organ.off, nodule.off, liver-nodule.off, pad.off,
-slice.off (millimetres).
+slice.off, meat.off (millimetres).
 
 Only the Python standard library; the same files come out on every machine up to the last printed
 digit. Run from anywhere: scripts/make_bodies.py [folder]
@@ -228,6 +228,8 @@ def main():
     write_off(folder / "pad.off", note, points, triangles, digits=1)
     points, triangles = box(size=(4, 4, 1), divisions=1)
     write_off(folder / "slice.off", note, points, triangles, digits=1)
+    points, triangles = box(size=(50, 50, 9.7), divisions=5)
+    write_off(folder / "meat.off", note, points, triangles, digits=2)
     print("nodule lies under", ", ".join(f"{x:.1f}" for x in top), "mm")
 
 

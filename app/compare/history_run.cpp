@@ -21,27 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Histories histories_with_sites(const fs::path& file) {
-  Histories histories = read_histories(file);
-  for (const SiteHistory& site : histories.records) {
-    if (site.vertex >= 0) continue;
-    refuse(file.string() + ", " + site.history.name, "the record has no site on a body",
-           "give its vertex or site in the sidecar, and import it with --body");
-  }
-  return histories;
-}
-
-void require_same_tool(const Histories& histories, const std::string& shape, double radius,
-                       const std::string& where) {
-  constexpr double kAlike = 0.01;
-  const ToolDescription& tool = histories.tool;
-  if (tool.shape == shape && std::abs(tool.radius - radius) <= kAlike * radius) return;
-  refuse(where,
-         fmt::format("its tool is a {} of {:.4g} mm, that of the records a {} of {:.4g} mm", shape,
-                     1e3 * radius, tool.shape, 1e3 * tool.radius),
-         "compare with a library of the tool of the records");
-}
-
 void add_library(const Histories& histories, const fs::path& file,
                  std::vector<ComparedHistory>& compared) {
   const Library library = read_library(file);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/measured/histories.hpp"
 
+#include <fmt/format.h>
+
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -117,6 +119,27 @@ Histories read_histories(const std::filesystem::path& file) {
   } catch (const nlohmann::json::exception& error) {
     refuse_file(file.string(), error.what());
   }
+}
+
+Histories histories_with_sites(const std::filesystem::path& file) {
+  Histories histories = read_histories(file);
+  for (const SiteHistory& site : histories.records) {
+    if (site.vertex >= 0) continue;
+    refuse(file.string() + ", " + site.history.name, "the record has no site on a body",
+           "give its vertex or site in the sidecar, and import it with --body");
+  }
+  return histories;
+}
+
+void require_same_tool(const Histories& histories, const std::string& shape, double radius,
+                       const std::string& where) {
+  constexpr double kAlike = 0.01;
+  const ToolDescription& tool = histories.tool;
+  if (tool.shape == shape && std::abs(tool.radius - radius) <= kAlike * radius) return;
+  refuse(where,
+         fmt::format("its tool is a {} of {:.4g} mm, that of the records a {} of {:.4g} mm", shape,
+                     1e3 * radius, tool.shape, 1e3 * tool.radius),
+         "compare with a library of the tool of the records");
 }
 
 }  // namespace palpate::app

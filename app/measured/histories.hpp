@@ -12,11 +12,7 @@
 
 namespace palpate::app {
 
-/// A record and the site at which it was made.
-struct SiteHistory {
-  std::int32_t vertex = -1;  ///< -1: not on a body
-  measured::History history;
-};
+using measured::SiteHistory;
 
 struct Histories {
   std::string name, specimen, source, licence;
@@ -31,5 +27,14 @@ nlohmann::ordered_json histories_json(const Histories& histories);
 /// @throws Error(Configuration) naming the file for a file of another kind, arrays of different
 ///   lengths, times that do not increase, phases beyond the record.
 Histories read_histories(const std::filesystem::path& file);
+
+/// read_histories(), and every record is at a site of a body.
+/// @throws Error(Configuration) also for a record without a site.
+Histories histories_with_sites(const std::filesystem::path& file);
+
+/// @throws Error(Configuration) naming `where` unless shape and radius (m, within 1 %) are those of
+///   the tool of the records.
+void require_same_tool(const Histories& histories, const std::string& shape, double radius,
+                       const std::string& where);
 
 }  // namespace palpate::app

@@ -15,6 +15,7 @@
 #include "app/measured/record_checks.hpp"
 #include "app/measured/record_reader.hpp"
 #include "app/measured/site_records.hpp"
+#include "fitting/measurement/relaxation/before_relaxing.hpp"
 #include "fitting/measurement/records/placement.hpp"
 #include "fitting/measurement/records/robot.hpp"
 #include "format/error.hpp"
@@ -155,8 +156,10 @@ class Importer {
             const PlacedAt& place, const m::PressCurve& curve) {
     checks_.check_depth(reader_.path_of(where).string(), curve);
     checks_.check_drift(where, curve);
+    const RelaxationSeries& series = s_.path.relaxation;
+    const m::PressCurve press = series.empty() ? curve : m::before_relaxing(curve, series, where);
+    records_at(place.vertex).presses.push_back(press);
     records_.push_back(press_account(file, table, place, curve));
-    records_at(place.vertex).presses.push_back(curve);
     add_file(reader_.path_of(file));
   }
 
@@ -237,11 +240,14 @@ class Importer {
     Curves curves;
     curves.tool = {s_.tool.shape, s_.tool.radius, s_.tool.friction};
     if (body_) curves.body_sha256 = sha256_of_file(body_file_);
+    if (!s_.path.relaxation.empty())
+      curves.relaxation = over_one_list({s_.path.relaxation}, sidecar_file_.string());
     for (const auto& entry : sites_) {
       SiteCurves site;
       const bool usable = attempt(fmt::format("site {}", entry.first),
                                   [&] { site = site_curves(entry.second, s_); });
       if (!usable) continue;
+      if (!curves.relaxation.empty()) m::let_relax(site);
       for (const CurvePath& path : site.paths) {
         double& reach = path.kind == PathKind::Normal ? curves.depth : curves.lateral_travel;
         reach = std::max(reach, path.samples.back().displacement);

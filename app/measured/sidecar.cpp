@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "app/case/describe/series.hpp"
 #include "app/case/reader.hpp"
 #include "app/measured/many_files.hpp"
 #include "format/error.hpp"
@@ -121,6 +122,11 @@ void describe(V& v, PathSection& s) {
             "lateral over normal stiffness where no drag was measured; 0 makes no lateral path",
             kOptional,
             {.low = 0, .high = 1}});
+  describe_series(v, s.relaxation,
+                  {"relaxation",
+                   "Prony series of the force, of `palpate calibrate relaxation`: the curves are "
+                   "then those of tissue that has had no time to relax"},
+                  "part of the instantaneous force that relaxes; their sum is below 1");
 }
 
 template <class V>

@@ -10,6 +10,7 @@
 
 #include "app/measured/specimen_size.hpp"
 #include "app/measured/table_keys.hpp"
+#include "format/relaxation.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate::app {
@@ -65,6 +66,7 @@ struct PathSection {
   bool as_recorded = false;  ///< the samples of a batch are those of the path, `samples` is unused
   int lateral_samples = 12;
   double lateral_ratio = 0;  ///< of a lateral response made from the normal one; 0: none
+  RelaxationSeries relaxation;  ///< of the force; empty: the curves are those of the recorded press
 };
 
 struct PlacementSection {

@@ -8,6 +8,7 @@
 
 #include "app/case/case.hpp"
 #include "app/case/describe/key.hpp"
+#include "app/case/describe/series.hpp"
 #include "fem/laws/law_table.hpp"
 
 namespace palpate::app {
@@ -89,20 +90,11 @@ inline double& value_of(fem::LawConstants& law, std::string_view name) {
 
 template <class V>
 void describe_relaxation(V& v, MaterialSection& s) {
-  v.tables(s.relaxation,
-           {"relaxation",
-            "Prony series of the isochoric stress, in ascending order of time; the volumetric "
-            "stress is elastic"},
-           [](auto& in, RelaxationBranch& branch) {
-             in.number(branch.fraction,
-                       {"fraction",
-                        "part of the instantaneous isochoric stress that relaxes; their sum is "
-                        "below 1",
-                        kRequired,
-                        {.low = 0, .high = 1, .low_open = true, .high_open = true}});
-             in.quantity(branch.time_s, Dimension::Time,
-                         {"time", "time in which that part falls to 1/e", kRequired, kPositive});
-           });
+  describe_series(v, s.relaxation,
+                  {"relaxation",
+                   "Prony series of the isochoric stress, in ascending order of time; the "
+                   "volumetric stress is elastic"},
+                  "part of the instantaneous isochoric stress that relaxes; their sum is below 1");
   const bool relaxes = !s.relaxation.empty();
   if (v.has_section("moduli", relaxes) || relaxes)
     describe_choice(

@@ -96,6 +96,7 @@ std::optional<Calibration> try_minimise(const LeastSquares& problem) {
     Estimate& e = result.estimates.emplace_back();
     e.name = c.name;
     e.unit = c.unit;
+    e.logarithm = c.logarithm;
     e.value = value;
     e.standard_error = e.low = e.high = kUnknown;
     e.at_bound = is_at(value, c.low) || is_at(value, c.high);

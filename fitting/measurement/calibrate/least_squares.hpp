@@ -17,6 +17,7 @@ struct Constant {
   double start = 0;
   double low = 0, high = 0;  ///< may be infinite
   bool may_vanish = false;   ///< 0 is a value like any other: an interval that holds it is no doubt
+  bool logarithm = false;    ///< the values are logarithms of what is named, for messages
 };
 
 struct LeastSquares {
@@ -50,6 +51,7 @@ struct Estimate {
   double unit_error = 0;      ///< the same for independent residuals of unit scatter
   double low = 0, high = 0;   ///< of the confidence interval, by Student's t
   bool at_bound = false;
+  bool logarithm = false;  ///< as that of its Constant
   /// Ends of the profile likelihood, see add_profiles(); NaN without, infinite where it does not
   /// end.
   double profile_low = std::numeric_limits<double>::quiet_NaN();

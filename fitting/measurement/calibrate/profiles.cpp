@@ -178,7 +178,10 @@ void warn_of_profile(const Estimate& e, const ProfileEnd& below, const ProfileEn
                      std::vector<std::string>& warnings) {
   constexpr double kFar = 0.25;  // of the half width: how far an end is from the linearised one
   const double half = e.high - e.value;
-  const std::string ends = number_text(e.profile_low) + " to " + number_text(e.profile_high);
+  const auto text = [&](double value) {
+    return number_text(e.logarithm ? std::exp(value) : value);
+  };
+  const std::string ends = text(e.profile_low) + " to " + text(e.profile_high);
   const double apart = std::max(std::abs(e.profile_low - e.low), std::abs(e.profile_high - e.high));
   if (below.met_better_fit() || above.met_better_fit()) {
     warnings.push_back("away from the best " + e.name +

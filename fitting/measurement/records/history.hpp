@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,12 @@ struct History {
   std::vector<Phase> phases;   ///< in order of time, without overlap
   Baseline baseline;
   ContactPoint contact;
+};
+
+/// A record and the site at which it was made.
+struct SiteHistory {
+  std::int32_t vertex = -1;  ///< -1: not on a body
+  History history;
 };
 
 /// Baseline and contact point are those of analyse_press for the first press of the record; all

@@ -199,6 +199,7 @@ void turn_into_seconds(const ConstantPlaces& p, Calibration& c) {
     Estimate& e = c.estimates[*p.time + i];
     const double time = std::exp(e.value);
     e.value = time;
+    e.logarithm = false;
     e.standard_error *= time;
     e.unit_error *= time;
     for (double* end : {&e.low, &e.high, &e.profile_low, &e.profile_high}) *end = std::exp(*end);

@@ -147,7 +147,7 @@ LeastSquares RelaxationProblem::squares(std::size_t terms) const {
     problem.constants.push_back({"fraction_" + std::to_string(i + 1), "1", 0.1, 0, 1});
   for (std::size_t i = 0; p.time && i < terms; ++i)
     problem.constants.push_back({"time_" + std::to_string(i + 1), "s", 0, std::log(shortest_time_),
-                                 std::log(longest_time_), true});
+                                 std::log(longest_time_), true, true});
   problem.series = series();
   for (const std::size_t length : problem.series) problem.residuals += length;
   problem.confidence = settings_.confidence;

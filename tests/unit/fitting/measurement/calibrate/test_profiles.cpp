@@ -46,6 +46,28 @@ TEST(Profile, IsExactWhereTheLinearisedIntervalIsNot) {
             0.01);  // the linearised one is not
 }
 
+/// Where the constant is a logarithm, a warning has the ends of what is named: those of k.
+TEST(Profile, WarnsInTheUnitOfWhatIsNamed) {
+  const std::vector<double> x{1, 2, 3, 4, 5}, y{0.2, 2.6, 0.9, 6.1, 4};
+  LeastSquares problem;
+  const double infinity = std::numeric_limits<double>::infinity();
+  problem.constants = {{"time", "s", 0, -infinity, infinity, true, true}};
+  problem.residuals = x.size();
+  problem.model = [&](const double* c, double* r, double* J) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      r[i] = std::exp(c[0]) * x[i] - y[i];
+      if (J != nullptr) J[i] = std::exp(c[0]) * x[i];
+    }
+    return true;
+  };
+  Calibration fit = minimise(problem, "line");
+  add_profiles(problem, fit);
+  // k = 52.5/55 and s^2 = (60.82 - 52.5^2/55)/4 by hand, and Student's t of 4 at 95 %: 0.342
+  // to 1.567.
+  EXPECT_THAT(fit.warnings,
+              Contains(HasSubstr("time is not symmetric: its profile goes from 0.342")));
+}
+
 /// A linear problem of two correlated constants: profile and linearised interval are the same.
 TEST(Profile, IsTheLinearisedIntervalOfALinearProblem) {
   const std::vector<double> y{0.3, 1.1, 1.4, 2.6, 2.7, 4.1};

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 
 #include "fitting/measurement/compare/rescale.hpp"
 #include "format/error.hpp"
@@ -63,6 +65,79 @@ TEST(Rescale, AnotherShapeIsToldByTheMisfit) {
 TEST(Rescale, RefusesWhatHasNoScale) {
   EXPECT_THROW(rescale(curves_of({0}, 1), curves_of({1}, 1), {}), Error);
   EXPECT_THROW(rescale(curves_of({0}, 1), curves_of({0}, -1), {}), Error);
+}
+
+// A ramp of constant speed into a linear response, then a hold, of tissue with one relaxation time:
+//   f = k v (g_inf t + g tau (1 - exp(-t/tau)))                                     while it moves,
+//   f = k v (g_inf t_r + g tau (exp(-(t - t_r)/tau) - exp(-t/tau)))                 while it is
+//   held.
+struct RampAndHold {
+  double stiffness, speed, ramp, fraction, time;
+
+  double force(double t) const {
+    const double moved = std::min(t, ramp), g = fraction, tau = time;
+    return stiffness * speed *
+           ((1 - g) * moved + g * tau * (std::exp(-(t - moved) / tau) - std::exp(-t / tau)));
+  }
+
+  measured::SiteHistory record(std::int32_t vertex, double touch = 0.2) const {
+    measured::SiteHistory site;
+    site.vertex = vertex;
+    site.history.name = "ramp.csv";
+    for (int i = 0; i <= 300; ++i) {
+      const double t = 0.02 * i - touch;
+      site.history.time.push_back(0.02 * i);
+      site.history.travel.push_back(speed * std::min(t, ramp));
+      site.history.force.push_back(t > 0 ? force(t) : 0);
+    }
+    return site;
+  }
+};
+
+Curves relaxing_curves(double scale) {
+  Curves curves = curves_of({0, 1, 2}, scale, 1);
+  curves.relaxation = {{0.5}, {{0.6}}};
+  for (SiteCurves& site : curves.sites)
+    for (CurveSample& sample : site.paths[0].samples)
+      sample.isochoric_energy = {sample.strain_energy};
+  return curves;
+}
+
+/// Whether the press is slow or fast, the scale is that of the tissue before it relaxes.
+TEST(RescaleOverTime, TheTimeOfThePressDoesNotBiasTheScale) {
+  const double stiffness = 1.7 * 1.01 / 0.005;  // of 1.7 times the simulated site 1
+  for (const double speed : {0.002, 0.02}) {
+    const RampAndHold press{stiffness, speed, 0.004 / speed, 0.6, 0.5};
+    const Rescaling r = rescale_over_time(relaxing_curves(1), {press.record(1)});
+    EXPECT_NEAR(r.factor, 1.7, 1.7e-4) << speed;
+    EXPECT_LT(r.sites[0].misfit, 1e-4) << speed;
+    EXPECT_NEAR(norm(r.curves.sites[2].paths[0].samples.back().force), 1.02 * r.factor, 1e-12);
+  }
+}
+
+/// Elastic curves fit the same record with a misfit, and too soft.
+TEST(RescaleOverTime, CurvesThatDoNotRelaxLeaveAMisfit) {
+  const RampAndHold press{340, 0.002, 2, 0.6, 0.5};
+  const Rescaling r = rescale_over_time(curves_of({1}, 1, 1), {press.record(1)});
+  EXPECT_LT(r.factor, 1.2);
+  EXPECT_GT(r.sites[0].misfit, 0.05);
+}
+
+/// What lies deeper than the campaign is not extrapolated.
+TEST(RescaleOverTime, SamplesBeyondTheCampaignAreLeftOut) {
+  const RampAndHold press{1.7 * 1.01 / 0.005, 0.002, 4, 0.6, 0.5};  // to 8 mm of 5
+  measured::SiteHistory record = press.record(1);
+  for (std::size_t i = 0; i < record.history.force.size(); ++i)
+    if (record.history.travel[i] > 0.005) record.history.force[i] = 100;
+  EXPECT_NEAR(rescale_over_time(relaxing_curves(1), {record}).factor, 1.7, 1e-3);
+  record.history.travel.assign(record.history.travel.size(), 0.02);
+  EXPECT_THROW(rescale_over_time(relaxing_curves(1), {record}), Error);
+}
+
+TEST(RescaleOverTime, ARecordAtNoSimulatedSiteIsRefused) {
+  const RampAndHold press{340, 0.002, 2, 0.6, 0.5};
+  EXPECT_THROW(rescale_over_time(relaxing_curves(1), {press.record(7)}), Error);
+  EXPECT_THROW(rescale_over_time(relaxing_curves(1), {}), Error);
 }
 
 }  // namespace
