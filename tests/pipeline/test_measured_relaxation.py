@@ -142,6 +142,36 @@ class MeasuredRelaxation(unittest.TestCase):
         cycles = compared["relaxing"][1]
         self.assertAlmostEqual(cycles["model_loss_J"] / cycles["measured_loss_J"], 1, delta=0.2)
 
+    def test_meat_from_the_record_to_a_library_that_relaxes_as_another_site_does(self):
+        """A public data set: the series of three sites predicts the force of a fourth over time, with one factor."""
+        meat, case = SOURCE / "data/measured/meat", SOURCE / "data/cases/meat.toml"
+        series = self.folder / "meat-series"
+        text = self.ok("calibrate", "relaxation", meat / "records.toml", "--out", series)
+        self.assertIn(re.search(r"relaxation = .*", text).group(0) + "\n", case.read_text(encoding="ascii"))
+        found = json.loads((series / "calibration.json").read_text())
+        exponent = next(c for c in found["constants"] if c["name"] == "exponent")
+        # A ball on a thin layer: 1.5 on a half-space, more where the contact is as wide as the layer is thick.
+        self.assertGreater(exponent["value"], 1.5)
+        self.assertLess(exponent["value"], 2)
+        out, other = self.folder / "meat", self.folder / "meat-other"
+        self.ok("mesh", case, "--out", out)
+        self.ok("import", meat / "held-out.toml", "--body", out / "body.h5", "--out", other)
+        self.ok("precompute", case, "--out", out)
+        scaled = self.folder / "meat-scaled"
+        self.ok("rescale", out / "curves.h5", other / "histories.json", "--out", scaled)
+        (scaled / "body.h5").write_bytes((out / "body.h5").read_bytes())
+        self.ok("fit", case, "--out", scaled)
+        self.ok("certify", case, "--out", scaled)
+        self.ok("compare", other / "histories.json", scaled / "library.h5", "--out", scaled)
+        record = json.loads((scaled / "over-time.json").read_text())["records"][0]
+        self.assertLess(record["normalised_rmse"], 0.06)
+        # From five seconds into the hold on, where less than half of the force is left.
+        late = [i for i, t in enumerate(record["time_s"]) if t > 9]
+        for i in late:
+            self.assertAlmostEqual(record["model_N"][i] / record["measured_N"][i], 1, delta=0.1)
+        self.assertLess(max(record["measured_N"][i] for i in late), 0.5 * max(record["measured_N"]))
+        self.assertIn("absorbed", self.ok("simulate", case, "--out", scaled))
+
     def test_bad_records_are_refused_in_one_line(self):
         for name, change, words in (
                 ("still", lambda rows: rows[:40] + [rows[39]] + rows[40:], "does not increase"),
