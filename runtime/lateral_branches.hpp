@@ -8,7 +8,7 @@
 #include "format/library.hpp"
 #include "format/vec3.hpp"
 #include "runtime/interpolated_response.hpp"
-#include "runtime/lateral_memory.hpp"
+#include "runtime/tissue_memory.hpp"
 
 namespace palpate::runtime {
 

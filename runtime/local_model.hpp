@@ -110,7 +110,7 @@ class LocalModel {
 
   /// The slip with c fixed after which the lateral force is `limit` (N), where the response is
   /// known and exceeds it. Without memory it goes along t. With one the force keeps its direction
-  /// (R27). Neither raises E.
+  /// (R25). Neither raises E.
   LateralSlip slip_within(const Deflection& d, const LocalResponse& at, double limit,
                           PiecesInUse& pieces) const noexcept {
     if (memory_.lateral.any) return relaxed_slip_within(d, at, limit);

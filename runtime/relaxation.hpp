@@ -19,7 +19,7 @@ enum class Shear : std::uint8_t { Kept, Lost };
 
 /// Two memories for each relaxation time of the library, F_i (N) of the normal and M_i (N,
 /// tangential) of the lateral response: the quasi-linear viscoelastic law of Fung as Maxwell
-/// elements whose energy is convex, theory-runtime (R17)-(R26). They start at 0 and belong to the
+/// elements whose energy is convex, theory-runtime (R17)-(R27). They start at 0 and belong to the
 /// tissue under the contact point: a slide takes them along and loses them over the length of the
 /// tool's radius. Coupled responses have no lateral memory. Every function is noexcept,
 /// allocation-free and bounded. One object belongs to one thread at a time.
