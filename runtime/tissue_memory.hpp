@@ -19,7 +19,7 @@ struct LateralMemory {
   double carried = 1;  ///< what the slide there has left of their deflections
 };
 
-/// Of a press and of a drag.
+/// What presses and drags have left.
 struct TissueMemory {
   NormalMemory normal;
   LateralMemory lateral;

@@ -239,6 +239,44 @@ TEST(LateralBranches, SlipAtAFixedPointKeepsTheDirectionOfTheForceAndLowersTheEn
   }
 }
 
+TEST(LateralBranches, AtTheLimitOfFrictionTheForceIsNoSteeperThanItsBound) {
+  constexpr double kFriction = 0.7, kSmall = 1e-8;
+  const Library library = relaxing(plate(2, 0.08, stiffening), kTimes, true);
+  const palpate_library body(library);
+  // (R27): the steepest slope of the normal and of the lateral response, 170 N/m and 300 N/m.
+  const double normal = std::sqrt(1 + kFriction * kFriction) * 170;
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> any(-1, 1);
+  double steepest_press = 0, steepest = 0;
+  for (int trial = 0; trial < 20000; ++trial) {
+    runtime::LocalModel model(body.surface, {0, {0.2, 0.5, 0.3}}, 0);
+    model.set_memory({{0.1 * std::abs(any(random)), 0, 1, 1},
+                      {true, {0.5 * any(random), 0.5 * any(random), 0}, 1, false, 1}});
+    const auto force = [&](const Vec3& x) {
+      runtime::LocalModel slipped = model;
+      runtime::PiecesInUse pieces;
+      auto d = slipped.deflection(x);
+      auto at = slipped.respond(d, pieces);
+      const double limit = kFriction * at.friction_normal_force;
+      if (at.lateral_force > limit)
+        slipped.slip(slipped.slip_within(d, at, limit, pieces), d, at, pieces);
+      return at.force;
+    };
+    const Vec3 x = model.contact_point() +
+                   Vec3{9e-3 * any(random), 9e-3 * any(random), -6e-3 * std::abs(any(random))};
+    const Vec3 step{any(random), any(random), any(random)};
+    const double slope =
+        norm(force(x + kSmall * step) - force(x - kSmall * step)) / (2 * kSmall * norm(step));
+    const double press = norm(force(x - Vec3{0, 0, kSmall}) - force(x)) / kSmall;
+    EXPECT_LE(press, normal * (1 + 1e-5));
+    EXPECT_LE(slope, 300 * (1 + 1e-5));
+    steepest_press = std::max(steepest_press, press);
+    steepest = std::max(steepest, slope);
+  }
+  EXPECT_GT(steepest_press, 0.99 * normal);
+  EXPECT_GT(steepest, 0.7 * 300);
+}
+
 TEST(LateralBranches, TissueThatTheToolHasLeftRemembersNoDrag) {
   Dragged tool(straight);
   tool.ramp(2e-3, 0, 0.5, 100);
