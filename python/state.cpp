@@ -303,7 +303,10 @@ void define_observation(py::module_& module) {
                              "(3,) m: slip that the contact point has not followed.")
       .def_readonly("dissipated", &Seen::dissipated, "J: dissipated by relaxation.")
       .def_readonly("relaxed_fraction", &Seen::relaxed_fraction,
-                    "Fraction of the instantaneous normal force that has relaxed.");
+                    "Fraction of the instantaneous normal force that has relaxed.")
+      .def_property_readonly("relaxed_lateral_force",
+                             row_of_observation(&Seen::relaxed_lateral_force),
+                             "(3,) N: what has relaxed of the instantaneous lateral force.");
 }
 
 constexpr const char* kStateText =

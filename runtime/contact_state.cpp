@@ -141,7 +141,7 @@ SurfacePoint ContactState::closest_if_inside(const Vec3& x) const noexcept {
 bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
   if (facing.lateral > kRelaxed) return false;
   LocalModel model(*surface_, facing.point, 0);
-  set_memory_at_point(model);
+  set_memory_at_point(model, Shear::Lost);
   const double depth = model.deflection(x).geometric;
   if (!(depth >= 0 && depth <= surface_->deepest())) return false;
   model.set_offset(depth);
@@ -161,10 +161,8 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
   fixed.allowance = std::isinf(settings_.lipschitz_bound)
                         ? settings_.lipschitz_bound  // also at rest
                         : settings_.lipschitz_bound * travelled;
-  if (exceeds_friction(fixed.response, 0)) {
-    const double limit = slip_limit(*model_, fixed.deflection, fixed.response);
-    fixed.excess = std::max(fixed.deflection.lateral - limit, 0.0);
-  }
+  if (exceeds_friction(fixed.response, 0))
+    fixed.slip = slip_to_limit(*model_, fixed.deflection, fixed.response);
   const double energy_before = fixed.response.energy;  // E_{i-1}(x_i)
   seen_.absorbed += energy_before - seen_.energy;
   Candidate next = choose(x, fixed);
@@ -179,16 +177,22 @@ bool ContactState::exceeds_friction(const LocalResponse& r, double tolerated) co
   return r.lateral_force > settings_.friction * r.friction_normal_force + tolerated;
 }
 
-/// Lateral deflection at which a response that exceeds friction slips, m.
-double ContactState::slip_limit(const LocalModel& model, const Deflection& at,
-                                const LocalResponse& response) const noexcept {
-  return model.lateral_below(at, response, settings_.friction * response.friction_normal_force,
-                             pieces_);
+/// The slip of a response that exceeds friction.
+LateralSlip ContactState::slip_to_limit(const LocalModel& model, const Deflection& at,
+                                        const LocalResponse& response) const noexcept {
+  return model.slip_within(at, response, settings_.friction * response.friction_normal_force,
+                           pieces_);
 }
 
 /// Is there no normal contact: the tip is outside, or above the skin, which lags behind it?
 bool ContactState::is_lost(const FixedContact& fixed) const noexcept {
   return !(fixed.deflection.depth > 0) || (memory_.relaxes() && fixed.response.relaxed.scale == 0);
+}
+
+/// Does c follow the tip, so that it is opposite to it?
+bool ContactState::stays_opposite(const FixedContact& fixed,
+                                  const SlideFractions& fractions) const noexcept {
+  return is_lost(fixed) && fractions.follow == 1;
 }
 
 /// Does the force change by at most `allowed` (N; infinite: any change)?
@@ -246,7 +250,7 @@ ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fi
   std::uint32_t status = 0;
   Candidate next{slide(x, fixed, fractions, status), {}, {}, goal_, 0};
   next.status = status;
-  set_memory_at_point(next.model);
+  set_memory_at_point(next.model, stays_opposite(fixed, fractions) ? Shear::Lost : Shear::Kept);
   next.deflection = next.model.deflection(x);
   double recovery = fractions.recovery;
   if (!(next.deflection.depth > 0)) {
@@ -292,29 +296,29 @@ void ContactState::respond(Candidate& at, const Vec3& x) const noexcept {
 /// releases the rest.
 void ContactState::enforce_friction(Candidate& moved, double allowance) const noexcept {
   if (!exceeds_friction(moved.response, moved.model.coupled() ? 0 : allowance)) return;
-  const double limit = slip_limit(moved.model, moved.deflection, moved.response);
-  moved.model.slip_to(limit, moved.deflection, moved.response, pieces_);
+  const LateralSlip slip = slip_to_limit(moved.model, moved.deflection, moved.response);
+  moved.model.slip(slip, moved.deflection, moved.response, pieces_);
 }
 
 LocalModel ContactState::slide(const Vec3& x, const FixedContact& fixed,
                                const SlideFractions& fractions,
                                std::uint32_t& status) const noexcept {
   if (fractions.follow == 0) return slip_at_fixed_point(fixed, fractions.slip);
-  if (is_lost(fixed) && fractions.follow == 1) return stay_opposite(x, status);
+  if (stays_opposite(fixed, fractions)) return stay_opposite(x, status);
   const bool apart = model_->lateral_offset() != Vec3{};
-  if (!apart && !(fixed.excess > 0)) return *model_;
+  if (!apart && !(fixed.slip.distance > 0)) return *model_;
   return follow(fixed, fractions.follow, apart, status);
 }
 
-/// Where the lateral deflection exceeds the slip limit the anchor c + s moves by the excess along
-/// t, and c moves a fraction of the path to it; the rest stays in s. Where nothing hinders c, s
+/// Where the lateral deflection exceeds the slip limit the anchor c + s moves by the slip, and c
+/// moves a fraction of the path to it; the rest stays in s. Where nothing hinders c, s
 /// stays zero: the next step corrects what the curvature of the surface leaves in an ordinary
 /// slide.
 LocalModel ContactState::follow(const FixedContact& fixed, double fraction, bool apart,
                                 std::uint32_t& status) const noexcept {
   const Vec3 path = lag(fixed);
-  const double distance = apart ? norm(path) : fixed.excess;
-  const Vec3 direction = apart ? path : fixed.deflection.tangent;
+  const double distance = apart ? norm(path) : fixed.slip.distance;
+  const Vec3 direction = apart ? path : fixed.slip.direction;
   const Walk moved = walk(*surface_, model_->point(), direction, fraction * distance, delivered_);
   if (moved.at_border) status |= step_status::AtBorder;
   if (moved.awaiting) status |= step_status::Awaiting;
@@ -328,7 +332,7 @@ LocalModel ContactState::follow(const FixedContact& fixed, double fraction, bool
 
 /// From c to the anchor once it has slipped.
 Vec3 ContactState::lag(const FixedContact& fixed) const noexcept {
-  return model_->lateral_offset() + fixed.excess * fixed.deflection.tangent;
+  return model_->lateral_offset() + fixed.slip.distance * fixed.slip.direction;
 }
 
 /// Out of normal contact there is no friction: c follows the tip until x - c is parallel to n, and
@@ -342,12 +346,12 @@ LocalModel ContactState::stay_opposite(const Vec3& x, std::uint32_t& status) con
   return next;
 }
 
-/// c stays fixed; a fraction of the excess over the slip limit goes into s.
+/// c stays fixed; a fraction of the slip goes into s.
 LocalModel ContactState::slip_at_fixed_point(const FixedContact& fixed,
                                              double fraction) const noexcept {
   LocalModel next = *model_;
   next.set_lateral_offset(model_->lateral_offset() +
-                          (fraction * fixed.excess) * fixed.deflection.tangent);
+                          (fraction * fixed.slip.distance) * fixed.slip.direction);
   return next;
 }
 
@@ -364,7 +368,7 @@ bool ContactState::release(const Candidate& moved, const Vec3& x, double energy_
     if (moved.status & step_status::Awaiting) return false;
     if (closest_if_inside(x).element != kNoElement) return false;
   }
-  tank_.settle(energy_before, memory_.now().locked);
+  tank_.settle(energy_before, memory_.locked());
   seen_.status |= step_status::Released;
   free_contact();
   return true;
@@ -390,37 +394,42 @@ void ContactState::commit(Candidate& next, double energy_before) noexcept {
 }
 
 /// Gives the model what the tissue at its contact point remembers.
-void ContactState::set_memory_at_point(LocalModel& model) const noexcept {
+void ContactState::set_memory_at_point(LocalModel& model, Shear shear) const noexcept {
   if (!memory_.relaxes()) return;
   const double slid = norm(model.contact_point() - remembering_point_);
-  model.set_memory(memory_.carried_to(model.point(), model.response(), slid));
+  model.set_memory(
+      memory_.carried_to(model.point(), model.response(), model.normal(), slid, shear));
 }
 
 /// The time of the step passes with the tip where it is. What friction then no longer holds slips.
 void ContactState::relax(Candidate& at) noexcept {
-  memory_.carry(at.model.point(), at.model.response(), at.model.memory());
-  remembering_point_ = at.model.contact_point();
-  memory_.pass(at.response.relaxed.instant.force, dt_);
-  const double energy_before = at.response.energy;
-  const double held = std::max(settings_.friction * at.response.friction_normal_force,
-                               at.response.lateral_force);  // N
-  const double normal_before = at.response.friction_normal_force;
-  at.model.replace_memory(memory_.now(), at.response);
-  seen_.dissipated += energy_before - at.response.energy;
-  seen_.relaxed_fraction = 1 - at.response.relaxed.scale;
-  if (at.deflection.depth > 0 && at.response.relaxed.scale == 0)
-    seen_.status |= step_status::SkinLags;
-  const double lost = settings_.friction * (normal_before - at.response.friction_normal_force);
-  if (!(at.response.lateral_force > held - lost)) return;
-  const double rho = at.model.lateral_below(at.deflection, at.response, held - lost, pieces_);
-  at.model.slip_to(rho, at.deflection, at.response, pieces_);
+  const LocalModel& model = at.model;
+  LocalResponse& response = at.response;
+  memory_.carry(model.point(), model.response(), model.normal(), model.memory());
+  remembering_point_ = model.contact_point();
+  memory_.pass(response.relaxed.instant.force, dt_);
+  if (!model.coupled())
+    memory_.pass_lateral(response.instant_lateral_force * at.deflection.tangent,
+                         at.deflection.lateral);
+  const double energy_before = response.energy;
+  const double normal_before = response.friction_normal_force;
+  const double held = std::max(settings_.friction * normal_before, response.lateral_force);  // N
+  at.model.replace_memory(memory_.now(), at.deflection, response);
+  seen_.dissipated += energy_before - response.energy;
+  seen_.relaxed_fraction = 1 - response.relaxed.scale;
+  seen_.relaxed_lateral_force = model.memory().lateral.relaxed;
+  if (at.deflection.depth > 0 && response.relaxed.scale == 0) seen_.status |= step_status::SkinLags;
+  const double limit = held - settings_.friction * (normal_before - response.friction_normal_force);
+  if (!(response.lateral_force > limit)) return;
+  at.model.slip(model.slip_within(at.deflection, response, limit, pieces_), at.deflection, response,
+                pieces_);
 }
 
 /// The same without a tool: the skin moves back.
 void ContactState::relax_freely() noexcept {
-  const double energy_before = memory_.now().locked;
+  const double energy_before = memory_.locked();
   memory_.pass(0, dt_);
-  seen_.energy = memory_.now().locked;
+  seen_.energy = memory_.locked();
   seen_.dissipated += energy_before - seen_.energy;
   dt_ = 0;
 }
@@ -436,6 +445,7 @@ void ContactState::look_ahead(const Deflection& at) noexcept {
 
 void ContactState::free_contact() noexcept {
   model_.reset();
+  memory_.forget_lateral();
   const std::uint32_t status = seen_.status;
   const double absorbed = seen_.absorbed;
   const double dissipated = seen_.dissipated;
@@ -443,7 +453,7 @@ void ContactState::free_contact() noexcept {
   seen_.status = status;
   seen_.absorbed = absorbed;
   seen_.dissipated = dissipated;
-  seen_.energy = memory_.now().locked;
+  seen_.energy = memory_.locked();
   seen_.tank = tank_.level();
 }
 

@@ -44,6 +44,7 @@ struct ContactObservation {
   double dissipated = 0;  ///< J, by relaxation since the start
   double relaxed_fraction =
       0;  ///< 1 - psi: fraction of the instantaneous normal force that has relaxed
+  Vec3 relaxed_lateral_force{};  ///< M, N: part of the instantaneous lateral force
 };
 
 /// The contact of one tip with one surface, advanced one sample of the force loop at a time:
@@ -125,15 +126,16 @@ class ContactState {
     LocalResponse response;
     double travelled = 0;  ///< m, travel of the tip in this step
     double allowance = 0;  ///< N, largest change of the force
-    double excess = 0;     ///< m, lateral deflection beyond the slip limit
+    LateralSlip slip;      ///< from beyond the slip limit
   };
 
   void touch(const Vec3& x, double travelled) noexcept;
   bool exceeds_friction(const LocalResponse& r, double tolerated) const noexcept;
   bool is_lost(const FixedContact& fixed) const noexcept;
+  bool stays_opposite(const FixedContact& fixed, const SlideFractions& fractions) const noexcept;
   bool may_change_to(const Candidate& c, double allowed) const noexcept;
-  double slip_limit(const LocalModel& model, const Deflection& at,
-                    const LocalResponse& response) const noexcept;
+  LateralSlip slip_to_limit(const LocalModel& model, const Deflection& at,
+                            const LocalResponse& response) const noexcept;
   Candidate choose(const Vec3& x, const FixedContact& fixed) const noexcept;
   Candidate throttle(const Vec3& x, const FixedContact& fixed, const Candidate& whole,
                      double allowed) const noexcept;
@@ -152,7 +154,7 @@ class ContactState {
   void enforce_friction(Candidate& moved, double allowance) const noexcept;
   bool release(const Candidate& moved, const Vec3& x, double energy_before) noexcept;
   void commit(Candidate& next, double energy_before) noexcept;
-  void set_memory_at_point(LocalModel& model) const noexcept;
+  void set_memory_at_point(LocalModel& model, Shear shear) const noexcept;
   void relax(Candidate& at) noexcept;
   void relax_freely() noexcept;
   void look_ahead(const Deflection& at) noexcept;

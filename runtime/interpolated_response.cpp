@@ -142,6 +142,13 @@ double inverse_from(Knots& knots, double force) noexcept {
   return knots.start() + std::min(solve_rising_quadratic(p, force), knots.end() - knots.start());
 }
 
+/// The smallest such deflection, from any piece.
+template <typename Knots>
+double inverse_near(Knots& knots, double force) noexcept {
+  while (knots.piece().force >= force && !knots.at_first()) knots.retreat();
+  return inverse_from(knots, force);
+}
+
 }  // namespace
 
 double InterpolatedResponse::lateral_inverse(double force, const Vec3& weights) const noexcept {
@@ -153,8 +160,13 @@ double InterpolatedResponse::lateral_inverse(double force, const Vec3& weights) 
 double InterpolatedResponse::normal_inverse(double force, double from) const noexcept {
   if (!(force > 0.0)) return 0.0;
   NormalKnots knots(*this, natural_, from);
-  while (knots.piece().force >= force && !knots.at_first()) knots.retreat();
-  return inverse_from(knots, force);
+  return inverse_near(knots, force);
+}
+
+double InterpolatedResponse::lateral_inverse(double force, double from) const noexcept {
+  if (!(force > 0.0)) return 0.0;
+  LateralKnots knots(*this, natural_, from);
+  return inverse_near(knots, force);
 }
 
 double InterpolatedResponse::lateral_inverse_below(double force, double from, const Vec3& weights,

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "runtime/local_model.hpp"
 
+#include <algorithm>
 #include <cstddef>
+
+#include "format/numbers.hpp"
 
 namespace palpate::runtime {
 
@@ -9,10 +12,10 @@ double LocalModel::energy(const Deflection& d) const noexcept {
   return respond(d).energy;
 }
 
-void LocalModel::replace_memory(const NormalMemory& memory, LocalResponse& at) noexcept {
-  set_memory(memory);
+void LocalModel::replace_memory(const TissueMemory& memory, const Deflection& d,
+                                LocalResponse& at) noexcept {
   const RelaxedResponse before = at.relaxed;
-  at.relaxed = relaxed_response(memory, before.instant);
+  at.relaxed = relaxed_response(memory.normal, before.instant);
   const double change = at.relaxed.force - before.force;
   at.normal_force += change;
   at.friction_normal_force = at.relaxed.force;
@@ -20,13 +23,34 @@ void LocalModel::replace_memory(const NormalMemory& memory, LocalResponse& at) n
   at.energy += at.relaxed.energy - before.energy;
   at.at_depth.friction_normal_force = at.relaxed.force;
   at.at_depth.energy = at.relaxed.energy;
+  if (memory.lateral.any || memory_.lateral.any)
+    relax_laterally(memory.lateral, memory_.lateral, d, at);
+  set_memory(memory);
 }
 
-void LocalModel::slip_to(double rho, Deflection& d, LocalResponse& at,
-                         PiecesInUse& pieces) noexcept {
-  set_lateral_offset(lateral_offset_ + (d.lateral - rho) * d.tangent);
-  d.lateral = rho;
-  if (!(rho > 0)) d.tangent = {};
+/// The force f that is felt becomes limit f/|f|, and q the deflection at which grad H is M plus
+/// that. It is between M and the present grad H, so that it has been reached.
+LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResponse& at,
+                                            double limit) const noexcept {
+  const Vec3& relaxed = memory_.lateral.relaxed;
+  const Vec3 felt = at.instant_lateral_force * d.tangent - relaxed;
+  const Vec3 instant = relaxed + (std::max(limit, 0.0) / at.lateral_force) * felt;
+  const double magnitude = norm(instant);
+  LateralSlip slip;
+  slip.lateral = response_.lateral_inverse(magnitude, d.lateral);
+  if (!(slip.lateral < kInfinity)) slip.lateral = d.lateral;  // by rounding, at the end of a curve
+  if (slip.lateral > 0) slip.tangent = (1 / magnitude) * instant;
+  const Vec3 path = d.lateral * d.tangent - slip.lateral * slip.tangent;
+  slip.distance = norm(path);
+  if (slip.distance > 0) slip.direction = (1 / slip.distance) * path;
+  return slip;
+}
+
+void LocalModel::slip(const LateralSlip& by, Deflection& d, LocalResponse& at,
+                      PiecesInUse& pieces) noexcept {
+  set_lateral_offset(lateral_offset_ + by.distance * by.direction);
+  d.lateral = by.lateral;
+  d.tangent = by.tangent;
   if (coupled()) {
     respond_at_depth(d, pieces, at);
   } else {

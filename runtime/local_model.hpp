@@ -6,8 +6,8 @@
 
 #include "format/vec3.hpp"
 #include "runtime/interpolated_response.hpp"
-#include "runtime/normal_memory.hpp"
 #include "runtime/surface.hpp"
+#include "runtime/tissue_memory.hpp"
 
 namespace palpate::runtime {
 
@@ -22,12 +22,21 @@ struct Deflection {
 /// Force and energy of a local model at one tip position.
 struct LocalResponse {
   double normal_force = 0;   ///< dE/dz, N; g(z) of decoupled responses
-  double lateral_force = 0;  ///< dE/drho, N; h(rho) of decoupled responses
+  double lateral_force = 0;  ///< |dE/dq|, N; h(rho) of decoupled responses without memory
   double energy = 0;  ///< E = sum n_l (G_l(z) + H_l(rho)), J [Mahvash & Hayward 2005, eq. 32]
   Vec3 force{};       ///< f = g n + h t, of the tool ON the body, N [eq. 28]
   double friction_normal_force = 0;  ///< g(z), or psi g(z), N: friction is limited to mu times it
   InterpolatedResponse::AtDepth at_depth{};  ///< for coupled responses only
   RelaxedResponse relaxed{};                 ///< for responses that relax only
+  double instant_lateral_force = 0;          ///< h(rho), N, of decoupled responses that relax only
+};
+
+/// Slip with c fixed that brings the lateral force down to a limit.
+struct LateralSlip {
+  double distance = 0;  ///< m
+  Vec3 direction{};     ///< unit
+  double lateral = 0;   ///< rho after it, m
+  Vec3 tangent{};       ///< t after it
 };
 
 /// With c, n = n(c), the offset d0 and the lateral offset s (s . n = 0) fixed:
@@ -40,7 +49,8 @@ struct LocalResponse {
 /// decoupled responses is g' n n^T + h' t t^T + (h/rho) b b^T with b = n x t: its norm does not
 /// exceed the largest stored slope.
 /// Responses that relax have a memory, which is fixed as well: V of (R18) replaces G, and psi g
-/// replaces g in every equation above. noexcept, allocation-free.
+/// replaces g in every equation above; H - M . q + K replaces H, and grad H - M replaces h t (R23).
+/// noexcept, allocation-free.
 class LocalModel {
  public:
   LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept
@@ -72,8 +82,10 @@ class LocalModel {
     }
     const InterpolatedResponse::Decoupled at = response_.decoupled_at(d.depth, d.lateral, pieces);
     if (relaxes_) {
-      r.relaxed = relaxed_response(memory_, {d.depth, at.normal.force, at.normal.energy});
+      r.relaxed = relaxed_response(memory_.normal, {d.depth, at.normal.force, at.normal.energy});
       take({r.relaxed.force, at.lateral.force, r.relaxed.energy + at.lateral.energy}, d, r);
+      r.instant_lateral_force = at.lateral.force;
+      if (memory_.lateral.any) relax_laterally(memory_.lateral, {}, d, r);
     } else {
       take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
     }
@@ -96,10 +108,19 @@ class LocalModel {
         limit, d.lateral, response_.coupled() ? at.at_depth.weights : response_.natural(), pieces);
   }
 
-  /// Slip along t with c fixed until the lateral deflection is `rho` (m, at most its present
-  /// value); the rest goes into s. t and the depth do not change; the deflection and the response
+  /// The slip with c fixed after which the lateral force is `limit` (N), where the response is
+  /// known and exceeds it. Without memory it goes along t. With one the force keeps its direction
+  /// (R25). Neither raises E.
+  LateralSlip slip_within(const Deflection& d, const LocalResponse& at, double limit,
+                          PiecesInUse& pieces) const noexcept {
+    if (memory_.lateral.any) return relaxed_slip_within(d, at, limit);
+    const double rho = lateral_below(d, at, limit, pieces);
+    return {d.lateral - rho, d.tangent, rho, rho > 0 ? d.tangent : Vec3{}};
+  }
+
+  /// Makes that slip: it goes into s. The depth does not change; the deflection and the response
   /// are updated.
-  void slip_to(double rho, Deflection& d, LocalResponse& at, PiecesInUse& pieces) noexcept;
+  void slip(const LateralSlip& by, Deflection& d, LocalResponse& at, PiecesInUse& pieces) noexcept;
 
   /// Rate of change of E when c moves by unit length along d in its element and the anchor c + s by
   /// a', while x stays, J/m:
@@ -123,13 +144,13 @@ class LocalModel {
   /// Sets s to the part of the vector across n.
   void set_lateral_offset(const Vec3& s) noexcept { lateral_offset_ = s - dot(s, n_) * n_; }
   /// The responses relax, and this is what they remember.
-  void set_memory(const NormalMemory& memory) noexcept {
+  void set_memory(const TissueMemory& memory) noexcept {
     memory_ = memory;
     relaxes_ = true;
   }
-  const NormalMemory& memory() const noexcept { return memory_; }
+  const TissueMemory& memory() const noexcept { return memory_; }
   /// The response of another memory, from that of the present one at the same deflection.
-  void replace_memory(const NormalMemory& memory, LocalResponse& at) noexcept;
+  void replace_memory(const TissueMemory& memory, const Deflection& d, LocalResponse& at) noexcept;
   const InterpolatedResponse& response() const noexcept { return response_; }
   bool coupled() const noexcept { return response_.coupled(); }
   double deepest() const noexcept { return response_.deepest(); }
@@ -145,9 +166,19 @@ class LocalModel {
     r.energy = value.energy;
     r.force = value.normal * n_ + value.lateral * d.tangent;
   }
+  /// Puts a lateral memory in the place of another in a response.
+  void relax_laterally(const LateralMemory& memory, const LateralMemory& before,
+                       const Deflection& d, LocalResponse& r) const noexcept {
+    const Vec3 change = memory.relaxed - before.relaxed;
+    r.lateral_force = norm(r.instant_lateral_force * d.tangent - memory.relaxed);
+    r.energy += memory.stored - before.stored - d.lateral * dot(change, d.tangent);
+    r.force = r.force - change;
+  }
+  LateralSlip relaxed_slip_within(const Deflection& d, const LocalResponse& at,
+                                  double limit) const noexcept;
   void relax_at_depth(double depth, LocalResponse& r) const noexcept {
-    r.relaxed =
-        relaxed_response(memory_, {depth, r.at_depth.friction_normal_force, r.at_depth.energy});
+    r.relaxed = relaxed_response(memory_.normal,
+                                 {depth, r.at_depth.friction_normal_force, r.at_depth.energy});
     r.at_depth.friction_normal_force = r.relaxed.force;
     r.at_depth.energy = r.relaxed.energy;
   }
@@ -165,7 +196,7 @@ class LocalModel {
   double offset_;
   Vec3 lateral_offset_{};
   bool relaxes_ = false;
-  NormalMemory memory_;
+  TissueMemory memory_;
 };
 
 }  // namespace palpate::runtime

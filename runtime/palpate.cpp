@@ -90,6 +90,7 @@ palpate_observation translate(const ContactObservation& seen) noexcept {
   copy(seen.lateral_offset, o.lateral_offset);
   o.dissipated = seen.dissipated;
   o.relaxed_fraction = seen.relaxed_fraction;
+  copy(seen.relaxed_lateral_force, o.relaxed_lateral_force);
   return o;
 }
 

@@ -166,6 +166,8 @@ typedef struct palpate_observation {
                         J */
   double relaxed_fraction; /* fraction of the instantaneous normal force that has relaxed; 0 where
                       responses are elastic, 1 where the skin lags */
+  double relaxed_lateral_force[3]; /* N: what has relaxed of the instantaneous lateral force; the
+                                      lateral part of force_on_body is the rest */
 } palpate_observation;
 
 typedef struct palpate_library_info {

@@ -44,12 +44,10 @@ NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Branch
   return sum;
 }
 
-NormalMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedResponse& response,
-                                    double distance) const noexcept {
-  if (distance == 0) return now_;
+NormalMemory Relaxation::normal_carried_to(const InterpolatedResponse& response,
+                                           const Branches& fractions,
+                                           double factor) const noexcept {
   if (!remembers()) return kFresh;
-  const Branches fractions = surface_->relaxes_alike() ? fractions_ : surface_->fractions(p);
-  double factor = std::exp(-distance / surface_->tool_radius());
   for (int i = 0; i < kReductions; ++i) {
     const NormalMemory there = sums(response, fractions, factor);
     if (there.locked <= now_.locked) return there;
@@ -59,14 +57,30 @@ NormalMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedRes
   return kFresh;
 }
 
+TissueMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedResponse& response,
+                                    const Vec3& normal, double distance,
+                                    Shear shear) const noexcept {
+  const LateralMemory& lateral = lateral_.now();
+  const bool shears = lateral.any && shear == Shear::Kept;
+  if (distance == 0) return {now_, shears ? lateral : LateralMemory{}};
+  if (!remembers() && !shears) return {kFresh, {}};
+  const Branches fractions = surface_->relaxes_alike() ? fractions_ : surface_->fractions(p);
+  const double factor = std::exp(-distance / surface_->tool_radius());
+  TissueMemory there{normal_carried_to(response, fractions, factor), {}};
+  if (shears) there.lateral = lateral_.carried_to({&response, &fractions, normal}, factor);
+  return there;
+}
+
 void Relaxation::carry(const SurfacePoint& p, const InterpolatedResponse& response,
-                       const NormalMemory& carried) noexcept {
-  if (carried.carried != 1)
-    for (double& force : memory_) force *= carried.carried;
+                       const Vec3& normal, const TissueMemory& carried) noexcept {
+  if (carried.normal.carried != 1)
+    for (double& force : memory_) force *= carried.normal.carried;
   if (!surface_->relaxes_alike() || fractions_[0] == 0) fractions_ = surface_->fractions(p);
   response_ = response;
-  now_ = carried;
+  normal_ = normal;
+  now_ = carried.normal;
   now_.carried = 1;
+  lateral_.carry({&*response_, &fractions_, normal_}, carried.lateral);
 }
 
 void Relaxation::keep_decay(double dt) noexcept {
@@ -85,9 +99,14 @@ void Relaxation::pass(double g, double dt) noexcept {
   now_ = sums(*response_, fractions_, 1);
 }
 
+void Relaxation::pass_lateral(const Vec3& force, double lateral) noexcept {
+  if (response_) lateral_.pass({&*response_, &fractions_, normal_}, force, lateral, decay_);
+}
+
 void Relaxation::forget() noexcept {
   memory_ = {};
   now_ = {};
+  lateral_.forget();
 }
 
 }  // namespace palpate::runtime

@@ -8,6 +8,7 @@
 #include "fem/campaign/campaign_context.hpp"
 #include "fem/campaign/first_touch.hpp"
 #include "fem/campaign/region_laws.hpp"
+#include "fem/mesh/tangent_frame.hpp"
 #include "fem/mesh/to_eigen.hpp"
 #include "fem/relaxation/branch_stresses.hpp"
 #include "fem/solve/newton.hpp"
@@ -36,10 +37,11 @@ void check_motion(const std::vector<ToolMotion>& motion) {
     refuse("motion of the tool", problem, "give times from 0 s on and finite travels from touch");
   };
   if (motion.size() < 2) refuse_motion("it has fewer than two points");
-  if (motion.front().time_s != 0 || motion.front().travel > 0)
+  if (motion.front().time_s != 0 || motion.front().travel > 0 || motion.front().drag != 0)
     refuse_motion("it does not start at 0 s without contact");
   for (std::size_t i = 0; i < motion.size(); ++i) {
-    if (!std::isfinite(motion[i].time_s) || !std::isfinite(motion[i].travel))
+    if (!std::isfinite(motion[i].time_s) || !std::isfinite(motion[i].travel) ||
+        !std::isfinite(motion[i].drag))
       refuse_motion("point " + std::to_string(i) + " is not finite");
     if (i > 0 && motion[i].time_s < motion[i - 1].time_s)
       refuse_motion("point " + std::to_string(i) + " goes back in time");
@@ -57,7 +59,9 @@ class Press {
         model_(SolidModel::relaxing(context.model, &step_)),
         solver_(model_, &context.permutation),
         no_slip_(settings.indentation.friction == ToolFriction::NoSlip),
+        aside_(tangent_frame(to_eigen(point_.inward))[0]),
         max_travel_(settings.indentation.depth / settings.indentation.increments),
+        max_drag_(settings.indentation.lateral_travel / settings.indentation.lateral_increments),
         force_tolerance_(settings.indentation.force_tolerance),
         first_step_(series.empty() ? 0 : kFirstStep * series.times_s.front()),
         here_{
@@ -101,8 +105,14 @@ class Press {
   /// @return why the piece was not followed to its end; else empty.
   std::string follow_piece(const ToolMotion& from, const ToolMotion& to,
                            std::vector<RelaxingSample>& samples) {
-    const double duration = to.time_s - from.time_s, travel = std::abs(to.travel - from.travel);
-    const double longest = travel > max_travel_ ? max_travel_ / travel : 1;
+    const double duration = to.time_s - from.time_s;
+    const double increments = std::max(std::abs(to.travel - from.travel) / max_travel_,
+                                       std::abs(to.drag - from.drag) / max_drag_);
+    const double longest = increments > 1 ? 1 / increments : 1;
+    if (!dragged_ && to.drag != from.drag) {
+      dragged_ = true;
+      here_.contact.bond(here_.u);
+    }
     if (!(duration > 0)) length_ = first_step_;
     double done = 0, part = first_part(duration, longest);
     std::string reason = "its error stays above the tolerance";
@@ -138,7 +148,8 @@ class Press {
   static ToolMotion at(const ToolMotion& from, const ToolMotion& to, double part) {
     if (part == 1) return to;
     return {from.time_s + part * (to.time_s - from.time_s),
-            from.travel + part * (to.travel - from.travel)};
+            from.travel + part * (to.travel - from.travel),
+            from.drag + part * (to.drag - from.drag)};
   }
 
   /// The state after a step from here, in two halves, with its error. Nothing where one fails.
@@ -146,7 +157,8 @@ class Press {
     const bool takes_time = end.time_s > here_.sample.time_s;
     if (!takes_time) return solved(here_, end, here_.u, reason);
     const ToolMotion middle{0.5 * (here_.sample.time_s + end.time_s),
-                            0.5 * (here_.sample.travel + end.travel)};
+                            0.5 * (here_.sample.travel + end.travel),
+                            0.5 * (here_.sample.drag + end.drag)};
     const std::optional<State> half = solved(here_, middle, here_.u, reason);
     if (!half) return std::nullopt;
     std::optional<State> fine = solved(*half, end, half->u, reason);
@@ -162,7 +174,7 @@ class Press {
     const double h = end.time_s - from.sample.time_s;
     State state{start, from.contact, from.branches, {}};
     Tool tool = touching_;
-    tool.tip += end.travel * to_eigen(point_.inward);
+    tool.tip += end.travel * to_eigen(point_.inward) + end.drag * aside_;
     state.contact.move_to(tool);
     step_ = from.branches.step(h);
     NewtonOptions options;
@@ -175,6 +187,7 @@ class Press {
     state.branches.advance(h, context_.model.isochoric_stress(state.u));
     state.sample = {end.time_s,
                     end.travel,
+                    end.drag,
                     to_vec3(state.contact.tool_force(state.u)),
                     state.contact.contact_area(state.u),
                     state.contact.penetration(state.u),
@@ -190,7 +203,10 @@ class Press {
   SolidModel model_;
   NewtonSolver solver_;
   bool no_slip_;
-  double max_travel_;            ///< m, of one step
+  Eigen::Vector3d aside_;  ///< direction of drags
+  double max_travel_;      ///< m, of one step
+  double max_drag_;        ///< m, of one step
+  bool dragged_ = false;
   double force_tolerance_;       ///< relative
   double first_step_;            ///< s, after a step of the tool; 0: elastic
   double length_ = first_step_;  ///< s, of the next time step

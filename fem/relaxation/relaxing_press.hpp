@@ -16,6 +16,7 @@ namespace palpate::fem {
 struct ToolMotion {
   double time_s = 0;
   double travel = 0;  ///< m, from first touch along the inward direction; negative: above it
+  double drag = 0;    ///< m, across it along azimuth 0 of the campaign
 };
 
 struct RelaxingSettings {
@@ -27,6 +28,7 @@ struct RelaxingSettings {
 struct RelaxingSample {
   double time_s = 0;
   double travel = 0;        ///< m
+  double drag = 0;          ///< m
   Vec3 force{};             ///< N, of the tool ON the body
   double contact_area = 0;  ///< m^2, reference
   double penetration = 0;   ///< m, deepest violation of the contact constraint
@@ -42,12 +44,13 @@ struct RelaxingPress {
 /// Follows the motion with Newton's method on the whole body, as Engine::Direct. The materials of
 /// the settings have their instantaneous laws and their relaxation. Each time step is solved at
 /// once and in two halves; a third of the difference of the forces is its error, and the halves are
-/// kept. Tool steps are at most one increment of the settings. Contact of the body with itself and
-/// loss of ellipticity are not looked for. One thread.
+/// kept. Tool steps are at most one increment of the settings. Where a drag begins, the surface in
+/// contact is bonded to the tool, as in the lateral paths of a campaign. Contact of the body with
+/// itself and loss of ellipticity are not looked for. One thread.
 /// @param vertex  response vertex, or index of a point of the settings.
-/// @throws Error(Configuration) for a motion that is empty, does not start at 0 s and a travel of
-/// at most 0, goes back in time or is not finite, as run_campaign for the settings, for gravity or
-/// refinement under the tool, and for a time tolerance below twice the force_tolerance.
+/// @throws Error(Configuration) for a motion that is empty, does not start at 0 s, a travel of at
+/// most 0 and no drag, goes back in time or is not finite, as run_campaign for the settings, for
+/// gravity or refinement under the tool, and for a time tolerance below twice the force_tolerance.
 RelaxingPress press_relaxing(const Body& body, const CampaignSettings& settings,
                              std::int32_t vertex, const std::vector<ToolMotion>& motion,
                              const RelaxingSettings& relaxing = {});

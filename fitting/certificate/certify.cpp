@@ -114,7 +114,15 @@ std::string where_bounded(const Library& library, const std::vector<TriangleBoun
          " mm every slide has a bound";
 }
 
-/// K of (C9), 1/s: friction that relaxes with the normal force adds to its change.
+/// The factor of L in (C10): the lateral force changes with the limit of friction, and that of
+/// decoupled responses by itself.
+double change_factor(ResponseKind kind, double friction) {
+  const double square = friction * friction;
+  if (kind == ResponseKind::Coupled) return 1 + square;
+  return 1 + square / 2 + friction * std::sqrt(1 + square / 4);
+}
+
+/// K of (C9), 1/s.
 double relaxation_rate(const Library& library, double friction) {
   double largest = 0;
   for (const NodeResponse& response : library.responses) {
@@ -123,7 +131,7 @@ double relaxation_rate(const Library& library, double friction) {
       rate += static_cast<double>(response.relaxation[i]) / library.relaxation_times[i];
     largest = std::max(largest, rate);
   }
-  return (1 + friction * friction) * largest;
+  return change_factor(library.kind, friction) * largest;
 }
 
 void add_devices(Certificate& certificate, const CertifySettings& settings) {

@@ -17,7 +17,8 @@ class Seen(ctypes.Structure):
                 ("contact_point", Vector), ("natural", Vector), ("normal", Vector), ("depth", ctypes.c_double),
                 ("lateral", ctypes.c_double), ("offset", ctypes.c_double), ("energy", ctypes.c_double),
                 ("tank", ctypes.c_double), ("absorbed", ctypes.c_double), ("force_on_body", Vector),
-                ("lateral_offset", Vector), ("dissipated", ctypes.c_double), ("relaxed_fraction", ctypes.c_double)]
+                ("lateral_offset", Vector), ("dissipated", ctypes.c_double), ("relaxed_fraction", ctypes.c_double),
+                ("relaxed_lateral_force", Vector)]
 
 
 SCALARS = ("depth", "lateral", "offset", "energy", "tank", "absorbed", "dissipated", "relaxed_fraction")

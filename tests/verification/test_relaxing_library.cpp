@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "fem/campaign/indentation.hpp"
+#include "fem/mesh/tangent_frame.hpp"
+#include "fem/mesh/to_eigen.hpp"
 #include "fem/relaxation/relaxing_press.hpp"
 #include "fitting/response/fit.hpp"
 #include "format/to_index.hpp"
@@ -21,7 +23,9 @@
 namespace palpate::fem {
 namespace {
 
-constexpr double kDepth = 1.5e-3;  // m, 0.3 radii of the tool
+constexpr double kDepth = 1.5e-3;                               // m, 0.3 radii of the tool
+constexpr double kDragged = 0.5e-3, kDragDepth = 0.5 * kDepth;  // m
+constexpr double kSticks = 50;  // a friction coefficient with which nothing slips
 
 /// A block whose upper part, as thick as the press is deep twice, is another region.
 Body layered_block() {
@@ -42,8 +46,8 @@ CampaignSettings settings_of(const RelaxationSeries& skin, const RelaxationSerie
   settings.indentation.tool.radius = 0.005;
   settings.indentation.depth = kDepth;
   settings.indentation.increments = 6;
-  settings.indentation.lateral_depths = {0.75e-3};
-  settings.indentation.lateral_travel = 0.5e-3;
+  settings.indentation.lateral_depths = {kDragDepth};
+  settings.indentation.lateral_travel = kDragged;
   settings.indentation.lateral_increments = 2;
   settings.indentation.force_tolerance = 1e-6;
   return settings;
@@ -62,29 +66,32 @@ class Both {
   /// The force of the solid and of the loop, N, at the ends of the time steps of the solid.
   struct Sample {
     double time = 0, travel = 0, solid = 0, loop = 0;
+    double drag = 0, solid_drag = 0, loop_drag = 0;
   };
   std::vector<Sample> follow(const std::vector<ToolMotion>& motion) const {
     const RelaxingPress press = press_relaxing(body_, settings_, site_, motion, {1e-3, 2000});
     EXPECT_TRUE(press.complete) << press.reason;
-    runtime::ContactState contact(loaded_.surface, loaded_.tree, {0, 0});
-    const auto at = [&](double travel, double dt) {
-      const auto v = to_index(site_);
-      contact.step(library_.positions[v] + travel * library_.inward[v], dt);
-      return dot(contact.observation().force, library_.inward[v]);
+    runtime::ContactState contact(loaded_.surface, loaded_.tree, {kSticks, 0});
+    const Vec3 inward = library_.inward[to_index(site_)];
+    const Vec3 aside = to_vec3(tangent_frame(to_eigen(inward))[0]);
+    const auto at = [&](double travel, double drag, double dt) {
+      contact.step(library_.positions[to_index(site_)] + travel * inward + drag * aside, dt);
     };
-    at(-1e-9, 1e-12);
-    at(1e-12, 1e-12);
+    at(-1e-9, 0, 1e-12);
+    at(1e-12, 0, 1e-12);
     std::vector<Sample> samples;
-    double time = 0, travel = 0;
+    double time = 0, travel = 0, drag = 0;
     for (const RelaxingSample& sample : press.samples) {
       constexpr int kSteps = 50;
-      double force = 0;
       for (int i = 1; i <= kSteps; ++i)
-        force = at(travel + (sample.travel - travel) * i / kSteps,
-                   std::max(sample.time_s - time, 1e-9) / kSteps);
+        at(travel + (sample.travel - travel) * i / kSteps, drag + (sample.drag - drag) * i / kSteps,
+           std::max(sample.time_s - time, 1e-9) / kSteps);
       time = sample.time_s;
       travel = sample.travel;
-      samples.push_back({time, travel, dot(sample.force, library_.inward[to_index(site_)]), force});
+      drag = sample.drag;
+      const Vec3 force = contact.observation().force;
+      samples.push_back({time, travel, dot(sample.force, inward), dot(force, inward), drag,
+                         dot(sample.force, aside), dot(force, aside)});
     }
     return samples;
   }
@@ -183,4 +190,49 @@ TEST_F(RelaxingLibrary, CyclesHaveTheHysteresisOfTheSolid) {
 }
 
 }  // namespace
+/// The largest difference of the lateral forces while dragged in a time and held, over the force of
+/// an instant drag; a row for the end of the drag and for two times of the hold.
+double drag_and_hold(const Both& both, const char* problem, double time, double bound) {
+  const double at_once =
+      both.follow({{0, 0}, {0, kDragDepth}, {0, kDragDepth, kDragged}}).back().solid_drag;
+  const auto samples = both.follow({{0, 0},
+                                    {0, kDragDepth},
+                                    {time, kDragDepth, kDragged},
+                                    {time + 0.1, kDragDepth, kDragged},
+                                    {time + 2, kDragDepth, kDragged}});
+  double worst = 0;
+  for (const auto& s : samples) {
+    worst = std::max(worst, std::abs(s.loop_drag - s.solid_drag) / at_once);
+    const double held = s.time - time;
+    if (s.drag < kDragged || !(std::abs(held * (held - 0.1) * (held - 2)) < 1e-9)) continue;
+    char what[96];
+    std::snprintf(what, sizeof what,
+                  "dragged in %g s, held for %.1f s, over the force of an instant drag", time,
+                  held);
+    test::verify({problem, what, "1", s.loop_drag / at_once, s.solid_drag / at_once,
+                  test::Reference::SameSolver, "internal variables at the Gauss points", bound,
+                  test::Error::Absolute});
+  }
+  return worst;
+}
+
+TEST(RelaxingLibraryAside, DragsAtThreeRatesThatHoldRelaxAsTheSolidDoes) {
+  const Both alike(kSkin, kSkin);
+  for (const double time : {0.01, 0.1, 1.0})
+    EXPECT_LE(drag_and_hold(alike,
+                            "A library of tissue that relaxes against the solid: a drag of 0.1 R "
+                            "in a press of 0.15 R, one series",
+                            time, 0.02),
+              0.02);
+}
+
+TEST(RelaxingLibraryAside, ADragOverLayersThatRelaxDifferentlyIsNear) {
+  const Both layers(kSkin, kDeep);
+  EXPECT_LE(drag_and_hold(layers,
+                          "A library of tissue that relaxes against the solid: a drag of 0.1 R in "
+                          "a press of 0.15 R on two layers",
+                          0.1, 0.05),
+            0.05);
+}
+
 }  // namespace palpate::fem

@@ -37,6 +37,16 @@ inline Responses varying(double spread) {
   };
 }
 
+/// Lateral responses that stiffen, soften or are straight, side by side.
+inline Responses bent(double spread) {
+  return [spread](const Vec3& x) {
+    NodeResponse node = varying(spread)(x);
+    const double bend = std::sin(230 * x[0] + 170 * x[1]);
+    node.lateral = stiffening_curve(120 * (1 - 0.8 * bend), 120 * (1 + 0.8 * bend), 5, 0.002);
+    return node;
+  };
+}
+
 inline Library certified(Library library, double friction) {
   fitting::certify(library, {friction, {}});
   return library;
@@ -53,6 +63,9 @@ inline Library body_named(const std::string& name) {
   if (name == "relaxing_alike")
     return relaxing(coupled(cylinder(25, 20, 0.04, 0.2, varying(0.3))), {0.05}, true);
   if (name == "relaxing_cube") return relaxing(cube(6, 0.06, varying(0.5)), {0.02, 0.5}, false);
+  if (name == "relaxing_hills")
+    return relaxing(bumpy_sphere(3, 0.03, 0.25, bent(0.4)), {0.01, 0.1, 1}, false);
+  if (name == "relaxing_thin") return relaxing(thin_body(8, 0.08, 0.0015, bent(0.5)), {0.05}, true);
   if (name == "hills") return bumpy_sphere(3, 0.03, 0.25, varying(0.5));
   if (name == "cube") return cube(6, 0.06, varying(0.5));
   return thin_body(8, 0.08, 0.0015, varying(0.5));
@@ -80,6 +93,7 @@ inline void expect_sound(const WatchedContact& contact) {
   EXPECT_GE(contact.lowest, -1e-12);
   EXPECT_LE(contact.largest_gain, 1e-12);
   EXPECT_LE(contact.largest_disagreement, 1e-12);
+  EXPECT_LE(contact.largest_lateral_error, 1e-9);
   EXPECT_EQ(contact.cuts, 0);
 }
 
@@ -105,7 +119,9 @@ inline auto adversary_cases() {
       AdversaryCase{"coupled", 0.1, 5e-3}, AdversaryCase{"coupled_rims", 0.3, 5e-3},
       AdversaryCase{"coupled_cube", 0.2, 5e-3}, AdversaryCase{"coupled_thin", 0.5, 0},
       AdversaryCase{"relaxing", 0.3, 5e-3}, AdversaryCase{"relaxing", 0, 0},
-      AdversaryCase{"relaxing_alike", 0.2, 0}, AdversaryCase{"relaxing_cube", 0.5, 5e-3});
+      AdversaryCase{"relaxing_alike", 0.2, 0}, AdversaryCase{"relaxing_cube", 0.5, 5e-3},
+      AdversaryCase{"relaxing_hills", 0.3, 5e-3}, AdversaryCase{"relaxing_hills", 0.8, 0},
+      AdversaryCase{"relaxing_thin", 0.5, 0});
 }
 
 inline std::string case_name(const ::testing::TestParamInfo<AdversaryCase>& about) {

@@ -145,6 +145,7 @@ class Adversary : public CertifiedBody {
     expect_sound(contact);
     expect_no_jump(contact);
     apart_ += contact.apart;
+    dragged_ += contact.dragged;
     EXPECT_GT(contact.contacts, 40);
     EXPECT_GT(contact.slides, 5000);
     limited_ += contact.limited;
@@ -160,7 +161,7 @@ class Adversary : public CertifiedBody {
     run("starve", starve, lipschitz_bound);
   }
 
-  long limited_ = 0, force_limited_ = 0, apart_ = 0;
+  long limited_ = 0, force_limited_ = 0, apart_ = 0, dragged_ = 0;
 };
 
 TEST_P(Adversary, GetsNoEnergyNoJumpAndNoNonsense) {
@@ -173,6 +174,9 @@ TEST_P(Adversary, GetsNoEnergyNoJumpAndNoNonsense) {
     EXPECT_GT(force_limited_, 0);
   }
   EXPECT_GT(apart_, 1000);
+  if (library_.relaxes() && library_.kind == ResponseKind::Decoupled) {
+    EXPECT_GT(dragged_, 10000);
+  }
 }
 
 TEST_P(Adversary, GetsNoneOfThemAtTheSmallestEnforceableBound) {

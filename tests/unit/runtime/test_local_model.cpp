@@ -253,7 +253,8 @@ TEST_F(LocalModelTest, SlippingOverAHeldContactPointIsWhatTheNewOffsetGives) {
     runtime::PiecesInUse pieces;
     auto slipped = model.respond(d, pieces);
     const double left = trial % 10 == 0 ? 0 : d.lateral * any(random_);
-    model.slip_to(left, d, slipped, pieces);
+    model.slip({d.lateral - left, d.tangent, left, left > 0 ? d.tangent : Vec3{}}, d, slipped,
+               pieces);
     const Deflection fresh = model.deflection(x);
     const auto want = model.respond(fresh);
     EXPECT_EQ(d.lateral, left);

@@ -24,7 +24,7 @@ class SampledLoop {
  public:
   static constexpr std::size_t kDelays = 3;
 
-  /// relaxing: (1 + mu^2) sum g_i, at least (1 + mu^2) times theta of (C9) at any period
+  /// relaxing: relaxing_factor times sum g_i, at least the same times theta of (C9) at any period
   SampledLoop(WatchedContact& contact, double lipschitz_bound, double resolution, double relaxing)
       : contact_(contact), bound_(lipschitz_bound), resolution_(resolution), relaxing_(relaxing) {}
 
@@ -165,7 +165,7 @@ Annealed anneal(const Library& library, const palpate_library& body,
 
 class SampledAdversary : public CertifiedBody {
  protected:
-  /// (1 + mu^2) times the largest sum of g_i.
+  /// relaxing_factor times the largest sum of g_i.
   double relaxing() const {
     double largest = 0;
     for (const NodeResponse& node : library_.responses) {
@@ -173,7 +173,7 @@ class SampledAdversary : public CertifiedBody {
       for (const float g : node.relaxation) sum += static_cast<double>(g);
       largest = std::max(largest, sum);
     }
-    return (1 + GetParam().friction * GetParam().friction) * largest;
+    return relaxing_factor(library_, GetParam().friction) * largest;
   }
 };
 

@@ -51,9 +51,10 @@ ModelEnergy model_energy(const Library& library, const runtime::ContactObservati
   const Triangle& t = library.triangles[static_cast<std::size_t>(model.point.element)];
   const Vec3 r = x - model.contact_point;
   const double depth = dot(r, model.normal);
-  const double rho = norm(r - depth * model.normal - model.lateral_offset);
-  const double z = depth - model.offset;
   ModelEnergy energy;
+  energy.lateral_deflection = r - depth * model.normal - model.lateral_offset;
+  const double rho = norm(energy.lateral_deflection);
+  const double z = depth - model.offset;
   energy.depth = z;
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
@@ -79,12 +80,16 @@ std::vector<double> MemoryTwin::fractions(const runtime::SurfacePoint& p) const 
 
 namespace {
 
-/// The interpolated normal response at a point.
-CurvePoint normal_at(const Library& library, const runtime::SurfacePoint& p, double z) {
+using Curve = ResponseCurve NodeResponse::*;
+constexpr Curve kNormal = &NodeResponse::normal, kLateral = &NodeResponse::lateral;
+
+/// A response at a point, interpolated.
+CurvePoint response_at(const Library& library, const runtime::SurfacePoint& p, Curve curve,
+                       double d) {
   CurvePoint sum;
   const Triangle& t = library.triangles[static_cast<std::size_t>(p.element)];
   for (std::size_t l = 0; l < 3; ++l) {
-    const CurvePoint at = curve_at(library.responses[static_cast<std::size_t>(t[l])].normal, z);
+    const CurvePoint at = curve_at(library.responses[static_cast<std::size_t>(t[l])].*curve, d);
     sum.force += p.natural[l] * at.force;
     sum.energy += p.natural[l] * at.energy;
   }
@@ -96,8 +101,8 @@ CurvePoint normal_at(const Library& library, const runtime::SurfacePoint& p, dou
 double conjugate(const Library& library, const runtime::SurfacePoint& p, double force) {
   if (!(force > 0)) return 0;
   double low = 0, high = 1e-3, f_low = 0;
-  CurvePoint at = normal_at(library, p, high);
-  for (; at.force < force; at = normal_at(library, p, high)) {
+  CurvePoint at = response_at(library, p, kNormal, high);
+  for (; at.force < force; at = response_at(library, p, kNormal, high)) {
     low = high;
     f_low = at.force;
     high *= 2;
@@ -107,7 +112,7 @@ double conjugate(const Library& library, const runtime::SurfacePoint& p, double 
   for (int i = 0; i < 60 && high - low > 1e-13; ++i) {
     const double secant = low + (high - low) * (force - f_low) / std::max(f_high - f_low, 1e-300);
     const double z = i % 3 == 2 ? (low + high) / 2 : secant;
-    at = normal_at(library, p, z);
+    at = response_at(library, p, kNormal, z);
     best = std::max(best, force * z - at.energy);
     if (std::abs(at.force - force) <= 1e-11 * force) break;
     (at.force < force ? low : high) = z;
@@ -130,6 +135,49 @@ MemoryTwin::Sums MemoryTwin::sums(const runtime::SurfacePoint& p, double factor)
   return sum;
 }
 
+bool MemoryTwin::drags() const {
+  return std::any_of(dragged_.begin(), dragged_.end(), [](const Vec3& p) { return p != Vec3{}; });
+}
+
+/// grad H at the place of the memory.
+Vec3 MemoryTwin::gradient(const Vec3& q) const {
+  const double rho = norm(q);
+  if (!(rho > 0)) return {};
+  return (response_at(library_, place_, kLateral, rho).force / rho) * q;
+}
+
+/// With H*(|grad H(p)|) = grad H(p) . p - H(p).
+MemoryTwin::LateralSums MemoryTwin::lateral_sums() const {
+  LateralSums sum;
+  if (!drags()) return sum;
+  const std::vector<double> g = fractions(place_);
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    const Vec3 force = gradient(dragged_[i]);
+    sum.relaxed = sum.relaxed + g[i] * force;
+    sum.stored += g[i] * (dot(force, dragged_[i]) -
+                          response_at(library_, place_, kLateral, norm(dragged_[i])).energy);
+  }
+  return sum;
+}
+
+/// What (R23) adds to H.
+double MemoryTwin::lateral_energy(const Vec3& q) const {
+  const LateralSums sum = lateral_sums();
+  return sum.stored - dot(sum.relaxed, q);
+}
+
+/// The deflection, no longer than `longest`, at which grad H is a force: by halving.
+Vec3 MemoryTwin::deflection_of(const Vec3& force, double longest) const {
+  const double size = norm(force);
+  if (!(size > 0)) return {};
+  double low = 0, high = longest;
+  for (int i = 0; i < 60 && high - low > 1e-17; ++i) {
+    const double middle = (low + high) / 2;
+    (response_at(library_, place_, kLateral, middle).force < size ? low : high) = middle;
+  }
+  return (high / size) * force;
+}
+
 /// V of (R18).
 double MemoryTwin::normal_energy(const Sums& memory, const ModelEnergy& elastic) {
   if (!(elastic.normal_force > memory.relaxed)) return memory.locked;
@@ -139,7 +187,18 @@ double MemoryTwin::normal_energy(const Sums& memory, const ModelEnergy& elastic)
 double MemoryTwin::energy(const runtime::ContactObservation& model, const Vec3& x) const {
   const ModelEnergy elastic = model_energy(library_, model, x);
   if (memory_.empty()) return elastic.normal + elastic.lateral;
-  return normal_energy(now_, elastic) + elastic.lateral;
+  return normal_energy(now_, elastic) + elastic.lateral +
+         lateral_energy(elastic.lateral_deflection);
+}
+
+Vec3 MemoryTwin::lateral_force(const runtime::ContactObservation& model, const Vec3& x) const {
+  return gradient(model_energy(library_, model, x).lateral_deflection) - lateral_sums().relaxed;
+}
+
+/// Is there no normal contact?
+bool MemoryTwin::has_lost(const runtime::ContactObservation& model, const Vec3& x) const {
+  const ModelEnergy elastic = model_energy(library_, model, x);
+  return !(elastic.depth > 0) || !(elastic.normal_force > now_.relaxed);
 }
 
 double MemoryTwin::pass(const ModelEnergy& elastic, double dt) {
@@ -149,6 +208,48 @@ double MemoryTwin::pass(const ModelEnergy& elastic, double dt) {
     memory_[i] = target + (memory_[i] - target) * std::exp(-dt / library_.relaxation_times[i]);
   now_ = sums(place_);
   return normal_energy(before, elastic) - normal_energy(now_, elastic);
+}
+
+/// To another normal, by the rotation about the axis of both, and away from the tissue.
+void MemoryTwin::carry_lateral(const Vec3& normal, double slid) {
+  const Vec3 axis = cross(normal_, normal);
+  const double cosine = dot(normal_, normal);
+  for (Vec3& p : dragged_) {
+    const Vec3 turn = cross(axis, p);
+    p = cosine > 0 ? std::exp(-slid / library_.tool_radius) *
+                         (p + turn + (1 / (1 + cosine)) * cross(axis, turn))
+                   : Vec3{};
+  }
+}
+
+/// The instantaneous force to which the branches relax: that at q, but where the tool has slipped
+/// after relaxing, and q is that of afterwards. Then what has relaxed tells.
+Vec3 MemoryTwin::target(const runtime::ContactObservation& after, const Vec3& q, double dt) const {
+  const std::vector<double> g = fractions(place_);
+  Vec3 kept{};
+  double passed = 0;
+  for (std::size_t i = 0; i < g.size(); ++i) {
+    const double decay = std::exp(-dt / library_.relaxation_times[i]);
+    kept = kept + (g[i] * decay) * gradient(dragged_[i]);
+    passed += g[i] * (1 - decay);
+  }
+  const Vec3 here = gradient(q);
+  if (norm(kept + passed * here - after.relaxed_lateral_force) < 1e-13 || passed < 1e-7)
+    return here;
+  return (1 / passed) * (after.relaxed_lateral_force - kept);
+}
+
+double MemoryTwin::pass_lateral(const runtime::ContactObservation& after, const Vec3& q,
+                                double dt) {
+  const Vec3 force = target(after, q, dt);
+  const Vec3 at = deflection_of(force, 1);
+  const double before = lateral_energy(at);
+  for (std::size_t i = 0; i < dragged_.size(); ++i) {
+    const Vec3 relaxed = gradient(dragged_[i]);
+    const Vec3 next = force + std::exp(-dt / library_.relaxation_times[i]) * (relaxed - force);
+    dragged_[i] = deflection_of(next, std::max(norm(dragged_[i]), norm(at)));
+  }
+  return before - lateral_energy(at);
 }
 
 /// What a slide to p leaves of the memories: (R18) must not rise.
@@ -177,19 +278,34 @@ double MemoryTwin::step(const runtime::ContactObservation& before,
     dissipated = pass({}, dt);
     dt = 0;
   }
+  if (alone) std::fill(dragged_.begin(), dragged_.end(), Vec3{});
   if (after.point.element < 0) return dissipated;
+  const bool decoupled = library_.kind == ResponseKind::Decoupled;
+  // Only where there was no normal contact may the tissue lose its lateral memory.
+  const bool may_lose = !alone && drags() && has_lost(before, x);
   if (place_.element >= 0) {
     const double factor = carried(after.point, norm(after.contact_point - point_));
     for (double& force : memory_) force *= factor;
   }
   if (place_.element < 0 || after.contact_point != point_) now_ = sums(after.point);
+  const double slid = place_.element >= 0 ? norm(after.contact_point - point_) : 0;
   place_ = after.point;
   point_ = after.contact_point;
-  return dissipated + pass(model_energy(library_, after, x), dt);
+  const ModelEnergy elastic = model_energy(library_, after, x);
+  if (decoupled) {
+    if (slid > 0) carry_lateral(after.normal, slid);
+    normal_ = after.normal;
+    const Vec3 felt = after.force - dot(after.force, after.normal) * after.normal;
+    if (may_lose && norm(felt) < kForceTolerance && norm(lateral_force(after, x)) > kForceTolerance)
+      std::fill(dragged_.begin(), dragged_.end(), Vec3{});
+    dissipated += pass_lateral(after, elastic.lateral_deflection, dt);
+  }
+  return dissipated + pass(elastic, dt);
 }
 
 void MemoryTwin::forget() {
   std::fill(memory_.begin(), memory_.end(), 0.0);
+  std::fill(dragged_.begin(), dragged_.end(), Vec3{});
   now_ = {};
 }
 
@@ -243,8 +359,8 @@ void WatchedContact::account(const Vec3& x, double dt, const runtime::ContactObs
       std::max(largest_disagreement, std::abs(work_ - seen().absorbed) / std::max(work_, 1.0));
 }
 
-/// By how much the lateral force w h(rho) is above mu g(z), N.
-double WatchedContact::overdraft(const runtime::ContactObservation& model) const {
+/// By how much the lateral force is above mu g(z), N.
+double WatchedContact::overdraft(const runtime::ContactObservation& model, const Vec3& x) const {
   double lateral = 0, friction_normal_force = 0;
   const Triangle& t = library_.triangles[static_cast<std::size_t>(model.point.element)];
   for (std::size_t l = 0; l < 3; ++l) {
@@ -256,23 +372,36 @@ double WatchedContact::overdraft(const runtime::ContactObservation& model) const
     lateral += n * w * curve_at(node.lateral, model.deflection.lateral).force;
     friction_normal_force += n * curve_at(node.normal, model.deflection.depth).force;
   }
+  if (library_.kind == ResponseKind::Decoupled) lateral = norm(memory_.lateral_force(model, x));
   return lateral - friction_ * (1 - model.relaxed_fraction) * friction_normal_force;
+}
+
+double relaxing_factor(const Library& library, double friction) {
+  const double coupled = 1 + friction * friction;
+  if (library.kind == ResponseKind::Coupled) return coupled;
+  const double mean = (coupled + 1) / 2, half = (coupled - 1) / 2;
+  return mean + std::hypot(half, friction);
 }
 
 void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& before) {
   const double travel = norm(x - last_);
   const double change = norm(seen().force - before.force);
   const double by_relaxing =
-      std::sqrt(2 * (1 + friction_ * friction_) * bound_ * largest_fraction_ * relaxed_);
+      std::sqrt(2 * relaxing_factor(library_, friction_) * bound_ * largest_fraction_ * relaxed_);
   steepest_step =
       std::max(steepest_step, change / (bound_ * travel + by_relaxing + kForceTolerance));
   longest_ = before.point.element < 0 ? travel : std::max(longest_, travel);
   if (seen().point.element < 0) return;
-  const double over = overdraft(seen());
+  const double over = overdraft(seen(), x);
   const bool coupled = library_.kind == ResponseKind::Coupled;
   const double one_step = coupled ? 0 : (1 + friction_) * bound_ * longest_;
   largest_overdraft = std::max(largest_overdraft, over / (one_step + kForceTolerance));
   if (norm(seen().lateral_offset) > 0) ++apart;
+  if (coupled) return;
+  const Vec3 felt = seen().force - dot(seen().force, seen().normal) * seen().normal;
+  largest_lateral_error =
+      std::max(largest_lateral_error, norm(felt - memory_.lateral_force(seen(), x)));
+  if (norm(seen().relaxed_lateral_force) > 0) ++dragged;
 }
 
 }  // namespace palpate::test

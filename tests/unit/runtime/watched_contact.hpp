@@ -18,19 +18,24 @@ struct ModelEnergy {
   double normal = 0, lateral = 0;  ///< J
   double depth = 0;                ///< m
   double normal_force = 0;         ///< g, N
+  Vec3 lateral_deflection{};       ///< q, m
 };
 ModelEnergy model_energy(const Library& library, const runtime::ContactObservation& model,
                          const Vec3& x);
 
-/// What the tissue under a contact remembers, by equations (R17) to (R21) of docs/theory-runtime.md
+/// What the tissue under a contact remembers, by equations (R17) to (R27) of docs/theory-runtime.md
 /// and the observations of the contact alone.
 class MemoryTwin {
  public:
   explicit MemoryTwin(const Library& library)
-      : library_(library), memory_(library.relaxation_times.size()) {}
+      : library_(library),
+        memory_(library.relaxation_times.size()),
+        dragged_(library.relaxation_times.size()) {}
 
   /// Energy of a local model with the memory as it is, J.
   double energy(const runtime::ContactObservation& model, const Vec3& x) const;
+  /// The lateral force of a local model with the memory as it is, of decoupled responses, N.
+  Vec3 lateral_force(const runtime::ContactObservation& model, const Vec3& x) const;
   /// A step of dt (s) that led from one observation to the other, with the tip at x. @return what
   /// relaxation has dissipated, J.
   double step(const runtime::ContactObservation& before, const runtime::ContactObservation& after,
@@ -48,13 +53,33 @@ class MemoryTwin {
   static double normal_energy(const Sums& memory, const ModelEnergy& elastic);
   double carried(const runtime::SurfacePoint& p, double slid) const;
   double pass(const ModelEnergy& elastic, double dt);
+  struct LateralSums {
+    Vec3 relaxed{};     ///< M, N
+    double stored = 0;  ///< K, J
+  };
+  bool drags() const;
+  LateralSums lateral_sums() const;
+  double lateral_energy(const Vec3& q) const;
+  Vec3 gradient(const Vec3& q) const;
+  Vec3 deflection_of(const Vec3& force, double longest) const;
+  void carry_lateral(const Vec3& normal, double slid);
+  double pass_lateral(const runtime::ContactObservation& after, const Vec3& q, double dt);
+  Vec3 target(const runtime::ContactObservation& after, const Vec3& q, double dt) const;
+  bool has_lost(const runtime::ContactObservation& model, const Vec3& x) const;
 
   const Library& library_;
   std::vector<double> memory_;   ///< F_i, N
+  std::vector<Vec3> dragged_;    ///< p_i, m: M_i is the lateral force there
+  Vec3 normal_{};                ///< to which they are tangential
   Sums now_;                     ///< at place_
   runtime::SurfacePoint place_;  ///< of the tissue that remembers
   Vec3 point_{};                 ///< the same, m
 };
+
+/// The factor of L in (C10): friction carries the change of the normal force over to the lateral
+/// one, which for decoupled responses has a change of its own. Then it is the larger eigenvalue of
+/// ((1 + mu^2, mu), (mu, 1)).
+double relaxing_factor(const Library& library, double friction);
 
 /// Steps a contact and keeps what the worst step did. The account is computed with model_energy.
 class WatchedContact {
@@ -85,12 +110,15 @@ class WatchedContact {
   /// travel can give, (1 + mu) Lipschitz bound times the longest of the contact, of coupled ones
   /// over nothing but rounding.
   double largest_overdraft = 0;
-  long apart = 0;  ///< steps in which the lateral offset was not zero
+  /// N, decoupled: lateral force of the runtime against that of the twin.
+  double largest_lateral_error = 0;
+  long dragged = 0;  ///< steps in which a lateral force had relaxed
+  long apart = 0;    ///< steps in which the lateral offset was not zero
 
  private:
   void account(const Vec3& x, double dt, const runtime::ContactObservation& before);
   void compare(const Vec3& x, const runtime::ContactObservation& before);
-  double overdraft(const runtime::ContactObservation& model) const;
+  double overdraft(const runtime::ContactObservation& model, const Vec3& x) const;
 
   const Library& library_;
   runtime::ContactState contact_;

@@ -70,6 +70,26 @@ TEST(RelaxingPress, WithoutSlipBondsTheSurfaceAsTheCampaign) {
   EXPECT_NEAR(force(end_of(body, settings, {{0, 0}, {0, kDepth}})), expected, 1e-4 * expected);
 }
 
+TEST(RelaxingPress, DragsTheBondedSurfaceAsTheCampaign) {
+  const Body body = block();
+  CampaignSettings settings = settings_of({}, 0.45);
+  settings.indentation.lateral_depths = {kDepth};
+  settings.indentation.azimuths = {0};
+  settings.indentation.lateral_travel = 0.5e-3;
+  settings.indentation.lateral_increments = 2;
+  const CampaignContext context(body, settings, Engine::Direct);
+  const SiteCurves curves = solve_site(context, test::site_nearest(body), nullptr);
+  ASSERT_EQ(curves.status, SiteStatus::Complete);
+  const auto& dragged = curves.paths.back();
+  ASSERT_EQ(dragged.kind, PathKind::Lateral);
+  const RelaxingSample end =
+      end_of(body, settings, {{0, 0}, {1, kDepth}, {2, kDepth, 0.25e-3}, {2, kDepth, 0.5e-3}});
+  EXPECT_EQ(end.drag, 0.5e-3);
+  const Vec3 error = end.force - dragged.samples.back().force;
+  EXPECT_LT(norm(error), 1e-4 * norm(end.force));
+  EXPECT_GT(dot(end.force, dragged.direction), 0.1 * norm(end.force));
+}
+
 /// Work of the tool that presses and returns to where it was, by the trapezoidal rule.
 double work_of_return(const RelaxationSeries& series) {
   const Body body = block();
@@ -141,7 +161,9 @@ TEST(RelaxingPress, RefusesAMotionThatIsNone) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(message({{0, 0}}, settings), HasSubstr("fewer than two points"));
   EXPECT_THAT(message({{0, 1e-3}, {1, 0}}, settings), HasSubstr("without contact"));
+  EXPECT_THAT(message({{0, 0, 1e-4}, {1, 1e-3}}, settings), HasSubstr("without contact"));
   EXPECT_THAT(message({{0, 0}, {1, nan}}, settings), HasSubstr("point 1 is not finite"));
+  EXPECT_THAT(message({{0, 0}, {1, 0, nan}}, settings), HasSubstr("point 1 is not finite"));
   EXPECT_THAT(message({{0, 0}, {1, 0}, {0.5, 0}}, settings), HasSubstr("goes back in time"));
   CampaignSettings heavy = settings;
   heavy.gravity.acceleration = {0, 0, -9.81};

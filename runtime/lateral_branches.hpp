@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// The lateral memories of a contact with tissue that relaxes.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "format/library.hpp"
+#include "format/vec3.hpp"
+#include "runtime/interpolated_response.hpp"
+#include "runtime/tissue_memory.hpp"
+
+namespace palpate::runtime {
+
+/// One number for each relaxation time.
+using Branches = std::array<double, kMaxRelaxationTimes>;
+
+/// Where lateral memories come to lie: a response, its fractions g_i, and the normal there.
+struct LateralPlace {
+  const InterpolatedResponse* response;
+  const Branches* fractions;
+  Vec3 normal;
+};
+
+/// One lateral deflection p_i (m) for each relaxation time, tangential to the surface: M_i =
+/// grad H(p_i) is the force that the branch has relaxed. A deflection is kept rather than its force
+/// since every response has a force for it. Every function is noexcept, allocation-free and
+/// bounded. For decoupled responses.
+class LateralBranches {
+ public:
+  explicit LateralBranches(std::size_t count) noexcept : count_(count) {}
+
+  /// M and K where the memories lie.
+  const LateralMemory& now() const noexcept { return now_; }
+  /// The same at another place: every deflection turns with the normal and is multiplied by
+  /// `factor`.
+  LateralMemory carried_to(const LateralPlace& place, double factor) const noexcept;
+  /// Brings them there; none: they are forgotten.
+  void carry(const LateralPlace& place, const LateralMemory& carried) noexcept;
+  /// Time passes while the instantaneous force is `target` (N) at a deflection of `lateral` (m):
+  /// M_i := target + (M_i - target) decay_i. V falls.
+  void pass(const LateralPlace& place, const Vec3& target, double lateral,
+            const Branches& decay) noexcept;
+  void forget() noexcept { now_ = {}; }
+
+ private:
+  struct Branch {
+    Vec3 deflection{};  ///< p_i, m
+    double reach = 0;   ///< |p_i|, m
+    Vec3 force{};       ///< M_i, N
+  };
+  bool stays_tangential(const Vec3& normal) const noexcept;
+
+  std::size_t count_;
+  std::array<Branch, kMaxRelaxationTimes> branches_{};
+  Vec3 normal_{};  ///< to which they are tangential
+  LateralMemory now_;
+};
+
+}  // namespace palpate::runtime
