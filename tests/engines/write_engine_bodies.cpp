@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// write_engine_bodies FOLDER: plate.plib, f = 17000 z^2 along the normal of the plate z = 0, and plate.pdef, a skin that
-// dents under the tool.
+// write_engine_bodies FOLDER: plate.plib, f = 17000 z^2 along the normal of the plate z = 0, and
+// plate.pdef, a skin that dents under the tool.
 #include <filesystem>
 
 #include "fitting/certificate/certify.hpp"
