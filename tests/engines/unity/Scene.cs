@@ -22,11 +22,26 @@ static class Scene
         typeof(PalpateBody).GetMethod(message, BindingFlags.Instance | BindingFlags.NonPublic).Invoke(body, null);
     }
 
-    static PalpateBody BodyOf(string skin)
+    /// A body that counts its force steps.
+    class Counted : PalpateBody
     {
-        PalpateBody body = new PalpateBody { LibraryFile = "plate.plib", SkinFile = skin, ToolTip = new Transform() };
-        body.transform.position = new Vector3(1, 2, 3);
-        Place(body, -0.01f);
+        int steps;
+        protected override void Command(double[] force) { Interlocked.Increment(ref steps); }
+
+        /// Until a step has begun and ended since this call.
+        public void AwaitStep()
+        {
+            int before = Thread.VolatileRead(ref steps);
+            for (int i = 0; i < 10000 && Thread.VolatileRead(ref steps) < before + 2; ++i) Thread.Sleep(1);
+            Require(Thread.VolatileRead(ref steps) >= before + 2, "the force thread makes no steps");
+        }
+    }
+
+    static Counted BodyOf(string skin)
+    {
+        Counted body = new Counted { LibraryFile = "plate.plib", SkinFile = skin, ToolTip = new Transform() };
+        body.transform.position = new Vector3(0.1f, 0.2f, 0.3f);
+        Place(body, -0.001f);
         Send(body, "Start");
         return body;
     }
@@ -34,7 +49,7 @@ static class Scene
     /// The tip over the middle of the plate, which lies level in Unity, as deep as this.
     static void Place(PalpateBody body, float depth)
     {
-        body.ToolTip.position = new Vector3(1 + 0.04f, 2 - depth, 3 + 0.04f);
+        body.ToolTip.position = new Vector3(0.14f, 0.2f - depth, 0.34f);
     }
 
     static float Height(Vector3 a, Vector3 b, Vector3 c)  // of the normal of a triangle that Unity draws: clockwise is the front
@@ -42,13 +57,13 @@ static class Scene
         return (b.z - a.z) * (c.x - a.x) - (b.x - a.x) * (c.z - a.z);
     }
 
-    static void Press(PalpateBody body)
+    static void Press(Counted body)
     {
-        for (int i = 0; i < 100; ++i)
+        for (int i = 0; i < 12; ++i)  // depths count from the first step inside: hardly inside first
         {
-            Place(body, Depth * Math.Min(1, i / 50f));
+            Place(body, i < 2 ? 2e-7f : Depth * Math.Min(1, (i - 1) / 10f));
             Send(body, "Update");
-            Thread.Sleep(2);
+            body.AwaitStep();
         }
         Send(body, "Update");
         float expected = 17000 * Depth * Depth;
@@ -59,7 +74,7 @@ static class Scene
     static void Main(string[] words)
     {
         Application.streamingAssetsPath = words[0];
-        PalpateBody rigid = BodyOf("");
+        Counted rigid = BodyOf("");
         Press(rigid);
         Vector3[] still = rigid.GetComponent<MeshFilter>().mesh.vertices;
         int[] corners = rigid.GetComponent<MeshFilter>().mesh.triangles;
@@ -68,7 +83,7 @@ static class Scene
             Require(Height(still[corners[i]], still[corners[i + 1]], still[corners[i + 2]]) > 0, "a triangle faces down");
         Send(rigid, "OnDestroy");
 
-        PalpateBody soft = BodyOf("plate.pdef");
+        Counted soft = BodyOf("plate.pdef");
         Press(soft);
         float lowest = 0;
         foreach (Vector3 x in soft.GetComponent<MeshFilter>().mesh.vertices) lowest = Math.Min(lowest, x.y);
