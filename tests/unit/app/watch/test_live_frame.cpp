@@ -16,7 +16,7 @@ using nlohmann::json;
 
 RecordedStep step(int i, double force) {
   RecordedStep s;
-  s.time_ns = 1'000'000 * i;
+  s.time_ns = std::int64_t{1'000'000} * i;
   s.position = {0.001 * i, 2, 3};
   s.contact_point = {1, 2, 3};
   s.force = {0, 0, force};
