@@ -12,8 +12,8 @@ PATIENCE = 90  # s
 
 
 class Chromium:
-    def __init__(self, program, width=1300, height=1000):
-        self.profile = tempfile.TemporaryDirectory()
+    def __init__(self, program, width=1280, height=1120):
+        self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # its helpers may still be writing there
         down, self.commands = os.pipe()
         self.answers, up = os.pipe()
         self.number, self.left = 0, b""
@@ -23,12 +23,12 @@ class Chromium:
             os.dup2(low, 13), os.dup2(high, 14), os.dup2(13, 3), os.dup2(14, 4)
 
         self.process = subprocess.Popen(
-            [program, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run", f"--window-size={width},{height}",
+            [program, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
              f"--user-data-dir={self.profile.name}", "--remote-debugging-pipe", "about:blank"],
             stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=on_3_and_4, close_fds=False)
         os.close(down)
         os.close(up)
-        target = self.call("Target.getTargets")["targetInfos"][0]["targetId"]
+        target = self.call("Target.createTarget", url="about:blank", newWindow=True, width=width, height=height)["targetId"]
         self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
 
     def __enter__(self):
@@ -39,10 +39,7 @@ class Chromium:
         self.process.kill()
         self.process.wait()
         os.close(self.answers)
-        try:
-            self.profile.cleanup()
-        except OSError:  # its helpers may still be writing there
-            pass
+        self.profile.cleanup()
 
     def call(self, method, **parameters):
         self.number += 1
@@ -86,4 +83,4 @@ class Chromium:
             time.sleep(0.05)
 
     def picture(self, path):
-        pathlib.Path(path).write_bytes(base64.b64decode(self.call("Page.captureScreenshot", captureBeyondViewport=True)["data"]))
+        pathlib.Path(path).write_bytes(base64.b64decode(self.call("Page.captureScreenshot")["data"]))

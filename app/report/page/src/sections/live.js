@@ -152,8 +152,8 @@ export function liveSection(data) {
     el('div', { class: 'split' },
       el('div', {}, live.view.element,
         el('p', { class: 'note' }, `The tool to scale, ${skin}, and the commanded force. Drag to turn the body. What is shown is at most some 30 times a second; the journal has every step.`),
-        live.forces.element, live.energies.element),
-      live.readings.element));
+        live.forces.element),
+      el('div', {}, live.readings.element, live.energies.element)));
   live.onShow = () => { element.dataset.shown = String(Number(element.dataset.shown ?? 0) + 1); };
   const source = new EventSource('/steps');
   source.onmessage = (event) => {
