@@ -53,6 +53,7 @@ void add_import_command(CLI::App& root, Action& action);
 void add_rescale_command(CLI::App& root, Action& action);
 void add_identify_command(CLI::App& root, Action& action);
 void add_run_command(CLI::App& root, Action& action);
+void add_watch_command(CLI::App& root, Action& action);
 void add_recover_command(CLI::App& root, Action& action);
 void add_replay_command(CLI::App& root, Action& action);
 void add_experiment_command(CLI::App& root, Action& action);

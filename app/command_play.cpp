@@ -46,7 +46,7 @@ int play(const PlayOptions& options) {
       options.out.empty() ? cached_page(file.stem().string()) : std::filesystem::path(options.out);
   const DrawnBody drawn = drawn_body(file, library);
   report::write_play_page(library, {drawn.body ? &*drawn.body : nullptr, drawn.triangles}, page);
-  const bool shown = !options.closed && open_in_browser(page);
+  const bool shown = !options.closed && open_in_browser(std::filesystem::absolute(page).string());
   say("play: {}{}", page.string(), shown ? "" : " (open it in a browser)");
   return kExitDone;
 }

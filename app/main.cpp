@@ -60,6 +60,7 @@ void add_commands(CLI::App& root, Action& action) {
   add_play_command(root, action);
   add_identify_command(root, action);
   add_run_command(root, action);
+  add_watch_command(root, action);
   add_recover_command(root, action);
   add_replay_command(root, action);
   add_experiment_command(root, action);

@@ -300,13 +300,22 @@ SessionJournalReader::SessionJournalReader(const fs::path& path)
 }
 
 bool SessionJournalReader::next(std::vector<RecordedStep>& steps) {
+  if (at_end_) return false;
+  return take_next(steps) || (pass_damage() && take_next(steps));
+}
+
+bool SessionJournalReader::follow(std::vector<RecordedStep>& steps) {
+  file_.clear();
+  file_.seekg(0, std::ios::end);
+  size_ = static_cast<std::uint64_t>(file_.tellg());
+  file_.seekg(static_cast<std::streamoff>(good_));
+  return take_next(steps);
+}
+
+bool SessionJournalReader::take_next(std::vector<RecordedStep>& steps) {
   std::string payload;
   std::uint64_t taken = 0;
-  if (at_end_) return false;
-  if (!next_payload(file_, size_ - good_, payload, taken)) {
-    if (!pass_damage()) return false;
-    if (!next_payload(file_, size_ - good_, payload, taken)) return false;
-  }
+  if (!next_payload(file_, size_ - good_, payload, taken)) return false;
   good_ += taken;
   steps.clear();
   ByteReader in(payload, where_, "holds a record that is no steps", kJournalRemedy);

@@ -61,6 +61,9 @@ class SessionJournalReader {
   const RecordingHeading& heading() const { return heading_; }
   /// The steps of the next whole record; false behind the last.
   bool next(std::vector<RecordedStep>& steps);
+  /// The steps of the next whole record of a file that another process writes, as it is now; false
+  /// where there is none yet. Damage ends it: it is never passed. Instead of next().
+  bool follow(std::vector<RecordedStep>& steps);
   /// Behind the last whole record: the front of one that the end of the session cut short. After
   /// next() was false.
   std::uint64_t incomplete_bytes() const { return incomplete_; }
@@ -69,6 +72,7 @@ class SessionJournalReader {
 
  private:
   bool pass_damage();
+  bool take_next(std::vector<RecordedStep>& steps);
   void close_gap(const std::vector<RecordedStep>& steps);
 
   std::string where_;

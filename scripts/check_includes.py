@@ -63,6 +63,7 @@ NO_CIRCLES = ("mesher", "fitting/response", "fitting/sampling", "fitting/certifi
 LIBRARIES = (
     (r"(hdf5|H5\w*)\.h", "HDF5"),
     (r"boost/math/", "Boost.Math"),
+    (r"boost/(asio|beast)", "Boost.Beast"),
     (r"(CGAL/|boost/|gmp|mpfr)", "CGAL"),
     (r"tetgen\.h", "TetGen"),
     (r"(Eigen|unsupported)/", "Eigen"),
@@ -95,6 +96,7 @@ MAY_USE = {
     "fitting/measurement/records": {"Eigen", "Boost.Math", "matio", "minizip", "pugixml"} | TEXT,
     "runtime": {"readerwriterqueue"},
     "app": {"CLI11", "toml++", "nlohmann-json"} | TEXT,
+    "app/watch": {"nlohmann-json", "Boost.Beast"} | TEXT,
     "python": {"pybind11"},
 }
 

@@ -38,15 +38,15 @@ fs::path cached_page(const std::string& name) {
   return folder / (name + ".html");
 }
 
-bool open_in_browser(const fs::path& page) {
+bool open_in_browser(std::string page) {
   if (from_environment("DISPLAY").empty() && from_environment("WAYLAND_DISPLAY").empty())
     return false;
   posix_spawn_file_actions_t silent;
   posix_spawn_file_actions_init(&silent);
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
     posix_spawn_file_actions_addopen(&silent, stream, "/dev/null", O_WRONLY, 0);
-  std::string program = "xdg-open", argument = fs::absolute(page).string();
-  char* const arguments[] = {program.data(), argument.data(), nullptr};
+  std::string program = "xdg-open";
+  char* const arguments[] = {program.data(), page.data(), nullptr};
   pid_t browser = 0;
   const int failed = posix_spawnp(&browser, program.c_str(), &silent, nullptr, arguments, environ);
   posix_spawn_file_actions_destroy(&silent);

@@ -11,8 +11,8 @@ namespace palpate::app {
 /// for temporary files. The folder is made. @throws Error(Configuration) where it cannot be.
 std::filesystem::path cached_page(const std::string& name);
 
-/// Shows the page with xdg-open, without waiting for it.
+/// Shows a file, by its absolute path, or an address with xdg-open, without waiting for it.
 /// @return false without a display or without xdg-open
-bool open_in_browser(const std::filesystem::path& page);
+bool open_in_browser(std::string page);
 
 }  // namespace palpate::app

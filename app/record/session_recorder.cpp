@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostWaiting = 4096;  // steps: 700 kB
-constexpr std::chrono::milliseconds kLongestWait{250};
+constexpr std::chrono::milliseconds kLongestWait{30};  // what watches the journal sees it move
 constexpr std::chrono::seconds kSynchronizeEvery{1};
 
 /// The first `<stem>.recovered-<n>.h5` that is free.

@@ -40,7 +40,7 @@ std::optional<Recovered> recover_interrupted(const std::filesystem::path& record
 /// The same error, its remedy extended by `palpate recover`.
 [[noreturn]] void throw_with_journal(const Error& error, const std::filesystem::path& journal);
 
-/// Writes steps to the journal several times a second and synchronizes it every second, which
+/// Writes steps to the journal some thirty times a second and synchronizes it every second, which
 /// bounds what a crash can lose. Memory does not grow with the session. One thread at a time.
 class SessionRecorder {
  public:

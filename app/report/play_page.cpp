@@ -9,6 +9,7 @@
 #include "app/report/figures.hpp"
 #include "app/report/page_data.hpp"
 #include "app/report/report.hpp"
+#include "app/report/surface_map.hpp"
 #include "app/report/touch.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
@@ -148,6 +149,26 @@ void write_play_page(const Library& library, const PlayBody& drawn,
     refuse("play", "this palpate was built without the WebAssembly toolchain, which the page needs",
            "run scripts/setup and build again");
   write_page(data, path);
+}
+
+json watch_data(const Library& library, const PlayBody& drawn, std::string_view deformation) {
+  json data = play_data(library, drawn);
+  data["watch"] = true;
+  if (drawn.body != nullptr && !deformation.empty() && !data["touch"].is_null())
+    data["touch"] = touch_data(*drawn.body, library, deformation, map_boundary(*drawn.body).node);
+  return data;
+}
+
+std::string watch_page(const Library& library, const PlayBody& drawn,
+                       std::string_view deformation) {
+  std::string page = page_text(watch_data(library, drawn, deformation));
+  constexpr std::string_view kPolicy = "default-src 'none';";
+  const std::size_t at = page.find(kPolicy);
+  if (at == std::string::npos)
+    throw Error(ErrorKind::Internal, "watch", "the page has no content security policy",
+                "report it as a defect");
+  page.insert(at + kPolicy.size(), " connect-src 'self';");
+  return page;
 }
 
 }  // namespace palpate::report

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "format/body.hpp"
@@ -29,5 +31,15 @@ nlohmann::json play_data(const Library& library, const PlayBody& drawn = {});
 ///   WebAssembly toolchain, Error(Internal) when the file cannot be written.
 void write_play_page(const Library& library, const PlayBody& drawn,
                      const std::filesystem::path& path);
+
+/// Data of the page of a running session: those of play_data, with the skin of `deformation`, the
+/// bytes of deformation.pdef, where it is not empty and there is a body.
+nlohmann::json watch_data(const Library& library, const PlayBody& drawn,
+                          std::string_view deformation);
+
+/// The page of a running session, which its server gives: it takes the steps from "/steps" of its
+/// origin.
+/// @throws Error as play_data.
+std::string watch_page(const Library& library, const PlayBody& drawn, std::string_view deformation);
 
 }  // namespace palpate::report

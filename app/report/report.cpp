@@ -11,22 +11,18 @@
 
 namespace palpate {
 
-namespace {
-
-std::string render(const nlohmann::json& data) {
+std::string report::page_text(const nlohmann::json& data) {
   std::string html;
-  html += report::page_before_title();
+  html += page_before_title();
   html += app::escape_markup(data["title"].get<std::string>());
-  html += report::page_before_data();
-  html += report::script_json(data);
-  html += report::page_after_data();
+  html += page_before_data();
+  html += script_json(data);
+  html += page_after_data();
   return html;
 }
 
-}  // namespace
-
 void report::write_page(const nlohmann::json& data, const std::filesystem::path& path) {
-  write_file_crash_safely(path, render(data));
+  write_file_crash_safely(path, page_text(data));
 }
 
 void write_report(const ReportInput& input, const std::filesystem::path& path) {

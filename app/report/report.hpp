@@ -49,7 +49,9 @@ namespace report {
 /// write_report.
 void write_calibration(const std::string& text, const std::filesystem::path& path);
 
-/// The page with these data, which have a "title"; as write_report.
+/// The page with these data, which have a "title".
+std::string page_text(const nlohmann::json& data);
+/// The same as a file; as write_report.
 void write_page(const nlohmann::json& data, const std::filesystem::path& path);
 }  // namespace report
 

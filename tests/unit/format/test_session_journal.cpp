@@ -83,6 +83,20 @@ TEST_F(SessionJournalTest, BecomesTheRecordingThatWouldHaveBeenWrittenAtOnce) {
   EXPECT_EQ(samples::dump(read_recording(folder_ / "recording.h5")), samples::dump(session_));
 }
 
+TEST_F(SessionJournalTest, IsFollowedWhileItIsWritten) {
+  SessionJournal journal(path_, session_);
+  SessionJournalReader reader(path_);
+  std::vector<RecordedStep> got;
+  EXPECT_FALSE(reader.follow(got));
+  for (const std::size_t i : {0U, 7U, 14U}) {
+    journal.append(steps(i, i + 7));
+    ASSERT_TRUE(reader.follow(got));
+    ASSERT_EQ(got.size(), 7U);
+    EXPECT_EQ(got.front().time_ns, session_.steps[i].time_ns);
+    EXPECT_FALSE(reader.follow(got));
+  }
+}
+
 TEST_F(SessionJournalTest, CutAnywhereItGivesEveryWholeRecord) {
   const auto sizes = write_some();
   std::set<std::uintmax_t> lengths;

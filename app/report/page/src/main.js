@@ -12,6 +12,7 @@ import { Curves } from './sections/curves.js';
 import { fidelitySection } from './sections/fidelity.js';
 import { fitSection } from './sections/fit.js';
 import { headerSection } from './sections/header.js';
+import { liveHeader, liveSection } from './sections/live.js';
 import { playHeader } from './sections/play.js';
 import { overTimePage } from './sections/over-time.js';
 import { previewSection } from './sections/preview.js';
@@ -68,11 +69,19 @@ function showPlay(data) {
   place('certificate', () => certificateSection(data));
 }
 
+function showWatch(data) {
+  place('header', () => liveHeader(data));
+  place('live', () => liveSection(data));
+  place('certificate', () => certificateSection(data));
+}
+
 try {
   watchTheme();
   const data = readData();
   if (data.preview) {
     place('preview', () => previewSection(data));
+  } else if (data.watch) {
+    showWatch(data);
   } else if (data.play) {
     showPlay(data);
   } else if (data.over_time) {

@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+# In place of the package of a built SOFA: the headers of the checkout SOFA, with those that its configuration would write, by its
+# defaults: double precision, none of the optional parts. A shared library may leave open what SOFA's libraries define.
+file(STRINGS ${SOFA}/CMakeLists.txt version REGEX "^ *set\\(Sofa_VERSION_(MAJOR|MINOR|PATCH) ")
+string(REGEX REPLACE "[^0-9;]" "" version "${version}")
+list(JOIN version . PROJECT_VERSION)
+list(JOIN version "" SOFA_VERSION)
+set(SOFA_VERSION_STR "\"${PROJECT_VERSION}\"")
+set(SOFA_DOUBLE 1)
+set(SOFA_WITH_DOUBLE 1)
+set(SOFA_NO_UPDATE_BBOX_ false)
+
+set(generated ${CMAKE_CURRENT_BINARY_DIR}/sofa)
+set(folders ${generated})
+foreach(module framework/Config framework/Type framework/Geometry framework/Topology framework/LinearAlgebra framework/Helper
+    framework/DefaultType framework/Core framework/Simulation/Core Component/Haptics)
+  set(source ${SOFA}/Sofa/${module}/src)
+  if(NOT EXISTS ${source})
+    message(FATAL_ERROR "${source} does not exist: SOFA is to be a checkout of SOFA")
+  endif()
+  list(APPEND folders ${source})
+  file(GLOB_RECURSE templates RELATIVE ${source} ${source}/*.h.in)
+  foreach(template IN LISTS templates)
+    string(REGEX REPLACE "\\.in$" "" header ${template})
+    configure_file(${source}/${template} ${generated}/${header})
+  endforeach()
+endforeach()
+find_package(Eigen3 REQUIRED)
+add_library(Sofa.Component.Haptics INTERFACE)
+target_include_directories(Sofa.Component.Haptics SYSTEM INTERFACE ${folders})
+target_link_libraries(Sofa.Component.Haptics INTERFACE Eigen3::Eigen)

@@ -1,0 +1,3 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+# Its headers come with Sofa.Component.Haptics.
+add_library(Sofa.Simulation.Core INTERFACE)

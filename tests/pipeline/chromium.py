@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: AGPL-3.0-or-later
+"""A headless Chromium that is told what to do while its pages run, by the DevTools protocol on a pipe."""
+import base64
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import time
+
+PATIENCE = 90  # s
+
+
+class Chromium:
+    def __init__(self, program, width=1280, height=1120):
+        self.profile = tempfile.TemporaryDirectory(ignore_cleanup_errors=True)  # its helpers may still be writing there
+        down, self.commands = os.pipe()
+        self.answers, up = os.pipe()
+        self.number, self.left = 0, b""
+
+        def on_3_and_4():
+            low, high = os.dup(down), os.dup(up)  # neither may be 3 before the other is moved
+            os.dup2(low, 13), os.dup2(high, 14), os.dup2(13, 3), os.dup2(14, 4)
+
+        self.process = subprocess.Popen(
+            [program, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
+             f"--user-data-dir={self.profile.name}", "--remote-debugging-pipe", "about:blank"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=on_3_and_4, close_fds=False)
+        os.close(down)
+        os.close(up)
+        target = self.call("Target.createTarget", url="about:blank", newWindow=True, width=width, height=height)["targetId"]
+        self.session = self.call("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        os.close(self.commands)
+        self.process.kill()
+        self.process.wait()
+        os.close(self.answers)
+        self.profile.cleanup()
+
+    def call(self, method, **parameters):
+        self.number += 1
+        command = {"id": self.number, "method": method, "params": parameters}
+        if hasattr(self, "session"):
+            command["sessionId"] = self.session
+        os.write(self.commands, json.dumps(command).encode() + b"\0")
+        while True:
+            message = json.loads(self.message())
+            if message.get("id") == self.number:
+                if "error" in message:
+                    raise RuntimeError(f"{method}: {message['error']}")
+                return message["result"]
+
+    def message(self):
+        while b"\0" not in self.left:
+            more = os.read(self.answers, 1 << 20)
+            if not more:
+                raise RuntimeError("the browser has ended")
+            self.left += more
+        first, self.left = self.left.split(b"\0", 1)
+        return first
+
+    def open(self, address):
+        self.call("Page.navigate", url=address)
+        self.wait("document.readyState === 'complete'")
+
+    def value(self, expression):
+        """What the page computes."""
+        said = self.call("Runtime.evaluate", expression=expression, returnByValue=True, awaitPromise=True)
+        if "exceptionDetails" in said:
+            raise RuntimeError(said["exceptionDetails"]["exception"].get("description", str(said)))
+        return said["result"].get("value")
+
+    def wait(self, expression):
+        """Until it is true in the page."""
+        end = time.monotonic() + PATIENCE
+        while not self.value(expression):
+            if time.monotonic() > end:
+                raise RuntimeError(f"it did not come true: {expression}")
+            time.sleep(0.05)
+
+    def picture(self, path):
+        pathlib.Path(path).write_bytes(base64.b64decode(self.call("Page.captureScreenshot")["data"]))
