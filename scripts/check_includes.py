@@ -94,6 +94,7 @@ MAY_USE = {
     "fitting/measurement/records": {"Eigen", "Boost.Math", "matio", "minizip", "pugixml"} | TEXT,
     "runtime": {"readerwriterqueue"},
     "app": {"CLI11", "toml++", "nlohmann-json"} | TEXT,
+    "app/report": {"nlohmann-json", "zlib"} | TEXT,
     "python": {"pybind11"},
 }
 
