@@ -13,8 +13,10 @@
 #include "app/vtkhdf/grids.hpp"
 #include "fem/campaign/bonded_patch.hpp"
 #include "fem/solid/pressure_smoothness.hpp"
+#include "fitting/deformation/coarsen.hpp"
 #include "format/body.hpp"
 #include "format/crash_safe_file.hpp"
+#include "format/deformation.hpp"
 #include "format/error.hpp"
 #include "format/flat_library.hpp"
 
@@ -80,6 +82,26 @@ int export_runtime(const Workspace& space) {
   const std::filesystem::path file = space.out / "library.plib";
   write_flat_library(file, read_library(space.library()));
   say("export: {}, {} kB", file.string(), (std::filesystem::file_size(file) + 999) / 1000);
+  return kExitDone;
+}
+
+/// For pictures that draw the response surface, beside library.plib.
+int export_skin(const Workspace& space, int modes) {
+  if (!std::filesystem::exists(space.deformation()))
+    refuse(space.deformation().string(), "does not exist",
+           "set depths in [deformation] of the case and run `palpate build`");
+  const Deformation fine = read_deformation(space.deformation());
+  const Body body = read_body(space.body());
+  if (fine.vertex_of.size() != body.response.node.size())
+    refuse(space.deformation().string(), "is of another body than body.h5",
+           "run `palpate build` again");
+  const Deformation coarse =
+      fitting::coarsened(fine, body.response.triangles, static_cast<std::size_t>(modes));
+  const std::filesystem::path file = space.out / "skin.pdef";
+  write_deformation(file, coarse);
+  say("export: {}, {} vertices, {} modes that leave out {:.2g} mm (root mean square), {} kB",
+      file.string(), coarse.positions.size(), coarse.mode_count(), 1e3 * coarse.rms_left_out,
+      (std::filesystem::file_size(file) + 999) / 1000);
   return kExitDone;
 }
 
@@ -268,6 +290,13 @@ void add_export_command(CLI::App& root, Action& action) {
            export_library);
   add_part(*command, action, "runtime",
            "library.h5 -> library.plib, which the runtime loads without HDF5", export_runtime);
+  const auto modes = std::make_shared<int>(24);
+  add_part(*command, action, "skin",
+           "deformation.pdef -> skin.pdef, the same on the vertices of the response surface alone",
+           [modes](const Workspace& space) { return export_skin(space, *modes); })
+      ->add_option("--modes", *modes, "Largest number of shapes that the skin is blended from")
+      ->check(CLI::Range(1, 512))
+      ->capture_default_str();
   add_recording_part(*command, action);
   const auto options = std::make_shared<SiteOptions>();
   CLI::App* site =

@@ -45,7 +45,7 @@ int play(const PlayOptions& options) {
   const std::filesystem::path page =
       options.out.empty() ? cached_page(file.stem().string()) : std::filesystem::path(options.out);
   const DrawnBody drawn = drawn_body(file, library);
-  report::write_play_page(library, {drawn.body ? &*drawn.body : nullptr, drawn.triangles}, page);
+  report::write_play_page(library, drawn.to_draw(), page);
   const bool shown = !options.closed && open_in_browser(std::filesystem::absolute(page).string());
   say("play: {}{}", page.string(), shown ? "" : " (open it in a browser)");
   return kExitDone;

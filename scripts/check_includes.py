@@ -97,6 +97,7 @@ MAY_USE = {
     "runtime": {"readerwriterqueue"},
     "app": {"CLI11", "toml++", "nlohmann-json"} | TEXT,
     "app/watch": {"nlohmann-json", "Boost.Beast"} | TEXT,
+    "app/report": {"nlohmann-json", "zlib"} | TEXT,
     "python": {"pybind11"},
 }
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/report/embed.hpp"
 
+#include <zlib.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
 #include "format/base64.hpp"
+#include "format/error.hpp"
 
 namespace palpate::report {
 
@@ -58,6 +61,20 @@ nlohmann::json column(const std::vector<std::uint8_t>& values) {
 
 nlohmann::json column(const std::vector<std::uint16_t>& values) {
   return typed_column("u2", values);
+}
+
+nlohmann::json packed_column(std::string_view bytes) {
+  uLongf size = compressBound(bytes.size());
+  std::string packed(size, '\0');
+  const int result =
+      compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
+                reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), Z_BEST_COMPRESSION);
+  if (result != Z_OK) {
+    throw Error(ErrorKind::Internal, "report", "zlib could not compress a column",
+                "free memory and write it again");
+  }
+  packed.resize(size);
+  return {{"z1", base64(packed)}};
 }
 
 nlohmann::json index_column(const std::vector<std::int32_t>& values) {

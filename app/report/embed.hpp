@@ -22,7 +22,10 @@ nlohmann::json column(const std::vector<std::uint32_t>& values);
 nlohmann::json column(const std::vector<std::uint16_t>& values);
 nlohmann::json column(const std::vector<std::uint8_t>& values);
 
-/// The same in the narrowest type that holds every value: u2, u4, or i4 when one is negative.
+/// Bytes as {"z1": base64 of a stream of zlib}: for files of megabytes. The page inflates them.
+nlohmann::json packed_column(std::string_view bytes);
+
+/// A column in the narrowest type that holds every value: u2, u4, or i4 when one is negative.
 nlohmann::json index_column(const std::vector<std::int32_t>& values);
 /// Numbers in 0..1 in steps of 1/65535, for pictures.
 nlohmann::json fraction_column(const std::vector<double>& values);

@@ -60,8 +60,8 @@ Numbering corners_of(const std::vector<Triangle>& triangles, std::size_t vertice
 }
 
 /// The response surface in place of the boundary of the body: its points are vertices.
-json surface_of(const Library& library, const std::vector<Triangle>& triangles) {
-  const Numbering used = corners_of(triangles, library.positions.size());
+json surface_of(const Library& library, const std::vector<Triangle>& triangles,
+                const Numbering& used) {
   std::vector<Vec3> points;
   for (const std::int32_t v : used.vertex) points.push_back(library.positions[to_index(v)]);
   const std::vector<std::int32_t> in_library = library_triangles(triangles, library);
@@ -93,13 +93,35 @@ json surface_of(const Library& library, const std::vector<Triangle>& triangles) 
           {"library_triangle", column(in_library)}};
 }
 
-json surface_of(const Library& library, const PlayBody& drawn) {
-  if (drawn.body == nullptr)
-    return surface_of(library, drawn.triangles.empty() ? library.triangles : drawn.triangles);
-  if (drawn.body->response.node.size() != library.positions.size())
+json inclusions_of(const std::vector<InnerSurface>& inclusions) {
+  json list = json::array();
+  for (const InnerSurface& inclusion : inclusions) {
+    std::vector<std::int32_t> facets;
+    for (const Triangle& t : inclusion.facets) facets.insert(facets.end(), t.begin(), t.end());
+    list.push_back({{"region", inclusion.region},
+                    {"points", column(columns_of(inclusion.points))},
+                    {"facets", index_column(facets)}});
+  }
+  return list;
+}
+
+/// What the picture shows: "surface", "inclusions" and "touch".
+json picture_of(const Library& library, const PlayBody& drawn) {
+  if (drawn.body == nullptr) {
+    const auto& triangles = drawn.triangles.empty() ? library.triangles : drawn.triangles;
+    const Numbering used = corners_of(triangles, library.positions.size());
+    return {{"surface", surface_of(library, triangles, used)},
+            {"inclusions", inclusions_of(drawn.inclusions)},
+            {"touch", touch_data(library, drawn.deformation, used.vertex)}};
+  }
+  const Body& body = *drawn.body;
+  if (body.response.node.size() != library.positions.size())
     refuse(library.name, "the body beside it is not the one that it was computed for",
            "move body.h5 away, or run `palpate build` again");
-  return surface_data(*drawn.body, library, map_boundary(*drawn.body));
+  const SurfaceMap map = map_boundary(body);
+  return {{"surface", surface_data(body, library, map)},
+          {"inclusions", inclusion_data(body)},
+          {"touch", touch_data(body, library, drawn.deformation, map.node)}};
 }
 
 json vertices_of(const Library& library) {
@@ -123,23 +145,23 @@ json play_data(const Library& library, const PlayBody& drawn) {
   const double depth = depth_of(library);
   const std::vector<PeakForce> no_samples(library.responses.size());
   const ChosenVertices chosen = choose_vertices(library, no_samples, depth);
-  return {{"play", true},
-          {"title", library.name},
-          {"key",
-           {{"depth", depth},
-            {"deepest", depth},
-            {"tool_shape", library.tool_shape},
-            {"tool_radius", library.tool_radius}}},
-          {"surface", surface_of(library, drawn)},
-          {"inclusions", drawn.body == nullptr ? json::array() : inclusion_data(*drawn.body)},
-          {"vertices", vertices_of(library)},
-          {"normal", response_columns(library, true)},
-          {"chosen",
-           {{"softest", chosen.softest}, {"median", chosen.median}, {"stiffest", chosen.stiffest}}},
-          {"certificate", certificate_data(library)},
-          {"touch", touch_data(library)},
-          {"relaxation", relaxation_data(library, chosen.median)},
-          {"provenance", provenance_data(library.provenance.steps)}};
+  json data{
+      {"play", true},
+      {"title", library.name},
+      {"key",
+       {{"depth", depth},
+        {"deepest", depth},
+        {"tool_shape", library.tool_shape},
+        {"tool_radius", library.tool_radius}}},
+      {"vertices", vertices_of(library)},
+      {"normal", response_columns(library, true)},
+      {"chosen",
+       {{"softest", chosen.softest}, {"median", chosen.median}, {"stiffest", chosen.stiffest}}},
+      {"certificate", certificate_data(library)},
+      {"relaxation", relaxation_data(library, chosen.median)},
+      {"provenance", provenance_data(library.provenance.steps)}};
+  data.update(picture_of(library, drawn));
+  return data;
 }
 
 void write_play_page(const Library& library, const PlayBody& drawn,

@@ -13,11 +13,20 @@
 
 namespace palpate::report {
 
-/// What is known of the body beside its library, to be drawn; both may be missing.
+/// The closed surface of a region inside the body, oriented outwards.
+struct InnerSurface {
+  std::string region;
+  std::vector<Vec3> points;  ///< m
+  std::vector<Triangle> facets;
+};
+
+/// What is known of the body beside its library, to be drawn; all of it may be missing.
 struct PlayBody {
   const Body* body = nullptr;  ///< that of the library: its boundary, inclusions and supports
   std::vector<Triangle>
       triangles{};  ///< the whole response surface, with the vertices of the library
+  std::vector<InnerSurface> inclusions{};  ///< where there is no body
+  std::string_view deformation{};          ///< bytes of the deformation file
 };
 
 /// Data of the page, in SI units. Without a body the triangles are drawn, and without these those

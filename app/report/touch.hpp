@@ -24,11 +24,15 @@ inline constexpr std::size_t kLargestSkin = 16'000'000;
 /// runtime, or where no vertex has a response.
 nlohmann::json touch_data(const Library& library);
 
-/// The same with the "skin" of `deformation`, the bytes of deformation.pdef: the file
-/// and the skin vertex of each point of the picture (SurfaceMap::node); null where it is empty;
-/// {"problem", "bytes", "limit"} where the file is of another library or too large.
+/// The same with the "skin" of `deformation`, the bytes of deformation.pdef: the file and the skin
+/// vertex of each point of the picture (SurfaceMap::node); null where it is empty; {"problem",
+/// "bytes", "limit"} where the file is of another library or body, or too large.
 /// @throws Error(Configuration) when it cannot be read.
 nlohmann::json touch_data(const Body& body, const Library& library, std::string_view deformation,
                           const std::vector<std::int32_t>& points);
+
+/// The same for a picture whose points are these vertices of the library.
+nlohmann::json touch_data(const Library& library, std::string_view deformation,
+                          const std::vector<std::int32_t>& vertices);
 
 }  // namespace palpate::report

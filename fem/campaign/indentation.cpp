@@ -23,8 +23,10 @@ namespace {
 constexpr double kTouching = 1e-6;
 /// Radius around the site within which self-contact is detected, over the extent of the tool.
 constexpr double kWatched = 4;
-/// Increments of a path across a lateral one.
-constexpr std::size_t kAcross = 2;
+/// A path across a lateral one: its travel over that of the lateral path, and the error of its tool
+/// force. Only the picture of the skin comes from it, linear in the travel.
+constexpr double kAcrossTravel = 0.5;
+constexpr double kAcrossTolerance = 2e-3;
 
 double thread_cpu_seconds() {
   timespec now{};
@@ -203,7 +205,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
 std::size_t SiteSolver::count_increments(const SitePlan& plan) const {
   std::size_t count = normal_increments(context_.indentation, plan.stops).size();
   for (const LateralPlan& lateral : plan.lateral)
-    count += lateral.travels.size() + (also_across_ ? kAcross : 0);
+    count += lateral.travels.size() + (also_across_ ? 1 : 0);
   return count;
 }
 
@@ -218,10 +220,9 @@ void SiteSolver::run_across(Site& site, const LateralPlan& plan, const SiteCurve
   const Eigen::Vector3d across = site.inward.cross(to_eigen(plan.direction));
   SiteCurves aside;
   aside.paths.push_back(curves.paths.front());
-  LateralPlan turned{plan.lateral_depth, to_vec3(across), {}};
-  for (std::size_t i = 1; i <= kAcross; ++i)
-    turned.travels.push_back(plan.travels.back() * static_cast<double>(i) / kAcross);
-  run_lateral_path(site, turned, aside);
+  site.equilibrium.allow_error(std::max(kAcrossTolerance, context_.indentation.force_tolerance));
+  run_lateral_path(
+      site, {plan.lateral_depth, to_vec3(across), {kAcrossTravel * plan.travels.back()}}, aside);
 }
 
 SitePlan SiteSolver::plan_of_settings(const Vec3& inward) const {

@@ -22,7 +22,9 @@ std::size_t pairs_needed(const CampaignContext& context) {
 
 SiteEquilibrium::SiteEquilibrium(const CampaignContext& context, const SiteBody& body,
                                  SolveBatch::Member* batch)
-    : context_(context), direct_possible_(body.prolongation() == nullptr) {
+    : context_(context),
+      force_tolerance_(context.indentation.force_tolerance),
+      direct_possible_(body.prolongation() == nullptr) {
   if (context.engine == Engine::Direct) return;
   shared_ = std::make_unique<SharedFactorSolver>(
       body.whole(), body.window(),
@@ -59,7 +61,7 @@ void SiteEquilibrium::start_path(const Tool& tool, const Displacement& u) {
 NewtonResult SiteEquilibrium::solve_shared(const ToolContact& contact, Displacement& u) {
   NewtonOptions options;
   options.round_off = context_.round_off;
-  options.tolerance = kSharedTolerance * context_.indentation.force_tolerance;
+  options.tolerance = kSharedTolerance * force_tolerance_;
   if (context_.indentation.friction == ToolFriction::NoSlip) options.tolerance *= kNoSlipTolerance;
   Displacement trial = u;
   NewtonResult result = shared_->solve(contact, options, trial);
@@ -73,7 +75,7 @@ NewtonResult SiteEquilibrium::solve_shared(const ToolContact& contact, Displacem
 NewtonResult SiteEquilibrium::solve_direct(const ToolContact& contact, Displacement& u) {
   NewtonOptions options;
   options.round_off = context_.round_off;
-  options.tolerance = context_.indentation.force_tolerance;
+  options.tolerance = force_tolerance_;
   if (!direct_) direct_ = std::make_unique<NewtonSolver>(context_.model, &context_.permutation);
   return direct_->solve(contact, options, u);
 }

@@ -34,12 +34,16 @@ class SiteEquilibrium {
   /// To be called at the start of a path: the tool and the equilibrium there.
   void start_path(const Tool& tool, const Displacement& u);
 
+  /// From here on the relative error of the tool force may be this instead of that of the settings.
+  void allow_error(double force_tolerance) { force_tolerance_ = force_tolerance; }
+
  private:
   NewtonResult solve_shared(const ToolContact& contact, Displacement& u);
   NewtonResult solve_direct(const ToolContact& contact, Displacement& u);
   NewtonResult solve_direct_alone(const ToolContact& contact, Displacement& u);
 
   const CampaignContext& context_;
+  double force_tolerance_;
   bool direct_possible_;
   std::unique_ptr<SharedFactorSolver> shared_;
   std::unique_ptr<NewtonSolver> direct_;

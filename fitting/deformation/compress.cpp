@@ -24,6 +24,9 @@ namespace {
 constexpr std::size_t kKnots = 24;
 constexpr double kKnotGrading = 1.5;  ///< knots are closer together near the contact
 constexpr double kSameDepth = 1e-6;   ///< relative
+/// What rounding the modes to integers adds to a displacement, root mean square over that of the
+/// deepest press. Integers that are not finer than need be are small and compress well.
+constexpr double kRounding = 3e-4;
 
 bool same(double a, double b) {
   return std::abs(a - b) <= kSameDepth * std::abs(b);
@@ -86,6 +89,7 @@ class Compression {
  private:
   void separate(const SiteFields& site, const SiteFrame& frame);
   void add_column(Eigen::VectorXf&& field, double scale);
+  float step_of(const Modes& modes, Eigen::Index m) const;
   void set_modes();
   void set_donors();
 
@@ -153,6 +157,17 @@ void Compression::add_column(Eigen::VectorXf&& field, double scale) {
   column_scale_.push_back(static_cast<float>(scale));
 }
 
+/// The step of the integers of a mode. Uniform rounding has the root mean square step / sqrt(12),
+/// times the amplitude of the mode, and the modes add up in squares.
+float Compression::step_of(const Modes& modes, Eigen::Index m) const {
+  constexpr float kLargest = std::numeric_limits<std::int16_t>::max();
+  const double most = static_cast<double>(modes.coefficients.row(m).cwiseAbs().maxCoeff());
+  const double allowed =
+      kRounding * d_.depths.back() * std::sqrt(12.0 / static_cast<double>(modes.shapes.cols()));
+  return std::max(modes.shapes.col(m).cwiseAbs().maxCoeff() / kLargest,
+                  static_cast<float>(allowed / most));
+}
+
 void Compression::set_modes() {
   const auto rows = static_cast<Eigen::Index>(3 * d_.positions.size());
   const auto count = static_cast<Eigen::Index>(columns_.size());
@@ -163,8 +178,7 @@ void Compression::set_modes() {
   }
   const Modes modes = leading_modes(fields, settings_.modes, settings_.least);
   for (Eigen::Index m = 0; m < modes.shapes.cols(); ++m) {
-    constexpr float kLargest = std::numeric_limits<std::int16_t>::max();
-    const float scale = modes.shapes.col(m).cwiseAbs().maxCoeff() / kLargest;
+    const float scale = step_of(modes, m);
     d_.mode_scale.push_back(scale);
     for (Eigen::Index i = 0; i < rows; ++i)
       d_.modes.push_back(static_cast<std::int16_t>(std::lround(modes.shapes(i, m) / scale)));

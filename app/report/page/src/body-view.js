@@ -33,6 +33,11 @@ export class BodyView {
     this.onPick = onPick;
     this.describe = describe;
     this.raster = new Raster();
+    const size = model.points.length / 3;
+    this.pixels = new Float32Array(3 * size);  // of the points
+    this.lights = new Float32Array(size);
+    // What the last draw did, and since the start its count and that of canvases made anew: for tests and profiles.
+    this.work = { draws: 0, points: 0, facets: 0, resized: 0 };
     this.shape = { points: model.points, normals: model.light };  // as drawn
     this.marked = [];
     this.discs = [];
@@ -43,6 +48,7 @@ export class BodyView {
     this.canvas = el('canvas', { tabindex: '0', role: 'img', 'aria-label': 'The body in three dimensions. Arrow keys turn it.' });
     this.tip = el('div', { class: 'tip' });
     this.element = el('div', { class: 'stage' }, this.canvas, this.tip);
+    this.canvas.work = this.work;
     this.buffer = document.createElement('canvas');
     this.listen();
     onThemeChange(() => this.draw());
@@ -56,6 +62,7 @@ export class BodyView {
       : field.sparse ? model.interpolateWithin(field.ofVertex) : model.interpolate(field.ofVertex);
     const known = this.pointValue ?? field.ofTriangle;
     this.coordinate = Float32Array.from(known, (value) => inRange(field, value));  // of each point or triangle, in the colours
+    this.inGrey = this.greysOfFacets();
     this.discs = field.sparse ? model.singles(field.ofVertex) : [];
     this.draw();
   }
@@ -96,42 +103,48 @@ export class BodyView {
     };
   }
 
+  /** fast: a frame of a movement. It takes the size of the last draw: asking for it would lay out the page. */
   draw(fast = false) {
-    const box = this.canvas.getBoundingClientRect();
+    if (!fast || !this.box) this.box = this.canvas.getBoundingClientRect();
+    const { box } = this;
     if (!this.field || box.width === 0) return;
+    ++this.work.draws;
     const ratio = devicePixelRatio || 1;
     const width = Math.round(box.width * ratio), height = Math.round(box.height * ratio);
     // Twice the pixels in each direction smooth the edges; while the body turns once is enough.
     const finer = fast || width * height * 4 > MAX_PIXELS ? 1 : 2;
     this.scale = ratio * finer;
     this.rasterize(width * finer, height * finer);
-    this.canvas.width = width;
-    this.canvas.height = height;
-    this.buffer.width = width * finer;
-    this.buffer.height = height * finer;
-    this.buffer.getContext('2d').putImageData(this.raster.image, 0, 0);
+    this.resize(this.canvas, width, height);
     const context = this.canvas.getContext('2d');
-    context.imageSmoothingQuality = 'high';
-    context.drawImage(this.buffer, 0, 0, width, height);
-    context.setTransform(1 / finer, 0, 0, 1 / finer, 0, 0);
+    if (finer === 1) {
+      context.putImageData(this.raster.image, 0, 0);
+    } else {
+      this.resize(this.buffer, width * finer, height * finer);
+      this.buffer.getContext('2d').putImageData(this.raster.image, 0, 0);
+      context.clearRect(0, 0, width, height);
+      context.imageSmoothingQuality = 'high';
+      context.drawImage(this.buffer, 0, 0, width, height);
+    }
+    context.save();
+    context.scale(1 / finer, 1 / finer);
     this.overlay(context);
+    context.restore();
+  }
+
+  /** A canvas that is given its size again is made anew. */
+  resize(canvas, width, height) {
+    if (canvas.width === width && canvas.height === height) return;
+    canvas.width = width;
+    canvas.height = height;
+    ++this.work.resized;
   }
 
   rasterize(width, height) {
-    const { model, raster } = this;
-    raster.resize(width, height);
+    const { model, raster, pixels: at, lights: light } = this;
+    if (raster.resize(width, height)) ++this.work.resized;
     raster.clear();
-    const size = model.points.length / 3;
-    const at = new Float32Array(3 * size), light = new Float32Array(size);
-    const project = this.project(width, height);
-    const lamp = this.lampDirection();
-    const { points, normals } = this.shape;
-    for (let p = 0; p < size; ++p) {
-      project(points, 3 * p, at, 3 * p);
-      const n = 3 * p;
-      const cosine = lamp[0] * normals[n] + lamp[1] * normals[n + 1] + lamp[2] * normals[n + 2];
-      light[p] = this.lightOf(cosine);
-    }
+    this.projectAll(this.shape.points, this.shape.normals, width, height);
     this.fill(at, light);
     if (!this.show.borders) return;
     const bias = 0.004 * width;
@@ -139,6 +152,24 @@ export class BodyView {
       const [a, b] = [3 * model.borders[e], 3 * model.borders[e + 1]];
       raster.line(at[a], at[a + 1], at[a + 2], at[b], at[b + 1], at[b + 2], bias, 0.86);
     }
+  }
+
+  /** Place and light of all points, as project() has them: one loop without a call, as it runs in each frame. */
+  projectAll(points, normals, width, height) {
+    const { pixels: at, lights: light } = this;
+    const scale = this.pixelsPerMetre(width, height);
+    const [[a, b, c], [d, e, f], [g, h, i]] = this.camera.rows;
+    const [cx, cy, cz] = this.model.centre;
+    const [lx, ly, lz] = this.lampDirection();
+    for (let p = 0; p < light.length; ++p) {
+      const k = 3 * p;
+      const x = points[k] - cx, y = points[k + 1] - cy, z = points[k + 2] - cz;
+      at[k] = width / 2 + scale * (a * x + b * y + c * z);
+      at[k + 1] = height / 2 - scale * (d * x + e * y + f * z);
+      at[k + 2] = scale * (g * x + h * y + i * z);
+      light[p] = this.lightOf(lx * normals[k] + ly * normals[k + 1] + lz * normals[k + 2]);
+    }
+    this.work.points = light.length;
   }
 
   /** Never so dark that the colour misleads. */
@@ -151,35 +182,38 @@ export class BodyView {
   }
 
   fill(at, light) {
-    const { model, raster } = this;
-    const { facets, sprung } = model;
-    this.greys = { hole: rgb('body-hole'), fixed: Object.assign(rgb('body-fixed'), { hatch: Math.max(2, Math.round(3 * this.scale)) }) };
+    const { raster, work, coordinate, inGrey } = this;
+    const { facets, sprung } = this.model;
+    this.greys = [null, rgb('body-hole'), Object.assign(rgb('body-fixed'), { hatch: Math.max(2, Math.round(3 * this.scale)) })];
     const springs = Math.max(3, Math.round(5 * this.scale));
-    const p = new Float32Array(9), shade = new Float32Array(3), t = new Float32Array(3);
-    for (let f = 0; f < facets.length / 3; ++f) {
-      if (!this.draws(f)) continue;
-      for (let i = 0; i < 3; ++i) {
-        const v = facets[3 * f + i];
-        for (let k = 0; k < 3; ++k) p[3 * i + k] = at[3 * v + k];
-        shade[i] = light[v];
-        t[i] = this.colourOf(f, v);
-      }
-      raster.triangle(f, p, shade, t, this.greyOf(f, t), sprung[f] ? springs : 0);
+    const ofTriangle = this.field.ofTriangle ? this.model.surface.facet_triangle : null;
+    const left = this.leftOut();
+    work.facets = 0;
+    for (let f = 0, i = 0; i < facets.length; ++f, i += 3) {
+      const a = facets[i], b = facets[i + 1], c = facets[i + 2];
+      if (Raster.isHidden(at, a, b, c) || left?.has(f)) continue;
+      const ta = coordinate[ofTriangle ? ofTriangle[f] : a];
+      const tb = ofTriangle ? ta : coordinate[b], tc = ofTriangle ? ta : coordinate[c];
+      raster.triangle(f, at, light, a, b, c, ta, tb, tc, this.greys[inGrey[f]], sprung[f] ? springs : 0);
+      ++work.facets;
     }
   }
 
-  draws() { return true; }
+  /** Facets that something else draws: a Set, or null. */
+  leftOut() { return null; }
 
   /** Coordinate in the colour map at a point of a facet. */
   colourOf(facet, point) {
     return this.coordinate[this.field.ofTriangle ? this.model.triangleOf(facet) : point];
   }
 
-  /** The grey of a facet whose values t are not all known, else null. */
-  greyOf(facet, t) {
-    const kind = this.model.surface.facet_kind[facet];
-    if (kind === TOUCHABLE && Number.isFinite(t[0] + t[1] + t[2])) return null;
-    return kind === FIXED ? this.greys.fixed : this.greys.hole;
+  /** For each facet the row of `greys`: 0 where the values of its corners are known and it can be touched. */
+  greysOfFacets() {
+    const { facets, surface } = this.model;
+    return Uint8Array.from(surface.facet_kind, (kind, f) => {
+      const known = [0, 1, 2].every((i) => Number.isFinite(this.colourOf(f, facets[3 * f + i])));
+      return kind === TOUCHABLE && known ? 0 : kind === FIXED ? 2 : 1;
+    });
   }
 
   overlay(context) {
@@ -204,24 +238,24 @@ export class BodyView {
     const pixelsPerMetre = this.pixelsPerMetre(width, height);
     const length = drawScaleBar(context, { width, height, pixelsPerMetre, scale: this.scale });
     drawAxes(context, { width, height, rows: this.camera.rows, scale: this.scale });
-    this.canvas.dataset.bar = `${length} ${(length * pixelsPerMetre) / this.scale}`;  // m and pixels of the page
+    const bar = `${length} ${(length * pixelsPerMetre) / this.scale}`;  // m and pixels of the page
+    if (this.canvas.dataset.bar !== bar) this.canvas.dataset.bar = bar;
   }
 
   /** Outlines of what lies inside, as if the body were of glass. */
   drawInclusions(context, project) {
     context.lineCap = 'butt';
+    const loops = this.inclusions.flatMap((outline) => outline.loops(project));
     for (const [style, width] of [['rgb(0 0 0 / 60%)', 3.4], ['#fff', 1.6]]) {
       context.strokeStyle = style;
       context.lineWidth = width * this.scale;
       context.setLineDash([5 * this.scale, 4 * this.scale]);
-      for (const outline of this.inclusions) {
-        context.beginPath();
-        for (const loop of outline.loops(project)) {
-          loop.forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
-          context.closePath();
-        }
-        context.stroke();
+      context.beginPath();
+      for (const loop of loops) {
+        loop.forEach(([x, y], i) => (i ? context.lineTo(x, y) : context.moveTo(x, y)));
+        context.closePath();
       }
+      context.stroke();
     }
     context.setLineDash([]);
   }

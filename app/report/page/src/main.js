@@ -75,9 +75,7 @@ function showWatch(data) {
   place('certificate', () => certificateSection(data));
 }
 
-try {
-  watchTheme();
-  const data = readData();
+function show(data) {
   if (data.preview) {
     place('preview', () => previewSection(data));
   } else if (data.watch) {
@@ -91,11 +89,20 @@ try {
   } else {
     showReport(data);
   }
-} catch (error) {
-  count();
-  report.append(el('p', { class: 'failure' }, `The report cannot be shown: ${error.message}`));
 }
-// After the first layout, when the figures have found their width.
-requestAnimationFrame(() => requestAnimationFrame(() => {
-  root.dataset.ready = root.dataset.errors === '0' ? 'ok' : 'failed';
-}));
+
+async function open() {
+  try {
+    watchTheme();
+    show(await readData());
+  } catch (error) {
+    count();
+    report.append(el('p', { class: 'failure' }, `The report cannot be shown: ${error.message}`));
+  }
+  // After the first layout, when the figures have found their width.
+  requestAnimationFrame(() => requestAnimationFrame(() => {
+    root.dataset.ready = root.dataset.errors === '0' ? 'ok' : 'failed';
+  }));
+}
+
+open();

@@ -122,7 +122,8 @@ class Skin {
   deform(state) {
     const { calls } = this.runtime;
     this.runtime.check(calls.palpate_deform(state.handle, this.handle, this.at, this.vertices));
-    return new Float64Array(calls.memory.buffer, this.at, 3 * this.vertices);
+    if (this.positions?.buffer !== calls.memory.buffer) this.positions = new Float64Array(calls.memory.buffer, this.at, 3 * this.vertices);
+    return this.positions;
   }
 }
 

@@ -2,10 +2,16 @@
 // Canvases take their colours from the style sheet and are drawn again when those change: with the
 // colour scheme of the reader, and for paper, which is always light.
 const listeners = new Set();
-const notify = () => listeners.forEach((f) => f());
+const known = new Map();  // asking the style sheet in every frame would lay out the page in every frame
+const notify = () => {
+  known.clear();
+  listeners.forEach((f) => f());
+};
 
-export const colour = (name) =>
-  getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+export function colour(name) {
+  if (!known.has(name)) known.set(name, getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim());
+  return known.get(name);
+}
 
 export const onThemeChange = (f) => listeners.add(f);
 

@@ -101,17 +101,21 @@ function pushOutOfCylinder(radius, length) {
   };
 }
 
-/** rad, of the axis of a cylinder from the first tangent (fem/mesh/tangent_frame.hpp), as the case has it. */
-function azimuthOf(provenance) {
+const SIZES = { m: 1, cm: 1e-2, mm: 1e-3, um: 1e-6, deg: Math.PI / 180, rad: 1 };
+
+/** A key of [tool] in the case that the library was computed for, in m or rad; 0 where the case is not known or has none. */
+function ofCase(provenance, name) {
   const step = provenance.find((s) => s.stage === 'precompute');
   const section = step?.resolved_case.split(/^(?=\[)/m).find((text) => text.startsWith('[tool]\n'));
-  const found = section?.match(/^azimuth = "(\S+) deg"$/m);
-  return found ? (Number(found[1]) * Math.PI) / 180 : 0;
+  const found = section?.match(new RegExp(`^${name} = "(\\S+) (\\S+)"$`, 'm'));
+  return found ? Number(found[1]) * SIZES[found[2]] : 0;
 }
 
-/** The tool of the report, m and rad. A page of a library alone knows shape and radius: an edge is sharp there. */
-export const toolOf = ({ key, provenance = [] }) => ({ shape: key.tool_shape, radius: key.tool_radius, edge: key.tool_edge_radius ?? 0,
-  length: key.tool_length ?? 0, azimuth: azimuthOf(provenance) });
+/** The tool of the report, m and rad; for a library alone as its case has it. The azimuth is that of the axis of a cylinder
+ *  from the first tangent (fem/mesh/tangent_frame.hpp). */
+export const toolOf = ({ key, provenance = [] }) => ({ shape: key.tool_shape, radius: key.tool_radius,
+  edge: key.tool_edge_radius ?? ofCase(provenance, 'edge_radius'), length: key.tool_length ?? ofCase(provenance, 'length'),
+  azimuth: ofCase(provenance, 'azimuth') });
 
 /** Whether the shape of a tool is drawn, or a sphere of its radius. */
 export const isDrawn = ({ shape, length }) => ['sphere', 'disc'].includes(shape) || (shape === 'cylinder' && length > 0);

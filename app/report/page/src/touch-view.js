@@ -10,14 +10,22 @@ import { add, dot, minus, times, unit } from './vectors.js';
 const FINEST = 4;  // halvings of a facet near the tool
 const STEP = 6;    // of an arrow key, pixels
 
-/** Natural coordinates of (x, y) in a triangle of [x, y, z] corners that faces the viewer, else null. */
-function inside(x, y, [a, b, c]) {
-  const area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
-  if (area >= 0) return null;  // y points down: what faces the viewer turns clockwise
-  const first = ((b[0] - x) * (c[1] - y) - (b[1] - y) * (c[0] - x)) / area;
-  const second = ((c[0] - x) * (a[1] - y) - (c[1] - y) * (a[0] - x)) / area;
-  const third = 1 - first - second;
-  return first < -1e-9 || second < -1e-9 || third < -1e-9 ? null : [first, second, third];
+/** Natural coordinates of (x, y) in the triangle of the corners a, b, c of `at`, into `out`; false outside of it, and where
+ *  it turns away from the viewer. */
+function inside(x, y, at, a, b, c, out) {
+  const ax = at[3 * a], ay = at[3 * a + 1], bx = at[3 * b], by = at[3 * b + 1], cx = at[3 * c], cy = at[3 * c + 1];
+  const area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax);
+  if (area >= 0) return false;  // y points down: what faces the viewer turns clockwise
+  out[0] = ((bx - x) * (cy - y) - (by - y) * (cx - x)) / area;
+  out[1] = ((cx - x) * (ay - y) - (cy - y) * (ax - x)) / area;
+  out[2] = 1 - out[0] - out[1];
+  return !(out[0] < -1e-9 || out[1] < -1e-9 || out[2] < -1e-9);
+}
+
+/** The mesh of a tool in plain memory, and room for its points in the picture. */
+function drawn({ points, normals, facets }) {
+  return { points: Float32Array.from(points.flat()), normals: Float32Array.from(normals.flat()), facets: Uint16Array.from(facets.flat()),
+    place: new Float32Array(3), at: new Float32Array(3 * points.length), light: new Float32Array(points.length) };
 }
 
 export class TouchView extends BodyView {
@@ -29,10 +37,14 @@ export class TouchView extends BodyView {
     this.tool = tool;
     this.hand = hand;
     this.mesh = toolMesh(tool);
+    this.body = drawn(this.mesh);
+    this.corner = { at: new Float32Array(9), light: new Float32Array(3) };  // of a piece
+    this.vertexAt = new Float32Array(model.vertices.position.length);
     this.skinOfPoint = skinOfPoint;
     this.rest = this.shape;
     this.moved = skinOfPoint && { points: Float32Array.from(model.points), normals: Float32Array.from(model.light) };
-    // {tip, axis, force, unit: N of an arrow as long as the body, skin: its vertices as they are pressed, null at rest}
+    // {tip, axis, force, unit: N of an arrow as long as the body, skin: its vertices as they are pressed, null at rest, still: the
+    // skin is as it was}
     this.at = null;
     this.cursor = null;  // the last spot
     this.show = { nodes: false, borders: false, path: false, inclusions: true, flags: false };
@@ -65,7 +77,8 @@ export class TouchView extends BodyView {
 
   place(at) {
     this.at = at;
-    this.deform(at?.skin);
+    this.work.moved = 0;
+    if (!at?.still) this.deform(at?.skin);
     this.draw(true);
   }
 
@@ -77,10 +90,18 @@ export class TouchView extends BodyView {
     }
     const { points, normals } = this.moved;
     const { skinOfPoint } = this;
-    for (let p = 0, i = 0; p < skinOfPoint.length; ++p) {
-      for (let j = 3 * skinOfPoint[p], end = j + 3; j < end; ++j, ++i) points[i] = skin[j];
+    let moved = 0;
+    for (let p = 0, i = 0; p < skinOfPoint.length; ++p, i += 3) {
+      const j = 3 * skinOfPoint[p];
+      const x = Math.fround(skin[j]), y = Math.fround(skin[j + 1]), z = Math.fround(skin[j + 2]);
+      if (x === points[i] && y === points[i + 1] && z === points[i + 2]) continue;
+      points[i] = x;
+      points[i + 1] = y;
+      points[i + 2] = z;
+      ++moved;
     }
-    normalsOf(points, this.model.facets, normals);
+    this.work.moved = moved;
+    if (moved > 0) normalsOf(points, this.model.facets, normals);
     this.shape = this.moved;
   }
 
@@ -100,7 +121,7 @@ export class TouchView extends BodyView {
 
   centre() { return add(this.at.tip, times(-this.tool.radius, this.at.axis)); }
 
-  draws(f) { return !this.near.has(f); }
+  leftOut() { return this.near.size > 0 ? this.near : null; }
 
   fill(at, light) {
     this.near = this.nearFacets();
@@ -126,7 +147,7 @@ export class TouchView extends BodyView {
       const mix = (read) => corners.reduce((sum, c, k) => sum + weights[k] * read(c), 0);
       return this.imprint({ x: [0, 1, 2].map((k) => mix((c) => c.x[k])), light: mix((c) => c.light), t: mix((c) => c.t) });
     };
-    const grey = this.greyOf(f, corners.map((c) => c.t));
+    const grey = this.greys[this.inGrey[f]];
     for (let i = 0; i < pieces; ++i) {
       for (let j = 0; i + j < pieces; ++j) {
         this.piece(f, [corner(i, j), corner(i + 1, j), corner(i, j + 1)], grey);
@@ -146,18 +167,28 @@ export class TouchView extends BodyView {
   lightOf(cosine) { return 0.5 + 0.5 * Math.max(0, cosine); }
 
   piece(id, corners, grey) {
-    const p = new Float32Array(9);
-    corners.forEach((c, i) => this.projectPoint(c.x, 0, p, 3 * i));
-    this.raster.triangle(id, p, corners.map((c) => c.light), corners.map((c) => c.t), grey);
+    const { at, light } = this.corner;
+    corners.forEach((c, i) => {
+      this.projectPoint(c.x, 0, at, 3 * i);
+      light[i] = c.light;
+    });
+    const [a, b, c] = corners;
+    this.raster.triangle(id, at, light, 0, 1, 2, a.t, b.t, c.t, grey);
   }
 
   fillTool() {
     const { tip, axis, first: u, second: v } = this.stand;
+    const { points, normals, facets, place, at, light } = this.body;
+    const { lamp } = this;
+    const [lampU, lampV, lampAxis] = [dot(lamp, u), dot(lamp, v), dot(lamp, axis)];
+    for (let p = 0; p < light.length; ++p) {
+      const i = 3 * p;
+      for (let k = 0; k < 3; ++k) place[k] = tip[k] + points[i] * u[k] + points[i + 1] * v[k] - points[i + 2] * axis[k];
+      this.projectPoint(place, 0, at, i);
+      light[p] = this.lightOf(lampU * normals[i] + lampV * normals[i + 1] - lampAxis * normals[i + 2]);
+    }
     const grey = rgb('tool');
-    const put = (local) => [0, 1, 2].map((k) => tip[k] + local[0] * u[k] + local[1] * v[k] - local[2] * axis[k]);
-    const turn = (local) => [0, 1, 2].map((k) => local[0] * u[k] + local[1] * v[k] - local[2] * axis[k]);
-    const corners = this.mesh.points.map((x, i) => ({ x: put(x), light: this.lightOf(dot(this.lamp, turn(this.mesh.normals[i]))), t: 0 }));
-    for (const [a, b, c] of this.mesh.facets) this.piece(-1, [corners[a], corners[b], corners[c]], grey);
+    for (let i = 0; i < facets.length; i += 3) this.raster.triangle(-1, at, light, facets[i], facets[i + 1], facets[i + 2], 0, 0, 0, grey);
   }
 
   overlay(context) {
@@ -197,18 +228,19 @@ export class TouchView extends BodyView {
   spotAt(x, y) {
     const { surface, vertices } = this.model;
     const project = this.project(this.raster.width, this.raster.height);
-    const at = new Float32Array(vertices.position.length);
+    const { triangles, library_triangle: own } = surface;
+    const { response_status: responds } = vertices;
+    const at = this.vertexAt, weights = [0, 0, 0];
     for (let i = 0; i < at.length; i += 3) project(vertices.position, i, at, i);
     let found = null, front = -Infinity;
-    for (let t = 0; t < surface.library_triangle.length; ++t) {
-      const corners = Array.from(surface.triangles.subarray(3 * t, 3 * t + 3));
-      if (surface.library_triangle[t] < 0 || corners.some((v) => vertices.response_status[v] === HOLE)) continue;
-      const weights = inside(x, y, corners.map((v) => at.subarray(3 * v, 3 * v + 3)));
-      if (!weights) continue;
-      const z = corners.reduce((sum, v, i) => sum + weights[i] * at[3 * v + 2], 0);
+    for (let t = 0; t < own.length; ++t) {
+      const a = triangles[3 * t], b = triangles[3 * t + 1], c = triangles[3 * t + 2];
+      if (own[t] < 0 || responds[a] === HOLE || responds[b] === HOLE || responds[c] === HOLE) continue;
+      if (!inside(x, y, at, a, b, c, weights)) continue;
+      const z = weights[0] * at[3 * a + 2] + weights[1] * at[3 * b + 2] + weights[2] * at[3 * c + 2];
       if (z <= front) continue;
       front = z;
-      found = { corners, weights };
+      found = { corners: [a, b, c], weights: weights.slice() };
     }
     return found && this.spotOf(found);
   }

@@ -6,6 +6,8 @@
 #include <iterator>
 #include <stdexcept>
 
+#include "fitting/deformation/coarsen.hpp"
+#include "format/deformation.hpp"
 #include "format/flat_library.hpp"
 #include "format/skin_mesh.hpp"
 #include "tests/support/dimpled_skin.hpp"
@@ -19,14 +21,23 @@ void require(int result) {
   if (result != PALPATE_OK) throw std::runtime_error(palpate_last_error());
 }
 
+std::string bytes_of(const Deformation& deformation) {
+  const samples::TemporaryFolder folder;
+  const auto file = folder / "deformation.pdef";
+  write_deformation(file, deformation);
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
 }  // namespace
 
 std::string deformation_bytes(const Body& body, const Library& library) {
-  const samples::TemporaryFolder folder;
-  const auto file = folder / "deformation.pdef";
-  write_deformation(file, test::dimpled(library, skin_mesh(body), kDepth, library.tool_radius));
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
+  return bytes_of(test::dimpled(library, skin_mesh(body), kDepth, library.tool_radius));
+}
+
+std::string surface_deformation_bytes(const Body& body, const Library& library) {
+  const Deformation fine = test::dimpled(library, skin_mesh(body), kDepth, library.tool_radius);
+  return bytes_of(fitting::coarsened(fine, body.response.triangles, fine.mode_count()));
 }
 
 TouchedSkin::TouchedSkin(const Body& body, const Library& library) {

@@ -16,6 +16,9 @@ namespace palpate::testing {
 /// Bytes of a deformation.pdef for the boundary of a body.
 std::string deformation_bytes(const Body& body, const Library& library);
 
+/// The same for its response surface.
+std::string surface_deformation_bytes(const Body& body, const Library& library);
+
 /// The C interface on a library and its skin.
 class TouchedSkin {
  public:

@@ -180,6 +180,8 @@ void write_skins(const palpate::testing::Synthetic& all, const std::filesystem::
   ReportInput input{&all.body, &all.curves, &all.library, &session, "Lump", 356129};
   input.deformation = testing::deformation_bytes(all.body, all.library);
   write_report(input, folder / "skin.html");
+  report::write_play_page(all.library, {&all.body, {}, {}, input.deformation},
+                          folder / "play-skin.html");
   Library other = all.library;
   other.positions.front()[0] += 1e-6;
   input.deformation = testing::deformation_bytes(all.body, other);
@@ -190,11 +192,25 @@ void write_skins(const palpate::testing::Synthetic& all, const std::filesystem::
   write_report(input, folder / "skin-relaxing.html");
 }
 
+/// A library alone, its response surface with a skin of that surface, and a region inside.
+void write_play_surface(const palpate::testing::Synthetic& all,
+                        const std::filesystem::path& folder) {
+  using namespace palpate;
+  const std::string skin = testing::surface_deformation_bytes(all.body, all.library);
+  const report::InnerSurface inside{"nodule",
+                                    {{0.01, 0, 0}, {0, 0.01, 0}, {0, 0, 0.01}, {0, 0, 0}},
+                                    {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}}};
+  report::write_play_page(all.library, {nullptr, all.body.response.triangles, {inside}, skin},
+                          folder / "play-surface.html");
+}
+
 void write_pages_to_touch(const palpate::ReportInput& input, const palpate::testing::Synthetic& all,
                           const std::filesystem::path& folder) {
   palpate::report::write_play_page(all.library, {}, folder / "play.html");
   write_sprung(input, all.body, folder);
-  write_skins(palpate::testing::synthetic(3, 1), folder);
+  const palpate::testing::Synthetic finer = palpate::testing::synthetic(3, 1);
+  write_skins(finer, folder);
+  write_play_surface(finer, folder);
 }
 
 /// Two tests of one law, as `palpate calibrate tests` writes them, with hostile names.

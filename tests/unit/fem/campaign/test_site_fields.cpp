@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
 #include "fem/campaign/campaign.hpp"
+#include "fem/campaign/indentation.hpp"
 #include "format/sha256.hpp"
 #include "format/site_record.hpp"
 #include "format/skin_mesh.hpp"
@@ -84,11 +86,70 @@ TEST(SiteFieldsOfCampaign, AreTheDisplacementsOfTheSkin) {
   // Along the path of the curves and across it; the contact point does not slip on the tool.
   ASSERT_EQ(fields.lateral.size(), 2U);
   EXPECT_NEAR(dot(fields.lateral[0].direction, fields.lateral[1].direction), 0, 1e-12);
+  EXPECT_NEAR(fields.lateral[0].travel, 0.001, 1e-12);
   for (const LateralField& field : fields.lateral) {
     EXPECT_EQ(field.depth, 0.002);
-    EXPECT_NEAR(field.travel, 0.001, 1e-12);
-    EXPECT_LT(norm(at(field.skin, contact) - 0.001 * field.direction), 2e-5);
+    EXPECT_LT(norm(at(field.skin, contact) - field.travel * field.direction), 2e-5);
   }
+}
+
+/// Wider than broad, so that the directions differ.
+Body lopsided_block() {
+  return test::make_block(test::graded(0.03, 0.005, 0.0025, 1.5),
+                          test::graded(0.02, 0.005, 0.0025, 1.5),
+                          {-0.02, -0.012, -0.006, -0.003, 0});
+}
+
+std::vector<SiteFields> fields_of(const Body& body, CampaignSettings settings) {
+  std::vector<SiteFields> kept;
+  settings.sites = {test::site_nearest(body)};
+  settings.field_depths = 1;
+  settings.fields = [&](SiteFields fields) { kept.push_back(std::move(fields)); };
+  CampaignReport report;
+  run_campaign(body, settings, report);
+  return kept;
+}
+
+/// u per metre of lateral deflection.
+Eigen::Map<const Eigen::VectorXf> skin_of(const LateralField& field) {
+  return {field.skin.data(), static_cast<Eigen::Index>(field.skin.size())};
+}
+
+TEST(SiteFieldsOfCampaign, TheOneAcrossIsThatOfAPathOfItsOwn) {
+  const Body body = lopsided_block();
+  CampaignSettings settings = field_settings();
+  settings.indentation.increments = 4;
+  const auto across = fields_of(body, settings).front().lateral.at(1);
+  settings.indentation.azimuths = {0, std::acos(0.0)};
+  settings.indentation.lateral_travel = across.travel;
+  const auto direct = fields_of(body, settings).front().lateral.at(1);
+  ASSERT_NEAR(dot(across.direction, direct.direction), 1, 1e-12);
+  ASSERT_NEAR(across.travel, direct.travel, 1e-12);
+  const Eigen::VectorXf expected = skin_of(direct) / static_cast<float>(direct.travel);
+  const Eigen::VectorXf found = skin_of(across) / static_cast<float>(across.travel);
+  EXPECT_LT((found - expected).norm(), 0.01F * expected.norm());
+  EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 0.03F);  // of the deflection
+}
+
+/// What the solver does for the picture, beside what it does for the forces.
+TEST(SiteFieldsOfCampaign, TheOneAcrossCostsATenthOfTheSite) {
+  const Body body = lopsided_block();
+  const CampaignContext context(body, field_settings(), Engine::SharedFactor);
+  SolveBatch batch(*context.rest_factor, 1);
+  SolveBatch::Member member(batch);
+  SiteSolver solver(context, &member);
+  int across = 0, all = 0;
+  Vec3 along{};
+  solver.also_across(true);
+  solver.observe_lateral([&](const LateralPlan& plan, const ToolContact&, const Displacement&,
+                             const CurveSample& sample) {
+    if (norm(along) == 0) along = plan.direction;
+    if (std::abs(dot(along, plan.direction)) < 0.5) across += sample.iterations;
+  });
+  for (const CurvePath& path : solver.solve(test::site_nearest(body)).paths)
+    for (const CurveSample& sample : path.samples) all += sample.iterations;
+  EXPECT_GT(across, 0);
+  EXPECT_LE(across, 0.1 * all);
 }
 
 }  // namespace

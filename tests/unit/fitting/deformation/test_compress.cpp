@@ -141,6 +141,34 @@ TEST(Compress, ASiteWithoutAllItsFieldsIsInterpolated) {
   EXPECT_LT(worst_error(skin, touch_at(plate, 70, {1, 0, 0}, 0.003), dimple), 0.01);
 }
 
+/// The integers of the weak modes are small, so that the file compresses; what that costs is less
+/// than can be seen.
+TEST(Compress, RoundsNoFinerThanNeedBe) {
+  const PressedPlate plate;
+  const Deformation d = compressed(plate, uneven_dimple);
+  ASSERT_GT(d.mode_count(), 4U);
+  const std::size_t row = d.modes.size() / d.mode_count();
+  const auto largest = [&](std::size_t m) {
+    int most = 0;
+    for (std::size_t i = m * row; i < (m + 1) * row; ++i)
+      most = std::max(most, std::abs(d.modes[i]));
+    return most;
+  };
+  EXPECT_GT(largest(0), 10 * largest(d.mode_count() - 1));
+  EXPECT_GT(largest(d.mode_count() - 1), 0);
+  const runtime::SkinDeformation skin(d, plate.library.triangles);
+  const runtime::Touch touch = touch_at(plate, 70, {1, 0, 0}, 0.006);
+  const auto x = shown(skin, touch);
+  double squares = 0;
+  for (std::size_t w = 0; w < x.size(); ++w) {
+    const Vec3 direct = uneven_dimple(skin.positions()[w], touch.contact_point, 0.006, {});
+    const Vec3 off = x[w] - skin.positions()[w] - direct;
+    // The tool moves what is inside it, whatever was rounded.
+    if (norm(skin.positions()[w] - touch.contact_point) > 0.02) squares += dot(off, off);
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(x.size())), 1e-3 * 0.006);
+}
+
 TEST(Compress, FewModesSayWhatTheyLeaveOut) {
   const PressedPlate plate;
   const auto fields = [&](std::int32_t vertex) { return fields_at(plate, vertex, uneven_dimple); };

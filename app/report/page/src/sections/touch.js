@@ -27,8 +27,9 @@ const DEFORMED = 'The skin is that of the solved states, blended by the runtime.
 const IMPRINT = 'The dent is the imprint of the tool on the undeformed skin, not the deformation of the body: ';
 const WHY_IMPRINT = {
   none: () => 'the campaign kept no displacements. It keeps them for a case with depths = 4 in [deformation]. ',
-  play: () => 'the report of a case with [deformation] shows that. ',
+  play: () => 'no displacements lie beside the library. ',
   other_library: () => 'deformation.pdef is of another library. Run palpate build again. ',
+  other_skin: () => 'deformation.pdef is of another skin than that of the body. Run palpate build again. ',
   too_large: (skin) => `deformation.pdef has ${units.bytes(skin.bytes)}, and a page takes at most ${units.bytes(skin.limit)}. Fewer modes in [deformation] make it smaller. `,
 };
 
@@ -42,7 +43,7 @@ function forces(seen) {
 function skinText({ touch, play }) {
   const { skin } = touch;
   if (skin?.file) return DEFORMED;
-  return IMPRINT + WHY_IMPRINT[play ? 'play' : skin?.problem ?? 'none'](skin);
+  return IMPRINT + WHY_IMPRINT[skin?.problem ?? (play ? 'play' : 'none')](skin);
 }
 
 const WORDS = [[status.BEYOND_DEPTH, 'beyond the deepest sample: extrapolated'], [status.AT_BORDER, 'at a border'],
@@ -167,6 +168,7 @@ class Touch {
 
   clear() {
     this.hand.clear();
+    this.shown = null;
     this.onToggle?.(false);
     this.show();
   }
@@ -179,6 +181,7 @@ class Touch {
   }
 
   setRunning(running) {
+    if (running === this.running) return;
     this.running = running;
     this.onMove?.(running);
   }
@@ -203,8 +206,20 @@ class Touch {
   show() {
     const { hand } = this;
     this.readings.show(hand);
-    this.view.place(hand.spot && { tip: hand.tip(), axis: hand.touching() ? hand.seen.normal : hand.spot.inward, force: hand.force ?? [0, 0, 0],
-      unit: this.unit, skin: this.skin && hand.touching() ? this.skin.deform(hand.state) : null });
+    const touching = hand.touching();
+    if (!touching) this.shown = null;
+    const still = touching && this.isStill();
+    this.view.place(hand.spot && { tip: hand.tip(), axis: touching ? hand.seen.normal : hand.spot.inward, force: hand.force ?? [0, 0, 0], unit: this.unit,
+      still, skin: this.skin && touching && !still ? this.skin.deform(hand.state) : null });
+  }
+
+  /** Whether the contact is that of the last frame: a held tool on tissue that relaxes moves no skin. */
+  isStill() {
+    const { seen } = this.hand;
+    const now = [...this.hand.tip(), ...seen.contactPoint, seen.depth, seen.lateral];
+    const still = this.shown?.every((x, i) => x === now[i]) ?? false;
+    this.shown = now;
+    return still;
   }
 }
 
