@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from bodies import CASE, SIZE, block, write_case, write_off  # noqa: E402
 
 PALPATE = None
-DONE, INTERNAL, USAGE = 0, 1, 2
+DONE, INTERNAL, USAGE, GEOMETRY = 0, 1, 2, 3
 
 
 def palpate(*arguments, **options):
@@ -81,6 +81,18 @@ class Manners(unittest.TestCase):
         for arguments in (["--quiet", "certify", self.case], ["certify", self.case, "-q"]):
             quiet = palpate(*arguments, "--out", self.out)
             self.assertEqual((quiet.returncode, quiet.stdout), (DONE, ""), quiet.stderr)
+
+    def test_quiet_leaves_files_errors_and_results_that_were_asked_for(self):
+        surface, first = self.root / "block.off", self.root / "quiet.toml"
+        for words in (["check", surface, "--unit", "mm"], ["init", surface, "--minutes", 0, "-o", first]):
+            quiet = palpate(*words, "-q")
+            self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (DONE, "", ""))
+        self.assertTrue(first.exists())
+        refused = palpate("check", self.root / "none.off", "-q")
+        self.assertEqual((refused.returncode, refused.stdout), (GEOMETRY, ""))
+        self.assertTrue(refused.stderr.startswith("error: "), refused.stderr)
+        for words in (["doctor"], ["inspect", self.out / "body.h5"]):
+            self.assertEqual(palpate(*words, "-q").stdout, palpate(*words).stdout)
 
     def test_verbose_prints_every_site(self):
         out = self.root / "verbose"
