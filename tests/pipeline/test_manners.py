@@ -117,6 +117,12 @@ class Manners(unittest.TestCase):
             self.assertEqual(refused.returncode, USAGE, refused.stderr)
             self.assertIn(f"the nearest is {answer}", refused.stderr)
 
+    def test_a_word_that_is_like_none_is_answered_with_the_help(self):
+        refused = palpate("frobnicate")
+        self.assertEqual(refused.returncode, USAGE)
+        self.assertNotIn("the nearest", refused.stderr)
+        self.assertIn("palpate --help", refused.stderr)
+
     def test_a_surface_in_place_of_a_case(self):
         refused = palpate("build", self.root / "block.off")
         self.assertEqual(refused.returncode, USAGE)
