@@ -146,7 +146,7 @@ class Session(unittest.TestCase):
         self.assert_good(out)
         self.assertFalse(journal.exists())
 
-    def test_ctrl_c_and_a_polite_kill_end_it_whole(self):
+    def test_ctrl_c_and_sigterm_end_it_whole(self):
         for number in (signal.SIGINT, signal.SIGTERM):
             out = self.root / f"{number}.h5"
             process = self.start(out)
