@@ -54,11 +54,14 @@ EventSink event_sink(const CaseOptions& options) {
   return with_interruption_note(TextSink(console()));
 }
 
+int processors() {
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
 Workspace open_workspace(const CaseOptions& options) {
-  const int processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   const std::filesystem::path folder = std::filesystem::path(options.case_file).parent_path();
   Workspace space = make_workspace(options.case_file, options.out,
-                                   options.threads > 0 ? options.threads : processors,
+                                   options.threads > 0 ? options.threads : processors(),
                                    [&](const Case& c) { return size_of_body(c.mesh, folder); });
   print_positions_in(unit_of_coordinates(space.c.mesh));
   space.memory = static_cast<double>(options.memory);

@@ -36,6 +36,9 @@ std::shared_ptr<CaseOptions> add_stage_options(CLI::App& command,
 /// Prints events on the standard output, as text or as JSON.
 EventSink event_sink(const CaseOptions& options);
 
+/// Number of processors, the usual number of threads.
+int processors();
+
 Workspace open_workspace(const CaseOptions& options);
 
 }  // namespace palpate::app

@@ -32,7 +32,8 @@ int check_file(const CheckOptions& options) {
   say("{}: {} points, {} faces; unit {}, {}", options.file, found.points, found.faces,
       found.file.unit.symbol, unit_reason(found.file, found.raw_size));
   for (const std::string& fault : found.faults) say("  fault: {}", fault);
-  for (const std::string& step : found.repairs) say("  repair: {}", step);
+  for (const std::string& step : found.repairs)
+    say("  {}: {}", found.is_sound() ? "surface" : "repair", step);
   if (!options.faults.empty() && !found.faulty.faults.empty()) {
     write_file_crash_safely(options.faults, mesher::vtp_text(found.faulty));
     say("  faulty faces: {}", options.faults);

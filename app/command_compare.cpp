@@ -74,22 +74,23 @@ std::string percentage(double value) {
 
 void print(const compare::Comparison& comparison) {
   for (const compare::Summary& s : comparison.summaries) {
-    say("  {}: {} curves, {} points", s.kind == PathKind::Normal ? "normal" : "lateral", s.curves,
-        s.points);
-    say("    RMSE {} ({:.2g} % of the largest force), bias {}, limits of agreement {} to {}",
-        force_text(s.rmse), 100 * s.normalised_rmse, force_text(s.bias),
-        force_text(s.agreement_low), force_text(s.agreement_high));
-    say("    {:.2g} just noticeable differences (root mean square), noticeable at {} of the points",
+    answer("  {}: {} curves, {} points", s.kind == PathKind::Normal ? "normal" : "lateral",
+           s.curves, s.points);
+    answer("    RMSE {} ({:.2g} % of the largest force), bias {}, limits of agreement {} to {}",
+           force_text(s.rmse), 100 * s.normalised_rmse, force_text(s.bias),
+           force_text(s.agreement_low), force_text(s.agreement_high));
+    answer(
+        "    {:.2g} just noticeable differences (root mean square), noticeable at {} of the points",
         s.jnd_rms, percentage(s.noticeable));
-    say("    scatter of the reference: {}; within the uncertainty: {} of the points",
-        std::isfinite(s.mean_scatter) ? force_text(s.mean_scatter) : "unknown",
-        percentage(s.within_uncertainty));
-    say("    largest error: site {} at {}, {} instead of {}", s.worst_vertex,
-        length_text(s.worst.displacement), force_text(s.worst.model),
-        force_text(s.worst.reference));
+    answer("    scatter of the reference: {}; within the uncertainty: {} of the points",
+           std::isfinite(s.mean_scatter) ? force_text(s.mean_scatter) : "unknown",
+           percentage(s.within_uncertainty));
+    answer("    largest error: site {} at {}, {} instead of {}", s.worst_vertex,
+           length_text(s.worst.displacement), force_text(s.worst.model),
+           force_text(s.worst.reference));
   }
   if (!comparison.unmatched.empty()) {
-    say("  unmatched sites: {} (listed in comparison.json)", comparison.unmatched.size());
+    answer("  unmatched sites: {} (listed in comparison.json)", comparison.unmatched.size());
   }
 }
 
@@ -121,8 +122,8 @@ int compare_sets(CompareOptions options) {
   say("compare: {} against {}", options.model, options.reference);
   print(comparison);
   if (options.settings.jnd_floor < compare::CompareSettings{}.jnd_floor)
-    say("  a difference of {} counts as noticeable near zero force: the forces are small",
-        force_text(options.settings.jnd_floor));
+    answer("  a difference of {} counts as noticeable near zero force: the forces are small",
+           force_text(options.settings.jnd_floor));
   const fs::path out = options.out;
   prepare_output(out);
   write_comparison(

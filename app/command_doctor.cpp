@@ -15,7 +15,7 @@ void add_doctor_command(CLI::App& root, Action& action) {
   command->callback([&action] {
     action = [] {
       for (const Finding& found : findings(look_at_machine(fem::blas_kernel())))
-        say("{:<8} {}", found.is_ok ? "ok" : "missing", found.text);
+        answer("{:<8} {}", found.is_ok ? "ok" : "missing", found.text);
       return kExitDone;
     };
   });

@@ -40,14 +40,17 @@ const std::array<SlingshotSetup, 4> kLines{on_cylinder(0, 0.3), on_cylinder(kOff
 /// Which constants are published, which are fitted to what, and which are a choice.
 void list_constants() {
   const SlingDevice device;
-  say("  published: released {:g} mm outside, impact at {:g} m/s, about {:g} N at rest, {:g} Hz, "
+  answer(
+      "  published: released {:g} mm outside, impact at {:g} m/s, about {:g} N at rest, {:g} Hz, "
       "passive up to {:g} N/m",
       -1e3 * published::kRelease, published::kImpact, published::kRestForce, published::kRate,
       published::kMargin);
-  say("  fitted to these on the wall: mass {:g} kg (impact), damping {:g} N s/m (passive up to), "
+  answer(
+      "  fitted to these on the wall: mass {:g} kg (impact), damping {:g} N s/m (passive up to), "
       "anchor of the band {:g} mm (force at rest)",
       device.mass, device.damping, 1e3 * device.anchor);
-  say("  chosen, because neither published nor determined: band {:g} N/m, dry friction {:g} N, "
+  answer(
+      "  chosen, because neither published nor determined: band {:g} N/m, dry friction {:g} N, "
       "radius 40 mm of the cylinder, (35) as its lateral response",
       device.band, device.friction);
 }
@@ -56,8 +59,8 @@ void draw_figure_12(const std::filesystem::path& out) {
   std::vector<PhasePlane> planes;
   for (const double k : {published::kAtRest, published::kOscillating}) {
     const SlingshotOutcome o = sling({}, k, true);
-    say("  k = {:g} N/m: impact at {:.3f} m/s, {} after {:.1f} s, amplitude {:.3f} m/s", k,
-        o.impact, o.decayed ? "at rest" : "sustained oscillation", o.seconds, o.amplitude);
+    answer("  k = {:g} N/m: impact at {:.3f} m/s, {} after {:.1f} s, amplitude {:.3f} m/s", k,
+           o.impact, o.decayed ? "at rest" : "sustained oscillation", o.seconds, o.amplitude);
     write_phase_csv(out / fmt::format("phase_plane_{:g}.csv", k), o.path);
     const std::string end = o.decayed ? fmt::format("at rest after {:.0f} s", o.seconds)
                                       : fmt::format("oscillates with {:.3f} m/s", o.amplitude);
@@ -72,13 +75,13 @@ void draw_figure_11(const std::filesystem::path& out) {
 }
 
 void wall_margins(double tolerance) {
-  say("wall: smallest stiffness with sustained oscillation, N/m");
-  say("  {:>8} {:>10} {:>16}", "rate", "simulated", "energy balance");
+  answer("wall: smallest stiffness with sustained oscillation, N/m");
+  answer("  {:>8} {:>10} {:>16}", "rate", "simulated", "energy balance");
   for (const double rate : {1000.0, 2000.0, 4000.0}) {
     SlingshotSetup setup;
     setup.rate = rate;
-    say("  {:>5g} Hz {:>10.1f} {:>16.1f}", rate, passivity_margin(setup, 20, 800, tolerance),
-        bonded_margin_by_energy_balance(setup.device, rate, 0));
+    answer("  {:>5g} Hz {:>10.1f} {:>16.1f}", rate, passivity_margin(setup, 20, 800, tolerance),
+           bonded_margin_by_energy_balance(setup.device, rate, 0));
   }
 }
 
@@ -94,29 +97,30 @@ double no_slip_margin_off_axis(const SlingDevice& device) {
 }
 
 void cylinder_margins(double tolerance) {
-  say("cylinder, {:g} Hz: the same, with the search in the force loop and at {:g} Hz, and with a "
+  answer(
+      "cylinder, {:g} Hz: the same, with the search in the force loop and at {:g} Hz, and with a "
       "Lipschitz bound of k enforced",
       published::kRate, published::kSearchRate);
-  say("  {:>8} {:>5} {:>10} {:>10} {:>10} {:>16}", "off axis", "mu", "one rate", "two rates",
-      "bounded", "energy balance");
+  answer("  {:>8} {:>5} {:>10} {:>10} {:>10} {:>16}", "off axis", "mu", "one rate", "two rates",
+         "bounded", "energy balance");
   for (const SlingshotSetup& one : kLines) {
     SlingshotSetup bounded = one;
     bounded.bounded = true;
     const auto margin = [tolerance](const SlingshotSetup& setup) {
       return passivity_margin(setup, 100, 600, tolerance);
     };
-    say("  {:>5g} mm {:>5g} {:>10.1f} {:>10.1f} {:>10.1f} {:>16.1f}", 1e3 * one.off_axis,
-        one.friction, margin(one), margin(with_two_rates(one)), margin(bounded),
-        margin_by_played_swings(one));
+    answer("  {:>5g} mm {:>5g} {:>10.1f} {:>10.1f} {:>10.1f} {:>16.1f}", 1e3 * one.off_axis,
+           one.friction, margin(one), margin(with_two_rates(one)), margin(bounded),
+           margin_by_played_swings(one));
   }
-  say("  {:>5g} mm no-slip, closed form {:>38.1f}", 1e3 * kOffAxis, no_slip_margin_off_axis({}));
+  answer("  {:>5g} mm no-slip, closed form {:>38.1f}", 1e3 * kOffAxis, no_slip_margin_off_axis({}));
 }
 
 /// Does the agreement of wall and cylinder depend on what the paper does not determine?
 void other_choices(double tolerance) {
-  say("other bands and dry frictions, mass, anchor and damping fitted again: margins, N/m");
-  say("  {:>8} {:>6} {:>8} {:>12} {:>6} {:>8} {:>10} {:>16}", "band N/m", "dry N", "mass kg",
-      "damping Ns/m", "wall", "on axis", "10 mm off", "energy balance");
+  answer("other bands and dry frictions, mass, anchor and damping fitted again: margins, N/m");
+  answer("  {:>8} {:>6} {:>8} {:>12} {:>6} {:>8} {:>10} {:>16}", "band N/m", "dry N", "mass kg",
+         "damping Ns/m", "wall", "on axis", "10 mm off", "energy balance");
   for (const auto& [band, friction] : {std::pair{10.0, 0.01}, std::pair{20.0, 0.0},
                                        std::pair{20.0, 0.03}, std::pair{40.0, 0.01}}) {
     SlingshotSetup wall, on_axis = kLines[0], off_axis = kLines[1];
@@ -124,24 +128,25 @@ void other_choices(double tolerance) {
     const auto margin = [tolerance](const SlingshotSetup& setup) {
       return passivity_margin(setup, 100, 300, tolerance);
     };
-    say("  {:>8g} {:>6g} {:>8.4f} {:>12.4f} {:>6.1f} {:>8.1f} {:>10.1f} {:>16.1f}", band, friction,
-        wall.device.mass, wall.device.damping, margin(wall), margin(on_axis), margin(off_axis),
-        no_slip_margin_off_axis(wall.device));
+    answer("  {:>8g} {:>6g} {:>8.4f} {:>12.4f} {:>6.1f} {:>8.1f} {:>10.1f} {:>16.1f}", band,
+           friction, wall.device.mass, wall.device.damping, margin(wall), margin(on_axis),
+           margin(off_axis), no_slip_margin_off_axis(wall.device));
   }
 }
 
 /// The cylinder with the search in a thread of its own: 3 % below and above the margin of the
 /// simulation in lockstep.
 void shots_in_real_time(double tolerance) {
-  say("cylinder in real time, the search in a thread of its own at {:g} Hz",
-      published::kSearchRate);
+  answer("cylinder in real time, the search in a thread of its own at {:g} Hz",
+         published::kSearchRate);
   for (const SlingshotSetup& line : kLines) {
     SlingshotSetup setup = with_two_rates(line);
     const double margin = passivity_margin(setup, 100, 600, tolerance);
     setup.real_time = true;
     for (const double k : {0.97 * margin, 1.03 * margin}) {
       const SlingshotOutcome o = sling(setup, k);
-      say("  {:g} mm off, mu = {:g}, k = {:.1f} N/m ({:+.0f} % of the margin): {} after {:.0f} s, "
+      answer(
+          "  {:g} mm off, mu = {:g}, k = {:.1f} N/m ({:+.0f} % of the margin): {} after {:.0f} s, "
           "{} of {} steps late",
           1e3 * line.off_axis, line.friction, k, 100 * (k / margin - 1),
           o.decayed ? "at rest" : "sustained oscillation", o.seconds, o.late, o.steps);
@@ -151,7 +156,8 @@ void shots_in_real_time(double tolerance) {
 
 int experiment(const ExperimentOptions& options) {
   prepare_output(options.out);
-  say("experiment: a device hits a virtual wall [Mahvash & Hayward 2005, section VI-B], simulated");
+  answer(
+      "experiment: a device hits a virtual wall [Mahvash & Hayward 2005, section VI-B], simulated");
   list_constants();
   draw_figure_12(options.out);
   draw_figure_11(options.out);

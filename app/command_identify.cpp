@@ -139,8 +139,8 @@ double longest_period(const identify::MotionRecord& record) {
 
 AxisFinding measure_axis(const IdentifyOptions& o, runtime::Device& device, std::size_t axis,
                          const StopOnInterrupt& stop) {
-  say("identify: {}: {:g} s with up to {:g} N; keep the hand off the handle", axis_name(axis),
-      o.seconds, o.max_force);
+  answer("identify: {}: {:g} s with up to {:g} N; keep the hand off the handle", axis_name(axis),
+         o.seconds, o.max_force);
   ExcitationLoop loop(device, loop_settings(o, axis));
   bool halted = false;
   {

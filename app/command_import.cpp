@@ -63,7 +63,7 @@ void write_histories(const Histories& histories, const fs::path& sidecar, const 
 /// The surface of the records alone. @return its file.
 fs::path write_patch(const fs::path& sidecar, const fs::path& out) {
   PatchBody patch = patch_body(sidecar);
-  for (const std::string& warning : patch.warnings) say("  warning: {}", warning);
+  for (const std::string& warning : patch.warnings) warn(warning);
   patch.body.provenance.steps.push_back(
       make_provenance_step("mesh", "", measured_files(sidecar), {{"origin", "measured"}}));
   fs::path file = out / "body.h5";
@@ -101,7 +101,7 @@ int import_records(const ImportOptions& options) {
     }
   }
   for (const auto& warning : result.account["warnings"]) {
-    say("  warning: {}", warning.get<std::string>());
+    warn(warning.get<std::string>());
   }
   if (!result.curves.sites.empty())
     say("import: {} records at {} sites -> {} (account in import.json)",

@@ -3,11 +3,13 @@
 #include <cctype>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "app/case_options.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
-#include "app/init/counted_case.hpp"
+#include "app/init/timely_case.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 
@@ -18,7 +20,9 @@ namespace fs = std::filesystem;
 
 struct InitOptions {
   std::string file, output, unit;
-  int sites = 200;
+  std::optional<int> sites;
+  double minutes = FirstWishes{}.minutes;
+  int threads = 0;
 };
 
 /// `liver.stl` -> `liver.toml`, in the current folder.
@@ -40,11 +44,12 @@ int write_first_case(const InitOptions& options) {
   const fs::path target = case_path(options);
   if (fs::exists(target))
     refuse(target.string(), "the file exists", "remove it, or give another name with -o");
-  const BodyFile body = read_body_file(options.file, options.unit);
-  const Base base = find_base(body.surface);
+  CaseOf made{read_body_file(options.file, options.unit), {}, "", target};
+  made.base = find_base(made.body.surface);
+  made.name = name_instead_of(target.stem().string());
   // Never writes a case that would be refused.
-  const FirstCase first =
-      counted_case(body, base, options.sites, name_instead_of(target.stem().string()), target);
+  const FirstCase first = timely_case(
+      made, {options.sites, options.minutes, options.threads > 0 ? options.threads : processors()});
   write_file_crash_safely(target, first.toml);
   for (const std::string& remark : first.remarks) say("  {}", remark);
   say("init: {}; next: palpate build {}", target.string(), target.string());
@@ -67,9 +72,19 @@ void add_init_command(CLI::App& root, Action& action) {
   command->add_option("--unit", options->unit,
                       "Length unit of FILE: mm, cm, dm, um, in or m (default: what FILE states, "
                       "else a guess from its size)");
-  command->add_option("--sites", options->sites, "About how many sites the case has")
-      ->capture_default_str()
+  command
+      ->add_option("--sites", options->sites,
+                   "About how many sites the case has (default: 200, or fewer to save time)")
       ->check(CLI::Range(10, 100000));
+  command
+      ->add_option(
+          "--minutes", options->minutes,
+          "Time that the campaign may take: trial sites are pressed, and depth and patches "
+          "chosen for it; 0: any, without trial")
+      ->capture_default_str()
+      ->check(CLI::Range(0.0, 100000.0));
+  command->add_option("--threads", options->threads, "Threads (default: one for each processor)")
+      ->check(CLI::Range(1, 4096));
   command->callback(
       [options, &action] { action = [options] { return write_first_case(*options); }; });
 }

@@ -23,12 +23,12 @@ int list_shipped() {
   const std::filesystem::path folder = shipped_folder();
   const auto libraries = shipped_libraries(folder);
   if (libraries.empty())
-    say("play: no libraries are in {}; `palpate play FILE` takes a library.h5", folder.string());
+    answer("play: no libraries are in {}; `palpate play FILE` takes a library.h5", folder.string());
   else
-    say("play: ready to be touched with `palpate play NAME`:");
+    answer("play: ready to be touched with `palpate play NAME`:");
   for (const ShippedLibrary& library : libraries) {
-    say("  {:12} {:4} kB  {}", library.name,
-        (std::filesystem::file_size(library.file) + 999) / 1000, library.about);
+    answer("  {:12} {:4} kB  {}", library.name,
+           (std::filesystem::file_size(library.file) + 999) / 1000, library.about);
   }
   return kExitDone;
 }
@@ -37,8 +37,8 @@ int play(const PlayOptions& options) {
   if (options.library.empty()) return list_shipped();
   const std::filesystem::path file = chosen_library(options.library, shipped_folder());
   if (!options.device.empty()) {
-    say("play: on a device: palpate run {} --device {} --profile PROFILE", file.string(),
-        options.device);
+    answer("play: on a device: palpate run {} --device {} --profile PROFILE", file.string(),
+           options.device);
     return kExitDone;
   }
   const Library library = read_library(file);

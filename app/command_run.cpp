@@ -73,7 +73,7 @@ void say_quantiles(const char* what, const runtime::LatencyHistogram& h) {
 
 void summarize(const LiveOutcome& outcome, const DepthWatch& depths, const std::string& file) {
   const runtime::LoopCounts& c = outcome.counts;
-  if (!outcome.missing_rights.empty()) say("  missing permissions: {}", outcome.missing_rights);
+  if (!outcome.missing_rights.empty()) warn("missing permissions: " + outcome.missing_rights);
   say("run: {} steps -> {}", c.steps, file);
   say_quantiles("wake-up latency", c.wake);
   say_quantiles("step duration", c.compute);
@@ -144,7 +144,7 @@ void settle(RunOptions& options, const Library& library, const palpate_library& 
   const auto reason =
       why_not_certified(library, options.library, profile, live.loop.rate, live.contact.friction);
   if (!options.uncertified) require_certified(reason);
-  if (reason) say("run: no guarantee: {}: {}", reason->where, reason->problem);
+  if (reason) warn(fmt::format("run: no guarantee: {}: {}", reason->where, reason->problem));
   live.contact.lipschitz_bound = lipschitz_bound_for(library, profile, live.loop.rate);
   if (live.contact.lipschitz_bound < body.lipschitz_bound) {
     say("run: the enforced Lipschitz bound is lowered to {} N/m, which is certified at this rate",
@@ -164,7 +164,7 @@ void clamp_force(RunOptions& options, const runtime::Device& device) {
   const ForceClamp clamp = force_clamp(profile_of(options), options.max_force, device.peak_force());
   options.live.safety.max_force = clamp.max_force;
   if (clamp.origin.empty()) {
-    say("run: no largest force is known: give --max-force or a profile with continuous_force");
+    warn("run: no largest force is known: give --max-force or a profile with continuous_force");
   } else {
     say("run: forces are clamped to {} N: {}", number_text(clamp.max_force, 4), clamp.origin);
   }

@@ -39,7 +39,7 @@ void print(const Summary& s, const DepthWatch& depths, double rate,
            const std::filesystem::path& file) {
   say("simulate: {} steps at {} Hz, deepest {} mm, largest force {} -> {}", s.steps, rate,
       number_text(1e3 * depths.deepest()), force_text(s.largest), file.string());
-  say("  steps in contact {}, sliding {}, throttled {}, limited by the energy tank {}, "
+  say("  steps in contact {}, sliding {}, rate-limited {}, limited by the energy rule {}, "
       "extrapolated "
       "beyond the computed depth {}",
       depths.contact(), s.sliding, s.throttled, s.limited, depths.beyond());

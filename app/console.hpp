@@ -28,8 +28,8 @@ struct TextOutput {
 
 /// How much the stages print.
 enum class Verbosity {
-  Quiet,    ///< warnings and errors
-  Normal,   ///< also results and progress
+  Quiet,    ///< warnings, errors and results that were asked for
+  Normal,   ///< also what is done, and progress
   Verbose,  ///< also every site
 };
 
@@ -48,9 +48,16 @@ void print_line(std::string_view line);
 /// On the standard output, for people: broken to the width of a terminal.
 void print_text(std::string_view text);
 
+/// A result that was asked for, which a quiet command prints too.
+template <class... Args>
+void answer(fmt::format_string<Args...> format, Args&&... args) {
+  print_text(fmt::format(format, std::forward<Args>(args)...));
+}
+
+/// What a command does and has done.
 template <class... Args>
 void say(fmt::format_string<Args...> format, Args&&... args) {
-  print_text(fmt::format(format, std::forward<Args>(args)...));
+  if (console().verbosity != Verbosity::Quiet) answer(format, std::forward<Args>(args)...);
 }
 
 /// "error: <text>" or "warning: <text>" on one line, the first word in colour.

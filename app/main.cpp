@@ -73,10 +73,10 @@ void add_common_options(CLI::App& root) {
   root.set_version_flag("-V,--version", creator_text());
   CLI::Option* quiet = root.add_flag_function(
       "-q,--quiet", [](std::int64_t) { console().verbosity = Verbosity::Quiet; },
-      "Stages print warnings and errors only");
+      "Print warnings, errors and results that were asked for only");
   root.add_flag_function(
           "-v,--verbose", [](std::int64_t) { console().verbosity = Verbosity::Verbose; },
-          "Stages print every site")
+          "Print every site, too")
       ->excludes(quiet);
 }
 

@@ -155,6 +155,13 @@ double RemainingTime::campaign(std::int64_t sites, std::int64_t places) const {
                  sites - first, likely);
 }
 
+double RemainingTime::unevenness() const {
+  const std::vector<double> likely = likely_services(served_);
+  if (likely.empty()) return 1;
+  const double median = likely[(likely.size() - 1) / 2];
+  return median > 0 ? mean_of(likely) / median : 1;
+}
+
 std::optional<double> RemainingTime::left(double now) const {
   if (services_.empty()) return {};
   auto unstarted =

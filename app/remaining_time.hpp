@@ -38,6 +38,9 @@ class RemainingTime {
   /// s, of a campaign of so many such sites, `places` of them at a time; 0 before the first
   /// increment.
   double campaign(std::int64_t sites, std::int64_t places) const;
+  /// Mean over median of the services of sites: far above 1 where some take much longer than most.
+  /// 1 before the first increment.
+  double unevenness() const;
 
  private:
   struct Running {

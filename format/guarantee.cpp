@@ -68,7 +68,7 @@ std::string guarantee_text(const Certificate& certificate) {
     case GuaranteedBy::Curves:
       return "guaranteed by the curves themselves: " + change;
     case GuaranteedBy::Limiter:
-      return "guaranteed by the runtime, which throttles slides: " + change + "; " +
+      return "guaranteed by the runtime, which rate-limits slides: " + change + "; " +
              curves_alone(certificate);
     case GuaranteedBy::Nothing:
       break;
@@ -87,7 +87,7 @@ std::string verdict(const Certificate& certificate, const DeviceCertificate& dev
   const double smallest = certificate.min_lipschitz_bound;
   const std::string by = guaranteed_by(certificate) == GuaranteedBy::Curves
                              ? ", by the curves themselves"
-                             : ", with slides throttled";
+                             : ", with slides rate-limited";
   const std::string whole =
       certified_from(constants, rendered_force(certificate, bound), device.lowest_rate);
   const RenderedForce softest = rendered_force(certificate, smallest);

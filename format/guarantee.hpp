@@ -11,7 +11,7 @@ namespace palpate {
 /// What keeps the change of the force within the enforced bound.
 enum class GuaranteedBy {
   Curves,   ///< the responses themselves, wherever the tool moves
-  Limiter,  ///< the runtime, which throttles slides; the responses alone exceed the bound
+  Limiter,  ///< the runtime, which rate-limits slides; the responses alone exceed the bound
   Nothing   ///< no bound is certain
 };
 
@@ -21,7 +21,7 @@ GuaranteedBy guaranteed_by(const Certificate& certificate);
 std::string guarantee_text(const Certificate& certificate);
 
 /// One line for a device: the rate from which it is certified passive and by what, also with slides
-/// throttled as far as possible; or that it is not certified, with every unknown constant.
+/// rate-limited as far as possible; or that it is not certified, with every unknown constant.
 std::string verdict(const Certificate& certificate, const DeviceCertificate& device);
 
 /// Is the device certified from its lowest rate on, with the enforced bound?
@@ -33,7 +33,7 @@ struct CertifiedRange {
   /// with it. Coupled ones, and where L_min is not known: that of the certificate alone.
   double low_friction = 1, high_friction = 0;
   double curves = kInfinity;  ///< N/m: from there on the responses keep the bound by themselves
-  double min_lipschitz_bound = kInfinity;  ///< N/m, L_min: from there on by throttled slides
+  double min_lipschitz_bound = kInfinity;  ///< N/m, L_min: from there on by rate-limited slides
   double relaxation_rate = kInfinity;      ///< K of (C9), 1/s
 
   bool covers(double friction) const noexcept {

@@ -108,7 +108,7 @@ struct Certificate {
   double stick = 0;     ///< N/m, over all triangles
   double slip = 0;      ///< N/m, over all triangles
   /// N/m, L_min: the smallest Lipschitz bound of the force that the runtime can enforce in every
-  /// step and at every depth, by throttling slides, (R16). Infinite: none is certain; NaN: not
+  /// step and at every depth, by rate-limiting slides, (R16). Infinite: none is certain; NaN: not
   /// known.
   double min_lipschitz_bound = std::numeric_limits<double>::quiet_NaN();
   /// N/m, L of Theorem 1: the bound that the runtime enforces by default, for which the rates are

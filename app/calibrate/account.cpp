@@ -90,17 +90,17 @@ void say_calibration(const calibrate::Calibration& calibration, double confidenc
   for (const calibrate::Estimate& e : calibration.estimates) {
     const std::string unit = e.unit == "1" ? "" : " " + e.unit;
     if (e.at_bound) {
-      say("  {} = {:.6g}{}, at its bound", e.name, e.value, unit);
+      answer("  {} = {:.6g}{}, at its bound", e.name, e.value, unit);
     } else {
       const std::string profile =
           std::isnan(e.profile_low)
               ? ""
               : fmt::format(", by its profile {:.6g} to {:.6g}", e.profile_low, e.profile_high);
-      say("  {} = {:.6g}{}, {:.4g} % interval {:.6g} to {:.6g}{}", e.name, e.value, unit,
-          100 * confidence, e.low, e.high, profile);
+      answer("  {} = {:.6g}{}, {:.4g} % interval {:.6g} to {:.6g}{}", e.name, e.value, unit,
+             100 * confidence, e.low, e.high, profile);
     }
   }
-  for (const std::string& warning : calibration.warnings) say("  warning: {}", warning);
+  for (const std::string& warning : calibration.warnings) warn(warning);
 }
 
 namespace {
@@ -117,13 +117,13 @@ std::string pressure_text(double pascal) {
 }  // namespace
 
 void say_homogeneous(const calibrate::HomogeneousFit& fit) {
-  say("  as the [[material]] of a case:");
+  answer("  as the [[material]] of a case:");
   std::istringstream keys(material_keys(fit.law));
-  for (std::string line; std::getline(keys, line);) say("    {}", line);
-  say("  shear modulus at rest: {}", pressure_text(fit.shear_modulus));
+  for (std::string line; std::getline(keys, line);) answer("    {}", line);
+  answer("  shear modulus at rest: {}", pressure_text(fit.shear_modulus));
   for (const calibrate::TestError& e : fit.errors) {
-    say("  {}: rms {} ({}), R2 {:.5f}, worst {} at {:.4g}", e.name, pressure_text(e.rms),
-        percent_text(e.relative), e.r2, pressure_text(e.worst), e.worst_at);
+    answer("  {}: rms {} ({}), R2 {:.5f}, worst {} at {:.4g}", e.name, pressure_text(e.rms),
+           percent_text(e.relative), e.r2, pressure_text(e.worst), e.worst_at);
   }
 }
 

@@ -115,30 +115,32 @@ Json relaxation_account(const cal::RelaxationFit& fit, const cal::RelaxationSett
 void say_relaxation(const cal::RelaxationFit& fit,
                     const std::vector<cal::RelaxationRecord>& records, double radius) {
   for (const cal::TriedSeries& t : fit.tried)
-    say("  {} term{}: {}{}", t.terms, t.terms == 1 ? "" : "s",
-        std::isfinite(t.bic) ? fmt::format("rms {}, AICc {:.1f}, BIC {:.1f}",
-                                           percent_text(t.relative_rms), t.aicc, t.bic)
-                             : std::string(),
-        t.refused.empty() ? "" : (std::isfinite(t.bic) ? "; not taken: " : "") + t.refused);
-  say("  as keys of the [[material]] of a case:");
+    answer("  {} term{}: {}{}", t.terms, t.terms == 1 ? "" : "s",
+           std::isfinite(t.bic) ? fmt::format("rms {}, AICc {:.1f}, BIC {:.1f}",
+                                              percent_text(t.relative_rms), t.aicc, t.bic)
+                                : std::string(),
+           t.refused.empty() ? "" : (std::isfinite(t.bic) ? "; not taken: " : "") + t.refused);
+  answer("  as keys of the [[material]] of a case:");
   std::istringstream keys(relaxation_keys(fit.series));
-  for (std::string line; std::getline(keys, line);) say("    {}", line);
+  for (std::string line; std::getline(keys, line);) answer("    {}", line);
   const cal::Interval& g = fit.long_term_fraction;
-  say("  the long-term constants are {:.4g} ({:.4g} to {:.4g}) of the instantaneous ones", g.value,
-      g.low, g.high);
+  answer("  the long-term constants are {:.4g} ({:.4g} to {:.4g}) of the instantaneous ones",
+         g.value, g.low, g.high);
   for (std::size_t i = 0; i < records.size(); ++i) {
     const cal::FittedRecord& r = fit.records[i];
-    say("  {}: rms {} ({}); at {} the elastic force is {} at once, {} in the long term", r.name,
-        records[i].force_is_held ? length_text(r.rms) : force_text(r.rms),
-        percent_text(r.relative_rms), length_text(fit.largest_travel),
-        force_interval_text(r.instantaneous), force_interval_text(r.long_term));
+    answer("  {}: rms {} ({}); at {} the elastic force is {} at once, {} in the long term", r.name,
+           records[i].force_is_held ? length_text(r.rms) : force_text(r.rms),
+           percent_text(r.relative_rms), length_text(fit.largest_travel),
+           force_interval_text(r.instantaneous), force_interval_text(r.long_term));
     if (radius > 0)
-      say("    of an incompressible half-space under this sphere: E {:.4g} kPa at once, {:.4g} kPa "
+      answer(
+          "    of an incompressible half-space under this sphere: E {:.4g} kPa at once, {:.4g} kPa "
           "in the long term",
           1e-3 * half_space_modulus(r.instantaneous.value, radius, fit.largest_travel),
           1e-3 * half_space_modulus(r.long_term.value, radius, fit.largest_travel));
   }
-  say("  the records show what relaxes within {:.3g} s to {:.3g} s, and say nothing of shorter and "
+  answer(
+      "  the records show what relaxes within {:.3g} s to {:.3g} s, and say nothing of shorter and "
       "longer times",
       fit.shortest, fit.longest);
 }

@@ -37,11 +37,17 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
+/// Whether a word may be meant for another: at most half of it is mistyped.
+bool is_like(std::string_view word, std::string_view other) {
+  return edit_distance(word, other) <= std::max<std::size_t>(2, word.size() / 2);
+}
+
 std::string unknown_text(const std::string& kind, const std::string& word,
                          const std::vector<std::string>& known) {
   const std::string_view other = nearest(word, {known.begin(), known.end()});
-  return "unknown " + kind + " '" + word + "'" +
-         (other.empty() ? "" : "; the nearest is '" + std::string(other) + "'");
+  const std::string unknown = "unknown " + kind + " '" + word + "'";
+  if (!is_like(word, other)) return unknown + "; see 'palpate --help'";
+  return unknown + "; the nearest is '" + std::string(other) + "'";
 }
 
 }  // namespace

@@ -68,15 +68,16 @@ std::string time_comparison_csv(const std::vector<ComparedHistory>& compared) {
 void say_time_comparison(const std::vector<ComparedHistory>& compared) {
   for (const ComparedHistory& h : compared) {
     const compare::TimeComparison& c = h.comparison;
-    say("  {} at vertex {}, {}: RMSE {} ({} of the largest force), bias {}, worst {} at {:.4g} s",
+    answer(
+        "  {} at vertex {}, {}: RMSE {} ({} of the largest force), bias {}, worst {} at {:.4g} s",
         h.record, h.vertex, h.model, force_text(c.rmse), percent_text(c.normalised_rmse),
         force_text(c.bias), force_text(c.worst), c.worst_time);
     for (const compare::HeldForce& hold : c.holds)
-      say("    hold from {:.4g} s to {:.4g} s: {} of the force is left, {} of the model", hold.from,
-          hold.to, percent_text(hold.measured), percent_text(hold.model));
+      answer("    hold from {:.4g} s to {:.4g} s: {} of the force is left, {} of the model",
+             hold.from, hold.to, percent_text(hold.measured), percent_text(hold.model));
     if (std::isfinite(c.measured_loss))
-      say("    lost over the record: {:.4g} mJ measured, {:.4g} mJ by the model ({:+.1f} %)",
-          1e3 * c.measured_loss, 1e3 * c.model_loss, 100 * (c.model_loss / c.measured_loss - 1));
+      answer("    lost over the record: {:.4g} mJ measured, {:.4g} mJ by the model ({:+.1f} %)",
+             1e3 * c.measured_loss, 1e3 * c.model_loss, 100 * (c.model_loss / c.measured_loss - 1));
   }
 }
 

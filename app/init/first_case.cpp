@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/case/toml_string.hpp"
+#include "app/console.hpp"
 #include "format/number_text.hpp"
 
 namespace palpate::app {
@@ -35,6 +36,7 @@ class Text {
   void length(std::string_view name, double metres, std::string_view why) {
     key(name, toml_string(mm(metres)), why);
   }
+  void line(std::string_view whole) { text_ += fmt::format("{}\n", whole); }
   std::string take() { return std::move(text_); }
 
  private:
@@ -66,11 +68,14 @@ void write_mesh(Text& text, const BodyFile& body, const FirstSizes& sizes) {
                                 area / (kAreaOfVertex * sizes.patch_spacing * sizes.patch_spacing));
   text.section("[mesh]");
   text.length("patch_spacing", sizes.patch_spacing,
-              fmt::format("{}{} sites on {} cm^2; halve it for up to four times as many",
+              fmt::format("{}{} sites on {} cm^2; {}",
                           sizes.is_thin       ? "smaller for a thin body: "
                           : sizes.is_coarsest ? "the largest that shows the shape: "
                                               : "",
-                          sites, number_text(1e4 * area)));
+                          sites, number_text(1e4 * area),
+                          sizes.sites_too_slow
+                              ? fmt::format("{} would take too long", *sizes.sites_too_slow)
+                              : "halve it for up to four times as many"));
   text.length("element_size", sizes.element_size,
               body.kind == BodyKind::VolumeMesh ? "no effect: the mesh is used as it is"
                                                 : "half a patch; smaller is more accurate");
@@ -113,13 +118,19 @@ void write_material(Text& text, const std::string& region) {
   text.key("poisson", "0.495", "nearly incompressible, as most soft tissue is");
 }
 
+std::string reason_of_depth(const FirstSizes& sizes) {
+  std::string reason =
+      fmt::format("the body is {} mm thick in the median, and {} mm in thin parts",
+                  number_text(1e3 * sizes.thickness), number_text(1e3 * sizes.thin_parts));
+  if (sizes.is_shallow) reason += "; deeper takes too long";
+  return reason;
+}
+
 void write_paths(Text& text, const FirstSizes& sizes) {
   text.section("[tool]");
   text.length("radius", sizes.tool_radius, "a sphere that covers more than one element");
   text.section("[indentation]");
-  text.length(
-      "depth", sizes.depth,
-      fmt::format("the body is {} mm thick in the median", number_text(1e3 * sizes.thickness)));
+  text.length("depth", sizes.depth, reason_of_depth(sizes));
   text.length("lateral_travel", sizes.lateral_travel, "half the depth");
   text.key("lateral_depths", fmt::format("[\"{}\"]", mm(sizes.depth / 2)),
            "one lateral path a site; more are more accurate");
@@ -166,6 +177,9 @@ FirstCase first_case(const BodyFile& body, const Base& base, const FirstSizes& s
                      const std::string& file, const std::string& name) {
   Text text;
   text.section("# A first case, by `palpate init`: change what you know better (docs/cases.md).");
+  if (sizes.seconds)
+    text.line(fmt::format("# Its campaign takes about {}, as trial sites on this machine tell.",
+                          duration_text(*sizes.seconds)));
   if (!name.empty()) text.key("name", toml_string(name), "of the folder of its artifacts");
   write_source(text, body, file);
   write_mesh(text, body, sizes);

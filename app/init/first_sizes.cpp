@@ -16,12 +16,7 @@ using mesher::Surface;
 
 constexpr double kFewestPatches = 6;  // along the extent
 constexpr double kFinestForThickness = 2;
-constexpr double kDepthOfThickness = 0.3, kDepthOfThinPlaces = 0.6;
-
-double rounded(double value) {
-  const double step = std::pow(10, std::floor(std::log10(value)) - 1);
-  return step * std::round(value / step);
-}
+constexpr double kDepthOfThickness = 0.3, kDepthOfThinParts = 0.6;
 
 struct Face {
   Vec3 middle{};
@@ -62,6 +57,11 @@ std::vector<double> thicknesses(const Surface& surface, const std::vector<Face>&
 
 }  // namespace
 
+double two_digits(double value) {
+  const double step = std::pow(10, std::floor(std::log10(value)) - 1);
+  return step * std::round(value / step);
+}
+
 FirstSizes first_sizes(const Surface& surface, const Base& base, int sites) {
   const std::vector<Face> faces = faces_off(base, surface);
   FirstSizes sizes;
@@ -69,7 +69,7 @@ FirstSizes first_sizes(const Surface& surface, const Base& base, int sites) {
   const std::vector<double> below = thicknesses(surface, faces, sizes.pressable_area);
   const double extent = mesher::largest_dimension(surface.points);
   sizes.thickness = below.empty() ? extent : below[below.size() / 2];
-  const double thin = below.empty() ? extent : below[below.size() / 10];
+  sizes.thin_parts = below.empty() ? extent : below[below.size() / 20];
 
   const double even = std::sqrt(sizes.pressable_area / (kAreaOfVertex * sites));
   const double coarsest = extent / kFewestPatches;
@@ -77,12 +77,14 @@ FirstSizes first_sizes(const Surface& surface, const Base& base, int sites) {
   sizes.is_coarsest = spread < even;
   sizes.is_thin = sizes.thickness < spread;
   sizes.patch_spacing =
-      rounded(std::max(std::min(spread, sizes.thickness), spread / kFinestForThickness));
-  sizes.element_size = rounded(kElementOverPatch * sizes.patch_spacing);
-  sizes.tool_radius = rounded(kRadiusOverPatch * sizes.patch_spacing);
-  sizes.depth = rounded(std::min({kDepthOverPatch * sizes.patch_spacing,
-                                  kDepthOfThickness * sizes.thickness, kDepthOfThinPlaces * thin}));
-  sizes.lateral_travel = rounded(kTravelOverDepth * sizes.depth);
+      two_digits(std::max(std::min(spread, sizes.thickness), spread / kFinestForThickness));
+  sizes.element_size = two_digits(kElementOverPatch * sizes.patch_spacing);
+  sizes.tool_radius = two_digits(kRadiusOverPatch * sizes.patch_spacing);
+  const double deep =
+      std::min({kDepthOverPatch * sizes.patch_spacing, kDepthOfThickness * sizes.thickness,
+                kDepthOfThinParts * sizes.thin_parts});
+  sizes.depth = two_digits(std::max(deep, kShallowestOverPatch * sizes.patch_spacing));
+  sizes.lateral_travel = two_digits(kTravelOverDepth * sizes.depth);
   return sizes;
 }
 

@@ -4,9 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,9 +12,7 @@
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
-#include "app/remaining_time.hpp"
-#include "fem/campaign/campaign.hpp"
-#include "fem/factor/rest_factor.hpp"
+#include "app/pipeline/trial_sites.hpp"
 #include "fitting/response/fit.hpp"
 #include "format/body.hpp"
 #include "format/library.hpp"
@@ -27,48 +23,6 @@ namespace palpate::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kTrialsPerThread = 4;
-
-/// Resident memory of this process, bytes; 0 where the system does not say.
-double resident_bytes() {
-  std::ifstream statistics("/proc/self/statm");
-  double total = 0, resident = 0;
-  statistics >> total >> resident;
-  return statistics ? resident * static_cast<double>(sysconf(_SC_PAGESIZE)) : 0;
-}
-
-/// How the trial sites went.
-struct Trial {
-  Curves curves;
-  fem::CampaignReport report;
-  RemainingTime time;        ///< of the trial sites
-  double bytes_before = 0;   ///< resident before the first site
-  double bytes_between = 0;  ///< most that was resident when one finished
-};
-
-Trial press_some(const Workspace& space, const Body& body, std::vector<std::int32_t> sites) {
-  Trial trial;
-  const auto start = std::chrono::steady_clock::now();
-  fem::CampaignSettings settings = campaign_settings(space);
-  settings.sites = std::move(sites);
-  const auto elapsed = [start] {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  };
-  settings.advanced = [&](const fem::CampaignProgress& p) {
-    trial.time.update(elapsed(), p.done, p.total, p.sites);
-  };
-  settings.progress = [&](const fem::CampaignProgress& p) {
-    const double now = elapsed();
-    const double bytes = resident_bytes();
-    trial.bytes_between = std::max(trial.bytes_between, bytes);
-    if (p.done > 0) return trial.time.update(now, p.done, p.total, p.sites);
-    trial.bytes_before = bytes;
-    trial.time.begin(now);
-  };
-  trial.curves = fem::run_campaign(body, settings, trial.report);
-  return trial;
-}
 
 /// Certificate and provenance of a finished library, as far as their size matters.
 void add_what_others_add(const Workspace& space,
@@ -112,11 +66,8 @@ double library_bytes(const Workspace& space, const Body& body, const Trial& tria
 
 void estimate(const Workspace& space, const Body& body, const EventSink& emit) {
   const std::vector<std::int32_t> all = sites_of_shard(body, space.shard);
-  const auto threads = static_cast<std::size_t>(space.threads);
-  const Trial trial = press_some(space, body, spread(all, kTrialsPerThread * threads));
+  const Trial trial = press_trial_sites(space, body);
   const std::size_t tried = trial.curves.sites.size();
-  const std::size_t per_thread = (all.size() + threads - 1) / threads;
-  const std::size_t places = threads * std::min<std::size_t>(fem::kBatch, per_thread);
   Estimate event;
   event.sites = all.size();
   event.adaptive = is_adaptive(space);
@@ -125,11 +76,11 @@ void estimate(const Workspace& space, const Body& body, const EventSink& emit) {
   event.trial_sites = tried;
   event.trial_seconds = trial.report.seconds;
   event.set_up_seconds = trial.report.set_up_seconds;
-  event.seconds = event.set_up_seconds + trial.time.campaign(static_cast<std::int64_t>(all.size()),
-                                                             static_cast<std::int64_t>(places));
+  event.seconds = campaign_seconds(space, trial, all.size());
   const double per_site =
       std::max(0.0, trial.bytes_between - trial.bytes_before) / static_cast<double>(tried);
-  event.memory_bytes = trial.bytes_before + per_site * static_cast<double>(places);
+  event.memory_bytes =
+      trial.bytes_before + per_site * static_cast<double>(concurrent_sites(space, all.size()));
   if (space.memory > 0) event.memory_bytes = std::min(event.memory_bytes, space.memory);
   event.library_bytes = library_bytes(space, body, trial, all.size());
   event.threads = space.threads;
@@ -137,14 +88,6 @@ void estimate(const Workspace& space, const Body& body, const EventSink& emit) {
 }
 
 }  // namespace
-
-std::vector<std::int32_t> spread(const std::vector<std::int32_t>& sites, std::size_t count) {
-  if (count >= sites.size()) return sites;
-  std::vector<std::int32_t> some;
-  for (std::size_t i = 0; i < count; ++i)
-    some.push_back(sites[(2 * i + 1) * sites.size() / (2 * count)]);
-  return some;
-}
 
 void estimate_build(const Workspace& space, const EventSink& emit) {
   const Body body = mesher::mesh(mesh_settings(space));

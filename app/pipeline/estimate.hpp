@@ -2,10 +2,6 @@
 // `--estimate`: what a campaign will take, from a few trial sites.
 #pragma once
 
-#include <cstddef>
-#include <cstdint>
-#include <vector>
-
 #include "app/pipeline/events.hpp"
 #include "app/pipeline/workspace.hpp"
 
@@ -14,9 +10,6 @@ namespace palpate::app {
 inline constexpr const char* kEstimateHelp =
     "Instead, press a few sites and say how many sites, minutes and bytes the campaign takes; "
     "nothing is written";
-
-/// `count` of the sites or all, spread over their numbering.
-std::vector<std::int32_t> spread(const std::vector<std::int32_t>& sites, std::size_t count);
 
 /// Meshes the body of the case in memory.
 void estimate_build(const Workspace& space, const EventSink& emit);

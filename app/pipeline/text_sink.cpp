@@ -162,13 +162,13 @@ void TextSink::print(const StiffnessAtRate& e) {
        bound_text(e.library_bound), e.triangles_over, e.triangles, e.worst_triangle);
   if (e.min_enforceable_bound <= bound)
     return line(
-        "    slides can be throttled to {}: certified with that bound or a larger one up to the "
+        "    slides can be rate-limited to {}: certified with that bound or a larger one up to the "
         "certifiable stiffness, which --soften writes into a library and `palpate run` chooses by "
         "itself",
         bound_text(e.min_enforceable_bound));
   if (std::isinf(e.min_enforceable_bound)) return line("    and no bound can be enforced");
   line(
-      "    with throttled slides it needs {}: {:.2f} times its forces would be certified; --soften "
+      "    with rate-limited slides it needs {}: {:.2f} times its forces would be certified; --soften "
       "caps only the stiff slopes",
       bound_text(e.min_enforceable_bound), bound / e.min_enforceable_bound);
 }

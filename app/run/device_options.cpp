@@ -9,8 +9,8 @@
 namespace palpate::app {
 
 int list_devices() {
-  say("devices:");
-  for (const DeviceName& device : device_names()) say("  {:<16} {}", device.name, device.about);
+  answer("devices:");
+  for (const DeviceName& device : device_names()) answer("  {:<16} {}", device.name, device.about);
   return kExitDone;
 }
 

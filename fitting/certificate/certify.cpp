@@ -51,13 +51,13 @@ std::string cause_unbounded(const TriangleCertificate& triangle, double depth) {
     std::snprintf(
         text.data(), text.size(),
         "no bound of the slide: the lateral response is too flat at the slip limit for the "
-        "change of the responses and inward directions up to %.0f degrees off the facet "
+        "change of the responses and press directions up to %.0f degrees off the facet "
         "normal",
         tilt);
   } else {
     std::snprintf(
         text.data(), text.size(),
-        "no bound of the slide: pressed %.3g mm deep where the inward directions turn with "
+        "no bound of the slide: pressed %.3g mm deep where the press directions turn with "
         "a radius of %.3g mm, up to %.0f degrees off the facet normal",
         1e3 * depth, 1e3 / triangle.kappa, tilt);
   }
@@ -77,7 +77,7 @@ std::string cause(const TriangleBounds& bounds, double depth) {
   if (slide.variation >= std::max(slide.slant, slide.curvature)) {
     return "the change of the responses over the surface, while sliding";
   }
-  return slide.slant >= slide.curvature ? "inward directions oblique to the facet, while sliding"
+  return slide.slant >= slide.curvature ? "press directions oblique to the facet, while sliding"
                                         : "the curvature of the normals, while sliding";
 }
 

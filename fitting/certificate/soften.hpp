@@ -20,7 +20,7 @@ struct Softening {
 
 /// Certifies the library for `bound`, N/m.
 /// Where max(L_stick, L_slip) exceeds it, `bound` becomes the enforced bound, to which the runtime
-/// throttles slides. Where L_min exceeds it too, the slopes of all curves are limited to the
+/// rate-limits slides. Where L_min exceeds it too, the slopes of all curves are limited to the
 /// largest value (found by bisection) that reduces L_min to `bound`. Smaller slopes are unchanged.
 /// @throws Error(Configuration) when even one hundredth of the largest slope is not certifiable.
 /// The responses are then unchanged.

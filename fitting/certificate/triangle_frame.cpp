@@ -106,7 +106,7 @@ TriangleFrame triangle_frame(const Library& library, std::size_t index) {
   }
   frame.least_length = distance_to_triangle(u);
   if (frame.least_length < 0.5) {
-    refuse(index, x, "the inward directions of its vertices differ too much to be interpolated");
+    refuse(index, x, "the press directions of its vertices differ too much to be interpolated");
   }
   frame.cos_theta = std::min(1.0, std::min({dot(u[0], N), dot(u[1], N), dot(u[2], N)}));
   double sine = 0;

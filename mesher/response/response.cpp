@@ -158,7 +158,7 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
                    " within a tool radius (", millimetres(settings.tool_radius), ") of them ",
                    close == 1 ? "is no site" : "are no sites"));
   }
-  note(log, text("inward directions: ", directions.adjusted, " of ", response.inward.size(),
+  note(log, text("press directions: ", directions.adjusted, " of ", response.inward.size(),
                  " adjusted for interpolation",
                  directions.adjusted == 0 ? std::string() : most_turned(directions, nested)));
   if (directions.unresolved.empty()) return;

@@ -106,7 +106,7 @@ class Campaign(unittest.TestCase):
             self.assertLess(kills, 200, "no progress")
             now = summary(journal)["sites_done"] if journal.exists() and journal.stat().st_size > 90 else 0
             self.assertGreaterEqual(now, saved)
-            # Sites end in waves: on a machine that has become slower no kill would be late enough for one.
+            # Sites end in batches: on a machine that has become slower no kill would be late enough for one.
             stretch = 1.0 if now > saved else 1.2 * stretch
             saved = now
 

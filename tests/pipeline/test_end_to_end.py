@@ -357,7 +357,7 @@ class Pipeline(unittest.TestCase):
         limit, throttled = 0.5 * (hold + bound), self.root / "throttled.h5"
         out = self.run_ok("certify", self.case, "--out", self.out, "--rate", 1.5 * limit / damping,
                           "--soften", throttled)
-        self.assertIn("slides can be throttled", out)
+        self.assertIn("slides can be rate-limited", out)
         with h5py.File(throttled) as file, h5py.File(self.out / "library.h5") as original:
             self.assertAlmostEqual(file["certificate"].attrs["lipschitz_bound"], limit, delta=1e-6 * limit)
             self.assertAlmostEqual(file["certificate/device/lowest_rate"][0], 1.5 * limit / damping,

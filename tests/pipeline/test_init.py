@@ -39,8 +39,9 @@ class Init(unittest.TestCase):
         self.folder.cleanup()
 
     def init(self, file, *options, name="case"):
+        """The case of a surface, without trial sites unless `options` give the minutes."""
         case = self.root / f"{name}.toml"
-        done = palpate("init", file, "-o", case, *options)
+        done = palpate("init", file, "-o", case, "--minutes", 0, *options)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return case, tomllib.loads(case.read_text(encoding="utf-8")), done.stdout
 
@@ -87,6 +88,17 @@ class Init(unittest.TestCase):
 
     def test_segmentation(self):
         self.assert_serves(SOURCES / "tests/data/meshes/images/ball_sform.nii.gz")
+
+    def test_a_campaign_that_is_asked_to_be_short_is(self):
+        """The estimate of `build` agrees with what the case says, within the noise of a busy machine."""
+        case, keys, said = self.init(SOURCES / "tests/data/surfaces/sofa/salad_bowl.obj", "--minutes", "0.001")
+        free, free_keys, _ = self.init(SOURCES / "tests/data/surfaces/sofa/salad_bowl.obj", name="free")
+        self.assertIn("# Its campaign takes about ", case.read_text(encoding="utf-8"))
+        self.assertNotIn("# Its campaign takes about ", free.read_text(encoding="utf-8"))
+        self.assertIn("more than the 0.001 min wanted", said)
+        cost = [metres(k["mesh"]["patch_spacing"]) for k in (keys, free_keys)]
+        depth = [metres(k["indentation"]["depth"]) for k in (keys, free_keys)]
+        self.assertTrue(cost[0] > cost[1] or depth[0] < depth[1], said)
 
     def test_unit_of_the_liver_is_guessed_and_called_a_guess(self):
         source = (SOURCES / "data/bodies/sofa/liver.obj").read_text(encoding="utf-8")

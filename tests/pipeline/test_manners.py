@@ -22,7 +22,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 from bodies import CASE, SIZE, block, write_case, write_off  # noqa: E402
 
 PALPATE = None
-DONE, INTERNAL, USAGE = 0, 1, 2
+DONE, INTERNAL, USAGE, GEOMETRY = 0, 1, 2, 3
 
 
 def palpate(*arguments, **options):
@@ -82,6 +82,18 @@ class Manners(unittest.TestCase):
             quiet = palpate(*arguments, "--out", self.out)
             self.assertEqual((quiet.returncode, quiet.stdout), (DONE, ""), quiet.stderr)
 
+    def test_quiet_leaves_files_errors_and_results_that_were_asked_for(self):
+        surface, first = self.root / "block.off", self.root / "quiet.toml"
+        for words in (["check", surface, "--unit", "mm"], ["init", surface, "--minutes", 0, "-o", first]):
+            quiet = palpate(*words, "-q")
+            self.assertEqual((quiet.returncode, quiet.stdout, quiet.stderr), (DONE, "", ""))
+        self.assertTrue(first.exists())
+        refused = palpate("check", self.root / "none.off", "-q")
+        self.assertEqual((refused.returncode, refused.stdout), (GEOMETRY, ""))
+        self.assertTrue(refused.stderr.startswith("error: "), refused.stderr)
+        for words in (["doctor"], ["inspect", self.out / "body.h5"]):
+            self.assertEqual(palpate(*words, "-q").stdout, palpate(*words).stdout)
+
     def test_verbose_prints_every_site(self):
         out = self.root / "verbose"
         palpate("mesh", self.case, "--out", out)
@@ -104,6 +116,12 @@ class Manners(unittest.TestCase):
             refused = palpate(*words)
             self.assertEqual(refused.returncode, USAGE, refused.stderr)
             self.assertIn(f"the nearest is {answer}", refused.stderr)
+
+    def test_a_word_that_is_like_none_is_answered_with_the_help(self):
+        refused = palpate("frobnicate")
+        self.assertEqual(refused.returncode, USAGE)
+        self.assertNotIn("the nearest", refused.stderr)
+        self.assertIn("palpate --help", refused.stderr)
 
     def test_a_surface_in_place_of_a_case(self):
         refused = palpate("build", self.root / "block.off")

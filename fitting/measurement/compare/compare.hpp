@@ -12,7 +12,7 @@
 
 namespace palpate::compare {
 
-/// One curve: force along its path over displacement, with what is known of its doubt.
+/// One curve: force along its path over displacement, with its uncertainty where that is known.
 struct ComparedCurve {
   PathKind kind = PathKind::Normal;
   double lateral_depth = 0;               ///< m, lateral only

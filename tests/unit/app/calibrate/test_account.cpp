@@ -68,10 +68,11 @@ TEST(CalibrationAccount, IsSaidLineByLine) {
   calibration.estimates = {free, bound};
   calibration.warnings = {"the data do not say b"};
   testing::internal::CaptureStdout();
+  testing::internal::CaptureStderr();
   say_calibration(calibration, 0.95);
   EXPECT_EQ(testing::internal::GetCapturedStdout(),
-            "  mu = 4000 Pa, 95 % interval 3900 to 4100\n  b = 20, at its bound\n"
-            "  warning: the data do not say b\n");
+            "  mu = 4000 Pa, 95 % interval 3900 to 4100\n  b = 20, at its bound\n");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "warning: the data do not say b\n");
 }
 
 /// A gel of 0.4 Pa, of which a micro-indenter sees micronewtons, in units that fit.

@@ -30,7 +30,7 @@ TEST(Inspect, GivesTheVerdictOfEachDevice) {
   ASSERT_EQ(devices.size(), 2u);
   EXPECT_EQ(
       devices[0]["verdict"],
-      "certified passive from 637.5 Hz on, with slides throttled (Mahvash & Hayward 2005, eq. 5: "
+      "certified passive from 637.5 Hz on, with slides rate-limited (Mahvash & Hayward 2005, eq. 5: "
       "850.0 Hz)");
   EXPECT_EQ(devices[0]["lowest_certified_rate"]["value"], 637.5);
   EXPECT_EQ(devices[1]["verdict"],

@@ -220,7 +220,7 @@ TEST(TextSink, PrintsTheCertifiableStiffnessAndItsRemedies) {
   EXPECT_THAT(text_of({coarse}), Not(HasSubstr("is certified")));
   EXPECT_THAT(text_of({stiffness(200, 100, 90)}), HasSubstr("2005, eq. 5: 150.0 N/m"));
   EXPECT_THAT(text_of({stiffness(200, 100, 90)}), HasSubstr("2.00 times its forces"));
-  EXPECT_THAT(text_of({stiffness(95, 100, 90)}), HasSubstr("throttled to 90.00 N/m"));
+  EXPECT_THAT(text_of({stiffness(95, 100, 90)}), HasSubstr("rate-limited to 90.00 N/m"));
   EXPECT_THAT(text_of({stiffness(80, 100, kInfinity)}), HasSubstr("no bound can be enforced"));
   EXPECT_THAT(text_of({stiffness(45, 100, 90)}),
               HasSubstr("3 of 20 triangles exceed it, most of all triangle 7"));

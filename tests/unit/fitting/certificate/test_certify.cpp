@@ -146,12 +146,12 @@ TEST(Certificate, DepthBeyondTheRadiusOfCurvatureHasNoBoundAndAReason) {
   CertifySettings settings = with_friction(0.3);
   settings.devices.push_back(viscous());
   certify(library, settings);
-  // The runtime throttles such slides: to 4 L_stick by default, to |M_0| on request.
+  // The runtime rate-limits such slides: to 4 L_stick by default, to |M_0| on request.
   EXPECT_NEAR(library.certificate.min_lipschitz_bound, 100 * std::hypot(1, 0.3), 1e-9);
   EXPECT_DOUBLE_EQ(library.certificate.lipschitz_bound, 400);
   EXPECT_NEAR(library.certificate.devices.at(0).lowest_rate, 1.5 * 400 / 0.081, 1e-9);
   EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
-            "certified passive from 7408 Hz on, with slides throttled; from 1934 Hz on with "
+            "certified passive from 7408 Hz on, with slides rate-limited; from 1934 Hz on with "
             "lipschitz_bound = 104.5 N/m (Mahvash & Hayward 2005, eq. 5: 9877 Hz)");
   EXPECT_TRUE(std::isinf(library.certificate.slip));
   const std::string& line = library.certificate.limited_by;

@@ -121,7 +121,7 @@ TEST(CertifyOnRuntime, EnergyFallsAlongEverySlideOfACertifiedTriangle) {
 }
 
 /// Norm of the Jacobian of a local model by central differences.
-double steepness(const runtime::LocalModel& model, const Vec3& x) {
+double force_gradient(const runtime::LocalModel& model, const Vec3& x) {
   constexpr double kStep = 1e-7;
   std::array<Vec3, 3> column{};
   for (std::size_t j = 0; j < 3; ++j) {
@@ -172,9 +172,9 @@ TEST(CertifyOnRuntime, NoMemoryOfTheTissueMakesTheForceSteeper) {
         const double psi = model.respond(model.deflection(pressed)).friction_normal_force / g;
         const double rho =
             any(engine) * model.slip_limit(model.deflection(pressed), kFriction * psi);
-        const double steep = steepness(model, pressed + rho * t);
-        EXPECT_LE(steep, bound * (1 + 1e-4)) << coupled;
-        closest = std::max(closest, steep / bound);
+        const double gradient = force_gradient(model, pressed + rho * t);
+        EXPECT_LE(gradient, bound * (1 + 1e-4)) << coupled;
+        closest = std::max(closest, gradient / bound);
       }
     }
     EXPECT_GT(closest, coupled ? 0.5 : 0.8);

@@ -39,7 +39,7 @@ export function certificateSection(data) {
     definitions([
       ['L_stick', `${units.bound(c.stick)}; fixed contact point`],
       ['L_slip', `${units.bound(c.slip)}; while sliding, \u03bc = ${units.significant(c.friction)}`],
-      ['L_min', Number.isFinite(c.min_lipschitz_bound) ? `${units.bound(c.min_lipschitz_bound)}; smallest enforceable bound, with throttled slides` : 'unknown'],
+      ['L_min', Number.isFinite(c.min_lipschitz_bound) ? `${units.bound(c.min_lipschitz_bound)}; smallest enforceable bound, with rate-limited slides` : 'unknown'],
       ['Enforced bound', `${units.bound(c.lipschitz_bound)}: in each step the force changes by at most this times the travel of the tool`],
       ['Responses', c.basis],
       ['Valid to', `a depth of ${units.length(c.depth)}`],

@@ -34,7 +34,7 @@ export function fidelitySection(data) {
   const facts = factsOf(data);
   if (!facts && !data.fidelity) return null;
   return el('section', { id: 'fidelity' },
-    el('h2', {}, 'Fidelity'),
+    el('h2', {}, 'Model accuracy'),
     paragraph('Rendered forces against direct finite element solutions at hold-out points. A relative difference of force below about 7 % is not noticeable.', 'lead'),
     facts ? sampling(facts) : null,
     data.fidelity ? comparison(data.fidelity) : null);

@@ -14,7 +14,7 @@ function tile(term, value, note, id, kind) {
     note ? el('p', { class: 'note' }, note) : null);
 }
 
-const BY = { curves: 'by the curves themselves', limiter: 'by the runtime, which throttles slides' };
+const BY = { curves: 'by the curves themselves', limiter: 'by the runtime, which rate-limits slides' };
 
 /** What is guaranteed, on which device, from which rate, and by what. */
 function guaranteed(certificate) {

@@ -47,7 +47,7 @@ function skinText({ touch, play }) {
 }
 
 const WORDS = [[status.BEYOND_DEPTH, 'beyond the deepest sample: extrapolated'], [status.AT_BORDER, 'at a border'],
-  [status.ENERGY_LIMITED, 'limited by the energy rule'], [status.FORCE_LIMITED, 'slide throttled'],
+  [status.ENERGY_LIMITED, 'limited by the energy rule'], [status.FORCE_LIMITED, 'slide rate-limited'],
   [status.SLIDING, 'sliding']];
 
 function stateText(seen) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-#include "app/pipeline/estimate.hpp"
+#include "app/pipeline/trial_sites.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/init/timely_case.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "app/case/lengths.hpp"
+#include "app/console.hpp"
+#include "app/pipeline/trial_sites.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr int kMostChanges = 5;
+/// Fraction of the wanted time after which the trial sites are given up.
+constexpr double kPatience = 1.0 / 30;
+/// Mean over median of the time of a site from which on thin parts are what takes the time.
+constexpr double kUneven = 1.5;
+constexpr double kShallower = 0.6;
+/// Sites grow like the inverse square of the patch, and so does about the time of one.
+constexpr double kTimeBySites = 2;
+constexpr double kFewestAtOnce = 0.35, kMargin = 0.9;
+
+/// Sizes that become cheaper from trial to trial.
+class Search {
+ public:
+  Search(const CaseOf& made, const FirstWishes& wishes)
+      : made_(made),
+        wishes_(wishes),
+        wanted_(wishes.sites.value_or(FirstWishes::kUsualSites)),
+        counted_(counted_case(made, wanted_)) {}
+
+  const CountedCase& counted() const { return counted_; }
+
+  void run() {
+    for (int i = 0; counted_.body && wishes_.minutes > 0; ++i) {
+      const double unevenness = try_campaign();
+      const bool fits = *counted_.sizes.seconds <= 60 * wishes_.minutes;
+      if (fits || i == kMostChanges) return;
+      if (!(unevenness > kUneven && press_less_deep()) && !enlarge_patches() && !press_less_deep())
+        return;
+    }
+  }
+
+ private:
+  /// @return mean over median of the time of a site
+  double try_campaign() {
+    Workspace space = made_.opened_with(counted_.sizes);
+    space.threads = wishes_.threads;
+    const Trial trial = press_trial_sites(space, *counted_.body, kPatience * 60 * wishes_.minutes);
+    counted_.sizes.seconds =
+        campaign_seconds(space, trial, static_cast<std::size_t>(*counted_.sizes.sites));
+    return trial.time.unevenness();
+  }
+
+  bool press_less_deep() {
+    FirstSizes& sizes = counted_.sizes;
+    const double least = kShallowestOverPatch * sizes.patch_spacing;
+    if (sizes.depth <= least * (1 + 1e-6)) return false;
+    shallower_ *= kShallower;
+    sizes.depth = two_digits(std::max(least, kShallower * sizes.depth));
+    sizes.lateral_travel = two_digits(kTravelOverDepth * sizes.depth);
+    return sizes.is_shallow = true;
+  }
+
+  bool enlarge_patches() {
+    const FirstSizes before = counted_.sizes;
+    if (wishes_.sites || before.is_coarsest) return false;
+    const double excess = *before.seconds / (60 * wishes_.minutes);
+    const double fewer = std::max(kFewestAtOnce, kMargin * std::pow(excess, -1 / kTimeBySites));
+    CountedCase larger = counted_case(
+        made_, std::max(1, static_cast<int>(fewer * static_cast<double>(*before.sites))));
+    if (!larger.body || *larger.sizes.sites >= *before.sites) return false;
+    counted_ = std::move(larger);
+    FirstSizes& sizes = counted_.sizes;
+    sizes.sites_too_slow = before.sites_too_slow ? before.sites_too_slow : before.sites;
+    if (!before.is_shallow) return true;
+    sizes.is_shallow = true;
+    sizes.depth =
+        two_digits(std::max(kShallowestOverPatch * sizes.patch_spacing, shallower_ * sizes.depth));
+    sizes.lateral_travel = two_digits(kTravelOverDepth * sizes.depth);
+    return true;
+  }
+
+  const CaseOf& made_;
+  const FirstWishes& wishes_;
+  int wanted_;
+  CountedCase counted_;
+  double shallower_ = 1;  ///< product of what depths were multiplied by
+};
+
+std::string remark_on_time(const FirstSizes& sizes, const FirstWishes& wishes) {
+  std::string said = fmt::format("time: about {} on {} threads, from trial sites",
+                                 duration_text(*sizes.seconds), wishes.threads);
+  if (sizes.sites_too_slow)
+    said += fmt::format("; {} sites would take longer than {:g} min", *sizes.sites_too_slow,
+                        wishes.minutes);
+  if (sizes.is_shallow) said += "; pressed less deep, because deep presses of thin parts are slow";
+  if (*sizes.seconds > 60 * wishes.minutes)
+    said += fmt::format("; more than the {:g} min wanted: {}", wishes.minutes,
+                        sizes.is_coarsest ? "larger patches would not show the shape"
+                        : wishes.sites    ? "fewer --sites take less"
+                                          : "larger patches or a smaller depth take less");
+  return said;
+}
+
+}  // namespace
+
+FirstCase timely_case(const CaseOf& made, const FirstWishes& wishes) {
+  Search search(made, wishes);
+  search.run();
+  const FirstSizes& sizes = search.counted().sizes;
+  FirstCase first = made.with(sizes);
+  if (!search.counted().body) {
+    first.remarks.push_back("`palpate mesh` refuses the body: " + search.counted().refusal);
+    return first;
+  }
+  const bool was_left_open = !wishes.sites && sizes.sites_too_slow;
+  first.remarks.push_back(
+      remark_on_sites(sizes, was_left_open ? static_cast<int>(*sizes.sites)
+                                           : wishes.sites.value_or(FirstWishes::kUsualSites)));
+  if (sizes.seconds) first.remarks.push_back(remark_on_time(sizes, wishes));
+  return first;
+}
+
+}  // namespace palpate::app

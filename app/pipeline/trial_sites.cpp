@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/pipeline/trial_sites.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <fstream>
+#include <utility>
+
+#include "app/pipeline/campaign_sites.hpp"
+#include "app/pipeline/settings.hpp"
+#include "fem/factor/rest_factor.hpp"
+
+namespace palpate::app {
+namespace {
+
+constexpr std::size_t kTrialsPerThread = 4;
+
+/// Ends a trial whose patience is over.
+struct OutOfPatience {};
+
+/// Resident memory of this process, bytes; 0 where the system does not say.
+double resident_bytes() {
+  std::ifstream statistics("/proc/self/statm");
+  double total = 0, resident = 0;
+  statistics >> total >> resident;
+  return statistics ? resident * static_cast<double>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> spread(const std::vector<std::int32_t>& sites, std::size_t count) {
+  if (count >= sites.size()) return sites;
+  std::vector<std::int32_t> some;
+  for (std::size_t i = 0; i < count; ++i)
+    some.push_back(sites[(2 * i + 1) * sites.size() / (2 * count)]);
+  return some;
+}
+
+Trial press_trial_sites(const Workspace& space, const Body& body, double patience) {
+  Trial trial;
+  fem::CampaignSettings settings = campaign_settings(space);
+  settings.sites = spread(sites_of_shard(body, space.shard),
+                          kTrialsPerThread * static_cast<std::size_t>(space.threads));
+  trial.sites = settings.sites.size();
+  const auto start = std::chrono::steady_clock::now();
+  const auto elapsed = [start] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  double first = 0;
+  const auto update = [&](const fem::CampaignProgress& p) {
+    const double now = elapsed();
+    trial.pressed = now - first;
+    trial.time.update(now, p.done, p.total, p.sites);
+    if (trial.pressed > patience && p.done < p.total) throw OutOfPatience{};
+  };
+  settings.advanced = update;
+  settings.progress = [&](const fem::CampaignProgress& p) {
+    const double bytes = resident_bytes();
+    trial.bytes_between = std::max(trial.bytes_between, bytes);
+    if (p.done > 0) return update(p);
+    trial.bytes_before = bytes;
+    first = elapsed();
+    trial.time.begin(first);
+  };
+  try {
+    trial.curves = fem::run_campaign(body, settings, trial.report);
+  } catch (const OutOfPatience&) {
+    trial.curves = {};
+  }
+  return trial;
+}
+
+std::size_t concurrent_sites(const Workspace& space, std::size_t all) {
+  const auto threads = static_cast<std::size_t>(space.threads);
+  return threads * std::min<std::size_t>(fem::kBatch, (all + threads - 1) / threads);
+}
+
+/// Where no increment has ended, the sites take at least as long as they were waited for.
+double campaign_seconds(const Workspace& space, const Trial& trial, std::size_t all) {
+  const double foretold = trial.time.campaign(
+      static_cast<std::int64_t>(all), static_cast<std::int64_t>(concurrent_sites(space, all)));
+  const double least = trial.pressed * static_cast<double>(all) /
+                       static_cast<double>(std::max<std::size_t>(1, trial.sites));
+  return trial.report.set_up_seconds + (foretold > 0 ? foretold : least);
+}
+
+}  // namespace palpate::app

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/init/timely_case.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "app/case/case.hpp"
+#include "tests/support/source_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace palpate::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr double kNoTime = 1e-4, kAnyTime = 1e4;  // min
+
+struct Made {
+  FirstCase first;
+  Case c;
+  double depth_over_patch() const { return c.campaign.indentation.depth / c.mesh.patch_spacing; }
+};
+
+Made made(const FirstWishes& wishes) {
+  const samples::TemporaryFolder folder;
+  CaseOf of{read_body_file(test::source_folder() / "data/bodies/cylinder.off", ""),
+            {},
+            "",
+            folder / "case.toml"};
+  of.base = find_base(of.body.surface);
+  Made result{timely_case(of, wishes), {}};
+  result.c = parse_case(result.first.toml, "case.toml");
+  return result;
+}
+
+TEST(TimelyCase, WithoutALimitIsThatOfTheShapeAndSaysNothingOfTime) {
+  const Made any = made({.sites = {}, .minutes = 0, .threads = 2});
+  EXPECT_THAT(any.first.toml, Not(HasSubstr("campaign takes")));
+  EXPECT_THAT(any.first.remarks.back(), HasSubstr("sites: "));
+}
+
+TEST(TimelyCase, ThatFitsIsThatOfTheShapeAndSaysHowLongItTakes) {
+  const Made any = made({.sites = 20, .minutes = 0, .threads = 2});
+  const Made fits = made({.sites = 20, .minutes = kAnyTime, .threads = 2});
+  EXPECT_EQ(fits.c.mesh.patch_spacing, any.c.mesh.patch_spacing);
+  EXPECT_EQ(fits.c.campaign.indentation.depth, any.c.campaign.indentation.depth);
+  EXPECT_THAT(fits.first.toml, HasSubstr("# Its campaign takes about "));
+  EXPECT_THAT(fits.first.remarks.back(), HasSubstr("time: about "));
+  EXPECT_THAT(fits.first.remarks.back(), Not(HasSubstr("wanted")));
+}
+
+TEST(TimelyCase, WithoutTimeHasTheLargestPatchesOrTheSmallestDepthAndAdmitsThatItDoesNotFit) {
+  const Made any = made({.sites = {}, .minutes = 0, .threads = 2});
+  const Made hurried = made({.sites = {}, .minutes = kNoTime, .threads = 2});
+  EXPECT_GT(hurried.c.mesh.patch_spacing, 1.2 * any.c.mesh.patch_spacing);
+  EXPECT_THAT(hurried.first.toml, HasSubstr("would take too long"));
+  EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("sites would take longer than"));
+  EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("more than the"));
+}
+
+TEST(TimelyCase, KeepsTheSitesThatAreAskedForAndPressesLessDeep) {
+  const Made any = made({.sites = 20, .minutes = 0, .threads = 2});
+  const Made hurried = made({.sites = 20, .minutes = kNoTime, .threads = 2});
+  EXPECT_EQ(hurried.c.mesh.patch_spacing, any.c.mesh.patch_spacing);
+  EXPECT_LT(hurried.depth_over_patch(), 0.7 * any.depth_over_patch());
+  EXPECT_GE(hurried.depth_over_patch(), 0.95 * kShallowestOverPatch);
+  EXPECT_NEAR(hurried.c.campaign.indentation.lateral_travel,
+              hurried.c.campaign.indentation.depth / 2,
+              0.05 * hurried.c.campaign.indentation.depth);
+  EXPECT_THAT(hurried.first.toml, HasSubstr("deeper takes too long"));
+  EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("pressed less deep"));
+}
+
+}  // namespace
+}  // namespace palpate::app
