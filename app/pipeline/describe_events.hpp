@@ -137,6 +137,8 @@ void describe(V& v, const FitFinished& e) {
   v.field("lateral_error", e.lateral,
           "the same of the lateral responses, to the mean of the paths that they stand for");
   v.field("lateral_spread", e.spread, "the same, to any single path");
+  v.field("mesh_error", e.mesh,
+          "bound of the error of the mesh in the normal curves; `vertex` -1: unknown");
   v.field("file", e.file.string(), "path of `library.h5`");
 }
 

@@ -118,6 +118,7 @@ struct FitFinished {
   /// Errors relative to the largest force of the site: see fitting::SiteFitError.
   FitErrors normal, lateral, spread;
   std::filesystem::path file;
+  FitErrors mesh{};  ///< of the mesh in the normal curves; vertex -1: unknown
 };
 
 /// A library was certified. Infinite: no bound exists. NaN: unknown.

@@ -128,6 +128,7 @@ void TextSink::print(const FitFinished& e) {
     line("  error of the fit over the largest force of a site: normal {}", errors(e.normal));
     line("    lateral {}; to any single path {}", errors(e.lateral), errors(e.spread));
   }
+  if (e.mesh.vertex >= 0) line("  error of the mesh in the normal force, at most {}", errors(e.mesh));
   line("fit: {} responses fitted, {} interpolated, {} holes -> {}", e.fitted, e.interpolated,
        e.holes, e.file.string());
 }

@@ -23,12 +23,23 @@ Tool tool_over(const CampaignContext& context, const PressPoint& point) {
 /// A sphere of radius R at depth d touches a circle of radius sqrt(R d) about.
 SiteRefinement refinement_of(const IndentationSettings& settings) {
   SiteRefinement refinement;
-  refinement.levels = settings.refine_under_tool;
-  if (settings.refine_under_tool != IndentationSettings::kByContact) return refinement;
+  const bool by_contact = settings.refine_under_tool == IndentationSettings::kByContact;
+  refinement.levels = by_contact ? 0 : settings.refine_under_tool;
+  refinement.first_levels = 1;
+  if (settings.divide_once_more) {
+    refinement.first_levels = refinement.levels > 0 ? 2 : 1;
+    ++refinement.levels;
+  }
+  if (settings.tool.shape != ToolShape::Sphere || !(by_contact || settings.divide_once_more))
+    return refinement;
   const double R = settings.tool.radius;
   refinement.min_contact_radius = std::sqrt(R * settings.depth / settings.increments);
   refinement.max_contact_radius = std::sqrt(R * settings.depth);
   refinement.size_over_distance = settings.size_over_contact;
+  if (settings.divide_once_more) {
+    refinement.size_over_distance /= 2;
+    refinement.growth_outside /= 2;
+  }
   return refinement;
 }
 
@@ -55,7 +66,7 @@ Tool tool_at_first_touch(const CampaignContext& context, const ToolContact& cont
 FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex) {
   const PressPoint point = context.press_point(vertex);
   const Eigen::Vector3d X = context.reference_position(point.position);
-  const bool refined = context.indentation.refine_under_tool != 0;
+  const bool refined = context.indentation.refines();
   const SiteBody body =
       site_body_at(context, X, refined ? SiteMesh::RefinedWindow : SiteMesh::WholeBody);
   const ToolContact contact = contact_at(context, body.mesh(), X);

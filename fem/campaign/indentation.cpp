@@ -49,7 +49,7 @@ std::vector<double> normal_increments(const IndentationSettings& settings,
 
 SiteMesh mesh_of_site(const CampaignContext& context) {
   if (context.engine == Engine::Direct) return SiteMesh::WholeBody;
-  return context.indentation.refine_under_tool != 0 ? SiteMesh::RefinedWindow : SiteMesh::Window;
+  return context.indentation.refines() ? SiteMesh::RefinedWindow : SiteMesh::Window;
 }
 
 /// A path of the site ended early; every path that did adds its reason.

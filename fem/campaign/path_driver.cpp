@@ -117,6 +117,7 @@ void PathDriver::record(double s, const Displacement& u, CurveSample& sample) co
   sample.min_jacobian = state.min_J;
   sample.penetration = contact.penetration(u);
   sample.contact_area = contact.contact_area(u);
+  sample.facets_in_contact = contact.facets_in_contact(u);
   sample.contact_energy = contact.energy(u);
   sample.tension = contact.tension(u);
 }

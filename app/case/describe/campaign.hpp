@@ -120,6 +120,12 @@ void describe_solver(V& v, fem::CampaignSettings& s) {
        "a sphere asks for (\"contact\")",
        kOptional,
        {.low = 0, .high = fem::IndentationSettings::kMaxRefinements}});
+  v.integer(s.mesh_error_sites,
+            {"mesh_error_sites",
+             "number of sites that are pressed on a finer mesh too, which bounds the "
+             "[error of the mesh](campaigns.md#the-error-of-the-mesh) of all sites; 0: unknown",
+             kOptional,
+             {.low = 0, .high = 1000}});
 }
 
 template <class V>
