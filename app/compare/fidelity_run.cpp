@@ -165,7 +165,8 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
   auto points =
       fidelity::draw_points(libraries.front(), options.off_node, options.at_node, options.seed);
   std::string text = skin_text(fidelity::find_skin(body, points)), states;
-  const Curves direct = solve_direct(space, body, direct_settings(space, options.finer_mesh, points));
+  const Curves direct =
+      solve_direct(space, body, direct_settings(space, options.finer_mesh, points));
 
   const fidelity::FidelitySettings settings{
       options.floor > 0 ? options.floor : fidelity::relative_floor(direct, options.floor_fraction),

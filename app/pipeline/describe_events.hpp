@@ -214,8 +214,9 @@ void describe(V& v, const ConvergenceOfForce& e) {
   v.field("forces", e.forces, "on each mesh, N");
   v.field("has_order", e.has_order, "whether the last three follow a power of the element size");
   v.field("order", e.order, "the power; null without one");
-  v.field("limit", e.limit, "extrapolated force, N");
-  v.field("error", e.error, "relative error on the first mesh; without an order, relative spread");
+  v.field("limit", e.limit, "extrapolated force, N; without an order that of the last mesh");
+  v.field("error", e.error, "relative error of the force on the first mesh");
+  v.field("bound", e.bound, "bound of its magnitude");
 }
 
 template <class V>

@@ -181,7 +181,8 @@ struct ConvergenceOfForce {
   std::vector<double> forces;  ///< N, by level
   bool has_order = false;
   double order = 0, limit = 0;  ///< limit: N
-  double error = 0;             ///< of the first level, relative; without an order: the spread
+  double error = 0;             ///< of the first level, relative
+  double bound = 0;             ///< of |error|
 };
 
 /// What a campaign will take, from trial sites. Nothing was written.

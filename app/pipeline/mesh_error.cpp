@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/settings.hpp"
 #include "fem/campaign/campaign_context.hpp"
@@ -22,6 +25,11 @@ std::vector<std::int32_t> candidates(const Workspace& space, const Body& body,
   return sites;
 }
 
+/// Every tenth site is pressed again where there are few, but two.
+int count_of(int asked, std::size_t candidates) {
+  return std::min(asked, std::max(2, static_cast<int>(candidates / 10)));
+}
+
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
@@ -30,17 +38,21 @@ std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
   if (settings.mesh_error_sites == 0) return {};
   const std::string obstacle = fem::obstacle_to_refinement(body, settings);
   if (!obstacle.empty()) {
-    emit(LogLine{"precompute", "the error of the mesh stays unknown: elements cannot be refined "
-                               "under the tool " + obstacle});
+    emit(LogLine{"precompute",
+                 "the error of the mesh stays unknown: elements cannot be refined "
+                 "under the tool " +
+                     obstacle});
     return {};
   }
-  const auto chosen = fem::sites_far_apart(body, candidates(space, body, curves),
-                                           settings.mesh_error_sites);
+  const auto all = candidates(space, body, curves);
+  const auto chosen =
+      fem::sites_far_apart(body, all, count_of(settings.mesh_error_sites, all.size()));
   fem::CampaignReport report;
   try {
     fem::press_on_finer_mesh(body, settings, chosen, curves, report, cache);
   } catch (const Error& error) {
-    emit(Warning{"precompute", fmt::format("the error of the mesh stays unknown: {}", error.what())});
+    emit(Warning{"precompute",
+                 fmt::format("the error of the mesh stays unknown: {}", error.what())});
     return {};
   }
   fitting::bound_mesh_errors(curves);

@@ -23,11 +23,6 @@ bool same(double a, double b) {
   return std::abs(a - b) <= 1e-9 * std::max(std::abs(a), std::abs(b));
 }
 
-bool same_path(const CurvePath& a, const CurvePath& b) {
-  return a.kind == b.kind && same(a.lateral_depth, b.lateral_depth) &&
-         norm(a.direction - b.direction) < 1e-6;
-}
-
 /// h'/h of the facets in contact; 0 where the contact is too small to be felt by the mesh.
 double size_ratio(const CurveSample& finer, const CurveSample& sample) {
   return std::sqrt(sample.facets_in_contact / finer.facets_in_contact);
@@ -47,11 +42,10 @@ void take_differences(const CurvePath& finer, CurvePath& path) {
   }
 }
 
-CampaignSettings finer_settings(const CampaignSettings& settings,
-                                std::vector<std::int32_t> sites) {
+CampaignSettings finer_settings(const CampaignSettings& settings, std::vector<std::int32_t> sites) {
   CampaignSettings finer = settings;
   finer.indentation.divide_once_more = true;
-  if (finer.indentation.azimuths.size() > 1) finer.indentation.azimuths.resize(1);
+  finer.indentation.azimuths.clear();  // the normal path alone, through the lateral depths
   finer.sites = std::move(sites);
   finer.known.clear();
   finer.finished = nullptr;
@@ -68,13 +62,12 @@ std::vector<std::int32_t> sites_far_apart(const Body& body, const std::vector<st
   std::vector<std::int32_t> chosen;
   std::vector<double> distance(sites.size(), std::numeric_limits<double>::infinity());
   while (chosen.size() < std::min(to_index(count), sites.size())) {
-    const auto next = chosen.empty()
-                          ? std::ptrdiff_t{0}
-                          : std::max_element(distance.begin(), distance.end()) - distance.begin();
-    chosen.push_back(sites[to_index(next)]);
+    const auto next =
+        chosen.empty() ? distance.begin() : std::max_element(distance.begin(), distance.end());
+    chosen.push_back(sites[static_cast<std::size_t>(next - distance.begin())]);
     for (std::size_t i = 0; i < sites.size(); ++i)
-      distance[i] = std::min(
-          distance[i], norm(position_of(body, sites[i]) - position_of(body, chosen.back())));
+      distance[i] = std::min(distance[i],
+                             norm(position_of(body, sites[i]) - position_of(body, chosen.back())));
   }
   std::sort(chosen.begin(), chosen.end());
   return chosen;
@@ -93,9 +86,7 @@ void press_on_finer_mesh(const Body& body, const CampaignSettings& settings,
   for (const SiteCurves& again : finer.sites) {
     const auto site = std::find_if(curves.sites.begin(), curves.sites.end(),
                                    [&](const SiteCurves& s) { return s.vertex == again.vertex; });
-    for (CurvePath& path : site->paths)
-      for (const CurvePath& other : again.paths)
-        if (same_path(path, other)) take_differences(other, path);
+    take_differences(again.paths.front(), site->paths.front());
   }
 }
 

@@ -18,10 +18,9 @@ namespace palpate::fem {
 std::vector<std::int32_t> sites_far_apart(const Body& body, const std::vector<std::int32_t>& sites,
                                           int count);
 
-/// Presses those of the `chosen` sites that `curves` has with IndentationSettings::divide_once_more,
-/// along their normal paths and the lateral ones of the first azimuth, and sets mesh_difference of
-/// their samples. With F the force along the path, F' that of the finer mesh and h'/h the ratio of
-/// the sizes of the facets in contact,
+/// Presses those of the `chosen` sites that `curves` has with IndentationSettings::divide_once_more
+/// along their normal paths, and sets mesh_difference of their samples. With F the force along the
+/// path, F' that of the finer mesh and h'/h the ratio of the sizes of the facets in contact,
 ///   mesh_difference = (F' - F)/(1 - h'/h),
 /// Richardson's extrapolation of an error that decreases with h; where it decreases faster, this is
 /// more than the error. What has no counterpart on the finer mesh stays unknown.

@@ -43,11 +43,11 @@ struct IndentationSettings {
   /// contacts smaller than a facet. Each further time within half the distance from the site.
   int refine_under_tool = 0;
   static constexpr int kMaxRefinements = 6;
-  /// Instead of a number: as often as the contact of a sphere asks for, see SiteRefinement.
+  /// Instead of a number: as often as the contact asks for, see SiteRefinement.
   static constexpr int kByContact = -1;
   double size_over_contact = 2;  ///< of elements under the tool, over the contact radius
-  /// All elements under the tool are divided once more than the settings above ask for, and those
-  /// that are large beside the contact more often: the forces tell the error of the mesh.
+  /// All elements under the tool are divided once more than the settings above ask for, those that
+  /// the contact divides as well, and those that it would divide: the error of the mesh shows.
   bool divide_once_more = false;
 
   bool refines() const { return refine_under_tool != 0 || divide_once_more; }

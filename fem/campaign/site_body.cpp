@@ -83,7 +83,7 @@ class Division {
       : mesh_(mesh), site_(site), reach_(reach), refinement_(refinement) {}
 
   RefinedMesh refined() const {
-    const bool by_contact = refinement_.min_contact_radius > 0;
+    const bool by_contact = !refinement_.cores.empty();
     std::vector<int> elements;
     if (refinement_.levels > 0) elements = elements_near(mesh_, site_, reach_);
     if (by_contact) add_too_large(elements);
@@ -110,18 +110,24 @@ class Division {
     return distance(site_, corners) <= std::ldexp(reach_, -halvings);
   }
 
-  double allowed_size(double s) const {
-    return refinement_.size_over_distance * std::max(refinement_.min_contact_radius, s) +
-           refinement_.growth_outside * std::max(0.0, s - refinement_.max_contact_radius);
+  double allowed_size(const ContactCore& core, double s) const {
+    return refinement_.size_over_distance * std::max(core.smallest, s) +
+           refinement_.growth_outside * std::max(0.0, s - core.largest);
   }
 
   bool too_large(const Corners& corners) const {
-    if (!(refinement_.min_contact_radius > 0)) return false;
-    // The site lies within twice its size from the centre of an element that it touches.
+    return std::any_of(refinement_.cores.begin(), refinement_.cores.end(),
+                       [&](const ContactCore& core) { return too_large(corners, core); });
+  }
+
+  bool too_large(const Corners& corners, const ContactCore& core) const {
     const double size = size_of(corners);
     const Eigen::Vector3d centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-    if (size <= allowed_size(std::max(0.0, (site_ - centre).norm() - 2 * size))) return false;
-    return size > allowed_size(distance(site_, corners));
+    const Eigen::Vector3d nearest = core.nearest(centre);
+    // The line lies within twice its size from the centre of an element that it touches.
+    const double least = std::max(0.0, (nearest - centre).norm() - 2 * size);
+    if (size <= allowed_size(core, least)) return false;
+    return size > allowed_size(core, distance(nearest, corners));
   }
 
   const QuadraticMesh& mesh_;

@@ -100,7 +100,7 @@ class ToolContact {
   double contact_area(const Displacement& u) const;  ///< m^2, reference
   /// How many facets are in contact, each by the fraction of it that is.
   double facets_in_contact(const Displacement& u) const;
-  double penetration(const Displacement& u) const;   ///< m, deepest
+  double penetration(const Displacement& u) const;  ///< m, deepest
   /// N, sum of the tensile forces of the ties on facets: without adhesion the surface would
   /// separate there.
   double tension(const Displacement& u) const;

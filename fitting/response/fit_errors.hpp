@@ -16,9 +16,9 @@ inline constexpr double kVisibleFitError = 0.05;
 /// Largest errors of the responses of a site, each relative to the largest force of its samples.
 struct SiteFitError {
   std::int32_t vertex = -1;
-  double normal = 0;   ///< of the normal response
-  double lateral = 0;  ///< of the lateral response, to the mean of the paths that it stands for
-  double spread = 0;   ///< of the lateral response, to any single path
+  double normal = 0;       ///< of the normal response
+  double lateral = 0;      ///< of the lateral response, to the mean of the paths that it stands for
+  double spread = 0;       ///< of the lateral response, to any single path
   double mesh = kUnknown;  ///< of the mesh in the normal curves; NaN when unknown
 };
 

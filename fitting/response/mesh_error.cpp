@@ -9,7 +9,7 @@ namespace palpate::fitting {
 
 namespace {
 
-/// Of the largest force of a path: below it errors are relative to this force.
+/// Least force that errors are relative to, over the largest of the path.
 constexpr double kLeastForce = 0.01;
 /// The resolution of a contact that no quadrature point feels.
 constexpr double kLeastFacets = 0.01;
@@ -35,11 +35,11 @@ double resolution_of(const CurveSample& sample) {
   return std::log(std::max(kLeastFacets, sample.facets_in_contact));
 }
 
-std::vector<Difference> differences(const Curves& curves, PathKind kind) {
+std::vector<Difference> differences(const Curves& curves) {
   std::vector<Difference> found;
   for (const SiteCurves& site : curves.sites)
     for (const CurvePath& path : site.paths) {
-      if (path.kind != kind) continue;
+      if (path.kind != PathKind::Normal) continue;
       const double largest = largest_force(path);
       for (const CurveSample& sample : path.samples)
         if (!std::isnan(sample.mesh_difference) && largest > 0)
@@ -51,33 +51,16 @@ std::vector<Difference> differences(const Curves& curves, PathKind kind) {
 
 /// The largest of the differences that are nearest in resolution.
 double bound_at(double resolution, std::vector<Difference>& all) {
-  const auto count =
-      static_cast<std::ptrdiff_t>(std::min(kDifferencesOfBound, all.size()));
+  const auto count = static_cast<std::ptrdiff_t>(std::min(kDifferencesOfBound, all.size()));
   std::nth_element(all.begin(), all.begin() + count - 1, all.end(),
                    [&](const Difference& a, const Difference& b) {
                      return std::abs(a.resolution - resolution) <
                             std::abs(b.resolution - resolution);
                    });
   double largest = 0;
-  for (auto d = all.begin(); d != all.begin() + count; ++d) largest = std::max(largest, d->relative);
+  for (auto d = all.begin(); d != all.begin() + count; ++d)
+    largest = std::max(largest, d->relative);
   return largest;
-}
-
-void bound(Curves& curves, PathKind kind) {
-  std::vector<Difference> all = differences(curves, kind);
-  if (all.empty()) return;
-  const double count = static_cast<double>(std::min(kDifferencesOfBound, all.size()));
-  curves.mesh_error_confidence = std::fmin(curves.mesh_error_confidence, count / (count + 1));
-  for (SiteCurves& site : curves.sites)
-    for (CurvePath& path : site.paths) {
-      if (path.kind != kind) continue;
-      const double largest = largest_force(path);
-      for (std::size_t i = 0; i < path.samples.size(); ++i) {
-        CurveSample& sample = path.samples[i];
-        sample.mesh_error =
-            i == 0 ? 0 : bound_at(resolution_of(sample), all) * scale_of(path, sample, largest);
-      }
-    }
 }
 
 double median_of(std::vector<double> values) {
@@ -90,7 +73,20 @@ double median_of(std::vector<double> values) {
 
 void bound_mesh_errors(Curves& curves) {
   curves.mesh_error_confidence = kUnknown;
-  for (const PathKind kind : {PathKind::Normal, PathKind::Lateral}) bound(curves, kind);
+  std::vector<Difference> all = differences(curves);
+  if (all.empty()) return;
+  const double count = static_cast<double>(std::min(kDifferencesOfBound, all.size()));
+  curves.mesh_error_confidence = count / (count + 1);
+  for (SiteCurves& site : curves.sites)
+    for (CurvePath& path : site.paths) {
+      if (path.kind != PathKind::Normal) continue;
+      const double largest = largest_force(path);
+      for (std::size_t i = 0; i < path.samples.size(); ++i) {
+        CurveSample& sample = path.samples[i];
+        sample.mesh_error =
+            i == 0 ? 0 : bound_at(resolution_of(sample), all) * scale_of(path, sample, largest);
+      }
+    }
 }
 
 MeshErrorSummary mesh_error_summary(const Curves& curves) {

@@ -13,11 +13,11 @@ namespace palpate::fitting {
 /// Number of differences that bound the error of a sample.
 inline constexpr std::size_t kDifferencesOfBound = 19;
 
-/// Sets mesh_error of all samples, and its confidence, from the mesh_difference of some. Relative
-/// to the force, or to a hundredth of the largest one of its path if that is larger, it is the
-/// largest of the 19 differences of the same kind of path at the nearest resolution of the contact
-/// (by the ratio of facets_in_contact): of 20 values in random order the last is the largest in one
-/// of 20 cases. With fewer differences all are taken, and the confidence is lower.
+/// Sets mesh_error of the samples of all normal paths, and its confidence, from the mesh_difference
+/// of some. Relative to the force, or to a hundredth of the largest one of its path if that is
+/// larger, it is the largest of the 19 differences at the nearest resolution of the contact (by the
+/// ratio of facets_in_contact): of 20 values in random order the last is the largest in one of 20
+/// cases. With fewer differences all are taken, and the confidence is lower.
 void bound_mesh_errors(Curves& curves);
 
 /// Median and largest mesh_error of the normal paths, relative as above: at their ends, and at
