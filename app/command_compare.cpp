@@ -199,6 +199,10 @@ void add_fem_options(CLI::App& command, CompareOptions& options, CLI::Option* se
                                    "The same as a force, mN, instead of a fraction"))
       ->excludes("--floor")
       ->check(CLI::Range(1e-6, 1e6));
+  only_with_fem(command.add_flag(
+      "--finer-mesh", options.fidelity.finer_mesh,
+      "Press the hold-out points on a mesh with smaller elements under the tool, so that the error "
+      "of the mesh of the case counts too"));
   only_with_fem(command.add_option("--library", options.libraries,
                                    "Libraries to compare (default: that of the case)"));
   only_with_fem(command.add_option(

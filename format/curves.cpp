@@ -86,6 +86,15 @@ constexpr auto kSampleColumns = std::make_tuple(
            true),
     column("tension", &CurveSample::tension, "N",
            "Sum of the tensile normal forces of bonded facets; NaN when unknown.",
+           rules::kKnownNonNegative, true),
+    column("facets_in_contact", &CurveSample::facets_in_contact, "1",
+           "Boundary facets that the contact covers, in parts of facets; NaN when unknown.",
+           rules::kKnownNonNegative, true),
+    column("mesh_difference", &CurveSample::mesh_difference, "N",
+           "Force along the path expected from a finer mesh, less this one; NaN when unknown.",
+           rules::kKnownFinite, true),
+    column("mesh_error", &CurveSample::mesh_error, "N",
+           "Bound of the error of the mesh in the force along the path; NaN when unknown.",
            rules::kKnownNonNegative, true));
 
 struct RelaxationTime {
@@ -267,6 +276,9 @@ void check_heading(const Checks& checks, const Curves& curves) {
   check("/@tool_length", curves.tool.length);
   check("/@depth", curves.depth);
   check("/@lateral_travel", curves.lateral_travel);
+  const double confidence = curves.mesh_error_confidence;
+  if (!std::isnan(confidence) && !(confidence >= 0 && confidence <= 1))
+    checks.fail("/@mesh_error_confidence", "is not a probability");
   checks.digest("/@body_sha256", curves.body_sha256, true);
   check_provenance(checks, curves.provenance);
 }
@@ -291,6 +303,11 @@ void unflatten(const Flat& flat, Curves& curves) {
 
 }  // namespace
 
+double response_force(const CurvePath& path, const CurveSample& sample) {
+  const Vec3 start = path.kind == PathKind::Lateral ? path.samples.front().force : Vec3{};
+  return dot(sample.force - start, path.direction);
+}
+
 void write_curves(const std::filesystem::path& path, const Curves& curves) {
   const Checks checks(path);
   const Flat flat = flatten(curves);
@@ -309,6 +326,8 @@ void write_curves(const std::filesystem::path& path, const Curves& curves) {
   writer.set_real("/", "depth", curves.depth);
   writer.set_real("/", "lateral_travel", curves.lateral_travel);
   writer.set_text("/", "body_sha256", curves.body_sha256);
+  if (!std::isnan(curves.mesh_error_confidence))
+    writer.set_real("/", "mesh_error_confidence", curves.mesh_error_confidence);
   writer.group("/site", "One row for each vertex of the response surface that was pressed.");
   write_columns(writer, "/site", flat.sites, kSiteColumns);
   writer.texts("/site/reason", flat.reasons, "Why the site is not complete; empty when it is.");
@@ -335,6 +354,8 @@ Curves read_curves(const std::filesystem::path& path) {
   curves.depth = reader.real("/", "depth");
   curves.lateral_travel = reader.real("/", "lateral_travel");
   curves.body_sha256 = reader.text("/", "body_sha256");
+  if (reader.has_attribute("/", "mesh_error_confidence"))
+    curves.mesh_error_confidence = reader.real("/", "mesh_error_confidence");
   Flat flat;
   flat.sites = read_columns(reader, "/site", kSiteColumns);
   flat.reasons = reader.texts("/site/reason", flat.sites.size());

@@ -51,6 +51,16 @@ struct CurveSample {
   /// N, sum over bonded facets of tensile normal forces, which an unbonded contact cannot carry;
   /// NaN when unknown.
   double tension = std::numeric_limits<double>::quiet_NaN();
+  /// How many boundary facets the contact covers, in parts of facets: the resolution of the contact
+  /// by the mesh. NaN when unknown.
+  double facets_in_contact = std::numeric_limits<double>::quiet_NaN();
+  /// N, the response_force that a finer mesh lets expect, less this one: at sites that were
+  /// pressed on a finer mesh too; NaN elsewhere.
+  double mesh_difference = std::numeric_limits<double>::quiet_NaN();
+  /// N, bound of the error that the mesh leaves in the response_force, with the confidence of the
+  /// curves;
+  /// NaN when unknown.
+  double mesh_error = std::numeric_limits<double>::quiet_NaN();
   /// J, isochoric strain energy of each region of the body, at once after a step; empty where the
   /// tissue is elastic. By the envelope theorem it is m_r dE/dm_r, E the stored energy at a
   /// position of the tool and m_r all isochoric moduli of region r together. What remains of
@@ -68,6 +78,9 @@ struct CurvePath {
   /// m, standard uncertainty of where the displacement begins; NaN when it is exact.
   double contact_uncertainty = std::numeric_limits<double>::quiet_NaN();
 };
+
+/// N, the force of a sample along its path; on a lateral path less that of the start.
+double response_force(const CurvePath& path, const CurveSample& sample);
 
 /// All paths run at one response vertex.
 struct SiteCurves {
@@ -95,6 +108,8 @@ struct Curves {
   /// The series of the regions of the body, in its order; empty for elastic tissue. The curves are
   /// those at once after a step.
   RegionRelaxation relaxation;
+  /// Probability that CurveSample::mesh_error bounds the error of a sample; NaN when unknown.
+  double mesh_error_confidence = std::numeric_limits<double>::quiet_NaN();
   std::vector<SiteCurves> sites;  ///< in strictly ascending order of vertex
   Provenance provenance;
 };

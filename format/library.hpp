@@ -71,6 +71,9 @@ struct NodeResponse {
   /// (B) g_i in [0, 1), sum below 1: the fraction of the normal response that relaxes with each
   /// time of the library. Empty at a hole.
   std::vector<float> relaxation{};
+  /// N, largest CurveSample::mesh_error of the curves that the normal response stands for: what the
+  /// mesh of the campaign leaves, beside the error of the fit. NaN when unknown. Not in flat files.
+  double normal_mesh_error = kUnknown;
 };
 
 /// Bounds of one triangle, `runtime` theory page, "certificate".

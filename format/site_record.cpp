@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kSampleBytes = 13 * sizeof(double) + sizeof(std::int32_t);
+constexpr std::size_t kSampleBytes = 16 * sizeof(double) + sizeof(std::int32_t);
 constexpr std::size_t kSmallestPathBytes =
     1 + 5 * sizeof(double) + sizeof(std::int32_t) + sizeof(std::uint32_t);
 
@@ -20,10 +20,9 @@ void put(ByteWriter& out, const CurveSample& s) {
        {s.strain_energy, s.tool_work, s.min_jacobian, s.penetration, s.contact_area})
     out.put(value);
   out.put(s.iterations);
-  out.put(s.force_scatter);
-  out.put(s.force_uncertainty);
-  out.put(s.contact_energy);
-  out.put(s.tension);
+  for (const double value : {s.force_scatter, s.force_uncertainty, s.contact_energy, s.tension,
+                             s.facets_in_contact, s.mesh_difference, s.mesh_error})
+    out.put(value);
 }
 
 CurveSample sample_of(ByteReader& in) {
@@ -34,10 +33,9 @@ CurveSample sample_of(ByteReader& in) {
        {&s.strain_energy, &s.tool_work, &s.min_jacobian, &s.penetration, &s.contact_area})
     *value = in.get<double>();
   s.iterations = in.get<std::int32_t>();
-  s.force_scatter = in.get<double>();
-  s.force_uncertainty = in.get<double>();
-  s.contact_energy = in.get<double>();
-  s.tension = in.get<double>();
+  for (double* value : {&s.force_scatter, &s.force_uncertainty, &s.contact_energy, &s.tension,
+                        &s.facets_in_contact, &s.mesh_difference, &s.mesh_error})
+    *value = in.get<double>();
   return s;
 }
 

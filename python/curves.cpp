@@ -137,6 +137,12 @@ void define_path(py::module_& module) {
       .def_property_readonly("contact_area", of_samples(&CurveSample::contact_area), "(K,) m^2.")
       .def_property_readonly("tension", of_samples(&CurveSample::tension),
                              "(K,) N, that only a bonded contact carries.")
+      .def_property_readonly("facets_in_contact", of_samples(&CurveSample::facets_in_contact),
+                             "(K,) boundary facets that the contact covers.")
+      .def_property_readonly("mesh_difference", of_samples(&CurveSample::mesh_difference),
+                             "(K,) N, force expected from a finer mesh, less the force.")
+      .def_property_readonly("mesh_error", of_samples(&CurveSample::mesh_error),
+                             "(K,) N, bound of the error of the mesh along the path.")
       .def_property_readonly("iterations", of_samples(&CurveSample::iterations),
                              "(K,) int32, of Newton's method.")
       .def_property_readonly("force_scatter", of_samples(&CurveSample::force_scatter),

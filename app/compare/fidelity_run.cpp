@@ -37,9 +37,10 @@ fs::path direct_fields(const Workspace& space) {
 }
 
 /// Direct solutions: the paths of the case, at additional depths and other directions.
-fem::CampaignSettings direct_settings(const Workspace& space,
+fem::CampaignSettings direct_settings(const Workspace& space, bool finer_mesh,
                                       const std::vector<fidelity::HoldOutPoint>& points) {
   fem::CampaignSettings settings = campaign_settings(space);
+  settings.indentation.divide_once_more = finer_mesh;
   for (const fidelity::HoldOutPoint& p : points)
     settings.points.push_back({p.position + p.skin * p.inward, p.inward});
   fem::IndentationSettings& indentation = settings.indentation;
@@ -79,6 +80,7 @@ std::string direct_key(const Workspace& space, const fem::CampaignSettings& sett
   std::string text = fmt::format("fidelity\n{}\n{}\n{}\n{}\n", sha256_of_file(space.body()),
                                  stage_case(space, Stage::Precompute), PALPATE_VERSION,
                                  settings.indentation.lateral_increments);
+  if (settings.indentation.divide_once_more) text += "on a finer mesh\n";
   for (const fem::PressPoint& p : settings.points)
     text += fmt::format("{} {} {} {} {} {}\n", p.position[0], p.position[1], p.position[2],
                         p.inward[0], p.inward[1], p.inward[2]);
@@ -163,7 +165,8 @@ bool run_fidelity(const Workspace& space, const FidelityOptions& options) {
   auto points =
       fidelity::draw_points(libraries.front(), options.off_node, options.at_node, options.seed);
   std::string text = skin_text(fidelity::find_skin(body, points)), states;
-  const Curves direct = solve_direct(space, body, direct_settings(space, points));
+  const Curves direct =
+      solve_direct(space, body, direct_settings(space, options.finer_mesh, points));
 
   const fidelity::FidelitySettings settings{
       options.floor > 0 ? options.floor : fidelity::relative_floor(direct, options.floor_fraction),

@@ -16,6 +16,7 @@ struct FidelityOptions {
   std::uint32_t seed = 1;
   double floor_fraction = 0.01;  ///< of the force of the body, see fidelity::relative_floor
   double floor = 0;              ///< N, instead of the fraction; 0: the fraction
+  bool finer_mesh = false;  ///< direct presses on a finer mesh: counts the error of the mesh too
   /// Libraries compared with the same direct solutions; empty: the library of the case.
   std::vector<std::filesystem::path> libraries;
 };

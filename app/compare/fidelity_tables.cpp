@@ -54,7 +54,10 @@ std::string floor_text(const FidelityOptions& options, double floor) {
   std::string text = "errors are relative to the direct force, or to " + force_text(floor);
   if (!(options.floor > 0))
     text += " (" + percent_text(options.floor_fraction) + " of the median of the largest forces)";
-  return text + " where that is larger\n";
+  text += " where that is larger\n";
+  if (options.finer_mesh)
+    text += "the direct presses have a finer mesh: the error of the mesh of the case is counted\n";
+  return text;
 }
 
 Json fidelity_heading(const FidelityOptions& options, const fidelity::FidelitySettings& settings,
@@ -71,6 +74,7 @@ Json fidelity_heading(const FidelityOptions& options, const fidelity::FidelitySe
   Json heading{{"kind", "palpate.fidelity"}, {"relative_to", "max(|direct force|, floor)"},
                {"floor_N", settings.floor},  {"friction", settings.friction},
                {"seed", options.seed},       {"points", list}};
+  heading["direct_mesh"] = options.finer_mesh ? "finer than that of the case" : "of the case";
   if (!(options.floor > 0)) heading["floor_fraction"] = options.floor_fraction;
   heading["libraries"] = Json::array();
   return heading;

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "fitting/response/mesh_error.hpp"
 #include "format/artifact.hpp"
 #include "format/body.hpp"
 #include "format/curves.hpp"
@@ -153,6 +154,17 @@ Json energy_of(const Curves& curves) {
           {"paths_off_by_more_than_half_a_percent", beyond}};
 }
 
+/// The bound of the error of the mesh in the normal forces, relative.
+Json mesh_error_of(const Curves& curves) {
+  if (std::isnan(curves.mesh_error_confidence)) return "unknown";
+  const fitting::MeshErrorSummary error = fitting::mesh_error_summary(curves);
+  return {{"median_at_end_of_press", error.median_at_end},
+          {"max_at_end_of_press", error.worst_at_end},
+          {"median_at_first_sample", error.median_at_first},
+          {"max_at_first_sample", error.worst_at_first},
+          {"confidence", curves.mesh_error_confidence}};
+}
+
 Json summary_of(const Curves& curves) {
   double cpu = 0, force = 0;
   double jacobian = std::numeric_limits<double>::quiet_NaN();  // unknown for measured curves
@@ -180,6 +192,7 @@ Json summary_of(const Curves& curves) {
           {"min_jacobian", jacobian},
           {"contact", contact_of(curves)},
           {"energy", energy_of(curves)},
+          {"mesh_error", mesh_error_of(curves)},
           {"cpu_time", with_unit(cpu, "s")},
           {"content_sha256", content_sha256(curves)},
           {"failures", failures}};
@@ -245,7 +258,7 @@ Json rates_of(const Certificate& certificate) {
 
 Json summary_of(const Library& library) {
   std::size_t fitted = 0, interpolated = 0, holes = 0, knots = 0;
-  double normal_error = 0, lateral_error = 0;
+  double normal_error = 0, lateral_error = 0, mesh_error = kUnknown;
   for (const NodeResponse& response : library.responses) {
     fitted += response.status == ResponseStatus::Fitted ? 1 : 0;
     interpolated += response.status == ResponseStatus::Interpolated ? 1 : 0;
@@ -253,6 +266,7 @@ Json summary_of(const Library& library) {
     knots += response.normal.knot.size() + response.lateral.knot.size();
     normal_error = std::max(normal_error, response.normal_error);
     lateral_error = std::max(lateral_error, response.lateral_error);
+    mesh_error = std::fmax(mesh_error, response.normal_mesh_error);
   }
   Json summary = {{"name", library.name},
                   {"guarantee", guarantee_text(library.certificate)},
@@ -267,6 +281,7 @@ Json summary_of(const Library& library) {
                   {"knots", knots},
                   {"max_normal_error", with_unit(normal_error, "N")},
                   {"max_lateral_error", with_unit(lateral_error, "N")},
+                  {"max_normal_mesh_error", with_unit(mesh_error, "N")},
                   {"bounding_box", box_of(library.positions)}};
   if (library.relaxes()) summary["relaxation"] = relaxation_of(library);
   summary["certificate"] = summary_of(library.certificate);

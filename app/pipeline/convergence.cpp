@@ -73,8 +73,8 @@ void check_same_sites(const Body& first, const Body& finer, const std::string& w
 }
 
 ConvergenceOfForce convergence_of(const ConvergenceRow& row) {
-  return {row.vertex,      row.quantity,    row.forces,     row.limit.trusted,
-          row.limit.order, row.limit.value, row.limit.error};
+  return {row.vertex,      row.quantity,    row.forces,      row.limit.trusted,
+          row.limit.order, row.limit.value, row.limit.error, row.limit.bound};
 }
 
 }  // namespace
@@ -92,12 +92,12 @@ std::vector<double> finer_element_sizes(double patch_spacing, double element_siz
 std::string convergence_csv(const ConvergenceTable& table) {
   std::string out = "vertex,quantity";
   for (const double size : table.element_sizes) out += fmt::format(",force_N_at_{}_m", size);
-  out += ",order,extrapolated_force_N,error_of_the_case,follows_a_power\n";
+  out += ",order,extrapolated_force_N,error_of_the_case,bound_of_the_error,follows_a_power\n";
   for (const ConvergenceRow& row : table.rows) {
     out += fmt::format("{},{}", row.vertex, row.quantity);
     for (const double force : row.forces) out += fmt::format(",{}", force);
-    out += fmt::format(",{},{},{},{}\n", row.limit.order, row.limit.value, row.limit.error,
-                       row.limit.trusted ? 1 : 0);
+    out += fmt::format(",{},{},{},{},{}\n", row.limit.order, row.limit.value, row.limit.error,
+                       row.limit.bound, row.limit.trusted ? 1 : 0);
   }
   return out;
 }

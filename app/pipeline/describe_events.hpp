@@ -137,6 +137,8 @@ void describe(V& v, const FitFinished& e) {
   v.field("lateral_error", e.lateral,
           "the same of the lateral responses, to the mean of the paths that they stand for");
   v.field("lateral_spread", e.spread, "the same, to any single path");
+  v.field("mesh_error", e.mesh,
+          "bound of the error of the mesh in the normal curves; `vertex` -1: unknown");
   v.field("file", e.file.string(), "path of `library.h5`");
 }
 
@@ -212,8 +214,9 @@ void describe(V& v, const ConvergenceOfForce& e) {
   v.field("forces", e.forces, "on each mesh, N");
   v.field("has_order", e.has_order, "whether the last three follow a power of the element size");
   v.field("order", e.order, "the power; null without one");
-  v.field("limit", e.limit, "extrapolated force, N");
-  v.field("error", e.error, "relative error on the first mesh; without an order, relative spread");
+  v.field("limit", e.limit, "extrapolated force, N; without an order that of the last mesh");
+  v.field("error", e.error, "relative error of the force on the first mesh");
+  v.field("bound", e.bound, "bound of its magnitude");
 }
 
 template <class V>

@@ -118,6 +118,7 @@ struct FitFinished {
   /// Errors relative to the largest force of the site: see fitting::SiteFitError.
   FitErrors normal, lateral, spread;
   std::filesystem::path file;
+  FitErrors mesh{};  ///< of the mesh in the normal curves; vertex -1: unknown
 };
 
 /// A library was certified. Infinite: no bound exists. NaN: unknown.
@@ -180,7 +181,8 @@ struct ConvergenceOfForce {
   std::vector<double> forces;  ///< N, by level
   bool has_order = false;
   double order = 0, limit = 0;  ///< limit: N
-  double error = 0;             ///< of the first level, relative; without an order: the spread
+  double error = 0;             ///< of the first level, relative
+  double bound = 0;             ///< of |error|
 };
 
 /// What a campaign will take, from trial sites. Nothing was written.

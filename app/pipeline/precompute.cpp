@@ -9,10 +9,12 @@
 #include "app/pipeline/fields.hpp"
 #include "app/pipeline/freshness.hpp"
 #include "app/pipeline/measured_stages.hpp"
+#include "app/pipeline/mesh_error.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/stage_input.hpp"
 #include "app/pipeline/stages.hpp"
 #include "fem/factor/cholesky.hpp"
+#include "fem/factor/rest_factor.hpp"
 #include "format/body.hpp"
 #include "format/sha256.hpp"
 #include "format/site_journal.hpp"
@@ -97,9 +99,10 @@ struct Campaign {
   std::vector<std::pair<std::string, std::string>> facts;
 };
 
-Campaign press_all(const Body& body, const fem::CampaignSettings& settings) {
+Campaign press_all(const Body& body, const fem::CampaignSettings& settings,
+                   fem::FactorCache& factors) {
   Campaign campaign;
-  campaign.curves = fem::run_campaign(body, settings, campaign.report);
+  campaign.curves = fem::run_campaign(body, settings, campaign.report, &factors);
   return campaign;
 }
 
@@ -150,12 +153,15 @@ SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
     emit(Progress{p.done, p.failed, p.running, p.total, p.known, p.sites, true});
   };
 
+  fem::FactorCache factors;
   auto [curves, report, facts] = is_adaptive(space)
                                      ? press_adaptively(space, body, settings, key, emit)
-                                     : press_all(body, settings);
+                                     : press_all(body, settings, factors);
   curves.body_sha256 = body_sha256;
   const auto general = facts_of(space, report, settings.known.size());
   facts.insert(facts.begin(), general.begin(), general.end());
+  const auto of_mesh = estimate_mesh_error(space, body, settings, curves, &factors, emit);
+  facts.insert(facts.end(), of_mesh.begin(), of_mesh.end());
   append(curves.provenance, body.provenance, make_stage_step(space, Stage::Precompute, facts));
   write_curves(space.precomputed(), curves);
   journal.remove();

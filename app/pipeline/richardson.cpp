@@ -8,7 +8,8 @@
 namespace palpate::app {
 namespace {
 
-constexpr double kLowest = 0.3, kHighest = 6;
+constexpr double kLowest = 0.8, kHighest = 4;
+constexpr double kSafety = 1.25, kSafetyWithoutOrder = 3;
 
 /// (f1 - f2)/(f2 - f3) of values that follow h^p: it grows with p.
 double ratio(double h1, double h2, double h3, double p) {
@@ -32,18 +33,22 @@ Extrapolation extrapolate(const std::vector<double>& sizes, const std::vector<do
   const std::size_t n = values.size();
   const double h1 = sizes[n - 3], h2 = sizes[n - 2], h3 = sizes[n - 1];
   const double f1 = values[n - 3], f2 = values[n - 2], f3 = values[n - 1];
-  Extrapolation e{order_of(h1, h2, h3, (f1 - f2) / (f2 - f3)), f3, 0, false};
-  e.trusted = std::isfinite(e.order);
-  if (e.trusted) {
-    e.value = f3 + (f3 - f2) / (std::pow(h2 / h3, e.order) - 1);
-    e.error = (values.front() - e.value) / e.value;
-    return e;
-  }
   const bool known =
       std::all_of(values.begin(), values.end(), [](double f) { return !std::isnan(f); });
-  const auto [least, most] = std::minmax_element(values.begin(), values.end());
-  e.value = known ? f3 : std::numeric_limits<double>::quiet_NaN();
-  e.error = (*most - *least) / e.value;
+  Extrapolation e{order_of(h1, h2, h3, (f1 - f2) / (f2 - f3)), f3, 0, 0, false};
+  e.trusted = known && std::isfinite(e.order);
+  double uncertainty = 0;
+  if (e.trusted) {
+    e.value = f3 + (f3 - f2) / (std::pow(h2 / h3, e.order) - 1);
+    uncertainty = kSafety * std::abs(f3 - f2) / (std::pow(h2 / h3, std::min(e.order, 1.0)) - 1);
+  } else {
+    e.order = std::numeric_limits<double>::quiet_NaN();
+    e.value = known ? f3 : e.order;
+    uncertainty = kSafetyWithoutOrder * (std::max({f1, f2, f3}) - std::min({f1, f2, f3}));
+  }
+  e.error = (values.front() - e.value) / std::abs(e.value);
+  e.bound = known ? (std::abs(values.front() - f3) + uncertainty) / std::abs(e.value)
+                  : std::numeric_limits<double>::quiet_NaN();
   return e;
 }
 

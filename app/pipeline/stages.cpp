@@ -238,7 +238,8 @@ void run_fit(const Workspace& space, const EventSink& emit) {
   emit(FitFinished{with_status(ResponseStatus::Fitted), with_status(ResponseStatus::Interpolated),
                    with_status(ResponseStatus::Hole), errors_of(errors, &SiteFitError::normal),
                    errors_of(errors, &SiteFitError::lateral),
-                   errors_of(errors, &SiteFitError::spread), space.library()});
+                   errors_of(errors, &SiteFitError::spread), space.library(),
+                   errors_of(errors, &SiteFitError::mesh)});
 }
 
 void run_certify(const Workspace& space, const EventSink& emit) {

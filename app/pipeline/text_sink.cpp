@@ -128,6 +128,8 @@ void TextSink::print(const FitFinished& e) {
     line("  error of the fit over the largest force of a site: normal {}", errors(e.normal));
     line("    lateral {}; to any single path {}", errors(e.lateral), errors(e.spread));
   }
+  if (e.mesh.vertex >= 0)
+    line("  error of the mesh in the normal force, at most {}", errors(e.mesh));
   line("fit: {} responses fitted, {} interpolated, {} holes -> {}", e.fitted, e.interpolated,
        e.holes, e.file.string());
 }
@@ -204,12 +206,11 @@ void TextSink::print(const ConvergenceLevel& e) {
 void TextSink::print(const ConvergenceOfForce& e) {
   std::string forces;
   for (const double f : e.forces) forces += " " + number_text(1e3 * f, 4);
-  if (e.has_order)
-    return line("  site {}, {}:{} -> {} mN, order {:.2f}; error of the case's mesh {:+.1f} %",
-                e.vertex, e.quantity, forces, number_text(1e3 * e.limit, 4), e.order,
-                100 * e.error);
-  line("  site {}, {}:{} mN follow no power of the element size; spread {:.1f} %", e.vertex,
-       e.quantity, forces, 100 * e.error);
+  const std::string limit =
+      e.has_order ? fmt::format("-> {} mN, order {:.2f}", number_text(1e3 * e.limit, 4), e.order)
+                  : "mN follow no power of the element size";
+  line("  site {}, {}:{} {}; error of the case's mesh {:+.1f} %, at most {:.1f} %", e.vertex,
+       e.quantity, forces, limit, 100 * e.error, 100 * e.bound);
 }
 
 void TextSink::print(const Estimate& e) {

@@ -94,7 +94,7 @@ constexpr std::uint8_t kNotRun = 255;
 json vertex_data(const ReportInput& input, const std::vector<PeakForce>& peaks) {
   const Library& library = *input.library;
   const std::size_t size = library.responses.size();
-  std::vector<float> position, inward, normal_error, lateral_error;
+  std::vector<float> position, inward, normal_error, lateral_error, mesh_error;
   std::vector<std::uint8_t> response_status, site_status(size, kNotRun);
   std::vector<float> cpu(size, 0);
   json reasons = json::object();
@@ -112,6 +112,7 @@ json vertex_data(const ReportInput& input, const std::vector<PeakForce>& peaks) 
     const double nan = std::numeric_limits<double>::quiet_NaN();
     normal_error.push_back(static_cast<float>(fitted ? response.normal_error : nan));
     lateral_error.push_back(static_cast<float>(fitted ? response.lateral_error : nan));
+    mesh_error.push_back(static_cast<float>(response.normal_mesh_error));
   }
   std::vector<float> misfit(size, std::numeric_limits<float>::quiet_NaN());
   for (const fitting::SiteFitError& error : fitting::fit_errors(library, *input.curves))
@@ -130,6 +131,7 @@ json vertex_data(const ReportInput& input, const std::vector<PeakForce>& peaks) 
           {"reasons", reasons},
           {"normal_error", column(normal_error)},
           {"lateral_error", column(lateral_error)},
+          {"mesh_error", column(mesh_error)},
           {"misfit", column(misfit)},
           {"visible_misfit", fitting::kVisibleFitError},
           {"normal_peak", column(normal_peak)},
@@ -194,6 +196,7 @@ json key_figures(const ReportInput& input) {
           {"deepest", figures.deepest},
           {"max_force", figures.max_force},
           {"cpu_seconds", figures.cpu_seconds},
+          {"mesh_error_confidence", input.curves->mesh_error_confidence},
           {"library_bytes", input.library_bytes},
           {"depth", curves.depth},
           {"lateral_travel", curves.lateral_travel},

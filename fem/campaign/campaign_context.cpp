@@ -41,21 +41,24 @@ ContactStiffness contact_stiffness(const Body& body, const CampaignSettings& set
 
 namespace {
 
-/// Refined elements have energies of elements alone: no nodal pressure, springs or weight.
 void check_refinement(const Body& body, const CampaignSettings& settings, Engine engine) {
-  if (settings.indentation.refine_under_tool == 0) return;
-  const auto refuse = [&](const char* with) {
-    throw Error(ErrorKind::Configuration, body.name,
-                std::string("elements cannot be refined under the tool ") + with,
-                "remove solver.refine_under_tool and choose a smaller mesh.element_size");
-  };
-  if (has_nodal_pressure(settings.dilatation)) refuse("with nodal pressures");
-  if (!body.foundation.empty()) refuse("of a body on springs");
-  if (settings.gravity.acts()) refuse("of a body under its weight");
-  if (engine == Engine::Direct) refuse("when every step factorizes the body");
+  if (!settings.indentation.refines()) return;
+  std::string with = obstacle_to_refinement(body, settings);
+  if (with.empty() && engine == Engine::Direct) with = "when every step factorizes the body";
+  if (with.empty()) return;
+  throw Error(ErrorKind::Configuration, body.name,
+              "elements cannot be refined under the tool " + with,
+              "remove solver.refine_under_tool and choose a smaller mesh.element_size");
 }
 
 }  // namespace
+
+std::string obstacle_to_refinement(const Body& body, const CampaignSettings& settings) {
+  if (has_nodal_pressure(settings.dilatation)) return "with nodal pressures";
+  if (!body.foundation.empty()) return "of a body on springs";
+  if (settings.gravity.acts()) return "of a body under its weight";
+  return {};
+}
 
 /// The model and its equilibrium before the touch.
 struct CampaignContext::Preloaded {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <mutex>
+#include <string>
 #include <vector>
 
 #include "fem/campaign/settings.hpp"
@@ -58,6 +59,10 @@ struct CampaignContext {
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
                   FactorCache* cache, Preloaded&& start);
 };
+
+/// Why elements cannot be refined under the tool: refined ones have energies of elements alone,
+/// without nodal pressures, springs or weight. Empty where they can.
+std::string obstacle_to_refinement(const Body& body, const CampaignSettings& settings);
 
 /// From the largest Young's modulus at rest of the regions at the boundary: stiffer regions inside
 /// must not stiffen the contact.

@@ -20,15 +20,21 @@ Tool tool_over(const CampaignContext& context, const PressPoint& point) {
           std::cos(settings.tool_azimuth) * first + std::sin(settings.tool_azimuth) * second};
 }
 
-/// A sphere of radius R at depth d touches a circle of radius sqrt(R d) about.
-SiteRefinement refinement_of(const IndentationSettings& settings) {
+SiteRefinement refinement_of(const CampaignContext& context, const PressPoint& point) {
+  const IndentationSettings& settings = context.indentation;
   SiteRefinement refinement;
-  refinement.levels = settings.refine_under_tool;
-  if (settings.refine_under_tool != IndentationSettings::kByContact) return refinement;
-  const double R = settings.tool.radius;
-  refinement.min_contact_radius = std::sqrt(R * settings.depth / settings.increments);
-  refinement.max_contact_radius = std::sqrt(R * settings.depth);
-  refinement.size_over_distance = settings.size_over_contact;
+  const bool by_contact = settings.refine_under_tool == IndentationSettings::kByContact;
+  refinement.levels = by_contact ? 0 : settings.refine_under_tool;
+  if (settings.divide_once_more) {
+    refinement.first_levels = refinement.levels > 0 ? 2 : 1;
+    ++refinement.levels;
+  }
+  if (!(by_contact || settings.divide_once_more)) return refinement;
+  refinement.cores = contact_cores(context.model.mesh(), tool_over(context, point),
+                                   settings.depth / settings.increments, settings.depth);
+  const double finer = by_contact && settings.divide_once_more ? 0.5 : 1;
+  refinement.size_over_distance = finer * settings.size_over_contact;
+  refinement.growth_outside *= finer;
   return refinement;
 }
 
@@ -55,17 +61,23 @@ Tool tool_at_first_touch(const CampaignContext& context, const ToolContact& cont
 FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex) {
   const PressPoint point = context.press_point(vertex);
   const Eigen::Vector3d X = context.reference_position(point.position);
-  const bool refined = context.indentation.refine_under_tool != 0;
+  const bool refined = context.indentation.refines();
   const SiteBody body =
-      site_body_at(context, X, refined ? SiteMesh::RefinedWindow : SiteMesh::WholeBody);
+      site_body_at(context, point, refined ? SiteMesh::RefinedWindow : SiteMesh::WholeBody);
   const ToolContact contact = contact_at(context, body.mesh(), X);
   return {body.mesh(), tool_at_first_touch(context, contact, body.rest(), point), contact.facets()};
 }
 
-SiteBody site_body_at(const CampaignContext& context, const Eigen::Vector3d& X, SiteMesh mesh) {
+SiteBody site_body_at(const CampaignContext& context, const PressPoint& point, SiteMesh mesh) {
   const PartTimer timer(Part::SiteMesh);
-  const IndentationSettings& settings = context.indentation;
-  return {context.model, context.rest, X, settings.tool, mesh, refinement_of(settings)};
+  const SiteRefinement refinement =
+      mesh == SiteMesh::RefinedWindow ? refinement_of(context, point) : SiteRefinement{};
+  return {context.model,
+          context.rest,
+          context.reference_position(point.position),
+          context.indentation.tool,
+          mesh,
+          refinement};
 }
 
 }  // namespace palpate::fem

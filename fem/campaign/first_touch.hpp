@@ -20,8 +20,8 @@ struct FirstTouch {
 };
 FirstTouch first_touch(const CampaignContext& context, std::int32_t vertex);
 
-/// The body around the point X; a refined window has the elements that the settings ask for.
-SiteBody site_body_at(const CampaignContext& context, const Eigen::Vector3d& X, SiteMesh mesh);
+/// The body around a point; a refined window has the elements that the settings ask for.
+SiteBody site_body_at(const CampaignContext& context, const PressPoint& point, SiteMesh mesh);
 
 /// The contact with the facets of `mesh` that the tool may reach from the point X on its paths.
 ToolContact contact_at(const CampaignContext& context, const QuadraticMesh& mesh,

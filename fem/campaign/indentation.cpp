@@ -51,7 +51,7 @@ std::vector<double> normal_increments(const IndentationSettings& settings,
 
 SiteMesh mesh_of_site(const CampaignContext& context) {
   if (context.engine == Engine::Direct) return SiteMesh::WholeBody;
-  return context.indentation.refine_under_tool != 0 ? SiteMesh::RefinedWindow : SiteMesh::Window;
+  return context.indentation.refines() ? SiteMesh::RefinedWindow : SiteMesh::Window;
 }
 
 /// A path of the site ended early; every path that did adds its reason.
@@ -66,7 +66,7 @@ struct SiteSolver::Site {
   Site(const CampaignContext& context, const PressPoint& point, SolveBatch::Member* batch)
       : X(context.reference_position(point.position)),
         inward(to_eigen(point.inward)),
-        body(site_body_at(context, X, mesh_of_site(context))),
+        body(site_body_at(context, point, mesh_of_site(context))),
         contact(contact_at(context, body.mesh(), X)),
         touching(tool_at_first_touch(context, contact, body.rest(), point)),
         equilibrium(context, body, batch),
@@ -301,8 +301,7 @@ double bytes_of_site(const CampaignContext& context, std::int32_t vertex) {
   const double nodes = context.model.mesh().nodes(), unknowns = context.model.pattern().n;
   const double starts = static_cast<double>(context.indentation.lateral_depths.size());
   const double numbers = 3 * nodes * (kDisplacements + starts) + unknowns * kVectors;
-  const Eigen::Vector3d X = context.reference_position(context.press_point(vertex).position);
-  const SiteBody site = site_body_at(context, X, mesh_of_site(context));
+  const SiteBody site = site_body_at(context, context.press_point(vertex), mesh_of_site(context));
   return sizeof(double) * (numbers + kWindowFill * site.window().pattern().nonzeros()) +
          unknowns * kPairs + site.bytes();
 }

@@ -95,7 +95,9 @@ PathDriver::Outcome PathDriver::equilibrate(double s, int halvings, Displacement
 std::string PathDriver::fault_of(const CurveSample& sample, const Displacement& u) const {
   const PartTimer timer(Part::BodyPasses);
   if (sample.penetration > kLargestPenetration * problem_.tool_radius)
-    return "the tool penetrates a constrained region (a support within its reach?)";
+    return "the tool cuts into the surface, by " + in_millimetres(sample.penetration) +
+           ", at which what it meets is no longer soft: a support, or a region much stiffer than "
+           "the surface, lies close beneath it";
   if (sample.displacement > kLargestStep * problem_.tool_radius && sample.contact_area == 0)
     return "the tool lost contact";
   if (const int entering = problem_.self_contact.entering_node(u); entering >= 0)
@@ -117,6 +119,7 @@ void PathDriver::record(double s, const Displacement& u, CurveSample& sample) co
   sample.min_jacobian = state.min_J;
   sample.penetration = contact.penetration(u);
   sample.contact_area = contact.contact_area(u);
+  sample.facets_in_contact = contact.facets_in_contact(u);
   sample.contact_energy = contact.energy(u);
   sample.tension = contact.tension(u);
 }

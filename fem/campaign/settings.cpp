@@ -25,9 +25,10 @@ void check_indentation(const IndentationSettings& settings) {
     refuse("tool", "a disc with a sharp edge cannot be pressed without friction",
            "give it an edge radius (a hundredth of its own is enough), or choose no-slip friction");
   if (settings.refine_under_tool == IndentationSettings::kByContact &&
-      tool.shape != ToolShape::Sphere)
-    refuse("solver.refine_under_tool", "\"contact\" knows the contact of a sphere only",
-           "give a number, which divides the elements under any tool as often");
+      tool.shape == ToolShape::Disc && tool.edge_radius == 0)
+    refuse("solver.refine_under_tool",
+           "\"contact\" needs a size of the contact, which a disc with a sharp edge does not give",
+           "give the disc an edge radius, or a number, which divides the elements as often");
   require_positive("size_over_contact", settings.size_over_contact);
   require_positive("depth", settings.depth);
   require_positive("force_tolerance", settings.force_tolerance);

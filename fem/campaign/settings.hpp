@@ -43,9 +43,14 @@ struct IndentationSettings {
   /// contacts smaller than a facet. Each further time within half the distance from the site.
   int refine_under_tool = 0;
   static constexpr int kMaxRefinements = 6;
-  /// Instead of a number: as often as the contact of a sphere asks for, see SiteRefinement.
+  /// Instead of a number: as often as the contact asks for, see SiteRefinement.
   static constexpr int kByContact = -1;
   double size_over_contact = 2;  ///< of elements under the tool, over the contact radius
+  /// All elements under the tool are divided once more than the settings above ask for, those that
+  /// the contact divides as well, and those that it would divide: the error of the mesh shows.
+  bool divide_once_more = false;
+
+  bool refines() const { return refine_under_tool != 0 || divide_once_more; }
 };
 
 /// A point of the boundary where the tool is pressed, and the direction of its normal path.
@@ -68,6 +73,9 @@ struct CampaignSettings {
   /// The weight is applied first; depths, work and energy are counted from that state.
   Gravity gravity{{}, 1000};
   IndentationSettings indentation;
+  /// Number of sites that the caller of run_campaign presses on a finer mesh too, for the error of
+  /// the mesh of all sites (press_on_finer_mesh); 0: the error stays unknown.
+  int mesh_error_sites = 4;
   std::vector<std::int32_t> sites;  ///< response vertices; empty = every vertex with is_site
   /// Pressed instead of response vertices when not empty; the `vertex` of a result is then the
   /// index of its point. Such curves cannot be fitted.

@@ -16,8 +16,6 @@ namespace {
 /// solves.
 constexpr double kWindowRadius = 2;
 
-/// h_b: growth of the size of elements with the distance, outside the largest contact.
-constexpr double kGrowthOutside = 0.5;
 /// A bound on how often the contact divides an element.
 constexpr int kMaxLevels = 12;
 
@@ -70,14 +68,6 @@ std::vector<int> elements_near(const QuadraticMesh& mesh, const Eigen::Vector3d&
   return elements;
 }
 
-RefinedMesh refined_by_levels(const QuadraticMesh& mesh, const Eigen::Vector3d& site, double reach,
-                              int levels) {
-  const auto near = [&](const Corners& corners, int level) {
-    return distance(site, corners) <= std::ldexp(reach, -level);
-  };
-  return refine_elements(mesh, elements_near(mesh, site, reach), levels, near);
-}
-
 /// The edge of the regular tetrahedron with the same sum of squared edges.
 double size_of(const Corners& corner) {
   double squares = 0;
@@ -85,27 +75,66 @@ double size_of(const Corners& corner) {
   return std::sqrt(squares / 6);
 }
 
-RefinedMesh refined_by_contact(const QuadraticMesh& mesh, const Eigen::Vector3d& site,
-                               const SiteRefinement& refinement) {
-  const auto too_large = [&](const Corners& corners, int) {
-    // The site lies within twice its size from the centre of an element that it touches.
-    const double size = size_of(corners);
-    const auto allowed = [&](double s) {
-      return refinement.size_over_distance * std::max(refinement.min_contact_radius, s) +
-             kGrowthOutside * std::max(0.0, s - refinement.max_contact_radius);
-    };
-    const Eigen::Vector3d centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
-    if (size <= allowed(std::max(0.0, (site - centre).norm() - 2 * size))) return false;
-    return size > allowed(distance(site, corners));
-  };
-  std::vector<int> elements;
-  for (int e = 0; e < static_cast<int>(mesh.tetrahedra.size()); ++e) {
-    const Tetrahedron10& t = mesh.tetrahedra[to_index(e)];
-    if (too_large({mesh.X.col(t[0]), mesh.X.col(t[1]), mesh.X.col(t[2]), mesh.X.col(t[3])}, 0))
-      elements.push_back(e);
+/// Which elements the refinement divides, and how often.
+class Division {
+ public:
+  Division(const QuadraticMesh& mesh, const Eigen::Vector3d& site, double reach,
+           const SiteRefinement& refinement)
+      : mesh_(mesh), site_(site), reach_(reach), refinement_(refinement) {}
+
+  RefinedMesh refined() const {
+    const bool by_contact = !refinement_.cores.empty();
+    std::vector<int> elements;
+    if (refinement_.levels > 0) elements = elements_near(mesh_, site_, reach_);
+    if (by_contact) add_too_large(elements);
+    return refine_elements(mesh_, elements, by_contact ? kMaxLevels : refinement_.levels,
+                           [this](const Corners& corners, int level) {
+                             return asked_by_levels(corners, level) || too_large(corners);
+                           });
   }
-  return refine_elements(mesh, elements, kMaxLevels, too_large);
-}
+
+ private:
+  void add_too_large(std::vector<int>& elements) const {
+    for (int e = 0; e < static_cast<int>(mesh_.tetrahedra.size()); ++e) {
+      const Tetrahedron10& t = mesh_.tetrahedra[to_index(e)];
+      if (too_large({mesh_.X.col(t[0]), mesh_.X.col(t[1]), mesh_.X.col(t[2]), mesh_.X.col(t[3])}))
+        elements.push_back(e);
+    }
+    std::sort(elements.begin(), elements.end());
+    elements.erase(std::unique(elements.begin(), elements.end()), elements.end());
+  }
+
+  bool asked_by_levels(const Corners& corners, int level) const {
+    if (level >= refinement_.levels) return false;
+    const int halvings = std::max(0, level - (refinement_.first_levels - 1));
+    return distance(site_, corners) <= std::ldexp(reach_, -halvings);
+  }
+
+  double allowed_size(const ContactCore& core, double s) const {
+    return refinement_.size_over_distance * std::max(core.smallest, s) +
+           refinement_.growth_outside * std::max(0.0, s - core.largest);
+  }
+
+  bool too_large(const Corners& corners) const {
+    return std::any_of(refinement_.cores.begin(), refinement_.cores.end(),
+                       [&](const ContactCore& core) { return too_large(corners, core); });
+  }
+
+  bool too_large(const Corners& corners, const ContactCore& core) const {
+    const double size = size_of(corners);
+    const Eigen::Vector3d centre = 0.25 * (corners[0] + corners[1] + corners[2] + corners[3]);
+    const Eigen::Vector3d nearest = core.nearest(centre);
+    // The line lies within twice its size from the centre of an element that it touches.
+    const double least = std::max(0.0, (nearest - centre).norm() - 2 * size);
+    if (size <= allowed_size(core, least)) return false;
+    return size > allowed_size(core, distance(nearest, corners));
+  }
+
+  const QuadraticMesh& mesh_;
+  Eigen::Vector3d site_;
+  double reach_;
+  SiteRefinement refinement_;
+};
 
 }  // namespace
 
@@ -130,9 +159,7 @@ SiteBody::SiteBody(const SolidModel& body, const Displacement& rest, const Eigen
 void SiteBody::refine(const Eigen::Vector3d& site, const ToolGeometry& tool,
                       const SiteRefinement& refinement) {
   const QuadraticMesh& mesh = whole_->mesh();
-  RefinedMesh refined = refinement.min_contact_radius > 0
-                            ? refined_by_contact(mesh, site, refinement)
-                            : refined_by_levels(mesh, site, tool.extent(), refinement.levels);
+  RefinedMesh refined = Division(mesh, site, tool.extent(), refinement).refined();
   std::vector<bool> free = nodes_within(mesh, site, window_radius(tool));
   for (const RefinedMesh::NewNode& node : refined.new_nodes)
     for (const int neighbour : mesh.tetrahedra[to_index(node.parent)])

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "fem/campaign/contact_size.hpp"
 #include "fem/contact/tool.hpp"
 #include "fem/solid/prolongation.hpp"
 #include "fem/solid/solid_model.hpp"
@@ -23,18 +25,20 @@ enum class SiteMesh {
   RefinedWindow  ///< the same with the elements around the tool divided into eight, several times
 };
 
-/// How the elements around a site are divided, each by as often as its distance s from the site
-/// asks for. Either a number of levels: first the elements under the tool, then always those
-/// children that are within half the distance. Or by the contact: while their size is above
-///   h(s) = h_a max(a, s) + h_b max(0, s - b),  a and b the smallest and the largest contact
-///   radius.
-/// A contact of any radius r from a to b then has elements of h_a r at its edge and smaller ones
-/// inside, and each doubling of the radius costs as many elements as the one before.
+/// How the elements around a site are divided, each by as often as its distance from the site asks
+/// for. By a number of levels: first the elements under the tool, then always those children that
+/// are within half the distance. By the contact: while their size is above
+///   h(s) = h_a max(a, s) + h_b max(0, s - b),
+/// s the distance from the line where the contact begins, a and b those of its edge at the first
+/// and the last increment. A contact whose edge is anywhere between then has elements of h_a s
+/// there and smaller ones inside, and each doubling of s costs as many elements as the one before.
+/// With both, or with several lines, an element is divided that any of them asks for.
 struct SiteRefinement {
-  int levels = 1;                   ///< where there is no contact radius
-  double min_contact_radius = 0;    ///< a, m; 0: by `levels`
-  double max_contact_radius = 0;    ///< b, m
-  double size_over_distance = 0.5;  ///< h_a
+  int levels = 1;                    ///< 0: by the contact alone
+  int first_levels = 1;              ///< of `levels`: that divide all under the tool
+  std::vector<ContactCore> cores{};  ///< empty: by `levels` alone
+  double size_over_distance = 0.5;   ///< h_a
+  double growth_outside = 0.5;       ///< h_b
 };
 
 /// The body and the window around the tool. The factor of the campaign serves a refined mesh too:

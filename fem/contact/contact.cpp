@@ -69,6 +69,7 @@ ToolContact::ToolContact(const QuadraticMesh& mesh, const Eigen::Vector3d& site,
       point.facet = static_cast<int>(facets_.size());
       point.N = facet_shape(q.L0, q.L1, mesh.linear);
       point.area = q.weight * area;
+      point.fraction = q.weight;
       points_.push_back(point);
     }
     facets_.push_back(facet);
@@ -250,6 +251,13 @@ double ToolContact::contact_area(const Displacement& u) const {
   for (const Point& point : points_)
     if (gap(point, position(point, u)) < 0) area += point.area;
   return area;
+}
+
+double ToolContact::facets_in_contact(const Displacement& u) const {
+  double facets = 0;
+  for (const Point& point : points_)
+    if (gap(point, position(point, u)) < 0) facets += point.fraction;
+  return facets;
 }
 
 double ToolContact::penetration(const Displacement& u) const {

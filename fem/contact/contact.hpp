@@ -45,6 +45,7 @@ class ToolContact {
     int facet;                ///< index into facets()
     std::array<double, 6> N;  ///< shape functions of the facet at the point
     double area;              ///< m^2, reference
+    double fraction;          ///< of the facet
     bool beneath = true;      ///< sharp disc: whether the point is beneath its end
   };
   /// A spring between a node and the tool.
@@ -97,7 +98,9 @@ class ToolContact {
   void add_bond_gradient(const SolidModel& model, const ToolContact& before, const Displacement& l,
                          const Eigen::Vector3d& direction, Eigen::VectorXd& g) const;
   double contact_area(const Displacement& u) const;  ///< m^2, reference
-  double penetration(const Displacement& u) const;   ///< m, deepest
+  /// How many facets are in contact, each by the fraction of it that is.
+  double facets_in_contact(const Displacement& u) const;
+  double penetration(const Displacement& u) const;  ///< m, deepest
   /// N, sum of the tensile forces of the ties on facets: without adhesion the surface would
   /// separate there.
   double tension(const Displacement& u) const;

@@ -94,6 +94,16 @@ double lateral_error(const NodeResponse& node, ResponseKind kind, const SiteCurv
   return largest;
 }
 
+/// Largest error of the mesh in the samples of the normal path; NaN when unknown.
+double normal_mesh_error(const SiteCurves& site) {
+  double largest = kUnknown;
+  for (const CurvePath& path : site.paths)
+    if (path.kind == PathKind::Normal)
+      for (const CurveSample& sample : path.samples)
+        largest = std::fmax(largest, sample.mesh_error);
+  return largest;
+}
+
 NodeResponse fit_site(const SiteCurves& site, const FitSettings& settings) {
   const std::string where = site_name(site.vertex);
   CurveFitSettings curve{settings.relative_tolerance, settings.absolute_tolerance,
@@ -110,6 +120,7 @@ NodeResponse fit_site(const SiteCurves& site, const FitSettings& settings) {
     node.lateral = fit_curve(mean, curve, where + ", lateral response").curve;
   }
   node.lateral_error = lateral_error(node, settings.kind, site);
+  node.normal_mesh_error = normal_mesh_error(site);
   return node;
 }
 

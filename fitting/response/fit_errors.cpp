@@ -63,7 +63,7 @@ SiteFitError error_of(const NodeResponse& node, ResponseKind kind, const SiteCur
   for (const Samples& path : lateral_paths(site)) lateral_peak = std::max(lateral_peak, peak(path));
   return {site.vertex, ratio(node.normal_error, normal_peak),
           ratio(lateral_miss(node, kind, site), lateral_peak),
-          ratio(node.lateral_error, lateral_peak)};
+          ratio(node.lateral_error, lateral_peak), ratio(node.normal_mesh_error, normal_peak)};
 }
 
 }  // namespace
@@ -78,16 +78,17 @@ std::vector<SiteFitError> fit_errors(const Library& library, const Curves& curve
 }
 
 FitErrorSummary summary_of(const std::vector<SiteFitError>& errors, double SiteFitError::*which) {
-  if (errors.empty()) return {};
   std::vector<double> values;
   FitErrorSummary summary{0, -1, -1};
   for (const SiteFitError& error : errors) {
+    if (std::isnan(error.*which)) continue;
     values.push_back(error.*which);
     if (values.back() > summary.worst) {
       summary.worst = values.back();
       summary.vertex = error.vertex;
     }
   }
+  if (values.empty()) return {};
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
   std::nth_element(values.begin(), middle, values.end());
   summary.median = *middle;

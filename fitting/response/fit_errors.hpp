@@ -16,9 +16,10 @@ inline constexpr double kVisibleFitError = 0.05;
 /// Largest errors of the responses of a site, each relative to the largest force of its samples.
 struct SiteFitError {
   std::int32_t vertex = -1;
-  double normal = 0;   ///< of the normal response
-  double lateral = 0;  ///< of the lateral response, to the mean of the paths that it stands for
-  double spread = 0;   ///< of the lateral response, to any single path
+  double normal = 0;       ///< of the normal response
+  double lateral = 0;      ///< of the lateral response, to the mean of the paths that it stands for
+  double spread = 0;       ///< of the lateral response, to any single path
+  double mesh = kUnknown;  ///< of the mesh in the normal curves; NaN when unknown
 };
 
 /// The errors of every fitted site, in the order of the curves. A decoupled lateral response stands
@@ -28,7 +29,7 @@ struct SiteFitError {
 /// @pre the library was fitted to the curves.
 std::vector<SiteFitError> fit_errors(const Library& library, const Curves& curves);
 
-/// Median and largest of some relative errors, and the site of the largest.
+/// Median and largest of those relative errors that are known, and the site of the largest.
 struct FitErrorSummary {
   double median = 0, worst = 0;
   std::int32_t vertex = -1;  ///< -1: no site was fitted

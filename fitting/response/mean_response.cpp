@@ -139,6 +139,9 @@ NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
   if (settings.kind == ResponseKind::Coupled)
     response.coupling = mean_coupling(sources, curve, where);
   response.relaxation = mean_relaxation(sources);
+  for (const WeightedResponse& source : sources)
+    response.normal_mesh_error =
+        std::fmax(response.normal_mesh_error, source.response->normal_mesh_error);
   return response;
 }
 

@@ -16,7 +16,8 @@ struct WeightedResponse {
 
 /// Weighted mean of the responses at equal deflections, with status Interpolated. It is fitted like
 /// any curve, hence monotone and passive for any weights. The weights sum to 1 and may be negative.
-/// The errors are 0; the caller sets them.
+/// The errors of the fit are 0; the caller sets them. That of the mesh is the largest of the
+/// sources.
 NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
                            const FitSettings& settings, const std::string& where);
 

@@ -241,7 +241,8 @@ class FileFormat(unittest.TestCase):
         for k in range(first, first + path["sample_count"][j]):
             for name in ("displacement", "force", "strain_energy", "tool_work", "min_jacobian",
                          "penetration", "contact_area", "iterations", "force_scatter",
-                         "force_uncertainty", "contact_energy", "tension"):
+                         "force_uncertainty", "contact_energy", "tension", "facets_in_contact",
+                         "mesh_difference", "mesh_error"):
                 np.testing.assert_equal(np.ravel(sample[name][k]), known.numbers(), name)
 
     def test_library_values(self):

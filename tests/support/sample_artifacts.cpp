@@ -125,6 +125,7 @@ void make_measured(CurvePath& path, Random& random) {
     sample.strain_energy = sample.min_jacobian = unknown;
     sample.penetration = sample.contact_area = unknown;
     sample.contact_energy = sample.tension = unknown;
+    sample.facets_in_contact = sample.mesh_difference = sample.mesh_error = unknown;
     sample.force_uncertainty = random.between(0, 0.1);
     if (path.repeats > 1) sample.force_scatter = random.between(0, 0.1);
   }
@@ -139,6 +140,9 @@ CurvePath curve_path(Random& random, PathKind kind) {
                             random.between(0, 1e-4), random.integer(1, 20)});
     path.samples.back().contact_energy = random.between(-1e-6, 1e-6);
     path.samples.back().tension = random.between(0, 1);
+    path.samples.back().facets_in_contact = random.between(0, 9);
+    path.samples.back().mesh_difference = random.between(-0.1, 0.1);
+    path.samples.back().mesh_error = random.between(0, 0.1);
     travel += random.between(1e-5, 1e-3);
   }
   if (path.samples.size() % 2 == 0) make_measured(path, random);
@@ -392,7 +396,8 @@ std::string dump(const Curves& curves) {
       for (const CurveSample& s : path.samples) {
         out << s.displacement << s.force << s.strain_energy << s.tool_work << s.min_jacobian
             << s.penetration << s.contact_area << s.iterations << s.force_scatter
-            << s.force_uncertainty << s.contact_energy << s.tension;
+            << s.force_uncertainty << s.contact_energy << s.tension << s.facets_in_contact
+            << s.mesh_difference << s.mesh_error;
         for (const double energy : s.isochoric_energy) out << energy;
       }
     }

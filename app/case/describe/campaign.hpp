@@ -116,10 +116,16 @@ void describe_solver(V& v, fem::CampaignSettings& s) {
   v.flag_or_count(
       s.indentation.refine_under_tool, "contact",
       {"refine_under_tool",
-       "divides the elements under the tool: once, as often as a number says, or as the contact of "
-       "a sphere asks for (\"contact\")",
+       "divides the elements under the tool: once, as often as a number says, or as the contact "
+       "asks for (\"contact\")",
        kOptional,
        {.low = 0, .high = fem::IndentationSettings::kMaxRefinements}});
+  v.integer(s.mesh_error_sites,
+            {"mesh_error_sites",
+             "largest number of sites that are pressed on a finer mesh too, which bounds the "
+             "[error of the mesh](campaigns.md#the-error-of-the-mesh) of all sites; 0: unknown",
+             kOptional,
+             {.low = 0, .high = 1000}});
 }
 
 template <class V>

@@ -41,7 +41,7 @@ AttributeList attributes_of(const Path& path) {
 /// What a reader may do without: texts for people, and what later versions added.
 bool may_be_missing(const std::string& name) {
   for (const char* optional : {"description", "creator", "basis", "min_lipschitz_bound",
-                               "lipschitz_bound", "tool_edge_radius", "tool_length"})
+                               "lipschitz_bound", "tool_edge_radius", "tool_length", "mesh_error_confidence"})
     if (name == optional) return true;
   return false;
 }

@@ -2,13 +2,16 @@
 // What is written is what is read, to the last bit.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <regex>
+#include <string>
 
 #include "format/sha256.hpp"
 #include "palpate_version.hpp"
 #include "tests/support/sample_artifacts.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/unit/format/hdf5_editor.hpp"
 #include "tests/unit/format/refusal.hpp"
 
 namespace palpate {
@@ -69,6 +72,50 @@ TEST(RoundTrip, Curves) {
     EXPECT_EQ(dump(read_curves(folder / "relaxing.h5")), dump(relaxing));
     EXPECT_NE(dump(relaxing), dump(curves));
   }
+}
+
+TEST(RoundTrip, CurvesKnowTheConfidenceOfTheErrorOfTheMesh) {
+  const TemporaryFolder folder;
+  Curves curves = samples::curves(1);
+  curves.mesh_error_confidence = 0.95;
+  write_curves(folder / "curves.h5", curves);
+  EXPECT_EQ(read_curves(folder / "curves.h5").mesh_error_confidence, 0.95);
+  curves.mesh_error_confidence = 1.5;
+  expect_refusal([&] { write_curves(folder / "curves.h5", curves); }, ErrorKind::Internal,
+                 "/@mesh_error_confidence", "is not a probability");
+}
+
+/// Curves of before have no columns for it.
+TEST(RoundTrip, CurvesWithoutTheErrorOfTheMeshAreRead) {
+  const TemporaryFolder folder;
+  const Curves curves = samples::curves(1);
+  write_curves(folder / "curves.h5", curves);
+  {
+    samples::Hdf5Editor editor(folder / "curves.h5");
+    for (const char* name : {"facets_in_contact", "mesh_difference", "mesh_error"})
+      editor.remove(std::string("/sample/") + name);
+  }
+  const Curves read = read_curves(folder / "curves.h5");
+  EXPECT_TRUE(std::isnan(read.mesh_error_confidence));
+  for (const SiteCurves& site : read.sites)
+    for (const CurvePath& path : site.paths)
+      for (const CurveSample& sample : path.samples) {
+        EXPECT_TRUE(std::isnan(sample.facets_in_contact));
+        EXPECT_TRUE(std::isnan(sample.mesh_difference));
+        EXPECT_TRUE(std::isnan(sample.mesh_error));
+      }
+}
+
+TEST(RoundTrip, ALibraryHasTheErrorOfTheMesh) {
+  const TemporaryFolder folder;
+  Library library = samples::library(1);
+  write_library(folder / "library.h5", library);
+  EXPECT_TRUE(std::isnan(read_library(folder / "library.h5").responses[0].normal_mesh_error));
+  library.responses[0].normal_mesh_error = 0.02;
+  write_library(folder / "library.h5", library);
+  const Library read = read_library(folder / "library.h5");
+  EXPECT_EQ(read.responses[0].normal_mesh_error, 0.02);
+  EXPECT_TRUE(std::isnan(read.responses[1].normal_mesh_error));
 }
 
 TEST(RoundTrip, CurvesOfRelaxingTissueWithoutTheEnergyOfARegionAreRefused) {

@@ -45,6 +45,9 @@ TEST(CurvesCsv, ReadsBackExactly) {
         expect_same(number(found, "tool_work_J"), sample.tool_work);
         expect_same(number(found, "force_scatter_N"), sample.force_scatter);
         expect_same(number(found, "tension_N"), sample.tension);
+        expect_same(number(found, "facets_in_contact"), sample.facets_in_contact);
+        expect_same(number(found, "mesh_difference_N"), sample.mesh_difference);
+        expect_same(number(found, "mesh_error_N"), sample.mesh_error);
       }
   EXPECT_EQ(row, rows.size());
   EXPECT_GT(row, 100u);

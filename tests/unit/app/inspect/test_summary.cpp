@@ -95,6 +95,29 @@ TEST(Inspect, NamesTheSitesOfLargestContactErrors) {
   EXPECT_EQ(contact["site_of_max_tension"], 3);
 }
 
+TEST(Inspect, HasTheErrorOfTheMesh) {
+  Curves curves;
+  curves.tool = {"sphere", 0.005, "frictionless"};
+  SiteCurves site{3, SiteStatus::Complete, "", 1, {}};
+  std::vector<CurveSample> samples(3);
+  for (const std::size_t i : {1U, 2U}) {
+    samples[i].displacement = 1e-3 * static_cast<double>(i);
+    samples[i].force = {0, 0, -static_cast<double>(i)};
+    samples[i].mesh_error = 0.1;
+  }
+  site.paths.push_back({PathKind::Normal, 0, {0, 0, -1}, samples});
+  curves.sites.push_back(site);
+  const samples::TemporaryFolder folder;
+  write_curves(folder / "curves.h5", curves);
+  EXPECT_EQ(summarize_artifact(folder / "curves.h5")["mesh_error"], "unknown");
+  curves.mesh_error_confidence = 0.95;
+  write_curves(folder / "curves.h5", curves);
+  const auto error = summarize_artifact(folder / "curves.h5")["mesh_error"];
+  EXPECT_NEAR(error["max_at_end_of_press"].get<double>(), 0.05, 1e-12);
+  EXPECT_NEAR(error["median_at_first_sample"].get<double>(), 0.1, 1e-12);
+  EXPECT_EQ(error["confidence"], 0.95);
+}
+
 TEST(Inspect, CountsThePathsWhoseEnergyDoesNotBalance) {
   Curves curves;
   curves.tool = {"sphere", 0.005, "frictionless"};

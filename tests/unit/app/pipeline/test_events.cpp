@@ -238,10 +238,12 @@ TEST(TextSink, PrintsSearchesAndStudies) {
               HasSubstr("there is no bound"));
   EXPECT_THAT(text_of({ConvergenceLevel{0.004, 12000, 61}}),
               HasSubstr("elements of 4 mm, 12000 unknowns, 1 min 01 s"));
-  EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, true, 1.5, 0.08, 0.25}}),
-              HasSubstr("100.0 90.00 -> 80.00 mN, order 1.50"));
-  EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, false, NAN, 0.09, 0.1}}),
-              HasSubstr("spread 10.0 %"));
+  EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, true, 1.5, 0.08, 0.25, 0.3}}),
+              HasSubstr("100.0 90.00 -> 80.00 mN, order 1.50; error of the case's mesh +25.0 %, at "
+                        "most 30.0 %"));
+  EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, false, NAN, 0.09, 0.1, 0.4}}),
+              HasSubstr("no power of the element size; error of the case's mesh +10.0 %, at most "
+                        "40.0 %"));
   EXPECT_THAT(
       text_of({Estimate{104, true, 8240, 24720, 113, 12, 2, 1.24e9, 158e3, 8, 20}}),
       testing::AllOf(HasSubstr("at most 104 sites on 8240 nodes (24720 unknowns) take 1 min 53 s"),

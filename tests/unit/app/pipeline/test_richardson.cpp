@@ -4,12 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace palpate::app {
 namespace {
 
 TEST(Richardson, FindsOrderAndLimitOfAPowerOfTheSize) {
-  for (const double order : {0.5, 1.0, 2.3, 4.0}) {
+  for (const double order : {0.9, 1.0, 2.3, 3.9}) {
     const std::vector<double> sizes{4e-3, 3e-3, 2e-3, 1.3e-3};
     std::vector<double> values;
     for (const double h : sizes) values.push_back(0.2 + 0.05 * std::pow(h / 4e-3, order));
@@ -27,12 +28,47 @@ TEST(Richardson, DoesNotPretendWhereThereIsNoLaw) {
   EXPECT_FALSE(wavy.trusted);
   EXPECT_TRUE(std::isnan(wavy.order));
   EXPECT_DOUBLE_EQ(wavy.value, 1.1);
-  EXPECT_NEAR(wavy.error, 0.2 / 1.1, 1e-12);
+  EXPECT_NEAR(wavy.error, -0.1 / 1.1, 1e-12);
+  EXPECT_NEAR(wavy.bound, (0.1 + 3 * 0.2) / 1.1, 1e-12);
   EXPECT_FALSE(extrapolate(sizes, {1.0, 1.1, 1.3}).trusted);  // it diverges
   EXPECT_FALSE(extrapolate(sizes, {1.0, 1.0, 1.0}).trusted);
   const Extrapolation gap = extrapolate(sizes, {1.0, std::nan(""), 1.3});
   EXPECT_FALSE(gap.trusted);
   EXPECT_TRUE(std::isnan(gap.value));
+}
+
+/// Orders that no element has come from chance.
+TEST(Richardson, TrustsNoOrderOutOfRange) {
+  for (const double order : {0.61, 5.34}) {
+    std::vector<double> values;
+    for (const double h : {4e-3, 2.8e-3, 2e-3})
+      values.push_back(0.2 + 0.05 * std::pow(h / 4e-3, order));
+    const Extrapolation e = extrapolate({4e-3, 2.8e-3, 2e-3}, values);
+    EXPECT_FALSE(e.trusted) << order;
+    EXPECT_GT(e.error, 0) << order;  // the sign is known nevertheless
+    EXPECT_GT(e.bound, 0.05 / 0.2) << order;
+  }
+}
+
+/// Errors of any order, with the scatter of a contact that falls on other parts of facets on every
+/// mesh.
+TEST(Richardson, BoundsTheErrorOfNearlyAllSequences) {
+  std::mt19937 random(7);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(random()) / 4294967296.0;
+  };
+  const std::vector<double> sizes{5e-3, 3.6e-3, 2.5e-3};
+  int covered = 0;
+  constexpr int kSequences = 2000;
+  for (int i = 0; i < kSequences; ++i) {
+    const double order = between(0.8, 4), error = between(-0.3, 0.3), scatter = between(0, 0.05);
+    std::vector<double> values;
+    for (const double h : sizes)
+      values.push_back(1 + (error + scatter * between(-1, 1)) * std::pow(h / 5e-3, order));
+    const Extrapolation e = extrapolate(sizes, values);
+    covered += std::abs(values.front() - 1) <= e.bound * std::abs(e.value) ? 1 : 0;
+  }
+  EXPECT_GT(covered, 0.95 * kSequences);
 }
 
 }  // namespace

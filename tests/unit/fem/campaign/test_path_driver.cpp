@@ -104,7 +104,7 @@ TEST(PathDriver, EndsThePathWhereTheToolCutsIntoFixedSurface) {
   const SiteCurves curves =
       solve_site(CampaignContext(body, settings, Engine::SharedFactor), site, nullptr);
   EXPECT_NE(curves.status, SiteStatus::Complete);
-  EXPECT_THAT(curves.reason, HasSubstr("the tool penetrates a constrained region"));
+  EXPECT_THAT(curves.reason, HasSubstr("the tool cuts into the surface"));
 }
 
 constexpr double kRadius = 0.005;

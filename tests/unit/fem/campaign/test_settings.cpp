@@ -45,18 +45,18 @@ TEST(Settings, OfAnIndentationAreCheckedByName) {
   EXPECT_THAT(refusal([](S& s) { s.size_over_contact = 0; }), HasSubstr("size_over_contact"));
 }
 
-TEST(Settings, RefineByTheContactOfASphereOnly) {
-  const auto with = [](ToolShape shape) {
-    return [shape](IndentationSettings& s) {
+TEST(Settings, RefineByTheContactOfAnyToolButASharpDisc) {
+  const auto with = [](ToolGeometry tool) {
+    return [tool](IndentationSettings& s) {
       s.refine_under_tool = IndentationSettings::kByContact;
-      s.tool.shape = shape;
-      s.tool.edge_radius = shape == ToolShape::Disc ? 0.001 : 0;
-      s.tool.length = shape == ToolShape::Cylinder ? 0.02 : 0;
+      s.tool = tool;
+      s.friction = ToolFriction::NoSlip;
     };
   };
-  EXPECT_EQ(refusal(with(ToolShape::Sphere)), "");
-  for (const ToolShape shape : {ToolShape::Disc, ToolShape::Cylinder})
-    EXPECT_THAT(refusal(with(shape)), testing::HasSubstr("contact of a sphere only"));
+  EXPECT_EQ(refusal(with({ToolShape::Sphere, 0.005, 0, 0})), "");
+  EXPECT_EQ(refusal(with({ToolShape::Disc, 0.005, 0.001, 0})), "");
+  EXPECT_EQ(refusal(with({ToolShape::Cylinder, 0.005, 0, 0.02})), "");
+  EXPECT_THAT(refusal(with({ToolShape::Disc, 0.005, 0, 0})), testing::HasSubstr("sharp edge"));
 }
 
 TEST(Settings, NeedNoLateralValuesWithoutLateralPaths) {

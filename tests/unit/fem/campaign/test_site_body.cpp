@@ -78,11 +78,19 @@ double longest_edge(const QuadraticMesh& mesh, const Tetrahedron10& t) {
   return longest;
 }
 
+ContactCore contact_around(const Eigen::Vector3d& centre, double smallest, double largest) {
+  ContactCore core;
+  core.centre = centre;
+  core.smallest = smallest;
+  core.largest = largest;
+  return core;
+}
+
 /// The elements that a contact of radius r meets are as small as r asks for, and where the smallest
 /// contact does not ask for it, no element is divided.
 TEST_F(SiteBodies, ContactDividesInProportionToTheDistance) {
   const SiteRefinement asked{
-      .min_contact_radius = 0.0008, .max_contact_radius = 0.004, .size_over_distance = 1};
+      .levels = 0, .cores = {contact_around(site, 0.0008, 0.004)}, .size_over_distance = 1};
   const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow, asked);
   for (const Tetrahedron10& t : s.mesh().tetrahedra) {
     const double r = distance_of_centre(s.mesh(), t, site), longest = longest_edge(s.mesh(), t);
@@ -99,7 +107,7 @@ TEST_F(SiteBodies, ContactsOfAnyRadiusCostTheSame) {
   std::vector<std::size_t> elements;
   for (const double radius : {0.002, 0.001, 0.0005, 0.00025}) {
     const SiteRefinement asked{
-        .min_contact_radius = radius, .max_contact_radius = 0.004, .size_over_distance = 1};
+        .levels = 0, .cores = {contact_around(site, radius, 0.004)}, .size_over_distance = 1};
     elements.push_back(
         SiteBody(model, rest, site, tool, SiteMesh::RefinedWindow, asked).mesh().tetrahedra.size());
   }
@@ -111,7 +119,7 @@ TEST_F(SiteBodies, ContactsOfAnyRadiusCostTheSame) {
 
 TEST_F(SiteBodies, ContactLargerThanTheElementsDividesNone) {
   const SiteRefinement asked{
-      .min_contact_radius = 0.02, .max_contact_radius = 0.03, .size_over_distance = 1};
+      .levels = 0, .cores = {contact_around(site, 0.02, 0.03)}, .size_over_distance = 1};
   const SiteBody s(model, rest, site, tool, SiteMesh::RefinedWindow, asked);
   EXPECT_EQ(s.mesh().tetrahedra.size(), model.mesh().tetrahedra.size());
 }

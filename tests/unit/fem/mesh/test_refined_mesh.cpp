@@ -360,6 +360,34 @@ TEST(RefineUnderTool, ByContactTheForceDoesNotDependOnTheFacets) {
   EXPECT_GT(std::abs(force_at(unrefined, 1) - force_at(ours, 1)), 0.1 * force_at(ours, 1));
 }
 
+/// Largest relative difference of the normal forces of two presses.
+double difference(const SiteCurves& a, const SiteCurves& b) {
+  double largest = 0;
+  for (std::size_t i = 1; i < a.paths[0].samples.size(); ++i)
+    largest = std::max(largest, std::abs(force_at(a, i) / force_at(b, i) - 1));
+  return largest;
+}
+
+// The same on facets larger than the fillet of a disc, and than the contact of a cylinder.
+TEST(RefineUnderTool, ByContactOtherToolsDoNotFeelTheFacets) {
+  const Body coarse = block_of(4);
+  for (const ToolGeometry& tool : {ToolGeometry{ToolShape::Disc, 0.004, 0.0015, 0},
+                                   ToolGeometry{ToolShape::Cylinder, 0.003, 0, 0.006}}) {
+    CampaignSettings settings = pressed_by(0.005, 0.0012);
+    settings.indentation.tool = tool;
+    settings.indentation.increments = 2;
+    settings.indentation.lateral_depths.clear();
+    const auto at = [&](int refinements, double x, double y) {
+      return press(coarse, settings, refinements, x, y);
+    };
+    const int by_contact = IndentationSettings::kByContact;
+    const SiteCurves ours = at(by_contact, 0.0012, 0.0021), beside = at(by_contact, 0, 0);
+    ASSERT_EQ(ours.status, SiteStatus::Complete) << ours.reason;
+    EXPECT_LT(difference(ours, beside), 0.03) << name_of(tool.shape);
+    EXPECT_GT(difference(at(0, 0.0012, 0.0021), ours), 0.06) << name_of(tool.shape);
+  }
+}
+
 TEST(RefineUnderTool, ConservesEnergyBetweenSmallAndLargeElements) {
   const SiteCurves site = press(block_of(6), pressed_by(0.005, 0.003), 1, 0.0012, 0.0021);
   ASSERT_EQ(site.status, SiteStatus::Complete) << site.reason;

@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "fitting/response/fit.hpp"
+#include "fitting/response/fit_errors.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
 
@@ -125,6 +126,20 @@ TEST(Fit, EveryCompleteSiteHasItsResponses) {
 /// Lateral stiffness of a bonded contact, proportional to the contact radius of a sphere.
 double contact_width(double depth) {
   return std::sqrt(depth / 0.003);
+}
+
+TEST(Fit, TheErrorOfTheMeshIsTheLargestOfTheNormalCurve) {
+  const Body body = hexagon();
+  Curves curves = complete_curves(body);
+  curves.sites[2].paths[0].samples[3].mesh_error = 0.03;
+  curves.sites[2].paths[0].samples[4].mesh_error = 0.02;
+  const Library library = fit(body, curves, {});
+  EXPECT_EQ(library.responses[2].normal_mesh_error, 0.03);
+  EXPECT_TRUE(std::isnan(library.responses[3].normal_mesh_error));
+  const auto errors = fit_errors(library, curves);
+  const FitErrorSummary summary = summary_of(errors, &SiteFitError::mesh);
+  EXPECT_EQ(summary.vertex, 2);
+  EXPECT_NEAR(summary.worst, 0.03 / norm(curves.sites[2].paths[0].samples.back().force), 1e-12);
 }
 
 TEST(Fit, CoupledResponsesFollowTheDepth) {

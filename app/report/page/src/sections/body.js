@@ -31,6 +31,10 @@ function fields(data) {
     fit: { label: 'Fit error, normal', unit: '% of peak force',
       ofVertex: () => all((v) => (100 * vertices.normal_error[v]) / vertices.normal_peak[v]) },
   };
+  if (vertices.mesh_error.some(Number.isFinite)) {
+    list.mesh = { label: 'Error of the mesh, normal, at most', unit: '% of peak force', from: 0,
+      ofVertex: () => all((v) => (100 * vertices.mesh_error[v]) / vertices.normal_peak[v]) };
+  }
   for (const kind of ['normal', 'lateral']) {
     if (!data.comparison?.curves.some((c) => c.kind === kind)) continue;
     list[`error_${kind}`] = { label: `Error against the reference, ${kind}`, unit: 'JND', sparse: true, from: 0,

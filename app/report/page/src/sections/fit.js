@@ -10,6 +10,14 @@ const quantile = (values, q) => {
   return sorted[Math.max(0, Math.ceil(q * sorted.length) - 1)];
 };
 
+/** What the mesh of the campaign leaves in the normal forces: known where sites were pressed on a finer one. */
+function meshSentence(v, confidence) {
+  const errors = relative(v.mesh_error, v.normal_peak);
+  if (!errors.length) return el('p', { id: 'mesh-error', class: 'note' }, 'The error of the mesh in the forces is unknown.');
+  return el('p', { id: 'mesh-error', class: 'note' },
+    `The mesh leaves an error of the normal force of at most ${units.percent(quantile(errors, 0.5) / 100)} of the largest force at the median node, ${units.percent(quantile(errors, 1) / 100)} at the worst (confidence ${units.percent(confidence)}).`);
+}
+
 function fitPanel(v) {
   const normal = relative(v.normal_error, v.normal_peak), lateral = relative(v.lateral_error, v.lateral_peak);
   if (normal.length + lateral.length === 0) return el('div', {}, el('h3', {}, 'Fit error'), paragraph('No node has a response from its own curves.'));
@@ -55,5 +63,6 @@ export function fitSection(data) {
     el('h2', {}, 'Errors of the curves'),
     paragraph('The distance of the fit from the computed states, and the difference between the work of the tool and the energy stored in the body and its contact.', 'lead'),
     misfitSentence(data.vertices),
+    meshSentence(data.vertices, data.key.mesh_error_confidence),
     el('div', { class: 'pair' }, fitPanel(data.vertices), balancePanel(data.balance)));
 }

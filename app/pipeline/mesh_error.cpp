@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "app/pipeline/mesh_error.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/pipeline/campaign_sites.hpp"
+#include "app/pipeline/settings.hpp"
+#include "fem/campaign/campaign_context.hpp"
+#include "fem/campaign/finer_mesh.hpp"
+#include "fitting/response/mesh_error.hpp"
+#include "format/error.hpp"
+
+namespace palpate::app {
+namespace {
+
+/// The sites of the whole campaign, also in a shard: all shards choose among the same.
+std::vector<std::int32_t> candidates(const Workspace& space, const Body& body,
+                                     const Curves& curves) {
+  if (!is_adaptive(space)) return sites_of(body);
+  std::vector<std::int32_t> sites;
+  for (const SiteCurves& site : curves.sites) sites.push_back(site.vertex);
+  return sites;
+}
+
+/// Every tenth site is pressed again where there are few, but two.
+int count_of(int asked, std::size_t candidates) {
+  return std::min(asked, std::max(2, static_cast<int>(candidates / 10)));
+}
+
+}  // namespace
+
+std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
+    const Workspace& space, const Body& body, const fem::CampaignSettings& settings, Curves& curves,
+    fem::FactorCache* cache, const EventSink& emit) {
+  if (settings.mesh_error_sites == 0) return {};
+  const std::string obstacle = fem::obstacle_to_refinement(body, settings);
+  if (!obstacle.empty()) {
+    emit(LogLine{"precompute",
+                 "the error of the mesh stays unknown: elements cannot be refined "
+                 "under the tool " +
+                     obstacle});
+    return {};
+  }
+  const auto all = candidates(space, body, curves);
+  const auto chosen =
+      fem::sites_far_apart(body, all, count_of(settings.mesh_error_sites, all.size()));
+  fem::CampaignReport report;
+  try {
+    fem::press_on_finer_mesh(body, settings, chosen, curves, report, cache);
+  } catch (const Error& error) {
+    emit(Warning{"precompute",
+                 fmt::format("the error of the mesh stays unknown: {}", error.what())});
+    return {};
+  }
+  fitting::bound_mesh_errors(curves);
+  if (const std::string text = mesh_error_text(curves); !text.empty())
+    emit(LogLine{"precompute", text});
+  return {{"sites_on_finer_mesh", std::to_string(chosen.size())},
+          {"cpu_seconds_on_finer_mesh", fmt::format("{:.3f}", report.cpu_seconds)}};
+}
+
+std::string mesh_error_text(const Curves& curves) {
+  const fitting::MeshErrorSummary summary = fitting::mesh_error_summary(curves);
+  if (std::isnan(summary.median_at_end)) return {};
+  return fmt::format(
+      "the mesh leaves an error of the normal force of at most {:.2g} % at the end of the path and "
+      "{:.2g} % at the first increment (medians over the sites; {:.0f} % confidence)",
+      100 * summary.median_at_end, 100 * summary.median_at_first,
+      100 * curves.mesh_error_confidence);
+}
+
+}  // namespace palpate::app

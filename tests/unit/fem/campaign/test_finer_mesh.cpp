@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// Sites that are pressed on a finer mesh as well, and what they tell of the others.
+#include "fem/campaign/finer_mesh.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "fitting/response/mesh_error.hpp"
+#include "format/to_index.hpp"
+#include "tests/support/block_body.hpp"
+
+namespace palpate::fem {
+namespace {
+
+/// A block whose elements are half as large on one side as on the other.
+Body uneven_block() {
+  Body body = test::make_block(test::even(-0.02, 0.02, 8), test::even(-0.02, 0.02, 8),
+                               test::even(-0.02, 0, 4));
+  test::deform(body, [](const Vec3& x) {
+    const auto stretched = [](double c) { return c + 0.3 * (c * c / 0.02 - 0.02); };
+    return Vec3{stretched(x[0]), stretched(x[1]), x[2]};
+  });
+  return body;
+}
+
+std::vector<std::int32_t> sites_of(const Body& body) {
+  std::vector<std::int32_t> sites;
+  for (std::size_t v = 0; v < body.response.is_site.size(); ++v)
+    if (body.response.is_site[v] != 0) sites.push_back(static_cast<std::int32_t>(v));
+  return sites;
+}
+
+CampaignSettings pressed() {
+  CampaignSettings s;
+  s.materials = {{"tissue", {10e3, 0.45}}};
+  s.indentation.tool.radius = 0.005;
+  s.indentation.depth = 0.001;
+  s.indentation.increments = 7;
+  s.indentation.lateral_depths.clear();
+  s.threads = 2;
+  return s;
+}
+
+TEST(FinerMesh, ChoosesSitesFarApart) {
+  const Body body = uneven_block();
+  const auto chosen = sites_far_apart(body, sites_of(body), 4);
+  ASSERT_EQ(chosen.size(), 4u);
+  for (std::size_t a = 0; a < 4; ++a)
+    for (std::size_t b = a + 1; b < 4; ++b)
+      EXPECT_GT(norm(body.nodes[to_index(body.response.node[to_index(chosen[a])])] -
+                     body.nodes[to_index(body.response.node[to_index(chosen[b])])]),
+                0.02);
+  EXPECT_EQ(sites_far_apart(body, {3, 5}, 4), (std::vector<std::int32_t>{3, 5}));
+}
+
+/// Three sites bound the error of others, which is known from elements that are small beside the
+/// contact. The facets are 3 to 8 mm large, the contacts 0.8 to 2.2 mm: errors of tens of percent.
+TEST(FinerMesh, OfAFewSitesBoundsTheErrorOfOthers) {
+  const Body body = uneven_block();
+  CampaignSettings settings = pressed();
+  CampaignReport report;
+  const auto chosen = sites_far_apart(body, sites_of(body), 3);
+  std::vector<std::int32_t> others;
+  for (const auto [x, y] : {std::pair{-0.006, -0.004}, {0.001, 0.004}, {0.008, -0.003}})
+    others.push_back(test::site_nearest(body, x, y));
+  settings.sites = chosen;
+  settings.sites.insert(settings.sites.end(), others.begin(), others.end());
+  Curves curves = run_campaign(body, settings, report);
+  press_on_finer_mesh(body, settings, chosen, curves, report);
+  fitting::bound_mesh_errors(curves);
+  EXPECT_DOUBLE_EQ(curves.mesh_error_confidence, 0.95);
+
+  settings.sites = others;
+  settings.indentation.refine_under_tool = IndentationSettings::kByContact;
+  int covered = 0, compared = 0;
+  double largest = 0;
+  for (const SiteCurves& truth : run_campaign(body, settings, report).sites) {
+    const auto site = std::find_if(curves.sites.begin(), curves.sites.end(),
+                                   [&](const auto& s) { return s.vertex == truth.vertex; });
+    for (std::size_t i = 1; i < truth.paths[0].samples.size(); ++i) {
+      const CurveSample& ours = site->paths[0].samples[i];
+      const double error = std::abs(ours.force[2] - truth.paths[0].samples[i].force[2]);
+      largest = std::max(largest, error / norm(ours.force));
+      covered += error <= ours.mesh_error ? 1 : 0;
+      ++compared;
+    }
+  }
+  EXPECT_GT(largest, 0.1);
+  EXPECT_GE(covered, 0.9 * compared) << covered << " of " << compared;
+}
+
+}  // namespace
+}  // namespace palpate::fem
