@@ -19,7 +19,7 @@ namespace {
 
 /// Statistics of a session, updated after each step.
 struct Summary {
-  std::int64_t steps = 0, sliding = 0, throttled = 0, limited = 0;
+  std::int64_t steps = 0, sliding = 0, rate_limited = 0, limited = 0;
   double largest = 0, absorbed = 0;
   runtime::LatencyHistogram latency;
 
@@ -27,7 +27,7 @@ struct Summary {
     const auto one_if = [&](std::uint32_t bit) { return (step.status & bit) != 0 ? 1 : 0; };
     ++steps;
     sliding += one_if(PALPATE_SLIDING);
-    throttled += one_if(PALPATE_FORCE_LIMITED);
+    rate_limited += one_if(PALPATE_FORCE_LIMITED);
     limited += one_if(PALPATE_ENERGY_LIMITED);
     largest = std::max(largest, norm(step.force));
     absorbed = step.absorbed;
@@ -42,7 +42,7 @@ void print(const Summary& s, const DepthWatch& depths, double rate,
   say("  steps in contact {}, sliding {}, rate-limited {}, limited by the energy rule {}, "
       "extrapolated "
       "beyond the computed depth {}",
-      depths.contact(), s.sliding, s.throttled, s.limited, depths.beyond());
+      depths.contact(), s.sliding, s.rate_limited, s.limited, depths.beyond());
   say("  absorbed by the body: {} mJ; force step: median {:.2f} us, 99 % within {:.2f} us",
       number_text(1e3 * s.absorbed), s.latency.quantile(0.5) * 1e-3,
       s.latency.quantile(0.99) * 1e-3);

@@ -91,10 +91,10 @@ std::string verdict(const Certificate& certificate, const DeviceCertificate& dev
   const std::string whole =
       certified_from(constants, rendered_force(certificate, bound), device.lowest_rate);
   const RenderedForce softest = rendered_force(certificate, smallest);
-  const double throttled = lowest_rate(constants, softest);
+  const double rate_limited = lowest_rate(constants, softest);
   std::string with_throttling;  // not where it gains nothing or is not known
-  if (whole.empty() || throttled < 0.995 * device.lowest_rate) {
-    with_throttling = certified_from(constants, softest, throttled);
+  if (whole.empty() || rate_limited < 0.995 * device.lowest_rate) {
+    with_throttling = certified_from(constants, softest, rate_limited);
     if (!with_throttling.empty())
       with_throttling += " with lipschitz_bound = " + lipschitz_bound_text(smallest);
   }

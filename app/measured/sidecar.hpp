@@ -65,7 +65,7 @@ struct PathSection {
   int samples = 24;
   bool as_recorded = false;  ///< the samples of a batch are those of the path, `samples` is unused
   int lateral_samples = 12;
-  double lateral_ratio = 0;  ///< of a lateral response made from the normal one; 0: none
+  double lateral_ratio = 0;     ///< of a lateral response made from the normal one; 0: none
   RelaxationSeries relaxation;  ///< of the force; empty: the curves are those of the recorded press
 };
 

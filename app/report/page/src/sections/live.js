@@ -28,7 +28,7 @@ export function liveHeader(data) {
 }
 
 const WORDS = [[status.BEYOND_DEPTH, 'beyond the deepest sample: extrapolated'], [status.AT_BORDER, 'at a border'],
-  [status.ENERGY_LIMITED, 'limited by the energy rule'], [status.FORCE_LIMITED, 'slide throttled'], [status.SLIDING, 'sliding']];
+  [status.ENERGY_LIMITED, 'limited by the energy rule'], [status.FORCE_LIMITED, 'slide rate-limited'], [status.SLIDING, 'sliding']];
 const stateText = ({ element, status: bits }) => (element < 0 ? 'no contact' : WORDS.find(([bit]) => bits & bit)?.[1] ?? 'in contact, sticking');
 
 class Readings {
