@@ -120,8 +120,7 @@ inline auto adversary_cases() {
       AdversaryCase{"coupled_cube", 0.2, 5e-3}, AdversaryCase{"coupled_thin", 0.5, 0},
       AdversaryCase{"relaxing", 0.3, 5e-3}, AdversaryCase{"relaxing", 0, 0},
       AdversaryCase{"relaxing_alike", 0.2, 0}, AdversaryCase{"relaxing_cube", 0.5, 5e-3},
-      AdversaryCase{"relaxing_hills", 0.3, 5e-3}, AdversaryCase{"relaxing_hills", 0.8, 0},
-      AdversaryCase{"relaxing_thin", 0.5, 0});
+      AdversaryCase{"relaxing_hills", 0.3, 5e-3}, AdversaryCase{"relaxing_hills", 0.8, 0});
 }
 
 inline std::string case_name(const ::testing::TestParamInfo<AdversaryCase>& about) {

@@ -14,6 +14,9 @@ namespace {
 constexpr double kForceTolerance =
     1e-9;  // N; at a release 1e-11 m of lateral deflection may be left
 
+/// N: a lateral force that relaxes at a deflection of 1e-11 m. A memory that is kept keeps more.
+constexpr double kForgotten = 1e-8;
+
 struct CurvePoint {
   double force = 0, energy = 0;
 };
@@ -249,6 +252,10 @@ double MemoryTwin::pass_lateral(const runtime::ContactObservation& after, const 
     const Vec3 next = force + std::exp(-dt / library_.relaxation_times[i]) * (relaxed - force);
     dragged_[i] = deflection_of(next, std::max(norm(dragged_[i]), norm(at)));
   }
+  const Vec3 memory = lateral_sums().relaxed;
+  const Vec3 felt = gradient(q) - memory, unslipped = force - memory;
+  const double scale = norm(felt) / std::max(norm(unslipped), 1e-300);
+  misdirected_ = scale < 1 ? norm(felt - scale * unslipped) : norm(felt - unslipped);
   return before - lateral_energy(at);
 }
 
@@ -295,8 +302,7 @@ double MemoryTwin::step(const runtime::ContactObservation& before,
   if (decoupled) {
     if (slid > 0) carry_lateral(after.normal, slid);
     normal_ = after.normal;
-    const Vec3 felt = after.force - dot(after.force, after.normal) * after.normal;
-    if (may_lose && norm(felt) < kForceTolerance && norm(lateral_force(after, x)) > kForceTolerance)
+    if (may_lose && norm(after.relaxed_lateral_force) < kForgotten)
       std::fill(dragged_.begin(), dragged_.end(), Vec3{});
     dissipated += pass_lateral(after, elastic.lateral_deflection, dt);
   }
@@ -400,7 +406,8 @@ void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& b
   if (coupled) return;
   const Vec3 felt = seen().force - dot(seen().force, seen().normal) * seen().normal;
   largest_lateral_error =
-      std::max(largest_lateral_error, norm(felt - memory_.lateral_force(seen(), x)));
+      std::max({largest_lateral_error, norm(felt - memory_.lateral_force(seen(), x)),
+                memory_.misdirected()});
   if (norm(seen().relaxed_lateral_force) > 0) ++dragged;
 }
 

@@ -41,6 +41,9 @@ class MemoryTwin {
   double step(const runtime::ContactObservation& before, const runtime::ContactObservation& after,
               const Vec3& x, double dt);
   void forget();
+  /// N: by how much the lateral force after the last step has another direction than before the
+  /// slip that followed its relaxing, (R25), or is larger.
+  double misdirected() const { return misdirected_; }
 
  private:
   struct Sums {
@@ -71,6 +74,7 @@ class MemoryTwin {
   std::vector<double> memory_;   ///< F_i, N
   std::vector<Vec3> dragged_;    ///< p_i, m: M_i is the lateral force there
   Vec3 normal_{};                ///< to which they are tangential
+  double misdirected_ = 0;       ///< N
   Sums now_;                     ///< at place_
   runtime::SurfacePoint place_;  ///< of the tissue that remembers
   Vec3 point_{};                 ///< the same, m
