@@ -42,7 +42,8 @@ class MemoryTwin {
               const Vec3& x, double dt);
   void forget();
   /// N: by how much the lateral force after the last step has another direction than before the
-  /// slip that followed its relaxing, (R25), or is larger.
+  /// slip that followed its relaxing, (R25), or is larger; times what relaxes in the step, since
+  /// the former is known from that.
   double misdirected() const { return misdirected_; }
 
  private:
@@ -68,6 +69,7 @@ class MemoryTwin {
   void carry_lateral(const Vec3& normal, double slid);
   double pass_lateral(const runtime::ContactObservation& after, const Vec3& q, double dt);
   Vec3 target(const runtime::ContactObservation& after, const Vec3& q, double dt) const;
+  double relaxing_part(double dt) const;
   bool has_lost(const runtime::ContactObservation& model, const Vec3& x) const;
 
   const Library& library_;
