@@ -65,7 +65,6 @@ inline Library body_named(const std::string& name) {
   if (name == "relaxing_cube") return relaxing(cube(6, 0.06, varying(0.5)), {0.02, 0.5}, false);
   if (name == "relaxing_hills")
     return relaxing(bumpy_sphere(3, 0.03, 0.25, bent(0.4)), {0.01, 0.1, 1}, false);
-  if (name == "relaxing_thin") return relaxing(thin_body(8, 0.08, 0.0015, bent(0.5)), {0.05}, true);
   if (name == "hills") return bumpy_sphere(3, 0.03, 0.25, varying(0.5));
   if (name == "cube") return cube(6, 0.06, varying(0.5));
   return thin_body(8, 0.08, 0.0015, varying(0.5));
@@ -120,8 +119,7 @@ inline auto adversary_cases() {
       AdversaryCase{"coupled_cube", 0.2, 5e-3}, AdversaryCase{"coupled_thin", 0.5, 0},
       AdversaryCase{"relaxing", 0.3, 5e-3}, AdversaryCase{"relaxing", 0, 0},
       AdversaryCase{"relaxing_alike", 0.2, 0}, AdversaryCase{"relaxing_cube", 0.5, 5e-3},
-      AdversaryCase{"relaxing_hills", 0.3, 5e-3}, AdversaryCase{"relaxing_hills", 0.8, 0},
-      AdversaryCase{"relaxing_thin", 0.5, 0});
+      AdversaryCase{"relaxing_hills", 0.3, 5e-3}, AdversaryCase{"relaxing_hills", 0.8, 0});
 }
 
 inline std::string case_name(const ::testing::TestParamInfo<AdversaryCase>& about) {

@@ -146,7 +146,7 @@ class Adversary : public CertifiedBody {
     expect_no_jump(contact);
     apart_ += contact.apart;
     dragged_ += contact.dragged;
-    EXPECT_GT(contact.contacts, 40);
+    EXPECT_GT(contact.contacts, 35);
     EXPECT_GT(contact.slides, 5000);
     limited_ += contact.limited;
     force_limited_ += contact.force_limited;

@@ -14,6 +14,9 @@ namespace {
 constexpr double kForceTolerance =
     1e-9;  // N; at a release 1e-11 m of lateral deflection may be left
 
+/// N: a lateral force that relaxes at a deflection of 1e-11 m. A memory that is kept keeps more.
+constexpr double kForgotten = 1e-8;
+
 struct CurvePoint {
   double force = 0, energy = 0;
 };
@@ -225,18 +228,24 @@ void MemoryTwin::carry_lateral(const Vec3& normal, double slid) {
 /// The instantaneous force to which the branches relax: that at q, but where the tool has slipped
 /// after relaxing, and q is that of afterwards. Then what has relaxed tells.
 Vec3 MemoryTwin::target(const runtime::ContactObservation& after, const Vec3& q, double dt) const {
+  constexpr double kRounding = 1e-11;  // N
   const std::vector<double> g = fractions(place_);
   Vec3 kept{};
-  double passed = 0;
-  for (std::size_t i = 0; i < g.size(); ++i) {
-    const double decay = std::exp(-dt / library_.relaxation_times[i]);
-    kept = kept + (g[i] * decay) * gradient(dragged_[i]);
-    passed += g[i] * (1 - decay);
-  }
+  for (std::size_t i = 0; i < g.size(); ++i)
+    kept = kept + (g[i] * std::exp(-dt / library_.relaxation_times[i])) * gradient(dragged_[i]);
+  const double part = relaxing_part(dt);
   const Vec3 here = gradient(q);
-  if (norm(kept + passed * here - after.relaxed_lateral_force) < 1e-13 || passed < 1e-7)
-    return here;
-  return (1 / passed) * (after.relaxed_lateral_force - kept);
+  if (norm(kept + part * here - after.relaxed_lateral_force) < kRounding) return here;
+  return (1 / part) * (after.relaxed_lateral_force - kept);
+}
+
+/// sum g_i (1 - exp(-dt/tau_i))
+double MemoryTwin::relaxing_part(double dt) const {
+  const std::vector<double> g = fractions(place_);
+  double part = 0;
+  for (std::size_t i = 0; i < g.size(); ++i)
+    part += g[i] * -std::expm1(-dt / library_.relaxation_times[i]);
+  return part;
 }
 
 double MemoryTwin::pass_lateral(const runtime::ContactObservation& after, const Vec3& q,
@@ -249,6 +258,10 @@ double MemoryTwin::pass_lateral(const runtime::ContactObservation& after, const 
     const Vec3 next = force + std::exp(-dt / library_.relaxation_times[i]) * (relaxed - force);
     dragged_[i] = deflection_of(next, std::max(norm(dragged_[i]), norm(at)));
   }
+  const Vec3 memory = lateral_sums().relaxed;
+  const Vec3 felt = gradient(q) - memory, unslipped = force - memory;
+  const double scale = norm(felt) / std::max(norm(unslipped), 1e-300);
+  misdirected_ = relaxing_part(dt) * norm(felt - std::min(scale, 1.0) * unslipped);
   return before - lateral_energy(at);
 }
 
@@ -295,8 +308,7 @@ double MemoryTwin::step(const runtime::ContactObservation& before,
   if (decoupled) {
     if (slid > 0) carry_lateral(after.normal, slid);
     normal_ = after.normal;
-    const Vec3 felt = after.force - dot(after.force, after.normal) * after.normal;
-    if (may_lose && norm(felt) < kForceTolerance && norm(lateral_force(after, x)) > kForceTolerance)
+    if (may_lose && norm(after.relaxed_lateral_force) < kForgotten)
       std::fill(dragged_.begin(), dragged_.end(), Vec3{});
     dissipated += pass_lateral(after, elastic.lateral_deflection, dt);
   }
@@ -400,7 +412,8 @@ void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& b
   if (coupled) return;
   const Vec3 felt = seen().force - dot(seen().force, seen().normal) * seen().normal;
   largest_lateral_error =
-      std::max(largest_lateral_error, norm(felt - memory_.lateral_force(seen(), x)));
+      std::max({largest_lateral_error, norm(felt - memory_.lateral_force(seen(), x)),
+                memory_.misdirected()});
   if (norm(seen().relaxed_lateral_force) > 0) ++dragged;
 }
 

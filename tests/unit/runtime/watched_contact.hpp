@@ -41,6 +41,10 @@ class MemoryTwin {
   double step(const runtime::ContactObservation& before, const runtime::ContactObservation& after,
               const Vec3& x, double dt);
   void forget();
+  /// N: by how much the lateral force after the last step has another direction than before the
+  /// slip that followed its relaxing, (R25), or is larger; times what relaxes in the step, since
+  /// the former is known from that.
+  double misdirected() const { return misdirected_; }
 
  private:
   struct Sums {
@@ -65,12 +69,14 @@ class MemoryTwin {
   void carry_lateral(const Vec3& normal, double slid);
   double pass_lateral(const runtime::ContactObservation& after, const Vec3& q, double dt);
   Vec3 target(const runtime::ContactObservation& after, const Vec3& q, double dt) const;
+  double relaxing_part(double dt) const;
   bool has_lost(const runtime::ContactObservation& model, const Vec3& x) const;
 
   const Library& library_;
   std::vector<double> memory_;   ///< F_i, N
   std::vector<Vec3> dragged_;    ///< p_i, m: M_i is the lateral force there
   Vec3 normal_{};                ///< to which they are tangential
+  double misdirected_ = 0;       ///< N
   Sums now_;                     ///< at place_
   runtime::SurfacePoint place_;  ///< of the tissue that remembers
   Vec3 point_{};                 ///< the same, m
