@@ -89,8 +89,8 @@ class Watch(unittest.TestCase):
             shown = page.value("Object.fromEntries([...document.querySelectorAll('#live output')].map((o) => [o.id, o.textContent]))")
             errors = page.value("document.documentElement.dataset.errors")
         with h5py.File(self.recording) as file:
-            force = np.linalg.norm(file["force"][:], axis=1)
-            steps, contact = len(force), int(np.sum(file["status"][:] & 1))
+            force = np.linalg.norm(file["step/force"][:], axis=1)
+            steps, contact = len(force), int(np.sum(file["step/status"][:] & 1))
         plain = {key: re.sub("[\u202f\u00a0]", " ", text) for key, text in shown.items()}
         digits = lambda text: int(re.sub(r"\D", "", text))  # noqa: E731
         counts = plain["live-steps"].split(",")
@@ -147,7 +147,7 @@ class Watch(unittest.TestCase):
         steps = int(re.search(r"run: (\d+) steps", said)[1])
         self.assertIn("cut off 0, clamped 0, saturated 0, not recorded 0", said)
         with h5py.File(self.recording) as file:
-            self.assertEqual(len(file["force"]), steps)
+            self.assertEqual(len(file["step/force"]), steps)
         self.replayed()
         self.assertIn("the session has ended", self.end(watch))
 
