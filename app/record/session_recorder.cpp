@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostWaiting = 4096;  // steps: 700 kB
+constexpr std::size_t kMostWaiting = 4096;             // steps: 700 kB
 constexpr std::chrono::milliseconds kLongestWait{30};  // what watches the journal sees it move
 constexpr std::chrono::seconds kSynchronizeEvery{1};
 
