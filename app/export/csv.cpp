@@ -7,6 +7,7 @@
 
 #include "format/crash_safe_file.hpp"
 #include "format/status_name.hpp"
+#include "format/step_columns.hpp"
 
 namespace palpate::app {
 namespace {
@@ -42,11 +43,7 @@ std::string curves_csv(const Curves& curves) {
 
 void write_recording_csv(RecordingReader& recording, const std::filesystem::path& file) {
   CrashSafeFile csv(file);
-  csv.write(
-      "time_ns,position_x_m,position_y_m,position_z_m,velocity_x_m_s,velocity_y_m_s,velocity_z_m_s,"
-      "force_x_N,force_y_N,force_z_N,contact_x_m,contact_y_m,contact_z_m,depth_m,lateral_m,offset_"
-      "m,"
-      "energy_J,tank_J,absorbed_J,element,status,latency_ns\n");
+  csv.write(std::string(kStepColumns) + "\n");
   const auto vector = [](const Vec3& v) { return fmt::format("{},{},{}", v[0], v[1], v[2]); };
   for (auto steps = recording.next(); !steps.empty(); steps = recording.next()) {
     std::string rows;

@@ -4,11 +4,10 @@
 #include <sys/stat.h>
 
 #include <system_error>
+#include <vector>
 
 namespace palpate::app {
 namespace {
-
-constexpr std::size_t kMostAtOnce = 1 << 15;  // steps
 
 /// The number of the file of this name; 0: there is none.
 ino_t number_of(const std::filesystem::path& path) {
@@ -33,15 +32,15 @@ bool JournalTail::open() {
   return reader_.has_value();
 }
 
-JournalTail::News JournalTail::poll() {
-  News news;
+SessionNews JournalTail::poll() {
+  SessionNews news;
   if (!reader_) {
     if (!open()) return news;
     news.begun = reader_->heading();
   }
   const bool gone = is_gone();  // before reading: what is read then is the whole session
   bool more = true;
-  for (std::vector<RecordedStep> steps; news.steps.size() < kMostAtOnce;) {
+  for (std::vector<RecordedStep> steps; news.steps.size() < kMostNews;) {
     more = reader_->follow(steps);
     if (!more) break;
     news.steps.insert(news.steps.end(), steps.begin(), steps.end());

@@ -4,12 +4,10 @@
 
 #include <sys/types.h>
 
-#include <cstddef>
 #include <filesystem>
 #include <optional>
-#include <vector>
 
-#include "format/recording.hpp"
+#include "app/watch/session_news.hpp"
 #include "format/session_journal.hpp"
 
 namespace palpate::app {
@@ -21,14 +19,9 @@ class JournalTail {
  public:
   explicit JournalTail(std::filesystem::path journal) : path_(std::move(journal)) {}
 
-  struct News {
-    std::optional<RecordingHeading> begun;  ///< a session began
-    std::vector<RecordedStep> steps;        ///< of it, since the last call
-    bool ended = false;                     ///< its journal is gone
-  };
-  /// What has come since the last call, in parts where that is much. @throws Error when the disk
+  /// What has come since the last call; `ended`: the journal is gone. @throws Error when the disk
   /// refuses.
-  News poll();
+  SessionNews poll();
 
  private:
   bool open();

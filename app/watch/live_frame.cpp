@@ -65,7 +65,7 @@ json columns(const std::vector<RecordedStep>& steps) {
 
 }  // namespace
 
-bool LiveFrames::see(const JournalTail::News& news) {
+bool LiveFrames::see(const SessionNews& news) {
   if (news.begun) {
     heading_ = news.begun;
     ++session_;
@@ -98,7 +98,8 @@ std::string LiveFrames::next() {
     frame["device"] = heading_->device;
     frame["rate"] = heading_->rate;
     frame["friction"] = heading_->friction;
-    frame["same_library"] = heading_->library_sha256 == library_sha256_;
+    frame["same_library"] =
+        heading_->library_sha256.empty() || heading_->library_sha256 == library_sha256_;
     frame["counts"] = {{"steps", counts_.steps},
                        {"contact", counts_.contact},
                        {"beyond_depth", counts_.beyond_depth},

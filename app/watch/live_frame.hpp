@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "app/watch/journal_tail.hpp"
+#include "app/watch/session_news.hpp"
 #include "format/recording.hpp"
 
 namespace palpate::app {
@@ -20,7 +20,7 @@ class LiveFrames {
   explicit LiveFrames(std::string library_sha256) : library_sha256_(std::move(library_sha256)) {}
 
   /// False where the news have nothing.
-  bool see(const JournalTail::News& news);
+  bool see(const SessionNews& news);
   /// JSON of one line, SI units, positions in the frame of the body: the session with its counts,
   /// the last step, and for the plots the steps since the last call, thinned to extremes of the
   /// force.

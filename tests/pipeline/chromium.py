@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: AGPL-3.0-or-later
 """A headless Chromium that is told what to do while its pages run, by the DevTools protocol on a pipe."""
 import base64
+import fcntl
 import json
 import os
 import pathlib
@@ -19,13 +20,13 @@ class Chromium:
         self.number, self.left = 0, b""
 
         def on_3_and_4():
-            low, high = os.dup(down), os.dup(up)  # neither may be 3 before the other is moved
-            os.dup2(low, 13), os.dup2(high, 14), os.dup2(13, 3), os.dup2(14, 4)
+            low, high = (fcntl.fcntl(end, fcntl.F_DUPFD, 64) for end in (down, up))  # neither is 3 or 4
+            os.dup2(low, 3), os.dup2(high, 4)
 
         self.process = subprocess.Popen(
             [program, "--headless", "--no-sandbox", "--disable-gpu", "--no-first-run",
              f"--user-data-dir={self.profile.name}", "--remote-debugging-pipe", "about:blank"],
-            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=on_3_and_4, close_fds=False)
+            stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, preexec_fn=on_3_and_4, pass_fds=(3, 4))
         os.close(down)
         os.close(up)
         target = self.call("Target.createTarget", url="about:blank", newWindow=True, width=width, height=height)["targetId"]

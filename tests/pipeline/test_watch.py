@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: AGPL-3.0-or-later
-"""test_watch.py PALPATE CHROMIUM [PICTURE]: `palpate watch` shows a session of `palpate run` in a browser while it runs, as it is,
+"""test_watch.py PALPATE LIBPALPATE SOURCE CC CHROMIUM [PICTURE]: `palpate watch` shows a session of `palpate run` in a browser while it runs, as it is,
 and whoever watches, reads nothing, or comes and goes a hundred times, no step is lost and no force differs.
 PICTURE: where a screenshot goes."""
 import contextlib
@@ -20,8 +20,8 @@ import numpy as np
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 from chromium import Chromium  # noqa: E402
 
-PALPATE, BROWSER = sys.argv[1:3]
-PICTURE = sys.argv[3] if len(sys.argv) > 3 else None
+PALPATE, RUNTIME, SOURCE, CC, BROWSER = sys.argv[1:6]
+PICTURE = sys.argv[6] if len(sys.argv) > 6 else None
 if BROWSER.endswith("-NOTFOUND"):
     sys.exit("Chromium not found: install the Debian package chromium")
 LIBRARY = pathlib.Path(PALPATE).resolve().parent.parent / "share/palpate/libraries/gel.plib"
@@ -35,8 +35,9 @@ class Watch(unittest.TestCase):
         self.root = pathlib.Path(folder.name)
         self.recording = self.root / "recording.h5"
 
-    def start(self, *words):
-        process = subprocess.Popen(["stdbuf", "-oL", PALPATE, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    def start(self, *words, **options):
+        process = subprocess.Popen(["stdbuf", "-oL", PALPATE, *map(str, words)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                   **options)
         self.addCleanup(process.stdout.close)
         self.addCleanup(process.wait)
         self.addCleanup(process.kill)
@@ -49,7 +50,9 @@ class Watch(unittest.TestCase):
 
     def watch(self):
         """The process, and its port."""
-        process = self.start("watch", LIBRARY, "--recording", self.recording, "--port", 0, "--no-open")
+        return self.port_of(self.start("watch", LIBRARY, "--recording", self.recording, "--port", 0, "--no-open"))
+
+    def port_of(self, process):
         line = process.stdout.readline()
         port = re.match(r"watch: http://127\.0\.0\.1:(\d+)/ \(open it in a browser\)", line)
         self.assertTrue(port, line)
@@ -86,8 +89,8 @@ class Watch(unittest.TestCase):
             shown = page.value("Object.fromEntries([...document.querySelectorAll('#live output')].map((o) => [o.id, o.textContent]))")
             errors = page.value("document.documentElement.dataset.errors")
         with h5py.File(self.recording) as file:
-            force = np.linalg.norm(file["force"][:], axis=1)
-            steps, contact = len(force), int(np.sum(file["status"][:] & 1))
+            force = np.linalg.norm(file["step/force"][:], axis=1)
+            steps, contact = len(force), int(np.sum(file["step/status"][:] & 1))
         plain = {key: re.sub("[\u202f\u00a0]", " ", text) for key, text in shown.items()}
         digits = lambda text: int(re.sub(r"\D", "", text))  # noqa: E731
         counts = plain["live-steps"].split(",")
@@ -98,6 +101,29 @@ class Watch(unittest.TestCase):
         self.assertEqual(errors, "0")
         self.assertIn("a session of", self.end(watch))
         self.replayed()
+
+    def test_the_loop_of_a_program_is_seen_too(self):
+        """examples/watched.c through a pipe, with the steps that it printed; damaged text is refused with its line."""
+        program = self.root / "watched"
+        subprocess.run([CC, "-std=c11", f"-I{SOURCE}/runtime", f"{SOURCE}/examples/watched.c", RUNTIME, "-lm",
+                        f"-Wl,-rpath,{pathlib.Path(RUNTIME).parent}", "-o", program], check=True)
+        loop = subprocess.Popen([program, LIBRARY, "0", "0", "1", "3"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(loop.stderr.close)
+        self.addCleanup(loop.wait)
+        watch, port = self.port_of(self.start("watch", LIBRARY, "--stdin", "--port", 0, "--no-open", stdin=loop.stdout))
+        loop.stdout.close()
+        with Chromium(BROWSER) as page:
+            page.open(f"http://127.0.0.1:{port}/")
+            page.wait("document.getElementById('live-session').textContent.endsWith('ended')")
+            page.wait("document.getElementById('live-steps').textContent.startsWith('3\u202f000,')")
+            largest = page.value("document.getElementById('live-largest').textContent")
+        self.assertRegex(largest, r"^[1-9][0-9.]*\u00a0mN$")
+        self.assertIn("0 not recorded", loop.stderr.read())
+        self.end(watch)
+        said = subprocess.run([PALPATE, "watch", LIBRARY, "--stdin", "--port", "0", "--no-open"], input="time_ns,x\n", capture_output=True,
+                              text=True, check=False)
+        self.assertEqual(said.returncode, 2)
+        self.assertIn("line 1 of the steps", said.stderr)
 
     def test_clients_cannot_slow_the_session(self):
         """A watch that is stopped, a client that never reads, a hundred that come and go: the session has every step, in its journal
@@ -121,7 +147,7 @@ class Watch(unittest.TestCase):
         steps = int(re.search(r"run: (\d+) steps", said)[1])
         self.assertIn("cut off 0, clamped 0, saturated 0, not recorded 0", said)
         with h5py.File(self.recording) as file:
-            self.assertEqual(len(file["force"]), steps)
+            self.assertEqual(len(file["step/force"]), steps)
         self.replayed()
         self.assertIn("the session has ended", self.end(watch))
 

@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "app/report/report.hpp"
 #include "format/base64.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
+#include "tests/unit/app/report/skins.hpp"
 #include "tests/unit/app/report/synthetic.hpp"
 
 namespace palpate::report {
@@ -119,6 +121,26 @@ TEST(PlayPage, NeedsOneResponse) {
   Library library = testing::synthetic(1, 0).library;
   for (NodeResponse& node : library.responses) node = {};
   EXPECT_THROW(play_data(library), Error);
+}
+
+TEST(WatchPage, MayAskItsOwnServerAndNothingElse) {
+  const Library library = testing::synthetic(1, 0).library;
+  const std::string page = watch_page(library, {}, "");
+  EXPECT_NE(page.find("content=\"default-src 'none'; connect-src 'self'; style-src"),
+            std::string::npos);
+  EXPECT_EQ(page_text(play_data(library)).find("connect-src"), std::string::npos);
+  EXPECT_TRUE(watch_data(library, {}, "").at("watch").get<bool>());
+}
+
+TEST(WatchPage, HasTheSkinWhereThereIsABodyAndADeformation) {
+  const auto all = testing::synthetic(2, 1);
+  const std::string file = testing::deformation_bytes(all.body, all.library);
+  const auto data = watch_data(all.library, {&all.body}, file);
+  if (data.at("touch").is_null()) GTEST_SKIP() << "built without the WebAssembly toolchain";
+  const auto points = numbers<float>(data.at("surface").at("points"), "f4");
+  const auto rows = numbers<std::uint16_t>(data.at("touch").at("skin").at("of_point"), "u2");
+  EXPECT_EQ(3 * rows.size(), points.size());
+  EXPECT_TRUE(watch_data(all.library, {&all.body}, "").at("touch").at("skin").is_null());
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ class JournalTailTest : public testing::Test {
     };
     return {at(from), at(to)};
   }
-  std::vector<std::int64_t> times(const JournalTail::News& news) const {
+  std::vector<std::int64_t> times(const SessionNews& news) const {
     std::vector<std::int64_t> out;
     for (const RecordedStep& step : news.steps) out.push_back(step.time_ns);
     return out;
@@ -40,7 +40,7 @@ TEST_F(JournalTailTest, GivesEachStepOnceAsItIsAppended) {
   JournalTail tail(path_);
   EXPECT_FALSE(tail.poll().begun);  // there is no session
   SessionJournal journal(path_, sample_);
-  JournalTail::News news = tail.poll();
+  SessionNews news = tail.poll();
   ASSERT_TRUE(news.begun);
   EXPECT_EQ(news.begun->device, sample_.device);
   EXPECT_TRUE(news.steps.empty());
@@ -64,7 +64,7 @@ TEST_F(JournalTailTest, TheLastStepsComeBeforeTheEndAndThenTheNextSession) {
     journal.append(steps(2, 6));
     journal.remove();
   }
-  JournalTail::News news = tail.poll();
+  SessionNews news = tail.poll();
   EXPECT_EQ(times(news), times(2, 6));
   EXPECT_TRUE(news.ended);
   EXPECT_FALSE(tail.poll().begun);
@@ -98,7 +98,7 @@ TEST_F(JournalTailTest, WaitsForTheRestOfARecord) {
   for (std::size_t i = 0; i < whole.size(); ++i) {
     EXPECT_EQ(seen, 0U);
     file.put(whole[i]).flush();
-    const JournalTail::News news = tail.poll();
+    const SessionNews news = tail.poll();
     EXPECT_FALSE(news.ended);
     seen += news.steps.size();
   }

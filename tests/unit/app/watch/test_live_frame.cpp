@@ -27,8 +27,8 @@ RecordedStep step(int i, double force) {
   return s;
 }
 
-JournalTail::News begun() {
-  JournalTail::News news;
+SessionNews begun() {
+  SessionNews news;
   news.begun.emplace();
   news.begun->device = "a <hand>";
   news.begun->rate = 1000;
@@ -45,7 +45,7 @@ TEST(LiveFrames, AreCompleteBeforeDuringAndAfterASession) {
   EXPECT_TRUE(frame["last"].is_null());
   EXPECT_FALSE(frames.see({}));
 
-  JournalTail::News news = begun();
+  SessionNews news = begun();
   news.steps = {step(1, 0.5), step(2, 0.25)};
   news.steps[0].status |= PALPATE_LOOP_LATE;
   EXPECT_TRUE(frames.see(news));
@@ -61,7 +61,7 @@ TEST(LiveFrames, AreCompleteBeforeDuringAndAfterASession) {
   EXPECT_EQ(frame["last"]["contact"], json({0.5, 1.0, 1.0}));
   EXPECT_EQ(frame["last"]["force"], json({0.0, 0.0, 0.25}));
 
-  JournalTail::News end;
+  SessionNews end;
   end.ended = true;
   EXPECT_TRUE(frames.see(end));
   frame = json::parse(frames.next());
@@ -79,7 +79,7 @@ TEST(LiveFrames, AreCompleteBeforeDuringAndAfterASession) {
 
 TEST(LiveFrames, TheThinnedStepsKeepTheExtremes) {
   LiveFrames frames("abc");
-  JournalTail::News news = begun();
+  SessionNews news = begun();
   for (int i = 0; i < 5000; ++i) news.steps.push_back(step(i, i == 1234 ? 9 : 1 + 1e-4 * (i % 7)));
   frames.see(news);
   const json recent = json::parse(frames.next())["recent"];
@@ -95,7 +95,7 @@ TEST(LiveFrames, TheThinnedStepsKeepTheExtremes) {
 
 TEST(LiveFrames, AViolatedAccountIsKept) {
   LiveFrames frames("other");
-  JournalTail::News news = begun();
+  SessionNews news = begun();
   news.steps = {step(1, 1), step(2, 1)};
   news.steps[0].absorbed = 0;
   frames.see(news);

@@ -115,7 +115,7 @@ class Live {
     if (!place) return;
     const silent = performance.now() - this.heard > SILENCE;
     const state = this.lost ? 'palpate watch has ended' : !frame?.session ? 'waiting for one to begin' : !frame.running ? 'ended' : silent ? 'silent: the loop makes no steps, or has been killed' : 'running';
-    const about = frame?.session ? `${frame.device || 'unnamed device'}, ${units.frequency(frame.rate)}, \u03bc = ${units.significant(frame.friction)}: ` : '';
+    const about = frame?.session ? `${frame.device || 'unnamed device'}${frame.rate > 0 ? `, ${units.frequency(frame.rate)}` : ''}, \u03bc = ${units.significant(frame.friction)}: ` : '';
     const other = frame?.session && !frame.same_library ? '; it is of another library than the one drawn here' : '';
     place.textContent = about + state + other;
     place.className = other || this.lost ? 'warn' : '';
