@@ -201,21 +201,25 @@ export function histogram(title, xLabel, yLabel, sets, { bins = 30, zero = true,
   return figure(title, options, [edges, ...counts], height).element;
 }
 
+/** Lines of a plot over time, for readers without colour vision: {css, dash, width} of one after the other. */
+const LINES = [{ css: 'solid', width: 1.5 }, { css: 'dashed', dash: [8, 4], width: 1.5 }, { css: 'dotted', dash: [2, 3], width: 1.8 }, { css: 'double', width: 3 }];
+const lineOf = (i) => LINES[i % LINES.length];
+
 /** Columns over time, cursor shared with the other plots of the session. */
 export function timePlot(title, yLabel, time, sets, height = 190) {
   const options = {
-    legend: { show: true, live: true },
+    legend: { show: true, live: true, markers: { width: 2, dash: (_, series) => lineOf(series - 1).css } },
     cursor: { sync: { key: 'session' }, drag: { x: true, y: false }, points: { size: 6 } },
     scales: { x: { time: false }, y: {} },
     axes: [axis('Time (s)', 2), axis(yLabel, 3)],
     series: [
       { label: 'Time (s)', value: (_, v) => (v === null ? '\u2013' : v.toFixed(3)) },
-      ...sets.map((s) => ({
+      ...sets.map((s, i) => ({
         label: s.label,
         stroke: named(s.colour),
-        width: s.width ?? 1.5,
+        width: lineOf(i).width,
         pxAlign: 0,
-        dash: s.dash,
+        dash: lineOf(i).dash,
         points: { show: false },
         value: (_, v) => (v === null || v === undefined ? '\u2013' : String(Number(v.toPrecision(3))).replace('-', '\u2212')),
       })),

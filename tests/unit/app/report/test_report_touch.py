@@ -510,6 +510,14 @@ class Pictures(Acted):
         self.assertEqual(len(set(said["table"])), len(said["table"]))
         self.assertEqual(len(set(said["shapes"])), len(said["table"]))
 
+    def test_lines_over_time_are_told_apart_without_colours(self):
+        said = self.act("""said.lines = [...document.querySelectorAll('.u-legend')].map((legend) => [...legend.querySelectorAll('.u-marker')]
+              .map((m) => getComputedStyle(m)).map((s) => s.borderTopStyle + s.borderTopWidth));""", only="session")
+        self.assertGreater(len(said["lines"]), 2)
+        for lines in said["lines"]:
+            self.assertGreater(len(lines), 1)
+            self.assertEqual(len(set(lines)), len(lines), lines)
+
     def test_neighbours_lie_beside_a_node(self):
         said = self.act("get('neighbours').click(); document.querySelector('#curves .take button').click(); said.csv = csv;"
                         "said.last = [...document.querySelectorAll('#curves tbody tr')].pop().children[1].textContent;", only="body")
