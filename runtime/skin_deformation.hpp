@@ -37,6 +37,7 @@ class SkinDeformation {
   void add_lateral(const Blend& blend, const Touch& touch, Shape& shape) const noexcept;
   Vec3 shared_part(const Shape& shape, std::size_t vertex) const noexcept;
   void correct(const Touch& touch, Shape& shape) const noexcept;
+  void add_modes(const Shape& shape, std::size_t begin, std::size_t count, float* u) const noexcept;
   Vec3 local_part(const Touch& touch, const Shape& shape, std::size_t vertex) const noexcept;
   Vec3 outside_of_tool(const Touch& touch, const Vec3& x) const noexcept;
 

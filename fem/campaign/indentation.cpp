@@ -26,7 +26,7 @@ constexpr double kWatched = 4;
 /// A path across a lateral one: its travel over that of the lateral path, and the error of its tool
 /// force. Only the picture of the skin comes from it, linear in the travel.
 constexpr double kAcrossTravel = 0.5;
-constexpr double kAcrossTolerance = 2e-3;
+constexpr double kAcrossTolerance = 5e-3;
 
 double thread_cpu_seconds() {
   timespec now{};

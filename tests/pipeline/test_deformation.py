@@ -55,6 +55,28 @@ class Deformation(unittest.TestCase):
             self.assertLess(row["median"], 0.05, row)
             self.assertLess(row["p95"], 0.05 if "whole" in row["what"] else 0.2, row)
 
+    def test_2b_the_skin_of_the_response_surface_is_smaller_and_played(self):
+        run = palpate("export", "skin", self.case, "--out", self.out, "--modes", 8)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertRegex(run.stdout, r"8 modes that leave out \S+ mm")
+        skin = self.out / "skin.pdef"
+        self.assertLess(skin.stat().st_size, 0.5 * (self.out / "deformation.pdef").stat().st_size)
+        alone = self.root / "alone"
+        alone.mkdir()
+        for part, name in (("runtime", "library.plib"), ("surface", "surface.off")):
+            self.assertEqual(palpate("export", part, self.case, "--out", self.out).returncode, 0)
+            shutil.copy(self.out / name, alone / f"block{Path(name).suffix}")
+        shutil.copy(skin, alone / "block.pdef")
+        page = alone / "page.html"
+        run = palpate("play", alone / "block.plib", "--out", page, "--no-open")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn('"of_point"', page.read_text())
+        (self.out / "deformation.pdef").rename(self.out / "kept.pdef")
+        run = palpate("export", "skin", self.case, "--out", self.out)
+        (self.out / "kept.pdef").rename(self.out / "deformation.pdef")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("set depths in [deformation]", run.stderr)
+
     def test_3_without_its_fields_it_is_refused_by_name(self):
         copy = self.root / "copy"
         shutil.copytree(self.out, copy)

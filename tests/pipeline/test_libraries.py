@@ -53,7 +53,7 @@ class Libraries(unittest.TestCase):
     def test_each_has_a_case_and_a_licence_and_all_are_small(self):
         files = sorted(LIBRARIES.glob("*.plib"))
         self.assertEqual([f.stem for f in files], ["gel", "liver", "tissue"])
-        self.assertLess(sum(f.stat().st_size for f in files), 1_000_000)
+        self.assertLess(sum(f.stat().st_size for f in LIBRARIES.iterdir()), 1_000_000)  # with surfaces and skins
         readme = (LIBRARIES / "README.md").read_text()
         for file in files:
             self.assertIn(f"`{file.name}` |", readme)

@@ -38,10 +38,14 @@ addEventListener('load', async () => {
     await wait(600);
     said.title = document.querySelector('h1').textContent;
     said.state = get('touch-state').textContent;
+    said.caption = get('touch-caption').textContent;
     for (let i = 0; i < 8; ++i) {
       document.querySelector('#touch canvas').dispatchEvent(new KeyboardEvent('keydown', {key: 'ArrowRight'}));
       await wait(50);
     }
+    const moved = () => document.querySelector('#touch canvas').work.moved;
+    said.moved = moved();
+    for (let i = 0; i < 20; ++i) { await wait(5); said.moved = Math.max(said.moved, moved()); }
     get('touch-csv').click();
     await wait(50);
     said.csv = csv;
@@ -112,6 +116,10 @@ class Play(unittest.TestCase):
             self.assertIn('data-errors="0"', shown)
             self.assertEqual("relaxes by 0.25 in 50 ms and 0.25 in 600 ms, instantaneous moduli" in shown, name == "liver")
             self.assertEqual((touched["title"], touched["state"]), (name, "in contact, sticking"))
+            # The liver comes with its skin and its nodule, the pads do not.
+            self.assertEqual("of the solved states, blended by the runtime" in touched["caption"], name == "liver")
+            self.assertEqual('"region":"nodule"' in shown, name == "liver")
+            self.assertEqual(touched["moved"] > 100, name == "liver")
             names, *rows = (line.split(",") for line in touched["csv"].strip().split("\n"))
             rows = [dict(zip(names, map(float, row))) for row in rows]
             self.assertTrue(any(row["lateral_m"] > 0 for row in rows))

@@ -6,11 +6,16 @@
 #include <cmath>
 #include <cstddef>
 #include <memory>
+#include <vector>
 
+#include "format/to_index.hpp"
 #include "runtime/devices/device_virtual.hpp"
 #include "runtime/force_loop.hpp"
 #include "runtime/realtime.hpp"
+#include "runtime/skin_deformation.hpp"
 #include "tests/realtime/ride.hpp"
+#include "tests/support/bodies.hpp"
+#include "tests/support/dimpled_skin.hpp"
 
 namespace {
 thread_local bool counting = false;
@@ -76,6 +81,31 @@ TEST(ForceLoop, NeverAllocatesOrFreesInATick) {
   EXPECT_EQ(allocations, 0);
   EXPECT_EQ(loop.counts().steps, 5000U);
   EXPECT_EQ(loop.counts().unrecorded, 4000U);
+}
+
+/// A picture beside the force loop takes no lock of the allocator either.
+TEST(SkinDeformation, NeverAllocatesOrFrees) {
+  const Library body = plate(8, 0.08, [](const Vec3&) { return wall_response(170, 120); });
+  const runtime::SkinDeformation skin(dimpled(body, skin_of(body), 0.004, 0.005), body.triangles);
+  runtime::Touch touch;
+  touch.point = {0, {0.5, 0.25, 0.25}};
+  for (std::size_t l = 0; l < 3; ++l) {
+    const std::size_t v = to_index(body.triangles[0][l]);
+    touch.contact_point = touch.contact_point + touch.point.natural[l] * body.positions[v];
+  }
+  touch.normal = body.inward[to_index(body.triangles[0][0])];
+  touch.depth = 0.003;
+  touch.tip = touch.contact_point + touch.depth * touch.normal;
+  std::vector<Vec3> x(skin.positions().size());
+  const palpate_state state(ride_body(), {0.2, 0, runtime::EnergyBudget::Enforced, 400});
+  allocations = 0;
+  counting = true;
+  skin.displace(touch, x.front().data());
+  const bool touches = state.touch().point.element >= 0;
+  counting = false;
+  EXPECT_EQ(allocations, 0);
+  EXPECT_FALSE(touches);
+  EXPECT_NE(x, skin.positions());
 }
 
 TEST(Step, TheCounterCounts) {

@@ -64,7 +64,38 @@ function figure(title, options, data, height = 240) {
   return { element, update };
 }
 
+const MARKER = 7;  // pixels
+
 const named = (name) => () => (name.startsWith('#') ? name : colour(name));
+
+const polygon = (corners) => (path, x, y, r) => {
+  corners.forEach(([right, up], i) => path[i ? 'lineTo' : 'moveTo'](x + right * r, y - up * r));
+  path.closePath();
+};
+/** For readers without colour vision each colour of a series has a marker of its own shape. */
+const SYMBOLS = [
+  ['\u25cf', (path, x, y, r) => { path.moveTo(x + r, y); path.arc(x, y, r, 0, 2 * Math.PI); }],
+  ['\u25a0', polygon([[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]])],
+  ['\u25b2', polygon([[-1.1, -0.8], [1.1, -0.8], [0, 1.2]])],
+  ['\u25c6', polygon([[-1.2, 0], [0, -1.2], [1.2, 0], [0, 1.2]])],
+  ['\u25bc', polygon([[-1.1, 0.8], [1.1, 0.8], [0, -1.2]])],
+  ['\u25c0', polygon([[-1.2, 0], [0.8, -1.1], [0.8, 1.1]])],
+];
+const symbolOf = (name) => SYMBOLS[((Number(name.match(/^series-(\d)$/)?.[1]) || 1) - 1) % SYMBOLS.length];
+/** The marker of a colour as a character. */
+export const symbol = (name) => symbolOf(name)[0];
+
+/** The markers of a series as uPlot draws them, in pixels of the canvas. */
+const markers = (name, size) => (u, series, from, to, indices) => {
+  const path = new Path2D(), [, draw] = symbolOf(name);
+  const values = u.data[series];
+  const put = (i) => {
+    if (values[i] !== null && values[i] !== undefined) draw(path, u.valToPos(u.data[0][i], 'x', true), u.valToPos(values[i], 'y', true), (size / 2) * devicePixelRatio);
+  };
+  if (indices) indices.forEach(put);
+  else for (let i = from; i <= to; ++i) put(i);
+  return { stroke: path, fill: path, flags: 3 };
+};
 
 /** Range from zero to a little above the largest value. */
 const fromZero = (_, low, high) => [Math.min(0, low ?? 0), high > 0 ? high * 1.05 : 1];
@@ -102,7 +133,7 @@ export function curvePlot(title, xLabel, yLabel, height, { signed = false, tight
       spanGaps: true,
       paths: s.markers ? () => null : uPlot.paths.linear(),
       points: s.markers
-        ? { show: true, size: 7, width: 1.5, stroke: named(s.colour), fill: named('paper') }
+        ? { show: true, size: MARKER, width: 1.5, stroke: named(s.colour), fill: named('paper'), paths: markers(s.colour, MARKER) }
         : { show: false },
     }))],
     hooks: { draw: [(u) => dashed(u, mark)] },
@@ -170,21 +201,25 @@ export function histogram(title, xLabel, yLabel, sets, { bins = 30, zero = true,
   return figure(title, options, [edges, ...counts], height).element;
 }
 
+/** Lines of a plot over time, for readers without colour vision: {css, dash, width} of one after the other. */
+const LINES = [{ css: 'solid', width: 1.5 }, { css: 'dashed', dash: [8, 4], width: 1.5 }, { css: 'dotted', dash: [2, 3], width: 1.8 }, { css: 'double', width: 3 }];
+const lineOf = (i) => LINES[i % LINES.length];
+
 /** Columns over time, cursor shared with the other plots of the session. */
 export function timePlot(title, yLabel, time, sets, height = 190) {
   const options = {
-    legend: { show: true, live: true },
+    legend: { show: true, live: true, markers: { width: 2, dash: (_, series) => lineOf(series - 1).css } },
     cursor: { sync: { key: 'session' }, drag: { x: true, y: false }, points: { size: 6 } },
     scales: { x: { time: false }, y: {} },
     axes: [axis('Time (s)', 2), axis(yLabel, 3)],
     series: [
       { label: 'Time (s)', value: (_, v) => (v === null ? '\u2013' : v.toFixed(3)) },
-      ...sets.map((s) => ({
+      ...sets.map((s, i) => ({
         label: s.label,
         stroke: named(s.colour),
-        width: s.width ?? 1.5,
+        width: lineOf(i).width,
         pxAlign: 0,
-        dash: s.dash,
+        dash: lineOf(i).dash,
         points: { show: false },
         value: (_, v) => (v === null || v === undefined ? '\u2013' : String(Number(v.toPrecision(3))).replace('-', '\u2212')),
       })),

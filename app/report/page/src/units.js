@@ -20,10 +20,13 @@ function group(text) {
 
 export const count = (n) => group(String(n));
 
+const NOTHING = 1e-3;  // of the smallest unit: what is less is a rounding error
+
 const scaled = (steps) => (value) => {
   if (value === null || value === undefined || !Number.isFinite(value)) return '\u2013';
-  const base = steps.find(([f]) => f === 1) ?? steps[0];  // for nothing
-  const [factor, unit] = value === 0 ? base : steps.find(([f]) => Math.abs(value) >= f) ?? steps[steps.length - 1];
+  const [smallest] = steps[steps.length - 1];
+  if (Math.abs(value) < NOTHING * smallest) return `0${NBSP}${(steps.find(([f]) => f === 1) ?? steps[0])[1]}`;
+  const [factor, unit] = steps.find(([f]) => Math.abs(value) >= f) ?? steps[steps.length - 1];
   return significant(value / factor) + NBSP + unit;
 };
 /** Steps of units, the largest first, for the axis of a plot. */
@@ -36,7 +39,7 @@ export function stepOf(values, steps, least = 1) {
 }
 export const length = (m) => significant(m * 1e3) + NBSP + 'mm';
 /** A length in the unit of its size. */
-export const scaledLength = (m) => (m !== 0 && Math.abs(m) < 1e-4 ? significant(m * 1e6) + NBSP + '\u00b5m' : length(m));
+export const scaledLength = (m) => (Math.abs(m) < NOTHING * 1e-9 ? length(0) : Math.abs(m) < 1e-4 ? significant(m * 1e6) + NBSP + '\u00b5m' : length(m));
 export const force = scaled(FORCES);
 export const pressure = scaled([[1e6, 'MPa'], [1e3, 'kPa'], [1, 'Pa'], [1e-3, 'mPa']]);
 export const stiffness = (k) => significant(k) + NBSP + 'N/m';
@@ -57,7 +60,7 @@ const axisOf = (steps) => (largest) => {
   return { factor: 1 / size, name };
 };
 export const axis = { force: axisOf(FORCES), length: axisOf(LENGTHS), energy: axisOf(ENERGIES) };
-export const energy = (j) => (j === 0 ? `0${NBSP}J` : scaled([[1, 'J'], [1e-3, 'mJ'], [1e-6, '\u00b5J'], [1e-9, 'nJ'], [1e-12, 'pJ']])(j));
+export const energy = scaled([[1, 'J'], [1e-3, 'mJ'], [1e-6, '\u00b5J'], [1e-9, 'nJ'], [1e-12, 'pJ']]);
 export const time = scaled([[1, 's'], [1e-3, 'ms'], [1e-6, '\u00b5s'], [1e-9, 'ns']]);
 export const frequency = scaled([[1e6, 'MHz'], [1e3, 'kHz'], [1, 'Hz']]);
 /** Rounds to a tenth of a per mille. */

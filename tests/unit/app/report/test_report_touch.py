@@ -408,6 +408,7 @@ class Pictures(Acted):
               let arrow = 0; for (let i = 0; i < data.length; i += 4) arrow += data[i] === 213 && data[i + 1] === 94 && data[i + 2] === 0;
               return {text: get('scrub-text').textContent, arrow}; };
             said.contact = at(0.75); said.free = at(2.2);
+            said.all = []; for (let t = 0; t < 3; t += 0.004) { const s = get('scrub'); s.value = t; s.dispatchEvent(new Event('input')); said.all.push(get('scrub-text').textContent); } at(2.2);
             get('scrub-play').click(); await frames(30); get('scrub-play').click(); said.played = Number(get('scrub').value);
             said.label = get('scrub-play').textContent;""", only="session")
         drawn = self.data["session"]["drawn"]
@@ -416,6 +417,8 @@ class Pictures(Acted):
         self.assertIn(f"{time[i]:.3f}\u00a0s: depth {1e3 * depth[i]:.2f}\u00a0mm", said["contact"]["text"])
         self.assertGreater(said["contact"]["arrow"], 30)
         self.assertIn("no contact, force 0", said["free"]["text"])
+        for text in said["all"]:  # in the unit of its size; what is left of nothing is nothing
+            self.assertNotRegex(text, "e\u2212|0[.]00[0-9]*\u00a0[np]")
         self.assertEqual(said["free"]["arrow"], 0)
         self.assertGreater(said["played"], 2.4)
         self.assertLess(said["played"], 3)
@@ -487,6 +490,33 @@ class Pictures(Acted):
         at = names.index(f"node {softest}, fitted, Force (\u00b5N)")
         depth, force = max((float(v[0]), float(v[at])) for v in values if v[at])
         self.assertAlmostEqual(force / curve_force(self.data, softest, 1e-3 * depth), 1, delta=1e-4)
+
+    def test_nodes_are_told_apart_without_colours(self):
+        """Each has a marker of its own shape, which the table shows too."""
+        said = self.act("""const drawn = new Set();
+            window.Path2D = class extends Path2D {
+              part(name, given) { (this.parts ??= []).push([name, ...given]); }
+              moveTo(...at) { this.part('moveTo', at); super.moveTo(...at); }
+              lineTo(...at) { this.part('lineTo', at); super.lineTo(...at); }
+              arc(...at) { this.part('arc', at.slice(0, 2)); drawn.add(this); super.arc(...at); }
+              closePath() { drawn.add(this); super.closePath(); }  // curves stay open
+            };
+            get('neighbours').click(); await wait(300);
+            const shape = ({parts}) => { const [, x, y] = parts[0], end = parts.findIndex(([name], i) => i && name === 'moveTo');
+              return JSON.stringify(parts.slice(0, end < 0 ? undefined : end).map(([name, a, b]) => [name, Math.round(3 * (a - x)), Math.round(3 * (b - y))])); };
+            said.shapes = [...drawn].map(shape);
+            said.table = [...document.querySelectorAll('#curves tbody .marker')].map((m) => m.textContent);""", only="body")
+        self.assertGreater(len(said["table"]), 2)
+        self.assertEqual(len(set(said["table"])), len(said["table"]))
+        self.assertEqual(len(set(said["shapes"])), len(said["table"]))
+
+    def test_lines_over_time_are_told_apart_without_colours(self):
+        said = self.act("""said.lines = [...document.querySelectorAll('.u-legend')].map((legend) => [...legend.querySelectorAll('.u-marker')]
+              .map((m) => getComputedStyle(m)).map((s) => s.borderTopStyle + s.borderTopWidth));""", only="session")
+        self.assertGreater(len(said["lines"]), 2)
+        for lines in said["lines"]:
+            self.assertGreater(len(lines), 1)
+            self.assertEqual(len(set(lines)), len(lines), lines)
 
     def test_neighbours_lie_beside_a_node(self):
         said = self.act("get('neighbours').click(); document.querySelector('#curves .take button').click(); said.csv = csv;"

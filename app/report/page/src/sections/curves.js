@@ -2,7 +2,7 @@
 // Curves of the shown nodes: what was computed as markers, what will be rendered as a line.
 import { HOLE, RESPONSE } from '../data.js';
 import { el, paragraph, table } from '../dom.js';
-import { curvePlot } from '../plot.js';
+import { curvePlot, symbol } from '../plot.js';
 import { lastKnot, responseForce, secantStiffness } from '../response.js';
 import * as units from '../units.js';
 
@@ -92,10 +92,12 @@ export class Curves {
     const rows = shown.map((n) => {
       const swatch = el('span', { class: 'swatch' });
       swatch.style.background = `var(--${n.colour})`;
+      const marker = el('span', { class: 'marker' }, symbol(n.colour));
+      marker.style.color = `var(--${n.colour})`;
       const close = n.role === 'chosen'
         ? el('button', { class: 'plain', type: 'button', 'aria-label': `Remove node ${n.vertex}`, onclick: () => this.nodes.drop(n.vertex) }, '\u00d7') : null;
       const status = v.response_status[n.vertex];
-      return [[swatch, n.role, close], el('span', { id: n.role.split(',').map((r) => r.trim().replace(' ', '-'))[0] + '-node' }, String(n.vertex)),
+      return [[swatch, marker, n.role, close], el('span', { id: n.role.split(',').map((r) => r.trim().replace(' ', '-'))[0] + '-node' }, String(n.vertex)),
         status === HOLE ? RESPONSE[status] : units.significant(secantStiffness(this.data.normal, n.vertex, this.depth)),
         error(v.normal_error[n.vertex], v.normal_peak[n.vertex]), error(v.lateral_error[n.vertex], v.lateral_peak[n.vertex])];
     });
