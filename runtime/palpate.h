@@ -88,7 +88,7 @@ enum {
    * the body and touch it again; or in a cut-off of the force loop, after which it begins anew
    * where the tip is. */
   PALPATE_DROPPED = 1u << 8,
-  /* A slide was rate-limited so that the force changes by at most lipschitz_bound times the travel of
+  /* A slide was rate-limited: the force changes by at most lipschitz_bound times the travel of
    * the tip; later steps make the rest. Remedy, if slides lag noticeably: a larger lipschitz_bound.
    */
   PALPATE_FORCE_LIMITED = 1u << 9,
@@ -161,7 +161,7 @@ typedef struct palpate_observation {
                               J: the sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}) */
   double force_on_body[3]; /* f, N; palpate_step gives -f */
   double lateral_offset[3]; /* s, lateral offset, m: slip that the contact point has not followed,
-                               at borders, at edges that await delivery, and in rate-limited slides */
+                               at borders, at edges that await delivery, in rate-limited slides */
   double dissipated; /* energy that relaxation has dissipated since the state was created or reset,
                         J */
   double relaxed_fraction; /* fraction of the instantaneous normal force that has relaxed; 0 where

@@ -168,7 +168,8 @@ void TextSink::print(const StiffnessAtRate& e) {
         bound_text(e.min_enforceable_bound));
   if (std::isinf(e.min_enforceable_bound)) return line("    and no bound can be enforced");
   line(
-      "    with rate-limited slides it needs {}: {:.2f} times its forces would be certified; --soften "
+      "    with rate-limited slides it needs {}: {:.2f} times its forces would be certified; "
+      "--soften "
       "caps only the stiff slopes",
       bound_text(e.min_enforceable_bound), bound / e.min_enforceable_bound);
 }

@@ -216,7 +216,8 @@ TEST(RemainingTime, IsRightOnARecordedCampaign) {
   }
 }
 
-/// After a tenth of the sites, and from then on, the end is foretold within a quarter of the whole time.
+/// After a tenth of the sites, and from then on, the end is foretold within a quarter of the whole
+/// time.
 TEST(RemainingTime, OfRecordedCampaignsForetellsTheirEndAfterATenthOfTheSites) {
   for (const std::vector<double>& by_vertex : {kTongue, kLiver})
     for (const std::size_t places : {1U, 2U, 8U, 32U})

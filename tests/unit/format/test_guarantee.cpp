@@ -55,9 +55,10 @@ TEST(Guarantee, IsByTheCurvesWhereTheyKeepTheBound) {
 TEST(Guarantee, IsByTheLimiterWhereTheCurvesHaveNoBound) {
   const Certificate c = certificate(100, kInfinity, 120);
   EXPECT_EQ(guaranteed_by(c), GuaranteedBy::Limiter);
-  EXPECT_THAT(guarantee_text(c),
-              StartsWith("guaranteed by the runtime, which rate-limits slides: the force changes by "
-                         "at most 400.0 N/m"));
+  EXPECT_THAT(
+      guarantee_text(c),
+      StartsWith("guaranteed by the runtime, which rate-limits slides: the force changes by "
+                 "at most 400.0 N/m"));
   EXPECT_THAT(guarantee_text(c), HasSubstr("no bound while sliding in 1 of 2 triangles"));
   EXPECT_THAT(verdict(c, pen(0.1, 400)),
               StartsWith("certified passive from 6000 Hz on, with slides rate-limited"));

@@ -28,10 +28,10 @@ TEST(Inspect, GivesTheVerdictOfEachDevice) {
   const auto summary = summary_of(samples::library(4));
   const auto& devices = summary["certificate"]["devices"];
   ASSERT_EQ(devices.size(), 2u);
-  EXPECT_EQ(
-      devices[0]["verdict"],
-      "certified passive from 637.5 Hz on, with slides rate-limited (Mahvash & Hayward 2005, eq. 5: "
-      "850.0 Hz)");
+  EXPECT_EQ(devices[0]["verdict"],
+            "certified passive from 637.5 Hz on, with slides rate-limited (Mahvash & Hayward 2005, "
+            "eq. 5: "
+            "850.0 Hz)");
   EXPECT_EQ(devices[0]["lowest_certified_rate"]["value"], 637.5);
   EXPECT_EQ(devices[1]["verdict"],
             "no guarantee: its damping, delay, dry friction, position resolution and force "
