@@ -60,13 +60,13 @@ struct ContactObservation {
 ///
 /// Between two steps |f_i(x_i) - f_{i-1}(x_{i-1})| <= L |x_i - x_{i-1}| with L the Lipschitz bound,
 /// except where a contact is dropped. With a fixed contact point this is true for every L >= L_min.
-/// A slide, or a change of the offset, that would exceed it is rate-limited: it is made in part,
-/// and the rest in later steps. So the condition of Theorem 1 [Mahvash & Hayward 2005, eq. 33] is
-/// met in every sample, also at edges, at borders and by the energy rule.
+/// A slide, or a change of the offset, that exceeds it is rate-limited: it is made in part, and
+/// the rest in later steps. So the condition of Theorem 1 [Mahvash & Hayward 2005, eq. 33] is met
+/// in every sample, also at edges, at borders and by the energy rule.
 ///
 /// Where friction slips but c cannot follow (at a border, at an edge whose neighbour has not been
-/// delivered, in a rate-limited slide) the lateral offset s takes the motion that c does not make,
-/// so that the lateral force does not exceed mu g; c moves to c + s as soon as it can.
+/// delivered, in a rate-limited slide) the lateral offset s takes the motion that c leaves, so
+/// that the lateral force does not exceed mu g; c moves to c + s as soon as it can.
 ///
 /// Tissue that relaxes (theory-runtime, "Relaxation") does so at the end of a step, at the tip
 /// where it then is: the force changes by that as well, also where the tip rests.

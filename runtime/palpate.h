@@ -88,9 +88,8 @@ enum {
    * the body and touch it again; or in a cut-off of the force loop, after which it begins anew
    * where the tip is. */
   PALPATE_DROPPED = 1u << 8,
-  /* A slide was rate-limited so that the force changes by at most lipschitz_bound times the travel
-   * of the tip; later steps make the rest. Remedy, if slides lag noticeably: a larger
-   * lipschitz_bound.
+  /* A slide was rate-limited: the force changes by at most lipschitz_bound times the travel of
+   * the tip; later steps make the rest. Remedy, if slides lag noticeably: a larger lipschitz_bound.
    */
   PALPATE_FORCE_LIMITED = 1u << 9,
   /* The contact point waits at an edge for triangles that the search thread has not delivered.
@@ -161,9 +160,8 @@ typedef struct palpate_observation {
   double absorbed;         /* net work of the tool on the body since the state was created or reset,
                               J: the sum over steps of E_{i-1}(x_i) - E_{i-1}(x_{i-1}) */
   double force_on_body[3]; /* f, N; palpate_step gives -f */
-  double
-      lateral_offset[3]; /* s, lateral offset, m: slip that the contact point has not followed,
-                            at borders, at edges that await delivery, and in rate-limited slides */
+  double lateral_offset[3]; /* s, lateral offset, m: slip that the contact point has not followed,
+                               at borders, at edges that await delivery, in rate-limited slides */
   double dissipated; /* energy that relaxation has dissipated since the state was created or reset,
                         J */
   double relaxed_fraction; /* fraction of the instantaneous normal force that has relaxed; 0 where

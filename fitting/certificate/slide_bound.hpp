@@ -12,8 +12,8 @@ namespace palpate::fitting {
 double stick_bound(const ContactElement& element);
 
 /// L_min, (10e), N/m: Lipschitz bound of the force at a fixed contact point at any depth, with slip
-/// over that point included. The runtime can enforce it by rate-limiting slides. Infinite for
-/// coupled responses that are flat where slip begins, or whose w grows beyond its last knot.
+/// over that point included. The runtime enforces it by rate-limiting slides. Infinite for coupled
+/// responses that are flat where slip begins, or whose w grows beyond its last knot.
 double min_lipschitz_bound(const ContactElement& element);
 
 /// L_slip, N/m: Lipschitz bound while sliding, (10), in closed form for intervals of depth. Of

@@ -37,8 +37,8 @@ class SlideJacobian {
   explicit SlideJacobian(const ContactElement& element);
 
   /// Upper bound of the norm of df/dx', N/m, at every state of the cell, for complete slides and
-  /// for slides that are rate-limited in part or altogether. For a single state, the largest of
-  /// these norms. Infinite where the slide is not bounded; 0 where the contact sticks.
+  /// for slides that are rate-limited in part or wholly. For a single state, the largest of these
+  /// norms. Infinite where the slide is not bounded; 0 where the contact sticks.
   double bound(const SlideCell& cell) const;
 
   /// Contributions at a single state. Infinite where its slide is not bounded.

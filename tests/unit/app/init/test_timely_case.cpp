@@ -18,33 +18,33 @@ using testing::Not;
 
 constexpr double kNoTime = 1e-4, kAnyTime = 1e4;  // min
 
-struct Made {
+struct Timely {
   FirstCase first;
   Case c;
   double depth_over_patch() const { return c.campaign.indentation.depth / c.mesh.patch_spacing; }
 };
 
-Made made(const FirstWishes& wishes) {
+Timely timely(const FirstWishes& wishes) {
   const samples::TemporaryFolder folder;
   CaseOf of{read_body_file(test::source_folder() / "data/bodies/cylinder.off", ""),
             {},
             "",
             folder / "case.toml"};
   of.base = find_base(of.body.surface);
-  Made result{timely_case(of, wishes), {}};
+  Timely result{timely_case(of, wishes), {}};
   result.c = parse_case(result.first.toml, "case.toml");
   return result;
 }
 
 TEST(TimelyCase, WithoutALimitIsThatOfTheShapeAndSaysNothingOfTime) {
-  const Made any = made({.sites = {}, .minutes = 0, .threads = 2});
+  const Timely any = timely({.sites = {}, .minutes = 0, .threads = 2});
   EXPECT_THAT(any.first.toml, Not(HasSubstr("campaign takes")));
   EXPECT_THAT(any.first.remarks.back(), HasSubstr("sites: "));
 }
 
 TEST(TimelyCase, ThatFitsIsThatOfTheShapeAndSaysHowLongItTakes) {
-  const Made any = made({.sites = 20, .minutes = 0, .threads = 2});
-  const Made fits = made({.sites = 20, .minutes = kAnyTime, .threads = 2});
+  const Timely any = timely({.sites = 20, .minutes = 0, .threads = 2});
+  const Timely fits = timely({.sites = 20, .minutes = kAnyTime, .threads = 2});
   EXPECT_EQ(fits.c.mesh.patch_spacing, any.c.mesh.patch_spacing);
   EXPECT_EQ(fits.c.campaign.indentation.depth, any.c.campaign.indentation.depth);
   EXPECT_THAT(fits.first.toml, HasSubstr("# Its campaign takes about "));
@@ -53,8 +53,8 @@ TEST(TimelyCase, ThatFitsIsThatOfTheShapeAndSaysHowLongItTakes) {
 }
 
 TEST(TimelyCase, WithoutTimeHasTheLargestPatchesOrTheSmallestDepthAndAdmitsThatItDoesNotFit) {
-  const Made any = made({.sites = {}, .minutes = 0, .threads = 2});
-  const Made hurried = made({.sites = {}, .minutes = kNoTime, .threads = 2});
+  const Timely any = timely({.sites = {}, .minutes = 0, .threads = 2});
+  const Timely hurried = timely({.sites = {}, .minutes = kNoTime, .threads = 2});
   EXPECT_GT(hurried.c.mesh.patch_spacing, 1.2 * any.c.mesh.patch_spacing);
   EXPECT_THAT(hurried.first.toml, HasSubstr("would take too long"));
   EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("sites would take longer than"));
@@ -62,8 +62,8 @@ TEST(TimelyCase, WithoutTimeHasTheLargestPatchesOrTheSmallestDepthAndAdmitsThatI
 }
 
 TEST(TimelyCase, KeepsTheSitesThatAreAskedForAndPressesLessDeep) {
-  const Made any = made({.sites = 20, .minutes = 0, .threads = 2});
-  const Made hurried = made({.sites = 20, .minutes = kNoTime, .threads = 2});
+  const Timely any = timely({.sites = 20, .minutes = 0, .threads = 2});
+  const Timely hurried = timely({.sites = 20, .minutes = kNoTime, .threads = 2});
   EXPECT_EQ(hurried.c.mesh.patch_spacing, any.c.mesh.patch_spacing);
   EXPECT_LT(hurried.depth_over_patch(), 0.7 * any.depth_over_patch());
   EXPECT_GE(hurried.depth_over_patch(), 0.95 * kShallowestOverPatch);
