@@ -40,8 +40,9 @@ AttributeList attributes_of(const Path& path) {
 
 /// What a reader may do without: texts for people, and what later versions added.
 bool may_be_missing(const std::string& name) {
-  for (const char* optional : {"description", "creator", "basis", "min_lipschitz_bound",
-                               "lipschitz_bound", "tool_edge_radius", "tool_length", "mesh_error_confidence"})
+  for (const char* optional :
+       {"description", "creator", "basis", "min_lipschitz_bound", "lipschitz_bound",
+        "tool_edge_radius", "tool_length", "mesh_error_confidence"})
     if (name == optional) return true;
   return false;
 }
