@@ -20,6 +20,10 @@ Tool tool_over(const CampaignContext& context, const PressPoint& point) {
           std::cos(settings.tool_azimuth) * first + std::sin(settings.tool_azimuth) * second};
 }
 
+/// Size of elements that the contact divides, over that of the coarser mesh: smaller ones cost more
+/// than the campaign of a small body.
+constexpr double kFinerByContact = 0.7;
+
 SiteRefinement refinement_of(const CampaignContext& context, const PressPoint& point) {
   const IndentationSettings& settings = context.indentation;
   SiteRefinement refinement;
@@ -32,7 +36,7 @@ SiteRefinement refinement_of(const CampaignContext& context, const PressPoint& p
   if (!(by_contact || settings.divide_once_more)) return refinement;
   refinement.cores = contact_cores(context.model.mesh(), tool_over(context, point),
                                    settings.depth / settings.increments, settings.depth);
-  const double finer = by_contact && settings.divide_once_more ? 0.5 : 1;
+  const double finer = by_contact && settings.divide_once_more ? kFinerByContact : 1;
   refinement.size_over_distance = finer * settings.size_over_contact;
   refinement.growth_outside *= finer;
   return refinement;

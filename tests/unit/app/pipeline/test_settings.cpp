@@ -160,7 +160,8 @@ class SettingsText {
   }
   void add(const fem::CampaignSettings& s) {
     for (const auto& material : s.materials) add(material);
-    add(static_cast<int>(s.dilatation), s.gravity.density, static_cast<int>(s.gravity.shape));
+    add(static_cast<int>(s.dilatation), s.gravity.density, static_cast<int>(s.gravity.shape),
+        s.mesh_error_sites);
     add(s.gravity.acceleration);
     const fem::IndentationSettings& i = s.indentation;
     add(static_cast<int>(i.tool.shape), i.tool.radius, i.tool.edge_radius, i.tool.length,
@@ -305,6 +306,7 @@ TEST(StageSettings, KeysThatACaseLeavesOutHaveTheDefaultsOfTheStages) {
   EXPECT_EQ(paths.azimuths, paths_default.azimuths);
   EXPECT_EQ(paths.force_tolerance, paths_default.force_tolerance);
   EXPECT_EQ(paths.refine_under_tool, paths_default.refine_under_tool);
+  EXPECT_EQ(campaign.mesh_error_sites, campaign_default.mesh_error_sites);
   const fitting::FitSettings fit = fit_settings(space), fit_default;
   EXPECT_EQ(fit.relative_tolerance, fit_default.relative_tolerance);
   EXPECT_TRUE(std::isnan(fit.absolute_tolerance));

@@ -64,7 +64,7 @@ TEST(FinerMesh, OfAFewSitesBoundsTheErrorOfOthers) {
   CampaignReport report;
   const auto chosen = sites_far_apart(body, sites_of(body), 3);
   std::vector<std::int32_t> others;
-  for (const auto [x, y] : {std::pair{-0.006, -0.004}, {0.001, 0.004}, {0.008, -0.003}})
+  for (const auto& [x, y] : {std::pair{-0.006, -0.004}, {0.001, 0.004}, {0.008, -0.003}})
     others.push_back(test::site_nearest(body, x, y));
   settings.sites = chosen;
   settings.sites.insert(settings.sites.end(), others.begin(), others.end());
