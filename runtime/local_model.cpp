@@ -28,6 +28,15 @@ void LocalModel::replace_memory(const TissueMemory& memory, const Deflection& d,
   set_memory(memory);
 }
 
+/// Puts a lateral memory in the place of another in a response.
+void LocalModel::relax_laterally(const LateralMemory& memory, const LateralMemory& before,
+                                 const Deflection& d, LocalResponse& r) const noexcept {
+  const Vec3 change = memory.relaxed - before.relaxed;
+  r.lateral_force = norm(r.instant_lateral_force * d.tangent - memory.relaxed);
+  r.energy += memory.stored - before.stored - d.lateral * dot(change, d.tangent);
+  r.force = r.force - change;
+}
+
 /// The force f that is felt becomes limit f/|f|, and q the deflection at which grad H is M plus
 /// that. It is between M and the present grad H, so that it has been reached.
 LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResponse& at,

@@ -166,14 +166,8 @@ class LocalModel {
     r.energy = value.energy;
     r.force = value.normal * n_ + value.lateral * d.tangent;
   }
-  /// Puts a lateral memory in the place of another in a response.
   void relax_laterally(const LateralMemory& memory, const LateralMemory& before,
-                       const Deflection& d, LocalResponse& r) const noexcept {
-    const Vec3 change = memory.relaxed - before.relaxed;
-    r.lateral_force = norm(r.instant_lateral_force * d.tangent - memory.relaxed);
-    r.energy += memory.stored - before.stored - d.lateral * dot(change, d.tangent);
-    r.force = r.force - change;
-  }
+                       const Deflection& d, LocalResponse& r) const noexcept;
   LateralSlip relaxed_slip_within(const Deflection& d, const LocalResponse& at,
                                   double limit) const noexcept;
   void relax_at_depth(double depth, LocalResponse& r) const noexcept {
