@@ -63,7 +63,7 @@ bool is_ours(const Request& request, std::uint16_t port) {
 }  // namespace
 
 struct LoopbackServer::State {
-  explicit State(std::string text)
+  explicit State(const std::string& text)
       : page(shared(head("200 OK", "text/html; charset=utf-8", text.size()) + text)) {}
 
   void accept();
@@ -189,8 +189,8 @@ void LoopbackServer::State::accept() {
   });
 }
 
-LoopbackServer::LoopbackServer(std::uint16_t port, std::string page)
-    : state_(std::make_unique<State>(std::move(page))) {
+LoopbackServer::LoopbackServer(std::uint16_t port, const std::string& page)
+    : state_(std::make_unique<State>(page)) {
   try {
     const tcp::endpoint here(asio::ip::address_v4::loopback(), port);
     state_->acceptor.open(here.protocol());

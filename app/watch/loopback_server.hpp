@@ -21,7 +21,7 @@ class LoopbackServer {
       10};  ///< for a request, and for a client that takes nothing
 
   /// port 0: any that is free. @throws Error(Configuration) where it cannot be bound.
-  LoopbackServer(std::uint16_t port, std::string page);
+  LoopbackServer(std::uint16_t port, const std::string& page);
   ~LoopbackServer();
   LoopbackServer(const LoopbackServer&) = delete;
   LoopbackServer& operator=(const LoopbackServer&) = delete;

@@ -43,6 +43,7 @@ static class Scene
         body.transform.position = new Vector3(0.1f, 0.2f, 0.3f);
         Place(body, -0.001f);
         Send(body, "Start");
+        body.AwaitStep();  // outside: a contact begins where the tip goes in
         return body;
     }
 
