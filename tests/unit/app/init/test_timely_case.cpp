@@ -37,7 +37,7 @@ Timely timely(const FirstWishes& wishes) {
 }
 
 TEST(TimelyCase, WithoutALimitIsThatOfTheShapeAndSaysNothingOfTime) {
-  const Timely any = timely({.sites = {}, .minutes = 0, .threads = 2});
+  const Timely any = timely({.sites = 20, .minutes = 0, .threads = 2});
   EXPECT_THAT(any.first.toml, Not(HasSubstr("campaign takes")));
   EXPECT_THAT(any.first.remarks.back(), HasSubstr("sites: "));
 }
@@ -53,9 +53,10 @@ TEST(TimelyCase, ThatFitsIsThatOfTheShapeAndSaysHowLongItTakes) {
 }
 
 TEST(TimelyCase, WithoutTimeHasTheLargestPatchesOrTheSmallestDepthAndAdmitsThatItDoesNotFit) {
-  const Timely any = timely({.sites = {}, .minutes = 0, .threads = 2});
   const Timely hurried = timely({.sites = {}, .minutes = kNoTime, .threads = 2});
-  EXPECT_GT(hurried.c.mesh.patch_spacing, 1.2 * any.c.mesh.patch_spacing);
+  const BodyFile body = read_body_file(test::source_folder() / "data/bodies/cylinder.off", "");
+  const FirstSizes usual = first_sizes(body.surface, find_base(body.surface), 200);
+  EXPECT_GT(hurried.c.mesh.patch_spacing, 1.2 * usual.patch_spacing);
   EXPECT_THAT(hurried.first.toml, HasSubstr("would take too long"));
   EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("sites would take longer than"));
   EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("more than the"));
