@@ -131,14 +131,14 @@ InverseSettings inverse_settings(const BodyOptions& options, const Workspace& sp
   return settings;
 }
 
-Json inverse_account(const InverseFit& fit, double confidence) {
+Json inverse_account(const PressFit& fit, double confidence) {
   Json account = calibration_account(fit.calibration, confidence);
   account["rms_N"] = fit.rms;
   account["relative_rms"] = fit.relative_rms;
   account["evaluations"] = fit.evaluations;
   account["profile_evaluations"] = fit.profile_evaluations;
   Json paths = Json::array();
-  for (const InversePath& path : fit.paths) {
+  for (const FittedPath& path : fit.paths) {
     Json uncertainty = Json::array();
     for (const double u : path.uncertainty) {
       uncertainty.push_back(std::isfinite(u) ? Json(u) : Json(nullptr));
@@ -166,8 +166,8 @@ int calibrate_body(const BodyOptions& options) {
                 "it belongs to another body than " + space.body().string(),
                 "import the measurement again with --body " + space.body().string());
   }
-  const InverseFit fit = calibrate_inverse(body, measured, inverse_settings(options, space));
-  const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(), [](const InversePath& p) {
+  const PressFit fit = calibrate_inverse(body, measured, inverse_settings(options, space));
+  const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(), [](const FittedPath& p) {
     return p.kind == PathKind::Lateral;
   });
   say("calibrate: {} sites, {} drags, RMS residual {} ({} of the largest force), {} evaluations",
