@@ -28,6 +28,7 @@ struct SlabOptions {
   std::string curves, law = "demiray-fung", out;
   std::vector<std::string> thickness;
   std::vector<double> stiffening;
+  std::vector<int> points{5, 6};
   double poisson = 0.49, confidence = 0.95;
   int depths = 6, threads = 1;
 };
@@ -59,6 +60,8 @@ SlabTableSettings table_settings(const SlabOptions& options, const Curves& measu
     settings.thickness_low = length_of(options.thickness[0]);
     settings.thickness_high = length_of(options.thickness[1]);
   }
+  settings.stiffenings = options.points[0];
+  settings.thicknesses = options.points[1];
   settings.threads = options.threads;
   settings.advanced = [](int done, int all) {
     if (done == all || done % 10 == 0) say("  {} of {} slabs are pressed", done, all);
@@ -175,6 +178,11 @@ void add_calibrate_slab(CLI::App& calibrate, Action& action) {
           "--thickness", options->thickness,
           "Range of the thickness, as \"8 mm\" \"60 mm\"; default: 2 to 20 times the depth")
       ->expected(2);
+  part->add_option("--points", options->points,
+                   "Slabs that are pressed along each range, of stiffening and of thickness")
+      ->capture_default_str()
+      ->expected(2)
+      ->check(CLI::Range(2, 20));
   part->add_option("--poisson", options->poisson, "Poisson's ratio, which is not fitted")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 0.499));

@@ -22,7 +22,7 @@ struct PressFitSettings {
   bool drags = false;  ///< compare measured drags as well
   double confidence = 0.95;
   Profiles profiles = Profiles::Doubtful;
-  /// Of profiles; fits between the best one and each end are for a picture.
+  /// How profiles are made; `of` is chosen by `profiles`.
   calibrate::ProfileSettings profile{.of = {}, .closeness = 0.01};
   std::function<void(const std::string& line)> log;  ///< one line an evaluation; may be empty
 };

@@ -45,7 +45,7 @@ class SlabTable {
 
   /// Forces at the depths of the settings, N per Pa of the shear modulus at rest.
   using Press = std::function<std::vector<double>(double stiffening, double thickness)>;
-  /// Of any other slab.
+  /// A table of any other slab.
   SlabTable(const SlabTableSettings& settings, const Press& press);
 
   struct Force {

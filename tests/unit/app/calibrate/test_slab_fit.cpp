@@ -25,8 +25,8 @@ TEST(SlabFit, FindsTheLayerThatWasPressed) {
                 0.02);
 }
 
-/// Of 60 fits of a well-determined layer, 95 % are expected to hold the truth; 51 or fewer happen
-/// by chance in less than one of a thousand programs.
+/// 57 of 60 intervals of 95 % are expected to hold the truth; fewer than 52 do so by chance in about
+/// one of a hundred programs, and the seeds are fixed.
 TEST(SlabFit, ItsIntervalsCover) {
   int thickness = 0, stiffening = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {

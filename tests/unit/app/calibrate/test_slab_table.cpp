@@ -45,7 +45,7 @@ TEST(SlabTable, RefusesRangesThatAreNone) {
   EXPECT_THROW(SlabTable(settings, press), Error);
 }
 
-/// Of every law the shear modulus at rest is the one that is asked for.
+/// The shear modulus at rest is the one that is asked for, whatever the law.
 TEST(StiffeningLaw, HasTheShearModulusThatIsAskedFor) {
   for (const char* name : {"demiray-fung", "ogden-1", "veronda-westmann", "yeoh"}) {
     const StiffeningLaw law = stiffening_law(name);
