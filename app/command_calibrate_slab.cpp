@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 /// The range of thicknesses where none is given, over the deepest press.
-constexpr double kThinnest = 2, kThickest = 20;
+constexpr double kThinnest = 2.5, kThickest = 20;
 
 struct SlabOptions {
   std::string curves, law = "demiray-fung", out;
@@ -176,7 +176,7 @@ void add_calibrate_slab(CLI::App& calibrate, Action& action) {
       ->expected(2);
   part->add_option(
           "--thickness", options->thickness,
-          "Range of the thickness, as \"8 mm\" \"60 mm\"; default: 2 to 20 times the depth")
+          "Range of the thickness, as \"8 mm\" \"60 mm\"; default: 2.5 to 20 times the depth")
       ->expected(2);
   part->add_option("--points", options->points,
                    "Slabs that are pressed along each range, of stiffening and of thickness")

@@ -175,9 +175,15 @@ Curves fitted_curves(const Curves& measured, const PressFit& fit) {
       sample.displacement = fitted.depth[i];
       sample.force = fitted.fitted[i] * path.direction;
     }
-    for (CurveSample& sample : path.samples)
-      sample.strain_energy = sample.tool_work = sample.min_jacobian = sample.penetration =
-          sample.contact_area = kUnknown;
+    for (std::size_t i = 0; i < path.samples.size(); ++i) {
+      CurveSample& sample = path.samples[i];
+      sample.strain_energy = sample.min_jacobian = sample.penetration = sample.contact_area =
+          kUnknown;
+      if (i == 0) continue;
+      const CurveSample& before = path.samples[i - 1];
+      sample.tool_work = before.tool_work + 0.5 * dot(before.force + sample.force, path.direction) *
+                                                (sample.displacement - before.displacement);
+    }
     curves.depth = std::max(curves.depth, path.samples.back().displacement);
     curves.sites.push_back({fitted.vertex, SiteStatus::Complete, "", 0, {path}});
   }

@@ -116,8 +116,8 @@ fem::LawConstants StiffeningLaw::at(double shear_modulus, double number, double 
 
 StiffeningLaw stiffening_law(const std::string& name) {
   for (const StiffeningLaw& law :
-       {StiffeningLaw{"demiray-fung", "b", 0.01, 6}, StiffeningLaw{"ogden-1", "alpha_1", -25, -1},
-        StiffeningLaw{"veronda-westmann", "C2", 0.01, 6}, StiffeningLaw{"yeoh", "C20/C10", 0, 5}})
+       {StiffeningLaw{"demiray-fung", "b", 0.01, 5}, StiffeningLaw{"ogden-1", "alpha_1", -25, -1},
+        StiffeningLaw{"veronda-westmann", "C2", 0.01, 5}, StiffeningLaw{"yeoh", "C20/C10", 0, 5}})
     if (law.name == name) return law;
   refuse("law '" + name + "'", "it does not have one stress and one number",
          "choose demiray-fung, ogden-1, veronda-westmann or yeoh");

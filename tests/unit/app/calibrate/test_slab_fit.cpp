@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/app/calibrate/pressed_layer.hpp"
 
 namespace palpate::app {
@@ -25,8 +26,8 @@ TEST(SlabFit, FindsTheLayerThatWasPressed) {
                 0.02);
 }
 
-/// 57 of 60 intervals of 95 % are expected to hold the truth; fewer than 52 do so by chance in about
-/// one of a hundred programs, and the seeds are fixed.
+/// 57 of 60 intervals of 95 % are expected to hold the truth; fewer than 52 do so by chance in
+/// about one of a hundred programs, and the seeds are fixed.
 TEST(SlabFit, ItsIntervalsCover) {
   int thickness = 0, stiffening = 0;
   for (unsigned seed = 1; seed <= 60; ++seed) {
@@ -62,6 +63,8 @@ TEST(SlabFit, GivesItsForcesAsCurvesOfTheSameSites) {
     const Vec3& theirs = measured.sites[i].paths.front().samples.back().force;
     EXPECT_NEAR(own[2], theirs[2], 2e-3 * std::abs(theirs[2]));
   }
+  const palpate::samples::TemporaryFolder folder;
+  EXPECT_NO_THROW(write_curves(folder / "curves.h5", fitted));
 }
 
 }  // namespace

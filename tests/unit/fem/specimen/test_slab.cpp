@@ -50,7 +50,7 @@ TEST(Slab, IsABondedLayerWhereItIsThin) {
 
 TEST(Slab, RefusesAPressThroughIt) {
   samples::expect_refusal([] { press_slab(press_of(0.001, {0.0015})); }, ErrorKind::Configuration,
-                          "slab", "pressed by 1.5 mm");
+                          "slab", "pressed by 1.50 mm");
   SlabPress disc = press_of(0.01, {0.001});
   disc.tool.shape = ToolShape::Disc;
   samples::expect_refusal([&] { press_slab(disc); }, ErrorKind::Configuration, "slab", "no sphere");
