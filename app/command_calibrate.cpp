@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "app/calibrate/account.hpp"
-#include "app/calibrate/clamped_fit.hpp"
 #include "app/calibrate/fit_file.hpp"
 #include "app/calibrate/inverse.hpp"
 #include "app/case_options.hpp"
@@ -36,21 +35,12 @@ Json inputs_of(const std::vector<fs::path>& files) {
   return inputs;
 }
 
-/// What the clamps of a specimen do to its stress; empty where it has none.
-std::string clamp_text(bool is_clamped, double largest_effect) {
-  if (!is_clamped) return {};
-  return ", between glued clamps: by finite elements up to " + percent_text(largest_effect) +
-         " off the formula";
-}
-
 int calibrate_tests(const CalibrateOptions& options) {
   const FitFile file = read_fit_file(options.fit_file);
-  const ClampedFit clamped = fit_clamped(file.tests, file.specimens, file.settings);
-  const calibrate::HomogeneousFit& fit = clamped.fit;
+  const calibrate::HomogeneousFit fit = calibrate::fit_homogeneous(file.tests, file.settings);
   say("calibrate: {} on {} tests of {}", file.settings.law, file.tests.size(), file.name);
   for (std::size_t i = 0; i < file.tests.size(); ++i)
-    say("  {}: {}{}", file.tests[i].name, file.statements[i],
-        clamp_text(file.specimens[i].has_value(), clamped.largest_effect[i]));
+    say("  {}: {}", file.tests[i].name, file.statements[i]);
   say_calibration(fit.calibration, file.settings.confidence);
   say_homogeneous(fit);
   if (options.out.empty()) return kExitDone;
@@ -62,7 +52,6 @@ int calibrate_tests(const CalibrateOptions& options) {
                   {"source", file.source},
                   {"licence", file.licence},
                   {"conversions", file.statements},
-                  {"largest_effect_of_clamps", clamped.largest_effect},
                   {"creator", creator_text()},
                   {"input_sha256", inputs_of(files)}};
   account.update(homogeneous_account(fit, file.settings, file.tests));
