@@ -7,6 +7,7 @@
 #include "app/case/quantity.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
+#include "app/json_number.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "app/report/report.hpp"
 #include "format/crash_safe_file.hpp"
@@ -89,10 +90,8 @@ void say_slab(const SlabFit& slab, const SlabTable& table, double confidence) {
   say("  shear modulus at rest: median {} Pa, from {} Pa to {} Pa over the sites",
       number_text(slab.median_modulus), number_text(slab.least_modulus),
       number_text(slab.largest_modulus));
-  say("  a modulus is correlated with the inverse thickness by {:.3f} and with {} by {:.3f}, in "
-      "the "
-      "median",
-      slab.modulus_thickness, s.law.stiffening, slab.modulus_stiffening);
+  say("  a modulus is correlated with the inverse thickness by {} and with {} by {}, in the median",
+      number_text(slab.modulus_thickness), s.law.stiffening, number_text(slab.modulus_stiffening));
   say("  the table, from {} to {} and {} from {} to {}, is off by {} between its points",
       length_text(s.thickness_low), length_text(s.thickness_high), s.law.stiffening,
       number_text(s.law.low), number_text(s.law.high), percent_text(table.error()));
@@ -119,8 +118,8 @@ Json slab_account(const SlabFit& slab, const SlabTable& table, double confidence
                      {"stiffening", identified_account(slab.stiffening)},
                      {"stiffening_name", s.law.stiffening},
                      {"median_shear_modulus_Pa", slab.median_modulus},
-                     {"modulus_thickness_correlation", slab.modulus_thickness},
-                     {"modulus_stiffening_correlation", slab.modulus_stiffening},
+                     {"modulus_thickness_correlation", json_number(slab.modulus_thickness)},
+                     {"modulus_stiffening_correlation", json_number(slab.modulus_stiffening)},
                      {"thickness_range_m", {s.thickness_low, s.thickness_high}},
                      {"stiffening_range", {s.law.low, s.law.high}},
                      {"table_error", table.error()},

@@ -107,7 +107,11 @@ Identified identified(const calibrate::Estimate& e, double low, double high) {
   return result;
 }
 
+/// The median of what is known; unknown where nothing is, as the correlation with a constant at its
+/// bound.
 double median(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !std::isfinite(value); });
+  if (values.empty()) return kUnknown;
   std::sort(values.begin(), values.end());
   return values[values.size() / 2];
 }

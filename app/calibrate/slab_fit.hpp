@@ -25,7 +25,8 @@ struct SlabFit {
   Identified stiffening;  ///< pure
   Identified thickness;   ///< m
   double median_modulus = 0, least_modulus = 0, largest_modulus = 0;  ///< Pa, at rest
-  double modulus_thickness = 0;   ///< median correlation of a modulus with the inverse thickness
+  double modulus_thickness =
+      0;  ///< median correlation of a modulus with 1/thickness; unknown at a bound
   double modulus_stiffening = 0;  ///< and with the stiffening
 };
 
