@@ -43,6 +43,8 @@ void add_fit_command(CLI::App& root, Action& action);
 void add_calibrate_command(CLI::App& root, Action& action);
 /// `palpate calibrate relaxation`, a part of `palpate calibrate`.
 void add_calibrate_relaxation(CLI::App& calibrate, Action& action);
+/// `palpate calibrate slab`, another one.
+void add_calibrate_slab(CLI::App& calibrate, Action& action);
 void add_compare_command(CLI::App& root, Action& action);
 void add_certify_command(CLI::App& root, Action& action);
 void add_build_command(CLI::App& root, Action& action);

@@ -131,32 +131,6 @@ InverseSettings inverse_settings(const BodyOptions& options, const Workspace& sp
   return settings;
 }
 
-Json inverse_account(const InverseFit& fit, double confidence) {
-  Json account = calibration_account(fit.calibration, confidence);
-  account["rms_N"] = fit.rms;
-  account["relative_rms"] = fit.relative_rms;
-  account["evaluations"] = fit.evaluations;
-  account["profile_evaluations"] = fit.profile_evaluations;
-  Json paths = Json::array();
-  for (const InversePath& path : fit.paths) {
-    Json uncertainty = Json::array();
-    for (const double u : path.uncertainty) {
-      uncertainty.push_back(std::isfinite(u) ? Json(u) : Json(nullptr));
-    }
-    const bool normal = path.kind == PathKind::Normal;
-    paths.push_back({{"vertex", path.vertex},
-                     {"kind", normal ? "normal" : "lateral"},
-                     {"lateral_depth_m", normal ? Json(nullptr) : Json(path.lateral_depth)},
-                     {"contact_shift_m", path.contact_shift},
-                     {"displacement_m", path.depth},
-                     {"measured_N", path.measured},
-                     {"fitted_N", path.fitted},
-                     {"uncertainty_N", uncertainty}});
-  }
-  account["paths"] = paths;
-  return account;
-}
-
 int calibrate_body(const BodyOptions& options) {
   const Workspace space = open_workspace(*options.common);
   const Body body = read_body(space.body());
@@ -166,10 +140,9 @@ int calibrate_body(const BodyOptions& options) {
                 "it belongs to another body than " + space.body().string(),
                 "import the measurement again with --body " + space.body().string());
   }
-  const InverseFit fit = calibrate_inverse(body, measured, inverse_settings(options, space));
-  const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(), [](const InversePath& p) {
-    return p.kind == PathKind::Lateral;
-  });
+  const PressFit fit = calibrate_inverse(body, measured, inverse_settings(options, space));
+  const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(),
+                                   [](const FittedPath& p) { return p.kind == PathKind::Lateral; });
   say("calibrate: {} sites, {} drags, RMS residual {} ({} of the largest force), {} evaluations",
       static_cast<std::ptrdiff_t>(fit.paths.size()) - drags, drags, force_text(fit.rms),
       percent_text(fit.relative_rms), fit.evaluations);
@@ -182,7 +155,7 @@ int calibrate_body(const BodyOptions& options) {
                   {"creator", creator_text()},
                   {"input_sha256", inputs_of({space.body(), options.measured})},
                   {"resolved_case", resolved_toml(space.c)}};
-  account.update(inverse_account(fit, options.confidence));
+  account.update(press_account(fit, options.confidence));
   prepare_output(space.out);
   const fs::path target = space.out / "calibration.json";
   write_file_crash_safely(target, account.dump(2) + "\n");
@@ -240,6 +213,7 @@ void add_calibrate_command(CLI::App& root, Action& action) {
                     "Folder for calibration.json and calibration.html (default: print only)");
   add_body_part(*command, action);
   add_calibrate_relaxation(*command, action);
+  add_calibrate_slab(*command, action);
   tests->callback([options, &action] { action = [options] { return calibrate_tests(*options); }; });
 }
 

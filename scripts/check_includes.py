@@ -36,6 +36,8 @@ MAY_INCLUDE = {
     "fem/campaign": {"format", "fem/laws", "fem/mesh", "fem/factor", "fem/solid", "fem/contact", "fem/solve"},
     "fem/relaxation": {"format", "fem/laws", "fem/mesh", "fem/factor", "fem/solid", "fem/contact", "fem/solve",
                        "fem/campaign"},
+    "fem/specimen": {"format", "fem/laws", "fem/mesh", "fem/factor", "fem/solid", "fem/contact", "fem/solve",
+                     "fem/campaign"},
     "fitting": {"format", "runtime"},
     "fitting/response": {"format", "runtime"},
     "fitting/deformation": {"format", "runtime", "fitting/response"},

@@ -86,19 +86,59 @@ Json homogeneous_account(const calibrate::HomogeneousFit& fit,
   return account;
 }
 
+Json press_account(const PressFit& fit, double confidence) {
+  Json account = calibration_account(fit.calibration, confidence);
+  account["rms_N"] = fit.rms;
+  account["relative_rms"] = fit.relative_rms;
+  account["evaluations"] = fit.evaluations;
+  account["profile_evaluations"] = fit.profile_evaluations;
+  Json paths = Json::array();
+  for (const FittedPath& path : fit.paths) {
+    Json uncertainty = Json::array();
+    for (const double u : path.uncertainty) {
+      uncertainty.push_back(std::isfinite(u) ? Json(u) : Json(nullptr));
+    }
+    const bool normal = path.kind == PathKind::Normal;
+    paths.push_back({{"vertex", path.vertex},
+                     {"kind", normal ? "normal" : "lateral"},
+                     {"lateral_depth_m", normal ? Json(nullptr) : Json(path.lateral_depth)},
+                     {"contact_shift_m", path.contact_shift},
+                     {"displacement_m", path.depth},
+                     {"measured_N", path.measured},
+                     {"fitted_N", path.fitted},
+                     {"uncertainty_N", uncertainty}});
+  }
+  account["paths"] = paths;
+  return account;
+}
+
+namespace {
+
+/// A value of a constant with its unit; lengths in one that fits.
+std::string value_text(double value, const std::string& unit) {
+  if (unit == "m") return length_text(value);
+  return fmt::format("{:.6g}{}", value, unit == "1" ? "" : " " + unit);
+}
+
+}  // namespace
+
 void say_calibration(const calibrate::Calibration& calibration, double confidence) {
   for (const calibrate::Estimate& e : calibration.estimates) {
-    const std::string unit = e.unit == "1" ? "" : " " + e.unit;
+    const std::string value = value_text(e.value, e.unit);
+    // Lengths carry their own units; other intervals have that of the value.
+    const std::string unit = e.unit == "m" ? e.unit : "1";
+    const auto interval = [&](double low, double high) {
+      return value_text(low, unit) + " to " + value_text(high, unit);
+    };
     if (e.at_bound) {
-      answer("  {} = {:.6g}{}, at its bound", e.name, e.value, unit);
-    } else {
-      const std::string profile =
-          std::isnan(e.profile_low)
-              ? ""
-              : fmt::format(", by its profile {:.6g} to {:.6g}", e.profile_low, e.profile_high);
-      answer("  {} = {:.6g}{}, {:.4g} % interval {:.6g} to {:.6g}{}", e.name, e.value, unit,
-             100 * confidence, e.low, e.high, profile);
+      answer("  {} = {}, at its bound", e.name, value);
+      continue;
     }
+    answer("  {} = {}, {:.4g} % interval {}{}", e.name, value, 100 * confidence,
+           interval(e.low, e.high),
+           std::isnan(e.profile_low)
+               ? ""
+               : ", by its profile " + interval(e.profile_low, e.profile_high));
   }
   for (const std::string& warning : calibration.warnings) warn(warning);
 }

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "app/calibrate/press_fit.hpp"
 #include "fitting/measurement/calibrate/homogeneous_fit.hpp"
 
 namespace palpate::app {
@@ -14,6 +15,9 @@ nlohmann::ordered_json homogeneous_account(const calibrate::HomogeneousFit& fit,
                                            const calibrate::HomogeneousSettings& settings,
                                            const std::vector<calibrate::HomogeneousTest>& tests);
 
+nlohmann::ordered_json press_account(const PressFit& fit, double confidence);
+
+/// A line for each constant, lengths in units that fit, and the warnings.
 void say_calibration(const calibrate::Calibration& calibration, double confidence);
 void say_homogeneous(const calibrate::HomogeneousFit& fit);
 

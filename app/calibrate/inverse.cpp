@@ -3,27 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 
-#include "fitting/measurement/compare/compare.hpp"
 #include "format/error.hpp"
 #include "format/number_text.hpp"
-#include "format/numbers.hpp"
 
 namespace palpate::app {
 namespace {
-
-/// What is left of the uncertainty of a force beside the contact point, at least: the difference of
-/// two uncertainties is itself uncertain, and one that is too small makes intervals too narrow.
-constexpr double kLeastOwnPart = 0.5;
-/// Ends of profiles, relative to their distance from the best fit.
-constexpr double kProfileCloseness = 0.01;
-/// Linearised intervals of a half width below this fraction of the value, of a constant that is
-/// correlated with no other beyond this, are not in doubt.
-constexpr double kPreciseEnough = 0.1, kInDoubt = 0.95;
 
 std::string constant_name(const fem::RegionConstant& constant) {
   return constant.name + " of " + constant.region;
@@ -58,368 +44,84 @@ bool admissible(const fem::CampaignSettings& campaign) {
   return true;
 }
 
-/// One measured curve at the depths, or the travels of a drag, that are compared.
-struct Target {
-  std::int32_t vertex = -1;
-  std::size_t site = 0;  ///< among those that are solved
-  std::size_t plan = 0;  ///< of a lateral path, among those of its site
-  PathKind kind = PathKind::Normal;
-  double lateral_depth = 0;  ///< m, of a lateral path
-  std::vector<double> depth, force, uncertainty;
-  std::vector<double> slope;  ///< N/m, of the force; from the model, for a measured one is noisy
-  double contact_uncertainty = kUnknown;
-  int shift = -1;  ///< index of its contact shift among the constants
-};
-
-Target target_of(const SiteCurves& site, const CurvePath& path, const std::vector<double>& depths) {
-  std::vector<double> x, f, u;
-  for (const CurveSample& sample : path.samples) {
-    x.push_back(sample.displacement);
-    f.push_back(dot(sample.force, path.direction));
-    u.push_back(sample.force_uncertainty);
-  }
-  const compare::MonotoneCubic force(x, f);
-  const compare::MonotoneCubic doubt(x, u);
-  const bool known = std::all_of(u.begin() + 1, u.end(), [](double v) { return std::isfinite(v); });
-  Target target;
-  target.vertex = site.vertex;
-  target.kind = path.kind;
-  target.lateral_depth = path.lateral_depth;
-  target.contact_uncertainty = path.contact_uncertainty;
-  for (const double depth : depths) {
-    if (depth > x.back() * (1 + 1e-9)) break;
-    target.depth.push_back(depth);
-    target.force.push_back(force.value(depth));
-    target.uncertainty.push_back(known ? doubt.value(depth) : kUnknown);
-  }
-  return target;
-}
-
-std::string shift_name(const Target& target) {
-  if (target.kind == PathKind::Normal) {
-    return fmt::format("contact shift of site {}", target.vertex);
-  }
-  return fmt::format("contact shift of the drag at {} of site {}",
-                     length_text(target.lateral_depth), target.vertex);
-}
-
-class Inverse {
+/// The finite element model of a body.
+class BodyModel : public PressModel {
  public:
-  Inverse(const Body& body, const Curves& measured, const InverseSettings& settings)
-      : body_(body), settings_(settings) {
-    take_targets(measured);
-    known_ = std::all_of(targets_.begin(), targets_.end(), [](const Target& t) {
-      return std::all_of(t.uncertainty.begin(), t.uncertainty.end(),
-                         [](double u) { return std::isfinite(u) && u > 0; });
-    });
-  }
+  BodyModel(const Body& body, const InverseSettings& settings) : body_(body), settings_(settings) {}
 
-  InverseFit run() {
-    calibrate::LeastSquares problem;
+  std::vector<calibrate::Constant> constants(const PressPlan&) const override {
+    std::vector<calibrate::Constant> constants;
     fem::CampaignSettings start = settings_.campaign;
-    for (const SoughtConstant& s : settings_.sought) {
-      problem.constants.push_back({constant_name(s.constant), unit_of(start, s.constant),
-                                   value_of(start, s.constant), s.low, s.high});
-    }
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    for (Target& target : targets_) {
-      if (!known_ || !(target.contact_uncertainty > 0)) continue;
-      target.shift = static_cast<int>(problem.constants.size());
-      problem.constants.push_back(
-          {shift_name(target), "m", 0, -infinity, infinity, /*may_vanish=*/true});
-      ++problem.residuals;
-    }
-    for (const Target& target : targets_) {
-      problem.residuals += target.depth.size();
-      problem.series.push_back(target.depth.size());
-    }
-    problem.known_scatter = known_;
-    problem.confidence = settings_.confidence;
-    problem.max_iterations = 40;
-    // Each evaluation is a campaign: stop well within any interval.
-    problem.tolerance = 1e-6;
-    problem.step_tolerance = 1e-4;
-    problem.model = [&](const double* c, double* r, double* J) {
-      return evaluate(c, problem.constants.size(), r, J);
-    };
-    InverseFit fit;
-    fit.calibration = calibrate::minimise(problem, "calibration of body '" + body_.name + "'");
-    finish(fit);
-    const int before = evaluations_;
-    calibrate::ProfileSettings profiles{profiled(fit.calibration), kProfileCloseness};
-    if (!profiles.of.empty()) calibrate::add_profiles(problem, fit.calibration, profiles);
-    fit.profile_evaluations = evaluations_ - before;
-    return fit;
+    for (const SoughtConstant& s : settings_.sought)
+      constants.push_back({constant_name(s.constant), unit_of(start, s.constant),
+                           value_of(start, s.constant), s.low, s.high});
+    return constants;
   }
+  std::size_t profiled(const PressPlan&) const override { return settings_.sought.size(); }
 
- private:
-  /// The constants whose profiles are wanted, see Profiles.
-  std::vector<std::size_t> profiled(const calibrate::Calibration& calibration) const {
-    std::vector<std::size_t> of;
-    for (std::size_t i = 0; i < settings_.sought.size(); ++i) {
-      const calibrate::Estimate& e = calibration.estimates[i];
-      bool wanted = settings_.profiles == Profiles::All;
-      if (settings_.profiles == Profiles::Doubtful) {
-        wanted = !(e.high - e.value < kPreciseEnough * std::abs(e.value));
-        for (std::size_t j = 0; j < settings_.sought.size(); ++j)
-          wanted = wanted || (j != i && std::abs(calibration.correlation[i][j]) > kInDoubt);
-      }
-      if (wanted) of.push_back(i);
-    }
-    return of;
-  }
-
-  void take_targets(const Curves& measured) {
-    const std::string shape = fem::name_of(settings_.campaign.indentation.tool.shape);
-    if (measured.tool.shape != shape) {
-      refuse("measured curves",
-             fmt::format("they were made with a {}, the tool of the case is a {}",
-                         measured.tool.shape, shape),
-             "set tool.shape of the case to that of the measurement");
-    }
-    const double radius = settings_.campaign.indentation.tool.radius;
-    if (std::abs(measured.tool.radius - radius) > 1e-6 * radius) {
-      refuse("measured curves",
-             fmt::format("they were made with a tool of {} radius, the case has {}",
-                         length_text(measured.tool.radius), length_text(radius)),
-             "set tool.radius of the case to that of the measurement");
-    }
-    double deepest = 0;
-    for (const SiteCurves& site : measured.sites) {
-      for (const CurvePath& path : site.paths) {
-        if (path.kind == PathKind::Normal && path.samples.size() >= 3) {
-          deepest = std::max(deepest, path.samples.back().displacement);
-        }
-      }
-    }
-    for (int i = 1; i <= settings_.depths; ++i) depths_.push_back(deepest * i / settings_.depths);
-    for (const SiteCurves& site : measured.sites) {
-      const auto vertex = static_cast<std::size_t>(site.vertex);
-      if (vertex >= body_.response.node.size() || body_.response.is_site[vertex] == 0) {
-        refuse(fmt::format("site at vertex {}", site.vertex), "it is no site of the body",
-               "import the measurement on this body");
-      }
-      take_paths(site);
-    }
-    if (targets_.empty()) {
-      refuse("measured curves", "they hold no normal path",
-             "import presses along the inward "
-             "direction");
-    }
-  }
-
-  void take_paths(const SiteCurves& site) {
-    std::vector<fem::LateralPlan> plans;
-    std::vector<Target> targets;
-    bool has_normal = false;
-    for (const CurvePath& path : site.paths) {
-      if (path.samples.size() < 3) continue;
-      const bool normal = path.kind == PathKind::Normal;
-      if (normal ? has_normal : !is_measured_drag(path)) continue;
-      Target target = target_of(site, path, normal ? depths_ : travels_of(path));
-      if (target.depth.empty()) continue;
-      target.site = vertices_.size();
-      target.plan = plans.size();
-      if (!normal) plans.push_back({path.lateral_depth, path.direction, target.depth});
-      has_normal = has_normal || normal;
-      targets.push_back(std::move(target));
-    }
-    // A drag alone has no normal curve to hold its depth against.
-    if (!has_normal) return;
-    vertices_.push_back(site.vertex);
-    plans_.push_back(std::move(plans));
-    for (Target& target : targets) targets_.push_back(std::move(target));
-  }
-
-  /// A path without repeats was computed, not measured.
-  bool is_measured_drag(const CurvePath& path) const {
-    return settings_.drags && path.kind == PathKind::Lateral && path.repeats > 0 &&
-           path.lateral_depth > 0;
-  }
-
-  std::vector<double> travels_of(const CurvePath& path) const {
-    std::vector<double> travels;
-    for (int i = 1; i <= settings_.depths; ++i) {
-      travels.push_back(path.samples.back().displacement * i / settings_.depths);
-    }
-    return travels;
-  }
-
-  const std::vector<fem::ForceSensitivity>& model_of(const Target& target) const {
-    const fem::SiteSensitivity& site = model_[target.site];
-    return target.kind == PathKind::Normal ? site.samples : site.lateral[target.plan];
-  }
-
-  /// The slopes of the first evaluation, scaled to the measured forces, serve throughout: weights
-  /// that moved with the constants would bias them.
-  void freeze_slopes() {
-    for (Target& target : targets_) {
-      const std::vector<fem::ForceSensitivity>& model = model_of(target);
-      std::vector<double> x{0}, f{0};
-      double product = 0, square = 0;
-      for (std::size_t i = 0; i < target.depth.size(); ++i) {
-        x.push_back(model[i].depth);
-        f.push_back(model[i].force);
-        product += target.force[i] * f.back();
-        square += f.back() * f.back();
-      }
-      const double scale = product / square;
-      const compare::MonotoneCubic curve(x, f);
-      for (std::size_t i = 0; i < target.depth.size(); ++i) {
-        // The lateral force of a sphere without slip grows as the root of its depth, see
-        // lateral_paths().
-        target.slope.push_back(scale * (target.kind == PathKind::Normal
-                                            ? curve.slope(target.depth[i])
-                                            : model[i].force / (2 * target.lateral_depth)));
-      }
-    }
-  }
-
-  /// The model at these constants. The last two are remembered: the solver asks for values and
-  /// slopes separately, and goes back to the point before when a step does not help.
-  bool solve(const std::vector<double>& sought) {
-    if (sought == at_) return usable_;
-    std::swap(at_, before_.at);
-    std::swap(usable_, before_.usable);
-    std::swap(model_, before_.model);
-    if (sought == at_) return usable_;
-    at_ = sought;
-    ++evaluations_;
+  bool forces(const PressPlan& plan, const std::vector<double>& at,
+              std::vector<fem::SiteSensitivity>& sites, std::string& refusal) override {
     fem::CampaignSettings campaign = settings_.campaign;
     std::vector<fem::RegionConstant> constants;
-    std::string line = fmt::format("evaluation {}:", evaluations_);
-    for (std::size_t i = 0; i < sought.size(); ++i) {
-      const fem::RegionConstant& constant = settings_.sought[i].constant;
-      value_of(campaign, constant) = sought[i];
-      constants.push_back(constant);
-      line += fmt::format(" {} = {:.6g}", constant_name(constant), sought[i]);
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      constants.push_back(settings_.sought[i].constant);
+      value_of(campaign, constants.back()) = at[i];
     }
-    campaign.sites = vertices_;
+    campaign.sites = plan.vertices;
     // At the start the refusal itself is the best message.
-    usable_ = evaluations_ == 1 || admissible(campaign);
-    if (!usable_) {
-      if (settings_.log) settings_.log(line + ", refused by the law");
+    if (!first_ && !admissible(campaign)) {
+      refusal = "refused by the law";
       return false;
     }
-    model_ = fem::run_sensitivity(body_, campaign, depths_, constants, plans_, &kept_);
-    for (const Target& target : targets_) {
-      if (model_of(target).size() >= target.depth.size()) continue;
-      usable_ = false;
-      failure_ = fmt::format("site {}: {}", target.vertex, model_[target.site].reason);
-      line += ", failed at " + failure_;
-    }
-    if (settings_.log) settings_.log(line);
-    if (usable_ && targets_.front().slope.empty()) freeze_slopes();
-    return usable_;
-  }
-
-  /// Standard uncertainty of a sample beside that of its contact point.
-  double own_uncertainty(const Target& target, std::size_t i) const {
-    if (!known_) return 1;
-    const double u = target.uncertainty[i];
-    if (target.shift < 0) return u;
-    const double of_contact = target.slope[i] * target.contact_uncertainty;
-    return std::sqrt(
-        std::max(u * u - of_contact * of_contact, kLeastOwnPart * kLeastOwnPart * u * u));
-  }
-
-  bool evaluate(const double* c, std::size_t columns, double* r, double* J) {
-    const std::vector<double> sought(c, c + settings_.sought.size());
-    if (!solve(sought)) return false;
-    std::size_t row = 0;
-    for (const Target& target : targets_) {
-      const std::vector<fem::ForceSensitivity>& samples = model_of(target);
-      const double shift = target.shift < 0 ? 0 : c[target.shift];
-      for (std::size_t i = 0; i < target.depth.size(); ++i, ++row) {
-        const fem::ForceSensitivity& model = samples[i];
-        const double u = own_uncertainty(target, i);
-        r[row] = (model.force + target.slope[i] * shift - target.force[i]) / u;
-        if (J == nullptr) continue;
-        std::fill(J + row * columns, J + (row + 1) * columns, 0.0);
-        for (std::size_t k = 0; k < sought.size(); ++k) J[row * columns + k] = model.slope[k] / u;
-        if (target.shift >= 0) {
-          J[row * columns + static_cast<std::size_t>(target.shift)] = target.slope[i] / u;
-        }
-      }
-    }
-    for (const Target& target : targets_) {
-      if (target.shift < 0) continue;
-      r[row] = c[target.shift] / target.contact_uncertainty;
-      if (J != nullptr) {
-        std::fill(J + row * columns, J + (row + 1) * columns, 0.0);
-        J[row * columns + static_cast<std::size_t>(target.shift)] = 1 / target.contact_uncertainty;
-      }
-      ++row;
-    }
+    first_ = false;
+    sites = fem::run_sensitivity(body_, campaign, plan.depths, constants, plan.lateral, &kept_);
     return true;
   }
 
-  void finish(InverseFit& fit) {
-    std::vector<double> found;
-    for (std::size_t i = 0; i < settings_.sought.size(); ++i) {
-      found.push_back(fit.calibration.estimates[i].value);
-    }
-    solve(found);
-    double squares = 0, largest = 0;
-    std::size_t count = 0;
-    for (const Target& target : targets_) {
-      const std::vector<fem::ForceSensitivity>& model = model_of(target);
-      InversePath path;
-      path.vertex = target.vertex;
-      path.kind = target.kind;
-      path.lateral_depth = target.lateral_depth;
-      path.depth = target.depth;
-      path.measured = target.force;
-      path.uncertainty = target.uncertainty;
-      if (target.shift >= 0) {
-        path.contact_shift =
-            fit.calibration.estimates[static_cast<std::size_t>(target.shift)].value;
-      }
-      for (std::size_t i = 0; i < target.depth.size(); ++i) {
-        path.fitted.push_back(model[i].force + target.slope[i] * path.contact_shift);
-        const double e = path.fitted.back() - target.force[i];
-        squares += e * e;
-        largest = std::max(largest, std::abs(target.force[i]));
-        ++count;
-      }
-      fit.paths.push_back(std::move(path));
-    }
-    fit.rms = std::sqrt(squares / static_cast<double>(count));
-    fit.relative_rms = fit.rms / largest;
-    fit.evaluations = evaluations_;
-  }
-
+ private:
   const Body& body_;
   const InverseSettings& settings_;
-  std::vector<double> depths_;
-  std::vector<std::int32_t> vertices_;  ///< of the sites that are solved
-  std::vector<std::vector<fem::LateralPlan>> plans_;
-  std::vector<Target> targets_;
-  bool known_ = false;
-  struct Evaluation {
-    std::vector<double> at;
-    bool usable = false;
-    std::vector<fem::SiteSensitivity> model;
-  };
-
-  std::vector<double> at_;
-  bool usable_ = false;
-  Evaluation before_;
-  std::string failure_;
-  std::vector<fem::SiteSensitivity> model_;
+  bool first_ = true;
   fem::FactorCache kept_;
-  int evaluations_ = 0;
 };
+
+void check_tool(const Curves& measured, const InverseSettings& settings) {
+  const std::string shape = fem::name_of(settings.campaign.indentation.tool.shape);
+  if (measured.tool.shape != shape) {
+    refuse("measured curves",
+           fmt::format("they were made with a {}, the tool of the case is a {}",
+                       measured.tool.shape, shape),
+           "set tool.shape of the case to that of the measurement");
+  }
+  const double radius = settings.campaign.indentation.tool.radius;
+  if (std::abs(measured.tool.radius - radius) > 1e-6 * radius) {
+    refuse("measured curves",
+           fmt::format("they were made with a tool of {} radius, the case has {}",
+                       length_text(measured.tool.radius), length_text(radius)),
+           "set tool.radius of the case to that of the measurement");
+  }
+}
+
+void check_sites(const Body& body, const Curves& measured) {
+  for (const SiteCurves& site : measured.sites) {
+    const auto vertex = static_cast<std::size_t>(site.vertex);
+    if (vertex >= body.response.node.size() || body.response.is_site[vertex] == 0)
+      refuse(fmt::format("site at vertex {}", site.vertex), "it is no site of the body",
+             "import the measurement on this body");
+  }
+}
 
 }  // namespace
 
-InverseFit calibrate_inverse(const Body& body, const Curves& measured,
-                             const InverseSettings& settings) {
-  if (settings.sought.empty()) {
-    refuse("calibration of body '" + body.name + "'", "no constant is sought",
-           "name at least one with --young or --poisson");
-  }
-  return Inverse(body, measured, settings).run();
+PressFit calibrate_inverse(const Body& body, const Curves& measured,
+                           const InverseSettings& settings) {
+  const std::string where = "calibration of body '" + body.name + "'";
+  if (settings.sought.empty())
+    refuse(where, "no constant is sought", "name at least one with --young or --poisson");
+  check_tool(measured, settings);
+  check_sites(body, measured);
+  BodyModel model(body, settings);
+  return fit_presses(measured, model, settings, where);
 }
 
 }  // namespace palpate::app

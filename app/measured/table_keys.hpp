@@ -12,7 +12,9 @@ void describe_table_choice(V& v, measured::TableChoice& s) {
   v.integer(s.table, {"table", "which table of the file, from 1; needed when it has several",
                       kOptional, kNotNegative});
   v.text(s.sheet, {"sheet", "of a workbook; needed when it has several"});
-  v.text(s.range, {"range", "cells of the sheet, header included: \"B4:E900\" or \"B:E\""});
+  v.text(s.range, {"range",
+                   "cells of the sheet, header included: \"B4:E900\" or \"B:E\"; of other files "
+                   "rows of numbers, from 1: \"120:900\", \"120:\""});
 }
 
 }  // namespace palpate::app

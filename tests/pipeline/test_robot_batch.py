@@ -115,6 +115,21 @@ class RobotBatch(unittest.TestCase):
         comparison = json.loads((self.out / "comparison.json").read_text())
         self.assertEqual(len(comparison["curves"]), result["predicted_sites"])
 
+    def test_a_slab_explains_the_presses(self):
+        """The moduli of the sites follow the true forces, and finite elements are compared with the measurement."""
+        out = self.out / "slab"
+        text = self.ok("calibrate", "slab", self.out / "curves.h5", "--points", "2", "3", "--depths", "3", "--out", out)
+        self.assertRegex(text, r"63 sites as one slab of demiray-fung")
+        found = json.loads((out / "calibration.json").read_text())
+        for what in ("thickness_m", "stiffening"):
+            self.assertIn(found["slab"][what]["identified"], ("interval", "lower bound", "upper bound", "not identified"))
+        moduli = [c["value"] for c in found["constants"] if c["name"].startswith("shear modulus")]
+        true = [self.truth.force(u, v, 3.0) for u, v in self.truth.sites()]
+        self.assertGreater(np.corrcoef(moduli, true)[0, 1], 0.95)
+        self.ok("compare", self.out / "curves.h5", out / "curves.h5", "--out", out)
+        comparison = json.loads((out / "comparison.json").read_text())
+        self.assertEqual(len(comparison["curves"]), 63)
+
     def test_the_report_opens_with_the_map_of_the_errors(self):
         self.ok("compare", "--leave-out", self.case, "--out", self.out)
         self.ok("report", self.case, "--out", self.out)

@@ -110,6 +110,7 @@ struct ProfileSettings {
   std::vector<std::size_t> of;  ///< indices of the constants; empty: all
   double closeness = 1e-4;      ///< of an end, relative to its distance from the best fit
   int between = 0;              ///< fits between the best one and each end, for a picture
+  bool at_bounds = false;       ///< also one-sided profiles of constants at a bound
 };
 
 /// Intervals that do not linearise: of each constant the values at which the best fit of all others
@@ -117,10 +118,11 @@ struct ProfileSettings {
 ///   2 (cost(value) - cost) <= t^2 s^2, s and t those of the linearised intervals,
 /// found by fits at fixed values of the constant [Bates & Watts 1988, sec. 6.1]; times what
 /// correlated residuals add to the variance of the constant. They end at the bounds of the
-/// constant. Constants at a bound get none. Warned of: a profile that does not end, or only where
-/// the model has no value, one that is far from its linearised interval, one that meets a better
-/// fit. The square root of the cost is followed, which is linear where the problem is: a few fits
-/// an end.
+/// constant. Constants at a bound get none, or with at_bounds a profile to the other side, at the
+/// rise that the other constants have in the mean. Warned of: a profile that does not end, or only
+/// where the model has no value, one that is far from its linearised interval, one that meets a
+/// better fit. The square root of the cost is followed, which is linear where the problem is: a few
+/// fits an end.
 void add_profiles(const LeastSquares& problem, Calibration& result,
                   const ProfileSettings& settings = {});
 

@@ -197,6 +197,38 @@ void warn_of_profile(const Estimate& e, const ProfileEnd& below, const ProfileEn
   }
 }
 
+/// The mean rise at which the intervals of the constants with one end; 0 where there is none.
+double mean_rise(const Calibration& result) {
+  double sum = 0;
+  int count = 0;
+  for (const Estimate& e : result.estimates) {
+    const double width = (e.high - e.value) / e.unit_error;
+    if (e.at_bound || !(width > 0) || !std::isfinite(width)) continue;
+    sum += 0.5 * width * width;
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
+}
+
+/// The profile of a constant at a bound, to the other side.
+void add_one_sided(const LeastSquares& problem, std::size_t constant, double closeness, int between,
+                   Calibration& result) {
+  constexpr double kFirstStep = 0.01;  // of the range
+  const Constant& c = problem.constants[constant];
+  const double rise = mean_rise(result), range = c.high - c.low;
+  if (!(rise > 0) || !std::isfinite(range)) return;
+  Estimate& e = result.estimates[constant];
+  const bool up = e.value - c.low < c.high - e.value;
+  ProfileEnd other(problem, result, constant, rise, closeness);
+  const double end = other.find((up ? 1 : -1) * kFirstStep * range);
+  other.fill(end, between);
+  e.profile_low = up ? e.value : end;
+  e.profile_high = up ? end : e.value;
+  e.profile = other.points();
+  e.profile.emplace_back(e.value, 0);
+  std::sort(e.profile.begin(), e.profile.end());
+}
+
 }  // namespace
 
 void add_profiles(const LeastSquares& problem, Calibration& result,
@@ -209,6 +241,8 @@ void add_profiles(const LeastSquares& problem, Calibration& result,
   for (const std::size_t i : of) {
     Estimate& e = result.estimates[i];
     const double half = e.high - e.value;
+    if (e.at_bound && settings.at_bounds)
+      add_one_sided(problem, i, settings.closeness, settings.between, result);
     if (e.at_bound || !(half > 0) || !std::isfinite(half)) continue;
     const double width = half / e.unit_error, rise = 0.5 * width * width;
     ProfileEnd below(problem, result, i, rise, settings.closeness);

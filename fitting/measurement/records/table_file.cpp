@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <fstream>
 #include <set>
 #include <string_view>
+#include <system_error>
 
 #include "fitting/measurement/records/mat_file.hpp"
 #include "fitting/measurement/records/workbook.hpp"
@@ -40,9 +42,8 @@ FileKind kind_of(const std::filesystem::path& file) {
 }
 
 void check_choice(const std::filesystem::path& file, const TableChoice& choice, FileKind kind) {
-  if (kind != FileKind::Workbook && !(choice.sheet.empty() && choice.range.empty()))
-    refuse(file.string(), "a sheet or range is chosen, and the file is no workbook",
-           "leave `sheet` and `range` out");
+  if (kind != FileKind::Workbook && !choice.sheet.empty())
+    refuse(file.string(), "a sheet is chosen, and the file is no workbook", "leave `sheet` out");
   const bool by_path = kind == FileKind::Hdf5 || kind == FileKind::Mat;
   if (by_path && choice.table != 0)
     refuse(file.string(), "a table is chosen by its number",
@@ -79,6 +80,39 @@ CsvTable columns_by_path(const std::filesystem::path& file, FileKind kind,
   return table;
 }
 
+/// A number of a range of rows; `missing` where it is left out.
+std::size_t row_number(std::string_view text, std::size_t missing, const std::string& where,
+                       const std::string& range) {
+  if (text.empty()) return missing;
+  std::size_t row = 0;
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), row);
+  if (fault != std::errc{} || end != text.data() + text.size() || row == 0)
+    refuse(where, "'" + range + "' is no range of rows",
+           "count the rows of numbers from 1: \"120:900\", \"120:\" or \":900\"");
+  return row;
+}
+
+/// Keeps the rows "FIRST:LAST" of numbers; either end may be left out.
+void keep_rows(const std::string& range, CsvTable& table) {
+  if (range.empty()) return;
+  const std::size_t rows = table.columns.empty() ? 0 : table.columns.front().values.size();
+  const std::string_view text = range;
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) row_number("?", 0, table.file, range);
+  const std::size_t first = row_number(text.substr(0, colon), 1, table.file, range);
+  const std::size_t last = row_number(text.substr(colon + 1), rows, table.file, range);
+  if (first > last || last > rows)
+    refuse(table.file,
+           "it has " + std::to_string(rows) + " rows of numbers, not those of '" + range + "'",
+           "give rows from 1 to " + std::to_string(rows));
+  for (CsvColumn& column : table.columns) {
+    column.values.resize(std::min(last, column.values.size()));
+    column.values.erase(column.values.begin(),
+                        column.values.begin() +
+                            static_cast<std::ptrdiff_t>(std::min(first - 1, column.values.size())));
+  }
+}
+
 }  // namespace
 
 CsvTable read_table(const std::filesystem::path& file, const TableChoice& choice,
@@ -86,8 +120,12 @@ CsvTable read_table(const std::filesystem::path& file, const TableChoice& choice
                     const std::vector<std::string>& wanted) {
   const FileKind kind = kind_of(file);
   check_choice(file, choice, kind);
-  if (kind == FileKind::Text) return read_csv(file, declared, choice.table);
-  if (kind != FileKind::Workbook) return columns_by_path(file, kind, declared, wanted);
+  if (kind != FileKind::Workbook) {
+    CsvTable table = kind == FileKind::Text ? read_csv(file, declared, choice.table)
+                                            : columns_by_path(file, kind, declared, wanted);
+    keep_rows(choice.range, table);
+    return table;
+  }
   const SheetText sheet = read_sheet(file, {choice.sheet, choice.range});
   return parse_csv(sheet.text, file.string() + ", sheet '" + sheet.sheet + "'", declared,
                    choice.table);

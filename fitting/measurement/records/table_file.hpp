@@ -14,7 +14,7 @@ namespace palpate::measured {
 struct TableChoice {
   int table = 0;      ///< from 1, of several below each other in a text or sheet; 0: the only one
   std::string sheet;  ///< of a workbook; empty: the only one that has cells
-  std::string range;  ///< of the sheet, "B4:E900"; empty: all cells
+  std::string range;  ///< of the sheet, "B4:E900"; of others rows of numbers, "120:900"
 };
 
 /// The table of the file; its kind is told by its first bytes. Texts and sheets are read whole, as

@@ -90,5 +90,21 @@ TEST(CalibrationAccount, SaysSmallStressesInTheirUnit) {
   EXPECT_THAT(text, testing::ContainsRegex("tension: rms [12]\\.[0-9]+ mPa"));
 }
 
+/// Lengths are shifts of contact points: a metre is no unit for them.
+TEST(CalibrationAccount, SaysLengthsInUnitsThatFit) {
+  calibrate::Calibration calibration;
+  calibrate::Estimate shift;
+  shift.name = "contact shift of site 3";
+  shift.unit = "m";
+  shift.value = 1.21e-4;
+  shift.low = -3e-6;
+  shift.high = 2.45e-4;
+  calibration.estimates = {shift};
+  testing::internal::CaptureStdout();
+  say_calibration(calibration, 0.95);
+  EXPECT_THAT(testing::internal::GetCapturedStdout(),
+              testing::HasSubstr("site 3 = 0.121 mm, 95 % interval -3.00 um to 0.245 mm"));
+}
+
 }  // namespace
 }  // namespace palpate::app

@@ -92,7 +92,7 @@ TEST(Inverse, FindsTheModuliThatMadeTheCurves) {
   const Body body = two_halves();
   const Curves truth = truth_curves(body);
   ASSERT_EQ(truth.sites.size(), 2U);
-  const InverseFit fit = calibrate_inverse(body, truth, settings_from(15e3, 15e3));
+  const PressFit fit = calibrate_inverse(body, truth, settings_from(15e3, 15e3));
   EXPECT_TRUE(fit.calibration.converged);
   EXPECT_NEAR(fit.calibration.estimates[0].value, kTop, 2e-3 * kTop);
   EXPECT_NEAR(fit.calibration.estimates[1].value, kBase, 2e-3 * kBase);
@@ -123,14 +123,14 @@ TEST(Inverse, DragsTellPoissonsRatioFromTheModulus) {
   settings.sought = {{{"soft", "young"}, 100, 1e6}, {{"soft", "poisson"}, 0.1, 0.499}};
   settings.campaign.materials[0].law.at("poisson") = 0.4;
   settings.drags = true;
-  const InverseFit fit = calibrate_inverse(body, curves, settings);
+  const PressFit fit = calibrate_inverse(body, curves, settings);
   ASSERT_EQ(fit.paths.size(), 2U);
   EXPECT_EQ(fit.paths[1].kind, PathKind::Lateral);
   EXPECT_TRUE(fit.calibration.converged);
   EXPECT_NEAR(fit.calibration.estimates[0].value, kTop, 5e-3 * kTop);
   EXPECT_NEAR(fit.calibration.estimates[1].value, 0.45, 2e-3);
   settings.drags = false;
-  const InverseFit alone = calibrate_inverse(body, curves, settings);
+  const PressFit alone = calibrate_inverse(body, curves, settings);
   EXPECT_EQ(alone.paths.size(), 1U);
   EXPECT_LT(2 * fit.calibration.estimates[1].standard_error,
             alone.calibration.estimates[1].standard_error);
@@ -170,7 +170,7 @@ TEST(Inverse, IntervalsCoverTheTruth) {
     }
     InverseSettings settings = settings_from(kTop, kBase);
     settings.depths = 4;
-    const InverseFit fit = calibrate_inverse(body, measured, settings);
+    const PressFit fit = calibrate_inverse(body, measured, settings);
     const std::array truth_values{kTop, kBase};
     for (std::size_t i = 0; i < 2; ++i) {
       const calibrate::Estimate& e = fit.calibration.estimates[i];
@@ -190,7 +190,7 @@ TEST(Inverse, WarnsOfConstantsThatTheCurvesCannotTellApart) {
   InverseSettings settings = settings_from(kTop, kBase);
   settings.sought = {{{"soft", "young"}, 100, 1e6}, {{"soft", "poisson"}, 0.1, 0.499}};
   truth.sites.resize(1);
-  const InverseFit fit = calibrate_inverse(body, truth, settings);
+  const PressFit fit = calibrate_inverse(body, truth, settings);
   EXPECT_THAT(fit.calibration.warnings, Contains(HasSubstr("hardly distinguish them")));
 }
 
@@ -212,7 +212,7 @@ TEST(Inverse, ProfileEndsWhereTheMisfitHasRisen) {
   settings.sought = {{{"soft", "poisson"}, 0.1, 0.4995}};
   settings.depths = 4;
   settings.profiles = Profiles::All;
-  const InverseFit one = calibrate_inverse(body, measured, settings);
+  const PressFit one = calibrate_inverse(body, measured, settings);
   const calibrate::Estimate& e = one.calibration.estimates[0];
   std::vector<double> x, f;
   for (const CurveSample& s : path.samples) {
@@ -242,7 +242,7 @@ TEST(Inverse, ProfileEndsWhereTheMisfitHasRisen) {
   EXPECT_GT(one.profile_evaluations, 0);
   EXPECT_LE(one.profile_evaluations, 16);
   settings.profiles = Profiles::None;
-  const InverseFit none = calibrate_inverse(body, measured, settings);
+  const PressFit none = calibrate_inverse(body, measured, settings);
   EXPECT_TRUE(std::isnan(none.calibration.estimates[0].profile_low));
   EXPECT_EQ(none.profile_evaluations, 0);
 }

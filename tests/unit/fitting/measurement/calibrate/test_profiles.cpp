@@ -154,5 +154,34 @@ TEST(Profile, HasThePointsThatItWentThrough) {
     EXPECT_NEAR(rise, std::pow((value - e.value) / (e.high - e.value), 2), 1e-5);
 }
 
+/// The data would have the first of two constants, which share no residual, below its bound. From
+/// there the cost of n residuals rises as n/2 ((a + d)^2 - d^2), d the distance to what they would
+/// have; the interval of the other constant ends at a rise of z^2/2.
+TEST(Profile, IsOneSidedAtABound) {
+  constexpr int kEach = 4;
+  constexpr double kDistance = 0.2, kNormal = 1.959964;
+  LeastSquares problem;
+  problem.constants = {{"a", "1", 1, 0, 10, true}, {"b", "1", 0, -10, 10, true}};
+  problem.residuals = 2 * kEach;
+  problem.known_scatter = true;
+  problem.model = [](const double* c, double* r, double* J) {
+    for (int i = 0; i < 2 * kEach; ++i) {
+      r[i] = i < kEach ? c[0] + kDistance : c[1] - 1;
+      if (J == nullptr) continue;
+      J[2 * i] = i < kEach ? 1 : 0;
+      J[2 * i + 1] = i < kEach ? 0 : 1;
+    }
+    return true;
+  };
+  Calibration fit = minimise(problem, "two");
+  ASSERT_TRUE(fit.estimates[0].at_bound);
+  add_profiles(problem, fit);
+  EXPECT_TRUE(std::isnan(fit.estimates[0].profile_high));
+  add_profiles(problem, fit, {.of = {0}, .at_bounds = true});
+  EXPECT_EQ(fit.estimates[0].profile_low, fit.estimates[0].value);
+  const double end = std::sqrt(kNormal * kNormal / kEach + kDistance * kDistance) - kDistance;
+  EXPECT_NEAR(fit.estimates[0].profile_high, end, 1e-3 * end);
+}
+
 }  // namespace
 }  // namespace palpate::calibrate
