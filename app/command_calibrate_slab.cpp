@@ -82,20 +82,21 @@ std::string told(const Identified& what, const std::function<std::string(double)
 void say_slab(const SlabFit& slab, const SlabTable& table, double confidence) {
   const SlabTableSettings& s = table.settings();
   const auto number = [](double v) { return number_text(v); };
-  say("calibrate: {} sites as one slab of {}, RMS residual {} ({} of the largest force)",
-      slab.fit.paths.size(), s.law.name, force_text(slab.fit.rms),
-      percent_text(slab.fit.relative_rms));
-  say("  thickness, {:.4g} %: {}", 100 * confidence, told(slab.thickness, length_text));
-  say("  {}, {:.4g} %: {}", s.law.stiffening, 100 * confidence, told(slab.stiffening, number));
-  say("  shear modulus at rest: median {} Pa, from {} Pa to {} Pa over the sites",
-      number_text(slab.median_modulus), number_text(slab.least_modulus),
-      number_text(slab.largest_modulus));
-  say("  a modulus is correlated with the inverse thickness by {} and with {} by {}, in the median",
+  answer("calibrate: {} sites as one slab of {}, RMS residual {} ({} of the largest force)",
+         slab.fit.paths.size(), s.law.name, force_text(slab.fit.rms),
+         percent_text(slab.fit.relative_rms));
+  answer("  thickness, {:.4g} %: {}", 100 * confidence, told(slab.thickness, length_text));
+  answer("  {}, {:.4g} %: {}", s.law.stiffening, 100 * confidence, told(slab.stiffening, number));
+  answer("  shear modulus at rest: median {} Pa, from {} Pa to {} Pa over the sites",
+         number_text(slab.median_modulus), number_text(slab.least_modulus),
+         number_text(slab.largest_modulus));
+  answer(
+      "  a modulus is correlated with the inverse thickness by {} and with {} by {}, in the median",
       number_text(slab.modulus_thickness), s.law.stiffening, number_text(slab.modulus_stiffening));
-  say("  the table, from {} to {} and {} from {} to {}, is off by {} between its points",
-      length_text(s.thickness_low), length_text(s.thickness_high), s.law.stiffening,
-      number_text(s.law.low), number_text(s.law.high), percent_text(table.error()));
-  for (const std::string& warning : slab.fit.calibration.warnings) say("  warning: {}", warning);
+  answer("  the table, from {} to {} and {} from {} to {}, is off by {} between its points",
+         length_text(s.thickness_low), length_text(s.thickness_high), s.law.stiffening,
+         number_text(s.law.low), number_text(s.law.high), percent_text(table.error()));
+  for (const std::string& warning : slab.fit.calibration.warnings) warn(warning);
 }
 
 Json identified_account(const Identified& what) {
