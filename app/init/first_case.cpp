@@ -134,6 +134,9 @@ void write_paths(Text& text, const FirstSizes& sizes) {
   text.length("lateral_travel", sizes.lateral_travel, "half the depth");
   text.key("lateral_depths", fmt::format("[\"{}\"]", mm(sizes.depth / 2)),
            "one lateral path a site; more are more accurate");
+  text.section("[solver]");
+  text.key("mesh_error_sites", "4",
+           "pressed on a finer mesh too: they bound the error of the mesh");
 }
 
 /// Names of the regions that need a material; one without a name is the default.

@@ -75,7 +75,7 @@ struct CampaignSettings {
   IndentationSettings indentation;
   /// Number of sites that the caller of run_campaign presses on a finer mesh too, for the error of
   /// the mesh of all sites (press_on_finer_mesh); 0: the error stays unknown.
-  int mesh_error_sites = 4;
+  int mesh_error_sites = 0;
   std::vector<std::int32_t> sites;  ///< response vertices; empty = every vertex with is_site
   /// Pressed instead of response vertices when not empty; the `vertex` of a result is then the
   /// index of its point. Such curves cannot be fitted.
