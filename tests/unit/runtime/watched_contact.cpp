@@ -14,6 +14,9 @@ namespace {
 constexpr double kForceTolerance =
     1e-9;  // N; at a release 1e-11 m of lateral deflection may be left
 
+/// m: the runtime takes a lateral deflection this small for none.
+constexpr double kNoDeflection = 1e-11;
+
 /// N: a lateral force that relaxes at a deflection of 1e-11 m. A memory that is kept keeps more.
 constexpr double kForgotten = 1e-8;
 
@@ -99,6 +102,13 @@ CurvePoint response_at(const Library& library, const runtime::SurfacePoint& p, C
   return sum;
 }
 
+/// grad H
+Vec3 gradient_at(const Library& library, const runtime::SurfacePoint& p, const Vec3& q) {
+  const double rho = norm(q);
+  if (!(rho > 0)) return {};
+  return (response_at(library, p, kLateral, rho).force / rho) * q;
+}
+
 /// G*(F) = max over z of F z - G(z), J; infinite where g stays below F. By halving and secants
 /// between depths on both sides of g = F.
 double conjugate(const Library& library, const runtime::SurfacePoint& p, double force) {
@@ -144,9 +154,7 @@ bool MemoryTwin::drags() const {
 
 /// grad H at the place of the memory.
 Vec3 MemoryTwin::gradient(const Vec3& q) const {
-  const double rho = norm(q);
-  if (!(rho > 0)) return {};
-  return (response_at(library_, place_, kLateral, rho).force / rho) * q;
+  return gradient_at(library_, place_, q);
 }
 
 /// With H*(|grad H(p)|) = grad H(p) . p - H(p).
@@ -195,7 +203,8 @@ double MemoryTwin::energy(const runtime::ContactObservation& model, const Vec3& 
 }
 
 Vec3 MemoryTwin::lateral_force(const runtime::ContactObservation& model, const Vec3& x) const {
-  return gradient(model_energy(library_, model, x).lateral_deflection) - lateral_sums().relaxed;
+  const Vec3 q = model_energy(library_, model, x).lateral_deflection;
+  return gradient_at(library_, model.point, q) - lateral_sums().relaxed;
 }
 
 /// Is there no normal contact?
@@ -412,8 +421,9 @@ void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& b
   if (coupled) return;
   const Vec3 felt = seen().force - dot(seen().force, seen().normal) * seen().normal;
   largest_lateral_error =
-      std::max({largest_lateral_error, norm(felt - memory_.lateral_force(seen(), x)),
-                memory_.misdirected()});
+      std::max(largest_lateral_error,
+               std::max(norm(felt - memory_.lateral_force(seen(), x)), memory_.misdirected()) /
+                   (kForceTolerance + kNoDeflection * bound_));
   if (norm(seen().relaxed_lateral_force) > 0) ++dragged;
 }
 

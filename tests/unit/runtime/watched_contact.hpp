@@ -116,7 +116,8 @@ class WatchedContact {
   /// travel can give, (1 + mu) Lipschitz bound times the longest of the contact, of coupled ones
   /// over nothing but rounding.
   double largest_overdraft = 0;
-  /// N, decoupled: lateral force of the runtime against that of the twin.
+  /// Decoupled: lateral force of the runtime against that of the twin, over what a deflection that
+  /// the runtime takes for none can give.
   double largest_lateral_error = 0;
   long dragged = 0;  ///< steps in which a lateral force had relaxed
   long apart = 0;    ///< steps in which the lateral offset was not zero
