@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kFarModulus = 1e3;  ///< from its start, to either side
 
-/// Indices of the constants.
-enum : std::size_t { kStiffening, kInverseThickness, kShared };
+// Indices of the constants, and the number of those that all sites share.
+constexpr std::size_t kStiffening = 0, kInverseThickness = 1, kShared = 2;
 
 class SlabModel : public PressModel {
  public:

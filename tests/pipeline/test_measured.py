@@ -225,7 +225,8 @@ class Measured(unittest.TestCase):
         text = self.ok("import", SOURCE / "data/measured/slice/press.toml", "--body", out / "body.h5", "--out", records)
         self.assertRegex(text, r"to 12\.\d um, 0\.4\d+ uN")
         self.ok("calibrate", "body", case, "--measured", records / "curves.h5", "--young", "brain", "--out", out)
-        (young,) = json.loads((out / "calibration.json").read_text())["constants"]
+        young = json.loads((out / "calibration.json").read_text())["constants"][0]
+        self.assertEqual(young["unit"], "Pa")
         self.assertLess(young["low"], 1200)
         self.assertGreater(young["high"], 1200)
         self.assertLess(young["high"] - young["low"], 0.3 * 1200)
@@ -261,7 +262,7 @@ class Measured(unittest.TestCase):
 
     def test_fit_files_of_the_shipped_tables(self):
         for fit in sorted((SOURCE / "data/measured").glob("*/*.toml")):
-            if fit.parent.name in ("pad", "liver-patch", "pig-liver"):  # records of bodies
+            if fit.parent.name in ("pad", "liver-patch", "pig-liver", "slice", "meat"):  # records of bodies
                 continue
             with self.subTest(fit):
                 out = Path(self.folder.name) / "fits" / fit.parent.name / fit.stem

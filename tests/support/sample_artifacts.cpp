@@ -249,6 +249,7 @@ Curves curves(unsigned seed) {
   curves.depth = random.between(1e-3, 1e-2);
   curves.lateral_travel = random.between(1e-3, 1e-2);
   curves.body_sha256 = std::string(64, 'b');
+  curves.mesh_error_confidence = random.between(0, 1);
   for (std::int32_t vertex = 0; vertex < 20; ++vertex) {
     SiteCurves site{vertex * 3, SiteStatus::Complete, "", random.between(0, 100), {}};
     if (vertex % 5 == 3) site.status = SiteStatus::Partial, site.reason = "line search failed";
