@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <regex>
 #include <string>
 
@@ -88,7 +89,8 @@ TEST(RoundTrip, CurvesKnowTheConfidenceOfTheErrorOfTheMesh) {
 /// Curves of before have no columns for it.
 TEST(RoundTrip, CurvesWithoutTheErrorOfTheMeshAreRead) {
   const TemporaryFolder folder;
-  const Curves curves = samples::curves(1);
+  Curves curves = samples::curves(1);
+  curves.mesh_error_confidence = std::numeric_limits<double>::quiet_NaN();
   write_curves(folder / "curves.h5", curves);
   {
     samples::Hdf5Editor editor(folder / "curves.h5");
