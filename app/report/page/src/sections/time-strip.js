@@ -23,8 +23,13 @@ export class TimeStrip {
 
   clear() { this.points = []; }
 
-  /** time: s; values: one a line. */
-  add(time, values) { this.points.push([time, ...values]); }
+  /** time: s; values: one a line. A time that goes back begins anew. */
+  add(time, values) {
+    const last = this.points.at(-1);
+    if (last && time === last[0]) return;
+    if (last && time < last[0]) this.clear();
+    this.points.push([time, ...values]);
+  }
 
   /** The strip up to this time. */
   draw(end = this.points.at(-1)?.[0] ?? 0) {

@@ -12,7 +12,7 @@ import { objOf, touchable } from '../touchable.js';
 import { TouchView } from '../touch-view.js';
 import { dot, minus, times } from '../vectors.js';
 import * as units from '../units.js';
-import { ForceStrip } from './force-strip.js';
+import { TimeStrip } from './time-strip.js';
 import { FrictionCone } from './friction-cone.js';
 import { secantField } from './secant-field.js';
 
@@ -59,7 +59,7 @@ function stateText(seen) {
 class Readings {
   constructor(friction, relaxes) {
     this.cone = new FrictionCone(friction);
-    this.strip = relaxes ? new ForceStrip() : null;
+    this.strip = relaxes ? new TimeStrip('Normal force', [{ name: 'if elastic', colour: 'muted', dash: true }, { name: 'normal force', colour: 'series-3' }], units.force) : null;
     this.friction = friction;
     const names = [['state', 'State'], ['depth', 'Depth'], ['normal', 'Normal force'], ['lateral', 'Lateral force'],
       ['used', `Friction, \u03bc = ${units.significant(friction)}`], ['energy', 'Stored energy'], ['tank', 'Energy tank'],
@@ -94,7 +94,8 @@ class Readings {
     this.outputs.relaxed.textContent = `${units.percent(touching ? seen.relaxedFraction : 0)} of the normal force`;
     this.outputs.dissipated.textContent = units.energy(seen?.dissipated ?? 0);
     this.outputs.elastic.textContent = units.force(elastic);
-    this.strip.add(time, normal, elastic);
+    this.strip.add(time, [elastic, normal]);
+    this.strip.draw();
   }
 
   showMargin(seen, least) {

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "fitting/measurement/calibrate/least_squares.hpp"
 
@@ -15,21 +16,29 @@ namespace {
 using testing::Contains;
 using testing::HasSubstr;
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// y = exp(c) x.
+LeastSquares exponential_line(const std::vector<double>& x, const std::vector<double>& y,
+                              const Constant& c) {
+  LeastSquares problem;
+  problem.constants = {c};
+  problem.residuals = x.size();
+  problem.model = [x, y](const double* constants, double* r, double* J) {
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      r[i] = std::exp(constants[0]) * x[i] - y[i];
+      if (J != nullptr) J[i] = std::exp(constants[0]) * x[i];
+    }
+    return true;
+  };
+  return problem;
+}
+
 /// Residuals over n values of a straight line through the origin in exp(c): the cost is a parabola
 /// in k = exp(c), so that the profile of c ends at the logarithms of the ends of the interval of k.
 TEST(Profile, IsExactWhereTheLinearisedIntervalIsNot) {
   const std::vector<double> x{1, 2, 3, 4, 5}, y{1.4, 1.3, 4.5, 3.1, 6.9};
-  LeastSquares problem;
-  const double infinity = std::numeric_limits<double>::infinity();
-  problem.constants = {{"c", "1", 0.3, -infinity, infinity}};
-  problem.residuals = x.size();
-  problem.model = [&](const double* c, double* r, double* J) {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      r[i] = std::exp(c[0]) * x[i] - y[i];
-      if (J != nullptr) J[i] = std::exp(c[0]) * x[i];
-    }
-    return true;
-  };
+  const LeastSquares problem = exponential_line(x, y, {"c", "1", 0.3, -kInfinity, kInfinity});
   Calibration fit = minimise(problem, "line");
   add_profiles(problem, fit);
   double xx = 0, xy = 0, yy = 0;
@@ -48,18 +57,9 @@ TEST(Profile, IsExactWhereTheLinearisedIntervalIsNot) {
 
 /// Where the constant is a logarithm, a warning has the ends of what is named: those of k.
 TEST(Profile, WarnsInTheUnitOfWhatIsNamed) {
-  const std::vector<double> x{1, 2, 3, 4, 5}, y{0.2, 2.6, 0.9, 6.1, 4};
-  LeastSquares problem;
-  const double infinity = std::numeric_limits<double>::infinity();
-  problem.constants = {{"time", "s", 0, -infinity, infinity, true, true}};
-  problem.residuals = x.size();
-  problem.model = [&](const double* c, double* r, double* J) {
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      r[i] = std::exp(c[0]) * x[i] - y[i];
-      if (J != nullptr) J[i] = std::exp(c[0]) * x[i];
-    }
-    return true;
-  };
+  const LeastSquares problem =
+      exponential_line({1, 2, 3, 4, 5}, {0.2, 2.6, 0.9, 6.1, 4},
+                       {"time", "s", 0, -kInfinity, kInfinity, true, true});
   Calibration fit = minimise(problem, "line");
   add_profiles(problem, fit);
   // k = 52.5/55 and s^2 = (60.82 - 52.5^2/55)/4 by hand, and Student's t of 4 at 95 %: 0.342
