@@ -179,6 +179,16 @@ std::size_t triangle_near(const Library& library, const TouchableSurface& surfac
               "choose two points without a hole, a support or a ridge between them");
 }
 
+/// A tool that keeps its depth round a rim is far beyond the other side of it.
+void end_before_a_rim(std::vector<PathPoint>& path) {
+  constexpr double kTurn = 0.5;  // cosine of 60 degrees
+  const Vec3 start = path.front().inward;
+  const auto beyond = std::find_if(path.begin(), path.end(), [&](const PathPoint& point) {
+    return dot(point.inward, start) < kTurn;
+  });
+  path.erase(beyond, path.end());
+}
+
 }  // namespace
 
 std::size_t middle_triangle(const Library& library) {
@@ -220,6 +230,7 @@ std::vector<PathPoint> straight_path(const Library& library, std::size_t start, 
     const double angle = 2 * std::numbers::pi * i / kDirections;
     const Vec3 direction = std::cos(angle) * first + std::sin(angle) * second;
     std::vector<PathPoint> path = walk(surface, start, direction, length, step);
+    end_before_a_rim(path);
     constexpr double kWorthwhile = 1 + 1e-7;  // equal lengths: the first direction stays
     if (longest.empty() || path.back().distance > kWorthwhile * longest.back().distance) {
       longest = std::move(path);

@@ -130,6 +130,18 @@ TEST(SurfacePath, FollowsACurvedSurface) {
   }
 }
 
+/// A tool that follows the sheet round would come out on its other side: along the axis there is
+/// room.
+TEST(SurfacePath, EndsBeforeItHasTurnedTooFar) {
+  const Library library = bent(20, 20);
+  const auto path = straight_path(library, middle_triangle(library), 1, 0.001);
+  const auto azimuth = [](const PathPoint& p) { return std::atan2(p.position[0], p.position[2]); };
+  for (const PathPoint& point : path)
+    EXPECT_LT(std::abs(std::remainder(azimuth(point) - azimuth(path.front()), 2 * M_PI)),
+              M_PI / 3 + 0.02);
+  EXPECT_GT(path.back().distance, 0.08);
+}
+
 /// Middle of the lower triangle of the tile with a corner at (i, j) tiles.
 Vec3 middle_of_tile(int i, int j) {
   return {(i + 2.0 / 3) * kTile, (j + 1.0 / 3) * kTile, 0};
