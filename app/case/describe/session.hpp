@@ -25,12 +25,12 @@ void describe_slide(V& v, SimulateSection& s) {
                   kSlidePaths);
   const std::string path(name_in(kSlidePaths, s.path));
   if (v.when("path", path, "longest")) {
-    v.quantity_or_auto(
-        s.slide_length, Dimension::Length,
-        {"slide_length",
-         "length of the slide; shorter where the surface ends; `auto`: half the diagonal of the "
-         "box around the part with responses",
-         kOptional, kPositive});
+    v.quantity_or_auto(s.slide_length, Dimension::Length,
+                       {"slide_length",
+                        "length of the slide; shorter where the surface ends or has turned by 60 "
+                        "degrees; `auto`: half the diagonal of the "
+                        "box around the part with responses",
+                        kOptional, kPositive});
   }
   if (v.when("path", path, "between")) {
     v.point(s.from, Dimension::Length,
