@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Each rule at its ends, and whose fault a broken one is.
 #include "format/checks.hpp"
+#include "format/hdf5_file.hpp"
 #include "format/numbers.hpp"
 
 #include <gtest/gtest.h>
