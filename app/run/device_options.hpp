@@ -4,7 +4,7 @@
 
 #include "app/run/device_choice.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): a name of the library
 class App;
 }
 
