@@ -24,7 +24,7 @@ enum class SiteStatus : std::uint8_t {
 };
 
 enum class PathKind : std::uint8_t {
-  Normal = 0,  ///< along the inward direction, from touch
+  Normal = 0,  ///< along the press direction, from touch
   Lateral = 1  ///< along `direction`, at a constant depth, without slip
 };
 

@@ -17,7 +17,7 @@ namespace palpate::mesher {
 ///
 /// Boundary nodes inside a support, or within element_size/1000 of it, are fixed.
 /// Response vertices are no sites when they lie within tool_radius of a fixed node or of a facet on
-/// springs, or when no inward direction can be interpolated around them because the surface is
+/// springs, or when no press direction can be interpolated around them because the surface is
 /// sharper than the patches resolve; the log counts the latter.
 ///
 /// Equal settings and files give equal bodies, to the bit. The caller adds the provenance.

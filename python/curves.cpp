@@ -109,7 +109,7 @@ void define_path(py::module_& module) {
           [](const CurvePath& path) {
             return path.kind == PathKind::Normal ? "normal" : "lateral";
           },
-          "\"normal\": along the inward direction; \"lateral\": along `direction` at a constant "
+          "\"normal\": along the press direction; \"lateral\": along `direction` at a constant "
           "depth, no slip.")
       .def_readonly("lateral_depth", &CurvePath::lateral_depth,
                     "m, of a lateral path; 0 for a normal one.")

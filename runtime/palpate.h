@@ -210,7 +210,7 @@ PALPATE_API int palpate_library_describe(const palpate_library* library,
 /* positions: three coordinates a vertex, m. */
 PALPATE_API int palpate_library_vertices(const palpate_library* library, double* positions,
                                          size_t capacity);
-/* normals: three components a vertex, the unit inward direction u_l, INTO the body: the response
+/* normals: three components a vertex, the unit press direction u_l, INTO the body: the response
  * f^z acts along it. A mesh that is lit needs the opposite. */
 PALPATE_API int palpate_library_normals(const palpate_library* library, double* normals,
                                         size_t capacity);

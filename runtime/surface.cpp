@@ -200,18 +200,18 @@ void Surface::build_element(const Library& library, const std::vector<std::int32
 
 void Surface::check_directions(const Library& library, std::size_t m) const {
   const Element& e = elements_[m];
-  const char* remedy = "refine the response surface there or smooth the inward directions";
+  const char* remedy = "refine the response surface there or smooth the press directions";
   for (std::size_t l = 0; l < 3; ++l) {
     if (!(dot(inward(e, l), e.facet_normal) > 0)) {
       throw Error(ErrorKind::Geometry, triangle_name(m),
-                  "the inward direction of vertex " + std::to_string(library.triangles[m][l]) +
+                  "the press direction of vertex " + std::to_string(library.triangles[m][l]) +
                       " does not point to its inner side",
                   remedy);
     }
   }
   if (origin_to_triangle(inward(e, 0), inward(e, 1), inward(e, 2)) < kLeastDirection) {
     throw Error(ErrorKind::Geometry, triangle_name(m),
-                "its inward directions differ too much to be interpolated", remedy);
+                "its press directions differ too much to be interpolated", remedy);
   }
 }
 

@@ -73,7 +73,7 @@ class Surface {
     const Element& e = element(p.element);
     return p.natural[0] * inward(e, 0) + p.natural[1] * inward(e, 1) + p.natural[2] * inward(e, 2);
   }
-  /// n, the unit inward direction at p. Always normalised: the energy (32) needs |n| = 1.
+  /// n, the unit press direction at p. Always normalised: the energy (32) needs |n| = 1.
   Vec3 normal(const SurfacePoint& p) const noexcept {
     const Vec3 sum = direction_sum(p);
     return (1.0 / norm(sum)) * sum;

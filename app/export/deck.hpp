@@ -60,7 +60,7 @@ struct Deck {
 Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
                      double radius);
 
-/// The tool of the settings pressed in along the inward direction, with the contact stiffness of
+/// The tool of the settings pressed in along the press direction, with the contact stiffness of
 /// the campaign. `lateral`: then the first lateral path of the settings, from the end of the press.
 /// @throws Error(Configuration) for linear elements, a vertex that is no site, a tool with a sharp
 /// edge, as fem::run_campaign.

@@ -22,7 +22,7 @@ struct PatchBody {
 /// Whether the records say where they were made and along which normal, so that they need no body.
 bool makes_body(const Sidecar& sidecar);
 
-/// The response surface through the contact points of all batches; the inward directions are the
+/// The response surface through the contact points of all batches; the press directions are the
 /// measured normals. @throws Error as mesher::make_patch and measured::split_batch; for a sidecar
 /// with presses or logs that are no batch.
 PatchBody patch_body(const std::filesystem::path& sidecar_file);

@@ -20,7 +20,7 @@ constexpr int kSteps = 400;                 // of a press, and of its release
 constexpr double kFast = 0.02, kSlow = 50;  // of the shortest and of the longest time
 constexpr double kDepthOfResponse = 0.9;    // of a node: no force is extrapolated
 
-/// A tool over a node, moved along its inward direction.
+/// A tool over a node, moved along its press direction.
 class Tool {
  public:
   Tool(const Library& library, const palpate_library& loaded, std::size_t vertex)
@@ -28,7 +28,7 @@ class Tool {
     to(-1e-6, 1e-9);
     to(1e-12, 1e-9);
   }
-  /// @return force along the inward direction, N
+  /// @return force along the press direction, N
   double to(double depth, double dt) {
     const Vec3& inward = library_.inward[vertex_];
     contact_.step(library_.positions[vertex_] + depth * inward, dt);

@@ -21,7 +21,7 @@ std::size_t middle_triangle(const Library& library);
 
 /// Walk over the triangles that have responses, from the middle of `start`, straight on: at an edge
 /// the direction is projected on the next triangle, as the contact point slides. Of 16 directions
-/// the one that leads farthest is taken, up to `length`, or until the inward direction has turned
+/// the one that leads farthest is taken, up to `length`, or until the press direction has turned
 /// by 60 degrees. Points lie at most `step` apart.
 std::vector<PathPoint> straight_path(const Library& library, std::size_t start, double length,
                                      double step);

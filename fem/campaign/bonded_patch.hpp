@@ -25,7 +25,7 @@ struct BondedPatch {
 BondedPatch bonded_patch(const Body& body, std::int32_t vertex, double radius);
 
 struct PatchForce {
-  double depth = 0;          ///< m, of the patch along the inward direction of the vertex
+  double depth = 0;          ///< m, of the patch along the press direction of the vertex
   Vec3 force{};              ///< N, of the tool on the body
   double strain_energy = 0;  ///< J
 };

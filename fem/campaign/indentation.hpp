@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// One site: the tool is pressed along the inward direction, and from chosen depths moved along
+// One site: the tool is pressed along the press direction, and from chosen depths moved along
 // tangents at constant depth without slip.
 #pragma once
 

@@ -16,7 +16,7 @@ struct RegionConstant {
   std::string name = "young";
 };
 
-/// Force along the inward direction at one depth, N, and its derivative by each constant, N/Pa for
+/// Force along the press direction at one depth, N, and its derivative by each constant, N/Pa for
 /// a stress, N for a dimensionless constant.
 struct ForceSensitivity {
   double depth = 0;

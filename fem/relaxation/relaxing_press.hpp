@@ -15,7 +15,7 @@ namespace palpate::fem {
 /// time are a step.
 struct ToolMotion {
   double time_s = 0;
-  double travel = 0;  ///< m, from first touch along the inward direction; negative: above it
+  double travel = 0;  ///< m, from first touch along the press direction; negative: above it
   double drag = 0;    ///< m, across it along azimuth 0 of the campaign
 };
 

@@ -100,7 +100,7 @@ TriangleFrame triangle_frame(const Library& library, std::size_t index) {
     }
     if (!(dot(u[l], N) > 0)) {
       refuse(index, x,
-             "the inward direction of vertex " + std::to_string(library.triangles[index][l]) +
+             "the press direction of vertex " + std::to_string(library.triangles[index][l]) +
                  " does not point into the facet");
     }
   }

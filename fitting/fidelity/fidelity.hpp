@@ -48,7 +48,7 @@ struct Fidelity {
   std::vector<std::string> left_out;  ///< unusable presses, with the reason
 };
 
-/// ErrorRow::what of the presses along the inward direction off the nodes.
+/// ErrorRow::what of the presses along the press direction off the nodes.
 inline constexpr const char* kNormalOffNode = "normal press, off node";
 
 /// A library and the direct solutions it is compared with.
@@ -56,7 +56,7 @@ struct FidelityInput {
   const Library& library;
   const RenderedBody& rendered;  ///< the same library in the runtime
   const std::vector<HoldOutPoint>& points;
-  /// SiteCurves::vertex is the index of the point. Normal paths run along its inward direction,
+  /// SiteCurves::vertex is the index of the point. Normal paths run along its press direction,
   /// lateral paths without slip.
   const Curves& direct;
   /// The curves that the library was fitted to. They separate the error of interpolation from that

@@ -83,7 +83,7 @@ double Skin::distance(const Vec3& position, const Vec3& inward) const {
   }
   if (std::isinf(nearest)) {
     throw Error(ErrorKind::Geometry, owner_,
-                "no skin is found along the inward direction of a point of the response surface",
+                "no skin is found along the press direction of a point of the response surface",
                 "mesh the body again: its response surface does not belong to its boundary");
   }
   return nearest;

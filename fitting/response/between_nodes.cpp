@@ -12,7 +12,7 @@ namespace palpate::fitting {
 namespace {
 
 constexpr Eigen::Index kTerms = 6;      // of a quadratic on a plane
-constexpr double kSameSide = 0.5;       // cosine between inward directions on one side of an edge
+constexpr double kSameSide = 0.5;       // cosine between press directions on one side of an edge
 constexpr double kMaxCorrection = 0.2;  // relative; patches that need more are too coarse
 
 Eigen::Vector3d to_eigen(const Vec3& v) {

@@ -34,8 +34,7 @@ void check_site(const Body& body, const SiteCurves& site) {
   for (const CurvePath& path : site.paths) {
     if (path.kind == PathKind::Normal &&
         norm(path.direction - body.response.inward[vertex]) > 1e-3) {
-      refuse(where, "the normal path does not run along the inward direction of the vertex",
-             remedy);
+      refuse(where, "the normal path does not run along the press direction of the vertex", remedy);
     }
   }
 }

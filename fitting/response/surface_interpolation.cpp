@@ -13,7 +13,7 @@ namespace palpate::fitting {
 namespace {
 
 constexpr double kLeastCosine =
-    0.2;  // between inward directions of vertices that may interpolate each other
+    0.2;  // between press directions of vertices that may interpolate each other
 constexpr std::size_t kDonors = 12;  // per spline: about two rings of neighbours
 constexpr std::size_t kFewest = 5;   // fewer donors do not determine a spline
 

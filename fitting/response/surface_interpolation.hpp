@@ -16,7 +16,7 @@ struct Donor {
 };
 
 /// Distance of two vertices for interpolation, m: their Euclidean distance, increased up to
-/// threefold where their inward directions differ (at an edge), and infinite for directions more
+/// threefold where their press directions differ (at an edge), and infinite for directions more
 /// than 78 degrees apart (the other side of a thin body).
 double interpolation_distance(const std::vector<Vec3>& positions, const std::vector<Vec3>& inward,
                               std::size_t a, std::size_t b);

@@ -36,7 +36,7 @@ double largest_on_ring(const Surface& boundary, const SurfaceQuery& query, const
   return largest;
 }
 
-/// Smallest cosine between the inward direction and the inward normals of the facets at a vertex.
+/// Smallest cosine between the press direction and the inward normals of the facets at a vertex.
 std::vector<double> least_cosines(const Surface& boundary, const std::vector<Vec3>& inward) {
   std::vector<double> least(inward.size(), 1);
   for (const Triangle& t : boundary.triangles) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The response surface of a body: inward directions and sites.
+// The response surface of a body: press directions and sites.
 #pragma once
 
 #include <vector>
@@ -33,7 +33,7 @@ InwardDirections inward_directions(const Surface& response, const Surface& bound
 
 /// Writes Body::response and logs which vertices are no sites: those that are constrained, those
 /// within tool_radius of a constrained point, where the tool would press on the support instead of
-/// the body, and those without an inward direction.
+/// the body, and those without a press direction.
 void set_response(Body& body, const NestedSurface& nested, const Marks& constrained,
                   const Settings& settings);
 

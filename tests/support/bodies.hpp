@@ -45,7 +45,7 @@ Library bumpy_sphere(int level, double radius, double amplitude, const Responses
 Library cylinder(int around, int along, double radius, double length, const Responses& responses);
 
 /// Square plate of n x n squares of two triangles in z = 0, side `side`, from the origin; the body
-/// lies below, so the inward direction is -z.
+/// lies below, so the press direction is -z.
 Library plate(int n, double side, const Responses& responses);
 
 /// A plate of 80 mm of springs of 170 N/m, whose certificate is written by hand: L = 200 N/m,

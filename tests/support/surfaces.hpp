@@ -37,7 +37,7 @@ inline Library flat_triangle() {
   return library;
 }
 
-/// Icosphere with radial inward directions; 20 * 4^level triangles.
+/// Icosphere with radial press directions; 20 * 4^level triangles.
 inline Library sphere(double radius, int level) {
   Library library;
   library.name = "sphere";

@@ -50,7 +50,7 @@ std::size_t touch_of(const RobotLog& log) {
   refuse(log.name, "the force never rises above its noise", "check the columns of the force");
 }
 
-/// The log in parts along and across the inward direction of its site.
+/// The log in parts along and across the press direction of its site.
 struct Parts {
   std::vector<double> along, force_along;
   std::vector<Vec3> across, force_across;
@@ -153,7 +153,7 @@ RobotCurves analyse_robot_log(const RobotLog& log, const Body& body,
   if (curves.tilt > kLargestTilt) {
     refuse(log.name,
            "the press runs " + std::to_string(curves.tilt * 180 / std::numbers::pi) +
-               " degrees off the inward direction of its site",
+               " degrees off the press direction of its site",
            "press along the surface normal, or check the frame");
   }
   const Vec3 pull =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // Logs of a robot with a force sensor: positions and forces in three dimensions, placed on the
-// body and split into a press along the inward direction and a drag across it.
+// body and split into a press along the press direction and a drag across it.
 #pragma once
 
 #include <optional>

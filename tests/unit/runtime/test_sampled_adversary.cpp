@@ -98,7 +98,7 @@ std::vector<Vec3> varied(std::vector<Vec3> motion, const Library& library, Rando
   return motion;
 }
 
-/// To and fro along the inward direction of a vertex, at constant speed, deep enough to stay in
+/// To and fro along the press direction of a vertex, at constant speed, deep enough to stay in
 /// contact.
 std::vector<Vec3> stab(const Library& library, Random& random, std::size_t samples) {
   const std::size_t v = random() % library.positions.size();

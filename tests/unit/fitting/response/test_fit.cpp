@@ -262,7 +262,7 @@ TEST(Fit, RefusesCurvesOfAnotherBody) {
             std::string::npos);
   Curves turned = complete_curves(body);
   turned.sites[2].paths[0].direction = {0, 0.1, -0.995};
-  EXPECT_NE(problem_of([&] { fit(body, turned, {}); }).find("inward direction"), std::string::npos);
+  EXPECT_NE(problem_of([&] { fit(body, turned, {}); }).find("press direction"), std::string::npos);
   Curves twice = complete_curves(body);
   twice.sites[2].vertex = 1;
   EXPECT_NE(problem_of([&] { fit(body, twice, {}); }).find("twice"), std::string::npos);

@@ -62,7 +62,7 @@ export class Curves {
     this.depth = data.key.depth;
     this.axes = { length: units.axis.length(data.key.depth), force: units.axis.force(data.key.max_force) };
     const { length, force } = this.axes;
-    this.normal = curvePlot('Normal response: along the inward direction', `Depth (${length.name})`, `Force (${force.name})`, 230);
+    this.normal = curvePlot('Normal response: along the press direction', `Depth (${length.name})`, `Force (${force.name})`, 230);
     this.lateral = curvePlot('Lateral response: along the travel, at a lateral depth', `Lateral deflection (${length.name})`, `Force (${force.name})`, 210);
     this.neighbours = false;
     this.legend = el('div', {});

@@ -5,7 +5,7 @@ import { add, cross, dot, minus, times, unit } from '../vectors.js';
 
 export const row = (column, i) => Array.from(column.subarray(3 * i, 3 * i + 3));
 
-/** Inward direction at a point of a triangle of the surface, interpolated as the runtime does. */
+/** Press direction at a point of a triangle of the surface, interpolated as the runtime does. */
 export function inwardAt({ surface, vertices }, triangle, point) {
   const corners = surface.triangles.subarray(3 * triangle, 3 * triangle + 3);
   const [a, b, c] = Array.from(corners, (v) => row(vertices.position, v));

@@ -94,7 +94,7 @@ TEST(Robot, RefusesWhatIsNotOnTheBody) {
   EXPECT_THAT(refusal(up), HasSubstr("does not go into the body"));
   RobotLog slanted = log_of({}, 9);
   for (Vec3& x : slanted.tip) x[0] -= 0.9 * x[2];
-  EXPECT_THAT(refusal(slanted), HasSubstr("degrees off the inward direction"));
+  EXPECT_THAT(refusal(slanted), HasSubstr("degrees off the press direction"));
   EXPECT_EQ(refusal(log_of({}, 10)), "accepted");
   RobotLog pulling = log_of({}, 11);
   for (Vec3& f : pulling.force) f = -1.0 * f;
