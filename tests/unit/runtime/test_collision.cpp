@@ -4,8 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
+#include <vector>
 
 #include "runtime/local_model.hpp"
 #include "tests/support/bodies.hpp"
@@ -84,6 +87,39 @@ TEST(CollisionTree, AStepThatBeginsOnTheSurfaceEnters) {
   EXPECT_NE(tree.first_entry(on, on - Vec3{0, 0, 1e-6}).element, kNoElement);
   EXPECT_EQ(tree.first_entry(on + Vec3{0, 0, 1e-3}, on).element,
             kNoElement);  // touching is outside
+}
+
+TEST(CollisionTree, TheNearestPointMeetsTheConditionsOfAMinimum) {
+  Library library = bumpy_sphere(3, 0.03, 0.3, uniform);
+  library.responses[100] = {};
+  const Surface surface(library);
+  const CollisionTree tree(surface);
+  std::vector<std::int32_t> all;
+  for (std::int32_t m = 0; m < surface.element_count(); ++m)
+    if (surface.element(m).active) all.push_back(m);
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> any(-0.045, 0.045);
+  int on_edges = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    const Vec3 x{any(random), any(random), any(random)};
+    const SurfacePoint found = tree.nearest(x, 1);
+    ASSERT_NE(found.element, kNoElement);
+    const Vec3 p = surface.position(found);
+    const Vec3& n = found.natural;
+    EXPECT_NEAR(n[0] + n[1] + n[2], 1, 1e-12);
+    EXPECT_GE(std::min({n[0], n[1], n[2]}), 0);
+    on_edges += std::min({n[0], n[1], n[2]}) == 0 ? 1 : 0;
+    // Over its own triangle, which is convex, no corner lies on the side of x ...
+    for (std::size_t l = 0; l < 3; ++l)
+      EXPECT_LE(dot(x - p, surface.vertex(surface.element(found.element), l) - p), 1e-15);
+    // ... and no corner of another is nearer.
+    for (const std::int32_t m : all)
+      for (std::size_t l = 0; l < 3; ++l)
+        ASSERT_GE(norm(surface.vertex(surface.element(m), l) - x), norm(p - x) - 1e-15);
+    EXPECT_NEAR(norm(surface.position(nearest(surface, all, x, 1)) - p), 0, 1e-15);
+    EXPECT_EQ(tree.nearest(x, 0.999 * norm(p - x)).element, kNoElement);
+  }
+  EXPECT_GT(on_edges, 300);
 }
 
 TEST(Projection, EndsWhereTheTipLiesAlongTheInterpolatedDirection) {

@@ -40,6 +40,20 @@ Vec3 random_unit(std::mt19937& random) {
   return (1.0 / norm(v)) * v;
 }
 
+/// A suspended tip finds anew whether it is inside, wherever the origin is.
+TEST(Contact, GoesOnAfterASuspensionInsideABodyFarFromTheOriginAndNotAboveIt) {
+  for (const double height : {-1.0, 0.0, 1.0}) {
+    Library library = plate(8, 0.1, uniform);
+    for (Vec3& x : library.positions) x[2] += height;
+    Rig rig(library);
+    const Vec3 above{0.041, 0.052, height + 0.002}, below{0.041, 0.052, height - 0.002};
+    rig.contact.suspend(above);
+    EXPECT_EQ(rig.step(above - Vec3{0, 0, 0.0005}), 0U) << height;
+    rig.contact.suspend(below);
+    EXPECT_EQ(rig.step(below - Vec3{0, 0, 0.0005}), PALPATE_CONTACT | PALPATE_ACTIVATED) << height;
+  }
+}
+
 TEST(Contact, BeginsWithoutForceOrEnergyAndWithAnOffsetOfAtMostOneStep) {
   Rig rig(bumpy_sphere(3, 0.03, 0.2, uniform));
   std::mt19937 random(1);

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <string>
 #include <thread>
 
@@ -193,6 +194,11 @@ TEST(LoopThread, RefusesSettingsOutOfRange) {
   LoopRig rig;
   EXPECT_THROW(LoopThread(rig.loop, rig.device, ordinary(0, 1)), Error);
   EXPECT_THROW(LoopThread(rig.loop, rig.device, ordinary(1e9, 1)), Error);
+  for (const double duration : {-1.0, 2e9, std::numeric_limits<double>::quiet_NaN()}) {
+    LoopThreadSettings settings = ordinary(1000, 1);
+    settings.duration = duration;
+    EXPECT_THROW(LoopThread(rig.loop, rig.device, settings), Error) << duration;
+  }
   EXPECT_THROW(LoopThread(rig.loop, rig.device, ordinary(1000, 0)), Error);
 }
 

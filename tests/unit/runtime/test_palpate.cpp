@@ -368,6 +368,32 @@ TEST_F(PalpateApi, RefusesALipschitzBoundThatTheLibraryCannotEnforce) {
   palpate_library_destroy(limited);
 }
 
+TEST_F(PalpateApi, AStateWithoutFrictionFeelsNoneOfALibraryCertifiedWithSome) {
+  const std::string certified = (folder_ / "certified.h5").string();
+  write_library(certified, plate_of_200());
+  for (const double friction : {0.0, -1.0}) {  // -1: that of the certificate, 0.3
+    palpate_library* library = nullptr;
+    ASSERT_EQ(palpate_library_load(certified.c_str(), &library), PALPATE_OK);
+    palpate_settings settings = settings_;
+    settings.friction = friction;
+    palpate_state* state = nullptr;
+    ASSERT_EQ(palpate_state_create(library, &settings, &state), PALPATE_OK) << palpate_last_error();
+    const double velocity[3] = {0, 0, 0};
+    for (int i = 0; i <= 20; ++i) {
+      const Vec3 x{0.04, 0.04, 0.0005 - 1e-4 * i};
+      palpate_step(state, x.data(), velocity, kDt, force_.data());
+    }
+    for (int i = 1; i <= 20; ++i) {
+      const Vec3 x{0.04 + 1e-4 * i, 0.04, -0.0015};
+      palpate_step(state, x.data(), velocity, kDt, force_.data());
+    }
+    EXPECT_GT(std::abs(force_[2]), 0.03);
+    EXPECT_NEAR(std::abs(force_[0]), friction == 0 ? 0 : 0.3 * std::abs(force_[2]), 1e-9);
+    palpate_state_destroy(state);
+    palpate_library_destroy(library);
+  }
+}
+
 TEST_F(PalpateApi, ObservesTheLateralOffsetAtABorder) {
   // The observation is consistent: x = c + (z + d0) n + s + q, |q| = rho.
   step({0.07, 0.05, 0.0001});

@@ -102,6 +102,24 @@ TEST(Safety, TooFastCutsOffUntilSlow) {
   EXPECT_EQ(safety.admit({{}, {0, 0.9, 0}, 0}, true, kDt).action, Safety::Action::Step);
 }
 
+TEST(Safety, ExactlyTheLargestSpeedIsNotTooFast) {
+  constexpr double kPeriod = 1.0 / 1024;  // so that position and speed are exact
+  Safety safety({0, 100, 2, 0.02, kPeriod});
+  safety.admit({{}, kStill, 0}, true, kPeriod);
+  EXPECT_EQ(safety.admit({{2 * kPeriod, 0, 0}, {2, 0, 0}, 0}, true, kPeriod).status, 0U);
+  EXPECT_EQ(safety.admit({{4.01 * kPeriod, 0, 0}, kStill, 0}, true, kPeriod).status,
+            PALPATE_LOOP_TOO_FAST);
+}
+
+/// A sample that is no position has no speed, and the first one no earlier one to be far from.
+TEST(Safety, ALoopBeginsWithoutACutOffWhereverItsDeviceIs) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Vec3& first : {Vec3{nan, 0, 0}, Vec3{30, -20, 10}}) {
+    Safety safety({0, 100, 0.5, 0.02, kDt});
+    EXPECT_EQ(safety.admit({first, kStill, 0}, true, kDt).status & PALPATE_LOOP_TOO_FAST, 0U);
+  }
+}
+
 TEST(Safety, AGapCutsOff) {
   Safety safety = ready({0.1, 100, 2, 0.02});
   EXPECT_EQ(safety.admit({}, true, 0.021).action, Safety::Action::Suspend);

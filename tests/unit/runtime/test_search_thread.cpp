@@ -43,6 +43,18 @@ TEST(LatestReport, IsNeverTorn) {
   EXPECT_GT(read, 0);
 }
 
+TEST(LatestReport, IsReadOnceAfterEachWrite) {
+  runtime::LatestReport latest;
+  runtime::TipReport report;
+  EXPECT_FALSE(latest.read(report));
+  for (std::int32_t k = 1; k <= 5; ++k) {
+    latest.write({{0.1 * k, 0, 0}, k});
+    ASSERT_TRUE(latest.read(report)) << k;
+    EXPECT_EQ(report.element, k);
+    EXPECT_FALSE(latest.read(report));
+  }
+}
+
 TEST(SearchThread, DeliversTheTrianglesOfASlideToAForceLoop) {
   // The real thread, at the pace of this machine. On equal springs the force after the slide does
   // not depend on when the triangles came: g(z), and mu g(z) against the motion.
