@@ -164,8 +164,8 @@ DirectionFinding measure(const IdentifyOptions& o, runtime::Device& device, cons
 void say_direction(const DirectionFinding& found) {
   const identify::AxisEstimate& e = found.estimate;
   if (!e.problem.empty()) {
-    warn(fmt::format("identify: along {} {}", identify::direction_name(found.direction),
-                     e.problem));
+    warn(
+        fmt::format("identify: along {} {}", identify::direction_name(found.direction), e.problem));
     return;
   }
   say("  travel {:.1f} mm, misfit {:.2g} N, steps of the position at most {:.3g} um",
@@ -232,7 +232,9 @@ void add_identify_command(CLI::App& root, Action& action) {
   const auto o = std::make_shared<IdentifyOptions>();
   add_device_choice(*command, o->device);
   command->add_flag("--list", o->list, "List the devices and exit");
-  command->add_option("--axes", o->axes, "Axes to measure, with the diagonals between them, for a device that lacks some (xyz)");
+  command->add_option(
+      "--axes", o->axes,
+      "Axes to measure, with the diagonals between them, for a device that lacks some (xyz)");
   command->add_option("--rate", o->rate, "Sampling rate of the force loop, Hz (1000)");
   command->add_option("--max-force", o->max_force, "N, largest component of the force (1)");
   command->add_option("--box-mm", o->box_mm,

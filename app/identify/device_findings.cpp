@@ -12,9 +12,9 @@
 namespace palpate::app {
 namespace {
 
-std::vector<identify::Directional> each(const std::vector<DirectionFinding>& directions,
-                                        const identify::Measured& (*value)(
-                                            const identify::AxisEstimate&)) {
+std::vector<identify::Directional> each(
+    const std::vector<DirectionFinding>& directions,
+    const identify::Measured& (*value)(const identify::AxisEstimate&)) {
   std::vector<identify::Directional> found;
   for (const DirectionFinding& d : directions) found.push_back({d.direction, value(d.estimate)});
   return found;
@@ -80,8 +80,8 @@ DeviceFindings combine(const std::vector<DirectionFinding>& directions) {
   for (const DirectionFinding& d : directions) {
     if (d.estimate.problem.empty()) continue;
     for (const char* constant : {"damping", "dry friction", "delay"})
-      findings.missing.push_back({constant, "along " + identify::direction_name(d.direction) + " " +
-                                                d.estimate.problem});
+      findings.missing.push_back(
+          {constant, "along " + identify::direction_name(d.direction) + " " + d.estimate.problem});
     return findings;
   }
   enter_damping(directions, findings);
@@ -111,7 +111,9 @@ std::string profile_text(const DeviceFindings& findings,
   for (const DirectionFinding& d : directions)
     if (d.estimate.problem.empty())
       text += "# " + identify::direction_name(d.direction) + ": " + direction_line(d) + "\n";
-  text += "# coulomb_friction is the smallest along these directions; between them it can be smaller.\n";
+  text +=
+      "# coulomb_friction is the smallest along these directions; between them it can be "
+      "smaller.\n";
   if (directions.size() < 13) text += "# For a device that moves along these directions only.\n";
   for (const Missing& m : findings.missing)
     text += "# " + m.constant + " is missing: " + m.reason + "\n";

@@ -38,7 +38,11 @@ struct DeviceFindings {
 /// zero, and delay where its spread is not known.
 DeviceFindings combine(const std::vector<DirectionFinding>& directions);
 
+/// What was found along a direction, in words.
+std::string direction_line(const DirectionFinding& found);
+
 /// The file of a device profile (TOML), each constant with what it was derived from.
-std::string profile_text(const DeviceFindings& findings, const std::vector<DirectionFinding>& directions);
+std::string profile_text(const DeviceFindings& findings,
+                         const std::vector<DirectionFinding>& directions);
 
 }  // namespace palpate::app

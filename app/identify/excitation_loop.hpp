@@ -34,8 +34,8 @@ enum class ExcitationEnd : std::uint8_t {
 };
 
 /// Reads the device, commands the excitation through the safety functions of the force loop, and
-/// records what was commanded, in the frame whose first axis is the direction of the excitation. A cut-off ends it: from then on there is no force. tick() is
-/// noexcept and allocation-free.
+/// records what was commanded, in the frame whose first axis is the direction of the excitation. A
+/// cut-off ends it: from then on there is no force. tick() is noexcept and allocation-free.
 class ExcitationLoop final : public runtime::LoopBody {
  public:
   /// The device is open and must outlive the loop. @throws Error(Configuration) for settings out of
@@ -73,7 +73,7 @@ class ExcitationLoop final : public runtime::LoopBody {
   std::uint64_t missed_ = 0, stale_ = 0, steps_ = 0;
   std::uint64_t missed_before_ = 0;  ///< at the last row
   double longest_period_ = 0;
-  Vec3 commanded_{};  ///< N, last, in the frame of the device
+  Vec3 commanded_{};                   ///< N, last, in the frame of the device
   std::int64_t start_ = 0, last_ = 0;  ///< monotonic, ns
   std::atomic<std::int64_t> heartbeat_{0};
 };

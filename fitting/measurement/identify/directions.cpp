@@ -25,8 +25,8 @@ Eigen::VectorXd deviations_of(const std::vector<Directional>& measured) {
   for (const Directional& d : measured) largest = std::max(largest, std::abs(d.value.value));
   Eigen::VectorXd deviations(static_cast<Eigen::Index>(measured.size()));
   for (Eigen::Index i = 0; i < deviations.size(); ++i)
-    deviations[i] = std::max(measured[static_cast<std::size_t>(i)].value.deviation,
-                             kLeastDeviation * largest);
+    deviations[i] =
+        std::max(measured[static_cast<std::size_t>(i)].value.deviation, kLeastDeviation * largest);
   return deviations;
 }
 

@@ -91,7 +91,8 @@ double residual_force(const AxisEquations& equations, const EquationFit& fit) {
                    static_cast<double>(fit.residual.size()));
 }
 
-void enter(const AxisEquations& equations, const EquationFit& fit, double delay, AxisEstimate& estimate) {
+void enter(const AxisEquations& equations, const EquationFit& fit, double delay,
+           AxisEstimate& estimate) {
   const Eigen::VectorXd deviation = deviations(equations, fit, delay);
   const auto n = static_cast<Eigen::Index>(equations.axes().size());
   const auto at = [&](Eigen::Index i) { return Measured{fit.solution[i], deviation[i]}; };

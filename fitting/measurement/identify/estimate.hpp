@@ -29,8 +29,9 @@ struct AxisEstimate {
 /// Least squares of the weak form of
 ///   sum_j (m_j a_j + b_j v_j) + S sign(v) + k x + g = f(t - D)
 /// over windows of one-way motion, with v along the excited axis and a_j, v_j along all axes that
-/// move, before the first jump of the command; D is the delay with the smallest residual. Deviations by the Jacobian at the solution,
-/// with the variance of the residuals. Commands are known, whatever computed them.
+/// move, before the first jump of the command; D is the delay with the smallest residual.
+/// Deviations by the Jacobian at the solution, with the variance of the residuals. Commands are
+/// known, whatever computed them.
 /// @param largest_delay  s, the search ends there
 AxisEstimate estimate_axis(const MotionRecord& record, double largest_delay);
 

@@ -8,8 +8,8 @@ namespace palpate::identify {
 
 struct ExcitationSettings {
   Vec3 direction{1, 0, 0};  ///< unit vector
-  double max_force = 1;  ///< N
-  double box = 0.02;     ///< m, distance from the start that is not left
+  double max_force = 1;     ///< N
+  double box = 0.02;        ///< m, distance from the start that is not left
   double seconds = 10;
 };
 

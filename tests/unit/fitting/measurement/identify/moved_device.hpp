@@ -18,7 +18,7 @@ namespace palpate::samples {
 struct MovedDevice {
   Vec3 mass{0.1, 0.1, 0.1}, damping{0.1, 0.1, 0.1}, friction{0.02, 0.02, 0.02};  ///< of each joint
   identify::Frame joints{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< directions in which they move
-  Vec3 bias{};              ///< N, of each joint: weight
+  Vec3 bias{};                                                ///< N, of each joint: weight
   double delay = 1e-3;      ///< s, from a sample to the force that follows it: the smallest
   double delay_spread = 0;  ///< s, equally distributed
   double lateness = 0;      ///< s, age of a position when it is reported, from 0 to this

@@ -18,8 +18,7 @@ TEST(AxisEquations, HoldForTheConstantsOfTheDeviceAtItsDelay) {
   EquationFit known;
   known.solution.resize(5);
   known.solution << d.mass[1], d.damping[1], d.friction[1], 0, 0;
-  const Eigen::VectorXd misfit =
-      equations.forces(d.delay) - equations.matrix() * known.solution;
+  const Eigen::VectorXd misfit = equations.forces(d.delay) - equations.matrix() * known.solution;
   EXPECT_LT(misfit.norm(), 1e-3 * equations.forces(d.delay).norm());
   EXPECT_LT(equations.solve(d.delay).misfit, equations.solve(1.2 * d.delay).misfit);
   // Those of the square wave are not among them, and hold as well.
@@ -28,7 +27,8 @@ TEST(AxisEquations, HoldForTheConstantsOfTheDeviceAtItsDelay) {
   const Window window{jump + d.delay - 0.01, jump + d.delay + 0.01,
                       record.command[record.jump[30]][0] > 0 ? -1.0 : 1.0};
   const double force = TestFunction(window).integral_of_command(record, 0, d.delay);
-  EXPECT_NEAR(equations.impulse_misfit(window, known, d.delay), 0, 2e-3 * TestFunction(window).integral());
+  EXPECT_NEAR(equations.impulse_misfit(window, known, d.delay), 0,
+              2e-3 * TestFunction(window).integral());
   EXPECT_NE(equations.impulse_misfit(window, known, d.delay + 1e-3), force);
 }
 
