@@ -43,9 +43,9 @@ Measured smallest_damping(const std::vector<Directional>& damping);
 /// sigma_0(S): the friction along the direction whose lower bound is smallest.
 /// A motion along n of joints with constant dry friction dissipates p(n) a metre, a convex function
 /// [Moreau 1974]. A tip that a force along n moves in another direction v shows n . grad p(v),
-/// which is at most p(n): its estimate is on the safe side. Between the directions p can be smaller
-/// still: by a factor of at most 1.23 for three joints alike at right angles, by any factor for
-/// joints nearly in a plane.
+/// which is at most p(n): its estimate is on the safe side.
+/// Between the directions p can be smaller still: by a factor of 0.7 for three joints alike at
+/// right angles (0.58 for the axes alone), without a bound for joints nearly in a plane.
 /// @param friction  at least one
 Measured smallest_friction(const std::vector<Directional>& friction);
 

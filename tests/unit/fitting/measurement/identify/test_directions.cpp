@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 #include <set>
 
 #include "fitting/measurement/identify/estimate.hpp"
@@ -90,6 +91,34 @@ TEST(SmallestFriction, OfJointsAlongDiagonalsIsThatOfAJoint) {
   const Measured smallest = smallest_damping(damping);
   EXPECT_NEAR(smallest.value, 0.1, 0.05 * 0.1);
   EXPECT_LT(smallest.low(), 0.1);
+}
+
+/// Three joints alike at right angles, turned at random: how much less a joint rubs than the
+/// direction that shows least.
+TEST(SmallestFriction, BetweenDirectionsIsAtLeastSevenTenthsOfThatAlongThem) {
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const std::vector<Vec3> all = directions_between({0, 1, 2});
+  double largest = 0, largest_of_axes = 0;
+  for (int trial = 0; trial < 50000; ++trial) {
+    Vec3 first{normal(random), normal(random), normal(random)};
+    first = (1 / norm(first)) * first;
+    const Frame frame = frame_along(first);
+    const double angle = M_PI * normal(random), c = std::cos(angle), s = std::sin(angle);
+    const Frame joints{first, c * frame[1] + s * frame[2], c * frame[2] - s * frame[1]};
+    double least = kInfinity, least_of_axes = kInfinity;
+    for (const Vec3& n : all) {
+      double p = 0;
+      for (const Vec3& joint : joints) p += std::abs(dot(joint, n));
+      least = std::min(least, p);
+      if (direction_name(n).size() == 1) least_of_axes = std::min(least_of_axes, p);
+    }
+    largest = std::max(largest, least);
+    largest_of_axes = std::max(largest_of_axes, least_of_axes);
+  }
+  EXPECT_LT(0.695 * largest, 1);
+  EXPECT_GT(0.72 * largest, 1);
+  EXPECT_GT(0.60 * largest_of_axes, 1);
 }
 
 /// Along no direction does a tip that joints lead astray show more friction than a motion along it
