@@ -28,7 +28,7 @@ using test::numbers_below;
 using test::printed_by_calculix;
 
 /// 30 x 30 x 15 mm, base fixed, finer towards the middle of its top.
-Body graded_block() {
+Body pressed_block() {
   return test::graded_block(0.015, 0.006, 0.003, 1.7);
 }
 
@@ -103,7 +103,7 @@ Dragged their_drag_of(const Body& body, const fem::CampaignSettings& settings) {
 }
 
 TEST(CalculixDrag, AgreesFromAFrictionlessPress) {
-  const Body body = graded_block();
+  const Body body = pressed_block();
   const auto settings = dragging(fem::ToolFriction::Frictionless, 2);
   compare_drag("pressed without friction", own_drag(body, settings), their_drag_of(body, settings),
                {0.01, 0.02, 0.15});
@@ -113,7 +113,7 @@ TEST(CalculixDrag, AgreesFromAFrictionlessPress) {
 /// with sixteen increments. (CalculiX in sixteen increments has a force that is 0.4 % smaller than
 /// in two.)
 TEST(CalculixDrag, AgreesFromANoSlipPressTheBetterTheFinerItsIncrements) {
-  const Body body = graded_block();
+  const Body body = pressed_block();
   const auto coarse = dragging(fem::ToolFriction::NoSlip, 2);
   const Dragged theirs = their_drag_of(body, coarse);
   compare_drag("pressed without slip in 2 increments", own_drag(body, coarse), theirs,
@@ -196,27 +196,26 @@ void compare_moved(const std::string& what, const Body& body, const fem::Campaig
   deck.patch = nodes_under_tool(deck, touched, kPatch);
   deck.tool.reset();
   deck.increments = 1;
-  const auto row = [&](const char* force, double a, double b) {
-    test::verify({kMovedProblem, what + ", " + force, "N", a, b, test::Reference::OtherSolver,
-                  kMovedDeck, allowed});
+  const auto row = [&](const char* force, double ours, double theirs) {
+    test::verify({kMovedProblem, what + ", " + force + ", CalculiX over palpate", "1",
+                  theirs / ours, 1, test::Reference::OtherSolver, kMovedDeck, allowed});
   };
-  row("normal force of the press", -ends[0].force[2], -their_force_of(deck, ends[0].u)[2]);
-  const Vec3 theirs = their_force_of(deck, ends[1].u);
-  row("normal force at the end", -ends[1].force[2], -theirs[2]);
-  row("lateral force at the end", std::hypot(ends[1].force[0], ends[1].force[1]),
-      std::hypot(theirs[0], theirs[1]));
+  row("normal force of the press", ends[0].force[2], their_force_of(deck, ends[0].u)[2]);
+  const Vec3 ours = ends[1].force, theirs = their_force_of(deck, ends[1].u);
+  row("normal force at the end", ours[2], theirs[2]);
+  row("lateral force at the end", std::hypot(ours[0], ours[1]), std::hypot(theirs[0], theirs[1]));
 }
 
 /// The solid alone: the same displacement of the contact needs the same force.
 TEST(CalculixMovedSurface, NeedsTheForceOfANoSlipPressAndDrag) {
-  compare_moved("tet10-displacement in both", graded_block(),
+  compare_moved("tet10-displacement in both", pressed_block(),
                 dragging(fem::ToolFriction::NoSlip, 2), 1e-4);
 }
 
 TEST(CalculixMovedSurface, NeedsTheForceOnElementsDividedUnderTheTool) {
   fem::CampaignSettings settings = dragging(fem::ToolFriction::NoSlip, 2);
   settings.indentation.refine_under_tool = 1;
-  compare_moved("elements under the tool divided once", graded_block(), settings, 1e-4);
+  compare_moved("elements under the tool divided once", pressed_block(), settings, 1e-4);
 }
 
 /// Curved facets are those of the contact alone: strains are those of straight tetrahedra, while
@@ -230,7 +229,7 @@ TEST(CalculixMovedSurface, NeedsAlmostTheForceOnCurvedFacets) {
 TEST(CalculixMovedSurface, NeedsTwoPercentMoreWithTheElementOfCalculixThanWithTheDefaultOne) {
   fem::CampaignSettings settings = dragging(fem::ToolFriction::NoSlip, 2);
   settings.dilatation = fem::Dilatation::Mean;
-  compare_moved("tet10-pressure here and tet10-displacement in CalculiX", graded_block(), settings,
+  compare_moved("tet10-pressure here and tet10-displacement in CalculiX", pressed_block(), settings,
                 0.03);
 }
 
