@@ -17,6 +17,7 @@
 #include "app/identify/excitation_loop.hpp"
 #include "app/run/device_options.hpp"
 #include "app/run/stop_on_interrupt.hpp"
+#include "fitting/measurement/identify/directions.hpp"
 #include "fitting/measurement/identify/estimate.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
@@ -34,7 +35,7 @@ struct IdentifyOptions {
   double max_force = 1;  // N
   double box_mm = 20;
   double max_speed = 0.7;  // m/s
-  double seconds = 10;     // along each axis
+  double seconds = 15;     // along each direction
   double largest_delay_ms = 30;
   std::optional<double> force_resolution_mn, watchdog;
   bool list = false;
@@ -80,9 +81,9 @@ double watchdog_of(const IdentifyOptions& o) {
   return o.watchdog.value_or(runtime::default_watchdog(o.rate));
 }
 
-ExcitationLoopSettings loop_settings(const IdentifyOptions& o, std::size_t axis) {
+ExcitationLoopSettings loop_settings(const IdentifyOptions& o, const Vec3& direction) {
   ExcitationLoopSettings s;
-  s.excitation = {axis, o.max_force, 1e-3 * o.box_mm, o.seconds};
+  s.excitation = {direction, o.max_force, 1e-3 * o.box_mm, o.seconds};
   s.safety.max_force = o.max_force;
   s.safety.max_speed = o.max_speed;
   s.safety.period = 1 / o.rate;
@@ -93,8 +94,9 @@ ExcitationLoopSettings loop_settings(const IdentifyOptions& o, std::size_t axis)
 }
 
 /// @throws Error where the motion ended before its time.
-void require_complete(const IdentifyOptions& o, ExcitationEnd end, bool halted, std::size_t axis) {
-  const std::string where = o.device.name + ", axis " + axis_name(axis);
+void require_complete(const IdentifyOptions& o, ExcitationEnd end, bool halted,
+                      const Vec3& direction) {
+  const std::string where = o.device.name + ", along " + identify::direction_name(direction);
   const auto fail = [&where](const std::string& problem, const std::string& remedy) {
     refuse(where, problem, remedy);
   };
@@ -129,54 +131,57 @@ void require_complete(const IdentifyOptions& o, ExcitationEnd end, bool halted, 
   }
 }
 
-/// s, between two samples.
-double longest_period(const identify::MotionRecord& record) {
-  double longest = 0;
-  for (std::size_t i = 1; i < record.time.size(); ++i)
-    longest = std::max(longest, record.time[i] - record.time[i - 1]);
-  return longest;
+/// Runs an excitation until it ends or is interrupted: at its rate, or at once where the time of
+/// the device is counted. True where the watchdog halted the device.
+bool excite(const IdentifyOptions& o, runtime::Device& device, ExcitationLoop& loop,
+            const StopOnInterrupt& stop) {
+  if (o.device.name == kSimulatedDevice) {
+    while (!stop.interrupted() && loop.tick(0)) continue;
+    return false;
+  }
+  runtime::LoopThread thread(loop, device, {o.rate, watchdog_of(o), {}, 0});
+  while (thread.running() && !thread.halted() && !stop.interrupted())
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  thread.stop();
+  return thread.halted();
 }
 
-AxisFinding measure_axis(const IdentifyOptions& o, runtime::Device& device, std::size_t axis,
+DirectionFinding measure(const IdentifyOptions& o, runtime::Device& device, const Vec3& direction,
                          const StopOnInterrupt& stop) {
-  answer("identify: {}: {:g} s with up to {:g} N; keep the hand off the handle", axis_name(axis),
-         o.seconds, o.max_force);
-  ExcitationLoop loop(device, loop_settings(o, axis));
-  bool halted = false;
-  {
-    runtime::LoopThread thread(loop, device, {o.rate, watchdog_of(o), {}, 0});
-    while (thread.running() && !thread.halted() && !stop.interrupted())
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    thread.stop();
-    halted = thread.halted();
-  }
-  require_complete(o, loop.end(), halted, axis);
-  say("  longest period of the loop {:.3f} ms", 1e3 * longest_period(loop.record()));
+  answer("identify: {}: {:g} s with up to {:g} N; keep the hand off the handle",
+         identify::direction_name(direction), o.seconds, o.max_force);
+  ExcitationLoop loop(device, loop_settings(o, direction));
+  const bool halted = excite(o, device, loop, stop);
+  require_complete(o, loop.end(), halted, direction);
+  say("  longest period of the loop {:.3f} ms", 1e3 * loop.longest_period());
   if (loop.missed() > 0) say("  {} periods were missed", loop.missed());
   if (loop.stale() > 0) say("  {} steps had no new sample", loop.stale());
-  return {axis, identify::estimate_axis(loop.record(), 1e-3 * o.largest_delay_ms),
-          identify::position_step(loop.record())};
+  return {direction, identify::estimate_axis(loop.record(), 1e-3 * o.largest_delay_ms),
+          identify::position_step(loop.record()),
+          std::max(0.0, loop.longest_period() - 1 / o.rate)};
 }
 
-void say_axis(const AxisFinding& found) {
+void say_direction(const DirectionFinding& found) {
   const identify::AxisEstimate& e = found.estimate;
   if (!e.problem.empty()) {
-    warn(fmt::format("identify: along {} {}", axis_name(found.axis), e.problem));
+    warn(
+        fmt::format("identify: along {} {}", identify::direction_name(found.direction), e.problem));
     return;
   }
-  const identify::Measured& b = e.damping[found.axis];
-  say("  travel {:.1f} mm, misfit {:.2g} N; mass {:.4g} kg, damping {:.4g} +- {:.2g} N s/m, dry "
-      "friction {:.4g} +- {:.2g} N",
-      1e3 * e.travel, e.residual, e.mass.value, b.value, b.deviation, e.friction.value,
-      e.friction.deviation);
-  say("  delay {:.3f} +- {:.3f} ms, one sample of the loop included; steps of the position at most "
-      "{:.3g} um",
-      1e3 * e.delay.value, 1e3 * e.delay.deviation, 1e6 * found.position_step);
+  say("  travel {:.1f} mm, misfit {:.2g} N, steps of the position at most {:.3g} um",
+      1e3 * e.travel, e.residual, 1e6 * found.position_step);
+  say("  {}", direction_line(found));
+}
+
+std::vector<Vec3> directions_of(const IdentifyOptions& o) {
+  std::vector<std::size_t> axes;
+  for (const char letter : o.axes) axes.push_back(static_cast<std::size_t>(letter - 'x'));
+  return identify::directions_between(axes);
 }
 
 DeviceFindings findings_of(const IdentifyOptions& o, const std::string& device,
-                           const std::vector<AxisFinding>& axes) {
-  DeviceFindings findings = combine(axes);
+                           const std::vector<DirectionFinding>& found) {
+  DeviceFindings findings = combine(found);
   findings.profile.name = o.name.empty() ? device : o.name;
   findings.profile.source = fmt::format(
       "palpate identify of {}, {}, at {:g} Hz, {:g} s and {:g} N along {}", device,
@@ -198,21 +203,21 @@ int identify_device(const IdentifyOptions& options) {
   const auto device = device_of(options);
   device->open();
   const std::string name = device->name();
-  std::vector<AxisFinding> axes;
+  std::vector<DirectionFinding> found;
   {
     const StopOnInterrupt stop;
-    for (const char letter : options.axes) {
-      axes.push_back(measure_axis(options, *device, static_cast<std::size_t>(letter - 'x'), stop));
-      say_axis(axes.back());
+    for (const Vec3& direction : directions_of(options)) {
+      found.push_back(measure(options, *device, direction, stop));
+      say_direction(found.back());
     }
   }
   device->close();
-  const DeviceFindings findings = findings_of(options, name, axes);
-  if (axes.size() < 3)
+  const DeviceFindings findings = findings_of(options, name, found);
+  if (options.axes.size() < 3)
     warn("identify: the profile is that of a device that moves along " + options.axes + " only");
   for (const Missing& m : findings.missing)
     warn(fmt::format("identify: {} is left out: {}", m.constant, m.reason));
-  write_file_crash_safely(options.out, profile_text(findings, axes));
+  write_file_crash_safely(options.out, profile_text(findings, found));
   say("identify: {}", options.out);
   return findings.missing.empty() ? kExitDone : kExitIncomplete;
 }
@@ -227,7 +232,9 @@ void add_identify_command(CLI::App& root, Action& action) {
   const auto o = std::make_shared<IdentifyOptions>();
   add_device_choice(*command, o->device);
   command->add_flag("--list", o->list, "List the devices and exit");
-  command->add_option("--axes", o->axes, "Axes to measure, for a device that lacks some (xyz)");
+  command->add_option(
+      "--axes", o->axes,
+      "Axes to measure, with the diagonals between them, for a device that lacks some (xyz)");
   command->add_option("--rate", o->rate, "Sampling rate of the force loop, Hz (1000)");
   command->add_option("--max-force", o->max_force, "N, largest component of the force (1)");
   command->add_option("--box-mm", o->box_mm,
@@ -236,7 +243,7 @@ void add_identify_command(CLI::App& root, Action& action) {
                       "m/s, speed beyond which the force is switched off (0.7)");
   command->add_option("--watchdog", o->watchdog,
                       "s without a step or a new sample until the force is cut off (20 periods)");
-  command->add_option("--seconds", o->seconds, "Duration along each axis (10)");
+  command->add_option("--seconds", o->seconds, "Duration along each of up to 13 directions (15)");
   command->add_option("--largest-delay-ms", o->largest_delay_ms,
                       "Delays are searched up to this one (30)");
   command->add_option("--force-resolution-mN", o->force_resolution_mn,

@@ -7,14 +7,16 @@
 
 #include "fitting/certificate/device_profile.hpp"
 #include "fitting/measurement/identify/estimate.hpp"
+#include "format/vec3.hpp"
 
 namespace palpate::app {
 
-/// What was found along one axis.
-struct AxisFinding {
-  std::size_t axis = 0;
+/// What was found along one direction, in the frame whose first axis it is.
+struct DirectionFinding {
+  Vec3 direction{};  ///< unit vector
   identify::AxisEstimate estimate;
   double position_step = kUnknown;  ///< m
+  double longer = 0;                ///< s, longest period of the loop less the nominal one
 };
 
 /// A constant that the profile lacks.
@@ -28,17 +30,19 @@ struct DeviceFindings {
   std::vector<Missing> missing;
 };
 
-/// Damping: the smallest eigenvalue of the symmetric part of B, which is assembled from the rows of
-/// the axes, less two and a half deviations. Dry friction: the smallest lower bound of the axes, at
-/// least zero. Delay: the largest upper bound, whole: which part of it is a sample of the loop, and
-/// shrinks at a higher rate, does not show. Resolution: the largest of the axes. A constant is
-/// missing where an axis has a problem, and damping where it is not above zero.
-DeviceFindings combine(const std::vector<AxisFinding>& axes);
+/// Damping: the smallest eigenvalue of the matrix that fits the directions, less two and a half
+/// deviations. Dry friction: the smallest lower bound over all directions, at least zero. Delay:
+/// the largest of a sample and what lengthens the period, whole: which part of it is a sample of
+/// the loop, and shrinks at a higher rate, does not show. Resolution: the largest of the
+/// directions. A constant is missing where a direction has a problem, damping where it is not above
+/// zero, and delay where its spread is not known.
+DeviceFindings combine(const std::vector<DirectionFinding>& directions);
 
-/// "x", "y" or "z"
-std::string axis_name(std::size_t axis);
+/// What was found along a direction, in words.
+std::string direction_line(const DirectionFinding& found);
 
 /// The file of a device profile (TOML), each constant with what it was derived from.
-std::string profile_text(const DeviceFindings& findings, const std::vector<AxisFinding>& axes);
+std::string profile_text(const DeviceFindings& findings,
+                         const std::vector<DirectionFinding>& directions);
 
 }  // namespace palpate::app

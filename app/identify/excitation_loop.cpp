@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/identify/excitation_loop.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/realtime.hpp"
@@ -14,13 +15,14 @@ ExcitationLoop::ExcitationLoop(runtime::Device& device, const ExcitationLoopSett
     : device_(device),
       settings_(settings),
       safety_(settings.safety),
-      excitation_(settings.excitation) {
+      excitation_(settings.excitation),
+      frame_(identify::frame_along(settings.excitation.direction)) {
   const auto room =
       static_cast<std::size_t>(std::ceil(settings.excitation.seconds * settings.rate)) + 2;
-  record_.axis = settings.excitation.axis;
   record_.time.reserve(room);
   record_.position.reserve(room);
   record_.command.reserve(room);
+  record_.jump.reserve(room);
 }
 
 bool ExcitationLoop::stop(ExcitationEnd why) noexcept {
@@ -50,8 +52,7 @@ bool ExcitationLoop::tick(std::int64_t) noexcept {
     return stop(ExcitationEnd::Done);
 
   if (!fresh) {  // the last command goes on, as the record says
-    const Vec3 again = record_.command.empty() ? Vec3{} : record_.command.back();
-    return device_.command(again) == DeviceStatus::Lost ? stop(ExcitationEnd::Lost) : true;
+    return device_.command(commanded_) == DeviceStatus::Lost ? stop(ExcitationEnd::Lost) : true;
   }
   const Vec3 wanted = excitation_.command(time, admission.position);
   if (excitation_.left_box()) return stop(ExcitationEnd::LeftBox);
@@ -59,10 +60,19 @@ bool ExcitationLoop::tick(std::int64_t) noexcept {
   const DeviceStatus done = device_.command(verdict.force);
   if (done == DeviceStatus::Lost) return stop(ExcitationEnd::Lost);
   if (done == DeviceStatus::Saturated) return stop(ExcitationEnd::Saturated);
-  record_.time.push_back(time);
-  record_.position.push_back(admission.position);
-  record_.command.push_back(verdict.force);
+  commanded_ = verdict.force;
+  enter(time, admission.position, verdict.force);
   return true;
+}
+
+void ExcitationLoop::enter(double time, const Vec3& position, const Vec3& command) noexcept {
+  if (!record_.time.empty() && missed_ == missed_before_)
+    longest_period_ = std::max(longest_period_, time - record_.time.back());
+  missed_before_ = missed_;
+  if (excitation_.jumped()) record_.jump.push_back(record_.time.size());
+  record_.time.push_back(time);
+  record_.position.push_back(identify::in_frame(frame_, position));
+  record_.command.push_back(identify::in_frame(frame_, command));
 }
 
 }  // namespace palpate::app

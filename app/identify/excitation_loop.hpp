@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 
+#include "fitting/measurement/identify/directions.hpp"
 #include "fitting/measurement/identify/excitation.hpp"
 #include "fitting/measurement/identify/motion_record.hpp"
 #include "runtime/device.hpp"
@@ -33,8 +34,8 @@ enum class ExcitationEnd : std::uint8_t {
 };
 
 /// Reads the device, commands the excitation through the safety functions of the force loop, and
-/// records what was commanded. A cut-off ends it: from then on there is no force. tick() is
-/// noexcept and allocation-free.
+/// records what was commanded, in the frame whose first axis is the direction of the excitation. A
+/// cut-off ends it: from then on there is no force. tick() is noexcept and allocation-free.
 class ExcitationLoop final : public runtime::LoopBody {
  public:
   /// The device is open and must outlive the loop. @throws Error(Configuration) for settings out of
@@ -54,18 +55,25 @@ class ExcitationLoop final : public runtime::LoopBody {
   const identify::MotionRecord& record() const noexcept { return record_; }
   std::uint64_t missed() const noexcept { return missed_; }  ///< periods without a step
   std::uint64_t stale() const noexcept { return stale_; }    ///< steps without a new sample
+  /// s, between two new samples, where no period was missed between them.
+  double longest_period() const noexcept { return longest_period_; }
 
  private:
   bool stop(ExcitationEnd why) noexcept;
+  void enter(double time, const Vec3& position, const Vec3& command) noexcept;
 
   runtime::Device& device_;
   ExcitationLoopSettings settings_;
   runtime::Safety safety_;
   identify::Excitation excitation_;
+  identify::Frame frame_;
   identify::MotionRecord record_;
   runtime::DeviceReading reading_;
   ExcitationEnd end_ = ExcitationEnd::Running;
   std::uint64_t missed_ = 0, stale_ = 0, steps_ = 0;
+  std::uint64_t missed_before_ = 0;  ///< at the last row
+  double longest_period_ = 0;
+  Vec3 commanded_{};                   ///< N, last, in the frame of the device
   std::int64_t start_ = 0, last_ = 0;  ///< monotonic, ns
   std::atomic<std::int64_t> heartbeat_{0};
 };

@@ -56,6 +56,19 @@ Body even_cap(const RoundCap& cap, double size) {
   return cap_of(cap, angles, count, depths);
 }
 
+Body curved_cap(double size) {
+  const RoundCap cap;
+  Body body = even_cap(cap, size);
+  curve_onto_sphere(cap.radius, body);
+  std::int32_t pole = 0;
+  for (std::size_t v = 0; v < body.nodes.size(); ++v)
+    if (body.nodes[v][2] > body.nodes[to_index(pole)][2]) pole = static_cast<std::int32_t>(v);
+  body.response.node = {pole};
+  body.response.inward = {{0, 0, -1}};
+  body.response.is_site = {1};
+  return body;
+}
+
 std::vector<Spread> spread_of_force(const RoundCap& cap, const Body& body,
                                     const fem::IndentationSettings& press, double near) {
   fem::CampaignSettings settings;

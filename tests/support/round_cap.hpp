@@ -23,6 +23,9 @@ Body cap_of(const RoundCap& cap, const std::vector<double>& angles, int sectors,
 /// Elements of one size everywhere.
 Body even_cap(const RoundCap& cap, double size);
 
+/// The same with curved facets and the pole as its only response vertex.
+Body curved_cap(double size);
+
 struct Spread {
   double mean = 0;       ///< N
   double deviation = 0;  ///< standard deviation over the positions, over the mean

@@ -5,11 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
 #include "app/export/deck.hpp"
 #include "app/export/mesh_file.hpp"
@@ -20,12 +15,11 @@
 #include "tests/support/prism_body.hpp"
 #include "tests/support/round_cap.hpp"
 #include "tests/support/sample_laws.hpp"
+#include "tests/verification/calculix.hpp"
 #include "tests/verification/record.hpp"
 
 namespace palpate::app {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr double kPatchRadius = 0.005;
 
@@ -52,33 +46,8 @@ fem::CampaignSettings settings_of(const fem::LawConstants& law, fem::Dilatation 
   return settings;
 }
 
-/// What CalculiX prints of a deck.
-std::string printed_by_calculix(const std::string& deck) {
-  std::string name = (fs::temp_directory_path() / "palpate-ccx-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  const fs::path folder = name;
-  std::ofstream(folder / "site.inp") << deck;
-  const std::string command =
-      "cd " + folder.string() + " && OMP_NUM_THREADS=1 timeout 550 ccx site > site.log 2>&1";
-  EXPECT_EQ(std::system(command.c_str()), 0) << "install ccx (Debian package calculix-ccx)";
-  std::ostringstream printed;
-  printed << std::ifstream(folder / "site.dat").rdbuf();
-  fs::remove_all(folder);
-  return printed.str();
-}
-
-/// The numbers below each line with this text.
-template <std::size_t N>
-std::vector<std::array<double, N>> numbers_below(const std::string& title,
-                                                 const std::string& text) {
-  std::vector<std::array<double, N>> found;
-  std::istringstream printed(text);
-  for (std::string line; std::getline(printed, line);) {
-    if (line.find(title) == std::string::npos) continue;
-    for (double& x : found.emplace_back()) printed >> x;
-  }
-  return found;
-}
+using test::numbers_below;
+using test::printed_by_calculix;
 
 /// Force of the patch on the body after each increment, as CalculiX prints it.
 std::vector<Vec3> run_calculix(const Deck& deck) {
@@ -289,87 +258,8 @@ TEST(CalculixTool, AgreesOnASphereWhateverTheContactStiffness) {
                 "CalculiX with the full contact stiffness: CalculiX against itself", 0.01});
 }
 
-constexpr auto kDragProblem =
-    "CalculiX with the tool moved sideways: a sphere of 5 mm, 2 mm deep, then 1 mm along a tangent "
-    "without slip, nu = 0.45, elements of 3 mm";
-constexpr auto kDragDeck = "CalculiX, deck of palpate export, friction with a coefficient of 5";
-
-/// The force along the motion grows with the travel, the normal one from the end of the press.
-struct Dragged {
-  double pressed, normal, lateral;  ///< N, of the tool on the body
-};
-
-Dragged own_drag(const Body& body, fem::CampaignSettings settings) {
-  settings.indentation.lateral_depths = {settings.indentation.depth};
-  const fem::CampaignContext context(body, settings, fem::Engine::SharedFactor);
-  const SiteCurves curves = fem::solve_site(context, test::site_nearest(body), nullptr);
-  EXPECT_EQ(curves.status, SiteStatus::Complete) << curves.reason;
-  const CurvePath &press = curves.paths.front(), &lateral = curves.paths.back();
-  EXPECT_EQ(lateral.kind, PathKind::Lateral);
-  const Vec3 end = lateral.samples.back().force;
-  return {-press.samples.back().force[2], -end[2], dot(end, lateral.direction)};
-}
-
-/// Steps end at the times 1 and 2, whatever increments CalculiX takes.
-Dragged their_drag(const Deck& deck) {
-  const std::string printed = printed_by_calculix(calculix_deck(deck));
-  const auto pressed = numbers_below<3>("set TOOL and time  0.1000000E+01", printed),
-             moved = numbers_below<3>("set TOOL and time  0.2000000E+01", printed);
-  if (pressed.size() != 1 || moved.size() != 1) {
-    ADD_FAILURE() << "CalculiX did not end its steps:\n" << printed;
-    return {};
-  }
-  const Vec3 end = moved.front();
-  return {-pressed.front()[2], -end[2], dot(end, deck.lateral->direction)};
-}
-
-/// palpate ties nodes, by how much of the area around them is in contact, and they hold tension;
-/// CalculiX holds points of facets, new ones too, while they are pressed. Its friction is elastic,
-/// which lowers the lateral force: from a frictionless press three times the tangential stiffness,
-/// with which it hardly converges, raises it by 7 %.
-void compare_drag(fem::ToolFriction friction, const std::string& what, const Dragged& bound) {
-  const Body body = graded_block();
-  auto settings = pressing({fem::ToolShape::Sphere, 0.005, 0, 0});
-  settings.indentation.friction = friction;
-  settings.indentation.lateral_travel = 0.001;
-  settings.indentation.lateral_increments = 2;
-  const Dragged ours = own_drag(body, settings);
-  const Dragged theirs = their_drag(make_tool_deck(body, settings, test::site_nearest(body), true));
-  const auto row = [&](const char* force, double a, double b, double allowed) {
-    test::verify({kDragProblem, what + ", " + force, "N", a, b, test::Reference::OtherSolver,
-                  kDragDeck, allowed});
-  };
-  row("normal force of the press", ours.pressed, theirs.pressed, bound.pressed);
-  row("normal force at the end", ours.normal, theirs.normal, bound.normal);
-  row("lateral force at the end", ours.lateral, theirs.lateral, bound.lateral);
-}
-
-TEST(CalculixDrag, AgreesFromAFrictionlessPress) {
-  compare_drag(fem::ToolFriction::Frictionless, "pressed without friction", {0.01, 0.02, 0.15});
-}
-
-/// CalculiX holds points as they are pressed, palpate bonds the surface at the end of an increment.
-/// Five increments instead of two change the force of CalculiX by 0.1 %.
-TEST(CalculixDrag, AgreesFromANoSlipPress) {
-  compare_drag(fem::ToolFriction::NoSlip, "pressed without slip", {0.06, 0.05, 0.09});
-}
-
 constexpr auto kCurvedProblem =
     "A ball of 30 mm with curved facets of 4 mm, pressed by a sphere of 5 mm, nu = 0.45";
-
-/// The cap of a ball with its pole as the only response vertex.
-Body curved_cap(double size) {
-  const test::RoundCap cap;
-  Body body = test::even_cap(cap, size);
-  test::curve_onto_sphere(cap.radius, body);
-  std::int32_t pole = 0;
-  for (std::size_t v = 0; v < body.nodes.size(); ++v)
-    if (body.nodes[v][2] > body.nodes[to_index(pole)][2]) pole = static_cast<std::int32_t>(v);
-  body.response.node = {pole};
-  body.response.inward = {{0, 0, -1}};
-  body.response.is_site = {1};
-  return body;
-}
 
 /// Force at the pole after each increment of 0.5 mm, with elements divided so often, N.
 std::vector<double> forces_at_pole(const Body& body, fem::CampaignSettings settings, int levels) {
@@ -385,14 +275,14 @@ std::vector<double> forces_at_pole(const Body& body, fem::CampaignSettings setti
 /// On one mesh the programs agree once the contact is as wide as a facet. Where they do not, at 0.5
 /// mm, refinement decides against both: coarse facets err by more than the programs differ.
 TEST(CalculixTool, AgreesOnCurvedFacetsAndBothErrThereUntilTheyAreDivided) {
-  const Body body = curved_cap(0.004);
+  const Body body = test::curved_cap(0.004);
   auto settings = pressing({fem::ToolShape::Sphere, 0.005, 0, 0});
   settings.indentation.depth = 0.0015;
   settings.indentation.increments = 3;
   const auto theirs = run_calculix(make_tool_deck(body, settings, 0));
   ASSERT_EQ(theirs.size(), 3U);
   const auto coarse = forces_at_pole(body, settings, 0), twice = forces_at_pole(body, settings, 2),
-             finest = forces_at_pole(curved_cap(0.003), settings, 3);
+             finest = forces_at_pole(test::curved_cap(0.003), settings, 3);
   constexpr auto kFinest = "palpate, facets of 3 mm, divided three times";
   constexpr std::array<const char*, 4> kDeep{"", "0.5 mm deep, ", "1.0 mm deep, ", "1.5 mm deep, "};
   for (const std::size_t i : {2U, 3U})

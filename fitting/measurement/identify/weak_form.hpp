@@ -32,7 +32,8 @@ class TestFunction {
  public:
   explicit TestFunction(const Window& window) : window_(window) {}
 
-  double integral() const;  ///< of phi, s
+  double integral() const;                                                   ///< of phi, s
+  double integral_until(double time) const { return antiderivative(time); }  ///< of phi, s
   double integral_of(const MotionRecord& record, std::size_t axis, int derivative) const;
   /// Integral of phi times the command along `axis` that acts `delay` (s) after its sample was
   /// read.

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <deque>
 #include <random>
+#include <utility>
 
 #include "format/passivity.hpp"
 #include "runtime/devices/device_simulated.hpp"
@@ -103,6 +104,44 @@ TEST(LinearWall, WithUnevenSamplesIsBoundByTheLongestPeriod) {
     const double mean = 0.6;
     const auto mixed = [&] { return (random() % 2 == 0 ? 0.2 : 1.0) * kPeriod; };
     EXPECT_GT(growth(certified_stiffness(delay) / mean, delay, mixed), 2) << delay;
+  }
+}
+
+/// Positions are late and forces come late by times that vary within a period: the largest delay
+/// and three quarters of what lengthens a period count, (C11).
+TEST(LinearWall, WithADelayThatVariesDecaysAtTheStiffnessOfItsBound) {
+  constexpr int kFine = 10;  // parts of a period
+  constexpr int kLate = 4, kSoonest = 6, kLatest = 14;
+  const double fine = kPeriod / kFine;
+  const double tau = (kLatest + kLate + 0.75 * kLate) * fine;
+  const double stiffness = certifiable_stiffness({kDamping, 0, tau, 0, 0}, 1 / kPeriod, 0);
+  for (const bool always_latest : {false, true}) {
+    Random random(7);
+    const auto among = [&](int low, int high) {
+      return always_latest
+                 ? high
+                 : low + static_cast<int>(random() % static_cast<unsigned>(high - low + 1));
+    };
+    SimulatedDevice device(
+        {.mass = 400 * stiffness * kPeriod * kPeriod, .damping = kDamping, .delay_samples = 0});
+    device.place({0.01, 0, 0}, {});
+    std::deque<double> past(kLate + 1, 0.01);    // newest first
+    std::deque<std::pair<long, double>> coming;  // when, which force
+    double acting = 0, first = 0, last = 0;
+    constexpr long kSteps = 400000;
+    for (long i = 0; i < kSteps; ++i) {
+      if (i % kFine == 0)
+        coming.emplace_back(i + among(kSoonest, kLatest),
+                            -stiffness * past[static_cast<std::size_t>(among(0, kLate))]);
+      for (; !coming.empty() && coming.front().first <= i; coming.pop_front())
+        acting = coming.front().second;
+      device.step(fine, {acting, 0, 0});
+      past.push_front(device.position()[0]);
+      past.pop_back();
+      double& largest = i < kSteps / 2 ? first : last;
+      largest = std::max(largest, std::abs(past.front()));
+    }
+    EXPECT_LT(last, 0.5 * first) << always_latest;
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -21,7 +22,7 @@ constexpr runtime::SimulatedDeviceSettings kFree{
 
 ExcitationLoopSettings settings(double seconds) {
   ExcitationLoopSettings s;
-  s.excitation = {0, 1, 0.02, seconds};
+  s.excitation = {{1, 0, 0}, 1, 0.02, seconds};
   s.safety.max_force = 1;
   s.safety.max_speed = 0.7;
   s.counted_time = true;
@@ -39,15 +40,39 @@ ExcitationEnd run(ExcitationLoop& loop) {
 TEST(ExcitationLoop, RecordsWhatIdentifiesTheDevice) {
   runtime::VirtualDevice device(kFree, 1000, [](double) { return runtime::HandTarget{}; });
   device.open();
-  ExcitationLoop loop(device, settings(10));
+  ExcitationLoop loop(device, settings(15));
   EXPECT_EQ(run(loop), ExcitationEnd::Done);
-  EXPECT_EQ(loop.record().time.size(), 10000U);
+  EXPECT_EQ(loop.record().time.size(), 15000U);
   const identify::AxisEstimate e = identify::estimate_axis(loop.record(), 0.03);
   ASSERT_EQ(e.problem, "");
   EXPECT_NEAR(e.mass.value, kFree.mass, 0.01 * kFree.mass);
   EXPECT_NEAR(e.damping[0].value, kFree.damping, 0.05 * kFree.damping);
   EXPECT_NEAR(e.friction.value, kFree.coulomb_friction, 0.05 * kFree.coulomb_friction);
   EXPECT_NEAR(e.delay.value, 1e-3, 5e-5);
+  EXPECT_GT(e.spread.dated, 40U);
+  EXPECT_NEAR(identify::delay_bound(e.delay, e.spread, 0), 1e-3, 5e-5);
+}
+
+/// The record is in the frame whose first axis is the direction; the device is moved in its own.
+TEST(ExcitationLoop, MovesAlongADiagonal) {
+  runtime::VirtualDevice device(kFree, 1000, [](double) { return runtime::HandTarget{}; });
+  device.open();
+  ExcitationLoopSettings diagonal = settings(15);
+  diagonal.excitation.direction = {std::sqrt(0.5), 0, -std::sqrt(0.5)};
+  ExcitationLoop loop(device, diagonal);
+  EXPECT_EQ(run(loop), ExcitationEnd::Done);
+  double across = 0, along = 0;
+  for (const Vec3& x : loop.record().position) {
+    across = std::max({across, std::abs(x[1]), std::abs(x[2])});
+    along = std::max(along, std::abs(x[0]));
+  }
+  EXPECT_GT(along, 1e-3);
+  EXPECT_LT(across, 1e-9);
+  const identify::AxisEstimate e = identify::estimate_axis(loop.record(), 0.03);
+  ASSERT_EQ(e.problem, "");
+  EXPECT_NEAR(e.damping[0].value, kFree.damping, 0.05 * kFree.damping);
+  const double friction = std::sqrt(2.0) * kFree.coulomb_friction;  // both axes rub
+  EXPECT_NEAR(e.friction.value, friction, 0.05 * friction);
 }
 
 using test::ScriptedDevice;

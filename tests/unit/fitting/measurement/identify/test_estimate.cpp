@@ -14,14 +14,18 @@ using samples::MovedDevice;
 
 constexpr double kLargestDelay = 0.03;  // s
 
+double mean_delay(const MovedDevice& d) {
+  return d.delay + d.delay_spread / 2 + d.lateness / 2;
+}
+
 void expect_recovered(const MovedDevice& d, std::size_t axis, double tolerance) {
   const AxisEstimate e = estimate_axis(moved(d, axis), kLargestDelay);
   ASSERT_EQ(e.problem, "");
   EXPECT_NEAR(e.mass.value, d.mass[axis], tolerance * d.mass[axis]);
-  EXPECT_NEAR(e.damping[axis].value, d.damping[axis], tolerance * d.damping[axis]);
+  EXPECT_NEAR(e.damping[0].value, d.damping[axis], tolerance * d.damping[axis]);
   EXPECT_NEAR(e.friction.value, d.friction[axis], tolerance * d.friction[axis]);
   EXPECT_NEAR(e.bias.value, d.bias[axis], tolerance * (d.bias[axis] + d.friction[axis]));
-  EXPECT_NEAR(e.delay.value, d.delay, tolerance * d.delay);
+  EXPECT_NEAR(e.delay.value, mean_delay(d), tolerance * mean_delay(d));
 }
 
 TEST(AxisEstimate, WithoutNoiseIsExact) {
@@ -36,6 +40,7 @@ TEST(AxisEstimate, RecoversTheConstantsOfOtherDevicesWithinFivePercent) {
   light.bias = {0, 0, 0.05};
   light.resolution = 1e-5;
   light.delay = 2.7e-3;
+  light.seconds = 30;
   light.jitter = 1e-4;
   for (std::size_t axis = 0; axis < 3; ++axis) expect_recovered(light, axis, 0.05);
 
@@ -47,6 +52,21 @@ TEST(AxisEstimate, RecoversTheConstantsOfOtherDevicesWithinFivePercent) {
   heavy.resolution = 2e-6;
   heavy.max_force = 4;
   for (std::size_t axis = 0; axis < 3; ++axis) expect_recovered(heavy, axis, 0.05);
+}
+
+/// A bus that is shared: the delay of each command varies by as much as a period, and the age of
+/// each position a little. The longer the measurement, the less they disturb.
+TEST(AxisEstimate, RecoversTheConstantsOfADeviceWhoseDelayVaries) {
+  for (const double spread : {3e-4, 1e-3}) {
+    MovedDevice d;
+    d.seconds = 60;
+    d.resolution = 1e-5;
+    d.delay = 2e-3;
+    d.delay_spread = spread;
+    expect_recovered(d, 0, 0.05);
+    d.lateness = 1e-4;
+    expect_recovered(d, 0, 0.05);
+  }
 }
 
 /// What the certificate takes is on the safe side, as often as the deviations promise.
@@ -69,13 +89,34 @@ TEST(AxisEstimate, BoundsAreOnTheSafeSideInRepeatedMeasurements) {
   EXPECT_GE(delay, 18);
 }
 
+TEST(AxisEstimate, BoundsAreOnTheSafeSideWhereTheDelayVaries) {
+  int damping = 0, friction = 0, delay = 0;
+  constexpr int kRuns = 20;
+  for (unsigned seed = 1; seed <= kRuns; ++seed) {
+    MovedDevice d;
+    d.noise = 0.005;
+    d.resolution = 1e-5;
+    d.delay_spread = 5e-4;
+    d.lateness = 3e-4;
+    d.seed = seed;
+    const AxisEstimate e = estimate_axis(moved(d, 0), kLargestDelay);
+    damping += e.damping[0].low() < d.damping[0] ? 1 : 0;
+    friction += e.friction.low() < d.friction[0] ? 1 : 0;
+    const double largest = d.delay + d.delay_spread + d.lateness;
+    delay += delay_bound(e.delay, e.spread, 0) > largest ? 1 : 0;
+  }
+  EXPECT_GE(damping, 18);
+  EXPECT_GE(friction, 18);
+  EXPECT_GE(delay, 18);
+}
+
 TEST(AxisEstimate, SaysWhatIsWrongWithMotionThatTellsNothing) {
   MovedDevice stuck;
   stuck.friction = {2, 2, 2};
   EXPECT_NE(estimate_axis(moved(stuck, 0), kLargestDelay).problem.find("moves too little"),
             std::string::npos);
   MovedDevice brief;
-  brief.seconds = 1.5;
+  brief.seconds = 2;
   EXPECT_NE(estimate_axis(moved(brief, 0), kLargestDelay).problem, "");
   MotionRecord reversed = moved({}, 0);
   for (Vec3& x : reversed.position) x = -x;

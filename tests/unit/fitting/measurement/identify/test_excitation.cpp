@@ -39,14 +39,14 @@ TEST(Excitation, BeginsAndEndsWithoutForce) {
 }
 
 TEST(Excitation, EndsOutsideOfTheBox) {
-  Excitation excitation({0, 1, 0.02, 10});
+  Excitation excitation({{1, 0, 0}, 1, 0.02, 10});
   EXPECT_EQ(norm(excitation.command(0, {0.1, 0.2, 0.3})), 0);
   EXPECT_NEAR(excitation.command(1e-3, {0.1, 0.21, 0.3})[1], -0.125,
               1e-12);  // a quarter of 1 N at 20 mm
   EXPECT_EQ(norm(excitation.command(2e-3, {0.1, 0.2, 0.321})), 0);
   EXPECT_TRUE(excitation.left_box());
   EXPECT_EQ(norm(excitation.command(3e-3, {0.1, 0.21, 0.3})), 0);  // for good
-  Excitation broken({0, 1, 0.02, 10});
+  Excitation broken({{1, 0, 0}, 1, 0.02, 10});
   EXPECT_EQ(norm(broken.command(0, {std::numeric_limits<double>::quiet_NaN(), 0, 0})), 0);
   EXPECT_TRUE(broken.left_box());
 }
