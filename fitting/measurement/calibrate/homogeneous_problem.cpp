@@ -23,6 +23,9 @@ void check_tests(const std::vector<HomogeneousTest>& tests, const HomogeneousSet
     if (test.deformation.empty() || test.deformation.size() != test.nominal.size()) {
       refuse(test.name, "deformations and stresses are not equally many", "give pairs");
     }
+    if (!test.effect.empty() && (test.effect.size() != test.nominal.size() || test.offset))
+      refuse(test.name, "an offset is not fitted to a specimen that is not homogeneous",
+             "leave `offset` out");
     if (settings.weighting == Weighting::Uncertainty &&
         test.uncertainty.size() != test.nominal.size()) {
       refuse(test.name, "it states no uncertainty",
@@ -211,9 +214,11 @@ HomogeneousProblem problem_of(const std::vector<HomogeneousTest>& tests,
     const double deviation = deviation_of(test, settings.weighting, mean);
     squares.deviations.insert(squares.deviations.end(), test.nominal.size(), deviation);
     const std::vector<double> factor = factors(test, settings);
-    for (std::size_t i = 0; i < test.nominal.size(); ++i)
-      problem.samples.push_back(
-          {test.mode, test.deformation[i], test.nominal[i], deviation * factor[i], t});
+    for (std::size_t i = 0; i < test.nominal.size(); ++i) {
+      const double effect = test.effect.empty() ? 1 : test.effect[i];
+      problem.samples.push_back({test.mode, test.deformation[i], test.nominal[i] / effect,
+                                 deviation * factor[i] * effect, t});
+    }
     problem.offset.push_back(test.offset);
     if (test.offset)
       squares.constants.push_back(

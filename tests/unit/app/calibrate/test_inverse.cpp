@@ -247,6 +247,68 @@ TEST(Inverse, ProfileEndsWhereTheMisfitHasRisen) {
   EXPECT_EQ(none.profile_evaluations, 0);
 }
 
+/// Curves of a sphere on a body of one stiffening law, with the uncertainties of a good bench.
+Curves stiffening_curves(const Body& body, fem::CampaignSettings settings, double radius) {
+  settings.indentation.tool.radius = radius;
+  settings.sites = {sites_of(body).front()};
+  std::vector<double> depths;
+  for (int i = 1; i <= 8; ++i) depths.push_back(0.002 * i / 8);
+  Curves curves;
+  curves.tool = {"sphere", radius, "frictionless"};
+  for (const auto& site : fem::run_sensitivity(body, settings, depths, {})) {
+    CurvePath path;
+    path.direction = body.response.inward[static_cast<std::size_t>(site.vertex)];
+    path.contact_uncertainty = 2e-5;
+    path.samples.emplace_back();
+    path.samples.back().force_uncertainty = 0;
+    for (const auto& s : site.samples) {
+      CurveSample& sample = path.samples.emplace_back();
+      sample.displacement = s.depth;
+      sample.force = s.force * path.direction;
+      sample.force_uncertainty = 0.02 * s.force;
+    }
+    curves.sites.push_back({site.vertex, SiteStatus::Complete, "", 0, {path}});
+  }
+  return curves;
+}
+
+InverseSettings stiffening_settings(double mu, double b) {
+  InverseSettings settings;
+  settings.campaign = campaign(kTop, kTop);
+  const fem::LawConstants law{"demiray-fung", {{"mu", mu}, {"b", b}, {"poisson", 0.45}}};
+  settings.campaign.materials = {{"soft", law}, {"stiff", law}};
+  settings.sought = {{{"soft", "mu"}, 100, 1e6}, {{"soft", "b"}, 0.01, 50}};
+  settings.depths = 4;
+  settings.profiles = Profiles::None;
+  return settings;
+}
+
+double half_width(const PressFit& fit, std::size_t constant) {
+  const calibrate::Estimate& e = fit.calibration.estimates[constant];
+  return 0.5 * (e.high - e.low);
+}
+
+/// A small sphere strains more than a large one at the same depth: both together tell how a law
+/// stiffens from how stiff it is at rest, which one of them hardly does.
+TEST(Inverse, SpheresOfTwoRadiiTellTheStiffeningFromTheModulus) {
+  const Body body = two_halves();
+  constexpr double kMu = 3e3, kB = 4;
+  InverseSettings settings = stiffening_settings(kMu, kB);
+  const std::vector<Curves> both{stiffening_curves(body, settings.campaign, 0.005),
+                                 stiffening_curves(body, settings.campaign, 0.020)};
+  settings = stiffening_settings(5e3, 1);
+  settings.campaign.materials[1] = stiffening_settings(kMu, kB).campaign.materials[1];
+  const PressFit fit = calibrate_inverse(body, both, settings);
+  EXPECT_NEAR(fit.calibration.estimates[0].value, kMu, 0.01 * kMu);
+  EXPECT_NEAR(fit.calibration.estimates[1].value, kB, 0.02 * kB);
+  ASSERT_EQ(fit.paths.size(), 2U);
+  EXPECT_EQ(fit.paths[1].set, 1U);
+  settings.campaign.indentation.tool.radius = 0.020;
+  const PressFit one = calibrate_inverse(body, both[1], settings);
+  EXPECT_LT(half_width(fit, 1), 0.7 * half_width(one, 1));
+  EXPECT_LT(half_width(fit, 0), 0.7 * half_width(one, 0));
+}
+
 TEST(Inverse, RefusesWhatDoesNotFitTogether) {
   const Body body = two_halves();
   Curves curves = truth_curves(body);
@@ -271,6 +333,14 @@ TEST(Inverse, RefusesWhatDoesNotFitTogether) {
   Curves none = curves;
   for (SiteCurves& site : none.sites) site.paths.clear();
   EXPECT_THAT(refusal(none, settings_from(kTop, kBase)), HasSubstr("no normal path"));
+  Curves disc = curves;
+  disc.tool.shape = "disc";
+  try {
+    calibrate_inverse(body, std::vector{curves, disc}, settings_from(kTop, kBase));
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(std::string(error.what()), HasSubstr("curves 2 were made with a disc"));
+  }
   curves.sites.back().vertex = 9999;
   EXPECT_THAT(refusal(curves, settings_from(kTop, kBase)), HasSubstr("no site of the body"));
 }
