@@ -107,7 +107,6 @@ fem::CampaignSettings campaign_of_case();
 struct Case {
   std::string name;
   std::filesystem::path records;  ///< sidecar of a measured body; as written; empty: none
-  std::string tool_of_records;    ///< name; empty where the sidecar has one tool
   /// [surface], [volume_mesh], [[inclusion]], [mesh], [[press]]; paths as written
   mesher::Settings mesh = mesh_of_case();
   std::vector<mesher::Springs> supports;  ///< fixed nodes where both stiffnesses are 0

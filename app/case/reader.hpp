@@ -93,18 +93,6 @@ class TableReader {
     read(as_table(*node, title), title, fmt::format("{}.", name), body);
   }
 
-  /// One table, [name], or a list of them, [[name]].
-  template <class S>
-  void section_or_sections(std::string_view name, std::vector<S>& list, Presence presence,
-                           std::string_view about) {
-    const toml::node* node = table_.get(name);
-    if (node == nullptr || !node->is_table()) {
-      sections(name, list, presence, about);
-      return;
-    }
-    section(name, list.emplace_back(), presence, about);
-  }
-
   template <class S>
   void sections(std::string_view name, std::vector<S>& list, Presence presence,
                 std::string_view about) {

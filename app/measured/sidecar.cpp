@@ -215,7 +215,10 @@ void describe(V& v, Sidecar& s) {
   v.text(s.instrument, {"instrument", "machine and load cell"});
   v.text(s.date, {"date", "of the measurement"});
   v.text(s.description, {"description", "anything else"});
-  v.section_or_sections("tool", s.tools, kRequired, "");
+  if (s.lists_tools)
+    v.sections("tool", s.tools, kRequired, "");
+  else
+    v.section("tool", s.tools.emplace_back(), kRequired, "");
   v.section("machine", s.machine, kOptional, "");
   v.section("columns", s.columns, kRequired, "");
   v.sections("column", s.declared, kOptional, "");
@@ -418,8 +421,7 @@ void check_record_tools(const Sidecar& s, const SourceMap& sources) {
 void choose_tool(Sidecar& s, const std::string& name, const std::string& where) {
   if (s.tools.size() > 1 && name.empty())
     refuse(where, "its records are of several tools: " + names_of_tools(s),
-           "choose one: `tool` of [measured] in a case, or the folder of that name that `palpate "
-           "import` writes");
+           "`palpate import` writes a folder for each: take the artifacts of one of them");
   const MeasuredToolSection* tool =
       s.tools.size() > 1 || !name.empty() ? tool_named(s, name) : &s.tools.front();
   if (tool == nullptr)
@@ -447,6 +449,7 @@ Sidecar read_whole(const std::filesystem::path& path, SourceMap& sources) {
   check_is_no_record(path);
   const toml::table table = read_toml(path, "the sidecar");
   Sidecar sidecar;
+  sidecar.lists_tools = table["tool"].is_array();
   TableReader reader(table, "the sidecar", "", sources);
   describe(reader, sidecar);
   reader.finish();

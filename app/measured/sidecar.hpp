@@ -131,6 +131,7 @@ struct BatchFileSection {
 
 struct Sidecar {
   std::string name, specimen, source, licence, instrument, date, description;
+  bool lists_tools = false;                ///< as [[tool]], not as [tool]
   std::vector<MeasuredToolSection> tools;  ///< of the file
   MeasuredToolSection tool;                ///< of the records that are here
   MachineSection machine;

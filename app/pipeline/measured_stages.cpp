@@ -25,7 +25,7 @@ double degrees(double angle) {
 }  // namespace
 
 void run_measured_surface(const Workspace& space, const EventSink& emit) {
-  PatchBody patch = patch_body(records_of(space), space.c.tool_of_records);
+  PatchBody patch = patch_body(records_of(space));
   for (const std::string& warning : patch.warnings) emit(Warning{"mesh", warning});
   emit(LogLine{"mesh", fmt::format("surface of {} sites, {} apart; facets up to {:.0f} degrees off "
                                    "the mean normal, normals up to {:.0f} degrees off the facets",
@@ -40,7 +40,7 @@ void run_measured_surface(const Workspace& space, const EventSink& emit) {
 SiteCounts run_measured_curves(const Workspace& space, const EventSink& emit) {
   const Body body = read_input(space.body(), "mesh", read_body);
   prepare_output(space.out);
-  Import import = import_measurement(records_of(space), space.body(), {}, space.c.tool_of_records);
+  Import import = import_measurement(records_of(space), space.body());
   append(import.curves.provenance, import.curves.provenance,
          make_stage_step(space, Stage::Precompute, {}));
   for (const auto& refused : import.account["refused"])

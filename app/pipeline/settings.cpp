@@ -146,7 +146,7 @@ std::vector<fs::path> stage_inputs(const Workspace& space, Stage stage) {
   std::vector<fs::path> inputs;
   switch (stage) {
     case Stage::Mesh:
-      if (is_measured(space)) return measured_files(records_of(space), space.c.tool_of_records);
+      if (is_measured(space)) return measured_files(records_of(space));
       add_inputs(space.case_folder / space.c.mesh.source(), inputs);
       for (const mesher::SurfaceFile& inclusion : space.c.mesh.inclusions)
         inputs.push_back(space.case_folder / inclusion.path);

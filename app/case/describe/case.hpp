@@ -47,10 +47,6 @@ void describe_measured(V& v, Case& c) {
                                "sidecar of the records (docs/measured.md), relative to "
                                "the case",
                                kRequired});
-                in.text(c.tool_of_records,
-                        {"tool",
-                         "name of the tool whose records are taken, where there are "
-                         "several: a library is that of one tool"});
               });
   }
 }
