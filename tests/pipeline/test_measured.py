@@ -289,10 +289,10 @@ class Measured(unittest.TestCase):
             (folder / f"{tool}.csv").write_text("t (s),x (mm),f (N)\n" + "\n".join(rows) + "\n")
         (folder / "both.toml").write_text(
             'name = "both"\nspecimen = "gel"\nsource = "synthetic"\nlicence = "CC0-1.0"\n'
-            '[[tool]]\nname = "small"\nradius = "4 mm"\nfriction = "no-slip"\n'
-            '[[tool]]\nname = "large"\nradius = "6 mm"\nfriction = "no-slip"\n'
+            '[[tool]]\nname = "small"\nradius = "4 mm"\nfriction = "frictionless"\n'
+            '[[tool]]\nname = "large"\nradius = "6 mm"\nfriction = "frictionless"\n'
             '[columns]\ntime = "t"\ndisplacement = "x"\nforce = "f"\n'
-            '[[press]]\nfiles = "{tool}.csv"\ntool_from = "{tool}"\nsite = ["0 mm", "0 mm", "20 mm"]\n')
+            '[[press]]\nfiles = "{tool}.csv"\ntool_from = "{tool}"\nsite = ["20 mm", "20 mm", "20 mm"]\n')
         out = folder / "out"
         printed = self.ok("import", folder / "both.toml", "--out", out, "--body", self.out / "body.h5").stdout
         self.assertIn("tool 'small'", printed)
@@ -301,7 +301,7 @@ class Measured(unittest.TestCase):
         alike = command.palpate("compare", *curves, "--out", folder)
         self.assertEqual(alike.returncode, 2, alike.stdout)
         self.assertIn("radius", alike.stderr)
-        result = self.ok("calibrate", "body", PAD, "--measured", *curves, "--young", "gel", "--out", self.out)
+        result = self.ok("calibrate", "body", self.case, "--measured", *curves, "--young", "gel", "--out", self.out)
         self.assertIn("curves 2: 1 sites under a sphere of 6.00 mm radius", result.stdout)
         found = json.loads((self.out / "calibration.json").read_text())
         self.assertEqual([path["curves"] for path in found["paths"]], [1, 2])

@@ -20,6 +20,24 @@ double deepest(const PressCurve& press) {
   return depth;
 }
 
+/// Where the first sample of a press lies: deep, where its record begins in contact.
+double shallowest(const PressCurve& press) {
+  double depth = deepest(press);
+  for (const DepthForce& sample : press.loading) depth = std::min(depth, sample.depth);
+  return depth;
+}
+
+/// Evenly spaced to the depth that all presses reach, from where all of them have begun.
+std::vector<double> grid_of(const std::vector<PressCurve>& presses, double reach, int samples) {
+  double begin = 0;
+  for (const PressCurve& press : presses) begin = std::max(begin, shallowest(press));
+  const double step = reach / samples;
+  std::vector<double> depths;
+  for (int i = 1; i <= samples; ++i)
+    if (step * i >= std::min(begin, reach - step)) depths.push_back(step * i);
+  return depths;
+}
+
 /// Slope of the force over the grid, by differences of neighbours.
 std::vector<double> slopes(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> slope(x.size(), 0.0);
@@ -105,8 +123,7 @@ CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
                     std::to_string(1e3 * farthest) + " mm",
                 "check their units of length; leave out a press that ended early");
   }
-  std::vector<double> depths;
-  for (int i = 1; i <= settings.samples; ++i) depths.push_back(reach * i / settings.samples);
+  const std::vector<double> depths = grid_of(presses, reach, settings.samples);
   std::vector<GriddedPress> gridded;
   for (const PressCurve& press : presses) gridded.push_back(on_grid(press.loading, depths, where));
 
