@@ -141,6 +141,9 @@ ClampedFit fit_clamped(const std::vector<calibrate::HomogeneousTest>& tests,
     effects = std::move(next);
   }
   result.fit = calibrate::fit_homogeneous(with(tests, effects), settings);
+  for (std::string& warning : result.fit.calibration.warnings)
+    if (result.rounds > 0 && warning.starts_with("another set of constants"))
+      warning += "; it was not computed between clamps";
   for (std::size_t i = 0; i < tests.size(); ++i) {
     double& largest = result.largest_effect.emplace_back(0);
     for (const double stretch : tests[i].deformation)

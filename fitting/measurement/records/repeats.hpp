@@ -33,7 +33,8 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
                      const std::string& where);
 
 /// The loading branches as one normal path along `inward`, from the touch to the depth that all
-/// presses reach. Depths above the first sample of a record that begins in contact are left out. With the slope k and n presses:
+/// presses reach. Depths above the first sample of a record that begins in contact are left
+/// out. With the slope k and n presses:
 ///   force_scatter      sample standard deviation between the presses, unknown for one
 ///   force_uncertainty  u^2 = max(scatter^2, mean(noise^2 + v))/n + (r f)^2 + (k f u_C)^2,
 /// where v is the variance of baseline and contact point together (CommonErrors), the noise is
