@@ -7,7 +7,7 @@ import * as units from '../units.js';
 const UNITS = { Pa: units.pressure, m: units.length, N: units.force, s: units.time };
 
 /** A value of a constant with its unit. */
-const shown = (unit) => UNITS[unit] ?? ((v) => units.significant(v));
+const shown = (unit) => UNITS[unit] ?? ((v) => `${units.significant(v)}${unit === '1' ? '' : ` ${unit}`}`);
 
 function interval(c, low, high) {
   if (low === null && high === null) return '\u2013';
@@ -167,7 +167,7 @@ function correlationSummary(c) {
   const { shared, groups } = groupsOf(c.constants), own = groups.flatMap((g) => g.of);
   const row = (name, these) => [name, ...shared.map((j) => {
     const values = these.map((i) => c.correlation[i][j]);
-    if (these.length === 1) return correlationText(values[0]);
+    if (these.length === 1 || values.every((v) => v === null)) return correlationText(values[0]);
     const [low, middle, high] = [0, 0.5, 1].map((q) => correlationText(quantile(values, q)));
     return `${middle} (${low} to ${high})`;
   }), largest(c, these, own)];
