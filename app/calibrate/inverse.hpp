@@ -28,8 +28,8 @@ struct InverseSettings : PressFitSettings {
 /// an end where one constant is sought, up to some twenty where there are more; ends are found to a
 /// hundredth of their distance.
 /// Curves of one tool are those of the tool of the campaign. Several curves, of several tools, are
-/// each pressed by their own: presses of a small and of a large sphere tell how a law stiffens from
-/// how stiff it is at rest.
+/// each pressed by their own: a small sphere shows how a law stiffens, a large one how stiff it is
+/// at rest.
 /// @throws Error(Configuration) for curves of another tool or shape, sites that are not of the
 /// body, no measured normal path, constants of unknown regions; when the model fails at
 ///   the start.

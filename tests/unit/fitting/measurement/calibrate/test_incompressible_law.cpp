@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "fem/laws/law.hpp"
 #include "fem/laws/material.hpp"
 #include "fitting/measurement/calibrate/incompressible_law.hpp"
 #include "tests/unit/fitting/measurement/calibrate/typical_constants.hpp"
