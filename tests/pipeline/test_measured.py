@@ -297,15 +297,15 @@ class Measured(unittest.TestCase):
             '[columns]\ntime = "t"\ndisplacement = "x"\nforce = "f"\n'
             '[[press]]\nfiles = "{tool}.csv"\ntool_from = "{tool}"\nsite = ["20 mm", "20 mm", "20 mm"]\n')
         out = folder / "out"
-        printed = self.ok("import", folder / "both.toml", "--out", out, "--body", self.out / "body.h5").stdout
+        printed = self.ok("import", folder / "both.toml", "--out", out, "--body", self.out / "body.h5")
         self.assertIn("tool 'small'", printed)
         curves = [out / "small/curves.h5", out / "large/curves.h5"]
         self.assertFalse((out / "curves.h5").exists())
         alike = command.palpate("compare", *curves, "--out", folder)
         self.assertEqual(alike.returncode, 2, alike.stdout)
         self.assertIn("radius", alike.stderr)
-        result = self.ok("calibrate", "body", self.case, "--measured", *curves, "--young", "gel", "--out", self.out)
-        self.assertIn("curves 2: 1 sites under a sphere of 6.00 mm radius", result.stdout)
+        printed = self.ok("calibrate", "body", self.case, "--measured", *curves, "--young", "gel", "--out", self.out)
+        self.assertIn("curves 2: 1 sites under a sphere of 6.00 mm radius", printed)
         found = json.loads((self.out / "calibration.json").read_text())
         self.assertEqual([path["curves"] for path in found["paths"]], [1, 2])
 
