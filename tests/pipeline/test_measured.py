@@ -190,6 +190,7 @@ class Measured(unittest.TestCase):
                     text.replace("[path]", 'force_unit = "kN"\n\n[path]'))
         self.refuse(["needs a body"], text, body=False)
         self.refuse(["unknown key 'complience'"], text.replace("compliance =", "complience ="))
+        (Path(self.folder.name) / "other.toml").write_text(text, encoding="utf-8")
         self.refuse(["several sidecars lie beside it", "bad.toml"], "Time,Load\n0,0\n", name="press.csv")
         (Path(self.folder.name) / "without-sidecar").mkdir()
         self.refuse(["this is a record", "TOML"], "Time,Load\n0,0\n", name="without-sidecar/press.csv")
