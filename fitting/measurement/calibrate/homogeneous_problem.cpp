@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/numbers.hpp"
 
 namespace palpate::calibrate {
@@ -16,9 +17,24 @@ namespace {
 constexpr int kMostIterations = 500;
 constexpr double kTolerance = 1e-15;     ///< of the cost: valleys of exponents are flat
 constexpr double kLeastRelative = 0.05;  ///< of the largest stress, under Weighting::Relative
+/// Poisson's ratio from which on a test with free faces passes for incompressible.
+constexpr double kNearlyIncompressible = 0.45;
+
+/// Confined compression has the volume changes of Poisson's ratio, and the other tests have none.
+void check_confined(const std::vector<HomogeneousTest>& tests, double poisson) {
+  const auto confined = std::count_if(tests.begin(), tests.end(),
+                                      [](const auto& t) { return t.mode == Mode::Confined; });
+  if (confined == 0 || confined == std::ssize(tests) || poisson >= kNearlyIncompressible) return;
+  refuse("calibration",
+         "tests with free faces are evaluated as incompressible, and confined compression with "
+         "poisson = " +
+             number_text(poisson),
+         "fit the confined tests alone, or choose a poisson of 0.45 or more");
+}
 
 void check_tests(const std::vector<HomogeneousTest>& tests, const HomogeneousSettings& settings) {
   if (tests.empty()) refuse("calibration", "there are no tests", "give at least one");
+  check_confined(tests, settings.poisson);
   for (const HomogeneousTest& test : tests) {
     if (test.deformation.empty() || test.deformation.size() != test.nominal.size()) {
       refuse(test.name, "deformations and stresses are not equally many", "give pairs");
