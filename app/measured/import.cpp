@@ -253,6 +253,7 @@ class Importer {
         reach = std::max(reach, path.samples.back().displacement);
       }
       checks_.check_force(site);
+      checks_.check_samples(site);
       curves.sites.push_back(std::move(site));
     }
     curves.provenance = provenance();

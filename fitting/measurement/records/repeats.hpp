@@ -12,7 +12,7 @@
 namespace palpate::measured {
 
 struct RepeatSettings {
-  int samples = 24;                   ///< of the path, evenly spaced in depth
+  int samples = 24;                   ///< of the path, evenly spaced in depth, at most
   double force_calibration = 0;       ///< relative standard uncertainty of the load cell
   double compliance_uncertainty = 0;  ///< m/N, standard
 };

@@ -95,6 +95,21 @@ TEST(Repeats, BeginWhereTheRecordsBegin) {
               0.02 * norm(whole.samples.back().force));
 }
 
+/// A record that was sampled slowly has a curve of fewer samples, and the same force.
+TEST(Repeats, AreAsFineAsTheRecordsAllow) {
+  std::vector<PressCurve> presses = presses_of_site(1, 0, 44);
+  const CurvePath fine = mean_path(presses, kInward, {}, "site");
+  std::vector<DepthForce>& loading = presses[0].loading;
+  std::vector<DepthForce> few;
+  for (std::size_t i = 0; i < 30; ++i) few.push_back(loading[(loading.size() - 1) * (i + 1) / 30]);
+  loading = few;
+  const CurvePath coarse = mean_path(presses, kInward, {}, "site");
+  EXPECT_LT(coarse.samples.size(), 20U);
+  EXPECT_GT(coarse.samples.size(), 10U);
+  EXPECT_NEAR(norm(coarse.samples.back().force), norm(fine.samples.back().force),
+              0.02 * norm(fine.samples.back().force));
+}
+
 /// Calibration of the load cell and compliance act on all presses alike: more presses do not help.
 TEST(Repeats, CommonUncertaintiesDoNotAverageOut) {
   RepeatSettings settings;
