@@ -5,6 +5,8 @@
 #include <utility>
 
 #include "app/calibrate/account.hpp"
+#include "app/calibrate/calibration_files.hpp"
+#include "app/calibrate/clamped_fit.hpp"
 #include "app/calibrate/fit_file.hpp"
 #include "app/calibrate/inverse.hpp"
 #include "app/case_options.hpp"
@@ -12,8 +14,6 @@
 #include "app/console.hpp"
 #include "app/pipeline/settings.hpp"
 #include "app/pipeline/workspace.hpp"
-#include "app/report/report.hpp"
-#include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 #include "format/number_text.hpp"
 #include "format/provenance.hpp"
@@ -31,16 +31,28 @@ struct CalibrateOptions {
 
 Json inputs_of(const std::vector<fs::path>& files) {
   Json inputs = Json::object();
-  for (const fs::path& file : files) inputs[file.filename().string()] = sha256_of_file(file);
+  for (const fs::path& file : files) {
+    const std::string name = file.filename().string();
+    inputs[inputs.contains(name) ? file.string() : name] = sha256_of_file(file);
+  }
   return inputs;
+}
+
+/// What the clamps of a specimen do to its stress; empty where it has none.
+std::string clamp_text(bool is_clamped, double largest_effect) {
+  if (!is_clamped) return {};
+  return ", between glued clamps: by finite elements up to " + percent_text(largest_effect) +
+         " off the formula";
 }
 
 int calibrate_tests(const CalibrateOptions& options) {
   const FitFile file = read_fit_file(options.fit_file);
-  const calibrate::HomogeneousFit fit = calibrate::fit_homogeneous(file.tests, file.settings);
+  const ClampedFit clamped = fit_clamped(file.tests, file.specimens, file.settings);
+  const calibrate::HomogeneousFit& fit = clamped.fit;
   say("calibrate: {} on {} tests of {}", file.settings.law, file.tests.size(), file.name);
   for (std::size_t i = 0; i < file.tests.size(); ++i)
-    say("  {}: {}", file.tests[i].name, file.statements[i]);
+    say("  {}: {}{}", file.tests[i].name, file.statements[i],
+        clamp_text(file.specimens[i].has_value(), clamped.largest_effect[i]));
   say_calibration(fit.calibration, file.settings.confidence);
   say_homogeneous(fit);
   if (options.out.empty()) return kExitDone;
@@ -52,15 +64,11 @@ int calibrate_tests(const CalibrateOptions& options) {
                   {"source", file.source},
                   {"licence", file.licence},
                   {"conversions", file.statements},
+                  {"largest_effect_of_clamps", clamped.largest_effect},
                   {"creator", creator_text()},
                   {"input_sha256", inputs_of(files)}};
   account.update(homogeneous_account(fit, file.settings, file.tests));
-  prepare_output(options.out);
-  const fs::path target = fs::path(options.out) / "calibration.json";
-  const fs::path page = fs::path(options.out) / "calibration.html";
-  write_file_crash_safely(target, account.dump(2) + "\n");
-  report::write_calibration(account.dump(), page);
-  say("calibrate: {}, {}", target.string(), page.string());
+  say("calibrate: {}", write_calibration_files(account, options.out));
   return kExitDone;
 }
 
@@ -70,7 +78,7 @@ constexpr double kLargestPoisson = 0.4995;
 
 struct BodyOptions {
   std::shared_ptr<CaseOptions> common;
-  std::string measured;
+  std::vector<std::string> measured;
   std::vector<std::string> young, poisson, constant;
   int depths = 6;
   bool drags = false;
@@ -131,15 +139,26 @@ InverseSettings inverse_settings(const BodyOptions& options, const Workspace& sp
   return settings;
 }
 
+/// Curves of the body, a file for each tool.
+std::vector<Curves> measured_on(const Workspace& space, const std::vector<std::string>& files) {
+  std::vector<Curves> measured;
+  for (const std::string& file : files) {
+    const Curves& curves = measured.emplace_back(read_curves(file));
+    if (!curves.body_sha256.empty() && curves.body_sha256 != sha256_of_file(space.body()))
+      throw Error(ErrorKind::Configuration, file,
+                  "it belongs to another body than " + space.body().string(),
+                  "import the measurement again with --body " + space.body().string());
+    if (files.size() > 1)
+      say("  curves {}: {} sites under a {} of {} radius, {}", measured.size(), curves.sites.size(),
+          curves.tool.shape, length_text(curves.tool.radius), file);
+  }
+  return measured;
+}
+
 int calibrate_body(const BodyOptions& options) {
   const Workspace space = open_workspace(*options.common);
   const Body body = read_body(space.body());
-  const Curves measured = read_curves(options.measured);
-  if (!measured.body_sha256.empty() && measured.body_sha256 != sha256_of_file(space.body())) {
-    throw Error(ErrorKind::Configuration, options.measured,
-                "it belongs to another body than " + space.body().string(),
-                "import the measurement again with --body " + space.body().string());
-  }
+  const std::vector<Curves> measured = measured_on(space, options.measured);
   const PressFit fit = calibrate_inverse(body, measured, inverse_settings(options, space));
   const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(),
                                    [](const FittedPath& p) { return p.kind == PathKind::Lateral; });
@@ -149,17 +168,16 @@ int calibrate_body(const BodyOptions& options) {
   if (fit.profile_evaluations > 0)
     say("calibrate: {} more evaluations for the profiles", fit.profile_evaluations);
   say_calibration(fit.calibration, options.confidence);
+  std::vector<fs::path> inputs(options.measured.begin(), options.measured.end());
+  inputs.insert(inputs.begin(), space.body());
   Json account = {{"artifact", "palpate.calibration"},
                   {"schema", 1},
                   {"name", space.c.name},
                   {"creator", creator_text()},
-                  {"input_sha256", inputs_of({space.body(), options.measured})},
+                  {"input_sha256", inputs_of(inputs)},
                   {"resolved_case", resolved_toml(space.c)}};
   account.update(press_account(fit, options.confidence));
-  prepare_output(space.out);
-  const fs::path target = space.out / "calibration.json";
-  write_file_crash_safely(target, account.dump(2) + "\n");
-  say("calibrate: {}", target.string());
+  say("calibrate: {}", write_calibration_files(account, space.out, false));
   return kExitDone;
 }
 
@@ -172,7 +190,10 @@ void add_body_part(CLI::App& command, Action& action) {
       "--young gel --out out/pad");
   const auto options = std::make_shared<BodyOptions>();
   options->common = add_case_options(*part, ThreadsOption::Present);
-  part->add_option("--measured", options->measured, "curves.h5 of `palpate import`")->required();
+  part->add_option(
+          "--measured", options->measured,
+          "curves.h5 of `palpate import`; several, of several tools, are calibrated together")
+      ->required();
   part->add_option("--young", options->young,
                    "Region whose Young's modulus is identified; may be repeated");
   part->add_option("--poisson", options->poisson,
@@ -209,8 +230,9 @@ void add_calibrate_command(CLI::App& root, Action& action) {
   tests->footer("Example: palpate calibrate tests data/measured/treloar-1944/ogden.toml");
   const auto options = std::make_shared<CalibrateOptions>();
   tests->add_option("FIT", options->fit_file, "Fit file (TOML), see docs/measured.md")->required();
-  tests->add_option("--out", options->out,
-                    "Folder for calibration.json and calibration.html (default: print only)");
+  tests->add_option(
+      "--out", options->out,
+      "Folder for calibration.json, correlations.csv and calibration.html (default: print only)");
   add_body_part(*command, action);
   add_calibrate_relaxation(*command, action);
   add_calibrate_slab(*command, action);

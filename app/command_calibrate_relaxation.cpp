@@ -2,14 +2,12 @@
 #include <CLI/CLI.hpp>
 
 #include "app/calibrate/account.hpp"
+#include "app/calibrate/calibration_files.hpp"
 #include "app/calibrate/relaxation_account.hpp"
 #include "app/case/quantity.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/measured/import.hpp"
-#include "app/pipeline/workspace.hpp"
-#include "app/report/report.hpp"
-#include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 #include "format/provenance.hpp"
 #include "format/sha256.hpp"
@@ -102,12 +100,7 @@ int calibrate_relaxation(const RelaxationOptions& options) {
                                     {"creator", creator_text()},
                                     {"input_sha256", inputs}};
   account.update(relaxation_account(fit, settings, input.records, radius));
-  prepare_output(options.out);
-  const std::filesystem::path out = options.out;
-  write_file_crash_safely(out / "calibration.json", account.dump(1) + "\n");
-  report::write_calibration(account.dump(), out / "calibration.html");
-  say("calibrate: {}, {}", (out / "calibration.json").string(),
-      (out / "calibration.html").string());
+  say("calibrate: {}", write_calibration_files(account, options.out));
   return kExitDone;
 }
 
@@ -142,8 +135,9 @@ void add_calibrate_relaxation(CLI::App& command, Action& action) {
       ->check(CLI::Range(0.5, 0.9999));
   part->add_flag("--no-profiles", options->no_profiles,
                  "Without the intervals by profile likelihoods, which take most of the time");
-  part->add_option("--out", options->out,
-                   "Folder for calibration.json and calibration.html (default: print only)");
+  part->add_option(
+      "--out", options->out,
+      "Folder for calibration.json, correlations.csv and calibration.html (default: print only)");
   part->callback(
       [options, &action] { action = [options] { return calibrate_relaxation(*options); }; });
 }

@@ -2,15 +2,13 @@
 #include <CLI/CLI.hpp>
 
 #include "app/calibrate/account.hpp"
+#include "app/calibrate/calibration_files.hpp"
 #include "app/calibrate/slab_fit.hpp"
 #include "app/case/material.hpp"
 #include "app/case/quantity.hpp"
 #include "app/command.hpp"
 #include "app/console.hpp"
 #include "app/json_number.hpp"
-#include "app/pipeline/workspace.hpp"
-#include "app/report/report.hpp"
-#include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
 #include "format/number_text.hpp"
 #include "format/provenance.hpp"
@@ -145,15 +143,12 @@ int calibrate_slab(const SlabOptions& options) {
       {"input_sha256",
        {{fs::path(options.curves).filename().string(), sha256_of_file(options.curves)}}}};
   account.update(slab_account(slab, table, options.confidence));
-  prepare_output(options.out);
-  const fs::path folder = options.out;
-  write_file_crash_safely(folder / "calibration.json", account.dump(2) + "\n");
-  report::write_calibration(account.dump(), folder / "calibration.html");
+  const std::string files = write_calibration_files(account, options.out);
   Curves fitted = fitted_curves(measured, slab.fit);
   fitted.provenance.steps.push_back(make_provenance_step(
       "slab", "", {options.curves}, {{"origin", "slab fitted to measured curves"}}));
-  write_curves(folder / "curves.h5", fitted);
-  say("calibrate: {}, calibration.html, curves.h5", (folder / "calibration.json").string());
+  write_curves(fs::path(options.out) / "curves.h5", fitted);
+  say("calibrate: {}, curves.h5", files);
   return kExitDone;
 }
 
@@ -195,8 +190,10 @@ void add_calibrate_slab(CLI::App& calibrate, Action& action) {
   part->add_option("--threads", options->threads, "Slabs that are pressed at once")
       ->capture_default_str()
       ->check(CLI::Range(1, 1024));
-  part->add_option("--out", options->out,
-                   "Folder of calibration.json, calibration.html and curves.h5, the fitted forces");
+  part->add_option(
+      "--out", options->out,
+      "Folder of calibration.json, correlations.csv, calibration.html and curves.h5, the "
+      "fitted forces");
   part->callback([options, &action] { action = [options] { return calibrate_slab(*options); }; });
 }
 

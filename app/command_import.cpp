@@ -61,11 +61,11 @@ void write_histories(const Histories& histories, const fs::path& sidecar, const 
 }
 
 /// The surface of the records alone. @return its file.
-fs::path write_patch(const fs::path& sidecar, const fs::path& out) {
-  PatchBody patch = patch_body(sidecar);
+fs::path write_patch(const fs::path& sidecar, const fs::path& out, const std::string& tool) {
+  PatchBody patch = patch_body(sidecar, tool);
   for (const std::string& warning : patch.warnings) warn(warning);
   patch.body.provenance.steps.push_back(
-      make_provenance_step("mesh", "", measured_files(sidecar), {{"origin", "measured"}}));
+      make_provenance_step("mesh", "", measured_files(sidecar, tool), {{"origin", "measured"}}));
   fs::path file = out / "body.h5";
   prepare_output(out);
   write_body(file, patch.body);
@@ -74,12 +74,12 @@ fs::path write_patch(const fs::path& sidecar, const fs::path& out) {
   return file;
 }
 
-int import_records(const ImportOptions& options) {
-  const ImportRequest request = import_request(options.inputs);
-  const fs::path out = options.out;
-  const bool has_body = !options.body.empty() || !makes_body(read_sidecar(request.sidecar));
-  const fs::path body = has_body ? fs::path(options.body) : write_patch(request.sidecar, out);
-  const Import result = import_measurement(request.sidecar, body, request.records);
+/// The records of one tool. @return how many were refused.
+int import_tool(const ImportOptions& options, const ImportRequest& request, const std::string& tool,
+                const fs::path& out) {
+  const bool has_body = !options.body.empty() || !makes_body(read_sidecar(request.sidecar, tool));
+  const fs::path body = has_body ? fs::path(options.body) : write_patch(request.sidecar, out, tool);
+  const Import result = import_measurement(request.sidecar, body, request.records, tool);
   prepare_output(out);
   if (!result.curves.sites.empty()) write_curves(out / "curves.h5", result.curves);
   if (!result.histories.records.empty()) write_histories(result.histories, request.sidecar, out);
@@ -106,9 +106,39 @@ int import_records(const ImportOptions& options) {
   if (!result.curves.sites.empty())
     say("import: {} records at {} sites -> {} (account in import.json)",
         result.account["records"].size(), result.curves.sites.size(), (out / "curves.h5").string());
-  if (result.refused == 0) return kExitDone;
-  say("import: {} refused, see above; the curves are those of the others", result.refused);
-  return options.allow_refused ? kExitDone : kExitSomeSitesFailed;
+  if (result.refused > 0)
+    say("import: {} refused, see above; the curves are those of the others", result.refused);
+  return result.refused;
+}
+
+/// The request for the records of one tool; those that no tool has go to the first, which refuses
+/// them.
+ImportRequest part_of(const ImportRequest& request, const std::vector<std::string>& tools,
+                      std::size_t tool) {
+  if (tools.size() == 1 || request.records.empty()) return request;
+  ImportRequest part{request.sidecar, {}};
+  for (const fs::path& record : request.records) {
+    std::size_t of = 0;
+    for (std::size_t i = 0; i < tools.size(); ++i)
+      for (const fs::path& file : measured_files(request.sidecar, tools[i]))
+        if (fs::weakly_canonical(file) == fs::weakly_canonical(record)) of = i;
+    if (of == tool) part.records.push_back(record);
+  }
+  return part;
+}
+
+/// Each of several tools has a folder of its name.
+int import_records(const ImportOptions& options) {
+  const ImportRequest request = import_request(options.inputs);
+  const std::vector<std::string> tools = tools_of_sidecar(request.sidecar);
+  int refused = 0;
+  for (std::size_t i = 0; i < tools.size(); ++i) {
+    const ImportRequest part = part_of(request, tools, i);
+    if (part.records.empty() && !request.records.empty()) continue;
+    if (tools.size() > 1) say("import: tool '{}'", tools[i]);
+    refused += import_tool(options, part, tools[i], fs::path(options.out) / tools[i]);
+  }
+  return refused == 0 || options.allow_refused ? kExitDone : kExitSomeSitesFailed;
 }
 
 }  // namespace

@@ -99,7 +99,8 @@ Json press_account(const PressFit& fit, double confidence) {
       uncertainty.push_back(std::isfinite(u) ? Json(u) : Json(nullptr));
     }
     const bool normal = path.kind == PathKind::Normal;
-    paths.push_back({{"vertex", path.vertex},
+    paths.push_back({{"curves", path.set + 1},
+                     {"vertex", path.vertex},
                      {"kind", normal ? "normal" : "lateral"},
                      {"lateral_depth_m", normal ? Json(nullptr) : Json(path.lateral_depth)},
                      {"contact_shift_m", path.contact_shift},

@@ -51,12 +51,15 @@ template <class V>
 void describe(V& v, TestSection& s) {
   describe_record(v, s);
   v.text(s.mode, {"mode", "deformation of the test", kRequired},
-         {"uniaxial", "equibiaxial", "pure shear", "simple shear"});
+         {"uniaxial", "equibiaxial", "pure shear", "simple shear", "confined compression"});
   describe_columns(v, s);
   describe_specimen(v, s.size);
   v.number(s.weight, {"weight", "of the residuals of this test", kOptional, kPositive});
   v.flag(s.offset,
          {"offset", "whether a constant stress, an error of the zero, is fitted as well"});
+  v.flag(s.clamped, {"clamped",
+                     "whether glued clamps or plates hold both ends: the specimen is computed by "
+                     "finite elements"});
 }
 
 namespace {
@@ -142,6 +145,28 @@ calibrate::ConstantInfo constant_of(const ConstantSection& s, const std::string&
          "its constants are " + names);
 }
 
+/// The specimen of a clamped test.
+std::optional<fem::ClampedSpecimen> specimen_of(const TestSection& s, const std::string& where) {
+  if (!s.clamped) return std::nullopt;
+  if (s.mode != "uniaxial" && s.mode != "pure shear")
+    refuse(where, "a clamped specimen is not in " + s.mode,
+           "choose the mode uniaxial or pure shear, or leave `clamped` out");
+  if (s.offset)
+    refuse(where, "an offset is not fitted to a clamped specimen", "leave `offset` out");
+  const SpecimenSize& size = s.size;
+  const bool round = std::isfinite(size.diameter);
+  if (!std::isfinite(size.gauge_length) ||
+      !(round || (std::isfinite(size.width) && std::isfinite(size.thickness))))
+    refuse(where, "the shape of the clamped specimen is not known",
+           "give gauge_length, and width and thickness or a diameter");
+  fem::ClampedSpecimen specimen;
+  specimen.length = size.gauge_length;
+  if (round) specimen.diameter = size.diameter;
+  if (!round) specimen.width = size.width;
+  if (!round) specimen.thickness = size.thickness;
+  return specimen;
+}
+
 calibrate::Weighting weighting_of(const std::string& text) {
   if (text == "absolute") return calibrate::Weighting::Absolute;
   if (text == "relative") return calibrate::Weighting::Relative;
@@ -158,7 +183,7 @@ FitFile read_fit_file(const std::filesystem::path& path) {
   TableReader reader(table, "the fit file", "", sources);
   describe(reader, document);
   reader.finish();
-  FitFile fit{document.name, document.source, document.licence, {}, {}, {}, {}};
+  FitFile fit{document.name, document.source, document.licence, {}, {}, {}, {}, {}};
   fit.settings.law = calibrate::IncompressibleLaw(document.law.law).name();
   fit.settings.poisson = document.law.poisson;
   fit.settings.weighting = weighting_of(document.law.weighting);
@@ -174,8 +199,9 @@ FitFile read_fit_file(const std::filesystem::path& path) {
     const TestSection& test = document.tests[i];
     for (const std::string& file : {test.file, test.stress_file})
       if (!file.empty()) fit.files.push_back(path.parent_path() / file);
-    SpecimenTest specimen =
-        read_test(test, path.parent_path(), sources.where(fmt::format("test[{}].", i)));
+    const std::string where = sources.where(fmt::format("test[{}].", i));
+    fit.specimens.push_back(specimen_of(test, where));
+    SpecimenTest specimen = read_test(test, path.parent_path(), where);
     fit.tests.push_back(std::move(specimen.test));
     fit.statements.push_back(std::move(specimen.statement));
   }

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "fem/specimen/clamped.hpp"
 #include "fitting/measurement/calibrate/homogeneous_fit.hpp"
 
 namespace palpate::app {
@@ -14,6 +16,7 @@ struct FitFile {
   std::string name, source, licence;
   calibrate::HomogeneousSettings settings;
   std::vector<calibrate::HomogeneousTest> tests;
+  std::vector<std::optional<fem::ClampedSpecimen>> specimens;  ///< of each test; without a law
   std::vector<std::string> statements;       ///< how each test follows from its record
   std::vector<std::filesystem::path> files;  ///< records of the tests
 };

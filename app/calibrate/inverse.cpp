@@ -44,10 +44,23 @@ bool admissible(const fem::CampaignSettings& campaign) {
   return true;
 }
 
+/// The tool of one of several sets of curves.
+struct SetTool {
+  double radius = 0;
+  fem::ToolFriction friction = fem::ToolFriction::Frictionless;
+
+  void use_in(fem::CampaignSettings& campaign) const {
+    campaign.indentation.tool.radius = radius;
+    campaign.indentation.friction = friction;
+  }
+};
+
 /// The finite element model of a body.
 class BodyModel : public PressModel {
  public:
-  BodyModel(const Body& body, const InverseSettings& settings) : body_(body), settings_(settings) {}
+  /// @param tools  of each set of curves; empty: that of the campaign.
+  BodyModel(const Body& body, const InverseSettings& settings, std::vector<SetTool> tools)
+      : body_(body), settings_(settings), tools_(std::move(tools)) {}
 
   std::vector<calibrate::Constant> constants(const PressPlan&) const override {
     std::vector<calibrate::Constant> constants;
@@ -68,6 +81,7 @@ class BodyModel : public PressModel {
       value_of(campaign, constants.back()) = at[i];
     }
     campaign.sites = plan.vertices;
+    if (!tools_.empty()) tools_[plan.set].use_in(campaign);
     // At the start the refusal itself is the best message.
     if (!first_ && !admissible(campaign)) {
       refusal = "refused by the law";
@@ -81,6 +95,7 @@ class BodyModel : public PressModel {
  private:
   const Body& body_;
   const InverseSettings& settings_;
+  std::vector<SetTool> tools_;
   bool first_ = true;
   fem::FactorCache kept_;
 };
@@ -102,6 +117,23 @@ void check_tool(const Curves& measured, const InverseSettings& settings) {
   }
 }
 
+/// The tools of several sets of curves, spheres of the case's shape.
+std::vector<SetTool> tools_of(std::span<const Curves> measured, const InverseSettings& settings) {
+  const std::string shape = fem::name_of(settings.campaign.indentation.tool.shape);
+  std::vector<SetTool> tools;
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const ToolDescription& tool = measured[i].tool;
+    if (tool.shape != shape || shape != "sphere")
+      refuse("measured curves",
+             fmt::format("curves {} were made with a {}, the tool of the case is a {}", i + 1,
+                         tool.shape, shape),
+             "calibrate curves of several tools with spheres");
+    tools.push_back({tool.radius, tool.friction == "no-slip" ? fem::ToolFriction::NoSlip
+                                                             : fem::ToolFriction::Frictionless});
+  }
+  return tools;
+}
+
 void check_sites(const Body& body, const Curves& measured) {
   for (const SiteCurves& site : measured.sites) {
     const auto vertex = static_cast<std::size_t>(site.vertex);
@@ -113,15 +145,24 @@ void check_sites(const Body& body, const Curves& measured) {
 
 }  // namespace
 
-PressFit calibrate_inverse(const Body& body, const Curves& measured,
+PressFit calibrate_inverse(const Body& body, std::span<const Curves> measured,
                            const InverseSettings& settings) {
   const std::string where = "calibration of body '" + body.name + "'";
   if (settings.sought.empty())
     refuse(where, "no constant is sought", "name at least one with --young or --poisson");
-  check_tool(measured, settings);
-  check_sites(body, measured);
-  BodyModel model(body, settings);
+  std::vector<SetTool> tools;
+  if (measured.size() == 1)
+    check_tool(measured.front(), settings);
+  else
+    tools = tools_of(measured, settings);
+  for (const Curves& curves : measured) check_sites(body, curves);
+  BodyModel model(body, settings, std::move(tools));
   return fit_presses(measured, model, settings, where);
+}
+
+PressFit calibrate_inverse(const Body& body, const Curves& measured,
+                           const InverseSettings& settings) {
+  return calibrate_inverse(body, std::span(&measured, 1), settings);
 }
 
 }  // namespace palpate::app

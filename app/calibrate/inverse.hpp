@@ -3,6 +3,7 @@
 // finite element model, with the gradients of fem/sensitivity.hpp.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "app/calibrate/press_fit.hpp"
@@ -26,8 +27,14 @@ struct InverseSettings : PressFitSettings {
 /// fit_presses() with the finite element model of the body. Profiles cost one to three evaluations
 /// an end where one constant is sought, up to some twenty where there are more; ends are found to a
 /// hundredth of their distance.
-/// @throws Error(Configuration) for curves of another tool, sites that are not of the body, no
-///   measured normal path, constants of unknown regions; when the model fails at the start.
+/// Curves of one tool are those of the tool of the campaign. Several curves, of several tools, are
+/// each pressed by their own: a small sphere shows how a law stiffens, a large one how stiff it is
+/// at rest.
+/// @throws Error(Configuration) for curves of another tool or shape, sites that are not of the
+/// body, no measured normal path, constants of unknown regions; when the model fails at
+///   the start.
+PressFit calibrate_inverse(const Body& body, std::span<const Curves> measured,
+                           const InverseSettings& settings);
 PressFit calibrate_inverse(const Body& body, const Curves& measured,
                            const InverseSettings& settings);
 

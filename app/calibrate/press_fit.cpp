@@ -24,6 +24,7 @@ constexpr double kPreciseEnough = 0.1, kInDoubt = 0.95;
 
 /// One measured curve at the depths, or the travels of a drag, that are compared.
 struct Target {
+  std::size_t set = 0;  ///< of the measured curves
   std::int32_t vertex = -1;
   std::size_t site = 0;  ///< among those that are solved
   std::size_t plan = 0;  ///< of a lateral path, among those of its site
@@ -59,24 +60,26 @@ Target target_of(const SiteCurves& site, const CurvePath& path, const std::vecto
   return target;
 }
 
-std::string shift_name(const Target& target) {
+/// @param sets  their number: with several, the name says which.
+std::string shift_name(const Target& target, std::size_t sets) {
+  const std::string of_set = sets > 1 ? fmt::format(", curves {}", target.set + 1) : "";
   if (target.kind == PathKind::Normal) {
-    return fmt::format("contact shift of site {}", target.vertex);
+    return fmt::format("contact shift of site {}{}", target.vertex, of_set);
   }
-  return fmt::format("contact shift of the drag at {} of site {}",
-                     length_text(target.lateral_depth), target.vertex);
+  return fmt::format("contact shift of the drag at {} of site {}{}",
+                     length_text(target.lateral_depth), target.vertex, of_set);
 }
 
 class Fitter {
  public:
-  Fitter(const Curves& measured, PressModel& model, const PressFitSettings& settings)
+  Fitter(std::span<const Curves> measured, PressModel& model, const PressFitSettings& settings)
       : model_(model), settings_(settings) {
-    take_targets(measured);
+    for (const Curves& curves : measured) take_targets(curves);
     known_ = std::all_of(targets_.begin(), targets_.end(), [](const Target& t) {
       return std::all_of(t.uncertainty.begin(), t.uncertainty.end(),
                          [](double u) { return std::isfinite(u) && u > 0; });
     });
-    constants_ = model_.constants(plan_);
+    constants_ = model_.constants(plans_.front());
   }
 
   PressFit run(const std::string& where) {
@@ -100,7 +103,7 @@ class Fitter {
       if (!known_ || !(target.contact_uncertainty > 0)) continue;
       target.shift = static_cast<int>(problem.constants.size());
       problem.constants.push_back(
-          {shift_name(target), "m", 0, -kInfinity, kInfinity, /*may_vanish=*/true});
+          {shift_name(target, plans_.size()), "m", 0, -kInfinity, kInfinity, /*may_vanish=*/true});
       ++problem.residuals;
     }
     for (const Target& target : targets_) {
@@ -122,7 +125,7 @@ class Fitter {
 
   calibrate::Calibration best_fit(const calibrate::LeastSquares& problem,
                                   const std::string& where) {
-    std::vector<std::vector<double>> starts = model_.starts(plan_);
+    std::vector<std::vector<double>> starts = model_.starts(plans_.front());
     if (starts.empty()) return calibrate::minimise(problem, where);
     for (std::vector<double>& start : starts) start.resize(problem.constants.size(), 0);
     return calibrate::minimise(problem, starts, where);
@@ -130,7 +133,7 @@ class Fitter {
 
   /// The constants whose profiles are wanted, see Profiles.
   std::vector<std::size_t> profiled(const calibrate::Calibration& calibration) const {
-    const std::size_t wanted_of = model_.profiled(plan_);
+    const std::size_t wanted_of = model_.profiled(plans_.front());
     std::vector<std::size_t> of;
     for (std::size_t i = 0; i < wanted_of; ++i) {
       const calibrate::Estimate& e = calibration.estimates[i];
@@ -154,17 +157,19 @@ class Fitter {
         }
       }
     }
+    PressPlan& plan = plans_.emplace_back();
+    plan.set = plans_.size() - 1;
     for (int i = 1; i <= settings_.depths; ++i)
-      plan_.depths.push_back(deepest * i / settings_.depths);
-    for (const SiteCurves& site : measured.sites) take_paths(site);
-    if (targets_.empty()) {
+      plan.depths.push_back(deepest * i / settings_.depths);
+    for (const SiteCurves& site : measured.sites) take_paths(site, plan);
+    if (plan.vertices.empty()) {
       refuse("measured curves", "they hold no normal path",
              "import presses along the inward "
              "direction");
     }
   }
 
-  void take_paths(const SiteCurves& site) {
+  void take_paths(const SiteCurves& site, PressPlan& plan) {
     std::vector<fem::LateralPlan> plans;
     std::vector<Target> targets;
     bool has_normal = false;
@@ -172,9 +177,10 @@ class Fitter {
       if (path.samples.size() < 3) continue;
       const bool normal = path.kind == PathKind::Normal;
       if (normal ? has_normal : !is_measured_drag(path)) continue;
-      Target target = target_of(site, path, normal ? plan_.depths : travels_of(path));
+      Target target = target_of(site, path, normal ? plan.depths : travels_of(path));
       if (target.depth.empty()) continue;
-      target.site = plan_.vertices.size();
+      target.set = plan.set;
+      target.site = plan.vertices.size();
       target.plan = plans.size();
       if (!normal) plans.push_back({path.lateral_depth, path.direction, target.depth});
       has_normal = has_normal || normal;
@@ -182,8 +188,8 @@ class Fitter {
     }
     // A drag alone has no normal curve to hold its depth against.
     if (!has_normal) return;
-    plan_.vertices.push_back(site.vertex);
-    plan_.lateral.push_back(std::move(plans));
+    plan.vertices.push_back(site.vertex);
+    plan.lateral.push_back(std::move(plans));
     for (Target& target : targets) targets_.push_back(std::move(target));
   }
 
@@ -202,7 +208,7 @@ class Fitter {
   }
 
   const std::vector<fem::ForceSensitivity>& model_of(const Target& target) const {
-    const fem::SiteSensitivity& site = sites_[target.site];
+    const fem::SiteSensitivity& site = sites_[target.set][target.site];
     return target.kind == PathKind::Normal ? site.samples : site.lateral[target.plan];
   }
 
@@ -245,15 +251,18 @@ class Fitter {
     for (std::size_t i = 0; i < at.size(); ++i)
       line += fmt::format(" {} = {:.6g}", constants_[i].name, at[i]);
     std::string refusal;
-    usable_ = model_.forces(plan_, at, sites_, refusal);
-    if (!usable_) {
+    sites_.resize(plans_.size());
+    for (const PressPlan& plan : plans_) {
+      usable_ = model_.forces(plan, at, sites_[plan.set], refusal);
+      if (usable_) continue;
       if (settings_.log) settings_.log(line + ", " + refusal);
       return false;
     }
     for (const Target& target : targets_) {
       if (model_of(target).size() >= target.depth.size()) continue;
       usable_ = false;
-      line += fmt::format(", failed at site {}: {}", target.vertex, sites_[target.site].reason);
+      line += fmt::format(", failed at site {}: {}", target.vertex,
+                          sites_[target.set][target.site].reason);
     }
     if (settings_.log) settings_.log(line);
     if (usable_ && targets_.front().slope.empty()) freeze_slopes();
@@ -312,6 +321,7 @@ class Fitter {
     for (const Target& target : targets_) {
       const std::vector<fem::ForceSensitivity>& model = model_of(target);
       FittedPath path;
+      path.set = target.set;
       path.vertex = target.vertex;
       path.kind = target.kind;
       path.lateral_depth = target.lateral_depth;
@@ -338,27 +348,27 @@ class Fitter {
 
   PressModel& model_;
   const PressFitSettings& settings_;
-  PressPlan plan_;
+  std::vector<PressPlan> plans_;                ///< of each set
   std::vector<calibrate::Constant> constants_;  ///< of the model
   std::vector<Target> targets_;
   bool known_ = false;
   struct Evaluation {
     std::vector<double> at;
     bool usable = false;
-    std::vector<fem::SiteSensitivity> sites;
+    std::vector<std::vector<fem::SiteSensitivity>> sites;
   };
 
   std::vector<double> at_;
   bool usable_ = false;
-  std::vector<fem::SiteSensitivity> sites_;
+  std::vector<std::vector<fem::SiteSensitivity>> sites_;  ///< of each set
   Evaluation before_;
   int evaluations_ = 0;
 };
 
 }  // namespace
 
-PressFit fit_presses(const Curves& measured, PressModel& model, const PressFitSettings& settings,
-                     const std::string& where) {
+PressFit fit_presses(std::span<const Curves> measured, PressModel& model,
+                     const PressFitSettings& settings, const std::string& where) {
   return Fitter(measured, model, settings).run(where);
 }
 

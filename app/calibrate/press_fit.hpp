@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -27,8 +28,9 @@ struct PressFitSettings {
   std::function<void(const std::string& line)> log;  ///< one line an evaluation; may be empty
 };
 
-/// What a model is asked for.
+/// What a model is asked for: the presses of one of the measured curves, by one tool.
 struct PressPlan {
+  std::size_t set = 0;                                 ///< which of them
   std::vector<std::int32_t> vertices;                  ///< of the sites
   std::vector<double> depths;                          ///< m, ascending
   std::vector<std::vector<fem::LateralPlan>> lateral;  ///< of each site
@@ -39,7 +41,8 @@ class PressModel {
  public:
   virtual ~PressModel() = default;
 
-  /// The constants with start and bounds. Profiles are made of the first profiled() at most.
+  /// The constants with start and bounds, of all sets alike. Profiles are made of the first
+  /// profiled() at most. `plan` is that of the first set.
   virtual std::vector<calibrate::Constant> constants(const PressPlan& plan) const = 0;
   virtual std::size_t profiled(const PressPlan& plan) const = 0;
   /// More starts beside that of constants(), each a full set; may be empty.
@@ -53,6 +56,7 @@ class PressModel {
 
 /// One path as it was fitted.
 struct FittedPath {
+  std::size_t set = 0;  ///< of the measured curves
   std::int32_t vertex = -1;
   PathKind kind = PathKind::Normal;
   double lateral_depth = 0;                                  ///< m, of a lateral path
@@ -69,7 +73,8 @@ struct PressFit {
   int profile_evaluations = 0;  ///< and for the profiles
 };
 
-/// Measured drags are compared with lateral paths of the model without slip, at their depth;
+/// Several sets of curves, of several tools, have the same constants: their depths are those of
+/// each. Measured drags are compared with lateral paths of the model without slip, at their depth;
 /// lateral paths that were made from the normal one are no measurement and left out.
 /// Where a measured path states the uncertainty of its contact point, the shift of that point is
 /// sought as well, weighted by the stated uncertainty: an error of the contact point acts on all
@@ -79,8 +84,10 @@ struct PressFit {
 /// from that; otherwise the scatter is estimated from the residuals. The samples of a path follow
 /// each other: where they are missed alike the intervals count it (LeastSquares::series).
 /// @param where  names what is calibrated, for messages.
-/// @throws Error(Configuration) without a measured normal path; when the model fails at the start.
-PressFit fit_presses(const Curves& measured, PressModel& model, const PressFitSettings& settings,
-                     const std::string& where);
+/// @throws Error(Configuration) for a set without a measured normal path; when the model fails at
+/// the
+///   start.
+PressFit fit_presses(std::span<const Curves> measured, PressModel& model,
+                     const PressFitSettings& settings, const std::string& where);
 
 }  // namespace palpate::app

@@ -138,7 +138,7 @@ SlabFit fit_slab(const Curves& measured, const SlabTable& table, const PressFitS
   own.profiles = Profiles::All;
   own.profile = {.of = {}, .closeness = 1e-3, .between = 4, .at_bounds = true};
   SlabFit result;
-  result.fit = fit_presses(measured, model, own, "calibration of a slab");
+  result.fit = fit_presses({&measured, 1}, model, own, "calibration of a slab");
   const calibrate::Calibration& found = result.fit.calibration;
   const SlabTableSettings& s = table.settings();
   result.stiffening = identified(found.estimates[kStiffening], s.law.low, s.law.high);

@@ -23,6 +23,7 @@ calibrate::Mode mode_of(const std::string& text) {
   if (text == "uniaxial") return calibrate::Mode::Uniaxial;
   if (text == "equibiaxial") return calibrate::Mode::Equibiaxial;
   if (text == "pure shear") return calibrate::Mode::PureShear;
+  if (text == "confined compression") return calibrate::Mode::Confined;
   return calibrate::Mode::SimpleShear;
 }
 

@@ -32,6 +32,7 @@ struct TestSection {
   SpecimenSize size;
   double weight = 1;
   bool offset = false;
+  bool clamped = false;  ///< by glued clamps or plates
 };
 
 /// The samples of a test, and how they follow from the columns of its record.

@@ -33,10 +33,10 @@ constexpr Vec3 kDown{0, 0, -1};
 
 class Importer {
  public:
-  Importer(const fs::path& sidecar_file, const fs::path& body_file)
+  Importer(const fs::path& sidecar_file, const fs::path& body_file, const std::string& tool)
       : sidecar_file_(sidecar_file),
         body_file_(body_file),
-        reader_(sidecar_file),
+        reader_(sidecar_file, tool),
         s_(reader_.sidecar()),
         body_(body_file.empty() ? std::nullopt : std::optional(read_body(body_file))),
         checks_(s_, body_) {
@@ -253,6 +253,7 @@ class Importer {
         reach = std::max(reach, path.samples.back().displacement);
       }
       checks_.check_force(site);
+      checks_.check_samples(site);
       curves.sites.push_back(std::move(site));
     }
     curves.provenance = provenance();
@@ -301,14 +302,14 @@ class Importer {
 }  // namespace
 
 Import import_measurement(const fs::path& sidecar_file, const fs::path& body_file,
-                          const std::vector<fs::path>& records) {
-  Importer importer(sidecar_file, body_file);
+                          const std::vector<fs::path>& records, const std::string& tool) {
+  Importer importer(sidecar_file, body_file, tool);
   if (!records.empty()) importer.restrict_to(records);
   return importer.run();
 }
 
 Histories import_histories(const fs::path& sidecar_file) {
-  return Importer(sidecar_file, {}).histories(false);
+  return Importer(sidecar_file, {}, {}).histories(false);
 }
 
 }  // namespace palpate::app

@@ -30,10 +30,12 @@ struct Import {
 /// A record that cannot be used is left out and listed in the account, as long as another can.
 /// @param records  restricts the sidecar to these; empty: all. Those that it does not name are
 ///   refused.
+/// @param tool  whose records are taken, see read_sidecar.
 /// @throws Error(Configuration) naming record and line, where nothing can be used.
 Import import_measurement(const std::filesystem::path& sidecar_file,
                           const std::filesystem::path& body_file,
-                          const std::vector<std::filesystem::path>& records = {});
+                          const std::vector<std::filesystem::path>& records = {},
+                          const std::string& tool = {});
 
 /// The [[history]] records of a sidecar alone, without their sites: no body is needed.
 /// @throws Error(Configuration) as import_measurement.

@@ -29,7 +29,7 @@ double length(const std::string& text, const std::string& where) {
 
 bool varies(const PressFileSection& s) {
   return !s.vertex_from.empty() || !s.site_from.empty() || !s.cycle_from.empty() ||
-         !s.contact_from.empty();
+         !s.contact_from.empty() || !s.tool_from.empty();
 }
 
 /// The section of one file.
@@ -44,6 +44,7 @@ PressFileSection filled(PressFileSection s, const std::string& file, const Named
   }
   if (!s.cycle_from.empty()) s.cycle = whole_number(filled_in(s.cycle_from, values, where), where);
   if (!s.contact_from.empty()) s.contact = length(filled_in(s.contact_from, values, where), where);
+  if (!s.tool_from.empty()) s.tool = filled_in(s.tool_from, values, where);
   if (!s.site_from.empty()) {
     if (s.site_from.size() != 3)
       refuse(where, "a point has three coordinates",

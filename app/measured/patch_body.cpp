@@ -11,8 +11,8 @@ bool makes_body(const Sidecar& sidecar) {
   return !sidecar.batches.empty() && sidecar.presses.empty() && sidecar.robot_logs.empty();
 }
 
-PatchBody patch_body(const std::filesystem::path& sidecar_file) {
-  const RecordReader reader(sidecar_file);
+PatchBody patch_body(const std::filesystem::path& sidecar_file, const std::string& tool) {
+  const RecordReader reader(sidecar_file, tool);
   if (!makes_body(reader.sidecar())) {
     refuse(sidecar_file.string(), "a surface is made of the records of [[batch]] alone",
            "give presses and logs of single sites a body with --body");

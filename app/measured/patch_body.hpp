@@ -25,6 +25,6 @@ bool makes_body(const Sidecar& sidecar);
 /// The response surface through the contact points of all batches; the press directions are the
 /// measured normals. @throws Error as mesher::make_patch and measured::split_batch; for a sidecar
 /// with presses or logs that are no batch.
-PatchBody patch_body(const std::filesystem::path& sidecar_file);
+PatchBody patch_body(const std::filesystem::path& sidecar_file, const std::string& tool = {});
 
 }  // namespace palpate::app

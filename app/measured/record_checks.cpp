@@ -41,7 +41,7 @@ double tolerance_on(const Body& body, double tool_radius) {
 }
 
 RecordChecks::RecordChecks(const Sidecar& sidecar, const std::optional<Body>& body)
-    : tool_radius_(sidecar.tool.radius) {
+    : tool_radius_(sidecar.tool.radius), path_(sidecar.path) {
   if (!body) return;
   extent_ = extent_of(*body);
   if (tool_radius_ <= *extent_) return;
@@ -106,6 +106,15 @@ void RecordChecks::check_force(const SiteCurves& site) {
     warn(fmt::format("site {}: the force is uncertain by more than half of itself", site.vertex));
     return;
   }
+}
+
+void RecordChecks::check_samples(const SiteCurves& site) {
+  const std::size_t samples = site.paths.front().samples.size() - 1;  // less the touch
+  if (path_.as_recorded || samples >= static_cast<std::size_t>(path_.samples)) return;
+  warn(
+      fmt::format("site {}: its curve has {} samples instead of {}: its records are coarse, or "
+                  "begin in contact",
+                  site.vertex, samples, path_.samples));
 }
 
 }  // namespace palpate::app

@@ -34,13 +34,16 @@ class RecordChecks {
   void check_lateral(const std::string& where, const measured::BatchSite& site);
   /// What is known to within half of itself is hardly measured.
   void check_force(const SiteCurves& site);
+  /// A curve of coarse records, or of one that begins in contact, has fewer samples than asked for.
+  void check_samples(const SiteCurves& site);
 
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
   void warn(const std::string& text) { warnings_.push_back(text); }
 
-  double tool_radius_;            ///< m
+  double tool_radius_;  ///< m
+  PathSection path_;
   std::optional<double> extent_;  ///< m, of the body
   std::vector<std::string> warnings_;
 };

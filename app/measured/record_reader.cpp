@@ -29,8 +29,8 @@ double contact_of(const Section& section, const Sidecar& sidecar) {
 
 }  // namespace
 
-RecordReader::RecordReader(const fs::path& sidecar_file)
-    : sidecar_file_(sidecar_file), sidecar_(read_sidecar(sidecar_file)) {
+RecordReader::RecordReader(const fs::path& sidecar_file, const std::string& tool)
+    : sidecar_file_(sidecar_file), sidecar_(read_sidecar(sidecar_file, tool)) {
   for (const auto& column : sidecar_.declared) declared_.push_back({column.name, column.unit});
   const bool has_frame = !sidecar_.robot_logs.empty() || !sidecar_.batches.empty();
   if (!has_frame || sidecar_.placement.frame == "body") return;

@@ -20,7 +20,8 @@ namespace palpate::app {
 class RecordReader {
  public:
   /// @throws Error as read_sidecar and measured::register_fiducials.
-  explicit RecordReader(const std::filesystem::path& sidecar_file);
+  /// @param tool  whose records are read, see read_sidecar.
+  explicit RecordReader(const std::filesystem::path& sidecar_file, const std::string& tool = {});
 
   const Sidecar& sidecar() const { return sidecar_; }
   const measured::Registration& registration() const { return registration_; }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 
 #include "app/case/describe/series.hpp"
@@ -20,6 +21,7 @@ constexpr Range kCount{.low = 2, .high = 1000};
 
 template <class V>
 void describe(V& v, MeasuredToolSection& s) {
+  v.text(s.name, {"name", "by which records refer to it, where there are several tools"});
   v.text(s.shape, {"shape", "shape of the rigid tool"}, {"sphere", "plates"});
   if (!v.when("shape", s.shape, "sphere")) return;
   v.quantity(s.radius, Dimension::Length, {"radius", "radius of the tool", kRequired, kPositive});
@@ -154,6 +156,8 @@ void describe(V& v, PressFileSection& s) {
   v.texts(s.site_from, {"site_from", "point of each file: [\"{x} mm\", \"{y} mm\", \"20 mm\"]"});
   v.text(s.cycle_from, {"cycle_from", "cycle of each file: \"{cycle}\""});
   v.text(s.contact_from, {"contact_from", "contact of each file: \"{contact} mm\""});
+  v.text(s.tool, {"tool", "name of the tool, where there are several"});
+  v.text(s.tool_from, {"tool_from", "name of the tool of each file: \"{tool}\""});
   v.integer(s.vertex, {"vertex", "response vertex of the body", kOptional, kNotNegative});
   v.point(s.site, Dimension::Length, {"site", "point that was pressed, in the frame of the body"});
   describe_table_choice(v, s.choice);
@@ -166,6 +170,7 @@ template <class V>
 void describe(V& v, RobotFileSection& s) {
   v.text(s.file, {"file", "log, relative to the sidecar"});
   v.text(s.files, {"files", "many logs, instead: \"log-*.csv\""});
+  v.text(s.tool, {"tool", "name of the tool, where there are several"});
   describe_table_choice(v, s.choice);
   v.integer(s.cycle, {"cycle", "which press of the log; -1 is the last"});
 }
@@ -181,6 +186,7 @@ void describe(V& v, PhaseSection& s) {
 template <class V>
 void describe(V& v, HistoryFileSection& s) {
   v.text(s.file, {"file", "record over time, relative to the sidecar", kRequired});
+  v.text(s.tool, {"tool", "name of the tool, where there are several"});
   v.integer(s.vertex, {"vertex", "response vertex of the body", kOptional, kNotNegative});
   v.point(s.site, Dimension::Length, {"site", "point that was pressed, in the frame of the body"});
   describe_table_choice(v, s.choice);
@@ -195,6 +201,7 @@ void describe(V& v, HistoryFileSection& s) {
 template <class V>
 void describe(V& v, BatchFileSection& s) {
   v.text(s.file, {"file", "log of many sites, relative to the sidecar", kRequired});
+  v.text(s.tool, {"tool", "name of the tool, where there are several"});
   describe_table_choice(v, s.choice);
   v.texts(s.leave_out, {"leave_out", "numbers of sites that are not used"});
 }
@@ -208,7 +215,10 @@ void describe(V& v, Sidecar& s) {
   v.text(s.instrument, {"instrument", "machine and load cell"});
   v.text(s.date, {"date", "of the measurement"});
   v.text(s.description, {"description", "anything else"});
-  v.section("tool", s.tool, kRequired, "");
+  if (s.lists_tools)
+    v.sections("tool", s.tools, kRequired, "");
+  else
+    v.section("tool", s.tools.emplace_back(), kRequired, "");
   v.section("machine", s.machine, kOptional, "");
   v.section("columns", s.columns, kRequired, "");
   v.sections("column", s.declared, kOptional, "");
@@ -345,6 +355,86 @@ void check_tool(const Sidecar& s, const SourceMap& sources) {
          "give the records as [[history]]");
 }
 
+const MeasuredToolSection* tool_named(const Sidecar& s, const std::string& name) {
+  for (const MeasuredToolSection& tool : s.tools)
+    if (tool.name == name) return &tool;
+  return nullptr;
+}
+
+std::string names_of_tools(const Sidecar& s) {
+  std::string names;
+  for (const MeasuredToolSection& tool : s.tools)
+    names += (names.empty() ? "'" : ", '") + tool.name + "'";
+  return names;
+}
+
+/// Names are those of folders.
+void check_tool_names(const Sidecar& s, const SourceMap& sources) {
+  if (s.tools.size() < 2) return;
+  for (std::size_t i = 0; i < s.tools.size(); ++i) {
+    const std::string where = sources.where(fmt::format("tool[{}].", i)), &name = s.tools[i].name;
+    if (name.empty())
+      refuse(where, "key 'tool.name' is missing",
+             "name each of several tools, and the tool of each record: tool = \"NAME\"");
+    const bool plain = std::all_of(name.begin(), name.end(), [](unsigned char c) {
+      return std::isalnum(c) != 0 || c == '-' || c == '_';
+    });
+    if (!plain)
+      refuse(where, "the tool has the name '" + name + "', and import makes a folder of it",
+             "use letters, digits, '-' and '_'");
+    if (tool_named(s, name) != &s.tools[i])
+      refuse(where, "two tools have the name '" + name + "'", "give each a name of its own");
+  }
+}
+
+/// Every record has a tool that the sidecar describes, and every tool has a record.
+template <class Section>
+void check_record_tools(const Sidecar& s, const std::vector<Section>& records,
+                        const std::string& kind, const SourceMap& sources,
+                        std::vector<std::string>& used) {
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const Section& record = records[i];
+    const std::string where = sources.where(kind) + " (" + record.file + ")";
+    if (record.tool.empty() && s.tools.size() > 1)
+      refuse(where, "it does not say which of several tools pressed",
+             "add tool = \"NAME\", of " + names_of_tools(s));
+    if (!record.tool.empty() && tool_named(s, record.tool) == nullptr)
+      refuse(where, "no [[tool]] has the name '" + record.tool + "'",
+             "the tools are " + names_of_tools(s));
+    used.push_back(record.tool);
+  }
+}
+
+void check_record_tools(const Sidecar& s, const SourceMap& sources) {
+  std::vector<std::string> used;
+  check_record_tools(s, s.presses, "press[0].", sources, used);
+  check_record_tools(s, s.robot_logs, "robot[0].", sources, used);
+  check_record_tools(s, s.histories, "history[0].", sources, used);
+  check_record_tools(s, s.batches, "batch[0].", sources, used);
+  for (std::size_t i = 0; i < s.tools.size() && s.tools.size() > 1; ++i)
+    if (std::find(used.begin(), used.end(), s.tools[i].name) == used.end())
+      refuse(sources.where(fmt::format("tool[{}].", i)),
+             "no record is of the tool '" + s.tools[i].name + "'", "leave it out");
+}
+
+/// Leaves the records of one tool.
+void choose_tool(Sidecar& s, const std::string& name, const std::string& where) {
+  if (s.tools.size() > 1 && name.empty())
+    refuse(where, "its records are of several tools: " + names_of_tools(s),
+           "`palpate import` writes a folder for each: take the artifacts of one of them");
+  const MeasuredToolSection* tool =
+      s.tools.size() > 1 || !name.empty() ? tool_named(s, name) : &s.tools.front();
+  if (tool == nullptr)
+    refuse(where, "no [[tool]] has the name '" + name + "'", "the tools are " + names_of_tools(s));
+  s.tool = *tool;
+  if (s.tools.size() < 2) return;
+  const auto is_of_another = [&](const auto& record) { return record.tool != name; };
+  std::erase_if(s.presses, is_of_another);
+  std::erase_if(s.robot_logs, is_of_another);
+  std::erase_if(s.histories, is_of_another);
+  std::erase_if(s.batches, is_of_another);
+}
+
 /// The first thing that newcomers give is the record itself.
 void check_is_no_record(const std::filesystem::path& path) {
   constexpr std::array<std::string_view, 5> records{".csv", ".tsv", ".txt", ".dat", ".raw"};
@@ -354,13 +444,12 @@ void check_is_no_record(const std::filesystem::path& path) {
          "(docs/measured.md), and give that file");
 }
 
-}  // namespace
-
-Sidecar read_sidecar(const std::filesystem::path& path) {
+/// All records of the file, with their tools.
+Sidecar read_whole(const std::filesystem::path& path, SourceMap& sources) {
   check_is_no_record(path);
   const toml::table table = read_toml(path, "the sidecar");
-  SourceMap sources(path.string());
   Sidecar sidecar;
+  sidecar.lists_tools = table["tool"].is_array();
   TableReader reader(table, "the sidecar", "", sources);
   describe(reader, sidecar);
   reader.finish();
@@ -374,6 +463,17 @@ Sidecar read_sidecar(const std::filesystem::path& path) {
     refuse(sources.where("contact.method"), "key 'contact.threshold' is missing",
            "give the force that is taken for contact");
   }
+  check_tool_names(sidecar, sources);
+  check_record_tools(sidecar, sources);
+  return sidecar;
+}
+
+}  // namespace
+
+Sidecar read_sidecar(const std::filesystem::path& path, const std::string& tool) {
+  SourceMap sources(path.string());
+  Sidecar sidecar = read_whole(path, sources);
+  choose_tool(sidecar, tool, path.string());
   check_tool(sidecar, sources);
   check_contact(sidecar, sources);
   check_columns(sidecar, sources);
@@ -381,8 +481,18 @@ Sidecar read_sidecar(const std::filesystem::path& path) {
   return sidecar;
 }
 
-std::vector<std::filesystem::path> measured_files(const std::filesystem::path& sidecar_file) {
-  const Sidecar sidecar = read_sidecar(sidecar_file);
+std::vector<std::string> tools_of_sidecar(const std::filesystem::path& path) {
+  SourceMap sources(path.string());
+  std::vector<std::string> names;
+  const Sidecar sidecar = read_whole(path, sources);
+  for (const MeasuredToolSection& tool : sidecar.tools)
+    names.push_back(sidecar.tools.size() > 1 ? tool.name : "");
+  return names;
+}
+
+std::vector<std::filesystem::path> measured_files(const std::filesystem::path& sidecar_file,
+                                                  const std::string& tool) {
+  const Sidecar sidecar = read_sidecar(sidecar_file, tool);
   std::vector<std::filesystem::path> files{sidecar_file};
   const auto add = [&](const auto& sections) {
     for (const auto& section : sections) {

@@ -18,6 +18,7 @@ namespace palpate::app {
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
 struct MeasuredToolSection {
+  std::string name;               ///< by which records refer to it, where there are several
   std::string shape = "sphere";   ///< or "plates": histories of a specimen between plates
   double radius = 0;              ///< m
   std::string friction;           ///< "frictionless" or "no-slip"
@@ -87,6 +88,8 @@ struct PressFileSection {
   /// Texts with placeholders, of the pattern or the list, instead of the values below.
   std::string vertex_from, cycle_from, contact_from;
   std::vector<std::string> site_from;
+  std::string tool;       ///< name; empty where there is one tool
+  std::string tool_from;  ///< text with placeholders, instead
   measured::TableChoice choice;
   int vertex = -1;
   Vec3 site{kNotGiven, kNotGiven, kNotGiven};  ///< m, in the frame of the body
@@ -97,6 +100,7 @@ struct PressFileSection {
 
 struct RobotFileSection {
   std::string file;
+  std::string tool;   ///< name; empty where there is one tool
   std::string files;  ///< pattern, instead
   measured::TableChoice choice;
   int cycle = 1;
@@ -109,6 +113,7 @@ struct PhaseSection {
 
 struct HistoryFileSection {
   std::string file;
+  std::string tool;  ///< name; empty where there is one tool
   int vertex = -1;
   Vec3 site{kNotGiven, kNotGiven, kNotGiven};  ///< m, in the frame of the body
   measured::TableChoice choice;
@@ -119,13 +124,16 @@ struct HistoryFileSection {
 
 struct BatchFileSection {
   std::string file;
+  std::string tool;  ///< name; empty where there is one tool
   measured::TableChoice choice;
   std::vector<std::string> leave_out;  ///< numbers of sites
 };
 
 struct Sidecar {
   std::string name, specimen, source, licence, instrument, date, description;
-  MeasuredToolSection tool;
+  bool lists_tools = false;                ///< as [[tool]], not as [tool]
+  std::vector<MeasuredToolSection> tools;  ///< of the file
+  MeasuredToolSection tool;                ///< of the records that are here
   MachineSection machine;
   ColumnsSection columns;
   std::vector<DeclaredColumnSection> declared;
@@ -140,10 +148,16 @@ struct Sidecar {
   std::vector<BatchFileSection> batches;
 };
 
-/// @throws Error(Configuration) with file and line, as read_case.
-Sidecar read_sidecar(const std::filesystem::path& path);
+/// The sidecar with the records of one tool: curves of different tools are never mixed.
+/// @param tool  its name; empty where there is one.
+/// @throws Error(Configuration) with file and line, as read_case; for several tools without a name.
+Sidecar read_sidecar(const std::filesystem::path& path, const std::string& tool = {});
 
-/// The sidecar and the records that it names.
-std::vector<std::filesystem::path> measured_files(const std::filesystem::path& sidecar_file);
+/// The names of the tools of a sidecar, in its order; one empty name where there is one tool.
+std::vector<std::string> tools_of_sidecar(const std::filesystem::path& path);
+
+/// The sidecar and the records that it names, of one tool.
+std::vector<std::filesystem::path> measured_files(const std::filesystem::path& sidecar_file,
+                                                  const std::string& tool = {});
 
 }  // namespace palpate::app

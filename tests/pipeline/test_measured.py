@@ -190,6 +190,7 @@ class Measured(unittest.TestCase):
                     text.replace("[path]", 'force_unit = "kN"\n\n[path]'))
         self.refuse(["needs a body"], text, body=False)
         self.refuse(["unknown key 'complience'"], text.replace("compliance =", "complience ="))
+        (Path(self.folder.name) / "other.toml").write_text(text, encoding="utf-8")
         self.refuse(["several sidecars lie beside it", "bad.toml"], "Time,Load\n0,0\n", name="press.csv")
         (Path(self.folder.name) / "without-sidecar").mkdir()
         self.refuse(["this is a record", "TOML"], "Time,Load\n0,0\n", name="without-sidecar/press.csv")
@@ -270,9 +271,44 @@ class Measured(unittest.TestCase):
                 found = json.loads((out / "calibration.json").read_text())
                 for test in found["tests"]:
                     self.assertGreater(test["r2"], 0.9)
-                if fit.parent.name == "clot-2021":
+                rows = (out / "correlations.csv").read_text().splitlines()
+                self.assertEqual(len(rows), 1 + len(found["constants"]))
+                if fit.parent.name == "clot-2021" and fit.stem == "ogden":
                     self.assertAlmostEqual(found["constants"][0]["value"], 2378.17, delta=0.05)
                     self.assertAlmostEqual(found["constants"][1]["value"], 4.28007, delta=5e-5)
+                if fit.stem == "clamped":  # the authors' own fit with finite elements, by FEBio
+                    self.assertAlmostEqual(found["constants"][0]["value"], 2248.8, delta=10)
+                    self.assertAlmostEqual(found["constants"][1]["value"], 4.17545, delta=0.01)
+
+    def test_records_of_two_tools_are_apart_and_calibrated_together(self):
+        folder = Path(self.folder.name) / "two-tools"
+        folder.mkdir()
+        # Hertz on the half-space: forces of spheres of 4 mm and 6 mm at one site.
+        for tool, radius in (("small", 4), ("large", 6)):
+            rows = []
+            for i in range(-20, 151):
+                x = 0.01 * i  # mm
+                force = 16 / 9 * 3e-3 * radius ** 0.5 * max(x, 0) ** 1.5  # N at 3 kPa
+                rows.append(f"{0.05 * (i + 20):.2f},{x:.2f},{force + 1e-6 * ((7 * i) % 5 - 2):.9f}")
+            (folder / f"{tool}.csv").write_text("t (s),x (mm),f (N)\n" + "\n".join(rows) + "\n")
+        (folder / "both.toml").write_text(
+            'name = "both"\nspecimen = "gel"\nsource = "synthetic"\nlicence = "CC0-1.0"\n'
+            '[[tool]]\nname = "small"\nradius = "4 mm"\nfriction = "frictionless"\n'
+            '[[tool]]\nname = "large"\nradius = "6 mm"\nfriction = "frictionless"\n'
+            '[columns]\ntime = "t"\ndisplacement = "x"\nforce = "f"\n'
+            '[[press]]\nfiles = "{tool}.csv"\ntool_from = "{tool}"\nsite = ["20 mm", "20 mm", "20 mm"]\n')
+        out = folder / "out"
+        printed = self.ok("import", folder / "both.toml", "--out", out, "--body", self.out / "body.h5")
+        self.assertIn("tool 'small'", printed)
+        curves = [out / "small/curves.h5", out / "large/curves.h5"]
+        self.assertFalse((out / "curves.h5").exists())
+        alike = command.palpate("compare", *curves, "--out", folder)
+        self.assertEqual(alike.returncode, 2, alike.stdout)
+        self.assertIn("radius", alike.stderr)
+        printed = self.ok("calibrate", "body", self.case, "--measured", *curves, "--young", "gel", "--out", self.out)
+        self.assertIn("curves 2: 1 sites under a sphere of 6.00 mm radius", printed)
+        found = json.loads((self.out / "calibration.json").read_text())
+        self.assertEqual([path["curves"] for path in found["paths"]], [1, 2])
 
 
 if __name__ == "__main__":

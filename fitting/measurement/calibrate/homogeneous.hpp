@@ -3,6 +3,8 @@
 // pressure does no work in them, so that the nominal stress per loaded direction is
 //   dW/ds = sum_i tau_i de_i/ds,
 // with the principal Kirchhoff stresses tau_i up to a pressure and the logarithmic strains e_i.
+// Confined compression changes the volume. There the e_i are those of the isochoric part, and the
+// volumetric part is added by the law.
 #pragma once
 
 #include <array>
@@ -14,6 +16,7 @@ enum class Mode {
   Uniaxial,     ///< stretches s, s^-1/2, s^-1/2
   Equibiaxial,  ///< s, s, s^-2
   PureShear,    ///< s, 1, 1/s
+  Confined,     ///< s, 1, 1, in a chamber with smooth walls
   SimpleShear   ///< amount of shear s: principal stretches s/2 + sqrt(1 + s^2/4), 1 and inverse
 };
 
@@ -25,19 +28,23 @@ constexpr const char* mode_name(Mode mode) {
       return "equibiaxial";
     case Mode::PureShear:
       return "pure shear";
+    case Mode::Confined:
+      return "confined compression";
     case Mode::SimpleShear:
       break;
   }
   return "simple shear";
 }
 
-/// e_i over the largest of them, e_1.
+/// e_i over ln s; in simple shear over the largest of them, e_1.
 inline std::array<double, 3> strain_ratios(Mode mode) {
   switch (mode) {
     case Mode::Uniaxial:
       return {1, -0.5, -0.5};
     case Mode::Equibiaxial:
       return {1, 1, -2};
+    case Mode::Confined:
+      return {2.0 / 3, -1.0 / 3, -1.0 / 3};
     case Mode::PureShear:
     case Mode::SimpleShear:
       break;

@@ -169,8 +169,10 @@ void add_predictions(const std::vector<HomogeneousTest>& tests, const Incompress
   for (const HomogeneousTest& test : tests) {
     std::vector<double>& predicted = fit.predicted.emplace_back();
     const double offset = test.offset ? fit.calibration.estimates[next++].value : 0;
-    for (const double s : test.deformation)
-      predicted.push_back(law.stress(c.data(), test.mode, s) + offset);
+    for (std::size_t i = 0; i < test.deformation.size(); ++i)
+      predicted.push_back(law.stress(c.data(), test.mode, test.deformation[i]) *
+                              (test.effect.empty() ? 1 : test.effect[i]) +
+                          offset);
     fit.errors.push_back(error_of(test, predicted));
     fit.stability.push_back(stability_of(law, c, test));
   }

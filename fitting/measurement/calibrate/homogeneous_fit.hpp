@@ -20,6 +20,9 @@ struct HomogeneousTest {
   std::vector<double> uncertainty{};  ///< Pa, standard, of the nominal stress; empty: unknown
   double weight = 1;                  ///< of its residuals, beside that of the weighting
   bool offset = false;  ///< whether a constant stress, an error of the zero, is fitted as well
+  /// What the law's stress is multiplied by, for each sample, where the specimen is not
+  /// homogeneous; empty: it is. Such a test has no offset.
+  std::vector<double> effect{};
 };
 
 enum class Weighting {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/numbers.hpp"
 
 namespace palpate::calibrate {
@@ -16,13 +17,31 @@ namespace {
 constexpr int kMostIterations = 500;
 constexpr double kTolerance = 1e-15;     ///< of the cost: valleys of exponents are flat
 constexpr double kLeastRelative = 0.05;  ///< of the largest stress, under Weighting::Relative
+/// Poisson's ratio from which on a test with free faces passes for incompressible.
+constexpr double kNearlyIncompressible = 0.45;
+
+/// Confined compression has the volume changes of Poisson's ratio, and the other tests have none.
+void check_confined(const std::vector<HomogeneousTest>& tests, double poisson) {
+  const auto confined = std::count_if(tests.begin(), tests.end(),
+                                      [](const auto& t) { return t.mode == Mode::Confined; });
+  if (confined == 0 || confined == std::ssize(tests) || poisson >= kNearlyIncompressible) return;
+  refuse("calibration",
+         "tests with free faces are evaluated as incompressible, and confined compression with "
+         "poisson = " +
+             number_text(poisson),
+         "fit the confined tests alone, or choose a poisson of 0.45 or more");
+}
 
 void check_tests(const std::vector<HomogeneousTest>& tests, const HomogeneousSettings& settings) {
   if (tests.empty()) refuse("calibration", "there are no tests", "give at least one");
+  check_confined(tests, settings.poisson);
   for (const HomogeneousTest& test : tests) {
     if (test.deformation.empty() || test.deformation.size() != test.nominal.size()) {
       refuse(test.name, "deformations and stresses are not equally many", "give pairs");
     }
+    if (!test.effect.empty() && (test.effect.size() != test.nominal.size() || test.offset))
+      refuse(test.name, "an offset is not fitted to a specimen that is not homogeneous",
+             "leave `offset` out");
     if (settings.weighting == Weighting::Uncertainty &&
         test.uncertainty.size() != test.nominal.size()) {
       refuse(test.name, "it states no uncertainty",
@@ -211,9 +230,11 @@ HomogeneousProblem problem_of(const std::vector<HomogeneousTest>& tests,
     const double deviation = deviation_of(test, settings.weighting, mean);
     squares.deviations.insert(squares.deviations.end(), test.nominal.size(), deviation);
     const std::vector<double> factor = factors(test, settings);
-    for (std::size_t i = 0; i < test.nominal.size(); ++i)
-      problem.samples.push_back(
-          {test.mode, test.deformation[i], test.nominal[i], deviation * factor[i], t});
+    for (std::size_t i = 0; i < test.nominal.size(); ++i) {
+      const double effect = test.effect.empty() ? 1 : test.effect[i];
+      problem.samples.push_back({test.mode, test.deformation[i], test.nominal[i] / effect,
+                                 deviation * factor[i] * effect, t});
+    }
     problem.offset.push_back(test.offset);
     if (test.offset)
       squares.constants.push_back(

@@ -59,6 +59,25 @@ fem::PrincipalStresses<C> stresses_of(const fem::LawEntry& entry, const std::vec
   });
 }
 
+/// What Poisson's ratio adds to the nominal stress: dU/ds = kappa/2 (s - 1/s), where the volume
+/// changes by s.
+template <class C>
+C volumetric_stress(const fem::LawEntry& entry, const std::vector<C>& c, double poisson, Mode mode,
+                    double s) {
+  if (mode != Mode::Confined) return C(0);
+  const auto slope = stresses_of(entry, c, poisson, {0, 0, 0}).slope;
+  const C mu = (slope[0][0] - slope[0][1] - slope[1][0] + slope[1][1]) / 4.0;
+  const double bulk_over_shear = 2 * (1 + poisson) / (3 * (1 - 2 * poisson));
+  return mu * (0.5 * bulk_over_shear * (s - 1 / s));
+}
+
+template <class C>
+C stress_of(const fem::LawEntry& entry, const std::vector<C>& c, double poisson, Mode mode,
+            double s) {
+  const auto tau = stresses_of(entry, c, poisson, logarithmic_strains(mode, s)).tau;
+  return nominal_stress(tau, mode, s) + volumetric_stress(entry, c, poisson, mode, s);
+}
+
 }  // namespace
 
 std::vector<std::string_view> homogeneous_laws() {
@@ -80,14 +99,10 @@ std::vector<fem::LawConstant> IncompressibleLaw::constants() const {
 
 double IncompressibleLaw::stress(const double* c, Mode mode, double s, double* slope) const {
   const std::size_t n = entry_->constants.size() - 1;
-  const std::array<double, 3> strain = logarithmic_strains(mode, s);
-  if (slope == nullptr) {
-    const std::vector<double> values(c, c + n);
-    return nominal_stress(stresses_of(*entry_, values, poisson_, strain).tau, mode, s);
-  }
+  if (slope == nullptr) return stress_of(*entry_, std::vector<double>(c, c + n), poisson_, mode, s);
   std::vector<Jet> varied;
   for (std::size_t i = 0; i < n; ++i) varied.emplace_back(c[i], static_cast<int>(i));
-  const Jet P = nominal_stress(stresses_of(*entry_, varied, poisson_, strain).tau, mode, s);
+  const Jet P = stress_of(*entry_, varied, poisson_, mode, s);
   for (std::size_t i = 0; i < n; ++i) slope[i] = P.v[static_cast<Eigen::Index>(i)];
   return P.a;
 }

@@ -14,7 +14,7 @@
 namespace palpate::calibrate {
 
 /// Poisson's ratio of the case that receives the constants, unless another one is given. The tests
-/// are evaluated as incompressible; the ratio is not fitted.
+/// are evaluated as incompressible, but for confined compression; the ratio is not fitted.
 inline constexpr double kCasePoisson = 0.49;
 
 /// Names of the laws that can be calibrated, in the order of the table: all but
@@ -25,8 +25,8 @@ std::vector<std::string_view> homogeneous_laws();
 /// without Poisson's ratio. Every method may be called from several threads.
 class IncompressibleLaw {
  public:
-  /// @param poisson  Poisson's ratio of the case; only Young's modulus of "neo-hookean" refers to
-  /// it.
+  /// @param poisson  Poisson's ratio of the case; Young's modulus of "neo-hookean" and the stress
+  ///   of confined compression refer to it.
   /// @throws Error(Configuration) for an unknown law, and for one that homogeneous tests cannot
   ///   calibrate, with the reason.
   explicit IncompressibleLaw(std::string_view law, double poisson = kCasePoisson);

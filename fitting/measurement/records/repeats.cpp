@@ -13,11 +13,53 @@ namespace {
 
 /// Between the reaches of presses that repeat each other.
 constexpr double kLargestRatio = 5;
+/// Samples of a record around a sample of the path, and samples of a path that is made coarser.
+constexpr int kFewestAround = 2, kFewestSamples = 6;
 
 double deepest(const PressCurve& press) {
   double depth = 0;
   for (const DepthForce& sample : press.loading) depth = std::max(depth, sample.depth);
   return depth;
+}
+
+/// Where the first sample of a press lies: deep, where its record begins in contact.
+double shallowest(const PressCurve& press) {
+  double depth = deepest(press);
+  for (const DepthForce& sample : press.loading) depth = std::min(depth, sample.depth);
+  return depth;
+}
+
+/// Half of the step of a grid: the samples within it belong to a depth.
+double half_step(const std::vector<double>& depths) {
+  return 0.5 * (depths.size() > 1 ? depths[1] - depths[0] : depths[0]);
+}
+
+bool resolves(const std::vector<PressCurve>& presses, const std::vector<double>& depths) {
+  const double half = half_step(depths);
+  return std::ranges::all_of(presses, [&](const PressCurve& press) {
+    return std::ranges::all_of(depths, [&](double depth) {
+      return std::ranges::count_if(press.loading, [&](const DepthForce& sample) {
+               return std::abs(sample.depth - depth) <= half;
+             }) >= kFewestAround;
+    });
+  });
+}
+
+/// Evenly spaced to the depth that all presses reach, from where all of them have begun. Records
+/// that are too coarse for so many samples have fewer.
+std::vector<double> grid_of(const std::vector<PressCurve>& presses, double reach, int samples) {
+  double begin = 0;
+  for (const PressCurve& press : presses) begin = std::max(begin, shallowest(press));
+  const auto grid = [&](int count) {
+    const double step = reach / count;
+    std::vector<double> depths;
+    for (int i = 1; i <= count; ++i)
+      if (step * i >= std::min(begin, reach - step)) depths.push_back(step * i);
+    return depths;
+  };
+  for (int count = samples; count >= kFewestSamples; --count)
+    if (std::vector<double> depths = grid(count); resolves(presses, depths)) return depths;
+  return grid(samples);
 }
 
 /// Slope of the force over the grid, by differences of neighbours.
@@ -64,7 +106,7 @@ CurveSample measured_sample() {
 GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<double>& depths,
                      const std::string& where) {
   GriddedPress press;
-  const double half = 0.5 * (depths.size() > 1 ? depths[1] - depths[0] : depths[0]);
+  const double half = half_step(depths);
   for (const double depth : depths) {
     std::vector<double> x, f, t;
     for (const DepthForce& sample : branch) {
@@ -73,7 +115,7 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
       x.push_back(sample.depth - depth);
       f.push_back(sample.force);
     }
-    if (x.size() < 2) {
+    if (x.size() < kFewestAround) {
       throw Error(ErrorKind::Configuration, where,
                   "no samples around a depth of " + std::to_string(1e3 * depth) + " mm",
                   "ask for fewer samples of the path, or record more densely");
@@ -105,8 +147,7 @@ CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
                     std::to_string(1e3 * farthest) + " mm",
                 "check their units of length; leave out a press that ended early");
   }
-  std::vector<double> depths;
-  for (int i = 1; i <= settings.samples; ++i) depths.push_back(reach * i / settings.samples);
+  const std::vector<double> depths = grid_of(presses, reach, settings.samples);
   std::vector<GriddedPress> gridded;
   for (const PressCurve& press : presses) gridded.push_back(on_grid(press.loading, depths, where));
 

@@ -12,7 +12,7 @@
 namespace palpate::measured {
 
 struct RepeatSettings {
-  int samples = 24;                   ///< of the path, evenly spaced in depth
+  int samples = 24;                   ///< of the path, evenly spaced in depth, at most
   double force_calibration = 0;       ///< relative standard uncertainty of the load cell
   double compliance_uncertainty = 0;  ///< m/N, standard
 };
@@ -33,7 +33,8 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
                      const std::string& where);
 
 /// The loading branches as one normal path along `inward`, from the touch to the depth that all
-/// presses reach. With the slope k and n presses:
+/// presses reach. Depths above the first sample of a record that begins in contact are left
+/// out. With the slope k and n presses:
 ///   force_scatter      sample standard deviation between the presses, unknown for one
 ///   force_uncertainty  u^2 = max(scatter^2, mean(noise^2 + v))/n + (r f)^2 + (k f u_C)^2,
 /// where v is the variance of baseline and contact point together (CommonErrors), the noise is

@@ -247,6 +247,88 @@ TEST(Inverse, ProfileEndsWhereTheMisfitHasRisen) {
   EXPECT_EQ(none.profile_evaluations, 0);
 }
 
+constexpr double kMu = 3e3, kB = 4;  // Pa and 1, the truth of a law that stiffens
+
+/// A block of one law, and its site in the middle.
+struct Stiffening {
+  Body body = test::make_block(test::even(-0.02, 0.02, 4), test::even(-0.01, 0.01, 2),
+                               test::even(-0.02, 0, 3));
+  std::int32_t site = -1;
+  InverseSettings settings;
+
+  Stiffening() {
+    body.region_names = {"gel"};
+    for (std::size_t v = 0; v < body.response.node.size(); ++v) {
+      const Vec3& x = body.nodes[static_cast<std::size_t>(body.response.node[v])];
+      if (body.response.is_site[v] != 0 && std::hypot(x[0], x[1]) < 1e-9)
+        site = static_cast<std::int32_t>(v);
+    }
+    settings.campaign = campaign(kTop, kTop);
+    settings.campaign.materials = {
+        {"gel", fem::LawConstants("demiray-fung", {{"mu", kMu}, {"b", kB}, {"poisson", 0.45}})}};
+    settings.campaign.sites = {site};
+    settings.sought = {{{"gel", "mu"}, 100, 1e6}, {{"gel", "b"}, 0.01, 50}};
+    settings.depths = 8;
+    settings.profiles = Profiles::None;
+  }
+
+  /// What a bench measures with a sphere, with its uncertainties.
+  Curves pressed_by(double radius, double depth) const {
+    fem::CampaignSettings truth = settings.campaign;
+    truth.indentation.tool.radius = radius;
+    std::vector<double> depths;
+    for (int i = 1; i <= settings.depths; ++i) depths.push_back(depth * i / settings.depths);
+    const auto samples = fem::run_sensitivity(body, truth, depths, {}).front().samples;
+    CurvePath path;
+    path.direction = body.response.inward[static_cast<std::size_t>(site)];
+    path.contact_uncertainty = 2e-4;
+    path.samples.emplace_back();
+    path.samples.back().force_uncertainty = 0;
+    for (const fem::ForceSensitivity& s : samples) {
+      CurveSample& sample = path.samples.emplace_back();
+      sample.displacement = s.depth;
+      sample.force = s.force * path.direction;
+      sample.force_uncertainty = std::hypot(0.01 * s.force, 0.002 * samples.back().force);
+    }
+    Curves curves;
+    curves.tool = {"sphere", radius, "frictionless"};
+    curves.sites.push_back({site, SiteStatus::Complete, "", 0, {path}});
+    return curves;
+  }
+};
+
+double half_width(const PressFit& fit, std::size_t constant) {
+  const calibrate::Estimate& e = fit.calibration.estimates[constant];
+  return 0.5 * (e.high - e.low);
+}
+
+/// A small sphere strains the body and shows how it stiffens, a large one shows how stiff it is at
+/// rest: both together say more than twice as many presses of either.
+TEST(Inverse, SpheresOfTwoRadiiTellTheStiffeningFromTheModulus) {
+  const Stiffening bench;
+  const Curves small = bench.pressed_by(0.003, 0.002), large = bench.pressed_by(0.020, 0.001);
+  InverseSettings settings = bench.settings;
+  settings.campaign.materials[0].law.at("mu") = 5e3;
+  settings.campaign.materials[0].law.at("b") = 1;
+  const auto fit_of = [&](const Curves& a, const Curves& b) {
+    return calibrate_inverse(bench.body, std::vector{a, b}, settings);
+  };
+  const PressFit both = fit_of(small, large);
+  EXPECT_NEAR(both.calibration.estimates[0].value, kMu, 0.002 * kMu);
+  EXPECT_NEAR(both.calibration.estimates[1].value, kB, 0.002 * kB);
+  ASSERT_EQ(both.paths.size(), 2U);
+  EXPECT_EQ(both.paths[1].set, 1U);
+  EXPECT_EQ(both.calibration.estimates[3].name,
+            "contact shift of site " + std::to_string(bench.site) + ", curves 2");
+  for (const Curves& twice : {small, large}) {
+    const PressFit one = fit_of(twice, twice);
+    EXPECT_LT(half_width(both, 0), 0.85 * half_width(one, 0));
+    EXPECT_LT(half_width(both, 1), half_width(one, 1));
+    EXPECT_LT(std::abs(both.calibration.correlation[0][1]),
+              std::abs(one.calibration.correlation[0][1]));
+  }
+}
+
 TEST(Inverse, RefusesWhatDoesNotFitTogether) {
   const Body body = two_halves();
   Curves curves = truth_curves(body);
@@ -271,6 +353,14 @@ TEST(Inverse, RefusesWhatDoesNotFitTogether) {
   Curves none = curves;
   for (SiteCurves& site : none.sites) site.paths.clear();
   EXPECT_THAT(refusal(none, settings_from(kTop, kBase)), HasSubstr("no normal path"));
+  Curves disc = curves;
+  disc.tool.shape = "disc";
+  try {
+    calibrate_inverse(body, std::vector{curves, disc}, settings_from(kTop, kBase));
+    ADD_FAILURE() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(std::string(error.what()), HasSubstr("curves 2 were made with a disc"));
+  }
   curves.sites.back().vertex = 9999;
   EXPECT_THAT(refusal(curves, settings_from(kTop, kBase)), HasSubstr("no site of the body"));
 }

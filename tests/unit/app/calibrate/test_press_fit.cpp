@@ -39,7 +39,7 @@ TEST(PressFit, FindsTheConstantOfAModelAndTheContactPoint) {
     sample.force =
         (400 * OneStiffness::unit(std::max(0.0, sample.displacement - 5e-5))) * path.direction;
   OneStiffness model;
-  const PressFit fit = fit_presses(measured, model, {}, "test");
+  const PressFit fit = fit_presses({&measured, 1}, model, {}, "test");
   ASSERT_EQ(fit.paths.size(), 1U);
   EXPECT_NEAR(fit.calibration.estimates[0].value, 400, 8);
   EXPECT_NEAR(fit.paths[0].contact_shift, -5e-5, 1e-5);
@@ -48,8 +48,9 @@ TEST(PressFit, FindsTheConstantOfAModelAndTheContactPoint) {
 TEST(PressFit, SaysWhyItHasNoModel) {
   OneStiffness model;
   model.reach = 1e-3;
-  EXPECT_THROW(fit_presses(samples::pressed_sites(0, 10, 1e-5, 1, 1), model, {}, "test"), Error);
-  EXPECT_THROW(fit_presses(Curves{}, model, {}, "test"), Error);
+  const Curves deep = samples::pressed_sites(0, 10, 1e-5, 1, 1), none;
+  EXPECT_THROW(fit_presses({&deep, 1}, model, {}, "test"), Error);
+  EXPECT_THROW(fit_presses({&none, 1}, model, {}, "test"), Error);
 }
 
 }  // namespace

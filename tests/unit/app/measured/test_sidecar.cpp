@@ -103,5 +103,64 @@ TEST(Sidecar, TakesRecordsOverTime) {
   EXPECT_THAT(refusal(kHead + timed + history + "held = \"both\"\n"), HasSubstr("both"));
 }
 
+const std::string kTwoTools =
+    "name = \"a\"\nspecimen = \"b\"\nsource = \"c\"\nlicence = \"d\"\n"
+    "[[tool]]\nname = \"small\"\nradius = \"2 mm\"\nfriction = \"no-slip\"\n"
+    "[[tool]]\nname = \"large\"\nradius = \"6 mm\"\nfriction = \"frictionless\"\n" +
+    kColumns;
+
+std::string press_of(const std::string& tool, int vertex) {
+  return kPress.substr(0, kPress.find("vertex")) + "vertex = " + std::to_string(vertex) +
+         "\ntool = \"" + tool + "\"\n";
+}
+
+TEST(Sidecar, OfSeveralToolsIsReadOneToolAtATime) {
+  const samples::TemporaryFolder folder;
+  const auto file = folder / "a.toml";
+  std::ofstream(file) << kTwoTools << press_of("large", 1) << press_of("small", 2)
+                      << press_of("large", 3);
+  EXPECT_EQ(tools_of_sidecar(file), (std::vector<std::string>{"small", "large"}));
+  const Sidecar small = read_sidecar(file, "small"), large = read_sidecar(file, "large");
+  EXPECT_EQ(small.tool.radius, 0.002);
+  ASSERT_EQ(small.presses.size(), 1U);
+  EXPECT_EQ(small.presses[0].vertex, 2);
+  EXPECT_EQ(large.tool.friction, "frictionless");
+  ASSERT_EQ(large.presses.size(), 2U);
+  EXPECT_EQ(large.presses[1].vertex, 3);
+}
+
+TEST(Sidecar, TakesTheToolsOfRecordsFromTheirNames) {
+  const samples::TemporaryFolder folder;
+  for (const char* name : {"small-1.csv", "large-1.csv", "large-2.csv"})
+    std::ofstream(folder / name) << "x\n";
+  const auto file = folder / "a.toml";
+  std::ofstream(file) << kTwoTools
+                      << "[[press]]\nfiles = \"{tool}-{v}.csv\"\nvertex_from = \"{v}\"\n"
+                         "tool_from = \"{tool}\"\n";
+  EXPECT_EQ(read_sidecar(file, "small").presses.size(), 1U);
+  EXPECT_EQ(read_sidecar(file, "large").presses.size(), 2U);
+}
+
+/// Curves of two tools are never mixed: nothing is read that leaves the tool open.
+TEST(Sidecar, RefusesRecordsWhoseToolIsNotClear) {
+  const std::string small = press_of("small", 1), large = press_of("large", 1);
+  EXPECT_THAT(refusal(kTwoTools + small + large), HasSubstr("several tools: 'small', 'large'"));
+  EXPECT_THAT(refusal(kTwoTools + small + kPress),
+              HasSubstr("it does not say which of several tools pressed"));
+  EXPECT_THAT(refusal(kTwoTools + small + press_of("huge", 1)),
+              HasSubstr("no [[tool]] has the name 'huge'"));
+  EXPECT_THAT(refusal(kTwoTools + small), HasSubstr("no record is of the tool 'large'"));
+  EXPECT_THAT(refusal(kHead + kColumns + small), HasSubstr("no [[tool]] has the name 'small'"));
+  std::string twice = kTwoTools;
+  twice.replace(twice.find("\"large\""), 7, "\"small\"");
+  EXPECT_THAT(refusal(twice + small), HasSubstr("two tools have the name 'small'"));
+  std::string nameless = kTwoTools;
+  nameless.replace(nameless.find("name = \"large\"\n"), 15, "");
+  EXPECT_THAT(refusal(nameless + small), HasSubstr("key 'tool.name' is missing"));
+  std::string path = kTwoTools;
+  path.replace(path.find("\"large\""), 7, "\"../up\"");
+  EXPECT_THAT(refusal(path + small), HasSubstr("import makes a folder of it"));
+}
+
 }  // namespace
 }  // namespace palpate::app

@@ -78,19 +78,34 @@ def drawn(path):
     return page
 
 
-def small_comparison(page, target):
-    """The same page with the comparison of a sphere of some micrometres: 4 um and 10 uN."""
+def with_other_data(page, target, change):
+    """The same page with its data as `change` leaves them."""
     text = page.read_text(encoding="utf-8")
     start = text.index(">", text.index('id="data"')) + 1
     end = text.index("</script>", start)
     data = json.loads(text[start:end])
+    change(data)
+    target.write_text(text[:start] + json.dumps(data).replace("<", "\\u003c") + text[end:], encoding="utf-8")
+    return target
+
+
+def to_micrometres(data):
+    """The comparison of a sphere of some micrometres: 4 um and 10 uN."""
     for curve in data["comparison"]["curves"]:
         for p in curve["points"]:
             p["displacement_m"] *= 1e-3
             for key in ("reference_N", "model_N"):
                 p[key] *= 1e-5
-    target.write_text(text[:start] + json.dumps(data).replace("<", "\\u003c") + text[end:], encoding="utf-8")
-    return target
+
+
+def to_many_sites(data):
+    """A calibration of two shared constants and a modulus of each of twenty sites."""
+    c = data["calibration"]
+    c["constants"] += [{**c["constants"][0], "name": f"shear modulus of site {i}", "value": 1000 + 100 * i, "profile": []}
+                       for i in range(20)]
+    size = len(c["constants"])
+    c["correlation"] = [[1 if i == j else round(-0.02 * min(i, j) - 0.001 * max(i, j), 3) for j in range(size)] for i in range(size)]
+    c["correlation"][1][0] = c["correlation"][0][1] = None
 
 
 def column(value):
@@ -143,8 +158,9 @@ class ReportPage(unittest.TestCase):
         cls.unbounded = drawn(path / "unbounded.html")
         cls.bare = drawn(path / "bare.html")
         cls.compared = drawn(path / "compared.html")
-        cls.micro = drawn(small_comparison(path / "compared.html", path / "micro.html"))
+        cls.micro = drawn(with_other_data(path / "compared.html", path / "micro.html", to_micrometres))
         cls.calibration = drawn(path / "calibration.html")
+        cls.many = drawn(with_other_data(path / "calibration.html", path / "many.html", to_many_sites))
         cls.calibrated = drawn(path / "calibrated.html")
         cls.sparse = drawn(path / "sparse.html")
         cls.judged = drawn(path / "judged.html")
@@ -166,6 +182,16 @@ class ReportPage(unittest.TestCase):
             self.assertFalse([tag for tag, _ in page.tags if tag == "i" and not _])
         self.assertIn("gel <b>bold</b>", self.calibration.text)
         self.assertNotIn("calibration", self.full.by_id)
+
+    def test_constants_of_many_sites_are_summarised(self):
+        text = self.many.by_id["calibration"].replace("\u00a0", " ").replace("\u202f", "")
+        self.assertEqual(self.many.root["data-ready"], "ok")
+        for words in ("shear modulus of 20 sitesmedian 2.00 kPa, from 1.00 kPa to 2.90 kPa", "All 22 constants",
+                      "Largest with one of a site", "correlations.csv",
+                      # C01 with the sites 0 to 19: -0.02 - 0.001 j
+                      "\u22120.031 (\u22120.041 to \u22120.022)",
+                      "\u22120.421, shear modulus of site 18 and shear modulus of site 19"):
+            self.assertIn(words, text)
 
     def test_both_pages_are_drawn_without_an_error(self):
         for page in (self.full, self.unbounded, self.bare, self.compared, self.sparse, self.judged,

@@ -7,7 +7,7 @@ import * as units from '../units.js';
 const UNITS = { Pa: units.pressure, m: units.length, N: units.force, s: units.time };
 
 /** A value of a constant with its unit. */
-const shown = (unit) => UNITS[unit] ?? ((v) => units.significant(v));
+const shown = (unit) => UNITS[unit] ?? ((v) => `${units.significant(v)}${unit === '1' ? '' : ` ${unit}`}`);
 
 function interval(c, low, high) {
   if (low === null && high === null) return '\u2013';
@@ -18,6 +18,44 @@ function interval(c, low, high) {
 function constantRows(constants) {
   return constants.map((c) => [c.name, shown(c.unit)(c.value),
     c.at_bound ? 'at its bound' : interval(c, c.low, c.high), interval(c, c.profile_low, c.profile_high)]);
+}
+
+/** With more constants than this, those of single sites are summarised. */
+const MANY = 12;
+const isLong = (c) => c.constants.length > MANY;
+
+/** Constants that sites have alike, by what they are; `shared` are the others. */
+function groupsOf(constants) {
+  const shared = [], groups = new Map();
+  constants.forEach((c, i) => {
+    const [, what] = /^(.+?)(?: at \S+ \S+)? of site /.exec(c.name) ?? [];
+    if (what === undefined) shared.push(i);
+    else groups.set(what, [...(groups.get(what) ?? []), i]);
+  });
+  return { shared, groups: [...groups].map(([what, of]) => ({ what, of })) };
+}
+
+function quantile(values, q) {
+  const sorted = values.filter((v) => v !== null).sort((a, b) => a - b);
+  return sorted.length ? sorted[Math.round(q * (sorted.length - 1))] : null;
+}
+
+const HEAD = (c) => ['Constant', 'Value', `${units.percent(c.confidence)} interval`, 'by its profile'];
+
+function groupRow(c, { what, of }) {
+  const members = of.map((i) => c.constants[i]), show = shown(members[0].unit);
+  const values = members.map((m) => m.value), half = members.map((m) => (m.low === null ? null : 0.5 * (m.high - m.low)));
+  const width = quantile(half, 0.5);
+  return [`${what} of ${units.count(of.length)} sites`, `median ${show(quantile(values, 0.5))}, from ${show(quantile(values, 0))} to ${show(quantile(values, 1))}`,
+    width === null ? '\u2013' : `median \u00b1 ${show(width)}`, '\u2013'];
+}
+
+function constantTables(c) {
+  if (!isLong(c)) return table(HEAD(c), constantRows(c.constants), [1, 2, 3]);
+  const { shared, groups } = groupsOf(c.constants);
+  return [table(HEAD(c), [...constantRows(shared.map((i) => c.constants[i])), ...groups.map((g) => groupRow(c, g))], [1, 2, 3]),
+    el('details', {}, el('summary', {}, `All ${units.count(c.constants.length)} constants`),
+      table(HEAD(c), constantRows(c.constants), [1, 2, 3]))];
 }
 
 const PRESSURES = [[1e6, 'MPa'], [1e3, 'kPa'], [1, 'Pa'], [1e-3, 'mPa']];
@@ -39,10 +77,11 @@ function recordsOf(c) {
       };
     });
   }
+  const sets = new Set(c.paths.map((p) => p.curves)).size;
   return c.paths.map((p) => {
     const [unit, symbol] = units.stepOf(p.displacement_m, units.LENGTHS, 0.1);
     return {
-      name: `node ${p.vertex}, ${p.kind}`, x: p.displacement_m, measured: p.measured_N, fitted: p.fitted_N,
+      name: `node ${p.vertex}, ${p.kind}${sets > 1 ? `, curves ${p.curves}` : ''}`, x: p.displacement_m, measured: p.measured_N, fitted: p.fitted_N,
       xLabel: `Displacement (${symbol})`, factor: 1 / unit, yName: 'Force', steps: units.FORCES,
     };
   });
@@ -102,10 +141,40 @@ function profileFigures(constants) {
   });
 }
 
+const correlationText = (v) => (v === null ? '\u2013' : v.toFixed(3).replace('-', '\u2212'));
+
 function correlationTable(c) {
   const names = c.constants.map((k) => k.name);
-  const cell = (v) => (v === null ? '\u2013' : v.toFixed(3).replace('-', '\u2212'));
-  return table(['', ...names], c.correlation.map((row, i) => [names[i], ...row.map(cell)]), names.map((_, i) => i + 1));
+  return table(['', ...names], c.correlation.map((row, i) => [names[i], ...row.map(correlationText)]), names.map((_, i) => i + 1));
+}
+
+/** The largest correlation of one of these constants with one of those, and which they are. */
+function largest(c, these, those) {
+  let best = null;
+  for (const i of these) {
+    for (const j of those) {
+      const r = c.correlation[i][j];
+      if (i !== j && r !== null && (best === null || Math.abs(r) > Math.abs(best.r))) best = { r, i, j };
+    }
+  }
+  if (best === null) return '\u2013';
+  const name = (i) => c.constants[i].name;
+  return `${correlationText(best.r)}, ${these.length > 1 ? `${name(best.i)} and ` : ''}${name(best.j)}`;
+}
+
+/** Shared constants with each other; of those of sites the median and the range, and the largest of all. */
+function correlationSummary(c) {
+  const { shared, groups } = groupsOf(c.constants), own = groups.flatMap((g) => g.of);
+  const row = (name, these) => [name, ...shared.map((j) => {
+    const values = these.map((i) => c.correlation[i][j]);
+    if (these.length === 1 || values.every((v) => v === null)) return correlationText(values[0]);
+    const [low, middle, high] = [0, 0.5, 1].map((q) => correlationText(quantile(values, q)));
+    return `${middle} (${low} to ${high})`;
+  }), largest(c, these, own)];
+  return [table(['', ...shared.map((i) => c.constants[i].name), 'Largest with one of a site'],
+    [...shared.map((i) => row(c.constants[i].name, [i])), ...groups.map((g) => row(`${g.what} of ${units.count(g.of.length)} sites`, g.of))],
+    shared.map((_, i) => i + 1)),
+  paragraph('Of the constants of sites: median, and range over the sites. All correlations are in correlations.csv beside calibration.json.', 'note')];
 }
 
 function testRows(c) {
@@ -134,7 +203,7 @@ function lead(c) {
   if (c.relaxation) return `A Prony series from ${units.count(c.records.length)} records over time. Source: ${c.source}.`;
   return c.law
     ? `Constants of the law ${c.law}, from ${units.count(c.tests.length)} tests. Source: ${c.source}.`
-    : `Constants of regions of the body, from ${units.count(c.paths.length)} measured paths.`;
+    : `Constants of ${c.slab ? 'a slab' : 'regions of the body'}, from ${units.count(c.paths.length)} measured paths.`;
 }
 
 export function calibrationSection(data) {
@@ -143,11 +212,11 @@ export function calibrationSection(data) {
   return el('section', { id: 'calibration' },
     el('h2', {}, 'Calibration'),
     paragraph(lead(c), 'lead'),
-    table(['Constant', 'Value', `${units.percent(c.confidence)} interval`, 'by its profile'], constantRows(c.constants), [1, 2, 3]),
+    constantTables(c),
     recordFigures(c),
     c.relaxation ? relaxationFunction(c) : null,
     c.tests ? table(['Test', 'Mode', 'RMS error', 'of its RMS', 'R\u00b2', 'In its range'], testRows(c), [2, 3, 4]) : null,
-    c.constants.length > 1 ? [el('h3', {}, 'Correlations'), correlationTable(c)] : null,
+    c.constants.length > 1 ? [el('h3', {}, 'Correlations'), isLong(c) ? correlationSummary(c) : correlationTable(c)] : null,
     profiles.length ? [el('h3', {}, 'Profiles'),
       paragraph('The misfit with one constant fixed and all others refitted. The interval ends where its rise is 1 (dashed).', 'note'), profiles] : null,
     definitions([

@@ -496,6 +496,17 @@ TEST(Homogeneous, RefusesWhatCannotBeFitted) {
   test = {"t", Mode::Uniaxial, {0.1, -0.2, 0.3, 0.4}, {1, 2, 3, 4}, {}, 1};
   EXPECT_THAT(refusal({test}, settings), HasSubstr("give stretches, not strains"));
   test.deformation = {1.1, 1.2, 1.3, 1.4};
+  settings.poisson = 0.3;
+  HomogeneousTest confined = test;
+  confined.mode = Mode::Confined;
+  EXPECT_THAT(refusal({test, confined}, settings),
+              HasSubstr("confined compression with poisson = 0.3"));
+  settings.poisson = kCasePoisson;
+  test.effect = {1, 1, 1, 1};
+  test.offset = true;
+  EXPECT_THAT(refusal({test}, settings), HasSubstr("an offset is not fitted"));
+  test.effect.clear();
+  test.offset = false;
   settings.weighting = Weighting::Uncertainty;
   EXPECT_THAT(refusal({test}, settings), HasSubstr("it states no uncertainty"));
   settings.weighting = Weighting::PerTest;

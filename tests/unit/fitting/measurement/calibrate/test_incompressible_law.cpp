@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "fem/laws/law.hpp"
 #include "fem/laws/material.hpp"
 #include "fitting/measurement/calibrate/incompressible_law.hpp"
 #include "tests/unit/fitting/measurement/calibrate/typical_constants.hpp"
@@ -60,6 +61,29 @@ TEST(IncompressibleLaw, SmallStrainIsLinearElasticity) {
   EXPECT_NEAR(law_stress("ogden-2", typical("ogden-2"), Mode::SimpleShear, 1e-5) / 1e-5, 1, 1e-6);
   EXPECT_NEAR(law_stress("arruda-boyce", {1, 3}, Mode::SimpleShear, 1e-5) / 1e-5, 1, 1e-6);
   EXPECT_NEAR(law_stress("gent", {1, 20}, Mode::SimpleShear, 1e-5) / 1e-5, 1, 1e-6);
+}
+
+/// In a chamber with smooth walls the specimen is stretched along one axis alone: the stress is the
+/// slope of the energy that the solver has for this law, its volumetric part included.
+TEST(IncompressibleLaw, ConfinedCompressionIsThatOfTheCompressibleLaw) {
+  constexpr double kPoisson = 0.35, kStep = 1e-5;
+  for (const auto law : homogeneous_laws()) {
+    const auto c = typical(law);
+    const IncompressibleLaw confined(law, kPoisson);
+    const fem::Law solid = fem::make_law(confined.for_case(c), "law");
+    const auto energy = [&](double s) {
+      fem::Tensor2<fem::Lanes> F;
+      for (std::size_t i = 0; i < F.size(); ++i)
+        F[i] = fem::Lanes::Constant(i == 0 ? s : (i % 4 == 0 ? 1.0 : 0.0));
+      const fem::Lanes J = fem::Lanes::Constant(s);
+      return (solid.psi(F, J, {}) + solid.volumetric_energy(J))[0];
+    };
+    for (const double s : {0.7, 0.95, 1.1}) {
+      const double expected = (energy(s + kStep) - energy(s - kStep)) / (2 * kStep);
+      EXPECT_NEAR(confined.stress(c.data(), Mode::Confined, s), expected, 1e-6 * std::abs(expected))
+          << law;
+    }
+  }
 }
 
 /// A pure shear and a simple shear of the same stretches store the same energy.

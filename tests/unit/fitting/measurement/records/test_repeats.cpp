@@ -81,6 +81,35 @@ TEST(Repeats, OnePressHasNoScatterButAnUncertainty) {
   EXPECT_GT(path.contact_uncertainty, 0);
 }
 
+/// A record that begins in contact has no samples above its beginning, and no made-up ones.
+TEST(Repeats, BeginWhereTheRecordsBegin) {
+  std::vector<PressCurve> presses = presses_of_site(2, 0, 43);
+  const CurvePath whole = mean_path(presses, kInward, {}, "site");
+  const double begin = 0.3 * whole.samples.back().displacement;
+  std::erase_if(presses[1].loading, [&](const DepthForce& s) { return s.depth < begin; });
+  const CurvePath path = mean_path(presses, kInward, {}, "site");
+  EXPECT_EQ(path.samples.front().displacement, 0);
+  EXPECT_GE(path.samples[1].displacement, begin);
+  EXPECT_LT(path.samples[1].displacement, begin + 2 * whole.samples[1].displacement);
+  EXPECT_NEAR(norm(path.samples.back().force), norm(whole.samples.back().force),
+              0.02 * norm(whole.samples.back().force));
+}
+
+/// A record that was sampled slowly has a curve of fewer samples, and the same force.
+TEST(Repeats, AreAsFineAsTheRecordsAllow) {
+  std::vector<PressCurve> presses = presses_of_site(1, 0, 44);
+  const CurvePath fine = mean_path(presses, kInward, {}, "site");
+  std::vector<DepthForce>& loading = presses[0].loading;
+  std::vector<DepthForce> few;
+  for (std::size_t i = 0; i < 30; ++i) few.push_back(loading[(loading.size() - 1) * (i + 1) / 30]);
+  loading = few;
+  const CurvePath coarse = mean_path(presses, kInward, {}, "site");
+  EXPECT_LT(coarse.samples.size(), 20U);
+  EXPECT_GT(coarse.samples.size(), 10U);
+  EXPECT_NEAR(norm(coarse.samples.back().force), norm(fine.samples.back().force),
+              0.02 * norm(fine.samples.back().force));
+}
+
 /// Calibration of the load cell and compliance act on all presses alike: more presses do not help.
 TEST(Repeats, CommonUncertaintiesDoNotAverageOut) {
   RepeatSettings settings;
