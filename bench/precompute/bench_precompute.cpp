@@ -332,61 +332,91 @@ void against_poisson(const std::vector<int>& cells) {
     for (const bool refined : {false, true}) against_poisson(each, refined);
 }
 
+/// How the elements under the tool are refined, in columns of a table.
+constexpr std::array kRefinements{std::pair{0, "undivided"}, std::pair{1, "refined once"},
+                                  std::pair{2, "twice"},
+                                  std::pair{IndentationSettings::kByContact, "contact"}};
+
 /// The parts of the processor time of the sites, in milliseconds a site, and their sum over it.
-void profile(int cells) {
-  const Body body = block(cells);
-  std::array<Profile, 2> profiles;
-  std::array<double, 2> seconds{};
-  for (const bool refined : {false, true}) {
-    CampaignSettings s = settings(0.49);
-    s.indentation.refine_under_tool = refined ? 1 : 0;
-    s.sites = inner_sites(body, 16);
-    active_profile = &profiles.at(refined);
+void profile(const char* name, const Body& body, CampaignSettings s) {
+  std::array<Profile, kRefinements.size()> profiles;
+  std::array<double, kRefinements.size()> seconds{}, sum{};
+  for (std::size_t i = 0; i < kRefinements.size(); ++i) {
+    s.indentation.refine_under_tool = kRefinements.at(i).first;
+    active_profile = &profiles.at(i);
     CampaignReport report;
     run_campaign(body, s, report);
     active_profile = nullptr;
-    seconds.at(refined) = report.cpu_seconds;
+    seconds.at(i) = report.cpu_seconds;
   }
-  const auto row = [&](const char* name, const auto& of) {
-    std::printf("| %s |", name);
-    for (std::size_t i = 0; i < 2; ++i)
-      std::printf(" %.1f ms | %.1f %% |", 1e3 * of(i) / 16, 100 * of(i) / seconds.at(i));
+  const auto sites = static_cast<double>(s.points.empty() ? s.sites.size() : s.points.size());
+  const auto row = [&](const char* part, const auto& of) {
+    std::printf("| %s |", part);
+    for (std::size_t i = 0; i < kRefinements.size(); ++i)
+      std::printf(" %.1f ms | %.1f %% |", 1e3 * of(i) / sites, 100 * of(i) / seconds.at(i));
     std::printf("\n");
   };
-  const int per_edge = 2 * cells + 1;
-  std::printf("| %d nodes | undivided | | refined | |\n|---|---|---|---|---|\n",
-              per_edge * per_edge * (cells + 1));
-  std::array<double, 2> sum{};
+  std::printf("\n| %s |", name);
+  for (const auto& [levels, title] : kRefinements) std::printf(" %s | |", title);
+  std::printf("\n|---|---|---|---|---|---|---|---|---|\n");
   for (std::size_t p = 0; p < kParts; ++p) {
     const auto part = static_cast<Part>(p);
     row(name_of(part), [&](std::size_t i) { return profiles.at(i).seconds(part); });
-    for (std::size_t i = 0; i < 2; ++i) sum.at(i) += profiles.at(i).seconds(part);
+    for (std::size_t i = 0; i < kRefinements.size(); ++i) sum.at(i) += profiles.at(i).seconds(part);
   }
   row("sum of the parts", [&](std::size_t i) { return sum.at(i); });
   row("all", [&](std::size_t i) { return seconds.at(i); });
-}
-
-void profile(const std::vector<int>& cells) {
-  std::printf(
-      "normal path to 4 mm in 10 increments, nu = 0.49, 16 sites, one thread; processor time, a "
-      "site\n");
-  for (const int each : cells) profile(each);
+  std::printf("| relative to the first |");
+  for (const double each : seconds) std::printf(" %.2f | |", each / seconds.front());
+  std::printf("\n");
+  std::fflush(stdout);
 }
 
 /// Depths over the tool radius.
 constexpr std::array kDepths{0.02, 0.06, 0.1, 0.2, 0.3, 0.4};
 
+/// Places in a facet of 5 mm.
+constexpr std::array<Vec3, 6> kPlaces{{{0, 0, 0},
+                                       {0.0012, 0.0007, 0},
+                                       {0.0025, 0.0003, 0},
+                                       {0.0026, 0.0024, 0},
+                                       {0.0035, 0.0014, 0},
+                                       {0.0017, 0.0034, 0}}};
+
+/// Elements of 5 mm, as large as the tool.
+Body coarse_block(int cells) {
+  const double half = 0.0025 * cells;
+  return test::make_block(test::even(-half, half, cells), test::even(-half, half, cells),
+                          test::even(-half, 0, cells / 2));
+}
+
+/// Shallow presses at these places.
+CampaignSettings coarse_settings() {
+  CampaignSettings s = settings(0.45);
+  s.indentation.depth = 0.4 * s.indentation.tool.radius;
+  s.indentation.increments = 20;
+  for (const Vec3& place : kPlaces) s.points.push_back({place, {0, 0, -1}});
+  return s;
+}
+
+void profile(const std::vector<int>& cells) {
+  std::printf(
+      "one thread; processor time, a site: nu = 0.49, to 4 mm in 10 increments, 16 sites; elements "
+      "as large as the tool: nu = 0.45, to 2 mm in 20 increments, 6 sites\n");
+  for (const int each : cells) {
+    const Body body = block(each);
+    CampaignSettings s = settings(0.49);
+    s.sites = inner_sites(body, 16);
+    const int per_edge = 2 * each + 1;
+    const std::string name = std::to_string(per_edge * per_edge * (each + 1)) + " nodes";
+    profile(name.c_str(), body, s);
+  }
+  profile("elements as large as the tool", coarse_block(16), coarse_settings());
+}
+
 /// The force over that of Hertz at several places in a facet: mean and standard deviation, and the
 /// processor time of a site.
-void contact_row(const Body& body, const std::string& name, CampaignSettings s) {
-  constexpr std::array<Vec3, 6> kPlaces{{{0, 0, 0},
-                                         {0.0012, 0.0007, 0},
-                                         {0.0025, 0.0003, 0},
-                                         {0.0026, 0.0024, 0},
-                                         {0.0035, 0.0014, 0},
-                                         {0.0017, 0.0034, 0}}};
-  s.points.clear();
-  for (const Vec3& place : kPlaces) s.points.push_back({place, {0, 0, -1}});
+void contact_row(const Body& body, const std::string& name, const CampaignSettings& s) {
   CampaignReport report;
   const Curves curves = run_campaign(body, s, report);
   std::printf("| %s | %.2f s |", name.c_str(), report.cpu_seconds / kPlaces.size());
@@ -417,12 +447,8 @@ void contact(int cells) {
       "facet, force over that of Hertz\n| refined | processor time, a site |");
   for (const double depth : kDepths) std::printf(" %.2f R |", depth);
   std::printf("\n|---|---|---|---|---|---|---|---|\n");
-  const double half = 0.0025 * cells;
-  const Body body = test::make_block(test::even(-half, half, cells), test::even(-half, half, cells),
-                                     test::even(-half, 0, cells / 2));
-  CampaignSettings s = settings(0.45);
-  s.indentation.depth = 0.4 * s.indentation.tool.radius;
-  s.indentation.increments = 20;
+  const Body body = coarse_block(cells);
+  CampaignSettings s = coarse_settings();
   const auto with = [&](int levels) {
     s.indentation.refine_under_tool = levels;
     return s;

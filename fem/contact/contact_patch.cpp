@@ -2,23 +2,15 @@
 #include "fem/contact/contact_patch.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <limits>
 #include <set>
-
-#include "fem/factor/dense_cholesky.hpp"
 
 namespace palpate::fem {
 
 namespace {
 
-/// A facet that comes into contact or leaves it costs about one iteration.
-constexpr int kPatchIterations = 50;
-constexpr int kPatchHalvings = 10;
-/// Fractions of the stiffening to try where the model of the patch is not convex; with all of it
-/// the model is convex.
-constexpr std::array<double, 5> kStiffeningFractions{0, 0.003, 0.03, 0.3, 1};
+/// In place of an unknown that a restricted contact does not have.
+constexpr int kLost = -2;
 
 }  // namespace
 
@@ -92,7 +84,7 @@ void ContactPatch::start_from(const ToolContact& contact, const Displacement& u)
   }
 }
 
-Eigen::Vector3d ContactPatch::position(const ToolContact& contact, const Point& point,
+Eigen::Vector3d PatchContact::position(const ToolContact& contact, const Point& point,
                                        const Eigen::VectorXd& d) const {
   const auto& N = contact.points()[point.index].N;
   Eigen::Vector3d x = point.x;
@@ -101,13 +93,13 @@ Eigen::Vector3d ContactPatch::position(const ToolContact& contact, const Point& 
   return x;
 }
 
-Eigen::Vector3d ContactPatch::position(const Tie& tie, const Eigen::VectorXd& d) {
+Eigen::Vector3d PatchContact::position(const Tie& tie, const Eigen::VectorXd& d) {
   Eigen::Vector3d x = tie.x;
   if (tie.first >= 0) x += d.segment<3>(tie.first);
   return x;
 }
 
-double ContactPatch::energy(const ToolContact& contact, const Eigen::VectorXd& d) const {
+double PatchContact::energy(const ToolContact& contact, const Eigen::VectorXd& d) const {
   double sum = 0;
   for (const Point& point : points_) {
     const auto& source = contact.points()[point.index];
@@ -118,7 +110,7 @@ double ContactPatch::energy(const ToolContact& contact, const Eigen::VectorXd& d
   return sum;
 }
 
-double ContactPatch::gradient(const ToolContact& contact, const Eigen::VectorXd& d,
+double PatchContact::gradient(const ToolContact& contact, const Eigen::VectorXd& d,
                               Eigen::VectorXd& g) const {
   double sum = 0;
   g.setZero(d.size());
@@ -140,7 +132,7 @@ double ContactPatch::gradient(const ToolContact& contact, const Eigen::VectorXd&
   return sum;
 }
 
-void ContactPatch::add_hessian(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
+void PatchContact::add_hessian(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
                                Eigen::MatrixXd& H) const {
   for (const Point& point : points_) {
     const auto& source = contact.points()[point.index];
@@ -158,7 +150,7 @@ void ContactPatch::add_hessian(const ToolContact& contact, const Eigen::VectorXd
       H.diagonal().segment<3>(tie.first).array() += contact.ties()[tie.index].stiffness;
 }
 
-Eigen::Vector3d ContactPatch::tool_force(const ToolContact& contact,
+Eigen::Vector3d PatchContact::tool_force(const ToolContact& contact,
                                          const Eigen::VectorXd& d) const {
   Eigen::Vector3d force = Eigen::Vector3d::Zero();
   for (const Point& point : points_) {
@@ -170,55 +162,34 @@ Eigen::Vector3d ContactPatch::tool_force(const ToolContact& contact,
   return force;
 }
 
-namespace {
-
-/// Factorizes S and the Hessian of the contact into H; without the geometric term of the contact,
-/// which can be negative, where that fails. False when both fail.
-bool factorize_patch(const ContactPatch& patch, const ToolContact& contact,
-                     const Eigen::MatrixXd& S, const Eigen::VectorXd& d, Eigen::MatrixXd& H) {
-  for (const bool geometric : {true, false}) {
-    H = S;
-    patch.add_hessian(contact, d, geometric, H);
-    if (factorize_in_place(H)) return true;
-  }
-  return false;
+void PatchContact::mark_touched(const ToolContact& contact, const Eigen::VectorXd& d,
+                                std::vector<char>& marks) const {
+  const auto mark = [&](int first) {
+    if (first >= 0) std::fill_n(marks.begin() + first, 3, char{1});
+  };
+  for (const Point& point : points_)
+    if (contact.gap(contact.points()[point.index], position(contact, point, d)) < 0)
+      std::for_each(point.first.begin(), point.first.end(), mark);
+  for (const Tie& tie : ties_) mark(tie.first);
 }
 
-}  // namespace
-
-Eigen::VectorXd patch_minimum(const ContactPatch& patch, const ToolContact& contact,
-                              const PatchStiffness& stiffness, const Eigen::VectorXd& load,
-                              Eigen::VectorXd d, double tolerance, Eigen::MatrixXd& scratch) {
-  // A copy only where the diagonal must be raised: S is most of the memory of a large patch.
-  Eigen::MatrixXd raised;
-  const Eigen::MatrixXd* S = &stiffness.S;
-  Eigen::VectorXd contact_force;
-  std::size_t fraction = 0;
-  for (int iteration = 0; iteration < kPatchIterations; ++iteration) {
-    const double contact_energy = patch.gradient(contact, d, contact_force);
-    const Eigen::VectorXd Sd = *S * d, g = Sd - load + contact_force;
-    if (g.norm() <= tolerance) break;
-    if (!factorize_patch(patch, contact, *S, d, scratch)) {
-      if (++fraction == kStiffeningFractions.size()) break;
-      raised = stiffness.S;
-      S = &raised;
-      raised.diagonal() += kStiffeningFractions[fraction] * stiffness.stiffening;
-      continue;
-    }
-    const double energy = 0.5 * d.dot(Sd) - load.dot(d) + contact_energy;
-    const Eigen::VectorXd step = -solve_factorized(scratch, g);
-    const double slope = g.dot(step);
-    double length = 1;
-    Eigen::VectorXd trial;
-    for (int halvings = 0; halvings < kPatchHalvings; ++halvings, length *= 0.5) {
-      trial = d + length * step;
-      const double next =
-          0.5 * trial.dot(*S * trial) - load.dot(trial) + patch.energy(contact, trial);
-      if (next <= energy + 1e-4 * length * slope + kEnergyNoise * std::abs(energy)) break;
-    }
-    d = trial;
+PatchContact PatchContact::restricted_to(const std::vector<int>& renumbered) const {
+  PatchContact some;
+  const auto lost = [](int first) { return first == kLost; };
+  const auto renumber = [&](int& first) {
+    if (first < 0) return;
+    first = renumbered[to_index(first)];
+    if (first < 0) first = kLost;
+  };
+  for (Point point : points_) {
+    std::for_each(point.first.begin(), point.first.end(), renumber);
+    if (std::none_of(point.first.begin(), point.first.end(), lost)) some.points_.push_back(point);
   }
-  return d;
+  for (Tie tie : ties_) {
+    renumber(tie.first);
+    if (!lost(tie.first)) some.ties_.push_back(tie);
+  }
+  return some;
 }
 
 }  // namespace palpate::fem

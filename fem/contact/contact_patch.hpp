@@ -13,10 +13,50 @@ namespace palpate::fem {
 /// Round-off of an energy summed over the elements, relative.
 inline constexpr double kEnergyNoise = 1e-14;
 
+/// Points and ties of a contact as functions of a change d of some unknowns.
+class PatchContact {
+ public:
+  double energy(const ToolContact& contact, const Eigen::VectorXd& d) const;
+  /// Energy; g = dE/dd.
+  double gradient(const ToolContact& contact, const Eigen::VectorXd& d, Eigen::VectorXd& g) const;
+  /// H += d2E/dd2, in its lower triangle. `geometric` as in ToolContact::add_stiffness.
+  void add_hessian(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
+                   Eigen::MatrixXd& H) const;
+  /// N, of the tool on the body; no other point is in contact.
+  Eigen::Vector3d tool_force(const ToolContact& contact, const Eigen::VectorXd& d) const;
+
+  /// Marks the unknowns of ties and of facets in contact.
+  void mark_touched(const ToolContact& contact, const Eigen::VectorXd& d,
+                    std::vector<char>& marks) const;
+  /// The points and ties all of whose unknowns are among those with an index in `renumbered`, -1:
+  /// none; in this numbering.
+  PatchContact restricted_to(const std::vector<int>& renumbered) const;
+
+ protected:
+  struct Point {
+    std::size_t index;         ///< in the contact
+    std::array<int, 6> first;  ///< index into d of the first unknown of each node, -1: none
+    Eigen::Vector3d x;         ///< at the start
+  };
+  struct Tie {
+    std::size_t index;  ///< in the contact
+    int first;          ///< as above
+    Eigen::Vector3d x;  ///< at the start
+  };
+
+  std::vector<Point> points_;
+  std::vector<Tie> ties_;  ///< of the contact at the start
+
+ private:
+  Eigen::Vector3d position(const ToolContact& contact, const Point& point,
+                           const Eigen::VectorXd& d) const;
+  static Eigen::Vector3d position(const Tie& tie, const Eigen::VectorXd& d);
+};
+
 /// The facets in contact and those with a common node. Their free nodes are the unknowns of a small
-/// dense problem; d below is a change of these unknowns. A patch made for one contact serves its
-/// copies too, moved or bonded.
-class ContactPatch {
+/// dense problem, see patch_solver.hpp. A patch made for one contact serves its copies too, moved
+/// or bonded.
+class ContactPatch : public PatchContact {
  public:
   /// The patch at displacement u; without contact, around the facet nearest to the tool.
   ContactPatch(const ToolContact& contact, const SolidModel& model, const Displacement& u);
@@ -33,51 +73,11 @@ class ContactPatch {
 
   /// The displacement that d is a change of.
   void start_from(const ToolContact& contact, const Displacement& u);
-  double energy(const ToolContact& contact, const Eigen::VectorXd& d) const;
-  /// Energy; g = dE/dd.
-  double gradient(const ToolContact& contact, const Eigen::VectorXd& d, Eigen::VectorXd& g) const;
-  /// H += d2E/dd2, in its lower triangle. `geometric` as in ToolContact::add_stiffness.
-  void add_hessian(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
-                   Eigen::MatrixXd& H) const;
-  /// N, of the tool on the body; the patch covers the contact.
-  Eigen::Vector3d tool_force(const ToolContact& contact, const Eigen::VectorXd& d) const;
 
  private:
-  struct Point {
-    std::size_t index;         ///< in the contact
-    std::array<int, 6> first;  ///< index into d of the first unknown of each node, -1: none
-    Eigen::Vector3d x;         ///< at the start
-  };
-  struct Tie {
-    std::size_t index;  ///< in the contact
-    int first;          ///< as above
-    Eigen::Vector3d x;  ///< at the start
-  };
-
-  Eigen::Vector3d position(const ToolContact& contact, const Point& point,
-                           const Eigen::VectorXd& d) const;
-  static Eigen::Vector3d position(const Tie& tie, const Eigen::VectorXd& d);
-
   std::vector<char> near_;       ///< (facets of the contact)
   std::map<int, int> first_of_;  ///< index into d of every node of these facets, -1: none
   std::vector<int> unknowns_;
-  std::vector<Point> points_;
-  std::vector<Tie> ties_;  ///< of the contact at the start
 };
-
-/// The stiffness of the solid condensed onto the patch, N/m, numbered as the patch. A compressed
-/// body is often stable only against its tool, and S indefinite; S with `stiffening` on its
-/// diagonal is positive definite.
-struct PatchStiffness {
-  Eigen::MatrixXd S;
-  Eigen::VectorXd stiffening;
-};
-
-/// The minimum over d of d S d/2 - load . d + E_c(d), by Newton's method from `d` until the
-/// gradient is within `tolerance`, N. `scratch` may have any size; its memory is reused between
-/// calls.
-Eigen::VectorXd patch_minimum(const ContactPatch& patch, const ToolContact& contact,
-                              const PatchStiffness& stiffness, const Eigen::VectorXd& load,
-                              Eigen::VectorXd d, double tolerance, Eigen::MatrixXd& scratch);
 
 }  // namespace palpate::fem

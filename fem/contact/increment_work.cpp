@@ -69,11 +69,16 @@ std::optional<double> work_between(ContactPatch& patch, const PatchStiffness& st
   if (!secant) return std::nullopt;
   const Eigen::Vector3d travel = contact.tool().tip - from;
   Eigen::VectorXd d = Eigen::VectorXd::Zero(patch.size());
-  Eigen::MatrixXd scratch;
-  double work = 0;
+  PatchSolver solver;
+  solver.use(*secant);
+  solver.expect(patch, contact, step);
+  double work = 0, at = 0;
   for (const Node& node : kGauss) {
     moved = with_tip_at(contact, from + node.at * travel);
-    d = patch_minimum(patch, moved, *secant, first, d, kTarget * last.norm(), scratch);
+    // The minimum at the end is known: start on the way to it.
+    d += (node.at - at) / (1 - at) * (step - d);
+    at = node.at;
+    d = solver.minimum(patch, moved, first, d, kTarget * last.norm());
     if (residual_norm(patch, moved, secant->S, first, d) > kAllowed * last.norm())
       return std::nullopt;
     work += node.weight * patch.tool_force(moved, d).dot(travel);

@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "fem/contact/contact_patch.hpp"
+#include "fem/contact/patch_solver.hpp"
 
 namespace palpate::fem {
 

@@ -38,6 +38,29 @@ Eigen::VectorXd solve_factorized(const Eigen::MatrixXd& L, Eigen::VectorXd b) {
   return b;
 }
 
+bool eliminate_first(Eigen::Index count, Eigen::MatrixXd& A) {
+  const int n = size_of(A), first = static_cast<int>(count), others = n - first;
+  if (first == 0) return true;
+  if (!factorize_in_place(A.data(), first, n)) return false;
+  if (others == 0) return true;
+  double* below = A.data() + count;
+  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, others, first, 1,
+              A.data(), n, below, n);
+  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, others, first, -1, below, n, 1,
+              A.data() + count * (n + 1), n);
+  return true;
+}
+
+void solve_first_forward(const Eigen::MatrixXd& A, Eigen::Index count, Eigen::VectorXd& x) {
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, static_cast<int>(count),
+              A.data(), size_of(A), x.data(), 1);
+}
+
+void solve_first_backward(const Eigen::MatrixXd& A, Eigen::Index count, Eigen::VectorXd& x) {
+  cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, static_cast<int>(count),
+              A.data(), size_of(A), x.data(), 1);
+}
+
 Eigen::MatrixXd product_with_transpose(const Eigen::MatrixXd& L) {
   const int n = size_of(L);
   Eigen::MatrixXd product = Eigen::MatrixXd::Zero(n, n), panel;

@@ -15,6 +15,14 @@ bool factorize_in_place(double* A, int n, int stride);
 /// x = (L L^T)^-1 b with the lower triangle from factorize_in_place().
 Eigen::VectorXd solve_factorized(const Eigen::MatrixXd& L, Eigen::VectorXd b);
 
+/// Eliminates the first `count` unknowns of A, of which it reads and writes the lower triangle: the
+/// first columns become those of the factor, and the block of the other unknowns their Schur
+/// complement. False when the first block is not positive definite.
+bool eliminate_first(Eigen::Index count, Eigen::MatrixXd& A);
+/// The first `count` of x by L^-1 and by L^-T, L the factor of the first block of such an A.
+void solve_first_forward(const Eigen::MatrixXd& A, Eigen::Index count, Eigen::VectorXd& x);
+void solve_first_backward(const Eigen::MatrixXd& A, Eigen::Index count, Eigen::VectorXd& x);
+
 /// Lower triangle of L L^T. Nothing above the diagonal of L is read.
 Eigen::MatrixXd product_with_transpose(const Eigen::MatrixXd& L);
 

@@ -90,6 +90,7 @@ bool NewtonSolver::factorize(const Displacement& u) {
       patch_stiffness_.S(in_patch(i), in_patch(j)) = patch_stiffness_.S(in_patch(j), in_patch(i)) =
           ordered(i, j);
   patch_stiffness_.S.diagonal() -= patch_stiffness_.stiffening;
+  patch_solver_.use(patch_stiffness_);
   return true;
 }
 
@@ -104,8 +105,7 @@ Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displa
     patch_->start_from(contact, u);
     Eigen::VectorXd x(count), ordered = root_.triangularView<Eigen::Lower>() * y.tail(count);
     for (Eigen::Index i = 0; i < count; ++i) x[in_patch(i)] = ordered[i];
-    x = patch_minimum(*patch_, contact, patch_stiffness_, x, Eigen::VectorXd::Zero(count),
-                      tolerance, patch_scratch_);
+    x = patch_solver_.minimum(*patch_, contact, x, Eigen::VectorXd::Zero(count), tolerance);
     for (Eigen::Index i = 0; i < count; ++i) ordered[i] = x[in_patch(i)];
     y.tail(count) = root_.transpose().triangularView<Eigen::Upper>() * ordered;
   }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "fem/contact/contact.hpp"
-#include "fem/contact/contact_patch.hpp"
+#include "fem/contact/patch_solver.hpp"
 #include "fem/factor/cholesky.hpp"
 #include "fem/solid/solid_model.hpp"
 
@@ -91,7 +91,7 @@ class NewtonSolver {
   std::vector<int> index_in_patch_;  ///< of the last unknowns of the factor
   Eigen::MatrixXd root_;            ///< lower triangular, of stiffened S in the order of the factor
   PatchStiffness patch_stiffness_;  ///< S, and what was added to the diagonal of A
-  Eigen::MatrixXd patch_scratch_;
+  PatchSolver patch_solver_;
   bool factorized_ = false;
 };
 

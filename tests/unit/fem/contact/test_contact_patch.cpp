@@ -71,22 +71,5 @@ TEST(ContactPatch, DetectsContactBeyondItsFacets) {
   EXPECT_FALSE(patch.covers(contact, u));
 }
 
-/// With a positive definite stiffness the minimum is where its gradient vanishes.
-TEST(ContactPatch, MinimizesTheEnergyOfPatchAndContact) {
-  Pressed p;
-  ContactPatch patch(p.contact, p.model, p.u);
-  patch.start_from(p.contact, p.u);
-  const Eigen::Index n = patch.size();
-  const PatchStiffness stiffness{500 * Eigen::MatrixXd::Identity(n, n), Eigen::VectorXd::Ones(n)};
-  const Eigen::VectorXd load = 1e-3 * Eigen::VectorXd::Ones(n);
-  Eigen::MatrixXd scratch;
-  const Eigen::VectorXd d =
-      patch_minimum(patch, p.contact, stiffness, load, Eigen::VectorXd::Zero(n), 1e-10, scratch);
-  Eigen::VectorXd g;
-  patch.gradient(p.contact, d, g);
-  EXPECT_LT((stiffness.S * d - load + g).norm(), 1e-10);
-  EXPECT_GT(d.norm(), 1e-6);
-}
-
 }  // namespace
 }  // namespace palpate::fem

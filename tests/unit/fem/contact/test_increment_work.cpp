@@ -85,8 +85,10 @@ Step one_step(LinearSolid& solid, double from, double to, double seen = 1) {
   const auto equilibrium = [&](double depth) {
     solid.press(depth);
     patch.start_from(solid.contact, solid.rest);
-    Eigen::MatrixXd scratch;
-    return patch_minimum(patch, solid.contact, {S, zero}, zero, zero, 1e-12, scratch);
+    const PatchStiffness stiffness{S, zero};
+    PatchSolver solver;
+    solver.use(stiffness);
+    return solver.minimum(patch, solid.contact, zero, zero, 1e-12);
   };
   const auto stored = [&](const Eigen::VectorXd& d) {
     return 0.5 * d.dot(S * d) + patch.energy(solid.contact, d);

@@ -61,6 +61,24 @@ TEST(DenseCholesky, ProductReadsNothingAboveTheDiagonal) {
   }
 }
 
+/// The Schur complement of the first unknowns of min(i, j) is min(i, j), counted from the last of
+/// them; what is eliminated first and last is the whole factor.
+TEST(DenseCholesky, EliminatesTheFirstUnknowns) {
+  for (const int n : kSizes)
+    for (const int first : {0, n / 2, n}) {
+      Eigen::MatrixXd A = lower_only(of_ones(n));
+      ASSERT_TRUE(eliminate_first(first, A));
+      for (Eigen::Index j = 0; j < n; ++j)
+        for (Eigen::Index i = j; i < n; ++i)
+          EXPECT_NEAR(A(i, j), j < first ? 1 : static_cast<double>(j + 1 - first), 1e-11);
+      Eigen::VectorXd x = Eigen::VectorXd::Ones(n);
+      solve_first_forward(A, first, x);
+      solve_first_backward(A, first, x);
+      for (Eigen::Index i = 0; i < n; ++i)
+        EXPECT_NEAR(x[i], i == 0 && first > 0 ? 1 : (i < first ? 0 : 1), 1e-12);
+    }
+}
+
 TEST(DenseCholesky, RefusesAnIndefiniteMatrix) {
   for (const int n : kSizes) {
     Eigen::MatrixXd A = of_ones(n);

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+#include "fem/contact/patch_solver.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "fem/factor/dense_cholesky.hpp"
+#include "format/to_index.hpp"
+
+namespace palpate::fem {
+
+namespace {
+
+/// A facet that comes into contact or leaves it costs about one iteration.
+constexpr int kPatchIterations = 50;
+constexpr int kPatchHalvings = 10;
+/// Fractions of the stiffening to try where the model of the patch is not convex; with all of it
+/// the model is convex.
+constexpr std::array<double, 5> kStiffeningFractions{0, 0.003, 0.03, 0.3, 1};
+
+}  // namespace
+
+void PatchSolver::use(const PatchStiffness& stiffness) {
+  stiffness_ = &stiffness;
+  in_core_.assign(static_cast<std::size_t>(stiffness.S.rows()), 0);
+  condensed_.clear();
+}
+
+bool PatchSolver::condense(std::size_t fraction) {
+  if (condensed_ == in_core_ && fraction_ == fraction && !order_.empty()) return true;
+  condensed_.clear();
+  order_.resize(in_core_.size());
+  for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = static_cast<int>(i);
+  const auto core = std::stable_partition(order_.begin(), order_.end(),
+                                          [&](int i) { return in_core_[to_index(i)] == 0; });
+  rest_ = core - order_.begin();
+  core_index_.assign(order_.size(), -1);
+  for (auto i = core; i != order_.end(); ++i)
+    core_index_[to_index(*i)] = static_cast<int>(i - core);
+  eliminated_ = stiffness_->S(order_, order_);
+  eliminated_.diagonal() += kStiffeningFractions[fraction] * stiffness_->stiffening(order_);
+  if (!eliminate_first(rest_, eliminated_)) return false;
+  S_ = eliminated_.bottomRightCorner(core_size(), core_size());
+  condensed_ = in_core_;
+  fraction_ = fraction;
+  return true;
+}
+
+bool PatchSolver::factorize(const PatchContact& core, const ToolContact& contact,
+                            const Eigen::VectorXd& d) {
+  for (const bool geometric : {true, false}) {
+    factor_ = S_;
+    core.add_hessian(contact, d, geometric, factor_);
+    if (factorize_in_place(factor_)) return true;
+  }
+  return false;
+}
+
+bool PatchSolver::minimize(const PatchContact& core, const ToolContact& contact,
+                           const Eigen::VectorXd& load, double tolerance, Eigen::VectorXd& d) {
+  const auto S = S_.selfadjointView<Eigen::Lower>();
+  Eigen::VectorXd contact_force, Sd = S * d;
+  for (int iteration = 0; iteration < kPatchIterations; ++iteration) {
+    const double contact_energy = core.gradient(contact, d, contact_force);
+    const Eigen::VectorXd g = Sd - load + contact_force;
+    if (g.norm() <= tolerance) break;
+    if (!factorize(core, contact, d)) return false;
+    const double energy = 0.5 * d.dot(Sd) - load.dot(d) + contact_energy;
+    const Eigen::VectorXd step = -solve_factorized(factor_, g), S_step = S * step;
+    const double slope = g.dot(step);
+    double length = 1;
+    Eigen::VectorXd trial, S_trial;
+    for (int halvings = 0; halvings < kPatchHalvings; ++halvings, length *= 0.5) {
+      trial = d + length * step;
+      S_trial = Sd + length * S_step;
+      const double next = 0.5 * trial.dot(S_trial) - load.dot(trial) + core.energy(contact, trial);
+      if (next <= energy + 1e-4 * length * slope + kEnergyNoise * std::abs(energy)) break;
+    }
+    d.swap(trial);
+    Sd.swap(S_trial);
+  }
+  return true;
+}
+
+bool PatchSolver::minimize_on_core(const ContactPatch& patch, const ToolContact& contact,
+                                   const Eigen::VectorXd& load, double tolerance,
+                                   Eigen::VectorXd& d) {
+  Eigen::VectorXd ordered = load(order_), on_core = d(order_).tail(core_size());
+  const auto coupling = eliminated_.bottomLeftCorner(core_size(), rest_);
+  solve_first_forward(eliminated_, rest_, ordered);
+  const Eigen::VectorXd condensed_load = ordered.tail(core_size()) - coupling * ordered.head(rest_);
+  const bool convex =
+      minimize(patch.restricted_to(core_index_), contact, condensed_load, tolerance, on_core);
+  ordered.head(rest_) -= coupling.transpose() * on_core;
+  ordered.tail(core_size()) = on_core;
+  solve_first_backward(eliminated_, rest_, ordered);
+  d(order_) = ordered;
+  return convex;
+}
+
+Eigen::VectorXd PatchSolver::minimum(const ContactPatch& patch, const ToolContact& contact,
+                                     const Eigen::VectorXd& load, Eigen::VectorXd d,
+                                     double tolerance) {
+  expect(patch, contact, d);
+  std::size_t fraction = 0;
+  while (fraction < kStiffeningFractions.size()) {
+    if (!condense(fraction) || !minimize_on_core(patch, contact, load, tolerance, d)) {
+      ++fraction;
+      continue;
+    }
+    expect(patch, contact, d);
+    if (in_core_ == condensed_) break;
+  }
+  return d;
+}
+
+}  // namespace palpate::fem
