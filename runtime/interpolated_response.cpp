@@ -10,9 +10,14 @@
 namespace palpate::runtime {
 namespace {
 
-/// h on one interval between consecutive knots of the merged sequence.
+/// A response on one interval between consecutive knots of the merged sequence, from its start.
 struct MergedPiece {
   double force = 0, slope = 0, curvature = 0;
+
+  double force_after(double x) const noexcept { return force + x * (slope + x * curvature); }
+  double work_after(double x) const noexcept {
+    return x * (force + x * (slope / 2.0 + x * (curvature * kThird)));
+  }
 };
 
 /// x >= 0 with force + slope x + curvature x^2 = target, for target >= force, slope >= 0; written
@@ -40,7 +45,21 @@ MergedPiece merged(const std::array<const PackedPiece*, 3>& pieces, const Vec3& 
   return sum;
 }
 
+/// Its energy at `start`.
+double merged_energy(const std::array<const PackedPiece*, 3>& pieces, const Vec3& weights,
+                     double start) noexcept {
+  double sum = 0;
+  for (std::size_t l = 0; l < 3; ++l) sum += weights[l] * pieces[l]->evaluate(start).energy;
+  return sum;
+}
+
 constexpr PackedPiece kNothing;  // the zero response
+
+/// A piece of this length contains the answer of an inverse: it ends at the force or above, or has
+/// no end.
+bool ends_above(const MergedPiece& p, double length, double force) noexcept {
+  return !(length < kInfinity) || p.force_after(length) >= force;
+}
 
 /// The piece that contains a deflection, and its range.
 struct Found {
@@ -66,15 +85,17 @@ class KnotMerge {
     start_ = last_start();
   }
 
-  /// h from `start()` on, valid up to `end()`.
-  MergedPiece piece() const noexcept {
+  std::array<const PackedPiece*, 3> pieces() const noexcept {
     std::array<const PackedPiece*, 3> pieces;
     for (std::size_t l = 0; l < 3; ++l) {
       const CurveView view = curve(l);
       pieces[l] = view.size() == 0 ? &kNothing : &view.piece(index_[l]);
     }
-    return merged(pieces, weights_, start_);
+    return pieces;
   }
+
+  /// The response from `start()` on, valid up to `end()`.
+  MergedPiece piece() const noexcept { return merged(pieces(), weights_, start_); }
 
   double start() const noexcept { return start_; }
 
@@ -96,10 +117,8 @@ class KnotMerge {
     }
   }
 
-  /// The piece contains the answer of an inverse: it ends at the force or above, or has no end.
   bool reaches(const MergedPiece& p, double force) const noexcept {
-    const double length = end() - start_;
-    return !std::isfinite(length) || p.force + length * (p.slope + length * p.curvature) >= force;
+    return ends_above(p, end() - start_, force);
   }
 
   bool at_first() const noexcept { return !(start_ > 0); }
@@ -132,21 +151,64 @@ class KnotMerge {
 };
 
 using LateralKnots = KnotMerge<&NodeCurves::lateral>;
-using NormalKnots = KnotMerge<&NodeCurves::normal>;
+
+/// Advances to the piece that reaches the force.
+template <typename Knots>
+MergedPiece advance_to(Knots& knots, double force) noexcept {
+  MergedPiece p = knots.piece();
+  for (; !knots.reaches(p, force); p = knots.piece()) knots.advance();
+  return p;
+}
 
 /// The deflection at which the force is reached, on the piece that reaches it or after.
 template <typename Knots>
 double inverse_from(Knots& knots, double force) noexcept {
-  MergedPiece p = knots.piece();
-  for (; !knots.reaches(p, force); p = knots.piece()) knots.advance();
+  const MergedPiece p = advance_to(knots, force);
   return knots.start() + std::min(solve_rising_quadratic(p, force), knots.end() - knots.start());
 }
 
-/// The smallest such deflection, from any piece.
+/// Walks from any piece to the first that reaches the force.
 template <typename Knots>
-double inverse_near(Knots& knots, double force) noexcept {
+MergedPiece walk_to(Knots& knots, double force) noexcept {
   while (knots.piece().force >= force && !knots.at_first()) knots.retreat();
-  return inverse_from(knots, force);
+  return advance_to(knots, force);
+}
+
+/// Keeps the pieces at a deflection.
+template <CurveView (NodeCurves::*kCurve)() const noexcept>
+void keep(const InterpolatedResponse& response, double at, KeptPieces& kept) noexcept {
+  const KnotMerge<kCurve> knots(response, response.natural(), at);
+  kept = {response.nodes(), knots.pieces(), knots.start(), knots.end()};
+}
+
+/// The piece that reaches the force, kept.
+template <CurveView (NodeCurves::*kCurve)() const noexcept>
+MergedPiece piece_of_force(const InterpolatedResponse& response, double force,
+                           KeptPieces& kept) noexcept {
+  if (kept.nodes != response.nodes()) keep<kCurve>(response, kept.from, kept);
+  const MergedPiece p = merged(kept.pieces, response.natural(), kept.from);
+  const bool begins_below = p.force < force || !(kept.from > 0);
+  if (begins_below && ends_above(p, kept.to - kept.from, force)) return p;
+  KnotMerge<kCurve> knots(response, response.natural(), kept.from);
+  const MergedPiece found = walk_to(knots, force);
+  kept = {response.nodes(), knots.pieces(), knots.start(), knots.end()};
+  return found;
+}
+
+/// Force and energy a length x after the start of the kept pieces, which merge to p.
+ReachedForce value_after(const InterpolatedResponse& response, const MergedPiece& p,
+                         const KeptPieces& kept, double x) noexcept {
+  const double energy = merged_energy(kept.pieces, response.natural(), kept.from);
+  return {kept.from + x, p.force_after(x), energy + p.work_after(x)};
+}
+
+template <CurveView (NodeCurves::*kCurve)() const noexcept>
+ReachedForce reach(const InterpolatedResponse& response, double force, KeptPieces& kept) noexcept {
+  if (!(force > 0)) return {};
+  const MergedPiece p = piece_of_force<kCurve>(response, force, kept);
+  const double x = std::min(solve_rising_quadratic(p, force), kept.to - kept.from);
+  if (!(x < kInfinity)) return {kInfinity, force, kInfinity};
+  return value_after(response, p, kept, x);
 }
 
 }  // namespace
@@ -157,16 +219,26 @@ double InterpolatedResponse::lateral_inverse(double force, const Vec3& weights) 
   return inverse_from(knots, force);
 }
 
-double InterpolatedResponse::normal_inverse(double force, double from) const noexcept {
-  if (!(force > 0.0)) return 0.0;
-  NormalKnots knots(*this, natural_, from);
-  return inverse_near(knots, force);
-}
-
 double InterpolatedResponse::lateral_inverse(double force, double from) const noexcept {
   if (!(force > 0.0)) return 0.0;
   LateralKnots knots(*this, natural_, from);
-  return inverse_near(knots, force);
+  const MergedPiece p = walk_to(knots, force);
+  return knots.start() + std::min(solve_rising_quadratic(p, force), knots.end() - knots.start());
+}
+
+ReachedForce InterpolatedResponse::normal_reach(double force, KeptPieces& kept) const noexcept {
+  return reach<&NodeCurves::normal>(*this, force, kept);
+}
+
+ReachedForce InterpolatedResponse::lateral_reach(double force, KeptPieces& kept) const noexcept {
+  return reach<&NodeCurves::lateral>(*this, force, kept);
+}
+
+ReachedForce InterpolatedResponse::lateral_at(double rho, KeptPieces& kept) const noexcept {
+  if (kept.nodes != nodes_ || !(kept.from <= rho && rho < kept.to))
+    keep<&NodeCurves::lateral>(*this, rho, kept);
+  const MergedPiece p = merged(kept.pieces, natural_, kept.from);
+  return value_after(*this, p, kept, rho - kept.from);
 }
 
 double InterpolatedResponse::lateral_inverse_below(double force, double from, const Vec3& weights,

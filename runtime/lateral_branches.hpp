@@ -45,9 +45,10 @@ class LateralBranches {
 
  private:
   struct Branch {
-    Vec3 deflection{};  ///< p_i, m
-    double reach = 0;   ///< |p_i|, m
-    Vec3 force{};       ///< M_i, N
+    Vec3 deflection{};          ///< p_i, m
+    double reach = 0;           ///< |p_i|, m
+    Vec3 force{};               ///< M_i, N
+    mutable KeptPieces pieces;  ///< where the next search begins; results do not depend on it
   };
   bool stays_tangential(const Vec3& normal) const noexcept;
 
