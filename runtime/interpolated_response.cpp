@@ -10,16 +10,6 @@
 namespace palpate::runtime {
 namespace {
 
-/// A response on one interval between consecutive knots of the merged sequence, from its start.
-struct MergedPiece {
-  double force = 0, slope = 0, curvature = 0;
-
-  double force_after(double x) const noexcept { return force + x * (slope + x * curvature); }
-  double work_after(double x) const noexcept {
-    return x * (force + x * (slope / 2.0 + x * (curvature * kThird)));
-  }
-};
-
 /// x >= 0 with force + slope x + curvature x^2 = target, for target >= force, slope >= 0; written
 /// so that no cancellation occurs whatever the sign of the curvature.
 double solve_rising_quadratic(const MergedPiece& p, double target) noexcept {
@@ -174,41 +164,56 @@ MergedPiece walk_to(Knots& knots, double force) noexcept {
   return advance_to(knots, force);
 }
 
-/// Keeps the pieces at a deflection.
-template <CurveView (NodeCurves::*kCurve)() const noexcept>
-void keep(const InterpolatedResponse& response, double at, KeptPieces& kept) noexcept {
-  const KnotMerge<kCurve> knots(response, response.natural(), at);
-  kept = {response.nodes(), knots.pieces(), knots.start(), knots.end()};
+/// Merges the kept pieces of the nodes at a point.
+void merge(const Vec3& natural, KeptPiece& kept) noexcept {
+  kept.natural = natural;
+  kept.merged = merged(kept.pieces, natural, kept.from);
+  kept.energy = merged_energy(kept.pieces, natural, kept.from);
+  kept.end_force = kept.to < kInfinity ? kept.merged.force_after(kept.to - kept.from) : kInfinity;
 }
 
-/// The piece that reaches the force, kept.
+/// Keeps the piece where the knots are.
+template <typename Knots>
+void keep(const InterpolatedResponse& response, const Knots& knots, KeptPiece& kept) noexcept {
+  kept.nodes = response.nodes();
+  kept.pieces = knots.pieces();
+  kept.from = knots.start();
+  kept.to = knots.end();
+  merge(response.natural(), kept);
+}
+
 template <CurveView (NodeCurves::*kCurve)() const noexcept>
-MergedPiece piece_of_force(const InterpolatedResponse& response, double force,
-                           KeptPieces& kept) noexcept {
-  if (kept.nodes != response.nodes()) keep<kCurve>(response, kept.from, kept);
-  const MergedPiece p = merged(kept.pieces, response.natural(), kept.from);
-  const bool begins_below = p.force < force || !(kept.from > 0);
-  if (begins_below && ends_above(p, kept.to - kept.from, force)) return p;
+void keep_at(const InterpolatedResponse& response, double at, KeptPiece& kept) noexcept {
+  keep(response, KnotMerge<kCurve>(response, response.natural(), at), kept);
+}
+
+/// Keeps the piece that reaches the force.
+template <CurveView (NodeCurves::*kCurve)() const noexcept>
+void keep_force(const InterpolatedResponse& response, double force, KeptPiece& kept) noexcept {
+  if (!kept.is_of(response.nodes())) {
+    keep_at<kCurve>(response, kept.from, kept);
+  } else if (!kept.is_at(response.natural())) {
+    merge(response.natural(), kept);
+  }
+  const bool begins_below = kept.merged.force < force || !(kept.from > 0);
+  if (begins_below && kept.end_force >= force) return;
   KnotMerge<kCurve> knots(response, response.natural(), kept.from);
-  const MergedPiece found = walk_to(knots, force);
-  kept = {response.nodes(), knots.pieces(), knots.start(), knots.end()};
-  return found;
+  walk_to(knots, force);
+  keep(response, knots, kept);
 }
 
-/// Force and energy a length x after the start of the kept pieces, which merge to p.
-ReachedForce value_after(const InterpolatedResponse& response, const MergedPiece& p,
-                         const KeptPieces& kept, double x) noexcept {
-  const double energy = merged_energy(kept.pieces, response.natural(), kept.from);
-  return {kept.from + x, p.force_after(x), energy + p.work_after(x)};
+/// Force and energy a length x after the start of a piece.
+ReachedForce value_after(const KeptPiece& kept, double x) noexcept {
+  return {kept.from + x, kept.merged.force_after(x), kept.energy + kept.merged.work_after(x)};
 }
 
 template <CurveView (NodeCurves::*kCurve)() const noexcept>
-ReachedForce reach(const InterpolatedResponse& response, double force, KeptPieces& kept) noexcept {
+ReachedForce reach(const InterpolatedResponse& response, double force, KeptPiece& kept) noexcept {
   if (!(force > 0)) return {};
-  const MergedPiece p = piece_of_force<kCurve>(response, force, kept);
-  const double x = std::min(solve_rising_quadratic(p, force), kept.to - kept.from);
+  keep_force<kCurve>(response, force, kept);
+  const double x = std::min(solve_rising_quadratic(kept.merged, force), kept.to - kept.from);
   if (!(x < kInfinity)) return {kInfinity, force, kInfinity};
-  return value_after(response, p, kept, x);
+  return value_after(kept, x);
 }
 
 }  // namespace
@@ -219,26 +224,35 @@ double InterpolatedResponse::lateral_inverse(double force, const Vec3& weights) 
   return inverse_from(knots, force);
 }
 
-double InterpolatedResponse::lateral_inverse(double force, double from) const noexcept {
+double InterpolatedResponse::lateral_inverse(double force, double from,
+                                             PiecesInUse& pieces) const noexcept {
   if (!(force > 0.0)) return 0.0;
+  look_up_lateral(from, pieces);
+  const MergedPiece here = merged(pieces.lateral, natural_, pieces.lateral_from);
+  const double length = pieces.lateral_to - pieces.lateral_from;
+  const bool begins_below = here.force < force || !(pieces.lateral_from > 0);
+  if (begins_below && ends_above(here, length, force))
+    return pieces.lateral_from + std::min(solve_rising_quadratic(here, force), length);
   LateralKnots knots(*this, natural_, from);
   const MergedPiece p = walk_to(knots, force);
   return knots.start() + std::min(solve_rising_quadratic(p, force), knots.end() - knots.start());
 }
 
-ReachedForce InterpolatedResponse::normal_reach(double force, KeptPieces& kept) const noexcept {
+ReachedForce InterpolatedResponse::normal_reach(double force, KeptPiece& kept) const noexcept {
   return reach<&NodeCurves::normal>(*this, force, kept);
 }
 
-ReachedForce InterpolatedResponse::lateral_reach(double force, KeptPieces& kept) const noexcept {
+ReachedForce InterpolatedResponse::lateral_reach(double force, KeptPiece& kept) const noexcept {
   return reach<&NodeCurves::lateral>(*this, force, kept);
 }
 
-ReachedForce InterpolatedResponse::lateral_at(double rho, KeptPieces& kept) const noexcept {
-  if (kept.nodes != nodes_ || !(kept.from <= rho && rho < kept.to))
-    keep<&NodeCurves::lateral>(*this, rho, kept);
-  const MergedPiece p = merged(kept.pieces, natural_, kept.from);
-  return value_after(*this, p, kept, rho - kept.from);
+ReachedForce InterpolatedResponse::lateral_at(double rho, KeptPiece& kept) const noexcept {
+  if (!kept.is_of(nodes_) || !(kept.from <= rho && rho < kept.to)) {
+    keep_at<&NodeCurves::lateral>(*this, rho, kept);
+  } else if (!kept.is_at(natural_)) {
+    merge(natural_, kept);
+  }
+  return value_after(kept, rho - kept.from);
 }
 
 double InterpolatedResponse::lateral_inverse_below(double force, double from, const Vec3& weights,

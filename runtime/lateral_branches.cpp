@@ -37,7 +37,7 @@ LateralMemory LateralBranches::carried_to(const LateralPlace& place, double fact
     if (!(branch.reach > 0)) continue;
     const Vec3 direction = (1 / branch.reach) * turned(branch.deflection, normal_, place.normal);
     const double reach = factor * branch.reach;
-    add_branch(sum, (*place.fractions)[i], place.response->lateral_at(reach, branch.pieces),
+    add_branch(sum, (*place.fractions)[i], place.response->lateral_at(reach, branch.piece),
                direction);
   }
   return sum;
@@ -45,17 +45,17 @@ LateralMemory LateralBranches::carried_to(const LateralPlace& place, double fact
 
 void LateralBranches::carry(const LateralPlace& place, const LateralMemory& carried) noexcept {
   if (carried.any && !carried.moved) return;
-  now_ = {};
+  now_ = carried;
+  now_.moved = false;
+  now_.carried = 1;
   if (!carried.any) return;
-  now_.any = true;
   for (std::size_t i = 0; i < count_; ++i) {
     Branch& branch = branches_[i];
     if (!(branch.reach > 0)) continue;
     const Vec3 direction = (1 / branch.reach) * turned(branch.deflection, normal_, place.normal);
     branch.reach *= carried.carried;
     branch.deflection = branch.reach * direction;
-    branch.force = add_branch(now_, (*place.fractions)[i],
-                              place.response->lateral_at(branch.reach, branch.pieces), direction);
+    branch.force = place.response->lateral_at(branch.reach, branch.piece).force * direction;
   }
   normal_ = place.normal;
 }
@@ -75,8 +75,8 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
     const double magnitude = norm(force);
     // The force is between two that were reached, so that its deflection is no longer than theirs.
     const double longest = std::max(branch.reach, lateral);
-    ReachedForce at = place.response->lateral_reach(magnitude, branch.pieces);
-    if (at.deflection > longest) at = place.response->lateral_at(longest, branch.pieces);
+    ReachedForce at = place.response->lateral_reach(magnitude, branch.piece);
+    if (at.deflection > longest) at = place.response->lateral_at(longest, branch.piece);
     branch.reach = at.deflection;
     const Vec3 direction = magnitude > 0 ? (1 / magnitude) * force : Vec3{};
     branch.deflection = branch.reach * direction;

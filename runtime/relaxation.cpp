@@ -18,7 +18,7 @@ constexpr NormalMemory kFresh{0, 0, 0, 0};
 constexpr double kReachable = 1 - 1e-12;
 
 /// G*(F), J; infinite where the force is beyond every depth of the response.
-double conjugate(const InterpolatedResponse& response, double force, KeptPieces& kept) noexcept {
+double conjugate(const InterpolatedResponse& response, double force, KeptPiece& kept) noexcept {
   return response.normal_reach(kReachable * force, kept).conjugate(force);
 }
 

@@ -74,8 +74,8 @@ class Relaxation {
   double decay_dt_ = -1;  ///< s, the dt of decay_
   NormalMemory now_;
   /// Where the next searches for the depths of F_i, and F, begin; results do not depend on them.
-  mutable std::array<KeptPieces, kMaxRelaxationTimes> pieces_{};
-  mutable KeptPieces skin_;
+  mutable std::array<KeptPiece, kMaxRelaxationTimes> pieces_{};
+  mutable KeptPiece skin_;
 };
 
 }  // namespace palpate::runtime
