@@ -10,11 +10,6 @@
 namespace palpate::runtime {
 namespace {
 
-/// h on one interval between consecutive knots of the merged sequence.
-struct MergedPiece {
-  double force = 0, slope = 0, curvature = 0;
-};
-
 /// x >= 0 with force + slope x + curvature x^2 = target, for target >= force, slope >= 0; written
 /// so that no cancellation occurs whatever the sign of the curvature.
 double solve_rising_quadratic(const MergedPiece& p, double target) noexcept {
@@ -40,7 +35,21 @@ MergedPiece merged(const std::array<const PackedPiece*, 3>& pieces, const Vec3& 
   return sum;
 }
 
+/// Its energy at `start`.
+double merged_energy(const std::array<const PackedPiece*, 3>& pieces, const Vec3& weights,
+                     double start) noexcept {
+  double sum = 0;
+  for (std::size_t l = 0; l < 3; ++l) sum += weights[l] * pieces[l]->evaluate(start).energy;
+  return sum;
+}
+
 constexpr PackedPiece kNothing;  // the zero response
+
+/// A piece of this length contains the answer of an inverse: it ends at the force or above, or has
+/// no end.
+bool ends_above(const MergedPiece& p, double length, double force) noexcept {
+  return !(length < kInfinity) || p.force_after(length) >= force;
+}
 
 /// The piece that contains a deflection, and its range.
 struct Found {
@@ -66,15 +75,17 @@ class KnotMerge {
     start_ = last_start();
   }
 
-  /// h from `start()` on, valid up to `end()`.
-  MergedPiece piece() const noexcept {
+  std::array<const PackedPiece*, 3> pieces() const noexcept {
     std::array<const PackedPiece*, 3> pieces;
     for (std::size_t l = 0; l < 3; ++l) {
       const CurveView view = curve(l);
       pieces[l] = view.size() == 0 ? &kNothing : &view.piece(index_[l]);
     }
-    return merged(pieces, weights_, start_);
+    return pieces;
   }
+
+  /// The response from `start()` on, valid up to `end()`.
+  MergedPiece piece() const noexcept { return merged(pieces(), weights_, start_); }
 
   double start() const noexcept { return start_; }
 
@@ -96,10 +107,8 @@ class KnotMerge {
     }
   }
 
-  /// The piece contains the answer of an inverse: it ends at the force or above, or has no end.
   bool reaches(const MergedPiece& p, double force) const noexcept {
-    const double length = end() - start_;
-    return !std::isfinite(length) || p.force + length * (p.slope + length * p.curvature) >= force;
+    return ends_above(p, end() - start_, force);
   }
 
   bool at_first() const noexcept { return !(start_ > 0); }
@@ -132,21 +141,79 @@ class KnotMerge {
 };
 
 using LateralKnots = KnotMerge<&NodeCurves::lateral>;
-using NormalKnots = KnotMerge<&NodeCurves::normal>;
+
+/// Advances to the piece that reaches the force.
+template <typename Knots>
+MergedPiece advance_to(Knots& knots, double force) noexcept {
+  MergedPiece p = knots.piece();
+  for (; !knots.reaches(p, force); p = knots.piece()) knots.advance();
+  return p;
+}
 
 /// The deflection at which the force is reached, on the piece that reaches it or after.
 template <typename Knots>
 double inverse_from(Knots& knots, double force) noexcept {
-  MergedPiece p = knots.piece();
-  for (; !knots.reaches(p, force); p = knots.piece()) knots.advance();
+  const MergedPiece p = advance_to(knots, force);
   return knots.start() + std::min(solve_rising_quadratic(p, force), knots.end() - knots.start());
 }
 
-/// The smallest such deflection, from any piece.
+/// Walks from any piece to the first that reaches the force.
 template <typename Knots>
-double inverse_near(Knots& knots, double force) noexcept {
+MergedPiece walk_to(Knots& knots, double force) noexcept {
   while (knots.piece().force >= force && !knots.at_first()) knots.retreat();
-  return inverse_from(knots, force);
+  return advance_to(knots, force);
+}
+
+/// Merges the kept pieces of the nodes at a point.
+void merge(const Vec3& natural, KeptPiece& kept) noexcept {
+  kept.natural = natural;
+  kept.merged = merged(kept.pieces, natural, kept.from);
+  kept.energy = merged_energy(kept.pieces, natural, kept.from);
+  kept.end_force = kept.to < kInfinity ? kept.merged.force_after(kept.to - kept.from) : kInfinity;
+}
+
+/// Keeps the piece where the knots are.
+template <typename Knots>
+void keep(const InterpolatedResponse& response, const Knots& knots, KeptPiece& kept) noexcept {
+  kept.nodes = response.nodes();
+  kept.pieces = knots.pieces();
+  kept.from = knots.start();
+  kept.to = knots.end();
+  merge(response.natural(), kept);
+}
+
+template <CurveView (NodeCurves::*kCurve)() const noexcept>
+void keep_at(const InterpolatedResponse& response, double at, KeptPiece& kept) noexcept {
+  keep(response, KnotMerge<kCurve>(response, response.natural(), at), kept);
+}
+
+/// Keeps the piece that reaches the force.
+template <CurveView (NodeCurves::*kCurve)() const noexcept>
+void keep_force(const InterpolatedResponse& response, double force, KeptPiece& kept) noexcept {
+  if (!kept.is_of(response.nodes())) {
+    keep_at<kCurve>(response, kept.from, kept);
+  } else if (!kept.is_at(response.natural())) {
+    merge(response.natural(), kept);
+  }
+  const bool begins_below = kept.merged.force < force || !(kept.from > 0);
+  if (begins_below && kept.end_force >= force) return;
+  KnotMerge<kCurve> knots(response, response.natural(), kept.from);
+  walk_to(knots, force);
+  keep(response, knots, kept);
+}
+
+/// Force and energy a length x after the start of a piece.
+ReachedForce value_after(const KeptPiece& kept, double x) noexcept {
+  return {kept.from + x, kept.merged.force_after(x), kept.energy + kept.merged.work_after(x)};
+}
+
+template <CurveView (NodeCurves::*kCurve)() const noexcept>
+ReachedForce reach(const InterpolatedResponse& response, double force, KeptPiece& kept) noexcept {
+  if (!(force > 0)) return {};
+  keep_force<kCurve>(response, force, kept);
+  const double x = std::min(solve_rising_quadratic(kept.merged, force), kept.to - kept.from);
+  if (!(x < kInfinity)) return {kInfinity, force, kInfinity};
+  return value_after(kept, x);
 }
 
 }  // namespace
@@ -157,16 +224,35 @@ double InterpolatedResponse::lateral_inverse(double force, const Vec3& weights) 
   return inverse_from(knots, force);
 }
 
-double InterpolatedResponse::normal_inverse(double force, double from) const noexcept {
+double InterpolatedResponse::lateral_inverse(double force, double from,
+                                             PiecesInUse& pieces) const noexcept {
   if (!(force > 0.0)) return 0.0;
-  NormalKnots knots(*this, natural_, from);
-  return inverse_near(knots, force);
+  look_up_lateral(from, pieces);
+  const MergedPiece here = merged(pieces.lateral, natural_, pieces.lateral_from);
+  const double length = pieces.lateral_to - pieces.lateral_from;
+  const bool begins_below = here.force < force || !(pieces.lateral_from > 0);
+  if (begins_below && ends_above(here, length, force))
+    return pieces.lateral_from + std::min(solve_rising_quadratic(here, force), length);
+  LateralKnots knots(*this, natural_, from);
+  const MergedPiece p = walk_to(knots, force);
+  return knots.start() + std::min(solve_rising_quadratic(p, force), knots.end() - knots.start());
 }
 
-double InterpolatedResponse::lateral_inverse(double force, double from) const noexcept {
-  if (!(force > 0.0)) return 0.0;
-  LateralKnots knots(*this, natural_, from);
-  return inverse_near(knots, force);
+ReachedForce InterpolatedResponse::normal_reach(double force, KeptPiece& kept) const noexcept {
+  return reach<&NodeCurves::normal>(*this, force, kept);
+}
+
+ReachedForce InterpolatedResponse::lateral_reach(double force, KeptPiece& kept) const noexcept {
+  return reach<&NodeCurves::lateral>(*this, force, kept);
+}
+
+ReachedForce InterpolatedResponse::lateral_at(double rho, KeptPiece& kept) const noexcept {
+  if (!kept.is_of(nodes_) || !(kept.from <= rho && rho < kept.to)) {
+    keep_at<&NodeCurves::lateral>(*this, rho, kept);
+  } else if (!kept.is_at(natural_)) {
+    merge(natural_, kept);
+  }
+  return value_after(kept, rho - kept.from);
 }
 
 double InterpolatedResponse::lateral_inverse_below(double force, double from, const Vec3& weights,

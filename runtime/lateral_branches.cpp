@@ -11,13 +11,12 @@ Vec3 turned(const Vec3& v, const Vec3& from, const Vec3& to) noexcept {
   return v - (dot(v, to) / (1 + dot(from, to))) * (from + to);
 }
 
-/// Adds the branch of a deflection of this length: M_i along `direction`, and H*(|M_i|).
-Vec3 add_branch(LateralMemory& sum, const InterpolatedResponse& response, double fraction,
-                double reach, const Vec3& direction) noexcept {
-  const CurveValue at = response.lateral(reach);
+/// Adds a branch whose force lies along `direction`, and returns that force M_i.
+Vec3 add_branch(LateralMemory& sum, double fraction, const ReachedForce& at,
+                const Vec3& direction) noexcept {
   const Vec3 force = at.force * direction;
   sum.relaxed = sum.relaxed + fraction * force;
-  sum.stored += fraction * (at.force * reach - at.energy);
+  sum.stored += fraction * at.conjugate(at.force);
   return force;
 }
 
@@ -37,24 +36,26 @@ LateralMemory LateralBranches::carried_to(const LateralPlace& place, double fact
     const Branch& branch = branches_[i];
     if (!(branch.reach > 0)) continue;
     const Vec3 direction = (1 / branch.reach) * turned(branch.deflection, normal_, place.normal);
-    add_branch(sum, *place.response, (*place.fractions)[i], factor * branch.reach, direction);
+    const double reach = factor * branch.reach;
+    add_branch(sum, (*place.fractions)[i], place.response->lateral_at(reach, branch.piece),
+               direction);
   }
   return sum;
 }
 
 void LateralBranches::carry(const LateralPlace& place, const LateralMemory& carried) noexcept {
   if (carried.any && !carried.moved) return;
-  now_ = {};
+  now_ = carried;
+  now_.moved = false;
+  now_.carried = 1;
   if (!carried.any) return;
-  now_.any = true;
   for (std::size_t i = 0; i < count_; ++i) {
     Branch& branch = branches_[i];
     if (!(branch.reach > 0)) continue;
     const Vec3 direction = (1 / branch.reach) * turned(branch.deflection, normal_, place.normal);
     branch.reach *= carried.carried;
     branch.deflection = branch.reach * direction;
-    branch.force =
-        add_branch(now_, *place.response, (*place.fractions)[i], branch.reach, direction);
+    branch.force = place.response->lateral_at(branch.reach, branch.piece).force * direction;
   }
   normal_ = place.normal;
 }
@@ -74,12 +75,12 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
     const double magnitude = norm(force);
     // The force is between two that were reached, so that its deflection is no longer than theirs.
     const double longest = std::max(branch.reach, lateral);
-    const double inverse = place.response->lateral_inverse(magnitude, branch.reach);
-    branch.reach = std::min(inverse, longest);
+    ReachedForce at = place.response->lateral_reach(magnitude, branch.piece);
+    if (at.deflection > longest) at = place.response->lateral_at(longest, branch.piece);
+    branch.reach = at.deflection;
     const Vec3 direction = magnitude > 0 ? (1 / magnitude) * force : Vec3{};
     branch.deflection = branch.reach * direction;
-    branch.force =
-        add_branch(now_, *place.response, (*place.fractions)[i], branch.reach, direction);
+    branch.force = add_branch(now_, (*place.fractions)[i], at, direction);
   }
 }
 

@@ -35,7 +35,7 @@ class LateralBranches {
   /// The same at another place: every deflection turns with the normal and is multiplied by
   /// `factor`.
   LateralMemory carried_to(const LateralPlace& place, double factor) const noexcept;
-  /// Brings them there; none: they are forgotten.
+  /// Brings them there, where carried_to() has found `carried`; none: they are forgotten.
   void carry(const LateralPlace& place, const LateralMemory& carried) noexcept;
   /// Time passes while the instantaneous force is `target` (N) at a deflection of `lateral` (m):
   /// M_i := target + (M_i - target) decay_i. V falls.
@@ -45,9 +45,10 @@ class LateralBranches {
 
  private:
   struct Branch {
-    Vec3 deflection{};  ///< p_i, m
-    double reach = 0;   ///< |p_i|, m
-    Vec3 force{};       ///< M_i, N
+    Vec3 deflection{};        ///< p_i, m
+    double reach = 0;         ///< |p_i|, m
+    Vec3 force{};             ///< M_i, N
+    mutable KeptPiece piece;  ///< where the next search begins; results do not depend on it
   };
   bool stays_tangential(const Vec3& normal) const noexcept;
 

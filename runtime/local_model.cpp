@@ -23,8 +23,8 @@ void LocalModel::replace_memory(const TissueMemory& memory, const Deflection& d,
   at.energy += at.relaxed.energy - before.energy;
   at.at_depth.friction_normal_force = at.relaxed.force;
   at.at_depth.energy = at.relaxed.energy;
-  if (memory.lateral.any || memory_.lateral.any)
-    relax_laterally(memory.lateral, memory_.lateral, d, at);
+  if (memory.lateral.any || memory_->lateral.any)
+    relax_laterally(memory.lateral, memory_->lateral, d, at);
   set_memory(memory);
 }
 
@@ -40,13 +40,13 @@ void LocalModel::relax_laterally(const LateralMemory& memory, const LateralMemor
 /// The force f that is felt becomes limit f/|f|, and q the deflection at which grad H is M plus
 /// that. It is between M and the present grad H, so that it has been reached.
 LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResponse& at,
-                                            double limit) const noexcept {
-  const Vec3& relaxed = memory_.lateral.relaxed;
+                                            double limit, PiecesInUse& pieces) const noexcept {
+  const Vec3& relaxed = memory_->lateral.relaxed;
   const Vec3 felt = at.instant_lateral_force * d.tangent - relaxed;
   const Vec3 instant = relaxed + (std::max(limit, 0.0) / at.lateral_force) * felt;
   const double magnitude = norm(instant);
   LateralSlip slip;
-  slip.lateral = response_.lateral_inverse(magnitude, d.lateral);
+  slip.lateral = response_.lateral_inverse(magnitude, d.lateral, pieces);
   if (!(slip.lateral < kInfinity)) slip.lateral = d.lateral;  // by rounding, at the end of a curve
   if (slip.lateral > 0) slip.tangent = (1 / magnitude) * instant;
   const Vec3 path = d.lateral * d.tangent - slip.lateral * slip.tangent;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <optional>
 
 #include "format/vec3.hpp"
 #include "runtime/interpolated_response.hpp"
@@ -76,16 +77,16 @@ class LocalModel {
     LocalResponse r;
     if (response_.coupled()) {
       r.at_depth = response_.at_depth(d.depth, pieces);
-      if (relaxes_) relax_at_depth(d.depth, r);
+      if (memory_) relax_at_depth(d.depth, r);
       respond_at_depth(d, pieces, r);
       return r;
     }
     const InterpolatedResponse::Decoupled at = response_.decoupled_at(d.depth, d.lateral, pieces);
-    if (relaxes_) {
-      r.relaxed = relaxed_response(memory_.normal, {d.depth, at.normal.force, at.normal.energy});
+    if (memory_) {
+      r.relaxed = relaxed_response(memory_->normal, {d.depth, at.normal.force, at.normal.energy});
       take({r.relaxed.force, at.lateral.force, r.relaxed.energy + at.lateral.energy}, d, r);
       r.instant_lateral_force = at.lateral.force;
-      if (memory_.lateral.any) relax_laterally(memory_.lateral, {}, d, r);
+      if (memory_->lateral.any) relax_laterally(memory_->lateral, {}, d, r);
     } else {
       take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
     }
@@ -113,7 +114,7 @@ class LocalModel {
   /// (R25). Neither raises E.
   LateralSlip slip_within(const Deflection& d, const LocalResponse& at, double limit,
                           PiecesInUse& pieces) const noexcept {
-    if (memory_.lateral.any) return relaxed_slip_within(d, at, limit);
+    if (memory_ && memory_->lateral.any) return relaxed_slip_within(d, at, limit, pieces);
     const double rho = lateral_below(d, at, limit, pieces);
     return {d.lateral - rho, d.tangent, rho, rho > 0 ? d.tangent : Vec3{}};
   }
@@ -144,11 +145,9 @@ class LocalModel {
   /// Sets s to the part of the vector across n.
   void set_lateral_offset(const Vec3& s) noexcept { lateral_offset_ = s - dot(s, n_) * n_; }
   /// The responses relax, and this is what they remember.
-  void set_memory(const TissueMemory& memory) noexcept {
-    memory_ = memory;
-    relaxes_ = true;
-  }
-  const TissueMemory& memory() const noexcept { return memory_; }
+  void set_memory(const TissueMemory& memory) noexcept { memory_.emplace(memory); }
+  /// @pre the responses relax
+  const TissueMemory& memory() const noexcept { return *memory_; }
   /// The response of another memory, from that of the present one at the same deflection.
   void replace_memory(const TissueMemory& memory, const Deflection& d, LocalResponse& at) noexcept;
   const InterpolatedResponse& response() const noexcept { return response_; }
@@ -168,10 +167,10 @@ class LocalModel {
   }
   void relax_laterally(const LateralMemory& memory, const LateralMemory& before,
                        const Deflection& d, LocalResponse& r) const noexcept;
-  LateralSlip relaxed_slip_within(const Deflection& d, const LocalResponse& at,
-                                  double limit) const noexcept;
+  LateralSlip relaxed_slip_within(const Deflection& d, const LocalResponse& at, double limit,
+                                  PiecesInUse& pieces) const noexcept;
   void relax_at_depth(double depth, LocalResponse& r) const noexcept {
-    r.relaxed = relaxed_response(memory_.normal,
+    r.relaxed = relaxed_response(memory_->normal,
                                  {depth, r.at_depth.friction_normal_force, r.at_depth.energy});
     r.at_depth.friction_normal_force = r.relaxed.force;
     r.at_depth.energy = r.relaxed.energy;
@@ -182,6 +181,18 @@ class LocalModel {
     r.friction_normal_force = r.at_depth.friction_normal_force;
   }
 
+  /// A copy that an optional makes only where there is one: a step copies its model several times,
+  /// and elastic tissue shall not pay for a memory.
+  struct CopiedIfAny : TissueMemory {
+    explicit CopiedIfAny(const TissueMemory& memory) noexcept : TissueMemory(memory) {}
+    CopiedIfAny(const CopiedIfAny& other) noexcept : TissueMemory(other) {}
+    CopiedIfAny& operator=(const CopiedIfAny& other) noexcept {
+      if (this != &other) TissueMemory::operator=(other);
+      return *this;
+    }
+    ~CopiedIfAny() = default;
+  };
+
   const Surface* surface_;
   SurfacePoint point_;
   Vec3 c_;
@@ -189,8 +200,7 @@ class LocalModel {
   InterpolatedResponse response_;
   double offset_;
   Vec3 lateral_offset_{};
-  bool relaxes_ = false;
-  TissueMemory memory_;
+  std::optional<CopiedIfAny> memory_;  ///< none: the responses do not relax
 };
 
 }  // namespace palpate::runtime

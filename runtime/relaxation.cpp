@@ -17,12 +17,9 @@ constexpr NormalMemory kFresh{0, 0, 0, 0};
 /// G, so that this changes it by less than its own rounding.
 constexpr double kReachable = 1 - 1e-12;
 
-/// G*(F), J. depth: where the search for g = F begins; on return its result.
-double conjugate(const InterpolatedResponse& response, double force, double& depth) noexcept {
-  const double reached = response.normal_inverse(kReachable * force, depth);
-  if (!(reached < kInfinity)) return kInfinity;
-  depth = reached;
-  return force * reached - response.normal(reached).energy;
+/// G*(F), J; infinite where the force is beyond every depth of the response.
+double conjugate(const InterpolatedResponse& response, double force, KeptPiece& kept) noexcept {
+  return response.normal_reach(kReachable * force, kept).conjugate(force);
 }
 
 }  // namespace
@@ -36,7 +33,7 @@ NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Branch
     if (!(fractions[i] > 0)) continue;
     const double force = factor * memory_[i];
     sum.relaxed += fractions[i] * force;
-    sum.stored += fractions[i] * conjugate(response, force, depth_[i]);
+    sum.stored += fractions[i] * conjugate(response, force, pieces_[i]);
   }
   sum.locked = sum.stored < kInfinity
                    ? std::max(sum.stored - conjugate(response, sum.relaxed, skin_), 0.0)

@@ -2,6 +2,7 @@
 // The memories of a contact with tissue that relaxes.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -72,10 +73,9 @@ class Relaxation {
   Branches decay_{};      ///< exp(-dt/tau_i)
   double decay_dt_ = -1;  ///< s, the dt of decay_
   NormalMemory now_;
-  /// Depths at which g was F_i, and F, m: where the next search begins; results do not depend on
-  /// them.
-  mutable Branches depth_{};
-  mutable double skin_ = 0;
+  /// Where the next searches for the depths of F_i, and F, begin; results do not depend on them.
+  mutable std::array<KeptPiece, kMaxRelaxationTimes> pieces_{};
+  mutable KeptPiece skin_;
 };
 
 }  // namespace palpate::runtime

@@ -197,6 +197,54 @@ TEST(InterpolatedResponse, RememberedPiecesGiveTheSumsOfTheCurvesFromWhateverSta
   }
 }
 
+/// What a reached force is to a response, independently of how it was found: force and energy are
+/// those of the response there, and the conjugate energy is the largest F d - E.
+template <typename Value>
+void expect_reached(const ReachedForce& reached, double force, const Value& value, double other) {
+  const CurveValue there = value(reached.deflection);
+  EXPECT_NEAR(reached.force, force, 1e-12 * (1 + force));
+  EXPECT_NEAR(there.force, force, 1e-12 * (1 + force));
+  EXPECT_NEAR(reached.energy, there.energy, 1e-12 * there.energy);
+  EXPECT_GE(reached.conjugate(force), force * other - value(other).energy - 1e-14);
+}
+
+TEST(InterpolatedResponse, AForceIsReachedAtTheSameDepthWhateverPieceWasKept) {
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> any(0, 1);
+  const Nodes one(random), other(random, true);
+  KeptPiece normal, lateral;
+  for (int trial = 0; trial < 20000; ++trial) {
+    const InterpolatedResponse r = (trial % 40 < 20 ? one : other).at(random_natural(random));
+    const double d = 0.03 * any(random);
+    const auto g = [&](double z) { return r.normal(z); };
+    const auto h = [&](double rho) { return r.lateral(rho); };
+    const double force = g(0.02 * any(random)).force * any(random);
+    KeptPiece fresh;
+    const ReachedForce z = r.normal_reach(force, normal);
+    EXPECT_EQ(z.deflection, r.normal_reach(force, fresh).deflection);
+    EXPECT_EQ(z.energy, r.normal_reach(force, fresh).energy);
+    expect_reached(z, force, g, d);
+    const double lateral_force = h(0.02 * any(random)).force * any(random);
+    const ReachedForce rho = r.lateral_reach(lateral_force, lateral);
+    EXPECT_EQ(rho.deflection, r.lateral_inverse(lateral_force));
+    expect_reached(rho, lateral_force, h, d);
+    const ReachedForce at = r.lateral_at(d, lateral);
+    EXPECT_NEAR(at.force, h(d).force, 1e-12 * h(d).force);
+    EXPECT_NEAR(at.energy, h(d).energy, 1e-12 * h(d).energy);
+  }
+}
+
+TEST(InterpolatedResponse, AForceBeyondEveryDepthIsReachedNowhere) {
+  const CompiledCurve flat(ResponseCurve{{0.0F, 0.001F, 0.002F}, {100.0F, 0.0F, 0.0F}});
+  std::array<CacheLine, 4> memory;
+  const NodeCurves node = NodeCurves::write(memory.data(), flat, flat);
+  const InterpolatedResponse r({&node, &node, &node}, {0.2, 0.3, 0.5});
+  KeptPiece kept;
+  EXPECT_TRUE(std::isinf(r.normal_reach(0.06, kept).conjugate(0.06)));
+  EXPECT_NEAR(r.normal_reach(0.04, kept).force, 0.04, 1e-14);
+  EXPECT_EQ(r.normal_reach(0, kept).deflection, 0);
+}
+
 TEST(InterpolatedResponse, NothingSlipsWhereTheLateralForceStaysBelowTheLimit) {
   const CompiledCurve lateral(ResponseCurve{{0.0F, 0.001F, 0.002F}, {100.0F, 0.0F, 0.0F}});
   std::array<CacheLine, 4> memory;
