@@ -226,7 +226,7 @@ class Session(unittest.TestCase):
     def test_an_identified_device_is_certified_by_its_own_profile(self):
         subprocess.run([WRITE_PLATE, self.library, "0.3"], check=True)
         profile = self.root / "measured.toml"
-        measure = ["identify", "--watchdog", 60, "--rate", 6000, "--seconds", 6, "--out", profile]
+        measure = ["identify", "--watchdog", 60, "--rate", 6000, "--seconds", 9, "--out", profile]
         incomplete = palpate(*measure)
         self.assertEqual(incomplete.returncode, INCOMPLETE, incomplete.stderr)
         self.assertIn("force resolution is left out", incomplete.stderr)

@@ -118,7 +118,7 @@ TEST(SmallestFriction, BetweenDirectionsIsAtLeastSevenTenthsOfThatAlongThem) {
   }
   EXPECT_LT(0.695 * largest, 1);
   EXPECT_GT(0.72 * largest, 1);
-  EXPECT_GT(0.60 * largest_of_axes, 1);
+  EXPECT_GT(0.62 * largest_of_axes, 1);  // sqrt(3) where the diagonal of the joints is an axis
 }
 
 /// Along no direction does a tip that joints lead astray show more friction than a motion along it
