@@ -255,7 +255,7 @@ class Fitter {
     for (const PressPlan& plan : plans_) {
       usable_ = model_.forces(plan, at, sites_[plan.set], refusal);
       if (usable_) continue;
-      if (settings_.log) settings_.log(line + ", " + refusal);
+      if (settings_.log) settings_.log(fmt::format("{}, {}", line, refusal));
       return false;
     }
     for (const Target& target : targets_) {
