@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
-#include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <string>
+#include <vector>
 
 #include "app/export/deck.hpp"
 #include "app/export/mesh_file.hpp"
@@ -20,12 +18,14 @@
 #include "tests/support/prism_body.hpp"
 #include "tests/support/round_cap.hpp"
 #include "tests/support/sample_laws.hpp"
+#include "tests/verification/calculix.hpp"
 #include "tests/verification/record.hpp"
 
 namespace palpate::app {
 namespace {
 
-namespace fs = std::filesystem;
+using test::numbers_below;
+using test::printed_by_calculix;
 
 constexpr double kPatchRadius = 0.005;
 
@@ -50,34 +50,6 @@ fem::CampaignSettings settings_of(const fem::LawConstants& law, fem::Dilatation 
   settings.indentation.increments = 3;
   settings.indentation.lateral_depths.clear();
   return settings;
-}
-
-/// What CalculiX prints of a deck.
-std::string printed_by_calculix(const std::string& deck) {
-  std::string name = (fs::temp_directory_path() / "palpate-ccx-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-  const fs::path folder = name;
-  std::ofstream(folder / "site.inp") << deck;
-  const std::string command =
-      "cd " + folder.string() + " && OMP_NUM_THREADS=1 timeout 550 ccx site > site.log 2>&1";
-  EXPECT_EQ(std::system(command.c_str()), 0) << "install ccx (Debian package calculix-ccx)";
-  std::ostringstream printed;
-  printed << std::ifstream(folder / "site.dat").rdbuf();
-  fs::remove_all(folder);
-  return printed.str();
-}
-
-/// The numbers below each line with this text.
-template <std::size_t N>
-std::vector<std::array<double, N>> numbers_below(const std::string& title,
-                                                 const std::string& text) {
-  std::vector<std::array<double, N>> found;
-  std::istringstream printed(text);
-  for (std::string line; std::getline(printed, line);) {
-    if (line.find(title) == std::string::npos) continue;
-    for (double& x : found.emplace_back()) printed >> x;
-  }
-  return found;
 }
 
 /// Force of the patch on the body after each increment, as CalculiX prints it.
