@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "app/export/deck.hpp"
 #include "app/export/mesh_file.hpp"

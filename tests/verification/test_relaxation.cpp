@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <sstream>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "tests/support/block_body.hpp"
 #include "tests/support/equilibrium.hpp"
 #include "tests/support/prism_body.hpp"
+#include "tests/verification/calculix.hpp"
 #include "tests/verification/record.hpp"
 
 namespace palpate::fem {
@@ -46,11 +49,17 @@ double hereditary(const std::function<double(double)>& value, double t) {
   return sum;
 }
 
+/// Bulk modulus of mu = 1.
+double bulk_modulus(double poisson) {
+  return 2 * (1 + poisson) / (3 * (1 - 2 * poisson));
+}
+
 /// A body of mu = 1 with prescribed displacements in time.
 class RelaxingBody {
  public:
-  explicit RelaxingBody(const Body& body)
-      : elastic_(body, {NeoHookean::from_moduli(1, 2 * (1 + kPoisson) / (3 * (1 - 2 * kPoisson)))}),
+  explicit RelaxingBody(const Body& body, double poisson = kPoisson,
+                        Dilatation dilatation = Dilatation::Mean)
+      : elastic_(body, {NeoHookean::from_moduli(1, bulk_modulus(poisson))}, dilatation),
         branches_(over_one_list({kSeries}, "t"), elastic_.mesh().region),
         u_(Displacement::Zero(3, elastic_.mesh().nodes())) {}
 
@@ -166,6 +175,91 @@ TEST(RelaxingBlock, ShearedHasTheStressOfTheHereditaryIntegral) {
                 check(kBlocks, "simple shear of 0.5", t, on_face(body, 1, 0),
                       hereditary(S12, t) + kShear * ramp(t) * hereditary(S22, t), 1e-3);
               });
+}
+
+/// Elements on one set of nodes with springs and dashpots of small strains: an elastic part of
+/// g_inf mu, and one for each branch, whose deviatoric stress relaxes as a Maxwell element since it
+/// creeps with the rate (3/2) s/(3 g_i mu tau_i) [Norton's law, exponent 1]. They share kappa.
+std::string maxwell_elements(const QuadraticMesh& mesh, double poisson) {
+  std::ostringstream deck;
+  deck.precision(15);
+  deck << "*NODE, NSET=ALL\n";
+  for (int node = 0; node < mesh.nodes(); ++node) {
+    deck << node + 1;
+    for (int axis = 0; axis < 3; ++axis) deck << ',' << mesh.X(axis, node);
+    deck << '\n';
+  }
+  std::size_t number = 0;
+  const auto part = [&](const std::string& name, double fraction, double time) {
+    deck << "*ELEMENT, TYPE=C3D10, ELSET=" << name << '\n';
+    for (const auto& nodes : mesh.tetrahedra) {
+      deck << ++number;
+      for (const auto node : nodes) deck << ',' << node + 1;
+      deck << '\n';
+    }
+    deck << "*MATERIAL, NAME=" << name << "\n*ELASTIC\n"
+         << 2 * (1 + poisson) * fraction << ',' << poisson << '\n';
+    if (time > 0) deck << "*CREEP, LAW=NORTON\n" << 1 / (3 * fraction * time) << ",1.,0.\n";
+    deck << "*SOLID SECTION, ELSET=" << name << ", MATERIAL=" << name << '\n';
+  };
+  part("RUBBER", long_term_fraction(kSeries), 0);
+  for (std::size_t i = 0; i < kSeries.size(); ++i)
+    part("BRANCH" + std::to_string(i), kSeries[i].fraction, kSeries[i].time_s);
+  return deck.str();
+}
+
+constexpr double kSqueeze = 1e-3;  ///< so that the strain is small
+constexpr double kSqueezedPoisson = 0.4;
+
+/// The base is held, the top moves down by kSqueeze without moving sideways; then it rests.
+std::string squeezing_deck(const QuadraticMesh& mesh) {
+  std::ostringstream deck;
+  deck << maxwell_elements(mesh, kSqueezedPoisson);
+  for (const int level : {0, 1}) {
+    deck << "*NSET, NSET=LEVEL" << level << '\n';
+    for (int node = 0; node < mesh.nodes(); ++node)
+      if (mesh.X(2, node) == level) deck << node + 1 << ",\n";
+  }
+  // Without an amplitude a viscous step moves the top at once.
+  deck << "*BOUNDARY\nLEVEL0,1,3\nLEVEL1,1,2\n*AMPLITUDE, NAME=RAMP\n0.,0.," << kRamp << ",1.\n";
+  double now = 0;
+  for (const double end : kTimes) {
+    const bool ramping = now == 0;
+    const char* increment = ramping ? "0.005" : "0.02";
+    deck << "*STEP, INC=100000\n*VISCO, CETOL=1.\n"
+         << increment << ',' << end - now << ",1e-8," << increment << '\n'
+         << (ramping ? "*BOUNDARY, AMPLITUDE=RAMP\n" : "*BOUNDARY\n") << "LEVEL1,3,3," << -kSqueeze
+         << '\n'
+         << "*NODE PRINT, NSET=LEVEL1, TOTALS=ONLY, FREQUENCY=100000\nRF\n*END STEP\n";
+    now = end;
+  }
+  return deck.str();
+}
+
+/// The stress is not even, and the material compressible: no hereditary integral of one curve.
+TEST(RelaxingBlock, SqueezedBetweenPlatesHasTheForceOfMaxwellElementsInCalculix) {
+  RelaxingBody body(test::uneven_cube(), kSqueezedPoisson, Dilatation::Pointwise);
+  const auto printed =
+      test::numbers_below<3>("total force", test::printed_by_calculix(squeezing_deck(body.mesh())));
+  ASSERT_EQ(printed.size(), kTimes.size());
+  const auto prescribed_on = [&](double part) {
+    std::vector<Prescribed> list;
+    for (int node = 0; node < body.mesh().nodes(); ++node)
+      for (int axis = 0; axis < 3; ++axis) {
+        const double height = body.mesh().X(2, node);
+        if (height == 0 || height == 1)
+          list.push_back({body.equation(node) + axis, axis == 2 ? -kSqueeze * part * height : 0});
+      }
+    return list;
+  };
+  std::size_t i = 0;
+  body.follow(prescribed_on, kTimes, [&](double t) {
+    char name[64];
+    std::snprintf(name, sizeof name, "force at %.1f s", t);
+    test::verify({"Relaxation of a block squeezed by 0.001 between plates, nu = 0.4", name, "mu",
+                  on_face(body, 2, 2), printed[i++][2], test::Reference::OtherSolver,
+                  "CalculiX, Maxwell elements on the same nodes", 5e-3});
+  });
 }
 
 /// Radii 1 and 2. p = integral of 2 (sigma_t - sigma_r) dr/r, with hoop stretch l, radial l^-2.

@@ -15,6 +15,9 @@
 
 namespace palpate::samples {
 
+/// s, of delays that an identification looks for.
+inline constexpr double kLargestDelay = 0.03;
+
 struct MovedDevice {
   Vec3 mass{0.1, 0.1, 0.1}, damping{0.1, 0.1, 0.1}, friction{0.02, 0.02, 0.02};  ///< of each joint
   identify::Frame joints{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};  ///< directions in which they move

@@ -8,12 +8,10 @@
 namespace palpate::identify {
 namespace {
 
-constexpr double kLargestDelay = 0.03;  // s
-
 TEST(AxisEquations, HoldForTheConstantsOfTheDeviceAtItsDelay) {
   const samples::MovedDevice d;
   const MotionRecord record = samples::moved(d, 1);
-  const AxisEquations equations(record, kLargestDelay);
+  const AxisEquations equations(record, samples::kLargestDelay);
   ASSERT_EQ(equations.axes(), std::vector<std::size_t>{0});  // of the frame along y
   EquationFit known;
   known.solution.resize(5);

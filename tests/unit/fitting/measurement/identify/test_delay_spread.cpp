@@ -13,10 +13,8 @@ namespace {
 
 using samples::MovedDevice;
 
-constexpr double kLargestDelay = 0.03;  // s
-
 AxisEstimate estimate(const MovedDevice& d) {
-  AxisEstimate e = estimate_axis(samples::moved(d, 0), kLargestDelay);
+  AxisEstimate e = estimate_axis(samples::moved(d, 0), samples::kLargestDelay);
   EXPECT_EQ(e.problem, "");
   return e;
 }
@@ -77,7 +75,7 @@ TEST(DelaySpread, CountsWhatLengthensThePeriod) {
 TEST(DelaySpread, IsNotKnownWithoutJumps) {
   MotionRecord record = samples::moved({}, 0);
   record.jump.clear();
-  const AxisEstimate e = estimate_axis(record, kLargestDelay);
+  const AxisEstimate e = estimate_axis(record, samples::kLargestDelay);
   EXPECT_EQ(e.problem, "");
   EXPECT_TRUE(std::isnan(delay_bound(e.delay, e.spread, 0)));
 }

@@ -16,8 +16,6 @@ namespace {
 
 using samples::MovedDevice;
 
-constexpr double kLargestDelay = 0.03;  // s
-
 std::vector<Directional> values(const std::vector<Vec3>& directions, double (*value)(const Vec3&),
                                 double deviation = 0) {
   std::vector<Directional> found;
@@ -79,7 +77,7 @@ TEST(SmallestFriction, OfJointsAlongDiagonalsIsThatOfAJoint) {
   d.resolution = 1e-6;
   std::vector<Directional> friction, damping, along_axes;
   for (const Vec3& n : directions_between({0, 1, 2})) {
-    const AxisEstimate e = estimate_axis(samples::moved_along(d, n), kLargestDelay);
+    const AxisEstimate e = estimate_axis(samples::moved_along(d, n), samples::kLargestDelay);
     ASSERT_EQ(e.problem, "") << direction_name(n);
     friction.push_back({n, e.friction});
     damping.push_back({n, e.damping[0]});
@@ -130,7 +128,7 @@ TEST(SmallestFriction, OfJointsThatLeadTheTipAstrayIsOnTheSafeSide) {
   d.mass = {0.1, 0.07, 0.13};
   d.friction = {0.03, 0.02, 0.04};
   for (const Vec3& n : directions_between({0, 1, 2})) {
-    const AxisEstimate e = estimate_axis(samples::moved_along(d, n), kLargestDelay);
+    const AxisEstimate e = estimate_axis(samples::moved_along(d, n), samples::kLargestDelay);
     double along = 0;
     for (std::size_t j = 0; j < 3; ++j) along += d.friction[j] * std::abs(dot(d.joints[j], n));
     EXPECT_LT(e.friction.low(), along) << direction_name(n);

@@ -12,14 +12,12 @@ namespace {
 using samples::moved;
 using samples::MovedDevice;
 
-constexpr double kLargestDelay = 0.03;  // s
-
 double mean_delay(const MovedDevice& d) {
   return d.delay + d.delay_spread / 2 + d.lateness / 2;
 }
 
 void expect_recovered(const MovedDevice& d, std::size_t axis, double tolerance) {
-  const AxisEstimate e = estimate_axis(moved(d, axis), kLargestDelay);
+  const AxisEstimate e = estimate_axis(moved(d, axis), samples::kLargestDelay);
   ASSERT_EQ(e.problem, "");
   EXPECT_NEAR(e.mass.value, d.mass[axis], tolerance * d.mass[axis]);
   EXPECT_NEAR(e.damping[0].value, d.damping[axis], tolerance * d.damping[axis]);
@@ -79,7 +77,7 @@ TEST(AxisEstimate, BoundsAreOnTheSafeSideInRepeatedMeasurements) {
     d.resolution = 1e-5;
     d.delay = 1.6e-3;
     d.seed = seed;
-    const AxisEstimate e = estimate_axis(moved(d, 0), kLargestDelay);
+    const AxisEstimate e = estimate_axis(moved(d, 0), samples::kLargestDelay);
     damping += e.damping[0].low() < d.damping[0] ? 1 : 0;
     friction += e.friction.low() < d.friction[0] ? 1 : 0;
     delay += e.delay.high() > d.delay ? 1 : 0;
@@ -99,7 +97,7 @@ TEST(AxisEstimate, BoundsAreOnTheSafeSideWhereTheDelayVaries) {
     d.delay_spread = 5e-4;
     d.lateness = 3e-4;
     d.seed = seed;
-    const AxisEstimate e = estimate_axis(moved(d, 0), kLargestDelay);
+    const AxisEstimate e = estimate_axis(moved(d, 0), samples::kLargestDelay);
     damping += e.damping[0].low() < d.damping[0] ? 1 : 0;
     friction += e.friction.low() < d.friction[0] ? 1 : 0;
     const double largest = d.delay + d.delay_spread + d.lateness;
@@ -113,16 +111,16 @@ TEST(AxisEstimate, BoundsAreOnTheSafeSideWhereTheDelayVaries) {
 TEST(AxisEstimate, SaysWhatIsWrongWithMotionThatTellsNothing) {
   MovedDevice stuck;
   stuck.friction = {2, 2, 2};
-  EXPECT_NE(estimate_axis(moved(stuck, 0), kLargestDelay).problem.find("moves too little"),
+  EXPECT_NE(estimate_axis(moved(stuck, 0), samples::kLargestDelay).problem.find("moves too little"),
             std::string::npos);
   MovedDevice brief;
   brief.seconds = 2;
-  EXPECT_NE(estimate_axis(moved(brief, 0), kLargestDelay).problem, "");
+  EXPECT_NE(estimate_axis(moved(brief, 0), samples::kLargestDelay).problem, "");
   MotionRecord reversed = moved({}, 0);
   for (Vec3& x : reversed.position) x = -x;
-  EXPECT_NE(estimate_axis(reversed, kLargestDelay).problem.find("does not follow"),
+  EXPECT_NE(estimate_axis(reversed, samples::kLargestDelay).problem.find("does not follow"),
             std::string::npos);
-  EXPECT_NE(estimate_axis({}, kLargestDelay).problem, "");
+  EXPECT_NE(estimate_axis({}, samples::kLargestDelay).problem, "");
 }
 
 TEST(PositionStep, IsThatOfTheGridOrSmall) {
