@@ -12,6 +12,7 @@
 #include "app/pipeline/settings.hpp"
 #include "app/vtkhdf/grids.hpp"
 #include "fem/campaign/bonded_patch.hpp"
+#include "fem/relaxation/relaxing_press.hpp"
 #include "fem/solid/pressure_smoothness.hpp"
 #include "fitting/deformation/coarsen.hpp"
 #include "format/body.hpp"
@@ -108,9 +109,10 @@ int export_skin(const Workspace& space, int modes) {
 struct SiteOptions {
   std::int32_t vertex = -1;
   bool calculix = false, febio = false;
-  bool lateral = false;     ///< moves the tool sideways after the press
-  bool patch = false;       ///< displaces a bonded patch instead of the tool
-  double patch_radius = 0;  ///< mm; 0: that of the tool
+  bool lateral = false;                        ///< moves the tool sideways after the press
+  bool patch = false;                          ///< displaces a bonded patch instead of the tool
+  double patch_radius = 0;                     ///< mm; 0: that of the tool
+  double press_seconds = 0, hold_seconds = 0;  ///< into tissue that relaxes; 0: not given
 };
 
 /// The solution of palpate for a deck.
@@ -172,6 +174,26 @@ OwnSolution press_tool(const Body& body, fem::CampaignSettings settings, std::in
   return own;
 }
 
+/// The same press at its speed, and the hold.
+OwnSolution press_and_hold(const Body& body, const fem::CampaignSettings& settings,
+                           std::int32_t vertex, const PressAndHold& pace) {
+  const double depth = settings.indentation.depth;
+  std::vector<fem::ToolMotion> motion{{0, 0}, {pace.press, depth}};
+  if (pace.hold > 0) motion.push_back({pace.press + pace.hold, depth});
+  const fem::RelaxingPress press = fem::press_relaxing(body, settings, vertex, motion);
+  OwnSolution own{"time_s,depth_m,force_x_N,force_y_N,force_z_N,penetration_m\n",
+                  "",
+                  fmt::format("{} pressed in {:.3g} s and held for {:.3g} s",
+                              name_of(settings.indentation.tool.shape), pace.press, pace.hold),
+                  press.samples.back().travel,
+                  norm(press.samples.back().force),
+                  press.reason};
+  for (const fem::RelaxingSample& s : press.samples)
+    own.csv += fmt::format("{},{},{},{},{},{}\n", s.time_s, s.travel, s.force[0], s.force[1],
+                           s.force[2], s.penetration);
+  return own;
+}
+
 /// The body of the case: a site solved on the mesh of another one has forces of neither.
 Body body_of_case(const Workspace& space) {
   Body body = read_body(space.body());
@@ -190,8 +212,14 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
   const bool patch = options.patch || options.patch_radius > 0;
   const double radius =
       options.patch_radius > 0 ? 1e-3 * options.patch_radius : settings.indentation.tool.radius;
-  const Deck deck = patch ? make_patch_deck(body, settings, options.vertex, radius)
-                          : make_tool_deck(body, settings, options.vertex, options.lateral);
+  Deck deck = patch ? make_patch_deck(body, settings, options.vertex, radius)
+                    : make_tool_deck(body, settings, options.vertex, options.lateral);
+  if (options.press_seconds > 0) {
+    if (!deck.relaxes())
+      refuse("--press-seconds", "no tissue of the case relaxes: its forces do not depend on time",
+             "leave it out");
+    deck.pace = PressAndHold{options.press_seconds, options.hold_seconds};
+  }
   const std::string stem = fmt::format("site-{}", options.vertex);
   const auto save = [&](const std::string& text, const std::string& name) {
     write_file_crash_safely(space.out / name, text);
@@ -201,8 +229,9 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
   const std::string calculix = options.calculix ? calculix_deck(deck) : std::string();
   const std::string febio = options.febio ? febio_deck(deck) : std::string();
   const OwnSolution own =
-      patch ? press_patch(body, settings, options.vertex, radius, deck.patch.size())
-            : press_tool(body, settings, options.vertex, options.lateral);
+      patch       ? press_patch(body, settings, options.vertex, radius, deck.patch.size())
+      : deck.pace ? press_and_hold(body, settings, options.vertex, *deck.pace)
+                  : press_tool(body, settings, options.vertex, options.lateral);
   if (!calculix.empty()) save(calculix, stem + ".inp");
   if (!febio.empty()) save(febio, stem + ".feb");
   save(own.csv, stem + (patch ? "-patch.csv" : "-tool.csv"));
@@ -309,7 +338,7 @@ void add_export_command(CLI::App& root, Action& action) {
   site->add_option("--vertex", options->vertex, "Response vertex, as in curves.csv")->required();
   CLI::Option* calculix =
       site->add_flag("--calculix", options->calculix, "Write site-N.inp for CalculiX");
-  site->add_flag("--febio", options->febio, "Write site-N.feb for FEBio 4");
+  CLI::Option* febio = site->add_flag("--febio", options->febio, "Write site-N.feb for FEBio 4");
   CLI::Option* patch = site->add_flag(
       "--patch", options->patch,
       "Displace a bonded patch of surface nodes instead of the tool, without contact");
@@ -321,6 +350,14 @@ void add_export_command(CLI::App& root, Action& action) {
       ->needs(calculix)
       ->excludes(patch)
       ->excludes(radius);
+  CLI::Option* press =
+      site->add_option("--press-seconds", options->press_seconds,
+                       "Time of the press, s, for tissue that relaxes: FEBio alone has it")
+          ->check(CLI::PositiveNumber)
+          ->needs(febio);
+  site->add_option("--hold-seconds", options->hold_seconds, "Time of the hold after it, s")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(press);
 }
 
 }  // namespace palpate::app

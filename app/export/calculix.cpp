@@ -197,6 +197,9 @@ class Writer {
 }  // namespace
 
 std::string calculix_deck(const Deck& deck) {
+  if (deck.relaxes())
+    refuse("site", "CalculiX has no law that relaxes by a series, and tissue of the case does",
+           "export for FEBio (--febio), or a case without relaxation");
   return Writer(deck).write();
 }
 

@@ -67,10 +67,8 @@ Deck body_deck(const Body& body, const fem::CampaignSettings& settings, std::int
     }
     const std::string where = "material of region '" + region + "'";
     fem::check_law(found->law, where);
-    if (!found->relaxation.empty())
-      refuse(where, "decks for other programs have no relaxation",
-             "export a case without it: the instantaneous tissue, or that in the long term");
     deck.laws.push_back(found->law);
+    deck.relaxation.push_back(found->relaxation);
   }
   deck.direction = body.response.inward[to_index(vertex)];
   deck.depth = settings.indentation.depth;
@@ -103,6 +101,11 @@ LateralMove first_lateral_move(const fem::IndentationSettings& press, const Vec3
 
 }  // namespace
 
+bool Deck::relaxes() const {
+  return std::any_of(relaxation.begin(), relaxation.end(),
+                     [](const RelaxationSeries& series) { return !series.empty(); });
+}
+
 fem::Facet facet_of(const fem::Tetrahedron10& element, std::int32_t side) {
   // kTetSides go around as seen from within.
   const auto [c, b, a] = kTetSides[to_index(side)];
@@ -119,6 +122,9 @@ Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, st
   }
   fem::BondedPatch patch = fem::bonded_patch(body, vertex, radius);
   Deck deck = body_deck(body, settings, vertex);
+  if (deck.relaxes())
+    refuse(body.name, "a bonded patch is displaced at no speed, and tissue of the case relaxes",
+           "export the tool (without --patch), or a case without relaxation");
   deck.title = fmt::format("{}: site {}, surface nodes within {:.6g} m moved inward by {:.6g} m",
                            body.name, vertex, radius, deck.depth);
   deck.mesh = std::move(patch.mesh);

@@ -39,6 +39,12 @@ struct LateralMove {
   int increments = 1;
 };
 
+/// How the tool is moved into tissue that relaxes: at constant speed, then not at all.
+struct PressAndHold {
+  double press = 1;  ///< s, from first touch to the depth
+  double hold = 0;   ///< s, at the depth
+};
+
 struct Deck {
   std::string title;
   fem::QuadraticMesh mesh;          ///< `held`: by the supports alone
@@ -47,16 +53,20 @@ struct Deck {
   bool no_slip = false;  ///< of the tool while it is pressed
   std::optional<LateralMove> lateral;
   std::vector<std::string> region_names;
-  std::vector<fem::LawConstants> laws;  ///< of each region
-  Vec3 direction{};                     ///< of the motion, unit
-  double depth = 0;                     ///< m, at the end
+  std::vector<fem::LawConstants> laws;  ///< of each region; instantaneous ones where it relaxes
+  std::vector<RelaxationSeries> relaxation;  ///< of each region
+  Vec3 direction{};                          ///< of the motion, unit
+  double depth = 0;                          ///< m, at the end
   int increments = 1;
+  std::optional<PressAndHold> pace;  ///< where a region relaxes
+
+  bool relaxes() const;
 };
 
 /// The surface nodes within `radius` of a site moved inward together: no contact, which any program
 /// can repeat node by node.
-/// @throws Error(Configuration) for linear elements, and as fem::bonded_patch and
-/// fem::run_campaign.
+/// @throws Error(Configuration) for linear elements, tissue that relaxes, and as fem::bonded_patch
+/// and fem::run_campaign.
 Deck make_patch_deck(const Body& body, const fem::CampaignSettings& settings, std::int32_t vertex,
                      double radius);
 
@@ -72,14 +82,17 @@ Deck make_tool_deck(const Body& body, const fem::CampaignSettings& settings, std
 /// which agrees with that of palpate to second order in J - 1 (but for Arruda-Boyce, where it is
 /// the same). Contact without slip is Coulomb friction with a coefficient of 5, which holds the
 /// points of facets that are pressed; palpate ties nodes.
-/// @throws Error(Configuration) naming the region and the law where CalculiX has none like it.
+/// @throws Error(Configuration) naming the region and the law where CalculiX has none like it; for
+/// tissue that relaxes.
 std::string calculix_deck(const Deck& deck);
 
 /// Input of FEBio, file format 4.0: tet10 elements of four points, uncoupled laws with the same
 /// volumetric energy as here, sliding-elastic contact; the forces of the tool or the nodes of the
-/// patch go to a text file.
+/// patch go to a text file. Regions that relax are `uncoupled viscoelastic`: the convolution of the
+/// isochoric stress with the series, as in fem/relaxation. The time of the deck is then that of the
+/// press and the hold, which ends in steps that grow.
 /// @throws Error(Configuration) naming the region and the law where FEBio has none like it; for
-/// contact without slip.
+/// contact without slip; for tissue that relaxes without `pace` or with more than six terms.
 std::string febio_deck(const Deck& deck);
 
 }  // namespace palpate::app

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -65,9 +66,22 @@ FebioLaw febio_law(const fem::LawConstants& c) {
   return {};
 }
 
+/// Times of a hold, from its start, in intervals that grow: the force changes most in the first.
+std::vector<double> times_of_hold(double hold) {
+  constexpr int kIntervals = 16;
+  constexpr double kGrowth = 1.4;
+  std::vector<double> times;
+  for (int i = 1; i <= kIntervals && hold > 0; ++i)
+    times.push_back(hold * (std::pow(kGrowth, i) - 1) / (std::pow(kGrowth, kIntervals) - 1));
+  return times;
+}
+
 class Writer {
  public:
-  explicit Writer(const Deck& deck) : deck_(deck) {}
+  explicit Writer(const Deck& deck)
+      : deck_(deck),
+        press_(deck.pace ? deck.pace->press : 1),
+        hold_(deck.pace ? deck.pace->hold : 0) {}
 
   std::string write() {
     add("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- {} -->\n<febio_spec version=\"4.0\">\n",
@@ -80,8 +94,10 @@ class Writer {
     boundary();
     if (deck_.tool) contact(*deck_.tool);
     add("<LoadData>\n<load_controller id=\"1\" name=\"ramp\" type=\"loadcurve\">\n"
-        "<interpolate>LINEAR</interpolate>\n<points><pt>0,0</pt><pt>1,1</pt></points>\n"
-        "</load_controller>\n");
+        "<interpolate>LINEAR</interpolate>\n<points><pt>0,0</pt><pt>{:.12g},1</pt>",
+        press_);
+    if (hold_ > 0) add("<pt>{:.12g},1</pt>", press_ + hold_);
+    add("</points>\n</load_controller>\n");
     if (deck_.tool) must_points();
     add("</LoadData>\n");
     output();
@@ -123,20 +139,23 @@ class Writer {
   /// Steps from a fiftieth of the path on, halved where they fail: after a large first one the
   /// tool is so deep in the surface that elements are inverted. They meet each increment.
   void steps_of_contact() {
-    constexpr int kSteps = 50;
+    const double length = press_ + hold_;
+    const int steps = static_cast<int>(std::ceil(50 * length / press_));
     add("<time_steps>{0}</time_steps>\n<step_size>{1:.12g}</step_size>\n"
         "<time_stepper type=\"default\">\n<max_retries>10</max_retries>\n<opt_iter>15</opt_iter>\n"
         "<dtmin>{2:.12g}</dtmin>\n<dtmax lc=\"2\">1</dtmax>\n</time_stepper>\n",
-        kSteps, 1.0 / kSteps, 1e-3 / kSteps);
+        steps, length / steps, 1e-3 * length / steps);
   }
 
   /// The longest step; FEBio meets every point of this curve.
   void must_points() {
-    const double increment = 1.0 / deck_.increments;
+    const double increment = press_ / deck_.increments;
     add("<load_controller id=\"2\" name=\"increments\" type=\"loadcurve\">\n"
         "<interpolate>STEP</interpolate>\n<points>");
     for (int i = 0; i <= deck_.increments; ++i)
       add("<pt>{:.12g},{:.12g}</pt>", i * increment, increment);
+    for (const double time : times_of_hold(hold_))
+      add("<pt>{:.12g},{:.12g}</pt>", press_ + time, hold_);
     add("</points>\n</load_controller>\n");
   }
 
@@ -153,9 +172,13 @@ class Writer {
                     "veronda-westmann, gent, saint-venant-kirchhoff, holzapfel-gasser-ogden with a "
                     "constant direction");
       }
+      const RelaxationSeries& series = deck_.relaxation[region];
       add("<material id=\"{}\" name=\"{}\" type=\"{}\">\n", region + 1,
-          escape_markup(deck_.region_names[region]), law.type);
+          escape_markup(deck_.region_names[region]),
+          series.empty() ? law.type : "uncoupled viscoelastic");
+      if (!series.empty()) terms(series, law.type);
       for (const auto& [name, value] : law.parameters) add("<{0}>{1:.12g}</{0}>\n", name, value);
+      if (!series.empty()) add("</elastic>\n");
       if (c.law != "saint-venant-kirchhoff") {
         add("<k>{:.12g}</k>\n<pressure_model>3</pressure_model>\n", fem::rest_moduli(c).kappa());
       }
@@ -168,6 +191,15 @@ class Writer {
           tool_material(), tool_name());
     }
     add("</Material>\n");
+  }
+
+  /// The series, and the beginning of the law that relaxes. Of it g0 is left in the long term.
+  void terms(const RelaxationSeries& series, const std::string& law) {
+    add("<g0>{:.12g}</g0>\n", long_term_fraction(series));
+    for (std::size_t i = 0; i < series.size(); ++i)
+      add("<g{0}>{1:.12g}</g{0}>\n<t{0}>{2:.12g}</t{0}>\n", i + 1, series[i].fraction,
+          series[i].time_s);
+    add("<elastic type=\"{}\">\n", law);
   }
 
   /// First axis: the mean direction, or that of the only family.
@@ -328,8 +360,23 @@ class Writer {
   }
 
   const Deck& deck_;
+  double press_, hold_;  ///< s; without relaxation time means nothing, and the press takes 1
   std::string out_;
 };
+
+void check_relaxation_of(const Deck& deck) {
+  constexpr std::size_t kMostTerms = 6;
+  if (!deck.relaxes()) return;
+  if (!deck.pace)
+    refuse(
+        "site", "tissue of the case relaxes, and the force depends on the speed of the tool",
+        "say how long the press takes (--press-seconds), and the hold after it (--hold-seconds)");
+  for (std::size_t region = 0; region < deck.relaxation.size(); ++region)
+    if (deck.relaxation[region].size() > kMostTerms)
+      refuse("material of region '" + deck.region_names[region] + "'",
+             fmt::format("FEBio has at most {} terms of relaxation", kMostTerms),
+             "merge terms whose times are close");
+}
 
 }  // namespace
 
@@ -337,6 +384,7 @@ std::string febio_deck(const Deck& deck) {
   if (deck.no_slip || deck.lateral)
     throw Error(ErrorKind::Configuration, "tool", "FEBio decks have contact without friction",
                 "export for CalculiX (--calculix), or a press without friction");
+  check_relaxation_of(deck);
   return Writer(deck).write();
 }
 

@@ -7,6 +7,7 @@ Usage: test_measured_relaxation.py PALPATE SOURCE_DIR
 """
 import csv
 import json
+import math
 import re
 import shutil
 import sys
@@ -141,6 +142,25 @@ class MeasuredRelaxation(unittest.TestCase):
         self.assertAlmostEqual(direct[0]["holds"][0]["model_left"], hold["measured_left"], delta=0.03)
         cycles = compared["relaxing"][1]
         self.assertAlmostEqual(cycles["model_loss_J"] / cycles["measured_loss_J"], 1, delta=0.2)
+
+    def test_a_site_for_febio_is_pressed_in_the_time_given_and_held(self):
+        case, out = SOURCE / "data/cases/relaxing-pad.toml", self.folder / "deck"
+        self.ok("mesh", case, "--out", out)
+        said = self.ok("export", "site", case, "--out", out, "--vertex", 12, "--febio", "--press-seconds", 0.2,
+                       "--hold-seconds", 2)
+        self.assertIn("pressed in 0.2 s and held for 2 s", said)
+        rows = list(csv.DictReader((out / "site-12-tool.csv").open()))
+        force = {float(row["time_s"]): abs(float(row["force_z_N"])) for row in rows}
+        # The same press of quasi-linear tissue, whose force grows like that of Hertz.
+        terms = [(float(f), float(t)) for f, t in re.findall(r'fraction = ([\d.]+), time = "([\d.]+) s"', case.read_text())]
+
+        def relaxed(time, parts=1000):
+            g = [1 - sum(f * (1 - math.exp(-(time - 0.2 * (i + 0.5) / parts) / t)) for f, t in terms)
+                 for i in range(parts)]
+            return sum(g[i] * (((i + 1) / parts) ** 1.5 - (i / parts) ** 1.5) for i in range(parts))
+        self.assertAlmostEqual(max(force), 2.2)
+        self.assertAlmostEqual(force[max(force)] / max(force.values()), relaxed(2.2) / relaxed(0.2), delta=0.02)
+        self.assertIn("<t2>3.965</t2>", (out / "site-12.feb").read_text())
 
     def test_meat_from_the_record_to_a_library_that_relaxes_as_another_site_does(self):
         """A public data set: the series of three sites predicts the force of a fourth over time, with one factor."""

@@ -50,6 +50,14 @@ inline Deck sphere_deck() {
   return make_tool_deck(body, pressed_by(kTools[0]), test::site_nearest(body, 0.01, 0.01));
 }
 
+/// The same where the tissue relaxes.
+inline Deck relaxing_deck(const RelaxationSeries& series) {
+  const Body body = block();
+  fem::CampaignSettings settings = pressed_by(kTools[0]);
+  settings.materials.front().relaxation = series;
+  return make_tool_deck(body, settings, test::site_nearest(body, 0.01, 0.01));
+}
+
 /// Nodes and elements of body and tool.
 inline std::size_t nodes_of(const Deck& deck) {
   return static_cast<std::size_t>(deck.mesh.X.cols() + deck.tool->mesh.X.cols());

@@ -3,8 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <regex>
+#include <string>
+#include <utility>
 
+#include "format/numbers.hpp"
 #include "tests/support/sample_laws.hpp"
 #include "tests/unit/app/export/decks.hpp"
 
@@ -74,6 +79,61 @@ TEST(FebioDeck, OfAToolStepsFromAFiftiethOfThePathAndMeetsEveryIncrement) {
   EXPECT_EQ(count(curve, "<pt>"), static_cast<std::size_t>(deck.increments) + 1);
   const std::size_t value = text.find("<penalty>") + 9;
   EXPECT_DOUBLE_EQ(std::stod(text.substr(value)), 0.1 * deck.tool->stiffness);
+}
+
+/// The time of the first and the last point of a load curve.
+std::pair<double, double> times_of(const std::string& text, const char* curve) {
+  static const std::regex point("<pt>([^,]+),");
+  const auto at = [&](std::size_t i) { return text.begin() + static_cast<std::ptrdiff_t>(i); };
+  const std::size_t begin = text.find(curve), end = text.find("</load_controller>", begin);
+  std::pair<double, double> times{kInfinity, 0};
+  for (std::sregex_iterator it(at(begin), at(end), point), last; it != last; ++it) {
+    const double time = std::stod((*it)[1]);
+    times = {std::min(times.first, time), std::max(times.second, time)};
+  }
+  return times;
+}
+
+TEST(FebioDeck, OfTissueThatRelaxesTakesTheTimeOfPressAndHold) {
+  Deck deck = relaxing_deck({{0.3, 0.05}, {0.2, 2}});
+  deck.pace = PressAndHold{0.5, 3};
+  const std::string text = febio_deck(deck);
+  EXPECT_EQ(xml_fault(text), "");
+  for (const char* curve : {"name=\"ramp\"", "name=\"increments\""})
+    EXPECT_EQ(times_of(text, curve), std::pair(0.0, 3.5)) << curve;
+  EXPECT_THAT(text, HasSubstr("<pt>0.5,1</pt><pt>3.5,1</pt>"));
+  const double steps = std::stod(text.substr(text.find("<time_steps>") + 12)),
+               step = std::stod(text.substr(text.find("<step_size>") + 11));
+  EXPECT_NEAR(steps * step, 3.5, 1e-9);
+  EXPECT_LE(step, 0.01);
+  EXPECT_EQ(count(text, "uncoupled viscoelastic"), 1u);
+  EXPECT_EQ(count(text, "<k>"), 1u);  // of the outer material: FEBio ignores that of the inner one
+}
+
+TEST(FebioDeck, OfTissueThatRelaxesNeedsATimeAndAtMostSixTerms) {
+  const auto refusal = [](const auto& write) -> std::string {
+    try {
+      write();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "written";
+  };
+  Deck deck = relaxing_deck({{0.3, 0.05}});
+  EXPECT_THAT(refusal([&] { febio_deck(deck); }), HasSubstr("--press-seconds"));
+  EXPECT_THAT(refusal([&] { calculix_deck(deck); }), HasSubstr("--febio"));
+  RelaxationSeries many;
+  for (int i = 1; i <= 7; ++i) many.push_back({0.1, 0.1 * i});
+  deck = relaxing_deck(many);
+  deck.pace = PressAndHold{};
+  EXPECT_THAT(refusal([&] { febio_deck(deck); }), HasSubstr("at most 6 terms"));
+  fem::CampaignSettings settings = pressed_by(kTools[0]);
+  settings.materials.front().relaxation = {{0.3, 0.05}};
+  EXPECT_THAT(refusal([&] {
+                const Body body = block();
+                make_patch_deck(body, settings, test::site_nearest(body, 0.01, 0.01), 0.0052);
+              }),
+              HasSubstr("without --patch"));
 }
 
 TEST(FebioDeck, NamesTheLawThatTheProgramLacks) {

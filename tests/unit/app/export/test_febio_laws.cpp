@@ -4,14 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <regex>
+#include <string>
 
 #include "app/export/deck.hpp"
 #include "fem/laws/law.hpp"
 #include "tests/support/block_body.hpp"
 #include "tests/support/sample_laws.hpp"
+#include "tests/unit/app/export/decks.hpp"
 
 namespace palpate::app {
 namespace {
@@ -160,6 +163,47 @@ TEST(FebioLaws, HaveTheStressesOfTheirs) {
     }
   }
   EXPECT_EQ(compared, 20);
+}
+
+/// FEBio's stress in steps (FEUncoupledViscoElasticMaterial, January 2026), for one that is 1 at
+/// once and grows evenly until `press`.
+double relaxed_by_febio(const Material& m, double press, double end, int steps) {
+  double before = 0, stress = 0;
+  std::map<std::string, double> times, history;  // of each term, by its number
+  for (const auto& [name, value] : m.values)
+    if (name[0] == 't') times[name.substr(1)] = value;
+  const double dt = end / steps;
+  for (int step = 1; step <= steps; ++step) {
+    const double now = std::min(step * dt / press, 1.0);
+    stress = m.at("g0") * now;
+    for (const auto& [number, time] : times) {
+      const double x = dt / time;
+      double& H = history[number];
+      H = H * std::exp(-x) + (now - before) * (1 - std::exp(-x)) / x;
+      stress += m.at(std::string("g").append(number)) * H;
+    }
+    before = now;
+  }
+  return stress;
+}
+
+/// The hereditary integral of g(t - s) over a stress that grows evenly for `press`.
+TEST(FebioLaws, RelaxAsTheSeriesOfTheCase) {
+  const RelaxationSeries series{{0.3, 0.05}, {0.2, 2}};
+  Deck deck = relaxing_deck(series);
+  deck.pace = PressAndHold{0.5, 3};
+  const std::string text = febio_deck(deck);
+  EXPECT_NE(text.find("<elastic type=\"Mooney-Rivlin\">"), std::string::npos);
+  const Material material = material_in(text);
+  EXPECT_EQ(material.type, "uncoupled viscoelastic");
+  EXPECT_NEAR(material.at("c1"), fem::rest_moduli(deck.laws[0]).mu() / 2, 1e-9 * material.at("c1"));
+  for (const double end : {0.5, 0.6, 3.5}) {
+    constexpr int kParts = 20000;
+    double expected = 0;
+    for (int i = 0; i < kParts; ++i)
+      expected += relaxed_fraction(series, end - 0.5 * (i + 0.5) / kParts) / kParts;
+    EXPECT_NEAR(relaxed_by_febio(material, 0.5, end, 700), expected, 1e-6) << end;
+  }
 }
 
 }  // namespace
