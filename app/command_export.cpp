@@ -294,6 +294,40 @@ CLI::App* add_part(CLI::App& parent, Action& action, const char* name, const cha
   return part;
 }
 
+void add_site_part(CLI::App& parent, Action& action) {
+  const auto options = std::make_shared<SiteOptions>();
+  CLI::App* site =
+      add_part(parent, action, "site",
+               "Deformed body at one site -> site-N.vtkhdf, or an input file of another solver",
+               [options](const Workspace& space) {
+                 const bool decks = options->calculix || options->febio;
+                 return decks ? export_decks(space, *options) : export_site(space, options->vertex);
+               });
+  site->add_option("--vertex", options->vertex, "Response vertex, as in curves.csv")->required();
+  CLI::Option* calculix =
+      site->add_flag("--calculix", options->calculix, "Write site-N.inp for CalculiX");
+  CLI::Option* febio = site->add_flag("--febio", options->febio, "Write site-N.feb for FEBio 4");
+  CLI::Option* patch = site->add_flag(
+      "--patch", options->patch,
+      "Displace a bonded patch of surface nodes instead of the tool, without contact");
+  CLI::Option* radius = site->add_option("--patch-radius-mm", options->patch_radius,
+                                         "Radius of the patch, mm (default: that of the tool)")
+                            ->check(CLI::PositiveNumber);
+  site->add_flag("--lateral", options->lateral,
+                 "After the press move the tool along the first lateral path, without slip")
+      ->needs(calculix)
+      ->excludes(patch)
+      ->excludes(radius);
+  CLI::Option* press =
+      site->add_option("--press-seconds", options->press_seconds,
+                       "Time of the press, s, for tissue that relaxes: FEBio alone has it")
+          ->check(CLI::PositiveNumber)
+          ->needs(febio);
+  site->add_option("--hold-seconds", options->hold_seconds, "Time of the hold after it, s")
+      ->check(CLI::NonNegativeNumber)
+      ->needs(press);
+}
+
 }  // namespace
 
 void add_export_command(CLI::App& root, Action& action) {
@@ -327,37 +361,7 @@ void add_export_command(CLI::App& root, Action& action) {
       ->check(CLI::Range(1, 512))
       ->capture_default_str();
   add_recording_part(*command, action);
-  const auto options = std::make_shared<SiteOptions>();
-  CLI::App* site =
-      add_part(*command, action, "site",
-               "Deformed body at one site -> site-N.vtkhdf, or an input file of another solver",
-               [options](const Workspace& space) {
-                 const bool decks = options->calculix || options->febio;
-                 return decks ? export_decks(space, *options) : export_site(space, options->vertex);
-               });
-  site->add_option("--vertex", options->vertex, "Response vertex, as in curves.csv")->required();
-  CLI::Option* calculix =
-      site->add_flag("--calculix", options->calculix, "Write site-N.inp for CalculiX");
-  CLI::Option* febio = site->add_flag("--febio", options->febio, "Write site-N.feb for FEBio 4");
-  CLI::Option* patch = site->add_flag(
-      "--patch", options->patch,
-      "Displace a bonded patch of surface nodes instead of the tool, without contact");
-  CLI::Option* radius = site->add_option("--patch-radius-mm", options->patch_radius,
-                                         "Radius of the patch, mm (default: that of the tool)")
-                            ->check(CLI::PositiveNumber);
-  site->add_flag("--lateral", options->lateral,
-                 "After the press move the tool along the first lateral path, without slip")
-      ->needs(calculix)
-      ->excludes(patch)
-      ->excludes(radius);
-  CLI::Option* press =
-      site->add_option("--press-seconds", options->press_seconds,
-                       "Time of the press, s, for tissue that relaxes: FEBio alone has it")
-          ->check(CLI::PositiveNumber)
-          ->needs(febio);
-  site->add_option("--hold-seconds", options->hold_seconds, "Time of the hold after it, s")
-      ->check(CLI::NonNegativeNumber)
-      ->needs(press);
+  add_site_part(*command, action);
 }
 
 }  // namespace palpate::app
