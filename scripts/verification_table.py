@@ -122,7 +122,8 @@ def main(arguments):
         print(line)
     if found:
         print(f"docs/VERIFICATION.md differs from the rows; make it again: "
-              f"scripts/verification_table.py {folders[0]}")
+              f"scripts/verification_table.py {folders[0]}\n"
+              f"(rows of a test that has another name now: remove its file from {folders[0]} first)")
     return 1 if found else 0
 
 
