@@ -6,8 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <string>
@@ -86,6 +89,32 @@ TEST(LoopThread, OfADurationTakesOneStepInEachPeriodAndEndsByItself) {
   thread.stop();
   EXPECT_EQ(rig.loop.counts().steps + rig.loop.counts().missed, 250U);
   EXPECT_EQ(rig.device.commanded.back(), Vec3{});
+}
+
+/// Keeps when its steps were due, and how many periods passed without one.
+class DueTimes : public runtime::LoopBody {
+ public:
+  bool tick(std::int64_t due) noexcept override {
+    if (count < due_at.size()) due_at[count++] = due;
+    return count < due_at.size();
+  }
+  void count_overrun(std::int64_t periods) noexcept override { missed += periods; }
+  std::int64_t heartbeat() const noexcept override { return due_at[0]; }
+
+  std::array<std::int64_t, 40> due_at{};  ///< ns
+  std::size_t count = 0;
+  std::int64_t missed = 0;
+};
+
+TEST(LoopThread, StepsAreDueAPeriodApartOfTheRate) {
+  DueTimes loop;
+  ScriptedDevice device;
+  LoopThread thread(loop, device, ordinary(2500, 10));
+  wait_until_over(thread);
+  thread.stop();
+  ASSERT_EQ(loop.count, loop.due_at.size());
+  const auto periods = static_cast<std::int64_t>(loop.count) - 1 + loop.missed;
+  EXPECT_EQ(loop.due_at.back() - loop.due_at.front(), 400'000 * periods);
 }
 
 TEST(LoopThread, OfADurationCountsTheMissedPeriodsUpToItsEnd) {
