@@ -283,6 +283,7 @@ TEST_F(PalpateLoop, TheWatchdogIsTwentyPeriodsByDefault) {
   report.size = sizeof report;
   EXPECT_EQ(palpate_loop_stop(loop, &report), PALPATE_OK);
   EXPECT_EQ(report.halted, 0U);
+  EXPECT_EQ(report.lost, 0U);
   EXPECT_EQ(report.late, 0U);
 }
 

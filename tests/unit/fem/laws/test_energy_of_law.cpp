@@ -41,6 +41,28 @@ TEST(EnergyOfLaw, HasThePrincipalStressesOfTheSolverButForAPressure) {
   }
 }
 
+/// W1 and W2 by differences of W. Ogden's energies are functions of the stretches.
+TEST(EnergyOfLaw, SlopesByTheInvariantsAreThoseOfItsValue) {
+  constexpr double kX = 0.4, kY = 0.3, kStep = 1e-5;
+  std::size_t compared = 0;
+  for (const LawConstants& sample : test::sample_laws(kPoisson)) {
+    if (!has_isotropic_energy(sample.law) || sample.law.starts_with("ogden")) continue;
+    const std::vector<double> values = in_order(sample);
+    compared += with_energy(sample.law, std::span<const double>(values), [&](const auto& energy) {
+      if constexpr (requires { energy.value(kX, kY); }) {
+        const auto W = energy.slopes(kX, kY);
+        const double by_x = energy.value(kX + kStep, kY) - energy.value(kX - kStep, kY);
+        const double by_y = energy.value(kX, kY + kStep) - energy.value(kX, kY - kStep);
+        EXPECT_NEAR(by_x / (2 * kStep), W.W1, 1e-7 * W.W1) << sample.law;
+        EXPECT_NEAR(by_y / (2 * kStep), W.W2, 1e-7 * W.W1) << sample.law;
+        return std::size_t{1};
+      }
+      return std::size_t{0};
+    });
+  }
+  EXPECT_EQ(compared, 8U);
+}
+
 TEST(EnergyOfLaw, SlopesAreTheDerivativesOfTheStresses) {
   for (const LawConstants& sample : test::sample_laws(kPoisson)) {
     if (!has_isotropic_energy(sample.law)) continue;
