@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <CLI/CLI.hpp>
+#include <optional>
 
 #include "app/case/names.hpp"
 #include "app/case_options.hpp"
@@ -109,10 +110,11 @@ int export_skin(const Workspace& space, int modes) {
 struct SiteOptions {
   std::int32_t vertex = -1;
   bool calculix = false, febio = false;
-  bool lateral = false;                        ///< moves the tool sideways after the press
-  bool patch = false;                          ///< displaces a bonded patch instead of the tool
-  double patch_radius = 0;                     ///< mm; 0: that of the tool
-  double press_seconds = 0, hold_seconds = 0;  ///< into tissue that relaxes; 0: not given
+  bool lateral = false;                 ///< moves the tool sideways after the press
+  bool patch = false;                   ///< displaces a bonded patch instead of the tool
+  double patch_radius = 0;              ///< mm; 0: that of the tool
+  std::optional<double> press_seconds;  ///< into tissue that relaxes
+  double hold_seconds = 0;
 };
 
 /// The solution of palpate for a deck.
@@ -205,8 +207,18 @@ Body body_of_case(const Workspace& space) {
   return body;
 }
 
+/// The ranges of CLI11 let "nan" through.
+void require_time(const char* option, double seconds, double least) {
+  constexpr double kMost = 1e6;
+  if (!(seconds >= least && seconds <= kMost))
+    refuse(option, fmt::format("{:g} is out of range", seconds),
+           fmt::format("give {:g} to {:g} s", least, kMost));
+}
+
 /// Input files of the site for other programs, and the solution of palpate for comparison.
 int export_decks(const Workspace& space, const SiteOptions& options) {
+  if (options.press_seconds) require_time("--press-seconds", *options.press_seconds, 1e-6);
+  require_time("--hold-seconds", options.hold_seconds, 0);
   const Body body = body_of_case(space);
   const fem::CampaignSettings settings = campaign_settings(space);
   const bool patch = options.patch || options.patch_radius > 0;
@@ -214,11 +226,11 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
       options.patch_radius > 0 ? 1e-3 * options.patch_radius : settings.indentation.tool.radius;
   Deck deck = patch ? make_patch_deck(body, settings, options.vertex, radius)
                     : make_tool_deck(body, settings, options.vertex, options.lateral);
-  if (options.press_seconds > 0) {
+  if (options.press_seconds) {
     if (!deck.relaxes())
       refuse("--press-seconds", "no tissue of the case relaxes: its forces do not depend on time",
              "leave it out");
-    deck.pace = PressAndHold{options.press_seconds, options.hold_seconds};
+    deck.pace = PressAndHold{*options.press_seconds, options.hold_seconds};
   }
   const std::string stem = fmt::format("site-{}", options.vertex);
   const auto save = [&](const std::string& text, const std::string& name) {
@@ -321,10 +333,8 @@ void add_site_part(CLI::App& parent, Action& action) {
   CLI::Option* press =
       site->add_option("--press-seconds", options->press_seconds,
                        "Time of the press, s, for tissue that relaxes: FEBio alone has it")
-          ->check(CLI::PositiveNumber)
           ->needs(febio);
   site->add_option("--hold-seconds", options->hold_seconds, "Time of the hold after it, s")
-      ->check(CLI::NonNegativeNumber)
       ->needs(press);
 }
 

@@ -161,6 +161,11 @@ class MeasuredRelaxation(unittest.TestCase):
         self.assertAlmostEqual(max(force), 2.2)
         self.assertAlmostEqual(force[max(force)] / max(force.values()), relaxed(2.2) / relaxed(0.2), delta=0.02)
         self.assertIn("<t2>3.965</t2>", (out / "site-12.feb").read_text())
+        for times in (["nan", "1"], ["1", "nan"], ["inf", "1"], ["0", "1"], ["1", "-1"]):
+            refused = command.palpate("export", "site", case, "--out", out, "--vertex", 12, "--febio",
+                                      "--press-seconds", times[0], "--hold-seconds", times[1])
+            self.assertEqual(refused.returncode, 2, times)
+            self.assertRegex(refused.stderr, "-seconds: .* is out of range; give ")
 
     def test_meat_from_the_record_to_a_library_that_relaxes_as_another_site_does(self):
         """A public data set: the series of three sites predicts the force of a fourth over time, with one factor."""
