@@ -103,6 +103,8 @@ class Campaign(unittest.TestCase):
                 self.assertEqual(run.returncode, self.code)
                 return kills
             kills += 1
+            if (out / "curves.h5").exists():
+                return kills  # killed after the result was written, in the last moments of the process
             self.assertLess(kills, 200, "no progress")
             now = summary(journal)["sites_done"] if journal.exists() and journal.stat().st_size > 90 else 0
             self.assertGreaterEqual(now, saved)
