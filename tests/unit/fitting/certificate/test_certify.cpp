@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <string>
 
 #include "fitting/certificate/certify.hpp"
 #include "format/error.hpp"
@@ -160,6 +163,71 @@ TEST(Certificate, DepthBeyondTheRadiusOfCurvatureHasNoBoundAndAReason) {
   EXPECT_EQ(line.find("inf"), std::string::npos) << line;
   EXPECT_NE(line.find("320 of 320 triangles have no bound; down to "), std::string::npos) << line;
   EXPECT_NE(line.find(" mm every slide has a bound"), std::string::npos) << line;
+}
+
+/// Why the only triangle of a plate has no smaller bound.
+std::string limit_of_plate(double lean, const std::array<double, 3>& stiffness) {
+  Library library = flat_triangle();
+  library.inward.assign(3, {std::sin(lean), 0, -std::cos(lean)});
+  set_equal_responses(library, node_response(linear_curve(200), linear_curve(200)));
+  for (std::size_t v = 0; v < 3; ++v)
+    library.responses[v] = node_response(linear_curve(stiffness[v]), linear_curve(200));
+  certify(library, with_friction(0.3));
+  return library.certificate.limited_by;
+}
+
+TEST(Certificate, NamesTheLargestCauseOfABound) {
+  // On a plate of equal springs only the slant of the press directions adds to the stiffness; on a
+  // level plate of different springs only their change; on a ball of equal springs the curvature.
+  const std::array<double, 3> equal{600, 600, 600};
+  EXPECT_NE(limit_of_plate(0.01, equal).find("stiffest response"), std::string::npos);
+  EXPECT_NE(limit_of_plate(0.7, equal).find("oblique to the facet"), std::string::npos);
+  EXPECT_NE(limit_of_plate(0, {50, 100, 200}).find("change of the responses"), std::string::npos);
+  Library ball = sphere(0.03, 1);
+  set_equal_responses(ball, node_response(linear_curve(100, 0.02), linear_curve(100, 0.02)));
+  certify(ball, with_friction(0.3));
+  EXPECT_NE(ball.certificate.limited_by.find("the curvature of the normals"), std::string::npos)
+      << ball.certificate.limited_by;
+}
+
+TEST(Certificate, ACoupledResponseThatDoesNotChangeWithDepthStiffensNothing) {
+  // E = G(z) + H(rho), so that the steepest force at a fixed contact point is the stiffer spring.
+  for (const double lateral : {120.0, 260.0}) {
+    Library library = flat_triangle();
+    library.kind = ResponseKind::Coupled;
+    set_equal_responses(library, node_response(linear_curve(200), linear_curve(lateral)));
+    for (NodeResponse& node : library.responses)
+      node.coupling = {1.0F, {{0.0F, 0.005F, 0.01F}, {0, 0, 0}}};
+    certify(library, with_friction(0.3));
+    EXPECT_NEAR(library.certificate.stick, std::max(200.0, lateral), 1e-6);
+  }
+}
+
+TEST(Certificate, RelaxationRateIsThatOfTheFastestNodeTimesTheCouplingByFriction) {
+  // Friction carries the change of the normal force over to the lateral one, (C10): the factor m is
+  // the larger root of m^2 - (2 + mu^2) m + 1 = 0; of coupled responses it is 1 + mu^2.
+  for (const bool coupled : {false, true}) {
+    for (const double mu : {0.0, 0.3, 1.5}) {
+      Library library = flat_triangle();
+      library.relaxation_times = {0.1, 2.0};
+      set_equal_responses(library, node_response(linear_curve(100), linear_curve(100)));
+      for (NodeResponse& node : library.responses) node.relaxation = {0.2f, 0.1f};
+      library.responses[1].relaxation = {0.25f, 0.5f};
+      if (coupled) {
+        library.kind = ResponseKind::Coupled;
+        for (NodeResponse& node : library.responses)
+          node.coupling = {1.0F, {{0.0F, 0.005F, 0.01F}, {0, 0, 0}}};
+      }
+      certify(library, with_friction(mu));
+      const double m = library.certificate.relaxation_rate / (0.25 / 0.1 + 0.5 / 2.0);
+      if (coupled) {
+        EXPECT_NEAR(m, 1 + mu * mu, 1e-9);
+      } else {
+        EXPECT_NEAR(m * m - (2 + mu * mu) * m + 1, 0, 1e-6);
+        EXPECT_GE(m, 1 - 1e-9);
+      }
+    }
+  }
 }
 
 TEST(Certificate, AFlatLateralResponseIsUnboundedWhereTheSurfaceVaries) {

@@ -29,6 +29,63 @@ Eigen::Matrix3d jacobian(const PlainModel& model, const Start& start) {
   return J;
 }
 
+/// The same body in other units: forces times `force`, lengths times `length`, powers of two.
+Library in_units(Library library, double force, double length) {
+  const auto convert = [](ResponseCurve& curve, double slope, double knot) {
+    for (float& d : curve.knot) d = static_cast<float>(knot * static_cast<double>(d));
+    for (float& s : curve.slope) s = static_cast<float>(slope * static_cast<double>(s));
+  };
+  for (Vec3& x : library.positions) x = length * x;
+  for (NodeResponse& node : library.responses) {
+    convert(node.normal, force / length, length);
+    convert(node.lateral, force / length, length);
+    convert(node.coupling.curve, 1 / length, length);
+  }
+  return library;
+}
+
+TEST(Bounds, AreStiffnessesInAnyUnits) {
+  // Of every formula of the bounds only those whose dimensions agree pass this.
+  std::mt19937 engine(35);
+  constexpr double kForce = 1.0 / 64, kLength = 8, kDepth = 0.008;
+  int bounded = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    Library library = random_triangle(engine, 0.04, 0.1 + 0.1 * (trial % 3));
+    if (trial % 2 == 1) couple(library, engine, 0.1);
+    const Library other = in_units(library, kForce, kLength);
+    const double mu = 0.2 * (trial % 4);
+    const ContactElement here = contact_element(library, 0, kDepth, mu);
+    const ContactElement there = contact_element(other, 0, kLength * kDepth, mu);
+    const auto expect_same = [&](double in_these, double in_others) {
+      if (std::isinf(in_these)) {
+        EXPECT_TRUE(std::isinf(in_others));
+      } else {
+        EXPECT_NEAR(in_others * (kLength / kForce), in_these, 1e-9 * in_these);
+      }
+    };
+    expect_same(stick_bound(here), stick_bound(there));
+    expect_same(min_lipschitz_bound(here), min_lipschitz_bound(there));
+    EXPECT_EQ(slide_lowers_energy(here), slide_lowers_energy(there));
+    const SlideBound a = slide_bound(here), b = slide_bound(there);
+    expect_same(a.total, b.total);
+    expect_same(a.causes.stiffness, b.causes.stiffness);
+    expect_same(a.causes.variation, b.causes.variation);
+    expect_same(a.causes.slant, b.causes.slant);
+    expect_same(a.causes.curvature, b.causes.curvature);
+    bounded += std::isfinite(a.total) ? 1 : 0;
+    if (!(mu > 0)) continue;
+    const Range azimuth{0.4, 0.5}, z{0.0031, 0.0033}, reach{0.0033, 0.006};
+    const auto larger = [&](const Range& range) {
+      return Range{kLength * range.low, kLength * range.high};
+    };
+    SlideCell cell, scaled;
+    cell.azimuth = scaled.azimuth = azimuth;
+    cell.z = z, cell.reach = reach, scaled.z = larger(z), scaled.reach = larger(reach);
+    expect_same(SlideJacobian(here).bound(cell), SlideJacobian(there).bound(scaled));
+  }
+  EXPECT_GT(bounded, 30);
+}
+
 TEST(StickBound, NoJacobianIsSteeper) {
   std::mt19937 engine(31);
   std::uniform_real_distribution<double> u(0, 1);

@@ -15,11 +15,11 @@ namespace {
 
 TEST(SlideJacobian, OfOneStateIsTheLargestForceGradientOfASlide) {
   std::mt19937 engine(45);
-  int alike = 0;
   for (const bool coupled : {false, true}) {
+    int alike = 0;
     for (int trial = 0; trial < 60; ++trial) {
       Library library = random_triangle(engine, 0.06, 0.2);
-      if (coupled) couple(library, engine, 0.1);
+      if (coupled) couple(library, engine, 0.3);
       const double mu = 0.1 + 0.2 * (trial % 3);
       const ContactElement element = contact_element(library, 0, 0.008, mu);
       const PlainModel model(library, 0);
@@ -30,8 +30,8 @@ TEST(SlideJacobian, OfOneStateIsTheLargestForceGradientOfASlide) {
       EXPECT_LE(found, expected * (1 + 1e-4)) << "coupled " << coupled << ", trial " << trial;
       alike += found > 0.98 * expected ? 1 : 0;  // the others soften as they slide: M_0 is steeper
     }
+    EXPECT_GT(alike, 50);
   }
-  EXPECT_GT(alike, 60);
 }
 
 TEST(SlideJacobian, NoStateOfACellIsSteeperThanItsBound) {

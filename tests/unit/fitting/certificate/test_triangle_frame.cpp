@@ -37,6 +37,33 @@ TEST(TriangleFrame, NormalsOfASphereTurnByOneOverItsRadius) {
   EXPECT_LT(last_excess, 0.02);
 }
 
+TEST(TriangleFrame, TheTwistIsTheTurnAcrossTheSlideThatIsLargestOverItsDirections) {
+  // u = N + A x in the plane, so that n turns by A tau along tau, and across it by (N x tau) . A
+  // tau.
+  std::mt19937 engine(24);
+  std::uniform_real_distribution<double> rate(-2, 2);  // 1/m: angles of a few hundredths
+  int twisted = 0;
+  for (int trial = 0; trial < 30; ++trial) {
+    const double a11 = rate(engine), a12 = rate(engine), a21 = rate(engine), a22 = rate(engine);
+    Library library = flat_triangle();
+    for (std::size_t l = 0; l < 3; ++l) {
+      const Vec3& x = library.positions[l];
+      library.inward[l] = unit({a11 * x[0] + a12 * x[1], a21 * x[0] + a22 * x[1], -1});
+    }
+    double across = 0;
+    for (int i = 0; i < 3600; ++i) {
+      const double c = std::cos(M_PI * i / 3600), s = std::sin(M_PI * i / 3600);
+      across = std::max(across, std::abs(-s * (a11 * c + a12 * s) + c * (a21 * c + a22 * s)));
+    }
+    const TriangleFrame frame = triangle_frame(library, 0);
+    const double tilt = 2 * std::sin(0.5 * std::acos(frame.cos_theta));
+    EXPECT_GE(frame.twist, std::min(frame.kappa, across) * (1 - 1e-3));
+    EXPECT_LE(frame.twist, (across + tilt * frame.kappa) * (1 + 1e-3));
+    twisted += across < 0.7 * frame.kappa ? 1 : 0;  // elsewhere kappa limits the bound
+  }
+  EXPECT_GT(twisted, 5);
+}
+
 TEST(TriangleFrame, GradientsReproduceALinearField) {
   const Library library = sphere(0.04, 1);
   const Vec3 slope{3, -2, 5};
