@@ -11,6 +11,7 @@
 #include <random>
 
 #include "fitting/certificate/certify.hpp"
+#include "tests/support/units.hpp"
 #include "tests/unit/fitting/certificate/plain_model.hpp"
 
 namespace palpate::fitting {
@@ -29,21 +30,6 @@ Eigen::Matrix3d jacobian(const PlainModel& model, const Start& start) {
   return J;
 }
 
-/// The same body in other units: forces times `force`, lengths times `length`, powers of two.
-Library in_units(Library library, double force, double length) {
-  const auto convert = [](ResponseCurve& curve, double slope, double knot) {
-    for (float& d : curve.knot) d = static_cast<float>(knot * static_cast<double>(d));
-    for (float& s : curve.slope) s = static_cast<float>(slope * static_cast<double>(s));
-  };
-  for (Vec3& x : library.positions) x = length * x;
-  for (NodeResponse& node : library.responses) {
-    convert(node.normal, force / length, length);
-    convert(node.lateral, force / length, length);
-    convert(node.coupling.curve, 1 / length, length);
-  }
-  return library;
-}
-
 TEST(Bounds, AreStiffnessesInAnyUnits) {
   // Of every formula of the bounds only those whose dimensions agree pass this.
   std::mt19937 engine(35);
@@ -52,7 +38,7 @@ TEST(Bounds, AreStiffnessesInAnyUnits) {
   for (int trial = 0; trial < 60; ++trial) {
     Library library = random_triangle(engine, 0.04, 0.1 + 0.1 * (trial % 3));
     if (trial % 2 == 1) couple(library, engine, 0.1);
-    const Library other = in_units(library, kForce, kLength);
+    const Library other = test::in_units(library, {kForce, kLength});
     const double mu = 0.2 * (trial % 4);
     const ContactElement here = contact_element(library, 0, kDepth, mu);
     const ContactElement there = contact_element(other, 0, kLength * kDepth, mu);
