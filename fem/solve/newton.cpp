@@ -16,6 +16,11 @@ namespace {
 /// Tolerance of the solve on the patch, over that of the increment.
 constexpr double kPatchTolerance = 0.1;
 
+/// A whole step to the minimum of a convex model lowers the energy by half its slope. One that
+/// lowers it by more than this fraction is too short: the model has been stiffened.
+constexpr double kStraight = 0.85;
+constexpr double kLongestStep = 64;
+
 }  // namespace
 
 double imbalance(const SolidModel& model, const Eigen::VectorXd& residual, double round_off) {
@@ -128,11 +133,28 @@ bool NewtonSolver::line_search(const ToolContact& contact, const Eigen::VectorXd
         next.energy <= now.energy + 1e-4 * step * slope + kEnergyNoise * std::abs(now.energy);
     // Close to the minimum the energy is at its round-off: judge by the gradient as well.
     if (!lower && next.residual.norm() > (1 - 0.1 * step) * norm) continue;
+    if (step == 1 && next.energy < now.energy + kStraight * slope)
+      lengthen(contact, d, u, now.energy, slope, next, trial);
     u.swap(trial);
     now = std::move(next);
     return true;
   }
   return false;
+}
+
+void NewtonSolver::lengthen(const ToolContact& contact, const Eigen::VectorXd& d,
+                            const Displacement& from, double energy, double slope, Equilibrium& now,
+                            Displacement& u) const {
+  for (double step = 2; step <= kLongestStep; step *= 2) {
+    Displacement trial = from;
+    add_step(model_, step, d, trial);
+    Equilibrium next = evaluate(model_, contact, trial, multipliers_);
+    if (!(next.min_J > 0) || next.energy > now.energy) return;
+    const bool straight = next.energy < energy + kStraight * step * slope;
+    u.swap(trial);
+    now = std::move(next);
+    if (!straight) return;
+  }
 }
 
 NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions& options,

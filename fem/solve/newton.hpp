@@ -49,8 +49,9 @@ Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const 
 /// Facets that come into contact or leave it thus need no factorization. A compressed solid is
 /// often stable only against its tool, and S indefinite: the diagonal of the patch is raised for
 /// the factorization, which raises that of S by as much, and lowered again in S. Steps are
-/// shortened until det F > 0 everywhere and the energy or the residual decreases. A failure is a
-/// return value: u is then the last admissible iterate. One thread.
+/// shortened until det F > 0 everywhere and the energy or the residual decreases, and lengthened
+/// where the energy falls along a straight line: a part of the body snaps to another equilibrium. A
+/// failure is a return value: u is then the last admissible iterate. One thread.
 class NewtonSolver {
  public:
   /// `permutation`: elimination order for the pattern of the model, see Cholesky.
@@ -75,6 +76,10 @@ class NewtonSolver {
   /// Moves u along d; false when no admissible step is found.
   bool line_search(const ToolContact& contact, const Eigen::VectorXd& d, Equilibrium& now,
                    Displacement& u) const;
+  /// Doubles a step of length 1 from `from`, whose result is in u and now, while the energy falls,
+  /// on until it bends up. `energy` and `slope` are those at `from`.
+  void lengthen(const ToolContact& contact, const Eigen::VectorXd& d, const Displacement& from,
+                double energy, double slope, Equilibrium& now, Displacement& u) const;
 
   /// Index into the patch of the i-th of the last unknowns of the factor.
   Eigen::Index in_patch(Eigen::Index i) const {
