@@ -343,7 +343,7 @@ class ReportPage(unittest.TestCase):
             }
             return seen;
           };
-          const said = {};
+          const said = {opened: document.getElementById('field').value};
           for (const name of ['stiffness', 'error_lateral', 'error_normal']) {
             const field = document.getElementById('field');
             field.value = name;
@@ -367,6 +367,7 @@ class ReportPage(unittest.TestCase):
         data = json.loads(page.by_id["data"])
         compared = {c["vertex"]: c for c in data["comparison"]["curves"] if c["kind"] == "normal"}
         worst = max(compared, key=lambda v: compared[v]["rms_jnd"])
+        self.assertEqual(said["opened"], "error_normal")
         for kind in ("error_normal", "error_lateral"):
             self.assertIn("1.29 to 2.86 JND", said[kind]["range"])
             self.assertIn(f"4 of {len(column(data['vertices']['is_site']))} nodes were compared. Discs: 1 node without",

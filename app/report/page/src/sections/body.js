@@ -47,6 +47,9 @@ function fields(data) {
   return list;
 }
 
+/** Where a comparison is there, its errors are what the page was made for. */
+const firstField = (options) => ['error_normal', 'error_lateral', 'stiffness'].find((name) => options[name]);
+
 /** Caption of the range of the colours; a missing bound is not reported as a hole. */
 function rangeText(field, depth, span, unbounded, colours) {
   const at = field.deep ? ` at d = ${units.length(depth)}` : '';
@@ -110,7 +113,7 @@ export function bodySection(data, nodes, curves) {
   const model = new Model(data);
   const options = fields(data);
   const top = data.key.depth || 1e-3;
-  let depth = top, name = 'stiffness';
+  let depth = top, name = firstField(options);
   const view = new BodyView(model, {
     facing: facing(data, model),
     onPick: (v) => nodes.pick(v),
@@ -154,17 +157,17 @@ export function bodySection(data, nodes, curves) {
     el('h2', {}, 'The body'),
     paragraph('The colour shows a property of the responses on the boundary of the body. Drag to turn, click a node to see its curves.', 'lead'),
     el('div', { class: 'split' },
-      el('div', {}, controls(options, view, depthControl, choice, (n) => { name = n; refresh(); }),
+      el('div', {}, controls(options, name, view, depthControl, choice, (n) => { name = n; refresh(); }),
         el('div', { class: 'view' }, view.element, bar.element), caption, keys(data, model), endedEarly(data.vertices)),
       curves.element));
 }
 
-function controls(options, view, depthControl, choice, choose) {
+function controls(options, shown, view, depthControl, choice, choose) {
   const check = (label, key) => el('label', { class: 'screen' },
     el('input', { type: 'checkbox', checked: view.show[key], onchange: (e) => { view.show[key] = e.target.checked; view.draw(); } }), label);
   return el('div', { class: 'controls' },
     el('label', {}, 'Colour', el('select', { id: 'field', onchange: (e) => choose(e.target.value) },
-      Object.entries(options).map(([key, f]) => el('option', { value: key }, f.label)))),
+      Object.entries(options).map(([key, f]) => el('option', { value: key, selected: key === shown }, f.label)))),
     el('label', { class: 'screen' }, 'Range', choice),
     depthControl,
     check('nodes', 'nodes'), view.flags.length ? check('marked sites', 'flags') : null, check('patches', 'borders'),
