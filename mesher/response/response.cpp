@@ -92,6 +92,28 @@ std::vector<std::int32_t> sweep(const OpenTriangles& open, std::vector<Vec3>& in
   return violating;
 }
 
+/// Whether the directions at the corners of a triangle meet the conditions of the runtime.
+bool meets_conditions(const Vec3& inward_normal, const std::array<Vec3, 3>& u) {
+  return std::all_of(u.begin(), u.end(),
+                     [&](const Vec3& x) { return dot(x, inward_normal) >= kLeastCosine; }) &&
+         origin_to_triangle(u[0], u[1], u[2]) >= kLeastMeanNorm;
+}
+
+void turn_for_slides(const Surface& response, const Marks& constrained, const SlideDemand& demand,
+                     InwardDirections& result) {
+  std::vector<bool> free;
+  for (std::size_t v = 0; v < response.points.size(); ++v) free.push_back(constrained[v] == 0);
+  const Surface open{response.points, open_triangles(response, constrained).triangles, {}, {}};
+  SlideDirections turned = slide_directions(
+      open, std::move(result.inward), free, demand,
+      [&](std::size_t t, const std::array<Vec3, 3>& u) {
+        return meets_conditions(-unit(area_vector(open.points, open.triangles[t])), u);
+      });
+  result.inward = std::move(turned.inward);
+  result.slow = turned.slow;
+  result.left_slow = turned.left_slow;
+}
+
 /// @return how many response vertices are no sites because a support is within the tool radius
 std::size_t exclude_sites_at_supports(ResponseSurface& response, const Surface& boundary,
                                       const Marks& constrained, double tool_radius) {
@@ -119,7 +141,8 @@ std::string most_turned(const InwardDirections& directions, const NestedSurface&
 }  // namespace
 
 InwardDirections inward_directions(const Surface& response, const Surface& boundary,
-                                   const Marks& constrained) {
+                                   const Marks& constrained,
+                                   const std::optional<SlideDemand>& demand) {
   InwardDirections result;
   result.inward = mean_inward(boundary, response.points.size(), constrained);
   const std::vector<Vec3> mean = result.inward;
@@ -128,6 +151,7 @@ InwardDirections inward_directions(const Surface& response, const Surface& bound
     result.unresolved = sweep(open, result.inward);
     if (result.unresolved.empty()) break;
   }
+  if (demand) turn_for_slides(response, constrained, *demand, result);
   for (std::size_t v = 0; v < mean.size(); ++v) {
     const double cosine = dot(mean[v], result.inward[v]);
     if (cosine >= 1 - 1e-12) continue;
@@ -145,7 +169,11 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
   const Log& log = settings.log;
   ResponseSurface& response = body.response;
   response.triangles = nested.response.triangles;
-  InwardDirections directions = inward_directions(nested.response, nested.boundary, constrained);
+  std::optional<SlideDemand> demand;
+  if (settings.directions == PressDirections::Sliding && settings.depth > 0)
+    demand = SlideDemand{.depth = settings.depth};
+  InwardDirections directions =
+      inward_directions(nested.response, nested.boundary, constrained, demand);
   response.inward = std::move(directions.inward);
   for (std::size_t v = 0; v < nested.response.points.size(); ++v) {
     response.node.push_back(static_cast<std::int32_t>(v));
@@ -159,8 +187,12 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
                    close == 1 ? "is no site" : "are no sites"));
   }
   note(log, text("press directions: ", directions.adjusted, " of ", response.inward.size(),
-                 " adjusted for interpolation",
+                 demand ? " adjusted for interpolation and slides" : " adjusted for interpolation",
                  directions.adjusted == 0 ? std::string() : most_turned(directions, nested)));
+  if (directions.slow > 0)
+    note(log, text("slides: without a bound on ", directions.slow, " of ",
+                   response.triangles.size(), " triangles by mean normals, on ",
+                   directions.left_slow, " by the adjusted directions, as far as the shape says"));
   if (directions.unresolved.empty()) return;
   for (const std::int32_t v : directions.unresolved) {
     response.is_site[to_index(v)] = 0;
