@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "format/error.hpp"
@@ -19,6 +20,8 @@ namespace {
 constexpr double kLeastCosine = 0.1;     // of u_l with the inward facet normal
 constexpr double kLeastMeanNorm = 0.55;  // |sum n_l u_l|
 constexpr int kMaxSweeps = 500;
+/// A press turned by more is told from a normal one.
+constexpr double kOblique = 15 * std::numbers::pi / 180;
 
 double angle_at(const Vec3& apex, const Vec3& b, const Vec3& c) {
   return std::atan2(norm(cross(b - apex, c - apex)), dot(b - apex, c - apex));
@@ -110,8 +113,8 @@ void turn_for_slides(const Surface& response, const Marks& constrained, const Sl
         return meets_conditions(-unit(area_vector(open.points, open.triangles[t])), u);
       });
   result.inward = std::move(turned.inward);
-  result.slow = turned.slow;
-  result.left_slow = turned.left_slow;
+  result.unbounded = turned.unbounded;
+  result.still_unbounded = turned.still_unbounded;
 }
 
 /// @return how many response vertices are no sites because a support is within the tool radius
@@ -131,11 +134,31 @@ std::size_t exclude_sites_at_supports(ResponseSurface& response, const Surface& 
   return excluded;
 }
 
-/// The largest angle between a direction and the mean normal, and where it is.
-std::string most_turned(const InwardDirections& directions, const NestedSurface& nested) {
-  const Vec3& x = nested.response.points[directions.turned_most];
-  return text(", by ", std::lround(directions.largest_turn * 57.29577951308232),
-              " degrees at most, near ", position_text(x));
+long degrees(double radians) {
+  return std::lround(radians * 180 / std::numbers::pi);
+}
+
+/// How directions differ from mean normals: how many, how far, and where farthest.
+void tell_turns(const InwardDirections& directions, const NestedSurface& nested,
+                std::string_view purpose, const Log& log) {
+  std::string line = text("press directions: ", directions.adjusted, " of ",
+                          directions.inward.size(), " adjusted for ", purpose);
+  if (directions.adjusted > 0)
+    line += text(", by ", degrees(directions.largest_turn), " degrees at most, near ",
+                 position_text(nested.response.points[directions.turned_most]));
+  note(log, line);
+}
+
+/// What turning directions for slides has gained, and what it costs.
+void tell_slides(const InwardDirections& directions, std::size_t triangles, const Log& log) {
+  note(log, text("slides: by its shape, ", directions.unbounded, " of ", triangles,
+                 " triangles have no bound with mean normals, ", directions.still_unbounded,
+                 " with the adjusted press directions"));
+  if (directions.largest_turn <= kOblique) return;
+  warn(log, text("with press_directions = \"sliding\" a tool is pressed up to ",
+                 degrees(directions.largest_turn),
+                 " degrees off the normal: it pushes the tissue aside there, and its force leans "
+                 "with it"));
 }
 
 }  // namespace
@@ -172,9 +195,9 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
   std::optional<SlideDemand> demand;
   if (settings.directions == PressDirections::Sliding && settings.depth > 0)
     demand = SlideDemand{.depth = settings.depth};
-  InwardDirections directions =
+  const InwardDirections directions =
       inward_directions(nested.response, nested.boundary, constrained, demand);
-  response.inward = std::move(directions.inward);
+  response.inward = directions.inward;
   for (std::size_t v = 0; v < nested.response.points.size(); ++v) {
     response.node.push_back(static_cast<std::int32_t>(v));
     response.is_site.push_back(constrained[v] != 0 ? 0 : 1);
@@ -186,13 +209,8 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
                    " within a tool radius (", millimetres(settings.tool_radius), ") of them ",
                    close == 1 ? "is no site" : "are no sites"));
   }
-  note(log, text("press directions: ", directions.adjusted, " of ", response.inward.size(),
-                 demand ? " adjusted for interpolation and slides" : " adjusted for interpolation",
-                 directions.adjusted == 0 ? std::string() : most_turned(directions, nested)));
-  if (directions.slow > 0)
-    note(log, text("slides: without a bound on ", directions.slow, " of ",
-                   response.triangles.size(), " triangles by mean normals, on ",
-                   directions.left_slow, " by the adjusted directions, as far as the shape says"));
+  tell_turns(directions, nested, demand ? "interpolation and slides" : "interpolation", log);
+  if (demand) tell_slides(directions, response.triangles.size(), log);
   if (directions.unresolved.empty()) return;
   for (const std::int32_t v : directions.unresolved) {
     response.is_site[to_index(v)] = 0;

@@ -20,7 +20,9 @@ struct InwardDirections {
   double largest_turn = 0;               ///< rad, largest angle to the mean normal
   std::size_t turned_most = 0;           ///< response vertex with the largest angle
   std::vector<std::int32_t> unresolved;  ///< response vertices of triangles that break a condition
-  std::size_t slow = 0, left_slow = 0;   ///< triangles whose slides have no bound: before, after
+  /// Triangles whose slides have no bound, or nearly none, before directions turn for them and
+  /// after: as far as the shape alone says.
+  std::size_t unbounded = 0, still_unbounded = 0;
 };
 
 /// The negated angle-weighted mean of the facet normals around each response vertex

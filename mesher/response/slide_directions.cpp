@@ -14,15 +14,14 @@
 namespace palpate::mesher {
 namespace {
 
-/// Rates below this count as nearly 0: responses that vary over a triangle lower them further.
-constexpr double kSlow = 0.05;
+/// Least rate of a slide with a bound: responses that vary over a triangle lower it further.
+constexpr double kLeastRate = 0.05;
 /// What is aimed at, and how sharply: the cost of a triangle is log(1 + exp((aim - rate)/width)).
 constexpr double kAim = 0.15, kWidth = 0.04;
 constexpr int kAzimuths = 16, kRings = 2, kSmoothings = 2, kSweeps = 40;
 constexpr auto kSteps = std::to_array({0.15, 0.05, 0.015});  // rad
 constexpr double kDifference = 1e-3;                         // rad
-/// Tools are pressed no more obliquely than this, rad, from the direction that was given.
-constexpr double kMostTurn = 0.6;
+constexpr double kMostTurn = 0.6;                            // rad, from the direction given
 
 using Three = std::array<Vec3, 3>;
 
@@ -78,14 +77,14 @@ class Turning {
       for (const std::int32_t v : response.triangles[t]) around_[to_index(v)].push_back(t);
   }
 
-  std::size_t slow() const {
+  std::size_t unbounded() const {
     std::size_t count = 0;
-    for (std::size_t t = 0; t < response_.triangles.size(); ++t) count += is_slow(t) ? 1 : 0;
+    for (std::size_t t = 0; t < response_.triangles.size(); ++t) count += is_unbounded(t) ? 1 : 0;
     return count;
   }
 
   void run() {
-    const std::vector<std::size_t> some = vertices_near_slow_ones();
+    const std::vector<std::size_t> some = vertices_to_turn();
     for (int i = 0; i < kSmoothings; ++i) smooth(some);
     for (int i = 0; i < kSweeps; ++i) {
       bool has_turned = false;
@@ -111,12 +110,12 @@ class Turning {
     return std::all_of(triangle.begin(), triangle.end(),
                        [this](std::int32_t v) { return free_[to_index(v)]; });
   }
-  bool is_slow(std::size_t t) const { return needs_bound(t) && rate(t) < kSlow; }
+  bool is_unbounded(std::size_t t) const { return needs_bound(t) && rate(t) < kLeastRate; }
 
-  std::vector<std::size_t> vertices_near_slow_ones() const {
+  std::vector<std::size_t> vertices_to_turn() const {
     std::set<std::size_t> near;
     for (std::size_t t = 0; t < response_.triangles.size(); ++t)
-      if (is_slow(t))
+      if (is_unbounded(t))
         for (const std::int32_t v : response_.triangles[t]) near.insert(to_index(v));
     for (int ring = 0; ring < kRings; ++ring)
       for (const std::size_t v : std::vector<std::size_t>(near.begin(), near.end()))
@@ -194,20 +193,21 @@ class Turning {
 
 double slide_rate(const Three& points, const Three& inward, const SlideDemand& demand) {
   const Facet f = facet_of(points);
-  const auto places = std::to_array<Vec3>({{1, 0, 0},
-                                           {0, 1, 0},
-                                           {0, 0, 1},
-                                           {0.5, 0.5, 0},
-                                           {0.5, 0, 0.5},
-                                           {0, 0.5, 0.5},
-                                           {1.0 / 3, 1.0 / 3, 1.0 / 3}});
+  constexpr double third = 1.0 / 3;
+  const std::array<Vec3, 7> contact_points{{{1, 0, 0},
+                                            {0, 1, 0},
+                                            {0, 0, 1},
+                                            {0.5, 0.5, 0},
+                                            {0.5, 0, 0.5},
+                                            {0, 0.5, 0.5},
+                                            {third, third, third}}};
   double least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kAzimuths; ++k) {
     const double azimuth = 2 * std::numbers::pi * k / kAzimuths;
     const Vec3 tau = std::cos(azimuth) * f.x + std::sin(azimuth) * f.y;
     Vec3 dU{};
     for (std::size_t l = 0; l < 3; ++l) dU = dU + dot(f.gradient[l], tau) * inward[l];
-    for (const Vec3& n : places) {
+    for (const Vec3& n : contact_points) {
       const Vec3 U = n[0] * inward[0] + n[1] * inward[1] + n[2] * inward[2];
       least = std::min(least, rate_along(f, tau, U, dU, demand));
     }
@@ -220,9 +220,9 @@ SlideDirections slide_directions(const Surface& response, std::vector<Vec3> inwa
                                  const std::function<bool(std::size_t, const Three&)>& allowed) {
   Turning turning(response, std::move(inward), free, demand, allowed);
   SlideDirections result;
-  result.slow = turning.slow();
-  if (result.slow > 0) turning.run();
-  result.left_slow = turning.slow();
+  result.unbounded = turning.unbounded();
+  if (result.unbounded > 0) turning.run();
+  result.still_unbounded = turning.unbounded();
   result.inward = turning.take();
   return result;
 }

@@ -15,7 +15,7 @@ namespace palpate::mesher {
 struct SlideDemand {
   double depth = 0;  ///< m, z + d0 at most
   /// mu g'/h': how far friction moves the contact point while the tool is lifted. Half-spaces of
-  /// incompressible solids have 1.5 mu.
+  /// incompressible solids have 1.5 mu, so that this is that of mu = 1/3.
   double lift = 0.5;
 };
 
@@ -28,13 +28,14 @@ double slide_rate(const std::array<Vec3, 3>& points, const std::array<Vec3, 3>& 
                   const SlideDemand& demand);
 
 struct SlideDirections {
-  std::vector<Vec3> inward;             ///< unit
-  std::size_t slow = 0, left_slow = 0;  ///< triangles with a rate of nearly 0: before, after
+  std::vector<Vec3> inward;  ///< unit
+  /// Triangles whose slides have no bound, or nearly none: before and after.
+  std::size_t unbounded = 0, still_unbounded = 0;
 };
 
-/// Turns directions where triangles have a rate near 0, and within two rings around them: smoothed
-/// first, then each vertex in turn by steps that raise the least rates around it. All others stay
-/// as they are.
+/// Turns directions where slides have no bound, or nearly none, and within two rings around: they
+/// are smoothed first, then each is turned by steps that raise the least rates around it. All
+/// others stay as they are. No direction turns by more than 34 degrees.
 /// @param free whether a vertex has a response: the direction of others stays, and triangles at
 ///   them need no bound
 /// @param allowed whether the directions of a triangle (its index) meet what else is asked of them

@@ -98,8 +98,8 @@ TEST(SlideDirections, OfACubeSlideEverywhere) {
   const SlideDemand demand{.depth = 0.004, .lift = 0.5};
   const std::vector<bool> free(mean.size(), true);
   const SlideDirections turned = slide_directions(cube, mean, free, demand, anything);
-  EXPECT_GT(turned.slow, 10U);
-  EXPECT_EQ(turned.left_slow, 0U);
+  EXPECT_GT(turned.unbounded, 10U);
+  EXPECT_EQ(turned.still_unbounded, 0U);
   for (const Triangle& t : cube.triangles) {
     const auto at = [&](std::size_t k) { return static_cast<std::size_t>(t[k]); };
     EXPECT_GT(
@@ -116,7 +116,7 @@ TEST(SlideDirections, StayWhereSlidesHaveABoundAndWhereVerticesAreNotFree) {
   const SlideDemand shallow{.depth = 1e-5, .lift = 0.1};
   const SlideDirections same =
       slide_directions(cube, centre, std::vector<bool>(centre.size(), true), shallow, anything);
-  EXPECT_EQ(same.slow, 0U);
+  EXPECT_EQ(same.unbounded, 0U);
   const SlideDemand deep{.depth = 0.01, .lift = 0.6};
   const SlideDirections fixed =
       slide_directions(cube, centre, std::vector<bool>(centre.size(), false), deep, anything);
