@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -95,7 +96,7 @@ TEST(SlideRate, FallsWithTheDepthOverTheRadius) {
 TEST(SlideDirections, OfACubeSlideEverywhere) {
   const Surface cube = fine_cube(0.05, 5);
   const std::vector<Vec3> mean = mean_inward(cube);
-  const SlideDemand demand{.depth = 0.004, .lift = 0.5};
+  const SlideDemand demand{.depth = 0.0025, .lift = 0.5};
   const std::vector<bool> free(mean.size(), true);
   const SlideDirections turned = slide_directions(cube, mean, free, demand, anything);
   EXPECT_GT(turned.unbounded, 10U);
@@ -107,6 +108,23 @@ TEST(SlideDirections, OfACubeSlideEverywhere) {
                    {turned.inward[at(0)], turned.inward[at(1)], turned.inward[at(2)]}, demand),
         0);
   }
+}
+
+// Pressed deeper, at two fifths of a patch, the corners keep triangles without a bound, and no tool
+// is pressed more obliquely than is said.
+TEST(SlideDirections, TurnNoFartherThanTheyMay) {
+  const Surface cube = fine_cube(0.05, 5);
+  const std::vector<Vec3> mean = mean_inward(cube);
+  const SlideDirections turned = slide_directions(cube, mean, std::vector<bool>(mean.size(), true),
+                                                  {.depth = 0.004}, anything);
+  EXPECT_GT(turned.unbounded, 100U);
+  EXPECT_GT(turned.still_unbounded, 0U);
+  EXPECT_LT(turned.still_unbounded, turned.unbounded / 5);
+  double least = 1;
+  for (std::size_t v = 0; v < mean.size(); ++v)
+    least = std::min(least, dot(mean[v], turned.inward[v]));
+  EXPECT_GT(std::acos(least), 30 * std::numbers::pi / 180);
+  EXPECT_LE(std::acos(least), 0.6 + 1e-9);
 }
 
 TEST(SlideDirections, StayWhereSlidesHaveABoundAndWhereVerticesAreNotFree) {
