@@ -21,7 +21,6 @@
 #include "app/watch/live_frame.hpp"
 #include "app/watch/loopback_server.hpp"
 #include "app/watch/step_text.hpp"
-#include "format/flat_library.hpp"
 #include "format/sha256.hpp"
 
 namespace palpate::app {
@@ -40,9 +39,7 @@ struct WatchOptions {
 
 std::string page_of(const fs::path& file, const Library& library) {
   const DrawnBody drawn = drawn_body(file, library);
-  const fs::path deformation = file.parent_path() / "deformation.pdef";
-  const std::string skin = drawn.body && fs::exists(deformation) ? content_of(deformation) : "";
-  return report::watch_page(library, {drawn.body ? &*drawn.body : nullptr, drawn.triangles}, skin);
+  return report::watch_page(library, drawn.to_draw());
 }
 
 /// A program tells its steps and nothing else.

@@ -92,15 +92,15 @@ std::string verdict(const Certificate& certificate, const DeviceCertificate& dev
       certified_from(constants, rendered_force(certificate, bound), device.lowest_rate);
   const RenderedForce softest = rendered_force(certificate, smallest);
   const double rate_limited = lowest_rate(constants, softest);
-  std::string with_throttling;  // not where it gains nothing or is not known
+  std::string rate_limited_from;  // not where it gains nothing or is not known
   if (whole.empty() || rate_limited < 0.995 * device.lowest_rate) {
-    with_throttling = certified_from(constants, softest, rate_limited);
-    if (!with_throttling.empty())
-      with_throttling += " with lipschitz_bound = " + lipschitz_bound_text(smallest);
+    rate_limited_from = certified_from(constants, softest, rate_limited);
+    if (!rate_limited_from.empty())
+      rate_limited_from += " with lipschitz_bound = " + lipschitz_bound_text(smallest);
   }
-  if (whole.empty() && with_throttling.empty()) return why_not(constants, bound, device);
-  std::string said = "certified passive " + (whole.empty() ? with_throttling : whole + by);
-  if (!whole.empty() && !with_throttling.empty()) said += "; " + with_throttling;
+  if (whole.empty() && rate_limited_from.empty()) return why_not(constants, bound, device);
+  std::string said = "certified passive " + (whole.empty() ? rate_limited_from : whole + by);
+  if (!whole.empty() && !rate_limited_from.empty()) said += "; " + rate_limited_from;
   return said +
          " (Mahvash & Hayward 2005, eq. 5: " + rounded_up_text(kExact * device.published_rate) +
          " Hz)";

@@ -116,6 +116,12 @@ enum class MeshMethod {
   Delaunay    ///< meshes detail finer than a patch; rounds sharp edges
 };
 
+/// Along what tools are pressed.
+enum class PressDirections {
+  Normal,  ///< the mean normal of the facets around a vertex
+  Sliding  ///< that, turned at rims and lobes so that slides have a bound down to the depth
+};
+
 struct Settings {
   std::string name;
   SurfaceFile surface{{}, 1.0, "matrix"};  ///< the outer skin
@@ -133,6 +139,7 @@ struct Settings {
   double interior_coarsening = 1.5;  ///< target of the largest interior edge over element_size
   double support_coarsening = 1;     ///< largest edge at supports over element_size
   double feature_angle = std::numbers::pi / 4;  ///< rad; sharper edges of the input stay sharp
+  PressDirections directions = PressDirections::Normal;
   bool curved_facets = true;   ///< writes Body::curved_edges; without, facets are flat
   double tool_radius = 0.005;  ///< m, smallest distance of sites from supports
   double depth = 0;            ///< m, of the planned indentation; 0 skips the check

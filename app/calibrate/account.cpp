@@ -158,7 +158,8 @@ std::string pressure_text(double pascal) {
 }  // namespace
 
 void say_homogeneous(const calibrate::HomogeneousFit& fit) {
-  answer("  as the [[material]] of a case:");
+  answer("  for a case:");
+  answer("    [[material]]");
   std::istringstream keys(material_keys(fit.law));
   for (std::string line; std::getline(keys, line);) answer("    {}", line);
   answer("  shear modulus at rest: {}", pressure_text(fit.shear_modulus));

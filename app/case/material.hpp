@@ -8,7 +8,7 @@
 
 namespace palpate::app {
 
-/// The keys of a [[material]] table that declares a law without fibres, as TOML: the parsed table
+/// The keys of a [[material]] table that declare a law without fibres, as TOML: the parsed table
 /// has the same law, to the last digit.
 std::string material_keys(const fem::LawConstants& law);
 

@@ -52,6 +52,8 @@ inline constexpr std::array kRepairModes{Named{mesher::RepairMode::Auto, "auto"}
 inline constexpr std::array kMeshMethods{Named{mesher::MeshMethod::Auto, "auto"},
                                          Named{mesher::MeshMethod::Isotropic, "isotropic"},
                                          Named{mesher::MeshMethod::Delaunay, "delaunay"}};
+inline constexpr std::array kPressDirections{Named{mesher::PressDirections::Normal, "normal"},
+                                             Named{mesher::PressDirections::Sliding, "sliding"}};
 inline constexpr std::array kParts{Named{false, "one"}, Named{true, "largest"}};
 
 /// The name of a value; empty when the table does not list it.

@@ -134,7 +134,7 @@ std::string material_keys(const fem::LawConstants& law) {
   MaterialSection material;
   material.law = law;
   Printer printer(nullptr);
-  describe(printer, material);
+  describe_law(printer, material);
   return printer.result();
 }
 

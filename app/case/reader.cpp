@@ -34,6 +34,23 @@ std::string example_of(const Key& key, Dimension dimension) {
                      print_quantity(typical * units_of(dimension).front().si, dimension));
 }
 
+std::string choices_text(const Choices& choices) {
+  std::string text;
+  for (const std::string_view choice : choices)
+    text += fmt::format("{}{}", text.empty() ? "" : ", ", choice);
+  return text;
+}
+
+/// The remedy for a missing key. What a key is about may be said as belonging to it: "of the
+/// press".
+std::string to_add(const Key& key, const Choices& choices) {
+  const bool belongs = key.about.starts_with("of ");
+  std::string text =
+      fmt::format("add it: {}{}{}", belongs ? key.name : "", belongs ? " " : "", key.about);
+  if (!choices.empty()) text += fmt::format("; one of {}", choices_text(choices));
+  return text;
+}
+
 bool is_auto(const toml::node& node) {
   return node.value_exact<std::string_view>() == kAutoText;
 }
@@ -75,13 +92,13 @@ TableReader::TableReader(const toml::table& table, std::string title, std::strin
                          SourceMap& sources)
     : table_(table), title_(std::move(title)), prefix_(std::move(prefix)), sources_(sources) {}
 
-const toml::node* TableReader::find(const Key& key) {
+const toml::node* TableReader::find(const Key& key, const Choices& choices) {
   known_.push_back(key.name);
   const toml::node* node = table_.get(key.name);
   if (node != nullptr) {
     sources_.remember(dotted(key), *node);
   } else if (key.presence == kRequired) {
-    missing_.push_back(key);
+    missing_.push_back({key, choices});
   }
   return node;
 }
@@ -97,9 +114,9 @@ void TableReader::finish() const {
            fmt::format("the nearest known key is '{}'", meant));
   }
   if (missing_.empty()) return;
-  const Key& key = missing_.front();
+  const auto& [key, choices] = missing_.front();
   refuse(sources_.where(table_), fmt::format("key '{}' is missing", dotted(key)),
-         fmt::format("add it: {}", key.about));
+         to_add(key, choices));
 }
 
 const toml::table& TableReader::as_table(const toml::node& node, const std::string& title) const {
@@ -138,7 +155,7 @@ void TableReader::check_range(double value, const std::string& value_text, const
 }
 
 void TableReader::text(std::string& value, const Key& key, const Choices& choices) {
-  const toml::node* node = find(key);
+  const toml::node* node = find(key, choices);
   if (node == nullptr) return;
   const std::string example =
       fmt::format("{} = \"{}\"", key.name, choices.empty() ? "..." : choices.front());
@@ -149,12 +166,9 @@ void TableReader::text(std::string& value, const Key& key, const Choices& choice
     wrong_type(*node, key, "a string that is not empty", example);
   }
   if (choices.empty() || std::find(choices.begin(), choices.end(), value) != choices.end()) return;
-  std::string list;
-  for (const std::string_view choice : choices) {
-    list += fmt::format("{}{}", list.empty() ? "" : ", ", choice);
-  }
   refuse(sources_.where(*node),
-         fmt::format("key '{}' is '{}', which is not one of {}", dotted(key), value, list),
+         fmt::format("key '{}' is '{}', which is not one of {}", dotted(key), value,
+                     choices_text(choices)),
          fmt::format("the nearest is '{}'", nearest(value, choices)));
 }
 

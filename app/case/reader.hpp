@@ -123,7 +123,12 @@ class TableReader {
     inner.finish();
   }
 
-  const toml::node* find(const Key& key);
+  struct Missing {
+    Key key;
+    Choices choices;
+  };
+
+  const toml::node* find(const Key& key, const Choices& choices = {});
   const toml::table& as_table(const toml::node& node, const std::string& title) const;
   const toml::array& as_array(const toml::node& node, const std::string& title) const;
   const toml::array& tables_of(const toml::node& node, const Key& key) const;
@@ -141,7 +146,7 @@ class TableReader {
   std::string prefix_;
   SourceMap& sources_;
   std::vector<std::string_view> known_;
-  std::vector<Key> missing_;
+  std::vector<Missing> missing_;
 };
 
 }  // namespace palpate::app

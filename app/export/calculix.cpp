@@ -78,7 +78,7 @@ class Writer {
     add("*HEADING\n{}\n** SI units: m, N, Pa\n", deck_.title);
     nodes("ALL", deck_.mesh.X, 0);
     for (std::size_t region = 0; region < deck_.laws.size(); ++region) elements(region);
-    node_set("HELD", held());
+    node_set("FIXED", fixed());
     if (deck_.tool)
       tool(*deck_.tool);
     else
@@ -127,7 +127,7 @@ class Writer {
         card);
   }
 
-  std::vector<std::int32_t> held() const {
+  std::vector<std::int32_t> fixed() const {
     std::vector<std::int32_t> nodes;
     const auto& mesh = deck_.mesh;
     for (std::size_t node = 0; node < mesh.fixed.size(); ++node) {
@@ -182,7 +182,7 @@ class Writer {
 
   void steps(const char* moved) {
     const Vec3 pressed = deck_.depth * deck_.direction;
-    add("*BOUNDARY\nHELD,1,3\n");
+    add("*BOUNDARY\nFIXED,1,3\n");
     step(moved, pressed, deck_.increments, "");
     if (!deck_.lateral) return;
     const LateralMove& lateral = *deck_.lateral;

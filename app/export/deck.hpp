@@ -47,7 +47,7 @@ struct PressAndHold {
 
 struct Deck {
   std::string title;
-  fem::QuadraticMesh mesh;          ///< `held`: by the supports alone
+  fem::QuadraticMesh mesh;          ///< `fixed`: by the supports alone
   std::vector<std::int32_t> patch;  ///< nodes moved together; none where a tool is pressed
   std::optional<PressingTool> tool;
   bool no_slip = false;  ///< of the tool while it is pressed

@@ -229,12 +229,12 @@ class Writer {
       }
       add("</Elements>\n");
     }
-    std::vector<std::int32_t> held;
+    std::vector<std::int32_t> fixed;
     for (std::size_t node = 0; node < mesh.fixed.size(); ++node) {
-      if (mesh.fixed[node]) held.push_back(static_cast<std::int32_t>(node));
+      if (mesh.fixed[node]) fixed.push_back(static_cast<std::int32_t>(node));
     }
     if (deck_.tool) tool_elements(*deck_.tool);
-    node_set("held", held);
+    node_set("fixed", fixed);
     if (deck_.tool) {
       surfaces(*deck_.tool);
     } else {
@@ -310,7 +310,7 @@ class Writer {
   }
 
   void boundary() {
-    add("<Boundary>\n<bc name=\"support\" node_set=\"held\" type=\"zero displacement\">\n"
+    add("<Boundary>\n<bc name=\"support\" node_set=\"fixed\" type=\"zero displacement\">\n"
         "<x_dof>1</x_dof>\n<y_dof>1</y_dof>\n<z_dof>1</z_dof>\n</bc>\n");
     for (std::size_t i = 0; i < 3 && !deck_.tool; ++i) {
       add("<bc name=\"press_{0}\" node_set=\"patch\" type=\"prescribed displacement\">\n"

@@ -136,6 +136,9 @@ fitting::FitSettings fit_settings(const Workspace& space) {
 fitting::CertifySettings certify_settings(const Workspace& space) {
   fitting::CertifySettings settings;
   settings.friction = space.c.certify.friction;
+  const bool may_turn = space.c.mesh.directions == mesher::PressDirections::Normal;
+  if (may_turn && !is_measured(space))
+    settings.slide_remedy = "press_directions = \"sliding\" in [mesh]";
   for (const fs::path& file : stage_inputs(space, Stage::Certify)) {
     settings.devices.push_back(read_device_profile(file));
   }

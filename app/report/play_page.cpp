@@ -173,17 +173,14 @@ void write_play_page(const Library& library, const PlayBody& drawn,
   write_page(data, path);
 }
 
-json watch_data(const Library& library, const PlayBody& drawn, std::string_view deformation) {
+json watch_data(const Library& library, const PlayBody& drawn) {
   json data = play_data(library, drawn);
   data["watch"] = true;
-  if (drawn.body != nullptr && !deformation.empty() && !data["touch"].is_null())
-    data["touch"] = touch_data(*drawn.body, library, deformation, map_boundary(*drawn.body).node);
   return data;
 }
 
-std::string watch_page(const Library& library, const PlayBody& drawn,
-                       std::string_view deformation) {
-  std::string page = page_text(watch_data(library, drawn, deformation));
+std::string watch_page(const Library& library, const PlayBody& drawn) {
+  std::string page = page_text(watch_data(library, drawn));
   constexpr std::string_view kPolicy = "default-src 'none';";
   const std::size_t at = page.find(kPolicy);
   if (at == std::string::npos)

@@ -41,14 +41,12 @@ nlohmann::json play_data(const Library& library, const PlayBody& drawn = {});
 void write_play_page(const Library& library, const PlayBody& drawn,
                      const std::filesystem::path& path);
 
-/// Data of the page of a running session: those of play_data, with the skin of `deformation`, the
-/// bytes of deformation.pdef, where it is not empty and there is a body.
-nlohmann::json watch_data(const Library& library, const PlayBody& drawn,
-                          std::string_view deformation);
+/// Data of the page of a running session: those of play_data, marked as such.
+nlohmann::json watch_data(const Library& library, const PlayBody& drawn = {});
 
 /// The page of a running session, which its server gives: it takes the steps from "/steps" of its
 /// origin.
 /// @throws Error as play_data.
-std::string watch_page(const Library& library, const PlayBody& drawn, std::string_view deformation);
+std::string watch_page(const Library& library, const PlayBody& drawn = {});
 
 }  // namespace palpate::report

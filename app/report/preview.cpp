@@ -28,14 +28,14 @@ std::vector<std::uint8_t> facet_kinds(const Body& body, const SurfaceMap& map) {
   for (const std::int32_t n : body.fixed_nodes) fixed.at(to_index(n)) = 1;
   for (std::size_t f = 0; f < map.facets.size(); ++f) {
     const Triangle& facet = body.boundary[f];
-    const bool held = std::all_of(facet.begin(), facet.end(),
-                                  [&](std::int32_t n) { return fixed[to_index(n)] != 0; });
+    const bool is_fixed = std::all_of(facet.begin(), facet.end(),
+                                      [&](std::int32_t n) { return fixed[to_index(n)] != 0; });
     const std::int32_t m = map.facet_triangle[f];
     bool pressed = m >= 0;
     if (pressed)
       for (const std::int32_t v : body.response.triangles[to_index(m)])
         pressed = pressed && body.response.is_site[to_index(v)] != 0;
-    kinds.push_back(held ? Supported : pressed ? Pressed : NotPressed);
+    kinds.push_back(is_fixed ? Supported : pressed ? Pressed : NotPressed);
   }
   for (const SprungFacet& sprung : body.foundation) kinds.at(to_index(sprung.facet)) = Supported;
   return kinds;

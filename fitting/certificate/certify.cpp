@@ -43,7 +43,7 @@ void count_vertices(const Library& library, Certificate& certificate) {
   }
 }
 
-/// Reason why the slide has no bound, with a remedy.
+/// Reason why the slide has no bound.
 std::string cause_unbounded(const TriangleCertificate& triangle, double depth) {
   std::array<char, 256> text{};
   const double tilt = std::acos(triangle.cos_theta) * 57.29577951308232;
@@ -61,15 +61,20 @@ std::string cause_unbounded(const TriangleCertificate& triangle, double depth) {
         "a radius of %.3g mm, up to %.0f degrees off the facet normal",
         1e3 * depth, 1e3 / triangle.kappa, tilt);
   }
-  return text.data() +
-         std::string(" (try a smaller patch spacing, a rounder edge or a smaller depth)");
+  return text.data();
 }
 
-std::string cause(const TriangleBounds& bounds, double depth) {
+std::string remedy_unbounded(const std::string& first) {
+  return " (try " + (first.empty() ? "" : first + ", ") +
+         "a smaller patch spacing, a rounder edge or a smaller depth)";
+}
+
+std::string cause(const TriangleBounds& bounds, double depth, const std::string& slide_remedy) {
   if (kRoundingFactor * bounds.certificate.stick >= bounds.certificate.slip) {
     return "the stiffest response, at a fixed contact point";
   }
-  if (std::isinf(bounds.certificate.slip)) return cause_unbounded(bounds.certificate, depth);
+  if (std::isinf(bounds.certificate.slip))
+    return cause_unbounded(bounds.certificate, depth) + remedy_unbounded(slide_remedy);
   const SlideCauses& slide = bounds.causes;
   if (slide.stiffness >= std::max({slide.variation, slide.slant, slide.curvature})) {
     return "the stiffest response, while sliding";
@@ -82,7 +87,8 @@ std::string cause(const TriangleBounds& bounds, double depth) {
 }
 
 std::string largest_bound_text(const Library& library, std::size_t index,
-                               const TriangleBounds& bounds, double depth) {
+                               const TriangleBounds& bounds, double depth,
+                               const std::string& slide_remedy) {
   const Triangle& triangle = library.triangles[index];
   Vec3 centre{};
   for (const std::int32_t v : triangle) {
@@ -92,7 +98,7 @@ std::string largest_bound_text(const Library& library, std::size_t index,
       "triangle " + std::to_string(index) + " near " + position_text(centre) + ": ";
   const double bound = std::max(bounds.certificate.stick, bounds.certificate.slip);
   const std::string size = std::isfinite(bound) ? lipschitz_bound_text(bound) + " in " : "";
-  return size + (where + cause(bounds, depth));
+  return size + (where + cause(bounds, depth, slide_remedy));
 }
 
 /// How much of the library has no bound, and down to which depth all of it has one.
@@ -191,7 +197,8 @@ void certify(Library& library, const CertifySettings& settings) {
     if (both > largest) {
       largest = both;
       certificate.worst_triangle = static_cast<std::int32_t>(m);
-      certificate.limited_by = largest_bound_text(library, m, bounds[m], certificate.depth);
+      certificate.limited_by =
+          largest_bound_text(library, m, bounds[m], certificate.depth, settings.slide_remedy);
     }
   }
   if (certificate.worst_triangle < 0) {

@@ -13,6 +13,8 @@ namespace palpate::fitting {
 struct CertifySettings {
   double friction = 0.3;  ///< mu, >= 0
   std::vector<DeviceProfile> devices;
+  /// What else helps where slides have no bound: "press directions ...". Empty: nothing is known.
+  std::string slide_remedy = {};
   /// N/m, the Lipschitz bound that the runtime enforces. NaN: enforced_lipschitz_bound().
   double enforced_bound = kUnknown;
 };

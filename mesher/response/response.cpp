@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "format/error.hpp"
@@ -19,6 +20,8 @@ namespace {
 constexpr double kLeastCosine = 0.1;     // of u_l with the inward facet normal
 constexpr double kLeastMeanNorm = 0.55;  // |sum n_l u_l|
 constexpr int kMaxSweeps = 500;
+/// A press turned by more is told from a normal one.
+constexpr double kOblique = 15 * std::numbers::pi / 180;
 
 double angle_at(const Vec3& apex, const Vec3& b, const Vec3& c) {
   return std::atan2(norm(cross(b - apex, c - apex)), dot(b - apex, c - apex));
@@ -92,6 +95,28 @@ std::vector<std::int32_t> sweep(const OpenTriangles& open, std::vector<Vec3>& in
   return violating;
 }
 
+/// Whether the directions at the corners of a triangle meet the conditions of the runtime.
+bool meets_conditions(const Vec3& inward_normal, const std::array<Vec3, 3>& u) {
+  return std::all_of(u.begin(), u.end(),
+                     [&](const Vec3& x) { return dot(x, inward_normal) >= kLeastCosine; }) &&
+         origin_to_triangle(u[0], u[1], u[2]) >= kLeastMeanNorm;
+}
+
+void turn_for_slides(const Surface& response, const Marks& constrained, const SlideDemand& demand,
+                     InwardDirections& result) {
+  std::vector<bool> free;
+  for (std::size_t v = 0; v < response.points.size(); ++v) free.push_back(constrained[v] == 0);
+  const Surface open{response.points, open_triangles(response, constrained).triangles, {}, {}};
+  SlideDirections turned = slide_directions(
+      open, std::move(result.inward), free, demand,
+      [&](std::size_t t, const std::array<Vec3, 3>& u) {
+        return meets_conditions(-unit(area_vector(open.points, open.triangles[t])), u);
+      });
+  result.inward = std::move(turned.inward);
+  result.unbounded = turned.unbounded;
+  result.still_unbounded = turned.still_unbounded;
+}
+
 /// @return how many response vertices are no sites because a support is within the tool radius
 std::size_t exclude_sites_at_supports(ResponseSurface& response, const Surface& boundary,
                                       const Marks& constrained, double tool_radius) {
@@ -109,17 +134,38 @@ std::size_t exclude_sites_at_supports(ResponseSurface& response, const Surface& 
   return excluded;
 }
 
-/// The largest angle between a direction and the mean normal, and where it is.
-std::string most_turned(const InwardDirections& directions, const NestedSurface& nested) {
-  const Vec3& x = nested.response.points[directions.turned_most];
-  return text(", by ", std::lround(directions.largest_turn * 57.29577951308232),
-              " degrees at most, near ", position_text(x));
+long degrees(double radians) {
+  return std::lround(radians * 180 / std::numbers::pi);
+}
+
+/// How directions differ from mean normals: how many, how far, and where farthest.
+void tell_turns(const InwardDirections& directions, const NestedSurface& nested,
+                std::string_view purpose, const Log& log) {
+  std::string line = text("press directions: ", directions.adjusted, " of ",
+                          directions.inward.size(), " adjusted for ", purpose);
+  if (directions.adjusted > 0)
+    line += text(", by ", degrees(directions.largest_turn), " degrees at most, near ",
+                 position_text(nested.response.points[directions.turned_most]));
+  note(log, line);
+}
+
+/// What turning directions for slides has gained, and what it costs.
+void tell_slides(const InwardDirections& directions, std::size_t triangles, const Log& log) {
+  note(log, text("slides: by its shape, ", directions.unbounded, " of ", triangles,
+                 " triangles have no bound with mean normals, ", directions.still_unbounded,
+                 " with the adjusted press directions"));
+  if (directions.largest_turn <= kOblique) return;
+  warn(log, text("with press_directions = \"sliding\" a tool is pressed up to ",
+                 degrees(directions.largest_turn),
+                 " degrees off the normal: it pushes the tissue aside there, and its force leans "
+                 "with it"));
 }
 
 }  // namespace
 
 InwardDirections inward_directions(const Surface& response, const Surface& boundary,
-                                   const Marks& constrained) {
+                                   const Marks& constrained,
+                                   const std::optional<SlideDemand>& demand) {
   InwardDirections result;
   result.inward = mean_inward(boundary, response.points.size(), constrained);
   const std::vector<Vec3> mean = result.inward;
@@ -128,6 +174,7 @@ InwardDirections inward_directions(const Surface& response, const Surface& bound
     result.unresolved = sweep(open, result.inward);
     if (result.unresolved.empty()) break;
   }
+  if (demand) turn_for_slides(response, constrained, *demand, result);
   for (std::size_t v = 0; v < mean.size(); ++v) {
     const double cosine = dot(mean[v], result.inward[v]);
     if (cosine >= 1 - 1e-12) continue;
@@ -145,8 +192,12 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
   const Log& log = settings.log;
   ResponseSurface& response = body.response;
   response.triangles = nested.response.triangles;
-  InwardDirections directions = inward_directions(nested.response, nested.boundary, constrained);
-  response.inward = std::move(directions.inward);
+  std::optional<SlideDemand> demand;
+  if (settings.directions == PressDirections::Sliding && settings.depth > 0)
+    demand = SlideDemand{.depth = settings.depth};
+  const InwardDirections directions =
+      inward_directions(nested.response, nested.boundary, constrained, demand);
+  response.inward = directions.inward;
   for (std::size_t v = 0; v < nested.response.points.size(); ++v) {
     response.node.push_back(static_cast<std::int32_t>(v));
     response.is_site.push_back(constrained[v] != 0 ? 0 : 1);
@@ -158,9 +209,8 @@ void set_response(Body& body, const NestedSurface& nested, const Marks& constrai
                    " within a tool radius (", millimetres(settings.tool_radius), ") of them ",
                    close == 1 ? "is no site" : "are no sites"));
   }
-  note(log, text("press directions: ", directions.adjusted, " of ", response.inward.size(),
-                 " adjusted for interpolation",
-                 directions.adjusted == 0 ? std::string() : most_turned(directions, nested)));
+  tell_turns(directions, nested, demand ? "interpolation and slides" : "interpolation", log);
+  if (demand) tell_slides(directions, response.triangles.size(), log);
   if (directions.unresolved.empty()) return;
   for (const std::int32_t v : directions.unresolved) {
     response.is_site[to_index(v)] = 0;

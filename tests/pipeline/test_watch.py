@@ -24,7 +24,8 @@ PALPATE, RUNTIME, SOURCE, CC, BROWSER = sys.argv[1:6]
 PICTURE = sys.argv[6] if len(sys.argv) > 6 else None
 if BROWSER.endswith("-NOTFOUND"):
     sys.exit("Chromium not found: install the Debian package chromium")
-LIBRARY = pathlib.Path(PALPATE).resolve().parent.parent / "share/palpate/libraries/gel.plib"
+LIBRARIES = pathlib.Path(PALPATE).resolve().parent.parent / "share/palpate/libraries"
+LIBRARY, LIVER = LIBRARIES / "gel.plib", LIBRARIES / "liver.plib"
 RATE = 1000  # Hz
 
 
@@ -43,14 +44,14 @@ class Watch(unittest.TestCase):
         self.addCleanup(process.kill)
         return process
 
-    def session(self, duration):
+    def session(self, duration, library=LIBRARY):
         """Without a search thread, so that it can be replayed to the bit; a watchdog for a busy machine."""
-        return self.start("run", LIBRARY, "--uncertified", "--rate", RATE, "--duration", duration, "--priority", 0, "--watchdog", 60,
+        return self.start("run", library, "--uncertified", "--rate", RATE, "--duration", duration, "--priority", 0, "--watchdog", 60,
                           "--search-rate", 0, "--out", self.recording)
 
-    def watch(self):
+    def watch(self, library=LIBRARY):
         """The process, and its port."""
-        return self.port_of(self.start("watch", LIBRARY, "--recording", self.recording, "--port", 0, "--no-open"))
+        return self.port_of(self.start("watch", library, "--recording", self.recording, "--port", 0, "--no-open"))
 
     def port_of(self, process):
         line = process.stdout.readline()
@@ -101,6 +102,19 @@ class Watch(unittest.TestCase):
         self.assertEqual(errors, "0")
         self.assertIn("a session of", self.end(watch))
         self.replayed()
+
+    def test_the_skin_deforms_where_a_deformation_lies_beside_the_library(self):
+        watch, port = self.watch(LIVER)
+        with Chromium(BROWSER) as page:
+            page.open(f"http://127.0.0.1:{port}/")
+            page.wait("document.getElementById('live-session').textContent === 'waiting for one to begin'")
+            self.assertIn("the skin as the runtime blends it", page.value("document.getElementById('live').textContent"))
+            run = self.session(4, LIVER)
+            page.wait("document.querySelector('#live canvas').work.moved > 100")  # points of the skin in a frame
+            said = run.stdout.read()
+            self.assertEqual(run.wait(timeout=60), 0, said)
+            self.assertEqual(page.value("document.documentElement.dataset.errors"), "0")
+        self.end(watch)
 
     def test_the_loop_of_a_program_is_seen_too(self):
         """examples/watched.c through a pipe, with the steps that it printed; damaged text is refused with its line."""

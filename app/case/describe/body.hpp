@@ -148,6 +148,12 @@ void describe_mesh(V& v, mesher::Settings& s) {
               "edges of the surface with a larger dihedral deviation are preserved",
               kOptional,
               {.low = 0, .high = std::numbers::pi, .low_open = true}});
+  describe_choice(
+      v, s.directions,
+      {"press_directions",
+       "`normal`: the mean normal of the facets around a vertex; `sliding`: turned at rims and "
+       "lobes, so that the force has a bound along slides there"},
+      kPressDirections);
   v.flag(s.curved_facets, {"curved_facets",
                            "`true`: boundary facets are quadratic, with their edge midpoints on "
                            "the input surface; `false`: facets are flat"});
@@ -167,8 +173,8 @@ void describe_source(V& v, mesher::Settings& mesh, bool is_measured) {
   if (v.has_section("volume_mesh", has_mesh)) {
     v.section("volume_mesh", kOptional,
               "Tetrahedra that are used as they are; the response surface is a coarsening of their "
-              "boundary. Of `[mesh]` only `patch_spacing`, `feature_angle` and `curved_facets` "
-              "apply.",
+              "boundary. Of `[mesh]` only `patch_spacing`, `feature_angle`, `press_directions` "
+              "and `curved_facets` apply.",
               [&](auto& in) { describe_volume_mesh(in, mesh.volume_mesh); });
   }
   if (v.has_section("image", has_image)) {

@@ -106,13 +106,9 @@ void describe_relaxation(V& v, MaterialSection& s) {
         kModuli);
 }
 
+/// The law and its constants, which alone say what the tissue is.
 template <class V>
-void describe(V& v, MaterialSection& s) {
-  v.text(s.region, {"region", "region of the body; empty means that of the outer surface"});
-  v.quantity(s.density, Dimension::Density,
-             {"density", "reference density, for the weight; 0: that of `[gravity]`", kOptional,
-              kNotNegative});
-  describe_relaxation(v, s);
+void describe_law(V& v, MaterialSection& s) {
   Choices laws;
   for (const fem::LawEntry& law : fem::law_table()) laws.push_back(law.name);
   v.text(s.law.law, {"law", "hyperelastic law, see [theory](theory-fem.md)"}, laws);
@@ -135,6 +131,16 @@ void describe(V& v, MaterialSection& s) {
     }
     if (law.has_fibres) describe_fibres(v, s);
   }
+}
+
+template <class V>
+void describe(V& v, MaterialSection& s) {
+  v.text(s.region, {"region", "region of the body; empty means that of the outer surface"});
+  v.quantity(s.density, Dimension::Density,
+             {"density", "reference density, for the weight; 0: that of `[gravity]`", kOptional,
+              kNotNegative});
+  describe_relaxation(v, s);
+  describe_law(v, s);
 }
 
 }  // namespace palpate::app

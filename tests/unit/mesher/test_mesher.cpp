@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <string_view>
 
 #include "mesher/geometry/queries.hpp"
 #include "mesher/mesher.hpp"
 #include "mesher/read/read_surface.hpp"
+#include "mesher/response/slide_directions.hpp"
 #include "tests/support/source_folder.hpp"
 #include "tests/unit/mesher/body_checks.hpp"
 #include "tests/unit/mesher/shapes.hpp"
@@ -144,6 +148,60 @@ TEST(Mesh, OrganHasItsNoduleSixMillimetresUnderTheSkin) {
     cover = std::min(cover, norm(skin.closest(x).point - x));
   }
   EXPECT_NEAR(cover, 0.006, 0.0002);
+}
+
+/// Triangles of sites whose slides have no bound by the shape, at a depth.
+std::size_t unbounded_slides(const Body& body, double depth) {
+  std::size_t count = 0;
+  for (const Triangle& t : body.response.triangles) {
+    std::array<Vec3, 3> x{}, inward{};
+    bool free = true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto v = static_cast<std::size_t>(t[k]);
+      x[k] = body.nodes[static_cast<std::size_t>(body.response.node[v])];
+      inward[k] = body.response.inward[v];
+      free = free && body.response.is_site[v] != 0;
+    }
+    count += free && slide_rate(x, inward, {.depth = depth}) <= 0 ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(Mesh, PressDirectionsForSlidesTurnAtTheEdgesOfABoxAndSayHowFar) {
+  const test::TemporaryFile file("box.off",
+                                 test::off_text(test::box({0, 0, 0}, {0.05, 0.04, 0.03})));
+  std::string log;
+  Settings s;
+  s.name = "box";
+  s.surface = {file.path(), 1.0, "gel"};
+  s.supports = {PlaneSupport{{0, 0, 0}, {0, 0, -1}}};
+  s.patch_spacing = 0.008;
+  s.element_size = 0.008;
+  s.tool_radius = 0.002;
+  s.depth = 0.006;
+  s.log = [&](std::string_view line) { log += std::string(line) + "\n"; };
+  const Body normal = mesh(s);
+  EXPECT_EQ(log.find("slides"), std::string::npos);
+  log.clear();
+  s.directions = PressDirections::Sliding;
+  const Body sliding = mesh(s);
+  test::expect_sound(sliding);
+  EXPECT_EQ(sliding.nodes, normal.nodes);
+  const std::size_t before = unbounded_slides(normal, s.depth);
+  EXPECT_GT(before, 5U);
+  EXPECT_LT(unbounded_slides(sliding, s.depth), before / 2);
+  double least = 1;
+  for (std::size_t v = 0; v < normal.response.inward.size(); ++v)
+    least = std::min(least, dot(normal.response.inward[v], sliding.response.inward[v]));
+  const auto degrees = std::to_string(std::lround(std::acos(least) * 180 / pi));
+  EXPECT_NE(log.find("adjusted for interpolation and slides, by " + degrees + " degrees at most"),
+            std::string::npos)
+      << log;
+  EXPECT_NE(log.find("slides: by its shape, "), std::string::npos) << log;
+  EXPECT_NE(log.find("warning: with press_directions = \"sliding\" a tool is pressed up to " +
+                     degrees + " degrees off the normal"),
+            std::string::npos)
+      << log;
 }
 
 TEST(Mesh, TwoRunsAreEqualToTheLastBit) {

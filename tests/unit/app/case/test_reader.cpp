@@ -98,6 +98,10 @@ TEST(CaseReader, RejectsMissingKeys) {
   EXPECT_THAT(message_of("name = \"x\"\n"), HasSubstr("key 'support' is missing"));
 }
 
+TEST(CaseReader, SaysOfAMissingKeyWhatItMayBe) {
+  EXPECT_THAT(message_with("shape = \"box\"\n", ""), HasSubstr("one of plane, box, sphere"));
+}
+
 TEST(CaseReader, NamesTheLineOfInvalidToml) {
   EXPECT_THAT(message_with("[mesh]", "[mesh"), HasSubstr("ball.toml:13: invalid TOML"));
   EXPECT_THAT(message_with("unit = \"cm\"", "unit = \"foot\""), HasSubstr("not one of mm, cm"));

@@ -65,6 +65,11 @@ TEST(Sidecar, TakesQuantitiesInSmallUnits) {
 TEST(Sidecar, RefusesWhatItCannotUse) {
   EXPECT_EQ(refusal(kHead + kColumns + kPress), "accepted");
   EXPECT_THAT(refusal(kHead + kColumns), HasSubstr("it names no record"));
+  EXPECT_THAT(refusal("name = \"a\"\nspecimen = \"b\"\nsource = \"c\"\nlicence = \"d\"\n"
+                      "[tool]\nradius = \"6 mm\"\n" +
+                      kColumns + kPress),
+              HasSubstr("'tool.friction' is missing; add it: friction of the press; "
+                        "one of frictionless, no-slip"));
   EXPECT_THAT(refusal(kHead + "[columns]\nforce = \"f\"\n" + kPress),
               HasSubstr("key 'columns.displacement' is missing"));
   EXPECT_THAT(refusal(kHead + kColumns + "[[press]]\nfile = \"a.csv\"\n"),

@@ -135,8 +135,8 @@ class SettingsText {
   }
   void add(const mesher::Settings& s) {
     add(s.name, static_cast<int>(s.method), s.patch_spacing, s.element_size, s.interior_coarsening,
-        s.support_coarsening, s.feature_angle, s.curved_facets, s.tool_radius, s.depth,
-        s.lateral_travel);
+        s.support_coarsening, s.feature_angle, static_cast<int>(s.directions), s.curved_facets,
+        s.tool_radius, s.depth, s.lateral_travel);
     add(s.surface);
     add(s.volume_mesh);
     for (const auto& zone : s.press) add(zone);
@@ -292,6 +292,7 @@ TEST(StageSettings, KeysThatACaseLeavesOutHaveTheDefaultsOfTheStages) {
   EXPECT_EQ(mesh.interior_coarsening, mesh_default.interior_coarsening);
   EXPECT_EQ(mesh.support_coarsening, mesh_default.support_coarsening);
   EXPECT_EQ(mesh.feature_angle, mesh_default.feature_angle);
+  EXPECT_EQ(mesh.directions, mesh_default.directions);
   EXPECT_EQ(mesh.curved_facets, mesh_default.curved_facets);
   EXPECT_EQ(mesh.surface.region_name, mesh_default.surface.region_name);
   const fem::CampaignSettings campaign = campaign_settings(space), campaign_default;
@@ -313,6 +314,14 @@ TEST(StageSettings, KeysThatACaseLeavesOutHaveTheDefaultsOfTheStages) {
   EXPECT_EQ(fit.max_knots, fit_default.max_knots);
   EXPECT_EQ(fit.kind, fit_default.kind);
   EXPECT_EQ(certify_settings(space).friction, fitting::CertifySettings{}.friction);
+}
+
+TEST(StageSettings, DirectionsForSlidesAreARemedyWhereTheyAreNotInUse) {
+  Case c = adaptive_case();
+  EXPECT_EQ(certify_settings(workspace(c)).slide_remedy,
+            "press_directions = \"sliding\" in [mesh]");
+  c.mesh.directions = mesher::PressDirections::Sliding;
+  EXPECT_EQ(certify_settings(workspace(c)).slide_remedy, "");
 }
 
 TEST(StageSettings, PathsAreRelativeToTheCaseAndNormalsOfUnitLength) {

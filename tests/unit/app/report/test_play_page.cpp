@@ -125,22 +125,28 @@ TEST(PlayPage, NeedsOneResponse) {
 
 TEST(WatchPage, MayAskItsOwnServerAndNothingElse) {
   const Library library = testing::synthetic(1, 0).library;
-  const std::string page = watch_page(library, {}, "");
+  const std::string page = watch_page(library);
   EXPECT_NE(page.find("content=\"default-src 'none'; connect-src 'self'; style-src"),
             std::string::npos);
   EXPECT_EQ(page_text(play_data(library)).find("connect-src"), std::string::npos);
-  EXPECT_TRUE(watch_data(library, {}, "").at("watch").get<bool>());
+  EXPECT_TRUE(watch_data(library).at("watch").get<bool>());
 }
 
-TEST(WatchPage, HasTheSkinWhereThereIsABodyAndADeformation) {
+TEST(WatchPage, HasTheSkinWhereThereIsADeformation) {
   const auto all = testing::synthetic(2, 1);
-  const std::string file = testing::deformation_bytes(all.body, all.library);
-  const auto data = watch_data(all.library, {&all.body}, file);
-  if (data.at("touch").is_null()) GTEST_SKIP() << "built without the WebAssembly toolchain";
-  const auto points = numbers<float>(data.at("surface").at("points"), "f4");
-  const auto rows = numbers<std::uint16_t>(data.at("touch").at("skin").at("of_point"), "u2");
-  EXPECT_EQ(3 * rows.size(), points.size());
-  EXPECT_TRUE(watch_data(all.library, {&all.body}, "").at("touch").at("skin").is_null());
+  const std::string of_body = testing::deformation_bytes(all.body, all.library);
+  const std::string of_surface = testing::surface_deformation_bytes(all.body, all.library);
+  const std::vector<PlayBody> kinds{
+      {.body = &all.body, .deformation = of_body},
+      {.triangles = all.body.response.triangles, .deformation = of_surface}};
+  for (const PlayBody& drawn : kinds) {
+    const auto data = watch_data(all.library, drawn);
+    if (data.at("touch").is_null()) GTEST_SKIP() << "built without the WebAssembly toolchain";
+    const auto points = numbers<float>(data.at("surface").at("points"), "f4");
+    const auto rows = numbers<std::uint16_t>(data.at("touch").at("skin").at("of_point"), "u2");
+    EXPECT_EQ(3 * rows.size(), points.size());
+  }
+  EXPECT_TRUE(watch_data(all.library, {&all.body}).at("touch").at("skin").is_null());
 }
 
 }  // namespace

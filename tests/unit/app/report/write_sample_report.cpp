@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // write_sample_report <folder>: the reports that test_report_page.py opens in a browser.
+// write_sample_report <folder> <patches> <refinements>: one of a lump of this size, for
+// page_frames.py.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -267,15 +269,17 @@ std::string calibration_text() {
   return account.dump();
 }
 
-}  // namespace
+/// With a skin that deforms and a session on it.
+void write_lump(const palpate::testing::Synthetic& all, const std::filesystem::path& file) {
+  using namespace palpate;
+  testing::TouchedSkin skin(all.body, all.library);
+  const report::SessionDigest session = report::digest(testing::rendered(all.recording, skin));
+  ReportInput input{&all.body, &all.curves, &all.library, &session, "Lump", 0};
+  input.deformation = testing::deformation_bytes(all.body, all.library);
+  write_report(input, file);
+}
 
-int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: write_sample_report <folder>\n";
-    return 2;
-  }
-  const std::filesystem::path folder = argv[1];
-  std::filesystem::create_directories(folder);
+void write_samples(const std::filesystem::path& folder) {
   auto all = palpate::testing::synthetic(3, 2);
   const auto session = palpate::report::digest(all.recording);
   palpate::ReportInput input{&all.body, &all.curves,          &all.library,
@@ -327,4 +331,21 @@ int main(int argc, char** argv) {
   input.session = nullptr;
   input.library_bytes = 0;
   palpate::write_report(input, folder / "bare.html");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2 && argc != 4) {
+    std::cerr << "usage: write_sample_report <folder> [<patches> <refinements>]\n";
+    return 2;
+  }
+  const std::filesystem::path folder = argv[1];
+  std::filesystem::create_directories(folder);
+  if (argc == 2) {
+    write_samples(folder);
+  } else {
+    write_lump(palpate::testing::synthetic(std::stoi(argv[2]), std::stoi(argv[3])),
+               folder / "lump.html");
+  }
 }

@@ -163,6 +163,9 @@ TEST(Certificate, DepthBeyondTheRadiusOfCurvatureHasNoBoundAndAReason) {
   EXPECT_EQ(line.find("inf"), std::string::npos) << line;
   EXPECT_NE(line.find("320 of 320 triangles have no bound; down to "), std::string::npos) << line;
   EXPECT_NE(line.find(" mm every slide has a bound"), std::string::npos) << line;
+  settings.slide_remedy = "other directions";
+  certify(library, settings);
+  EXPECT_NE(line.find("(try other directions, a smaller patch"), std::string::npos) << line;
 }
 
 /// Why the only triangle of a plate has no smaller bound.
