@@ -32,9 +32,9 @@ struct IndentationSettings {
   ToolFriction friction = ToolFriction::Frictionless;  ///< of the normal path
   double tool_azimuth = 0;  ///< rad, of the axis of a cylinder, from the first tangent of the site
   double depth = 0.006;     ///< m, end of the normal path
-  int increments = 12;      ///< of the normal path
+  int increments = 6;       ///< of the normal path
   double lateral_travel = 0.003;  ///< m, end of each lateral path
-  int lateral_increments = 6;
+  int lateral_increments = 3;
   std::vector<double> lateral_depths{
       0.002, 0.004, 0.006};           ///< m, where lateral paths start; each at most `depth`
   std::vector<double> azimuths{0.0};  ///< rad, from the first tangent direction of the site

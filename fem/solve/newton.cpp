@@ -21,6 +21,10 @@ constexpr double kPatchTolerance = 0.1;
 constexpr double kStraight = 0.85;
 constexpr double kLongestStep = 64;
 
+/// Contraction of the residual in a step from which a factor is used again. A factor takes as long
+/// as some ten steps where the elements under the tool are refined (bench_precompute profile).
+constexpr double kGoodContraction = 0.5;
+
 }  // namespace
 
 double imbalance(const SolidModel& model, const Eigen::VectorXd& residual, double round_off) {
@@ -160,7 +164,6 @@ void NewtonSolver::lengthen(const ToolContact& contact, const Eigen::VectorXd& d
 NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions& options,
                                  Displacement& u) {
   const PartTimer timer(Part::WindowPasses);
-  constexpr double kGoodContraction = 0.3;
   NewtonResult result;
   Equilibrium now = evaluate(model_, contact, u, multipliers_);
   if (!(now.min_J > 0)) {

@@ -43,7 +43,7 @@ std::vector<Level> levels_of(const SiteCurves& site) {
 double weight_of(const Level& level, const runtime::CompiledCurve& lateral) {
   double above = 0, below = 0;
   for (const auto& path : level.paths) {
-    for (const ForceSample& sample : path) {
+    for (const ForceSample& sample : with_forces_between(path)) {
       const double f = lateral.force(sample.displacement);
       above += f * sample.force;
       below += f * f;
@@ -58,7 +58,10 @@ ResponseCurve pooled_lateral(const std::vector<Level>& levels, const CurveFitSet
   std::vector<std::vector<ForceSample>> scaled;
   for (const Level& level : levels) {
     for (auto path : level.paths) {
-      for (ForceSample& sample : path) sample.force /= level.weight;
+      for (ForceSample& sample : path) {
+        sample.force /= level.weight;
+        sample.mean /= level.weight;
+      }
       scaled.push_back(std::move(path));
     }
   }

@@ -212,6 +212,23 @@ class KnotSearch {
   double depth_;
 };
 
+/// Where the force between two samples is computed from its mean, over their distance.
+constexpr std::array kBetween{0.25, 0.5, 0.75};
+
+/// Relative distance below which two displacements differ only by rounding.
+constexpr double kSame = 1e-9;
+
+/// The force at a fraction of the way from `low` to a sample that knows the mean between: a
+/// parabola, or from the start of the curve, where the force of a round tool is none, a power.
+double force_between(const ForceSample& low, const ForceSample& high, double fraction) {
+  constexpr double kLowest = 0.5, kHighest = 3;  // exponents
+  const double exponent = high.force / high.mean - 1;
+  if (low.displacement == 0 && exponent >= kLowest && exponent <= kHighest)
+    return high.force * std::pow(fraction, exponent);
+  const double bow = high.mean - 0.5 * (low.force + high.force);
+  return low.force + fraction * (high.force - low.force) + 6 * fraction * (1 - fraction) * bow;
+}
+
 Samples checked(Samples samples, const std::string& where) {
   for (const ForceSample& sample : samples) {
     if (std::isfinite(sample.displacement) && std::isfinite(sample.force)) continue;
@@ -239,6 +256,23 @@ CurveFitSettings settled(CurveFitSettings settings, const std::vector<ForceSampl
   // Any tolerance suits samples without a force: the curve without a slope meets them.
   settings.absolute_tolerance = peak > 0 ? kPeakShare * peak : 1;
   return settings;
+}
+
+std::vector<ForceSample> with_forces_between(const std::vector<ForceSample>& samples) {
+  Samples dense;
+  ForceSample low{0, 0};
+  for (const ForceSample& high : samples) {
+    const double travel = high.displacement - low.displacement;
+    const bool known = std::isfinite(high.mean) && travel > 0 &&
+                       std::abs(high.since - low.displacement) <= kSame * high.displacement;
+    for (const double fraction : kBetween) {
+      if (!known) break;
+      dense.push_back({low.displacement + fraction * travel, force_between(low, high, fraction)});
+    }
+    dense.push_back(high);
+    low = high;
+  }
+  return dense;
 }
 
 std::vector<double> fit_slopes(const std::vector<ForceSample>& samples,
@@ -277,11 +311,13 @@ CurveFit fit_curve(std::vector<ForceSample> samples, const CurveFitSettings& giv
                    const std::string& where) {
   const Samples usable = checked(std::move(samples), where);
   const CurveFitSettings settings = settled(given, usable);
-  const Candidate best = KnotSearch(usable, settings).run();
+  const Samples dense = with_forces_between(usable);
+  const Candidate best = KnotSearch(dense, settings).run();
+  const runtime::CompiledCurve rendered(best.curve);
   CurveFit fit{best.curve, 0, best.worst};
-  for (std::size_t i = 0; i < usable.size(); ++i) {
-    fit.largest_error = std::max(fit.largest_error, best.ratio[i] * tolerance(usable[i], settings));
-  }
+  for (const ForceSample& sample : usable)
+    fit.largest_error =
+        std::max(fit.largest_error, std::abs(rendered.force(sample.displacement) - sample.force));
   return fit;
 }
 

@@ -13,6 +13,10 @@ namespace palpate::fitting {
 struct ForceSample {
   double displacement = 0;  ///< m, > 0
   double force = 0;         ///< N
+  /// N, mean of the force over the displacements from `since` to this one: what was stored in the
+  /// body, over the travel. NaN when unknown.
+  double mean = std::numeric_limits<double>::quiet_NaN();
+  double since = 0;  ///< m, below `displacement`
 };
 
 /// Share of the largest force of a curve below which its errors do not count: half of what is
@@ -30,11 +34,17 @@ struct CurveFitSettings {
 struct CurveFit {
   ResponseCurve curve;
   double largest_error = 0;  ///< N, max |fit - sample| of the stored single-precision curve
-  double worst_ratio = 0;    ///< max |fit - sample| / max(relative * |sample|, absolute)
+  /// max |fit - force| / max(relative * |force|, absolute) of the samples and the forces between
+  double worst_ratio = 0;
 };
 
 /// The settings for these samples: the absolute tolerance is a number.
 CurveFitSettings settled(CurveFitSettings settings, const std::vector<ForceSample>& samples);
+
+/// The ascending samples, and forces at three places between those whose mean since the sample
+/// before is known. They are on the parabola with that mean; from 0 to the first sample, where the
+/// force of a round tool is no polynomial, on the power of the displacement with it.
+std::vector<ForceSample> with_forces_between(const std::vector<ForceSample>& samples);
 
 /// Weight of the penalty on kinks of the slope, relative to a residual of one tolerance.
 inline constexpr double kKinkWeight = 1e-3;
@@ -51,12 +61,13 @@ inline constexpr double kEvenWeight = 1e-5;
 std::vector<double> fit_slopes(const std::vector<ForceSample>& samples,
                                const std::vector<double>& knots, const CurveFitSettings& settings);
 
-/// Chooses knots and slopes. From a single piece, pieces are split where that lowers the largest
-/// error most, and knots are shifted, until all samples are within tolerance or the knots are used
-/// up; then unnecessary knots are removed. Each piece has at least two samples (the first of a
-/// normal response may have none). Where the tolerance cannot be met, the number of knots minimises
-/// the criterion of [Schwarz 1978], so noise is averaged. Errors are those of the stored curve with
-/// knots and slopes rounded to single precision.
+/// Chooses knots and slopes for the samples with the forces between them. From a single piece,
+/// pieces are split where that lowers the largest error most, and knots are shifted, until all
+/// samples are within tolerance or the knots are used up; then unnecessary knots are removed. Each
+/// piece has at least two samples (the first of a normal response may have none). Where the
+/// tolerance cannot be met, the number of knots minimises the criterion of [Schwarz 1978], so noise
+/// is averaged. Errors are those of the stored curve with knots and slopes rounded to single
+/// precision.
 /// @param where  name of the curve in errors. @throws Error(Configuration) for no samples or values
 ///   that are not finite.
 CurveFit fit_curve(std::vector<ForceSample> samples, const CurveFitSettings& settings,

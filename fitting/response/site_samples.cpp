@@ -2,12 +2,50 @@
 #include "fitting/response/site_samples.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace palpate::fitting {
 namespace {
 
 /// Relative distance below which two displacements differ only by rounding.
 constexpr double kSame = 1e-9;
+
+/// J, what body and contact have stored; NaN when unknown.
+double stored(const CurveSample& sample) {
+  return sample.strain_energy + sample.contact_energy;
+}
+
+/// The samples of a path beyond its start, with the mean of the force since the sample before: the
+/// tool does the work that body and contact store.
+std::vector<ForceSample> samples_of(const CurvePath& path) {
+  std::vector<ForceSample> samples;
+  const CurveSample* before = nullptr;
+  for (const CurveSample& here : path.samples) {
+    if (here.displacement > 0) {
+      ForceSample sample{here.displacement, response_force(path, here)};
+      if (before != nullptr && here.displacement > before->displacement) {
+        sample.since = before->displacement;
+        const double force =
+            (stored(here) - stored(*before)) / (here.displacement - before->displacement);
+        // Less the force of the start, as response_force.
+        sample.mean = force - (dot(here.force, path.direction) - sample.force);
+      }
+      samples.push_back(sample);
+    }
+    before = &here;
+  }
+  return samples;
+}
+
+/// The mean of the force of a path from one displacement to another, if there is a sample that
+/// knows it; else NaN.
+double mean_between(const std::vector<ForceSample>& path, double low, double high) {
+  for (const ForceSample& sample : path)
+    if (std::abs(sample.displacement - high) <= kSame * high &&
+        std::abs(sample.since - low) <= kSame * high)
+      return sample.mean;
+  return std::numeric_limits<double>::quiet_NaN();
+}
 
 /// Force of a path at d, linear between its samples and from the origin. @pre d <= its last sample
 double interpolate(const std::vector<ForceSample>& path, double d) {
@@ -29,11 +67,8 @@ std::vector<ForceSample> normal_samples(const SiteCurves& site) {
   std::vector<ForceSample> samples;
   for (const CurvePath& path : site.paths) {
     if (path.kind != PathKind::Normal) continue;
-    for (const CurveSample& sample : path.samples) {
-      if (sample.displacement > 0) {
-        samples.push_back({sample.displacement, dot(sample.force, path.direction)});
-      }
-    }
+    const std::vector<ForceSample> more = samples_of(path);
+    samples.insert(samples.end(), more.begin(), more.end());
   }
   return samples;
 }
@@ -49,17 +84,8 @@ double normal_reach(const SiteCurves& site) {
 std::vector<std::vector<ForceSample>> lateral_paths(const SiteCurves& site) {
   std::vector<std::vector<ForceSample>> paths;
   for (const CurvePath& path : site.paths) {
-    if (path.kind != PathKind::Lateral || path.samples.empty()) continue;
-    const Vec3 first = path.samples.front().force;
-    std::vector<ForceSample> samples;
-    for (const CurveSample& sample : path.samples) {
-      if (sample.displacement > 0) {
-        samples.push_back({sample.displacement, dot(sample.force - first, path.direction)});
-      }
-    }
-    std::sort(samples.begin(), samples.end(), [](const ForceSample& a, const ForceSample& b) {
-      return a.displacement < b.displacement;
-    });
+    if (path.kind != PathKind::Lateral) continue;
+    std::vector<ForceSample> samples = samples_of(path);
     if (!samples.empty()) paths.push_back(std::move(samples));
   }
   return paths;
@@ -77,14 +103,16 @@ std::vector<ForceSample> mean_lateral(const std::vector<std::vector<ForceSample>
   std::vector<ForceSample> mean;
   ForceSample last{0, 0};
   for (const double d : displacements) {
-    double rise = 0;
+    double rise = 0, mean_rise = 0;  // both since the last displacement
     int count = 0;
     for (const auto& path : paths) {
       if (path.back().displacement < (1 - kSame) * d) continue;
-      rise += interpolate(path, d) - interpolate(path, last.displacement);
+      const double before = interpolate(path, last.displacement);
+      rise += interpolate(path, d) - before;
+      mean_rise += mean_between(path, last.displacement, d) - before;
       ++count;
     }
-    last = {d, last.force + rise / count};
+    last = {d, last.force + rise / count, last.force + mean_rise / count, last.displacement};
     mean.push_back(last);
   }
   return mean;

@@ -9,6 +9,8 @@
 
 namespace palpate::fitting {
 
+// The means of the force between the samples are those of the energies, where these are known.
+
 /// f^z: (displacement, force . inward) of every sample of every normal path.
 std::vector<ForceSample> normal_samples(const SiteCurves& site);
 

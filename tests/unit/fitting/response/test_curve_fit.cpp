@@ -71,6 +71,57 @@ TEST(CurveFit, FollowsHertzWithFewKnots) {
   EXPECT_NEAR(rendered.max_slope(), 1.5 * hertz(kDepth) / kDepth, 0.05 * rendered.max_slope());
 }
 
+/// Samples of d^exponent with the means of the force between them.
+Samples with_means(int count, double exponent) {
+  const auto energy = [&](double d) { return std::pow(d, exponent + 1) / (exponent + 1); };
+  Samples samples = sampled(count, kDepth, [&](double d) { return std::pow(d, exponent); });
+  double since = 0;
+  for (ForceSample& sample : samples) {
+    sample.since = since;
+    sample.mean = (energy(sample.displacement) - energy(since)) / (sample.displacement - since);
+    since = sample.displacement;
+  }
+  return samples;
+}
+
+double worst_between(const Samples& samples, double exponent, double tolerance) {
+  const CurveFit fit = fit_curve(
+      samples, {tolerance, tolerance * std::pow(0.1 * kDepth, exponent), 12, exponent > 1}, "test");
+  expect_passive(fit.curve);
+  const runtime::CompiledCurve rendered(fit.curve);
+  double worst = 0;
+  for (double d = 0.1 * kDepth; d <= kDepth; d += 0.003 * kDepth)
+    worst = std::max(worst, std::abs(rendered.force(d) / std::pow(d, exponent) - 1));
+  return worst;
+}
+
+/// Contacts of a sphere, of a cone, and of a cylinder on soft layers; a lateral force that yields.
+TEST(CurveFit, MeansOfTheForceReplaceEverySecondSample) {
+  for (const double exponent : {0.8, 1.5, 2.2, 2.6}) {
+    constexpr double kTolerance = 0.004;
+    Samples many = with_means(10, exponent), few = with_means(5, exponent);
+    for (ForceSample& sample : many) sample.mean = std::numeric_limits<double>::quiet_NaN();
+    const double with = worst_between(few, exponent, kTolerance);
+    EXPECT_LE(with, std::max(worst_between(many, exponent, kTolerance), 1.5 * kTolerance))
+        << exponent;
+    for (ForceSample& sample : few) sample.mean = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_LT(with, worst_between(few, exponent, kTolerance)) << exponent;
+  }
+}
+
+/// A mean since another sample than the one before says nothing of the force between the two.
+TEST(CurveFit, LeavesOutMeansOverOtherIntervals) {
+  Samples samples = with_means(5, 1.5);
+  const CurveFitSettings settings{0.01, 1e-8, 12, true};
+  for (ForceSample& sample : samples) sample.since *= 0.5;
+  samples.front().mean = std::numeric_limits<double>::quiet_NaN();
+  const CurveFit with = fit_curve(samples, settings, "test");
+  for (ForceSample& sample : samples) sample.mean = std::numeric_limits<double>::quiet_NaN();
+  const CurveFit without = fit_curve(samples, settings, "test");
+  EXPECT_EQ(with.curve.knot, without.curve.knot);
+  EXPECT_EQ(with.curve.slope, without.curve.slope);
+}
+
 TEST(CurveFit, FollowsTheStiffeningOfTissue) {
   // An exponential law: initial slope 20 N/m, six times that at the end.
   const auto law = [](double d) { return 20 * 0.0033 * std::expm1(d / 0.0033); };

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace palpate::fitting {
 namespace {
 
@@ -37,6 +39,53 @@ TEST(SiteSamples, LateralSamplesAreTheRiseOfTheForceAlongThePath) {
   ASSERT_EQ(paths[0].size(), 3u);
   for (const ForceSample& sample : paths[0])
     EXPECT_NEAR(sample.force, 60 * sample.displacement, 1e-15);
+}
+
+/// A body that stores E = 100 d^2 along the press, and 30 r^2 + 0.5 r along a lateral path that
+/// starts with a force of 0.5 N.
+SiteCurves site_with_energies() {
+  SiteCurves site = site_with_two_paths();
+  for (CurvePath& path : site.paths)
+    for (CurveSample& sample : path.samples) {
+      const double d = sample.displacement;
+      const bool normal = path.kind == PathKind::Normal;
+      sample.contact_energy = 1e-3 * d;
+      sample.strain_energy = (normal ? 100 * d * d : 0.7 + 30 * d * d + 0.5 * d) - 1e-3 * d;
+    }
+  return site;
+}
+
+TEST(SiteSamples, MeansOfTheForceAreTheStoredEnergyOverTheTravel) {
+  const SiteCurves site = site_with_energies();
+  const auto expect_linear = [](const std::vector<ForceSample>& samples, double stiffness) {
+    ASSERT_EQ(samples.size(), 3u);
+    for (const ForceSample& sample : samples) {
+      EXPECT_NEAR(sample.since, sample.displacement - 0.001, 1e-15);
+      EXPECT_NEAR(sample.mean, stiffness * (sample.displacement - 0.0005), 1e-12);
+    }
+  };
+  expect_linear(normal_samples(site), 200);
+  expect_linear(lateral_paths(site)[0], 60);
+  expect_linear(mean_lateral(lateral_paths(site)), 60);
+}
+
+/// The lateral mean goes on with the rise of the longer path, and so does the mean of its force.
+TEST(SiteSamples, MeansOfPathsOfDifferentLengthAreThoseOfTheirRise) {
+  const std::vector<ForceSample> small{{0.001, 0.04, 0.02, 0}, {0.002, 0.08, 0.06, 0.001}},
+      large{{0.001, 0.08, 0.04, 0}, {0.002, 0.16, 0.12, 0.001}, {0.003, 0.24, 0.2, 0.002}};
+  const auto mean = mean_lateral({small, large});
+  ASSERT_EQ(mean.size(), 3u);
+  EXPECT_NEAR(mean[0].mean, 0.03, 1e-15);
+  EXPECT_NEAR(mean[1].mean, 0.09, 1e-15);
+  EXPECT_NEAR(mean[2].mean, 0.12 + 0.04, 1e-15);
+}
+
+/// A measured path knows no energy, and curves of before have none of the contact.
+TEST(SiteSamples, WithoutEnergiesTheMeansAreUnknown) {
+  for (const ForceSample& sample : normal_samples(site_with_two_paths()))
+    EXPECT_TRUE(std::isnan(sample.mean));
+  for (const ForceSample& sample : mean_lateral(lateral_paths(site_with_two_paths())))
+    EXPECT_TRUE(std::isnan(sample.mean));
 }
 
 TEST(SiteSamples, TheMeanOfEqualPathsIsThePath) {
