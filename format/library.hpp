@@ -74,6 +74,7 @@ struct NodeResponse {
   /// N, largest CurveSample::mesh_error of the curves that the normal response stands for: what the
   /// mesh of the campaign leaves, beside the error of the fit. NaN when unknown. Not in flat files.
   double normal_mesh_error = kUnknown;
+  double lateral_mesh_error = kUnknown;  ///< N, the same of the lateral response
 };
 
 /// Bounds of one triangle, `runtime` theory page, "certificate".

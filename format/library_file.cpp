@@ -62,28 +62,41 @@ void write_surface(hdf5::Writer& writer, const Library& library) {
                  {"1", "Vertices of each triangle, counter-clockwise seen from outside."});
 }
 
-constexpr const char* kMeshError = "/response/normal_mesh_error";
+/// A bound of the error of the mesh.
+struct MeshError {
+  const char* name;
+  double NodeResponse::*value;
+  const char* description;
+};
+constexpr MeshError kMeshErrors[] = {
+    {"/response/normal_mesh_error", &NodeResponse::normal_mesh_error,
+     "Bound of the error of the mesh in the normal curves; NaN when unknown."},
+    {"/response/lateral_mesh_error", &NodeResponse::lateral_mesh_error,
+     "Bound of the error of the mesh in the lateral curves; NaN when unknown."}};
 
 /// Not written where it is unknown everywhere.
-void write_mesh_error(hdf5::Writer& writer, const std::vector<NodeResponse>& responses) {
-  std::vector<double> errors;
-  for (const NodeResponse& response : responses) errors.push_back(response.normal_mesh_error);
-  if (std::all_of(errors.begin(), errors.end(), [](double e) { return std::isnan(e); })) return;
-  writer.dataset(kMeshError, errors,
-                 {"N", "Bound of the error of the mesh in the normal curves; NaN when unknown."});
+void write_mesh_errors(hdf5::Writer& writer, const std::vector<NodeResponse>& responses) {
+  for (const MeshError& error : kMeshErrors) {
+    std::vector<double> values;
+    for (const NodeResponse& response : responses) values.push_back(response.*error.value);
+    if (std::all_of(values.begin(), values.end(), [](double e) { return std::isnan(e); })) continue;
+    writer.dataset(error.name, values, {"N", error.description});
+  }
 }
 
-void read_mesh_error(const hdf5::Reader& reader, std::vector<NodeResponse>& responses) {
-  if (!reader.has(kMeshError)) return;
-  const auto errors = reader.dataset<double>(kMeshError, "N", responses.size());
-  Checks(reader).numbers(kMeshError, errors, rules::kKnownNonNegative);
-  for (std::size_t v = 0; v < errors.size(); ++v) responses[v].normal_mesh_error = errors[v];
+void read_mesh_errors(const hdf5::Reader& reader, std::vector<NodeResponse>& responses) {
+  for (const MeshError& error : kMeshErrors) {
+    if (!reader.has(error.name)) continue;
+    const auto values = reader.dataset<double>(error.name, "N", responses.size());
+    Checks(reader).numbers(error.name, values, rules::kKnownNonNegative);
+    for (std::size_t v = 0; v < values.size(); ++v) responses[v].*error.value = values[v];
+  }
 }
 
 void write_responses(hdf5::Writer& writer, const Library& library) {
   writer.group("/response", "Force-deflection curves of each vertex: slopes at knots.");
   write_columns(writer, "/response", library.responses, kResponseColumns);
-  write_mesh_error(writer, library.responses);
+  write_mesh_errors(writer, library.responses);
   write_flat(writer, "/response/normal_", "normal", flatten(library.responses, normal_of));
   write_flat(writer, "/response/lateral_", "lateral", flatten(library.responses, lateral_of));
   if (library.relaxes()) {
@@ -218,7 +231,7 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   library.inward = reader.dataset<Vec3>("/surface/inward", "1", library.positions.size());
   library.triangles = reader.dataset<Triangle>("/surface/triangles", "1");
   library.responses = read_columns(reader, "/response", kResponseColumns, library.positions.size());
-  read_mesh_error(reader, library.responses);
+  read_mesh_errors(reader, library.responses);
   read_flat(reader, "/response/normal_", library.responses, normal_of);
   read_flat(reader, "/response/lateral_", library.responses, lateral_of);
   if (library.kind == ResponseKind::Coupled) read_coupling(reader, library.responses);

@@ -78,7 +78,8 @@ void write_mesh(Text& text, const BodyFile& body, const FirstSizes& sizes) {
                               : "halve it for up to four times as many"));
   text.length("element_size", sizes.element_size,
               body.kind == BodyKind::VolumeMesh ? "no effect: the mesh is used as it is"
-                                                : "half a patch; smaller is more accurate");
+              : sizes.is_refined ? "smaller ones under the tool are made for each site"
+                                 : "half a patch; smaller is more accurate");
 }
 
 /// The point of the plane below the middle of the body, to 1e-4 of its extent.
@@ -135,6 +136,13 @@ void write_paths(Text& text, const FirstSizes& sizes) {
   text.key("lateral_depths", fmt::format("[\"{}\"]", mm(sizes.depth / 2)),
            "one lateral path a site; more are more accurate");
   text.section("[solver]");
+  if (sizes.is_refined)
+    text.key("refine_under_tool", "\"contact\"",
+             "elements under the tool as small as the contact asks for");
+  else
+    text.line(
+        "# refine_under_tool = \"contact\" would make the forces more accurate, and takes too "
+        "long.");
   text.key("mesh_error_sites", "4",
            "pressed on a finer mesh too: they bound the error of the mesh");
 }

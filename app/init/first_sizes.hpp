@@ -29,6 +29,7 @@ struct FirstSizes {
   bool is_thin = false;               ///< the thickness, not the number of sites, sets the patches
   bool is_coarsest = false;           ///< fewer sites would need patches that do not show the shape
   bool is_shallow = false;            ///< pressed less deep than the shape allows, to save time
+  bool is_refined = true;             ///< under the tool, as the contact asks for
   std::optional<std::int64_t> sites;  ///< of the meshed body, where it was meshed
   std::optional<std::int64_t> sites_too_slow;  ///< as many were tried, and took longer than wanted
   std::optional<double> seconds;               ///< that the campaign takes, where it was tried

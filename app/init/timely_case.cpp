@@ -17,8 +17,8 @@ namespace palpate::app {
 namespace {
 
 constexpr int kMostChanges = 5;
-/// Fraction of the wanted time after which the trial sites are given up.
-constexpr double kPatience = 1.0 / 30;
+/// Fraction of the wanted time after which the trial sites are given up, but not later than s.
+constexpr double kPatience = 1.0 / 30, kMostPatience = 20;
 /// Mean over median of the time of a site from which on thin parts are what takes the time.
 constexpr double kUneven = 1.5;
 constexpr double kShallower = 0.6;
@@ -42,7 +42,9 @@ class Search {
       const double unevenness = try_campaign();
       const bool fits = *counted_.sizes.seconds <= 60 * wishes_.minutes;
       if (fits || i == kMostChanges) return;
-      if (!(unevenness > kUneven && press_less_deep()) && !enlarge_patches() && !press_less_deep())
+      if (i == kMostChanges - 1 && leave_unrefined()) continue;
+      if (!(unevenness > kUneven && press_less_deep()) && !enlarge_patches() &&
+          !press_less_deep() && !leave_unrefined())
         return;
     }
   }
@@ -52,7 +54,8 @@ class Search {
   double try_campaign() {
     Workspace space = made_.opened_with(counted_.sizes);
     space.threads = wishes_.threads;
-    const Trial trial = press_trial_sites(space, *counted_.body, kPatience * 60 * wishes_.minutes);
+    const double patience = std::min(kMostPatience, kPatience * 60 * wishes_.minutes);
+    const Trial trial = press_trial_sites(space, *counted_.body, patience);
     counted_.sizes.seconds =
         campaign_seconds(space, trial, static_cast<std::size_t>(*counted_.sizes.sites));
     return trial.time.unevenness();
@@ -70,7 +73,7 @@ class Search {
 
   bool enlarge_patches() {
     const FirstSizes before = counted_.sizes;
-    if (wishes_.sites || before.is_coarsest) return false;
+    if (wishes_.sites || before.is_coarsest || !before.is_refined) return false;
     const double excess = *before.seconds / (60 * wishes_.minutes);
     const double fewer = std::max(kFewestAtOnce, kMargin * std::pow(excess, -1 / kTimeBySites));
     CountedCase larger = counted_case(
@@ -84,6 +87,13 @@ class Search {
     sizes.depth =
         two_digits(std::max(kShallowestOverPatch * sizes.patch_spacing, shallower_ * sizes.depth));
     sizes.lateral_travel = two_digits(kTravelOverDepth * sizes.depth);
+    return true;
+  }
+
+  /// The elements that the contact asks for take up to several times the time of a site.
+  bool leave_unrefined() {
+    if (!counted_.sizes.is_refined) return false;
+    counted_.sizes.is_refined = false;
     return true;
   }
 
@@ -101,6 +111,10 @@ std::string remark_on_time(const FirstSizes& sizes, const FirstWishes& wishes) {
     said += fmt::format("; {} sites would take longer than {:g} min", *sizes.sites_too_slow,
                         wishes.minutes);
   if (sizes.is_shallow) said += "; pressed less deep, because deep presses of thin parts are slow";
+  if (!sizes.is_refined)
+    said +=
+        "; elements are not refined under the tool, which would take longer: the forces of "
+        "shallow presses are less accurate";
   if (*sizes.seconds > 60 * wishes.minutes)
     said += fmt::format("; more than the {:g} min wanted: {}", wishes.minutes,
                         sizes.is_coarsest ? "larger patches would not show the shape"

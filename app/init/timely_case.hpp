@@ -20,7 +20,8 @@ struct FirstWishes {
 /// The case with about as many sites as wanted. A few of them are pressed to tell how long all take
 /// (press_trial_sites). Where that is longer than wanted, sites are pressed less deep if thin parts
 /// take most of the time, and patches are larger if the number of sites was left open; a few
-/// times, until it fits or neither helps. Remarks and comments say what was chosen and why.
+/// times, until it fits or neither helps. At the end elements are not refined under the tool.
+/// Remarks and comments say what was chosen and why.
 /// @throws Error(Configuration) where the case itself would be refused
 FirstCase timely_case(const CaseOf& made, const FirstWishes& wishes);
 

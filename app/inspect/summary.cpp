@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "fitting/response/accuracy.hpp"
 #include "fitting/response/mesh_error.hpp"
 #include "format/artifact.hpp"
 #include "format/body.hpp"
@@ -154,15 +155,21 @@ Json energy_of(const Curves& curves) {
           {"paths_off_by_more_than_half_a_percent", beyond}};
 }
 
-/// The bound of the error of the mesh in the normal forces, relative.
+/// The bound of the error of the mesh in the forces, relative.
 Json mesh_error_of(const Curves& curves) {
   if (std::isnan(curves.mesh_error_confidence)) return "unknown";
   const fitting::MeshErrorSummary error = fitting::mesh_error_summary(curves);
-  return {{"median_at_end_of_press", error.median_at_end},
-          {"max_at_end_of_press", error.worst_at_end},
-          {"median_at_first_sample", error.median_at_first},
-          {"max_at_first_sample", error.worst_at_first},
-          {"confidence", curves.mesh_error_confidence}};
+  Json summary = {{"median_at_end_of_press", error.median_at_end},
+                  {"max_at_end_of_press", error.worst_at_end},
+                  {"median_at_first_sample", error.median_at_first},
+                  {"max_at_first_sample", error.worst_at_first}};
+  const fitting::MeshErrorSummary lateral = fitting::mesh_error_summary(curves, PathKind::Lateral);
+  if (!std::isnan(lateral.median_at_end)) {
+    summary["median_at_end_of_lateral_path"] = lateral.median_at_end;
+    summary["max_at_end_of_lateral_path"] = lateral.worst_at_end;
+  }
+  summary["confidence"] = curves.mesh_error_confidence;
+  return summary;
 }
 
 Json summary_of(const Curves& curves) {
@@ -258,7 +265,7 @@ Json rates_of(const Certificate& certificate) {
 
 Json summary_of(const Library& library) {
   std::size_t fitted = 0, interpolated = 0, holes = 0, knots = 0;
-  double normal_error = 0, lateral_error = 0, mesh_error = kUnknown;
+  double normal_error = 0, lateral_error = 0, mesh_error = kUnknown, lateral_mesh_error = kUnknown;
   for (const NodeResponse& response : library.responses) {
     fitted += response.status == ResponseStatus::Fitted ? 1 : 0;
     interpolated += response.status == ResponseStatus::Interpolated ? 1 : 0;
@@ -267,10 +274,12 @@ Json summary_of(const Library& library) {
     normal_error = std::max(normal_error, response.normal_error);
     lateral_error = std::max(lateral_error, response.lateral_error);
     mesh_error = std::fmax(mesh_error, response.normal_mesh_error);
+    lateral_mesh_error = std::fmax(lateral_mesh_error, response.lateral_mesh_error);
   }
   Json summary = {{"name", library.name},
                   {"guarantee", guarantee_text(library.certificate)},
                   {"rates", rates_of(library.certificate)},
+                  {"accuracy", fitting::accuracy_text(library)},
                   {"tool", library.tool_shape},
                   {"tool_radius", with_unit(library.tool_radius, "m")},
                   {"vertices", library.positions.size()},
@@ -282,6 +291,7 @@ Json summary_of(const Library& library) {
                   {"max_normal_error", with_unit(normal_error, "N")},
                   {"max_lateral_error", with_unit(lateral_error, "N")},
                   {"max_normal_mesh_error", with_unit(mesh_error, "N")},
+                  {"max_lateral_mesh_error", with_unit(lateral_mesh_error, "N")},
                   {"bounding_box", box_of(library.positions)}};
   if (library.relaxes()) summary["relaxation"] = relaxation_of(library);
   summary["certificate"] = summary_of(library.certificate);

@@ -139,6 +139,8 @@ void describe(V& v, const FitFinished& e) {
   v.field("lateral_spread", e.spread, "the same, to any single path");
   v.field("mesh_error", e.mesh,
           "bound of the error of the mesh in the normal curves; `vertex` -1: unknown");
+  v.field("lateral_mesh_error", e.lateral_mesh, "the same in the lateral curves");
+  v.field("accuracy", e.accuracy, "both errors at the vertices, in one sentence");
   v.field("file", e.file.string(), "path of `library.h5`");
 }
 

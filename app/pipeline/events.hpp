@@ -118,7 +118,9 @@ struct FitFinished {
   /// Errors relative to the largest force of the site: see fitting::SiteFitError.
   FitErrors normal, lateral, spread;
   std::filesystem::path file;
-  FitErrors mesh{};  ///< of the mesh in the normal curves; vertex -1: unknown
+  FitErrors mesh{};          ///< of the mesh in the normal curves; vertex -1: unknown
+  FitErrors lateral_mesh{};  ///< of the mesh in the lateral curves
+  std::string accuracy{};    ///< both errors in one sentence
 };
 
 /// A library was certified. Infinite: no bound exists. NaN: unknown.

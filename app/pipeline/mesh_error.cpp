@@ -25,11 +25,6 @@ std::vector<std::int32_t> candidates(const Workspace& space, const Body& body,
   return sites;
 }
 
-/// Every tenth site is pressed again where there are few, but two.
-int count_of(int asked, std::size_t candidates) {
-  return std::min(asked, std::max(2, static_cast<int>(candidates / 10)));
-}
-
 }  // namespace
 
 std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
@@ -46,7 +41,7 @@ std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
   }
   const auto all = candidates(space, body, curves);
   const auto chosen =
-      fem::sites_far_apart(body, all, count_of(settings.mesh_error_sites, all.size()));
+      fem::sites_far_apart(body, all, fem::count_on_finer_mesh(body, settings, all.size()));
   fem::CampaignReport report;
   try {
     fem::press_on_finer_mesh(body, settings, chosen, curves, report, cache);
@@ -65,10 +60,12 @@ std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
 std::string mesh_error_text(const Curves& curves) {
   const fitting::MeshErrorSummary summary = fitting::mesh_error_summary(curves);
   if (std::isnan(summary.median_at_end)) return {};
+  const double lateral = fitting::mesh_error_summary(curves, PathKind::Lateral).median_at_end;
   return fmt::format(
       "the mesh leaves an error of the normal force of at most {:.2g} % at the end of the path and "
-      "{:.2g} % at the first increment (medians over the sites; {:.0f} % confidence)",
+      "{:.2g} % at the first increment{} (medians over the sites; {:.0f} % confidence)",
       100 * summary.median_at_end, 100 * summary.median_at_first,
+      std::isnan(lateral) ? "" : fmt::format(", and {:.2g} % of the lateral force", 100 * lateral),
       100 * curves.mesh_error_confidence);
 }
 

@@ -18,6 +18,7 @@
 #include "app/pipeline/stage_input.hpp"
 #include "fitting/certificate/certify.hpp"
 #include "fitting/certificate/soften.hpp"
+#include "fitting/response/accuracy.hpp"
 #include "fitting/response/couple.hpp"
 #include "fitting/response/fit.hpp"
 #include "fitting/response/fit_errors.hpp"
@@ -235,11 +236,12 @@ void run_fit(const Workspace& space, const EventSink& emit) {
   warn_of_misfit("normal", library, errors, &SiteFitError::normal, emit);
   warn_of_misfit("lateral", library, errors, &SiteFitError::lateral, emit);
   if (library.relaxes()) warn_of_shares(curves, library, emit);
-  emit(FitFinished{with_status(ResponseStatus::Fitted), with_status(ResponseStatus::Interpolated),
-                   with_status(ResponseStatus::Hole), errors_of(errors, &SiteFitError::normal),
-                   errors_of(errors, &SiteFitError::lateral),
-                   errors_of(errors, &SiteFitError::spread), space.library(),
-                   errors_of(errors, &SiteFitError::mesh)});
+  emit(FitFinished{
+      with_status(ResponseStatus::Fitted), with_status(ResponseStatus::Interpolated),
+      with_status(ResponseStatus::Hole), errors_of(errors, &SiteFitError::normal),
+      errors_of(errors, &SiteFitError::lateral), errors_of(errors, &SiteFitError::spread),
+      space.library(), errors_of(errors, &SiteFitError::mesh),
+      errors_of(errors, &SiteFitError::lateral_mesh), fitting::accuracy_text(library)});
 }
 
 void run_certify(const Workspace& space, const EventSink& emit) {

@@ -130,6 +130,8 @@ void TextSink::print(const FitFinished& e) {
   }
   if (e.mesh.vertex >= 0)
     line("  error of the mesh in the normal force, at most {}", errors(e.mesh));
+  if (e.lateral_mesh.vertex >= 0) line("    in the lateral force {}", errors(e.lateral_mesh));
+  if (!e.accuracy.empty()) line("  accuracy: {}", e.accuracy);
   line("fit: {} responses fitted, {} interpolated, {} holes -> {}", e.fitted, e.interpolated,
        e.holes, e.file.string());
 }

@@ -21,6 +21,7 @@ struct Trial {
   fem::CampaignReport report;
   RemainingTime time;        ///< of the trial sites
   std::size_t sites = 0;     ///< that were started or waited
+  double on_finer_mesh = 0;  ///< sites that take as long as those that are pressed on a finer mesh
   double pressed = 0;        ///< s, from the first site to the end of the trial
   double bytes_before = 0;   ///< resident before the first site
   double bytes_between = 0;  ///< most that was resident when one finished
@@ -38,7 +39,8 @@ Trial press_trial_sites(const Workspace& space, const Body& body,
 /// How many sites of `all` run concurrently.
 std::size_t concurrent_sites(const Workspace& space, std::size_t all);
 
-/// s that `all` sites take, with what comes before the first.
-double campaign_seconds(const Workspace& space, const Trial& trial, std::size_t all);
+/// s that a campaign of so many sites takes: with what comes before the first, and with those that
+/// are pressed on a finer mesh too.
+double campaign_seconds(const Workspace& space, const Trial& trial, std::size_t sites);
 
 }  // namespace palpate::app

@@ -12,6 +12,7 @@
 #include "app/report/repair_file.hpp"
 #include "app/report/surface_map.hpp"
 #include "app/report/touch.hpp"
+#include "fitting/response/accuracy.hpp"
 #include "fitting/response/fit_errors.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"
@@ -197,6 +198,7 @@ json key_figures(const ReportInput& input) {
           {"max_force", figures.max_force},
           {"cpu_seconds", figures.cpu_seconds},
           {"mesh_error_confidence", input.curves->mesh_error_confidence},
+          {"accuracy", fitting::accuracy_text(*input.library)},
           {"library_bytes", input.library_bytes},
           {"depth", curves.depth},
           {"lateral_travel", curves.lateral_travel},

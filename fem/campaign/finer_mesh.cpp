@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "fem/campaign/campaign_context.hpp"
 #include "format/to_index.hpp"
 
 namespace palpate::fem {
@@ -14,6 +15,11 @@ namespace {
 
 /// Largest h'/h of a mesh that counts as finer.
 constexpr double kFiner = 0.85;
+/// The power of h with which the error decreases: the first where the contact covers a facet or
+/// less, more where it divides the elements (`bench_mesh_error bound`).
+constexpr double kOrder = 1, kOrderByContact = 1.5;
+/// Cosine between the directions of a path on both meshes.
+constexpr double kSameDirection = 1 - 1e-9;
 
 const Vec3& position_of(const Body& body, std::int32_t vertex) {
   return body.nodes[to_index(body.response.node[to_index(vertex)])];
@@ -28,7 +34,16 @@ double size_ratio(const CurveSample& finer, const CurveSample& sample) {
   return std::sqrt(sample.facets_in_contact / finer.facets_in_contact);
 }
 
-void take_differences(const CurvePath& finer, CurvePath& path) {
+/// The same path on the finer mesh; null where there is none.
+const CurvePath* counterpart(const SiteCurves& finer, const CurvePath& path) {
+  const auto found = std::ranges::find_if(finer.paths, [&](const CurvePath& other) {
+    return other.kind == path.kind && same(other.lateral_depth, path.lateral_depth) &&
+           dot(other.direction, path.direction) > kSameDirection;
+  });
+  return found == finer.paths.end() ? nullptr : &*found;
+}
+
+void take_differences(const CurvePath& finer, double order, CurvePath& path) {
   for (std::size_t i = 1; i < path.samples.size(); ++i) {
     CurveSample& sample = path.samples[i];
     const auto there = std::find_if(
@@ -37,15 +52,14 @@ void take_differences(const CurvePath& finer, CurvePath& path) {
     if (there == finer.samples.end()) continue;
     const double ratio = size_ratio(*there, sample);
     if (!(ratio <= kFiner)) continue;
-    sample.mesh_difference =
-        (response_force(finer, *there) - response_force(path, sample)) / (1 - ratio);
+    sample.mesh_difference = (response_force(finer, *there) - response_force(path, sample)) /
+                             (1 - std::pow(ratio, order));
   }
 }
 
 CampaignSettings finer_settings(const CampaignSettings& settings, std::vector<std::int32_t> sites) {
   CampaignSettings finer = settings;
   finer.indentation.divide_once_more = true;
-  finer.indentation.azimuths.clear();  // the normal path alone, through the lateral depths
   finer.sites = std::move(sites);
   finer.known.clear();
   finer.finished = nullptr;
@@ -73,6 +87,12 @@ std::vector<std::int32_t> sites_far_apart(const Body& body, const std::vector<st
   return chosen;
 }
 
+int count_on_finer_mesh(const Body& body, const CampaignSettings& settings, std::size_t sites) {
+  if (settings.mesh_error_sites == 0 || !obstacle_to_refinement(body, settings).empty()) return 0;
+  return std::min({settings.mesh_error_sites, std::max(2, static_cast<int>(sites / 10)),
+                   static_cast<int>(sites)});
+}
+
 void press_on_finer_mesh(const Body& body, const CampaignSettings& settings,
                          const std::vector<std::int32_t>& chosen, Curves& curves,
                          CampaignReport& report, FactorCache* cache) {
@@ -83,10 +103,13 @@ void press_on_finer_mesh(const Body& body, const CampaignSettings& settings,
       here.push_back(site.vertex);
   if (here.empty()) return;
   const Curves finer = run_campaign(body, finer_settings(settings, here), report, cache);
+  const bool by_contact = settings.indentation.refine_under_tool == IndentationSettings::kByContact;
   for (const SiteCurves& again : finer.sites) {
     const auto site = std::find_if(curves.sites.begin(), curves.sites.end(),
                                    [&](const SiteCurves& s) { return s.vertex == again.vertex; });
-    take_differences(again.paths.front(), site->paths.front());
+    for (CurvePath& path : site->paths)
+      if (const CurvePath* finer_path = counterpart(again, path))
+        take_differences(*finer_path, by_contact ? kOrderByContact : kOrder, path);
   }
 }
 

@@ -20,9 +20,14 @@ Tool tool_over(const CampaignContext& context, const PressPoint& point) {
           std::cos(settings.tool_azimuth) * first + std::sin(settings.tool_azimuth) * second};
 }
 
-/// Size of elements that the contact divides, over that of the coarser mesh: smaller ones cost more
-/// than the campaign of a small body.
-constexpr double kFinerByContact = 0.7;
+/// Size of elements that the contact divides, over that of the coarser mesh: all of them are
+/// halved, so that the ratio of the sizes is known.
+constexpr double kFinerByContact = 0.5;
+/// Depth at which the grading begins, over that of the first increment: the elements inside of its
+/// contact are then smaller than those at its edge, as they are inside of later contacts.
+constexpr double kFirstDepth = 0.5;
+/// Growth of elements outside of the contact, over their size inside.
+constexpr double kGrowthOverSize = 0.25;
 
 SiteRefinement refinement_of(const CampaignContext& context, const PressPoint& point) {
   const IndentationSettings& settings = context.indentation;
@@ -34,11 +39,12 @@ SiteRefinement refinement_of(const CampaignContext& context, const PressPoint& p
     ++refinement.levels;
   }
   if (!(by_contact || settings.divide_once_more)) return refinement;
-  refinement.cores = contact_cores(context.model.mesh(), tool_over(context, point),
-                                   settings.depth / settings.increments, settings.depth);
+  refinement.cores =
+      contact_cores(context.model.mesh(), tool_over(context, point),
+                    kFirstDepth * settings.depth / settings.increments, settings.depth);
   const double finer = by_contact && settings.divide_once_more ? kFinerByContact : 1;
   refinement.size_over_distance = finer * settings.size_over_contact;
-  refinement.growth_outside *= finer;
+  refinement.growth_outside = kGrowthOverSize * refinement.size_over_distance;
   return refinement;
 }
 

@@ -93,11 +93,11 @@ double lateral_error(const NodeResponse& node, ResponseKind kind, const SiteCurv
   return largest;
 }
 
-/// Largest error of the mesh in the samples of the normal path; NaN when unknown.
-double normal_mesh_error(const SiteCurves& site) {
+/// Largest error of the mesh in the samples of the paths of a kind; NaN when unknown.
+double mesh_error(const SiteCurves& site, PathKind kind) {
   double largest = kUnknown;
   for (const CurvePath& path : site.paths)
-    if (path.kind == PathKind::Normal)
+    if (path.kind == kind)
       for (const CurveSample& sample : path.samples)
         largest = std::fmax(largest, sample.mesh_error);
   return largest;
@@ -119,7 +119,8 @@ NodeResponse fit_site(const SiteCurves& site, const FitSettings& settings) {
     node.lateral = fit_curve(mean, curve, where + ", lateral response").curve;
   }
   node.lateral_error = lateral_error(node, settings.kind, site);
-  node.normal_mesh_error = normal_mesh_error(site);
+  node.normal_mesh_error = mesh_error(site, PathKind::Normal);
+  node.lateral_mesh_error = mesh_error(site, PathKind::Lateral);
   return node;
 }
 

@@ -61,9 +61,12 @@ SiteFitError error_of(const NodeResponse& node, ResponseKind kind, const SiteCur
   const double normal_peak = peak(normal_samples(site));
   double lateral_peak = kFeltShare * normal_peak;
   for (const Samples& path : lateral_paths(site)) lateral_peak = std::max(lateral_peak, peak(path));
-  return {site.vertex, ratio(node.normal_error, normal_peak),
+  return {site.vertex,
+          ratio(node.normal_error, normal_peak),
           ratio(lateral_miss(node, kind, site), lateral_peak),
-          ratio(node.lateral_error, lateral_peak), ratio(node.normal_mesh_error, normal_peak)};
+          ratio(node.lateral_error, lateral_peak),
+          ratio(node.normal_mesh_error, normal_peak),
+          ratio(node.lateral_mesh_error, lateral_peak)};
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ struct SiteFitError {
   double lateral = 0;      ///< of the lateral response, to the mean of the paths that it stands for
   double spread = 0;       ///< of the lateral response, to any single path
   double mesh = kUnknown;  ///< of the mesh in the normal curves; NaN when unknown
+  double lateral_mesh = kUnknown;  ///< of the mesh in the lateral curves; NaN when unknown
 };
 
 /// The errors of every fitted site, in the order of the curves. A decoupled lateral response stands

@@ -139,9 +139,9 @@ NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
   if (settings.kind == ResponseKind::Coupled)
     response.coupling = mean_coupling(sources, curve, where);
   response.relaxation = mean_relaxation(sources);
-  for (const WeightedResponse& source : sources)
-    response.normal_mesh_error =
-        std::fmax(response.normal_mesh_error, source.response->normal_mesh_error);
+  for (const auto error : {&NodeResponse::normal_mesh_error, &NodeResponse::lateral_mesh_error})
+    for (const WeightedResponse& source : sources)
+      response.*error = std::fmax(response.*error, source.response->*error);
   return response;
 }
 

@@ -35,11 +35,11 @@ double resolution_of(const CurveSample& sample) {
   return std::log(std::max(kLeastFacets, sample.facets_in_contact));
 }
 
-std::vector<Difference> differences(const Curves& curves) {
+std::vector<Difference> differences(const Curves& curves, PathKind kind) {
   std::vector<Difference> found;
   for (const SiteCurves& site : curves.sites)
     for (const CurvePath& path : site.paths) {
-      if (path.kind != PathKind::Normal) continue;
+      if (path.kind != kind) continue;
       const double largest = largest_force(path);
       for (const CurveSample& sample : path.samples)
         if (!std::isnan(sample.mesh_difference) && largest > 0)
@@ -69,17 +69,13 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-}  // namespace
-
-void bound_mesh_errors(Curves& curves) {
-  curves.mesh_error_confidence = kUnknown;
-  std::vector<Difference> all = differences(curves);
-  if (all.empty()) return;
-  const double count = static_cast<double>(std::min(kDifferencesOfBound, all.size()));
-  curves.mesh_error_confidence = count / (count + 1);
+/// The bounds of the paths of one kind. @return their confidence; NaN where they stay unknown.
+double bound_paths(Curves& curves, PathKind kind) {
+  std::vector<Difference> all = differences(curves, kind);
+  if (all.empty()) return kUnknown;
   for (SiteCurves& site : curves.sites)
     for (CurvePath& path : site.paths) {
-      if (path.kind != PathKind::Normal) continue;
+      if (path.kind != kind) continue;
       const double largest = largest_force(path);
       for (std::size_t i = 0; i < path.samples.size(); ++i) {
         CurveSample& sample = path.samples[i];
@@ -87,13 +83,22 @@ void bound_mesh_errors(Curves& curves) {
             i == 0 ? 0 : bound_at(resolution_of(sample), all) * scale_of(path, sample, largest);
       }
     }
+  const double count = static_cast<double>(std::min(kDifferencesOfBound, all.size()));
+  return count / (count + 1);
 }
 
-MeshErrorSummary mesh_error_summary(const Curves& curves) {
+}  // namespace
+
+void bound_mesh_errors(Curves& curves) {
+  const double normal = bound_paths(curves, PathKind::Normal);
+  curves.mesh_error_confidence = std::fmin(normal, bound_paths(curves, PathKind::Lateral));
+}
+
+MeshErrorSummary mesh_error_summary(const Curves& curves, PathKind kind) {
   std::vector<double> at_end, at_first;
   for (const SiteCurves& site : curves.sites)
     for (const CurvePath& path : site.paths) {
-      if (path.kind != PathKind::Normal || path.samples.size() < 2) continue;
+      if (path.kind != kind || path.samples.size() < 2) continue;
       const double largest = largest_force(path);
       const auto relative = [&](const CurveSample& sample) {
         return sample.mesh_error / scale_of(path, sample, largest);

@@ -35,7 +35,7 @@ def first_schema(meaning):
     return int(stated[1]) if stated else 1
 
 
-MAY_BE_ABSENT = {"/response/normal_mesh_error"}
+MAY_BE_ABSENT = {"/response/normal_mesh_error", "/response/lateral_mesh_error"}
 
 
 def is_in(file, name, meaning):

@@ -117,7 +117,11 @@ TEST(RoundTrip, ALibraryHasTheErrorOfTheMesh) {
   write_library(folder / "library.h5", library);
   const Library read = read_library(folder / "library.h5");
   EXPECT_EQ(read.responses[0].normal_mesh_error, 0.02);
+  EXPECT_TRUE(std::isnan(read.responses[0].lateral_mesh_error));
   EXPECT_TRUE(std::isnan(read.responses[1].normal_mesh_error));
+  library.responses[1].lateral_mesh_error = 0.03;
+  write_library(folder / "library.h5", library);
+  EXPECT_EQ(read_library(folder / "library.h5").responses[1].lateral_mesh_error, 0.03);
 }
 
 TEST(RoundTrip, CurvesOfRelaxingTissueWithoutTheEnergyOfARegionAreRefused) {

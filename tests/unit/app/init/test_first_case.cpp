@@ -44,6 +44,21 @@ TEST(FirstCase, HasTheGuessedUnitTheFileAndAPlaneThatTheBodyMeets) {
   EXPECT_LT(c.campaign.indentation.depth, c.campaign.indentation.tool.radius);
 }
 
+/// A user who knows nothing of meshes gets forces that hardly depend on them.
+TEST(FirstCase, RefinesUnderTheToolUnlessToldOtherwise) {
+  const auto refined = [](const FirstCase& first) {
+    return parse_case(first.toml, "case.toml").campaign.indentation.refine_under_tool;
+  };
+  EXPECT_EQ(refined(made("data/bodies/pad.off")), fem::IndentationSettings::kByContact);
+  const BodyFile body = read_body_file(test::source_folder() / "data/bodies/pad.off", "");
+  const Base base = find_base(body.surface);
+  FirstSizes sizes = first_sizes(body.surface, base, 200);
+  sizes.is_refined = false;
+  const FirstCase plain = first_case(body, base, sizes, "pad.off", "");
+  EXPECT_EQ(refined(plain), 0);
+  EXPECT_THAT(plain.toml, testing::HasSubstr("# refine_under_tool = \"contact\" would"));
+}
+
 TEST(FirstCase, MaterialIsThatOfTheTissueTable) {
   const Case c = parse_case(made("data/bodies/pad.off").toml, "pad.toml");
   const auto table = toml::parse_file((test::source_folder() / "data/materials.toml").string());

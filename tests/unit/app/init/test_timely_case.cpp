@@ -21,6 +21,9 @@ constexpr double kNoTime = 1e-4, kAnyTime = 1e4;  // min
 struct Timely {
   FirstCase first;
   Case c;
+  bool is_refined() const {
+    return c.campaign.indentation.refine_under_tool == fem::IndentationSettings::kByContact;
+  }
   double depth_over_patch() const { return c.campaign.indentation.depth / c.mesh.patch_spacing; }
 };
 
@@ -50,6 +53,8 @@ TEST(TimelyCase, ThatFitsIsThatOfTheShapeAndSaysHowLongItTakes) {
   EXPECT_THAT(fits.first.toml, HasSubstr("# Its campaign takes about "));
   EXPECT_THAT(fits.first.remarks.back(), HasSubstr("time: about "));
   EXPECT_THAT(fits.first.remarks.back(), Not(HasSubstr("wanted")));
+  EXPECT_THAT(fits.first.remarks.back(), Not(HasSubstr("not refined")));
+  EXPECT_TRUE(fits.is_refined());
 }
 
 TEST(TimelyCase, WithoutTimeHasTheLargestPatchesOrTheSmallestDepthAndAdmitsThatItDoesNotFit) {
@@ -71,6 +76,9 @@ TEST(TimelyCase, KeepsTheSitesThatAreAskedForAndPressesLessDeep) {
   EXPECT_NEAR(hurried.c.campaign.indentation.lateral_travel,
               hurried.c.campaign.indentation.depth / 2,
               0.05 * hurried.c.campaign.indentation.depth);
+  EXPECT_FALSE(hurried.is_refined());
+  EXPECT_THAT(hurried.first.toml, HasSubstr("# refine_under_tool = \"contact\" would"));
+  EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("elements are not refined under the tool"));
   EXPECT_THAT(hurried.first.toml, HasSubstr("deeper takes too long"));
   EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("pressed less deep"));
 }

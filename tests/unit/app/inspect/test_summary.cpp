@@ -44,6 +44,17 @@ TEST(Inspect, GivesTheVerdictOfEachDevice) {
   EXPECT_THAT(text, HasSubstr("damping: unknown\n"));
 }
 
+TEST(Inspect, StatesTheAccuracyOfALibraryBesideItsGuarantee) {
+  Library library = samples::library(4);
+  for (NodeResponse& node : library.responses)
+    node.normal_mesh_error = node.lateral_mesh_error = 0.01;
+  const auto summary = summary_of(library);
+  EXPECT_EQ(summary["max_lateral_mesh_error"]["value"], 0.01);
+  const std::string text = summary_text(summary);
+  EXPECT_THAT(text, ContainsRegex("accuracy: at 95 % of the vertices the normal force is within "
+                                  "[0-9.]+ % .mesh. . [0-9.]+ % .fit. of the converged force"));
+}
+
 TEST(Inspect, CallsAnInfiniteBoundNoBound) {
   Library library = samples::library(4);
   library.certificate.slip = library.certificate.min_lipschitz_bound = kInfinity;

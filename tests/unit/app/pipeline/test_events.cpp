@@ -99,6 +99,17 @@ TEST(TextSink, PrintsTheStagesOfABuild) {
       "warning: careful\n");
 }
 
+TEST(TextSink, PrintsTheErrorOfTheMeshWhereItIsKnown) {
+  FitFinished event{4, 0, 0, {0.004, 0.1, 7}, {0.02, 0.5, 3}, {0.03, 0.6, 3}, "l.h5"};
+  event.mesh = {0.01, 0.02, 5};
+  event.lateral_mesh = {0.03, 0.04, 6};
+  event.accuracy = "within 2.0 %";
+  const std::string text = text_of({event});
+  EXPECT_THAT(text, HasSubstr("error of the mesh in the normal force, at most 1.0 % median, 2.0 % "
+                              "worst (site 5)\n    in the lateral force 3.0 % median, 4.0 % worst "
+                              "(site 6)\n  accuracy: within 2.0 %\n"));
+}
+
 TEST(TextSink, SendsWarningsToTheStandardError) {
   std::string out, err;
   TextSink sink({{[&](std::string_view text) { out += text; }},

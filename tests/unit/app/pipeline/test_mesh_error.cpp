@@ -59,11 +59,19 @@ TEST_F(MeshErrorStage, IsOneSentence) {
     sample.mesh_difference = 0.05;
   }
   site.paths.push_back(path);
+  path.kind = PathKind::Lateral;
+  path.direction = {0, 0, 1};
+  for (const std::size_t i : {1U, 2U}) {
+    path.samples[i].force = {0, 0, 0.5 * static_cast<double>(i)};
+    path.samples[i].mesh_difference = 0.1;
+  }
+  site.paths.push_back(path);
   curves_.sites.push_back(site);
   fitting::bound_mesh_errors(curves_);
   EXPECT_THAT(mesh_error_text(curves_),
-              HasSubstr("at most 10 % at the end of the path and 10 % at the first increment "
-                        "(medians over the sites; 67 % confidence)"));
+              HasSubstr("at most 10 % at the end of the path and 10 % at the first increment, "
+                        "and 20 % of the lateral force (medians over the sites; 67 % "
+                        "confidence)"));
 }
 
 }  // namespace

@@ -56,6 +56,19 @@ TEST(FinerMesh, ChoosesSitesFarApart) {
   EXPECT_EQ(sites_far_apart(body, {3, 5}, 4), (std::vector<std::int32_t>{3, 5}));
 }
 
+TEST(FinerMesh, CountsEveryTenthSiteOfFewButTwo) {
+  const Body body = uneven_block();
+  CampaignSettings settings = pressed();
+  EXPECT_EQ(count_on_finer_mesh(body, settings, 100), 0);
+  settings.mesh_error_sites = 4;
+  EXPECT_EQ(count_on_finer_mesh(body, settings, 100), 4);
+  EXPECT_EQ(count_on_finer_mesh(body, settings, 35), 3);
+  EXPECT_EQ(count_on_finer_mesh(body, settings, 5), 2);
+  EXPECT_EQ(count_on_finer_mesh(body, settings, 1), 1);
+  settings.dilatation = Dilatation::Nodal;
+  EXPECT_EQ(count_on_finer_mesh(body, settings, 100), 0);
+}
+
 /// Three sites bound the error of others, which is known from elements that are small beside the
 /// contact. The facets are 3 to 8 mm large, the contacts 0.8 to 2.2 mm: errors of tens of percent.
 TEST(FinerMesh, OfAFewSitesBoundsTheErrorOfOthers) {
@@ -90,6 +103,70 @@ TEST(FinerMesh, OfAFewSitesBoundsTheErrorOfOthers) {
   }
   EXPECT_GT(largest, 0.1);
   EXPECT_GE(covered, 0.9 * compared) << covered << " of " << compared;
+}
+
+/// What is left where the contact divides the elements already: less than where it does not, and
+/// bounded by a few sites as well, against elements of half the size. They are twice as large as
+/// usual, because smaller ones take minutes; `bench_mesh_error bound` has the usual ones.
+TEST(FinerMesh, OfAFewSitesBoundsTheErrorOfElementsThatTheContactDivides) {
+  const Body body = uneven_block();
+  CampaignSettings settings = pressed();
+  settings.indentation.refine_under_tool = IndentationSettings::kByContact;
+  const double usual = settings.indentation.size_over_contact;
+  settings.indentation.size_over_contact = 2 * usual;
+  settings.indentation.increments = 4;
+  CampaignReport report;
+  for (const auto& [x, y] : {std::pair{-0.009, -0.008}, {0.009, -0.009}, {0.001, 0.009}})
+    settings.sites.push_back(test::site_nearest(body, x, y));
+  const auto chosen = settings.sites;
+  for (const auto& [x, y] : {std::pair{-0.006, -0.004}, {0.001, 0.004}, {0.008, -0.003}})
+    settings.sites.push_back(test::site_nearest(body, x, y));
+  Curves curves = run_campaign(body, settings, report);
+  press_on_finer_mesh(body, settings, chosen, curves, report);
+  fitting::bound_mesh_errors(curves);
+  EXPECT_GT(curves.mesh_error_confidence, 0.8);
+
+  settings.indentation.size_over_contact = usual;
+  int covered = 0, compared = 0;
+  double largest = 0, bounds = 0;
+  const Curves truth = run_campaign(body, settings, report);
+  for (std::size_t s = 0; s < truth.sites.size(); ++s)
+    for (std::size_t i = 1; i < truth.sites[s].paths[0].samples.size(); ++i) {
+      const CurveSample& ours = curves.sites[s].paths[0].samples[i];
+      const double error = std::abs(ours.force[2] - truth.sites[s].paths[0].samples[i].force[2]);
+      largest = std::max(largest, error / norm(ours.force));
+      bounds += ours.mesh_error / norm(ours.force);
+      covered += error <= ours.mesh_error ? 1 : 0;
+      ++compared;
+    }
+  EXPECT_LT(largest, 0.06);
+  EXPECT_GE(covered, 0.9 * compared) << covered << " of " << compared;
+  EXPECT_LT(bounds / compared, 3 * largest);
+}
+
+/// The lateral paths of a pressed site as well, along each direction by itself.
+TEST(FinerMesh, TellsTheDifferenceOfLateralForces) {
+  const Body body = uneven_block();
+  CampaignSettings settings = pressed();
+  settings.indentation.increments = 2;
+  settings.indentation.lateral_depths = {0.001};
+  settings.indentation.lateral_travel = 0.0005;
+  settings.indentation.lateral_increments = 2;
+  settings.indentation.azimuths = {0, 1.5};
+  CampaignReport report;
+  settings.sites = {test::site_nearest(body, 0.001, 0.004), test::site_nearest(body, 0.008, 0)};
+  Curves curves = run_campaign(body, settings, report);
+  press_on_finer_mesh(body, settings, {curves.sites[1].vertex}, curves, report);
+  ASSERT_EQ(curves.sites[1].paths.size(), 3U);
+  for (const CurvePath& path : curves.sites[1].paths)
+    for (std::size_t i = 1; i < path.samples.size(); ++i)
+      EXPECT_LT(std::abs(path.samples[i].mesh_difference),
+                0.8 * std::abs(response_force(path, path.samples[i])));
+  fitting::bound_mesh_errors(curves);
+  for (const CurvePath& path : curves.sites[0].paths) {
+    EXPECT_TRUE(std::isnan(path.samples.back().mesh_difference));
+    EXPECT_GT(path.samples.back().mesh_error, 0);
+  }
 }
 
 }  // namespace

@@ -128,6 +128,21 @@ double contact_width(double depth) {
   return std::sqrt(depth / 0.003);
 }
 
+TEST(Fit, TheLateralErrorOfTheMeshIsTheLargestOfTheLateralCurves) {
+  const Body body = hexagon();
+  Curves curves = complete_curves(body);
+  CurvePath& path = curves.sites[2].paths[1];
+  ASSERT_EQ(path.kind, PathKind::Lateral);
+  path.samples.back().mesh_error = 0.004;
+  const Library library = fit(body, curves, {});
+  EXPECT_EQ(library.responses[2].lateral_mesh_error, 0.004);
+  EXPECT_TRUE(std::isnan(library.responses[2].normal_mesh_error));
+  const auto errors = fit_errors(library, curves);
+  const FitErrorSummary summary = summary_of(errors, &SiteFitError::lateral_mesh);
+  EXPECT_EQ(summary.vertex, 2);
+  EXPECT_GT(summary.worst, 0);
+}
+
 TEST(Fit, TheErrorOfTheMeshIsTheLargestOfTheNormalCurve) {
   const Body body = hexagon();
   Curves curves = complete_curves(body);
@@ -136,6 +151,7 @@ TEST(Fit, TheErrorOfTheMeshIsTheLargestOfTheNormalCurve) {
   const Library library = fit(body, curves, {});
   EXPECT_EQ(library.responses[2].normal_mesh_error, 0.03);
   EXPECT_TRUE(std::isnan(library.responses[3].normal_mesh_error));
+  EXPECT_TRUE(std::isnan(library.responses[2].lateral_mesh_error));
   const auto errors = fit_errors(library, curves);
   const FitErrorSummary summary = summary_of(errors, &SiteFitError::mesh);
   EXPECT_EQ(summary.vertex, 2);

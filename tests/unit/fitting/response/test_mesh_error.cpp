@@ -7,6 +7,8 @@
 #include <cmath>
 #include <vector>
 
+#include "format/numbers.hpp"
+
 namespace palpate::fitting {
 namespace {
 
@@ -52,6 +54,36 @@ TEST(MeshError, IsTheLargestDifferenceAtTheNearestResolution) {
   EXPECT_DOUBLE_EQ(curves.mesh_error_confidence, 0.95);
   const MeshErrorSummary summary = mesh_error_summary(curves);
   EXPECT_NEAR(summary.worst_at_end, 0.2, 0.0101);
+}
+
+/// A lateral path of a site, whose force begins with that of the press.
+CurvePath lateral_path(double difference) {
+  CurvePath path{PathKind::Lateral, 1e-3, {1, 0, 0}, {}};
+  for (int i = 0; i < 4; ++i) {
+    CurveSample sample;
+    sample.displacement = 1e-3 * i;
+    sample.force = {0.1 + 0.5 * i, 0, -2};
+    sample.facets_in_contact = 3;
+    if (i > 0) sample.mesh_difference = difference * 0.5 * i;
+    path.samples.push_back(sample);
+  }
+  return path;
+}
+
+/// Each kind by its own differences, relative to the force since the start of the path.
+TEST(MeshError, OfLateralPathsIsThatOfLateralDifferences) {
+  Curves curves;
+  curves.sites = {site_of(0, {2, 2}, {0.02, 0.02}, 3), site_of(1, {2, 2}, {}, 3)};
+  curves.sites[0].paths.push_back(lateral_path(0.06));
+  curves.sites[1].paths.push_back(lateral_path(kUnknown));
+  bound_mesh_errors(curves);
+  EXPECT_NEAR(relative_error(curves.sites[1], 2), 0.01, 1e-12);
+  const auto& lateral = curves.sites[1].paths[1].samples;
+  EXPECT_EQ(lateral[0].mesh_error, 0);
+  EXPECT_NEAR(lateral[3].mesh_error, 0.06 * 1.5, 1e-12);
+  EXPECT_NEAR(mesh_error_summary(curves, PathKind::Lateral).worst_at_end, 0.06, 1e-12);
+  EXPECT_NEAR(mesh_error_summary(curves).worst_at_end, 0.01, 1e-12);
+  EXPECT_NEAR(curves.mesh_error_confidence, 2.0 / 3, 1e-12);
 }
 
 TEST(MeshError, OfFewDifferencesHasALowerConfidence) {

@@ -28,6 +28,12 @@ function fitPanel(v) {
     paragraph(`${summary('Normal', normal)}. ${summary('Lateral', lateral)}.`, 'note'));
 }
 
+/** How far the forces are from converged ones: of the mesh and of the fit. */
+function accuracySentence(text) {
+  if (!text) return null;
+  return el('p', { id: 'accuracy', class: 'lead' }, `${text[0].toUpperCase()}${text.slice(1)}.`);
+}
+
 const MOST_NAMED = 5;
 
 /** Nodes whose response visibly misses what was computed, the worst first. */
@@ -62,6 +68,7 @@ export function fitSection(data) {
   return el('section', { id: 'fit' },
     el('h2', {}, 'Errors of the curves'),
     paragraph('The distance of the fit from the computed states, and the difference between the work of the tool and the energy stored in the body and its contact.', 'lead'),
+    accuracySentence(data.key.accuracy),
     misfitSentence(data.vertices),
     meshSentence(data.vertices, data.key.mesh_error_confidence),
     el('div', { class: 'pair' }, fitPanel(data.vertices), balancePanel(data.balance)));
