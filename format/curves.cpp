@@ -95,7 +95,9 @@ constexpr auto kSampleColumns = std::make_tuple(
            rules::kKnownFinite, true),
     column("mesh_error", &CurveSample::mesh_error, "N",
            "Bound of the error of the mesh in the force along the path; NaN when unknown.",
-           rules::kKnownNonNegative, true));
+           rules::kKnownNonNegative, true),
+    column("volume_change", &CurveSample::volume_change, "m^3",
+           "Of the body since the touch; NaN when unknown.", rules::kKnownFinite, true));
 
 struct RelaxationTime {
   double time = 0;

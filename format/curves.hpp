@@ -61,6 +61,8 @@ struct CurveSample {
   /// curves;
   /// NaN when unknown.
   double mesh_error = std::numeric_limits<double>::quiet_NaN();
+  /// m^3, of the body since the touch: negative where the press compresses it. NaN when unknown.
+  double volume_change = std::numeric_limits<double>::quiet_NaN();
   /// J, isochoric strain energy of each region of the body, at once after a step; empty where the
   /// tissue is elastic. By the envelope theorem it is m_r dE/dm_r, E the stored energy at a
   /// position of the tool and m_r all isochoric moduli of region r together. What remains of

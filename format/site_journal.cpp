@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kJournalFirstLine = "palpate.journal 3\n";
+constexpr std::string_view kJournalFirstLine = "palpate.journal 4\n";
 
 RecordFile open_journal(const fs::path& path) {
   return {path, "another palpate is at this campaign",

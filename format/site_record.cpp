@@ -9,7 +9,7 @@
 namespace palpate {
 namespace {
 
-constexpr std::size_t kSampleBytes = 16 * sizeof(double) + sizeof(std::int32_t);
+constexpr std::size_t kSampleBytes = 17 * sizeof(double) + sizeof(std::int32_t);
 constexpr std::size_t kSmallestPathBytes =
     1 + 5 * sizeof(double) + sizeof(std::int32_t) + sizeof(std::uint32_t);
 
@@ -21,7 +21,7 @@ void put(ByteWriter& out, const CurveSample& s) {
     out.put(value);
   out.put(s.iterations);
   for (const double value : {s.force_scatter, s.force_uncertainty, s.contact_energy, s.tension,
-                             s.facets_in_contact, s.mesh_difference, s.mesh_error})
+                             s.facets_in_contact, s.mesh_difference, s.mesh_error, s.volume_change})
     out.put(value);
 }
 
@@ -34,7 +34,7 @@ CurveSample sample_of(ByteReader& in) {
     *value = in.get<double>();
   s.iterations = in.get<std::int32_t>();
   for (double* value : {&s.force_scatter, &s.force_uncertainty, &s.contact_energy, &s.tension,
-                        &s.facets_in_contact, &s.mesh_difference, &s.mesh_error})
+                        &s.facets_in_contact, &s.mesh_difference, &s.mesh_error, &s.volume_change})
     *value = in.get<double>();
   return s;
 }

@@ -143,6 +143,8 @@ void define_path(py::module_& module) {
                              "(K,) N, force expected from a finer mesh, less the force.")
       .def_property_readonly("mesh_error", of_samples(&CurveSample::mesh_error),
                              "(K,) N, bound of the error of the mesh along the path.")
+      .def_property_readonly("volume_change", of_samples(&CurveSample::volume_change),
+                             "(K,) m^3, of the body since the touch.")
       .def_property_readonly("iterations", of_samples(&CurveSample::iterations),
                              "(K,) int32, of Newton's method.")
       .def_property_readonly("force_scatter", of_samples(&CurveSample::force_scatter),

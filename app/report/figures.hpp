@@ -7,6 +7,7 @@
 
 #include "format/curves.hpp"
 #include "format/library.hpp"
+#include "format/numbers.hpp"
 
 namespace palpate::report {
 
@@ -48,8 +49,10 @@ std::vector<PathBalance> path_balances(const Curves& curves);
 
 struct CampaignFigures {
   std::int32_t complete = 0, partial = 0, failed = 0;
-  double deepest = 0;    ///< m, deepest converged sample of a normal path
-  double max_force = 0;  ///< N, largest |force| of any sample
+  double deepest = 0;               ///< m, deepest converged sample of a normal path
+  double max_force = 0;             ///< N, largest |force| of any sample
+  double volume_change = kUnknown;  ///< m^3, of the sample where the body changes most
+  double min_jacobian = kUnknown;   ///< smallest det F of any sample
   double cpu_seconds = 0;
 };
 CampaignFigures campaign_figures(const Curves& curves);

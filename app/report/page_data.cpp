@@ -143,7 +143,7 @@ json sample_data(const Curves& curves, const Library& library) {
   std::vector<std::int32_t> vertex;
   std::vector<std::uint8_t> kind;
   std::vector<std::uint32_t> offset{0};
-  std::vector<float> lateral_depth, displacement, force;
+  std::vector<float> lateral_depth, displacement, force, volume_change;
   for (const SiteCurves& site : curves.sites) {
     for (const CurvePath& path : site.paths) {
       vertex.push_back(site.vertex);
@@ -154,6 +154,7 @@ json sample_data(const Curves& curves, const Library& library) {
       for (const CurveSample& sample : path.samples) {
         displacement.push_back(static_cast<float>(sample.displacement));
         force.push_back(static_cast<float>(dot(sample.force, axis)));
+        volume_change.push_back(static_cast<float>(sample.volume_change));
       }
       offset.push_back(static_cast<std::uint32_t>(displacement.size()));
     }
@@ -163,7 +164,8 @@ json sample_data(const Curves& curves, const Library& library) {
           {"lateral_depth", column(lateral_depth)},
           {"offset", column(offset)},
           {"displacement", column(displacement)},
-          {"force", column(force)}};
+          {"force", column(force)},
+          {"volume_change", column(volume_change)}};
 }
 
 json balance_data(const Curves& curves) {
@@ -196,6 +198,8 @@ json key_figures(const ReportInput& input) {
           {"failed", figures.failed},
           {"deepest", figures.deepest},
           {"max_force", figures.max_force},
+          {"volume_change", figures.volume_change},
+          {"min_jacobian", figures.min_jacobian},
           {"cpu_seconds", figures.cpu_seconds},
           {"mesh_error_confidence", input.curves->mesh_error_confidence},
           {"accuracy", fitting::accuracy_text(*input.library)},

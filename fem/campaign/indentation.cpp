@@ -70,7 +70,8 @@ struct SiteSolver::Site {
         contact(contact_at(context, body.mesh(), X)),
         touching(tool_at_first_touch(context, contact, body.rest(), point)),
         equilibrium(context, body, batch),
-        self_contact(body.mesh(), X, kWatched * context.indentation.tool.extent()) {}
+        self_contact(body.mesh(), X, kWatched * context.indentation.tool.extent()),
+        volume_at_rest(body.whole().volume(body.rest())) {}
 
   /// The tool at a depth below first touch, moved sideways by `aside`.
   Tool tool_at(double depth, const Eigen::Vector3d& aside = Eigen::Vector3d::Zero()) const {
@@ -92,6 +93,7 @@ struct SiteSolver::Site {
   Tool touching;
   SiteEquilibrium equilibrium;
   SelfContact self_contact;
+  double volume_at_rest;                          ///< m^3
   std::map<double, LateralStart> lateral_starts;  ///< by depth
 };
 
@@ -104,6 +106,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
                      .self_contact = site.self_contact,
                      .tool_radius = tool_radius,
                      .energy_at_rest = context_.at_rest.energy,
+                     .volume_at_rest = site.volume_at_rest,
                      .follows_work = true,
                      .relaxes = !context_.relaxation.empty(),
                      .tool_at = [&](double depth) { return site.tool_at(depth); }},
@@ -113,6 +116,7 @@ void SiteSolver::run_normal_path(Site& site, const std::vector<double>& stops, S
   path.direction = to_vec3(site.inward);
   path.samples.emplace_back();
   path.samples.back().contact_energy = path.samples.back().tension = 0;
+  path.samples.back().volume_change = 0;
   path.samples.back().min_jacobian = context_.at_rest.min_J;
   if (!context_.relaxation.empty())
     path.samples.back().isochoric_energy.assign(context_.relaxation.fractions.size(), 0.0);
@@ -170,6 +174,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
        .self_contact = site.self_contact,
        .tool_radius = context_.indentation.tool.radius,
        .energy_at_rest = context_.at_rest.energy,
+       .volume_at_rest = site.volume_at_rest,
        .follows_work = false,
        .relaxes = !context_.relaxation.empty(),
        .tool_at = [&](double s) { return site.tool_at(lateral_depth, s * direction); }},

@@ -20,6 +20,7 @@ struct PathProblem {
   const SelfContact& self_contact;
   double tool_radius;                   ///< m
   double energy_at_rest;                ///< J, subtracted from the energy of the samples
+  double volume_at_rest;                ///< m^3, subtracted from the volume
   bool follows_work;                    ///< integrate the work of the tool within increments
   bool relaxes;                         ///< samples have the energies of the regions
   std::function<Tool(double)> tool_at;  ///< the tool at a travel, m

@@ -383,6 +383,15 @@ StressField SolidModel::isochoric_stress(const Displacement& u) const {
   return field;
 }
 
+double SolidModel::volume(const Displacement& u) const {
+  double sum = 0;
+  for (const Block& block : blocks_) {
+    const Lanes volume = block.geometry.volume * kinematics_of(block, u).mean_J;
+    sum += volume.head(block.count).sum();
+  }
+  return sum;
+}
+
 std::vector<double> SolidModel::isochoric_energies(const Displacement& u) const {
   std::vector<double> energies(solid_->laws.size(), 0.0);
   for (const Block& block : blocks_) {

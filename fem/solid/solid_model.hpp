@@ -88,6 +88,8 @@ class SolidModel {
 
   /// 2 dPsi_iso/dC of the laws at the Gauss points, Pa.
   StressField isochoric_stress(const Displacement& u) const;
+  /// m^3, of the elements as they are displaced.
+  double volume(const Displacement& u) const;
   /// The isochoric strain energy of each region, J. What remains of energy() does not relax.
   std::vector<double> isochoric_energies(const Displacement& u) const;
 

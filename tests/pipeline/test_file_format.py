@@ -247,7 +247,7 @@ class FileFormat(unittest.TestCase):
             for name in ("displacement", "force", "strain_energy", "tool_work", "min_jacobian",
                          "penetration", "contact_area", "iterations", "force_scatter",
                          "force_uncertainty", "contact_energy", "tension", "facets_in_contact",
-                         "mesh_difference", "mesh_error"):
+                         "mesh_difference", "mesh_error", "volume_change"):
                 np.testing.assert_equal(np.ravel(sample[name][k]), known.numbers(), name)
 
     def test_library_values(self):

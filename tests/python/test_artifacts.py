@@ -27,7 +27,7 @@ SPRUNG = {"foundation": "foundation/facet", "foundation_normal_stiffness": "foun
 CURVED = {"curved_edges": "curved_edges/ends", "curved_edge_middles": "curved_edges/middle"}
 SAMPLES = ("displacement", "force", "strain_energy", "tool_work", "contact_energy", "min_jacobian", "penetration",
            "contact_area", "tension", "iterations", "force_scatter", "force_uncertainty",
-           "facets_in_contact", "mesh_difference", "mesh_error")
+           "facets_in_contact", "mesh_difference", "mesh_error", "volume_change")
 STEP = {"time_ns": "time", "latency_ns": "latency",
         **{name: name for name in ("position", "velocity", "force", "contact_point", "depth", "lateral", "offset",
                                    "energy", "tank", "absorbed", "element", "status")}}

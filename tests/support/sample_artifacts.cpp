@@ -126,6 +126,7 @@ void make_measured(CurvePath& path, Random& random) {
     sample.penetration = sample.contact_area = unknown;
     sample.contact_energy = sample.tension = unknown;
     sample.facets_in_contact = sample.mesh_difference = sample.mesh_error = unknown;
+    sample.volume_change = unknown;
     sample.force_uncertainty = random.between(0, 0.1);
     if (path.repeats > 1) sample.force_scatter = random.between(0, 0.1);
   }
@@ -143,6 +144,7 @@ CurvePath curve_path(Random& random, PathKind kind) {
     path.samples.back().facets_in_contact = random.between(0, 9);
     path.samples.back().mesh_difference = random.between(-0.1, 0.1);
     path.samples.back().mesh_error = random.between(0, 0.1);
+    path.samples.back().volume_change = random.between(-1e-8, 1e-8);
     travel += random.between(1e-5, 1e-3);
   }
   if (path.samples.size() % 2 == 0) make_measured(path, random);
@@ -398,7 +400,7 @@ std::string dump(const Curves& curves) {
         out << s.displacement << s.force << s.strain_energy << s.tool_work << s.min_jacobian
             << s.penetration << s.contact_area << s.iterations << s.force_scatter
             << s.force_uncertainty << s.contact_energy << s.tension << s.facets_in_contact
-            << s.mesh_difference << s.mesh_error;
+            << s.mesh_difference << s.mesh_error << s.volume_change;
         for (const double energy : s.isochoric_energy) out << energy;
       }
     }

@@ -42,6 +42,7 @@ export const length = (m) => significant(m * 1e3) + NBSP + 'mm';
 export const scaledLength = (m) => (Math.abs(m) < NOTHING * 1e-9 ? length(0) : Math.abs(m) < 1e-4 ? significant(m * 1e6) + NBSP + '\u00b5m' : length(m));
 export const force = scaled(FORCES);
 export const pressure = scaled([[1e6, 'MPa'], [1e3, 'kPa'], [1, 'Pa'], [1e-3, 'mPa']]);
+export const volume = scaled([[1e-6, 'cm\u00b3'], [1e-9, 'mm\u00b3'], [1e-18, '\u00b5m\u00b3']]);
 export const stiffness = (k) => significant(k) + NBSP + 'N/m';
 /** Rounded up to four significant digits: an upper bound stays one. */
 function roundedUp(value) {

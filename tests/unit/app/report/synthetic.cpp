@@ -151,6 +151,8 @@ CurvePath normal_path(std::int32_t vertex, const Vec3& x, const Vec3& inward, do
     s.force = (c * std::pow(d, 1.5)) * inward;
     s.tool_work = c * std::pow(d, 2.5) / 2.5;
     s.strain_energy = s.tool_work * (1 - balance_gap(vertex));
+    s.volume_change = kLeastVolumeChange * d * d / (kDepth * kDepth);
+    s.min_jacobian = 1 - 0.5 * d / kDepth;
     path.samples.push_back(s);
   }
   return path;

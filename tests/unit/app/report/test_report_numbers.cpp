@@ -195,6 +195,18 @@ TEST_F(Report, CountsTheSitesAndTheDeepestPress) {
                               std::pow(testing::kDepth, 1.5));
   }
   EXPECT_NEAR(key["max_force"].get<double>(), largest, 1e-9 * largest);
+  EXPECT_DOUBLE_EQ(key["volume_change"].get<double>(), testing::kLeastVolumeChange);
+  EXPECT_DOUBLE_EQ(key["min_jacobian"].get<double>(), 0.5);
+}
+
+TEST_F(Report, KnowsNoVolumeChangeOfMeasuredCurves) {
+  for (SiteCurves& site : all_.curves.sites)
+    for (CurvePath& path : site.paths)
+      for (CurveSample& sample : path.samples)
+        sample.volume_change = sample.min_jacobian = kUnknown;
+  const json key = embedded(input())["key"];
+  EXPECT_TRUE(key["volume_change"].is_null());
+  EXPECT_TRUE(key["min_jacobian"].is_null());
 }
 
 TEST_F(Report, FindsTheWorstEnergyBalance) {

@@ -304,6 +304,7 @@ class ReportPage(unittest.TestCase):
           depth.value = 0.5;
           depth.dispatchEvent(new Event('input'));
           said.half = document.getElementById('field-range').textContent;
+          said.table = document.querySelector('#curves table').innerText;
           document.body.append(Object.assign(document.createElement('p'), {id: 'said', textContent: JSON.stringify(said)}));
         }, 300));"""
         text = (self.path / "full.html").read_text()
@@ -322,6 +323,10 @@ class ReportPage(unittest.TestCase):
         half = [k for k in secant_stiffness(data, data["key"]["depth"] / 2) if k is not None]
         self.assertIn("at d = 3.00\u00a0mm", said["half"])
         self.assertIn(f"{min(half):.1f} to {max(half):.0f} N/m", said["half"])
+        # The volume changes like the square of the depth, by 36 mm^3 at the end.
+        self.assertIn("\u22129.00\u00a0mm\u00b3", said["table"])
+        volume = 1e6 * data["body"]["quality"]["volume"]
+        self.assertIn(f"nowhere below 0.500; the volume of the body changes by \u221236.0\u00a0mm\u00b3 at most, {3.6 / volume:.2g}\u00a0%", page.text)
 
     def test_the_map_of_the_error_marks_single_sites(self):
         """Four sites were compared, three of them around one triangle: that triangle and one disc have a

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 
 #include "fem/campaign/campaign.hpp"
@@ -139,6 +140,36 @@ TEST_F(Indentation, ForceIsTheDerivativeOfTheStrainEnergy) {
                          (s[i + 1].displacement - s[i - 1].displacement);
     EXPECT_NEAR(-s[i].force[2], slope, 0.03 * slope);
   }
+}
+
+double volume_at(const Body& body, const Displacement& u) {
+  double sum = 0;
+  for (const Tetrahedron& t : body.tetrahedra) {
+    const auto corner = [&](std::size_t k) -> Eigen::Vector3d {
+      const Vec3& x = body.nodes[to_index(t[k])];
+      return Eigen::Vector3d(x[0], x[1], x[2]) + u.col(t[k]);
+    };
+    sum += (corner(1) - corner(0)).cross(corner(2) - corner(0)).dot(corner(3) - corner(0)) / 6;
+  }
+  return sum;
+}
+
+// A press squeezes a compressible block and moves an incompressible one. Of the first the volume
+// change is that of the straight tetrahedra between the displaced nodes, but for their curvature.
+TEST_F(Indentation, VolumeChangeIsThatOfTheDisplacedBody) {
+  CampaignSettings s = settings();
+  s.materials = {{"tissue", {10e3, 0.3}}};
+  Displacement pressed;
+  const CampaignContext context(*body_, s, Engine::SharedFactor);
+  const SiteCurves curves = solve_site(context, centre_vertex(*body_), &pressed);
+  const auto& normal = curves.paths[0].samples;
+  EXPECT_EQ(normal.front().volume_change, 0);
+  const double change = normal.back().volume_change;
+  const double at_rest = volume_at(*body_, Displacement::Zero(3, pressed.cols()));
+  EXPECT_LT(change, 0);
+  EXPECT_NEAR(change, volume_at(*body_, pressed) - at_rest, 0.1 * std::abs(change));
+  EXPECT_LT(std::abs(curves_->paths[0].samples.back().volume_change), 0.1 * std::abs(change));
+  EXPECT_EQ(curves.paths[1].samples.front().volume_change, normal[4].volume_change);
 }
 
 TEST_F(Indentation, PenetrationIsSmall) {

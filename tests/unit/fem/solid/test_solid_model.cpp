@@ -47,6 +47,15 @@ TEST_P(SolidModels, CarryTheWeightOfTheirVolume) {
   EXPECT_GT(model.weight_norm(), 0);
 }
 
+/// An affine map multiplies every volume by its determinant.
+TEST_P(SolidModels, HaveTheVolumeOfTheDisplacedBody) {
+  Eigen::Matrix3d F;
+  F << 1.1, 0.05, 0, -0.02, 0.95, 0.1, 0.03, 0, 0.9;
+  const Displacement u = (F - Eigen::Matrix3d::Identity()) * model.mesh().X;
+  EXPECT_NEAR(model.volume(Displacement::Zero(3, model.mesh().nodes())), 8e-6, 1e-18);
+  EXPECT_NEAR(model.volume(u), F.determinant() * 8e-6, 1e-17);
+}
+
 TEST_P(SolidModels, FindTheMostCompressedElement) {
   Displacement u = Displacement::Zero(3, model.mesh().nodes());
   for (int node = 0; node < model.mesh().nodes(); ++node) {

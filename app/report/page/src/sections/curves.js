@@ -21,6 +21,18 @@ function samples(data, vertex, kind, { length, force }) {
   return paths;
 }
 
+/** m^3, change of the volume of the body when a node is pressed so deep; NaN beyond its last state. */
+export function volumeChange({ samples: s }, vertex, depth) {
+  for (let p = 0; p < s.vertex.length; ++p) {
+    if (s.vertex[p] !== vertex || s.kind[p] !== NORMAL) continue;
+    for (let i = s.offset[p] + 1; i < s.offset[p + 1]; ++i) {
+      const [from, to] = [s.displacement[i - 1], s.displacement[i]];
+      if (depth <= to * (1 + 1e-6)) return s.volume_change[i - 1] + ((depth - from) / (to - from)) * (s.volume_change[i] - s.volume_change[i - 1]);
+    }
+  }
+  return NaN;
+}
+
 /** The response of a node as it is rendered, to its last knot; null without one. */
 function rendered(columns, vertex, { length, force }) {
   const end = lastKnot(columns, vertex);
@@ -67,7 +79,7 @@ export class Curves {
     this.neighbours = false;
     this.legend = el('div', {});
     this.element = el('div', { id: 'curves' }, this.normal.element, el('div', { class: 'lateral' }, this.lateral.element), this.legend,
-      paragraph('Markers: computed states. Lines: the fitted, rendered response. Dashed: the depth of the picture.', 'note'),
+      paragraph('Markers: computed states. Lines: the fitted, rendered response. Dashed: the depth of the picture, to which the stiffness and the change of the volume of the whole body belong.', 'note'),
       this.chooser());
     nodes.onChange(() => this.refresh());
     this.refresh();
@@ -99,9 +111,10 @@ export class Curves {
       const status = v.response_status[n.vertex];
       return [[swatch, marker, n.role, close], el('span', { id: n.role.split(',').map((r) => r.trim().replace(' ', '-'))[0] + '-node' }, String(n.vertex)),
         status === HOLE ? RESPONSE[status] : units.significant(secantStiffness(this.data.normal, n.vertex, this.depth)),
-        error(v.normal_error[n.vertex], v.normal_peak[n.vertex]), error(v.lateral_error[n.vertex], v.lateral_peak[n.vertex])];
+        error(v.normal_error[n.vertex], v.normal_peak[n.vertex]), error(v.lateral_error[n.vertex], v.lateral_peak[n.vertex]),
+        units.volume(volumeChange(this.data, n.vertex, this.depth))];
     });
-    return table(['', 'Node', 'f(d)/d, N/m', 'Fit error normal', 'lateral'], rows, [1, 2, 3, 4]);
+    return table(['', 'Node', 'f(d)/d, N/m', 'Fit error normal', 'lateral', 'Volume change'], rows, [1, 2, 3, 4, 5]);
   }
 
   chooser() {

@@ -70,7 +70,14 @@ function materialLines(data) {
 /** Of all tetrahedra. */
 const quality = (q) => `dihedral angles ${units.significant(q.smallest_dihedral)}\u00b0 to ${units.significant(q.largest_dihedral)}\u00b0, `
   + `longest over shortest edge of a tetrahedron at most ${units.significant(q.largest_edge_ratio)}, longest edge ${units.length(q.longest_edge)}; `
-  + `volume ${units.significant(q.volume * 1e6)}\u00a0cm\u00b3`;
+  + `volume ${units.volume(q.volume)}`;
+/** What the presses do to the volume of the body and to its elements; null where it is not known. */
+function pressed({ key, body }) {
+  if (!Number.isFinite(key.min_jacobian)) return null;
+  const of = Number.isFinite(key.volume_change)
+    ? `; the volume of the body changes by ${units.volume(key.volume_change)} at most, ${units.percent(Math.abs(key.volume_change) / body.quality.volume)}` : '';
+  return `det F, the volume of deformed tissue over that at rest, is nowhere below ${units.significant(key.min_jacobian)}${of}`;
+}
 const linesOf = (texts) => texts.flatMap((t, i) => (i ? [el('br'), t] : [t]));
 
 /** A measured surface has neither mesh nor supports nor material. */
@@ -82,10 +89,11 @@ function bodyLines(data) {
   return [
     ['Mesh', `${units.count(body.tetrahedra)} tetrahedra, ${units.count(body.nodes)} nodes; boundary edge ${units.length(body.facet_edge)}, patch edge ${units.length(body.patch_edge)} (medians)`],
     ['Quality', quality(body.quality)],
+    ['Under the tool', pressed(data)],
     ['Supports', `${units.count(body.fixed_nodes)} fixed nodes; ${body.sprung_facets ? `${units.count(body.sprung_facets)} facets on springs; ` : ''}${units.count(body.sites)} of ${units.count(body.vertices)} response nodes may be pressed`],
     ['Regions', body.regions.map((r) => `${r.name} (${units.count(r.tetrahedra)} tetrahedra)`).join(', ')],
     ['Materials', linesOf(materialLines(data))],
-  ];
+  ].filter(([, line]) => line !== null);
 }
 
 export function headerSection(data, nodes) {
