@@ -15,15 +15,25 @@ double stored(const CurveSample& sample) {
   return sample.strain_energy + sample.contact_energy;
 }
 
+/// Where body and contact store less of the work of the tool than this fraction, a part of the body
+/// has snapped on the way, and the rest of the work is lost.
+constexpr double kStoredOfWork = 0.8;
+
+bool snapped(const CurveSample& before, const CurveSample& here) {
+  const double work = here.tool_work - before.tool_work;
+  return stored(here) - stored(before) < kStoredOfWork * work;
+}
+
 /// The samples of a path beyond its start, with the mean of the force since the sample before: the
-/// tool does the work that body and contact store.
+/// tool does the work that body and contact store. It is unknown where a part of the body snaps.
 std::vector<ForceSample> samples_of(const CurvePath& path) {
   std::vector<ForceSample> samples;
   const CurveSample* before = nullptr;
   for (const CurveSample& here : path.samples) {
     if (here.displacement > 0) {
       ForceSample sample{here.displacement, response_force(path, here)};
-      if (before != nullptr && here.displacement > before->displacement) {
+      if (before != nullptr && here.displacement > before->displacement &&
+          !snapped(*before, here)) {
         sample.since = before->displacement;
         const double force =
             (stored(here) - stored(*before)) / (here.displacement - before->displacement);

@@ -142,6 +142,8 @@ void multiply(Curves& curves, double factor) {
         sample.tool_work *= factor;
         sample.contact_energy *= factor;
         sample.tension *= factor;
+        sample.mesh_difference *= factor;
+        sample.mesh_error *= factor;
       }
     }
   }

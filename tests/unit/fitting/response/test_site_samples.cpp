@@ -80,6 +80,19 @@ TEST(SiteSamples, MeansOfPathsOfDifferentLengthAreThoseOfTheirRise) {
   EXPECT_NEAR(mean[2].mean, 0.12 + 0.04, 1e-15);
 }
 
+/// A snap loses a part of the work, and the force on the way cannot be had from what is stored.
+TEST(SiteSamples, WhereTheBodySnapsTheMeanIsUnknown) {
+  SiteCurves site = site_with_energies();
+  auto& press = site.paths[0].samples;
+  for (CurveSample& sample : press) sample.tool_work = sample.strain_energy + sample.contact_energy;
+  const double lost = 0.3 * (press[2].tool_work - press[1].tool_work);
+  for (const std::size_t i : {2u, 3u}) press[i].strain_energy -= lost;
+  const auto samples = normal_samples(site);
+  EXPECT_NEAR(samples[0].mean, 200 * 0.0005, 1e-12);
+  EXPECT_TRUE(std::isnan(samples[1].mean));
+  EXPECT_NEAR(samples[2].mean, 200 * 0.0025, 1e-12);
+}
+
 /// A measured path knows no energy, and curves of before have none of the contact.
 TEST(SiteSamples, WithoutEnergiesTheMeansAreUnknown) {
   for (const ForceSample& sample : normal_samples(site_with_two_paths()))

@@ -46,6 +46,20 @@ TEST(Rescale, TheMeasuredScaleReachesEverySite) {
   EXPECT_NEAR(end.isochoric_energy[0], 0.9 * end.strain_energy, 1e-12);
 }
 
+/// The error of the mesh is a part of the force.
+TEST(Rescale, TheErrorOfTheMeshScalesWithTheForce) {
+  Curves simulated = curves_of({0, 1}, 1);
+  for (SiteCurves& site : simulated.sites) {
+    CurveSample& end = site.paths[0].samples.back();
+    end.mesh_error = 0.03 * norm(end.force);
+    end.mesh_difference = -0.02 * norm(end.force);
+  }
+  const Rescaling r = rescale(simulated, curves_of({1}, 1.4), {});
+  const CurveSample& end = r.curves.sites[0].paths[0].samples.back();
+  EXPECT_NEAR(end.mesh_error, 0.03 * norm(end.force), 1e-12);
+  EXPECT_NEAR(end.mesh_difference, -0.02 * norm(end.force), 1e-12);
+}
+
 TEST(Rescale, SitesThatDisagreeAreInTheUncertainty) {
   Curves measured = curves_of({0, 1, 2}, 1);
   const double factors[] = {1.0, 1.2, 1.4};
