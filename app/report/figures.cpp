@@ -98,7 +98,8 @@ CampaignFigures campaign_figures(const Curves& curves) {
           figures.deepest = std::max(figures.deepest, sample.displacement);
         figures.max_force = std::max(figures.max_force, norm(sample.force));
         figures.min_jacobian = std::fmin(figures.min_jacobian, sample.min_jacobian);
-        if (!(std::abs(sample.volume_change) <= std::abs(figures.volume_change)))
+        if (std::isnan(figures.volume_change) ||
+            std::abs(sample.volume_change) > std::abs(figures.volume_change))
           figures.volume_change = sample.volume_change;
       }
     }
