@@ -39,7 +39,7 @@ class Rendered {
 
 /// Balls of 30 mm whose stiffness varies over the surface.
 Library ball(const std::string& kind) {
-  const Library elastic = sphere(3, 0.03, [](const Vec3& x) {
+  Library elastic = sphere(3, 0.03, [](const Vec3& x) {
     const double s = 1 + 0.3 * std::sin(160 * x[2] + 120 * x[1]) * std::cos(110 * x[0]);
     NodeResponse node = wall_response(170 * s, 120);
     const double bend = 0.8 * std::sin(230 * x[0] + 170 * x[1]);

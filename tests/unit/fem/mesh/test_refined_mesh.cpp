@@ -375,6 +375,7 @@ TEST(RefineUnderTool, ByContactOtherToolsDoNotFeelTheFacets) {
                                    ToolGeometry{ToolShape::Cylinder, 0.003, 0, 0.006}}) {
     CampaignSettings settings = pressed_by(0.005, 0.0012);
     settings.indentation.tool = tool;
+    settings.indentation.size_over_contact = 2;  // fine enough for this, in a fraction of the time
     settings.indentation.increments = 2;
     settings.indentation.lateral_depths.clear();
     const auto at = [&](int refinements, double x, double y) {
