@@ -20,9 +20,9 @@ Tool tool_over(const CampaignContext& context, const PressPoint& point) {
           std::cos(settings.tool_azimuth) * first + std::sin(settings.tool_azimuth) * second};
 }
 
-/// Size of elements that the contact divides, over that of the coarser mesh: all of them are
-/// halved, so that the ratio of the sizes is known.
-constexpr double kFinerByContact = 0.5;
+/// Size of elements that the contact divides, over that of the coarser mesh: smaller ones cost more
+/// than the campaign of a small body.
+constexpr double kFinerByContact = 0.7;
 /// Depth at which the grading begins, over that of the first increment: the elements inside of its
 /// contact are then smaller than those at its edge, as they are inside of later contacts.
 constexpr double kFirstDepth = 0.5;
