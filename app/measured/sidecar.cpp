@@ -262,11 +262,12 @@ void check_columns(const Sidecar& s, const SourceMap& sources) {
     refuse(sources.where("columns"), fmt::format("key 'columns.{}' is missing", key),
            fmt::format("name the column of the {}", what));
   };
-  if (c.load == "tension")
+  if (c.load == "tension" && s.tool.shape != "plates")
     refuse(sources.where("columns.load"),
            "a pull is no press: a library holds the forces of a tool "
            "that touches the body from outside",
-           "give specimens in tension to `palpate calibrate tests`");
+           "give specimens in tension to `palpate calibrate tests`, and their histories with "
+           "tool.shape = \"plates\"");
   if (!s.robot_logs.empty() && (c.displacement_sign != "found" || c.force_sign != "found"))
     refuse(sources.where("columns"), "signs are stated, and a robot log has three components",
            "give placement.force_is for a robot log");
@@ -350,7 +351,8 @@ void check_contact(const Sidecar& s, const SourceMap& sources) {
 }
 
 void check_tool(const Sidecar& s, const SourceMap& sources) {
-  if (s.tool.shape == "sphere" || (s.presses.empty() && s.robot_logs.empty())) return;
+  const bool makes_curves = !s.presses.empty() || !s.robot_logs.empty() || !s.batches.empty();
+  if (s.tool.shape == "sphere" || !makes_curves) return;
   refuse(sources.where("tool.shape"), "curves are those of a sphere, and the tool is plates",
          "give the records as [[history]]");
 }

@@ -41,7 +41,7 @@ struct ColumnsSection {
   std::string normal_x, normal_y, normal_z;
   std::string contact_x, contact_y, contact_z;  ///< the logged point at first contact
   std::string time_unit, length_unit, force_unit, strain_unit, stress_unit;
-  std::string load = "compression";  ///< or "tension", which no press is
+  std::string load = "compression";  ///< or "tension": histories of a specimen alone
   std::string displacement_sign = "found", force_sign = "found";
 };
 

@@ -335,6 +335,37 @@ TEST_F(Imports, KeepRecordsOverTimeBesideTheirLoadingBranch) {
                   .curves.sites.empty());
 }
 
+/// A specimen between grips: the pull is the history of the press with both signs turned.
+TEST_F(Imports, TakeHistoriesOfSpecimensInTension) {
+  Bench bench;
+  bench.hold = 12;
+  write_record("a.csv", bench, 1);
+  measured::PressRecord pulled = measured::press_on(bench, 1);
+  std::ofstream file(folder_ / "b.csv");
+  file.precision(17);
+  file << "t (s),x (mm),f (N)\n";
+  for (std::size_t i = 0; i < pulled.time.size(); ++i)
+    file << pulled.time[i] << ',' << -1e3 * pulled.displacement[i] << ',' << -pulled.force[i]
+         << '\n';
+  file.close();
+  const auto imported = [&](const std::string& record, const std::string& load) {
+    std::ofstream(folder_ / "grips.toml")
+        << "name = \"grips\"\nspecimen = \"gel\"\nsource = \"synthetic\"\n"
+           "licence = \"CC0-1.0\"\n[tool]\nshape = \"plates\"\n[columns]\ntime = \"t\"\n"
+           "displacement = \"x\"\nforce = \"f\"\nload = \""
+        << load << "\"\n[[history]]\nfile = \"" << record << "\"\n";
+    return import_measurement(folder_ / "grips.toml", {}).histories.records.at(0).history;
+  };
+  const measured::History press = imported("a.csv", "compression"),
+                          pull = imported("b.csv", "tension");
+  ASSERT_EQ(pull.time.size(), press.time.size());
+  EXPECT_GT(*std::max_element(pull.force.begin(), pull.force.end()), 0);
+  for (std::size_t i = 0; i < pull.time.size(); ++i) {
+    EXPECT_NEAR(pull.travel[i], press.travel[i], 1e-12);
+    EXPECT_NEAR(pull.force[i], press.force[i], 1e-12);
+  }
+}
+
 /// A series needs no site: the records of a sidecar are read without the body.
 TEST_F(Imports, ReadRecordsOverTimeWithoutTheirSites) {
   Bench bench;

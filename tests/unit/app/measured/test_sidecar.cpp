@@ -103,6 +103,9 @@ TEST(Sidecar, TakesRecordsOverTime) {
   EXPECT_EQ(refusal(kHead + timed + history), "accepted");
   EXPECT_THAT(refusal(kHead + kColumns + history), HasSubstr("key 'columns.time' is missing"));
   EXPECT_THAT(refusal(plates + timed + kPress), HasSubstr("the tool is plates"));
+  const std::string pulled = timed + "load = \"tension\"\n";
+  EXPECT_EQ(refusal(plates + pulled + history), "accepted");
+  EXPECT_THAT(refusal(kHead + pulled + history), HasSubstr("a pull is no press"));
   EXPECT_THAT(refusal(kHead + timed + history + "contact = \"1 mm\"\n"),
               HasSubstr("contact.method says otherwise"));
   EXPECT_THAT(refusal(kHead + timed + history + "held = \"both\"\n"), HasSubstr("both"));
