@@ -15,6 +15,8 @@ namespace {
 /// A facet that comes into contact or leaves it costs about one iteration.
 constexpr int kPatchIterations = 50;
 constexpr int kPatchHalvings = 10;
+/// Contraction of the gradient in a step from which a factor is used again.
+constexpr double kGoodContraction = 0.5;
 /// Fractions of the stiffening to try where the model of the patch is not convex; with all of it
 /// the model is convex.
 constexpr std::array<double, 5> kStiffeningFractions{0, 0.003, 0.03, 0.3, 1};
@@ -43,6 +45,7 @@ bool PatchSolver::condense(std::size_t fraction) {
   if (!eliminate_first(rest_, eliminated_)) return false;
   S_ = eliminated_.bottomRightCorner(core_size(), core_size());
   condensed_ = in_core_;
+  factorized_ = false;
   fraction_ = fraction;
   return true;
 }
@@ -52,33 +55,44 @@ bool PatchSolver::factorize(const PatchContact& core, const ToolContact& contact
   for (const bool geometric : {true, false}) {
     factor_ = S_;
     core.add_hessian(contact, d, geometric, factor_);
-    if (factorize_in_place(factor_)) return true;
+    factorized_ = factorize_in_place(factor_);
+    if (factorized_) break;
   }
-  return false;
+  return factorized_;
 }
 
 bool PatchSolver::minimize(const PatchContact& core, const ToolContact& contact,
                            const Eigen::VectorXd& load, double tolerance, Eigen::VectorXd& d) {
   const auto S = S_.selfadjointView<Eigen::Lower>();
   Eigen::VectorXd contact_force, Sd = S * d;
-  for (int iteration = 0; iteration < kPatchIterations; ++iteration) {
-    const double contact_energy = core.gradient(contact, d, contact_force);
-    const Eigen::VectorXd g = Sd - load + contact_force;
-    if (g.norm() <= tolerance) break;
-    if (!factorize(core, contact, d)) return false;
-    const double energy = 0.5 * d.dot(Sd) - load.dot(d) + contact_energy;
+  double contact_energy = core.gradient(contact, d, contact_force);
+  Eigen::VectorXd g = Sd - load + contact_force;
+  bool stale = factorized_;
+  for (int iteration = 0; iteration < kPatchIterations && g.norm() > tolerance; ++iteration) {
+    if (!stale && !factorize(core, contact, d)) return false;
+    const double before = g.norm(), energy = 0.5 * d.dot(Sd) - load.dot(d) + contact_energy;
     const Eigen::VectorXd step = -solve_factorized(factor_, g), S_step = S * step;
     const double slope = g.dot(step);
-    double length = 1;
     Eigen::VectorXd trial, S_trial;
-    for (int halvings = 0; halvings < kPatchHalvings; ++halvings, length *= 0.5) {
+    const auto lowers = [&](double length) {
       trial = d + length * step;
       S_trial = Sd + length * S_step;
       const double next = 0.5 * trial.dot(S_trial) - load.dot(trial) + core.energy(contact, trial);
-      if (next <= energy + 1e-4 * length * slope + kEnergyNoise * std::abs(energy)) break;
+      return next <= energy + 1e-4 * length * slope + kEnergyNoise * std::abs(energy);
+    };
+    double length = 1;
+    bool lower = lowers(length);
+    if (stale && !lower) {
+      stale = false;
+      continue;
     }
+    for (int halvings = 1; halvings < kPatchHalvings && !lower; ++halvings)
+      lower = lowers(length *= 0.5);
     d.swap(trial);
     Sd.swap(S_trial);
+    contact_energy = core.gradient(contact, d, contact_force);
+    g = Sd - load + contact_force;
+    stale = g.norm() < kGoodContraction * before;
   }
   return true;
 }

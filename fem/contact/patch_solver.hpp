@@ -63,7 +63,8 @@ class PatchSolver {
   Eigen::Index rest_ = 0;        ///< how many are outside
   Eigen::MatrixXd eliminated_;   ///< in that order, see eliminate_first()
   Eigen::MatrixXd S_;            ///< of the core, lower triangle
-  Eigen::MatrixXd factor_;       ///< of S_ and the contact
+  Eigen::MatrixXd factor_;       ///< of S_ and the contact, at the last factorize()
+  bool factorized_ = false;      ///< whether factor_ is one with the present S_
 };
 
 }  // namespace palpate::fem
