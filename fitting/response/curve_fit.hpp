@@ -19,9 +19,10 @@ struct ForceSample {
   double since = 0;  ///< m, below `displacement`
 };
 
-/// Share of the largest force of a curve below which its errors do not count: half of what is
-/// tolerated of the local force.
-inline constexpr double kPeakShare = 0.005;
+/// Error that is tolerated everywhere on a curve, over its largest force. Light touch, at a tenth
+/// of that force and less, is felt most of the time, and a response that is right there takes
+/// hardly more knots (docs/fidelity.md).
+inline constexpr double kPeakShare = 0.001;
 
 struct CurveFitSettings {
   double relative_tolerance = 0.01;

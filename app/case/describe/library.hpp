@@ -16,7 +16,7 @@ void describe_fit(V& v, fitting::FitSettings& s) {
   v.quantity_or_auto(
       s.absolute_tolerance, Dimension::Force,
       {"absolute_tolerance",
-       "tolerated error of a response; the larger of the two tolerances applies; `auto`: 0.005 of "
+       "tolerated error of a response; the larger of the two tolerances applies; `auto`: 0.001 of "
        "the largest force of each curve",
        kOptional, kPositive});
   v.integer(
