@@ -58,11 +58,19 @@ struct SkinDeformation::Blend {
   std::size_t count = 0;
 };
 
+/// Profiles of one level, with its weight.
+template <std::size_t Components>
+struct Profiles {
+  std::array<double, Components * SkinDeformation::kMostKnots> value{};
+  double stretch = 1;  ///< distance where a profile is read, over that from the contact, near it
+  bool used = false;
+};
+
 /// What displaces the vertices at one touch.
 struct SkinDeformation::Shape {
-  std::array<float, kMostModes> mode{};  ///< amplitudes, times the scale
-  std::array<double, kPressComponents * kMostKnots> press{};
-  std::array<double, kLateralComponents * kMostKnots> lateral{};
+  std::array<float, kMostModes> mode{};  ///< amplitudes, times the scale of the mode
+  std::array<Profiles<kPressComponents>, 2> press;
+  std::array<Profiles<kLateralComponents>, 2> lateral;
   Vec3 correction{};
 };
 
@@ -101,16 +109,28 @@ SkinDeformation::Blend SkinDeformation::blend_at(const SurfacePoint& point) cons
   return blend;
 }
 
+/// Under a round tool the contact grows like sqrt(z), and the dimple with it: the profiles of a
+/// level are read at the same distance over the contact radius.
+double SkinDeformation::stretch(double level, double depth) const noexcept {
+  constexpr double kMost = 4;
+  if (d_.tool_shape == "disc" || !(depth > 0)) return 1;
+  return std::min(std::sqrt(level / depth), kMost);
+}
+
 void SkinDeformation::add_press(const Blend& blend, const Touch& touch,
                                 Shape& shape) const noexcept {
   const std::size_t modes = d_.mode_count(), knots = d_.knots.size(), depths = d_.depths.size();
   const Levels levels = levels_at(d_.depths, std::max(touch.depth, 0.0));
   const auto add = [&](std::size_t site, std::size_t k, double weight) {
     const float* a = &d_.press_modes[(site * depths + k) * modes];
-    for (std::size_t m = 0; m < modes; ++m) shape.mode[m] += static_cast<float>(weight) * a[m];
+    for (std::size_t m = 0; m < modes; ++m)
+      shape.mode[m] += static_cast<float>(weight) * a[m] * d_.mode_scale[m];
     const float* p = &d_.press_local[(site * depths + k) * kPressComponents * knots];
+    Profiles<kPressComponents>& profiles = shape.press[k - levels.k];
     for (std::size_t j = 0; j < kPressComponents * knots; ++j)
-      shape.press[j] += weight * static_cast<double>(p[j]);
+      profiles.value[j] += weight * static_cast<double>(p[j]);
+    profiles.stretch = stretch(d_.depths[k], touch.depth);
+    profiles.used = true;
   };
   at_both_levels(blend, levels, add);
 }
@@ -130,11 +150,14 @@ void SkinDeformation::add_lateral(const Blend& blend, const Touch& touch,
     for (std::size_t t = 0; t < kTangents; ++t) {
       const float* a = &d_.lateral_modes[((site * depths + k) * kTangents + t) * modes];
       const auto amplitude = static_cast<float>(weight * shared * along[t]);
-      for (std::size_t m = 0; m < modes; ++m) shape.mode[m] += amplitude * a[m];
+      for (std::size_t m = 0; m < modes; ++m) shape.mode[m] += amplitude * a[m] * d_.mode_scale[m];
     }
     const float* p = &d_.lateral_local[(site * depths + k) * kLateralComponents * knots];
+    Profiles<kLateralComponents>& profiles = shape.lateral[k - levels.k];
     for (std::size_t j = 0; j < kLateralComponents * knots; ++j)
-      shape.lateral[j] += weight * static_cast<double>(p[j]);
+      profiles.value[j] += weight * static_cast<double>(p[j]);
+    profiles.stretch = stretch(d_.lateral_depths[k], touch.depth);
+    profiles.used = true;
   };
   at_both_levels(blend, levels, add);
 }
@@ -149,16 +172,28 @@ Vec3 SkinDeformation::shared_part(const Shape& shape, std::size_t vertex) const 
   return u;
 }
 
-/// The contact point moves with the tip: what the shared part would move it besides is taken back
-/// around it. There, the shared part is that of the corners of the triangle.
-void SkinDeformation::correct(const Touch& touch, Shape& shape) const noexcept {
+/// There, the shared part is that of the corners of the triangle.
+Vec3 SkinDeformation::at_contact(const Touch& touch, const Shape& shape) const noexcept {
   const Triangle& corners = surface_[index(touch.point.element)];
-  const Vec3 wanted = std::max(touch.depth, 0.0) * touch.normal + touch.lateral;
-  Vec3 found = shape.press[0] * touch.normal + shape.lateral[0] * touch.lateral;
+  Vec3 u{};
+  for (const auto& press : shape.press) u = u + press.value[0] * touch.normal;
+  for (const auto& lateral : shape.lateral) u = u + lateral.value[0] * touch.lateral;
   for (std::size_t l = 0; l < 3; ++l)
-    found =
-        found + touch.point.natural[l] * shared_part(shape, index(d_.vertex_of[index(corners[l])]));
-  shape.correction = wanted - found;
+    u = u + touch.point.natural[l] * shared_part(shape, index(d_.vertex_of[index(corners[l])]));
+  return u;
+}
+
+/// A press moves the contact point as deep as the tip, and lets it slip under the tool as in the
+/// campaign; a lateral deflection moves it with the tip. What the blend moves it otherwise is taken
+/// back around it.
+void SkinDeformation::add_both(const Blend& blend, const Touch& touch,
+                               Shape& shape) const noexcept {
+  add_press(blend, touch, shape);
+  const Vec3 pressed = at_contact(touch, shape);
+  add_lateral(blend, touch, shape);
+  const double too_shallow = std::max(touch.depth, 0.0) - dot(pressed, touch.normal);
+  shape.correction =
+      too_shallow * touch.normal + touch.lateral - (at_contact(touch, shape) - pressed);
 }
 
 Vec3 SkinDeformation::local_part(const Touch& touch, const Shape& shape,
@@ -166,17 +201,21 @@ Vec3 SkinDeformation::local_part(const Touch& touch, const Shape& shape,
   const Vec3 r = d_.positions[vertex] - touch.contact_point;
   if (dot(r, r) >= d_.reach * d_.reach) return {};
   const FromContact from(touch.contact_point, touch.normal, d_.positions[vertex], normals_[vertex]);
-  const KnotWeights knot = knot_weights(d_.knots, from.distance);
-  const auto at = [&](const auto& profiles, std::size_t component) {
-    const std::size_t j = component * d_.knots.size() + knot.below;
-    return (1 - knot.above_weight) * profiles[j] + knot.above_weight * profiles[j + 1];
-  };
   const double s = from.distance / d_.reach;
-  const double bump = from.facing * (1 - s * s) * (1 - s * s);
-  return from.press(touch.normal, at(shape.press, 0), at(shape.press, 1)) +
-         from.lateral(touch.normal, touch.lateral, at(shape.lateral, 0), at(shape.lateral, 1),
-                      at(shape.lateral, 2)) +
-         bump * shape.correction;
+  const auto at = [&](const auto& profiles, std::size_t component) {
+    const double read = from.distance * (profiles.stretch + (1 - profiles.stretch) * s * s);
+    const KnotWeights knot = knot_weights(d_.knots, read);
+    const std::size_t j = component * d_.knots.size() + knot.below;
+    return (1 - knot.above_weight) * profiles.value[j] + knot.above_weight * profiles.value[j + 1];
+  };
+  Vec3 u = from.facing * (1 - s * s) * (1 - s * s) * shape.correction;
+  for (const auto& press : shape.press)
+    if (press.used) u = u + from.press(touch.normal, at(press, 0), at(press, 1));
+  for (const auto& lateral : shape.lateral)
+    if (lateral.used)
+      u = u +
+          from.lateral(touch.normal, touch.lateral, at(lateral, 0), at(lateral, 1), at(lateral, 2));
+  return u;
 }
 
 /// The nearest point of the tool for a point inside it. The tool stands upright on the contact
@@ -226,12 +265,7 @@ void SkinDeformation::displace(const Touch& touch, double* positions) const noex
   const bool touches = touch.point.element >= 0;
   Shape shape;
   const Blend blend = touches ? blend_at(touch.point) : Blend{};
-  if (blend.count > 0) {
-    add_press(blend, touch, shape);
-    add_lateral(blend, touch, shape);
-    for (std::size_t m = 0; m < d_.mode_count(); ++m) shape.mode[m] *= d_.mode_scale[m];
-    correct(touch, shape);
-  }
+  if (blend.count > 0) add_both(blend, touch, shape);
   for (std::size_t begin = 0; begin < count; begin += kBlock) {
     const std::size_t size = std::min(kBlock, count - begin);
     std::array<float, 3 * kBlock> u{};

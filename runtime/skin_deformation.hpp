@@ -33,10 +33,12 @@ class SkinDeformation {
   struct Blend;
   struct Shape;
   Blend blend_at(const SurfacePoint& point) const noexcept;
+  double stretch(double level, double depth) const noexcept;
   void add_press(const Blend& blend, const Touch& touch, Shape& shape) const noexcept;
   void add_lateral(const Blend& blend, const Touch& touch, Shape& shape) const noexcept;
   Vec3 shared_part(const Shape& shape, std::size_t vertex) const noexcept;
-  void correct(const Touch& touch, Shape& shape) const noexcept;
+  Vec3 at_contact(const Touch& touch, const Shape& shape) const noexcept;
+  void add_both(const Blend& blend, const Touch& touch, Shape& shape) const noexcept;
   void add_modes(const Shape& shape, std::size_t begin, std::size_t count, float* u) const noexcept;
   Vec3 local_part(const Touch& touch, const Shape& shape, std::size_t vertex) const noexcept;
   Vec3 outside_of_tool(const Touch& touch, const Vec3& x) const noexcept;

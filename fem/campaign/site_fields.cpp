@@ -22,12 +22,13 @@ bool among(const std::vector<double>& depths, double depth) {
 
 std::vector<double> field_depths(const IndentationSettings& settings, int count) {
   std::vector<double> depths;
-  for (int k = 1; k <= count; ++k) {
+  int last = 0;
+  for (int k = 1; k <= count && last < settings.increments; ++k) {
     const double fraction = static_cast<double>(k) / count;
     const int nearest = static_cast<int>(std::lround(settings.increments * fraction * fraction));
-    depths.push_back(settings.depth * std::max(nearest, 1) / settings.increments);
+    last = std::max(nearest, last + 1);
+    depths.push_back(settings.depth * last / settings.increments);
   }
-  depths.erase(std::unique(depths.begin(), depths.end()), depths.end());
   return depths;
 }
 

@@ -11,7 +11,7 @@
 
 namespace palpate::fem {
 
-/// The depths that are kept of a normal path, m, ascending: increments of the path nearest to
+/// The depths that are kept of a normal path, m, ascending: different increments of the path, near
 /// depth (k/N)^2, k = 1 .. N, closer together where the contact is small.
 std::vector<double> field_depths(const IndentationSettings& settings, int count);
 

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <cstring>
+#include <numbers>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,11 +21,11 @@ namespace {
 constexpr double kReach = 0.02, kDeepest = 0.006;
 
 /// The skin is the response surface. It moves by the depth and the lateral deflection where it is
-/// touched, and by (1 - s/R_c) of it at the distance s.
+/// touched, and by (1 - s/R_c) of it at the distance s, at every depth: under a disc.
 Deformation cone(const Library& library) {
   Deformation d;
   d.surface = surface_digest(library.positions, library.triangles);
-  d.tool_shape = "sphere";
+  d.tool_shape = "disc";
   d.tool_radius = 1e-4;
   d.reach = kReach;
   d.positions = library.positions;
@@ -45,6 +47,40 @@ Deformation cone(const Library& library) {
   return d;
 }
 
+constexpr double kRadius = 0.05;  ///< of the sphere in dimple()
+
+/// The displacement of the skin of a half-space under a frictionless sphere, at the distance s,
+/// along its normal: within the contact radius a = sqrt(R z) the paraboloid of the sphere, outside
+///   z/pi ((2 - s^2/a^2) asin(a/s) + sqrt(s^2/a^2 - 1))      [Johnson 1985, eq. 3.42].
+double of_half_space(double s, double z) {
+  const double ratio = s / std::sqrt(kRadius * z);
+  if (ratio <= 1) return z * (1 - 0.5 * ratio * ratio);
+  return z / std::numbers::pi *
+         ((2 - ratio * ratio) * std::asin(1 / ratio) + std::sqrt(ratio * ratio - 1));
+}
+
+/// cone() with the dimple of a half-space under a sphere, known at `depths`.
+Deformation dimple(const Library& library, const std::vector<double>& depths) {
+  Deformation d = cone(library);
+  d.tool_shape = "sphere";
+  d.tool_radius = kRadius;
+  d.reach = 0.6;
+  d.knots.clear();
+  for (int j = 0; j < 60; ++j) d.knots.push_back(d.reach * std::pow(j / 59.0, 2));
+  d.depths = depths;
+  d.lateral_depths.clear();
+  d.lateral_local.clear();
+  d.press_local.clear();
+  for (std::size_t site = 0; site < d.sites.size(); ++site)
+    for (const double depth : depths) {
+      for (const double s : d.knots)
+        d.press_local.push_back(
+            static_cast<float>(of_half_space(s, depth) - of_half_space(d.reach, depth)));
+      d.press_local.insert(d.press_local.end(), d.knots.size(), 0.0F);
+    }
+  return d;
+}
+
 class PalpateDeformation : public PalpateApi {
  protected:
   void SetUp() override {
@@ -58,6 +94,17 @@ class PalpateDeformation : public PalpateApi {
   void TearDown() override {
     palpate_deformation_destroy(deformation_);
     PalpateApi::TearDown();
+  }
+
+  void use(const Deformation& d) {
+    palpate_deformation_destroy(deformation_);
+    write_deformation(file_, d);
+    ASSERT_EQ(palpate_deformation_load(library_, file_.c_str(), &deformation_), PALPATE_OK)
+        << palpate_last_error();
+  }
+  void press(double depth) {
+    palpate_state_reset(state_);
+    for (const double z : {0.001, -0.5 * depth, -depth}) step({0.03, 0.03, z});
   }
 
   std::vector<Vec3> deformed() const {
@@ -111,6 +158,42 @@ TEST_F(PalpateDeformation, FollowsTheTipAndComesBack) {
   EXPECT_LT(nearest, seen.lateral > 0.999e-4 ? 1e-8 : 1e-4);
   step({0.03, 0.03, 0.001});
   EXPECT_EQ(deformed(), at_rest_);
+}
+
+/// The dimple of a sphere at depths that the file does not have: it is as wide as the contact.
+TEST_F(PalpateDeformation, GrowsWithTheContactOfASphere) {
+  for (const std::vector<double>& depths : {std::vector{0.004}, std::vector{0.002, 0.006}}) {
+    use(dimple(read_library(path_), depths));
+    for (const double z : {0.0008, 0.001, 0.003, 0.004, 0.005}) {
+      press(z);
+      const std::vector<Vec3> x = deformed();
+      for (std::size_t v = 0; v < x.size(); ++v) {
+        const double s = norm(at_rest_[v] - Vec3{0.03, 0.03, 0});
+        EXPECT_NEAR(-x[v][2], of_half_space(s, z), 0.02 * z) << s << " m away, " << z << " m deep";
+      }
+    }
+  }
+}
+
+/// What the tissue slips across n under the tool in a press of the campaign, it does in the
+/// picture; a lateral deflection is added to it.
+TEST_F(PalpateDeformation, SlipsUnderTheToolAsInTheCampaign) {
+  Deformation d = cone(read_library(path_));
+  const Vec3 slip{0.0006, -0.0003, 0};
+  d.mode_scale = {1e-7F};
+  for (std::size_t v = 0; v < d.positions.size(); ++v)
+    for (const double u : slip) d.modes.push_back(static_cast<std::int16_t>(std::lround(u * 1e7)));
+  d.press_modes.assign(d.sites.size(), 1);
+  d.lateral_modes.assign(2 * d.sites.size(), 0);
+  use(d);
+  press(kDeepest);
+  const std::size_t touched = 3 * 9 + 3;
+  ASSERT_LT(norm(at_rest_[touched] - Vec3{0.03, 0.03, 0}), 1e-12);
+  EXPECT_LT(norm(deformed()[touched] - (at_rest_[touched] + slip + Vec3{0, 0, -kDeepest})), 1e-8);
+  step({0.03005, 0.03, -kDeepest});
+  ASSERT_NEAR(observe().lateral, 5e-5, 1e-12);
+  EXPECT_LT(norm(deformed()[touched] - (at_rest_[touched] + slip + Vec3{5e-5, 0, -kDeepest})),
+            1e-8);
 }
 
 TEST_F(PalpateDeformation, BadInputAndResetBringItBackToRest) {

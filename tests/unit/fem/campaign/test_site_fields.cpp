@@ -40,6 +40,8 @@ TEST(SiteFieldsOfCampaign, DepthsAreIncrementsCloserTogetherNearTheTouch) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_NEAR(depths[i], expected[i], 1e-12);
   settings.increments = 2;
   EXPECT_EQ(field_depths(settings, 4), (std::vector<double>{0.003, 0.006}));
+  settings.increments = 5;  // the first two of four are nearest to the same increment
+  EXPECT_EQ(field_depths(settings, 4).size(), 4U);
   EXPECT_TRUE(field_depths(settings, 0).empty());
 }
 
