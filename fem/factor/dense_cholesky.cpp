@@ -31,6 +31,13 @@ bool factorize_in_place(double* A, int n, int stride) {
   return info == 0;
 }
 
+bool factorize_in_place(float* A, int n, int stride) {
+  char lower = 'L';
+  blasint info = 0;
+  BLASFUNC(spotrf)(&lower, &n, A, &stride, &info);
+  return info == 0;
+}
+
 Eigen::VectorXd solve_factorized(const Eigen::MatrixXd& L, Eigen::VectorXd b) {
   const int n = size_of(L);
   cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, n, L.data(), n, b.data(), 1);

@@ -11,6 +11,7 @@ namespace palpate::fem {
 bool factorize_in_place(Eigen::MatrixXd& A);
 /// The same for `n` rows and columns; each column starts `stride` numbers after the last.
 bool factorize_in_place(double* A, int n, int stride);
+bool factorize_in_place(float* A, int n, int stride);
 
 /// x = (L L^T)^-1 b with the lower triangle from factorize_in_place().
 Eigen::VectorXd solve_factorized(const Eigen::MatrixXd& L, Eigen::VectorXd b);

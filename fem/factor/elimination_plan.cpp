@@ -15,12 +15,12 @@ namespace {
 /// The largest part has at most the work of a thread over this.
 constexpr double kPartsPerThread = 2;
 
-double square_bytes(int rows) {
-  return sizeof(double) * static_cast<double>(rows) * rows;
+double square(int rows) {
+  return static_cast<double>(rows) * rows;
 }
 
-double bytes_of_columns(const EliminationTree& tree, int k) {
-  return sizeof(double) * static_cast<double>(tree.columns[to_index(k)]) * tree.rows[to_index(k)];
+double numbers_in_columns(const EliminationTree& tree, int k) {
+  return static_cast<double>(tree.columns[to_index(k)]) * tree.rows[to_index(k)];
 }
 
 /// Work of each supernode and all its descendants.
@@ -56,12 +56,12 @@ std::pair<std::vector<int>, std::vector<int>> split_tree(const EliminationTree& 
 }
 
 /// Peak memory of the updates while one thread eliminates these supernodes.
-double peak_bytes(const EliminationTree& tree, const std::vector<int>& part) {
+double peak_numbers(const EliminationTree& tree, const std::vector<int>& part) {
   double live = 0, peak = 0;
   for (const int k : part) {
-    live += square_bytes(tree.below(k));
+    live += square(tree.below(k));
     peak = std::max(peak, live);
-    for (const int child : tree.children[to_index(k)]) live -= square_bytes(tree.below(child));
+    for (const int child : tree.children[to_index(k)]) live -= square(tree.below(child));
   }
   return peak;
 }
@@ -101,7 +101,7 @@ double EliminationTree::work(int supernode) const {
 
 EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
   for (int k = 0; k < tree.supernodes(); ++k)
-    column_bytes = std::max(column_bytes, threads * bytes_of_columns(tree, k));
+    column_numbers = std::max(column_numbers, threads * numbers_in_columns(tree, k));
   const std::vector<double> work = work_of_subtrees(tree);
   double whole = 0;
   for (int k = 0; k < tree.supernodes(); ++k)
@@ -109,7 +109,7 @@ EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
   if (threads == 1) {
     parts.emplace_back(to_index(tree.supernodes()));
     std::iota(parts.back().begin(), parts.back().end(), 0);
-    update_bytes = peak_bytes(tree, parts.back());
+    update_numbers = peak_numbers(tree, parts.back());
     return;
   }
   std::vector<int> roots;
@@ -126,12 +126,12 @@ EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
     if (part_of[to_index(k)] >= 0) parts[to_index(part_of[to_index(k)])].push_back(k);
 
   std::vector<double> peaks;
-  for (const auto& part : parts) peaks.push_back(peak_bytes(tree, part));
+  for (const auto& part : parts) peaks.push_back(peak_numbers(tree, part));
   std::sort(peaks.begin(), peaks.end(), std::greater<>());
   peaks.resize(std::min(peaks.size(), to_index(threads)));
-  update_bytes = std::accumulate(peaks.begin(), peaks.end(), 0.0);
-  for (const int root : roots) update_bytes += square_bytes(tree.below(root));
-  for (const int k : top) update_bytes += square_bytes(tree.below(k));
+  update_numbers = std::accumulate(peaks.begin(), peaks.end(), 0.0);
+  for (const int root : roots) update_numbers += square(tree.below(root));
+  for (const int k : top) update_numbers += square(tree.below(k));
 }
 
 }  // namespace palpate::fem

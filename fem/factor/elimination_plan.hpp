@@ -30,8 +30,8 @@ struct EliminationPlan {
 
   std::vector<std::vector<int>> parts;  ///< supernodes, ascending; the part with most work first
   std::vector<int> top;                 ///< ascending
-  double update_bytes = 0;  ///< upper bound, of the updates that fronts pass to their parents
-  double column_bytes = 0;  ///< upper bound, of the columns that the threads work on
+  double update_numbers = 0;  ///< upper bound, of the updates that fronts pass to their parents
+  double column_numbers = 0;  ///< upper bound, of the columns that the threads work on
 };
 
 }  // namespace palpate::fem

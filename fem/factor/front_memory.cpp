@@ -13,14 +13,16 @@ constexpr std::size_t kLarge = std::size_t{1} << 17;
 /// Largest size of a spare block that is reused, over the size requested.
 constexpr std::size_t kMostWaste = 2;
 
-double bytes_of(const LargeVector<double>& memory) {
-  return sizeof(double) * static_cast<double>(memory.capacity());
+template <class Number>
+double bytes_of(const LargeVector<Number>& memory) {
+  return sizeof(Number) * static_cast<double>(memory.capacity());
 }
 
 }  // namespace
 
 /// The smallest spare block that fits without waste; empty when there is none.
-LargeVector<double> FrontMemory::fitting(std::size_t numbers) {
+template <class Number>
+LargeVector<Number> FrontMemory<Number>::fitting(std::size_t numbers) {
   const std::lock_guard lock(mutex_);
   auto best = spare_.end();
   for (auto each = spare_.begin(); each != spare_.end(); ++each)
@@ -28,11 +30,11 @@ LargeVector<double> FrontMemory::fitting(std::size_t numbers) {
         (best == spare_.end() || each->capacity() < best->capacity()))
       best = each;
   if (best != spare_.end()) {
-    LargeVector<double> found = std::move(*best);
+    LargeVector<Number> found = std::move(*best);
     spare_.erase(best);
     return found;
   }
-  const double needed = sizeof(double) * static_cast<double>(numbers);
+  const double needed = sizeof(Number) * static_cast<double>(numbers);
   while (!spare_.empty() && allocated_ + needed > bound_) {
     allocated_ -= bytes_of(spare_.front());
     spare_.pop_front();
@@ -41,18 +43,23 @@ LargeVector<double> FrontMemory::fitting(std::size_t numbers) {
   return {};
 }
 
-LargeVector<double> FrontMemory::zeros(std::size_t numbers) {
-  LargeVector<double> memory;
+template <class Number>
+LargeVector<Number> FrontMemory<Number>::zeros(std::size_t numbers) {
+  LargeVector<Number> memory;
   if (numbers >= kLarge) memory = fitting(numbers);
-  memory.assign(numbers, 0.0);
+  memory.assign(numbers, Number{0});
   return memory;
 }
 
-void FrontMemory::give_back(LargeVector<double>&& memory) {
-  LargeVector<double> mine = std::move(memory);
+template <class Number>
+void FrontMemory<Number>::give_back(LargeVector<Number>&& memory) {
+  LargeVector<Number> mine = std::move(memory);
   if (mine.capacity() < kLarge) return;
   const std::lock_guard lock(mutex_);
   spare_.push_back(std::move(mine));
 }
+
+template class FrontMemory<float>;
+template class FrontMemory<double>;
 
 }  // namespace palpate::fem

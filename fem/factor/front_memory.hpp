@@ -10,21 +10,23 @@
 namespace palpate::fem {
 
 /// A pool for the updates of fronts: pages that the system hands out anew are cleared first, which
-/// costs time. Spare memory is freed before more than `bound` bytes are in use. Thread-safe.
+/// costs time. Spare memory is freed before more than `bound` bytes are in use. Thread-safe. For
+/// numbers of single and of double precision.
+template <class Number>
 class FrontMemory {
  public:
   explicit FrontMemory(double bound) : bound_(bound) {}
 
   /// `numbers` zeros. @throws std::bad_alloc
-  LargeVector<double> zeros(std::size_t numbers);
-  void give_back(LargeVector<double>&& memory);
+  LargeVector<Number> zeros(std::size_t numbers);
+  void give_back(LargeVector<Number>&& memory);
 
  private:
-  LargeVector<double> fitting(std::size_t numbers);
+  LargeVector<Number> fitting(std::size_t numbers);
 
   std::mutex mutex_;
   double bound_, allocated_ = 0;  ///< bytes; of all large blocks, in use or spare
-  std::list<LargeVector<double>> spare_;
+  std::list<LargeVector<Number>> spare_;
 };
 
 }  // namespace palpate::fem

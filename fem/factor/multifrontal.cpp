@@ -27,44 +27,66 @@ int tiles_of(int rows) {
 }
 
 /// A dense column-major matrix; each column starts `stride` numbers after the last.
+template <class Number>
 struct Block {
-  double* first;
+  Number* first;
   int stride;
 
-  double* operator()(int row, int column) const {
+  Number* operator()(int row, int column) const {
     return first + row + static_cast<std::ptrdiff_t>(column) * stride;
   }
 };
 
+/// The functions of BLAS for a type of number.
+template <class Number>
+struct Blas;
+template <>
+struct Blas<double> {
+  static constexpr auto trsm = cblas_dtrsm;
+  static constexpr auto syrk = cblas_dsyrk;
+  static constexpr auto gemm = cblas_dgemm;
+};
+template <>
+struct Blas<float> {
+  static constexpr auto trsm = cblas_strsm;
+  static constexpr auto syrk = cblas_ssyrk;
+  static constexpr auto gemm = cblas_sgemm;
+};
+
 /// Rows [first, last) below the diagonal: L21 = A21 L11^-T.
-void divide_rows(const Block& L, int columns, int first, int last) {
-  cblas_dtrsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, last - first,
-              columns, 1, L.first, L.stride, L(first, 0), L.stride);
+template <class Number>
+void divide_rows(const Block<Number>& L, int columns, int first, int last) {
+  Blas<Number>::trsm(CblasColMajor, CblasRight, CblasLower, CblasTrans, CblasNonUnit, last - first,
+                     columns, 1, L.first, L.stride, L(first, 0), L.stride);
 }
 
 /// Columns [first, last) of U -= L21 L21^T, lower triangle; `below` rows in all.
-void subtract_product(const Block& L, int columns, const Block& U, int below, int first, int last) {
-  const double* rows = L(columns + first, 0);
-  cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, last - first, columns, -1, rows, L.stride, 1,
-              U(first, first), U.stride);
+template <class Number>
+void subtract_product(const Block<Number>& L, int columns, const Block<Number>& U, int below,
+                      int first, int last) {
+  const Number* rows = L(columns + first, 0);
+  Blas<Number>::syrk(CblasColMajor, CblasLower, CblasNoTrans, last - first, columns, -1, rows,
+                     L.stride, 1, U(first, first), U.stride);
   if (last == below) return;
-  cblas_dgemm(CblasColMajor, CblasNoTrans, CblasTrans, below - last, last - first, columns, -1,
-              L(columns + last, 0), L.stride, rows, L.stride, 1, U(last, first), U.stride);
+  Blas<Number>::gemm(CblasColMajor, CblasNoTrans, CblasTrans, below - last, last - first, columns,
+                     -1, L(columns + last, 0), L.stride, rows, L.stride, 1, U(last, first),
+                     U.stride);
 }
 
 }  // namespace
 
 /// A running factorization.
+template <class Number>
 class Elimination {
  public:
   Elimination(const Multifrontal& order, const std::vector<double>& values,
-              const EliminationPlan& plan, const Multifrontal::Finished& finished)
+              const EliminationPlan& plan, const Multifrontal::Finished<Number>& finished)
       : order_(order),
         tree_(order.tree_),
         values_(values),
         finished_(finished),
         left_(plan.parts.size() + plan.top.size()),
-        memory_(plan.update_bytes),
+        memory_(sizeof(Number) * plan.update_numbers),
         update_(tree_.parent.size()),
         awaited_(tree_.parent.size(), 0) {
     ready_.assign(plan.parts.begin(), plan.parts.end());
@@ -86,7 +108,7 @@ class Elimination {
   struct Workspace {
     std::vector<int> position;    ///< in the front, of the rows of the matrix
     std::vector<int> target;      ///< in the front, of the rows of a child
-    LargeVector<double> columns;  ///< of L
+    LargeVector<Number> columns;  ///< of L
   };
 
   /// Tiles of one front, for any thread that has nothing else to do.
@@ -144,10 +166,10 @@ class Elimination {
               below = tree_.below(k);
     const std::size_t numbers = to_index(rows) * to_index(columns);
     if (own.columns.capacity() < numbers)
-      own.columns = LargeVector<double>();  // free the old block first
-    own.columns.assign(numbers, 0.0);
+      own.columns = LargeVector<Number>();  // free the old block first
+    own.columns.assign(numbers, Number{0});
     update_[to_index(k)] = memory_.zeros(to_index(below) * to_index(below));
-    const Block L{own.columns.data(), rows}, U{update_[to_index(k)].data(), below};
+    const Block<Number> L{own.columns.data(), rows}, U{update_[to_index(k)].data(), below};
     assemble(k, L, U, own);
     if (!factorize_in_place(L.first, columns, rows)) return false;
     in_tiles(tiles_of(below), [&](int tile) {
@@ -161,7 +183,7 @@ class Elimination {
     return true;
   }
 
-  void assemble(int k, const Block& L, const Block& U, Workspace& own) {
+  void assemble(int k, const Block<Number>& L, const Block<Number>& U, Workspace& own) {
     const int* rows = order_.view_.rows + order_.view_.row_start[k];
     own.position.resize(order_.entry_start_.size());
     for (int i = 0; i < tree_.rows[to_index(k)]; ++i) own.position[to_index(rows[i])] = i;
@@ -169,7 +191,8 @@ class Elimination {
       const std::size_t column = to_index(order_.view_.first_column[k] + j);
       for (std::size_t e = order_.entry_start_[column]; e < order_.entry_start_[column + 1]; ++e) {
         const auto& entry = order_.entries_[e];
-        *L(own.position[to_index(entry.row)], j) = values_[to_index(entry.value)];
+        *L(own.position[to_index(entry.row)], j) =
+            static_cast<Number>(values_[to_index(entry.value)]);
       }
     }
     for (const int child : tree_.children[to_index(k)])
@@ -177,16 +200,17 @@ class Elimination {
   }
 
   /// Both have their rows in ascending order: an entry below the diagonal stays below it.
-  void add_update_of(int child, const Block& L, const Block& U, int columns, Workspace& own) {
+  void add_update_of(int child, const Block<Number>& L, const Block<Number>& U, int columns,
+                     Workspace& own) {
     const int below = tree_.below(child);
     const int* rows =
         order_.view_.rows + order_.view_.row_start[child] + tree_.columns[to_index(child)];
     own.target.resize(to_index(below));
     for (int i = 0; i < below; ++i) own.target[to_index(i)] = own.position[to_index(rows[i])];
     const int* target = own.target.data();
-    const double* source = update_[to_index(child)].data();
+    const Number* source = update_[to_index(child)].data();
     for (int j = 0; j < below; ++j, source += below) {
-      double* to = target[j] < columns ? L(0, target[j]) : U(0, target[j] - columns) - columns;
+      Number* to = target[j] < columns ? L(0, target[j]) : U(0, target[j] - columns) - columns;
       for (int i = j; i < below; ++i) to[target[i]] += source[i];
     }
     memory_.give_back(std::move(update_[to_index(child)]));
@@ -224,7 +248,7 @@ class Elimination {
   const Multifrontal& order_;
   const EliminationTree& tree_;
   const std::vector<double>& values_;
-  const Multifrontal::Finished& finished_;
+  const Multifrontal::Finished<Number>& finished_;
 
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -234,8 +258,8 @@ class Elimination {
   bool definite_ = true;
   std::exception_ptr failure_;
 
-  FrontMemory memory_;
-  std::vector<LargeVector<double>> update_;  ///< of each supernode, until its parent has added it
+  FrontMemory<Number> memory_;
+  std::vector<LargeVector<Number>> update_;  ///< of each supernode, until its parent has added it
   std::vector<int> awaited_;  ///< children not yet eliminated, of a supernode of the top
 };
 
@@ -258,9 +282,15 @@ Multifrontal::Multifrontal(const SparsePattern& pattern, const SupernodalView& v
   for_entries([&](std::size_t column, Entry entry) { entries_[next[column]++] = entry; });
 }
 
+template <class Number>
 bool Multifrontal::factorize(const std::vector<double>& values, int threads,
-                             const Finished& finished) const {
-  return Elimination(*this, values, EliminationPlan(tree_, threads), finished).run(threads);
+                             const Finished<Number>& finished) const {
+  return Elimination<Number>(*this, values, EliminationPlan(tree_, threads), finished).run(threads);
 }
+
+template bool Multifrontal::factorize(const std::vector<double>&, int,
+                                      const Finished<float>&) const;
+template bool Multifrontal::factorize(const std::vector<double>&, int,
+                                      const Finished<double>&) const;
 
 }  // namespace palpate::fem

@@ -18,6 +18,8 @@
 
 namespace palpate::fem {
 
+class Multifrontal;
+
 /// Right-hand sides solved at once. Sixteen floats fill one AVX-512 register.
 inline constexpr int kBatch = 16;
 
@@ -29,8 +31,9 @@ struct FactorResources {
 
 /// A supernodal Cholesky factor in single precision, laid out for solves with kBatch right-hand
 /// sides. The solve is a preconditioner: single precision costs no accuracy and halves the traffic,
-/// which dominates its time. Each right-hand side is one SIMD lane of every operation: its solution
-/// has the same bits whatever the other right-hand sides are.
+/// which dominates its time. The factorization is in single precision as well, unless its solutions
+/// of test loads are off by more than a few percent. Each right-hand side is one SIMD lane of every
+/// operation: its solution has the same bits whatever the other right-hand sides are.
 class RestFactor {
  public:
   /// @throws Error(Geometry) when the matrix is not positive definite; `owner` names the body.
@@ -47,6 +50,8 @@ class RestFactor {
   double inverse_scale() const { return inverse_scale_; }
 
   int size() const { return n_; }
+  /// Whether the factorization was in double precision.
+  bool in_double_precision() const { return in_double_precision_; }
   double bytes() const { return static_cast<double>(values_.size()) * sizeof(float); }
 
   /// In place: block[unknown * kBatch + right-hand side]. `scratch` is resized as needed.
@@ -60,12 +65,20 @@ class RestFactor {
   };
 
   /// Stores the columns of L of a supernode.
-  void store(int supernode, const double* columns);
+  template <class Number>
+  void store(int supernode, const Number* columns);
+  /// False when the matrix is not positive definite in this precision.
+  template <class Number>
+  bool factorize(const Multifrontal& fronts, const std::vector<double>& values,
+                 const FactorResources& resources);
+  /// The largest error of the solution of a test load, over the solution.
+  double error_of_solutions(const SparsePattern& pattern, const std::vector<double>& values) const;
   void forward(float* y) const;
   void backward(float* y) const;
 
   int n_ = 0;
   double inverse_scale_ = 1;
+  bool in_double_precision_ = false;
   std::vector<Supernode> supernodes_;
   std::vector<int> rows_, permutation_;
   LargeVector<float> values_;

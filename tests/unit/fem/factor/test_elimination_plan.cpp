@@ -54,8 +54,8 @@ TEST_F(Plan, HasEverySupernodeOnceWithItsChildrenBelow) {
         }
     }
     EXPECT_EQ(threads == 1, plan.parts.size() == 1 && plan.top.empty());
-    EXPECT_GT(plan.update_bytes, 0);
-    EXPECT_GT(plan.column_bytes, 0);
+    EXPECT_GT(plan.update_numbers, 0);
+    EXPECT_GT(plan.column_numbers, 0);
   }
 }
 

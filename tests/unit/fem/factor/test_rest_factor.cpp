@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <thread>
+#include <utility>
 
 #include "format/error.hpp"
 #include "tests/unit/fem/factor/assembled_block.hpp"
@@ -27,6 +29,35 @@ TEST(RestFactor, SolvesEveryRightHandSideInSinglePrecision) {
   for (int i = 0; i < n; ++i)
     for (int column = 0; column < kBatch; ++column)
       EXPECT_NEAR(block[to_index(i * kBatch + column)], X(i, column), 1e-4 * X.col(column).norm());
+}
+
+/// A bar of 100 times its width bends a million times more easily than it stretches.
+TEST(RestFactor, IsFactorizedInDoublePrecisionWhereSingleDoesNotSuffice) {
+  const auto factor_of = [](double length) {
+    const Body body =
+        test::make_block(test::even(0, 0.01, 1), test::even(0, 0.01, 1), test::even(0, length, 40));
+    const SolidModel model(body, {NeoHookean::from_young_poisson(10e3, 0.49, "t")});
+    std::vector<double> K;
+    model.stiffness(Displacement::Zero(3, model.mesh().nodes()), K);
+    const SparsePattern& pattern = model.pattern();
+    const RestFactor factor(pattern, nested_dissection(pattern), K, "bar");
+    const Eigen::VectorXd x = Eigen::VectorXd::Ones(pattern.n);
+    Eigen::VectorXd b(pattern.n);
+    symmetric_multiply(pattern, K, x.data(), b.data());
+    std::vector<float> block(to_index(pattern.n) * kBatch, 0.0F), scratch;
+    for (int i = 0; i < pattern.n; ++i) block[to_index(i) * kBatch] = static_cast<float>(b[i]);
+    factor.solve(block, scratch);
+    double error = 0;
+    for (int i = 0; i < pattern.n; ++i)
+      error = std::max(error, std::abs(block[to_index(i) * kBatch] - 1.0));
+    return std::pair(factor.in_double_precision(), error);
+  };
+  const auto [cube_in_double, cube_error] = factor_of(0.02);
+  EXPECT_FALSE(cube_in_double);
+  EXPECT_LT(cube_error, 0.01);
+  const auto [bar_in_double, bar_error] = factor_of(1);
+  EXPECT_TRUE(bar_in_double);
+  EXPECT_LT(bar_error, 0.3);  // the factor that is kept is rounded to single precision
 }
 
 TEST(RestFactor, GivesARightHandSideTheSameBitsBesideAnyOthers) {
