@@ -79,6 +79,15 @@ void describe(V& v, const Progress& e) {
 }
 
 template <class V>
+void describe(V& v, const FinerMeshProgress& e) {
+  v.event("finer_mesh",
+          "sites are pressed again on a finer mesh, for the error of the mesh; stands before the "
+          "first of them is finished and after each");
+  v.field("done", e.done, "finished sites");
+  v.field("total", e.total, "sites on the finer mesh");
+}
+
+template <class V>
 void describe(V& v, const SamplingRound& e) {
   v.event("round", "a round of adaptive sampling is finished");
   v.field("round", e.number, "number of the round, from 1");

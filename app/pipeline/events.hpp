@@ -69,6 +69,9 @@ struct Progress {
   bool between_sites = false;       ///< none has finished since the last one
 };
 
+/// Sites that are pressed again on a finer mesh, for the error of the mesh.
+struct FinerMeshProgress : Progress {};
+
 /// A round of adaptive sampling.
 struct SamplingRound {
   int number = 0;
@@ -208,9 +211,9 @@ struct FileWritten {
 
 using Event =
     std::variant<StageStarted, StageUpToDate, LogLine, Warning, MeshFinished, CampaignStarted,
-                 SiteFinished, Progress, SamplingRound, SamplingFinished, CampaignFinished,
-                 MergeFinished, FitFinished, Certified, StiffnessAtRate, Softened, SteepestForce,
-                 ConvergenceLevel, ConvergenceOfForce, Estimate, FileWritten>;
+                 SiteFinished, Progress, FinerMeshProgress, SamplingRound, SamplingFinished,
+                 CampaignFinished, MergeFinished, FitFinished, Certified, StiffnessAtRate, Softened,
+                 SteepestForce, ConvergenceLevel, ConvergenceOfForce, Estimate, FileWritten>;
 
 /// Receives the events of a stage, from one thread at a time.
 using EventSink = std::function<void(const Event&)>;

@@ -42,6 +42,8 @@ class JsonVisitor {
 void JsonSink::operator()(const Event& event) const {
   const auto* progress = std::get_if<Progress>(&event);
   if (progress != nullptr && progress->between_sites) return;
+  const auto* finer = std::get_if<FinerMeshProgress>(&event);
+  if (finer != nullptr && finer->between_sites) return;
   JsonVisitor visitor;
   std::visit([&](const auto& e) { describe(visitor, e); }, event);
   print_line_(visitor.text());

@@ -16,6 +16,19 @@
 namespace palpate::app {
 namespace {
 
+/// The settings of the sites on the finer mesh, which tell their own progress.
+fem::CampaignSettings with_progress_to(const EventSink& emit, fem::CampaignSettings settings) {
+  const auto tell = [&emit](bool between_sites) {
+    return [&emit, between_sites](const fem::CampaignProgress& p) {
+      emit(FinerMeshProgress{
+          {p.done, p.failed, p.running, p.total, p.known, p.sites, between_sites}});
+    };
+  };
+  settings.progress = tell(false);
+  settings.advanced = tell(true);
+  return settings;
+}
+
 /// The sites of the whole campaign, also in a shard: all shards choose among the same.
 std::vector<std::int32_t> candidates(const Workspace& space, const Body& body,
                                      const Curves& curves) {
@@ -44,7 +57,7 @@ std::vector<std::pair<std::string, std::string>> estimate_mesh_error(
       fem::sites_far_apart(body, all, fem::count_on_finer_mesh(body, settings, all.size()));
   fem::CampaignReport report;
   try {
-    fem::press_on_finer_mesh(body, settings, chosen, curves, report, cache);
+    fem::press_on_finer_mesh(body, with_progress_to(emit, settings), chosen, curves, report, cache);
   } catch (const Error& error) {
     emit(Warning{"precompute",
                  fmt::format("the error of the mesh stays unknown: {}", error.what())});

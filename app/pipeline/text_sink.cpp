@@ -89,6 +89,14 @@ void TextSink::print(const Progress& e) {
   if (console_.verbosity != Verbosity::Quiet) progress_.show(e);
 }
 
+void TextSink::print(const FinerMeshProgress& e) {
+  if (e.done == 0 && !e.between_sites) {
+    progress_.interrupt();
+    progress_ = ProgressDisplay("precompute, finer mesh", console_.out);
+  }
+  if (console_.verbosity != Verbosity::Quiet) progress_.show(e);
+}
+
 void TextSink::print(const SamplingRound& e) {
   line(
       "  round {}: {} of {} sites; 95th-percentile error at hold-out points: {:.1f} % along the "

@@ -22,6 +22,7 @@ class TextSink {
   void print(const CampaignStarted& e);
   void print(const SiteFinished& e);
   void print(const Progress& e);
+  void print(const FinerMeshProgress& e);
   void print(const SamplingRound& e);
   void print(const SamplingFinished& e);
   void print(const CampaignFinished& e);

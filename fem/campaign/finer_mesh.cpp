@@ -64,8 +64,6 @@ CampaignSettings finer_settings(const CampaignSettings& settings, std::vector<st
   finer.known.clear();
   finer.finished = nullptr;
   finer.fields = nullptr;
-  finer.progress = nullptr;
-  finer.advanced = nullptr;
   return finer;
 }
 

@@ -174,6 +174,15 @@ TEST(TextSink, PrintsProgressByLineAndByBar) {
   EXPECT_THAT(text_of({SiteFinished{}}), IsEmpty());
 }
 
+/// The estimate of the time left begins anew, and so does the bar.
+TEST(TextSink, TellsTheProgressOnTheFinerMeshApart) {
+  const std::string shown =
+      text_of({Progress{10, 0, 0, 10, 0, {}}, FinerMeshProgress{{0, 0, 4, 4, 0, {}}},
+               FinerMeshProgress{{4, 0, 0, 4, 0, {}}}});
+  EXPECT_THAT(shown, HasSubstr("precompute: 10 of 10 sites, 0 incomplete, 0 s\n"));
+  EXPECT_THAT(shown, HasSubstr("precompute, finer mesh: 4 of 4 sites, 0 incomplete, 0 s\n"));
+}
+
 /// Long before the first site of a batch is finished the bar moves.
 TEST(TextSink, MovesTheBarWithTheIncrementsOfSites) {
   const Progress start{0, 0, 0, 10, 0, {}}, half{9, 0, 1, 10, 0, {{7, 0.6}}, true};
@@ -288,6 +297,11 @@ TEST(JsonSink, WritesProgressAfterSitesAlone) {
   between.between_sites = false;
   sink(between);
   EXPECT_THAT(out, HasSubstr("progress"));
+  out.clear();
+  sink(FinerMeshProgress{{0, 0, 2, 4, 0, {{7, 0.5}}, true}});
+  EXPECT_THAT(out, IsEmpty());
+  EXPECT_EQ(json_of(FinerMeshProgress{{1, 0, 2, 4, 0, {}}}),
+            Json::parse(R"({"event": "finer_mesh", "done": 1, "total": 4})"));
 }
 
 TEST(JsonSink, WritesErrorsOfARoundAsObjects) {

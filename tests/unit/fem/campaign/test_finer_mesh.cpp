@@ -156,7 +156,13 @@ TEST(FinerMesh, TellsTheDifferenceOfLateralForces) {
   CampaignReport report;
   settings.sites = {test::site_nearest(body, 0.001, 0.004), test::site_nearest(body, 0.008, 0)};
   Curves curves = run_campaign(body, settings, report);
+  std::vector<std::int64_t> done;
+  settings.progress = [&](const CampaignProgress& p) {
+    EXPECT_EQ(p.total, 1);
+    done.push_back(p.done);
+  };
   press_on_finer_mesh(body, settings, {curves.sites[1].vertex}, curves, report);
+  EXPECT_EQ(done, (std::vector<std::int64_t>{0, 1}));
   ASSERT_EQ(curves.sites[1].paths.size(), 3U);
   for (const CurvePath& path : curves.sites[1].paths)
     for (std::size_t i = 1; i < path.samples.size(); ++i)
