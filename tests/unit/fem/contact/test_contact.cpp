@@ -95,6 +95,54 @@ TEST(ToolContact, ToolForceBalancesTheForcesOnTheNodes) {
   EXPECT_LT(p.contact.tool_force(p.u)[2], 0);  // the tool pushes the body down
 }
 
+/// The surface at this node, pressed 1 mm towards the middle of the body.
+struct PressedAt : Pressed {
+  explicit PressedAt(int node) {
+    const Eigen::Vector3d X = model.mesh().X.col(node);
+    const Eigen::Vector3d inward = (Eigen::Vector3d(0, 0, -0.01) - X).normalized();
+    contact = ToolContact(model.mesh(), X, 0.01, {1e8, 1e4});
+    contact.move_to({{}, X + 0.001 * inward, inward, inward.unitOrthogonal()});
+  }
+};
+
+int node_of_first_equation(const SolidModel& model) {
+  int node = 0;
+  while (model.equation(node) != 0) ++node;
+  return node;
+}
+
+TEST(ToolContact, TheGradientOfItsForceIsItsDerivativeAtTheFirstUnknownAsAtOthers) {
+  const Eigen::Vector3d direction(0.3, -0.5, 0.8);
+  for (const bool bonded : {false, true}) {
+    const int first_node = node_of_first_equation(Pressed().model);
+    PressedAt p(first_node);
+    if (bonded) p.contact.bond(p.u);
+    const int n = p.model.pattern().n;
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(n), f = Eigen::VectorXd::Zero(n);
+    p.contact.add_tool_force_gradient(p.model, p.u, direction, g);
+    p.contact.add_forces(p.model, p.u, f);
+    EXPECT_GT(g.head<3>().norm(), 1e-3 * g.norm());
+    constexpr double h = 1e-8;
+    for (int node = 0; node < p.model.mesh().nodes(); ++node) {
+      const int first = p.model.equation(node);
+      if (first < 0) continue;
+      for (int i = 0; i < 3; ++i) {
+        const double at = p.u(i, node);
+        p.u(i, node) = at + h;
+        const Eigen::Vector3d force_high = p.contact.tool_force(p.u);
+        const double energy_high = p.contact.energy(p.u);
+        p.u(i, node) = at - h;
+        const Eigen::Vector3d force_low = p.contact.tool_force(p.u);
+        const double energy_low = p.contact.energy(p.u);
+        p.u(i, node) = at;
+        EXPECT_NEAR(g[first + i], (force_high - force_low).dot(direction) / (2 * h),
+                    1e-5 * g.norm());
+        EXPECT_NEAR(f[first + i], (energy_high - energy_low) / (2 * h), 1e-6 * f.norm());
+      }
+    }
+  }
+}
+
 TEST(ToolContact, PenetrationOfARestingSurfaceIsTheDepthOfTheSphere) {
   const Pressed p;
   const Displacement rest = Displacement::Zero(3, p.u.cols());
