@@ -69,7 +69,7 @@ std::optional<Unit> stated_unit(std::string_view first_bytes) {
   static const std::regex statement("\\bunits?(\\s*[=:]|\\s)\\s*\"?([a-z]+)");
   std::smatch found;
   for (auto from = text.begin(); std::regex_search(from, text.end(), found, statement);
-       from = found[0].second) {
+       from = found[2].first) {  // the word may itself be "unit"
     const std::string word = found[2].str();
     // "0.5 units in the z direction" states nothing.
     const bool is_sentence = found[1].length() == 1 && std::isspace(*found[1].first) != 0;

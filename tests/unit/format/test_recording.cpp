@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// What a reader of recordings must refuse.
+// What a reader of recordings must refuse, and what it need not have.
 #include <gtest/gtest.h>
 
 #include <random>
 #include <string>
 #include <vector>
 
+#include "format/recording.hpp"
+#include "tests/support/sample_artifacts.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/format/breakage.hpp"
 
 namespace palpate::samples {
@@ -47,6 +50,16 @@ std::vector<Case> recording_cases() {
        "no number", remedy},
       {"RecordingRateNegative", kind, real("/", "rate", -1), "/@rate", "negative", remedy},
   };
+}
+
+TEST(Recording, AStepOfItsProvenanceMayHaveNeitherInputsNorFacts) {
+  const TemporaryFolder folder;
+  Recording session = recording(5);
+  ASSERT_FALSE(session.provenance.steps.empty());
+  session.provenance.steps.back().inputs.clear();
+  session.provenance.steps.back().facts.clear();
+  write_recording(folder / "a.h5", session);
+  EXPECT_EQ(dump(read_recording(folder / "a.h5")), dump(session));
 }
 
 INSTANTIATE_TEST_SUITE_P(Recordings, Rejection, testing::ValuesIn(recording_cases()), name_of);

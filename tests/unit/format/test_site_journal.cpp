@@ -126,6 +126,11 @@ TEST_F(SiteJournalTest, RefusesASecondWriter) {
   }
 }
 
+TEST_F(SiteJournalTest, ACampaignMayHaveNoSites) {
+  { const SiteJournal journal(path_, {kKey, 0}); }
+  EXPECT_EQ(read_site_journal(path_).heading.planned_sites, 0);
+}
+
 TEST_F(SiteJournalTest, RefusesAFileThatIsNoJournal) {
   std::ofstream(path_)
       << "a letter to a friend, of more than one line\nand much longer than a heading "

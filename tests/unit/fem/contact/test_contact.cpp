@@ -95,6 +95,64 @@ TEST(ToolContact, ToolForceBalancesTheForcesOnTheNodes) {
   EXPECT_LT(p.contact.tool_force(p.u)[2], 0);  // the tool pushes the body down
 }
 
+/// The surface at this node, pressed 1 mm towards the middle of the body.
+struct PressedAt : Pressed {
+  explicit PressedAt(int node) {
+    const Eigen::Vector3d X = model.mesh().X.col(node);
+    const Eigen::Vector3d inward = (Eigen::Vector3d(0, 0, -0.01) - X).normalized();
+    contact = ToolContact(model.mesh(), X, 0.01, {1e8, 1e4});
+    contact.move_to({{}, X + 0.001 * inward, inward, inward.unitOrthogonal()});
+  }
+};
+
+int node_of_first_equation(const SolidModel& model) {
+  int node = 0;
+  while (model.equation(node) != 0) ++node;
+  return node;
+}
+
+/// Values at a little more and a little less of one displacement, over twice that little.
+template <class Value>
+auto derivative(Displacement& u, int i, int node, const Value& value) {
+  constexpr double h = 1e-8;
+  const double at = u(i, node);
+  u(i, node) = at + h;
+  const auto high = value();
+  u(i, node) = at - h;
+  const auto low = value();
+  u(i, node) = at;
+  return ((high - low) / (2 * h)).eval();
+}
+
+TEST(ToolContact, TheFirstUnknownIsOneLikeOthers) {
+  const Eigen::Vector3d direction(0.3, -0.5, 0.8);
+  const int node = node_of_first_equation(Pressed().model);
+  for (const bool bonded : {false, true}) {
+    PressedAt p(node);
+    if (bonded) p.contact.bond(p.u);
+    const int n = p.model.pattern().n;
+    Eigen::VectorXd g = Eigen::VectorXd::Zero(n), unit = g, column = g;
+    p.contact.add_tool_force_gradient(p.model, p.u, direction, g);
+    std::vector<double> K(to_index(p.model.pattern().nonzeros()), 0.0);
+    p.contact.add_stiffness(p.model, p.u, true, K);
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d of_tool =
+          derivative(p.u, i, node, [&] { return p.contact.tool_force(p.u); });
+      EXPECT_GT(of_tool.norm(), 1);  // N/m
+      EXPECT_NEAR(g[i], of_tool.dot(direction), 1e-5 * g.norm());
+      const Eigen::VectorXd of_nodes = derivative(p.u, i, node, [&] {
+        Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
+        p.contact.add_forces(p.model, p.u, f);
+        return f;
+      });
+      unit.setZero();
+      unit[i] = 1;
+      symmetric_multiply(p.model.pattern(), K, unit.data(), column.data());
+      EXPECT_LT((column - of_nodes).norm(), 1e-5 * of_nodes.norm());
+    }
+  }
+}
+
 TEST(ToolContact, PenetrationOfARestingSurfaceIsTheDepthOfTheSphere) {
   const Pressed p;
   const Displacement rest = Displacement::Zero(3, p.u.cols());

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/support/block_body.hpp"
@@ -38,6 +39,19 @@ TEST_F(Bar, EndsOfARingMeetAtAFullCircle) {
   ASSERT_GE(node, 0);
   const double X = mesh.X(0, node);
   EXPECT_TRUE(X < 0.003 || X > 0.057) << X;  // at an end
+}
+
+TEST_F(Bar, EveryCornerOfAFacetIsWatched) {
+  const Displacement u = bent(mesh, 0.06, 1.02 * 2 * M_PI);
+  const Eigen::Vector3d middle(0.03, 0, 0);
+  const int node = SelfContact(mesh, middle, 1).entering_node(u);
+  ASSERT_GE(node, 0);
+  for (std::size_t place = 0; place < 3; ++place) {
+    for (Facet& facet : mesh.facets)
+      while (std::count(facet.begin(), facet.begin() + 3, node) > 0 && facet[place] != node)
+        std::rotate(facet.begin(), facet.begin() + 1, facet.begin() + 3);
+    EXPECT_EQ(SelfContact(mesh, middle, 1).entering_node(u), node) << place;
+  }
 }
 
 TEST_F(Bar, OutOfReachIsNotWatched) {

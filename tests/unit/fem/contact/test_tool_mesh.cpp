@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <string>
 
 #include "format/to_index.hpp"
 
@@ -18,13 +20,19 @@ class ToolMeshes : public testing::TestWithParam<ToolGeometry> {
   }
 };
 
+/// Zero on the tool. The distance to a sharp disc jumps at its edge.
+double off(const Tool& t, const Eigen::Vector3d& x) {
+  if (!t.has_sharp_edge()) return t.distance(x);
+  return std::max(t.beyond_end(x), t.from_axis(x) - t.geometry.radius);
+}
+
 TEST_P(ToolMeshes, HaveEveryNodeOfAFacetOnTheTool) {
   const Tool t = tool();
   const ToolMesh mesh = make_tool_mesh(t, 0.01);
   ASSERT_GT(mesh.tetrahedra.size(), 50u);
   for (const Tetrahedron10& element : mesh.tetrahedra)
     for (const std::size_t node : {0u, 1u, 2u, 4u, 5u, 6u})
-      EXPECT_NEAR(t.distance(mesh.X.col(element[node])), 0, 1e-9 * 0.005);
+      EXPECT_NEAR(off(t, mesh.X.col(element[node])), 0, 1e-9 * 0.005);
 }
 
 TEST_P(ToolMeshes, HaveElementsOfPositiveVolume) {
@@ -35,6 +43,30 @@ TEST_P(ToolMeshes, HaveElementsOfPositiveVolume) {
     };
     EXPECT_GT(edge(1).cross(edge(2)).dot(edge(3)), 0);
   }
+}
+
+TEST_P(ToolMeshes, HaveTheirMiddleNodesHalfwayAlongTheEdges) {
+  const ToolMesh mesh = make_tool_mesh(tool(), 0.01);
+  for (const Tetrahedron10& element : mesh.tetrahedra)
+    for (std::size_t e = 0; e < kTetEdges.size(); ++e) {
+      const auto [i, j] = kTetEdges[e];
+      const Eigen::Vector3d a = mesh.X.col(element[i]), b = mesh.X.col(element[j]);
+      const Eigen::Vector3d middle = mesh.X.col(element[4 + e]);
+      // On a curved surface they are lifted off the chord, by less than a quarter of it.
+      EXPECT_LT((middle - 0.5 * (a + b)).norm(), 0.25 * (b - a).norm());
+    }
+}
+
+TEST_P(ToolMeshes, ReachBackToTheirCentreOrAsFarAsAsked) {
+  const Tool t = tool();
+  const double side = 0.01;
+  const ToolMesh mesh = make_tool_mesh(t, side);
+  double height = 0;
+  for (const Tetrahedron10& element : mesh.tetrahedra)
+    for (const std::size_t node : {0u, 1u, 2u})
+      height = std::max(height, (t.tip - mesh.X.col(element[node])).dot(t.inward));
+  const bool disc = t.geometry.shape == ToolShape::Disc;
+  EXPECT_NEAR(height, disc ? t.geometry.edge_radius + side : t.geometry.radius, 1e-12);
 }
 
 /// The tip is the first point that a body meets.
@@ -53,8 +85,15 @@ TEST_P(ToolMeshes, ReachTheTip) {
 INSTANTIATE_TEST_SUITE_P(Shapes, ToolMeshes,
                          testing::Values(ToolGeometry{ToolShape::Sphere, 0.005, 0, 0},
                                          ToolGeometry{ToolShape::Disc, 0.005, 0.001, 0},
+                                         ToolGeometry{ToolShape::Disc, 0.005, 0, 0},
                                          ToolGeometry{ToolShape::Cylinder, 0.005, 0, 0.01}),
-                         [](const auto& instance) { return name_of(instance.param.shape); });
+                         [](const auto& instance) {
+                           return std::string(instance.param.shape == ToolShape::Disc &&
+                                                      instance.param.edge_radius == 0
+                                                  ? "sharp_"
+                                                  : "") +
+                                  name_of(instance.param.shape);
+                         });
 
 }  // namespace
 }  // namespace palpate::fem

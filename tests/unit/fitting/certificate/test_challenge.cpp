@@ -9,6 +9,7 @@
 #include "fitting/certificate/certify.hpp"
 #include "format/error.hpp"
 #include "tests/support/surfaces.hpp"
+#include "tests/support/units.hpp"
 
 namespace palpate::fitting {
 namespace {
@@ -66,6 +67,19 @@ TEST(Challenge, NeedsACertificate) {
   Library library = flat_triangle();
   set_equal_responses(library, node_response(linear_curve(150), linear_curve(100)));
   EXPECT_THROW(challenge(library, {}), Error);
+}
+
+TEST(Challenge, FindsTheSameInOtherUnitsOfForce) {
+  constexpr double kForce = 1.0 / 1024;  // the stiffest response is then below 1
+  Library library = certified_sphere();
+  Library other = test::in_units(library, {.force = kForce});
+  certify(other, {});
+  ChallengeSettings settings;
+  settings.tries = 20, settings.climbs = 4;
+  const ChallengeResult here = challenge(library, settings), there = challenge(other, settings);
+  EXPECT_NEAR(there.sticking.quotient, kForce * here.sticking.quotient, 1e-9 * kForce);
+  EXPECT_NEAR(there.sliding.quotient, kForce * here.sliding.quotient, 1e-9 * kForce);
+  EXPECT_EQ(there.sliding.tries, here.sliding.tries);
 }
 
 }  // namespace

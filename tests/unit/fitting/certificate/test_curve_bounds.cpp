@@ -128,6 +128,38 @@ TEST(CurveBounds, TheEnergyRatioIsFiniteAtZeroAndBoundsEverySample) {
   }
 }
 
+/// Bernstein coefficients of a cubic from its values at four points an equal distance apart.
+std::array<double, 4> bernstein(const std::array<double, 4>& p) {
+  return {p[0], (-5 * p[0] + 18 * p[1] - 9 * p[2] + 2 * p[3]) / 6,
+          (2 * p[0] - 9 * p[1] + 18 * p[2] - 5 * p[3]) / 6, p[3]};
+}
+
+TEST(CurveBounds, TheEnergyRatioIsThatOfTheHullOfTheCubics) {
+  // The first vertex stores more until the others have become stiffer: where the forces are equal,
+  // within the first of four cells, the energies differ most.
+  Library library = flat_triangle();
+  const ResponseCurve stiffening{{0.0F, 0.002F, 0.008F}, {50, 300, 300}};
+  library.responses.assign(3, node_response(stiffening, stiffening));
+  library.responses[0].normal = {{0.0F, 0.002F, 0.008F}, {300, 100, 100}};
+  const CurveTriple triple = triple_of(library);
+  const Range range{0.0021, 0.0029};
+  const double more = triple.curves()[0].energy(0.00225) - triple.curves()[1].energy(0.00225);
+  double expected = 0, cell = (range.high - range.low) / 4;
+  for (int k = 0; k < 4; ++k) {
+    const double low = range.low + k * cell;
+    std::array<double, 4> difference{};
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double d = low + static_cast<double>(i) * cell / 3;
+      difference[i] = triple.curves()[0].energy(d) - triple.curves()[1].energy(d);
+    }
+    for (const double b : bernstein(difference))
+      expected = std::max(expected, std::abs(b) / triple.least_force(low));
+  }
+  const double along = norm(triangle_frame(library, 0).gradient[0]);
+  EXPECT_NEAR(triple.energy_ratio(range), expected * along, 1e-9 * expected * along);
+  EXPECT_GT(triple.energy_ratio(range), more * along / triple.least_force(0.00225));
+}
+
 TEST(CurveBounds, CellsCoverTheRangeWithoutAKnotInside) {
   std::mt19937 engine(75);
   const CurveTriple triple = triple_of(random_library(engine));

@@ -77,5 +77,19 @@ TEST(SlideJacobian, NoStateOfACellIsSteeperThanItsBound) {
   EXPECT_GT(closest, 0.9);
 }
 
+TEST(SlideJacobian, OfALevelPlateOfAnyStiffnessIsThatAlongTheConeOfFriction) {
+  // Equal springs k, slipping beyond their last knot: the force grows along n + mu t.
+  constexpr double mu = 0.6;
+  for (const double k : {0.25, 200.0}) {
+    Library library = flat_triangle();
+    set_equal_responses(library, node_response(linear_curve(k, 0.001), linear_curve(k, 0.001)));
+    const ContactElement element = contact_element(library, 0, 0.008, mu);
+    std::mt19937 engine(48);
+    SlideCell cell = random_slide(engine, PlainModel(library, 0), element).cell;
+    cell.z = cell.reach = {0.003, 0.003};
+    EXPECT_NEAR(SlideJacobian(element).bound(cell), k * std::hypot(1.0, mu), 1e-9 * k);
+  }
+}
+
 }  // namespace
 }  // namespace palpate::fitting

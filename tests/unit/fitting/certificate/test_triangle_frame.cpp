@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 
+#include "format/error.hpp"
 #include "tests/support/surfaces.hpp"
 
 namespace palpate::fitting {
@@ -102,6 +103,18 @@ TEST(TriangleFrame, LeastLengthIsTheDistanceToTheTriangleOfDirections) {
     const double exact = triangle_frame(library, 0).least_length;
     EXPECT_LE(exact, least + 1e-12);
     EXPECT_NEAR(exact, least, 1e-4);
+  }
+}
+
+TEST(TriangleFrame, ARefusalSaysWhereTheTriangleIs) {
+  Library library = flat_triangle();
+  library.positions = {{0.001, 0.002, 0.003}, {0.004, 0.002, 0.003}, {0.001, 0.005, 0.006}};
+  library.inward.assign(3, Vec3{0, 0, 1});  // out of the body
+  try {
+    triangle_frame(library, 0);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.where(), "response triangle 0 near (0.002, 0.003, 0.004) m");
   }
 }
 

@@ -24,6 +24,10 @@ TEST(BodySize, OthersAreRefusedWithTheUnitThatLooksLikely) {
   expect_refusal([] { logged(180, 1); }, "a.stl", "180000 mm with a unit of 1 m",
                  "'mm' looks likely");
   expect_refusal([] { logged(0.15, 1e-6); }, "a.stl", "outside", "'m' looks likely");
+  // The limits themselves are allowed.
+  EXPECT_THAT(logged(1, 10e-6), testing::HasSubstr("unusual"));
+  EXPECT_THAT(logged(10, 1), testing::HasSubstr("unusual"));
+  expect_refusal([] { logged(10.5, 1); }, "a.stl", "10500 mm", "'");
   expect_refusal([] { logged(0, 1); }, "a.stl", "outside", "no extent");
 }
 

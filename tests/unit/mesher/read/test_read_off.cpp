@@ -24,6 +24,16 @@ TEST(ReadOff, SkipsCommentsColoursAndTheNumberOfEdges) {
   EXPECT_EQ(soup.polygons, (std::vector<std::vector<std::size_t>>{{0, 1, 2}}));
 }
 
+TEST(ReadOff, TakesWhateverFollowsTheCoordinates) {
+  // Colours, normals and texture coordinates in every combination that the heading can name.
+  for (const std::string kind :
+       {"OFF", "COFF", "NOFF", "CNOFF", "STOFF", "STCOFF", "STNOFF", "STCNOFF"}) {
+    const Soup soup =
+        read_off(kind + "\n3 1 0\n0 0 0 9 9\n1 0 0 9 9\n0 1 0 9 9\n3 0 1 2\n", "a.off");
+    EXPECT_EQ(soup.points, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << kind;
+  }
+}
+
 TEST(ReadOff, AFaceMayBeSpreadOverLines) {
   const Soup soup =
       read_off("OFF\n3 2 0\n0 0 0\n1 0\n0\n0 1 0\n3 0 \n1 \n2 \n\n3 2\n1\n0\n", "a.off");

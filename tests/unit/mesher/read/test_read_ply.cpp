@@ -106,6 +106,14 @@ TEST(ReadPly, RefusesWhatItCannotRead) {
                  "not finite");
   expect_refusal(read(text_file("element vertex 4000000000\nproperty float x\n", "0\n")), "a.ply:4",
                  "4000000000");
+  expect_refusal(read(text_file(kTetrahedron + "element face 1\nproperty list uchar int colours\n",
+                                kPoints + "3 0 1 2\n")),
+                 "a.ply", "a face without vertex_indices");
+  // The header leaves room for so many faces, what the points leave does not.
+  expect_refusal(
+      read(text_file(kTetrahedron + "element face 40\nproperty list uchar int vertex_indices\n",
+                     kPoints + "3 0 1 2\n")),
+      "a.ply", "face is 40, more than the");
   expect_refusal(read(text_file("element vertex 1\nproperty float x\nproperty float y\n", "0 0\n")),
                  "a.ply", "without x, y and z");
 }

@@ -103,6 +103,9 @@ TEST(ReadSurface, RefusesFilesThatAreMissingOrUnreadable) {
   testing::internal::CaptureStderr();
   expect_file_refused("prose.ply", "once upon a time", "does not begin with 'ply'", "export");
   expect_file_refused("header.ply", "ply\nonce upon a time\n", "ends where 'end_header'", "export");
+  std::string half_an_stl(154, '\0');  // 80 bytes, the number of facets, and a facet and a half
+  half_an_stl[80] = 12;
+  expect_file_refused("half.stl", half_an_stl, "malformed after", "export");
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");  // the error is the only line
   std::string cut = off_text(cube());
   cut.resize(cut.size() - 20);

@@ -49,6 +49,7 @@ TEST(StatedUnit, IsReadFromCommentsAndHeaders) {
   EXPECT_EQ(stated_unit("ply\ncomment unit: centimeters\n")->symbol, "cm");
   EXPECT_EQ(stated_unit("COLOR= UNITS=mm")->symbol, "mm");
   EXPECT_EQ(stated_unit("# units: meters")->symbol, "m");
+  EXPECT_EQ(stated_unit("the unit: units = mm")->symbol, "mm");
 }
 
 TEST(StatedUnit, IsNoneWhereTheFileSpeaksOfOtherThings) {
