@@ -210,6 +210,25 @@ class Measured(unittest.TestCase):
             self.assertEqual(file["path/repeats"][file["site/first_path"][site]], 2)  # of three
         self.ok(*arguments, "--allow-refused")
 
+    def test_the_choice_of_a_cycle_is_printed(self):
+        """Three presses in one record, each deeper than the one before: the first, unless another is chosen."""
+        folder = Path(self.folder.name) / "cycles"
+        folder.mkdir()
+        rows, t = [], 0.0
+        for x in [i / 100 for i in range(100)] + [1 + d for c in (1, 1.5, 2)
+                                                  for d in [i * c / 100 for i in [*range(101), *range(100, -1, -1)]]]:
+            depth = max(x - 1, 0) * 1e-3
+            rows.append(f"{t:.2f},{x:.4f},{16 / 9 * 5e3 * 0.002 * depth ** 1.5 + 1e-6 * ((7 * len(rows)) % 5 - 2):.9f}")
+            t += 0.05
+        (folder / "a.csv").write_text("t (s),x (mm),f (N)\n" + "\n".join(rows) + "\n")
+        sidecar = folder / "side.toml"
+        text = ('name = "c"\nspecimen = "gel"\nsource = "synthetic"\nlicence = "CC0-1.0"\n'
+                '[tool]\nradius = "4 mm"\nfriction = "frictionless"\n'
+                '[columns]\ntime = "t"\ndisplacement = "x"\nforce = "f"\n[[press]]\nfile = "a.csv"\nvertex = 0\n')
+        for cycle, words in (("", "a.csv: cycle 1 of 3, 1.00 mm deep"), ("cycle = -1\n", "a.csv: cycle 3 of 3, 2.0")):
+            sidecar.write_text(text + cycle)
+            self.assertIn(words, self.ok("import", sidecar, "--out", folder / "out"))
+
     def test_a_tool_larger_than_the_body_is_doubted(self):
         sidecar = Path(self.folder.name) / "doubted.toml"
         text = self.presses.read_text(encoding="utf-8").replace('file = "', f'file = "{self.presses.parent}/')

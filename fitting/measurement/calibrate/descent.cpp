@@ -2,6 +2,7 @@
 #include "fitting/measurement/calibrate/descent.hpp"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -22,6 +23,12 @@ class Cost : public ceres::CostFunction {
  private:
   const LeastSquares& problem_;
 };
+
+/// Ceres logs each failed step of a search to the standard error, hundreds of lines of a fit that
+/// converges all the same. What became of the fit is in its summary.
+void silence_steps() {
+  FLAGS_minloglevel = google::GLOG_FATAL;
+}
 
 /// Whether no constant that may move would lower the cost: the residuals are normal to every column
 /// of the Jacobian, or nothing beside what the constants contribute to the model.
@@ -72,6 +79,7 @@ std::optional<Minimum> descend(const LeastSquares& problem) {
     options.parameter_tolerance = problem.step_tolerance;
     options.gradient_tolerance = 0;  // it is not relative
     options.logging_type = ceres::SILENT;
+    silence_steps();
     ceres::Solver::Summary summary;
     ceres::Solve(options, &solver, &summary);
     if (!summary.IsSolutionUsable()) return std::nullopt;

@@ -119,8 +119,8 @@ bool is_unit_row(const std::vector<std::string>& fields) {
   return any;
 }
 
-/// "Load (N)", "Load [N]", "Load / N", "Load in N", "Load_N" -> name and unit. What follows must be
-/// a known unit, except in brackets at the end.
+/// "Load (N)", "Load [N]", "Load / N", "Load in N", "Load, N", "Load_N" -> name and unit. What
+/// follows must be a known unit, except in brackets at the end.
 CsvColumn name_and_unit(const std::string& field) {
   for (const auto& [open, close] : {std::pair{'(', ')'}, std::pair{'[', ']'}}) {
     const auto at = field.rfind(open);
@@ -129,7 +129,7 @@ CsvColumn name_and_unit(const std::string& field) {
             without_brackets(field.substr(at)),
             {}};
   }
-  for (const std::string_view mark : {" / ", "/", " in ", "_"}) {
+  for (const std::string_view mark : {" / ", "/", " in ", ", ", "_"}) {
     const auto at = field.rfind(mark);
     if (at == std::string::npos || at == 0) continue;
     const std::string unit(trimmed(std::string_view(field).substr(at + mark.size())));
@@ -292,7 +292,7 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<DeclaredC
     refuse(path.string(), "the file is empty", "copy or record it again");
   }
   if (!stream || !(text << stream.rdbuf())) {
-    refuse(path.string(), "the record cannot be read", "check the path and the rights");
+    refuse(path.string(), "the record cannot be read", "check path and permissions");
   }
   return parse_csv(text.str(), path.string(), declared, table);
 }
