@@ -19,13 +19,13 @@ struct ForceSample {
   double since = 0;  ///< m, below `displacement`
 };
 
-/// Share of the largest force of a curve below which its errors do not count: half of what is
+/// Fraction of the largest force of a curve below which its errors do not count: half of what is
 /// tolerated of the local force.
-inline constexpr double kPeakShare = 0.005;
+inline constexpr double kPeakFraction = 0.005;
 
 struct CurveFitSettings {
   double relative_tolerance = 0.01;
-  /// N; NaN: kPeakShare of the largest |force| of the samples
+  /// N; NaN: kPeakFraction of the largest |force| of the samples
   double absolute_tolerance = std::numeric_limits<double>::quiet_NaN();
   int max_knots = 12;
   bool zero_first_slope = false;  ///< for the normal response, whose slope is zero at touch

@@ -350,6 +350,25 @@ TEST(Homogeneous, GentIsFoundUpToItsLimit) {
   }
 }
 
+/// A fit of a law to data of another shape converges, and says by how much it misses them.
+TEST(Homogeneous, WarnsOfALawThatMissesTheData) {
+  HomogeneousTest test{"stiffening", Mode::Uniaxial, {}, {}, {}, 1};
+  for (int i = 1; i <= 20; ++i) {
+    const double s = 1 + 0.05 * i;
+    test.deformation.push_back(s);
+    test.nominal.push_back(law_stress("ogden-1", {1000, 14}, test.mode, s));
+  }
+  HomogeneousSettings settings;
+  settings.law = "neo-hookean";
+  const HomogeneousFit missed = fit_homogeneous({test}, settings);
+  EXPECT_GT(missed.errors[0].relative, 0.25);
+  EXPECT_THAT(missed.calibration.warnings,
+              Contains(HasSubstr("the fitted law misses stiffening by")));
+  settings.law = "ogden-1";
+  EXPECT_THAT(fit_homogeneous({test}, settings).calibration.warnings,
+              testing::Not(Contains(HasSubstr("misses stiffening"))));
+}
+
 /// A signal with the wrong sign is no law, and a fit of it is refused instead of written.
 TEST(Homogeneous, RefusesAFitThatExplainsNothing) {
   HomogeneousTest test{"pulled", Mode::Uniaxial, {1.1, 1.2, 1.3, 1.4}, {-1, -2, -3, -4}, {}, 1};
