@@ -223,6 +223,30 @@ TEST(Baseline, AGivenContactPointLeavesTheBaselineToTheApproach) {
   EXPECT_THROW(analyse_press(record_of(press, 5), settings), Error);
 }
 
+/// Two or three samples a step scatter about their line by chance: the noise of the record counts.
+TEST(Baseline, CoversSlowRecordsWithAGivenContactPoint) {
+  PressSettings settings;
+  settings.method = ContactMethod::Given;
+  settings.baseline = BaselineMethod::Zeroed;
+  for (const double rate : {1.0, 0.6, 0.35, 0.2}) {
+    SlowPress press;
+    press.approach = press.offset = 0;
+    press.rate = rate;
+    int inside = 0, samples = 0;
+    for (unsigned seed = 0; seed < 100; ++seed) {
+      const PressCurve curve = analyse_press(record_of(press, 7919 * seed + 1), settings);
+      const CurvePath path = mean_path({curve}, {0, 0, -1}, {}, "site");
+      for (auto sample = path.samples.begin() + 1; sample != path.samples.end(); ++sample) {
+        const double error = -sample->force[2] - force_at(sample->displacement);
+        inside += std::abs(error) <= 2 * sample->force_uncertainty ? 1 : 0;
+        ++samples;
+      }
+    }
+    EXPECT_GE(inside, 0.9 * samples) << rate;
+    EXPECT_LE(inside, 0.99 * samples) << rate;
+  }
+}
+
 /// A specimen between grips has no approach: it waits at the point that is given, and that wait is
 /// its baseline.
 TEST(Baseline, AWaitAtAGivenContactPointIsTheBaseline) {
