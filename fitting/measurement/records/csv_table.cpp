@@ -209,6 +209,12 @@ bool has_header(const std::vector<Line>& lines, std::size_t begin, const Run& ru
          });
 }
 
+/// "<END DATA>" of a tester that puts its blocks between marks.
+bool is_mark(const Line& line) {
+  const std::string_view text = trimmed(line.text);
+  return text.starts_with('<') && text.ends_with('>');
+}
+
 /// The tables of a file: the first run that is long enough, and every later one under a header.
 std::vector<Run> tables_of(const std::vector<Line>& lines, const std::string& file,
                            const Run& longest, const Dialect& dialect) {
@@ -227,7 +233,8 @@ std::vector<Run> tables_of(const std::vector<Line>& lines, const std::string& fi
     from = run.end;
   }
   // What follows the last table is neither a table nor numbers of one.
-  const std::size_t end = tables.empty() ? lines.size() : tables.back().end;
+  std::size_t end = tables.empty() ? lines.size() : tables.back().end;
+  while (end < lines.size() && is_mark(lines[end])) ++end;
   if (end < lines.size()) refuse_row(file, lines[end], dialect, tables.back().width);
   return tables;
 }
