@@ -37,9 +37,9 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Whether a word may be meant for another: at most half of it is mistyped.
+/// Whether a word may be meant for another: at most a third of it is mistyped.
 bool is_like(std::string_view word, std::string_view other) {
-  return edit_distance(word, other) <= std::max<std::size_t>(2, word.size() / 2);
+  return edit_distance(word, other) <= std::max<std::size_t>(2, word.size() / 3);
 }
 
 /// The known word that begins as this one does, where there is but one; else the nearest.

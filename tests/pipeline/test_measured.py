@@ -167,6 +167,25 @@ class Measured(unittest.TestCase):
         self.ok("calibrate", "tests", fit, "--out", folder / "turned")
         self.assertTrue((folder / "turned/calibration.html").exists())
 
+    def test_a_hard_fit_prints_warnings_of_its_own_alone(self):
+        """Three terms of Ogden's law where two would do: their solver meets states without a stress on its way."""
+        folder = Path(self.folder.name)
+        terms = ((0.41e6, 1.3), (3e3, 5), (-1e4, -2))
+        rows = []
+        for i in range(40):
+            s = 1.2 + (17 - 1.2) * i / 39
+            stress = sum(mu * (s ** (a - 1) - s ** (-a / 2 - 1)) for mu, a in terms) * (1 + 0.01 * math.sin(7 * i))
+            rows.append(f"{100 * (s - 1):.3f},{1e-6 * stress:.6f}")
+        (folder / "far.csv").write_text("Strain (%),Stress (MPa)\n" + "\n".join(rows) + "\n")
+        fit = folder / "far.toml"
+        fit.write_text('name = "a"\nsource = "b"\nlicence = "c"\n[fit]\nlaw = "ogden-3"\n[[test]]\nfile = "far.csv"\n'
+                       'mode = "uniaxial"\ndeformation = "Strain"\ndeformation_is = "strain"\nstress = "Stress"\n')
+        result = command.palpate("calibrate", "tests", fit)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("R2 0.999", result.stdout)
+        for line in result.stderr.splitlines():
+            self.assertTrue(line.startswith("warning: "), line)
+
     def refuse(self, words, text, name="bad.toml", body=True):
         sidecar = Path(self.folder.name) / name
         sidecar.write_text(text.replace('file = "', f'file = "{self.presses.parent}/'), encoding="utf-8")
