@@ -7,6 +7,7 @@ library with simulated shape and measured scale. Usage: measured_test.py PALPATE
 import csv
 import json
 import math
+import random
 import sys
 import tempfile
 import unittest
@@ -171,10 +172,10 @@ class Measured(unittest.TestCase):
         """Three terms of Ogden's law where two would do: their solver meets states without a stress on its way."""
         folder = Path(self.folder.name)
         terms = ((0.41e6, 1.3), (3e3, 5), (-1e4, -2))
-        rows = []
+        rows, noise = [], random.Random(3)
         for i in range(40):
             s = 1.2 + (17 - 1.2) * i / 39
-            stress = sum(mu * (s ** (a - 1) - s ** (-a / 2 - 1)) for mu, a in terms) * (1 + 0.01 * math.sin(7 * i))
+            stress = sum(mu * (s ** (a - 1) - s ** (-a / 2 - 1)) for mu, a in terms) * (1 + 0.01 * noise.gauss(0, 1))
             rows.append(f"{100 * (s - 1):.3f},{1e-6 * stress:.6f}")
         (folder / "far.csv").write_text("Strain (%),Stress (MPa)\n" + "\n".join(rows) + "\n")
         fit = folder / "far.toml"
