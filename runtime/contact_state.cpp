@@ -227,7 +227,7 @@ ContactState::Candidate ContactState::rate_limited(const Vec3& x, const FixedCon
   const auto within = [&](const Candidate& c) { return may_change_to(c, allowed); };
   const Candidate slipping = move(x, fixed, {.follow = 0});
   const bool may_follow = within(slipping);
-  const Candidate base =
+  Candidate base =
       may_follow ? slipping : Candidate{*model_, fixed.deflection, fixed.response, goal_, 0};
   Candidate next = may_follow ? whole : slipping;
   double fraction = 1;
