@@ -223,6 +223,7 @@ void add_body_part(CLI::App& command, Action& action) {
 void add_calibrate_command(CLI::App& root, Action& action) {
   CLI::App* command = root.add_subcommand(
       "calibrate", "Identifies constants of a law from measurements, with confidence intervals");
+  command->footer("Example: palpate calibrate tests data/measured/treloar-1944/ogden.toml");
   command->require_subcommand(1);
   CLI::App* tests = command->add_subcommand("tests",
                                             "Identifies constants from homogeneous tests: "

@@ -69,7 +69,7 @@ SlabTableSettings table_settings(const SlabOptions& options, const Curves& measu
 }
 
 /// "between 8.1 mm and 11 mm", "at least 8.1 mm", or what it is when nothing is known.
-std::string told(const Identified& what, const std::function<std::string(double)>& text) {
+std::string interval_text(const Identified& what, const std::function<std::string(double)>& text) {
   if (what.is_nothing())
     return "not identified: all of " + text(what.low) + " to " + text(what.high) + " fits";
   if (what.no_high) return "at least " + text(what.low) + "; an upper end is not identified";
@@ -83,8 +83,9 @@ void say_slab(const SlabFit& slab, const SlabTable& table, double confidence) {
   answer("calibrate: {} sites as one slab of {}, RMS residual {} ({} of the largest force)",
          slab.fit.paths.size(), s.law.name, force_text(slab.fit.rms),
          percent_text(slab.fit.relative_rms));
-  answer("  thickness, {:.4g} %: {}", 100 * confidence, told(slab.thickness, length_text));
-  answer("  {}, {:.4g} %: {}", s.law.stiffening, 100 * confidence, told(slab.stiffening, number));
+  answer("  thickness, {:.4g} %: {}", 100 * confidence, interval_text(slab.thickness, length_text));
+  answer("  {}, {:.4g} %: {}", s.law.stiffening, 100 * confidence,
+         interval_text(slab.stiffening, number));
   answer("  shear modulus at rest: median {} Pa, from {} Pa to {} Pa over the sites",
          number_text(slab.median_modulus), number_text(slab.least_modulus),
          number_text(slab.largest_modulus));

@@ -177,6 +177,7 @@ int experiment(const ExperimentOptions& options) {
 void add_experiment_command(CLI::App& root, Action& action) {
   CLI::App* parent =
       root.add_subcommand("experiment", "Repeats a published experiment in simulation");
+  parent->footer("Example: palpate experiment passivity --margins");
   parent->require_subcommand(1);
   CLI::App* command = parent->add_subcommand(
       "passivity", "A device hits a virtual body: phase planes and passivity margins");

@@ -21,6 +21,7 @@
 #include "format/deformation.hpp"
 #include "format/error.hpp"
 #include "format/flat_library.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::app {
 namespace {
@@ -101,8 +102,8 @@ int export_skin(const Workspace& space, int modes) {
       fitting::coarsened(fine, body.response.triangles, static_cast<std::size_t>(modes));
   const std::filesystem::path file = space.out / "skin.pdef";
   write_deformation(file, coarse);
-  say("export: {}, {} vertices, {} modes that leave out {:.2g} mm (root mean square), {} kB",
-      file.string(), coarse.positions.size(), coarse.mode_count(), 1e3 * coarse.rms_left_out,
+  say("export: {}, {} vertices, {} modes that leave out {} (root mean square), {} kB",
+      file.string(), coarse.positions.size(), coarse.mode_count(), length_text(coarse.rms_left_out),
       (std::filesystem::file_size(file) + 999) / 1000);
   return kExitDone;
 }
@@ -248,8 +249,8 @@ int export_decks(const Workspace& space, const SiteOptions& options) {
   if (!febio.empty()) save(febio, stem + ".feb");
   save(own.csv, stem + (patch ? "-patch.csv" : "-tool.csv"));
   if (!own.lateral_csv.empty()) save(own.lateral_csv, stem + "-lateral.csv");
-  say("site {}: {} by {:.2f} mm, force {:.4f} N by {}", options.vertex, own.what, 1e3 * own.depth,
-      own.force, name_in(kElements, settings.dilatation));
+  say("site {}: {} by {}, force {} by {}", options.vertex, own.what, length_text(own.depth),
+      force_text(own.force), name_in(kElements, settings.dilatation));
   if (!own.reason.empty()) say("the curve ends early: {}", own.reason);
   return kExitDone;
 }
@@ -263,8 +264,8 @@ int export_site(const Workspace& space, std::int32_t vertex) {
   vtkhdf::Grid grid = vtkhdf::deformed_grid(body, fields);
   grid.provenance.steps.push_back(make_provenance_step(
       "export", resolved_toml(space.c), {space.body()}, {{"vertex", std::to_string(vertex)}}));
-  say("site {}: depth {:.2f} mm, force {:.4f} N", vertex, state.sample.displacement * 1e3,
-      norm(state.sample.force));
+  say("site {}: depth {}, force {}", vertex, length_text(state.sample.displacement),
+      force_text(norm(state.sample.force)));
   say("pressures alternate between elements: {:.1f} (about 1.6 when they do not){}",
       state.pressure_alternation,
       state.pressure_alternation > fem::kAlternating
@@ -315,6 +316,7 @@ void add_site_part(CLI::App& parent, Action& action) {
                  const bool decks = options->calculix || options->febio;
                  return decks ? export_decks(space, *options) : export_site(space, options->vertex);
                });
+  site->footer("Example: palpate export site data/cases/cylinder.toml --vertex 12");
   site->add_option("--vertex", options->vertex, "Response vertex, as in curves.csv")->required();
   CLI::Option* calculix =
       site->add_flag("--calculix", options->calculix, "Write site-N.inp for CalculiX");

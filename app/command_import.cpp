@@ -40,6 +40,14 @@ void say_records(const Import& result) {
         refused["reason"].get<std::string>());
 }
 
+/// Which press of a record that has several was taken.
+void say_cycle(const nlohmann::ordered_json& record) {
+  if (record["cycles"].get<int>() < 2) return;
+  say("  {}: cycle {} of {}, {} deep; `cycle` chooses another", record["file"].get<std::string>(),
+      record["cycle"].get<int>(), record["cycles"].get<int>(),
+      length_text(record["deepest_m"].get<double>()));
+}
+
 void say_history(const SiteHistory& site) {
   const measured::History& h = site.history;
   const bool force = h.control == measured::Control::Force;
@@ -85,6 +93,7 @@ int import_tool(const ImportOptions& options, const ImportRequest& request, cons
   if (!result.histories.records.empty()) write_histories(result.histories, request.sidecar, out);
   write_file_crash_safely(out / "import.json", result.account.dump(2) + "\n");
   say_records(result);
+  for (const auto& record : result.account["records"]) say_cycle(record);
   if (result.account.contains("conversion"))
     say("  {}", result.account["conversion"].get<std::string>());
   for (const auto& site : result.account["sites"]) {

@@ -21,7 +21,7 @@ void write_page(const std::filesystem::path& folder, const CLI::App& command) {
   file << man_page(command, creator_text());
   if (!file.flush())
     throw Error(ErrorKind::Internal, path.string(), "cannot be written",
-                "check the rights and the free space of the folder");
+                "check the permissions and the free space of the folder");
 }
 
 int write_pages(const CLI::App& command, const std::filesystem::path& folder) {

@@ -37,15 +37,13 @@ struct Summary {
 
 void print(const Summary& s, const DepthWatch& depths, double rate,
            const std::filesystem::path& file) {
-  say("simulate: {} steps at {} Hz, deepest {} mm, largest force {} -> {}", s.steps, rate,
-      number_text(1e3 * depths.deepest()), force_text(s.largest), file.string());
+  say("simulate: {} steps at {} Hz, deepest {}, largest force {} -> {}", s.steps, rate,
+      length_text(depths.deepest()), force_text(s.largest), file.string());
   say("  steps in contact {}, sliding {}, rate-limited {}, limited by the energy rule {}, "
-      "extrapolated "
-      "beyond the computed depth {}",
+      "extrapolated beyond the computed depth {}",
       depths.contact(), s.sliding, s.rate_limited, s.limited, depths.beyond());
-  say("  absorbed by the body: {} mJ; force step: median {:.2f} us, 99 % within {:.2f} us",
-      number_text(1e3 * s.absorbed), s.latency.quantile(0.5) * 1e-3,
-      s.latency.quantile(0.99) * 1e-3);
+  say("  absorbed by the body: {}; force step: median {:.2f} us, 99 % within {:.2f} us",
+      energy_text(s.absorbed), s.latency.quantile(0.5) * 1e-3, s.latency.quantile(0.99) * 1e-3);
 }
 
 struct SimulateOptions {

@@ -234,7 +234,7 @@ Library read_flat_library(std::string_view bytes, const std::filesystem::path& f
 std::string content_of(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string content{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) refuse(file.string(), "cannot be read", "check path and rights");
+  if (!stream) refuse(file.string(), "cannot be read", "check path and permissions");
   return content;
 }
 

@@ -52,6 +52,13 @@ std::string force_text(double newtons) {
   return number_text(1e6 * newtons) + " uN";
 }
 
+std::string energy_text(double joules) {
+  const double size = std::abs(joules);
+  if (size >= 1e-4 || size == 0 || !std::isfinite(size)) return number_text(1e3 * joules) + " mJ";
+  if (size >= 1e-7) return number_text(1e6 * joules) + " uJ";
+  return number_text(1e9 * joules) + " nJ";
+}
+
 std::string length_text(double metres) {
   const double size = std::abs(metres);
   if (size >= 1e-4 || size == 0 || !std::isfinite(size)) return number_text(1e3 * metres) + " mm";

@@ -64,7 +64,7 @@ void require_file(const std::filesystem::path& path, const std::string& wanted) 
   }
   if (!std::ifstream(path, std::ios::binary)) {
     raise("FileError", Error(ErrorKind::Configuration, path.string(), "cannot be opened",
-                             "check path and rights"));
+                             "check path and permissions"));
   }
 }
 

@@ -15,7 +15,7 @@ constexpr int kActivationPasses = 24;  // each gains at least a digit where the 
 constexpr int kRelaxedPasses = 8;
 constexpr double kRecoveryFraction = 0.5;  // of the travel of the tip: how fast the offset returns
 constexpr double kRounding = 1e-12;        // N; tolerance of the limit on the change of force
-constexpr int kThrottleTries = 5;          // shorter slides that are tried before c stays fixed
+constexpr int kRateLimitTries = 5;         // shorter slides that are tried before c stays fixed
 
 /// The fraction in [0, 1] of the straight path from `near`, no longer than `allowed`, to `far`,
 /// which is longer, at which the vector reaches the length `allowed`. One half when both are
@@ -210,7 +210,7 @@ ContactState::Candidate ContactState::choose(const Vec3& x,
   if (within(next)) return next;
   next = move(x, fixed, {});
   const std::uint32_t obstacles = next.status & (step_status::AtBorder | step_status::Awaiting);
-  if (!within(next)) next = throttle(x, fixed, next, allowed);
+  if (!within(next)) next = rate_limited(x, fixed, next, allowed);
   next.status |= obstacles | step_status::ForceLimited;
   return next;
 }
@@ -220,18 +220,18 @@ ContactState::Candidate ContactState::choose(const Vec3& x,
 /// state outside it the tool slips in part. The first try for the motion of c interpolates the
 /// change of force linearly over its whole path. That path may cross an edge of the body, so the
 /// next tries are the travel of the tip and ever shorter motions.
-ContactState::Candidate ContactState::throttle(const Vec3& x, const FixedContact& fixed,
-                                               const Candidate& whole,
-                                               double allowed) const noexcept {
+ContactState::Candidate ContactState::rate_limited(const Vec3& x, const FixedContact& fixed,
+                                                   const Candidate& whole,
+                                                   double allowed) const noexcept {
   const auto change = [&](const Candidate& c) { return c.response.force - seen_.force; };
   const auto within = [&](const Candidate& c) { return may_change_to(c, allowed); };
   const Candidate slipping = move(x, fixed, {.follow = 0});
   const bool may_follow = within(slipping);
-  const Candidate base =
+  Candidate base =
       may_follow ? slipping : Candidate{*model_, fixed.deflection, fixed.response, goal_, 0};
   Candidate next = may_follow ? whole : slipping;
   double fraction = 1;
-  for (int i = 0; i < kThrottleTries; ++i) {
+  for (int i = 0; i < kRateLimitTries; ++i) {
     const double line = 0.9 * fraction_within(change(base), change(next), allowed);
     fraction *= std::clamp(line, 0.02, may_follow && i > 1 ? 0.25 : 0.9);
     if (may_follow && i == 1) fraction = std::min(fraction, fixed.travelled / norm(lag(fixed)));

@@ -137,8 +137,8 @@ class ContactState {
   LateralSlip slip_to_limit(const LocalModel& model, const Deflection& at,
                             const LocalResponse& response) const noexcept;
   Candidate choose(const Vec3& x, const FixedContact& fixed) const noexcept;
-  Candidate throttle(const Vec3& x, const FixedContact& fixed, const Candidate& whole,
-                     double allowed) const noexcept;
+  Candidate rate_limited(const Vec3& x, const FixedContact& fixed, const Candidate& whole,
+                         double allowed) const noexcept;
   Candidate move(const Vec3& x, const FixedContact& fixed,
                  const SlideFractions& fractions) const noexcept;
   LocalModel slide(const Vec3& x, const FixedContact& fixed, const SlideFractions& fractions,

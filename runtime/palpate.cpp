@@ -140,7 +140,7 @@ const char* palpate_status_text(int status) {
     case PALPATE_ERROR_ARGUMENT:
       return "a null pointer or a value out of range";
     case PALPATE_ERROR_FILE:
-      return "the file cannot be read: check path and rights";
+      return "the file cannot be read: check path and permissions";
     case PALPATE_ERROR_FORMAT:
       return "not a valid response library: rebuild it with this version";
     case PALPATE_ERROR_MEMORY:
@@ -167,7 +167,7 @@ int palpate_library_load(const char* path, palpate_library** library) {
       return fail(PALPATE_ERROR_FILE, text.c_str());
     }
     if (!std::ifstream(path, std::ios::binary)) {
-      const std::string text = std::string(path) + ": cannot be opened; check path and rights";
+      const std::string text = std::string(path) + ": cannot be opened; check path and permissions";
       return fail(PALPATE_ERROR_FILE, text.c_str());
     }
     *library = new palpate_library(palpate::read_library(path));

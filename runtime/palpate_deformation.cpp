@@ -61,10 +61,11 @@ int palpate_deformation_load(const palpate_library* library, const char* path,
                   (name + ": is not a regular file but " + kind + "; name a deformation").c_str());
     }
     if (!std::ifstream(path, std::ios::binary)) {
-      return fail(PALPATE_ERROR_FILE,
-                  (name + ": cannot be opened; check path and rights, or ask for it by depths in "
-                          "[deformation] of the case")
-                      .c_str());
+      return fail(
+          PALPATE_ERROR_FILE,
+          (name + ": cannot be opened; check path and permissions, or ask for it by depths in "
+                  "[deformation] of the case")
+              .c_str());
     }
     return take(*library, palpate::read_deformation(name), name, deformation);
   });

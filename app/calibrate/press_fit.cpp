@@ -44,7 +44,7 @@ Target target_of(const SiteCurves& site, const CurvePath& path, const std::vecto
     u.push_back(sample.force_uncertainty);
   }
   const compare::MonotoneCubic force(x, f);
-  const compare::MonotoneCubic doubt(x, u);
+  const compare::MonotoneCubic uncertainty(x, u);
   const bool known = std::all_of(u.begin() + 1, u.end(), [](double v) { return std::isfinite(v); });
   Target target;
   target.vertex = site.vertex;
@@ -55,7 +55,7 @@ Target target_of(const SiteCurves& site, const CurvePath& path, const std::vecto
     if (depth > x.back() * (1 + 1e-9)) break;
     target.depth.push_back(depth);
     target.force.push_back(force.value(depth));
-    target.uncertainty.push_back(known ? doubt.value(depth) : kUnknown);
+    target.uncertainty.push_back(known ? uncertainty.value(depth) : kUnknown);
   }
   return target;
 }

@@ -76,8 +76,8 @@ void in_parallel(int threads, int count, const std::function<void(int)>& task) {
     }
   };
   {
-    std::vector<std::jthread> crew;
-    for (int t = 1; t < std::min(threads, count); ++t) crew.emplace_back(work);
+    std::vector<std::jthread> workers;
+    for (int t = 1; t < std::min(threads, count); ++t) workers.emplace_back(work);
     work();
   }
   if (failure) std::rethrow_exception(failure);

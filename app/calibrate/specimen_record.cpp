@@ -222,12 +222,15 @@ std::string statement_of(const TestSection& s, const SpecimenSigns& signs, doubl
   return text + fmt::format(", nominal stress = {}{}", minus, s.stress);
 }
 
-void keep_branch(const TestSection& s, double rest, const std::string& where, Columns& c) {
-  if (s.cycle == 0 && s.branch == "both") return;
+/// @return what is kept of a record with several cycles, in words
+std::string keep_branch(const TestSection& s, double rest, const std::string& where, Columns& c) {
   const std::vector<Branch> branches = branches_of(c.deformation, rest);
   std::vector<std::size_t> loadings;
   for (std::size_t i = 0; i < branches.size(); ++i)
     if (branches[i].loading) loadings.push_back(i);
+  const bool has_several = loadings.size() > 1;
+  if (s.cycle == 0 && s.branch == "both")
+    return has_several ? fmt::format(", all {} cycles", loadings.size()) : "";
   const int cycle = s.cycle == 0 && loadings.size() == 1 ? 1 : s.cycle;
   const std::size_t number = cycle < 0 ? loadings.size() : static_cast<std::size_t>(cycle);
   if (number == 0 || number > loadings.size())
@@ -242,6 +245,7 @@ void keep_branch(const TestSection& s, double rest, const std::string& where, Co
   const std::size_t begin = s.branch == "unloading" ? loading + 1 : loading;
   const std::size_t end = s.branch == "loading" || !returns ? loading : loading + 1;
   keep(c, branches[begin].first, branches[end].last);
+  return has_several ? fmt::format(", cycle {} of {}", number, loadings.size()) : "";
 }
 
 }  // namespace
@@ -284,7 +288,7 @@ SpecimenTest read_test(const TestSection& s, const std::filesystem::path& folder
   const SpecimenSigns signs = signs_of(s, c, where);
   specimen.statement = statement_of(s, signs, area);
   deform(s, rest, signs.deformation, c.deformation);
-  keep_branch(s, rest, where, c);
+  specimen.statement += keep_branch(s, rest, where, c);
   test.deformation = c.deformation;
   test.uncertainty = c.uncertainty;
   for (std::size_t i = 0; i < c.stress.size(); ++i) {

@@ -17,7 +17,7 @@
 namespace palpate::app {
 namespace {
 
-std::string length_text(double metres) {
+std::string exact_length_text(double metres) {
   return print_quantity(metres, Dimension::Length);
 }
 
@@ -188,7 +188,7 @@ void check_tool(const Case& c, const SourceMap& sources) {
   if (s.tool.edge_radius > s.tool.radius)
     refuse(sources.where("tool.edge_radius"),
            fmt::format("tool.edge_radius = {} is larger than tool.radius = {}",
-                       length_text(s.tool.edge_radius), length_text(s.tool.radius)),
+                       exact_length_text(s.tool.edge_radius), exact_length_text(s.tool.radius)),
            "give at most the radius of the disc, or 0 for a sharp edge");
   if (s.tool.shape == fem::ToolShape::Disc && !(s.tool.edge_radius > 0) &&
       s.friction == fem::ToolFriction::Frictionless)
@@ -203,7 +203,7 @@ void check_depths(const Case& c, const SourceMap& sources) {
     if (!(depth > s.depth)) continue;
     refuse(sources.where("indentation.lateral_depths"),
            fmt::format("the lateral depth {} is larger than indentation.depth = {}",
-                       length_text(depth), length_text(s.depth)),
+                       exact_length_text(depth), exact_length_text(s.depth)),
            "give lateral depths of at most the depth");
   }
 }
@@ -227,10 +227,11 @@ void check_zones(const Case& c, const SourceMap& sources) {
 
 void check_sizes(const Case& c, const SourceMap& sources) {
   if (!(c.mesh.element_size > c.mesh.patch_spacing)) return;
-  refuse(sources.where("mesh.element_size"),
-         fmt::format("mesh.element_size = {} is larger than mesh.patch_spacing = {}",
-                     length_text(c.mesh.element_size), length_text(c.mesh.patch_spacing)),
-         "give at most the patch spacing: facets subdivide the response triangles");
+  refuse(
+      sources.where("mesh.element_size"),
+      fmt::format("mesh.element_size = {} is larger than mesh.patch_spacing = {}",
+                  exact_length_text(c.mesh.element_size), exact_length_text(c.mesh.patch_spacing)),
+      "give at most the patch spacing: facets subdivide the response triangles");
 }
 
 Case parsed(const toml::table& table, const std::string& file_name, const SizeOfBody& size) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/case/lengths.hpp"
+#include "format/number_text.hpp"
 
 #include <fmt/format.h>
 
@@ -22,7 +23,7 @@ class Derivation {
   void fill(const char* key, double& length, double derived) {
     if (!std::isnan(length) || std::isnan(derived)) return;
     length = derived;
-    notes_ += fmt::format("{}{} = {:.3g} mm", notes_.empty() ? "" : ", ", key, 1e3 * length);
+    notes_ += fmt::format("{}{} = {}", notes_.empty() ? "" : ", ", key, length_text(length));
   }
 
  private:

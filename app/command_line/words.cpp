@@ -37,17 +37,28 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Whether a word may be meant for another: at most half of it is mistyped.
+/// Whether a word may be meant for another: at most a third of it is mistyped.
 bool is_like(std::string_view word, std::string_view other) {
-  return edit_distance(word, other) <= std::max<std::size_t>(2, word.size() / 2);
+  return edit_distance(word, other) <= std::max<std::size_t>(2, word.size() / 3);
 }
 
-std::string unknown_text(const std::string& kind, const std::string& word,
-                         const std::vector<std::string>& known) {
+/// The known word that begins as this one does, where there is but one; else the nearest.
+std::string closest(const std::string& word, const std::vector<std::string>& known) {
+  const auto begins_alike = [&](const std::string& other) { return other.starts_with(word); };
+  const auto longer = std::find_if(known.begin(), known.end(), begins_alike);
+  if (longer != known.end() && std::find_if(longer + 1, known.end(), begins_alike) == known.end())
+    return *longer;
   const std::string_view other = nearest(word, {known.begin(), known.end()});
+  return is_like(word, other) ? std::string(other) : std::string();
+}
+
+/// @param help the words that explain the command
+std::string unknown_text(const std::string& kind, const std::string& word,
+                         const std::vector<std::string>& known, const std::string& help) {
+  const std::string other = closest(word, known);
   const std::string unknown = "unknown " + kind + " '" + word + "'";
-  if (!is_like(word, other)) return unknown + "; see 'palpate --help'";
-  return unknown + "; the nearest is '" + std::string(other) + "'";
+  if (other.empty()) return unknown + "; see '" + help + "'";
+  return unknown + "; the nearest is '" + other + "'";
 }
 
 }  // namespace
@@ -61,6 +72,7 @@ std::vector<std::string> help_as_option(std::vector<std::string> words) {
 
 std::string unknown_word(const CLI::App& root, const std::vector<std::string>& words) {
   const CLI::App* command = &root;
+  std::string help = root.get_name() + " help";
   bool value = false;  // of the option before
   for (const std::string& word : words) {
     if (word == "--") return {};
@@ -68,14 +80,15 @@ std::string unknown_word(const CLI::App& root, const std::vector<std::string>& w
     if (word.starts_with("--")) {
       const std::string name = word.substr(0, word.find('='));
       const auto known = options_of(*command);
-      if (!contains(known, name)) return unknown_text("option", name, known);
+      if (!contains(known, name)) return unknown_text("option", name, known, help);
       value = name == word && takes_value(*command, name);
       continue;
     }
     const auto names = subcommands_of(*command);
     if (word.starts_with("-") || names.empty()) continue;
-    if (!contains(names, word)) return unknown_text("subcommand", word, names);
+    if (!contains(names, word)) return unknown_text("subcommand", word, names, help);
     command = command->get_subcommand(word);
+    help += " " + word;
   }
   return {};
 }

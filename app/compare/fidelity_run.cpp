@@ -17,6 +17,7 @@
 #include "fitting/fidelity/skin_error.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/sha256.hpp"
 #include "format/site_journal.hpp"
 #include "palpate_version.hpp"
@@ -131,9 +132,9 @@ std::vector<fidelity::SkinErrorRow> skin_rows(const Workspace& space, const fs::
 std::string skin_text(const std::vector<double>& distances) {
   if (distances.empty()) return {};
   return fmt::format(
-      "the skin is {:.2f} mm (median), {:.2f} mm (worst) from the response triangles at the points "
+      "the skin is {} (median), {} (worst) from the response triangles at the points "
       "off node; depths are measured from it\n",
-      1e3 * distances[distances.size() / 2], 1e3 * distances.back());
+      length_text(distances[distances.size() / 2]), length_text(distances.back()));
 }
 
 double bytes_per_node(const Library& library) {

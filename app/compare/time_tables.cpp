@@ -76,8 +76,9 @@ void say_time_comparison(const std::vector<ComparedHistory>& compared) {
       answer("    hold from {:.4g} s to {:.4g} s: {} of the force is left, {} of the model",
              hold.from, hold.to, percent_text(hold.measured), percent_text(hold.model));
     if (std::isfinite(c.measured_loss))
-      answer("    lost over the record: {:.4g} mJ measured, {:.4g} mJ by the model ({:+.1f} %)",
-             1e3 * c.measured_loss, 1e3 * c.model_loss, 100 * (c.model_loss / c.measured_loss - 1));
+      answer("    lost over the record: {} measured, {} by the model ({:+.1f} %)",
+             energy_text(c.measured_loss), energy_text(c.model_loss),
+             100 * (c.model_loss / c.measured_loss - 1));
   }
 }
 

@@ -40,6 +40,12 @@ Workspace CaseOf::opened_with(const FirstSizes& sizes) const {
   return space;
 }
 
+void count_sites(const CaseOf& made, CountedCase& counted) {
+  counted.body = mesher::mesh(mesh_settings(made.opened_with(counted.sizes)));
+  const auto& is_site = counted.body->response.is_site;
+  counted.sizes.sites = std::count(is_site.begin(), is_site.end(), 1);
+}
+
 CountedCase counted_case(const CaseOf& made, int wanted) {
   CountedCase best;
   double asked = wanted, last_spacing = 0;
@@ -50,15 +56,13 @@ CountedCase counted_case(const CaseOf& made, int wanted) {
     if (trial.sizes.patch_spacing == last_spacing) break;
     last_spacing = trial.sizes.patch_spacing;
     try {
-      trial.body = mesher::mesh(mesh_settings(made.opened_with(trial.sizes)));
+      count_sites(made, trial);
     } catch (const Error& error) {
       if (error.kind() == ErrorKind::Configuration) throw;
       if (best.body) break;
       trial.refusal = error.problem();
       return trial;
     }
-    const auto& is_site = trial.body->response.is_site;
-    trial.sizes.sites = std::count(is_site.begin(), is_site.end(), 1);
     asked *= wanted / static_cast<double>(std::max<std::int64_t>(1, *trial.sizes.sites));
     if (!best.body || distance(*trial.sizes.sites, wanted) < distance(*best.sizes.sites, wanted))
       best = std::move(trial);

@@ -32,6 +32,10 @@ struct CountedCase {
   std::string refusal;       ///< why it is not meshed
 };
 
+/// Meshes the body with the sizes at hand, and counts its sites.
+/// @throws Error where the mesher refuses it
+void count_sites(const CaseOf& made, CountedCase& counted);
+
 /// Patches that make about `wanted` sites as the mesher counts them: the area alone does not say
 /// how many, because Delaunay refinement divides what is curved, and because supports and cavities
 /// take sites away. Meshes the body a few times. Where the mesher refuses it, the sizes follow from

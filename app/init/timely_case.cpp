@@ -63,12 +63,21 @@ class Search {
 
   bool press_less_deep() {
     FirstSizes& sizes = counted_.sizes;
-    const double least = kShallowestOverPatch * sizes.patch_spacing;
-    if (sizes.depth <= least * (1 + 1e-6)) return false;
+    if (sizes.depth <= least_depth() * (1 + 1e-6)) return false;
     shallower_ *= kShallower;
-    sizes.depth = two_digits(std::max(least, kShallower * sizes.depth));
+    press_to(kShallower * sizes.depth);
+    return true;
+  }
+
+  double least_depth() const { return kShallowestOverPatch * counted_.sizes.patch_spacing; }
+
+  /// What was too thin for a deeper press has sites then, and those take the longest.
+  void press_to(double depth) {
+    FirstSizes& sizes = counted_.sizes;
+    sizes.depth = two_digits(std::max(least_depth(), depth));
     sizes.lateral_travel = two_digits(kTravelOverDepth * sizes.depth);
-    return sizes.is_shallow = true;
+    sizes.is_shallow = true;
+    count_sites(made_, counted_);
   }
 
   bool enlarge_patches() {
@@ -82,11 +91,7 @@ class Search {
     counted_ = std::move(larger);
     FirstSizes& sizes = counted_.sizes;
     sizes.sites_too_slow = before.sites_too_slow ? before.sites_too_slow : before.sites;
-    if (!before.is_shallow) return true;
-    sizes.is_shallow = true;
-    sizes.depth =
-        two_digits(std::max(kShallowestOverPatch * sizes.patch_spacing, shallower_ * sizes.depth));
-    sizes.lateral_travel = two_digits(kTravelOverDepth * sizes.depth);
+    if (before.is_shallow) press_to(shallower_ * sizes.depth);
     return true;
   }
 

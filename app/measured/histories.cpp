@@ -9,6 +9,7 @@
 
 #include "app/json_number.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::app {
 
@@ -137,8 +138,8 @@ void require_same_tool(const Histories& histories, const std::string& shape, dou
   const ToolDescription& tool = histories.tool;
   if (tool.shape == shape && std::abs(tool.radius - radius) <= kAlike * radius) return;
   refuse(where,
-         fmt::format("its tool is a {} of {:.4g} mm, that of the records a {} of {:.4g} mm", shape,
-                     1e3 * radius, tool.shape, 1e3 * tool.radius),
+         fmt::format("its tool is a {} of {}, that of the records a {} of {}", shape,
+                     length_text(radius), tool.shape, length_text(tool.radius)),
          "compare with a library of the tool of the records");
 }
 

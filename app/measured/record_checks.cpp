@@ -2,6 +2,7 @@
 #include "app/measured/record_checks.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -42,11 +43,26 @@ double tolerance_on(const Body& body, double tool_radius) {
 
 RecordChecks::RecordChecks(const Sidecar& sidecar, const std::optional<Body>& body)
     : tool_radius_(sidecar.tool.radius), path_(sidecar.path) {
+  check_stated(sidecar);
   if (!body) return;
   extent_ = extent_of(*body);
   if (tool_radius_ <= *extent_) return;
   warn(fmt::format("the radius of the tool, {}, is larger than the body, {}: check its unit",
                    length_text(tool_radius_), length_text(*extent_)));
+}
+
+void RecordChecks::check_stated(const Sidecar& s) {
+  if (s.presses.empty() && s.robot_logs.empty() && s.batches.empty()) return;
+  std::vector<std::string> missing;
+  if (s.contact.method == "given" && std::isnan(s.contact.position_uncertainty))
+    missing.push_back("contact.position_uncertainty");
+  if (s.baseline.method == "zeroed" && std::isnan(s.baseline.uncertainty))
+    missing.push_back("baseline.uncertainty");
+  if (s.path.as_recorded && std::isnan(s.machine.force_noise))
+    missing.push_back("machine.force_noise");
+  if (missing.empty()) return;
+  warn(fmt::format("the uncertainties of the forces count what is not stated as zero: give {}",
+                   fmt::join(missing, ", ")));
 }
 
 void RecordChecks::check_depth(const std::string& where, const m::PressCurve& curve) {
@@ -113,7 +129,7 @@ void RecordChecks::check_samples(const SiteCurves& site) {
   if (path_.as_recorded || samples >= static_cast<std::size_t>(path_.samples)) return;
   warn(
       fmt::format("site {}: its curve has {} samples instead of {}: its records are coarse, or "
-                  "begin in contact",
+                  "begin in contact (path.as_recorded = true keeps every sample of a press)",
                   site.vertex, samples, path_.samples));
 }
 

@@ -40,6 +40,8 @@ class RecordChecks {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
+  /// Nobody can see in a record how well a contact point or a zero that is given is known.
+  void check_stated(const Sidecar& sidecar);
   void warn(const std::string& text) { warnings_.push_back(text); }
 
   double tool_radius_;  ///< m

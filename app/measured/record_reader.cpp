@@ -96,10 +96,10 @@ m::PressSettings RecordReader::press_settings(int cycle) const {
                     : s.contact.method == "threshold" ? m::ContactMethod::Threshold
                                                       : m::ContactMethod::Given;
   settings.threshold = s.contact.threshold;
-  settings.contact_uncertainty = s.contact.position_uncertainty;
+  settings.contact_uncertainty = stated_or_zero(s.contact.position_uncertainty);
   settings.baseline =
       s.baseline.method == "fit" ? m::BaselineMethod::Fit : m::BaselineMethod::Zeroed;
-  settings.zero_uncertainty = s.baseline.uncertainty;
+  settings.zero_uncertainty = stated_or_zero(s.baseline.uncertainty);
   return settings;
 }
 

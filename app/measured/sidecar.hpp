@@ -3,6 +3,7 @@
 // Reference: docs/measured.md.
 #pragma once
 
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -17,6 +18,11 @@ namespace palpate::app {
 
 inline constexpr double kNotGiven = std::numeric_limits<double>::quiet_NaN();
 
+/// An uncertainty as stated; none counts as zero, with a warning of RecordChecks.
+inline double stated_or_zero(double uncertainty) {
+  return std::isnan(uncertainty) ? 0 : uncertainty;
+}
+
 struct MeasuredToolSection {
   std::string name;               ///< by which records refer to it, where there are several
   std::string shape = "sphere";   ///< or "plates": histories of a specimen between plates
@@ -29,7 +35,7 @@ struct MachineSection {
   double compliance = 0;              ///< m/N
   double compliance_uncertainty = 0;  ///< m/N
   double force_calibration = 0;       ///< relative
-  double force_noise = 0;             ///< N, standard, of a sample that is kept as recorded
+  double force_noise = kNotGiven;     ///< N, standard, of a sample that is kept as recorded
   SpecimenSize size;                  ///< by which it made strain and stress of travel and force
 };
 
@@ -52,14 +58,14 @@ struct DeclaredColumnSection {
 struct ContactSection {
   std::string method = "fit";
   double exponent = 1.5;
-  double threshold = kNotGiven;     ///< N
-  double position = kNotGiven;      ///< m, as the record counts it
-  double position_uncertainty = 0;  ///< m, standard
+  double threshold = kNotGiven;             ///< N
+  double position = kNotGiven;              ///< m, as the record counts it
+  double position_uncertainty = kNotGiven;  ///< m, standard
 };
 
 struct BaselineSection {
-  std::string method = "fit";  ///< "fit" or "zeroed"
-  double uncertainty = 0;      ///< N, standard, of the zero
+  std::string method = "fit";      ///< "fit" or "zeroed"
+  double uncertainty = kNotGiven;  ///< N, standard, of the zero
 };
 
 struct PathSection {

@@ -27,10 +27,10 @@ CurvePath recorded_press(const SiteRecords& records, const MachineSection& machi
                             records.presses.size()),
                 "give path.samples instead of as_recorded");
   }
-  return m::recorded_path(
-      records.presses.front(), records.inward,
-      {machine.force_noise, machine.force_calibration, machine.compliance_uncertainty},
-      where_of(records));
+  return m::recorded_path(records.presses.front(), records.inward,
+                          {stated_or_zero(machine.force_noise), machine.force_calibration,
+                           machine.compliance_uncertainty},
+                          where_of(records));
 }
 
 }  // namespace

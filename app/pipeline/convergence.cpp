@@ -12,6 +12,7 @@
 #include "fem/campaign/campaign.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::app {
 namespace {
@@ -50,10 +51,10 @@ void add_forces(const SiteCurves& site, const fem::IndentationSettings& settings
     if (path.kind == PathKind::Normal) normal = last_force(path, settings.depth);
     if (path.kind == PathKind::Lateral) lateral = last_force(path, settings.lateral_travel);
   }
-  add(fmt::format("normal force at {:.3g} mm", 1e3 * settings.depth), normal);
+  add("normal force at " + length_text(settings.depth), normal);
   if (settings.lateral_depths.empty()) return;
-  add(fmt::format("lateral force after {:.3g} mm at {:.3g} mm", 1e3 * settings.lateral_travel,
-                  1e3 * settings.lateral_depths.back()),
+  add(fmt::format("lateral force after {} at {}", length_text(settings.lateral_travel),
+                  length_text(settings.lateral_depths.back())),
       lateral);
 }
 

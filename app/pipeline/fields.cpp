@@ -12,6 +12,7 @@
 #include "fitting/deformation/compress.hpp"
 #include "format/deformation.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/sha256.hpp"
 #include "format/site_fields.hpp"
 #include "format/site_record.hpp"
@@ -80,11 +81,11 @@ void fit_deformation(const Workspace& space, const Body& body, const Curves& cur
   const Deformation deformation =
       fitting::compress(body, library, curves.tool, vertices, read, settings);
   write_deformation(space.deformation(), deformation);
-  emit(LogLine{"fit", fmt::format("{}: {} skin vertices, {} sites, {} modes that leave out {:.2g} "
-                                  "mm (root mean square), {:.1f} MB",
+  emit(LogLine{"fit", fmt::format("{}: {} skin vertices, {} sites, {} modes that leave out {} "
+                                  "(root mean square), {:.1f} MB",
                                   space.deformation().string(), deformation.positions.size(),
                                   deformation.sites.size(), deformation.mode_count(),
-                                  1e3 * deformation.rms_left_out,
+                                  length_text(deformation.rms_left_out),
                                   1e-6 * static_cast<double>(fs::file_size(space.deformation())))});
 }
 

@@ -22,7 +22,7 @@
 #include "fitting/response/couple.hpp"
 #include "fitting/response/fit.hpp"
 #include "fitting/response/fit_errors.hpp"
-#include "fitting/response/relaxation_share.hpp"
+#include "fitting/response/relaxation_fraction.hpp"
 #include "format/body.hpp"
 #include "format/error.hpp"
 #include "format/guarantee.hpp"
@@ -191,7 +191,7 @@ void warn_of_shares(const Curves& curves, const Library& library, const EventSin
   std::int32_t vertex = -1;
   for (const SiteCurves& site : curves.sites) {
     if (library.responses[to_index(site.vertex)].status != ResponseStatus::Fitted) continue;
-    const double error = fitting::largest_share_error(site, curves.relaxation);
+    const double error = fitting::largest_fraction_error(site, curves.relaxation);
     if (error > largest) vertex = site.vertex;
     largest = std::max(largest, error);
   }

@@ -210,16 +210,20 @@ void TextSink::print(const SteepestForce& e) {
 }
 
 void TextSink::print(const ConvergenceLevel& e) {
-  line("convergence: elements of {:.3g} mm, {} unknowns, {} CPU time a site", 1e3 * e.element_size,
+  line("convergence: elements of {}, {} unknowns, {} CPU time a site", length_text(e.element_size),
        e.unknowns, duration_text(e.cpu_seconds_per_site));
 }
 
 void TextSink::print(const ConvergenceOfForce& e) {
+  const bool tiny = std::abs(e.limit) < 1e-3;
+  const double scale = tiny ? 1e6 : 1e3;
+  const char* unit = tiny ? "uN" : "mN";
   std::string forces;
-  for (const double f : e.forces) forces += " " + number_text(1e3 * f, 4);
+  for (const double f : e.forces) forces += " " + number_text(scale * f, 4);
   const std::string limit =
-      e.has_order ? fmt::format("-> {} mN, order {:.2f}", number_text(1e3 * e.limit, 4), e.order)
-                  : "mN follow no power of the element size";
+      e.has_order
+          ? fmt::format("-> {} {}, order {:.2f}", number_text(scale * e.limit, 4), unit, e.order)
+          : fmt::format("{} follow no power of the element size", unit);
   line("  site {}, {}:{} {}; error of the case's mesh {:+.1f} %, at most {:.1f} %", e.vertex,
        e.quantity, forces, limit, 100 * e.error, 100 * e.bound);
 }

@@ -20,8 +20,8 @@ std::string DepthWatch::warning(double known, const std::string& remedy) const {
   if (beyond_ == 0) return {};
   return fmt::format(
       "{} of {} steps in contact went beyond the deepest sample: their forces are extrapolated, "
-      "not computed; every response is known to {} mm, the deepest step is {} mm; {}",
-      beyond_, contact_, number_text(1e3 * known), number_text(1e3 * deepest_), remedy);
+      "not computed; every response is known to {}, the deepest step is {}; {}",
+      beyond_, contact_, length_text(known), length_text(deepest_), remedy);
 }
 
 }  // namespace palpate::app

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/position_text.hpp"
 
 namespace palpate::app {
@@ -164,8 +165,8 @@ std::size_t triangle_near(const Library& library, const TouchableSurface& surfac
   }
   if (distance(*nearest) > longest_edge) {
     throw Error(ErrorKind::Configuration, fmt::format("simulate.{}", key),
-                fmt::format("the nearest triangle with responses is {:.3g} mm away",
-                            1e3 * distance(*nearest)),
+                fmt::format("the nearest triangle with responses is {} away",
+                            length_text(distance(*nearest))),
                 "choose a point of the surface inside a press zone");
   }
   return *nearest;
@@ -173,9 +174,9 @@ std::size_t triangle_near(const Library& library, const TouchableSurface& surfac
 
 [[noreturn]] void refuse_interrupted(const Vec3& end, const Vec3& to) {
   throw Error(ErrorKind::Configuration, "simulate.path",
-              fmt::format("the surface with responses ends at {}, {:.3g} "
-                          "mm before the end of the slide",
-                          position_text(end), 1e3 * norm(to - end)),
+              fmt::format("the surface with responses ends at {}, {} "
+                          "before the end of the slide",
+                          position_text(end), length_text(norm(to - end))),
               "choose two points without a hole, a support or a ridge between them");
 }
 

@@ -7,9 +7,9 @@
 
 #include "fem/campaign/region_laws.hpp"
 #include "fem/factor/cholesky.hpp"
-#include "fem/mesh/millimetres.hpp"
 #include "fem/solve/newton.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/to_index.hpp"
 
 namespace palpate::fem {
@@ -105,7 +105,7 @@ class PatchPress {
              advance(depth, halvings + 1, reason);
     }
     if (const auto loss = fixed_.ellipticity_loss(trial)) {
-      reason = "at " + in_millimetres(depth) + ": " + loss->reason();
+      reason = "at " + length_text(depth) + ": " + loss->reason();
       return false;
     }
     before_.swap(u_);

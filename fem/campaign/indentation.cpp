@@ -11,9 +11,9 @@
 #include "fem/campaign/path_driver.hpp"
 #include "fem/campaign/path_work.hpp"
 #include "fem/campaign/site_equilibrium.hpp"
-#include "fem/mesh/millimetres.hpp"
 #include "fem/mesh/tangent_frame.hpp"
 #include "fem/mesh/to_eigen.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::fem {
 
@@ -195,7 +195,7 @@ void SiteSolver::run_lateral_path(Site& site, const LateralPlan& plan, SiteCurve
     std::string reason;
     const bool arrived = driver.advance(from, s, states, u, sample, reason);
     if (!arrived)
-      stop_early(curves, "lateral path at depth " + in_millimetres(lateral_depth) + " " + reason);
+      stop_early(curves, "lateral path at depth " + length_text(lateral_depth) + " " + reason);
     if (!arrived && !(driver.reached() > from)) break;
     path.samples.push_back(sample);
     if (lateral_observer_) lateral_observer_(plan, contact, u, sample);

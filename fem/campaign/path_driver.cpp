@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "fem/mesh/millimetres.hpp"
+#include "fem/mesh/point_text.hpp"
 #include "fem/mesh/to_eigen.hpp"
 #include "fem/solve/profile.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::fem {
 
@@ -55,7 +56,7 @@ bool PathDriver::advance(double from, double to, Predictor& states, Displacement
       continue;
     }
     if (++halvings > kMaxHalvings) {
-      reason = "at " + in_millimetres(next) + ": " + failure;
+      reason = "at " + length_text(next) + ": " + failure;
       if (outcome == Outcome::NotFound) reason += about_inversion(problem_.model, states.last());
       reached_ = at;
       problem_.contact.move_to(problem_.tool_at(at));
@@ -95,7 +96,7 @@ PathDriver::Outcome PathDriver::equilibrate(double s, int halvings, Displacement
 std::string PathDriver::fault_of(const CurveSample& sample, const Displacement& u) const {
   const PartTimer timer(Part::BodyPasses);
   if (sample.penetration > kLargestPenetration * problem_.tool_radius)
-    return "the tool cuts into the surface, by " + in_millimetres(sample.penetration) +
+    return "the tool cuts into the surface, by " + length_text(sample.penetration) +
            ", at which what it meets is no longer soft: a support, or a region much stiffer than "
            "the surface, lies close beneath it";
   if (sample.displacement > kLargestStep * problem_.tool_radius && sample.contact_area == 0)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::fem {
 
@@ -17,7 +18,7 @@ using Eigen::Vector3d;
 [[noreturn]] void refuse(const char* size, double value, const std::string& range,
                          const std::string& remedy) {
   throw Error(ErrorKind::Configuration, "tool",
-              std::string(size) + " = " + std::to_string(1e3 * value) + " mm is out of range",
+              std::string(size) + " = " + length_text(value) + " is out of range",
               "give " + range + remedy);
 }
 

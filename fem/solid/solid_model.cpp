@@ -8,7 +8,7 @@
 #include <numeric>
 
 #include "fem/laws/scaled_isochoric.hpp"
-#include "fem/mesh/millimetres.hpp"
+#include "fem/mesh/point_text.hpp"
 #include "fem/mesh/to_eigen.hpp"
 #include "fem/solid/ellipticity.hpp"
 

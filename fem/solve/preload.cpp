@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "fem/mesh/millimetres.hpp"
+#include "fem/mesh/point_text.hpp"
 #include "fem/solve/partial_weight.hpp"
 #include "format/error.hpp"
 #include "format/to_index.hpp"

@@ -9,12 +9,13 @@
 #include <map>
 #include <utility>
 
-#include "fem/mesh/millimetres.hpp"
+#include "fem/mesh/point_text.hpp"
 #include "fem/mesh/to_eigen.hpp"
 #include "fem/solve/anderson.hpp"
 #include "fem/solve/partial_weight.hpp"
 #include "format/edge.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::fem {
 
@@ -90,7 +91,7 @@ class UnloadedShape {
       nearest = std::min(nearest, distance_);
       if (!change_shape(anderson.step(X_, gap))) return false;
     }
-    return failed("it is still off by " + in_millimetres(nearest) + " after " +
+    return failed("it is still off by " + length_text(nearest) + " after " +
                   std::to_string(kShapeIterations) + " iterations");
   }
 

@@ -2,9 +2,7 @@
 #include "fitting/certificate/certify.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <set>
 #include <string>
 #include <string_view>
@@ -45,23 +43,16 @@ void count_vertices(const Library& library, Certificate& certificate) {
 
 /// Reason why the slide has no bound.
 std::string cause_unbounded(const TriangleCertificate& triangle, double depth) {
-  std::array<char, 256> text{};
   const double tilt = std::acos(triangle.cos_theta) * 57.29577951308232;
-  if (depth * triangle.kappa < triangle.cos_theta) {
-    std::snprintf(
-        text.data(), text.size(),
-        "no bound of the slide: the lateral response is too flat at the slip limit for the "
-        "change of the responses and press directions up to %.0f degrees off the facet "
-        "normal",
-        tilt);
-  } else {
-    std::snprintf(
-        text.data(), text.size(),
-        "no bound of the slide: pressed %.3g mm deep where the press directions turn with "
-        "a radius of %.3g mm, up to %.0f degrees off the facet normal",
-        1e3 * depth, 1e3 / triangle.kappa, tilt);
-  }
-  return text.data();
+  const std::string off =
+      "up to " + std::to_string(std::lround(tilt)) + " degrees off the facet normal";
+  if (depth * triangle.kappa < triangle.cos_theta)
+    return "no bound of the slide: the lateral response is too flat at the slip limit for the "
+           "change of the responses and press directions " +
+           off;
+  return "no bound of the slide: pressed " + length_text(depth) +
+         " deep where the press directions turn with a radius of " +
+         length_text(1 / triangle.kappa) + ", " + off;
 }
 
 std::string remedy_unbounded(const std::string& first) {
@@ -116,8 +107,7 @@ std::string where_bounded(const Library& library, const std::vector<TriangleBoun
   const double depth = bounded_depth(library, bounds, certificate.depth, certificate.friction);
   if (!(depth > 0)) return text + "; at no depth have all slides a bound";
   constexpr double kRoundedDown = 0.995;  // three digits never state more than was found
-  return text + "; down to " + number_text(1e3 * kRoundedDown * depth) +
-         " mm every slide has a bound";
+  return text + "; down to " + length_text(kRoundedDown * depth) + " every slide has a bound";
 }
 
 /// The factor of L in (C10): the lateral force changes with the limit of friction, and that of

@@ -55,9 +55,15 @@ Accuracy accuracy_of(const Library& library, double NodeResponse::*mesh, double 
   return {bound_of_most(std::move(of_mesh)), bound_of_most(std::move(of_fit))};
 }
 
+/// "0.010 %" for what is smaller: it is a bound.
+std::string bound_text(double fraction) {
+  constexpr double kLeast = 1e-4;
+  return percent_text(std::max(kLeast, fraction));
+}
+
 std::string sum_of(const Accuracy& accuracy) {
-  const std::string fit = percent_text(accuracy.fit) + " (fit)";
-  return std::isnan(accuracy.mesh) ? fit : percent_text(accuracy.mesh) + " (mesh) + " + fit;
+  const std::string fit = bound_text(accuracy.fit) + " (fit)";
+  return std::isnan(accuracy.mesh) ? fit : bound_text(accuracy.mesh) + " (mesh) + " + fit;
 }
 
 }  // namespace

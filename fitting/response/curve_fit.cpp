@@ -254,7 +254,7 @@ CurveFitSettings settled(CurveFitSettings settings, const std::vector<ForceSampl
   double peak = 0;
   for (const ForceSample& sample : samples) peak = std::max(peak, std::abs(sample.force));
   // Any tolerance suits samples without a force: the curve without a slope meets them.
-  settings.absolute_tolerance = peak > 0 ? kPeakShare * peak : 1;
+  settings.absolute_tolerance = peak > 0 ? kPeakFraction * peak : 1;
   return settings;
 }
 

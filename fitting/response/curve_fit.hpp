@@ -22,11 +22,11 @@ struct ForceSample {
 /// Error that is tolerated everywhere on a curve, over its largest force. Light touch, at a tenth
 /// of that force and less, is felt most of the time, and a response that is right there takes
 /// hardly more knots (docs/fidelity.md).
-inline constexpr double kPeakShare = 0.001;
+inline constexpr double kPeakFraction = 0.001;
 
 struct CurveFitSettings {
   double relative_tolerance = 0.01;
-  /// N; NaN: kPeakShare of the largest |force| of the samples
+  /// N; NaN: kPeakFraction of the largest |force| of the samples
   double absolute_tolerance = std::numeric_limits<double>::quiet_NaN();
   int max_knots = 12;
   bool zero_first_slope = false;  ///< for the normal response, whose slope is zero at touch

@@ -10,7 +10,7 @@
 #include "fitting/response/curve_fit.hpp"
 #include "fitting/response/fill.hpp"
 #include "fitting/response/interpolate.hpp"
-#include "fitting/response/relaxation_share.hpp"
+#include "fitting/response/relaxation_fraction.hpp"
 #include "fitting/response/site_samples.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
@@ -211,7 +211,7 @@ Library fit(const Body& body, const Curves& curves, const FitSettings& settings)
     if (!usable(site, curves.depth)) continue;
     NodeResponse& node = library.responses[static_cast<std::size_t>(site.vertex)];
     node = fit_site(site, settings);
-    if (library.relaxes()) node.relaxation = relaxation_shares(site, curves.relaxation);
+    if (library.relaxes()) node.relaxation = relaxation_fractions(site, curves.relaxation);
     ++fitted;
   }
   if (fitted == 0) {

@@ -12,7 +12,7 @@
 namespace palpate::fitting {
 namespace {
 
-constexpr double kFeltShare = 0.01;  // of the largest normal force
+constexpr double kFeltFraction = 0.01;  // of the largest normal force
 
 using Samples = std::vector<ForceSample>;
 
@@ -59,7 +59,7 @@ double ratio(double error, double scale) {
 
 SiteFitError error_of(const NodeResponse& node, ResponseKind kind, const SiteCurves& site) {
   const double normal_peak = peak(normal_samples(site));
-  double lateral_peak = kFeltShare * normal_peak;
+  double lateral_peak = kFeltFraction * normal_peak;
   for (const Samples& path : lateral_paths(site)) lateral_peak = std::max(lateral_peak, peak(path));
   return {site.vertex,
           ratio(node.normal_error, normal_peak),

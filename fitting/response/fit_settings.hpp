@@ -9,8 +9,8 @@ namespace palpate::fitting {
 
 struct FitSettings {
   double relative_tolerance = 0.01;  ///< of the local force
-  /// N; the larger of the two applies. NaN: kPeakShare of the largest force of each curve, so that
-  /// a soft site beside stiff ones is fitted as well as they are.
+  /// N; the larger of the two applies. NaN: kPeakFraction of the largest force of each curve, so
+  /// that a soft site beside stiff ones is fitted as well as they are.
   double absolute_tolerance = std::numeric_limits<double>::quiet_NaN();
   int max_knots = 12;        ///< per curve
   bool fill_holes = false;   ///< Fill failed sites from their neighbours; status Interpolated.

@@ -84,7 +84,7 @@ void ComediElectronics::fail(const std::string& what) const {
   const char* text = driver_->error_text(driver_->error());
   throw Error(ErrorKind::Configuration, "Comedi " + settings_.device,
               what + ": " + (text != nullptr ? text : "unknown error"),
-              "check the board, its driver (comedi_config) and the rights on the device file");
+              "check the board, its driver (comedi_config) and the permissions of the device file");
 }
 
 void ComediElectronics::open() {

@@ -113,7 +113,8 @@ class Manners(unittest.TestCase):
 
     def test_a_mistyped_word_is_answered_with_the_nearest(self):
         for words, answer in ((["biuld"], "'build'"), (["build", "a.toml", "--thread", "2"], "'--threads'"),
-                              (["export", "sites"], "'site'"), (["help", "certfy"], "'certify'")):
+                              (["export", "sites"], "'site'"), (["help", "certfy"], "'certify'"),
+                              (["init", "a.stl", "--out", "a.toml"], "'--output'")):
             refused = palpate(*words)
             self.assertEqual(refused.returncode, USAGE, refused.stderr)
             self.assertIn(f"the nearest is {answer}", refused.stderr)
@@ -122,7 +123,34 @@ class Manners(unittest.TestCase):
         refused = palpate("frobnicate")
         self.assertEqual(refused.returncode, USAGE)
         self.assertNotIn("the nearest", refused.stderr)
-        self.assertIn("palpate --help", refused.stderr)
+        self.assertIn("'palpate help'", refused.stderr)
+        refused = palpate("build", "--frobnicate")
+        self.assertIn("'palpate help build'", refused.stderr)
+
+    def commands(self, words=()):
+        """Each command of more than one part as well, with its help."""
+        text = palpate(*words, "--help").stdout
+        if words:
+            yield list(words), text
+        for line in text.split("Subcommands:")[1].splitlines() if "Subcommands:" in text else ():
+            if name := re.match(r"  ([a-z]+)( |$)", line):
+                yield from self.commands((*words, name[1]))
+
+    def test_examples_are_commands_that_the_parser_takes(self):
+        """Tried where none of their files is."""
+        tried = 0
+        for words, text in self.commands():
+            shown = re.split(r"^Examples?:", text, flags=re.MULTILINE)[1]
+            for example in ("palpate " + part for part in " ".join(shown.split()).split("palpate ")[1:]):
+                arguments = example.split()[1:]
+                self.assertEqual(arguments[:len(words)], words, text)
+                if not re.search(r"\.(toml|h5|json|journal)\b", example):
+                    continue
+                with tempfile.TemporaryDirectory() as empty:
+                    refused = palpate(*arguments, cwd=empty)
+                self.assertNotIn("command line:", refused.stderr, example)
+                tried += 1
+        self.assertGreater(tried, 25)
 
     def test_a_surface_in_place_of_a_case(self):
         refused = palpate("build", self.root / "block.off")

@@ -7,6 +7,7 @@ library with simulated shape and measured scale. Usage: measured_test.py PALPATE
 import csv
 import json
 import math
+import random
 import sys
 import tempfile
 import unittest
@@ -167,6 +168,25 @@ class Measured(unittest.TestCase):
         self.ok("calibrate", "tests", fit, "--out", folder / "turned")
         self.assertTrue((folder / "turned/calibration.html").exists())
 
+    def test_a_hard_fit_prints_warnings_of_its_own_alone(self):
+        """Three terms of Ogden's law where two would do: their solver meets states without a stress on its way."""
+        folder = Path(self.folder.name)
+        terms = ((0.41e6, 1.3), (3e3, 5), (-1e4, -2))
+        rows, noise = [], random.Random(3)
+        for i in range(40):
+            s = 1.2 + (17 - 1.2) * i / 39
+            stress = sum(mu * (s ** (a - 1) - s ** (-a / 2 - 1)) for mu, a in terms) * (1 + 0.01 * noise.gauss(0, 1))
+            rows.append(f"{100 * (s - 1):.3f},{1e-6 * stress:.6f}")
+        (folder / "far.csv").write_text("Strain (%),Stress (MPa)\n" + "\n".join(rows) + "\n")
+        fit = folder / "far.toml"
+        fit.write_text('name = "a"\nsource = "b"\nlicence = "c"\n[fit]\nlaw = "ogden-3"\n[[test]]\nfile = "far.csv"\n'
+                       'mode = "uniaxial"\ndeformation = "Strain"\ndeformation_is = "strain"\nstress = "Stress"\n')
+        result = command.palpate("calibrate", "tests", fit)
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertIn("R2 0.999", result.stdout)
+        for line in result.stderr.splitlines():
+            self.assertTrue(line.startswith("warning: "), line)
+
     def refuse(self, words, text, name="bad.toml", body=True):
         sidecar = Path(self.folder.name) / name
         sidecar.write_text(text.replace('file = "', f'file = "{self.presses.parent}/'), encoding="utf-8")
@@ -209,6 +229,25 @@ class Measured(unittest.TestCase):
             self.assertEqual(len(file["site/vertex"]), 16)
             self.assertEqual(file["path/repeats"][file["site/first_path"][site]], 2)  # of three
         self.ok(*arguments, "--allow-refused")
+
+    def test_the_choice_of_a_cycle_is_printed(self):
+        """Three presses in one record, each deeper than the one before: the first, unless another is chosen."""
+        folder = Path(self.folder.name) / "cycles"
+        folder.mkdir()
+        rows, t = [], 0.0
+        for x in [i / 100 for i in range(100)] + [1 + d for c in (1, 1.5, 2)
+                                                  for d in [i * c / 100 for i in [*range(101), *range(100, -1, -1)]]]:
+            depth = max(x - 1, 0) * 1e-3
+            rows.append(f"{t:.2f},{x:.4f},{16 / 9 * 5e3 * 0.002 * depth ** 1.5 + 1e-6 * ((7 * len(rows)) % 5 - 2):.9f}")
+            t += 0.05
+        (folder / "a.csv").write_text("t (s),x (mm),f (N)\n" + "\n".join(rows) + "\n")
+        sidecar = folder / "side.toml"
+        text = ('name = "c"\nspecimen = "gel"\nsource = "synthetic"\nlicence = "CC0-1.0"\n'
+                '[tool]\nradius = "4 mm"\nfriction = "frictionless"\n'
+                '[columns]\ntime = "t"\ndisplacement = "x"\nforce = "f"\n[[press]]\nfile = "a.csv"\nvertex = 0\n')
+        for cycle, words in (("", "a.csv: cycle 1 of 3, 1.00 mm deep"), ("cycle = -1\n", "a.csv: cycle 3 of 3, 2.0")):
+            sidecar.write_text(text + cycle)
+            self.assertIn(words, self.ok("import", sidecar, "--out", folder / "out"))
 
     def test_a_tool_larger_than_the_body_is_doubted(self):
         sidecar = Path(self.folder.name) / "doubted.toml"

@@ -64,6 +64,8 @@ class Size(unittest.TestCase):
                                   capture_output=True, text=True, check=False)
             assert done.returncode == 0, done.stdout + done.stderr
             said += done.stdout
+        if scale < 1:
+            said += cls.press_again(case, root / "out")
         with h5py.File(root / "out" / "curves.h5") as curves, h5py.File(root / "out" / "library.h5") as library, \
                 h5py.File(root / "out" / "recording.h5") as session:
             return {"force": curves["sample/force"][:], "displacement": curves["sample/displacement"][:],
@@ -71,6 +73,16 @@ class Size(unittest.TestCase):
                     "bound": library["certificate"].attrs["stick"],
                     "depth": session["step/depth"][:], "commanded": session["step/force"][:],
                     "status": session["step/status"][:], "said": said}
+
+    @staticmethod
+    def press_again(case, out):
+        """What is printed of the first site, pressed for another program."""
+        with h5py.File(out / "curves.h5") as curves:
+            vertex = str(curves["site/vertex"][0])
+        done = subprocess.run([PALPATE, "export", "site", case, "--out", out, "--vertex", vertex],
+                              capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
 
     def assert_scales(self, scale, modulus):
         body = self.run_on(scale, modulus)
@@ -82,6 +94,8 @@ class Size(unittest.TestCase):
                 self.assertEqual(body[name].shape, expected.shape)
                 np.testing.assert_allclose(body[name], expected, rtol=0, atol=tolerance * np.abs(expected).max())
         np.testing.assert_array_equal(body["knots"], self.reference["knots"])
+        # Lengths, forces and energies are printed in a unit in which they are not rounded away.
+        self.assertNotRegex(body["said"], r"\b0\.0+[0-9]?(e-\d+)? (mm|N|mN|mJ)\b")
         self.assertAlmostEqual(body["bound"] / (modulus * scale * self.reference["bound"]), 1, delta=0.01)
 
     def test_the_fit_follows_every_curve_and_the_session_stays_within_them(self):

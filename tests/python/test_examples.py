@@ -90,7 +90,7 @@ class Examples(unittest.TestCase):
     def test_a_wrong_file_is_named(self):
         done = self.run_example("press.py", self.root / "none.h5")
         self.assertIn("palpate.FileError: ", done.stderr)
-        self.assertIn("none.h5: cannot be opened; check path and rights", done.stderr)
+        self.assertIn("none.h5: cannot be opened; check path and permissions", done.stderr)
 
 
 if __name__ == "__main__":

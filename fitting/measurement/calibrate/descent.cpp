@@ -2,9 +2,12 @@
 #include "fitting/measurement/calibrate/descent.hpp"
 
 #include <ceres/ceres.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "fitting/measurement/calibrate/projection.hpp"
 
 namespace palpate::calibrate {
 namespace {
@@ -22,6 +25,12 @@ class Cost : public ceres::CostFunction {
  private:
   const LeastSquares& problem_;
 };
+
+/// Ceres logs each failed step of a search to the standard error, hundreds of lines of a fit that
+/// converges all the same. What became of the fit is in its summary.
+void silence_steps() {
+  FLAGS_minloglevel = google::GLOG_FATAL;
+}
 
 /// Whether no constant that may move would lower the cost: the residuals are normal to every column
 /// of the Jacobian, or nothing beside what the constants contribute to the model.
@@ -47,9 +56,7 @@ bool is_stationary(const LeastSquares& problem, const std::vector<double>& at,
   return steepest <= kNormal * kNormal * squares || squares <= kNothing * kNothing * largest;
 }
 
-}  // namespace
-
-std::optional<Minimum> descend(const LeastSquares& problem) {
+std::optional<Minimum> descend_at_once(const LeastSquares& problem) {
   const std::size_t n = problem.constants.size();
   Minimum found;
   found.at.resize(n);
@@ -72,6 +79,7 @@ std::optional<Minimum> descend(const LeastSquares& problem) {
     options.parameter_tolerance = problem.step_tolerance;
     options.gradient_tolerance = 0;  // it is not relative
     options.logging_type = ceres::SILENT;
+    silence_steps();
     ceres::Solver::Summary summary;
     ceres::Solve(options, &solver, &summary);
     if (!summary.IsSolutionUsable()) return std::nullopt;
@@ -82,6 +90,29 @@ std::optional<Minimum> descend(const LeastSquares& problem) {
   }
   for (const double value : found.residuals) found.cost += 0.5 * value * value;
   return found;
+}
+
+/// Along the valley in the constants that bend the residuals, and from its end in all of them.
+std::optional<Minimum> descend_along_valley(LeastSquares problem, const std::vector<double>& from) {
+  for (std::size_t k = 0; k < from.size(); ++k) problem.constants[k].start = from[k];
+  const Projection projection(problem);
+  if (!projection.is_useful()) return std::nullopt;
+  const auto end = descend_at_once(projection.reduced());
+  std::vector<double> all;
+  if (!end || !projection.expand(end->at.data(), all)) return std::nullopt;
+  for (std::size_t k = 0; k < all.size(); ++k) problem.constants[k].start = all[k];
+  return descend_at_once(problem);
+}
+
+}  // namespace
+
+std::optional<Minimum> descend(const LeastSquares& problem) {
+  auto found = descend_at_once(problem);
+  if (!found || found->converged) return found;
+  auto farther = descend_along_valley(problem, found->at);
+  if (!farther || !(farther->cost <= found->cost)) return found;
+  farther->iterations += found->iterations;
+  return farther;
 }
 
 }  // namespace palpate::calibrate

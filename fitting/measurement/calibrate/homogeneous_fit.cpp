@@ -49,6 +49,17 @@ double largest_strain(const std::vector<HomogeneousTest>& tests) {
   return largest;
 }
 
+/// A law that converges on data of another shape has constants, and they say little.
+void warn_of_misfit(const std::vector<HomogeneousTest>& tests, HomogeneousFit& fit) {
+  constexpr double kMissed = 0.25;  // of the root mean square of the stresses
+  for (std::size_t i = 0; i < tests.size(); ++i) {
+    if (!(fit.errors[i].relative > kMissed)) continue;
+    fit.calibration.warnings.push_back(
+        "the fitted law misses " + tests[i].name + " by " + percent_text(fit.errors[i].relative) +
+        " of its root mean square stress: choose another law, or check columns and units");
+  }
+}
+
 void warn_of_instability(const std::vector<HomogeneousTest>& tests, HomogeneousFit& fit) {
   bool in_a_test = false;
   for (std::size_t i = 0; i < tests.size(); ++i) {
@@ -177,6 +188,7 @@ void add_predictions(const std::vector<HomogeneousTest>& tests, const Incompress
     fit.stability.push_back(stability_of(law, c, test));
   }
   fit.all_states = stability_of_states(law, c, largest_strain(tests));
+  warn_of_misfit(tests, fit);
   warn_of_instability(tests, fit);
 }
 

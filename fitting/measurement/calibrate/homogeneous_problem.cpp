@@ -142,6 +142,7 @@ std::vector<Constant> law_constants(const IncompressibleLaw& law, const DataScal
     const ConstantInfo* given = given_in(settings, info.name);
     const ConstantInfo& used = given != nullptr ? *given : info;
     out.push_back({used.name, info.is_stress ? "Pa" : "1", used.start, used.low, used.high});
+    out.back().linear = info.is_stress;
   }
   for (const ConstantInfo& given : settings.constants) {
     const auto is_it = [&](const Constant& c) { return c.name == given.name; };
@@ -237,8 +238,9 @@ HomogeneousProblem problem_of(const std::vector<HomogeneousTest>& tests,
     }
     problem.offset.push_back(test.offset);
     if (test.offset)
-      squares.constants.push_back(
-          {"offset of " + test.name, "Pa", 0, -kInfinity, kInfinity, /*may_vanish=*/true});
+      squares.constants.push_back({"offset of " + test.name, "Pa", 0, -kInfinity, kInfinity,
+                                   /*may_vanish=*/true, false,
+                                   /*linear=*/true});
   }
   if (law.name().starts_with("ogden") && settings.constants.empty())
     squares.canonical = [terms = law.constants().size() / 2](std::vector<double>& c) {

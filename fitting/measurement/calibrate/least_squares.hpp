@@ -18,6 +18,7 @@ struct Constant {
   double low = 0, high = 0;  ///< may be infinite
   bool may_vanish = false;   ///< 0 is a value like any other: an interval that holds it is no doubt
   bool logarithm = false;    ///< the values are logarithms of what is named, for messages
+  bool linear = false;       ///< the residuals are straight lines over it, whatever the others are
 };
 
 struct LeastSquares {

@@ -3,26 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "fitting/measurement/records/statistics.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "runtime/response_curve.hpp"
 
 namespace palpate::compare {
 namespace {
 
-std::string in_millimetres(double metres) {
-  char text[48];
-  std::snprintf(text, sizeof text, "%.4g mm", 1e3 * metres);
-  return text;
-}
-
 std::string path_name(PathKind kind, double lateral_depth) {
   if (kind == PathKind::Normal) return "normal path";
-  char text[48];
-  std::snprintf(text, sizeof text, "lateral path at %.2f mm", 1e3 * lateral_depth);
-  return text;
+  return "lateral path at " + length_text(lateral_depth);
 }
 
 ComparedCurve curve_of(const CurvePath& path) {
@@ -128,12 +120,12 @@ ComparedPoint point_at(const Pair& pair, double x, const CompareSettings& settin
   point.model = pair.model_curve.value(x);
   // A measured force_uncertainty holds its own contact point; only an uncertain depth of a curve
   // that states no uncertainty of force is added.
-  const auto doubt = [&](const ComparedCurve& curve, const MonotoneCubic& cubic) {
+  const auto uncertainty_of = [&](const ComparedCurve& curve, const MonotoneCubic& cubic) {
     const double force = interpolated(curve, curve.uncertainty, x);
     return std::isfinite(force) ? force : std::abs(cubic.slope(x)) * curve.contact_uncertainty;
   };
-  point.uncertainty =
-      joint({doubt(pair.reference, pair.reference_curve), doubt(pair.model, pair.model_curve)});
+  point.uncertainty = joint({uncertainty_of(pair.reference, pair.reference_curve),
+                             uncertainty_of(pair.model, pair.model_curve)});
   point.scatter = interpolated(pair.reference, pair.reference.scatter, x);
   const double noticeable = std::max(settings.jnd * std::abs(point.reference), settings.jnd_floor);
   point.jnd = (point.model - point.reference) / noticeable;
@@ -153,8 +145,8 @@ void add_stiffness(const Pair& pair, const CompareSettings& settings, CurveCompa
 void add_figures(const CompareSettings& settings, CurveComparison& out) {
   const double q = measured::normal_quantile(settings.confidence);
   const auto n = static_cast<double>(out.points.size());
-  double squares = 0, mean = 0, total = 0, largest = 0, jnd = 0, scatter = 0, doubt = 0;
-  std::size_t noticeable = 0, within = 0, with_doubt = 0, with_scatter = 0;
+  double squares = 0, mean = 0, total = 0, largest = 0, jnd = 0, scatter = 0, variance = 0;
+  std::size_t noticeable = 0, within = 0, with_uncertainty = 0, with_scatter = 0;
   for (const ComparedPoint& p : out.points) mean += p.reference / n;
   for (const ComparedPoint& p : out.points) {
     const double e = p.model - p.reference;
@@ -166,8 +158,8 @@ void add_figures(const CompareSettings& settings, CurveComparison& out) {
     if (std::abs(p.jnd) > 1) ++noticeable;
     if (std::abs(e) >= std::abs(out.worst.model - out.worst.reference)) out.worst = p;
     if (std::isfinite(p.uncertainty)) {
-      ++with_doubt;
-      doubt += p.uncertainty * p.uncertainty;
+      ++with_uncertainty;
+      variance += p.uncertainty * p.uncertainty;
       if (std::abs(e) <= q * p.uncertainty) ++within;
     }
     if (std::isfinite(p.scatter)) {
@@ -180,9 +172,9 @@ void add_figures(const CompareSettings& settings, CurveComparison& out) {
   out.r2 = total > 0 ? 1 - squares / total : kUnknown;
   out.jnd_rms = std::sqrt(jnd);
   out.noticeable = static_cast<double>(noticeable) / n;
-  if (with_doubt > 0) {
-    out.within_uncertainty = static_cast<double>(within) / static_cast<double>(with_doubt);
-    out.mean_uncertainty = std::sqrt(doubt / static_cast<double>(with_doubt));
+  if (with_uncertainty > 0) {
+    out.within_uncertainty = static_cast<double>(within) / static_cast<double>(with_uncertainty);
+    out.mean_uncertainty = std::sqrt(variance / static_cast<double>(with_uncertainty));
   }
   if (with_scatter > 0) out.mean_scatter = std::sqrt(scatter / static_cast<double>(with_scatter));
 }
@@ -213,7 +205,7 @@ CurveComparison compare_curves(const ComparedSite& site, const ComparedSite& oth
 Summary summarize(const std::vector<CurveComparison>& curves, PathKind kind) {
   Summary s;
   s.kind = kind;
-  double squares = 0, jnd = 0, largest = 0, within = 0, with_doubt = 0, scatter = 0,
+  double squares = 0, jnd = 0, largest = 0, within = 0, with_uncertainty = 0, scatter = 0,
          with_scatter = 0, noticeable = 0;
   std::vector<double> differences;
   for (const CurveComparison& curve : curves) {
@@ -222,7 +214,7 @@ Summary summarize(const std::vector<CurveComparison>& curves, PathKind kind) {
     const auto n = static_cast<double>(curve.points.size());
     if (std::isfinite(curve.within_uncertainty)) {
       within += n * curve.within_uncertainty;
-      with_doubt += n;
+      with_uncertainty += n;
     }
     if (std::isfinite(curve.mean_scatter)) {
       scatter += n * curve.mean_scatter * curve.mean_scatter;
@@ -253,7 +245,7 @@ Summary summarize(const std::vector<CurveComparison>& curves, PathKind kind) {
   s.agreement_high = s.bias + spread;
   s.jnd_rms = std::sqrt(jnd / n);
   s.noticeable = noticeable / n;
-  if (with_doubt > 0) s.within_uncertainty = within / with_doubt;
+  if (with_uncertainty > 0) s.within_uncertainty = within / with_uncertainty;
   if (with_scatter > 0) s.mean_scatter = std::sqrt(scatter / with_scatter);
   return s;
 }
@@ -340,8 +332,8 @@ void check_tools(const ComparedSet& reference, const ComparedSet& model) {
   const double a = reference.tool_radius, b = model.tool_radius;
   if (!(std::abs(a - b) > kSameRadius * std::max(a, b))) return;
   refuse(model.name,
-         "its tool has a radius of " + in_millimetres(b) + ", that of " + reference.name + " " +
-             in_millimetres(a),
+         "its tool has a radius of " + length_text(b) + ", that of " + reference.name + " " +
+             length_text(a),
          remedy);
 }
 

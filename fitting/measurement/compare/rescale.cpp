@@ -7,7 +7,7 @@
 
 #include "fitting/measurement/records/statistics.hpp"
 #include "fitting/measurement/relaxation/hereditary.hpp"
-#include "fitting/response/relaxation_share.hpp"
+#include "fitting/response/relaxation_fraction.hpp"
 #include "format/error.hpp"
 
 namespace palpate::compare {
@@ -77,8 +77,8 @@ RelaxingCurve relaxing_curve(const Curves& simulated, const ComparedSet& set,
   if (simulated.relaxation.empty()) return curve;
   const auto site = std::find_if(simulated.sites.begin(), simulated.sites.end(),
                                  [&](const SiteCurves& s) { return s.vertex == record.vertex; });
-  const std::vector<float> shares = fitting::relaxation_shares(*site, simulated.relaxation);
-  curve.series.fraction.assign(shares.begin(), shares.end());
+  const std::vector<float> fractions = fitting::relaxation_fractions(*site, simulated.relaxation);
+  curve.series.fraction.assign(fractions.begin(), fractions.end());
   curve.series.time = simulated.relaxation.times_s;
   return curve;
 }

@@ -35,9 +35,9 @@ Rescaling rescale(const Curves& simulated, const Curves& measured, const Compare
 /// The same with whole records instead of loading curves: measured = s * the force that the
 /// simulated curve of the site shows along the recorded travel when it relaxes, which is
 ///   integral of g(t - s) de(x(s)),
-/// with e its instantaneous force and g by the relaxation shares of the site; an elastic campaign
-/// does not relax. So the time in which a press was made does not bias the scale. Samples beyond
-/// the deepest simulated one are left out.
+/// with e its instantaneous force and g by the relaxation fractions of the site; an elastic
+/// campaign does not relax. So the time in which a press was made does not bias the scale. Samples
+/// beyond the deepest simulated one are left out.
 /// @throws Error(Configuration) when a record is at no site with a simulated press, or all of it is
 ///   deeper than that, or a factor is not positive.
 Rescaling rescale_over_time(const Curves& simulated,

@@ -16,7 +16,7 @@ constexpr double kSquareGrow = 2;               // 1/s
 constexpr double kFade = 0.5;                   // s
 constexpr double kRoom = 0.5;                   // of the box: the amplitude grows within
 constexpr double kSquareRoom = 1.5e-3;          // m: the tip is at most 0.2 m/s fast
-constexpr double kSineShare = 2.0 / 3;          // of the time
+constexpr double kSineFraction = 2.0 / 3;       // of the time
 constexpr double kHalf = 0.04;                  // s, mean of the halves of the square wave
 
 double frequency(int i) {
@@ -53,7 +53,7 @@ double Excitation::square(double time, double way) noexcept {
 void Excitation::adapt(double time, double way) noexcept {
   const double dt = time - last_;
   last_ = time;
-  const double end = sign_ == 0 ? kSineShare * settings_.seconds : settings_.seconds;
+  const double end = sign_ == 0 ? kSineFraction * settings_.seconds : settings_.seconds;
   const double room =
       sign_ == 0 ? kRoom * settings_.box : std::min(kRoom * settings_.box, kSquareRoom);
   const double grow = sign_ == 0 ? kGrow : kSquareGrow;
@@ -71,7 +71,7 @@ Vec3 Excitation::command(double time, const Vec3& x) noexcept {
   left_ = left_ || norm(away) > settings_.box || !is_finite(x);
   if (left_) return {};
   const double since = time - begin_, way = dot(away, settings_.direction);
-  const bool sine = since < kSineShare * settings_.seconds;
+  const bool sine = since < kSineFraction * settings_.seconds;
   const double wave = sine ? sines(since) : square(since, way);
   adapt(since, way);
   const double limit = settings_.max_force;

@@ -21,7 +21,8 @@ constexpr std::array<std::array<double, 3>, 4> kRanges{
     {{0.12, 0.2, 0.33}, {0.2, 0.33, 0.5}, {0.33, 0.5, 0.75}, {0.5, 0.75, 1}}};
 constexpr double kDeepEnough = 0.01;  ///< of the largest force: a baseline known so well
 
-/// Up to which displacements samples count as out of contact, before the press and after it.
+/// Up to which displacements samples count as out of contact, before the press, with those at it (a
+/// specimen in grips waits where it is unloaded), and below which after the press.
 struct Clear {
   double before = kNever, after = kNever;
 };
@@ -155,7 +156,7 @@ class Collector {
 OnsetSamples Press::samples(std::size_t loading, const Clear& clear) const {
   Collector out;
   for (std::size_t i = c_.before; i < c_.begin; ++i) {
-    if (x_[i] < clear.before && (has_time() || c_.before == 0))
+    if (x_[i] <= clear.before && (has_time() || c_.before == 0))
       out.take(i, time_at(i), x_[i], r_.force[i], true);
   }
   for (std::size_t i = c_.begin; i < c_.begin + loading; ++i) {
@@ -171,7 +172,7 @@ OnsetSamples Press::samples(std::size_t loading, const Clear& clear) const {
 OnsetSamples Press::free_samples(const Clear& clear) const {
   Collector out;
   for (std::size_t i = c_.before; i < c_.loading_end; ++i) {
-    if (x_[i] < clear.before && (i >= c_.begin || has_time() || c_.before == 0))
+    if (x_[i] <= clear.before && (i >= c_.begin || has_time() || c_.before == 0))
       out.take(i, time_at(i), x_[i], r_.force[i], true);
   }
   for (std::size_t i = c_.peak; i < c_.end; ++i) {

@@ -119,8 +119,8 @@ bool is_unit_row(const std::vector<std::string>& fields) {
   return any;
 }
 
-/// "Load (N)", "Load [N]", "Load / N", "Load in N", "Load_N" -> name and unit. What follows must be
-/// a known unit, except in brackets at the end.
+/// "Load (N)", "Load [N]", "Load / N", "Load in N", "Load, N", "Load_N" -> name and unit. What
+/// follows must be a known unit, except in brackets at the end.
 CsvColumn name_and_unit(const std::string& field) {
   for (const auto& [open, close] : {std::pair{'(', ')'}, std::pair{'[', ']'}}) {
     const auto at = field.rfind(open);
@@ -129,7 +129,7 @@ CsvColumn name_and_unit(const std::string& field) {
             without_brackets(field.substr(at)),
             {}};
   }
-  for (const std::string_view mark : {" / ", "/", " in ", "_"}) {
+  for (const std::string_view mark : {" / ", "/", " in ", ", ", "_"}) {
     const auto at = field.rfind(mark);
     if (at == std::string::npos || at == 0) continue;
     const std::string unit(trimmed(std::string_view(field).substr(at + mark.size())));
@@ -209,6 +209,12 @@ bool has_header(const std::vector<Line>& lines, std::size_t begin, const Run& ru
          });
 }
 
+/// "<END DATA>" of a tester that puts its blocks between marks.
+bool is_mark(const Line& line) {
+  const std::string_view text = trimmed(line.text);
+  return text.starts_with('<') && text.ends_with('>');
+}
+
 /// The tables of a file: the first run that is long enough, and every later one under a header.
 std::vector<Run> tables_of(const std::vector<Line>& lines, const std::string& file,
                            const Run& longest, const Dialect& dialect) {
@@ -227,7 +233,8 @@ std::vector<Run> tables_of(const std::vector<Line>& lines, const std::string& fi
     from = run.end;
   }
   // What follows the last table is neither a table nor numbers of one.
-  const std::size_t end = tables.empty() ? lines.size() : tables.back().end;
+  std::size_t end = tables.empty() ? lines.size() : tables.back().end;
+  while (end < lines.size() && is_mark(lines[end])) ++end;
   if (end < lines.size()) refuse_row(file, lines[end], dialect, tables.back().width);
   return tables;
 }
@@ -292,7 +299,7 @@ CsvTable read_csv(const std::filesystem::path& path, const std::vector<DeclaredC
     refuse(path.string(), "the file is empty", "copy or record it again");
   }
   if (!stream || !(text << stream.rdbuf())) {
-    refuse(path.string(), "the record cannot be read", "check the path and the rights");
+    refuse(path.string(), "the record cannot be read", "check path and permissions");
   }
   return parse_csv(text.str(), path.string(), declared, table);
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "fitting/measurement/records/cycles.hpp"
 #include "fitting/measurement/records/repeats.hpp"
 #include "fitting/measurement/records/statistics.hpp"
 
@@ -25,10 +26,12 @@ std::vector<double> even_steps(double end, int steps) {
 GriddedPress along(const DragCurve& drag, const Vec3& axis, const std::vector<double>& grid,
                    const std::string& where) {
   std::vector<DepthForce> branch;
+  std::vector<double> force;
   for (std::size_t i = 0; i < drag.travel.size(); ++i) {
-    branch.push_back({drag.travel[i], dot(drag.force[i], axis)});
+    force.push_back(dot(drag.force[i], axis));
+    branch.push_back({drag.travel[i], force.back()});
   }
-  return on_grid(branch, grid, where);
+  return on_grid(branch, grid, where, noise_of(force));
 }
 
 /// Stiffness along the travel at each grid step, to see the slip.

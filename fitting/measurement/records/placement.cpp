@@ -4,21 +4,15 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <Eigen/SVD>
-#include <cstdio>
 
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::measured {
 namespace {
 
 Eigen::Vector3d to_eigen(const Vec3& v) {
   return {v[0], v[1], v[2]};
-}
-
-std::string in_millimetres(double metres) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f mm", 1e3 * metres);
-  return text;
 }
 
 }  // namespace
@@ -79,9 +73,9 @@ NearestSite nearest_site(const Body& body, const Vec3& point, double tolerance,
   if (nearest.distance > tolerance) {
     throw Error(ErrorKind::Configuration, where,
                 "the nearest site, vertex " + std::to_string(nearest.vertex) + ", is " +
-                    in_millimetres(nearest.distance) + " away",
+                    length_text(nearest.distance) + " away",
                 "check the frame and the units of the points, or raise the tolerance (" +
-                    in_millimetres(tolerance) + ")");
+                    length_text(tolerance) + ")");
   }
   return nearest;
 }

@@ -32,7 +32,7 @@ void check_record(const PressRecord& record) {
 /// What the machine yields is a part of what it shows. More than nearly all of that means a wrong
 /// unit, or nothing is known of the specimen.
 void check_compliance(const PressRecord& record, const Cycle& cycle, double compliance) {
-  constexpr double kLargestShare = 0.9;
+  constexpr double kLargestFraction = 0.9;
   const auto span = [&](const std::vector<double>& values) {
     const auto begin = values.begin() + static_cast<std::ptrdiff_t>(cycle.begin);
     const auto end = values.begin() + static_cast<std::ptrdiff_t>(cycle.peak) + 1;
@@ -40,7 +40,7 @@ void check_compliance(const PressRecord& record, const Cycle& cycle, double comp
     return *high - *low;
   };
   const double yields = compliance * span(record.force), travel = span(record.displacement);
-  if (yields <= kLargestShare * travel) return;
+  if (yields <= kLargestFraction * travel) return;
   refuse(record.name,
          "by its compliance the machine would yield " + length_text(yields) + " of " +
              length_text(travel) + " of travel",

@@ -6,6 +6,7 @@
 
 #include "fitting/measurement/records/statistics.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/tangent_frame.hpp"
 
 namespace palpate::measured {
@@ -14,7 +15,7 @@ namespace {
 /// Between the reaches of presses that repeat each other.
 constexpr double kLargestRatio = 5;
 /// Samples of a record around a sample of the path, and samples of a path that is made coarser.
-constexpr int kFewestAround = 2, kFewestSamples = 6;
+constexpr int kFewestAround = 2, kFewestSamples = 4;
 
 double deepest(const PressCurve& press) {
   double depth = 0;
@@ -104,7 +105,7 @@ CurveSample measured_sample() {
 }
 
 GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<double>& depths,
-                     const std::string& where) {
+                     const std::string& where, double noise) {
   GriddedPress press;
   const double half = half_step(depths);
   for (const double depth : depths) {
@@ -117,8 +118,9 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
     }
     if (x.size() < kFewestAround) {
       throw Error(ErrorKind::Configuration, where,
-                  "no samples around a depth of " + std::to_string(1e3 * depth) + " mm",
-                  "ask for fewer samples of the path, or record more densely");
+                  "too few samples around a depth of " + length_text(depth),
+                  "keep every sample of one press with path.as_recorded = true, ask for fewer "
+                  "samples of the path, or record more densely");
     }
     const LineFit line = fit_line(x, f);
     // At the end of the branch the samples lie on one side: the line, not the mean, is unbiased.
@@ -128,7 +130,7 @@ GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<do
     const double lever = spread > 0 ? centre * centre / spread : 0;
     press.force.push_back(line.offset);
     press.time.push_back(mean(t));
-    press.uncertainty.push_back(line.residual *
+    press.uncertainty.push_back(std::max(line.residual, noise) *
                                 std::sqrt(1 / static_cast<double>(x.size()) + lever));
   }
   return press;
@@ -142,14 +144,15 @@ CurvePath mean_path(const std::vector<PressCurve>& presses, const Vec3& inward,
     farthest = std::max(farthest, deepest(press));
   }
   if (farthest > kLargestRatio * reach) {
-    throw Error(ErrorKind::Configuration, where,
-                "one of its presses reaches " + std::to_string(1e3 * reach) + " mm, another " +
-                    std::to_string(1e3 * farthest) + " mm",
-                "check their units of length; leave out a press that ended early");
+    throw Error(
+        ErrorKind::Configuration, where,
+        "one of its presses reaches " + length_text(reach) + ", another " + length_text(farthest),
+        "check their units of length; leave out a press that ended early");
   }
   const std::vector<double> depths = grid_of(presses, reach, settings.samples);
   std::vector<GriddedPress> gridded;
-  for (const PressCurve& press : presses) gridded.push_back(on_grid(press.loading, depths, where));
+  for (const PressCurve& press : presses)
+    gridded.push_back(on_grid(press.loading, depths, where, press.baseline.noise));
 
   std::vector<double> mean_force;
   for (std::size_t i = 0; i < depths.size(); ++i) {

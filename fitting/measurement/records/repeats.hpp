@@ -28,9 +28,11 @@ struct GriddedPress {
 };
 
 /// The loading branch at the given depths: at each the value of a straight line through the samples
-/// within half a step. @throws Error(Configuration) where a step holds no sample.
+/// within half a step. Few samples scatter about their line by chance: `noise`, the standard
+/// deviation of a sample (N), is the least that is taken for it. @throws Error(Configuration) where
+/// a step holds no sample.
 GriddedPress on_grid(const std::vector<DepthForce>& branch, const std::vector<double>& depths,
-                     const std::string& where);
+                     const std::string& where, double noise = 0);
 
 /// The loading branches as one normal path along `inward`, from the touch to the depth that all
 /// presses reach. Depths above the first sample of a record that begins in contact are left

@@ -46,6 +46,13 @@ TEST(NumberText, ForcesHaveTheUnitOfTheirSize) {
   EXPECT_EQ(force_text(0), "0 N");
 }
 
+TEST(NumberText, EnergiesHaveTheUnitOfTheirSize) {
+  EXPECT_EQ(energy_text(0.346e-3), "0.346 mJ");
+  EXPECT_EQ(energy_text(-9.677e-6), "-9.68 uJ");
+  EXPECT_EQ(energy_text(3.4e-12), "0.00340 nJ");
+  EXPECT_EQ(energy_text(0), "0 mJ");
+}
+
 TEST(NumberText, FractionsArePercents) {
   EXPECT_EQ(percent_text(0.1734), "17 %");
   EXPECT_EQ(percent_text(0.0042), "0.42 %");

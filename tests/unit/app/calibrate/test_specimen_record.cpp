@@ -155,10 +155,12 @@ TEST_F(SpecimenRecords, HaveCyclesAndTables) {
       "file = \"cycles.csv\"\ntable = 2\nmode = \"equibiaxial\"\ndeformation = \"stretch\"\n"
       "stress = \"P\"\n";
   EXPECT_EQ(read(keys).nominal.size(), 30U);
+  EXPECT_THAT(statement_, HasSubstr("nominal stress = P, all 2 cycles"));
   const auto loading = read(keys + "cycle = 2\nbranch = \"loading\"\n");
   EXPECT_EQ(loading.nominal.front(), 1000);
   EXPECT_EQ(loading.nominal.back(), 1010);
   const auto unloading = read(keys + "cycle = -1\nbranch = \"unloading\"\n");
+  EXPECT_THAT(statement_, HasSubstr(", cycle 2 of 2"));
   EXPECT_EQ(unloading.nominal.front(), 1010);
   EXPECT_EQ(unloading.nominal.back(), 1019);
   const auto both = read(keys + "cycle = 1\n");

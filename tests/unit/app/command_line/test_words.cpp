@@ -60,6 +60,21 @@ TEST_F(CommandWords, NamesTheNearestWord) {
             "unknown option '--jsn'; the nearest is '--json'");
 }
 
+/// The beginning of a word is meant for it, however much is missing.
+TEST_F(CommandWords, TakesABeginningForTheWholeWord) {
+  EXPECT_EQ(unknown({"build", "l.toml", "--thr"}),
+            "unknown option '--thr'; the nearest is '--threads'");
+  EXPECT_EQ(unknown({"export", "rec"}), "unknown subcommand 'rec'; the nearest is 'recording'");
+}
+
+TEST_F(CommandWords, NamesTheHelpOfTheCommandWhereNoWordIsNear) {
+  EXPECT_EQ(unknown({"build", "--absolutely"}),
+            "unknown option '--absolutely'; see 'palpate help build'");
+  EXPECT_EQ(unknown({"export", "site", "--absolutely"}),
+            "unknown option '--absolutely'; see 'palpate help export site'");
+  EXPECT_EQ(unknown({"whatever"}), "unknown subcommand 'whatever'; see 'palpate help'");
+}
+
 TEST_F(CommandWords, ExplainTheCommandThatWasParsed) {
   EXPECT_EQ(help_for(root_), "palpate help");
   EXPECT_THROW(root_.parse("export site --jsn"), CLI::ParseError);

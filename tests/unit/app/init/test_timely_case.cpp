@@ -27,13 +27,15 @@ struct Timely {
   double depth_over_patch() const { return c.campaign.indentation.depth / c.mesh.patch_spacing; }
 };
 
+CaseOf case_of(const std::string& file, const samples::TemporaryFolder& folder) {
+  CaseOf of{read_body_file(test::source_folder() / file, ""), {}, "", folder / "case.toml"};
+  of.base = find_base(of.body.surface);
+  return of;
+}
+
 Timely timely(const FirstWishes& wishes) {
   const samples::TemporaryFolder folder;
-  CaseOf of{read_body_file(test::source_folder() / "data/bodies/pad.off", ""),
-            {},
-            "",
-            folder / "case.toml"};
-  of.base = find_base(of.body.surface);
+  const CaseOf of = case_of("data/bodies/pad.off", folder);
   Timely result{timely_case(of, wishes), {}};
   result.c = parse_case(result.first.toml, "case.toml");
   return result;
@@ -81,6 +83,23 @@ TEST(TimelyCase, KeepsTheSitesThatAreAskedForAndPressesLessDeep) {
   EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("elements are not refined under the tool"));
   EXPECT_THAT(hurried.first.toml, HasSubstr("deeper takes too long"));
   EXPECT_THAT(hurried.first.remarks.back(), HasSubstr("pressed less deep"));
+}
+
+/// An aneurysm whose thin parts have sites once it is pressed less deep: those count, too.
+TEST(TimelyCase, CountsTheSitesOfTheDepthThatItChooses) {
+  const samples::TemporaryFolder folder;
+  const CaseOf of = case_of("tests/data/surfaces/sofa/aneurysm3d_1.off", folder);
+  const FirstCase first = timely_case(of, {.sites = 60, .minutes = kNoTime, .threads = 2});
+  const Case c = parse_case(first.toml, of.target.string());
+  FirstSizes sizes = counted_case(of, 60).sizes;
+  ASSERT_LT(c.campaign.indentation.depth, 0.7 * sizes.depth);
+  CountedCase counted;
+  counted.sizes = sizes;
+  counted.sizes.depth = c.campaign.indentation.depth;
+  count_sites(of, counted);
+  EXPECT_GT(*counted.sizes.sites, *sizes.sites);
+  EXPECT_THAT(first.remarks[first.remarks.size() - 2],
+              HasSubstr(std::to_string(*counted.sizes.sites)));
 }
 
 }  // namespace

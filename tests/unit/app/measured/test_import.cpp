@@ -273,6 +273,25 @@ TEST_F(Imports, TakeTheContactPointAndTheZeroThatAreGiven) {
   EXPECT_EQ(result.account.at("records").at(0).at("force_offset_N"), 0.0);
 }
 
+/// What is given and not said how well it is known counts as exact, and a warning names it.
+TEST_F(Imports, WarnOfUncertaintiesThatAreNotStated) {
+  Bench bench;
+  bench.contact = bench.offset = 0;
+  write_record("a.csv", bench, 4);
+  const auto warnings = [&](const std::string& position, const std::string& zero) {
+    const Import result = import_measurement(
+        write_sidecar(press("a.csv", 0), "[contact]\nmethod = \"given\"\nposition = \"0 mm\"\n" +
+                                             position + "[baseline]\nmethod = \"zeroed\"\n" + zero),
+        {});
+    return result.account.at("warnings").get<std::vector<std::string>>();
+  };
+  EXPECT_THAT(
+      warnings("", ""),
+      testing::Contains(HasSubstr("give contact.position_uncertainty, baseline.uncertainty")));
+  EXPECT_THAT(warnings("position_uncertainty = \"0 mm\"\n", "uncertainty = \"0 N\"\n"),
+              testing::Not(testing::Contains(HasSubstr("not stated"))));
+}
+
 /// An approach of 1.5 s before 80 s of loading says nothing of drift.
 TEST_F(Imports, WarnOfADriftThatTheRecordDoesNotExclude) {
   Bench bench;

@@ -257,10 +257,12 @@ TEST(TextSink, PrintsSearchesAndStudies) {
   EXPECT_THAT(text_of({SteepestForce{"sliding", 90, kInfinity, 3, 0.95, 400}}),
               HasSubstr("there is no bound"));
   EXPECT_THAT(text_of({ConvergenceLevel{0.004, 12000, 61}}),
-              HasSubstr("elements of 4 mm, 12000 unknowns, 1 min 01 s"));
+              HasSubstr("elements of 4.00 mm, 12000 unknowns, 1 min 01 s"));
   EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, true, 1.5, 0.08, 0.25, 0.3}}),
               HasSubstr("100.0 90.00 -> 80.00 mN, order 1.50; error of the case's mesh +25.0 %, at "
                         "most 30.0 %"));
+  EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {1e-7, 9e-8}, true, 1.5, 8e-8, 0.25, 0.3}}),
+              HasSubstr("0.1000 0.09000 -> 0.08000 uN, order 1.50"));
   EXPECT_THAT(text_of({ConvergenceOfForce{5, "normal", {0.1, 0.09}, false, NAN, 0.09, 0.1, 0.4}}),
               HasSubstr("no power of the element size; error of the case's mesh +10.0 %, at most "
                         "40.0 %"));

@@ -18,7 +18,7 @@ namespace {
 
 constexpr Vec3 kSpot{0.027, -0.026, 0.018};
 constexpr double kSpotWidth = 0.012;
-constexpr double kLateralShare = 0.6;
+constexpr double kLateralFraction = 0.6;
 
 Vec3 unit(const Vec3& v) {
   return (1 / norm(v)) * v;
@@ -136,7 +136,7 @@ Vec3 tangent(const Vec3& inward) {
 }
 
 double lateral_stiffness(const Vec3& x) {
-  return kLateralShare * hertz_factor(x) * std::sqrt(kDepth);
+  return kLateralFraction * hertz_factor(x) * std::sqrt(kDepth);
 }
 
 CurvePath normal_path(std::int32_t vertex, const Vec3& x, const Vec3& inward, double end) {

@@ -200,8 +200,8 @@ void expect_refused(const Library& library, const Vec3& from, const Vec3& to, co
 
 TEST(PathBetween, RefusesAPointFarFromTheResponses) {
   const Vec3 inside = middle_of_tile(1, 1), far = inside + Vec3{0, 0, 0.05};
-  expect_refused(flat(3, 3), far, inside, "simulate.from", "is 50 mm away");
-  expect_refused(flat(3, 3), inside, far, "simulate.to", "is 50 mm away");
+  expect_refused(flat(3, 3), far, inside, "simulate.from", "is 50.0 mm away");
+  expect_refused(flat(3, 3), inside, far, "simulate.to", "is 50.0 mm away");
 }
 
 TEST(PathBetween, RefusesToCrossAHole) {

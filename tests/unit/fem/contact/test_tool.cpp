@@ -113,14 +113,14 @@ std::string refusal(const ToolGeometry& geometry) {
 TEST(Tool, BadSizesAreNamedWithTheirRange) {
   for (const auto& good : {kSphere, kSharp, kRounded, kCylinder})
     EXPECT_EQ(refusal(good), "accepted");
-  EXPECT_THAT(refusal({ToolShape::Sphere, 0, 0, 0}), HasSubstr("tool_radius = 0.000000 mm"));
+  EXPECT_THAT(refusal({ToolShape::Sphere, 0, 0, 0}), HasSubstr("tool_radius = 0 mm"));
   EXPECT_THAT(refusal({ToolShape::Sphere, std::nan(""), 0, 0}), HasSubstr("tool_radius"));
-  EXPECT_THAT(refusal({ToolShape::Disc, 0.005, 0.006, 0}), HasSubstr("edge_radius = 6.000000 mm"));
+  EXPECT_THAT(refusal({ToolShape::Disc, 0.005, 0.006, 0}), HasSubstr("edge_radius = 6.00 mm"));
   EXPECT_THAT(refusal({ToolShape::Disc, 0.005, -1e-9, 0}), HasSubstr("edge_radius"));
   EXPECT_THAT(refusal({ToolShape::Disc, 0.005, std::nan(""), 0}), HasSubstr("edge_radius"));
   EXPECT_THAT(refusal({ToolShape::Sphere, 0.005, 0.001, 0}), HasSubstr("only a disc"));
   EXPECT_THAT(refusal({ToolShape::Disc, 0.005, 0, 0.01}), HasSubstr("only a cylinder"));
-  EXPECT_THAT(refusal({ToolShape::Cylinder, 0.005, 0, 0}), HasSubstr("length = 0.000000 mm"));
+  EXPECT_THAT(refusal({ToolShape::Cylinder, 0.005, 0, 0}), HasSubstr("length = 0 mm"));
 }
 
 }  // namespace

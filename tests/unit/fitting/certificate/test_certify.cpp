@@ -158,7 +158,7 @@ TEST(Certificate, DepthBeyondTheRadiusOfCurvatureHasNoBoundAndAReason) {
             "lipschitz_bound = 104.5 N/m (Mahvash & Hayward 2005, eq. 5: 9877 Hz)");
   EXPECT_TRUE(std::isinf(library.certificate.slip));
   const std::string& line = library.certificate.limited_by;
-  EXPECT_NE(line.find("no bound of the slide: pressed 10 mm deep"), std::string::npos) << line;
+  EXPECT_NE(line.find("no bound of the slide: pressed 10.0 mm deep"), std::string::npos) << line;
   EXPECT_NE(line.find("(try a smaller patch spacing, a rounder edge"), std::string::npos) << line;
   EXPECT_EQ(line.find("inf"), std::string::npos) << line;
   EXPECT_NE(line.find("320 of 320 triangles have no bound; down to "), std::string::npos) << line;

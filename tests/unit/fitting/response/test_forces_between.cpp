@@ -41,7 +41,7 @@ double error_of(const ResponseCurve& curve, double weight, const std::vector<For
   double worst = 0;
   for (const ForceSample& sample : direct)
     worst = std::max(worst, std::abs(weight * response.force(sample.displacement) - sample.force) /
-                                std::max(kTolerance * sample.force, kPeakShare * peak));
+                                std::max(kTolerance * sample.force, kPeakFraction * peak));
   return worst;
 }
 

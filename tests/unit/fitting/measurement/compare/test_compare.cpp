@@ -220,7 +220,7 @@ TEST(Compare, OtherToolsAreRefused) {
   Curves a = curves_of(1), b = curves_of(1);
   a.tool = {"sphere", 0.1e-3, "frictionless"};
   b.tool = {"sphere", 0.25e-3, "frictionless"};
-  EXPECT_THAT(refusal(a, b), HasSubstr("radius of 0.25 mm, that of measured 0.1 mm"));
+  EXPECT_THAT(refusal(a, b), HasSubstr("radius of 0.250 mm, that of measured 0.100 mm"));
   b.tool.radius = 0.1005e-3;
   EXPECT_EQ(refusal(a, b), "accepted");
   b.tool.shape = "disc";

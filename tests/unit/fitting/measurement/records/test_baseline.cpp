@@ -103,7 +103,8 @@ void expect_honest(const Coverage& c) {
 /// A drift that is not there is not extrapolated, however short the approach is.
 TEST(Baseline, CoversWithoutDriftForEveryLengthOfApproach) {
   for (const double approach : {0.15e-3, 0.5e-3, 2e-3}) {
-    for (const auto& [has_time, release] : {std::pair{true, true}, {true, false}, {false, false}}) {
+    for (const auto& [has_time, release] :
+         {std::pair{true, true}, {true, false}, {false, true}, {false, false}}) {
       SCOPED_TRACE(testing::Message()
                    << 1e3 * approach << " mm, time " << has_time << ", release " << release);
       SlowPress press;
@@ -220,6 +221,42 @@ TEST(Baseline, AGivenContactPointLeavesTheBaselineToTheApproach) {
   EXPECT_NEAR(curve.baseline.offset, press.offset, 4 * 5e-3 / std::sqrt(200.0));
   settings.contact = 0;
   EXPECT_THROW(analyse_press(record_of(press, 5), settings), Error);
+}
+
+/// Two or three samples a step scatter about their line by chance: the noise of the record counts.
+TEST(Baseline, CoversSlowRecordsWithAGivenContactPoint) {
+  PressSettings settings;
+  settings.method = ContactMethod::Given;
+  settings.baseline = BaselineMethod::Zeroed;
+  for (const double rate : {1.0, 0.6, 0.35, 0.2}) {
+    SlowPress press;
+    press.approach = press.offset = 0;
+    press.rate = rate;
+    int inside = 0, samples = 0;
+    for (unsigned seed = 0; seed < 100; ++seed) {
+      const PressCurve curve = analyse_press(record_of(press, 7919 * seed + 1), settings);
+      const CurvePath path = mean_path({curve}, {0, 0, -1}, {}, "site");
+      for (auto sample = path.samples.begin() + 1; sample != path.samples.end(); ++sample) {
+        const double error = -sample->force[2] - force_at(sample->displacement);
+        inside += std::abs(error) <= 2 * sample->force_uncertainty ? 1 : 0;
+        ++samples;
+      }
+    }
+    EXPECT_GE(inside, 0.9 * samples) << rate;
+    EXPECT_LE(inside, 0.99 * samples) << rate;
+  }
+}
+
+/// A specimen between grips has no approach: it waits at the point that is given, and that wait is
+/// its baseline.
+TEST(Baseline, AWaitAtAGivenContactPointIsTheBaseline) {
+  SlowPress press;
+  press.approach = 0;
+  press.wait = 10;
+  PressSettings settings;
+  settings.method = ContactMethod::Given;
+  const PressCurve curve = analyse_press(record_of(press, 7), settings);
+  EXPECT_NEAR(curve.baseline.offset, press.offset, 4 * 5e-3 / std::sqrt(200.0));
 }
 
 }  // namespace

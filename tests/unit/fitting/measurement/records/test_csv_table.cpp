@@ -72,13 +72,25 @@ TEST(Csv, ReadsDecimalCommas) {
 }
 
 TEST(Csv, ReadsUnitsBesideTheNames) {
-  for (const char* header :
-       {"x (mm),f (N)", "x [mm],f [N]", "x / mm,f / N", "x in mm,f in N", "x_mm,f_N"}) {
+  for (const char* header : {"x (mm),f (N)", "x [mm],f [N]", "x / mm,f / N", "x in mm,f in N",
+                             "\"x, mm\",\"f, N\"", "x_mm,f_N"}) {
     const CsvTable table = parse_csv(std::string(header) + "\n1,2\n3,4\n5,6\n", "a.csv");
     EXPECT_THAT(column_in_si(table, "x", Dimension::Length), ElementsAre(1e-3, 3e-3, 5e-3))
         << header;
     EXPECT_THAT(column_in_si(table, "f", Dimension::Force), ElementsAre(2, 4, 6)) << header;
   }
+}
+
+/// Separated by tabs, the unit after a comma, blocks in angle brackets: as Mach-1 testers write it.
+TEST(Csv, ReadsUnitsAfterACommaBetweenTabs) {
+  const CsvTable table = parse_csv(
+      "<DATA>\nTime, s\tPosition (z), mm\tFz, N\n0.01\t1.5\t-0.002\n0.02\t1.6\t-0.003\n"
+      "0.03\t1.7\t-0.004\n<END DATA>\n",
+      "a.txt");
+  EXPECT_THAT(column_in_si(table, "Time", Dimension::Time), ElementsAre(0.01, 0.02, 0.03));
+  EXPECT_THAT(column_in_si(table, "Position (z)", Dimension::Length),
+              ElementsAre(1.5e-3, 1.6e-3, 1.7e-3));
+  EXPECT_THAT(column_in_si(table, "Fz", Dimension::Force), ElementsAre(-0.002, -0.003, -0.004));
 }
 
 TEST(Csv, ReadsFilesWithoutHeaderWhenDeclared) {

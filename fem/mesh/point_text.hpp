@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Lengths and points as text in messages.
+// Points as text in messages.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,8 +7,6 @@
 
 namespace palpate::fem {
 
-/// Metres as "2.500 mm".
-std::string in_millimetres(double metres);
 /// Metres as "(1, -2.5, 30) mm", in the unit of position_text.
 std::string point_text(const Eigen::Vector3d& X);
 

@@ -15,11 +15,11 @@ namespace palpate::fitting {
 /// moduli of region r, so that the response to a small change of them is exact, and that to a large
 /// one of first order. @pre the site has a normal path with a sample under load
 /// @throws Error(Configuration) where the samples lack the energies of the regions
-std::vector<float> relaxation_shares(const SiteCurves& site, const RegionRelaxation& relaxation);
+std::vector<float> relaxation_fractions(const SiteCurves& site, const RegionRelaxation& relaxation);
 
-/// Largest difference between the share at a depth and that of relaxation_shares(), summed over the
-/// times, weighted by the energy there over that of the deepest sample, 1. What one fraction for a
-/// node misses of tissue in layers.
-double largest_share_error(const SiteCurves& site, const RegionRelaxation& relaxation);
+/// Largest difference between the fraction at a depth and that of relaxation_fractions(), summed
+/// over the times, weighted by the energy there over that of the deepest sample, 1. What one
+/// fraction for a node misses of tissue in layers.
+double largest_fraction_error(const SiteCurves& site, const RegionRelaxation& relaxation);
 
 }  // namespace palpate::fitting
