@@ -16,7 +16,9 @@ class SkinError : public testing::Test {
   SkinError() {
     write_library(folder_ / "library.h5", plate_.library);
     Deformation deformation = fitting::compressed(plate_, fitting::dimple);
-    deformation.tool_radius = 0.001;
+    // The dimple is as wide at every depth, as under a disc, and this one moves no vertex.
+    deformation.tool_shape = "disc";
+    deformation.tool_radius = 1e-4;
     write_deformation(folder_ / "deformation.pdef", deformation);
     for (const Vec3& at : {Vec3{0.033, 0.042, 0}, Vec3{0.047, 0.025, 0}})
       points_.push_back({0, {}, at, fitting::kDown, false, 0});
