@@ -237,7 +237,7 @@ TEST(Campaign, HasTheReasonOfEveryFailedPath) {
   CampaignReport report;
   const SiteCurves site = run_campaign(body, s, report).sites.at(0);
   EXPECT_EQ(site.status, SiteStatus::Partial);
-  const std::string each = "lateral path at depth 2\\.000 mm at [0-9.]+ mm: [^;]+";
+  const std::string each = "lateral path at depth 2\\.00 mm at [0-9.]+ mm: [^;]+";
   EXPECT_THAT(site.reason, testing::MatchesRegex(each + "; " + each));
 }
 
