@@ -12,7 +12,7 @@
 namespace palpate::fem {
 namespace {
 
-// Powers of two: no digit changes.
+// Powers of two: no digit of the body changes. Roots round otherwise, and the iterations with them.
 constexpr double kForce = 1.0 / 64, kLength = 8;
 
 CampaignSettings pressing(const std::string& kind) {
@@ -29,6 +29,7 @@ CampaignSettings pressing(const std::string& kind) {
   }
   if (kind == "no-slip") s.indentation.friction = ToolFriction::NoSlip;
   if (kind == "refined") s.indentation.refine_under_tool = IndentationSettings::kByContact;
+  s.indentation.force_tolerance = 1e-7;
   s.indentation.depth = 0.001;
   s.indentation.increments = 4;
   s.indentation.lateral_depths = {0.001};
@@ -74,7 +75,8 @@ TEST_P(CampaignDimensions, ACampaignIsTheSameInOtherUnits) {
       const double energy = kForce * kLength, whole = 1e-6 * a.back().strain_energy;
       EXPECT_NEAR(b[i].strain_energy / energy, a[i].strain_energy, whole);
       EXPECT_NEAR(b[i].contact_energy / energy, a[i].contact_energy, whole);
-      EXPECT_NEAR(b[i].tool_work / energy, a[i].tool_work, whole);
+      // Between equilibria the force is that of a model, whose factor may be an earlier one.
+      EXPECT_NEAR(b[i].tool_work / energy, a[i].tool_work, 100 * whole);
       EXPECT_NEAR(b[i].penetration / kLength, a[i].penetration, 1e-6 * settings.indentation.depth);
       EXPECT_NEAR(b[i].contact_area / (kLength * kLength), a[i].contact_area,
                   1e-6 * a.back().contact_area);
