@@ -132,8 +132,9 @@ double PatchContact::gradient(const ToolContact& contact, const Eigen::VectorXd&
   return sum;
 }
 
+template <class Number>
 void PatchContact::add_hessian(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
-                               Eigen::MatrixXd& H) const {
+                               Eigen::MatrixX<Number>& H) const {
   for (const Point& point : points_) {
     const auto& source = contact.points()[point.index];
     const Eigen::Vector3d x = position(contact, point, d);
@@ -142,13 +143,20 @@ void PatchContact::add_hessian(const ToolContact& contact, const Eigen::VectorXd
     for (std::size_t a = 0; a < 6; ++a)
       for (std::size_t b = 0; b < 6; ++b) {
         if (point.first[b] < 0 || point.first[a] < point.first[b]) continue;
-        H.block<3, 3>(point.first[a], point.first[b]) += source.N[a] * source.N[b] * h;
+        H.template block<3, 3>(point.first[a], point.first[b]) +=
+            (source.N[a] * source.N[b] * h).template cast<Number>();
       }
   }
   for (const Tie& tie : ties_)
     if (tie.first >= 0)
-      H.diagonal().segment<3>(tie.first).array() += contact.ties()[tie.index].stiffness;
+      H.diagonal().template segment<3>(tie.first).array() +=
+          static_cast<Number>(contact.ties()[tie.index].stiffness);
 }
+
+template void PatchContact::add_hessian(const ToolContact&, const Eigen::VectorXd&, bool,
+                                        Eigen::MatrixXf&) const;
+template void PatchContact::add_hessian(const ToolContact&, const Eigen::VectorXd&, bool,
+                                        Eigen::MatrixXd&) const;
 
 Eigen::Vector3d PatchContact::tool_force(const ToolContact& contact,
                                          const Eigen::VectorXd& d) const {

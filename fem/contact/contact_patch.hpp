@@ -20,8 +20,9 @@ class PatchContact {
   /// Energy; g = dE/dd.
   double gradient(const ToolContact& contact, const Eigen::VectorXd& d, Eigen::VectorXd& g) const;
   /// H += d2E/dd2, in its lower triangle. `geometric` as in ToolContact::add_stiffness.
+  template <class Number>
   void add_hessian(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
-                   Eigen::MatrixXd& H) const;
+                   Eigen::MatrixX<Number>& H) const;
   /// N, of the tool on the body; no other point is in contact.
   Eigen::Vector3d tool_force(const ToolContact& contact, const Eigen::VectorXd& d) const;
 

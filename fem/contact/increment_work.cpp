@@ -78,9 +78,10 @@ std::optional<double> work_between(ContactPatch& patch, const PatchStiffness& st
     // The minimum at the end is known: start on the way to it.
     d += (node.at - at) / (1 - at) * (step - d);
     at = node.at;
-    d = solver.minimum(patch, moved, first, d, kTarget * last.norm());
-    if (residual_norm(patch, moved, secant->S, first, d) > kAllowed * last.norm())
+    const auto found = solver.minimum(patch, moved, first, d, kTarget * last.norm());
+    if (!found || residual_norm(patch, moved, secant->S, first, *found) > kAllowed * last.norm())
       return std::nullopt;
+    d = *found;
     work += node.weight * patch.tool_force(moved, d).dot(travel);
   }
   return work;

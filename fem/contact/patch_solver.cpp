@@ -17,10 +17,9 @@ constexpr int kPatchIterations = 50;
 constexpr int kPatchHalvings = 10;
 /// Contraction of the gradient in a step from which a factor is used again.
 constexpr double kGoodContraction = 0.5;
-/// Fractions of the stiffening to try where the model of the patch is not convex; with all of it
-/// the model is convex. The least that makes it convex gives the longest step along the direction
-/// in which the surface snaps: with four fractions, presses of an edge that snaps took three times
-/// as many steps or ended early.
+/// Fractions of the stiffening to try where the model of the patch is not convex. The least that
+/// makes it convex gives the longest step along the direction in which the surface snaps: with four
+/// fractions, presses of an edge that snaps took three times as many steps or ended early.
 constexpr std::array<double, 12> kStiffeningFractions{0,    1e-4,  3e-4, 1e-3, 2e-3, 4e-3,
                                                       8e-3, 0.015, 0.03, 0.06, 0.2,  1};
 
@@ -47,6 +46,7 @@ bool PatchSolver::condense(std::size_t fraction) {
   eliminated_.diagonal() += kStiffeningFractions[fraction] * stiffness_->stiffening(order_);
   if (!eliminate_first(rest_, eliminated_)) return false;
   S_ = eliminated_.bottomRightCorner(core_size(), core_size());
+  single_S_ = S_.cast<float>();
   condensed_ = in_core_;
   factorized_ = false;
   fraction_ = fraction;
@@ -56,12 +56,19 @@ bool PatchSolver::condense(std::size_t fraction) {
 bool PatchSolver::factorize(const PatchContact& core, const ToolContact& contact,
                             const Eigen::VectorXd& d) {
   for (const bool geometric : {true, false}) {
-    factor_ = S_;
-    core.add_hessian(contact, d, geometric, factor_);
-    factorized_ = factorize_in_place(factor_);
-    if (factorized_) break;
+    single_factor_ = single_S_;
+    core.add_hessian(contact, d, geometric, single_factor_);
+    in_single_precision_ = factorize_in_place(single_factor_);
+    if (in_single_precision_) return factorized_ = true;
   }
-  return factorized_;
+  double_factor_ = S_;
+  core.add_hessian(contact, d, false, double_factor_);
+  return factorized_ = factorize_in_place(double_factor_);
+}
+
+Eigen::VectorXd PatchSolver::newton_step(const Eigen::VectorXd& g) const {
+  if (!in_single_precision_) return -solve_factorized(double_factor_, g);
+  return -solve_factorized(single_factor_, g.cast<float>()).cast<double>();
 }
 
 bool PatchSolver::minimize(const PatchContact& core, const ToolContact& contact,
@@ -74,7 +81,7 @@ bool PatchSolver::minimize(const PatchContact& core, const ToolContact& contact,
   for (int iteration = 0; iteration < kPatchIterations && g.norm() > tolerance; ++iteration) {
     if (!stale && !factorize(core, contact, d)) return false;
     const double before = g.norm(), energy = 0.5 * d.dot(Sd) - load.dot(d) + contact_energy;
-    const Eigen::VectorXd step = -solve_factorized(factor_, g), S_step = S * step;
+    const Eigen::VectorXd step = newton_step(g), S_step = S * step;
     const double slope = g.dot(step);
     Eigen::VectorXd trial, S_trial;
     const auto lowers = [&](double length) {
@@ -116,9 +123,10 @@ bool PatchSolver::minimize_on_core(const ContactPatch& patch, const ToolContact&
   return convex;
 }
 
-Eigen::VectorXd PatchSolver::minimum(const ContactPatch& patch, const ToolContact& contact,
-                                     const Eigen::VectorXd& load, Eigen::VectorXd d,
-                                     double tolerance) {
+std::optional<Eigen::VectorXd> PatchSolver::minimum(const ContactPatch& patch,
+                                                    const ToolContact& contact,
+                                                    const Eigen::VectorXd& load, Eigen::VectorXd d,
+                                                    double tolerance) {
   expect(patch, contact, d);
   std::size_t fraction = 0;
   while (fraction < kStiffeningFractions.size()) {
@@ -127,9 +135,9 @@ Eigen::VectorXd PatchSolver::minimum(const ContactPatch& patch, const ToolContac
       continue;
     }
     expect(patch, contact, d);
-    if (in_core_ == condensed_) break;
+    if (in_core_ == condensed_) return d;
   }
-  return d;
+  return std::nullopt;
 }
 
 }  // namespace palpate::fem

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "fem/contact/contact_patch.hpp"
@@ -10,8 +11,8 @@
 namespace palpate::fem {
 
 /// The stiffness of the solid condensed onto the patch, N/m, numbered as the patch. A compressed
-/// body is often stable only against its tool, and S indefinite; S with `stiffening` on its
-/// diagonal is positive definite.
+/// body is often stable only against its tool, and S indefinite: as much of `stiffening` as needed
+/// is then added to its diagonal.
 struct PatchStiffness {
   Eigen::MatrixXd S;
   Eigen::VectorXd stiffening;
@@ -33,9 +34,11 @@ class PatchSolver {
     patch.mark_touched(contact, d, in_core_);
   }
 
-  /// From `d`, until the gradient is within `tolerance`, N.
-  Eigen::VectorXd minimum(const ContactPatch& patch, const ToolContact& contact,
-                          const Eigen::VectorXd& load, Eigen::VectorXd d, double tolerance);
+  /// From `d`, until the gradient is within `tolerance`, N. Nothing where the model is not convex
+  /// with all of the stiffening either.
+  std::optional<Eigen::VectorXd> minimum(const ContactPatch& patch, const ToolContact& contact,
+                                         const Eigen::VectorXd& load, Eigen::VectorXd d,
+                                         double tolerance);
 
  private:
   /// Eliminates the unknowns outside the core from S, of which this fraction of the stiffening is
@@ -47,24 +50,30 @@ class PatchSolver {
   /// Minimizes d S d/2 - load . d + E_c(d), all on the core. Returns as above.
   bool minimize(const PatchContact& core, const ToolContact& contact, const Eigen::VectorXd& load,
                 double tolerance, Eigen::VectorXd& d);
-  /// Factorizes S and the Hessian of the contact; without the geometric term of the contact, which
-  /// can be negative, where that fails. False when both fail.
+  /// Factorizes S and the Hessian of the contact, in single precision, which takes half the time;
+  /// without the geometric term of the contact, which can be negative, where that fails, and then
+  /// in double precision. False when all fail.
   bool factorize(const PatchContact& core, const ToolContact& contact, const Eigen::VectorXd& d);
+  /// -H^-1 g with the last factor.
+  Eigen::VectorXd newton_step(const Eigen::VectorXd& g) const;
 
   Eigen::Index size() const { return static_cast<Eigen::Index>(order_.size()); }
   Eigen::Index core_size() const { return size() - rest_; }
 
   const PatchStiffness* stiffness_ = nullptr;
-  std::vector<char> in_core_;    ///< (unknowns of the patch)
-  std::vector<char> condensed_;  ///< in_core_ at the last condense()
-  std::size_t fraction_ = 0;     ///< of the last condense()
-  std::vector<int> order_;       ///< unknowns of the patch: those outside the core first
-  std::vector<int> core_index_;  ///< of the unknowns of the patch, -1: outside
-  Eigen::Index rest_ = 0;        ///< how many are outside
-  Eigen::MatrixXd eliminated_;   ///< in that order, see eliminate_first()
-  Eigen::MatrixXd S_;            ///< of the core, lower triangle
-  Eigen::MatrixXd factor_;       ///< of S_ and the contact, at the last factorize()
-  bool factorized_ = false;      ///< whether factor_ is one with the present S_
+  std::vector<char> in_core_;         ///< (unknowns of the patch)
+  std::vector<char> condensed_;       ///< in_core_ at the last condense()
+  std::size_t fraction_ = 0;          ///< of the last condense()
+  std::vector<int> order_;            ///< unknowns of the patch: those outside the core first
+  std::vector<int> core_index_;       ///< of the unknowns of the patch, -1: outside
+  Eigen::Index rest_ = 0;             ///< how many are outside
+  Eigen::MatrixXd eliminated_;        ///< in that order, see eliminate_first()
+  Eigen::MatrixXd S_;                 ///< of the core, lower triangle
+  Eigen::MatrixXf single_S_;          ///< S_ in single precision
+  Eigen::MatrixXf single_factor_;     ///< of S_ and the contact, at the last factorize()
+  Eigen::MatrixXd double_factor_;     ///< in its place where single precision does not suffice
+  bool in_single_precision_ = false;  ///< the last factor
+  bool factorized_ = false;           ///< whether factor_ is one with the present S_
 };
 
 }  // namespace palpate::fem

@@ -46,7 +46,6 @@ struct SolveWorkspace::Impl {
   cholmod_dense* X = nullptr;
   cholmod_dense* Y = nullptr;
   cholmod_dense* E = nullptr;
-  std::vector<double> ordered;
 
   ~Impl() {
     cholmod_free_dense(&X, &common);
@@ -180,40 +179,9 @@ void Cholesky::solve(const double* b, double* x, SolveWorkspace& workspace) cons
   std::copy(result, result + impl_->pattern.n, x);
 }
 
-void Cholesky::solve_forward(const double* b, double* y, SolveWorkspace& workspace) const {
-  const int* unknown = impl_->permutation();
-  std::vector<double>& ordered = workspace.impl_->ordered;
-  ordered.resize(static_cast<std::size_t>(impl_->pattern.n));
-  for (double& value : ordered) value = b[*unknown++];
-  const double* result = impl_->solve(CHOLMOD_L, ordered.data(), *workspace.impl_);
-  std::copy(result, result + impl_->pattern.n, y);
-}
-
-void Cholesky::solve_backward(const double* y, double* x, SolveWorkspace& workspace) const {
-  const double* result = impl_->solve(CHOLMOD_Lt, y, *workspace.impl_);
-  const int* unknown = impl_->permutation();
-  for (int i = 0; i < impl_->pattern.n; ++i) x[unknown[i]] = result[i];
-}
-
 std::vector<int> Cholesky::last_unknowns() const {
   const int* end = impl_->permutation() + impl_->pattern.n;
   return {end - static_cast<std::ptrdiff_t>(impl_->last), end};
-}
-
-Eigen::MatrixXd Cholesky::last_block() const {
-  const int first = impl_->pattern.n - static_cast<int>(impl_->last);
-  Eigen::MatrixXd L = Eigen::MatrixXd::Zero(impl_->pattern.n - first, impl_->pattern.n - first);
-  const SupernodalView v = view();
-  for (int k = v.supernodes - 1; k >= 0 && v.first_column[k + 1] > first; --k) {
-    const int rows = v.row_start[k + 1] - v.row_start[k];
-    const int* row = v.rows + v.row_start[k];
-    for (int j = std::max(first, v.first_column[k]); j < v.first_column[k + 1]; ++j) {
-      const double* column =
-          v.values + v.value_start[k] + std::ptrdiff_t{j - v.first_column[k]} * rows;
-      for (int i = j - v.first_column[k]; i < rows; ++i) L(row[i] - first, j - first) = column[i];
-    }
-  }
-  return L;
 }
 
 double Cholesky::bytes() const {

@@ -56,14 +56,8 @@ class Cholesky {
   /// x = A^-1 b; b and x hold n values and may be the same array.
   void solve(const double* b, double* x, SolveWorkspace& workspace) const;
 
-  /// The two halves of solve(): y = L^-1 P b and x = P^T L^-T y. The unknowns `last` come last in
-  /// y, in the order of last_unknowns().
-  void solve_forward(const double* b, double* y, SolveWorkspace& workspace) const;
-  void solve_backward(const double* y, double* x, SolveWorkspace& workspace) const;
-
+  /// The unknowns `last` in their order of elimination.
   std::vector<int> last_unknowns() const;
-  /// L of the Schur complement of the unknowns `last`: A_ll - A_lr A_rr^-1 A_rl = L L^T.
-  Eigen::MatrixXd last_block() const;
 
   double bytes() const;  ///< of the values of the factor, known before factorize()
 

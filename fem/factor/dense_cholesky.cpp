@@ -3,24 +3,36 @@
 
 #include <f77blas.h>
 
-#include <cblas.h>
+#include <utility>
 
-#include <algorithm>
+#include "fem/factor/blas.hpp"
 
 namespace palpate::fem {
 
 namespace {
 
-/// Columns of a panel: wide enough for BLAS to reach its full speed.
-constexpr int kPanel = 64;
-
-int size_of(const Eigen::MatrixXd& A) {
+template <class Matrix>
+int size_of(const Matrix& A) {
   return static_cast<int>(A.rows());
+}
+
+template <class Matrix, class Vector>
+Vector solve_with(const Matrix& L, Vector b) {
+  using Number = typename Matrix::Scalar;
+  const int n = size_of(L);
+  for (const auto transposed : {CblasNoTrans, CblasTrans})
+    Blas<Number>::trsv(CblasColMajor, CblasLower, transposed, CblasNonUnit, n, L.data(), n,
+                       b.data(), 1);
+  return b;
 }
 
 }  // namespace
 
 bool factorize_in_place(Eigen::MatrixXd& A) {
+  return factorize_in_place(A.data(), size_of(A), size_of(A));
+}
+
+bool factorize_in_place(Eigen::MatrixXf& A) {
   return factorize_in_place(A.data(), size_of(A), size_of(A));
 }
 
@@ -39,10 +51,11 @@ bool factorize_in_place(float* A, int n, int stride) {
 }
 
 Eigen::VectorXd solve_factorized(const Eigen::MatrixXd& L, Eigen::VectorXd b) {
-  const int n = size_of(L);
-  cblas_dtrsv(CblasColMajor, CblasLower, CblasNoTrans, CblasNonUnit, n, L.data(), n, b.data(), 1);
-  cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, n, L.data(), n, b.data(), 1);
-  return b;
+  return solve_with(L, std::move(b));
+}
+
+Eigen::VectorXf solve_factorized(const Eigen::MatrixXf& L, Eigen::VectorXf b) {
+  return solve_with(L, std::move(b));
 }
 
 bool eliminate_first(Eigen::Index count, Eigen::MatrixXd& A) {
@@ -66,19 +79,6 @@ void solve_first_forward(const Eigen::MatrixXd& A, Eigen::Index count, Eigen::Ve
 void solve_first_backward(const Eigen::MatrixXd& A, Eigen::Index count, Eigen::VectorXd& x) {
   cblas_dtrsv(CblasColMajor, CblasLower, CblasTrans, CblasNonUnit, static_cast<int>(count),
               A.data(), size_of(A), x.data(), 1);
-}
-
-Eigen::MatrixXd product_with_transpose(const Eigen::MatrixXd& L) {
-  const int n = size_of(L);
-  Eigen::MatrixXd product = Eigen::MatrixXd::Zero(n, n), panel;
-  for (int first = 0; first < n; first += kPanel) {
-    const int columns = std::min(kPanel, n - first), rows = n - first;
-    panel = L.block(first, first, rows, columns);
-    panel.topRows(columns).triangularView<Eigen::StrictlyUpper>().setZero();
-    cblas_dsyrk(CblasColMajor, CblasLower, CblasNoTrans, rows, columns, 1, panel.data(), rows, 1,
-                product.data() + std::ptrdiff_t{first} * (n + 1), n);
-  }
-  return product;
 }
 
 }  // namespace palpate::fem

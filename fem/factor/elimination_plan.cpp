@@ -81,6 +81,7 @@ EliminationTree::EliminationTree(const SupernodalView& view) {
   for (int k = 0; k < count; ++k) {
     if (below(k) == 0) continue;
     const int first_below = view.rows[view.row_start[k] + columns[to_index(k)]];
+    if (to_index(first_below) >= supernode_of_column.size()) continue;
     parent[to_index(k)] = supernode_of_column[to_index(first_below)];
     children[to_index(parent[to_index(k)])].push_back(k);
   }

@@ -9,7 +9,8 @@
 namespace palpate::fem {
 
 /// The supernodes as a forest. The rows of a supernode below its own columns are among the rows of
-/// its parent, which is the supernode of the first of them (Liu, SIAM Review 34, 1992).
+/// its parent, which is the supernode of the first of them (Liu, SIAM Review 34, 1992). A view may
+/// end before the last columns: a supernode whose rows below are among those has no parent.
 struct EliminationTree {
   explicit EliminationTree(const SupernodalView& view);
 

@@ -10,12 +10,12 @@
 namespace palpate::fem {
 
 /// A pool for the updates of fronts: pages that the system hands out anew are cleared first, which
-/// costs time. Spare memory is freed before more than `bound` bytes are in use. Thread-safe. For
-/// numbers of single and of double precision.
+/// costs time. Thread-safe. For numbers of single and of double precision.
 template <class Number>
 class FrontMemory {
  public:
-  explicit FrontMemory(double bound) : bound_(bound) {}
+  /// Spare memory is freed before more than `bytes` are in use.
+  void keep_at_most(double bytes) { bound_ = bytes; }
 
   /// `numbers` zeros. @throws std::bad_alloc
   LargeVector<Number> zeros(std::size_t numbers);
@@ -25,7 +25,7 @@ class FrontMemory {
   LargeVector<Number> fitting(std::size_t numbers);
 
   std::mutex mutex_;
-  double bound_, allocated_ = 0;  ///< bytes; of all large blocks, in use or spare
+  double bound_ = 0, allocated_ = 0;  ///< bytes; of all large blocks, in use or spare
   std::list<LargeVector<Number>> spare_;
 };
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/factor/multifrontal.hpp"
 
-#include <cblas.h>
-
 #include <algorithm>
 #include <condition_variable>
 #include <deque>
@@ -11,8 +9,8 @@
 #include <thread>
 #include <utility>
 
+#include "fem/factor/blas.hpp"
 #include "fem/factor/dense_cholesky.hpp"
-#include "fem/factor/front_memory.hpp"
 #include "format/to_index.hpp"
 
 namespace palpate::fem {
@@ -35,22 +33,6 @@ struct Block {
   Number* operator()(int row, int column) const {
     return first + row + static_cast<std::ptrdiff_t>(column) * stride;
   }
-};
-
-/// The functions of BLAS for a type of number.
-template <class Number>
-struct Blas;
-template <>
-struct Blas<double> {
-  static constexpr auto trsm = cblas_dtrsm;
-  static constexpr auto syrk = cblas_dsyrk;
-  static constexpr auto gemm = cblas_dgemm;
-};
-template <>
-struct Blas<float> {
-  static constexpr auto trsm = cblas_strsm;
-  static constexpr auto syrk = cblas_ssyrk;
-  static constexpr auto gemm = cblas_sgemm;
 };
 
 /// Rows [first, last) below the diagonal: L21 = A21 L11^-T.
@@ -80,13 +62,15 @@ template <class Number>
 class Elimination {
  public:
   Elimination(const Multifrontal& order, const std::vector<double>& values,
-              const EliminationPlan& plan, const Multifrontal::Finished<Number>& finished)
+              const EliminationPlan& plan, const Multifrontal::Finished<Number>& finished,
+              const Multifrontal::Left<Number>& left, FrontMemory<Number>& memory)
       : order_(order),
         tree_(order.tree_),
         values_(values),
         finished_(finished),
+        left_over_(left),
         left_(plan.parts.size() + plan.top.size()),
-        memory_(sizeof(Number) * plan.update_numbers),
+        memory_(memory),
         update_(tree_.parent.size()),
         awaited_(tree_.parent.size(), 0) {
     ready_.assign(plan.parts.begin(), plan.parts.end());
@@ -180,6 +164,10 @@ class Elimination {
       subtract_product(L, columns, U, below, tile * kTile, std::min(below, (tile + 1) * kTile));
     });
     finished_(k, own.columns.data());
+    if (tree_.parent[to_index(k)] < 0 && below > 0) {
+      left_over_(k, U.first);
+      memory_.give_back(std::move(update_[to_index(k)]));
+    }
     return true;
   }
 
@@ -249,6 +237,7 @@ class Elimination {
   const EliminationTree& tree_;
   const std::vector<double>& values_;
   const Multifrontal::Finished<Number>& finished_;
+  const Multifrontal::Left<Number>& left_over_;
 
   std::mutex mutex_;
   std::condition_variable changed_;
@@ -258,7 +247,7 @@ class Elimination {
   bool definite_ = true;
   std::exception_ptr failure_;
 
-  FrontMemory<Number> memory_;
+  FrontMemory<Number>& memory_;
   std::vector<LargeVector<Number>> update_;  ///< of each supernode, until its parent has added it
   std::vector<int> awaited_;  ///< children not yet eliminated, of a supernode of the top
 };
@@ -272,25 +261,30 @@ Multifrontal::Multifrontal(const SparsePattern& pattern, const SupernodalView& v
       for (int e = pattern.start[to_index(column)]; e < pattern.start[to_index(column) + 1]; ++e) {
         const auto [first, last] =
             std::minmax(position[to_index(column)], position[to_index(pattern.row[to_index(e)])]);
-        use(to_index(first), Entry{last, e});
+        if (first < view.first_column[view.supernodes]) use(to_index(first), Entry{last, e});
       }
   };
   for_entries([&](std::size_t column, Entry) { ++entry_start_[column + 1]; });
   for (std::size_t i = 1; i < entry_start_.size(); ++i) entry_start_[i] += entry_start_[i - 1];
-  entries_.resize(to_index(pattern.nonzeros()));
+  entries_.resize(entry_start_.back());
   std::vector<std::size_t> next(entry_start_.begin(), entry_start_.end() - 1);
   for_entries([&](std::size_t column, Entry entry) { entries_[next[column]++] = entry; });
 }
 
 template <class Number>
 bool Multifrontal::factorize(const std::vector<double>& values, int threads,
-                             const Finished<Number>& finished) const {
-  return Elimination<Number>(*this, values, EliminationPlan(tree_, threads), finished).run(threads);
+                             const Finished<Number>& finished, const Left<Number>& left,
+                             FrontMemory<Number>* memory) const {
+  const EliminationPlan plan(tree_, threads);
+  FrontMemory<Number> own;
+  FrontMemory<Number>& used = memory != nullptr ? *memory : own;
+  used.keep_at_most(sizeof(Number) * plan.update_numbers);
+  return Elimination<Number>(*this, values, plan, finished, left, used).run(threads);
 }
 
-template bool Multifrontal::factorize(const std::vector<double>&, int,
-                                      const Finished<float>&) const;
-template bool Multifrontal::factorize(const std::vector<double>&, int,
-                                      const Finished<double>&) const;
+template bool Multifrontal::factorize(const std::vector<double>&, int, const Finished<float>&,
+                                      const Left<float>&, FrontMemory<float>*) const;
+template bool Multifrontal::factorize(const std::vector<double>&, int, const Finished<double>&,
+                                      const Left<double>&, FrontMemory<double>*) const;
 
 }  // namespace palpate::fem

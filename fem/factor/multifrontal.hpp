@@ -7,6 +7,7 @@
 
 #include "fem/factor/cholesky.hpp"
 #include "fem/factor/elimination_plan.hpp"
+#include "fem/factor/front_memory.hpp"
 
 namespace palpate::fem {
 
@@ -18,7 +19,8 @@ namespace palpate::fem {
 /// factor of a matrix of condition c is off by about 1e-7 c.
 class Multifrontal {
  public:
-  /// `view`: of an analysis of `pattern`; both must outlive this.
+  /// `view`: of an analysis of `pattern`, or of its first supernodes; what it points to must
+  /// outlive this.
   Multifrontal(const SparsePattern& pattern, const SupernodalView& view);
 
   /// Upper bound of the memory of the fronts, without the columns that are passed to the callback.
@@ -33,10 +35,17 @@ class Multifrontal {
   template <class Number>
   using Finished = std::function<void(int supernode, const Number* columns)>;
 
-  /// False when A, `values` on the pattern, is not positive definite. @throws std::bad_alloc
+  /// Receives what the elimination of a supernode leaves to rows that no supernode of the view has:
+  /// the lower triangle of -L21 L21^T, column-major. Called as above.
   template <class Number>
-  bool factorize(const std::vector<double>& values, int threads,
-                 const Finished<Number>& finished) const;
+  using Left = std::function<void(int supernode, const Number* update)>;
+
+  /// False when A, `values` on the pattern, is not positive definite. `memory`: of the fronts, kept
+  /// for the next factorization; without it memory is requested and freed anew. @throws
+  /// std::bad_alloc
+  template <class Number>
+  bool factorize(const std::vector<double>& values, int threads, const Finished<Number>& finished,
+                 const Left<Number>& left = {}, FrontMemory<Number>* memory = nullptr) const;
 
  private:
   template <class Number>

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "fem/contact/increment_work.hpp"
-#include "fem/factor/dense_cholesky.hpp"
 #include "fem/solve/profile.hpp"
 
 namespace palpate::fem {
@@ -15,6 +15,17 @@ namespace {
 
 /// Tolerance of the solve on the patch, over that of the increment.
 constexpr double kPatchTolerance = 0.1;
+
+/// What is added to the diagonal of S at most, over that of A. A pressed body is stable against the
+/// tool, not without it: S is often indefinite.
+constexpr double kMostStiffening = 30;
+
+/// A factor in single precision whose solution of a test load is off by more, over the solution, is
+/// computed in double precision: it would cost steps.
+constexpr double kMostErrorOfSolution = 0.03;
+
+constexpr const char* kNotDefinite =
+    "the stiffness is not positive definite (loss of stability or ellipticity)";
 
 /// A whole step to the minimum of a convex model lowers the energy by half its slope. One that
 /// lowers it by more than this fraction is too short: the model has been stiffened.
@@ -54,71 +65,100 @@ void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& 
   }
   const PartTimer timer(Part::WindowAnalysis);
   factor_.emplace(model_.pattern(), permutation_, patch_->unknowns());
+  precision_ = fastest_;
+  precision_is_checked_ = precision_ == Precision::Double;
   const std::vector<int>& ours = patch_->unknowns();
   index_in_patch_.clear();
-  for (const int unknown : factor_->last_unknowns())
+  for (const int unknown : factor_->kept())
     index_in_patch_.push_back(
         static_cast<int>(std::lower_bound(ours.begin(), ours.end(), unknown) - ours.begin()));
   factorized_ = false;
 }
 
-void NewtonSolver::shifted_stiffness(const Displacement& u, double patch, double all) {
+void NewtonSolver::raised_stiffness(const Displacement& u, double raised) {
   const PartTimer timer(Part::WindowPasses);
   model_.stiffness(u, K_, multipliers_);
   const auto& start = model_.pattern().start;
-  for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[to_index(start[i])] *= 1 + all;
-  const std::vector<int>& ours = patch_->unknowns();
-  patch_stiffness_.stiffening.resize(static_cast<Eigen::Index>(ours.size()));
-  for (std::size_t i = 0; i < ours.size(); ++i) {
-    double& diagonal = K_[to_index(start[to_index(ours[i])])];
-    patch_stiffness_.stiffening[static_cast<Eigen::Index>(i)] = patch * std::abs(diagonal);
-    diagonal += patch * std::abs(diagonal);
+  for (std::size_t i = 0; i + 1 < start.size(); ++i) K_[to_index(start[i])] *= 1 + raised;
+}
+
+double NewtonSolver::error_of_solution() {
+  const Eigen::Index n{model_.pattern().n}, kept = patch_->size();
+  Eigen::VectorXd load(n), x(n), product(n), on_kept(kept);
+  for (Eigen::Index i = 0; i < n; ++i) load[i] = std::cos(static_cast<double>(i));
+  const auto solve_beside_patch = [&](const Eigen::VectorXd& b, Eigen::VectorXd& solution) {
+    factor_->solve_forward(b, on_kept);
+    factor_->solve_backward(Eigen::VectorXd::Zero(kept), solution);
+  };
+  solve_beside_patch(load, x);
+  symmetric_multiply(model_.pattern(), K_, x.data(), product.data());
+  const double size = x.norm();
+  solve_beside_patch(load - product, x);
+  const double error = x.norm() / size;
+  return std::isfinite(error) ? error : std::numeric_limits<double>::infinity();
+}
+
+bool NewtonSolver::factorize_as_precisely_as_needed() {
+  if (precision_ == Precision::Single) {
+    bool good = factor_->factorize(K_, Precision::Single);
+    if (good && !precision_is_checked_) {
+      good = error_of_solution() < kMostErrorOfSolution;
+      precision_ = good ? Precision::Single : Precision::Double;
+      precision_is_checked_ = true;
+    }
+    if (good) return true;
   }
+  return factor_->factorize(K_, Precision::Double);
 }
 
 bool NewtonSolver::factorize(const Displacement& u) {
   const PartTimer timer(Part::WindowFactor);
-  // A pressed body is stable against the tool, not without it: A is often indefinite on the patch.
-  // Away from equilibrium a large pressure can make the rest indefinite, too; raising the whole
+  // Away from equilibrium a large pressure can make A indefinite beside the patch; raising its
   // diagonal still gives a direction of descent.
-  struct Shift {
-    double patch, all;
-  };
-  constexpr std::array<Shift, 6> kShifts{
-      {{30, 0}, {30, 0.02}, {30, 0.1}, {30, 0.5}, {30, 2}, {30, 10}}};
-  factorized_ = std::any_of(kShifts.begin(), kShifts.end(), [&](const Shift& shift) {
-    shifted_stiffness(u, shift.patch, shift.all);
-    return factor_->factorize(K_);
+  constexpr std::array<double, 6> kRaised{0, 0.02, 0.1, 0.5, 2, 10};
+  factorized_ = std::any_of(kRaised.begin(), kRaised.end(), [&](double raised) {
+    raised_stiffness(u, raised);
+    return factorize_as_precisely_as_needed();
   });
   if (!factorized_) return false;
-  root_ = factor_->last_block();
-  const Eigen::MatrixXd ordered = product_with_transpose(root_);
-  patch_stiffness_.S.resize(root_.rows(), root_.cols());
-  for (Eigen::Index j = 0; j < root_.cols(); ++j)
-    for (Eigen::Index i = j; i < root_.rows(); ++i)
-      patch_stiffness_.S(in_patch(i), in_patch(j)) = patch_stiffness_.S(in_patch(j), in_patch(i)) =
-          ordered(i, j);
-  patch_stiffness_.S.diagonal() -= patch_stiffness_.stiffening;
+  const Eigen::MatrixXd& S = factor_->schur_complement();
+  patch_stiffness_.S.resize(S.rows(), S.cols());
+  for (Eigen::Index j = 0; j < S.cols(); ++j)
+    for (Eigen::Index i = 0; i < S.rows(); ++i)
+      patch_stiffness_.S(in_patch(i), in_patch(j)) = S(i, j);
+  const std::vector<int>& ours = patch_->unknowns();
+  patch_stiffness_.stiffening.resize(static_cast<Eigen::Index>(ours.size()));
+  for (std::size_t i = 0; i < ours.size(); ++i)
+    patch_stiffness_.stiffening[static_cast<Eigen::Index>(i)] =
+        kMostStiffening * std::abs(K_[to_index(model_.pattern().start[to_index(ours[i])])]);
   patch_solver_.use(patch_stiffness_);
   return true;
 }
 
-Eigen::VectorXd NewtonSolver::direction(const ToolContact& contact, const Displacement& u,
-                                        const Eigen::VectorXd& residual, double tolerance) {
+std::optional<Eigen::VectorXd> NewtonSolver::direction(const ToolContact& contact,
+                                                       const Displacement& u,
+                                                       const Eigen::VectorXd& residual,
+                                                       double tolerance) {
   const PartTimer timer(Part::WindowSolves);
-  Eigen::VectorXd load = -residual, y(load.size()), d(load.size());
-  contact.add_forces(model_, u, load);  // leaves the internal forces
-  factor_->solve_forward(load.data(), y.data(), workspace_);
-  if (const Eigen::Index count = root_.rows(); count > 0) {
+  Eigen::VectorXd on_kept, d;
+  factor_->solve_forward(-residual, on_kept);
+  if (const Eigen::Index count = on_kept.size(); count > 0) {
     const PartTimer inner(Part::Contact);
     patch_->start_from(contact, u);
-    Eigen::VectorXd x(count), ordered = root_.triangularView<Eigen::Lower>() * y.tail(count);
-    for (Eigen::Index i = 0; i < count; ++i) x[in_patch(i)] = ordered[i];
-    x = patch_solver_.minimum(*patch_, contact, x, Eigen::VectorXd::Zero(count), tolerance);
-    for (Eigen::Index i = 0; i < count; ++i) ordered[i] = x[in_patch(i)];
-    y.tail(count) = root_.transpose().triangularView<Eigen::Upper>() * ordered;
+    Eigen::VectorXd on_patch(count);
+    // The forces of the contact act on the patch alone: the solve need not carry them, and its
+    // round-off is that of the residual.
+    Eigen::VectorXd contact_forces = Eigen::VectorXd::Zero(residual.size());
+    contact.add_forces(model_, u, contact_forces);
+    for (Eigen::Index i = 0; i < count; ++i)
+      on_patch[in_patch(i)] =
+          on_kept[i] + contact_forces[factor_->kept()[static_cast<std::size_t>(i)]];
+    const auto x =
+        patch_solver_.minimum(*patch_, contact, on_patch, Eigen::VectorXd::Zero(count), tolerance);
+    if (!x) return std::nullopt;
+    for (Eigen::Index i = 0; i < count; ++i) on_kept[i] = (*x)[in_patch(i)];
   }
-  factor_->solve_backward(y.data(), d.data(), workspace_);
+  factor_->solve_backward(on_kept, d);
   return d;
 }
 
@@ -181,14 +221,15 @@ NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions
     choose_patch(contact, u);
     stale = stale && factorized_;
     if (!stale && !factorize(u)) {
-      result.reason = "the stiffness is not positive definite (loss of stability or ellipticity)";
+      result.reason = kNotDefinite;
       return result;
     }
-    const Eigen::VectorXd d = direction(contact, u, now.residual, kPatchTolerance * allowed);
-    const bool moved = line_search(contact, d, now, u);
+    const auto d = direction(contact, u, now.residual, kPatchTolerance * allowed);
+    const bool moved = d && line_search(contact, *d, now, u);
     if (!moved && !stale) {
       result.reason =
-          "line search failed: no step keeps every element from inversion and lowers the energy";
+          d ? "line search failed: no step keeps every element from inversion and lowers the energy"
+            : kNotDefinite;
       return result;
     }
     stale = options.reuse_factor && moved && now.residual.norm() < kGoodContraction * before;

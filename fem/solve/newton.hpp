@@ -8,7 +8,7 @@
 
 #include "fem/contact/contact.hpp"
 #include "fem/contact/patch_solver.hpp"
-#include "fem/factor/cholesky.hpp"
+#include "fem/factor/partial_factor.hpp"
 #include "fem/solid/solid_model.hpp"
 
 namespace palpate::fem {
@@ -43,21 +43,23 @@ Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const 
 /// the solid by its quadratic model, with a Cholesky factorization of its tangent A, and leaves the
 /// contact nonlinear:
 ///   min over d of r . d + d A d / 2 + E_c(u + d),   r the internal forces.
-/// E_c depends only on the unknowns of the contact patch P. They are eliminated last, so that their
-/// Schur complement S is the end of the factor and the minimum is found by Newton's method on them,
-/// dense and small:  min r'_P . d_P + d_P S d_P / 2 + E_c(d_P),  r' the load condensed to P.
+/// E_c depends only on the unknowns of the contact patch P. The others are eliminated, which leaves
+/// the Schur complement S, and the minimum is found by Newton's method on P, dense and small:
+///   min r'_P . d_P + d_P S d_P / 2 + E_c(d_P),   r' the load condensed to P.
 /// Facets that come into contact or leave it thus need no factorization. A compressed solid is
-/// often stable only against its tool, and S indefinite: the diagonal of the patch is raised for
-/// the factorization, which raises that of S by as much, and lowered again in S. Steps are
+/// often stable only against its tool, and S indefinite: see PatchSolver. Steps are
 /// shortened until det F > 0 everywhere and the energy or the residual decreases, and lengthened
 /// where the energy falls along a straight line: a part of the body snaps to another equilibrium. A
 /// failure is a return value: u is then the last admissible iterate. One thread.
 class NewtonSolver {
  public:
-  /// `permutation`: elimination order for the pattern of the model, see Cholesky.
+  /// `permutation`: elimination order for the pattern of the model, see Cholesky. `fastest`: in
+  /// single precision factors cost half and steps are a little off; where they would be off by more
+  /// than a few percent the factor is computed in double precision all the same.
   explicit NewtonSolver(const SolidModel& model, const std::vector<int>* permutation = nullptr,
-                        const DilatationMultipliers* multipliers = nullptr)
-      : model_(model), permutation_(permutation), multipliers_(multipliers) {}
+                        const DilatationMultipliers* multipliers = nullptr,
+                        Precision fastest = Precision::Double)
+      : model_(model), permutation_(permutation), multipliers_(multipliers), fastest_(fastest) {}
 
   NewtonResult solve(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
 
@@ -68,11 +70,15 @@ class NewtonSolver {
  private:
   void choose_patch(const ToolContact& contact, const Displacement& u);
   bool factorize(const Displacement& u);
-  /// K_ = A(u), its diagonal raised by the fractions `patch`, on the patch, and `all`, everywhere.
-  void shifted_stiffness(const Displacement& u, double patch, double all);
-  /// The minimizer of the model above, to a residual of `tolerance`, N, on the patch.
-  Eigen::VectorXd direction(const ToolContact& contact, const Displacement& u,
-                            const Eigen::VectorXd& residual, double tolerance);
+  bool factorize_as_precisely_as_needed();
+  /// The error of the solution of a test load with the patch held, over that solution.
+  double error_of_solution();
+  /// K_ = A(u), its diagonal raised by the fraction `raised`.
+  void raised_stiffness(const Displacement& u, double raised);
+  /// The minimizer of the model above, to a residual of `tolerance`, N, on the patch; nothing where
+  /// the model is not convex with the largest stiffening either.
+  std::optional<Eigen::VectorXd> direction(const ToolContact& contact, const Displacement& u,
+                                           const Eigen::VectorXd& residual, double tolerance);
   /// Moves u along d; false when no admissible step is found.
   bool line_search(const ToolContact& contact, const Eigen::VectorXd& d, Equilibrium& now,
                    Displacement& u) const;
@@ -81,7 +87,7 @@ class NewtonSolver {
   void lengthen(const ToolContact& contact, const Eigen::VectorXd& d, const Displacement& from,
                 double energy, double slope, Equilibrium& now, Displacement& u) const;
 
-  /// Index into the patch of the i-th of the last unknowns of the factor.
+  /// Index into the patch of the i-th of the unknowns that the factor keeps.
   Eigen::Index in_patch(Eigen::Index i) const {
     return index_in_patch_[static_cast<std::size_t>(i)];
   }
@@ -90,12 +96,13 @@ class NewtonSolver {
   const std::vector<int>* permutation_;
   const DilatationMultipliers* multipliers_;
   std::optional<ContactPatch> patch_;
-  std::optional<Cholesky> factor_;
-  SolveWorkspace workspace_;
+  Precision fastest_,
+      precision_ = Precision::Double;  ///< asked for; of the factors with this patch
+  bool precision_is_checked_ = false;
+  std::optional<PartialFactor> factor_;
   std::vector<double> K_;
-  std::vector<int> index_in_patch_;  ///< of the last unknowns of the factor
-  Eigen::MatrixXd root_;            ///< lower triangular, of stiffened S in the order of the factor
-  PatchStiffness patch_stiffness_;  ///< S, and what was added to the diagonal of A
+  std::vector<int> index_in_patch_;  ///< of the unknowns that the factor keeps
+  PatchStiffness patch_stiffness_;
   PatchSolver patch_solver_;
   bool factorized_ = false;
 };

@@ -42,7 +42,7 @@ class SharedFactorSolver {
                      std::size_t pairs, const Prolongation* prolongation = nullptr)
       : whole_(whole),
         multipliers_(whole.multipliers()),
-        newton_(window, nullptr, &multipliers_),
+        newton_(window, nullptr, &multipliers_, Precision::Single),
         rest_solve_(std::move(rest_solve)),
         prolongation_(prolongation),
         most_pairs_(pairs) {}

@@ -88,7 +88,7 @@ Step one_step(LinearSolid& solid, double from, double to, double seen = 1) {
     const PatchStiffness stiffness{S, zero};
     PatchSolver solver;
     solver.use(stiffness);
-    return solver.minimum(patch, solid.contact, zero, zero, 1e-12);
+    return solver.minimum(patch, solid.contact, zero, zero, 1e-12).value();
   };
   const auto stored = [&](const Eigen::VectorXd& d) {
     return 0.5 * d.dot(S * d) + patch.energy(solid.contact, d);

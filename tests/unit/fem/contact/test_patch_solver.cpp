@@ -51,7 +51,7 @@ struct Pushed : Pressed {
 TEST(PatchSolver, TheGradientVanishesOnTheWholePatch) {
   Pushed p;
   p.solver.use(p.stiffness);
-  const Eigen::VectorXd d = p.solver.minimum(p.patch, p.contact, p.load, p.zero(), 1e-10);
+  const Eigen::VectorXd d = p.solver.minimum(p.patch, p.contact, p.load, p.zero(), 1e-10).value();
   EXPECT_LT(p.residual(d), 1e-10);
   EXPECT_GT(p.touched(d), 0);
   EXPECT_LT(p.touched(d), p.patch.size());
@@ -64,7 +64,7 @@ TEST(PatchSolver, FindsTheContactWhereItWasNotExpected) {
   for (Eigen::Index i = 2; i < p.patch.size(); i += 3) p.load[i] = 0.3;
   ASSERT_EQ(p.touched(p.zero()), 0);
   p.solver.use(p.stiffness);
-  const Eigen::VectorXd d = p.solver.minimum(p.patch, p.contact, p.load, p.zero(), 1e-10);
+  const Eigen::VectorXd d = p.solver.minimum(p.patch, p.contact, p.load, p.zero(), 1e-10).value();
   EXPECT_LT(p.residual(d), 1e-10);
   EXPECT_GT(p.touched(d), 0);
 }
@@ -82,9 +82,16 @@ TEST(PatchSolver, StiffensWhatIsIndefiniteOutsideTheContact) {
   p.stiffness.S.col(free).setZero();
   p.stiffness.S(free, free) = -20;  // a 50th of the stiffening
   p.solver.use(p.stiffness);
-  const Eigen::VectorXd d = p.solver.minimum(p.patch, p.contact, p.load, p.zero(), 1e-10);
+  const Eigen::VectorXd d = p.solver.minimum(p.patch, p.contact, p.load, p.zero(), 1e-10).value();
   p.stiffness.S.diagonal() += 0.03 * p.stiffness.stiffening;
   EXPECT_LT(p.residual(d), 1e-10);
+}
+
+TEST(PatchSolver, FindsNoMinimumWhereTheStiffeningDoesNotSuffice) {
+  Pushed p;
+  p.stiffness.S.diagonal().array() -= 1e6;
+  p.solver.use(p.stiffness);
+  EXPECT_FALSE(p.solver.minimum(p.patch, p.contact, p.load, p.zero(), 1e-10));
 }
 
 }  // namespace

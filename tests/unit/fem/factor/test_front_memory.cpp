@@ -15,7 +15,8 @@ bool all_zero(const LargeVector<double>& memory) {
 }
 
 TEST(FrontMemory, ReusesABlockAndClearsIt) {
-  FrontMemory<double> pool(1e9);
+  FrontMemory<double> pool;
+  pool.keep_at_most(1e9);
   LargeVector<double> block = pool.zeros(kLarge);
   EXPECT_TRUE(all_zero(block));
   std::fill(block.begin(), block.end(), 3.0);
@@ -28,7 +29,8 @@ TEST(FrontMemory, ReusesABlockAndClearsIt) {
 }
 
 TEST(FrontMemory, DoesNotWasteALargeBlockOnASmallRequest) {
-  FrontMemory<double> pool(1e9);
+  FrontMemory<double> pool;
+  pool.keep_at_most(1e9);
   LargeVector<double> block = pool.zeros(4 * kLarge);
   const double* address = block.data();
   pool.give_back(std::move(block));

@@ -91,5 +91,32 @@ INSTANTIATE_TEST_SUITE_P(PureDisplacement, PatchTest,
                                           testing::Values(Dilatation::Pointwise)),
                          instance_name);
 
+/// Newton steps back to the rest shape of a bar that was bent aside by a hundredth of its width.
+/// Its elements are flat, or it bends a million times more easily than it stretches: with factors
+/// in single precision alone it takes four times as many, or none is found.
+int iterations_of_a_bar(double length, Precision fastest) {
+  const Body body =
+      test::make_block(test::even(0, 0.01, 1), test::even(0, 0.01, 1), test::even(0, length, 160));
+  const SolidModel model(body, {NeoHookean::from_young_poisson(10e3, 0.49, "t")});
+  const ToolContact far_away(model.mesh(), Eigen::Vector3d(9, 9, 9), 1e-6, {1, 1});
+  Displacement u = Displacement::Zero(3, model.mesh().nodes());
+  for (int node = 0; node < model.mesh().nodes(); ++node)
+    if (model.equation(node) >= 0)
+      u(0, node) = 1e-4 * std::pow(model.mesh().X(2, node) / length, 2);
+  NewtonSolver newton(model, nullptr, nullptr, fastest);
+  NewtonOptions options;
+  options.tolerance = 0.3;  // over a tool force of 1e-12 N
+  const NewtonResult result = newton.solve(far_away, options, u);
+  EXPECT_TRUE(result.converged) << result.reason;
+  EXPECT_LT(u.lpNorm<Eigen::Infinity>(), 1e-6 * length);
+  return result.iterations;
+}
+
+TEST(NewtonInSinglePrecision, TakesNoMoreIterationsOfABarThanInDoublePrecision) {
+  for (const double length : {0.1, 4.0})
+    EXPECT_LE(iterations_of_a_bar(length, Precision::Single),
+              iterations_of_a_bar(length, Precision::Double) + 1);
+}
+
 }  // namespace
 }  // namespace palpate::fem

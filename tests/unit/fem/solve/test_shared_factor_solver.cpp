@@ -43,7 +43,7 @@ TEST(SharedFactorSolver, FindsTheEquilibriumOfNewtonsMethodInFewIterations) {
   PressedBody p(2 * kToolRadius);
   SharedFactorSolver solver = solver_of(p);
   Displacement u = p.rest();
-  for (const double depth : {0.0005, 0.001, 0.0015, 0.002}) {
+  for (const double depth : {0.0001, 0.0005, 0.001, 0.0015, 0.002}) {
     p.press(depth);
     const NewtonResult result = solver.solve(p.contact, {.tolerance = kTolerance}, u);
     ASSERT_TRUE(result.converged) << result.reason;
@@ -93,7 +93,7 @@ TEST(SharedFactorSolver, IsRightOrFailsWhereTheContactOutgrowsTheWindow) {
   Displacement u = p.rest();
   int converged = 0;
   double radius = 0;
-  for (const double depth : {0.0005, 0.001, 0.0015, 0.002}) {
+  for (const double depth : {0.0001, 0.0005, 0.001, 0.0015, 0.002}) {
     p.press(depth);
     Displacement trial = u;
     const NewtonResult result =
