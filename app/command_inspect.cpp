@@ -19,7 +19,8 @@ void add_inspect_command(CLI::App& root, Action& action) {
   command
       ->add_option(
           "FILE", options->file,
-          "body.h5, curves.h5, library.h5, recording.h5, curves.journal or recording.journal")
+          "body.h5, curves.h5, library.h5, deformation.pdef, recording.h5, curves.journal or "
+          "recording.journal")
       ->required();
   command->add_flag("--json", options->json,
                     "Print JSON, including the resolved case of each stage");

@@ -12,6 +12,7 @@
 #include "format/artifact.hpp"
 #include "format/body.hpp"
 #include "format/curves.hpp"
+#include "format/deformation.hpp"
 #include "format/guarantee.hpp"
 #include "format/library.hpp"
 #include "format/recording.hpp"
@@ -380,6 +381,25 @@ Json summary_of(const SessionSummary& session) {
           {"gaps", gaps}};
 }
 
+Json summary_of(const Deformation& skin) {
+  const auto lengths = [](const std::vector<double>& of) {
+    return Json{{"values", of}, {"unit", "m"}};
+  };
+  return {{"tool", skin.tool_shape},
+          {"tool_radius", with_unit(skin.tool_radius, "m")},
+          {"skin_vertices", skin.positions.size()},
+          {"skin_triangles", skin.triangles.size()},
+          {"vertices_of_the_library", skin.vertex_of.size()},
+          {"sites", skin.sites.size()},
+          {"depths", lengths(skin.depths)},
+          {"lateral_depths", lengths(skin.lateral_depths)},
+          {"modes", skin.mode_count()},
+          {"rms_displacement_that_no_mode_has", with_unit(skin.rms_left_out, "m")},
+          {"reach_of_the_local_part", with_unit(skin.reach, "m")},
+          {"surface_sha256", skin.surface},
+          {"bounding_box", box_of(skin.positions)}};
+}
+
 bool is_quantity(const Json& value) {
   return value.is_object() && value.contains("value") && value.contains("unit");
 }
@@ -468,6 +488,11 @@ Json summarize_artifact(const std::filesystem::path& file) {
   if (file.extension() == ".journal") {
     Json summary{{"file", file.string()}, {"artifact", "palpate.journal"}};
     summary.update(summary_of(read_site_journal(file)));
+    return summary;
+  }
+  if (file.extension() == ".pdef") {
+    Json summary{{"file", file.string()}, {"artifact", "palpate.deformation"}};
+    summary.update(summary_of(read_deformation(file)));
     return summary;
   }
   const std::string kind = artifact_kind(file, "give an artifact of palpate");

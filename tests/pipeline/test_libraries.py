@@ -3,6 +3,7 @@
 """test_libraries.py PALPATE LIBPALPATE SOURCE: the ready-made libraries are those of their cases, and what they feel like
 is what mechanics says of such bodies."""
 import ctypes
+import json
 import math
 import pathlib
 import subprocess
@@ -61,6 +62,15 @@ class Libraries(unittest.TestCase):
             self.assertEqual(shown.returncode, 0, shown.stderr)
             made_of = (CASES / f"{file.stem}.toml").read_text()
             self.assertIn(f'name = "{file.stem}"', made_of)
+
+    def test_the_skin_of_the_liver_is_that_of_its_library(self):
+        skin, library = (json.loads(subprocess.run([PALPATE, "inspect", LIBRARIES / f"liver.{kind}", "--json"], check=True,
+                                                   capture_output=True).stdout) for kind in ("pdef", "plib"))
+        self.assertEqual(skin["artifact"], "palpate.deformation")
+        self.assertEqual(skin["tool_radius"], library["tool_radius"])
+        self.assertEqual(skin["vertices_of_the_library"], library["vertices"])
+        vertices, triangles, _ = map(int, (LIBRARIES / "liver.off").read_text().split()[1:4])
+        self.assertEqual((skin["skin_vertices"], skin["skin_triangles"]), (vertices, triangles))
 
     def test_gel_is_what_its_case_gives(self):
         with tempfile.TemporaryDirectory() as folder:
