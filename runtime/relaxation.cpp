@@ -17,33 +17,32 @@ constexpr NormalMemory kFresh{0, 0, 0, 0};
 /// G, so that this changes it by less than its own rounding.
 constexpr double kReachable = 1 - 1e-12;
 
-/// G*(F), J; infinite where the force is beyond every depth of the response.
-double conjugate(const InterpolatedResponse& response, double force, KeptPiece& kept) noexcept {
-  return response.normal_reach(kReachable * force, kept).conjugate(force);
-}
-
 }  // namespace
 
-/// Infinite where a force is beyond every depth of the response.
-NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Branches& fractions,
+/// Infinite where a force is beyond every depth of the response. The lane after those of the
+/// branches is that of the skin.
+NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes& fractions,
                               double factor) const noexcept {
   NormalMemory sum;
   sum.carried = factor;
-  for (std::size_t i = 0; i < surface_->relaxation_times().size(); ++i) {
-    if (!(fractions[i] > 0)) continue;
-    const double force = factor * memory_[i];
-    sum.relaxed += fractions[i] * force;
-    sum.stored += fractions[i] * conjugate(response, force, pieces_[i]);
-  }
-  sum.locked = sum.stored < kInfinity
-                   ? std::max(sum.stored - conjugate(response, sum.relaxed, skin_), 0.0)
-                   : kInfinity;
+  Lanes force;
+  for (std::size_t p = 0; p < pairs_of(times_); ++p) force.pair[p] = factor * memory_.pair[p];
+  for (std::size_t i = 0; i < times_; ++i) sum.relaxed += fractions[i] * force[i];
+  force.set(times_, sum.relaxed);
+  Lanes reachable, conjugate;
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p) reachable.pair[p] = kReachable * force.pair[p];
+  ReachedForces at;
+  pieces_.reach(response, reachable, at);
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p)
+    conjugate.pair[p] = at.conjugate(force.pair[p], p);
+  for (std::size_t i = 0; i < times_; ++i)
+    if (fractions[i] > 0) sum.stored += fractions[i] * conjugate[i];
+  sum.locked = sum.stored < kInfinity ? std::max(sum.stored - conjugate[times_], 0.0) : kInfinity;
   return sum;
 }
 
 NormalMemory Relaxation::normal_carried_to(const InterpolatedResponse& response,
-                                           const Branches& fractions,
-                                           double factor) const noexcept {
+                                           const Lanes& fractions, double factor) const noexcept {
   if (!remembers()) return kFresh;
   for (int i = 0; i < kReductions; ++i) {
     const NormalMemory there = sums(response, fractions, factor);
@@ -61,7 +60,7 @@ TissueMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedRes
   const bool shears = lateral.any && shear == Shear::Kept;
   if (distance == 0) return {now_, shears ? lateral : LateralMemory{}};
   if (!remembers() && !shears) return {kFresh, {}};
-  const Branches fractions = surface_->relaxes_alike() ? fractions_ : surface_->fractions(p);
+  const Lanes fractions = surface_->relaxes_alike() ? fractions_ : surface_->fractions(p);
   const double factor = std::exp(-distance / surface_->tool_radius());
   TissueMemory there{normal_carried_to(response, fractions, factor), {}};
   if (shears) there.lateral = lateral_.carried_to({&response, &fractions, normal}, factor);
@@ -71,7 +70,7 @@ TissueMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedRes
 void Relaxation::carry(const SurfacePoint& p, const InterpolatedResponse& response,
                        const Vec3& normal, const TissueMemory& carried) noexcept {
   if (carried.normal.carried != 1)
-    for (double& force : memory_) force *= carried.normal.carried;
+    for (std::size_t k = 0; k < pairs_of(times_); ++k) memory_.pair[k] *= carried.normal.carried;
   if (!surface_->relaxes_alike() || fractions_[0] == 0) fractions_ = surface_->fractions(p);
   response_ = response;
   normal_ = normal;
@@ -84,15 +83,16 @@ void Relaxation::keep_decay(double dt) noexcept {
   if (dt == decay_dt_) return;
   decay_dt_ = dt;
   const auto& times = surface_->relaxation_times();
-  for (std::size_t i = 0; i < times.size(); ++i) decay_[i] = std::exp(-dt / times[i]);
+  decay_.set(times_, 1);
+  for (std::size_t i = 0; i < times_; ++i) decay_.set(i, std::exp(-dt / times[i]));
 }
 
 void Relaxation::pass(double g, double dt) noexcept {
   if (!response_) return;
   keep_decay(dt);
   const double target = std::max(g, now_.relaxed);
-  for (std::size_t i = 0; i < surface_->relaxation_times().size(); ++i)
-    memory_[i] = target + (memory_[i] - target) * decay_[i];
+  for (std::size_t p = 0; p < pairs_of(times_); ++p)
+    memory_.pair[p] = target + (memory_.pair[p] - target) * decay_.pair[p];
   now_ = sums(*response_, fractions_, 1);
 }
 

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <random>
 #include <utility>
 #include <vector>
@@ -300,7 +301,11 @@ TEST(LateralBranches, TurnWithTheNormalAndKeepTheirEnergy) {
   const Library library = relaxing(plate(2, 0.08, stiffening), kTimes, true);
   const palpate_library body(library);
   const runtime::InterpolatedResponse response = body.surface.response({0, {0.2, 0.5, 0.3}});
-  const runtime::Branches fractions{0.25, 0.25}, decay{0.1, 0.7};
+  runtime::Lanes fractions, decay;
+  for (const std::size_t i : {0U, 1U}) {
+    fractions.set(i, 0.25);
+    decay.set(i, i == 0 ? 0.1 : 0.7);
+  }
   const Vec3 down{0, 0, -1}, aside{0.6, 0, -0.8};
   runtime::LateralBranches branches(2);
   branches.pass({&response, &fractions, down}, {0.1, 0.05, 0}, 2e-3, decay);
