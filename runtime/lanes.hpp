@@ -2,6 +2,10 @@
 // Numbers of all relaxation times side by side, for arithmetic of two at a time.
 #pragma once
 
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -19,7 +23,11 @@ constexpr Pair both(double x) noexcept {
   return Pair{x, x};
 }
 inline bool all(const Mask& m) noexcept {
+#ifdef __SSE2__
+  return _mm_movemask_pd(reinterpret_cast<__m128d>(m)) == 3;  // two instructions
+#else
   return (m[0] & m[1]) != 0;
+#endif
 }
 /// std::max and std::min of each.
 inline Pair larger(const Pair& a, const Pair& b) noexcept {
@@ -27,6 +35,10 @@ inline Pair larger(const Pair& a, const Pair& b) noexcept {
 }
 inline Pair smaller(const Pair& a, const Pair& b) noexcept {
   return b < a ? b : a;
+}
+/// A sum and two more terms, added in their order.
+inline double plus(double sum, const Pair& terms) noexcept {
+  return sum + terms[0] + terms[1];
 }
 inline Pair roots(const Pair& x) noexcept {
   return Pair{std::sqrt(x[0]), std::sqrt(x[1])};

@@ -4,54 +4,62 @@
 #include <algorithm>
 
 namespace palpate::runtime {
+namespace {
+
+/// M and K of branches.
+class LateralSums {
+ public:
+  void add(const Pair& fraction, const Pair (&force)[3], const Pair& conjugate) noexcept {
+    x_ += fraction * force[0];
+    y_ += fraction * force[1];
+    z_ += fraction * force[2];
+    stored_ += fraction * conjugate;
+  }
+  LateralMemory memory() const noexcept {
+    LateralMemory sum;
+    sum.any = true;
+    sum.relaxed = {x_[0] + x_[1], y_[0] + y_[1], z_[0] + z_[1]};
+    sum.stored = stored_[0] + stored_[1];
+    return sum;
+  }
+
+ private:
+  Pair x_{}, y_{}, z_{}, stored_{};
+};
+
+}  // namespace
 
 /// Where the normal turns by more than a right angle it is other tissue.
 bool LateralBranches::stays_tangential(const Vec3& normal) const noexcept {
   return dot(normal_, normal) > 0;
 }
 
-/// The branches at another place. Their directions turn by the smallest rotation that takes one
-/// normal to the other.
-void LateralBranches::move(const LateralPlace& place, double factor,
-                           Branches& there) const noexcept {
-  const Vec3 axis = (1 / (1 + dot(normal_, place.normal))) * (normal_ + place.normal);
+/// Moves the branches to another place and returns M and K there. Their directions turn by the
+/// smallest rotation that takes one normal to the other.
+LateralMemory LateralBranches::move(const LateralPlace& place, double factor) const noexcept {
   const Vec3& to = place.normal;
-  Lanes deflection;
+  const Vec3 axis = (1 / (1 + dot(normal_, to))) * (normal_ + to);
+  LateralSums sums;
+  pieces_.keep_for(*place.response);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
-    const Pair &x = branches_.direction[0].pair[p], &y = branches_.direction[1].pair[p],
-               &z = branches_.direction[2].pair[p];
-    const Pair along = x * to[0] + y * to[1] + z * to[2];
-    there.direction[0].pair[p] = x - along * axis[0];
-    there.direction[1].pair[p] = y - along * axis[1];
-    there.direction[2].pair[p] = z - along * axis[2];
-    deflection.pair[p] = factor * branches_.at.deflection.pair[p];
+    const BranchPair& from = branches_[p];
+    BranchPair& there = moved_[p];
+    const Pair* const d = from.direction;
+    const Pair along = d[0] * to[0] + d[1] * to[1] + d[2] * to[2];
+    there.at = pieces_.evaluate(p, factor * from.at.deflection);
+    Pair force[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      there.direction[k] = d[k] - along * axis[k];
+      force[k] = there.at.force * there.direction[k];
+    }
+    sums.add(place.fractions->pair[p], force, there.at.conjugate(there.at.force));
   }
-  pieces_.evaluate(*place.response, deflection, there.at);
-}
-
-/// M and K of branches.
-LateralMemory LateralBranches::sums(const Lanes& fractions, const Branches& of) const noexcept {
-  Pair x{}, y{}, z{}, stored{};
-  for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
-    const Pair& g = fractions.pair[p];
-    const Pair& force = of.at.force.pair[p];
-    const Pair relaxed = g * force;
-    x += relaxed * of.direction[0].pair[p];
-    y += relaxed * of.direction[1].pair[p];
-    z += relaxed * of.direction[2].pair[p];
-    stored += g * (force * of.at.deflection.pair[p] - of.at.energy.pair[p]);
-  }
-  LateralMemory sum;
-  sum.any = true;
-  sum.relaxed = {x[0] + x[1], y[0] + y[1], z[0] + z[1]};
-  sum.stored = stored[0] + stored[1];
-  return sum;
+  return sums.memory();
 }
 
 LateralMemory LateralBranches::carried_to(const LateralPlace& place, double factor) const noexcept {
   if (!now_.any || !stays_tangential(place.normal)) return {};
-  move(place, factor, moved_);
-  LateralMemory sum = sums(*place.fractions, moved_);
+  LateralMemory sum = move(place, factor);
   sum.slide = ++slides_;
   sum.carried = factor;
   return sum;
@@ -63,8 +71,8 @@ void LateralBranches::carry(const LateralPlace& place, const LateralMemory& carr
   now_.slide = 0;
   now_.carried = 1;
   if (!carried.any) return;
-  if (carried.slide != slides_) move(place, carried.carried, moved_);
-  branches_ = moved_;
+  if (carried.slide != slides_) move(place, carried.carried);
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p) branches_[p] = moved_[p];
   normal_ = place.normal;
 }
 
@@ -75,33 +83,26 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
     branches_ = {};
   }
   normal_ = place.normal;
-  Lanes magnitude;
-  ReachedForces& at = branches_.at;
-  const Lanes before = at.deflection;
+  LateralSums sums;
+  pieces_.keep_for(*place.response);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
-    Pair square{};
+    BranchPair& branch = branches_[p];
+    Pair force[3];
     for (std::size_t k = 0; k < 3; ++k) {
-      Pair& direction = branches_.direction[k].pair[p];
-      const Pair force = at.force.pair[p] * direction;
-      direction = target[k] + decay.pair[p] * (force - target[k]);
-      square += direction * direction;
+      const Pair before = branch.at.force * branch.direction[k];
+      force[k] = target[k] + decay.pair[p] * (before - target[k]);
     }
-    magnitude.pair[p] = roots(square);
-    for (std::size_t k = 0; k < 3; ++k) {
-      Pair& direction = branches_.direction[k].pair[p];
-      direction = square > Pair{} ? (1 / magnitude.pair[p]) * direction : Pair{};
-    }
+    const Pair magnitude = roots(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+    // The force is between two that were reached, so that its deflection is no longer than theirs.
+    const Pair longest = larger(branch.at.deflection, both(lateral));
+    branch.at = pieces_.reach(p, magnitude);
+    if (!all(branch.at.deflection <= longest))
+      branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, longest));
+    for (std::size_t k = 0; k < 3; ++k)
+      branch.direction[k] = magnitude > Pair{} ? 1.0 / magnitude * force[k] : Pair{};
+    sums.add(place.fractions->pair[p], force, branch.at.conjugate(branch.at.force));
   }
-  pieces_.reach(*place.response, magnitude, at);
-  // The force is between two that were reached, so that its deflection is no longer than theirs.
-  Lanes no_longer;
-  bool longer = false;
-  for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
-    no_longer.pair[p] = smaller(at.deflection.pair[p], larger(before.pair[p], both(lateral)));
-    longer = longer || !all(no_longer.pair[p] >= at.deflection.pair[p]);
-  }
-  if (longer) pieces_.evaluate(*place.response, no_longer, at);
-  now_ = sums(*place.fractions, branches_);
+  now_ = sums.memory();
 }
 
 }  // namespace palpate::runtime

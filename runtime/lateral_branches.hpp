@@ -2,9 +2,11 @@
 // The lateral memories of a contact with tissue that relaxes.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
+#include "format/library.hpp"
 #include "format/vec3.hpp"
 #include "runtime/interpolated_response.hpp"
 #include "runtime/kept_pieces.hpp"
@@ -42,14 +44,14 @@ class LateralBranches {
   void forget() noexcept { now_ = {}; }
 
  private:
-  /// Every branch at one place.
-  struct Branches {
-    ReachedForces at;    ///< |p_i|, m, with |M_i|, N, and the energies there
-    Lanes direction[3];  ///< of both, unit; zero where p_i is
+  /// Two branches at one place.
+  struct BranchPair {
+    ReachedForces at;     ///< |p_i|, m, with |M_i|, N, and the energies there
+    Pair direction[3]{};  ///< of both, unit; zero where p_i is
   };
+  using Branches = std::array<BranchPair, pairs_of(kMaxRelaxationTimes)>;
   bool stays_tangential(const Vec3& normal) const noexcept;
-  void move(const LateralPlace& place, double factor, Branches& there) const noexcept;
-  LateralMemory sums(const Lanes& fractions, const Branches& of) const noexcept;
+  LateralMemory move(const LateralPlace& place, double factor) const noexcept;
 
   Branches branches_{};
   Vec3 normal_{};  ///< to which they are tangential

@@ -25,19 +25,20 @@ NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes&
                               double factor) const noexcept {
   NormalMemory sum;
   sum.carried = factor;
-  Lanes force;
-  for (std::size_t p = 0; p < pairs_of(times_); ++p) force.pair[p] = factor * memory_.pair[p];
-  for (std::size_t i = 0; i < times_; ++i) sum.relaxed += fractions[i] * force[i];
-  force.set(times_, sum.relaxed);
-  Lanes reachable, conjugate;
-  for (std::size_t p = 0; p < pieces_.pairs(); ++p) reachable.pair[p] = kReachable * force.pair[p];
-  ReachedForces at;
-  pieces_.reach(response, reachable, at);
-  for (std::size_t p = 0; p < pieces_.pairs(); ++p)
-    conjugate.pair[p] = at.conjugate(force.pair[p], p);
-  for (std::size_t i = 0; i < times_; ++i)
-    if (fractions[i] > 0) sum.stored += fractions[i] * conjugate[i];
-  sum.locked = sum.stored < kInfinity ? std::max(sum.stored - conjugate[times_], 0.0) : kInfinity;
+  for (std::size_t p = 0; p < pairs_of(times_); ++p)
+    sum.relaxed = plus(sum.relaxed, fractions.pair[p] * (factor * memory_.pair[p]));
+  pieces_.keep_for(response);
+  double skin = 0;
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
+    Pair force = factor * memory_.pair[p];
+    const bool with_skin = p == times_ / 2;
+    if (with_skin) force = times_ % 2 == 1 ? Pair{force[0], sum.relaxed} : Pair{sum.relaxed, 0};
+    const Pair conjugate = pieces_.reach(p, kReachable * force).conjugate(force);
+    const Pair& fraction = fractions.pair[p];
+    sum.stored = plus(sum.stored, fraction > Pair{} ? fraction * conjugate : Pair{});
+    if (with_skin) skin = conjugate[times_ % 2];
+  }
+  sum.locked = sum.stored < kInfinity ? std::max(sum.stored - skin, 0.0) : kInfinity;
   return sum;
 }
 
@@ -60,7 +61,11 @@ TissueMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedRes
   const bool shears = lateral.any && shear == Shear::Kept;
   if (distance == 0) return {now_, shears ? lateral : LateralMemory{}};
   if (!remembers() && !shears) return {kFresh, {}};
-  const Lanes fractions = surface_->relaxes_alike() ? fractions_ : surface_->fractions(p);
+  if (!surface_->relaxes_alike() && !(p == considered_)) {
+    considered_ = p;
+    there_ = surface_->fractions(p);
+  }
+  const Lanes& fractions = surface_->relaxes_alike() ? fractions_ : there_;
   const double factor = std::exp(-distance / surface_->tool_radius());
   TissueMemory there{normal_carried_to(response, fractions, factor), {}};
   if (shears) there.lateral = lateral_.carried_to({&response, &fractions, normal}, factor);
@@ -71,7 +76,8 @@ void Relaxation::carry(const SurfacePoint& p, const InterpolatedResponse& respon
                        const Vec3& normal, const TissueMemory& carried) noexcept {
   if (carried.normal.carried != 1)
     for (std::size_t k = 0; k < pairs_of(times_); ++k) memory_.pair[k] *= carried.normal.carried;
-  if (!surface_->relaxes_alike() || fractions_[0] == 0) fractions_ = surface_->fractions(p);
+  if (!surface_->relaxes_alike() || !response_)
+    fractions_ = p == considered_ ? there_ : surface_->fractions(p);
   response_ = response;
   normal_ = normal;
   now_ = carried.normal;

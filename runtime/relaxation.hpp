@@ -78,6 +78,8 @@ class Relaxation {
   Lanes decay_;           ///< exp(-dt/tau_i); 1 for lanes that are not in use
   double decay_dt_ = -1;  ///< s, the dt of decay_
   NormalMemory now_;
+  mutable SurfacePoint considered_;  ///< the end of the last slide that was considered
+  mutable Lanes there_;              ///< g_i there
   mutable NormalPieces pieces_;  ///< at the depths of F_i and of F; results do not depend on them
 };
 

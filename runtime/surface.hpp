@@ -45,6 +45,11 @@ static_assert(sizeof(NodeRelaxation) == kCacheLine);
 struct SurfacePoint {
   std::int32_t element = kNoElement;
   Vec3 natural{};
+
+  bool operator==(const SurfacePoint& other) const noexcept {
+    return element == other.element && natural[0] == other.natural[0] &&
+           natural[1] == other.natural[1] && natural[2] == other.natural[2];
+  }
 };
 
 /// Immutable after construction; shared by any number of threads.
