@@ -5,10 +5,24 @@
 
 namespace palpate::runtime {
 
+/// Calls `act` with the knots of a lane, on the piece that contains a deflection.
+template <std::size_t kPairs>
+template <typename Act>
+void KeptPieces<kPairs>::with_knots(std::size_t lane, double at, const Act& act) noexcept {
+  const InterpolatedResponse response(nodes_, natural_);
+  if ((lane == 0 ? first_ : other_) == ResponseOf::Depth) {
+    KnotMerge<&NodeCurves::normal> knots(response, natural_, at);
+    act(knots);
+  } else {
+    KnotMerge<&NodeCurves::lateral> knots(response, natural_, at);
+    act(knots);
+  }
+}
+
 /// Keeps the pieces where the knots are for a lane.
-template <CurveView (NodeCurves::*kCurve)() const noexcept>
+template <std::size_t kPairs>
 template <typename Knots>
-void KeptPieces<kCurve>::keep(std::size_t lane, const Knots& knots) noexcept {
+void KeptPieces<kPairs>::keep(std::size_t lane, const Knots& knots) noexcept {
   PiecePair& on = pieces_[lane / 2];
   const std::size_t i = lane % 2;
   on.from[i] = knots.start();
@@ -24,39 +38,40 @@ void KeptPieces<kCurve>::keep(std::size_t lane, const Knots& knots) noexcept {
   }
 }
 
-template <CurveView (NodeCurves::*kCurve)() const noexcept>
-void KeptPieces<kCurve>::find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept {
+template <std::size_t kPairs>
+void KeptPieces<kPairs>::find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept {
   nodes_ = nodes;
-  const InterpolatedResponse response(nodes_, natural_);
   for (std::size_t lane = 0; lane < lanes_; ++lane)
-    keep(lane, KnotMerge<kCurve>(response, natural_, pieces_[lane / 2].from[lane % 2]));
+    with_knots(lane, pieces_[lane / 2].from[lane % 2],
+               [&](const auto& knots) { keep(lane, knots); });
 }
 
 /// To the pieces that reach forces.
-template <CurveView (NodeCurves::*kCurve)() const noexcept>
-void KeptPieces<kCurve>::walk(std::size_t p, Pair force) noexcept {
-  const InterpolatedResponse response(nodes_, natural_);
+template <std::size_t kPairs>
+void KeptPieces<kPairs>::walk(std::size_t p, Pair force) noexcept {
   const Mask kept = pieces_[p].reaches(force);
   for (std::size_t i = 0; i < 2; ++i) {
     if (kept[i] != 0) continue;
-    KnotMerge<kCurve> knots(response, natural_, pieces_[p].from[i]);
-    walk_to(knots, force[i]);
-    keep(2 * p + i, knots);
+    with_knots(2 * p + i, pieces_[p].from[i], [&](auto& knots) {
+      walk_to(knots, force[i]);
+      keep(2 * p + i, knots);
+    });
   }
   merge(pieces_[p]);
 }
 
 /// The pieces that contain deflections.
-template <CurveView (NodeCurves::*kCurve)() const noexcept>
-void KeptPieces<kCurve>::find(std::size_t p, Pair deflection) noexcept {
-  const InterpolatedResponse response(nodes_, natural_);
+template <std::size_t kPairs>
+void KeptPieces<kPairs>::find(std::size_t p, Pair deflection) noexcept {
   const Mask kept = pieces_[p].contains(deflection);
-  for (std::size_t i = 0; i < 2; ++i)
-    if (kept[i] == 0) keep(2 * p + i, KnotMerge<kCurve>(response, natural_, deflection[i]));
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (kept[i] != 0) continue;
+    with_knots(2 * p + i, deflection[i], [&](const auto& knots) { keep(2 * p + i, knots); });
+  }
   merge(pieces_[p]);
 }
 
-template class KeptPieces<&NodeCurves::normal>;
-template class KeptPieces<&NodeCurves::lateral>;
+template class KeptPieces<Lanes::kPairs>;
+template class KeptPieces<1>;
 
 }  // namespace palpate::runtime

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "format/numbers.hpp"
 #include "format/vec3.hpp"
@@ -24,16 +25,23 @@ struct ReachedForces {
   }
 };
 
-/// The piece of one kind of response around the deflection of each lane, from one evaluation to the
+/// g(z) or h(rho).
+enum class ResponseOf : std::uint8_t { Depth, Lateral };
+
+/// The piece of a response around the deflection of each lane, from one evaluation to the
 /// next: what relaxes moves little in a step. On its piece a response is the quadratic
 ///   force + slope x + curvature x^2,   x = d - from,
 /// and each node has its own, of which a move of the point changes the weights only. Results do not
 /// depend on the pieces that were kept. noexcept, allocation-free, bounded by the number of knots.
 /// Inline but for the search of another piece: a step evaluates a dozen pairs.
-template <CurveView (NodeCurves::*kCurve)() const noexcept>
+template <std::size_t kPairs>
 class KeptPieces {
  public:
-  explicit KeptPieces(std::size_t lanes) noexcept : lanes_(lanes), pairs_(pairs_of(lanes)) {}
+  /// Of one kind of response in every lane that is in use.
+  KeptPieces(std::size_t lanes, ResponseOf kind) noexcept
+      : lanes_(lanes), first_(kind), other_(kind) {}
+  /// Of g in the first lane and of h in the second.
+  KeptPieces() noexcept : lanes_(2), first_(ResponseOf::Depth), other_(ResponseOf::Lateral) {}
 
   /// The response of what follows.
   void keep_for(const InterpolatedResponse& response) noexcept {
@@ -43,7 +51,7 @@ class KeptPieces {
       return;
     natural_ = natural;
     if (!same) find_all(response.nodes());
-    for (std::size_t p = 0; p < pairs_; ++p) merge(pieces_[p]);
+    for (std::size_t p = 0; p < pairs(); ++p) merge(pieces_[p]);
   }
 
   /// The smallest deflections >= 0 at which the response has the forces of pair p, in closed form;
@@ -54,9 +62,8 @@ class KeptPieces {
     const Start& q = on.merged;
     const Pair rise = larger(force - q.force, Pair{});
     const Pair root = roots(larger(q.slope * q.slope + 4.0 * q.curvature * rise, Pair{}));
-    const Pair denominator = q.slope + root;
-    Pair x = denominator > Pair{} ? 2.0 * rise / denominator : both(kInfinity);
-    x = smaller(rise == Pair{} ? Pair{} : x, on.to - on.from);
+    const Pair rising = 2.0 * rise / larger(q.slope + root, Pair{});  // infinite on a plateau
+    const Pair x = smaller(rise > Pair{} ? rising : Pair{}, on.to - on.from);
     return q.after(x, on.from + x, force > Pair{});
   }
   /// Force and energy at the deflections of pair p; all 0 for one <= 0.
@@ -66,7 +73,7 @@ class KeptPieces {
     return on.merged.after(deflection - on.from, deflection, deflection > Pair{});
   }
 
-  std::size_t pairs() const noexcept { return pairs_; }
+  std::size_t pairs() const noexcept { return kPairs == 1 ? 1 : pairs_of(lanes_); }
 
  private:
   /// Two responses from the starts of their pieces on.
@@ -91,9 +98,7 @@ class KeptPieces {
       const Mask begins_below = (merged.force < force) | (from <= Pair{});
       return (force <= Pair{}) | (begins_below & (end_force >= force));
     }
-    Mask contains(const Pair& d) const noexcept {
-      return (d <= Pair{}) | ((from <= d) & (d < to));
-    }
+    Mask contains(const Pair& d) const noexcept { return (d <= Pair{}) | ((from <= d) & (d < to)); }
   };
 
   bool is_of(const std::array<const NodeCurves*, 3>& these) const noexcept {
@@ -114,16 +119,19 @@ class KeptPieces {
   void find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept;
   void walk(std::size_t p, Pair force) noexcept;
   void find(std::size_t p, Pair deflection) noexcept;
+  template <typename Act>
+  void with_knots(std::size_t lane, double at, const Act& act) noexcept;
   template <typename Knots>
   void keep(std::size_t lane, const Knots& knots) noexcept;
 
-  std::size_t lanes_, pairs_;
+  std::size_t lanes_;
+  ResponseOf first_, other_;                  ///< of the first lane and of the others
   std::array<const NodeCurves*, 3> nodes_{};  ///< owners of the pieces; null: none
   Vec3 natural_{};                            ///< natural coordinates of what is merged
-  std::array<PiecePair, Lanes::kPairs> pieces_;
+  std::array<PiecePair, kPairs> pieces_;
 };
 
-using NormalPieces = KeptPieces<&NodeCurves::normal>;
-using LateralPieces = KeptPieces<&NodeCurves::lateral>;
+using BranchPieces = KeptPieces<Lanes::kPairs>;  ///< of all relaxation times
+using TipPieces = KeptPieces<1>;                 ///< of g and h at the tip
 
 }  // namespace palpate::runtime

@@ -29,12 +29,12 @@ inline bool all(const Mask& m) noexcept {
   return (m[0] & m[1]) != 0;
 #endif
 }
-/// std::max and std::min of each.
+/// Of each the larger or the smaller, the second where they are not ordered: one instruction.
 inline Pair larger(const Pair& a, const Pair& b) noexcept {
-  return a < b ? b : a;
+  return a > b ? a : b;
 }
 inline Pair smaller(const Pair& a, const Pair& b) noexcept {
-  return b < a ? b : a;
+  return a < b ? a : b;
 }
 /// A sum and two more terms, added in their order.
 inline double plus(double sum, const Pair& terms) noexcept {

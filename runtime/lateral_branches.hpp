@@ -28,7 +28,7 @@ struct LateralPlace {
 /// bounded. For decoupled responses.
 class LateralBranches {
  public:
-  explicit LateralBranches(std::size_t count) noexcept : pieces_(count) {}
+  explicit LateralBranches(std::size_t count) noexcept : pieces_(count, ResponseOf::Lateral) {}
 
   /// M and K where the memories lie.
   const LateralMemory& now() const noexcept { return now_; }
@@ -56,7 +56,7 @@ class LateralBranches {
   Branches branches_{};
   Vec3 normal_{};  ///< to which they are tangential
   LateralMemory now_;
-  mutable LateralPieces pieces_;      ///< results do not depend on them
+  mutable BranchPieces pieces_;       ///< results do not depend on them
   mutable Branches moved_;            ///< at the end of the slide that was considered last
   mutable std::uint64_t slides_ = 0;  ///< how many were
 };

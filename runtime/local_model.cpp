@@ -40,13 +40,14 @@ void LocalModel::relax_laterally(const LateralMemory& memory, const LateralMemor
 /// The force f that is felt becomes limit f/|f|, and q the deflection at which grad H is M plus
 /// that. It is between M and the present grad H, so that it has been reached.
 LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResponse& at,
-                                            double limit, PiecesInUse& pieces) const noexcept {
+                                            double limit, TipPieces& pieces) const noexcept {
   const Vec3& relaxed = memory_->lateral.relaxed;
   const Vec3 felt = at.instant_lateral_force * d.tangent - relaxed;
   const Vec3 instant = relaxed + (std::max(limit, 0.0) / at.lateral_force) * felt;
   const double magnitude = norm(instant);
   LateralSlip slip;
-  slip.lateral = response_.lateral_inverse(magnitude, d.lateral, pieces);
+  pieces.keep_for(response_);
+  slip.lateral = pieces.reach(0, Pair{0, magnitude}).deflection[1];
   if (!(slip.lateral < kInfinity)) slip.lateral = d.lateral;  // by rounding, at the end of a curve
   if (slip.lateral > 0) slip.tangent = (1 / magnitude) * instant;
   const Vec3 path = d.lateral * d.tangent - slip.lateral * slip.tangent;
@@ -56,12 +57,12 @@ LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResp
 }
 
 void LocalModel::slip(const LateralSlip& by, Deflection& d, LocalResponse& at,
-                      PiecesInUse& pieces) noexcept {
+                      ToolPieces& pieces) noexcept {
   set_lateral_offset(lateral_offset_ + by.distance * by.direction);
   d.lateral = by.lateral;
   d.tangent = by.tangent;
   if (coupled()) {
-    respond_at_depth(d, pieces, at);
+    respond_at_depth(d, pieces.elastic, at);
   } else {
     at = respond(d, pieces);
   }

@@ -31,7 +31,7 @@ class Relaxation {
       : surface_(&surface),
         times_(surface.relaxation_times().size()),
         lateral_(times_),
-        pieces_(times_ + 1) {}
+        pieces_(times_ + 1, ResponseOf::Depth) {}
 
   /// Whether the responses of the surface relax at all.
   bool relaxes() const noexcept { return times_ > 0; }
@@ -80,7 +80,7 @@ class Relaxation {
   NormalMemory now_;
   mutable SurfacePoint considered_;  ///< the end of the last slide that was considered
   mutable Lanes there_;              ///< g_i there
-  mutable NormalPieces pieces_;  ///< at the depths of F_i and of F; results do not depend on them
+  mutable BranchPieces pieces_;  ///< at the depths of F_i and of F; results do not depend on them
 };
 
 }  // namespace palpate::runtime
