@@ -417,7 +417,7 @@ void ContactState::relax(Candidate& at) noexcept {
   at.model.replace_memory(memory_.now(), at.deflection, response);
   seen_.dissipated += energy_before - response.energy;
   seen_.relaxed_fraction = 1 - response.relaxed.scale;
-  seen_.relaxed_lateral_force = model.memory().lateral.relaxed;
+  seen_.relaxed_lateral_force = model.memory().lateral.relaxed();
   if (at.deflection.depth > 0 && response.relaxed.scale == 0) seen_.status |= step_status::SkinLags;
   const double limit = held - settings_.friction * (normal_before - response.friction_normal_force);
   if (!(response.lateral_force > limit)) return;

@@ -15,12 +15,9 @@ class LateralSums {
     z_ += fraction * force[2];
     stored_ += fraction * conjugate;
   }
-  LateralMemory memory() const noexcept {
-    LateralMemory sum;
-    sum.any = true;
-    sum.relaxed = {x_[0] + x_[1], y_[0] + y_[1], z_[0] + z_[1]};
-    sum.stored = stored_[0] + stored_[1];
-    return sum;
+  LateralMemory memory(double carried, std::uint64_t slide) const noexcept {
+    return {Pair{x_[0] + x_[1], y_[0] + y_[1]}, Pair{z_[0] + z_[1], 0},
+            Pair{stored_[0] + stored_[1], carried}, true, slide};
   }
 
  private:
@@ -54,24 +51,22 @@ LateralMemory LateralBranches::move(const LateralPlace& place, double factor) co
     }
     sums.add(place.fractions->pair[p], force, there.at.conjugate(there.at.force));
   }
-  return sums.memory();
+  return sums.memory(factor, slides_);
 }
 
 LateralMemory LateralBranches::carried_to(const LateralPlace& place, double factor) const noexcept {
   if (!now_.any || !stays_tangential(place.normal)) return {};
-  LateralMemory sum = move(place, factor);
-  sum.slide = ++slides_;
-  sum.carried = factor;
-  return sum;
+  ++slides_;
+  return move(place, factor);
 }
 
 void LateralBranches::carry(const LateralPlace& place, const LateralMemory& carried) noexcept {
   if (carried.any && carried.slide == 0) return;
   now_ = carried;
   now_.slide = 0;
-  now_.carried = 1;
+  now_.stored_and_carried = Pair{carried.stored(), 1};
   if (!carried.any) return;
-  if (carried.slide != slides_) move(place, carried.carried);
+  if (carried.slide != slides_) move(place, carried.carried());
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) branches_[p] = moved_[p];
   normal_ = place.normal;
 }
@@ -102,7 +97,7 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
       branch.direction[k] = magnitude > Pair{} ? 1.0 / magnitude * force[k] : Pair{};
     sums.add(place.fractions->pair[p], force, branch.at.conjugate(branch.at.force));
   }
-  now_ = sums.memory();
+  now_ = sums.memory(1, 0);
 }
 
 }  // namespace palpate::runtime

@@ -31,9 +31,9 @@ void LocalModel::replace_memory(const TissueMemory& memory, const Deflection& d,
 /// Puts a lateral memory in the place of another in a response.
 void LocalModel::relax_laterally(const LateralMemory& memory, const LateralMemory& before,
                                  const Deflection& d, LocalResponse& r) const noexcept {
-  const Vec3 change = memory.relaxed - before.relaxed;
-  r.lateral_force = norm(r.instant_lateral_force * d.tangent - memory.relaxed);
-  r.energy += memory.stored - before.stored - d.lateral * dot(change, d.tangent);
+  const Vec3 change = memory.relaxed() - before.relaxed();
+  r.lateral_force = norm(r.instant_lateral_force * d.tangent - memory.relaxed());
+  r.energy += memory.stored() - before.stored() - d.lateral * dot(change, d.tangent);
   r.force = r.force - change;
 }
 
@@ -41,7 +41,7 @@ void LocalModel::relax_laterally(const LateralMemory& memory, const LateralMemor
 /// that. It is between M and the present grad H, so that it has been reached.
 LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResponse& at,
                                             double limit, TipPieces& pieces) const noexcept {
-  const Vec3& relaxed = memory_->lateral.relaxed;
+  const Vec3 relaxed = memory_->lateral.relaxed();
   const Vec3 felt = at.instant_lateral_force * d.tangent - relaxed;
   const Vec3 instant = relaxed + (std::max(limit, 0.0) / at.lateral_force) * felt;
   const double magnitude = norm(instant);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kReductions = 8;        // of the memories in one slide before they are lost
 constexpr double kBelow = 1 - 1e-12;  // a reduction ends below its goal in spite of rounding
-constexpr NormalMemory kFresh{0, 0, 0, 0};
+constexpr NormalMemory kFresh{Pair{0, 0}, Pair{0, 0}};
 
 /// A force that was reached before is reached again, in spite of rounding. G* is the largest F z -
 /// G, so that this changes it by less than its own rounding.
@@ -23,23 +23,21 @@ constexpr double kReachable = 1 - 1e-12;
 /// branches is that of the skin.
 NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes& fractions,
                               double factor) const noexcept {
-  NormalMemory sum;
-  sum.carried = factor;
+  double relaxed = 0, stored = 0, skin = 0;
   for (std::size_t p = 0; p < pairs_of(times_); ++p)
-    sum.relaxed = plus(sum.relaxed, fractions.pair[p] * (factor * memory_.pair[p]));
+    relaxed = plus(relaxed, fractions.pair[p] * (factor * memory_.pair[p]));
   pieces_.keep_for(response);
-  double skin = 0;
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     Pair force = factor * memory_.pair[p];
     const bool with_skin = p == times_ / 2;
-    if (with_skin) force = times_ % 2 == 1 ? Pair{force[0], sum.relaxed} : Pair{sum.relaxed, 0};
+    if (with_skin) force = times_ % 2 == 1 ? Pair{force[0], relaxed} : Pair{relaxed, 0};
     const Pair conjugate = pieces_.reach(p, kReachable * force).conjugate(force);
     const Pair& fraction = fractions.pair[p];
-    sum.stored = plus(sum.stored, fraction > Pair{} ? fraction * conjugate : Pair{});
-    if (with_skin) skin = conjugate[times_ % 2];
+    stored = plus(stored, fraction > Pair{} ? fraction * conjugate : Pair{});
+    if (with_skin) skin = times_ % 2 == 1 ? conjugate[1] : conjugate[0];
   }
-  sum.locked = sum.stored < kInfinity ? std::max(sum.stored - skin, 0.0) : kInfinity;
-  return sum;
+  const double locked = stored < kInfinity ? std::max(stored - skin, 0.0) : kInfinity;
+  return {Pair{relaxed, factor}, Pair{stored, locked}};
 }
 
 NormalMemory Relaxation::normal_carried_to(const InterpolatedResponse& response,
@@ -47,9 +45,9 @@ NormalMemory Relaxation::normal_carried_to(const InterpolatedResponse& response,
   if (!remembers()) return kFresh;
   for (int i = 0; i < kReductions; ++i) {
     const NormalMemory there = sums(response, fractions, factor);
-    if (there.locked <= now_.locked) return there;
+    if (there.locked() <= now_.locked()) return there;
     // R of a power law f ~ z^n falls as factor^((n + 1)/n): this is enough for each.
-    factor *= kBelow * now_.locked / there.locked;
+    factor *= kBelow * now_.locked() / there.locked();
   }
   return kFresh;
 }
@@ -74,14 +72,14 @@ TissueMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedRes
 
 void Relaxation::carry(const SurfacePoint& p, const InterpolatedResponse& response,
                        const Vec3& normal, const TissueMemory& carried) noexcept {
-  if (carried.normal.carried != 1)
-    for (std::size_t k = 0; k < pairs_of(times_); ++k) memory_.pair[k] *= carried.normal.carried;
+  if (carried.normal.carried() != 1)
+    for (std::size_t k = 0; k < pairs_of(times_); ++k) memory_.pair[k] *= carried.normal.carried();
   if (!surface_->relaxes_alike() || !response_)
     fractions_ = p == considered_ ? there_ : surface_->fractions(p);
   response_ = response;
   normal_ = normal;
   now_ = carried.normal;
-  now_.carried = 1;
+  now_.relaxed_and_carried = Pair{now_.relaxed(), 1};
   lateral_.carry({&*response_, &fractions_, normal_}, carried.lateral);
 }
 
@@ -96,7 +94,7 @@ void Relaxation::keep_decay(double dt) noexcept {
 void Relaxation::pass(double g, double dt) noexcept {
   if (!response_) return;
   keep_decay(dt);
-  const double target = std::max(g, now_.relaxed);
+  const double target = std::max(g, now_.relaxed());
   for (std::size_t p = 0; p < pairs_of(times_); ++p)
     memory_.pair[p] = target + (memory_.pair[p] - target) * decay_.pair[p];
   now_ = sums(*response_, fractions_, 1);

@@ -36,11 +36,11 @@ class Relaxation {
   /// Whether the responses of the surface relax at all.
   bool relaxes() const noexcept { return times_ > 0; }
   /// Whether a normal memory is above zero.
-  bool remembers() const noexcept { return now_.relaxed > 0; }
+  bool remembers() const noexcept { return now_.relaxed() > 0; }
   /// The memory at the contact point.
   TissueMemory now() const noexcept { return {now_, lateral_.now()}; }
   /// R of the normal response, J: what is stored without a tool.
-  double locked() const noexcept { return now_.locked; }
+  double locked() const noexcept { return now_.locked(); }
   /// The same after a slide of the contact point to p with this response and normal, `distance` (m)
   /// away: every memory is multiplied by exp(-distance/radius), normal ones by less where R would
   /// rise at p.

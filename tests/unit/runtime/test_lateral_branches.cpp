@@ -313,11 +313,11 @@ TEST(LateralBranches, TurnWithTheNormalAndKeepTheirEnergy) {
   branches.carry({&response, &fractions, aside},
                  branches.carried_to({&response, &fractions, aside}, 1));
   const runtime::LateralMemory after = branches.now();
-  EXPECT_NEAR(dot(after.relaxed, aside), 0, 1e-16);
-  EXPECT_NEAR(norm(after.relaxed), norm(before.relaxed), 1e-16);
-  EXPECT_NEAR(after.stored, before.stored, 1e-18);
+  EXPECT_NEAR(dot(after.relaxed(), aside), 0, 1e-16);
+  EXPECT_NEAR(norm(after.relaxed()), norm(before.relaxed()), 1e-16);
+  EXPECT_NEAR(after.stored(), before.stored(), 1e-18);
   // The axis of the turn is y: the part along it stays.
-  EXPECT_NEAR(after.relaxed[1], before.relaxed[1], 1e-16);
+  EXPECT_NEAR(after.relaxed()[1], before.relaxed()[1], 1e-16);
   EXPECT_FALSE(branches.carried_to({&response, &fractions, -aside}, 1).any);
 }
 
