@@ -41,15 +41,11 @@ LateralMemory LateralBranches::move(const LateralPlace& place, double factor) co
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     const BranchPair& from = branches_[p];
     BranchPair& there = moved_[p];
-    const Pair* const d = from.direction;
-    const Pair along = d[0] * to[0] + d[1] * to[1] + d[2] * to[2];
+    const Pair along = from.force[0] * to[0] + from.force[1] * to[1] + from.force[2] * to[2];
     there.at = pieces_.evaluate(p, factor * from.at.deflection);
-    Pair force[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      there.direction[k] = d[k] - along * axis[k];
-      force[k] = there.at.force * there.direction[k];
-    }
-    sums.add(place.fractions->pair[p], force, there.at.conjugate(there.at.force));
+    const Pair scale = from.at.force > Pair{} ? there.at.force / from.at.force : Pair{};
+    for (std::size_t k = 0; k < 3; ++k) there.force[k] = scale * (from.force[k] - along * axis[k]);
+    sums.add(place.fractions->pair[p], there.force, there.at.conjugate(there.at.force));
   }
   return sums.memory(factor, slides_);
 }
@@ -82,19 +78,15 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
   pieces_.keep_for(*place.response);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     BranchPair& branch = branches_[p];
-    Pair force[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Pair before = branch.at.force * branch.direction[k];
-      force[k] = target[k] + decay.pair[p] * (before - target[k]);
-    }
+    Pair(&force)[3] = branch.force;
+    for (std::size_t k = 0; k < 3; ++k)
+      force[k] = target[k] + decay.pair[p] * (force[k] - target[k]);
     const Pair magnitude = roots(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
     // The force is between two that were reached, so that its deflection is no longer than theirs.
     const Pair longest = larger(branch.at.deflection, both(lateral));
     branch.at = pieces_.reach(p, magnitude);
     if (!all(branch.at.deflection <= longest))
       branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, longest));
-    for (std::size_t k = 0; k < 3; ++k)
-      branch.direction[k] = magnitude > Pair{} ? 1.0 / magnitude * force[k] : Pair{};
     sums.add(place.fractions->pair[p], force, branch.at.conjugate(branch.at.force));
   }
   now_ = sums.memory(1, 0);

@@ -46,8 +46,8 @@ class LateralBranches {
  private:
   /// Two branches at one place.
   struct BranchPair {
-    ReachedForces at;     ///< |p_i|, m, with |M_i|, N, and the energies there
-    Pair direction[3]{};  ///< of both, unit; zero where p_i is
+    ReachedForces at;  ///< |p_i|, m, with |M_i|, N, and the energies there
+    Pair force[3]{};   ///< M_i, N; p_i has its direction
   };
   using Branches = std::array<BranchPair, pairs_of(kMaxRelaxationTimes)>;
   bool stays_tangential(const Vec3& normal) const noexcept;

@@ -50,15 +50,15 @@ LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResp
   slip.lateral = pieces.reach(0, Pair{0, magnitude}).deflection[1];
   if (!(slip.lateral < kInfinity)) slip.lateral = d.lateral;  // by rounding, at the end of a curve
   if (slip.lateral > 0) slip.tangent = (1 / magnitude) * instant;
-  const Vec3 path = d.lateral * d.tangent - slip.lateral * slip.tangent;
-  slip.distance = norm(path);
-  if (slip.distance > 0) slip.direction = (1 / slip.distance) * path;
+  slip.scale = 1;
+  slip.direction = d.lateral * d.tangent - slip.lateral * slip.tangent;
+  slip.distance = norm(slip.direction);
   return slip;
 }
 
 void LocalModel::slip(const LateralSlip& by, Deflection& d, LocalResponse& at,
                       ToolPieces& pieces) noexcept {
-  set_lateral_offset(lateral_offset_ + by.distance * by.direction);
+  set_lateral_offset(lateral_offset_ + by.part(1));
   d.lateral = by.lateral;
   d.tangent = by.tangent;
   if (coupled()) {

@@ -43,9 +43,12 @@ struct LocalResponse {
 /// Slip with c fixed that brings the lateral force down to a limit.
 struct LateralSlip {
   double distance = 0;  ///< m
-  Vec3 direction{};     ///< unit
+  double scale = 0;     ///< the slip is scale * direction, m
+  Vec3 direction{};     ///< of any length: a quotient less to wait for
   double lateral = 0;   ///< rho after it, m
   Vec3 tangent{};       ///< t after it
+
+  Vec3 part(double fraction) const noexcept { return (fraction * scale) * direction; }  ///< m
 };
 
 /// With c, n = n(c), the offset d0 and the lateral offset s (s . n = 0) fixed:
@@ -113,7 +116,7 @@ class LocalModel {
                           ToolPieces& pieces) const noexcept {
     if (memory_ && memory_->lateral.any) return relaxed_slip_within(d, at, limit, pieces.relaxing);
     const double rho = lateral_below(d, at, limit, pieces);
-    return {d.lateral - rho, d.tangent, rho, rho > 0 ? d.tangent : Vec3{}};
+    return {d.lateral - rho, d.lateral - rho, d.tangent, rho, rho > 0 ? d.tangent : Vec3{}};
   }
 
   /// Makes that slip: it goes into s. The depth does not change; the deflection and the response

@@ -214,16 +214,22 @@ TEST(LateralBranches, TheToolSlipsOnlyAgainstTheForceThatIsFelt) {
   EXPECT_GT(tool.lateral()[1], 2 * std::abs(tool.lateral()[0]));
 }
 
+/// M, with a K of 1 J.
+runtime::LateralMemory remembered(const Vec3& relaxed) {
+  return {runtime::Pair{relaxed[0], relaxed[1]}, runtime::Pair{relaxed[2], 0}, runtime::Pair{1, 1},
+          true, 0};
+}
+
 TEST(LateralBranches, SlipAtAFixedPointKeepsTheDirectionOfTheForceAndLowersTheEnergy) {
   const Library library = relaxing(plate(2, 0.08, stiffening), kTimes, true);
   const palpate_library body(library);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> any(-1, 1);
-  runtime::PiecesInUse pieces;
+  runtime::ToolPieces pieces;
   for (int trial = 0; trial < 1000; ++trial) {
     runtime::LocalModel model(body.surface, {0, {0.2, 0.5, 0.3}}, 0);
     const Vec3 memory{0.2 * any(random), 0.2 * any(random), 0};
-    model.set_memory({{}, {true, memory, 1, false, 1}});
+    model.set_memory({{}, remembered(memory)});
     auto d = model.deflection(model.contact_point() +
                               Vec3{4e-3 * any(random), 4e-3 * any(random), -2e-3});
     auto at = model.respond(d, pieces);
@@ -235,8 +241,8 @@ TEST(LateralBranches, SlipAtAFixedPointKeepsTheDirectionOfTheForceAndLowersTheEn
     const Vec3 lateral = at.force - dot(at.force, model.normal()) * model.normal();
     const Vec3 was = before.force - dot(before.force, model.normal()) * model.normal();
     EXPECT_NEAR(norm(lateral - (limit / norm(was)) * was), 0, 1e-12);
-    EXPECT_LE(at.energy, before.energy - slip.distance * dot(slip.direction, lateral) + 1e-15);
-    EXPECT_GE(dot(slip.direction, was), 0);
+    EXPECT_LE(at.energy, before.energy - dot(slip.part(1), lateral) + 1e-15);
+    EXPECT_GE(dot(slip.part(1), was), 0);
   }
 }
 
@@ -251,11 +257,11 @@ TEST(LateralBranches, AtTheLimitOfFrictionTheForceIsNoSteeperThanItsBound) {
   double steepest_press = 0, steepest = 0;
   for (int trial = 0; trial < 20000; ++trial) {
     runtime::LocalModel model(body.surface, {0, {0.2, 0.5, 0.3}}, 0);
-    model.set_memory({{0.1 * std::abs(any(random)), 0, 1, 1},
-                      {true, {0.5 * any(random), 0.5 * any(random), 0}, 1, false, 1}});
+    model.set_memory({{runtime::Pair{0.1 * std::abs(any(random)), 1}, runtime::Pair{0, 1}},
+                      remembered({0.5 * any(random), 0.5 * any(random), 0})});
     const auto force = [&](const Vec3& x) {
       runtime::LocalModel slipped = model;
-      runtime::PiecesInUse pieces;
+      runtime::ToolPieces pieces;
       auto d = slipped.deflection(x);
       auto at = slipped.respond(d, pieces);
       const double limit = kFriction * at.friction_normal_force;
