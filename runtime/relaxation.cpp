@@ -80,7 +80,7 @@ void Relaxation::carry(const SurfacePoint& p, const InterpolatedResponse& respon
   normal_ = normal;
   now_ = carried.normal;
   now_.relaxed_and_carried = Pair{now_.relaxed(), 1};
-  lateral_.carry({&*response_, &fractions_, normal_}, carried.lateral);
+  if (lateral_.now().any) lateral_.carry({&*response_, &fractions_, normal_}, carried.lateral);
 }
 
 void Relaxation::keep_decay(double dt) noexcept {
