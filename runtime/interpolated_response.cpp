@@ -32,20 +32,6 @@ double InterpolatedResponse::lateral_inverse(double force, const Vec3& weights) 
   return inverse_from(knots, force);
 }
 
-double InterpolatedResponse::lateral_inverse(double force, double from,
-                                             PiecesInUse& pieces) const noexcept {
-  if (!(force > 0.0)) return 0.0;
-  look_up_lateral(from, pieces);
-  const MergedPiece here = merged(pieces.lateral, natural_, pieces.lateral_from);
-  const double length = pieces.lateral_to - pieces.lateral_from;
-  const bool begins_below = here.force < force || !(pieces.lateral_from > 0);
-  if (begins_below && ends_above(here, length, force))
-    return pieces.lateral_from + std::min(solve_rising_quadratic(here, force), length);
-  LateralKnots knots(*this, natural_, from);
-  const MergedPiece p = walk_to(knots, force);
-  return knots.start() + std::min(solve_rising_quadratic(p, force), knots.end() - knots.start());
-}
-
 double InterpolatedResponse::lateral_inverse_below(double force, double from, const Vec3& weights,
                                                    PiecesInUse& pieces) const noexcept {
   if (!(force > 0.0)) return 0.0;

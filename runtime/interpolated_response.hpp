@@ -116,9 +116,6 @@ class InterpolatedResponse {
   double lateral_inverse(double force) const noexcept { return lateral_inverse(force, natural_); }
   double lateral_inverse(double force, const Vec3& weights) const noexcept;
 
-  /// The same with the natural coordinates; walks from the piece of the deflection `from` (m).
-  double lateral_inverse(double force, double from, PiecesInUse& pieces) const noexcept;
-
   /// The same for a force that h reaches at `from` or before: walks down from there, hence in one
   /// or two pieces when the answer is near.
   double lateral_inverse_below(double force, double from, const Vec3& weights,

@@ -37,10 +37,10 @@ enum class ResponseOf : std::uint8_t { Depth, Lateral };
 template <std::size_t kPairs>
 class KeptPieces {
  public:
-  /// Of one kind of response in every lane that is in use.
+  /// One kind of response in every lane that is in use.
   KeptPieces(std::size_t lanes, ResponseOf kind) noexcept
       : lanes_(lanes), first_(kind), other_(kind) {}
-  /// Of g in the first lane and of h in the second.
+  /// g in the first lane and h in the second.
   KeptPieces() noexcept : lanes_(2), first_(ResponseOf::Depth), other_(ResponseOf::Lateral) {}
 
   /// The response of what follows.

@@ -29,7 +29,7 @@ inline bool all(const Mask& m) noexcept {
   return (m[0] & m[1]) != 0;
 #endif
 }
-/// Of each the larger or the smaller, the second where they are not ordered: one instruction.
+/// The larger or the smaller of each, b where they are not ordered: one instruction.
 inline Pair larger(const Pair& a, const Pair& b) noexcept {
   return a > b ? a : b;
 }

@@ -171,7 +171,7 @@ class LocalModel {
     r.friction_normal_force = r.normal_force;
     return r;
   }
-  /// Of decoupled responses.
+  /// The same of decoupled responses that relax.
   LocalResponse relaxing_response(const Deflection& d, TipPieces& pieces) const noexcept {
     LocalResponse r;
     pieces.keep_for(response_);
