@@ -154,10 +154,8 @@ bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
 }
 
 void ContactState::touch(const Vec3& x, double travelled) noexcept {
-  FixedContact fixed;
-  fixed.deflection = model_->deflection(x);
-  fixed.response = model_->respond(fixed.deflection, pieces_);
-  fixed.travelled = travelled;
+  const Deflection before = model_->deflection(x);
+  FixedContact fixed{before, model_->respond(before, pieces_), travelled, 0, {}};
   fixed.allowance = std::isinf(settings_.lipschitz_bound)
                         ? settings_.lipschitz_bound  // also at rest
                         : settings_.lipschitz_bound * travelled;
@@ -332,7 +330,7 @@ LocalModel ContactState::follow(const FixedContact& fixed, double fraction, bool
 
 /// From c to the anchor once it has slipped.
 Vec3 ContactState::lag(const FixedContact& fixed) const noexcept {
-  return model_->lateral_offset() + fixed.slip.distance * fixed.slip.direction;
+  return model_->lateral_offset() + fixed.slip.part(1);
 }
 
 /// Out of normal contact there is no friction: c follows the tip until x - c is parallel to n, and
@@ -350,8 +348,7 @@ LocalModel ContactState::stay_opposite(const Vec3& x, std::uint32_t& status) con
 LocalModel ContactState::slip_at_fixed_point(const FixedContact& fixed,
                                              double fraction) const noexcept {
   LocalModel next = *model_;
-  next.set_lateral_offset(model_->lateral_offset() +
-                          (fraction * fixed.slip.distance) * fixed.slip.direction);
+  next.set_lateral_offset(model_->lateral_offset() + fixed.slip.part(fraction));
   return next;
 }
 
@@ -417,7 +414,7 @@ void ContactState::relax(Candidate& at) noexcept {
   at.model.replace_memory(memory_.now(), at.deflection, response);
   seen_.dissipated += energy_before - response.energy;
   seen_.relaxed_fraction = 1 - response.relaxed.scale;
-  seen_.relaxed_lateral_force = model.memory().lateral.relaxed;
+  seen_.relaxed_lateral_force = model.memory().lateral.relaxed();
   if (at.deflection.depth > 0 && response.relaxed.scale == 0) seen_.status |= step_status::SkinLags;
   const double limit = held - settings_.friction * (normal_before - response.friction_normal_force);
   if (!(response.lateral_force > limit)) return;

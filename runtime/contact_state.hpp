@@ -174,7 +174,7 @@ class ContactState {
   Vec3 remembering_point_{};         ///< where the tissue of the memory is, m
   double dt_ = 0;                    ///< s, of this step
   double goal_ = 0;                  ///< offset the contact should return to, m
-  mutable PiecesInUse pieces_;       ///< of the last evaluation; results do not depend on them
+  mutable ToolPieces pieces_;        ///< of the last evaluation; results do not depend on them
   std::int32_t ahead_ = kNoElement;  ///< element whose surroundings the last step prefetched
   ContactObservation seen_;
 };

@@ -26,46 +26,6 @@ struct PiecesInUse {
   }
 };
 
-/// A response on one interval between consecutive knots of the three nodes, from its start.
-struct MergedPiece {
-  double force = 0, slope = 0, curvature = 0;
-
-  double force_after(double x) const noexcept { return force + x * (slope + x * curvature); }
-  double work_after(double x) const noexcept {
-    return x * (force + x * (slope / 2.0 + x * (curvature * kThird)));
-  }
-};
-
-/// The piece of one kind of response around one deflection, from one evaluation to the next: what
-/// relaxes moves little in a step. Results do not depend on it.
-struct KeptPiece {
-  std::array<const NodeCurves*, 3> nodes{};  ///< owners of the pieces; null: none
-  std::array<const PackedPiece*, 3> pieces{};
-  double from = 0, to = 0;  ///< m, where all three are in use
-  Vec3 natural{};           ///< natural coordinates of what follows
-  MergedPiece merged;
-  double energy = 0;     ///< J, at `from`
-  double end_force = 0;  ///< N, at `to`; infinity where the piece has no end
-
-  bool is_of(const std::array<const NodeCurves*, 3>& these) const noexcept {
-    return nodes[0] == these[0] && nodes[1] == these[1] && nodes[2] == these[2];
-  }
-  bool is_at(const Vec3& point) const noexcept {
-    return natural[0] == point[0] && natural[1] == point[1] && natural[2] == point[2];
-  }
-};
-
-/// A deflection, with the force and the energy of a response there.
-struct ReachedForce {
-  double deflection = 0;  ///< m; infinity: the response never reaches the force
-  double force = 0;       ///< N
-  double energy = 0;      ///< J
-  /// F d - E, J: the conjugate energy of the force; infinity where it is not reached.
-  double conjugate(double of_force) const noexcept {
-    return deflection < kInfinity ? of_force * deflection - energy : kInfinity;
-  }
-};
-
 /// The responses at a point of a triangle, given by its natural coordinates n_l >= 0, sum 1:
 ///   g(z) = sum n_l f_l^z(z),   h(rho) = sum n_l f_l^r(rho)     [Mahvash & Hayward 2005, eq. 29]
 /// Coupled responses are interpolated as potentials,
@@ -155,16 +115,6 @@ class InterpolatedResponse {
   /// 0; infinity when h never reaches the force (no slip is possible).
   double lateral_inverse(double force) const noexcept { return lateral_inverse(force, natural_); }
   double lateral_inverse(double force, const Vec3& weights) const noexcept;
-
-  /// The same with the natural coordinates; walks from the piece of the deflection `from` (m).
-  double lateral_inverse(double force, double from, PiecesInUse& pieces) const noexcept;
-
-  /// Smallest z >= 0 with g(z) = force, or rho with h(rho) = force, in closed form as
-  /// lateral_inverse, and the energy there; walks from the kept piece.
-  ReachedForce normal_reach(double force, KeptPiece& kept) const noexcept;
-  ReachedForce lateral_reach(double force, KeptPiece& kept) const noexcept;
-  /// h and H at rho >= 0.
-  ReachedForce lateral_at(double rho, KeptPiece& kept) const noexcept;
 
   /// The same for a force that h reaches at `from` or before: walks down from there, hence in one
   /// or two pieces when the answer is near.

@@ -6,19 +6,23 @@
 namespace palpate::runtime {
 namespace {
 
-/// A vector across one unit vector after the smallest rotation that takes this to another.
-Vec3 turned(const Vec3& v, const Vec3& from, const Vec3& to) noexcept {
-  return v - (dot(v, to) / (1 + dot(from, to))) * (from + to);
-}
+/// M and K of branches.
+class LateralSums {
+ public:
+  void add(const Pair& fraction, const Pair (&force)[3], const Pair& conjugate) noexcept {
+    x_ += fraction * force[0];
+    y_ += fraction * force[1];
+    z_ += fraction * force[2];
+    stored_ += fraction * conjugate;
+  }
+  LateralMemory memory(double carried, std::uint64_t slide) const noexcept {
+    return {Pair{x_[0] + x_[1], y_[0] + y_[1]}, Pair{z_[0] + z_[1], 0},
+            Pair{stored_[0] + stored_[1], carried}, true, slide};
+  }
 
-/// Adds a branch whose force lies along `direction`, and returns that force M_i.
-Vec3 add_branch(LateralMemory& sum, double fraction, const ReachedForce& at,
-                const Vec3& direction) noexcept {
-  const Vec3 force = at.force * direction;
-  sum.relaxed = sum.relaxed + fraction * force;
-  sum.stored += fraction * at.conjugate(at.force);
-  return force;
-}
+ private:
+  Pair x_{}, y_{}, z_{}, stored_{};
+};
 
 }  // namespace
 
@@ -27,61 +31,65 @@ bool LateralBranches::stays_tangential(const Vec3& normal) const noexcept {
   return dot(normal_, normal) > 0;
 }
 
+/// Moves the branches to another place and returns M and K there. Their directions turn by the
+/// smallest rotation that takes one normal to the other.
+LateralMemory LateralBranches::move(const LateralPlace& place, double factor) const noexcept {
+  const Vec3& to = place.normal;
+  const Vec3 axis = (1 / (1 + dot(normal_, to))) * (normal_ + to);
+  LateralSums sums;
+  pieces_.keep_for(*place.response);
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
+    const BranchPair& from = branches_[p];
+    BranchPair& there = moved_[p];
+    const Pair along = from.force[0] * to[0] + from.force[1] * to[1] + from.force[2] * to[2];
+    there.at = pieces_.evaluate(p, factor * from.at.deflection);
+    const Pair scale = from.at.force > Pair{} ? there.at.force / from.at.force : Pair{};
+    for (std::size_t k = 0; k < 3; ++k) there.force[k] = scale * (from.force[k] - along * axis[k]);
+    sums.add(place.fractions->pair[p], there.force, there.at.conjugate(there.at.force));
+  }
+  return sums.memory(factor, slides_);
+}
+
 LateralMemory LateralBranches::carried_to(const LateralPlace& place, double factor) const noexcept {
   if (!now_.any || !stays_tangential(place.normal)) return {};
-  LateralMemory sum;
-  sum.any = sum.moved = true;
-  sum.carried = factor;
-  for (std::size_t i = 0; i < count_; ++i) {
-    const Branch& branch = branches_[i];
-    if (!(branch.reach > 0)) continue;
-    const Vec3 direction = (1 / branch.reach) * turned(branch.deflection, normal_, place.normal);
-    const double reach = factor * branch.reach;
-    add_branch(sum, (*place.fractions)[i], place.response->lateral_at(reach, branch.piece),
-               direction);
-  }
-  return sum;
+  ++slides_;
+  return move(place, factor);
 }
 
 void LateralBranches::carry(const LateralPlace& place, const LateralMemory& carried) noexcept {
-  if (carried.any && !carried.moved) return;
+  if (carried.any && carried.slide == 0) return;
   now_ = carried;
-  now_.moved = false;
-  now_.carried = 1;
+  now_.slide = 0;
+  now_.stored_and_carried = Pair{carried.stored(), 1};
   if (!carried.any) return;
-  for (std::size_t i = 0; i < count_; ++i) {
-    Branch& branch = branches_[i];
-    if (!(branch.reach > 0)) continue;
-    const Vec3 direction = (1 / branch.reach) * turned(branch.deflection, normal_, place.normal);
-    branch.reach *= carried.carried;
-    branch.deflection = branch.reach * direction;
-    branch.force = place.response->lateral_at(branch.reach, branch.piece).force * direction;
-  }
+  if (carried.slide != slides_) move(place, carried.carried());
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p) branches_[p] = moved_[p];
   normal_ = place.normal;
 }
 
 void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double lateral,
-                           const Branches& decay) noexcept {
+                           const Lanes& decay) noexcept {
   if (!now_.any) {
     if (!(lateral > 0)) return;
     branches_ = {};
   }
   normal_ = place.normal;
-  now_ = {};
-  now_.any = true;
-  for (std::size_t i = 0; i < count_; ++i) {
-    Branch& branch = branches_[i];
-    const Vec3 force = target + decay[i] * (branch.force - target);
-    const double magnitude = norm(force);
+  LateralSums sums;
+  pieces_.keep_for(*place.response);
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
+    BranchPair& branch = branches_[p];
+    Pair(&force)[3] = branch.force;
+    for (std::size_t k = 0; k < 3; ++k)
+      force[k] = target[k] + decay.pair[p] * (force[k] - target[k]);
+    const Pair magnitude = roots(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
     // The force is between two that were reached, so that its deflection is no longer than theirs.
-    const double longest = std::max(branch.reach, lateral);
-    ReachedForce at = place.response->lateral_reach(magnitude, branch.piece);
-    if (at.deflection > longest) at = place.response->lateral_at(longest, branch.piece);
-    branch.reach = at.deflection;
-    const Vec3 direction = magnitude > 0 ? (1 / magnitude) * force : Vec3{};
-    branch.deflection = branch.reach * direction;
-    branch.force = add_branch(now_, (*place.fractions)[i], at, direction);
+    const Pair longest = larger(branch.at.deflection, both(lateral));
+    branch.at = pieces_.reach(p, magnitude);
+    if (!all(branch.at.deflection <= longest))
+      branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, longest));
+    sums.add(place.fractions->pair[p], force, branch.at.conjugate(branch.at.force));
   }
+  now_ = sums.memory(1, 0);
 }
 
 }  // namespace palpate::runtime

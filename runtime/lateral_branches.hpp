@@ -4,21 +4,21 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 
 #include "format/library.hpp"
 #include "format/vec3.hpp"
 #include "runtime/interpolated_response.hpp"
+#include "runtime/kept_pieces.hpp"
+#include "runtime/lanes.hpp"
 #include "runtime/tissue_memory.hpp"
 
 namespace palpate::runtime {
 
-/// One number for each relaxation time.
-using Branches = std::array<double, kMaxRelaxationTimes>;
-
 /// Where lateral memories come to lie: a response, its fractions g_i, and the normal there.
 struct LateralPlace {
   const InterpolatedResponse* response;
-  const Branches* fractions;
+  const Lanes* fractions;
   Vec3 normal;
 };
 
@@ -28,7 +28,7 @@ struct LateralPlace {
 /// bounded. For decoupled responses.
 class LateralBranches {
  public:
-  explicit LateralBranches(std::size_t count) noexcept : count_(count) {}
+  explicit LateralBranches(std::size_t count) noexcept : pieces_(count, ResponseOf::Lateral) {}
 
   /// M and K where the memories lie.
   const LateralMemory& now() const noexcept { return now_; }
@@ -40,22 +40,25 @@ class LateralBranches {
   /// Time passes while the instantaneous force is `target` (N) at a deflection of `lateral` (m):
   /// M_i := target + (M_i - target) decay_i. V falls.
   void pass(const LateralPlace& place, const Vec3& target, double lateral,
-            const Branches& decay) noexcept;
+            const Lanes& decay) noexcept;
   void forget() noexcept { now_ = {}; }
 
  private:
-  struct Branch {
-    Vec3 deflection{};        ///< p_i, m
-    double reach = 0;         ///< |p_i|, m
-    Vec3 force{};             ///< M_i, N
-    mutable KeptPiece piece;  ///< where the next search begins; results do not depend on it
+  /// Two branches at one place.
+  struct BranchPair {
+    ReachedForces at;  ///< |p_i|, m, with |M_i|, N, and the energies there
+    Pair force[3]{};   ///< M_i, N; p_i has its direction
   };
+  using Branches = std::array<BranchPair, pairs_of(kMaxRelaxationTimes)>;
   bool stays_tangential(const Vec3& normal) const noexcept;
+  LateralMemory move(const LateralPlace& place, double factor) const noexcept;
 
-  std::size_t count_;
-  std::array<Branch, kMaxRelaxationTimes> branches_{};
+  Branches branches_{};
   Vec3 normal_{};  ///< to which they are tangential
   LateralMemory now_;
+  mutable BranchPieces pieces_;       ///< results do not depend on them
+  mutable Branches moved_;            ///< at the end of the slide that was considered last
+  mutable std::uint64_t slides_ = 0;  ///< how many were
 };
 
 }  // namespace palpate::runtime

@@ -31,37 +31,38 @@ void LocalModel::replace_memory(const TissueMemory& memory, const Deflection& d,
 /// Puts a lateral memory in the place of another in a response.
 void LocalModel::relax_laterally(const LateralMemory& memory, const LateralMemory& before,
                                  const Deflection& d, LocalResponse& r) const noexcept {
-  const Vec3 change = memory.relaxed - before.relaxed;
-  r.lateral_force = norm(r.instant_lateral_force * d.tangent - memory.relaxed);
-  r.energy += memory.stored - before.stored - d.lateral * dot(change, d.tangent);
+  const Vec3 change = memory.relaxed() - before.relaxed();
+  r.lateral_force = norm(r.instant_lateral_force * d.tangent - memory.relaxed());
+  r.energy += memory.stored() - before.stored() - d.lateral * dot(change, d.tangent);
   r.force = r.force - change;
 }
 
 /// The force f that is felt becomes limit f/|f|, and q the deflection at which grad H is M plus
 /// that. It is between M and the present grad H, so that it has been reached.
 LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResponse& at,
-                                            double limit, PiecesInUse& pieces) const noexcept {
-  const Vec3& relaxed = memory_->lateral.relaxed;
+                                            double limit, TipPieces& pieces) const noexcept {
+  const Vec3 relaxed = memory_->lateral.relaxed();
   const Vec3 felt = at.instant_lateral_force * d.tangent - relaxed;
   const Vec3 instant = relaxed + (std::max(limit, 0.0) / at.lateral_force) * felt;
   const double magnitude = norm(instant);
   LateralSlip slip;
-  slip.lateral = response_.lateral_inverse(magnitude, d.lateral, pieces);
+  pieces.keep_for(response_);
+  slip.lateral = pieces.reach(0, Pair{0, magnitude}).deflection[1];
   if (!(slip.lateral < kInfinity)) slip.lateral = d.lateral;  // by rounding, at the end of a curve
   if (slip.lateral > 0) slip.tangent = (1 / magnitude) * instant;
-  const Vec3 path = d.lateral * d.tangent - slip.lateral * slip.tangent;
-  slip.distance = norm(path);
-  if (slip.distance > 0) slip.direction = (1 / slip.distance) * path;
+  slip.scale = 1;
+  slip.direction = d.lateral * d.tangent - slip.lateral * slip.tangent;
+  slip.distance = norm(slip.direction);
   return slip;
 }
 
 void LocalModel::slip(const LateralSlip& by, Deflection& d, LocalResponse& at,
-                      PiecesInUse& pieces) noexcept {
-  set_lateral_offset(lateral_offset_ + by.distance * by.direction);
+                      ToolPieces& pieces) noexcept {
+  set_lateral_offset(lateral_offset_ + by.part(1));
   d.lateral = by.lateral;
   d.tangent = by.tangent;
   if (coupled()) {
-    respond_at_depth(d, pieces, at);
+    respond_at_depth(d, pieces.elastic, at);
   } else {
     at = respond(d, pieces);
   }

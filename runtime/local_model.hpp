@@ -7,6 +7,7 @@
 
 #include "format/vec3.hpp"
 #include "runtime/interpolated_response.hpp"
+#include "runtime/kept_pieces.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/tissue_memory.hpp"
 
@@ -18,6 +19,13 @@ struct Deflection {
   double depth = 0;      ///< z = geometric - d0, m
   double lateral = 0;    ///< rho = |q| >= 0, m, q the lateral part minus the lateral offset
   Vec3 tangent{};        ///< t = q/rho, unit; zero when rho = 0
+};
+
+/// The pieces of the responses around the tool, from one evaluation to the next; those of decoupled
+/// responses that relax, and those of all others. Results do not depend on them.
+struct ToolPieces {
+  PiecesInUse elastic;
+  TipPieces relaxing;
 };
 
 /// Force and energy of a local model at one tip position.
@@ -35,9 +43,12 @@ struct LocalResponse {
 /// Slip with c fixed that brings the lateral force down to a limit.
 struct LateralSlip {
   double distance = 0;  ///< m
-  Vec3 direction{};     ///< unit
+  double scale = 0;     ///< the slip is scale * direction, m
+  Vec3 direction{};     ///< of any length: a quotient less to wait for
   double lateral = 0;   ///< rho after it, m
   Vec3 tangent{};       ///< t after it
+
+  Vec3 part(double fraction) const noexcept { return (fraction * scale) * direction; }  ///< m
 };
 
 /// With c, n = n(c), the offset d0 and the lateral offset s (s . n = 0) fixed:
@@ -73,29 +84,17 @@ class LocalModel {
     return d;
   }
   /// pieces: of the last evaluation; on return of this one.
-  LocalResponse respond(const Deflection& d, PiecesInUse& pieces) const noexcept {
-    LocalResponse r;
-    if (response_.coupled()) {
-      r.at_depth = response_.at_depth(d.depth, pieces);
-      if (memory_) relax_at_depth(d.depth, r);
-      respond_at_depth(d, pieces, r);
-      return r;
-    }
-    const InterpolatedResponse::Decoupled at = response_.decoupled_at(d.depth, d.lateral, pieces);
-    if (memory_) {
-      r.relaxed = relaxed_response(memory_->normal, {d.depth, at.normal.force, at.normal.energy});
-      take({r.relaxed.force, at.lateral.force, r.relaxed.energy + at.lateral.energy}, d, r);
-      r.instant_lateral_force = at.lateral.force;
-      if (memory_->lateral.any) relax_laterally(memory_->lateral, {}, d, r);
-    } else {
-      take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
-    }
-    r.friction_normal_force = r.normal_force;
-    return r;
+  LocalResponse respond(const Deflection& d, ToolPieces& pieces) const noexcept {
+    return memory_ && !coupled() ? relaxing_response(d, pieces.relaxing)
+                                 : response(d, pieces.elastic);
   }
   LocalResponse respond(const Deflection& d) const noexcept {
+    if (memory_ && !coupled()) {
+      TipPieces pieces;
+      return relaxing_response(d, pieces);
+    }
     PiecesInUse pieces;
-    return respond(d, pieces);
+    return response(d, pieces);
   }
   double energy(const Deflection& d) const noexcept;
   /// rho_s = h^{-1}(mu g(z)): the lateral deflection at which slip begins, m. Without memory.
@@ -104,24 +103,25 @@ class LocalModel {
   /// The lateral deflection at which the lateral force is `limit` (N), where the response is known
   /// and exceeds it, m.
   double lateral_below(const Deflection& d, const LocalResponse& at, double limit,
-                       PiecesInUse& pieces) const noexcept {
+                       ToolPieces& pieces) const noexcept {
     return response_.lateral_inverse_below(
-        limit, d.lateral, response_.coupled() ? at.at_depth.weights : response_.natural(), pieces);
+        limit, d.lateral, response_.coupled() ? at.at_depth.weights : response_.natural(),
+        pieces.elastic);
   }
 
   /// The slip with c fixed after which the lateral force is `limit` (N), where the response is
   /// known and exceeds it. Without memory it goes along t. With one the force keeps its direction
   /// (R25). Neither raises E.
   LateralSlip slip_within(const Deflection& d, const LocalResponse& at, double limit,
-                          PiecesInUse& pieces) const noexcept {
-    if (memory_ && memory_->lateral.any) return relaxed_slip_within(d, at, limit, pieces);
+                          ToolPieces& pieces) const noexcept {
+    if (memory_ && memory_->lateral.any) return relaxed_slip_within(d, at, limit, pieces.relaxing);
     const double rho = lateral_below(d, at, limit, pieces);
-    return {d.lateral - rho, d.tangent, rho, rho > 0 ? d.tangent : Vec3{}};
+    return {d.lateral - rho, d.lateral - rho, d.tangent, rho, rho > 0 ? d.tangent : Vec3{}};
   }
 
   /// Makes that slip: it goes into s. The depth does not change; the deflection and the response
   /// are updated.
-  void slip(const LateralSlip& by, Deflection& d, LocalResponse& at, PiecesInUse& pieces) noexcept;
+  void slip(const LateralSlip& by, Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept;
 
   /// Rate of change of E when c moves by unit length along d in its element and the anchor c + s by
   /// a', while x stays, J/m:
@@ -158,6 +158,31 @@ class LocalModel {
   }
 
  private:
+  LocalResponse response(const Deflection& d, PiecesInUse& pieces) const noexcept {
+    LocalResponse r;
+    if (response_.coupled()) {
+      r.at_depth = response_.at_depth(d.depth, pieces);
+      if (memory_) relax_at_depth(d.depth, r);
+      respond_at_depth(d, pieces, r);
+      return r;
+    }
+    const InterpolatedResponse::Decoupled at = response_.decoupled_at(d.depth, d.lateral, pieces);
+    take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
+    r.friction_normal_force = r.normal_force;
+    return r;
+  }
+  /// The same of decoupled responses that relax.
+  LocalResponse relaxing_response(const Deflection& d, TipPieces& pieces) const noexcept {
+    LocalResponse r;
+    pieces.keep_for(response_);
+    const ReachedForces at = pieces.evaluate(0, Pair{d.depth, d.lateral});
+    r.relaxed = relaxed_response(memory_->normal, {d.depth, at.force[0], at.energy[0]});
+    take({r.relaxed.force, at.force[1], r.relaxed.energy + at.energy[1]}, d, r);
+    r.instant_lateral_force = at.force[1];
+    if (memory_->lateral.any) relax_laterally(memory_->lateral, {}, d, r);
+    r.friction_normal_force = r.normal_force;
+    return r;
+  }
   void take(const InterpolatedResponse::Value& value, const Deflection& d,
             LocalResponse& r) const noexcept {
     r.normal_force = value.normal;
@@ -168,7 +193,7 @@ class LocalModel {
   void relax_laterally(const LateralMemory& memory, const LateralMemory& before,
                        const Deflection& d, LocalResponse& r) const noexcept;
   LateralSlip relaxed_slip_within(const Deflection& d, const LocalResponse& at, double limit,
-                                  PiecesInUse& pieces) const noexcept;
+                                  TipPieces& pieces) const noexcept;
   void relax_at_depth(double depth, LocalResponse& r) const noexcept {
     r.relaxed = relaxed_response(memory_->normal,
                                  {depth, r.at_depth.friction_normal_force, r.at_depth.energy});

@@ -11,45 +11,43 @@ namespace {
 
 constexpr int kReductions = 8;        // of the memories in one slide before they are lost
 constexpr double kBelow = 1 - 1e-12;  // a reduction ends below its goal in spite of rounding
-constexpr NormalMemory kFresh{0, 0, 0, 0};
+constexpr NormalMemory kFresh{Pair{0, 0}, Pair{0, 0}};
 
 /// A force that was reached before is reached again, in spite of rounding. G* is the largest F z -
 /// G, so that this changes it by less than its own rounding.
 constexpr double kReachable = 1 - 1e-12;
 
-/// G*(F), J; infinite where the force is beyond every depth of the response.
-double conjugate(const InterpolatedResponse& response, double force, KeptPiece& kept) noexcept {
-  return response.normal_reach(kReachable * force, kept).conjugate(force);
-}
-
 }  // namespace
 
-/// Infinite where a force is beyond every depth of the response.
-NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Branches& fractions,
+/// Infinite where a force is beyond every depth of the response. The lane after those of the
+/// branches is that of the skin.
+NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes& fractions,
                               double factor) const noexcept {
-  NormalMemory sum;
-  sum.carried = factor;
-  for (std::size_t i = 0; i < surface_->relaxation_times().size(); ++i) {
-    if (!(fractions[i] > 0)) continue;
-    const double force = factor * memory_[i];
-    sum.relaxed += fractions[i] * force;
-    sum.stored += fractions[i] * conjugate(response, force, pieces_[i]);
+  double relaxed = 0, stored = 0, skin = 0;
+  for (std::size_t p = 0; p < pairs_of(times_); ++p)
+    relaxed = plus(relaxed, fractions.pair[p] * (factor * memory_.pair[p]));
+  pieces_.keep_for(response);
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
+    Pair force = factor * memory_.pair[p];
+    const bool with_skin = p == times_ / 2;
+    if (with_skin) force = times_ % 2 == 1 ? Pair{force[0], relaxed} : Pair{relaxed, 0};
+    const Pair conjugate = pieces_.reach(p, kReachable * force).conjugate(force);
+    const Pair& fraction = fractions.pair[p];
+    stored = plus(stored, fraction > Pair{} ? fraction * conjugate : Pair{});
+    if (with_skin) skin = times_ % 2 == 1 ? conjugate[1] : conjugate[0];
   }
-  sum.locked = sum.stored < kInfinity
-                   ? std::max(sum.stored - conjugate(response, sum.relaxed, skin_), 0.0)
-                   : kInfinity;
-  return sum;
+  const double locked = stored < kInfinity ? std::max(stored - skin, 0.0) : kInfinity;
+  return {Pair{relaxed, factor}, Pair{stored, locked}};
 }
 
 NormalMemory Relaxation::normal_carried_to(const InterpolatedResponse& response,
-                                           const Branches& fractions,
-                                           double factor) const noexcept {
+                                           const Lanes& fractions, double factor) const noexcept {
   if (!remembers()) return kFresh;
   for (int i = 0; i < kReductions; ++i) {
     const NormalMemory there = sums(response, fractions, factor);
-    if (there.locked <= now_.locked) return there;
+    if (there.locked() <= now_.locked()) return there;
     // R of a power law f ~ z^n falls as factor^((n + 1)/n): this is enough for each.
-    factor *= kBelow * now_.locked / there.locked;
+    factor *= kBelow * now_.locked() / there.locked();
   }
   return kFresh;
 }
@@ -61,7 +59,11 @@ TissueMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedRes
   const bool shears = lateral.any && shear == Shear::Kept;
   if (distance == 0) return {now_, shears ? lateral : LateralMemory{}};
   if (!remembers() && !shears) return {kFresh, {}};
-  const Branches fractions = surface_->relaxes_alike() ? fractions_ : surface_->fractions(p);
+  if (!surface_->relaxes_alike() && !(p == considered_)) {
+    considered_ = p;
+    there_ = surface_->fractions(p);
+  }
+  const Lanes& fractions = surface_->relaxes_alike() ? fractions_ : there_;
   const double factor = std::exp(-distance / surface_->tool_radius());
   TissueMemory there{normal_carried_to(response, fractions, factor), {}};
   if (shears) there.lateral = lateral_.carried_to({&response, &fractions, normal}, factor);
@@ -70,29 +72,31 @@ TissueMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedRes
 
 void Relaxation::carry(const SurfacePoint& p, const InterpolatedResponse& response,
                        const Vec3& normal, const TissueMemory& carried) noexcept {
-  if (carried.normal.carried != 1)
-    for (double& force : memory_) force *= carried.normal.carried;
-  if (!surface_->relaxes_alike() || fractions_[0] == 0) fractions_ = surface_->fractions(p);
+  if (carried.normal.carried() != 1)
+    for (std::size_t k = 0; k < pairs_of(times_); ++k) memory_.pair[k] *= carried.normal.carried();
+  if (!surface_->relaxes_alike() || !response_)
+    fractions_ = p == considered_ ? there_ : surface_->fractions(p);
   response_ = response;
   normal_ = normal;
   now_ = carried.normal;
-  now_.carried = 1;
-  lateral_.carry({&*response_, &fractions_, normal_}, carried.lateral);
+  now_.relaxed_and_carried = Pair{now_.relaxed(), 1};
+  if (lateral_.now().any) lateral_.carry({&*response_, &fractions_, normal_}, carried.lateral);
 }
 
 void Relaxation::keep_decay(double dt) noexcept {
   if (dt == decay_dt_) return;
   decay_dt_ = dt;
   const auto& times = surface_->relaxation_times();
-  for (std::size_t i = 0; i < times.size(); ++i) decay_[i] = std::exp(-dt / times[i]);
+  decay_.set(times_, 1);
+  for (std::size_t i = 0; i < times_; ++i) decay_.set(i, std::exp(-dt / times[i]));
 }
 
 void Relaxation::pass(double g, double dt) noexcept {
   if (!response_) return;
   keep_decay(dt);
-  const double target = std::max(g, now_.relaxed);
-  for (std::size_t i = 0; i < surface_->relaxation_times().size(); ++i)
-    memory_[i] = target + (memory_[i] - target) * decay_[i];
+  const double target = std::max(g, now_.relaxed());
+  for (std::size_t p = 0; p < pairs_of(times_); ++p)
+    memory_.pair[p] = target + (memory_.pair[p] - target) * decay_.pair[p];
   now_ = sums(*response_, fractions_, 1);
 }
 

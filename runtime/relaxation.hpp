@@ -2,12 +2,13 @@
 // The memories of a contact with tissue that relaxes.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 
 #include "runtime/interpolated_response.hpp"
+#include "runtime/kept_pieces.hpp"
+#include "runtime/lanes.hpp"
 #include "runtime/lateral_branches.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/tissue_memory.hpp"
@@ -27,16 +28,19 @@ enum class Shear : std::uint8_t { Kept, Lost };
 class Relaxation {
  public:
   explicit Relaxation(const Surface& surface) noexcept
-      : surface_(&surface), lateral_(surface.relaxation_times().size()) {}
+      : surface_(&surface),
+        times_(surface.relaxation_times().size()),
+        lateral_(times_),
+        pieces_(times_ + 1, ResponseOf::Depth) {}
 
   /// Whether the responses of the surface relax at all.
-  bool relaxes() const noexcept { return !surface_->relaxation_times().empty(); }
+  bool relaxes() const noexcept { return times_ > 0; }
   /// Whether a normal memory is above zero.
-  bool remembers() const noexcept { return now_.relaxed > 0; }
+  bool remembers() const noexcept { return now_.relaxed() > 0; }
   /// The memory at the contact point.
   TissueMemory now() const noexcept { return {now_, lateral_.now()}; }
   /// R of the normal response, J: what is stored without a tool.
-  double locked() const noexcept { return now_.locked; }
+  double locked() const noexcept { return now_.locked(); }
   /// The same after a slide of the contact point to p with this response and normal, `distance` (m)
   /// away: every memory is multiplied by exp(-distance/radius), normal ones by less where R would
   /// rise at p.
@@ -58,24 +62,25 @@ class Relaxation {
   void forget() noexcept;
 
  private:
-  NormalMemory normal_carried_to(const InterpolatedResponse& response, const Branches& fractions,
+  NormalMemory normal_carried_to(const InterpolatedResponse& response, const Lanes& fractions,
                                  double factor) const noexcept;
-  NormalMemory sums(const InterpolatedResponse& response, const Branches& fractions,
+  NormalMemory sums(const InterpolatedResponse& response, const Lanes& fractions,
                     double factor) const noexcept;
   void keep_decay(double dt) noexcept;
 
   const Surface* surface_;
+  std::size_t times_;                             ///< how many relaxation times
   std::optional<InterpolatedResponse> response_;  ///< at the contact point; none before the first
   Vec3 normal_{};                                 ///< the same
-  Branches memory_{};                             ///< F_i, N
+  Lanes memory_{};                                ///< F_i, N
   LateralBranches lateral_;
-  Branches fractions_{};  ///< g_i at the contact point
-  Branches decay_{};      ///< exp(-dt/tau_i)
+  Lanes fractions_{};     ///< g_i at the contact point
+  Lanes decay_;           ///< exp(-dt/tau_i); 1 for lanes that are not in use
   double decay_dt_ = -1;  ///< s, the dt of decay_
   NormalMemory now_;
-  /// Where the next searches for the depths of F_i, and F, begin; results do not depend on them.
-  mutable std::array<KeptPiece, kMaxRelaxationTimes> pieces_{};
-  mutable KeptPiece skin_;
+  mutable SurfacePoint considered_;  ///< the end of the last slide that was considered
+  mutable Lanes there_;              ///< g_i there
+  mutable BranchPieces pieces_;  ///< at the depths of F_i and of F; results do not depend on them
 };
 
 }  // namespace palpate::runtime

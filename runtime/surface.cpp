@@ -62,11 +62,12 @@ CurveSizes sizes_of(const Library& library, std::size_t v) {
           static_cast<std::uint16_t>(r.lateral.knot.size()), static_cast<std::uint16_t>(coupling)};
 }
 
-std::array<double, kMaxRelaxationTimes> fractions_of(const Library& library, std::size_t v) {
-  std::array<double, kMaxRelaxationTimes> fractions{};
+NodeRelaxation relaxation_of(const Library& library, std::size_t v) {
+  NodeRelaxation node;
   const std::vector<float>& stored = library.responses[v].relaxation;
-  std::copy(stored.begin(), stored.end(), fractions.begin());
-  return fractions;
+  for (std::size_t i = 0; i < stored.size(); ++i)
+    node.fractions[i / 2][i % 2] = static_cast<double>(stored[i]);
+  return node;
 }
 
 void check_relaxation(const Library& library) {
@@ -165,7 +166,7 @@ void Surface::build_node(const Library& library, std::size_t v, CacheLine* memor
     deepest_ = std::max(deepest_, normal.last_knot());
   }
   new (memory) SurfaceNode(node);
-  if (library.relaxes()) new (memory + 1) NodeRelaxation{fractions_of(library, v)};
+  if (library.relaxes()) new (memory + 1) NodeRelaxation(relaxation_of(library, v));
 }
 
 void Surface::build_element(const Library& library, const std::vector<std::int32_t>& record,
@@ -293,14 +294,16 @@ void Surface::prefetch_opposite(const Element& e, std::size_t l,
   if (!relaxes_alike_) __builtin_prefetch(record + 1);
 }
 
-std::array<double, kMaxRelaxationTimes> Surface::fractions(const SurfacePoint& p) const noexcept {
-  std::array<double, kMaxRelaxationTimes> sum{};
+Lanes Surface::fractions(const SurfacePoint& p) const noexcept {
   const Element& e = element(p.element);
-  for (std::size_t l = 0; l < 3; ++l) {
+  const auto relaxation = [&](std::size_t l) {
     const CacheLine* const record = &records_[static_cast<std::size_t>(e.vertices[l])];
-    const auto& node = *reinterpret_cast<const NodeRelaxation*>(record + 1);
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += p.natural[l] * node.fractions[i];
-  }
+    return reinterpret_cast<const NodeRelaxation*>(record + 1)->fractions;
+  };
+  const Pair* const nodes[3] = {relaxation(0), relaxation(1), relaxation(2)};
+  Lanes sum;
+  for (std::size_t i = 0; i < pairs_of(relaxation_times_.size()); ++i)
+    for (std::size_t l = 0; l < 3; ++l) sum.pair[i] += p.natural[l] * nodes[l][i];
   return sum;
 }
 

@@ -9,6 +9,7 @@
 #include "format/library.hpp"
 #include "format/vec3.hpp"
 #include "runtime/interpolated_response.hpp"
+#include "runtime/lanes.hpp"
 #include "runtime/large_memory.hpp"
 
 namespace palpate::runtime {
@@ -36,7 +37,7 @@ static_assert(sizeof(SurfaceNode) == kCacheLine);
 
 /// g_i of a vertex of a library that relaxes: the cache line between its data and its curves.
 struct alignas(kCacheLine) NodeRelaxation {
-  std::array<double, kMaxRelaxationTimes> fractions{};
+  Pair fractions[pairs_of(kMaxRelaxationTimes)]{};
 };
 static_assert(sizeof(NodeRelaxation) == kCacheLine);
 
@@ -44,6 +45,11 @@ static_assert(sizeof(NodeRelaxation) == kCacheLine);
 struct SurfacePoint {
   std::int32_t element = kNoElement;
   Vec3 natural{};
+
+  bool operator==(const SurfacePoint& other) const noexcept {
+    return element == other.element && natural[0] == other.natural[0] &&
+           natural[1] == other.natural[1] && natural[2] == other.natural[2];
+  }
 };
 
 /// Immutable after construction; shared by any number of threads.
@@ -107,7 +113,7 @@ class Surface {
   bool relaxes_alike() const noexcept { return relaxes_alike_; }
   double tool_radius() const noexcept { return tool_radius_; }  ///< m
   /// g_i at a point, interpolated; zero beyond the relaxation times. @pre they are not empty
-  std::array<double, kMaxRelaxationTimes> fractions(const SurfacePoint& p) const noexcept;
+  Lanes fractions(const SurfacePoint& p) const noexcept;
 
  private:
   std::vector<std::int32_t> build_nodes(const Library& library);

@@ -2,7 +2,10 @@
 // What the tissue under a contact remembers, as one local model needs it.
 #pragma once
 
+#include <cstdint>
+
 #include "format/vec3.hpp"
+#include "runtime/lanes.hpp"
 #include "runtime/normal_memory.hpp"
 
 namespace palpate::runtime {
@@ -11,12 +14,18 @@ namespace palpate::runtime {
 /// the instantaneous response grad H at the contact point, its conjugate energy H*, and the
 /// tangential forces M_i that the branches have relaxed:
 ///   M = sum g_i M_i,   K = sum g_i H*(|M_i|),   V = H(|q|) - M . q + K,   f = grad H(|q|) - M.
+/// In pairs, as NormalMemory.
 struct LateralMemory {
-  bool any = false;    ///< whether a branch may have relaxed a force
-  Vec3 relaxed{};      ///< M, N
-  double stored = 0;   ///< K, J
-  bool moved = false;  ///< to another contact point than that of the branches
-  double carried = 1;  ///< what the slide there has left of their deflections
+  Pair relaxed_xy{};
+  Pair relaxed_z{};
+  Pair stored_and_carried{0, 1};
+  bool any = false;         ///< whether a branch may have relaxed a force
+  std::uint64_t slide = 0;  ///< to another contact point than that of the branches; 0: none
+
+  Vec3 relaxed() const noexcept { return {relaxed_xy[0], relaxed_xy[1], relaxed_z[0]}; }  ///< M, N
+  double stored() const noexcept { return stored_and_carried[0]; }                        ///< K, J
+  /// What the slide there has left of their deflections.
+  double carried() const noexcept { return stored_and_carried[1]; }
 };
 
 /// What presses and drags have left.

@@ -95,7 +95,7 @@ TEST_F(Coupled, SlipBeginsWhereTheLateralForceIsMuTimesTheGrip) {
     const double limit = model.slip_limit(there, mu);
     const LocalResponse r = at(model, tip(model, z, limit));
     EXPECT_NEAR(r.lateral_force, mu * r.friction_normal_force, 1e-9);
-    runtime::PiecesInUse pieces;
+    runtime::ToolPieces pieces;
     const LocalResponse pressed = model.respond(there, pieces);
     const double force = mu * pressed.friction_normal_force;
     EXPECT_NEAR(model.lateral_below(there, pressed, force, pieces), limit, 1e-12);

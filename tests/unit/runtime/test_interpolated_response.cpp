@@ -11,55 +11,14 @@
 #include <random>
 #include <vector>
 
+#include "tests/unit/runtime/random_nodes.hpp"
+
 namespace palpate::runtime {
 namespace {
 
-ResponseCurve random_curve(std::mt19937& random, bool with_plateaus) {
-  std::uniform_real_distribution<float> step(0.0001F, 0.002F);
-  std::uniform_real_distribution<float> slope(0.0F, 900.0F);
-  ResponseCurve curve;
-  float d = 0;
-  const int knots = 2 + static_cast<int>(random() % 9);
-  for (int k = 0; k < knots; ++k) {
-    curve.knot.push_back(d);
-    curve.slope.push_back(with_plateaus && random() % 3 == 0 ? 0.0F : slope(random));
-    d += step(random);
-  }
-  return curve;
-}
-
-struct Nodes {
-  explicit Nodes(std::mt19937& random, bool with_plateaus = false) {
-    for (std::size_t l = 0; l < 3; ++l) {
-      for (const std::size_t kind : {0U, 1U}) {
-        curves[l][kind] = CompiledCurve(random_curve(random, with_plateaus));
-      }
-      packed[l] = NodeCurves::write(memory[l].data(), curves[l][0], curves[l][1]);
-      curves[l][2] = CompiledCurve(random_curve(random, with_plateaus), 0.3);
-      coupled[l] = NodeCurves::write(more[l].data(), curves[l][0], curves[l][1], curves[l][2]);
-    }
-  }
-  InterpolatedResponse at(const Vec3& natural) const {
-    return {{&packed[0], &packed[1], &packed[2]}, natural};
-  }
-  InterpolatedResponse coupled_at(const Vec3& natural) const {
-    return {{&coupled[0], &coupled[1], &coupled[2]}, natural};
-  }
-  std::array<std::array<CompiledCurve, 3>, 3> curves;  // normal, lateral, coupling
-  std::array<std::array<CacheLine, 24>, 3> memory, more;
-  std::array<NodeCurves, 3> packed, coupled;
-};
-
-Vec3 random_natural(std::mt19937& random) {
-  std::uniform_real_distribution<double> any(0, 1);
-  Vec3 n{any(random), any(random), any(random)};
-  if (random() % 4 == 0) n[random() % 3] = 0;  // on an edge
-  return (1.0 / (n[0] + n[1] + n[2])) * n;
-}
-
 TEST(InterpolatedResponse, ReproducesTheNodesAtTheVertices) {
   std::mt19937 random(1);
-  const Nodes nodes(random);
+  const RandomNodes nodes(random);
   for (std::size_t l = 0; l < 3; ++l) {
     Vec3 natural{};
     natural[l] = 1;
@@ -73,7 +32,7 @@ TEST(InterpolatedResponse, ReproducesTheNodesAtTheVertices) {
 
 TEST(InterpolatedResponse, ThreeEqualNodesGiveThatNodeEverywhere) {
   std::mt19937 random(2);
-  Nodes nodes(random);
+  RandomNodes nodes(random);
   nodes.packed[1] = nodes.packed[2] = nodes.packed[0];
   for (int trial = 0; trial < 100; ++trial) {
     const InterpolatedResponse r = nodes.at(random_natural(random));
@@ -85,7 +44,7 @@ TEST(InterpolatedResponse, ThreeEqualNodesGiveThatNodeEverywhere) {
 
 TEST(InterpolatedResponse, IsLinearInTheNaturalCoordinates) {
   std::mt19937 random(3);
-  const Nodes nodes(random);
+  const RandomNodes nodes(random);
   for (int trial = 0; trial < 100; ++trial) {
     const Vec3 a = random_natural(random);
     const Vec3 b = random_natural(random);
@@ -112,7 +71,7 @@ TEST(InterpolatedResponse, LateralInverseAgreesWithBisection) {
   std::mt19937 random(4);
   std::uniform_real_distribution<double> any(0, 1);
   for (int trial = 0; trial < 5000; ++trial) {
-    const Nodes nodes(random, trial % 2 == 0);
+    const RandomNodes nodes(random, trial % 2 == 0);
     const InterpolatedResponse r = nodes.at(random_natural(random));
     const double reach = 0.03 * any(random);
     const double force = r.lateral(reach).force * any(random);
@@ -133,7 +92,7 @@ struct Sums {
   double g = 0, G = 0, h = 0, H = 0;           // decoupled
   double normal = 0, lateral = 0, energy = 0;  // coupled
 };
-Sums sums_of(const Nodes& nodes, const Vec3& n, double z, double rho) {
+Sums sums_of(const RandomNodes& nodes, const Vec3& n, double z, double rho) {
   Sums s;
   for (std::size_t l = 0; l < 3; ++l) {
     const CurveValue g = nodes.curves[l][0].evaluate(z);
@@ -154,9 +113,9 @@ TEST(InterpolatedResponse, RememberedPiecesGiveTheSumsOfTheCurvesFromWhateverSta
   // One memory for walks over depths and deflections on the nodes of several triangles, with jumps
   // from one end of the curves to the other, onto knots, out of contact and beyond the last knot.
   std::mt19937 random(5);
-  std::vector<Nodes> triangles;
+  std::vector<RandomNodes> triangles;
   for (int k = 0; k < 6; ++k) triangles.emplace_back(random, k % 2 == 1);
-  for (Nodes& t : triangles) {  // copies: their curves lie elsewhere now
+  for (RandomNodes& t : triangles) {  // copies: their curves lie elsewhere now
     for (std::size_t l = 0; l < 3; ++l) {
       t.packed[l] = NodeCurves::write(t.memory[l].data(), t.curves[l][0], t.curves[l][1]);
       t.coupled[l] =
@@ -166,7 +125,7 @@ TEST(InterpolatedResponse, RememberedPiecesGiveTheSumsOfTheCurvesFromWhateverSta
   std::uniform_real_distribution<double> any(0, 1);
   PiecesInUse decoupled, coupled;
   double z = 0.001, rho = 0.001;
-  const Nodes* nodes = &triangles[0];
+  const RandomNodes* nodes = &triangles[0];
   Vec3 natural{0.2, 0.3, 0.5};
   for (int trial = 0; trial < 200000; ++trial) {
     if (trial % 5 == 0) nodes = &triangles[random() % triangles.size()];
@@ -195,54 +154,6 @@ TEST(InterpolatedResponse, RememberedPiecesGiveTheSumsOfTheCurvesFromWhateverSta
     EXPECT_EQ(r.lateral_inverse_below(force, rho, at.weights, coupled),
               r.lateral_inverse(force, at.weights));
   }
-}
-
-/// What a reached force is to a response, independently of how it was found: force and energy are
-/// those of the response there, and the conjugate energy is the largest F d - E.
-template <typename Value>
-void expect_reached(const ReachedForce& reached, double force, const Value& value, double other) {
-  const CurveValue there = value(reached.deflection);
-  EXPECT_NEAR(reached.force, force, 1e-12 * (1 + force));
-  EXPECT_NEAR(there.force, force, 1e-12 * (1 + force));
-  EXPECT_NEAR(reached.energy, there.energy, 1e-12 * there.energy);
-  EXPECT_GE(reached.conjugate(force), force * other - value(other).energy - 1e-14);
-}
-
-TEST(InterpolatedResponse, AForceIsReachedAtTheSameDepthWhateverPieceWasKept) {
-  std::mt19937 random(6);
-  std::uniform_real_distribution<double> any(0, 1);
-  const Nodes one(random), other(random, true);
-  KeptPiece normal, lateral;
-  for (int trial = 0; trial < 20000; ++trial) {
-    const InterpolatedResponse r = (trial % 40 < 20 ? one : other).at(random_natural(random));
-    const double d = 0.03 * any(random);
-    const auto g = [&](double z) { return r.normal(z); };
-    const auto h = [&](double rho) { return r.lateral(rho); };
-    const double force = g(0.02 * any(random)).force * any(random);
-    KeptPiece fresh;
-    const ReachedForce z = r.normal_reach(force, normal);
-    EXPECT_EQ(z.deflection, r.normal_reach(force, fresh).deflection);
-    EXPECT_EQ(z.energy, r.normal_reach(force, fresh).energy);
-    expect_reached(z, force, g, d);
-    const double lateral_force = h(0.02 * any(random)).force * any(random);
-    const ReachedForce rho = r.lateral_reach(lateral_force, lateral);
-    EXPECT_EQ(rho.deflection, r.lateral_inverse(lateral_force));
-    expect_reached(rho, lateral_force, h, d);
-    const ReachedForce at = r.lateral_at(d, lateral);
-    EXPECT_NEAR(at.force, h(d).force, 1e-12 * h(d).force);
-    EXPECT_NEAR(at.energy, h(d).energy, 1e-12 * h(d).energy);
-  }
-}
-
-TEST(InterpolatedResponse, AForceBeyondEveryDepthIsReachedNowhere) {
-  const CompiledCurve flat(ResponseCurve{{0.0F, 0.001F, 0.002F}, {100.0F, 0.0F, 0.0F}});
-  std::array<CacheLine, 4> memory;
-  const NodeCurves node = NodeCurves::write(memory.data(), flat, flat);
-  const InterpolatedResponse r({&node, &node, &node}, {0.2, 0.3, 0.5});
-  KeptPiece kept;
-  EXPECT_TRUE(std::isinf(r.normal_reach(0.06, kept).conjugate(0.06)));
-  EXPECT_NEAR(r.normal_reach(0.04, kept).force, 0.04, 1e-14);
-  EXPECT_EQ(r.normal_reach(0, kept).deflection, 0);
 }
 
 TEST(InterpolatedResponse, NothingSlipsWhereTheLateralForceStaysBelowTheLimit) {

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <random>
 #include <utility>
 #include <vector>
@@ -213,16 +214,22 @@ TEST(LateralBranches, TheToolSlipsOnlyAgainstTheForceThatIsFelt) {
   EXPECT_GT(tool.lateral()[1], 2 * std::abs(tool.lateral()[0]));
 }
 
+/// M, with a K of 1 J.
+runtime::LateralMemory remembered(const Vec3& relaxed) {
+  return {runtime::Pair{relaxed[0], relaxed[1]}, runtime::Pair{relaxed[2], 0}, runtime::Pair{1, 1},
+          true, 0};
+}
+
 TEST(LateralBranches, SlipAtAFixedPointKeepsTheDirectionOfTheForceAndLowersTheEnergy) {
   const Library library = relaxing(plate(2, 0.08, stiffening), kTimes, true);
   const palpate_library body(library);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> any(-1, 1);
-  runtime::PiecesInUse pieces;
+  runtime::ToolPieces pieces;
   for (int trial = 0; trial < 1000; ++trial) {
     runtime::LocalModel model(body.surface, {0, {0.2, 0.5, 0.3}}, 0);
     const Vec3 memory{0.2 * any(random), 0.2 * any(random), 0};
-    model.set_memory({{}, {true, memory, 1, false, 1}});
+    model.set_memory({{}, remembered(memory)});
     auto d = model.deflection(model.contact_point() +
                               Vec3{4e-3 * any(random), 4e-3 * any(random), -2e-3});
     auto at = model.respond(d, pieces);
@@ -234,8 +241,8 @@ TEST(LateralBranches, SlipAtAFixedPointKeepsTheDirectionOfTheForceAndLowersTheEn
     const Vec3 lateral = at.force - dot(at.force, model.normal()) * model.normal();
     const Vec3 was = before.force - dot(before.force, model.normal()) * model.normal();
     EXPECT_NEAR(norm(lateral - (limit / norm(was)) * was), 0, 1e-12);
-    EXPECT_LE(at.energy, before.energy - slip.distance * dot(slip.direction, lateral) + 1e-15);
-    EXPECT_GE(dot(slip.direction, was), 0);
+    EXPECT_LE(at.energy, before.energy - dot(slip.part(1), lateral) + 1e-15);
+    EXPECT_GE(dot(slip.part(1), was), 0);
   }
 }
 
@@ -250,11 +257,11 @@ TEST(LateralBranches, AtTheLimitOfFrictionTheForceIsNoSteeperThanItsBound) {
   double steepest_press = 0, steepest = 0;
   for (int trial = 0; trial < 20000; ++trial) {
     runtime::LocalModel model(body.surface, {0, {0.2, 0.5, 0.3}}, 0);
-    model.set_memory({{0.1 * std::abs(any(random)), 0, 1, 1},
-                      {true, {0.5 * any(random), 0.5 * any(random), 0}, 1, false, 1}});
+    model.set_memory({{runtime::Pair{0.1 * std::abs(any(random)), 1}, runtime::Pair{0, 1}},
+                      remembered({0.5 * any(random), 0.5 * any(random), 0})});
     const auto force = [&](const Vec3& x) {
       runtime::LocalModel slipped = model;
-      runtime::PiecesInUse pieces;
+      runtime::ToolPieces pieces;
       auto d = slipped.deflection(x);
       auto at = slipped.respond(d, pieces);
       const double limit = kFriction * at.friction_normal_force;
@@ -300,7 +307,11 @@ TEST(LateralBranches, TurnWithTheNormalAndKeepTheirEnergy) {
   const Library library = relaxing(plate(2, 0.08, stiffening), kTimes, true);
   const palpate_library body(library);
   const runtime::InterpolatedResponse response = body.surface.response({0, {0.2, 0.5, 0.3}});
-  const runtime::Branches fractions{0.25, 0.25}, decay{0.1, 0.7};
+  runtime::Lanes fractions, decay;
+  for (const std::size_t i : {0U, 1U}) {
+    fractions.set(i, 0.25);
+    decay.set(i, i == 0 ? 0.1 : 0.7);
+  }
   const Vec3 down{0, 0, -1}, aside{0.6, 0, -0.8};
   runtime::LateralBranches branches(2);
   branches.pass({&response, &fractions, down}, {0.1, 0.05, 0}, 2e-3, decay);
@@ -308,11 +319,11 @@ TEST(LateralBranches, TurnWithTheNormalAndKeepTheirEnergy) {
   branches.carry({&response, &fractions, aside},
                  branches.carried_to({&response, &fractions, aside}, 1));
   const runtime::LateralMemory after = branches.now();
-  EXPECT_NEAR(dot(after.relaxed, aside), 0, 1e-16);
-  EXPECT_NEAR(norm(after.relaxed), norm(before.relaxed), 1e-16);
-  EXPECT_NEAR(after.stored, before.stored, 1e-18);
+  EXPECT_NEAR(dot(after.relaxed(), aside), 0, 1e-16);
+  EXPECT_NEAR(norm(after.relaxed()), norm(before.relaxed()), 1e-16);
+  EXPECT_NEAR(after.stored(), before.stored(), 1e-18);
   // The axis of the turn is y: the part along it stays.
-  EXPECT_NEAR(after.relaxed[1], before.relaxed[1], 1e-16);
+  EXPECT_NEAR(after.relaxed()[1], before.relaxed()[1], 1e-16);
   EXPECT_FALSE(branches.carried_to({&response, &fractions, -aside}, 1).any);
 }
 

@@ -250,11 +250,11 @@ TEST_F(LocalModelTest, SlippingOverAHeldContactPointIsWhatTheNewOffsetGives) {
     const Vec3 x = random_tip(model);
     model.set_lateral_offset(0.001 * Vec3{any(random_), any(random_), any(random_)});
     Deflection d = model.deflection(x);
-    runtime::PiecesInUse pieces;
+    runtime::ToolPieces pieces;
     auto slipped = model.respond(d, pieces);
     const double left = trial % 10 == 0 ? 0 : d.lateral * any(random_);
-    model.slip({d.lateral - left, d.tangent, left, left > 0 ? d.tangent : Vec3{}}, d, slipped,
-               pieces);
+    model.slip({d.lateral - left, d.lateral - left, d.tangent, left, left > 0 ? d.tangent : Vec3{}},
+               d, slipped, pieces);
     const Deflection fresh = model.deflection(x);
     const auto want = model.respond(fresh);
     EXPECT_EQ(d.lateral, left);

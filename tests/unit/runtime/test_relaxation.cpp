@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
+#include <random>
 #include <vector>
 
 #include "runtime/contact_state.hpp"
@@ -324,6 +326,56 @@ TEST(Relaxation, IsRefusedWhereNodesLackFractionsOrTheToolARadius) {
   EXPECT_ANY_THROW(palpate_library{lacking});
   library.tool_radius = 0;
   EXPECT_ANY_THROW(palpate_library{library});
+}
+
+/// A fraction of 1/2 in this many parts, all of one relaxation time.
+Library in_parts(std::size_t parts, ResponseKind kind) {
+  Library library = plate(8, 0.08, wall);
+  if (kind == ResponseKind::Coupled) library = coupled(library);
+  library.tool_radius = 0.005;
+  library.relaxation_times.assign(parts, 0.05);
+  const float first = 0.5F - static_cast<float>(parts - 1) / 16;
+  for (NodeResponse& response : library.responses) {
+    response.relaxation.assign(parts, 1.0F / 16);
+    response.relaxation.front() = first;
+  }
+  return library;
+}
+
+/// Presses and drags with pauses, slides and a lift, at times that vary from step to step.
+std::vector<runtime::ContactObservation> felt_by_a_wandering_tool(const Library& library) {
+  const palpate_library body(library);
+  runtime::ContactState contact(body.surface, body.tree, {0.3, 5e-3});
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any(0, 1);
+  std::vector<runtime::ContactObservation> felt;
+  double phase = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const double dt = 0.02 * std::pow(any(random), 4);
+    if (i % 400 < 300) phase += 0.02 * any(random);
+    contact.step({0.04 + 0.02 * std::sin(phase), 0.04 + 0.015 * std::sin(1.7 * phase),
+                  -0.002 + 0.003 * std::cos(0.9 * phase)},
+                 dt);
+    felt.push_back(contact.observation());
+  }
+  return felt;
+}
+
+TEST(Relaxation, HowManyBranchesAFractionIsDividedIntoMakesNoDifference) {
+  for (const ResponseKind kind : {ResponseKind::Decoupled, ResponseKind::Coupled}) {
+    const auto one = felt_by_a_wandering_tool(in_parts(1, kind));
+    double dissipated = 0;
+    for (const std::size_t parts : {2U, 3U, 5U, 8U}) {
+      const auto felt = felt_by_a_wandering_tool(in_parts(parts, kind));
+      for (std::size_t i = 0; i < felt.size(); ++i) {
+        ASSERT_LT(norm(felt[i].force - one[i].force), 1e-9) << parts << " " << i;
+        ASSERT_NEAR(felt[i].energy, one[i].energy, 1e-12) << parts << " " << i;
+        ASSERT_NEAR(felt[i].dissipated, one[i].dissipated, 1e-11) << parts << " " << i;
+      }
+      dissipated = felt.back().dissipated;
+    }
+    EXPECT_GT(dissipated, 1e-4);
+  }
 }
 
 }  // namespace

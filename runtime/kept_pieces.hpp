@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: Apache-2.0
+// The responses of three nodes at the deflections of all relaxation times at once.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "format/numbers.hpp"
+#include "format/vec3.hpp"
+#include "runtime/interpolated_response.hpp"
+#include "runtime/lanes.hpp"
+
+namespace palpate::runtime {
+
+/// Two deflections, with the forces and the energies of a response there.
+struct ReachedForces {
+  Pair deflection{};  ///< m; infinity: the response never reaches the force
+  Pair force{};       ///< N
+  Pair energy{};      ///< J
+
+  /// F d - E, J: the conjugate energies of these forces; infinity where they are not reached.
+  Pair conjugate(const Pair& of_forces) const noexcept {
+    return deflection < both(kInfinity) ? of_forces * deflection - energy : both(kInfinity);
+  }
+};
+
+/// g(z) or h(rho).
+enum class ResponseOf : std::uint8_t { Depth, Lateral };
+
+/// The piece of a response around the deflection of each lane, from one evaluation to the
+/// next: what relaxes moves little in a step. On its piece a response is the quadratic
+///   force + slope x + curvature x^2,   x = d - from,
+/// and each node has its own, of which a move of the point changes the weights only. Results do not
+/// depend on the pieces that were kept. noexcept, allocation-free, bounded by the number of knots.
+/// Inline but for the search of another piece: a step evaluates a dozen pairs.
+template <std::size_t kPairs>
+class KeptPieces {
+ public:
+  /// One kind of response in every lane that is in use.
+  KeptPieces(std::size_t lanes, ResponseOf kind) noexcept
+      : lanes_(lanes), first_(kind), other_(kind) {}
+  /// g in the first lane and h in the second.
+  KeptPieces() noexcept : lanes_(2), first_(ResponseOf::Depth), other_(ResponseOf::Lateral) {}
+
+  /// The response of what follows.
+  void keep_for(const InterpolatedResponse& response) noexcept {
+    const bool same = is_of(response.nodes());
+    const Vec3& natural = response.natural();
+    if (same && natural_[0] == natural[0] && natural_[1] == natural[1] && natural_[2] == natural[2])
+      return;
+    natural_ = natural;
+    if (!same) find_all(response.nodes());
+    for (std::size_t p = 0; p < pairs(); ++p) merge(pieces_[p]);
+  }
+
+  /// The smallest deflections >= 0 at which the response has the forces of pair p, in closed form;
+  /// all 0 for a force <= 0.
+  ReachedForces reach(std::size_t p, const Pair& force) noexcept {
+    PiecePair& on = pieces_[p];
+    if (!all(on.reaches(force))) walk(p, force);
+    const Start& q = on.merged;
+    const Pair rise = larger(force - q.force, Pair{});
+    const Pair root = roots(larger(q.slope * q.slope + 4.0 * q.curvature * rise, Pair{}));
+    const Pair rising = 2.0 * rise / larger(q.slope + root, Pair{});  // infinite on a plateau
+    const Pair x = smaller(rise > Pair{} ? rising : Pair{}, on.to - on.from);
+    return q.after(x, on.from + x, force > Pair{});
+  }
+  /// Force and energy at the deflections of pair p; all 0 for one <= 0.
+  ReachedForces evaluate(std::size_t p, const Pair& deflection) noexcept {
+    PiecePair& on = pieces_[p];
+    if (!all(on.contains(deflection))) find(p, deflection);
+    return on.merged.after(deflection - on.from, deflection, deflection > Pair{});
+  }
+
+  std::size_t pairs() const noexcept { return kPairs == 1 ? 1 : pairs_of(lanes_); }
+
+ private:
+  /// Two responses from the starts of their pieces on.
+  struct Start {
+    Pair force{}, slope{}, curvature{}, energy{};
+
+    /// At deflections d, lengths x after the starts.
+    ReachedForces after(const Pair& x, const Pair& d, const Mask& presses) const noexcept {
+      const Pair work = x * (force + x * (slope / 2.0 + x * (curvature * kThird)));
+      return {presses ? d : Pair{}, presses ? force + x * (slope + x * curvature) : Pair{},
+              presses ? energy + work : Pair{}};
+    }
+  };
+  struct PiecePair {
+    Pair from{}, to{};  ///< m, where the pieces of all three nodes are in use
+    Pair end_force{};   ///< N, at `to`; infinity where the piece has no end
+    Start merged;
+    std::array<Start, 3> nodes;
+
+    /// Do the pieces contain the answers of an inverse? The first that reach the forces do.
+    Mask reaches(const Pair& force) const noexcept {
+      const Mask begins_below = (merged.force < force) | (from <= Pair{});
+      return (force <= Pair{}) | (begins_below & (end_force >= force));
+    }
+    Mask contains(const Pair& d) const noexcept { return (d <= Pair{}) | ((from <= d) & (d < to)); }
+  };
+
+  bool is_of(const std::array<const NodeCurves*, 3>& these) const noexcept {
+    return nodes_[0] == these[0] && nodes_[1] == these[1] && nodes_[2] == these[2];
+  }
+  Pair mix(const std::array<Start, 3>& nodes, Pair Start::*of) const noexcept {
+    return natural_[0] * (nodes[0].*of) + natural_[1] * (nodes[1].*of) +
+           natural_[2] * (nodes[2].*of);
+  }
+  void merge(PiecePair& on) const noexcept {
+    on.merged = {mix(on.nodes, &Start::force), mix(on.nodes, &Start::slope),
+                 mix(on.nodes, &Start::curvature), mix(on.nodes, &Start::energy)};
+    const Pair length = on.to - on.from;
+    const Pair end = on.merged.force + length * (on.merged.slope + length * on.merged.curvature);
+    on.end_force = length < both(kInfinity) ? end : both(kInfinity);
+  }
+
+  void find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept;
+  void walk(std::size_t p, Pair force) noexcept;
+  void find(std::size_t p, Pair deflection) noexcept;
+  template <typename Act>
+  void with_knots(std::size_t lane, double at, const Act& act) noexcept;
+  template <typename Knots>
+  void keep(std::size_t lane, const Knots& knots) noexcept;
+
+  std::size_t lanes_;
+  ResponseOf first_, other_;                  ///< of the first lane and of the others
+  std::array<const NodeCurves*, 3> nodes_{};  ///< owners of the pieces; null: none
+  Vec3 natural_{};                            ///< natural coordinates of what is merged
+  std::array<PiecePair, kPairs> pieces_;
+};
+
+using BranchPieces = KeptPieces<Lanes::kPairs>;  ///< of all relaxation times
+using TipPieces = KeptPieces<1>;                 ///< of g and h at the tip
+
+}  // namespace palpate::runtime
