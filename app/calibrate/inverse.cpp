@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "format/error.hpp"
 #include "format/number_text.hpp"
@@ -44,6 +45,20 @@ bool admissible(const fem::CampaignSettings& campaign) {
   return true;
 }
 
+/// The sought constant that is the only stress of the whole model: contact and supports of no
+/// springs take their stiffness from it.
+std::optional<std::size_t> modulus_of(const Body& body, const InverseSettings& settings) {
+  if (!body.foundation.empty()) return {};
+  std::size_t stresses = 0;
+  for (const fem::RegionMaterial& material : settings.campaign.materials)
+    for (const fem::LawConstant& constant : fem::law_entry(material.law.law).constants)
+      stresses += constant.is_stress ? 1 : 0;
+  if (stresses != 1) return {};
+  for (std::size_t i = 0; i < settings.sought.size(); ++i)
+    if (unit_of(settings.campaign, settings.sought[i].constant) == "Pa") return i;
+  return {};
+}
+
 /// The tool of one of several sets of curves.
 struct SetTool {
   double radius = 0;
@@ -71,6 +86,7 @@ class BodyModel : public PressModel {
     return constants;
   }
   std::size_t profiled(const PressPlan&) const override { return settings_.sought.size(); }
+  std::optional<std::size_t> modulus() const override { return modulus_of(body_, settings_); }
 
   bool forces(const PressPlan& plan, const std::vector<double>& at,
               std::vector<fem::SiteSensitivity>& sites, std::string& refusal) override {
