@@ -16,11 +16,11 @@ using Vector = Linearised::Vector;
 /// Damping, over the columns of unit length: of the first step, of one that is as good as none, and
 /// the range beyond which it makes no difference.
 constexpr double kFirstDamping = 1e-4, kUndamped = 1e-14, kMostDamping = 1e16;
-/// Gains at which a step is taken, and at which the next one is damped more or less.
-constexpr double kLeastGain = 1e-3, kPoorGain = 0.25, kGoodGain = 0.75;
-/// What the damping is multiplied by after a step of good and of poor gain, after one that is not
-/// taken, and after one to where the model has no value.
-constexpr double kAfterGood = 0.1, kAfterPoor = 2, kAfterNone = 6, kAfterNoValue = 30;
+/// Gains at which a step is taken, and at which the next one is damped less.
+constexpr double kLeastGain = 1e-3, kGoodGain = 0.75;
+/// What the damping is multiplied by after a step of good gain, after one that is not taken, and
+/// after one to where the model has no value.
+constexpr double kAfterGood = 0.1, kAfterNone = 6, kAfterNoValue = 30;
 /// Steps in succession to where the model has no value, at most.
 constexpr int kMostWithoutValue = 8;
 
@@ -111,7 +111,7 @@ class Search {
       damp(kAfterNone);
       return Outcome::NotTaken;
     }
-    damp(gain > kGoodGain ? kAfterGood : gain < kPoorGain ? kAfterPoor : 1);
+    if (gain > kGoodGain) damp(kAfterGood);
     converged_ = cost_ - cost <= problem_.tolerance * cost_;
     x_ = x;
     r_ = std::move(r);
