@@ -2,6 +2,7 @@
 #include "fitting/measurement/calibrate/linearised.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 namespace palpate::calibrate {
@@ -111,7 +112,14 @@ Linearised::Vector Linearised::step(double damping, const Vector& low, const Vec
   Vector y = Vector::Zero(A.rows());
   y.head(c_.size()) = -c_;
   const Vector scaled_low = scale_.cwiseProduct(low), scaled_high = scale_.cwiseProduct(high);
-  return ActiveSet(A, y, scaled_low, scaled_high).solve().cwiseQuotient(scale_);
+  const Vector q = ActiveSet(A, y, scaled_low, scaled_high).solve();
+  Vector p(n);
+  // At a bound exactly, not but for the rounding of the scale.
+  for (Index i = 0; i < n; ++i)
+    p[i] = q[i] <= scaled_low[i]    ? low[i]
+           : q[i] >= scaled_high[i] ? high[i]
+                                    : std::clamp(q[i] / scale_[i], low[i], high[i]);
+  return p;
 }
 
 double Linearised::decrease(const Vector& p) const {
