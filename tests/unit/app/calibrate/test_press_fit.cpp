@@ -111,7 +111,7 @@ TEST(PressFit, ConvergesWhereConstantsStandForEachOther) {
     EXPECT_LE(with.evaluations, 8);
     EXPECT_LE(without.evaluations, 20);
     EXPECT_NEAR(with.calibration.cost, without.calibration.cost, 1e-3);
-    for (const std::size_t i : {0, 1}) {
+    for (std::size_t i = 0; i < 2; ++i) {
       const double value = without.calibration.estimates[i].value;
       EXPECT_NEAR(with.calibration.estimates[i].value, value, 0.05 * value);
     }

@@ -46,13 +46,12 @@ struct SmallSphere {
         const double unit = std::pow(d, 1.5) * std::pow(stiffened, 0.3) / own;
         r[i] = c[0] * unit + (slope(i) * c[2] - measured(i)) / own;
         if (J == nullptr) continue;
-        J[3 * i] = unit;
-        J[3 * i + 1] = c[0] * unit * 0.1 * d / stiffened;
-        J[3 * i + 2] = slope(i) / own;
+        *J++ = unit;
+        *J++ = c[0] * unit * 0.1 * d / stiffened;
+        *J++ = slope(i) / own;
       }
       r[kDepths] = c[2] / contact;
-      if (J != nullptr) J[3 * kDepths] = J[3 * kDepths + 1] = 0;
-      if (J != nullptr) J[3 * kDepths + 2] = 1 / contact;
+      if (J != nullptr) J[0] = J[1] = 0, J[2] = 1 / contact;
       return true;
     };
     return p;
