@@ -131,15 +131,14 @@ void say_calibration(const calibrate::Calibration& calibration, double confidenc
     const auto interval = [&](double low, double high) {
       return value_text(low, unit) + " to " + value_text(high, unit);
     };
-    if (e.at_bound) {
-      answer("  {} = {}, at its bound", e.name, value);
-      continue;
-    }
-    answer("  {} = {}, {:.4g} % interval {}{}", e.name, value, 100 * confidence,
-           interval(e.low, e.high),
-           std::isnan(e.profile_low)
-               ? ""
-               : ", by its profile " + interval(e.profile_low, e.profile_high));
+    const std::string profile = std::isnan(e.profile_low)
+                                    ? ""
+                                    : ", by its profile " + interval(e.profile_low, e.profile_high);
+    if (e.at_bound)
+      answer("  {} = {}, at its bound{}", e.name, value, profile);
+    else
+      answer("  {} = {}, {:.4g} % interval {}{}", e.name, value, 100 * confidence,
+             interval(e.low, e.high), profile);
   }
   for (const std::string& warning : calibration.warnings) warn(warning);
 }

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "format/error.hpp"
 #include "format/number_text.hpp"
@@ -44,6 +45,33 @@ bool admissible(const fem::CampaignSettings& campaign) {
   return true;
 }
 
+/// The sought constant that is the only stress of the whole model: contact and supports of no
+/// springs take their stiffness from it.
+std::optional<std::size_t> modulus_of(const Body& body, const InverseSettings& settings) {
+  if (!body.foundation.empty()) return {};
+  std::size_t stresses = 0;
+  for (const fem::RegionMaterial& material : settings.campaign.materials)
+    for (const fem::LawConstant& constant : fem::law_entry(material.law.law).constants)
+      stresses += constant.is_stress ? 1 : 0;
+  if (stresses != 1) return {};
+  for (std::size_t i = 0; i < settings.sought.size(); ++i)
+    if (unit_of(settings.campaign, settings.sought[i].constant) == "Pa") return i;
+  return {};
+}
+
+/// Adds slopes of forces that are proportional to a constant.
+void add_slopes_by_modulus(std::size_t index, double modulus,
+                           std::vector<fem::SiteSensitivity>& sites) {
+  const auto add = [&](std::vector<fem::ForceSensitivity>& samples) {
+    for (fem::ForceSensitivity& s : samples)
+      s.slope.insert(s.slope.begin() + static_cast<std::ptrdiff_t>(index), s.force / modulus);
+  };
+  for (fem::SiteSensitivity& site : sites) {
+    add(site.samples);
+    for (auto& path : site.lateral) add(path);
+  }
+}
+
 /// The tool of one of several sets of curves.
 struct SetTool {
   double radius = 0;
@@ -71,14 +99,16 @@ class BodyModel : public PressModel {
     return constants;
   }
   std::size_t profiled(const PressPlan&) const override { return settings_.sought.size(); }
+  std::optional<std::size_t> modulus() const override { return modulus_of(body_, settings_); }
 
   bool forces(const PressPlan& plan, const std::vector<double>& at,
               std::vector<fem::SiteSensitivity>& sites, std::string& refusal) override {
     fem::CampaignSettings campaign = settings_.campaign;
+    const std::optional<std::size_t> scale = modulus();
     std::vector<fem::RegionConstant> constants;
     for (std::size_t i = 0; i < at.size(); ++i) {
-      constants.push_back(settings_.sought[i].constant);
-      value_of(campaign, constants.back()) = at[i];
+      value_of(campaign, settings_.sought[i].constant) = at[i];
+      if (i != scale) constants.push_back(settings_.sought[i].constant);
     }
     campaign.sites = plan.vertices;
     if (!tools_.empty()) tools_[plan.set].use_in(campaign);
@@ -89,6 +119,7 @@ class BodyModel : public PressModel {
     }
     first_ = false;
     sites = fem::run_sensitivity(body_, campaign, plan.depths, constants, plan.lateral, &kept_);
+    if (scale) add_slopes_by_modulus(*scale, at[*scale], sites);
     return true;
   }
 

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <limits>
+#include <optional>
 
 #include "fitting/measurement/compare/compare.hpp"
 #include "format/error.hpp"
@@ -21,6 +23,8 @@ constexpr double kLeastOwnPart = 0.5;
 /// Linearised intervals of a half width below this fraction of the value, of a constant that is
 /// correlated with no other beyond this, are not in doubt.
 constexpr double kPreciseEnough = 0.1, kInDoubt = 0.95;
+/// Distance from the best fit, in standard errors, that is not worth one more evaluation.
+constexpr double kCloseEnough = 0.01;
 
 /// One measured curve at the depths, or the travels of a drag, that are compared.
 struct Target {
@@ -80,6 +84,8 @@ class Fitter {
                          [](double u) { return std::isfinite(u) && u > 0; });
     });
     constants_ = model_.constants(plans_.front());
+    modulus_ = model_.modulus();
+    if (modulus_) constants_[*modulus_].linear = true;
   }
 
   PressFit run(const std::string& where) {
@@ -96,14 +102,22 @@ class Fitter {
   }
 
  private:
+  struct Evaluation {
+    std::vector<double> at;
+    bool usable = false;
+    std::vector<std::vector<fem::SiteSensitivity>> sites;  ///< of each set
+  };
+  static constexpr std::size_t kRemembered = 8;
+
   calibrate::LeastSquares make_problem() {
     calibrate::LeastSquares problem;
     problem.constants = constants_;
     for (Target& target : targets_) {
       if (!known_ || !(target.contact_uncertainty > 0)) continue;
       target.shift = static_cast<int>(problem.constants.size());
-      problem.constants.push_back(
-          {shift_name(target, plans_.size()), "m", 0, -kInfinity, kInfinity, /*may_vanish=*/true});
+      problem.constants.push_back({shift_name(target, plans_.size()), "m", 0, -kInfinity, kInfinity,
+                                   /*may_vanish=*/true,
+                                   /*logarithm=*/false, /*linear=*/true});
       ++problem.residuals;
     }
     for (const Target& target : targets_) {
@@ -116,6 +130,8 @@ class Fitter {
     // Each evaluation may be a campaign: stop well within any interval.
     problem.tolerance = 1e-6;
     problem.step_tolerance = 1e-4;
+    problem.offset_tolerance = kCloseEnough;
+    problem.linear_first = true;
     problem.model = [this, columns = problem.constants.size()](const double* c, double* r,
                                                                double* J) {
       return evaluate(c, columns, r, J);
@@ -135,11 +151,15 @@ class Fitter {
   std::vector<std::size_t> profiled(const calibrate::Calibration& calibration) const {
     const std::size_t wanted_of = model_.profiled(plans_.front());
     std::vector<std::size_t> of;
+    // Beside a constant at its bound the linearised intervals are those of the others alone.
+    bool bounded = false;
+    for (std::size_t i = 0; i < wanted_of; ++i)
+      bounded = bounded || calibration.estimates[i].at_bound;
     for (std::size_t i = 0; i < wanted_of; ++i) {
       const calibrate::Estimate& e = calibration.estimates[i];
       bool wanted = settings_.profiles == Profiles::All;
       if (settings_.profiles == Profiles::Doubtful) {
-        wanted = !(e.high - e.value < kPreciseEnough * std::abs(e.value));
+        wanted = bounded || !(e.high - e.value < kPreciseEnough * std::abs(e.value));
         for (std::size_t j = 0; j < wanted_of; ++j)
           wanted = wanted || (j != i && std::abs(calibration.correlation[i][j]) > kInDoubt);
       }
@@ -208,7 +228,7 @@ class Fitter {
   }
 
   const std::vector<fem::ForceSensitivity>& model_of(const Target& target) const {
-    const fem::SiteSensitivity& site = sites_[target.set][target.site];
+    const fem::SiteSensitivity& site = recent_.front().sites[target.set][target.site];
     return target.kind == PathKind::Normal ? site.samples : site.lateral[target.plan];
   }
 
@@ -237,36 +257,58 @@ class Fitter {
     }
   }
 
-  /// The model at these constants. The last two are remembered: the solver asks for values and
-  /// slopes separately, and goes back to the point before when a step does not help.
-  bool solve(const std::vector<double>& at) {
-    if (at == at_) return usable_;
-    std::swap(at_, before_.at);
-    std::swap(usable_, before_.usable);
-    std::swap(sites_, before_.sites);
-    if (at == at_) return usable_;
-    at_ = at;
-    ++evaluations_;
-    std::string line = fmt::format("evaluation {}:", evaluations_);
-    for (std::size_t i = 0; i < at.size(); ++i)
-      line += fmt::format(" {} = {:.6g}", constants_[i].name, at[i]);
-    std::string refusal;
-    sites_.resize(plans_.size());
-    for (const PressPlan& plan : plans_) {
-      usable_ = model_.forces(plan, at, sites_[plan.set], refusal);
-      if (usable_) continue;
-      if (settings_.log) settings_.log(fmt::format("{}, {}", line, refusal));
-      return false;
+  /// The model at these constants, with the modulus at its start: its forces times modulus_factor()
+  /// are those of any other. The last evaluations are remembered: a descent asks for values and
+  /// slopes separately, and goes back when a step does not help.
+  bool solve(std::vector<double> at) {
+    if (modulus_) at[*modulus_] = constants_[*modulus_].start;
+    const auto known = std::find_if(recent_.begin(), recent_.end(),
+                                    [&](const Evaluation& e) { return e.at == at; });
+    if (known != recent_.end()) {
+      std::rotate(recent_.begin(), known, known + 1);
+      return recent_.front().usable;
     }
+    if (recent_.size() == kRemembered) recent_.pop_back();
+    recent_.emplace_front().at = std::move(at);
+    ++evaluations_;
+    const std::string outcome = run_model(recent_.front());
+    if (settings_.log)
+      settings_.log(
+          fmt::format("evaluation {}:{}{}", evaluations_, text_of(recent_.front().at), outcome));
+    if (recent_.front().usable && targets_.front().slope.empty()) freeze_slopes();
+    return recent_.front().usable;
+  }
+
+  /// What went wrong, as a clause for the log; empty where nothing did.
+  std::string run_model(Evaluation& evaluation) {
+    evaluation.sites.resize(plans_.size());
+    for (const PressPlan& plan : plans_) {
+      std::string refusal;
+      if (!model_.forces(plan, evaluation.at, evaluation.sites[plan.set], refusal))
+        return ", " + refusal;
+    }
+    std::string failures;
     for (const Target& target : targets_) {
       if (model_of(target).size() >= target.depth.size()) continue;
-      usable_ = false;
-      line += fmt::format(", failed at site {}: {}", target.vertex,
-                          sites_[target.set][target.site].reason);
+      failures += fmt::format(", failed at site {}: {}", target.vertex,
+                              evaluation.sites[target.set][target.site].reason);
     }
-    if (settings_.log) settings_.log(line);
-    if (usable_ && targets_.front().slope.empty()) freeze_slopes();
-    return usable_;
+    evaluation.usable = failures.empty();
+    return failures;
+  }
+
+  /// The constants that an evaluation is for: without the modulus, unless there is no other.
+  std::string text_of(const std::vector<double>& at) const {
+    std::string text;
+    for (std::size_t i = 0; i < at.size(); ++i) {
+      if (i == modulus_ && at.size() > 1) continue;
+      text += fmt::format(" {} = {:.6g}", constants_[i].name, at[i]);
+    }
+    return text;
+  }
+
+  double modulus_factor(const double* constants) const {
+    return modulus_ ? constants[*modulus_] / constants_[*modulus_].start : 1;
   }
 
   /// Standard uncertainty of a sample beside that of its contact point.
@@ -282,6 +324,7 @@ class Fitter {
   bool evaluate(const double* c, std::size_t columns, double* r, double* J) {
     const std::vector<double> sought(c, c + constants_.size());
     if (!solve(sought)) return false;
+    const double factor = modulus_factor(c);
     std::size_t row = 0;
     for (const Target& target : targets_) {
       const std::vector<fem::ForceSensitivity>& samples = model_of(target);
@@ -289,10 +332,11 @@ class Fitter {
       for (std::size_t i = 0; i < target.depth.size(); ++i, ++row) {
         const fem::ForceSensitivity& model = samples[i];
         const double u = own_uncertainty(target, i);
-        r[row] = (model.force + target.slope[i] * shift - target.force[i]) / u;
+        r[row] = (factor * model.force + target.slope[i] * shift - target.force[i]) / u;
         if (J == nullptr) continue;
         std::fill(J + row * columns, J + (row + 1) * columns, 0.0);
-        for (std::size_t k = 0; k < sought.size(); ++k) J[row * columns + k] = model.slope[k] / u;
+        for (std::size_t k = 0; k < sought.size(); ++k)
+          J[row * columns + k] = (k == modulus_ ? 1 : factor) * model.slope[k] / u;
         if (target.shift >= 0) {
           J[row * columns + static_cast<std::size_t>(target.shift)] = target.slope[i] / u;
         }
@@ -316,6 +360,7 @@ class Fitter {
       found.push_back(fit.calibration.estimates[i].value);
     }
     solve(found);
+    const double factor = modulus_factor(found.data());
     double squares = 0, largest = 0;
     std::size_t count = 0;
     for (const Target& target : targets_) {
@@ -333,7 +378,7 @@ class Fitter {
             fit.calibration.estimates[static_cast<std::size_t>(target.shift)].value;
       }
       for (std::size_t i = 0; i < target.depth.size(); ++i) {
-        path.fitted.push_back(model[i].force + target.slope[i] * path.contact_shift);
+        path.fitted.push_back(factor * model[i].force + target.slope[i] * path.contact_shift);
         const double e = path.fitted.back() - target.force[i];
         squares += e * e;
         largest = std::max(largest, std::abs(target.force[i]));
@@ -350,18 +395,10 @@ class Fitter {
   const PressFitSettings& settings_;
   std::vector<PressPlan> plans_;                ///< of each set
   std::vector<calibrate::Constant> constants_;  ///< of the model
+  std::optional<std::size_t> modulus_;
   std::vector<Target> targets_;
   bool known_ = false;
-  struct Evaluation {
-    std::vector<double> at;
-    bool usable = false;
-    std::vector<std::vector<fem::SiteSensitivity>> sites;
-  };
-
-  std::vector<double> at_;
-  bool usable_ = false;
-  std::vector<std::vector<fem::SiteSensitivity>> sites_;  ///< of each set
-  Evaluation before_;
+  std::deque<Evaluation> recent_;  ///< the latest first
   int evaluations_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,7 +25,7 @@ struct PressFitSettings {
   double confidence = 0.95;
   Profiles profiles = Profiles::Doubtful;
   /// How profiles are made; `of` is chosen by `profiles`.
-  calibrate::ProfileSettings profile{.of = {}, .closeness = 0.01};
+  calibrate::ProfileSettings profile{.of = {}, .closeness = 0.01, .at_bounds = true};
   std::function<void(const std::string& line)> log;  ///< one line an evaluation; may be empty
 };
 
@@ -45,6 +46,9 @@ class PressModel {
   /// profiled() at most. `plan` is that of the first set.
   virtual std::vector<calibrate::Constant> constants(const PressPlan& plan) const = 0;
   virtual std::size_t profiled(const PressPlan& plan) const = 0;
+  /// The constant that all forces are proportional to, whatever the others are. It costs no
+  /// evaluation, and the others are sought with it at its best.
+  virtual std::optional<std::size_t> modulus() const { return {}; }
   /// More starts beside that of constants(), each a full set; may be empty.
   virtual std::vector<std::vector<double>> starts(const PressPlan&) const { return {}; }
 

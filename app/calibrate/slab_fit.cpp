@@ -37,7 +37,8 @@ class SlabModel : public PressModel {
     for (const std::int32_t vertex : plan.vertices) {
       const double start = modulus_start(plan, vertex, constants[0].start, constants[1].start);
       constants.push_back({fmt::format("shear modulus of site {}", vertex), "Pa", start,
-                           start / kFarModulus, start * kFarModulus});
+                           start / kFarModulus, start * kFarModulus, /*may_vanish=*/false,
+                           /*logarithm=*/false, /*linear=*/true});
     }
     return constants;
   }

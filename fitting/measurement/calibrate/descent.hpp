@@ -12,6 +12,7 @@ namespace palpate::calibrate {
 /// Where a descent ended.
 struct Minimum {
   std::vector<double> at, residuals;
+  std::vector<double> J;  ///< J[row * constants + column], there
   double cost = 0;
   bool converged = false;  ///< the cost, the step or the slope says that it does not get better
   int iterations = 0;

@@ -83,9 +83,11 @@ std::optional<Calibration> try_minimise(const LeastSquares& problem) {
   const std::size_t n = problem.constants.size();
   auto found = descend(problem);
   if (!found) return std::nullopt;
-  if (problem.canonical) problem.canonical(found->at);
-  std::vector<double> r(problem.residuals), J(problem.residuals * n);
-  if (!problem.model(found->at.data(), r.data(), J.data())) return std::nullopt;
+  std::vector<double>&r = found->residuals, &J = found->J;
+  if (problem.canonical) {
+    problem.canonical(found->at);
+    if (!problem.model(found->at.data(), r.data(), J.data())) return std::nullopt;
+  }
   Calibration result;
   result.converged = found->converged;
   result.iterations = found->iterations;

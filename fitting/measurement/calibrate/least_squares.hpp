@@ -43,6 +43,12 @@ struct LeastSquares {
   int max_iterations = 200;
   double tolerance = 1e-12;       ///< relative, of the cost
   double step_tolerance = 1e-10;  ///< relative, of the constants
+  /// Distance from the best fit that is close enough, in standard errors; 0: as close as the other
+  /// tolerances ask for. For models that cost more than digits that noise hides.
+  double offset_tolerance = 0;
+  /// The linear constants are eliminated first [Golub & Pereyra 1973], not only where a descent in
+  /// all constants does not end: for models that cost little at other values of these.
+  bool linear_first = false;
 };
 
 struct Estimate {
@@ -83,7 +89,7 @@ struct Calibration {
   std::vector<std::string> warnings;  ///< identifiability, bounds, disagreement with the scatter
 };
 
-/// Minimise 1/2 |r|^2 within the bounds by Levenberg-Marquardt (Ceres). The intervals are those of
+/// Minimise 1/2 |r|^2 within the bounds by Levenberg-Marquardt. The intervals are those of
 /// the linearised model, t sqrt(s^2 (J^T J)^-1); constants at a bound are left out of the matrix
 /// and have none. s is the scatter of the residuals; when it is known, 1, unless the residuals
 /// scatter by more than chance lets them: then theirs again [Birge 1932]. Warned of: correlations

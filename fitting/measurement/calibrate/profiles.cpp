@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "fitting/measurement/calibrate/descent.hpp"
@@ -93,7 +94,10 @@ class ProfileEnd {
       const double excess = excess_at(outside);
       if (std::abs(excess) <= closeness_) return outside;
       if (excess > 0) return between(outside, excess);
-      if (past) return bound;
+      if (past) {
+        stopped_ = true;
+        return bound;
+      }
       // A straight line would end there; a little more is likely to be outside.
       reach *= std::clamp(1.1 / (1 + excess), 1.1, 2.0);
     }
@@ -109,6 +113,8 @@ class ProfileEnd {
   /// Values that were tried and their rise, over that at the end.
   const std::vector<std::pair<double, double>>& points() const { return points_; }
   bool met_better_fit() const { return better_; }
+  /// Whether the constant fits as well up to its bound.
+  bool stopped_at_bound() const { return stopped_; }
   bool ended_without_a_model() const { return no_model_; }
 
  private:
@@ -169,9 +175,13 @@ class ProfileEnd {
   std::vector<double> others_, slope_;  ///< of the last fit inside, and by the value
   std::vector<Constant> bounds_;        ///< of the others
   double inside_ = 0, inside_excess_ = -1;
-  bool better_ = false, no_model_ = false;
+  bool better_ = false, no_model_ = false, stopped_ = false;
   std::vector<std::pair<double, double>> points_;
 };
+
+std::string better_fit_text(const Estimate& e) {
+  return "away from the best " + e.name + " there is a better fit: choose other starts";
+}
 
 /// What to say of the two ends of a constant.
 void warn_of_profile(const Estimate& e, const ProfileEnd& below, const ProfileEnd& above,
@@ -184,10 +194,15 @@ void warn_of_profile(const Estimate& e, const ProfileEnd& below, const ProfileEn
   const std::string ends = text(e.profile_low) + " to " + text(e.profile_high);
   const double apart = std::max(std::abs(e.profile_low - e.low), std::abs(e.profile_high - e.high));
   if (below.met_better_fit() || above.met_better_fit()) {
-    warnings.push_back("away from the best " + e.name +
-                       " there is a better fit: choose other starts");
+    warnings.push_back(better_fit_text(e));
   } else if (!std::isfinite(e.profile_high - e.profile_low)) {
     warnings.push_back(e.name + " is not bounded by the data: its profile goes from " + ends);
+  } else if (below.stopped_at_bound() || above.stopped_at_bound()) {
+    warnings.push_back(e.name + " is not determined " +
+                       (!above.stopped_at_bound()   ? "from below"
+                        : !below.stopped_at_bound() ? "from above"
+                                                    : "between its bounds") +
+                       ": its profile, " + ends + ", ends at a bound");
   } else if (below.ended_without_a_model() || above.ended_without_a_model()) {
     warnings.push_back("the profile of " + e.name + ", " + ends +
                        ", ends where the model has no value: the data may allow more");
@@ -227,6 +242,18 @@ void add_one_sided(const LeastSquares& problem, std::size_t constant, double clo
   e.profile = other.points();
   e.profile.emplace_back(e.value, 0);
   std::sort(e.profile.begin(), e.profile.end());
+  const auto text = [&](double value) {
+    return number_text(e.logarithm ? std::exp(value) : value);
+  };
+  if (other.met_better_fit()) {
+    result.warnings.push_back(better_fit_text(e));
+  } else if (other.stopped_at_bound()) {
+    result.warnings.push_back(e.name + " is not determined between its bounds " + text(c.low) +
+                              " and " + text(c.high));
+  } else {
+    result.warnings.push_back(e.name + " is determined from " + (up ? "above" : "below") +
+                              " alone: its profile goes from its bound to " + text(end));
+  }
 }
 
 }  // namespace

@@ -91,6 +91,8 @@ LeastSquares Projection::reduced() const {
   reduced.max_iterations = problem_.max_iterations;
   reduced.tolerance = problem_.tolerance;
   reduced.step_tolerance = problem_.step_tolerance;
+  reduced.offset_tolerance = problem_.offset_tolerance;
+  reduced.known_scatter = problem_.known_scatter;
   reduced.model = [this](const double* bent, double* r, double* J) {
     Best best;
     if (!solve(bent, best)) return false;

@@ -9,6 +9,7 @@
 #include "fem/campaign/campaign.hpp"
 #include "fitting/measurement/compare/compare.hpp"
 #include "format/error.hpp"
+#include "format/numbers.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::app {
@@ -138,6 +139,66 @@ TEST(Inverse, DragsTellPoissonsRatioFromTheModulus) {
   curves.sites.front().paths.back().repeats = 0;
   settings.drags = true;
   EXPECT_EQ(calibrate_inverse(body, curves, settings).paths.size(), 1U);
+}
+
+/// A stiffening law under one press whose contact point is uncertain: the modulus costs no press,
+/// as all forces are proportional to it, and is what a model presses that is not told so.
+TEST(Inverse, FindsHowALawStiffensFromAPressOfUncertainContactPoint) {
+  constexpr double kMu = 2e3, kB = 6;
+  const Body body = test::make_block(test::even(-0.01, 0.01, 4), test::even(-0.01, 0.01, 4),
+                                     test::even(-0.01, 0, 3));
+  fem::CampaignSettings truth;
+  truth.materials = {{"tissue", {"demiray-fung", {{"mu", kMu}, {"b", kB}, {"poisson", 0.45}}}}};
+  truth.indentation.tool.radius = 0.006;
+  truth.indentation.depth = 0.003;
+  truth.indentation.increments = 6;
+  truth.sites = {test::site_nearest(body)};
+  std::vector<double> depths;
+  for (int i = 1; i <= 6; ++i) depths.push_back(0.0005 * i);
+  const auto pressed = fem::run_sensitivity(body, truth, depths, {});
+  ASSERT_EQ(pressed.front().samples.size(), depths.size());
+  Curves measured;
+  measured.tool = {"sphere", 0.006, "frictionless"};
+  CurvePath path;
+  path.direction = body.response.inward[static_cast<std::size_t>(truth.sites.front())];
+  path.contact_uncertainty = 2e-4;
+  path.samples.emplace_back();
+  const double noise = 0.003 * pressed.front().samples.back().force;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const double force = pressed.front().samples[i].force + (i % 2 == 0 ? noise : -noise);
+    CurveSample& sample = path.samples.emplace_back();
+    sample.displacement = depths[i];
+    sample.force = force * path.direction;
+    sample.force_uncertainty =
+        std::hypot(noise, 1.5 * force / depths[i] * path.contact_uncertainty);
+  }
+  measured.sites.push_back({truth.sites.front(), SiteStatus::Complete, "", 0, {path}});
+  InverseSettings settings;
+  settings.campaign = truth;
+  settings.campaign.materials.front().law.at("mu") = 1e3;
+  settings.campaign.materials.front().law.at("b") = 0.5;
+  settings.sought = {{{"tissue", "mu"}, 10, 1e5}, {{"tissue", "b"}, 0.005, 50}};
+  settings.profiles = Profiles::None;
+  const PressFit fit = calibrate_inverse(body, measured, settings);
+  EXPECT_TRUE(fit.calibration.converged);
+  EXPECT_LE(fit.evaluations, 10);
+  const auto& estimates = fit.calibration.estimates;
+  EXPECT_LT(estimates[0].low, kMu);
+  EXPECT_GT(estimates[0].high, kMu);
+  EXPECT_LT(estimates[1].low, kB);
+  EXPECT_GT(estimates[1].high, kB);
+  // With the contact point given, what was fitted is what a press with the constants found meets.
+  measured.sites.front().paths.front().contact_uncertainty = kUnknown;
+  const PressFit given = calibrate_inverse(body, measured, settings);
+  EXPECT_LE(given.evaluations, 10);
+  for (std::size_t i = 0; i < 2; ++i)
+    settings.campaign.materials.front().law.at(i == 0 ? "mu" : "b") =
+        given.calibration.estimates[i].value;
+  settings.campaign.sites = truth.sites;
+  const auto again = fem::run_sensitivity(body, settings.campaign, depths, {});
+  for (std::size_t i = 0; i < depths.size(); ++i)
+    EXPECT_NEAR(given.paths.front().fitted[i], again.front().samples[i].force,
+                1e-3 * again.front().samples[i].force);
 }
 
 /// Noise on every sample and a shift of the contact point of every curve, both as stated: the 95 %

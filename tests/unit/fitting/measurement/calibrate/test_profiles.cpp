@@ -181,6 +181,40 @@ TEST(Profile, IsOneSidedAtABound) {
   EXPECT_EQ(fit.estimates[0].profile_low, fit.estimates[0].value);
   const double end = std::sqrt(kNormal * kNormal / kEach + kDistance * kDistance) - kDistance;
   EXPECT_NEAR(fit.estimates[0].profile_high, end, 1e-3 * end);
+  EXPECT_THAT(fit.warnings, Contains(HasSubstr("a is determined from above alone")));
+}
+
+/// Values that differ by less than their noise, from one end of the range to the other.
+TEST(Profile, SaysWhereItReachesABound) {
+  LeastSquares problem;
+  problem.constants = {{"a", "1", 1, 0, 10}};
+  problem.residuals = 4;
+  problem.known_scatter = true;
+  double best = 9.8;
+  problem.model = [&](const double* c, double* r, double* J) {
+    for (int i = 0; i < 4; ++i) {
+      r[i] = c[0] - best;
+      if (J != nullptr) J[i] = 1;
+    }
+    return true;
+  };
+  Calibration fit = minimise(problem, "near the end");
+  add_profiles(problem, fit);
+  EXPECT_THAT(fit.warnings, Contains(HasSubstr("a is not determined from above")));
+  best = 5;
+  const auto model = problem.model;
+  problem.model = [&](const double* c, double* r, double* J) {
+    model(c, r, J);
+    for (int i = 0; i < 4; ++i) r[i] *= 0.01;
+    for (int i = 0; i < 4 && J != nullptr; ++i) J[i] *= 0.01;
+    return true;
+  };
+  fit = minimise(problem, "no data");
+  add_profiles(problem, fit);
+  EXPECT_THAT(fit.warnings, Contains(HasSubstr("a is not determined between its bounds")));
+  best = 20;
+  fit = minimise(problem, "beyond");
+  ASSERT_TRUE(fit.estimates[0].at_bound);
 }
 
 }  // namespace
