@@ -168,7 +168,9 @@ TEST(CertifyOnRuntime, NoMemoryOfTheTissueMakesTheForceSteeper) {
         const double g = model.respond(model.deflection(pressed)).friction_normal_force;
         const double y = std::sqrt(2 * model.respond(model.deflection(pressed)).energy);
         // The memory of a deeper or a shallower press; friction holds what the normal force allows.
-        model.set_memory({{any(engine) * y, 0, 1}, {}});
+        runtime::TissueMemory memory;
+        memory.normal.relaxed_and_carried = runtime::Pair{any(engine) * y, 1};
+        model.set_memory(memory);
         const double psi = model.respond(model.deflection(pressed)).friction_normal_force / g;
         const double rho =
             any(engine) * model.slip_limit(model.deflection(pressed), kFriction * psi);
