@@ -101,6 +101,7 @@ double EliminationTree::work(int supernode) const {
 }
 
 EliminationPlan::EliminationPlan(const EliminationTree& tree, int threads) {
+  if (tree.supernodes() == 0) return;
   for (int k = 0; k < tree.supernodes(); ++k)
     column_numbers = std::max(column_numbers, threads * numbers_in_columns(tree, k));
   const std::vector<double> work = work_of_subtrees(tree);

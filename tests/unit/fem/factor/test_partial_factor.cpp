@@ -98,6 +98,24 @@ TEST_P(PartialFactorTest, OfAMatrixOfSeveralParts) {
   EXPECT_EQ(load, Eigen::Vector2d(36, 36));
 }
 
+/// As where the patch of the contact is the whole window.
+TEST_P(PartialFactorTest, MayKeepAllUnknowns) {
+  SparsePattern pattern;
+  pattern.n = 2;
+  pattern.start = {0, 2, 3};
+  pattern.row = {0, 1, 1};
+  PartialFactor factor(pattern, nullptr, {0, 1});
+  ASSERT_TRUE(factor.factorize({3, -1, 2}, GetParam()));
+  const Eigen::MatrixXd& S = factor.schur_complement();
+  EXPECT_DOUBLE_EQ(S.determinant(), 5);
+  Eigen::VectorXd load, x;
+  factor.solve_forward(Eigen::VectorXd{{1, 1}}, load);
+  EXPECT_EQ(load, Eigen::Vector2d(1, 1));
+  factor.solve_backward(Eigen::VectorXd{{4, 5}}, x);
+  EXPECT_DOUBLE_EQ(x[factor.kept()[0]], 4);
+  EXPECT_DOUBLE_EQ(x[factor.kept()[1]], 5);
+}
+
 INSTANTIATE_TEST_SUITE_P(Factor, PartialFactorTest,
                          testing::Values(Precision::Single, Precision::Double),
                          [](const auto& instance) {
