@@ -36,34 +36,29 @@ TEST(DenseCholesky, OfAMatrixOfKnownFactor) {
   }
 }
 
-TEST(DenseCholesky, SolvesWithTheLowerTriangle) {
+/// The inverse of min(i, j) is the second difference with a free end.
+template <class Number>
+void expect_second_differences(double tolerance) {
   for (const int n : kSizes) {
-    // The inverse of min(i, j) is the second difference with a free end.
-    const Eigen::VectorXd b = Eigen::VectorXd::Random(n);
-    Eigen::MatrixXd A = lower_only(of_ones(n));
+    const Eigen::VectorX<Number> b = Eigen::VectorX<Number>::Random(n);
+    Eigen::MatrixX<Number> A = lower_only(of_ones(n)).cast<Number>();
     ASSERT_TRUE(factorize_in_place(A));
-    const Eigen::VectorXd x = solve_factorized(A, b);
+    const Eigen::VectorX<Number> x = solve_factorized(A, b);
     for (Eigen::Index i = 0; i < n; ++i) {
-      const double before = i > 0 ? b[i] - b[i - 1] : b[i];
-      const double after = i + 1 < n ? b[i + 1] - b[i] : 0;
-      EXPECT_NEAR(x[i], before - after, 1e-12);
+      const Number before = i > 0 ? b[i] - b[i - 1] : b[i];
+      const Number after = i + 1 < n ? b[i + 1] - b[i] : Number{0};
+      EXPECT_NEAR(x[i], before - after, tolerance);
     }
   }
 }
 
+TEST(DenseCholesky, SolvesWithTheLowerTriangle) {
+  expect_second_differences<double>(1e-12);
+}
+
 /// With 200 unknowns the condition of min(i, j) is 7e4.
 TEST(DenseCholesky, SolvesInSinglePrecision) {
-  for (const int n : kSizes) {
-    const Eigen::VectorXf b = Eigen::VectorXf::Random(n);
-    Eigen::MatrixXf A = lower_only(of_ones(n)).cast<float>();
-    ASSERT_TRUE(factorize_in_place(A));
-    const Eigen::VectorXf x = solve_factorized(A, b);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const float before = i > 0 ? b[i] - b[i - 1] : b[i];
-      const float after = i + 1 < n ? b[i + 1] - b[i] : 0;
-      EXPECT_NEAR(x[i], before - after, 1e-5);
-    }
-  }
+  expect_second_differences<float>(1e-5);
 }
 
 /// The Schur complement of the first unknowns of min(i, j) is min(i, j), counted from the last of
