@@ -97,13 +97,17 @@ def differences(rows, committed):
             yield f"{where}: not on the page"
             continue
         page = committed[key]
-        for name, column in (("reference", 2), ("kind", 3), ("source", 4), ("bound", 6)):
+        for name, column in (("kind", 3), ("source", 4), ("bound", 6)):
             if now[column] != page[column]:
                 yield f"{where}: {name} {now[column]}, on the page {page[column]}"
         printed = float(page[1].split()[0])
         allowed = DRIFT * row["bound"] * (abs(row["reference"]) if row["relative"] else 1)
         if abs(printed - row["computed"]) > allowed + ROUNDING * abs(printed):
             yield f"{where}: computed {now[1]}, on the page {page[1]}"
+        # A reference may be computed, too.
+        printed = float(page[2].split()[0])
+        if abs(printed - row["reference"]) > allowed + ROUNDING * abs(printed):
+            yield f"{where}: reference {now[2]}, on the page {page[2]}"
 
 
 def main(arguments):
