@@ -162,8 +162,9 @@ int calibrate_body(const BodyOptions& options) {
   const PressFit fit = calibrate_inverse(body, measured, inverse_settings(options, space));
   const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(),
                                    [](const FittedPath& p) { return p.kind == PathKind::Lateral; });
-  say("calibrate: {} sites, {} drags, RMS residual {} ({} of the largest force), {} evaluation{}",
-      static_cast<std::ptrdiff_t>(fit.paths.size()) - drags, drags, force_text(fit.rms),
+  const auto presses = static_cast<std::ptrdiff_t>(fit.paths.size()) - drags;
+  say("calibrate: {} site{}, {} drag{}, RMS residual {} ({} of the largest force), {} evaluation{}",
+      presses, presses == 1 ? "" : "s", drags, drags == 1 ? "" : "s", force_text(fit.rms),
       percent_text(fit.relative_rms), fit.evaluations, fit.evaluations == 1 ? "" : "s");
   if (fit.profile_evaluations > 0)
     say("calibrate: {} more evaluations for the profiles", fit.profile_evaluations);

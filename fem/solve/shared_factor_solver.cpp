@@ -12,6 +12,9 @@ namespace {
 
 /// |R - 1| of the mean rotation from which the stiffness at rest is rotated with the body.
 constexpr double kRotated = 5e-3;
+/// Steps after which an increment is hard, as on an ear or a lobe that bends as a whole: more pairs
+/// are then kept. With few of them such increments do not end, and most take twice the steps.
+constexpr int kManySteps = 10;
 /// Factor on the sensitivity of the force from step to step.
 constexpr double kDecay = 0.5;
 /// The multipliers step where the error of the force has fallen below this part of that after their
@@ -109,7 +112,9 @@ bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& o
     add_step(length, d, trial);
     if (!relax_window(contact, options, trial, result)) continue;
     Equilibrium next = evaluated(contact, trial);
+    result.reason = "steps invert an element";
     if (!(next.min_J > 0)) continue;
+    result.reason = "neither the energy nor the residual falls along the step";
     const bool lower = next.energy <= now.energy + 1e-4 * length * slope;
     if (!lower && next.residual.norm() > (1 - 0.1 * length) * now.residual.norm()) continue;
     remember(difference(whole_, d.size(), trial, u), next.residual - now.residual);
@@ -192,6 +197,7 @@ NewtonResult SharedFactorSolver::equilibrate(const ToolContact& contact,
       result.reason.clear();
       return result;
     }
+    if (result.iterations == kManySteps) most_pairs_ = kMostPairs;
     Eigen::VectorXd d = direction(now.residual);
     if (now.residual.dot(d) >= 0) {
       restart();

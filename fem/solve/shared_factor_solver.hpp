@@ -28,9 +28,10 @@ namespace palpate::fem {
 /// judged.
 class SharedFactorSolver {
  public:
-  /// Largest number of curvature pairs, for a no-slip press and for a body on springs.
+  /// Largest number of curvature pairs, for a no-slip press, for a body on springs, and from an
+  /// increment on that takes many steps.
   static constexpr std::size_t kMostPairs = 30;
-  /// The number that suffices for a press without friction. More pairs cost memory bandwidth.
+  /// The number that suffices for most presses without friction. More pairs cost memory bandwidth.
   static constexpr std::size_t kFewPairs = 12;
 
   /// x = K0^-1 b on the unknowns of the whole body.
