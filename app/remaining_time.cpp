@@ -14,11 +14,6 @@ namespace {
 /// Part of its service from which on a site that runs counts more by itself than by the others.
 constexpr double kTelling = 0.01;
 
-/// s of one second of service of each of n sites.
-double seconds(std::size_t n) {
-  return std::sqrt(static_cast<double>(std::max<std::size_t>(n, 1)));
-}
-
 double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
@@ -44,8 +39,12 @@ double weight(double part) {
 }  // namespace
 
 void RemainingTime::begin(double now) {
-  *this = {};
+  *this = RemainingTime(exponent_);
   last_ = now;
+}
+
+double RemainingTime::seconds(std::size_t n) const {
+  return std::pow(static_cast<double>(std::max<std::size_t>(n, 1)), exponent_);
 }
 
 double RemainingTime::served(double now) const {
@@ -83,9 +82,11 @@ void RemainingTime::finish(const Running& site, double service) {
     parts_[i] += service_at(static_cast<double>(i) / kParts, site.passed) / service;
 }
 
-/// Part of the service of a site that so many of its increments take.
+/// Part of the service of a site that so many of its increments take. Deeper increments take
+/// longer: as long as no site has finished the rate is taken to grow linearly, by a factor of
+/// three.
 double RemainingTime::part_of_service(double fraction) const {
-  if (profiles_ == 0) return fraction;
+  if (profiles_ == 0) return 0.5 * (fraction + fraction * fraction);
   const double place = fraction * kParts;
   const auto i = std::min(static_cast<std::size_t>(place), kParts - 1);
   const double within = place - static_cast<double>(i);
@@ -129,7 +130,7 @@ double RemainingTime::remaining_service(const Running& site, double served, doub
 /// running: service that each site still needs. Each that ends makes room for one of the unstarted,
 /// whose services are those of `likely` in turn, so that a slow one may come last.
 double RemainingTime::time_of(const std::vector<double>& running, std::int64_t unstarted,
-                              const std::vector<double>& likely) {
+                              const std::vector<double>& likely) const {
   constexpr double golden = 0.6180339887498949;
   std::priority_queue<double, std::vector<double>, std::greater<>> ends(std::greater<>{}, running);
   double time = 0, at = 0, turn = 0;

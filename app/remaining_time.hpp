@@ -15,16 +15,22 @@ namespace palpate::app {
 /// Time that a campaign still takes, from what its sites took so far. The time before the first
 /// site starts, in which the stiffness matrix is factorized, counts for nothing.
 ///
-/// Sites that run share processors and block solves. While n run, each is served at the rate
-/// 1/sqrt(n): between 1, of sites that do not disturb each other, and 1/n, of sites that share
-/// nothing but the processor; a block solve takes little less for few sites than for many. The
-/// service of a site, the integral of dt / sqrt(n) from its start to its end, thus depends little
-/// on how many run, and a last group of few sites takes less time than a full one.
+/// Sites that run share processors and block solves. While n run, each is served at the rate n^-p:
+/// between 1, of sites that do not disturb each other, and 1/n, of sites that share nothing but the
+/// processor; a block solve takes little less for few sites than for many. The service of a site,
+/// the integral of n^-p dt from its start to its end, thus depends little on how many run, and a
+/// last group of few sites takes less time than a full one.
 ///
 /// Sites on thin parts need ten times the service of others, and the quick ones finish first. A
 /// site that runs therefore counts with the service that its increments so far foretell.
 class RemainingTime {
  public:
+  /// p where block solves take most of the time, and where the sites' own work does, as on elements
+  /// that are refined under the tool.
+  static constexpr double kSharing = 0.5, kNotSharing = 0.9;
+
+  explicit RemainingTime(double exponent = kSharing) : exponent_(exponent) {}
+
   /// The first site starts. `now`: s, of any clock.
   void begin(double now);
   /// To be called at each start, increment and end of a site.
@@ -48,17 +54,20 @@ class RemainingTime {
     std::vector<std::pair<double, double>> passed;  ///< fraction of the increments, service
   };
 
+  /// s of one second of service of each of n sites.
+  double seconds(std::size_t n) const;
   double served(double now) const;
   void finish(const Running& site, double service);
   double part_of_service(double fraction) const;
   double foretold_service(const Running& site, double served) const;
   std::vector<double> likely_services(double served) const;
   double remaining_service(const Running& site, double served, double mean) const;
-  static double time_of(const std::vector<double>& running, std::int64_t unstarted,
-                        const std::vector<double>& likely);
+  double time_of(const std::vector<double>& running, std::int64_t unstarted,
+                 const std::vector<double>& likely) const;
 
+  double exponent_;    ///< p
   double last_ = 0;    ///< s, of the last update
-  double served_ = 0;  ///< s, integral of dt / sqrt(n) until then
+  double served_ = 0;  ///< s, integral of n^-p dt until then
   std::int64_t done_ = 0, total_ = 0;
   std::size_t places_ = 0;                   ///< largest number of sites that ran
   double step_ = 0;                          ///< fraction of the increments that one is

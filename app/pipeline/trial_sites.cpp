@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "app/pipeline/trial_sites.hpp"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <utility>
 
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/settings.hpp"
 #include "fem/campaign/finer_mesh.hpp"
+#include "fem/factor/memory.hpp"
 #include "fem/factor/rest_factor.hpp"
 
 namespace palpate::app {
@@ -23,14 +21,6 @@ constexpr double kFinerOverOthers = 6;
 
 /// Ends a trial whose patience is over.
 struct OutOfPatience {};
-
-/// Resident memory of this process, bytes; 0 where the system does not say.
-double resident_bytes() {
-  std::ifstream statistics("/proc/self/statm");
-  double total = 0, resident = 0;
-  statistics >> total >> resident;
-  return statistics ? resident * static_cast<double>(sysconf(_SC_PAGESIZE)) : 0;
-}
 
 /// How many sites take as long as those of the shard that are pressed on a finer mesh.
 double sites_worth_of_finer_mesh(const Workspace& space, const Body& body,
@@ -50,8 +40,9 @@ std::vector<std::int32_t> spread(const std::vector<std::int32_t>& sites, std::si
 }
 
 Trial press_trial_sites(const Workspace& space, const Body& body, double patience) {
-  Trial trial;
   fem::CampaignSettings settings = campaign_settings(space);
+  Trial trial;
+  if (settings.indentation.refines()) trial.time = RemainingTime(RemainingTime::kNotSharing);
   settings.sites = spread(sites_of_shard(body, space.shard),
                           kTrialsPerThread * static_cast<std::size_t>(space.threads));
   trial.sites = settings.sites.size();
@@ -69,7 +60,7 @@ Trial press_trial_sites(const Workspace& space, const Body& body, double patienc
   };
   settings.advanced = update;
   settings.progress = [&](const fem::CampaignProgress& p) {
-    const double bytes = resident_bytes();
+    const double bytes = fem::resident_bytes();
     trial.bytes_between = std::max(trial.bytes_between, bytes);
     if (p.done > 0) return update(p);
     trial.bytes_before = bytes;

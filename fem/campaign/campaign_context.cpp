@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "fem/campaign/parallel_sites.hpp"
 #include "fem/campaign/region_laws.hpp"
 #include "fem/mesh/to_eigen.hpp"
 #include "fem/solve/preload.hpp"
@@ -115,6 +116,7 @@ CampaignContext::CampaignContext(const Body& b, const CampaignSettings& settings
   rest_factor = cache != nullptr ? cache->factor_of(model.pattern(), K, body.name, resources)
                                  : std::make_shared<RestFactor>(model.pattern(), permutation, K,
                                                                 body.name, resources);
+  own_factors.release(places_for_own_factors(*rest_factor, settings.threads, settings.memory));
 }
 
 Eigen::Vector3d CampaignContext::rest_position(const Vec3& point) const {

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <mutex>
+#include <semaphore>
 #include <string>
 #include <vector>
 
@@ -22,7 +23,7 @@ enum class Engine {
 };
 
 /// What all sites share: the model, the factor of the rest stiffness, the settings. Read-only for
-/// sites but for its lock.
+/// sites but for its locks.
 struct CampaignContext {
   /// `cache`: shared with earlier campaigns on the body; may be null.
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
@@ -51,6 +52,8 @@ struct CampaignContext {
   ContactStiffness contact_stiffness;
   std::shared_ptr<const RestFactor> rest_factor;  ///< SharedFactor only
   mutable std::mutex direct_solve;                ///< locked while a site factorizes the whole body
+  /// Places for factors that sites have of their own, as many as memory has room for.
+  mutable std::counting_semaphore<> own_factors{0};
 
  private:
   struct Preloaded;
@@ -58,6 +61,20 @@ struct CampaignContext {
                              FactorCache* cache);
   CampaignContext(const Body& body, const CampaignSettings& settings, Engine engine,
                   FactorCache* cache, Preloaded&& start);
+};
+
+/// A place for a factor that a site has of its own; waits until one is free.
+class OwnFactorPlace {
+ public:
+  explicit OwnFactorPlace(const CampaignContext& context) : places_(context.own_factors) {
+    places_.acquire();
+  }
+  ~OwnFactorPlace() { places_.release(); }
+  OwnFactorPlace(const OwnFactorPlace&) = delete;
+  OwnFactorPlace& operator=(const OwnFactorPlace&) = delete;
+
+ private:
+  std::counting_semaphore<>& places_;
 };
 
 /// Why elements cannot be refined under the tool: refined ones have energies of elements alone,

@@ -16,18 +16,41 @@
 
 namespace palpate::fem {
 
+namespace {
+
+/// A factor of a site's own with its fronts, over the shared factor; one in double precision.
+constexpr double kOwnFactor = 1.5, kOwnFactorInDouble = 2;
+
+/// Share of the memory that the process may use.
+constexpr double kShareOfOwnFactors = 0.25;
+
+double bytes_of_own_factor(const RestFactor& factor) {
+  return (factor.in_double_precision() ? 2 : 1) * kOwnFactor * factor.bytes();
+}
+
+}  // namespace
+
+int places_for_own_factors(const RestFactor& factor, int cores, double memory) {
+  const double room = kShareOfOwnFactors * (memory > 0 ? memory : machine_bytes());
+  return static_cast<int>(
+      std::clamp(std::floor(room / bytes_of_own_factor(factor)), 1.0, std::max(1.0, 1.0 * cores)));
+}
+
 SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites, double memory,
                          double bytes_per_site) {
   SiteThreads size;
   size.cores = std::max(1, cores);
   const std::size_t sites_per_core = (sites + to_index(size.cores) - 1) / to_index(size.cores);
-  const double double_precision_factor = 2 * factor.bytes();
+  // One site at a time may factorize the body in double precision.
+  const double own_factors =
+      kOwnFactorInDouble * factor.bytes() +
+      (places_for_own_factors(factor, size.cores, memory) - 1) * bytes_of_own_factor(factor);
   size.threads_per_core = fitting_times(
       memory, size.cores * bytes_per_site,
       static_cast<int>(std::min<std::size_t>(kBatch, sites_per_core)),
       "a site on each of " + std::to_string(size.cores) +
-          " cores (memory is reserved for the factor that one site may need of its own)",
-      double_precision_factor);
+          " cores (memory is reserved for the factors that sites may need of their own)",
+      own_factors);
   return size;
 }
 

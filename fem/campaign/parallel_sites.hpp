@@ -15,9 +15,13 @@ struct SiteThreads {
   int cores = 1, threads_per_core = 1;
 };
 
+/// How many sites may have a factor of their own at once: one for each core, and all together no
+/// more than a quarter of `memory`, bytes (0: that of the machine), but one in any case.
+int places_for_own_factors(const RestFactor& factor, int cores, double memory);
+
 /// On each core as many threads as there are sites for, at most kBatch, and no more than fit into
-/// `memory`, bytes (0: no bound), beside a factor in double precision for a site that needs its
-/// own. `bytes_per_site`: memory of a running site.
+/// `memory`, bytes (0: no bound), beside the factors that sites need of their own.
+/// `bytes_per_site`: memory of a running site.
 /// @throws Error(Configuration) when one site for each core does not fit.
 SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites, double memory,
                          double bytes_per_site);

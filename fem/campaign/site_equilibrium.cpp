@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/campaign/site_equilibrium.hpp"
 
+#include <algorithm>
+
+#include "fem/solve/turned_factor.hpp"
+
 namespace palpate::fem {
 
 namespace {
@@ -11,9 +15,37 @@ constexpr double kSharedTolerance = 0.5;
 /// Factor on that tolerance for a no-slip normal path: the surface is bonded where it is met, so
 /// that errors add up.
 constexpr double kNoSlipTolerance = 0.5;
-/// Where a thin part bends far an increment takes up to some 70 steps. Half of it, tried where they
-/// do not suffice, hardly takes fewer.
-constexpr int kMostSharedSteps = 80;
+/// Steps with the shared factor before a site gets a factor of its own: as many as that costs, by
+/// its size, and no more than an increment may take.
+constexpr int kFewestSteps = 15, kMostSteps = 80;
+constexpr double kBytesOfStep = 1e7;
+
+int steps_before_own_factor(const RestFactor& factor) {
+  return static_cast<int>(
+      std::clamp<double>(factor.bytes() / kBytesOfStep, kFewestSteps, kMostSteps));
+}
+
+/// A factor of the body as it has turned, in the place that memory has for it. Which site waits for
+/// a place changes no result.
+struct OwnFactor {
+  OwnFactor(const CampaignContext& context, const Displacement& u)
+      : place(context),
+        turned(context.model, context.permutation,
+               context.rest_factor->in_double_precision() ? Precision::Double : Precision::Single,
+               u.leftCols(context.model.mesh().nodes())) {}
+
+  OwnFactorPlace place;
+  TurnedFactor turned;
+};
+
+SharedFactorSolver::BentBody bent_body(const CampaignContext& context) {
+  const auto turned_solve = [&context](const Displacement& u) -> SharedFactorSolver::RestSolve {
+    return [own = std::make_shared<OwnFactor>(context, u)](
+               const Eigen::VectorXd& b, Eigen::VectorXd& x) { own->turned.solve(b, x); };
+  };
+  const int steps = steps_before_own_factor(*context.rest_factor);
+  return {turned_solve, steps, steps - kFewestSteps, context.at_rest.energy};
+}
 
 }  // namespace
 
@@ -32,7 +64,7 @@ SiteEquilibrium::SiteEquilibrium(const CampaignContext& context, const SiteBody&
   shared_ = std::make_unique<SharedFactorSolver>(
       body.whole(), body.window(),
       [batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch->solve(b, x); },
-      pairs_needed(context), body.prolongation());
+      bent_body(context), pairs_needed(context), body.prolongation());
 }
 
 NewtonResult SiteEquilibrium::solve(const ToolContact& contact, bool direct_allowed,
@@ -65,7 +97,7 @@ NewtonResult SiteEquilibrium::solve_shared(const ToolContact& contact, Displacem
   NewtonOptions options;
   options.round_off = context_.round_off;
   options.tolerance = kSharedTolerance * force_tolerance_;
-  options.max_iterations = kMostSharedSteps;
+  options.max_iterations = kMostSteps + steps_before_own_factor(*context_.rest_factor);
   if (context_.indentation.friction == ToolFriction::NoSlip) options.tolerance *= kNoSlipTolerance;
   Displacement trial = u;
   NewtonResult result = shared_->solve(contact, options, trial);
@@ -88,6 +120,7 @@ NewtonResult SiteEquilibrium::solve_direct(const ToolContact& contact, Displacem
 /// site that runs, would fill the memory.
 NewtonResult SiteEquilibrium::solve_direct_alone(const ToolContact& contact, Displacement& u) {
   const std::lock_guard lock(context_.direct_solve);
+  const OwnFactorPlace place(context_);
   NewtonResult result = solve_direct(contact, u);
   direct_.reset();
   return result;

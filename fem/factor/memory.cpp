@@ -28,6 +28,10 @@ double resident_bytes() {
   return resident * static_cast<double>(sysconf(_SC_PAGESIZE));
 }
 
+double machine_bytes() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
 int fitting_times(double bound, double each, int wanted, const std::string& what, double reserved) {
   if (bound <= 0) return wanted;
   const double used = resident_bytes();

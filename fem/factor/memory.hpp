@@ -9,6 +9,9 @@ namespace palpate::fem {
 /// Resident memory of this process, bytes.
 double resident_bytes();
 
+/// Memory of the machine, bytes.
+double machine_bytes();
+
 /// How often `each` bytes, for one `what`, fit into `bound` beside the resident memory and
 /// `reserved` bytes; at most `wanted`. `bound`: bytes, 0 for none.
 /// @throws Error(Configuration) when they do not fit once.

@@ -58,6 +58,12 @@ Vector3d rotation_of_step(const SolidModel& model, const Eigen::VectorXd& d,
 
 }  // namespace
 
+Matrix3d nearest_rotation(const Matrix3d& matrix) {
+  const Eigen::JacobiSVD<Matrix3d> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
+  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+}
+
 Matrix3d mean_rotation(const QuadraticMesh& mesh, const Displacement& u) {
   const Vector3d X_mean = mesh.X.rowwise().mean(), u_mean = u.rowwise().mean();
   Matrix3d covariance = Matrix3d::Zero();
@@ -65,9 +71,7 @@ Matrix3d mean_rotation(const QuadraticMesh& mesh, const Displacement& u) {
     const Vector3d R = mesh.X.col(node) - X_mean;
     covariance += (R + u.col(node) - u_mean) * R.transpose();
   }
-  const Eigen::JacobiSVD<Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Vector3d signs(1, 1, (svd.matrixU() * svd.matrixV().transpose()).determinant());
-  return svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
+  return nearest_rotation(covariance);
 }
 
 void add_rotating_step(const SolidModel& model, double s, const Eigen::VectorXd& d,

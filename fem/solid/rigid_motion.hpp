@@ -9,8 +9,11 @@
 
 namespace palpate::fem {
 
-/// The rotation of all nodes that is nearest to a displacement, in the sense of least squares
-/// [Kabsch 1976].
+/// The rotation that is nearest to a matrix, in the sense of least squares [Kabsch 1976]: the polar
+/// factor where its determinant is positive.
+Eigen::Matrix3d nearest_rotation(const Eigen::Matrix3d& matrix);
+
+/// The rotation of all nodes that is nearest to a displacement.
 Eigen::Matrix3d mean_rotation(const QuadraticMesh& mesh, const Displacement& u);
 
 /// u += s d on the unknowns of the model. The rigid rotation w in d, by the least-squares fit of

@@ -11,6 +11,7 @@
 #include "fem/mesh/point_text.hpp"
 #include "fem/mesh/to_eigen.hpp"
 #include "fem/solid/ellipticity.hpp"
+#include "fem/solid/rigid_motion.hpp"
 
 namespace palpate::fem {
 
@@ -227,10 +228,30 @@ void SolidModel::scatter(const Block& block, const ElementVector<Lanes>& forces,
 }
 
 ElementKinematics<Lanes> SolidModel::kinematics_of(const Block& block,
-                                                   const Displacement& u) const {
-  const ElementVector<Lanes> local = gather(block, u);
-  return is_linear(solid_->dilatation) ? linear_kinematics(block.geometry, local)
-                                       : kinematics(block.geometry, local);
+                                                   const ElementVector<Lanes>& u) const {
+  return is_linear(solid_->dilatation) ? linear_kinematics(block.geometry, u)
+                                       : kinematics(block.geometry, u);
+}
+
+ElementKinematics<Lanes> SolidModel::turned(const Block& block, const Displacement& u) const {
+  const ElementKinematics<Lanes> present = kinematics_of(block, u);
+  ElementVector<Lanes> local;
+  for (int lane = 0; lane < kLanes; ++lane) {
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    for (const Tensor2<Lanes>& F : present.F)
+      for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) sum(i, j) += F[to_index(3 * i + j)][lane];
+    const Eigen::Matrix3d turn = nearest_rotation(sum) - Eigen::Matrix3d::Identity();
+    const auto& node = mesh().tetrahedra[to_index(block.element[to_index(lane)])];
+    std::array<Eigen::Vector3d, kTetNodes> step;
+    for (std::size_t c = 0; c < 4; ++c) step[c] = turn * mesh().X.col(node[c]);
+    // The element is straight, also where the surface is curved.
+    for (std::size_t e = 0; e < kTetEdges.size(); ++e)
+      step[4 + e] = 0.5 * (step[kTetEdges[e][0]] + step[kTetEdges[e][1]]);
+    for (std::size_t a = 0; a < kTetNodes; ++a)
+      for (int i = 0; i < 3; ++i) local[a][to_index(i)][lane] = step[a][i];
+  }
+  return kinematics_of(block, local);
 }
 
 namespace {
@@ -269,13 +290,14 @@ Lanes mean_stress(const Law& law, const PointPressures<Lanes>& pressure,
 
 }  // namespace
 
-SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
+template <class Kinematics>
+SolidModel::PointState SolidModel::point_state(const Kinematics& kinematics_of) const {
   PointState state;
   const auto& points = nodal_.points();
   std::vector<double> mean(points.size(), 0.0);
   for (const Block& block : blocks_) {
     if (points.empty()) break;
-    const auto k = kinematics_of(block, u);
+    const auto k = kinematics_of(block);
     const auto& J = k.J;
     const Lanes all = kTetFar * (J[0] + J[1] + J[2] + J[3]);
     for (std::size_t c = 0; c < 4; ++c) {
@@ -295,6 +317,10 @@ SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
   return state;
 }
 
+SolidModel::PointState SolidModel::point_state(const Displacement& u) const {
+  return point_state([&](const Block& block) { return kinematics_of(block, u); });
+}
+
 template <class L>
 PointPressures<Lanes> SolidModel::pressures(const L& law, const Block& block,
                                             const ElementKinematics<Lanes>& k,
@@ -310,7 +336,8 @@ PointPressures<Lanes> SolidModel::pressures(const L& law, const Block& block,
 }
 
 /// (U''/V_n) g g^T with g = d(V_n Jbar_n)/du.
-void SolidModel::add_point_stiffness(const Displacement& u, const PointState& state,
+template <class Kinematics>
+void SolidModel::add_point_stiffness(const Kinematics& kinematics_of, const PointState& state,
                                      std::vector<double>& values) const {
   const auto& points = nodal_.points();
   std::vector<Eigen::Matrix3Xd> slope;
@@ -318,7 +345,7 @@ void SolidModel::add_point_stiffness(const Displacement& u, const PointState& st
     slope.emplace_back(Eigen::Matrix3Xd::Zero(3, static_cast<Eigen::Index>(point.nodes.size())));
   for (const Block& block : blocks_) {
     if (points.empty()) break;
-    const auto k = kinematics_of(block, u);
+    const auto k = kinematics_of(block);
     for (std::size_t c = 0; c < 4; ++c) {
       const auto g = dilatation_forces(solid_->dilatation, block.geometry, k, c);
       for (int lane = 0; lane < block.count; ++lane) {
@@ -454,27 +481,41 @@ SolidModel::State SolidModel::forces(const Displacement& u, Eigen::VectorXd& f,
   return checked(state);
 }
 
-void SolidModel::stiffness(const Displacement& u, std::vector<double>& values,
-                           const DilatationMultipliers* multipliers) const {
+template <class Kinematics>
+void SolidModel::assemble_stiffness(const Kinematics& kinematics_of, const HistoryStress* step,
+                                    const DilatationMultipliers* multipliers,
+                                    std::vector<double>& values) const {
   values.assign(to_index(pattern_.nonzeros()), 0.0);
   ElementMatrix<Lanes> K;
   const int* position = scatter_.data();
-  const PointState points = point_state(u);
+  const PointState points = point_state(kinematics_of);
   for (const Block& block : blocks_) {
-    const auto k = kinematics_of(block, u);
-    with_law(*solid_, block, step(), multipliers, [&](const auto& law) {
+    const auto k = kinematics_of(block);
+    with_law(*solid_, block, step, multipliers, [&](const auto& law) {
       element_stiffness(law, solid_->dilatation, block.geometry, k,
                         pressures(law, block, k, points), K);
     });
-    if (step() != nullptr)
+    if (step != nullptr)
       add_history_stiffness(solid_->dilatation, block.geometry,
-                            fem::gather(step()->stress, block.element), K);
+                            fem::gather(step->stress, block.element), K);
     for (std::size_t entry = 0; entry < kElementEntries; ++entry, position += kLanes)
       for (int lane = 0; lane < block.count; ++lane)
         if (position[lane] >= 0) values[to_index(position[lane])] += K[entry][lane];
   }
-  add_point_stiffness(u, points, values);
+  add_point_stiffness(kinematics_of, points, values);
   foundation_.add_stiffness(equation_, pattern_, values);
+}
+
+void SolidModel::stiffness(const Displacement& u, std::vector<double>& values,
+                           const DilatationMultipliers* multipliers) const {
+  assemble_stiffness([&](const Block& block) { return kinematics_of(block, u); }, step(),
+                     multipliers, values);
+}
+
+void SolidModel::turned_stiffness(const Displacement& u, std::vector<double>& values) const {
+  const DilatationMultipliers none = multipliers();
+  assemble_stiffness([&](const Block& block) { return turned(block, u); }, nullptr,
+                     none.any() ? &none : nullptr, values);
 }
 
 DilatationMultipliers SolidModel::multipliers() const {

@@ -79,6 +79,13 @@ class SolidModel {
   void stiffness(const Displacement& u, std::vector<double>& values,
                  const DilatationMultipliers* multipliers = nullptr) const;
 
+  /// Values of pattern(), N/m: the stiffness at rest of every element, turned with the element,
+  ///   sum_e R_e K_e R_e^T,
+  /// R_e the rotation nearest to its mean deformation gradient [Rankin & Brogan 1986]. It knows how
+  /// a thin part has bent, and is positive definite wherever the one at rest is, with elements that
+  /// are inverted as well. Springs are those at rest.
+  void turned_stiffness(const Displacement& u, std::vector<double>& values) const;
+
   /// Multipliers of 0; none with other pressures than those of the elements.
   DilatationMultipliers multipliers() const;
   /// The step of the method of multipliers at `u`.
@@ -150,9 +157,17 @@ class SolidModel {
   int unknown(const Tetrahedron10& node, std::size_t row) const;
   void make_scatter();
   ElementVector<Lanes> gather(const Block& block, const Displacement& u) const;
-  ElementKinematics<Lanes> kinematics_of(const Block& block, const Displacement& u) const;
+  ElementKinematics<Lanes> kinematics_of(const Block& block, const ElementVector<Lanes>& u) const;
+  ElementKinematics<Lanes> kinematics_of(const Block& block, const Displacement& u) const {
+    return kinematics_of(block, gather(block, u));
+  }
+  /// The elements turned as at `u`, without strain.
+  ElementKinematics<Lanes> turned(const Block& block, const Displacement& u) const;
   void scatter(const Block& block, const ElementVector<Lanes>& forces, Eigen::VectorXd& f) const;
   double work_of_gravity(const Displacement& u) const;  ///< on the free nodes, J
+  /// `kinematics_of`: of a block.
+  template <class Kinematics>
+  PointState point_state(const Kinematics& kinematics_of) const;
   PointState point_state(const Displacement& u) const;
   /// The smallest eigenvalue of the acoustic tensor at the points of each element of a block, Pa;
   /// where it is positive, a positive lower value.
@@ -164,8 +179,13 @@ class SolidModel {
   /// Sets the multipliers of each block to pressure(block, mean J).
   template <class Pressure>
   void set(const Displacement& u, DilatationMultipliers& multipliers, Pressure&& pressure) const;
-  void add_point_stiffness(const Displacement& u, const PointState& points,
+  template <class Kinematics>
+  void add_point_stiffness(const Kinematics& kinematics_of, const PointState& points,
                            std::vector<double>& values) const;
+  template <class Kinematics>
+  void assemble_stiffness(const Kinematics& kinematics_of, const HistoryStress* step,
+                          const DilatationMultipliers* multipliers,
+                          std::vector<double>& values) const;
 
   /// The step of its relaxation that the model is in; null where it is elastic.
   const HistoryStress* step() const {

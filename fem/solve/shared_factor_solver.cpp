@@ -2,6 +2,7 @@
 #include "fem/solve/shared_factor_solver.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "fem/solid/rigid_motion.hpp"
 #include "fem/solve/profile.hpp"
@@ -12,9 +13,9 @@ namespace {
 
 /// |R - 1| of the mean rotation from which the stiffness at rest is rotated with the body.
 constexpr double kRotated = 5e-3;
-/// Steps after which an increment is hard, as on an ear or a lobe that bends as a whole: more pairs
-/// are then kept. With few of them such increments do not end, and most take twice the steps.
-constexpr int kManySteps = 10;
+/// Trials of a step, and the shortest to begin with.
+constexpr int kMostTrials = 6;
+constexpr double kShortestStep = 1e-4;
 /// Factor on the sensitivity of the force from step to step.
 constexpr double kDecay = 0.5;
 /// The multipliers step where the error of the force has fallen below this part of that after their
@@ -31,6 +32,13 @@ constexpr int kMostInnerSteps = 120;
 /// adds to the residual are pressures, and the force does not change by them in first order: along
 /// a path the body moves with almost no change of volume (bench_precompute poisson).
 constexpr double kMultiplierTolerance = 5;
+
+/// The minimum of the parabola through the energy and its slope at 0 and the rise at a length, by a
+/// factor of 0.5 to 0.01 of the length.
+double shorter_step(double length, double slope, double rise) {
+  const double minimum = -slope * length * length / (2 * (rise - slope * length));
+  return std::clamp(minimum, 0.01 * length, 0.5 * length);
+}
 
 /// a - b on the first `count` unknowns.
 Eigen::VectorXd difference(const SolidModel& model, Eigen::Index count, const Displacement& a,
@@ -84,6 +92,7 @@ Eigen::VectorXd SharedFactorSolver::direction(const Eigen::VectorXd& residual) {
 
 void SharedFactorSolver::solve_rotated(Eigen::VectorXd& q, Eigen::VectorXd& d) const {
   const PartTimer timer(Part::SharedSolves);
+  if (turned_solve_) return turned_solve_(q, d);
   if (!rotated_) return rest_solve_(q, d);
   const auto rotate = [](const Eigen::Matrix3d& R, Eigen::VectorXd& v) {
     Eigen::Map<Eigen::Matrix3Xd> nodes(v.data(), 3, v.size() / 3);
@@ -102,21 +111,32 @@ void SharedFactorSolver::remember(const Eigen::VectorXd& s, const Eigen::VectorX
   if (pairs_.size() > most_pairs_) pairs_.pop_front();
 }
 
+double SharedFactorSolver::longest_step(double energy, double slope) const {
+  // To the minimum of a quadratic the energy falls by half the slope, and no further than to that
+  // of the body at rest without the tool. Multipliers shift it a little.
+  const double most = energy - bent_.least_energy;
+  return most > 0 ? std::clamp(-2 * most / slope, kShortestStep, 1.0) : 1;
+}
+
 bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& options,
                               const Eigen::VectorXd& d, Equilibrium& now, Displacement& u,
                               NewtonResult& result) {
   const double slope = now.residual.dot(d);
-  double length = 1;
-  for (int halvings = 0; halvings < 6; ++halvings, length *= 0.5) {
+  double length = longest_step(now.energy, slope);
+  for (int trials = 0; trials < kMostTrials; ++trials) {
+    const double tried = std::exchange(length, 0.5 * length);
     Displacement trial = u;
-    add_step(length, d, trial);
+    add_step(tried, d, trial);
     if (!relax_window(contact, options, trial, result)) continue;
     Equilibrium next = evaluated(contact, trial);
     result.reason = "steps invert an element";
     if (!(next.min_J > 0)) continue;
     result.reason = "neither the energy nor the residual falls along the step";
-    const bool lower = next.energy <= now.energy + 1e-4 * length * slope;
-    if (!lower && next.residual.norm() > (1 - 0.1 * length) * now.residual.norm()) continue;
+    const bool lower = next.energy <= now.energy + 1e-4 * tried * slope;
+    if (!lower && next.residual.norm() > (1 - 0.1 * tried) * now.residual.norm()) {
+      length = shorter_step(tried, slope, next.energy - now.energy);
+      continue;
+    }
     remember(difference(whole_, d.size(), trial, u), next.residual - now.residual);
     u.swap(trial);
     now = std::move(next);
@@ -171,8 +191,23 @@ NewtonResult SharedFactorSolver::solve(const ToolContact& contact, const NewtonO
   return result;
 }
 
+void SharedFactorSolver::turn_factor(const Displacement& u) {
+  const PartTimer timer(Part::SharedSolves);
+  turned_solve_ = bent_.turned_solve(u);
+  is_bent_ = true;
+  most_pairs_ = kMostPairs;
+  restart();
+}
+
 NewtonResult SharedFactorSolver::equilibrate(const ToolContact& contact,
                                              const NewtonOptions& options, Displacement& u) {
+  const NewtonResult result = descend(contact, options, u);
+  turned_solve_ = nullptr;  // its memory is that of one site at a time
+  return result;
+}
+
+NewtonResult SharedFactorSolver::descend(const ToolContact& contact, const NewtonOptions& options,
+                                         Displacement& u) {
   const PartTimer timer(Part::Vectors);
   NewtonResult result;
   error_ = 0.1;
@@ -188,7 +223,8 @@ NewtonResult SharedFactorSolver::equilibrate(const ToolContact& contact,
     error_ = imbalance(whole_, now.residual, options.round_off) / scale;
     if (result.iterations > 0)
       sensitivity_ =
-          std::max((force - before).norm() / (scale * last_error), kDecay * sensitivity_);
+          std::max((force - before).norm() / (std::max(scale, before.norm()) * last_error),
+                   kDecay * sensitivity_);
     before = force;
     const Verdict verdict = judge(contact, options, scale, now, u, result);
     if (verdict == Verdict::Failed) return result;
@@ -197,18 +233,22 @@ NewtonResult SharedFactorSolver::equilibrate(const ToolContact& contact,
       result.reason.clear();
       return result;
     }
-    if (result.iterations == kManySteps) most_pairs_ = kMostPairs;
+    if (!turned_solve_ && result.iterations >= (is_bent_ ? bent_.then_after : bent_.after_steps))
+      turn_factor(u);
     Eigen::VectorXd d = direction(now.residual);
     if (now.residual.dot(d) >= 0) {
       restart();
       d = direction(now.residual);
     }
     if (step(contact, options, d, now, u, result)) continue;
-    if (pairs_.empty()) {
+    if (!pairs_.empty()) {
+      restart();
+    } else if (!turned_solve_) {
+      turn_factor(u);
+    } else {
       result.reason = "no admissible step: " + result.reason;
       return result;
     }
-    restart();
   }
   result.reason = "no convergence in " + std::to_string(options.max_iterations) + " iterations";
   return result;

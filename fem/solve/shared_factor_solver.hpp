@@ -20,6 +20,10 @@ namespace palpate::fem {
 /// alg. 7.5] with K0^-1 as the initial inverse Hessian, a solve with the factor that all sites
 /// share. One thread; the rest solve may be shared.
 ///
+/// An ear or a lobe bends as a whole, and S0 is then far from the Hessian. An increment that takes
+/// many steps goes on with a factor of its own, of the stiffness at rest that has turned with every
+/// element, and all later increments do so after fewer steps.
+///
 /// Near incompressibility S0 knows nothing of how the constraint on the volume turns with the
 /// deformation, and the number of steps would grow like kappa/mu. There the method of multipliers
 /// [Nocedal & Wright 2006, sec. 17.3] minimizes Pi with the augmented laws of
@@ -28,8 +32,8 @@ namespace palpate::fem {
 /// judged.
 class SharedFactorSolver {
  public:
-  /// Largest number of curvature pairs, for a no-slip press, for a body on springs, and from an
-  /// increment on that takes many steps.
+  /// Largest number of curvature pairs, for a no-slip press, for a body on springs and for one that
+  /// has bent.
   static constexpr std::size_t kMostPairs = 30;
   /// The number that suffices for most presses without friction. More pairs cost memory bandwidth.
   static constexpr std::size_t kFewPairs = 12;
@@ -37,14 +41,25 @@ class SharedFactorSolver {
   /// x = K0^-1 b on the unknowns of the whole body.
   using RestSolve = std::function<void(const Eigen::VectorXd& b, Eigen::VectorXd& x)>;
 
+  /// Where the factor at rest does not serve.
+  struct BentBody {
+    /// The solve with the stiffness that has turned with the body at u; it lives as long as one
+    /// increment needs it.
+    std::function<RestSolve(const Displacement& u)> turned_solve;
+    int after_steps;      ///< of an increment with the factor at rest
+    int then_after;       ///< the same of all increments after that
+    double least_energy;  ///< of the body at rest, J
+  };
+
   /// `prolongation`: from the body that was factorized to the refined mesh of `whole` and `window`;
   /// phi is a function of the unknowns of the former. Null where no element is refined.
   SharedFactorSolver(const SolidModel& whole, const SolidModel& window, RestSolve rest_solve,
-                     std::size_t pairs, const Prolongation* prolongation = nullptr)
+                     BentBody bent, std::size_t pairs, const Prolongation* prolongation = nullptr)
       : whole_(whole),
         multipliers_(whole.multipliers()),
         newton_(window, nullptr, &multipliers_, Precision::Single),
         rest_solve_(std::move(rest_solve)),
+        bent_(std::move(bent)),
         prolongation_(prolongation),
         most_pairs_(pairs) {}
 
@@ -75,6 +90,7 @@ class SharedFactorSolver {
   /// The method of solve() with the present multipliers to start with.
   NewtonResult equilibrate(const ToolContact& contact, const NewtonOptions& options,
                            Displacement& u);
+  NewtonResult descend(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
   enum class Verdict { GoOn, Converged, Failed };
   /// Whether the equilibrium is good enough. Where the multipliers are due, they step before that,
   /// and `now` and the errors are those after it. `force`: of the tool, N.
@@ -86,11 +102,16 @@ class SharedFactorSolver {
                     NewtonResult& result);
   void remember(const Eigen::VectorXd& s, const Eigen::VectorXd& y);
   Eigen::VectorXd direction(const Eigen::VectorXd& residual);
-  /// d = R K0^-1 R^T q: the stiffness at rest rotated with the body. q is overwritten.
+  /// From here on the increment has a factor of its own.
+  void turn_factor(const Displacement& u);
+  /// d = R K0^-1 R^T q: the stiffness at rest rotated with the body, as a whole or, with a factor
+  /// of its own, by elements. q is overwritten.
   void solve_rotated(Eigen::VectorXd& q, Eigen::VectorXd& d) const;
   /// As evaluate(), the residual on the unknowns of phi.
   Equilibrium evaluated(const ToolContact& contact, const Displacement& u) const;
   void add_step(double length, const Eigen::VectorXd& d, Displacement& u) const;
+  /// The step to begin with along a direction in which the energy falls with this slope.
+  double longest_step(double energy, double slope) const;
   bool step(const ToolContact& contact, const NewtonOptions& options, const Eigen::VectorXd& d,
             Equilibrium& now, Displacement& u, NewtonResult& result);
 
@@ -99,6 +120,9 @@ class SharedFactorSolver {
   MultiplierPath multiplier_path_;
   NewtonSolver newton_;
   RestSolve rest_solve_;
+  BentBody bent_;
+  bool is_bent_ = false;    ///< whether an increment has needed the factor of its own
+  RestSolve turned_solve_;  ///< of the present increment; empty: the shared factor serves
   const Prolongation* prolongation_;
   std::size_t most_pairs_;
   std::deque<Pair> pairs_;

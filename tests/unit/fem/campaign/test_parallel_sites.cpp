@@ -78,9 +78,18 @@ TEST_F(ParallelSites, HasAsManyThreadsAsThereAreSitesUpToABatch) {
   EXPECT_EQ(threads(4, 1), 1);
 }
 
+/// A factor of a site's own takes half as much again as the shared one.
+TEST_F(ParallelSites, HaveOwnFactorsInAQuarterOfTheMemory) {
+  const double own = 1.5 * factor.bytes();
+  EXPECT_EQ(places_for_own_factors(factor, 8, 4 * 3.5 * own), 3);
+  EXPECT_EQ(places_for_own_factors(factor, 2, 4 * 3.5 * own), 2);  // one for each core
+  EXPECT_EQ(places_for_own_factors(factor, 8, own), 1);            // one in any case
+  EXPECT_EQ(places_for_own_factors(factor, 8, 0), 8);              // a machine has more
+}
+
 TEST_F(ParallelSites, HasFewerThreadsWhereMemoryIsShort) {
-  constexpr double kSite = 1e12;  // beside which the resident memory is negligible
-  const double reserved = 2 * factor.bytes();
+  constexpr double kSite = 1e12;                 // beside which the resident memory is negligible
+  const double reserved = 3.5 * factor.bytes();  // one factor in double precision, one in single
   const auto threads = [&](double sites_per_core) {
     return site_threads(factor, 2, 1000, reserved + 2 * sites_per_core * kSite, kSite)
         .threads_per_core;

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "fem/factor/cholesky.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -37,6 +41,47 @@ TEST_P(SolidModels, HaveForcesAndStiffnessOfTheirEnergy) {
   symmetric_multiply(model.pattern(), K, e.data(), Ke.data());
   EXPECT_LT((Ke - (high - low) / (2 * h)).norm(), 1e-5 * Ke.norm());
   EXPECT_DOUBLE_EQ(model.energy(moved(0)).energy, model.forces(moved(0), f).energy);
+}
+
+/// Frame indifference: the stiffness of a body that is strained by F and then rotated by R is that
+/// of the body at rest between rotations, whatever the stretch was.
+TEST_P(SolidModels, HaveTheStiffnessAtRestTurnedWithTheBody) {
+  const Eigen::Matrix3d R =
+      Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix();
+  const Eigen::Matrix3d stretch = Eigen::Vector3d(1.4, 0.9, 0.7).asDiagonal();
+  const auto times = [&](const std::vector<double>& K, const Eigen::VectorXd& x) {
+    Eigen::VectorXd product(x.size());
+    symmetric_multiply(model.pattern(), K, x.data(), product.data());
+    return product;
+  };
+  std::vector<double> at_rest, turned;
+  model.stiffness(Displacement::Zero(3, model.mesh().nodes()), at_rest);
+  model.turned_stiffness((R * stretch - Eigen::Matrix3d::Identity()) * model.mesh().X, turned);
+  const Eigen::VectorXd product = times(turned, d);
+  const Eigen::Matrix3Xd back =
+      R.transpose() * Eigen::Map<Eigen::Matrix3Xd>(d.data(), 3, d.size() / 3);
+  Eigen::VectorXd rotated =
+      times(at_rest, Eigen::Map<const Eigen::VectorXd>(back.data(), d.size()));
+  Eigen::Map<Eigen::Matrix3Xd> nodes(rotated.data(), 3, d.size() / 3);
+  nodes = (R * nodes).eval();
+  EXPECT_LT((product - rotated).norm(), 1e-9 * product.norm());
+}
+
+/// A bent body with an element turned inside out.
+TEST_P(SolidModels, StayPositiveDefiniteTurnedByElements) {
+  const Eigen::Matrix3Xd& X = model.mesh().X;
+  Displacement u = Displacement::Zero(3, X.cols());
+  for (Eigen::Index node = 0; node < X.cols(); ++node) {
+    const double angle = 60 * X(2, node), r = 1 / 60.0 - X(0, node);  // rad, m
+    u.col(node) << 1 / 60.0 - r * std::cos(angle) - X(0, node), 0, r * std::sin(angle) - X(2, node);
+  }
+  const auto& first = model.mesh().tetrahedra[0];
+  for (std::size_t c = 0; c < 4; ++c)
+    u.col(first[c]) += Eigen::Vector3d(0.01 * double(c % 2), 0, 0);
+  ASSERT_LT(model.energy(u).min_J, 0.0);
+  std::vector<double> K;
+  model.turned_stiffness(u, K);
+  EXPECT_TRUE(Cholesky(model.pattern()).factorize(K));
 }
 
 TEST_P(SolidModels, CarryTheWeightOfTheirVolume) {

@@ -3,11 +3,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "fem/contact/contact.hpp"
 #include "fem/factor/cholesky.hpp"
 #include "fem/solid/solid_model.hpp"
+#include "fem/solve/shared_factor_solver.hpp"
+#include "fem/solve/turned_factor.hpp"
 #include "tests/support/block_body.hpp"
 
 namespace palpate::fem {
@@ -31,6 +34,13 @@ struct PressedBody {
   void rest_solve(const Eigen::VectorXd& b, Eigen::VectorXd& x) {
     x.resize(b.size());
     factor.solve(b.data(), x.data(), workspace);
+  }
+
+  /// The same with the stiffness turned as at u.
+  SharedFactorSolver::RestSolve turned_solve(const Displacement& u) const {
+    const auto turned = std::make_shared<TurnedFactor>(whole, nested_dissection(whole.pattern()),
+                                                       Precision::Single, u);
+    return [turned](const Eigen::VectorXd& b, Eigen::VectorXd& x) { turned->solve(b, x); };
   }
 
   /// The sphere with its tip at a depth below the top.

@@ -15,8 +15,10 @@ namespace {
 constexpr double kTolerance = 1e-5;
 
 SharedFactorSolver solver_of(PressedBody& p) {
-  return {p.whole, p.window,
+  return {p.whole,
+          p.window,
           [&p](const Eigen::VectorXd& b, Eigen::VectorXd& x) { p.rest_solve(b, x); },
+          {[&p](const Displacement& u) { return p.turned_solve(u); }, 15, 0, 0},
           SharedFactorSolver::kFewPairs};
 }
 
