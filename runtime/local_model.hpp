@@ -13,10 +13,11 @@
 
 namespace palpate::runtime {
 
-/// The deflection of the tip in the response coordinates at a contact point.
+/// The deflection of the tip in the response coordinates at a contact point. depth and lateral are
+/// apart: side by side they would be loaded at once, which waits until both are stored.
 struct Deflection {
-  double geometric = 0;  ///< n . (x - c), m: depth of the tip below the surface at rest
   double depth = 0;      ///< z = geometric - d0, m
+  double geometric = 0;  ///< n . (x - c), m: depth of the tip below the surface at rest
   double lateral = 0;    ///< rho = |q| >= 0, m, q the lateral part minus the lateral offset
   Vec3 tangent{};        ///< t = q/rho, unit; zero when rho = 0
 };
