@@ -262,7 +262,7 @@ ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fi
     next.deflection = next.model.deflection(x);
     recovery = 0;
   }
-  next.response = next.model.respond(next.deflection, pieces_);
+  next.model.respond(next.deflection, pieces_, next.response);
   if (settings_.budget == EnergyBudget::Enforced) enforce_budget(next, x, fixed, recovery);
   if (fractions.slip == 1) enforce_friction(next, fixed.allowance);
   return next;
@@ -287,7 +287,7 @@ void ContactState::enforce_budget(Candidate& moved, const Vec3& x, const FixedCo
 
 void ContactState::respond(Candidate& at, const Vec3& x) const noexcept {
   at.deflection = at.model.deflection(x);
-  at.response = at.model.respond(at.deflection, pieces_);
+  at.model.respond(at.deflection, pieces_, at.response);
 }
 
 /// Slips where a slide or a change of the offset has left a lateral force above mu g: coupled
