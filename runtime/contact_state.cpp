@@ -155,12 +155,14 @@ bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
 
 void ContactState::touch(const Vec3& x, double travelled) noexcept {
   const Deflection before = model_->deflection(x);
-  FixedContact fixed{before, model_->respond(before, pieces_), travelled, 0, {}};
-  fixed.allowance = std::isinf(settings_.lipschitz_bound)
-                        ? settings_.lipschitz_bound  // also at rest
-                        : settings_.lipschitz_bound * travelled;
-  if (exceeds_friction(fixed.response, 0))
-    fixed.slip = slip_to_limit(*model_, fixed.deflection, fixed.response);
+  const double allowance = std::isinf(settings_.lipschitz_bound)
+                               ? settings_.lipschitz_bound  // also at rest
+                               : settings_.lipschitz_bound * travelled;
+  // In its place at once: a copy would wait for what has just been stored.
+  const FixedContact fixed{before, model_->respond(before, pieces_), travelled, allowance,
+                           exceeds_friction(fixed.response, 0)
+                               ? slip_to_limit(*model_, before, fixed.response)
+                               : LateralSlip{}};
   const double energy_before = fixed.response.energy;  // E_{i-1}(x_i)
   seen_.absorbed += energy_before - seen_.energy;
   Candidate next = choose(x, fixed);
@@ -260,7 +262,7 @@ ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fi
     next.deflection = next.model.deflection(x);
     recovery = 0;
   }
-  next.response = next.model.respond(next.deflection, pieces_);
+  next.model.respond(next.deflection, pieces_, next.response);
   if (settings_.budget == EnergyBudget::Enforced) enforce_budget(next, x, fixed, recovery);
   if (fractions.slip == 1) enforce_friction(next, fixed.allowance);
   return next;
@@ -285,7 +287,7 @@ void ContactState::enforce_budget(Candidate& moved, const Vec3& x, const FixedCo
 
 void ContactState::respond(Candidate& at, const Vec3& x) const noexcept {
   at.deflection = at.model.deflection(x);
-  at.response = at.model.respond(at.deflection, pieces_);
+  at.model.respond(at.deflection, pieces_, at.response);
 }
 
 /// Slips where a slide or a change of the offset has left a lateral force above mu g: coupled

@@ -64,7 +64,7 @@ void LocalModel::slip(const LateralSlip& by, Deflection& d, LocalResponse& at,
   if (coupled()) {
     respond_at_depth(d, pieces.elastic, at);
   } else {
-    at = respond(d, pieces);
+    respond(d, pieces, at);
   }
 }
 

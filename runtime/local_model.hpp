@@ -13,10 +13,11 @@
 
 namespace palpate::runtime {
 
-/// The deflection of the tip in the response coordinates at a contact point.
+/// The deflection of the tip in the response coordinates at a contact point. depth and lateral are
+/// apart: side by side they would be loaded at once, which waits until both are stored.
 struct Deflection {
-  double geometric = 0;  ///< n . (x - c), m: depth of the tip below the surface at rest
   double depth = 0;      ///< z = geometric - d0, m
+  double geometric = 0;  ///< n . (x - c), m: depth of the tip below the surface at rest
   double lateral = 0;    ///< rho = |q| >= 0, m, q the lateral part minus the lateral offset
   Vec3 tangent{};        ///< t = q/rho, unit; zero when rho = 0
 };
@@ -85,16 +86,28 @@ class LocalModel {
   }
   /// pieces: of the last evaluation; on return of this one.
   LocalResponse respond(const Deflection& d, ToolPieces& pieces) const noexcept {
-    return memory_ && !coupled() ? relaxing_response(d, pieces.relaxing)
-                                 : response(d, pieces.elastic);
+    LocalResponse r;
+    respond(d, pieces, r);
+    return r;
+  }
+  /// The same in its place: a copy would wait for what has just been stored.
+  void respond(const Deflection& d, ToolPieces& pieces, LocalResponse& r) const noexcept {
+    r = {};
+    if (memory_ && !coupled())
+      relaxing_response(d, pieces.relaxing, r);
+    else
+      response(d, pieces.elastic, r);
   }
   LocalResponse respond(const Deflection& d) const noexcept {
+    LocalResponse r;
     if (memory_ && !coupled()) {
       TipPieces pieces;
-      return relaxing_response(d, pieces);
+      relaxing_response(d, pieces, r);
+    } else {
+      PiecesInUse pieces;
+      response(d, pieces, r);
     }
-    PiecesInUse pieces;
-    return response(d, pieces);
+    return r;
   }
   double energy(const Deflection& d) const noexcept;
   /// rho_s = h^{-1}(mu g(z)): the lateral deflection at which slip begins, m. Without memory.
@@ -158,22 +171,19 @@ class LocalModel {
   }
 
  private:
-  LocalResponse response(const Deflection& d, PiecesInUse& pieces) const noexcept {
-    LocalResponse r;
+  void response(const Deflection& d, PiecesInUse& pieces, LocalResponse& r) const noexcept {
     if (response_.coupled()) {
       r.at_depth = response_.at_depth(d.depth, pieces);
       if (memory_) relax_at_depth(d.depth, r);
       respond_at_depth(d, pieces, r);
-      return r;
+      return;
     }
     const InterpolatedResponse::Decoupled at = response_.decoupled_at(d.depth, d.lateral, pieces);
     take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
     r.friction_normal_force = r.normal_force;
-    return r;
   }
   /// The same of decoupled responses that relax.
-  LocalResponse relaxing_response(const Deflection& d, TipPieces& pieces) const noexcept {
-    LocalResponse r;
+  void relaxing_response(const Deflection& d, TipPieces& pieces, LocalResponse& r) const noexcept {
     pieces.keep_for(response_);
     const ReachedForces at = pieces.evaluate(0, Pair{d.depth, d.lateral});
     r.relaxed = relaxed_response(memory_->normal, {d.depth, at.force[0], at.energy[0]});
@@ -181,7 +191,6 @@ class LocalModel {
     r.instant_lateral_force = at.force[1];
     if (memory_->lateral.any) relax_laterally(memory_->lateral, {}, d, r);
     r.friction_normal_force = r.normal_force;
-    return r;
   }
   void take(const InterpolatedResponse::Value& value, const Deflection& d,
             LocalResponse& r) const noexcept {
