@@ -49,7 +49,8 @@ int calibrate_tests(const CalibrateOptions& options) {
   const FitFile file = read_fit_file(options.fit_file);
   const ClampedFit clamped = fit_clamped(file.tests, file.specimens, file.settings);
   const calibrate::HomogeneousFit& fit = clamped.fit;
-  say("calibrate: {} on {} tests of {}", file.settings.law, file.tests.size(), file.name);
+  say("calibrate: {} on {} of {}", file.settings.law, count_text(file.tests.size(), "test"),
+      file.name);
   for (std::size_t i = 0; i < file.tests.size(); ++i)
     say("  {}: {}{}", file.tests[i].name, file.statements[i],
         clamp_text(file.specimens[i].has_value(), clamped.largest_effect[i]));
@@ -149,8 +150,9 @@ std::vector<Curves> measured_on(const Workspace& space, const std::vector<std::s
                   "it belongs to another body than " + space.body().string(),
                   "import the measurement again with --body " + space.body().string());
     if (files.size() > 1)
-      say("  curves {}: {} sites under a {} of {} radius, {}", measured.size(), curves.sites.size(),
-          curves.tool.shape, length_text(curves.tool.radius), file);
+      say("  curves {}: {} under a {} of {} radius, {}", measured.size(),
+          count_text(curves.sites.size(), "site"), curves.tool.shape,
+          length_text(curves.tool.radius), file);
   }
   return measured;
 }

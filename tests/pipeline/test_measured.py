@@ -345,7 +345,7 @@ class Measured(unittest.TestCase):
         self.assertEqual(alike.returncode, 2, alike.stdout)
         self.assertIn("radius", alike.stderr)
         printed = self.ok("calibrate", "body", self.case, "--measured", *curves, "--young", "gel", "--out", self.out)
-        self.assertIn("curves 2: 1 sites under a sphere of 6.00 mm radius", printed)
+        self.assertIn("curves 2: 1 site under a sphere of 6.00 mm radius", printed)
         found = json.loads((self.out / "calibration.json").read_text())
         self.assertEqual([path["curves"] for path in found["paths"]], [1, 2])
 
