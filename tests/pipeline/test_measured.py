@@ -138,7 +138,7 @@ class Measured(unittest.TestCase):
         # The drag is that of a half-space with a round contact, which this mesh does not resolve: the fit reports it.
         text = self.ok("calibrate", "body", self.case, "--measured", robot / "curves.h5", "--young", "gel", "--drags",
                        "--depths", 2, "--out", self.out, "--threads", 2)
-        self.assertIn("1 drags", text)
+        self.assertIn("1 site, 1 drag,", text)
         self.assertIn("intervals are widened", text)
         found = json.loads((self.out / "calibration.json").read_text())
         self.assertEqual([p["kind"] for p in found["paths"]], ["normal", "lateral"])
