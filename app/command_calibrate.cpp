@@ -165,9 +165,9 @@ int calibrate_body(const BodyOptions& options) {
   const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(),
                                    [](const FittedPath& p) { return p.kind == PathKind::Lateral; });
   const auto presses = static_cast<std::ptrdiff_t>(fit.paths.size()) - drags;
-  say("calibrate: {} site{}, {} drag{}, RMS residual {} ({} of the largest force), {} evaluation{}",
-      presses, presses == 1 ? "" : "s", drags, drags == 1 ? "" : "s", force_text(fit.rms),
-      percent_text(fit.relative_rms), fit.evaluations, fit.evaluations == 1 ? "" : "s");
+  say("calibrate: {}, {}, RMS residual {} ({} of the largest force), {}",
+      count_text(presses, "site"), count_text(drags, "drag"), force_text(fit.rms),
+      percent_text(fit.relative_rms), count_text(fit.evaluations, "evaluation"));
   if (fit.profile_evaluations > 0)
     say("calibrate: {} more evaluations for the profiles", fit.profile_evaluations);
   say_calibration(fit.calibration, options.confidence);
