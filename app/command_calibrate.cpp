@@ -49,7 +49,8 @@ int calibrate_tests(const CalibrateOptions& options) {
   const FitFile file = read_fit_file(options.fit_file);
   const ClampedFit clamped = fit_clamped(file.tests, file.specimens, file.settings);
   const calibrate::HomogeneousFit& fit = clamped.fit;
-  say("calibrate: {} on {} tests of {}", file.settings.law, file.tests.size(), file.name);
+  say("calibrate: {} on {} of {}", file.settings.law, count_text(file.tests.size(), "test"),
+      file.name);
   for (std::size_t i = 0; i < file.tests.size(); ++i)
     say("  {}: {}{}", file.tests[i].name, file.statements[i],
         clamp_text(file.specimens[i].has_value(), clamped.largest_effect[i]));
@@ -149,8 +150,9 @@ std::vector<Curves> measured_on(const Workspace& space, const std::vector<std::s
                   "it belongs to another body than " + space.body().string(),
                   "import the measurement again with --body " + space.body().string());
     if (files.size() > 1)
-      say("  curves {}: {} sites under a {} of {} radius, {}", measured.size(), curves.sites.size(),
-          curves.tool.shape, length_text(curves.tool.radius), file);
+      say("  curves {}: {} under a {} of {} radius, {}", measured.size(),
+          count_text(curves.sites.size(), "site"), curves.tool.shape,
+          length_text(curves.tool.radius), file);
   }
   return measured;
 }
@@ -163,9 +165,9 @@ int calibrate_body(const BodyOptions& options) {
   const auto drags = std::count_if(fit.paths.begin(), fit.paths.end(),
                                    [](const FittedPath& p) { return p.kind == PathKind::Lateral; });
   const auto presses = static_cast<std::ptrdiff_t>(fit.paths.size()) - drags;
-  say("calibrate: {} site{}, {} drag{}, RMS residual {} ({} of the largest force), {} evaluation{}",
-      presses, presses == 1 ? "" : "s", drags, drags == 1 ? "" : "s", force_text(fit.rms),
-      percent_text(fit.relative_rms), fit.evaluations, fit.evaluations == 1 ? "" : "s");
+  say("calibrate: {}, {}, RMS residual {} ({} of the largest force), {}",
+      count_text(presses, "site"), count_text(drags, "drag"), force_text(fit.rms),
+      percent_text(fit.relative_rms), count_text(fit.evaluations, "evaluation"));
   if (fit.profile_evaluations > 0)
     say("calibrate: {} more evaluations for the profiles", fit.profile_evaluations);
   say_calibration(fit.calibration, options.confidence);

@@ -9,6 +9,7 @@
 #include "app/console.hpp"
 #include "app/measured/import.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/provenance.hpp"
 #include "format/sha256.hpp"
 
@@ -85,7 +86,8 @@ int calibrate_relaxation(const RelaxationOptions& options) {
   const Input input = input_of(options);
   const double radius = input.first.tool.shape == "sphere" ? input.first.tool.radius : 0;
   const calibrate::RelaxationFit fit = calibrate::fit_relaxation(input.records, settings);
-  say("calibrate: relaxation of {} from {} records", input.first.specimen, input.records.size());
+  say("calibrate: relaxation of {} from {}", input.first.specimen,
+      count_text(input.records.size(), "record"));
   say_calibration(fit.calibration, settings.confidence);
   say_relaxation(fit, input.records, radius);
   if (options.out.empty()) return kExitDone;

@@ -80,8 +80,8 @@ std::string interval_text(const Identified& what, const std::function<std::strin
 void say_slab(const SlabFit& slab, const SlabTable& table, double confidence) {
   const SlabTableSettings& s = table.settings();
   const auto number = [](double v) { return number_text(v); };
-  answer("calibrate: {} sites as one slab of {}, RMS residual {} ({} of the largest force)",
-         slab.fit.paths.size(), s.law.name, force_text(slab.fit.rms),
+  answer("calibrate: {} as one slab of {}, RMS residual {} ({} of the largest force)",
+         count_text(slab.fit.paths.size(), "site"), s.law.name, force_text(slab.fit.rms),
          percent_text(slab.fit.relative_rms));
   answer("  thickness, {:.4g} %: {}", 100 * confidence, interval_text(slab.thickness, length_text));
   answer("  {}, {:.4g} %: {}", s.law.stiffening, 100 * confidence,

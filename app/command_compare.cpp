@@ -74,8 +74,8 @@ std::string percentage(double value) {
 
 void print(const compare::Comparison& comparison) {
   for (const compare::Summary& s : comparison.summaries) {
-    answer("  {}: {} curves, {} points", s.kind == PathKind::Normal ? "normal" : "lateral",
-           s.curves, s.points);
+    answer("  {}: {}, {}", s.kind == PathKind::Normal ? "normal" : "lateral",
+           count_text(s.curves, "curve"), count_text(s.points, "point"));
     answer("    RMSE {} ({:.2g} % of the largest force), bias {}, limits of agreement {} to {}",
            force_text(s.rmse), 100 * s.normalised_rmse, force_text(s.bias),
            force_text(s.agreement_low), force_text(s.agreement_high));

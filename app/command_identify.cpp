@@ -21,6 +21,7 @@
 #include "fitting/measurement/identify/estimate.hpp"
 #include "format/crash_safe_file.hpp"
 #include "format/error.hpp"
+#include "format/number_text.hpp"
 #include "format/provenance.hpp"
 #include "runtime/devices/device_virtual.hpp"
 #include "runtime/loop_thread.hpp"
@@ -154,8 +155,9 @@ DirectionFinding measure(const IdentifyOptions& o, runtime::Device& device, cons
   const bool halted = excite(o, device, loop, stop);
   require_complete(o, loop.end(), halted, direction);
   say("  longest period of the loop {:.3f} ms", 1e3 * loop.longest_period());
-  if (loop.missed() > 0) say("  {} periods were missed", loop.missed());
-  if (loop.stale() > 0) say("  {} steps had no new sample", loop.stale());
+  if (loop.missed() > 0)
+    say("  {} missed", count_text(loop.missed(), "period was", "periods were"));
+  if (loop.stale() > 0) say("  {} had no new sample", count_text(loop.stale(), "step"));
   return {direction, identify::estimate_axis(loop.record(), 1e-3 * o.largest_delay_ms),
           identify::position_step(loop.record()),
           std::max(0.0, loop.longest_period() - 1 / o.rate)};

@@ -51,8 +51,9 @@ void say_cycle(const nlohmann::ordered_json& record) {
 void say_history(const SiteHistory& site) {
   const measured::History& h = site.history;
   const bool force = h.control == measured::Control::Force;
-  say("  {}: the {} is held, {} samples, contact at {} +- {}", h.name, force ? "force" : "travel",
-      h.time.size(), length_text(h.contact.displacement), length_text(h.contact.uncertainty));
+  say("  {}: the {} is held, {}, contact at {} +- {}", h.name, force ? "force" : "travel",
+      count_text(h.time.size(), "sample"), length_text(h.contact.displacement),
+      length_text(h.contact.uncertainty));
   for (const measured::Phase& phase : h.phases)
     say("    {} from {:.5g} s to {:.5g} s: to {}, {}", phase_name(phase.kind), h.time[phase.begin],
         h.time[phase.end - 1], length_text(h.travel[phase.end - 1]),
@@ -64,7 +65,7 @@ void write_histories(const Histories& histories, const fs::path& sidecar, const 
   json["input_sha256"] = {{sidecar.filename().string(), sha256_of_file(sidecar)}};
   write_file_crash_safely(out / "histories.json", json.dump() + "\n");
   for (const SiteHistory& site : histories.records) say_history(site);
-  say("import: {} records over time -> {}", histories.records.size(),
+  say("import: {} over time -> {}", count_text(histories.records.size(), "record"),
       (out / "histories.json").string());
 }
 
@@ -77,7 +78,7 @@ fs::path write_patch(const fs::path& sidecar, const fs::path& out, const std::st
   fs::path file = out / "body.h5";
   prepare_output(out);
   write_body(file, patch.body);
-  say("import: surface of {} sites, {} apart -> {}", patch.body.nodes.size(),
+  say("import: surface of {}, {} apart -> {}", count_text(patch.body.nodes.size(), "site"),
       length_text(patch.spacing), file.string());
   return file;
 }
@@ -97,14 +98,15 @@ int import_tool(const ImportOptions& options, const ImportRequest& request, cons
   if (result.account.contains("conversion"))
     say("  {}", result.account["conversion"].get<std::string>());
   for (const auto& site : result.account["sites"]) {
-    say("  site {}: {} repeats to {}, {} +- {}, contact point +- {}", site["vertex"].get<int>(),
-        site["repeats"].get<int>(), length_text(number_of(site["depth_m"])),
-        force_text(number_of(site["force_N"])), force_text(number_of(site["force_uncertainty_N"])),
+    say("  site {}: {} to {}, {} +- {}, contact point +- {}", site["vertex"].get<int>(),
+        count_text(site["repeats"].get<std::size_t>(), "repeat"),
+        length_text(number_of(site["depth_m"])), force_text(number_of(site["force_N"])),
+        force_text(number_of(site["force_uncertainty_N"])),
         length_text(number_of(site["contact_uncertainty_m"])));
     for (const auto& drag : site["lateral_paths"]) {
       if (drag["repeats"] == 0) continue;  // derived from the normal path, not measured
-      say("    drag at {}: {} repeats to {}, {} +- {}",
-          length_text(number_of(drag["lateral_depth_m"])), drag["repeats"].get<int>(),
+      say("    drag at {}: {} to {}, {} +- {}", length_text(number_of(drag["lateral_depth_m"])),
+          count_text(drag["repeats"].get<std::size_t>(), "repeat"),
           length_text(number_of(drag["travel_m"])), force_text(number_of(drag["force_N"])),
           force_text(number_of(drag["force_uncertainty_N"])));
     }
@@ -113,8 +115,9 @@ int import_tool(const ImportOptions& options, const ImportRequest& request, cons
     warn(warning.get<std::string>());
   }
   if (!result.curves.sites.empty())
-    say("import: {} records at {} sites -> {} (account in import.json)",
-        result.account["records"].size(), result.curves.sites.size(), (out / "curves.h5").string());
+    say("import: {} at {} -> {} (account in import.json)",
+        count_text(result.account["records"].size(), "record"),
+        count_text(result.curves.sites.size(), "site"), (out / "curves.h5").string());
   if (result.refused > 0)
     say("import: {} refused, see above; the curves are those of the others", result.refused);
   return result.refused;

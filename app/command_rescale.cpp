@@ -6,6 +6,7 @@
 #include "app/measured/histories.hpp"
 #include "app/pipeline/workspace.hpp"
 #include "fitting/measurement/compare/rescale.hpp"
+#include "format/number_text.hpp"
 #include "format/provenance.hpp"
 
 namespace palpate::app {
@@ -29,8 +30,8 @@ compare::Rescaling rescaling(const Curves& simulated, const fs::path& measured) 
 int rescale_curves(const RescaleOptions& options) {
   const Curves simulated = read_curves(options.simulated);
   compare::Rescaling result = rescaling(simulated, options.measured);
-  say("rescale: measured = {:.4f} +- {:.4f} of simulated, from {} sites", result.factor,
-      result.uncertainty, result.sites.size());
+  say("rescale: measured = {:.4f} +- {:.4f} of simulated, from {}", result.factor,
+      result.uncertainty, count_text(result.sites.size(), "site"));
   for (const compare::SiteScale& site : result.sites) {
     say("  site {}: {:.4f} +- {:.4f}, residual {:.2g} % of its largest force", site.vertex,
         site.factor, site.uncertainty, 100 * site.misfit);

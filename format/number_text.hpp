@@ -2,6 +2,7 @@
 // Numbers as a reader wants them: as many significant digits for a small body as for a large one.
 #pragma once
 
+#include <concepts>
 #include <string>
 
 namespace palpate {
@@ -24,5 +25,16 @@ std::string energy_text(double joules);
 
 /// Two significant digits of a fraction: "0.43 %", "17 %"; "below 0.01 %" for what is less.
 std::string percent_text(double fraction);
+
+/// "1 site", "2 sites": `things` is the plural.
+template <std::integral Count>
+std::string count_text(Count count, const std::string& thing, const std::string& things) {
+  return std::to_string(count) + " " + (count == 1 ? thing : things);
+}
+/// The same for a plural in s.
+template <std::integral Count>
+std::string count_text(Count count, const std::string& thing) {
+  return count_text(count, thing, thing + "s");
+}
 
 }  // namespace palpate

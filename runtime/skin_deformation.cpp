@@ -109,12 +109,18 @@ SkinDeformation::Blend SkinDeformation::blend_at(const SurfacePoint& point) cons
   return blend;
 }
 
-/// Under a round tool the contact grows like sqrt(z), and the dimple with it: the profiles of a
-/// level are read at the same distance over the contact radius.
+/// The contact radius at a depth over that at a level. Under a round tool it grows like sqrt(z).
+double SkinDeformation::contact_growth(double level, double depth) const noexcept {
+  if (d_.tool_shape == "disc") return 1;
+  return std::sqrt(std::max(depth, 0.0) / level);
+}
+
+/// The dimple grows with the contact: the profiles of a level are read at the same distance over
+/// the contact radius.
 double SkinDeformation::stretch(double level, double depth) const noexcept {
   constexpr double kMost = 4;
-  if (d_.tool_shape == "disc" || !(depth > 0)) return 1;
-  return std::min(std::sqrt(level / depth), kMost);
+  const double growth = contact_growth(level, depth);
+  return growth > 0 ? std::min(1 / growth, kMost) : 1;
 }
 
 void SkinDeformation::add_press(const Blend& blend, const Touch& touch,
@@ -141,15 +147,16 @@ void SkinDeformation::add_lateral(const Blend& blend, const Touch& touch,
   const std::size_t modes = d_.mode_count(), knots = d_.knots.size(),
                     depths = d_.lateral_depths.size();
   const Levels levels = levels_within(d_.lateral_depths, touch.depth);
-  // The shared part vanishes with the depth.
-  const double shared = std::clamp(touch.depth / d_.lateral_depths.front(), 0.0, 1.0);
   const auto add = [&](std::size_t site, std::size_t k, double weight) {
     const SiteFrame& frame = d_.sites[site];
     const Vec3 second = cross(frame.inward, frame.tangent);
     const double along[kTangents] = {dot(touch.lateral, frame.tangent), dot(touch.lateral, second)};
+    // Far away the skin follows the force, which for the same deflection grows like the contact
+    // radius [Mindlin 1949].
+    const double growth = contact_growth(d_.lateral_depths[k], touch.depth);
     for (std::size_t t = 0; t < kTangents; ++t) {
       const float* a = &d_.lateral_modes[((site * depths + k) * kTangents + t) * modes];
-      const auto amplitude = static_cast<float>(weight * shared * along[t]);
+      const auto amplitude = static_cast<float>(weight * growth * along[t]);
       for (std::size_t m = 0; m < modes; ++m) shape.mode[m] += amplitude * a[m] * d_.mode_scale[m];
     }
     const float* p = &d_.lateral_local[(site * depths + k) * kLateralComponents * knots];

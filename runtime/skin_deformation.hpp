@@ -33,6 +33,7 @@ class SkinDeformation {
   struct Blend;
   struct Shape;
   Blend blend_at(const SurfacePoint& point) const noexcept;
+  double contact_growth(double level, double depth) const noexcept;
   double stretch(double level, double depth) const noexcept;
   void add_press(const Blend& blend, const Touch& touch, Shape& shape) const noexcept;
   void add_lateral(const Blend& blend, const Touch& touch, Shape& shape) const noexcept;

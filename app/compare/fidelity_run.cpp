@@ -108,9 +108,9 @@ Curves solve_direct(const Workspace& space, const Body& body, fem::CampaignSetti
   };
   fem::CampaignReport report;
   Curves direct = fem::run_campaign(body, settings, report);
-  say("compare: {} direct presses, {} of them from an earlier run, in {} ({} CPU time)",
-      settings.points.size(), settings.known.size(), duration_text(report.seconds),
-      duration_text(report.cpu_seconds));
+  say("compare: {}, {} of them from an earlier run, in {} ({} CPU time)",
+      count_text(settings.points.size(), "direct press", "direct presses"), settings.known.size(),
+      duration_text(report.seconds), duration_text(report.cpu_seconds));
   return direct;
 }
 

@@ -201,9 +201,9 @@ LeaveOutSets sets_of(const LeaveOut& result, const Library& library, const Curve
 std::string leave_out_text(const LeaveOut& result) {
   const std::size_t predicted = predicted_sites(result);
   std::string text = fmt::format(
-      "{} of {} sites predicted from those around them; the others lie at the border\n"
+      "{} of {} predicted from those around them; the others lie at the border\n"
       "errors are relative to the measured force, or to {} where that is larger\n",
-      predicted, result.sites.size(), force_text(result.floor));
+      predicted, count_text(result.sites.size(), "site"), force_text(result.floor));
   text += fmt::format("  {:<46} {:>6} {:>8} {:>8} {:>8}   {}\n", "relative force error", "count",
                       "median", "95 %", "worst", "at site");
   text += row("site left out, deepest sample", result.deepest);

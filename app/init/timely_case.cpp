@@ -12,6 +12,7 @@
 #include "app/case/lengths.hpp"
 #include "app/console.hpp"
 #include "app/pipeline/trial_sites.hpp"
+#include "format/number_text.hpp"
 
 namespace palpate::app {
 namespace {
@@ -110,11 +111,12 @@ class Search {
 };
 
 std::string remark_on_time(const FirstSizes& sizes, const FirstWishes& wishes) {
-  std::string said = fmt::format("time: about {} on {} threads, from trial sites",
-                                 duration_text(*sizes.seconds), wishes.threads);
+  std::string said =
+      fmt::format("time: about {} on {}, from trial sites", duration_text(*sizes.seconds),
+                  count_text(wishes.threads, "thread"));
   if (sizes.sites_too_slow)
-    said += fmt::format("; {} sites would take longer than {:g} min", *sizes.sites_too_slow,
-                        wishes.minutes);
+    said += fmt::format("; {} would take longer than {:g} min",
+                        count_text(*sizes.sites_too_slow, "site"), wishes.minutes);
   if (sizes.is_shallow) said += "; pressed less deep, because deep presses of thin parts are slow";
   if (!sizes.is_refined)
     said +=

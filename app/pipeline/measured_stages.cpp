@@ -27,10 +27,11 @@ double degrees(double angle) {
 void run_measured_surface(const Workspace& space, const EventSink& emit) {
   PatchBody patch = patch_body(records_of(space));
   for (const std::string& warning : patch.warnings) emit(Warning{"mesh", warning});
-  emit(LogLine{"mesh", fmt::format("surface of {} sites, {} apart; facets up to {:.0f} degrees off "
-                                   "the mean normal, normals up to {:.0f} degrees off the facets",
-                                   patch.body.nodes.size(), length_text(patch.spacing),
-                                   degrees(patch.steepest), degrees(patch.largest_turn))});
+  emit(LogLine{"mesh",
+               fmt::format("surface of {}, {} apart; facets up to {:.0f} degrees off "
+                           "the mean normal, normals up to {:.0f} degrees off the facets",
+                           count_text(patch.body.nodes.size(), "site"), length_text(patch.spacing),
+                           degrees(patch.steepest), degrees(patch.largest_turn))});
   patch.body.name = space.c.name;
   patch.body.provenance.steps.push_back(make_stage_step(space, Stage::Mesh, {}));
   write_body(space.body(), patch.body);
@@ -49,9 +50,10 @@ SiteCounts run_measured_curves(const Workspace& space, const EventSink& emit) {
     emit(Warning{"precompute", warning.get<std::string>()});
   write_curves(space.curves(), import.curves);
   write_file_crash_safely(space.out / "import.json", import.account.dump(2) + "\n");
-  emit(LogLine{"precompute",
-               fmt::format("{} records at {} of {} sites", import.account["records"].size(),
-                           import.curves.sites.size(), body.response.node.size())});
+  emit(LogLine{
+      "precompute",
+      fmt::format("{} at {} of {}", count_text(import.account["records"].size(), "record"),
+                  import.curves.sites.size(), count_text(body.response.node.size(), "site"))});
   emit(FileWritten{"precompute", space.curves()});
   return count_sites(import.curves);
 }

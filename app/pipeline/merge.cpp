@@ -12,6 +12,7 @@
 #include "app/pipeline/stages.hpp"
 #include "fitting/response/mesh_error.hpp"
 #include "format/body.hpp"
+#include "format/number_text.hpp"
 #include "format/sha256.hpp"
 
 namespace palpate::app {
@@ -73,10 +74,10 @@ class Collection {
     for (const std::int32_t vertex : sites_of(body))
       if (!file_of_.contains(vertex)) missing.push_back(vertex);
     if (!missing.empty())
-      throw Error(
-          ErrorKind::Configuration, folder.string(),
-          fmt::format("{} sites are in none of the parts: {}", missing.size(), listed(missing)),
-          "compute the missing shards, then merge again");
+      throw Error(ErrorKind::Configuration, folder.string(),
+                  fmt::format("{} in none of the parts: {}",
+                              count_text(missing.size(), "site is", "sites are"), listed(missing)),
+                  "compute the missing shards, then merge again");
     std::sort(sites_.begin(), sites_.end(),
               [](const SiteCurves& a, const SiteCurves& b) { return a.vertex < b.vertex; });
     return std::move(sites_);

@@ -220,9 +220,11 @@ void run_fit(const Workspace& space, const EventSink& emit) {
       curves.sites.begin(), curves.sites.end(),
       [](const SiteCurves& site) { return fitting::lateral_depths(site).size() == 1; });
   if (library.kind == ResponseKind::Coupled && single > 0)
-    emit(LogLine{"fit", fmt::format("{} sites have one lateral depth: their coupling grows with "
-                                    "the square root of depth",
-                                    single)});
+    emit(LogLine{"fit",
+                 fmt::format("{} one lateral depth: {} coupling grows with "
+                             "the square root of depth",
+                             count_text(static_cast<std::size_t>(single), "site has", "sites have"),
+                             single == 1 ? "its" : "their")});
   if (space.c.fit.between_nodes)
     emit(LogLine{
         "fit", "responses are scaled for interpolation; their stated errors include the scaling"});

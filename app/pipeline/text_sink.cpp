@@ -59,8 +59,8 @@ void TextSink::print(const Warning& e) {
 }
 
 void TextSink::print(const MeshFinished& e) {
-  line("mesh: {} nodes, {} tetrahedra, {} response triangles, {} sites -> {}", e.nodes,
-       e.tetrahedra, e.response_triangles, e.sites, e.file.string());
+  line("mesh: {} nodes, {} tetrahedra, {} response triangles, {} -> {}", e.nodes, e.tetrahedra,
+       e.response_triangles, count_text(e.sites, "site"), e.file.string());
 }
 
 void TextSink::print(const CampaignStarted& e) {
@@ -70,8 +70,8 @@ void TextSink::print(const CampaignStarted& e) {
     line("  {} belongs to another campaign: moved to {}.old", e.journal.string(),
          e.journal.filename().string());
   if (e.known_sites > 0)
-    line("  {} finished sites found in {} are not computed again", e.known_sites,
-         e.journal.string());
+    line("  {} found in {} {} not computed again", count_text(e.known_sites, "finished site"),
+         e.journal.string(), e.known_sites == 1 ? "is" : "are");
   if (e.dropped_bytes > 0)
     line(
         "  an incomplete record at the end of the journal ({} bytes) is dropped; its site is "
@@ -111,9 +111,9 @@ void TextSink::print(const SamplingFinished& e) {
 
 void TextSink::print(const CampaignFinished& e) {
   constexpr std::size_t kMostListed = 5;
-  line("precompute: {} sites complete, {} stopped early, {} failed, {} ({} CPU time) -> {}",
-       e.counts.complete, e.counts.partial, e.counts.failed, duration_text(e.seconds),
-       duration_text(e.cpu_seconds), e.file.string());
+  line("precompute: {} complete, {} stopped early, {} failed, {} ({} CPU time) -> {}",
+       count_text(e.counts.complete, "site"), e.counts.partial, e.counts.failed,
+       duration_text(e.seconds), duration_text(e.cpu_seconds), e.file.string());
   for (std::size_t i = 0; i < std::min(kMostListed, e.incomplete.size()); ++i) {
     const SiteFinished& site = e.incomplete[i];
     line("  site {} {}: {}", site.vertex, words(site.status), site.reason);
@@ -123,8 +123,9 @@ void TextSink::print(const CampaignFinished& e) {
 }
 
 void TextSink::print(const MergeFinished& e) {
-  line("merge: {} sites of {} parts, {} complete, {} stopped early, {} failed -> {}", e.sites,
-       e.parts, e.counts.complete, e.counts.partial, e.counts.failed, e.file.string());
+  line("merge: {} of {}, {} complete, {} stopped early, {} failed -> {}",
+       count_text(e.sites, "site"), count_text(e.parts, "part"), e.counts.complete,
+       e.counts.partial, e.counts.failed, e.file.string());
 }
 
 void TextSink::print(const FitFinished& e) {
@@ -140,8 +141,8 @@ void TextSink::print(const FitFinished& e) {
     line("  error of the mesh in the normal force, at most {}", errors(e.mesh));
   if (e.lateral_mesh.vertex >= 0) line("    in the lateral force {}", errors(e.lateral_mesh));
   if (!e.accuracy.empty()) line("  accuracy: {}", e.accuracy);
-  line("fit: {} responses fitted, {} interpolated, {} holes -> {}", e.fitted, e.interpolated,
-       e.holes, e.file.string());
+  line("fit: {} fitted, {} interpolated, {} -> {}", count_text(e.fitted, "response"),
+       e.interpolated, count_text(e.holes, "hole"), e.file.string());
 }
 
 void TextSink::print(const Certified& e) {
@@ -188,8 +189,8 @@ void TextSink::print(const StiffnessAtRate& e) {
 
 void TextSink::print(const Softened& e) {
   if (e.curves == 0) return line("certify: no response had to be softened -> {}", e.file.string());
-  line("certify: slopes capped at {}, {} curves changed -> {}", stiffness_text(e.slope_cap),
-       e.curves, e.file.string());
+  line("certify: slopes capped at {}, {} changed -> {}", stiffness_text(e.slope_cap),
+       count_text(e.curves, "curve"), e.file.string());
   line(
       "  force lost at full deflection: median {:.1f} %, 95th percentile {:.1f} %, largest {:.1f} "
       "%",
@@ -230,13 +231,14 @@ void TextSink::print(const ConvergenceOfForce& e) {
 
 void TextSink::print(const Estimate& e) {
   line(
-      "estimate: {}{} sites on {} nodes ({} unknowns) take {} on {} threads, {} of it before the "
+      "estimate: {}{} on {} nodes ({} unknowns) {} {} on {}, {} of it before the "
       "first site",
-      e.adaptive ? "at most " : "", e.sites, e.nodes, e.unknowns, duration_text(e.seconds),
-      e.threads, duration_text(e.set_up_seconds));
+      e.adaptive ? "at most " : "", count_text(e.sites, "site"), e.nodes, e.unknowns,
+      e.sites == 1 ? "takes" : "take", duration_text(e.seconds), count_text(e.threads, "thread"),
+      duration_text(e.set_up_seconds));
   line("  memory {:.2g} GB, library.h5 {}", 1e-9 * e.memory_bytes,
        e.library_bytes > 0 ? fmt::format("{:.2g} MB", 1e-6 * e.library_bytes) : "of unknown size");
-  line("  from {} trial sites in {}; nothing was written", e.trial_sites,
+  line("  from {} in {}; nothing was written", count_text(e.trial_sites, "trial site"),
        duration_text(e.trial_seconds));
 }
 

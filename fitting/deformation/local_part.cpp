@@ -8,7 +8,7 @@ namespace palpate::fitting {
 namespace {
 
 /// Weight of the squared second differences of a profile against its squared errors, per knot.
-constexpr double kSmoothness = 0.02;
+constexpr double kSmoothness = 0.1;
 
 Vec3 displacement(const Eigen::Ref<Eigen::VectorXf>& field, std::size_t vertex) {
   const auto row = static_cast<Eigen::Index>(3 * vertex);

@@ -138,7 +138,7 @@ class Measured(unittest.TestCase):
         # The drag is that of a half-space with a round contact, which this mesh does not resolve: the fit reports it.
         text = self.ok("calibrate", "body", self.case, "--measured", robot / "curves.h5", "--young", "gel", "--drags",
                        "--depths", 2, "--out", self.out, "--threads", 2)
-        self.assertIn("1 drags", text)
+        self.assertIn("1 site, 1 drag,", text)
         self.assertIn("intervals are widened", text)
         found = json.loads((self.out / "calibration.json").read_text())
         self.assertEqual([p["kind"] for p in found["paths"]], ["normal", "lateral"])
@@ -345,7 +345,7 @@ class Measured(unittest.TestCase):
         self.assertEqual(alike.returncode, 2, alike.stdout)
         self.assertIn("radius", alike.stderr)
         printed = self.ok("calibrate", "body", self.case, "--measured", *curves, "--young", "gel", "--out", self.out)
-        self.assertIn("curves 2: 1 sites under a sphere of 6.00 mm radius", printed)
+        self.assertIn("curves 2: 1 site under a sphere of 6.00 mm radius", printed)
         found = json.loads((self.out / "calibration.json").read_text())
         self.assertEqual([path["curves"] for path in found["paths"]], [1, 2])
 

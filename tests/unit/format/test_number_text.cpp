@@ -70,5 +70,13 @@ TEST(NumberText, LengthsHaveTheUnitThatFits) {
   EXPECT_EQ(length_text(std::nan("")), "unknown mm");
 }
 
+TEST(NumberText, OneThingIsSingular) {
+  EXPECT_EQ(count_text(0, "site"), "0 sites");
+  EXPECT_EQ(count_text(1, "site"), "1 site");
+  EXPECT_EQ(count_text(2U, "site"), "2 sites");
+  EXPECT_EQ(count_text(1, "press", "presses"), "1 press");
+  EXPECT_EQ(count_text(std::int64_t{21}, "press", "presses"), "21 presses");
+}
+
 }  // namespace
 }  // namespace palpate

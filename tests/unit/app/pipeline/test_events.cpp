@@ -154,7 +154,7 @@ TEST(TextSink, ListsTheFirstIncompleteSites) {
     event.incomplete.push_back(
         {vertex, vertex == 0 ? SiteStatus::Partial : SiteStatus::Failed, "a reason", 1});
   const std::string text = text_of({event});
-  EXPECT_THAT(text, HasSubstr("1 sites complete, 1 stopped early, 6 failed, 1 min 05 s (1 h 00 min "
+  EXPECT_THAT(text, HasSubstr("1 site complete, 1 stopped early, 6 failed, 1 min 05 s (1 h 00 min "
                               "CPU time) -> curves.h5"));
   EXPECT_THAT(text, HasSubstr("site 0 stopped early: a reason"));
   EXPECT_THAT(text, HasSubstr("site 4 failed: a reason"));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "runtime/skin_deformation.hpp"
 #include "tests/unit/fitting/deformation/pressed_plate.hpp"
@@ -99,6 +100,47 @@ TEST(Compress, TheContactPointMovesWithTheTip) {
         EXPECT_LT(std::abs(dot(nearest - touch.tip, kDown)), 1e-7);
         EXPECT_LT(norm(nearest - touch.tip), 3e-4 * kDeepest);
       }
+}
+
+/// The skin of an incompressible half-space under a frictionless sphere that then drags its contact
+/// without slip. The press: [Johnson 1985, eq. 3.42]. The drag: within the contact radius
+/// a = sqrt(R z) the skin follows; outside, with nu = 1/2 and the azimuth theta from q,
+///   u = 2 |q| / (3 pi) (3 asin(a/r) + h cos 2 theta, h sin 2 theta),  h = (a/r) sqrt(1 - a^2/r^2),
+/// the integral of Cerruti's solution over the traction (1 - r^2/a^2)^(-1/2) [Johnson 1985, 3.7].
+Vec3 half_space(const Vec3& x, const Vec3& c, double z, const Vec3& q) {
+  const Vec3 r = x - c;
+  const double a = std::sqrt(kRadius * z), s = norm(r), ratio = a / s;
+  if (s <= a) return z * (1 - 0.5 * s * s / (a * a)) * kDown + q;
+  const double across = std::sqrt(1 - ratio * ratio);
+  const double normal =
+      z / std::numbers::pi * ((2 - 1 / (ratio * ratio)) * std::asin(ratio) + across / ratio);
+  const Vec3 e = (1 / s) * r, mirrored = 2 * dot(e, q) * e - q;  // |q| (cos 2 theta, sin 2 theta)
+  return normal * kDown +
+         2 / (3 * std::numbers::pi) * (3 * std::asin(ratio) * q + ratio * across * mirrored);
+}
+
+TEST(Compress, ADragMovesTheSkinFarAwayAsTheContactIsWide) {
+  const PressedPlate plate;
+  // Dragged at 6 mm: at other depths the contact is narrower or wider.
+  const Deformation deformation = compressed(plate, half_space);
+  const runtime::SkinDeformation skin(deformation, plate.library.triangles);
+  for (const double z : {0.0012, 0.003, 0.006, 0.0075})
+    for (const Vec3& q : {Vec3{0.001, 0, 0}, Vec3{-0.0005, 0.001, 0}}) {
+      const runtime::Touch touch = touch_at(plate, 70, kMiddle, z, q);
+      const Vec3 c = touch.contact_point;
+      const auto dragged = shown(skin, touch);
+      const auto pressed = shown(skin, touch_at(plate, 70, kMiddle, z));
+      double squares = 0, count = 0;
+      for (std::size_t w = 0; w < dragged.size(); ++w) {
+        const Vec3& x = skin.positions()[w];
+        if (norm(x - c) < deformation.reach) continue;
+        const Vec3 direct = half_space(x, c, z, q) - half_space(x, c, z, {});
+        const Vec3 off = dragged[w] - pressed[w] - direct;
+        squares += dot(off, off);
+        ++count;
+      }
+      EXPECT_LT(std::sqrt(squares / count), 0.01 * norm(q)) << z;
+    }
 }
 
 TEST(Compress, NoVertexIsInsideTheTool) {
