@@ -11,11 +11,13 @@
 #include "fem/campaign/finer_mesh.hpp"
 #include "fem/factor/memory.hpp"
 #include "fem/factor/rest_factor.hpp"
+#include "format/to_index.hpp"
+#include "mesher/geometry/thickness.hpp"
 
 namespace palpate::app {
 namespace {
 
-constexpr std::size_t kTrialsPerThread = 4;
+constexpr std::size_t kTrialsPerThread = 6;
 /// Time of a site on a finer mesh over that of others (`bench_mesh_error bound`).
 constexpr double kFinerOverOthers = 6;
 
@@ -29,7 +31,35 @@ double sites_worth_of_finer_mesh(const Workspace& space, const Body& body,
          space.shard.count;
 }
 
+/// The boundary of the body with the response vertices as its first points.
+mesher::Surface surface_from_vertices(const Body& body) {
+  mesher::Surface surface;
+  std::vector<std::int32_t> index(body.nodes.size(), -1);
+  const auto index_of = [&](std::int32_t node) {
+    std::int32_t& known = index[to_index(node)];
+    if (known < 0) {
+      known = static_cast<std::int32_t>(surface.points.size());
+      surface.points.push_back(body.nodes[to_index(node)]);
+    }
+    return known;
+  };
+  for (const std::int32_t node : body.response.node) index_of(node);
+  for (const Triangle& facet : body.boundary)
+    surface.triangles.push_back({index_of(facet[0]), index_of(facet[1]), index_of(facet[2])});
+  return surface;
+}
+
 }  // namespace
+
+std::vector<std::int32_t> by_thickness(const Body& body, std::vector<std::int32_t> sites,
+                                       double tool_radius) {
+  const std::vector<double> thickness =
+      mesher::thickness_under_tool(surface_from_vertices(body), body.response.inward, tool_radius);
+  std::stable_sort(sites.begin(), sites.end(), [&](std::int32_t a, std::int32_t b) {
+    return thickness[to_index(a)] < thickness[to_index(b)];
+  });
+  return sites;
+}
 
 std::vector<std::int32_t> spread(const std::vector<std::int32_t>& sites, std::size_t count) {
   if (count >= sites.size()) return sites;
@@ -43,8 +73,9 @@ Trial press_trial_sites(const Workspace& space, const Body& body, double patienc
   fem::CampaignSettings settings = campaign_settings(space);
   Trial trial;
   if (settings.indentation.refines()) trial.time = RemainingTime(RemainingTime::kNotSharing);
-  settings.sites = spread(sites_of_shard(body, space.shard),
-                          kTrialsPerThread * static_cast<std::size_t>(space.threads));
+  settings.sites = spread(
+      by_thickness(body, sites_of_shard(body, space.shard), settings.indentation.tool.radius),
+      kTrialsPerThread * static_cast<std::size_t>(space.threads));
   trial.sites = settings.sites.size();
   trial.on_finer_mesh = sites_worth_of_finer_mesh(space, body, settings);
   const auto start = std::chrono::steady_clock::now();

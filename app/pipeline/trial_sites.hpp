@@ -27,10 +27,15 @@ struct Trial {
   double bytes_between = 0;  ///< most that was resident when one finished
 };
 
-/// `count` of the sites or all, spread over their numbering.
+/// The sites from the thinnest part of the body to the thickest: what is thin bends, and takes
+/// several times as long.
+std::vector<std::int32_t> by_thickness(const Body& body, std::vector<std::int32_t> sites,
+                                       double tool_radius);
+
+/// `count` of the sites or all, spread over their order.
 std::vector<std::int32_t> spread(const std::vector<std::int32_t>& sites, std::size_t count);
 
-/// Presses four sites for each thread, spread over those of the shard.
+/// Presses six sites for each thread, spread over the thicknesses under those of the shard.
 /// @param patience  s after which the sites that run are given up: their increments so far tell
 ///   how long they would have taken
 Trial press_trial_sites(const Workspace& space, const Body& body,
