@@ -12,24 +12,28 @@
 
 namespace palpate::app {
 
+/// How sites that run disturb each other: while n run, each is served at the rate
+/// max(1, n / processors)^-exponent.
+struct SiteSharing {
+  double processors = 1, exponent = 0.5;
+};
+
 /// Time that a campaign still takes, from what its sites took so far. The time before the first
 /// site starts, in which the stiffness matrix is factorized, counts for nothing.
 ///
-/// Sites that run share processors and block solves. While n run, each is served at the rate n^-p:
-/// between 1, of sites that do not disturb each other, and 1/n, of sites that share nothing but the
-/// processor; a block solve takes little less for few sites than for many. The service of a site,
-/// the integral of n^-p dt from its start to its end, thus depends little on how many run, and a
-/// last group of few sites takes less time than a full one.
+/// Sites that run share processors and block solves. A block solve takes little less for few sites
+/// than for many: where it takes most of the time, each of n sites is served at the rate 1/sqrt(n),
+/// between 1, of sites that do not disturb each other, and 1/n. Sites whose own work takes the
+/// time, as on elements that are refined under the tool, share nothing but the processors. The
+/// service of a site, the integral of its rate from its start to its end, thus depends little on
+/// how many run, and a last group of few sites takes less time than a full one.
 ///
 /// Sites on thin parts need ten times the service of others, and the quick ones finish first. A
 /// site that runs therefore counts with the service that its increments so far foretell.
 class RemainingTime {
  public:
-  /// p where block solves take most of the time, and where the sites' own work does, as on elements
-  /// that are refined under the tool.
-  static constexpr double kSharing = 0.5, kNotSharing = 0.9;
-
-  explicit RemainingTime(double exponent = kSharing) : exponent_(exponent) {}
+  /// By default for sites that share block solves.
+  explicit RemainingTime(const SiteSharing& sharing = {}) : sharing_(sharing) {}
 
   /// The first site starts. `now`: s, of any clock.
   void begin(double now);
@@ -65,9 +69,9 @@ class RemainingTime {
   double time_of(const std::vector<double>& running, std::int64_t unstarted,
                  const std::vector<double>& likely) const;
 
-  double exponent_;    ///< p
+  SiteSharing sharing_;
   double last_ = 0;    ///< s, of the last update
-  double served_ = 0;  ///< s, integral of n^-p dt until then
+  double served_ = 0;  ///< s, integral of the rate until then
   std::int64_t done_ = 0, total_ = 0;
   std::size_t places_ = 0;                   ///< largest number of sites that ran
   double step_ = 0;                          ///< fraction of the increments that one is

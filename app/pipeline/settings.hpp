@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "app/pipeline/workspace.hpp"
+#include "app/remaining_time.hpp"
 #include "fem/campaign/campaign.hpp"
 #include "fitting/certificate/certify.hpp"
 #include "fitting/response/fit_settings.hpp"
@@ -28,6 +29,8 @@ std::filesystem::path records_of(const Workspace& space);  ///< the sidecar of a
 
 mesher::Settings mesh_settings(const Workspace& space);
 fem::CampaignSettings campaign_settings(const Workspace& space);
+/// How the sites of a campaign disturb each other.
+SiteSharing sharing_of(const fem::CampaignSettings& settings);
 fitting::FitSettings fit_settings(const Workspace& space);
 
 /// Reads the device profiles. @throws Error(Configuration).

@@ -72,7 +72,7 @@ std::vector<std::int32_t> spread(const std::vector<std::int32_t>& sites, std::si
 Trial press_trial_sites(const Workspace& space, const Body& body, double patience) {
   fem::CampaignSettings settings = campaign_settings(space);
   Trial trial;
-  if (settings.indentation.refines()) trial.time = RemainingTime(RemainingTime::kNotSharing);
+  trial.time = RemainingTime(sharing_of(settings));
   settings.sites = spread(
       by_thickness(body, sites_of_shard(body, space.shard), settings.indentation.tool.radius),
       kTrialsPerThread * static_cast<std::size_t>(space.threads));

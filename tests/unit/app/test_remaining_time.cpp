@@ -268,14 +268,14 @@ TEST(RemainingTime, GivesTheTimeOfALargerCampaign) {
 
 /// Where nothing is shared, as many at a time as there are processors are as fast as more.
 TEST(RemainingTime, GainsLittleByMoreAtATimeWhereSitesShareNothing) {
-  RemainingTime trial(RemainingTime::kNotSharing);
+  RemainingTime trial({2, 1});
   trial.begin(0);
   std::vector<SiteProgress> running;
   for (std::int32_t vertex = 0; vertex < 8; ++vertex) running.push_back({vertex, 0});
   trial.update(0, 0, 8, running);
   trial.update(10, 8, 8, {});
   EXPECT_NEAR(trial.campaign(64, 8), 80, 1e-9);
-  EXPECT_NEAR(trial.campaign(64, 32), 80, 12);
+  EXPECT_NEAR(trial.campaign(64, 32), 80, 1e-9);
 }
 
 /// A trial that is ended early: a site that did not come as far as its first increment is slow.
