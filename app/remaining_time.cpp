@@ -93,23 +93,14 @@ double RemainingTime::part_of_service(double fraction) const {
   return ((1 - within) * parts_[i] + within * parts_[i + 1]) / static_cast<double>(profiles_);
 }
 
-/// By the increments that are done: the mean of what all of them and what the last one foretells,
-/// as the increments of a thin part that bends become longer than those of others. Not less than
-/// the age of the site over the part that its next increment ends; 0 as long as nothing is known of
-/// increments.
+/// By the increments that are done, and not less than the age of the site over the part that its
+/// next increment ends: 0 as long as nothing is known of increments.
 double RemainingTime::foretold_service(const Running& site, double served) const {
   if (step_ == 0) return 0;
   const double next = site.passed.empty() ? step_ : site.passed.back().first + step_;
   const double least = (served - site.start) / part_of_service(std::min(1.0, next));
   if (site.passed.empty()) return least;
-  const auto [fraction, service] = site.passed.back();
-  const double part = part_of_service(fraction);
-  const auto before =
-      site.passed.size() > 1 ? site.passed[site.passed.size() - 2] : std::pair(0.0, 0.0);
-  const double by_all = service / part, last = part - part_of_service(before.first);
-  if (last <= 0) return std::max(least, by_all);
-  const double by_last = service + (1 - part) * (service - before.second) / last;
-  return std::max(least, 0.5 * (by_all + by_last));
+  return std::max(least, site.passed.back().second / part_of_service(site.passed.back().first));
 }
 
 /// The services of finished sites, of those whose increments tell something, and of those that take
