@@ -201,7 +201,7 @@ void SharedFactorSolver::turn_factor(const Displacement& u) {
 
 NewtonResult SharedFactorSolver::equilibrate(const ToolContact& contact,
                                              const NewtonOptions& options, Displacement& u) {
-  const NewtonResult result = descend(contact, options, u);
+  NewtonResult result = descend(contact, options, u);
   turned_solve_ = nullptr;  // its memory is that of one site at a time
   return result;
 }
