@@ -16,7 +16,7 @@ namespace palpate::fem {
 std::size_t pairs_needed(const CampaignContext& context);
 
 /// The solvers of one site: first the shared factor, then Newton's method on the whole body where
-/// that fails. A body with refined elements has no factor of its own, so that it has only the
+/// that fails. A body with refined elements is never factorized as a whole, so that it has only the
 /// first. One thread.
 class SiteEquilibrium {
  public:

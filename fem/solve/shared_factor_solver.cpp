@@ -202,7 +202,7 @@ void SharedFactorSolver::turn_factor(const Displacement& u) {
 NewtonResult SharedFactorSolver::equilibrate(const ToolContact& contact,
                                              const NewtonOptions& options, Displacement& u) {
   NewtonResult result = descend(contact, options, u);
-  turned_solve_ = nullptr;  // its memory is that of one site at a time
+  turned_solve_ = nullptr;  // other sites wait for its place in memory
   return result;
 }
 
