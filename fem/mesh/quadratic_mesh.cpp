@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/mesh/quadratic_mesh.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <map>
 #include <unordered_map>
@@ -116,6 +117,20 @@ QuadraticMesh make_quadratic_mesh(const Body& body, bool linear) {
   mark_fixed_nodes(body, edges, mesh);
   mesh.edges = edges.corners();
   return mesh;
+}
+
+double volume_of(const QuadraticMesh& mesh, int element) {
+  const auto& node = mesh.tetrahedra[to_index(element)];
+  const auto edge = [&](std::size_t c) -> Eigen::Vector3d {
+    return mesh.X.col(node[c]) - mesh.X.col(node[0]);
+  };
+  return edge(1).cross(edge(2)).dot(edge(3)) / 6;
+}
+
+Eigen::Vector3d centroid(const QuadraticMesh& mesh, int element) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t c = 0; c < 4; ++c) sum += mesh.X.col(mesh.tetrahedra[to_index(element)][c]);
+  return sum / 4;
 }
 
 void straighten(const QuadraticMesh& mesh, Eigen::Matrix3Xd& u) {

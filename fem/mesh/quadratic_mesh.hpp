@@ -42,6 +42,10 @@ struct QuadraticMesh {
 
 QuadraticMesh make_quadratic_mesh(const Body& body, bool linear = false);
 
+/// Volume of a tetrahedron of the mesh, m^3, and the mean of its corners, m.
+double volume_of(const QuadraticMesh& mesh, int element);
+Eigen::Vector3d centroid(const QuadraticMesh& mesh, int element);
+
 /// If the mesh is linear, sets the displacements of mid-edge nodes halfway between their corners.
 void straighten(const QuadraticMesh& mesh, Eigen::Matrix3Xd& u);
 

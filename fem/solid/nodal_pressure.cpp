@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 #include "fem/solid/nodal_pressure.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 
 #include "format/to_index.hpp"
 
 namespace palpate::fem {
-
-double volume_of(const QuadraticMesh& mesh, int element) {
-  const auto& node = mesh.tetrahedra[to_index(element)];
-  const auto edge = [&](std::size_t c) -> Eigen::Vector3d {
-    return mesh.X.col(node[c]) - mesh.X.col(node[0]);
-  };
-  return edge(1).cross(edge(2)).dot(edge(3)) / 6;
-}
 
 NodalPressure::NodalPressure(const QuadraticMesh& mesh, const std::vector<int>& elements,
                              const std::vector<int>& equation)

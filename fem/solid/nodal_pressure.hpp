@@ -46,7 +46,4 @@ class NodalPressure {
   std::vector<int> elements_;
 };
 
-/// Volume of a straight tetrahedron of the mesh, m^3.
-double volume_of(const QuadraticMesh& mesh, int element);
-
 }  // namespace palpate::fem

@@ -155,6 +155,7 @@ class SolidModel {
   Block make_block(const std::vector<int>& elements, std::size_t first, int region) const;
   /// The unknown of a row of an element, -1 where it is not free.
   int unknown(const Tetrahedron10& node, std::size_t row) const;
+  static constexpr std::size_t kElementEntries = std::tuple_size_v<ElementMatrix<double>>;
   void make_scatter();
   ElementVector<Lanes> gather(const Block& block, const Displacement& u) const;
   ElementKinematics<Lanes> kinematics_of(const Block& block, const ElementVector<Lanes>& u) const;
