@@ -74,7 +74,7 @@ void describe(V& v, const Progress& e) {
   v.event("progress", "stands before the first `site` and follows each");
   v.field("done", e.done, "finished sites, with those of the journal");
   v.field("failed", e.failed, "how many of them failed or stopped early");
-  v.field("running", e.running, "sites in the current batch");
+  v.field("running", e.running, "sites that run");
   v.field("total", e.total, "sites of the campaign or of the round");
 }
 

@@ -94,21 +94,23 @@ class OpenSites {
         site_threads(*context_.rest_factor, settings_.threads, open_.size(), settings_.memory,
                      bytes_of_site(context_, curves_.sites[open_.front()].vertex));
     parallel_for_sites(*context_.rest_factor, size, open_.size(),
-                       [this](SolveBatch::Member& member, std::size_t i) {
+                       [this](SolvePool::Member& member, std::size_t i) {
                          solve(member, curves_.sites[open_[i]]);
                        });
   }
 
  private:
-  void solve(SolveBatch::Member& member, SiteCurves& result) {
+  void solve(SolvePool::Member& member, SiteCurves& result) {
     {
       const std::lock_guard lock(mutex_);
       ++progress_.running;
-      progress_.sites.push_back({result.vertex, 0});
+      progress_.sites.push_back({result.vertex, 0, 0});
       if (settings_.advanced) settings_.advanced(progress_);
     }
     SiteSolver solver(context_, &member);
-    solver.on_increment([&](double fraction) { advance(result.vertex, fraction); });
+    solver.on_increment([&](double fraction, double seconds) {
+      advance({result.vertex, fraction, seconds});
+    });
     std::optional<FieldRecorder> recorder;
     if (keeps_fields()) {
       recorder.emplace(solver, context_, skin_.node, settings_.field_depths);
@@ -131,9 +133,9 @@ class OpenSites {
                         [&](const SiteProgress& site) { return site.vertex == vertex; });
   }
 
-  void advance(std::int32_t vertex, double fraction) {
+  void advance(const SiteProgress& site) {
     const std::lock_guard lock(mutex_);
-    running_site(vertex)->fraction = fraction;
+    *running_site(site.vertex) = site;
     if (settings_.advanced) settings_.advanced(progress_);
   }
 

@@ -11,6 +11,7 @@
 #include "fem/campaign/settings.hpp"
 #include "fem/contact/contact.hpp"
 #include "fem/factor/rest_factor.hpp"
+#include "fem/factor/solve_pool.hpp"
 #include "fem/solid/solid_model.hpp"
 #include "fem/solve/unloaded_shape.hpp"
 
@@ -63,11 +64,13 @@ struct CampaignContext {
                   FactorCache* cache, Preloaded&& start);
 };
 
-/// A place for a factor that a site has of its own; waits until one is free.
+/// A place for a factor that a site has of its own. Waits until one is free, without keeping a
+/// core.
 class OwnFactorPlace {
  public:
-  explicit OwnFactorPlace(const CampaignContext& context) : places_(context.own_factors) {
-    places_.acquire();
+  OwnFactorPlace(const CampaignContext& context, SolvePool::Member& member)
+      : places_(context.own_factors) {
+    if (!places_.try_acquire()) member.without_core([&] { places_.acquire(); });
   }
   ~OwnFactorPlace() { places_.release(); }
   OwnFactorPlace(const OwnFactorPlace&) = delete;

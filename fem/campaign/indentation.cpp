@@ -63,13 +63,13 @@ void stop_early(SiteCurves& curves, const std::string& reason) {
 }  // namespace
 
 struct SiteSolver::Site {
-  Site(const CampaignContext& context, const PressPoint& point, SolveBatch::Member* batch)
+  Site(const CampaignContext& context, const PressPoint& point, SolvePool::Member* member)
       : X(context.reference_position(point.position)),
         inward(to_eigen(point.inward)),
         body(site_body_at(context, point, mesh_of_site(context))),
         contact(contact_at(context, body.mesh(), X)),
         touching(tool_at_first_touch(context, contact, body.rest(), point)),
-        equilibrium(context, body, batch),
+        equilibrium(context, body, member),
         self_contact(body.mesh(), X, kWatched * context.indentation.tool.extent()),
         volume_at_rest(body.whole().volume(body.rest())) {}
 
@@ -217,7 +217,8 @@ std::size_t SiteSolver::count_increments(const SitePlan& plan) const {
 void SiteSolver::increment_done() {
   ++increments_done_;
   if (on_increment_)
-    on_increment_(static_cast<double>(increments_done_) / static_cast<double>(increments_));
+    on_increment_(static_cast<double>(increments_done_) / static_cast<double>(increments_),
+                  thread_cpu_seconds() - start_);
 }
 
 /// No force is read from this path.
@@ -268,29 +269,29 @@ SiteCurves SiteSolver::solve(std::int32_t vertex) {
 }
 
 SiteCurves SiteSolver::solve(std::int32_t vertex, const SitePlan& plan) {
-  const double start = thread_cpu_seconds();
+  start_ = thread_cpu_seconds();
   SiteCurves curves;
   curves.vertex = vertex;
   curves.status = SiteStatus::Complete;
   increments_ = count_increments(plan);
   increments_done_ = 0;
-  Site site(context_, context_.press_point(vertex), batch_);
+  Site site(context_, context_.press_point(vertex), member_);
   run_normal_path(site, plan.stops, curves);
   for (const LateralPlan& lateral : within_reach(plan, site))
     run_lateral_path(site, lateral, curves);
   if (also_across_)
     for (const LateralPlan& lateral : within_reach(plan, site)) run_across(site, lateral, curves);
   if (curves.paths.front().samples.size() < 2) curves.status = SiteStatus::Failed;
-  curves.cpu_seconds = thread_cpu_seconds() - start;
+  curves.cpu_seconds = thread_cpu_seconds() - start_;
   return curves;
 }
 
 SiteCurves solve_site(const CampaignContext& context, std::int32_t vertex, Displacement* pressed) {
-  std::optional<SolveBatch> batch;
-  std::optional<SolveBatch::Member> member;
+  std::optional<SolvePool> pool;
+  std::optional<SolvePool::Member> member;
   if (context.rest_factor) {
-    batch.emplace(*context.rest_factor, 1);
-    member.emplace(*batch);
+    pool.emplace(*context.rest_factor, 1);
+    member.emplace(*pool);
   }
   SiteSolver solver(context, member ? &*member : nullptr);
   SiteCurves curves = solver.solve(vertex);

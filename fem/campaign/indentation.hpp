@@ -28,10 +28,9 @@ struct SitePlan {
 /// Solves sites one after another on one thread.
 class SiteSolver {
  public:
-  /// `batch`: this thread's membership of the threads that share block solves; may be null for
-  /// Engine::Direct.
-  SiteSolver(const CampaignContext& context, SolveBatch::Member* batch)
-      : context_(context), batch_(batch) {}
+  /// `member`: this thread's membership of the pool of sites; may be null for Engine::Direct.
+  SiteSolver(const CampaignContext& context, SolvePool::Member* member)
+      : context_(context), member_(member) {}
 
   /// All paths of a site, those of the settings or of a plan. A failure is recorded in the result,
   /// never thrown.
@@ -52,8 +51,10 @@ class SiteSolver {
   /// not have it. Where a site has a single azimuth, the skin would be known in one direction.
   void also_across(bool wanted) { also_across_ = wanted; }
 
-  /// Called after every increment with the fraction of the site's increments that are done.
-  void on_increment(std::function<void(double)> call) { on_increment_ = std::move(call); }
+  /// Called after every increment with the fraction of the site's increments that are done, and the
+  /// processor time of the site, s.
+  using IncrementObserver = std::function<void(double fraction, double seconds)>;
+  void on_increment(IncrementObserver call) { on_increment_ = std::move(call); }
 
   /// The end of the normal path of the site last solved, on the nodes of the body.
   const Displacement& pressed_state() const { return pressed_; }
@@ -70,13 +71,14 @@ class SiteSolver {
   void increment_done();
 
   const CampaignContext& context_;
-  SolveBatch::Member* batch_;
+  SolvePool::Member* member_;
   Displacement pressed_;
   Observer observer_;
   LateralObserver lateral_observer_;
   bool also_across_ = false;
-  std::function<void(double)> on_increment_;
+  IncrementObserver on_increment_;
   std::size_t increments_ = 0, increments_done_ = 0;  ///< of the site being solved
+  double start_ = 0;                                  ///< s, of its processor time
 };
 
 /// Solves one site alone. `pressed`: the displacement at the end of its normal path; may be null.

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <deque>
 #include <exception>
 #include <mutex>
 #include <string>
@@ -45,12 +44,13 @@ SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites,
   const double own_factors =
       kOwnFactorInDouble * factor.bytes() +
       (places_for_own_factors(factor, size.cores, memory) - 1) * bytes_of_own_factor(factor);
-  size.threads_per_core = fitting_times(
+  const int per_core = fitting_times(
       memory, size.cores * bytes_per_site,
       static_cast<int>(std::min<std::size_t>(kBatch, sites_per_core)),
       "a site on each of " + std::to_string(size.cores) +
           " cores (memory is reserved for the factors that sites may need of their own)",
       own_factors);
+  size.threads = static_cast<int>(std::min(sites, to_index(per_core * size.cores)));
   return size;
 }
 
@@ -68,13 +68,14 @@ std::vector<std::size_t> spread_out(const std::vector<std::size_t>& indices) {
 }
 
 void parallel_for_sites(const RestFactor& factor, const SiteThreads& size, std::size_t count,
-                        const std::function<void(SolveBatch::Member&, std::size_t)>& work) {
+                        const std::function<void(SolvePool::Member&, std::size_t)>& work) {
   std::atomic<std::size_t> next{0};
   std::mutex mutex;
   std::exception_ptr failure;
-  const auto serve = [&](SolveBatch& batch) {
+  SolvePool pool(factor, size.cores);
+  const auto serve = [&] {
     use_one_thread_per_site();
-    SolveBatch::Member member(batch);
+    SolvePool::Member member(pool);
     try {
       for (std::size_t i = next++; i < count; i = next++) work(member, i);
     } catch (...) {
@@ -83,13 +84,8 @@ void parallel_for_sites(const RestFactor& factor, const SiteThreads& size, std::
       next = count;
     }
   };
-  std::deque<SolveBatch> batches;
   std::vector<std::thread> threads;
-  for (int core = 0; core < size.cores; ++core)
-    batches.emplace_back(factor, size.threads_per_core, &batches);
-  for (SolveBatch& batch : batches)
-    for (int i = 0; i < size.threads_per_core; ++i)
-      threads.emplace_back([&serve, &batch] { serve(batch); });
+  for (int i = 0; i < size.threads; ++i) threads.emplace_back(serve);
   for (std::thread& thread : threads) thread.join();
   if (failure) std::rethrow_exception(failure);
 }

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Sites on several cores, several at a time on each, so that they share block solves.
+// Sites on several cores, more at a time than there are cores, so that they share block solves.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <vector>
 
-#include "fem/factor/rest_factor.hpp"
+#include "fem/factor/solve_pool.hpp"
 
 namespace palpate::fem {
 
-/// How many threads work. The threads of a core share a SolveBatch, and one of them runs at a time.
+/// How many sites have a thread, and how many of these run at a time (SolvePool).
 struct SiteThreads {
-  int cores = 1, threads_per_core = 1;
+  int cores = 1, threads = 1;
 };
 
 /// How many sites may have a factor of their own at once: one for each core, and all together no
 /// more than a quarter of `memory`, bytes (0: that of the machine), but one in any case.
 int places_for_own_factors(const RestFactor& factor, int cores, double memory);
 
-/// On each core as many threads as there are sites for, at most kBatch, and no more than fit into
+/// As many threads as there are sites, at most kBatch for each core, and no more than fit into
 /// `memory`, bytes (0: no bound), beside the factors that sites need of their own.
 /// `bytes_per_site`: memory of a running site.
 /// @throws Error(Configuration) when one site for each core does not fit.
@@ -34,6 +34,6 @@ std::vector<std::size_t> spread_out(const std::vector<std::size_t>& indices);
 /// Calls `work` once for every index below `count`, concurrently. After the first exception no
 /// further index is started; it is rethrown once the running ones are done.
 void parallel_for_sites(const RestFactor& factor, const SiteThreads& size, std::size_t count,
-                        const std::function<void(SolveBatch::Member&, std::size_t)>& work);
+                        const std::function<void(SolvePool::Member&, std::size_t)>& work);
 
 }  // namespace palpate::fem

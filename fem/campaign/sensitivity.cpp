@@ -82,12 +82,12 @@ Varied varied(const Body& body, const CampaignSettings& settings, const RegionCo
 class Differentiator {
  public:
   Differentiator(const CampaignContext& context, const std::vector<Varied>& constants,
-                 SolveBatch::Member& batch, const PressPoint& point)
+                 SolvePool::Member& member, const PressPoint& point)
       : context_(context),
         constants_(constants),
         window_(window_at(context.model, to_eigen(point.position), context.indentation.tool)),
         solver_(context.model, window_,
-                [&batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch.solve(b, x); }) {}
+                [&member](const Eigen::VectorXd& b, Eigen::VectorXd& x) { member.solve(b, x); }) {}
 
   /// Derivatives of the force along `direction`. False when the stiffness is not positive definite:
   /// the equilibrium is at a limit point. `adjoint`: K^-1 dF/du.
@@ -181,14 +181,14 @@ bool is_among(double depth, const std::vector<double>& depths) {
 class SiteDifferentiation {
  public:
   SiteDifferentiation(const CampaignContext& context, const std::vector<Varied>& constants,
-                      SolveBatch::Member& batch, std::int32_t vertex,
+                      SolvePool::Member& member, std::int32_t vertex,
                       const std::vector<LateralPlan>& lateral)
       : point_(context.press_point(vertex)),
         lateral_(lateral),
         depths_(context.indentation.lateral_depths),
         no_slip_(context.indentation.friction == ToolFriction::NoSlip),
-        differentiator_(context, constants, batch, point_),
-        solver_(context, &batch) {
+        differentiator_(context, constants, member, point_),
+        solver_(context, &member) {
     result_.vertex = vertex;
     result_.lateral.resize(lateral.size());
   }
@@ -304,7 +304,7 @@ std::vector<SiteSensitivity> pressed_sites(const Body& body, const CampaignSetti
   const SiteThreads size = site_threads(*context.rest_factor, normal.threads, results.size(),
                                         normal.memory, bytes_of(context, normal.sites.front()));
   parallel_for_sites(
-      *context.rest_factor, size, results.size(), [&](SolveBatch::Member& member, std::size_t i) {
+      *context.rest_factor, size, results.size(), [&](SolvePool::Member& member, std::size_t i) {
         results[i] = SiteDifferentiation(context, derivatives, member, normal.sites[i],
                                          lateral.empty() ? none : lateral[i])
                          .run();

@@ -63,7 +63,7 @@ struct PressPoint {
 struct CampaignProgress {
   std::int64_t done = 0, failed = 0, total = 0;
   std::int64_t known = 0;           ///< of `done`: results of an earlier run
-  std::int64_t running = 0;         ///< sites run concurrently, in batches, and finish in groups
+  std::int64_t running = 0;         ///< sites that have been started
   std::vector<SiteProgress> sites;  ///< those that run
 };
 

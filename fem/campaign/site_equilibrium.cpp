@@ -28,8 +28,8 @@ int steps_before_own_factor(const RestFactor& factor) {
 /// A factor of the body as it has turned, in the place that memory has for it. Which site waits for
 /// a place changes no result.
 struct OwnFactor {
-  OwnFactor(const CampaignContext& context, const Displacement& u)
-      : place(context),
+  OwnFactor(const CampaignContext& context, SolvePool::Member& member, const Displacement& u)
+      : place(context, member),
         turned(context.model, context.permutation,
                context.rest_factor->in_double_precision() ? Precision::Double : Precision::Single,
                u.leftCols(context.model.mesh().nodes())) {}
@@ -38,9 +38,9 @@ struct OwnFactor {
   TurnedFactor turned;
 };
 
-SharedFactorSolver::BentBody bent_body(const CampaignContext& context) {
-  const auto turned_solve = [&context](const Displacement& u) -> SharedFactorSolver::RestSolve {
-    return [own = std::make_shared<OwnFactor>(context, u)](
+SharedFactorSolver::BentBody bent_body(const CampaignContext& context, SolvePool::Member& member) {
+  const auto turned_solve = [&](const Displacement& u) -> SharedFactorSolver::RestSolve {
+    return [own = std::make_shared<OwnFactor>(context, member, u)](
                const Eigen::VectorXd& b, Eigen::VectorXd& x) { own->turned.solve(b, x); };
   };
   const int steps = steps_before_own_factor(*context.rest_factor);
@@ -56,15 +56,16 @@ std::size_t pairs_needed(const CampaignContext& context) {
 }
 
 SiteEquilibrium::SiteEquilibrium(const CampaignContext& context, const SiteBody& body,
-                                 SolveBatch::Member* batch)
+                                 SolvePool::Member* member)
     : context_(context),
       force_tolerance_(context.indentation.force_tolerance),
+      member_(member),
       direct_possible_(body.prolongation() == nullptr) {
   if (context.engine == Engine::Direct) return;
   shared_ = std::make_unique<SharedFactorSolver>(
       body.whole(), body.window(),
-      [batch](const Eigen::VectorXd& b, Eigen::VectorXd& x) { batch->solve(b, x); },
-      bent_body(context), pairs_needed(context), body.prolongation());
+      [member](const Eigen::VectorXd& b, Eigen::VectorXd& x) { member->solve(b, x); },
+      bent_body(context, *member), pairs_needed(context), body.prolongation());
 }
 
 NewtonResult SiteEquilibrium::solve(const ToolContact& contact, bool direct_allowed,
@@ -119,8 +120,9 @@ NewtonResult SiteEquilibrium::solve_direct(const ToolContact& contact, Displacem
 /// One site at a time, and the factor is freed at once: factors of the whole body, one for each
 /// site that runs, would fill the memory.
 NewtonResult SiteEquilibrium::solve_direct_alone(const ToolContact& contact, Displacement& u) {
-  const std::lock_guard lock(context_.direct_solve);
-  const OwnFactorPlace place(context_);
+  std::unique_lock lock(context_.direct_solve, std::try_to_lock);
+  if (!lock) member_->without_core([&lock] { lock.lock(); });
+  const OwnFactorPlace place(context_, *member_);
   NewtonResult result = solve_direct(contact, u);
   direct_.reset();
   return result;

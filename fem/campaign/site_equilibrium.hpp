@@ -20,8 +20,8 @@ std::size_t pairs_needed(const CampaignContext& context);
 /// first. One thread.
 class SiteEquilibrium {
  public:
-  /// `batch`: may be null for Engine::Direct.
-  SiteEquilibrium(const CampaignContext& context, const SiteBody& body, SolveBatch::Member* batch);
+  /// `member`: may be null for Engine::Direct.
+  SiteEquilibrium(const CampaignContext& context, const SiteBody& body, SolvePool::Member* member);
 
   /// Moves `u` to the equilibrium. `direct_allowed`: the whole body may be factorized, which costs
   /// about a hundred times more.
@@ -44,6 +44,7 @@ class SiteEquilibrium {
 
   const CampaignContext& context_;
   double force_tolerance_;
+  SolvePool::Member* member_;
   bool direct_possible_;
   std::unique_ptr<SharedFactorSolver> shared_;
   std::unique_ptr<NewtonSolver> direct_;

@@ -3,13 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <atomic>
-#include <bitset>
-#include <condition_variable>
-#include <cstdint>
-#include <deque>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -107,55 +101,6 @@ class FactorCache {
   double scale_ = 1;  ///< of the matrix that the factor approximates, over the one factorized
   std::shared_ptr<RestFactor> factor_;
   int factorizations_ = 0;
-};
-
-/// Gathers the requests of up to kBatch sites, each on its own thread, and serves them by one block
-/// solve when every running site waits for it. Only one of the threads runs at a time (the one that
-/// owns the lock of the batch), so that a batch occupies one core.
-class SolveBatch {
- public:
-  /// `members`: how many threads will take part; each leaves when its Member ends. `batches`: among
-  /// which members are rebalanced, so that no core idles while another has several sites; this is
-  /// one of them, and no member joins before the last of them is constructed.
-  SolveBatch(const RestFactor& factor, int members, std::deque<SolveBatch>* batches = nullptr);
-
-  int members() const { return members_; }
-
-  /// The membership of a site thread while it runs.
-  class Member {
-   public:
-    explicit Member(SolveBatch& batch);
-    ~Member();
-    Member(const Member&) = delete;
-    Member& operator=(const Member&) = delete;
-
-    /// x = K0^-1 b. Blocks until every member of the batch waits for a solve.
-    void solve(const Eigen::VectorXd& b, Eigen::VectorXd& x);
-
-   private:
-    void join();
-    void leave();
-    void rebalance();
-
-    SolveBatch* batch_;
-    int column_ = 0;  ///< of the block
-    std::unique_lock<std::mutex> lock_;
-  };
-
- private:
-  void serve_if_all_wait();
-  /// A batch with at least two members fewer, where this member is then counted; null: none.
-  SolveBatch* reserved_elsewhere();
-
-  const RestFactor& factor_;
-  std::deque<SolveBatch>* batches_;
-  std::mutex mutex_;
-  std::condition_variable served_;
-  std::atomic<int> members_;  ///< with those about to join
-  int waiting_ = 0;
-  std::uint64_t generation_ = 0;
-  std::bitset<kBatch> taken_;  ///< columns of the block
-  std::vector<float> block_, scratch_;
 };
 
 }  // namespace palpate::fem

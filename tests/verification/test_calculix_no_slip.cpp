@@ -137,8 +137,8 @@ struct Equilibrium {
 /// Those at the ends of the press and of the drag.
 std::vector<Equilibrium> ends_of(const Body& body, const fem::CampaignSettings& settings) {
   const fem::CampaignContext context(body, settings, fem::Engine::SharedFactor);
-  fem::SolveBatch batch(*context.rest_factor, 1);
-  fem::SolveBatch::Member member(batch);
+  fem::SolvePool pool(*context.rest_factor, 1);
+  fem::SolvePool::Member member(pool);
   fem::SiteSolver solver(context, &member);
   std::vector<Equilibrium> ends(2);
   const auto keep = [](Equilibrium& end, const fem::Displacement& u, const CurveSample& sample) {

@@ -26,11 +26,12 @@ class ParallelSites : public testing::Test {
 
 TEST_F(ParallelSites, ServesEachIndexOnceAndSolvesForEach) {
   const Eigen::VectorXd expected = block.dense.ldlt().solve(block.b);
-  for (const SiteThreads& size : {SiteThreads{1, 1}, SiteThreads{2, 3}, SiteThreads{3, kBatch}}) {
+  for (const SiteThreads& size :
+       {SiteThreads{1, 1}, SiteThreads{2, 6}, SiteThreads{3, 48}, SiteThreads{4, 2}}) {
     constexpr std::size_t kCount = 61;
     std::vector<std::atomic<int>> calls(kCount);
     std::vector<double> error(kCount, 1);
-    parallel_for_sites(factor, size, kCount, [&](SolveBatch::Member& member, std::size_t i) {
+    parallel_for_sites(factor, size, kCount, [&](SolvePool::Member& member, std::size_t i) {
       ++calls[i];
       Eigen::VectorXd x;
       const double scale = 1 + static_cast<double>(i);
@@ -45,14 +46,14 @@ TEST_F(ParallelSites, ServesEachIndexOnceAndSolvesForEach) {
 }
 
 TEST_F(ParallelSites, CallsNothingForNoSites) {
-  parallel_for_sites(factor, {2, 2}, 0, [](SolveBatch::Member&, std::size_t) { FAIL(); });
+  parallel_for_sites(factor, {2, 4}, 0, [](SolvePool::Member&, std::size_t) { FAIL(); });
 }
 
 TEST_F(ParallelSites, StopsAfterAnExceptionAndRethrowsIt) {
   constexpr std::size_t kCount = 100000;
   std::atomic<std::size_t> calls{0};
   try {
-    parallel_for_sites(factor, {2, 4}, kCount, [&](SolveBatch::Member& member, std::size_t i) {
+    parallel_for_sites(factor, {2, 8}, kCount, [&](SolvePool::Member& member, std::size_t i) {
       ++calls;
       Eigen::VectorXd x;
       member.solve(block.b, x);
@@ -66,14 +67,14 @@ TEST_F(ParallelSites, StopsAfterAnExceptionAndRethrowsIt) {
   EXPECT_LT(calls, kCount);
 }
 
-TEST_F(ParallelSites, HasAsManyThreadsAsThereAreSitesUpToABatch) {
+TEST_F(ParallelSites, HasAsManyThreadsAsThereAreSitesUpToABlockForEachCore) {
   const auto threads = [&](int cores, std::size_t sites) {
     const SiteThreads size = site_threads(factor, cores, sites, 0, 1e9);
     EXPECT_EQ(size.cores, std::max(1, cores));
-    return size.threads_per_core;
+    return size.threads;
   };
-  EXPECT_EQ(threads(2, 1000), kBatch);
-  EXPECT_EQ(threads(2, 5), 3);
+  EXPECT_EQ(threads(2, 1000), 2 * kBatch);
+  EXPECT_EQ(threads(2, 5), 5);
   EXPECT_EQ(threads(0, 5), 5);
   EXPECT_EQ(threads(4, 1), 1);
 }
@@ -91,12 +92,11 @@ TEST_F(ParallelSites, HasFewerThreadsWhereMemoryIsShort) {
   constexpr double kSite = 1e12;                 // beside which the resident memory is negligible
   const double reserved = 3.5 * factor.bytes();  // one factor in double precision, one in single
   const auto threads = [&](double sites_per_core) {
-    return site_threads(factor, 2, 1000, reserved + 2 * sites_per_core * kSite, kSite)
-        .threads_per_core;
+    return site_threads(factor, 2, 1000, reserved + 2 * sites_per_core * kSite, kSite).threads;
   };
-  EXPECT_EQ(threads(4.5), 4);
-  EXPECT_EQ(threads(1.5), 1);
-  EXPECT_EQ(threads(40.5), kBatch);
+  EXPECT_EQ(threads(4.5), 2 * 4);
+  EXPECT_EQ(threads(1.5), 2 * 1);
+  EXPECT_EQ(threads(40.5), 2 * kBatch);
   EXPECT_THROW(threads(0.5), Error);
 }
 

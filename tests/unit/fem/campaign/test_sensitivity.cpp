@@ -223,8 +223,8 @@ TEST(Sensitivity, SolvesWithTheTangentAsAFactorOfItDoes) {
   settings.indentation.azimuths.clear();
   settings.indentation.lateral_depths.clear();
   const CampaignContext context(body, settings, Engine::SharedFactor);
-  SolveBatch batch(*context.rest_factor, 1);
-  SolveBatch::Member member(batch);
+  SolvePool pool(*context.rest_factor, 1);
+  SolvePool::Member member(pool);
   const Vec3 site = context.press_point(settings.sites.front()).position;
   const SolidModel window = window_at(context.model, to_eigen(site), context.indentation.tool);
   TangentSolver solver(context.model, window,

@@ -35,8 +35,8 @@ class Site {
                    ToolGeometry{ToolShape::Sphere, window_tool, 0, 0}, mesh),
         contact_(site_body_.mesh(), Eigen::Vector3d::Zero(), 0.012, context_.contact_stiffness) {
     if (context_.rest_factor) {
-      batch_.emplace(*context_.rest_factor, 1);
-      member_.emplace(*batch_);
+      pool_.emplace(*context_.rest_factor, 1);
+      member_.emplace(*pool_);
     }
     equilibrium_.emplace(context_, site_body_, member_ ? &*member_ : nullptr);
   }
@@ -65,8 +65,8 @@ class Site {
   CampaignContext context_;
   SiteBody site_body_;
   ToolContact contact_;
-  std::optional<SolveBatch> batch_;
-  std::optional<SolveBatch::Member> member_;
+  std::optional<SolvePool> pool_;
+  std::optional<SolvePool::Member> member_;
   std::optional<SiteEquilibrium> equilibrium_;
 };
 

@@ -137,8 +137,8 @@ TEST(SiteFieldsOfCampaign, TheOneAcrossIsThatOfAPathOfItsOwn) {
 TEST(SiteFieldsOfCampaign, TheOneAcrossCostsATenthOfTheSite) {
   const Body body = lopsided_block();
   const CampaignContext context(body, field_settings(), Engine::SharedFactor);
-  SolveBatch batch(*context.rest_factor, 1);
-  SolveBatch::Member member(batch);
+  SolvePool pool(*context.rest_factor, 1);
+  SolvePool::Member member(pool);
   SiteSolver solver(context, &member);
   int across = 0, all = 0;
   Vec3 along{};

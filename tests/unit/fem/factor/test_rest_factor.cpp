@@ -5,10 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
-#include <thread>
 #include <utility>
 
+#include "fem/factor/solve_pool.hpp"
 #include "format/error.hpp"
 #include "tests/unit/fem/factor/assembled_block.hpp"
 
@@ -75,55 +74,6 @@ TEST(RestFactor, GivesARightHandSideTheSameBitsBesideAnyOthers) {
     ASSERT_EQ(alone[to_index(i * kBatch + 5)], full[to_index(i * kBatch + 5)]);
 }
 
-TEST(SolveBatch, ServesAllMembersAndLetsThemLeave) {
-  const Assembled a;
-  const RestFactor factor(a.model.pattern(), nested_dissection(a.model.pattern()), a.K, "block");
-  const Eigen::VectorXd expected = a.dense.ldlt().solve(a.b);
-  SolveBatch batch(factor, 3);
-  std::vector<double> error(3, 1.0);
-  std::vector<std::thread> threads;
-  for (int column = 0; column < 3; ++column)
-    threads.emplace_back([&, column] {
-      SolveBatch::Member member(batch);
-      Eigen::VectorXd x;
-      for (int turn = 0; turn <= 2 * column; ++turn) member.solve((column + 1.0) * a.b, x);
-      error[to_index(column)] = (x - (column + 1.0) * expected).norm() / expected.norm();
-    });
-  for (auto& thread : threads) thread.join();
-  for (const double e : error) EXPECT_LT(e, 1e-3);
-}
-
-/// Seven sites in one batch, none in the other: some move, and no solution changes.
-TEST(SolveBatch, RebalancesMembersWithoutChangingSolutions) {
-  const Assembled a;
-  const RestFactor factor(a.model.pattern(), nested_dissection(a.model.pattern()), a.K, "block");
-  Eigen::VectorXd alone;
-  {
-    SolveBatch batch(factor, 1);
-    SolveBatch::Member(batch).solve(a.b, alone);
-  }
-  std::deque<SolveBatch> batches;
-  for (const int members : {7, 0}) batches.emplace_back(factor, members, &batches);
-  std::vector<int> most(7, 0), wrong(7, 0);
-  std::vector<std::thread> threads;
-  for (int i = 0; i < 7; ++i)
-    threads.emplace_back([&, i] {
-      SolveBatch::Member member(batches[0]);
-      Eigen::VectorXd x;
-      for (int turn = 0; turn < 50; ++turn) {
-        member.solve(a.b, x);
-        if (x != alone) ++wrong[to_index(i)];
-        most[to_index(i)] = std::max(most[to_index(i)], batches[1].members());
-      }
-    });
-  for (auto& thread : threads) thread.join();
-  EXPECT_EQ(*std::max_element(wrong.begin(), wrong.end()), 0);
-  EXPECT_GE(*std::max_element(most.begin(), most.end()), 1);
-  EXPECT_LE(*std::max_element(most.begin(), most.end()),
-            3);  // with four, the other batch would have fewer
-  for (const SolveBatch& batch : batches) EXPECT_EQ(batch.members(), 0);
-}
-
 TEST(RestFactor, RefusesAnIndefiniteMatrixAndTooLittleMemory) {
   Assembled a;
   const SparsePattern& pattern = a.model.pattern();
@@ -142,8 +92,8 @@ TEST(FactorCache, ScalesTheFactorOfAMultipleAndReplacesThatOfAnotherMatrix) {
   for (double& value : stiffer) value *= 3;
   const auto factor = cache.factor_of(pattern, stiffer, "block", {});
   EXPECT_EQ(cache.factorizations(), 1);
-  SolveBatch batch(*factor, 1);
-  SolveBatch::Member member(batch);
+  SolvePool pool(*factor, 1);
+  SolvePool::Member member(pool);
   Eigen::VectorXd x;
   member.solve(a.b, x);
   const Eigen::VectorXd expected = a.dense.ldlt().solve(a.b) / 3;
