@@ -62,7 +62,7 @@ struct Deformation {
 
   std::vector<float> press_local;    ///< (S, K, 2, J) m
   std::vector<float> lateral_local;  ///< (S, L, 3, J) 1
-  /// What differs between directions, times anisotropic_scale. Empty in files from before.
+  /// What differs between directions, times anisotropic_scale. Empty where a file has none.
   std::vector<std::int16_t> anisotropic;  ///< (S, L, 2, 13, J)
   std::vector<float> anisotropic_scale;   ///< (S, L) 1
 

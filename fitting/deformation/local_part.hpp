@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// The part of a displacement field that is symmetric around its contact.
+// The part of a displacement field that moves with its contact.
 #pragma once
 
 #include <Eigen/Core>
