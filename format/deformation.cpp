@@ -109,6 +109,10 @@ void get_fields(const FlatReader& reader, Deformation& d) {
   d.press_modes = numbers(reader, "/press/modes", sites * depths * modes);
   d.lateral_local = numbers(reader, "/lateral/local", sites * lateral * kLateralComponents * knots);
   d.lateral_modes = numbers(reader, "/lateral/modes", sites * lateral * kTangents * modes);
+  if (!reader.has("/lateral/anisotropic")) return;
+  d.anisotropic = reader.array<std::int16_t>(
+      "/lateral/anisotropic", sites * lateral * kTangents * kAnisotropicComponents * knots);
+  d.anisotropic_scale = numbers(reader, "/lateral/anisotropic_scale", sites * lateral);
 }
 
 }  // namespace
@@ -158,6 +162,10 @@ void write_deformation(const std::filesystem::path& file, const Deformation& d) 
   writer.array("/lateral/depth", d.lateral_depths);
   writer.array("/lateral/local", d.lateral_local);
   writer.array("/lateral/modes", d.lateral_modes);
+  if (!d.anisotropic.empty()) {
+    writer.array("/lateral/anisotropic", d.anisotropic);
+    writer.array("/lateral/anisotropic_scale", d.anisotropic_scale);
+  }
   writer.array("/local/knot", d.knots);
   writer.array("/mode/scale", d.mode_scale);
   writer.array("/mode/skin", d.modes);

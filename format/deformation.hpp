@@ -21,6 +21,11 @@ namespace palpate {
 inline constexpr std::size_t kPressComponents = 2;
 inline constexpr std::size_t kLateralComponents = 3;
 inline constexpr std::size_t kTangents = 2;
+/// Components of what differs between directions, for each tangent t of a site: along t, along n x
+/// t and along n, as Fourier series of the azimuth from t: kHarmonics terms, and kNormalHarmonics.
+inline constexpr std::size_t kHarmonics = 5;        ///< 1, cos phi, sin phi, cos 2 phi, sin 2 phi
+inline constexpr std::size_t kNormalHarmonics = 3;  ///< 1, cos phi, sin phi
+inline constexpr std::size_t kAnisotropicComponents = 2 * kHarmonics + kNormalHarmonics;
 
 /// The frame of a site: n and two tangents.
 struct SiteFrame {
@@ -57,6 +62,10 @@ struct Deformation {
 
   std::vector<float> press_local;    ///< (S, K, 2, J) m
   std::vector<float> lateral_local;  ///< (S, L, 3, J) 1
+  /// What differs between directions, times anisotropic_scale. Empty where a file has none.
+  std::vector<std::int16_t> anisotropic;  ///< (S, L, 2, 13, J)
+  std::vector<float> anisotropic_scale;   ///< (S, L) 1
+
   std::vector<float> press_modes;    ///< (S, K, M) m
   std::vector<float> lateral_modes;  ///< (S, L, 2, M) 1, for each tangent
   std::vector<float> mode_scale;     ///< (M)

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 
+#include "format/deformation.hpp"
 #include "format/vec3.hpp"
 
 namespace palpate::runtime {
@@ -40,6 +42,26 @@ struct FromContact {
     if (dot(radial, radial) == 0) return facing * a * q;
     const double along = dot(radial, q), across = dot(around, q);
     return facing * (a * along * radial + b * across * around + c * along * n);
+  }
+
+  /// 1, cos phi, sin phi, cos 2 phi, sin 2 phi of the azimuth phi of the vertex from the unit
+  /// tangent t; at the contact point all but the first are 0.
+  std::array<double, kHarmonics> harmonics(const Vec3& t) const noexcept {
+    const double cos = dot(radial, t), sin = -dot(around, t);
+    return {1, cos, sin, cos * cos - sin * sin, 2 * sin * cos};
+  }
+  /// The displacement, m, with these components: Fourier series of the azimuth from the unit
+  /// tangent t, along t, n x t and n.
+  Vec3 anisotropic(const Vec3& n, const Vec3& t,
+                   const std::array<double, kAnisotropicComponents>& p) const noexcept {
+    const auto h = harmonics(t);
+    double along = 0, across = 0, normal = 0;
+    for (std::size_t i = 0; i < kHarmonics; ++i) {
+      along += p[i] * h[i];
+      across += p[kHarmonics + i] * h[i];
+    }
+    for (std::size_t i = 0; i < kNormalHarmonics; ++i) normal += p[2 * kHarmonics + i] * h[i];
+    return facing * (along * t + across * cross(n, t) + normal * n);
   }
 };
 

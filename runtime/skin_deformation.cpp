@@ -49,6 +49,24 @@ void at_both_levels(const Blend& blend, const Levels& levels, const Add& add) no
   }
 }
 
+using Anisotropic = std::array<double, kAnisotropicComponents>;
+
+/// The components along a tangent, as those along a direction from which it has the azimuth of
+/// cosine c and sine s: cos m (phi - psi) and sin m (phi - psi) in terms of m phi, t and n x t in
+/// terms of the direction.
+Anisotropic turned_by(double c, double s, Anisotropic v) noexcept {
+  const double c2 = c * c - s * s, s2 = 2 * s * c;
+  const auto turn = [&v](std::size_t i, std::size_t j, double cos, double sin) {
+    const double first = v[i];
+    v[i] = cos * first - sin * v[j];
+    v[j] = sin * first + cos * v[j];
+  };
+  for (std::size_t i = 0; i < v.size(); i += kHarmonics) turn(i + 1, i + 2, c, s);
+  for (std::size_t i = 0; i < 2 * kHarmonics; i += kHarmonics) turn(i + 3, i + 4, c2, s2);
+  for (std::size_t i = 0; i < kHarmonics; ++i) turn(i, kHarmonics + i, c, s);
+  return v;
+}
+
 }  // namespace
 
 /// The sites that the contact blends.
@@ -71,6 +89,9 @@ struct SkinDeformation::Shape {
   std::array<float, kMostModes> mode{};  ///< amplitudes, times the scale of the mode
   std::array<Profiles<kPressComponents>, 2> press;
   std::array<Profiles<kLateralComponents>, 2> lateral;
+  /// m, along `drag` and around it; stretched as `lateral`.
+  std::array<Profiles<kAnisotropicComponents>, 2> anisotropic;
+  Vec3 drag{};  ///< unit, direction of the lateral deflection
   Vec3 correction{};
 };
 
@@ -144,6 +165,7 @@ void SkinDeformation::add_press(const Blend& blend, const Touch& touch,
 void SkinDeformation::add_lateral(const Blend& blend, const Touch& touch,
                                   Shape& shape) const noexcept {
   if (d_.lateral_depths.empty() || norm(touch.lateral) == 0) return;
+  shape.drag = (1 / norm(touch.lateral)) * touch.lateral;
   const std::size_t modes = d_.mode_count(), knots = d_.knots.size(),
                     depths = d_.lateral_depths.size();
   const Levels levels = levels_within(d_.lateral_depths, touch.depth);
@@ -165,8 +187,39 @@ void SkinDeformation::add_lateral(const Blend& blend, const Touch& touch,
       profiles.value[j] += weight * static_cast<double>(p[j]);
     profiles.stretch = stretch(d_.lateral_depths[k], touch.depth);
     profiles.used = true;
+    if (d_.anisotropic.empty()) return;
+    auto& anisotropic = shape.anisotropic[k - levels.k];
+    add_anisotropic(site, k, weight, touch, anisotropic.value.data());
+    anisotropic.stretch = profiles.stretch;
+    anisotropic.used = true;
   };
   at_both_levels(blend, levels, add);
+}
+
+/// Turns what a site has along its tangents into what it has along the lateral deflection. The
+/// frame of the site is carried to the contact.
+void SkinDeformation::add_anisotropic(std::size_t site, std::size_t k, double weight,
+                                      const Touch& touch, double* profiles) const noexcept {
+  const std::size_t knots = d_.knots.size(), row = site * d_.lateral_depths.size() + k;
+  const Vec3& tangent = d_.sites[site].tangent;
+  const double along = dot(tangent, touch.lateral),
+               around = dot(tangent, cross(touch.normal, touch.lateral)),
+               length = std::sqrt(along * along + around * around);
+  if (!(length > 0)) return;
+  const double scale =
+      weight * norm(touch.lateral) * static_cast<double>(d_.anisotropic_scale[row]);
+  double c = along / length, s = around / length;  // of psi
+  for (std::size_t t = 0; t < kTangents; ++t) {
+    const std::int16_t* p = &d_.anisotropic[(row * kTangents + t) * kAnisotropicComponents * knots];
+    for (std::size_t j = 0; j < knots; ++j) {
+      Anisotropic v;
+      for (std::size_t i = 0; i < v.size(); ++i)
+        v[i] = scale * c * static_cast<double>(p[i * knots + j]);
+      const auto turned = turned_by(c, s, v);
+      for (std::size_t i = 0; i < v.size(); ++i) profiles[i * knots + j] += turned[i];
+    }
+    c = -std::exchange(s, c);  // the second tangent is a quarter turn on
+  }
 }
 
 Vec3 SkinDeformation::shared_part(const Shape& shape, std::size_t vertex) const noexcept {
@@ -185,6 +238,11 @@ Vec3 SkinDeformation::at_contact(const Touch& touch, const Shape& shape) const n
   Vec3 u{};
   for (const auto& press : shape.press) u = u + press.value[0] * touch.normal;
   for (const auto& lateral : shape.lateral) u = u + lateral.value[0] * touch.lateral;
+  const std::size_t across = kHarmonics * d_.knots.size();
+  for (const auto& part : shape.anisotropic)
+    if (part.used)
+      u = u + part.value[0] * shape.drag + part.value[across] * cross(touch.normal, shape.drag) +
+          part.value[2 * across] * touch.normal;
   for (std::size_t l = 0; l < 3; ++l)
     u = u + touch.point.natural[l] * shared_part(shape, index(d_.vertex_of[index(corners[l])]));
   return u;
@@ -222,6 +280,12 @@ Vec3 SkinDeformation::local_part(const Touch& touch, const Shape& shape,
     if (lateral.used)
       u = u +
           from.lateral(touch.normal, touch.lateral, at(lateral, 0), at(lateral, 1), at(lateral, 2));
+  for (const auto& part : shape.anisotropic) {
+    if (!part.used) continue;
+    Anisotropic p;
+    for (std::size_t i = 0; i < p.size(); ++i) p[i] = at(part, i);
+    u = u + from.anisotropic(touch.normal, shape.drag, p);
+  }
   return u;
 }
 

@@ -37,6 +37,8 @@ class SkinDeformation {
   double stretch(double level, double depth) const noexcept;
   void add_press(const Blend& blend, const Touch& touch, Shape& shape) const noexcept;
   void add_lateral(const Blend& blend, const Touch& touch, Shape& shape) const noexcept;
+  void add_anisotropic(std::size_t site, std::size_t k, double weight, const Touch& touch,
+                       double* profiles) const noexcept;
   Vec3 shared_part(const Shape& shape, std::size_t vertex) const noexcept;
   Vec3 at_contact(const Touch& touch, const Shape& shape) const noexcept;
   void add_both(const Blend& blend, const Touch& touch, Shape& shape) const noexcept;

@@ -393,6 +393,7 @@ Json summary_of(const Deformation& skin) {
           {"sites", skin.sites.size()},
           {"depths", lengths(skin.depths)},
           {"lateral_depths", lengths(skin.lateral_depths)},
+          {"drags_differ_between_directions", !skin.anisotropic.empty()},
           {"modes", skin.mode_count()},
           {"rms_displacement_that_no_mode_has", with_unit(skin.rms_left_out, "m")},
           {"reach_of_the_local_part", with_unit(skin.reach, "m")},

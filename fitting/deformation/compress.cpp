@@ -27,6 +27,7 @@ constexpr double kSameDepth = 1e-6;   ///< relative
 /// What rounding the modes to integers adds to a displacement, root mean square over that of the
 /// deepest press. Integers that are not finer than need be are small and compress well.
 constexpr double kRounding = 3e-4;
+constexpr float kLargestInteger = std::numeric_limits<std::int16_t>::max();
 
 bool same(double a, double b) {
   return std::abs(a - b) <= kSameDepth * std::abs(b);
@@ -88,6 +89,7 @@ class Compression {
 
  private:
   void separate(const SiteFields& site, const SiteFrame& frame);
+  void add_anisotropic(const std::vector<float>& profiles);
   void add_column(Eigen::VectorXf&& field, double scale);
   float step_of(const Modes& modes, Eigen::Index m) const;
   void set_modes();
@@ -146,10 +148,22 @@ void Compression::separate(const SiteFields& site, const SiteFrame& frame) {
   }
   for (const double depth : d_.lateral_depths) {
     auto u = along_tangents(site, depth, frame.tangent, second).value();
-    append(d_.lateral_local, local.take_lateral(u[0], u[1]));
+    const LocalPart::Lateral profiles = local.take_lateral(u[0], u[1]);
+    append(d_.lateral_local, profiles.symmetric);
+    add_anisotropic(profiles.anisotropic);
     // A lateral deflection is of the size of the depth at most.
     for (Eigen::VectorXf& field : u) add_column(std::move(field), depth);
   }
+}
+
+/// As integers, of which the largest is that of the largest value.
+void Compression::add_anisotropic(const std::vector<float>& profiles) {
+  float largest = 0;
+  for (const float p : profiles) largest = std::max(largest, std::abs(p));
+  const float scale = largest > 0 ? largest / kLargestInteger : 1;
+  for (const float p : profiles)
+    d_.anisotropic.push_back(static_cast<std::int16_t>(std::lround(p / scale)));
+  d_.anisotropic_scale.push_back(scale);
 }
 
 void Compression::add_column(Eigen::VectorXf&& field, double scale) {
@@ -160,11 +174,10 @@ void Compression::add_column(Eigen::VectorXf&& field, double scale) {
 /// The step of the integers of a mode. Uniform rounding has the root mean square step / sqrt(12),
 /// times the amplitude of the mode, and the modes add up in squares.
 float Compression::step_of(const Modes& modes, Eigen::Index m) const {
-  constexpr float kLargest = std::numeric_limits<std::int16_t>::max();
   const double most = static_cast<double>(modes.coefficients.row(m).cwiseAbs().maxCoeff());
   const double allowed =
       kRounding * d_.depths.back() * std::sqrt(12.0 / static_cast<double>(modes.shapes.cols()));
-  return std::max(modes.shapes.col(m).cwiseAbs().maxCoeff() / kLargest,
+  return std::max(modes.shapes.col(m).cwiseAbs().maxCoeff() / kLargestInteger,
                   static_cast<float>(allowed / most));
 }
 

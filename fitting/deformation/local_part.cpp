@@ -2,6 +2,7 @@
 #include "fitting/deformation/local_part.hpp"
 
 #include <Eigen/Cholesky>
+#include <array>
 #include <cmath>
 
 namespace palpate::fitting {
@@ -9,8 +10,11 @@ namespace {
 
 /// Weight of the squared second differences of a profile against its squared errors, per knot.
 constexpr double kSmoothness = 0.1;
+/// Weight of the squares of a profile of what differs between directions: where the skin does not
+/// tell, nothing does.
+constexpr double kNoDifference = 0.01;
 
-Vec3 displacement(const Eigen::Ref<Eigen::VectorXf>& field, std::size_t vertex) {
+Vec3 displacement(const Eigen::Ref<const Eigen::VectorXf>& field, std::size_t vertex) {
   const auto row = static_cast<Eigen::Index>(3 * vertex);
   return {static_cast<double>(field[row]), static_cast<double>(field[row + 1]),
           static_cast<double>(field[row + 2])};
@@ -67,13 +71,66 @@ Eigen::VectorXd LocalPart::profile(const std::vector<double>& samples, double at
   return p;
 }
 
+/// Least squares over the values at the knots of the terms of a Fourier series of the azimuth from
+/// t. Each is 0 at the contact. @return (knots, terms).
+Eigen::MatrixXd LocalPart::series(const std::vector<double>& samples, const Vec3& t,
+                                  std::size_t terms) const {
+  const auto count = static_cast<Eigen::Index>(knots_.size());
+  const auto columns = static_cast<Eigen::Index>(terms);
+  // Knot by knot, so that the matrix is a band.
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(count * columns, count * columns);
+  Eigen::VectorXd b = Eigen::VectorXd::Zero(count * columns);
+  double weight = 0;
+  for (std::size_t i = 0; i < near_.size(); ++i) {
+    const Near& near = near_[i];
+    const auto harmonics = near.from.harmonics(t);
+    const auto h = Eigen::Map<const Eigen::VectorXd>(harmonics.data(), columns);
+    Eigen::VectorXd row(2 * columns);
+    row << (1 - near.knot.above_weight) * h, near.knot.above_weight * h;
+    const Eigen::Index begin = static_cast<Eigen::Index>(near.knot.below) * columns;
+    a.block(begin, begin, 2 * columns, 2 * columns) += near.from.facing * row * row.transpose();
+    b.segment(begin, 2 * columns) += near.from.facing * samples[i] * row;
+    weight += near.from.facing;
+  }
+  const double scale = 1 + weight / static_cast<double>(count);
+  a.diagonal().array() += kNoDifference * scale;
+  const Eigen::Vector3d bend(1, -2, 1);
+  for (Eigen::Index k = 0; k + 2 < count; ++k)
+    for (Eigen::Index i = 0; i < 3; ++i)
+      for (Eigen::Index j = 0; j < 3; ++j)
+        a.block((k + i) * columns, (k + j) * columns, columns, columns).diagonal().array() +=
+            kSmoothness * scale * bend[i] * bend[j];
+  const Eigen::Index rest = (count - 1) * columns;
+  Eigen::MatrixXd profiles = Eigen::MatrixXd::Zero(columns, count);
+  profiles.reshaped().tail(rest) = a.bottomRightCorner(rest, rest).ldlt().solve(b.tail(rest));
+  return profiles.transpose();
+}
+
+/// What differs between directions, of the field of a lateral deflection along t less its symmetric
+/// part: (knots, components).
+Eigen::MatrixXd LocalPart::anisotropic(const Eigen::Ref<const Eigen::VectorXf>& field,
+                                       const Vec3& t) const {
+  const Vec3 across = cross(inward_, t);
+  std::array<std::vector<double>, 3> samples;
+  for (const Near& near : near_) {
+    const Vec3 u = displacement(field, near.vertex);
+    samples[0].push_back(dot(u, t));
+    samples[1].push_back(dot(u, across));
+    samples[2].push_back(dot(u, inward_));
+  }
+  Eigen::MatrixXd profiles(knots_.size(), kAnisotropicComponents);
+  profiles << series(samples[0], t, kHarmonics), series(samples[1], t, kHarmonics),
+      series(samples[2], t, kNormalHarmonics);
+  return profiles;
+}
+
 /// Subtracts value (s/R_c)^power.
-void LocalPart::end_at_reach(Eigen::VectorXd& profile, double value, int power) const {
+void LocalPart::end_at_reach(Eigen::Ref<Eigen::VectorXd> profile, double value, int power) const {
   for (Eigen::Index k = 0; k < profile.size(); ++k)
     profile[k] -= value * std::pow(knots_[static_cast<std::size_t>(k)] / knots_.back(), power);
 }
 
-double LocalPart::value(const Eigen::VectorXd& profile, const Near& near) const {
+double LocalPart::value(const Eigen::Ref<const Eigen::VectorXd>& profile, const Near& near) {
   const auto below = static_cast<Eigen::Index>(near.knot.below);
   return (1 - near.knot.above_weight) * profile[below] +
          near.knot.above_weight * profile[below + 1];
@@ -101,7 +158,7 @@ std::vector<float> LocalPart::take_press(Eigen::Ref<Eigen::VectorXf> field, doub
   return profiles;
 }
 
-std::vector<float> LocalPart::take_lateral(Eigen::Ref<Eigen::VectorXf> first,
+LocalPart::Lateral LocalPart::take_lateral(Eigen::Ref<Eigen::VectorXf> first,
                                            Eigen::Ref<Eigen::VectorXf> second) const {
   std::vector<double> radial, around, along;
   for (const Near& near : near_) {
@@ -111,24 +168,55 @@ std::vector<float> LocalPart::take_lateral(Eigen::Ref<Eigen::VectorXf> first,
     around.push_back(dot(f, first_) * dot(f, u) + dot(f, second_) * dot(f, v));
     along.push_back(dot(e, first_) * dot(inward_, u) + dot(e, second_) * dot(inward_, v));
   }
-  const Eigen::Index last = static_cast<Eigen::Index>(knots_.size()) - 1;
-  Eigen::VectorXd a = profile(radial, 1), b = profile(around, 1), c = profile(along, 0);
-  const double translation = (a[last] + b[last]) / 2, shear = (a[last] - b[last]) / 2;
-  end_at_reach(a, translation, 0);
-  end_at_reach(b, translation, 0);
-  end_at_reach(a, shear, 2);
-  end_at_reach(b, -shear, 2);
-  end_at_reach(c, c[last], 1);
-  for (const Near& near : near_) {
-    const double ra = value(a, near), rb = value(b, near), rc = value(c, near);
-    subtract(first, near.vertex, near.from.lateral(inward_, first_, ra, rb, rc));
-    subtract(second, near.vertex, near.from.lateral(inward_, second_, ra, rb, rc));
-  }
-  std::vector<float> profiles;
-  append(profiles, a);
-  append(profiles, b);
-  append(profiles, c);
+  Eigen::MatrixXd symmetric(knots_.size(), kLateralComponents);
+  symmetric << profile(radial, 1), profile(around, 1), profile(along, 0);
+  Eigen::VectorXf rest_of_first = first, rest_of_second = second;
+  subtract_symmetric(rest_of_first, first_, symmetric);
+  subtract_symmetric(rest_of_second, second_, symmetric);
+
+  const Eigen::Index last = symmetric.rows() - 1;
+  const double a = symmetric(last, 0), b = symmetric(last, 1);
+  const double translation = (a + b) / 2, shear = (a - b) / 2;
+  end_at_reach(symmetric.col(0), translation, 0);
+  end_at_reach(symmetric.col(1), translation, 0);
+  end_at_reach(symmetric.col(0), shear, 2);
+  end_at_reach(symmetric.col(1), -shear, 2);
+  end_at_reach(symmetric.col(2), symmetric(last, 2), 1);
+  subtract_symmetric(first, first_, symmetric);
+  subtract_symmetric(second, second_, symmetric);
+
+  Lateral profiles;
+  append(profiles.symmetric, symmetric.reshaped());
+  profiles.anisotropic = take_anisotropic(first, first_, anisotropic(rest_of_first, first_));
+  const auto more = take_anisotropic(second, second_, anisotropic(rest_of_second, second_));
+  profiles.anisotropic.insert(profiles.anisotropic.end(), more.begin(), more.end());
   return profiles;
+}
+
+void LocalPart::subtract_symmetric(Eigen::Ref<Eigen::VectorXf> field, const Vec3& t,
+                                   const Eigen::MatrixXd& profiles) const {
+  for (const Near& near : near_) {
+    const auto at = [&](Eigen::Index c) { return value(profiles.col(c), near); };
+    subtract(field, near.vertex, near.from.lateral(inward_, t, at(0), at(1), at(2)));
+  }
+}
+
+/// Subtracts what differs between directions, less what has the same value at the reach.
+std::vector<float> LocalPart::take_anisotropic(Eigen::Ref<Eigen::VectorXf> field, const Vec3& t,
+                                               Eigen::MatrixXd profiles) const {
+  constexpr std::array<int, kHarmonics> kOrder{0, 1, 1, 2, 2};
+  for (Eigen::Index c = 0; c < profiles.cols(); ++c)
+    end_at_reach(profiles.col(c), profiles(profiles.rows() - 1, c),
+                 kOrder[static_cast<std::size_t>(c) % kHarmonics]);
+  for (const Near& near : near_) {
+    std::array<double, kAnisotropicComponents> p{};
+    for (std::size_t c = 0; c < p.size(); ++c)
+      p[c] = value(profiles.col(static_cast<Eigen::Index>(c)), near);
+    subtract(field, near.vertex, near.from.anisotropic(inward_, t, p));
+  }
+  std::vector<float> all;
+  append(all, profiles.reshaped());
+  return all;
 }
 // NOLINTEND(performance-unnecessary-value-param)
 

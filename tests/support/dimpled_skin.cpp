@@ -53,6 +53,18 @@ void add_local_parts(Deformation& d) {
   }
 }
 
+/// A twentieth of the deflection, otherwise in each direction, on a ring around the contact.
+void add_anisotropic_parts(Deformation& d) {
+  d.anisotropic_scale.assign(d.sites.size() * d.lateral_depths.size(), 5e-5F);
+  for (std::size_t row = 0; row < d.anisotropic_scale.size() * kTangents; ++row)
+    for (std::size_t c = 0; c < kAnisotropicComponents; ++c)
+      for (std::size_t j = 0; j < kKnots; ++j) {
+        const double s = static_cast<double>(j) / (kKnots - 1);
+        const double ring = 4 * s * (1 - s) * std::cos(static_cast<double>(row + 3 * c));
+        d.anisotropic.push_back(static_cast<std::int16_t>(1000 * ring));
+      }
+}
+
 void add_waves(double size, Deformation& d) {
   for (std::size_t m = 0; m < kModes; ++m) {
     d.mode_scale.push_back(static_cast<float>(1.0 / (32767 * static_cast<double>(m + 1))));
@@ -102,6 +114,7 @@ Deformation dimpled(const Library& library, const SkinMesh& skin, double depth,
   d.lateral_depths = {0.5 * depth};
   add_sites(library, d);
   add_local_parts(d);
+  add_anisotropic_parts(d);
   add_waves(10 * tool_radius, d);
   return d;
 }

@@ -35,6 +35,8 @@ Deformation sample_deformation() {
   d.donor_weight = {1, 1, 0.25F, 0.75F};
   d.press_local = {6e-3F, 0, 1e-3F, 0, 6e-3F, 0, 2e-3F, 0};
   d.lateral_local.assign(12, 0.5F);
+  for (std::int16_t i = 0; i < 104; ++i) d.anisotropic.push_back(static_cast<std::int16_t>(-i * i));
+  d.anisotropic_scale = {1e-6F, 2e-6F};
   d.press_modes = {0.1F, 0.2F};
   d.lateral_modes = {1, 2, 3, 4};
   d.mode_scale = {1e-4F};
@@ -66,6 +68,8 @@ TEST(DeformationFile, IsTheSameWhenReadAgain) {
   EXPECT_EQ(read.donor_weight, written.donor_weight);
   EXPECT_EQ(read.press_local, written.press_local);
   EXPECT_EQ(read.lateral_local, written.lateral_local);
+  EXPECT_EQ(read.anisotropic, written.anisotropic);
+  EXPECT_EQ(read.anisotropic_scale, written.anisotropic_scale);
   EXPECT_EQ(read.press_modes, written.press_modes);
   EXPECT_EQ(read.lateral_modes, written.lateral_modes);
   EXPECT_EQ(read.mode_scale, written.mode_scale);
@@ -98,6 +102,9 @@ TEST(DeformationFile, ThatIsNotValidIsRefusedByTheNameOfTheEntry) {
       {"/local/knot", [](Deformation& d) { d.knots[1] = 0.01; }},
       {"/lateral/local", [](Deformation& d) { d.lateral_local.push_back(0); }},
       {"/lateral/modes", [](Deformation& d) { d.lateral_modes.pop_back(); }},
+      {"/lateral/anisotropic", [](Deformation& d) { d.anisotropic.pop_back(); }},
+      {"/lateral/anisotropic_scale", [](Deformation& d) { d.anisotropic_scale.pop_back(); }},
+      {"/lateral/anisotropic_scale", [](Deformation& d) { d.anisotropic_scale[1] = NAN; }},
       {"/mode/skin", [](Deformation& d) { d.modes.pop_back(); }}};
   const samples::TemporaryFolder folder;
   for (const auto& [entry, spoil] : faults) {
@@ -112,6 +119,18 @@ TEST(DeformationFile, ThatIsNotValidIsRefusedByTheNameOfTheEntry) {
       EXPECT_NE(std::string(error.what()).find(entry), std::string::npos) << error.what();
     }
   }
+}
+
+TEST(DeformationFile, MayLackWhatDiffersBetweenDirections) {
+  const samples::TemporaryFolder folder;
+  Deformation written = sample_deformation();
+  written.anisotropic.clear();
+  written.anisotropic_scale.clear();
+  write_deformation(folder / "symmetric.pdef", written);
+  const Deformation read = read_deformation(folder / "symmetric.pdef");
+  EXPECT_TRUE(read.anisotropic.empty());
+  EXPECT_TRUE(read.anisotropic_scale.empty());
+  EXPECT_EQ(read.lateral_local, written.lateral_local);
 }
 
 TEST(DeformationFile, DigestsTellSurfacesApart) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "fitting/deformation/local_part.hpp"
 #include "runtime/skin_deformation.hpp"
 #include "tests/unit/fitting/deformation/pressed_plate.hpp"
 
@@ -141,6 +142,95 @@ TEST(Compress, ADragMovesTheSkinFarAwayAsTheContactIsWide) {
       }
       EXPECT_LT(std::sqrt(squares / count), 0.01 * norm(q)) << z;
     }
+}
+
+/// Root mean square over the skin within three tool radii of what a drag moves it otherwise than in
+/// the field, over the drag.
+double drag_error(const runtime::SkinDeformation& skin, const runtime::Touch& touch,
+                  const SkinField& field) {
+  runtime::Touch held = touch;
+  held.lateral = {};
+  held.tip = touch.tip - touch.lateral;
+  const auto dragged = shown(skin, touch), pressed = shown(skin, held);
+  const Vec3 c = touch.contact_point;
+  double squares = 0, count = 0;
+  for (std::size_t w = 0; w < dragged.size(); ++w) {
+    const Vec3& x = skin.positions()[w];
+    if (norm(x - c) > 3 * kRadius) continue;
+    const Vec3 direct = field(x, c, touch.depth, touch.lateral) - field(x, c, touch.depth, {});
+    const Vec3 off = dragged[w] - pressed[w] - direct;
+    squares += dot(off, off);
+    ++count;
+  }
+  return std::sqrt(squares / count) / norm(touch.lateral);
+}
+
+/// Under no tool, and as wide at every depth.
+Deformation without_tool(Deformation deformation) {
+  deformation.tool_shape = "disc";
+  deformation.tool_radius = 1e-4;
+  return deformation;
+}
+
+/// Twice as soft along `grain` as across it.
+Vec3 grained(const Vec3& x, const Vec3& c, double z, const Vec3& q) {
+  const Vec3 r = x - c, grain{std::cos(0.5), std::sin(0.5), 0};
+  const double s = norm(r) / 0.007, fall = std::exp(-s * s);
+  return dimple(x, c, z, {}) + fall * (q + 0.4 * s * s * dot(grain, q) * grain);
+}
+
+TEST(Compress, ADragMovesTheSkinAsItsDirectionAsks) {
+  const PressedPlate plate;
+  const runtime::SkinDeformation skin(without_tool(compressed(plate, grained)),
+                                      plate.library.triangles);
+  for (const double azimuth : {0.0, 0.5, 2.07, 3.6}) {
+    const Vec3 q{0.001 * std::cos(azimuth), 0.001 * std::sin(azimuth), 0};
+    EXPECT_LT(drag_error(skin, touch_at(plate, 70, kMiddle, kDeepest, q), grained), 0.015);
+  }
+}
+
+/// The same with the frame of each site turned by an angle of its own.
+TEST(Compress, TheFramesOfTheSitesMayDiffer) {
+  const PressedPlate plate;
+  Deformation d = without_tool(compressed(plate, grained));
+  const runtime::SkinDeformation as_made(d, plate.library.triangles);
+  const auto normals = inward_normals(d.positions, d.triangles);
+  const std::size_t row = kTangents * kAnisotropicComponents * d.knots.size();
+  for (std::size_t site = 0; site < d.sites.size(); ++site) {
+    const double angle = 0.7 * static_cast<double>(site), cos = std::cos(angle),
+                 sin = std::sin(angle);
+    SiteFrame& frame = d.sites[site];
+    frame.tangent = cos * frame.tangent + sin * cross(frame.inward, frame.tangent);
+    const Vec3 second = cross(frame.inward, frame.tangent);
+    Eigen::VectorXf u(static_cast<Eigen::Index>(3 * d.positions.size())), v = u;
+    for (std::size_t w = 0; w < d.positions.size(); ++w)
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Vec3 &x = d.positions[w], &c = frame.position;
+        const Vec3 pressed = grained(x, c, kDeepest, {});
+        const auto at = static_cast<Eigen::Index>(3 * w + i);
+        u[at] = static_cast<float>(grained(x, c, kDeepest, frame.tangent)[i] - pressed[i]);
+        v[at] = static_cast<float>(grained(x, c, kDeepest, second)[i] - pressed[i]);
+      }
+    const auto taken = LocalPart(d.positions, normals, d.knots, frame).take_lateral(u, v);
+    constexpr float kFine = 1e-5F;
+    d.anisotropic_scale[site] = kFine;
+    for (std::size_t i = 0; i < row; ++i)
+      d.anisotropic[site * row + i] =
+          static_cast<std::int16_t>(std::lround(taken.anisotropic[i] / kFine));
+    const std::size_t modes = d.mode_count();
+    float* amplitude = &d.lateral_modes[site * kTangents * modes];
+    for (std::size_t m = 0; m < modes; ++m) {
+      const float first = amplitude[m], other = amplitude[modes + m];
+      amplitude[m] = static_cast<float>(cos) * first + static_cast<float>(sin) * other;
+      amplitude[modes + m] = static_cast<float>(cos) * other - static_cast<float>(sin) * first;
+    }
+  }
+  const runtime::SkinDeformation turned(d, plate.library.triangles);
+  for (const Vec3& q : {Vec3{0.001, 0, 0}, Vec3{-0.0003, 0.0009, 0}}) {
+    const runtime::Touch touch = touch_at(plate, 70, kMiddle, kDeepest, q);
+    const auto x = shown(as_made, touch), y = shown(turned, touch);
+    for (std::size_t w = 0; w < x.size(); ++w) EXPECT_LT(norm(x[w] - y[w]), 0.003 * norm(q)) << w;
+  }
 }
 
 TEST(Compress, NoVertexIsInsideTheTool) {

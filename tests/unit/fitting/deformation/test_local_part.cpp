@@ -64,13 +64,39 @@ TEST_F(Middle, OfALateralDeflectionFollowsItInEveryDirection) {
   };
   const Vec3 second = cross(kDown, frame_.tangent);
   Eigen::VectorXf u = sampled(lateral, 0, frame_.tangent), v = sampled(lateral, 0, second);
-  const auto profiles = local.take_lateral(u, v);
+  const LocalPart::Lateral taken = local.take_lateral(u, v);
+  const auto& profiles = taken.symmetric;
   EXPECT_LT(largest(u), 0.02);
   EXPECT_LT(largest(v), 0.02);
+  for (const float p : taken.anisotropic) EXPECT_NEAR(p, 0.0F, 0.01F);
   const double fall = std::exp(-25e-6 / 4e-5);
   EXPECT_NEAR(static_cast<double>(profiles[5]), fall * (1 + 0.15 - 0.2), 0.02);
   EXPECT_NEAR(static_cast<double>(profiles[knots_.size() + 5]), fall * 1.15, 0.02);
   EXPECT_NEAR(static_cast<double>(profiles[2 * knots_.size() + 5]), fall * 0.25, 0.02);
+}
+
+/// Softer along `grain`, where the skin also sinks and rises with the deflection: nothing of it is
+/// the same after a turn around n.
+Vec3 lopsided(const Vec3& x, const Vec3& c, double z, const Vec3& q) {
+  const Vec3 r = x - c, grain{std::cos(0.5), std::sin(0.5), 0};
+  const double s = norm(r), fall = std::exp(-s * s / 4e-5), ring = s * s / 4e-5 * fall;
+  const Vec3 e = s > 0 ? (1 / s) * r : Vec3{};
+  return dimple(x, c, z, {}) + fall * q + 0.3 * ring * dot(grain, q) * grain +
+         0.2 * ring * dot(grain, e) * dot(grain, e) * q +
+         (0.2 * ring + 20 * s * fall * dot(grain, e)) * dot(grain, q) * kDown;
+}
+
+TEST_F(Middle, OfALateralDeflectionHasWhatDiffersBetweenDirections) {
+  const LocalPart local(skin_, normals_, knots_, frame_);
+  const Vec3 second = cross(kDown, frame_.tangent);
+  Eigen::VectorXf u = sampled(lopsided, 0, frame_.tangent), v = sampled(lopsided, 0, second);
+  const LocalPart::Lateral taken = local.take_lateral(u, v);
+  EXPECT_LT(largest(u), 0.02);
+  EXPECT_LT(largest(v), 0.02);
+  // Along n at 5 mm, for the first tangent: 0.2 (s/6.3 mm)^2 e^-(s/6.3 mm)^2 cos 0.5 on average.
+  const double fall = std::exp(-25.0 / 40), expected = 0.2 * 25 / 40 * fall * std::cos(0.5);
+  EXPECT_NEAR(static_cast<double>(taken.anisotropic[2 * kHarmonics * knots_.size() + 5]), expected,
+              0.01);
 }
 
 TEST_F(Middle, OfARigidMotionIsNothing) {
