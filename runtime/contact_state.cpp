@@ -46,10 +46,12 @@ void ContactState::reset() noexcept {
   memory_.forget();
   goal_ = 0;
   suspended_ = false;
+  unsettled_ = {};
   seen_ = {};
 }
 
 void ContactState::forget() noexcept {
+  if (unsettled_.any) settle();
   memory_.forget();
   seen_.energy = 0;
 }
@@ -159,10 +161,16 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
                                ? settings_.lipschitz_bound  // also at rest
                                : settings_.lipschitz_bound * travelled;
   // In its place at once: a copy would wait for what has just been stored.
-  const FixedContact fixed{before, model_->respond(before, pieces_), travelled, allowance,
-                           exceeds_friction(fixed.response, 0)
-                               ? slip_to_limit(*model_, before, fixed.response)
-                               : LateralSlip{}};
+  FixedContact fixed{before, model_->respond(before, pieces_), travelled, allowance,
+                     exceeds_friction(fixed.response, 0)
+                         ? slip_to_limit(*model_, before, fixed.response)
+                         : LateralSlip{}};
+  // Here, as a walk that waits for the roots of its slip leaves the processor time for it; also
+  // where they are known, so that a force does not depend on who has asked for energies.
+  if (memory_.relaxes()) {
+    if (unsettled_.any) settle();
+    model_->add_stored(memory_.now(), fixed.response);
+  }
   const double energy_before = fixed.response.energy;  // E_{i-1}(x_i)
   seen_.absorbed += energy_before - seen_.energy;
   Candidate next = choose(x, fixed);
@@ -250,8 +258,8 @@ ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fi
   std::uint32_t status = 0;
   Candidate next{slide(x, fixed, fractions, status), {}, {}, goal_, 0};
   next.status = status;
-  set_memory_at_point(next.model, stays_opposite(fixed, fractions) ? Shear::Lost : Shear::Kept);
   next.deflection = next.model.deflection(x);
+  set_memory_at_point(next.model, stays_opposite(fixed, fractions) ? Shear::Lost : Shear::Kept);
   double recovery = fractions.recovery;
   if (!(next.deflection.depth > 0)) {
     // Out of normal contact but perhaps inside the body: the offset follows the tip outwards, which
@@ -414,7 +422,7 @@ void ContactState::relax(Candidate& at) noexcept {
   const double normal_before = response.friction_normal_force;
   const double held = std::max(settings_.friction * normal_before, response.lateral_force);  // N
   at.model.replace_memory(memory_.now(), at.deflection, response);
-  seen_.dissipated += energy_before - response.energy;
+  unsettled_ = {true, response.relaxed.scale == 0, energy_before - response.energy};
   seen_.relaxed_fraction = 1 - response.relaxed.scale;
   seen_.relaxed_lateral_force = model.memory().lateral.relaxed();
   if (at.deflection.depth > 0 && response.relaxed.scale == 0) seen_.status |= step_status::SkinLags;
@@ -424,10 +432,22 @@ void ContactState::relax(Candidate& at) noexcept {
                 pieces_);
 }
 
+/// No force needs the energies of what has relaxed before the next step judges a slide by them.
+void ContactState::settle() const noexcept {
+  memory_.settle();
+  const TissueMemory now = memory_.now();
+  const double stored =
+      (unsettled_.lags ? now.normal.locked() : now.normal.stored()) + now.lateral.stored();
+  seen_.energy += stored;
+  seen_.dissipated += unsettled_.falls_by - stored;
+  unsettled_.any = false;
+}
+
 /// The same without a tool: the skin moves back.
 void ContactState::relax_freely() noexcept {
   const double energy_before = memory_.locked();
   memory_.pass(0, dt_);
+  memory_.settle();
   seen_.energy = memory_.locked();
   seen_.dissipated += energy_before - seen_.energy;
   dt_ = 0;

@@ -69,7 +69,8 @@ struct ContactObservation {
 /// that the lateral force does not exceed mu g; c moves to c + s as soon as it can.
 ///
 /// Tissue that relaxes (theory-runtime, "Relaxation") does so at the end of a step, at the tip
-/// where it then is: the force changes by that as well, also where the tip rests.
+/// where it then is: the force changes by that as well, also where the tip rests. The energies that
+/// it then stores are found by the first of observation() and the next step.
 ///
 /// step() is noexcept, allocation-free and bounded. One object belongs to one thread at a time; the
 /// surface and the tree may be shared.
@@ -97,7 +98,13 @@ class ContactState {
   /// Resets the contact, the last position and the energies.
   void reset() noexcept;
 
-  const ContactObservation& observation() const noexcept { return seen_; }
+  const ContactObservation& observation() const noexcept {
+    if (unsettled_.any) settle();
+    return seen_;
+  }
+  /// The same in less time, but for energy and dissipated, which do not yet count what the tissue
+  /// stores after the step.
+  const ContactObservation& observation_but_energies() const noexcept { return seen_; }
 
  private:
   void detect(const Vec3& from, const Vec3& x) noexcept;
@@ -129,6 +136,13 @@ class ContactState {
     LateralSlip slip;      ///< from beyond the slip limit
   };
 
+  /// What is left to find of the energies of a step: those that the memories store after its time.
+  struct Unsettled {
+    bool any = false;
+    bool lags = false;    ///< the skin behind the tool, so that R is stored instead of K
+    double falls_by = 0;  ///< J, energy by relaxing, but for what the memories store afterwards
+  };
+
   void touch(const Vec3& x, double travelled) noexcept;
   bool exceeds_friction(const LocalResponse& r, double tolerated) const noexcept;
   bool is_lost(const FixedContact& fixed) const noexcept;
@@ -156,6 +170,7 @@ class ContactState {
   void commit(Candidate& next, double energy_before) noexcept;
   void set_memory_at_point(LocalModel& model, Shear shear) const noexcept;
   void relax(Candidate& at) noexcept;
+  void settle() const noexcept;
   void relax_freely() noexcept;
   void look_ahead(const Deflection& at) noexcept;
   void free_contact() noexcept;
@@ -170,13 +185,14 @@ class ContactState {
   std::optional<SurfacePoint> approaching_;  ///< entered, not yet active
   std::optional<Vec3> last_;                 ///< last usable tip position
   bool suspended_ = false;
-  Relaxation memory_;
+  mutable Relaxation memory_;
+  mutable Unsettled unsettled_;
   Vec3 remembering_point_{};         ///< where the tissue of the memory is, m
   double dt_ = 0;                    ///< s, of this step
   double goal_ = 0;                  ///< offset the contact should return to, m
   mutable ToolPieces pieces_;        ///< of the last evaluation; results do not depend on them
   std::int32_t ahead_ = kNoElement;  ///< element whose surroundings the last step prefetched
-  ContactObservation seen_;
+  mutable ContactObservation seen_;
 };
 
 }  // namespace palpate::runtime

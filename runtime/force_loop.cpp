@@ -40,7 +40,8 @@ GuardedStep guarded_step(Safety& safety, PosedContact& contact, const DeviceRead
   }
   // A scale that rises over a stored energy would return more than was paid.
   if (safety.ramps() && !(step.status & step_status::Contact)) contact.contact.forget();
-  const auto verdict = safety.limit(contact.command(), contact.contact.observation().energy);
+  const double energy = safety.ramps() ? contact.contact.observation().energy : 0;
+  const auto verdict = safety.limit(contact.command(), energy);
   step.status |= verdict.status;
   step.force = verdict.force;
   return step;

@@ -95,10 +95,12 @@ class KeptPieces {
 
     /// Do the pieces contain the answers of an inverse? The first that reach the forces do.
     Mask reaches(const Pair& force) const noexcept {
-      const Mask begins_below = (merged.force < force) | (from <= Pair{});
-      return (force <= Pair{}) | (begins_below & (end_force >= force));
+      const Mask begins_below = less(merged.force, force) | at_most(from, Pair{});
+      return at_most(force, Pair{}) | (begins_below & at_most(force, end_force));
     }
-    Mask contains(const Pair& d) const noexcept { return (d <= Pair{}) | ((from <= d) & (d < to)); }
+    Mask contains(const Pair& d) const noexcept {
+      return at_most(d, Pair{}) | (at_most(from, d) & less(d, to));
+    }
   };
 
   bool is_of(const std::array<const NodeCurves*, 3>& these) const noexcept {

@@ -22,6 +22,22 @@ using Mask __attribute__((vector_size(16))) = std::int64_t;
 constexpr Pair both(double x) noexcept {
   return Pair{x, x};
 }
+/// Comparisons that stay masks of the processor: those of the language, combined, become numbers
+/// and masks again on the way to all().
+inline Mask less(const Pair& a, const Pair& b) noexcept {
+#ifdef __SSE2__
+  return reinterpret_cast<Mask>(_mm_cmplt_pd(a, b));
+#else
+  return a < b;
+#endif
+}
+inline Mask at_most(const Pair& a, const Pair& b) noexcept {
+#ifdef __SSE2__
+  return reinterpret_cast<Mask>(_mm_cmple_pd(a, b));
+#else
+  return a <= b;
+#endif
+}
 inline bool all(const Mask& m) noexcept {
 #ifdef __SSE2__
   return _mm_movemask_pd(reinterpret_cast<__m128d>(m)) == 3;  // two instructions

@@ -6,22 +6,21 @@
 namespace palpate::runtime {
 namespace {
 
-/// M and K of branches.
+/// M of branches.
 class LateralSums {
  public:
-  void add(const Pair& fraction, const Pair (&force)[3], const Pair& conjugate) noexcept {
+  void add(const Pair& fraction, const Pair (&force)[3]) noexcept {
     x_ += fraction * force[0];
     y_ += fraction * force[1];
     z_ += fraction * force[2];
-    stored_ += fraction * conjugate;
   }
-  LateralMemory memory(double carried, std::uint64_t slide) const noexcept {
-    return {Pair{x_[0] + x_[1], y_[0] + y_[1]}, Pair{z_[0] + z_[1], 0},
-            Pair{stored_[0] + stored_[1], carried}, true, slide};
+  LateralMemory memory(double stored, double carried, std::uint64_t slide) const noexcept {
+    return {Pair{x_[0] + x_[1], y_[0] + y_[1]}, Pair{z_[0] + z_[1], 0}, Pair{stored, carried}, true,
+            slide};
   }
 
  private:
-  Pair x_{}, y_{}, z_{}, stored_{};
+  Pair x_{}, y_{}, z_{};
 };
 
 }  // namespace
@@ -37,6 +36,7 @@ LateralMemory LateralBranches::move(const LateralPlace& place, double factor) co
   const Vec3& to = place.normal;
   const Vec3 axis = (1 / (1 + dot(normal_, to))) * (normal_ + to);
   LateralSums sums;
+  Pair stored{};
   pieces_.keep_for(*place.response);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     const BranchPair& from = branches_[p];
@@ -45,9 +45,10 @@ LateralMemory LateralBranches::move(const LateralPlace& place, double factor) co
     there.at = pieces_.evaluate(p, factor * from.at.deflection);
     const Pair scale = from.at.force > Pair{} ? there.at.force / from.at.force : Pair{};
     for (std::size_t k = 0; k < 3; ++k) there.force[k] = scale * (from.force[k] - along * axis[k]);
-    sums.add(place.fractions->pair[p], there.force, there.at.conjugate(there.at.force));
+    sums.add(place.fractions->pair[p], there.force);
+    stored += place.fractions->pair[p] * there.at.conjugate(there.at.force);
   }
-  return sums.memory(factor, slides_);
+  return sums.memory(stored[0] + stored[1], factor, slides_);
 }
 
 LateralMemory LateralBranches::carried_to(const LateralPlace& place, double factor) const noexcept {
@@ -75,21 +76,33 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
   }
   normal_ = place.normal;
   LateralSums sums;
-  pieces_.keep_for(*place.response);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     BranchPair& branch = branches_[p];
     Pair(&force)[3] = branch.force;
     for (std::size_t k = 0; k < 3; ++k)
       force[k] = target[k] + decay.pair[p] * (force[k] - target[k]);
-    const Pair magnitude = roots(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
     // The force is between two that were reached, so that its deflection is no longer than theirs.
-    const Pair longest = larger(branch.at.deflection, both(lateral));
-    branch.at = pieces_.reach(p, magnitude);
-    if (!all(branch.at.deflection <= longest))
-      branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, longest));
-    sums.add(place.fractions->pair[p], force, branch.at.conjugate(branch.at.force));
+    branch.at.deflection = larger(branch.at.deflection, both(lateral));
+    sums.add(place.fractions->pair[p], force);
   }
-  now_ = sums.memory(1, 0);
+  now_ = sums.memory(0, 1, 0);
+}
+
+void LateralBranches::settle(const LateralPlace& place) noexcept {
+  if (!now_.any) return;
+  Pair stored{};
+  pieces_.keep_for(*place.response);
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
+    BranchPair& branch = branches_[p];
+    const Pair(&force)[3] = branch.force;
+    const Pair magnitude = roots(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+    const Pair longest = branch.at.deflection;
+    branch.at = pieces_.reach(p, magnitude);
+    if (!all(at_most(branch.at.deflection, longest)))
+      branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, longest));
+    stored += place.fractions->pair[p] * branch.at.conjugate(branch.at.force);
+  }
+  now_.stored_and_carried = Pair{stored[0] + stored[1], 1};
 }
 
 }  // namespace palpate::runtime

@@ -38,9 +38,12 @@ class LateralBranches {
   /// Brings them there, where carried_to() has found `carried`; none: they are forgotten.
   void carry(const LateralPlace& place, const LateralMemory& carried) noexcept;
   /// Time passes while the instantaneous force is `target` (N) at a deflection of `lateral` (m):
-  /// M_i := target + (M_i - target) decay_i. V falls.
+  /// M_i := target + (M_i - target) decay_i. V falls. settle() finds the deflections and K, which
+  /// is 0 until then.
   void pass(const LateralPlace& place, const Vec3& target, double lateral,
             const Lanes& decay) noexcept;
+  /// Before anything but now() where time has passed.
+  void settle(const LateralPlace& place) noexcept;
   void forget() noexcept { now_ = {}; }
 
  private:

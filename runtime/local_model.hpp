@@ -161,6 +161,16 @@ class LocalModel {
   void set_memory(const TissueMemory& memory) noexcept { memory_.emplace(memory); }
   /// @pre the responses relax
   const TissueMemory& memory() const noexcept { return *memory_; }
+  /// The energies of the memory, which were not known, and that of a response without them.
+  /// @pre the responses relax
+  void add_stored(const TissueMemory& memory, LocalResponse& at) noexcept {
+    memory_->normal.stored_and_locked = memory.normal.stored_and_locked;
+    memory_->lateral.stored_and_carried = memory.lateral.stored_and_carried;
+    const double stored = at.relaxed.scale > 0 ? memory.normal.stored() : memory.normal.locked();
+    at.relaxed.energy += stored;
+    at.at_depth.energy += stored;
+    at.energy += stored + memory.lateral.stored();
+  }
   /// The response of another memory, from that of the present one at the same deflection.
   void replace_memory(const TissueMemory& memory, const Deflection& d, LocalResponse& at) noexcept;
   const InterpolatedResponse& response() const noexcept { return response_; }

@@ -39,7 +39,7 @@ class PosedContact {
     const std::uint32_t status = contact.step(in_body, dt);
     publish();
     if (search_ && !(status & step_status::BadInput)) {
-      search_->report({in_body, contact.observation().point.element});
+      search_->report({in_body, contact.observation_but_energies().point.element});
     }
     return status;
   }
@@ -71,7 +71,7 @@ class PosedContact {
 
   /// The force of the body on the tool, in the world, N: what to command to the device.
   Vec3 command() const noexcept {
-    const Vec3& f = contact.observation().force;
+    const Vec3& f = contact.observation_but_energies().force;
     return pose.turn({-f[0], -f[1], -f[2]});
   }
   /// The observation with points and directions in the world.
@@ -91,7 +91,7 @@ class PosedContact {
 
  private:
   void publish() noexcept {
-    const ContactObservation& seen = contact.observation();
+    const ContactObservation& seen = contact.observation_but_energies();
     Touch touch;
     touch.pose = pose;
     if (seen.point.element >= 0 && (seen.status & step_status::Contact) != 0) {

@@ -19,13 +19,20 @@ constexpr double kReachable = 1 - 1e-12;
 
 }  // namespace
 
+/// F after the memories are multiplied by a factor.
+double Relaxation::sum_of_forces(const Lanes& fractions, double factor) const noexcept {
+  double relaxed = 0;
+  for (std::size_t p = 0; p < pairs_of(times_); ++p)
+    relaxed = plus(relaxed, fractions.pair[p] * (factor * memory_.pair[p]));
+  return relaxed;
+}
+
 /// Infinite where a force is beyond every depth of the response. The lane after those of the
 /// branches is that of the skin.
 NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes& fractions,
                               double factor) const noexcept {
-  double relaxed = 0, stored = 0, skin = 0;
-  for (std::size_t p = 0; p < pairs_of(times_); ++p)
-    relaxed = plus(relaxed, fractions.pair[p] * (factor * memory_.pair[p]));
+  double stored = 0, skin = 0;
+  const double relaxed = sum_of_forces(fractions, factor);
   pieces_.keep_for(response);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     Pair force = factor * memory_.pair[p];
@@ -97,7 +104,13 @@ void Relaxation::pass(double g, double dt) noexcept {
   const double target = std::max(g, now_.relaxed());
   for (std::size_t p = 0; p < pairs_of(times_); ++p)
     memory_.pair[p] = target + (memory_.pair[p] - target) * decay_.pair[p];
+  now_ = {Pair{sum_of_forces(fractions_, 1), 1}, Pair{}};
+}
+
+void Relaxation::settle() noexcept {
+  if (!response_) return;
   now_ = sums(*response_, fractions_, 1);
+  lateral_.settle({&*response_, &fractions_, normal_});
 }
 
 void Relaxation::pass_lateral(const Vec3& force, double lateral) noexcept {

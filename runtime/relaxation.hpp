@@ -51,11 +51,14 @@ class Relaxation {
              const TissueMemory& carried) noexcept;
   /// A time dt (s) while the instantaneous normal force at the tool is g (N):
   /// F_i := g* + (F_i - g*) exp(-dt/tau_i), where g* is g, or F where the skin lags behind the
-  /// tool. The energy at the tool falls.
+  /// tool. The energy at the tool falls. Forces are known at once; settle() finds the energies,
+  /// which are 0 until then.
   void pass(double g, double dt) noexcept;
   /// The same time for the lateral response, whose instantaneous force at the deflection `lateral`
   /// (m) is `force` (N): M_i := force + (M_i - force) exp(-dt/tau_i).
   void pass_lateral(const Vec3& force, double lateral) noexcept;
+  /// K and R of both memories after a time has passed. Before anything but now() and remembers().
+  void settle() noexcept;
   /// The lateral memories are zero.
   void forget_lateral() noexcept { lateral_.forget(); }
   /// The tissue is as new.
@@ -64,6 +67,7 @@ class Relaxation {
  private:
   NormalMemory normal_carried_to(const InterpolatedResponse& response, const Lanes& fractions,
                                  double factor) const noexcept;
+  double sum_of_forces(const Lanes& fractions, double factor) const noexcept;
   NormalMemory sums(const InterpolatedResponse& response, const Lanes& fractions,
                     double factor) const noexcept;
   void keep_decay(double dt) noexcept;

@@ -73,7 +73,7 @@ class Safety {
 
   /// fresh: the sample is new; dt: s since the last step.
   Admission admit(const DeviceReading& reading, bool fresh, double dt) noexcept;
-  /// energy: stored in the contact after the step, J.
+  /// energy: stored in the contact after the step, J; of no effect unless ramps().
   Verdict limit(const Vec3& force, double energy) noexcept;
   /// Whether the force is still scaled by the ramp at the start.
   bool ramps() const noexcept { return ramped_ < settings_.ramp; }

@@ -18,6 +18,7 @@
 #include <world/CMesh.h>
 #include <world/CWorld.h>
 
+#include <cstdint>
 #include <memory>
 
 #include "bench/runtime/octasphere.hpp"
@@ -86,10 +87,7 @@ void chai3d_on_sphere(benchmark::State& state) {
 // n = 8, 25, 79, 250: 512, 5 000, 49 928 and 500 000 triangles; of CHAI3D with the radius of the
 // proxy, micrometres.
 BENCHMARK(step_on_sphere)
-    ->Args({8, 0})
-    ->Args({25, 0})
-    ->Args({79, 0})
-    ->Args({250, 0})
+    ->ArgsProduct({{8, 25, 79, 250}, {0}, {static_cast<std::int64_t>(Motion::Both)}})
     ->Iterations(kPasses)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);

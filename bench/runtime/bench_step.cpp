@@ -13,6 +13,8 @@
 // measurement, which is part of each figure. `Time` is the mean step of a pass.
 #include <benchmark/benchmark.h>
 
+#include <cstdint>
+
 #include "bench/runtime/passes.hpp"
 #include "bench/runtime/step_on_sphere.hpp"
 
@@ -32,19 +34,22 @@ void control(benchmark::State& state) {
 
 BENCHMARK(control)->Iterations(kPasses)->UseManualTime()->Unit(benchmark::kMicrosecond);
 
-// n = 8, 25, 79, 250: 512, 5 000, 49 928 and 500 000 triangles; then coupled responses, and both
-// kinds with three relaxation times.
+/// n = 8, 25, 79, 250: 512, 5 000, 49 928 and 500 000 triangles; then coupled responses, and both
+/// kinds with three relaxation times, while the tool presses and slides. Then the smallest body
+/// while it only presses, and while it only slides.
+void steps(benchmark::internal::Benchmark* bench) {
+  constexpr auto kBoth = static_cast<std::int64_t>(Motion::Both);
+  for (const std::int64_t n : {8, 25, 79, 250}) bench->Args({n, 0, kBoth});
+  for (const std::int64_t variant : {1, 2, 3})
+    for (const std::int64_t n : {8, 79}) bench->Args({n, variant, kBoth});
+  for (const Motion motion : {Motion::Press, Motion::Slide})
+    for (const std::int64_t variant : {0, 1, 2, 3})
+      bench->Args({8, variant, static_cast<std::int64_t>(motion)});
+}
+
 BENCHMARK(step_on_sphere)
-    ->Args({8, 0})
-    ->Args({25, 0})
-    ->Args({79, 0})
-    ->Args({250, 0})
-    ->Args({8, 1})
-    ->Args({79, 1})
-    ->Args({8, 2})
-    ->Args({79, 2})
-    ->Args({8, 3})
-    ->Args({79, 3})
+    ->Apply(steps)
+    ->ArgNames({"n", "responses", "motion"})
     ->Iterations(kPasses)
     ->UseManualTime()
     ->Unit(benchmark::kMicrosecond);

@@ -9,28 +9,39 @@ namespace palpate::bench {
 namespace {
 
 constexpr double kSpeed = 0.1;         // m/s over the surface
+constexpr double kRadius = 0.05;       // m, of the sphere
 constexpr double kMeanRadius = 0.047;  // m: 3 mm deep
 
-Vec3 tip(int step) {
-  const double way = kSpeed / kRate * step;
-  const double angle = way / kMeanRadius;
+Vec3 tip(int step, Motion motion) {
+  const auto angle_at = [](int at) { return kSpeed / kRate * at / kMeanRadius; };
+  const double angle = angle_at(motion == Motion::Press ? 1 : step);
   const double latitude = 1.2 * std::sin(angle / 17.3);
-  const double r = kMeanRadius + 0.0015 * std::sin(7 * angle);
+  const double swing = motion == Motion::Slide ? 0 : std::sin(7 * angle_at(step));
+  const double r = kMeanRadius + 0.0015 * swing;
   return r * Vec3{std::cos(angle) * std::cos(latitude), std::sin(angle) * std::cos(latitude),
                   std::sin(latitude)};
 }
 
 }  // namespace
 
-std::vector<Vec3> trajectory() {
+std::vector<Vec3> trajectory(Motion motion) {
   std::vector<Vec3> tips;
   tips.reserve(kSteps);
-  for (int i = 0; i < kSteps; ++i) tips.push_back(tip(i));
+  for (int i = 0; i < kSteps; ++i) tips.push_back(tip(i, motion));
   return tips;
 }
 
 Vec3 outside() {
-  return 1.1 * tip(1);
+  return 1.1 * tip(1, Motion::Both);
+}
+
+std::vector<Vec3> approach() {
+  constexpr int kApproach = 100;
+  const Vec3 end = tip(0, Motion::Press);
+  std::vector<Vec3> tips;
+  for (int i = 0; i < kApproach; ++i)
+    tips.push_back((1 + (kRadius / norm(end) - 1) * (kApproach - i) / kApproach) * end);
+  return tips;
 }
 
 double clock_cost() {

@@ -24,11 +24,17 @@ inline constexpr double kRate = 1000;  // Hz
 inline constexpr int kSteps = 200000;
 inline constexpr int kPasses = 5;
 
-/// A curve that winds over the sphere of octasphere.hpp at 0.1 m/s, 1.5 to 4.5 mm deep.
-std::vector<Vec3> trajectory();
+/// What the tip does on the sphere of octasphere.hpp: it presses along a line, 1.5 to 4.5 mm deep;
+/// or slides along a curve that winds over the sphere at 0.1 m/s, 3 mm deep; or both at once.
+enum class Motion : std::uint8_t { Press, Slide, Both };
+std::vector<Vec3> trajectory(Motion motion = Motion::Both);
 
 /// Where the tool is before it: outside, above its second point, as the first is below a vertex.
 Vec3 outside();
+
+/// Steps from the surface to the begin of a press. A tool that begins inside has a depth offset,
+/// which no friction pays for where it only presses.
+std::vector<Vec3> approach();
 
 /// Median time of an empty measurement, ns, which is part of each time.
 double clock_cost();
@@ -72,8 +78,8 @@ void count_quantiles(benchmark::State& state, std::vector<std::int64_t> times,
 
 /// One pass an iteration; `begin` makes what steps, afresh. Returns the first pass.
 template <typename Begin>
-Pass time_passes(benchmark::State& state, const Begin& begin) {
-  const std::vector<Vec3> tips = trajectory();
+Pass time_passes(benchmark::State& state, const Begin& begin, Motion motion = Motion::Both) {
+  const std::vector<Vec3> tips = trajectory(motion);
   Pass first;
   std::vector<std::int64_t> least;
   for (auto _ : state) {

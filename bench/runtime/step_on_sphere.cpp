@@ -41,6 +41,7 @@ const palpate_library& body_of(int n, std::int64_t variant) {
 
 void step_on_sphere(benchmark::State& state) {
   const palpate_library& body = body_of(static_cast<int>(state.range(0)), state.range(1));
+  const auto motion = static_cast<Motion>(state.range(2));
   std::unique_ptr<palpate_state> tool;
   const auto step = [&](const Vec3& x) {
     static constexpr double kVelocity[3] = {0, 0, 0};
@@ -48,12 +49,18 @@ void step_on_sphere(benchmark::State& state) {
     felt.status = palpate_step(tool.get(), x.data(), kVelocity, 1 / kRate, felt.force.data());
     return felt;
   };
-  const Pass pass = time_passes(state, [&] {
-    tool = std::make_unique<palpate_state>(
-        body, runtime::ContactSettings{.friction = 0.3, .tank_cap = 5e-3, .lipschitz_bound = 1200});
-    step(outside());
-    return step;
-  });
+  const Pass pass = time_passes(
+      state,
+      [&] {
+        tool = std::make_unique<palpate_state>(
+            body,
+            runtime::ContactSettings{.friction = 0.3, .tank_cap = 5e-3, .lipschitz_bound = 1200});
+        step(outside());
+        if (motion == Motion::Press)
+          for (const Vec3& x : approach()) step(x);
+        return step;
+      },
+      motion);
   const auto sliding = std::count_if(pass.felt.begin(), pass.felt.end(), [](const Felt& felt) {
     return (felt.status & PALPATE_SLIDING) != 0;
   });

@@ -5,9 +5,9 @@
 
 namespace palpate::bench {
 
-/// The force step of the C interface along trajectory(), on the octasphere of range(0) divisions
+/// The force step of the C interface along a trajectory, on the octasphere of range(0) divisions
 /// with decoupled (range(1) = 0) or coupled (1) responses; 2 and 3: the same with three relaxation
-/// times, whose fractions differ from node to node.
+/// times, whose fractions differ from node to node. range(2): the motion.
 void step_on_sphere(benchmark::State& state);
 
 }  // namespace palpate::bench

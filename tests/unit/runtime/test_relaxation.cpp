@@ -342,8 +342,10 @@ Library in_parts(std::size_t parts, ResponseKind kind) {
   return library;
 }
 
-/// Presses and drags with pauses, slides and a lift, at times that vary from step to step.
-std::vector<runtime::ContactObservation> felt_by_a_wandering_tool(const Library& library) {
+/// Presses and drags with pauses, slides and a lift, at times that vary from step to step. Energies
+/// are asked for after every so many steps; those of the others are not known.
+std::vector<runtime::ContactObservation> felt_by_a_wandering_tool(const Library& library,
+                                                                  int asked_every = 1) {
   const palpate_library body(library);
   runtime::ContactState contact(body.surface, body.tree, {0.3, 5e-3});
   std::mt19937 random(11);
@@ -356,9 +358,28 @@ std::vector<runtime::ContactObservation> felt_by_a_wandering_tool(const Library&
     contact.step({0.04 + 0.02 * std::sin(phase), 0.04 + 0.015 * std::sin(1.7 * phase),
                   -0.002 + 0.003 * std::cos(0.9 * phase)},
                  dt);
-    felt.push_back(contact.observation());
+    felt.push_back(i % asked_every == 0 ? contact.observation()
+                                        : contact.observation_but_energies());
   }
   return felt;
+}
+
+TEST(Relaxation, NothingDependsOnWhoAsksForEnergies) {
+  constexpr int kSeldom = 37;
+  for (const ResponseKind kind : {ResponseKind::Decoupled, ResponseKind::Coupled}) {
+    const Library library = in_parts(3, kind);
+    const auto always = felt_by_a_wandering_tool(library);
+    const auto seldom = felt_by_a_wandering_tool(library, kSeldom);
+    for (std::size_t i = 0; i < always.size(); ++i) {
+      ASSERT_EQ(seldom[i].force, always[i].force) << i;
+      ASSERT_EQ(seldom[i].status, always[i].status) << i;
+      ASSERT_EQ(seldom[i].tank, always[i].tank) << i;
+      if (i % kSeldom != 0) continue;
+      ASSERT_EQ(seldom[i].energy, always[i].energy) << i;
+      ASSERT_EQ(seldom[i].absorbed, always[i].absorbed) << i;
+      ASSERT_EQ(seldom[i].dissipated, always[i].dissipated) << i;
+    }
+  }
 }
 
 TEST(Relaxation, HowManyBranchesAFractionIsDividedIntoMakesNoDifference) {

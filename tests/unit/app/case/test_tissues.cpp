@@ -1,18 +1,23 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
 // data/materials.toml: every entry is read as the material of a case, and its law has the uniaxial
-// stress of the closed form with the constants as they are written.
+// stress of the closed form with the constants as they are written. Series have the moduli over
+// time that their sources state.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <toml++/toml.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
 #include <string>
 
 #include "app/case/case.hpp"
+#include "app/case/material.hpp"
 #include "app/case/quantity.hpp"
 #include "fem/laws/law.hpp"
+#include "format/numbers.hpp"
+#include "format/relaxation.hpp"
 #include "tests/support/source_folder.hpp"
 
 namespace palpate::app {
@@ -93,9 +98,12 @@ double nominal_stress(const fem::LawConstants& constants, double l) {
   return P[4][0] - P[0][0] * s / l;
 }
 
+toml::table table_of_tissues() {
+  return toml::parse_file((test::source_folder() / "data/materials.toml").string());
+}
+
 TEST(Tissues, AreMaterialsOfACaseAndHaveTheStressOfTheirConstants) {
-  const toml::table file =
-      toml::parse_file((test::source_folder() / "data/materials.toml").string());
+  const toml::table file = table_of_tissues();
   const toml::array& tissues = *file["tissue"].as_array();
   EXPECT_GE(tissues.size(), 9u);
   for (const toml::node& node : tissues) {
@@ -110,6 +118,70 @@ TEST(Tissues, AreMaterialsOfACaseAndHaveTheStressOfTheirConstants) {
       const double expected = closed_form(tissue, stretch);
       EXPECT_NEAR(nominal_stress(law, stretch), expected, 1e-9 * std::abs(expected) + 1e-9);
     }
+  }
+}
+
+/// The material of a tissue as the stages get it.
+fem::RegionMaterial material_of(const toml::table& tissue) {
+  const Case c = parse_case(case_with(tissue), "tissue.toml");
+  return campaign_material(c.materials.at(0), {});
+}
+
+/// Shear modulus at small strain, Pa, at a time t (s) after a step of strain.
+double shear_modulus(const fem::RegionMaterial& material, double t) {
+  return fem::rest_moduli(material.law).mu() * relaxed_fraction(material.relaxation, t);
+}
+
+TEST(Tissues, RelaxByFractionsAndTimesThatADeviceFeels) {
+  std::size_t series = 0;
+  const toml::table file = table_of_tissues();
+  for (const toml::node& node : *file["tissue"].as_array()) {
+    const toml::table& tissue = *node.as_table();
+    SCOPED_TRACE(tissue["name"].value<std::string>().value());
+    EXPECT_EQ(tissue.contains("relaxation"), tissue.contains("moduli"));
+    const RelaxationSeries relaxation = material_of(tissue).relaxation;
+    if (relaxation.empty()) continue;
+    ++series;
+    EXPECT_GT(long_term_fraction(relaxation), 0.01);
+    for (const RelaxationBranch& branch : relaxation) {
+      EXPECT_GT(branch.fraction, 0.01);
+      EXPECT_GT(branch.time_s, 0.02);  // twenty periods of a loop of 1 kHz
+      EXPECT_LT(branch.time_s, 3600);
+    }
+  }
+  EXPECT_GE(series, 6u);
+}
+
+/// What a source states of a shear modulus, and the time after a step of strain.
+struct StatedModulus {
+  const char* tissue;
+  double time_s, modulus;  ///< s, Pa
+};
+
+/// In the abstracts that the entries cite. A Maxwell element beside a spring has relaxed to 1/e of
+/// its modulus at its time.
+TEST(Tissues, HaveTheModuliThatTheirSourcesState) {
+  const double e = std::exp(1.0);
+  const StatedModulus stated[] = {{"brain, human cortex", 0, 700 + 2000},
+                                  {"brain, human cortex", 9.7, 700 + 2000 / e},
+                                  {"brain, human cortex", kInfinity, 700},
+                                  {"brain, human corona radiata", 0, 300 + 900},
+                                  {"brain, human corona radiata", 14.9, 300 + 900 / e},
+                                  {"brain, human corona radiata", kInfinity, 300},
+                                  {"skeletal muscle, swine", 0, 8509},
+                                  {"skeletal muscle, swine", 20, 1.1 * 609},
+                                  {"skeletal muscle, swine", kInfinity, 609},
+                                  {"liver, human, elastography", 0, 2300}};
+  const toml::table file = table_of_tissues();
+  for (const StatedModulus& s : stated) {
+    const auto& tissues = *file["tissue"].as_array();
+    const auto found = std::find_if(tissues.begin(), tissues.end(), [&](const toml::node& node) {
+      return (*node.as_table())["name"].value<std::string>() == s.tissue;
+    });
+    ASSERT_NE(found, tissues.end()) << s.tissue;
+    EXPECT_NEAR(shear_modulus(material_of(*found->as_table()), s.time_s), s.modulus,
+                5e-3 * s.modulus)
+        << s.tissue << " at " << s.time_s << " s";
   }
 }
 
