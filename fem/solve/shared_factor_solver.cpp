@@ -26,8 +26,9 @@ constexpr double kNextMultipliers = 0.3;
 /// outside than it saves inside (bench_precompute profile).
 constexpr double kInnerTolerance = 0.2, kInnerError = 0.007;
 /// A surface that snaps moves through a long curved valley of its energy, in up to some 60 steps
-/// inside the window. Half of an increment, tried where they do not suffice, costs more.
-constexpr int kMostInnerSteps = 120;
+/// inside the window. Half of an increment, tried where they do not suffice, costs more. A step
+/// outside that asks for many is too long: half of it asks for few.
+constexpr int kMostInnerSteps = 120, kInnerStepsOfTrial = 20;
 /// Error of the force that the last step of the multipliers may leave, over the tolerance. What it
 /// adds to the residual are pressures, and the force does not change by them in first order: along
 /// a path the body moves with almost no change of volume (bench_precompute poisson).
@@ -53,11 +54,11 @@ Eigen::VectorXd difference(const SolidModel& model, Eigen::Index count, const Di
 }  // namespace
 
 bool SharedFactorSolver::relax_window(const ToolContact& contact, const NewtonOptions& options,
-                                      Displacement& u, NewtonResult& result) {
+                                      int most_steps, Displacement& u, NewtonResult& result) {
   NewtonOptions inner = options;
   inner.tolerance = std::max(kInnerTolerance * options.tolerance, kInnerError * error_);
   inner.reuse_factor = true;
-  inner.max_iterations = kMostInnerSteps;
+  inner.max_iterations = most_steps;
   const NewtonResult relaxed = newton_.solve(contact, inner, u);
   if (!relaxed.converged) result.reason = relaxed.reason;
   return relaxed.converged;
@@ -127,7 +128,7 @@ bool SharedFactorSolver::step(const ToolContact& contact, const NewtonOptions& o
     const double tried = std::exchange(length, 0.5 * length);
     Displacement trial = u;
     add_step(tried, d, trial);
-    if (!relax_window(contact, options, trial, result)) continue;
+    if (!relax_window(contact, options, kInnerStepsOfTrial, trial, result)) continue;
     Equilibrium next = evaluated(contact, trial);
     result.reason = "steps invert an element";
     if (!(next.min_J > 0)) continue;
@@ -172,7 +173,7 @@ SharedFactorSolver::Verdict SharedFactorSolver::judge(const ToolContact& contact
     const PartTimer timer(Part::BodyPasses);
     whole_.update(u, multipliers_);
   }
-  if (!relax_window(contact, options, u, result)) return Verdict::Failed;
+  if (!relax_window(contact, options, kMostInnerSteps, u, result)) return Verdict::Failed;
   now = evaluated(contact, u);
   error_ = imbalance(whole_, now.residual, options.round_off) / force;
   error_after_multipliers_ = force_error();
@@ -214,7 +215,7 @@ NewtonResult SharedFactorSolver::descend(const ToolContact& contact, const Newto
   error_after_multipliers_ = 1;
   rotation_ = mean_rotation(whole_.mesh(), u);
   rotated_ = (rotation_ - Eigen::Matrix3d::Identity()).norm() > kRotated;
-  if (!relax_window(contact, options, u, result)) return result;
+  if (!relax_window(contact, options, kMostInnerSteps, u, result)) return result;
   Equilibrium now = evaluated(contact, u);
   Eigen::Vector3d before = Eigen::Vector3d::Zero();
   for (; result.iterations < options.max_iterations; ++result.iterations) {

@@ -98,8 +98,8 @@ class SharedFactorSolver {
                 Equilibrium& now, Displacement& u, NewtonResult& result);
   /// Estimate of the error of the tool force, relative to it.
   double force_error() const { return std::max(1.0, sensitivity_) * error_; }
-  bool relax_window(const ToolContact& contact, const NewtonOptions& options, Displacement& u,
-                    NewtonResult& result);
+  bool relax_window(const ToolContact& contact, const NewtonOptions& options, int most_steps,
+                    Displacement& u, NewtonResult& result);
   void remember(const Eigen::VectorXd& s, const Eigen::VectorXd& y);
   Eigen::VectorXd direction(const Eigen::VectorXd& residual);
   /// From here on the increment has a factor of its own.
