@@ -84,8 +84,8 @@ std::string bar_line(double fraction, std::string_view text, int columns);
 /// Not thread-safe.
 class ProgressDisplay {
  public:
-  ProgressDisplay(std::string label, TextOutput output)
-      : label_(std::move(label)), output_(std::move(output)) {}
+  ProgressDisplay(std::string label, TextOutput output, const SiteSharing& sharing = {})
+      : label_(std::move(label)), output_(std::move(output)), remaining_(sharing) {}
   /// The first progress of a campaign, before its first site, starts the clock of the estimate.
   void show(const Progress& progress);
   /// Ends the line of a bar, before other text is printed.

@@ -51,6 +51,10 @@ double RemainingTime::served(double now) const {
   return served_ + (now - last_) / seconds(running_.size());
 }
 
+double RemainingTime::age(const Running& site, double served) {
+  return (site.passed.empty() ? 0 : site.passed.back().second) + served - site.since;
+}
+
 void RemainingTime::update(double now, std::int64_t done, std::int64_t total,
                            const std::vector<SiteProgress>& running) {
   served_ = served(now);
@@ -61,14 +65,16 @@ void RemainingTime::update(double now, std::int64_t done, std::int64_t total,
   for (const SiteProgress& site : running) {
     Running& seen = running_.try_emplace(site.vertex, Running{served_, {}}).first->second;
     if (site.fraction <= (seen.passed.empty() ? 0 : seen.passed.back().first)) continue;
-    seen.passed.emplace_back(site.fraction, served_ - seen.start);
+    seen.passed.emplace_back(site.fraction,
+                             sharing_.by_processor ? site.processor_seconds : age(seen, served_));
+    seen.since = served_;
     if (step_ == 0) step_ = site.fraction;
   }
   for (auto it = running_.begin(); it != running_.end();) {
     const bool runs = std::any_of(running.begin(), running.end(), [&](const SiteProgress& site) {
       return site.vertex == it->first;
     });
-    if (!runs) finish(it->second, served_ - it->second.start);
+    if (!runs) finish(it->second, age(it->second, served_));
     it = runs ? std::next(it) : running_.erase(it);
   }
 }
@@ -77,20 +83,19 @@ void RemainingTime::update(double now, std::int64_t done, std::int64_t total,
 void RemainingTime::finish(const Running& site, double service) {
   services_.push_back(service);
   if (site.passed.empty() || site.passed.back().first < 1 || service <= 0) return;
-  ++profiles_;
   for (std::size_t i = 0; i <= kParts; ++i)
-    parts_[i] += service_at(static_cast<double>(i) / kParts, site.passed) / service;
+    parts_[i] += service_at(static_cast<double>(i) / kParts, site.passed);
 }
 
 /// Part of the service of a site that so many of its increments take. Deeper increments take
 /// longer: as long as no site has finished the rate is taken to grow linearly, by a factor of
 /// three.
 double RemainingTime::part_of_service(double fraction) const {
-  if (profiles_ == 0) return 0.5 * (fraction + fraction * fraction);
+  if (parts_[kParts] == 0) return 0.5 * (fraction + fraction * fraction);
   const double place = fraction * kParts;
   const auto i = std::min(static_cast<std::size_t>(place), kParts - 1);
   const double within = place - static_cast<double>(i);
-  return ((1 - within) * parts_[i] + within * parts_[i + 1]) / static_cast<double>(profiles_);
+  return ((1 - within) * parts_[i] + within * parts_[i + 1]) / parts_[kParts];
 }
 
 /// By the increments that are done, and not less than the age of the site over the part that its
@@ -98,7 +103,7 @@ double RemainingTime::part_of_service(double fraction) const {
 double RemainingTime::foretold_service(const Running& site, double served) const {
   if (step_ == 0) return 0;
   const double next = site.passed.empty() ? step_ : site.passed.back().first + step_;
-  const double least = (served - site.start) / part_of_service(std::min(1.0, next));
+  const double least = age(site, served) / part_of_service(std::min(1.0, next));
   if (site.passed.empty()) return least;
   return std::max(least, site.passed.back().second / part_of_service(site.passed.back().first));
 }
@@ -120,10 +125,10 @@ std::vector<double> RemainingTime::likely_services(double served) const {
 
 /// What its increments so far foretell, and the mean as long as they tell little.
 double RemainingTime::remaining_service(const Running& site, double served, double mean) const {
-  const double age = served - site.start;
+  const double so_far = age(site, served);
   const double part = site.passed.empty() ? 0 : part_of_service(site.passed.back().first);
-  const double foretold = std::max(0.0, foretold_service(site, served) - age);
-  const double by_mean = std::max({mean - age, age, part > 0 ? 0 : foretold});
+  const double foretold = std::max(0.0, foretold_service(site, served) - so_far);
+  const double by_mean = std::max({mean - so_far, so_far, part > 0 ? 0 : foretold});
   return weight(part) * foretold + (1 - weight(part)) * (1 - part) * by_mean;
 }
 

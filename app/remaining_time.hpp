@@ -16,6 +16,9 @@ namespace palpate::app {
 /// max(1, n / processors)^-exponent.
 struct SiteSharing {
   double processors = 1, exponent = 0.5;
+  /// Whether the service of an increment is the processor time of its site: not where block solves
+  /// take it, which count for the site that happens to do them.
+  bool by_processor = false;
 };
 
 /// Time that a campaign still takes, from what its sites took so far. The time before the first
@@ -29,7 +32,8 @@ struct SiteSharing {
 /// how many run, and a last group of few sites takes less time than a full one.
 ///
 /// Sites on thin parts need ten times the service of others, and the quick ones finish first. A
-/// site that runs therefore counts with the service that its increments so far foretell.
+/// site that runs therefore counts with the service that its increments so far foretell, as it was
+/// spread over the increments of finished sites together: the quick ones tell little of that.
 class RemainingTime {
  public:
   /// By default for sites that share block solves.
@@ -54,13 +58,15 @@ class RemainingTime {
 
  private:
   struct Running {
-    double start = 0;                               ///< as the integral
+    double since = 0;                               ///< as the integral, its last increment
     std::vector<std::pair<double, double>> passed;  ///< fraction of the increments, service
   };
 
   /// s of one second of service of each of n sites.
   double seconds(std::size_t n) const;
   double served(double now) const;
+  /// Service since the start of the site.
+  static double age(const Running& site, double served);
   void finish(const Running& site, double service);
   double part_of_service(double fraction) const;
   double foretold_service(const Running& site, double served) const;
@@ -77,10 +83,9 @@ class RemainingTime {
   double step_ = 0;                          ///< fraction of the increments that one is
   std::map<std::int32_t, Running> running_;  ///< by vertex
   std::vector<double> services_;             ///< s, of finished sites
-  /// Service of finished sites until i/kParts of their increments over all of it: sum and number.
+  /// Sum of the services of finished sites until i/kParts of their increments.
   static constexpr std::size_t kParts = 20;
   std::array<double, kParts + 1> parts_{};
-  std::int64_t profiles_ = 0;
 };
 
 }  // namespace palpate::app

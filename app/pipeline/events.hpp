@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/remaining_time.hpp"
 #include "fitting/fidelity/fidelity.hpp"
 #include "format/curves.hpp"
 #include "format/site_progress.hpp"
@@ -51,6 +52,7 @@ struct CampaignStarted {
   std::uint64_t dropped_bytes = 0;  ///< of a site that was being written when that run stopped
   bool moved_aside = false;         ///< the journal of another campaign
   std::filesystem::path journal;
+  SiteSharing sharing = {};  ///< of its sites
 };
 
 struct SiteFinished {

@@ -139,7 +139,7 @@ SiteCounts run_precompute(const Workspace& space, const EventSink& emit) {
   const std::string key = campaign_key(space, body_sha256);
   SiteJournal journal(space.journal(), {key, static_cast<std::int64_t>(settings.sites.size())});
   emit(CampaignStarted{fem::blas_kernel(), journal.found().size(), journal.dropped_bytes(),
-                       journal.moved_aside(), space.journal()});
+                       journal.moved_aside(), space.journal(), sharing_of(settings)});
   settings.known = journal.found();
   keep_fields(space, settings);
   settings.finished = [&](const SiteCurves& site) {

@@ -129,7 +129,7 @@ fem::CampaignSettings campaign_settings(const Workspace& space) {
 
 SiteSharing sharing_of(const fem::CampaignSettings& settings) {
   // A tenth of the time of a site on refined elements is block solves.
-  if (settings.indentation.refines()) return {static_cast<double>(settings.threads), 0.95};
+  if (settings.indentation.refines()) return {static_cast<double>(settings.threads), 0.95, true};
   return {};
 }
 

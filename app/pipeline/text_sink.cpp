@@ -64,7 +64,8 @@ void TextSink::print(const MeshFinished& e) {
 }
 
 void TextSink::print(const CampaignStarted& e) {
-  progress_ = ProgressDisplay("precompute", console_.out);  // its clock starts now
+  sharing_ = e.sharing;
+  progress_ = ProgressDisplay("precompute", console_.out, sharing_);  // its clock starts now
   line("  BLAS kernel: {}", e.blas_kernel);
   if (e.moved_aside)
     line("  {} belongs to another campaign: moved to {}.old", e.journal.string(),
@@ -92,7 +93,7 @@ void TextSink::print(const Progress& e) {
 void TextSink::print(const FinerMeshProgress& e) {
   if (e.done == 0 && !e.between_sites) {
     progress_.interrupt();
-    progress_ = ProgressDisplay("precompute, finer mesh", console_.out);
+    progress_ = ProgressDisplay("precompute, finer mesh", console_.out, sharing_);
   }
   if (console_.verbosity != Verbosity::Quiet) progress_.show(e);
 }

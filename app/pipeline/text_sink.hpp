@@ -46,6 +46,7 @@ class TextSink {
   void warning(std::string_view text);
 
   Console console_;
+  SiteSharing sharing_;
   ProgressDisplay progress_{"precompute", console_.out};
 };
 

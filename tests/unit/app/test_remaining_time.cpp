@@ -43,8 +43,10 @@ double sharing(std::size_t n) {
 /// Plays a campaign and notes the estimate after each site.
 class Player {
  public:
-  Player(const std::vector<double>& durations, std::size_t places, Sharing slowness)
-      : durations_(durations), slowness_(slowness) {
+  /// `favoured`: how much faster every third site is served than the others.
+  Player(const std::vector<double>& durations, std::size_t places, Sharing slowness,
+         const SiteSharing& sharing = {}, double favoured = 1)
+      : durations_(durations), slowness_(slowness), favoured_(favoured), time_(sharing) {
     time_.begin(kSetUp);
     while (sites_.size() < std::min(places, durations.size())) start_one();
     tell();
@@ -61,19 +63,25 @@ class Player {
     std::int32_t vertex;
     double work, worked;  ///< s
     int increments;
-    double to_next() const { return work * time_until((increments + 1.0) / kIncrements) - worked; }
+    double speed;
+    /// s, until the end of the next increment
+    double to_next() const {
+      return (work * time_until((increments + 1.0) / kIncrements) - worked) / speed;
+    }
   };
 
   void start_one() {
     if (next_ == durations_.size()) return;
-    sites_.push_back({static_cast<std::int32_t>(next_), durations_[next_], 0, 0});
+    const double speed = next_ % 3 == 0 ? favoured_ : 1;
+    sites_.push_back({static_cast<std::int32_t>(next_), durations_[next_], 0, 0, speed});
     ++next_;
   }
 
   void tell() {
     std::vector<SiteProgress> running;
     for (const Site& site : sites_)
-      running.push_back({site.vertex, static_cast<double>(site.increments) / kIncrements});
+      running.push_back(
+          {site.vertex, static_cast<double>(site.increments) / kIncrements, site.worked});
     time_.update(now_, done_, static_cast<std::int64_t>(durations_.size()), running);
   }
 
@@ -82,9 +90,11 @@ class Player {
     const auto first =
         std::min_element(sites_.begin(), sites_.end(),
                          [](const Site& a, const Site& b) { return a.to_next() < b.to_next(); });
-    const double work = first->to_next();
-    now_ += work * slowness_(sites_.size());
-    for (Site& site : sites_) site.worked += work;
+    const double turn = first->to_next();
+    double speeds = 0;
+    for (const Site& site : sites_) speeds += site.speed;
+    now_ += turn * slowness_(sites_.size()) * speeds / static_cast<double>(sites_.size());
+    for (Site& site : sites_) site.worked += turn * site.speed;
     ++first->increments;
     tell();
     if (first->increments < kIncrements) return;
@@ -98,6 +108,7 @@ class Player {
 
   std::vector<double> durations_;
   Sharing slowness_;
+  double favoured_;
   RemainingTime time_;
   std::vector<Site> sites_;
   std::size_t next_ = 0;
@@ -156,6 +167,23 @@ TEST(RemainingTime, KnowsSlowSitesBeforeTheyFinish) {
   for (std::size_t i = 0; i < 16; ++i) durations[2 * i] *= 10;
   const auto estimates = played(durations, 32, sharing);
   EXPECT_NEAR(estimates[3].left / estimates[3].truth, 1, 0.3);
+}
+
+/// Two processors, on which sites take turns that are not alike: their processor times tell more
+/// than how long they have run.
+TEST(RemainingTime, GoesByTheProcessorTimeOfSitesThatAreServedUnevenly) {
+  std::vector<double> durations = scattered(200, 0.4);
+  for (std::size_t i = 0; i < durations.size(); i += 5) durations[i] *= 10;
+  const Sharing two_processors = [](std::size_t n) {
+    return std::max(1.0, static_cast<double>(n) / 2);
+  };
+  for (const std::size_t places : {32U, 200U}) {
+    const Player player(durations, places, two_processors, {2, 1, true}, 4);
+    for (const NotedTime& e : player.estimates) {
+      if (e.done < 20 || e.truth < 0.1 * player.estimates.front().truth) continue;
+      EXPECT_NEAR(e.left / e.truth, 1, 0.3) << places << " places, " << e.done << " done";
+    }
+  }
 }
 
 /// A site that ended early does not tell how long its last increments take.
