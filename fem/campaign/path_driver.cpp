@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "fem/contact/increment_work.hpp"
 #include "fem/mesh/point_text.hpp"
 #include "fem/mesh/to_eigen.hpp"
 #include "fem/solve/profile.hpp"
@@ -73,8 +74,9 @@ bool PathDriver::advance(double from, double to, Predictor& states, Displacement
 
 void PathDriver::add_work(double from, const Displacement& before, const Displacement& after) {
   if (!work_) return;
-  const auto more = problem_.equilibrium.work_between(problem_.contact, problem_.tool_at(from).tip,
-                                                      before, after);
+  const PartTimer timer(Part::Contact);
+  const auto more =
+      work_between(problem_.contact, problem_.model, problem_.tool_at(from).tip, before, after);
   work_ = more ? std::optional(*work_ + *more) : std::nullopt;
 }
 

@@ -82,14 +82,6 @@ NewtonResult SiteEquilibrium::solve(const ToolContact& contact, bool direct_allo
   return result;
 }
 
-std::optional<double> SiteEquilibrium::work_between(const ToolContact& contact,
-                                                    const Eigen::Vector3d& from,
-                                                    const Displacement& before,
-                                                    const Displacement& after) {
-  if (shared_) return shared_->work_between(contact, from, before, after);
-  return direct_ ? direct_->work_between(contact, from, before, after) : std::nullopt;
-}
-
 void SiteEquilibrium::start_path(const Tool& tool, const Displacement& u) {
   if (shared_) shared_->start_path(tool.tip, u);
 }

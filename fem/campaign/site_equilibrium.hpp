@@ -27,10 +27,6 @@ class SiteEquilibrium {
   /// about a hundred times more.
   NewtonResult solve(const ToolContact& contact, bool direct_allowed, Displacement& u);
 
-  /// As NewtonSolver::work_between.
-  std::optional<double> work_between(const ToolContact& contact, const Eigen::Vector3d& from,
-                                     const Displacement& before, const Displacement& after);
-
   /// To be called at the start of a path: the tool and the equilibrium there.
   void start_path(const Tool& tool, const Displacement& u);
 

@@ -68,13 +68,6 @@ bool ContactPatch::covers(const ToolContact& contact, const Displacement& u) con
          std::all_of(contact.ties().begin(), contact.ties().end(), known);
 }
 
-Eigen::VectorXd ContactPatch::difference(const Displacement& from, const Displacement& to) const {
-  Eigen::VectorXd d(size());
-  for (const auto& [node, first] : first_of_)
-    if (first >= 0) d.segment<3>(first) = to.col(node) - from.col(node);
-  return d;
-}
-
 void ContactPatch::start_from(const ToolContact& contact, const Displacement& u) {
   for (Point& point : points_) point.x = contact.position(contact.points()[point.index], u);
   ties_.clear();
@@ -157,18 +150,6 @@ template void PatchContact::add_hessian(const ToolContact&, const Eigen::VectorX
                                         Eigen::MatrixXf&) const;
 template void PatchContact::add_hessian(const ToolContact&, const Eigen::VectorXd&, bool,
                                         Eigen::MatrixXd&) const;
-
-Eigen::Vector3d PatchContact::tool_force(const ToolContact& contact,
-                                         const Eigen::VectorXd& d) const {
-  Eigen::Vector3d force = Eigen::Vector3d::Zero();
-  for (const Point& point : points_) {
-    const auto& source = contact.points()[point.index];
-    force -= source.area * contact.gradient_at(source, position(contact, point, d));
-  }
-  for (const Tie& tie : ties_)
-    force -= contact.gradient_at(contact.ties()[tie.index], position(tie, d));
-  return force;
-}
 
 void PatchContact::mark_touched(const ToolContact& contact, const Eigen::VectorXd& d,
                                 std::vector<char>& marks) const {

@@ -23,8 +23,6 @@ class PatchContact {
   template <class Number>
   void add_hessian(const ToolContact& contact, const Eigen::VectorXd& d, bool geometric,
                    Eigen::MatrixX<Number>& H) const;
-  /// N, of the tool on the body; no other point is in contact.
-  Eigen::Vector3d tool_force(const ToolContact& contact, const Eigen::VectorXd& d) const;
 
   /// Marks the unknowns of ties and of facets in contact.
   void mark_touched(const ToolContact& contact, const Eigen::VectorXd& d,
@@ -68,9 +66,6 @@ class ContactPatch : public PatchContact {
   /// The unknowns of the model that belong to the patch, ascending; empty when it has none there.
   const std::vector<int>& unknowns() const { return unknowns_; }
   Eigen::Index size() const { return static_cast<Eigen::Index>(unknowns_.size()); }
-
-  /// d from one displacement to another.
-  Eigen::VectorXd difference(const Displacement& from, const Displacement& to) const;
 
   /// The displacement that d is a change of.
   void start_from(const ToolContact& contact, const Displacement& u);

@@ -29,6 +29,14 @@ void PatchSolver::use(const PatchStiffness& stiffness) {
   stiffness_ = &stiffness;
   in_core_.assign(static_cast<std::size_t>(stiffness.S.rows()), 0);
   condensed_.clear();
+  next_fraction_ = 0;
+}
+
+std::size_t PatchSolver::stiffer_than(std::size_t fraction) const {
+  // The stiffness changes little from one factorization to the next: start one below what the last
+  // one needed.
+  return std::max(fraction + 1, fraction == 0 && sufficient_fraction_ > 0 ? sufficient_fraction_ - 1
+                                                                          : std::size_t{0});
 }
 
 bool PatchSolver::condense(std::size_t fraction) {
@@ -128,14 +136,16 @@ std::optional<Eigen::VectorXd> PatchSolver::minimum(const ContactPatch& patch,
                                                     const Eigen::VectorXd& load, Eigen::VectorXd d,
                                                     double tolerance) {
   expect(patch, contact, d);
-  std::size_t fraction = 0;
+  std::size_t fraction = next_fraction_;
   while (fraction < kStiffeningFractions.size()) {
     if (!condense(fraction) || !minimize_on_core(patch, contact, load, tolerance, d)) {
-      ++fraction;
+      fraction = stiffer_than(fraction);
       continue;
     }
     expect(patch, contact, d);
-    if (in_core_ == condensed_) return d;
+    if (in_core_ != condensed_) continue;
+    next_fraction_ = sufficient_fraction_ = fraction;
+    return d;
   }
   return std::nullopt;
 }

@@ -44,6 +44,8 @@ class PatchSolver {
   /// Eliminates the unknowns outside the core from S, of which this fraction of the stiffening is
   /// added to the diagonal; false where that is not positive definite.
   bool condense(std::size_t fraction);
+  /// The fraction to try where this one does not make the model convex.
+  std::size_t stiffer_than(std::size_t fraction) const;
   /// False where the model is not convex; d is then where that was found.
   bool minimize_on_core(const ContactPatch& patch, const ToolContact& contact,
                         const Eigen::VectorXd& load, double tolerance, Eigen::VectorXd& d);
@@ -61,19 +63,21 @@ class PatchSolver {
   Eigen::Index core_size() const { return size() - rest_; }
 
   const PatchStiffness* stiffness_ = nullptr;
-  std::vector<char> in_core_;         ///< (unknowns of the patch)
-  std::vector<char> condensed_;       ///< in_core_ at the last condense()
-  std::size_t fraction_ = 0;          ///< of the last condense()
-  std::vector<int> order_;            ///< unknowns of the patch: those outside the core first
-  std::vector<int> core_index_;       ///< of the unknowns of the patch, -1: outside
-  Eigen::Index rest_ = 0;             ///< how many are outside
-  Eigen::MatrixXd eliminated_;        ///< in that order, see eliminate_first()
-  Eigen::MatrixXd S_;                 ///< of the core, lower triangle
-  Eigen::MatrixXf single_S_;          ///< S_ in single precision
-  Eigen::MatrixXf single_factor_;     ///< of S_ and the contact, at the last factorize()
-  Eigen::MatrixXd double_factor_;     ///< in its place where single precision does not suffice
-  bool in_single_precision_ = false;  ///< the last factor
-  bool factorized_ = false;           ///< whether factor_ is one with the present S_
+  std::vector<char> in_core_;            ///< (unknowns of the patch)
+  std::vector<char> condensed_;          ///< in_core_ at the last condense()
+  std::size_t fraction_ = 0;             ///< of the last condense()
+  std::size_t next_fraction_ = 0;        ///< to begin with: of S none, then what sufficed
+  std::size_t sufficient_fraction_ = 0;  ///< of the last minimum, with this S or another
+  std::vector<int> order_;               ///< unknowns of the patch: those outside the core first
+  std::vector<int> core_index_;          ///< of the unknowns of the patch, -1: outside
+  Eigen::Index rest_ = 0;                ///< how many are outside
+  Eigen::MatrixXd eliminated_;           ///< in that order, see eliminate_first()
+  Eigen::MatrixXd S_;                    ///< of the core, lower triangle
+  Eigen::MatrixXf single_S_;             ///< S_ in single precision
+  Eigen::MatrixXf single_factor_;        ///< of S_ and the contact, at the last factorize()
+  Eigen::MatrixXd double_factor_;        ///< in its place where single precision does not suffice
+  bool in_single_precision_ = false;     ///< the last factor
+  bool factorized_ = false;              ///< whether factor_ is one with the present S_
 };
 
 }  // namespace palpate::fem

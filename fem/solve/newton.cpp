@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "fem/contact/increment_work.hpp"
 #include "fem/solve/profile.hpp"
 
 namespace palpate::fem {
@@ -36,6 +35,10 @@ constexpr double kLongestStep = 64;
 /// as some ten steps where the elements under the tool are refined (bench_precompute profile).
 constexpr double kGoodContraction = 0.5;
 
+/// A patch that is needed is taken instead of a larger one where it has less than this part of its
+/// unknowns: another analysis of the window takes as long as a factorization.
+constexpr double kMuchSmaller = 0.7;
+
 }  // namespace
 
 double imbalance(const SolidModel& model, const Eigen::VectorXd& residual, double round_off) {
@@ -57,11 +60,17 @@ Equilibrium evaluate(const SolidModel& model, const ToolContact& contact, const 
   return now;
 }
 
-void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& u) {
+void NewtonSolver::choose_patch(const ToolContact& contact, const Displacement& u,
+                                bool factor_is_kept) {
   {
     const PartTimer timer(Part::Contact);
-    if (patch_ && patch_->covers(contact, u)) return;
-    patch_.emplace(contact, model_, u);
+    const bool covered = patch_ && patch_->covers(contact, u);
+    if (covered && factor_is_kept) return;
+    ContactPatch needed(contact, model_, u);
+    if (covered &&
+        static_cast<double>(needed.size()) > kMuchSmaller * static_cast<double>(patch_->size()))
+      return;
+    patch_ = std::move(needed);
   }
   const PartTimer timer(Part::WindowAnalysis);
   factor_.emplace(model_.pattern(), permutation_, patch_->unknowns());
@@ -218,7 +227,7 @@ NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions
       result.converged = true;
       return result;
     }
-    choose_patch(contact, u);
+    choose_patch(contact, u, stale && factorized_);
     stale = stale && factorized_;
     if (!stale && !factorize(u)) {
       result.reason = kNotDefinite;
@@ -236,15 +245,6 @@ NewtonResult NewtonSolver::solve(const ToolContact& contact, const NewtonOptions
   }
   result.reason = "no convergence in " + std::to_string(options.max_iterations) + " iterations";
   return result;
-}
-
-std::optional<double> NewtonSolver::work_between(const ToolContact& contact,
-                                                 const Eigen::Vector3d& from,
-                                                 const Displacement& before,
-                                                 const Displacement& after) {
-  if (!factorized_) return std::nullopt;
-  const PartTimer timer(Part::Contact);
-  return fem::work_between(*patch_, patch_stiffness_, contact, from, before, after);
 }
 
 }  // namespace palpate::fem

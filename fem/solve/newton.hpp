@@ -63,12 +63,9 @@ class NewtonSolver {
 
   NewtonResult solve(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
 
-  /// palpate::fem::work_between with S of the last factor; nothing where there is none.
-  std::optional<double> work_between(const ToolContact& contact, const Eigen::Vector3d& from,
-                                     const Displacement& before, const Displacement& after);
-
  private:
-  void choose_patch(const ToolContact& contact, const Displacement& u);
+  /// `factor_is_kept`: a smaller patch would not be worth another factor.
+  void choose_patch(const ToolContact& contact, const Displacement& u, bool factor_is_kept);
   bool factorize(const Displacement& u);
   bool factorize_as_precisely_as_needed();
   /// The error of the solution of a test load with the patch held, over that solution.

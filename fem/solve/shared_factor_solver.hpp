@@ -67,12 +67,6 @@ class SharedFactorSolver {
   /// call: successive calls should be neighbours on a path. A failure is a return value.
   NewtonResult solve(const ToolContact& contact, const NewtonOptions& options, Displacement& u);
 
-  /// As NewtonSolver::work_between, by the factor of the window.
-  std::optional<double> work_between(const ToolContact& contact, const Eigen::Vector3d& from,
-                                     const Displacement& before, const Displacement& after) {
-    return newton_.work_between(contact, from, before, after);
-  }
-
   /// Discards the curvature pairs.
   void restart() { pairs_.clear(); }
   /// To be called at the start of a path from the equilibrium `u`, with the tip of the tool there.

@@ -69,22 +69,51 @@ TEST(PatchSolver, FindsTheContactWhereItWasNotExpected) {
   EXPECT_GT(p.touched(d), 0);
 }
 
+/// One unknown outside the contact has a stiffness of its own.
+struct PushedBesideASpring : Pushed {
+  Eigen::Index free = 0;
+
+  PushedBesideASpring() {
+    std::vector<char> marks(static_cast<std::size_t>(patch.size()), 0);
+    patch.mark_touched(contact, zero(), marks);
+    free = std::find(marks.begin(), marks.end(), 0) - marks.begin();
+    EXPECT_LT(free, patch.size());
+    stiffness.S.row(free).setZero();
+    stiffness.S.col(free).setZero();
+  }
+
+  /// The residual of the minimum with the spring as stiff as this, N, where the fraction `added` of
+  /// the stiffening is added.
+  double residual_with(double spring, double added) {
+    stiffness.S(free, free) = spring;
+    solver.use(stiffness);
+    const Eigen::VectorXd d = solver.minimum(patch, contact, load, zero(), 1e-10).value();
+    Eigen::VectorXd g;
+    patch.gradient(contact, d, g);
+    return (stiffness.S * d + added * stiffness.stiffening.cwiseProduct(d) - load + g).norm();
+  }
+};
+
 /// An S that is indefinite outside the contact has no minimum: the steps are those of the smallest
 /// stiffening that gives one.
 TEST(PatchSolver, StiffensWhatIsIndefiniteOutsideTheContact) {
-  Pushed p;
-  std::vector<char> marks(static_cast<std::size_t>(p.patch.size()), 0);
-  p.patch.mark_touched(p.contact, p.zero(), marks);
-  const auto free =
-      static_cast<Eigen::Index>(std::find(marks.begin(), marks.end(), 0) - marks.begin());
-  ASSERT_LT(free, p.patch.size());
-  p.stiffness.S.row(free).setZero();
-  p.stiffness.S.col(free).setZero();
-  p.stiffness.S(free, free) = -20;  // a 50th of the stiffening
-  p.solver.use(p.stiffness);
-  const Eigen::VectorXd d = p.solver.minimum(p.patch, p.contact, p.load, p.zero(), 1e-10).value();
-  p.stiffness.S.diagonal() += 0.03 * p.stiffness.stiffening;
-  EXPECT_LT(p.residual(d), 1e-10);
+  PushedBesideASpring p;
+  EXPECT_LT(p.residual_with(-20, 0.03), 1e-10);  // a 50th of the stiffening
+}
+
+TEST(PatchSolver, StiffensNoFurtherOnceSIsPositiveDefinite) {
+  PushedBesideASpring p;
+  EXPECT_LT(p.residual_with(-20, 0.03), 1e-10);
+  EXPECT_LT(p.residual_with(20, 0), 1e-10);
+}
+
+/// The fraction that the last S needed is where the next one begins.
+TEST(PatchSolver, ComesDownToTheSmallestStiffeningFromOneSToTheNext) {
+  PushedBesideASpring p;
+  EXPECT_LT(p.residual_with(-20, 0.03), 1e-10);
+  for (const double fraction : {0.015, 0.008, 0.004, 0.002, 0.002})
+    EXPECT_LT(p.residual_with(-1.5, fraction), 1e-10) << fraction;
+  EXPECT_LT(p.residual_with(-20, 0.03), 1e-10);
 }
 
 TEST(PatchSolver, FindsNoMinimumWhereTheStiffeningDoesNotSuffice) {

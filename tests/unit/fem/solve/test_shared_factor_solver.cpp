@@ -55,6 +55,21 @@ TEST(SharedFactorSolver, FindsTheEquilibriumOfNewtonsMethodInFewIterations) {
   }
 }
 
+/// The contact grows to many facets and shrinks to few, which makes another patch worthwhile.
+TEST(SharedFactorSolver, FollowsALiftedTool) {
+  PressedBody p(2 * kToolRadius);
+  SharedFactorSolver solver = solver_of(p);
+  Displacement u = p.rest();
+  for (const double depth : {0.001, 0.002, 0.001, 0.0004, 0.0001, 0.002}) {
+    p.press(depth);
+    const NewtonResult result = solver.solve(p.contact, {.tolerance = kTolerance}, u);
+    ASSERT_TRUE(result.converged) << result.reason;
+    EXPECT_LE(result.iterations, 15) << depth;
+    expect_equilibrium(p, u);
+    expect_same_state(p, u, by_newton(p, u));
+  }
+}
+
 /// Without multipliers an increment takes hundreds of steps at nu = 0.4999.
 TEST(SharedFactorSolver, FindsNearlyIncompressibleEquilibriaInFewIterations) {
   for (const double poisson : {0.499, 0.49999}) {
