@@ -2,6 +2,7 @@
 #include "fem/factor/front_memory.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace palpate::fem {
@@ -10,7 +11,7 @@ namespace {
 
 /// Numbers from which a block is pooled; the allocator itself reuses smaller ones.
 constexpr std::size_t kLarge = std::size_t{1} << 17;
-/// Largest size of a spare block that is reused, over the size requested.
+/// Largest size of a spare block that is reused, over the size requested, where memory is bounded.
 constexpr std::size_t kMostWaste = 2;
 
 template <class Number>
@@ -24,9 +25,11 @@ double bytes_of(const LargeVector<Number>& memory) {
 template <class Number>
 LargeVector<Number> FrontMemory<Number>::fitting(std::size_t numbers) {
   const std::lock_guard lock(mutex_);
+  const std::size_t largest =
+      std::isfinite(bound_) ? kMostWaste * numbers : static_cast<std::size_t>(-1);
   auto best = spare_.end();
   for (auto each = spare_.begin(); each != spare_.end(); ++each)
-    if (each->capacity() >= numbers && each->capacity() <= kMostWaste * numbers &&
+    if (each->capacity() >= numbers && each->capacity() <= largest &&
         (best == spare_.end() || each->capacity() < best->capacity()))
       best = each;
   if (best != spare_.end()) {
@@ -57,6 +60,19 @@ void FrontMemory<Number>::give_back(LargeVector<Number>&& memory) {
   if (mine.capacity() < kLarge) return;
   const std::lock_guard lock(mutex_);
   spare_.push_back(std::move(mine));
+}
+
+template <class Number>
+LargeVector<Number> FrontMemory<Number>::take_scratch() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(scratch_, {});
+}
+
+template <class Number>
+void FrontMemory<Number>::leave_scratch(LargeVector<Number>&& memory) {
+  LargeVector<Number> mine = std::move(memory);
+  const std::lock_guard lock(mutex_);
+  if (mine.capacity() > scratch_.capacity()) scratch_.swap(mine);
 }
 
 template class FrontMemory<float>;

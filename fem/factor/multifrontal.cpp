@@ -104,6 +104,7 @@ class Elimination {
 
   void serve() {
     Workspace own;
+    own.columns = memory_.take_scratch();
     std::unique_lock lock(mutex_);
     while (left_ > 0 && definite_ && !failure_) {
       if (Tiles* tiles = unfinished_tiles()) {
@@ -121,6 +122,8 @@ class Elimination {
         changed_.wait(lock);
       }
     }
+    lock.unlock();
+    memory_.leave_scratch(std::move(own.columns));
   }
 
   /// After the last supernode of a part, or one of the top: its parent is ready with its last
@@ -278,7 +281,7 @@ bool Multifrontal::factorize(const std::vector<double>& values, int threads,
   const EliminationPlan plan(tree_, threads);
   FrontMemory<Number> own;
   FrontMemory<Number>& used = memory != nullptr ? *memory : own;
-  used.keep_at_most(sizeof(Number) * plan.update_numbers);
+  if (memory == nullptr) own.keep_at_most(sizeof(Number) * plan.update_numbers);
   return Elimination<Number>(*this, values, plan, finished, left, used).run(threads);
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate::fem {
 namespace {
@@ -37,6 +38,17 @@ TEST(FrontMemory, DoesNotWasteALargeBlockOnASmallRequest) {
   const LargeVector<double> small = pool.zeros(kLarge);
   EXPECT_NE(small.data(), address);
   EXPECT_LE(small.capacity(), 2 * kLarge);
+}
+
+TEST(FrontMemory, KeepsTheLargestScratchThatWasLeft) {
+  FrontMemory<float> pool;
+  EXPECT_TRUE(pool.take_scratch().empty());
+  LargeVector<float> small(10), large(kLarge);
+  const float* address = large.data();
+  pool.leave_scratch(std::move(large));
+  pool.leave_scratch(std::move(small));
+  EXPECT_EQ(pool.take_scratch().data(), address);
+  EXPECT_TRUE(pool.take_scratch().empty());
 }
 
 }  // namespace
