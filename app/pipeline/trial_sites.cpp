@@ -9,8 +9,8 @@
 #include "app/pipeline/campaign_sites.hpp"
 #include "app/pipeline/settings.hpp"
 #include "fem/campaign/finer_mesh.hpp"
+#include "fem/campaign/parallel_sites.hpp"
 #include "fem/factor/memory.hpp"
-#include "fem/factor/rest_factor.hpp"
 #include "format/to_index.hpp"
 #include "mesher/geometry/thickness.hpp"
 
@@ -108,7 +108,9 @@ Trial press_trial_sites(const Workspace& space, const Body& body, double patienc
 
 std::size_t concurrent_sites(const Workspace& space, std::size_t all) {
   const auto threads = static_cast<std::size_t>(space.threads);
-  return threads * std::min<std::size_t>(fem::kBatch, (all + threads - 1) / threads);
+  const auto most =
+      static_cast<std::size_t>(fem::sites_for_each_core(space.c.campaign.indentation));
+  return threads * std::min(most, (all + threads - 1) / threads);
 }
 
 /// Where no increment has ended, the sites take at least as long as they were waited for.

@@ -20,6 +20,9 @@ namespace {
 /// A factor of a site's own with its fronts, over the shared factor; one in double precision.
 constexpr double kOwnFactor = 1.5, kOwnFactorInDouble = 2;
 
+/// With as few as these the blocks are nearly empty, and a campaign takes as long.
+constexpr int kSitesOnRefinedElements = 6;
+
 /// Share of the memory that the process may use.
 constexpr double kShareOfOwnFactors = 0.25;
 
@@ -35,8 +38,13 @@ int places_for_own_factors(const RestFactor& factor, int cores, double memory) {
       std::clamp(std::floor(room / bytes_of_own_factor(factor)), 1.0, std::max(1.0, 1.0 * cores)));
 }
 
+int sites_for_each_core(const IndentationSettings& indentation) {
+  const int times = indentation.refine_under_tool;
+  return times == IndentationSettings::kByContact || times > 1 ? kSitesOnRefinedElements : kBatch;
+}
+
 SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites, double memory,
-                         double bytes_per_site) {
+                         double bytes_per_site, int most_per_core) {
   SiteThreads size;
   size.cores = std::max(1, cores);
   const std::size_t sites_per_core = (sites + to_index(size.cores) - 1) / to_index(size.cores);
@@ -46,7 +54,7 @@ SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites,
       (places_for_own_factors(factor, size.cores, memory) - 1) * bytes_of_own_factor(factor);
   const int per_core = fitting_times(
       memory, size.cores * bytes_per_site,
-      static_cast<int>(std::min<std::size_t>(kBatch, sites_per_core)),
+      static_cast<int>(std::min(to_index(most_per_core), sites_per_core)),
       "a site on each of " + std::to_string(size.cores) +
           " cores (memory is reserved for the factors that sites may need of their own)",
       own_factors);

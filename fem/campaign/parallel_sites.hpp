@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "fem/campaign/settings.hpp"
 #include "fem/factor/solve_pool.hpp"
 
 namespace palpate::fem {
@@ -19,12 +20,16 @@ struct SiteThreads {
 /// more than a quarter of `memory`, bytes (0: that of the machine), but one in any case.
 int places_for_own_factors(const RestFactor& factor, int cores, double memory);
 
-/// As many threads as there are sites, at most kBatch for each core, and no more than fit into
-/// `memory`, bytes (0: no bound), beside the factors that sites need of their own.
+/// How many sites run for each core: as many as fill a block solve. Where elements are refined more
+/// than once, block solves take a tenth of the time, and few sites at a time save memory.
+int sites_for_each_core(const IndentationSettings& indentation);
+
+/// As many threads as there are sites, at most `most_per_core` for each core, and no more than fit
+/// into `memory`, bytes (0: no bound), beside the factors that sites need of their own.
 /// `bytes_per_site`: memory of a running site.
 /// @throws Error(Configuration) when one site for each core does not fit.
 SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites, double memory,
-                         double bytes_per_site);
+                         double bytes_per_site, int most_per_core);
 
 /// The same indices such that those of any beginning lie evenly among all: neighbours on a body
 /// take alike long, and the first sites are to tell how long the others take. Multiples of the

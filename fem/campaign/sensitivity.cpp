@@ -301,8 +301,9 @@ std::vector<SiteSensitivity> pressed_sites(const Body& body, const CampaignSetti
   for (const RegionConstant& constant : constants) {
     derivatives.push_back(varied(body, normal, constant));
   }
-  const SiteThreads size = site_threads(*context.rest_factor, normal.threads, results.size(),
-                                        normal.memory, bytes_of(context, normal.sites.front()));
+  const SiteThreads size =
+      site_threads(*context.rest_factor, normal.threads, results.size(), normal.memory,
+                   bytes_of(context, normal.sites.front()), kBatch);
   parallel_for_sites(
       *context.rest_factor, size, results.size(), [&](SolvePool::Member& member, std::size_t i) {
         results[i] = SiteDifferentiation(context, derivatives, member, normal.sites[i],

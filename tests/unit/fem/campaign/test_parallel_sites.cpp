@@ -69,7 +69,7 @@ TEST_F(ParallelSites, StopsAfterAnExceptionAndRethrowsIt) {
 
 TEST_F(ParallelSites, HasAsManyThreadsAsThereAreSitesUpToABlockForEachCore) {
   const auto threads = [&](int cores, std::size_t sites) {
-    const SiteThreads size = site_threads(factor, cores, sites, 0, 1e9);
+    const SiteThreads size = site_threads(factor, cores, sites, 0, 1e9, kBatch);
     EXPECT_EQ(size.cores, std::max(1, cores));
     return size.threads;
   };
@@ -77,6 +77,19 @@ TEST_F(ParallelSites, HasAsManyThreadsAsThereAreSitesUpToABlockForEachCore) {
   EXPECT_EQ(threads(2, 5), 5);
   EXPECT_EQ(threads(0, 5), 5);
   EXPECT_EQ(threads(4, 1), 1);
+}
+
+TEST_F(ParallelSites, AreFewForEachCoreWhereElementsAreRefinedMoreThanOnce) {
+  IndentationSettings indentation;
+  for (const int times : {0, 1}) {
+    indentation.refine_under_tool = times;
+    EXPECT_EQ(sites_for_each_core(indentation), kBatch);
+  }
+  for (const int times : {2, IndentationSettings::kByContact}) {
+    indentation.refine_under_tool = times;
+    EXPECT_LE(sites_for_each_core(indentation), kBatch / 2);
+  }
+  EXPECT_EQ(site_threads(factor, 3, 1000, 0, 1e9, 4).threads, 12);
 }
 
 /// A factor of a site's own takes half as much again as the shared one.
@@ -92,7 +105,8 @@ TEST_F(ParallelSites, HasFewerThreadsWhereMemoryIsShort) {
   constexpr double kSite = 1e12;                 // beside which the resident memory is negligible
   const double reserved = 3.5 * factor.bytes();  // one factor in double precision, one in single
   const auto threads = [&](double sites_per_core) {
-    return site_threads(factor, 2, 1000, reserved + 2 * sites_per_core * kSite, kSite).threads;
+    return site_threads(factor, 2, 1000, reserved + 2 * sites_per_core * kSite, kSite, kBatch)
+        .threads;
   };
   EXPECT_EQ(threads(4.5), 2 * 4);
   EXPECT_EQ(threads(1.5), 2 * 1);
