@@ -79,8 +79,8 @@ void estimate(const Workspace& space, const Body& body, const EventSink& emit) {
   event.seconds = campaign_seconds(space, trial, all.size());
   const double per_site =
       std::max(0.0, trial.bytes_between - trial.bytes_before) / static_cast<double>(tried);
-  event.memory_bytes =
-      trial.bytes_before + per_site * static_cast<double>(concurrent_sites(space, all.size()));
+  event.memory_bytes = trial.bytes_before +
+                       per_site * static_cast<double>(concurrent_sites(space, trial, all.size()));
   if (space.memory > 0) event.memory_bytes = std::min(event.memory_bytes, space.memory);
   event.library_bytes = library_bytes(space, body, trial, all.size());
   event.threads = space.threads;

@@ -106,18 +106,19 @@ Trial press_trial_sites(const Workspace& space, const Body& body, double patienc
   return trial;
 }
 
-std::size_t concurrent_sites(const Workspace& space, std::size_t all) {
+std::size_t concurrent_sites(const Workspace& space, const Trial& trial, std::size_t all) {
   const auto threads = static_cast<std::size_t>(space.threads);
-  const auto most =
-      static_cast<std::size_t>(fem::sites_for_each_core(space.c.campaign.indentation));
+  const auto most = static_cast<std::size_t>(fem::sites_for_each_core(
+      space.c.campaign.indentation, static_cast<int>(trial.report.unknowns)));
   return threads * std::min(most, (all + threads - 1) / threads);
 }
 
 /// Where no increment has ended, the sites take at least as long as they were waited for.
 double campaign_seconds(const Workspace& space, const Trial& trial, std::size_t sites) {
   const auto all = sites + static_cast<std::size_t>(std::lround(trial.on_finer_mesh));
-  const double foretold = trial.time.campaign(
-      static_cast<std::int64_t>(all), static_cast<std::int64_t>(concurrent_sites(space, all)));
+  const double foretold =
+      trial.time.campaign(static_cast<std::int64_t>(all),
+                          static_cast<std::int64_t>(concurrent_sites(space, trial, all)));
   const double least = trial.pressed * static_cast<double>(all) /
                        static_cast<double>(std::max<std::size_t>(1, trial.sites));
   return trial.report.set_up_seconds + (foretold > 0 ? foretold : least);

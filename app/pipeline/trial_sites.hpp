@@ -42,7 +42,7 @@ Trial press_trial_sites(const Workspace& space, const Body& body,
                         double patience = std::numeric_limits<double>::infinity());
 
 /// How many sites of `all` run concurrently.
-std::size_t concurrent_sites(const Workspace& space, std::size_t all);
+std::size_t concurrent_sites(const Workspace& space, const Trial& trial, std::size_t all);
 
 /// s that a campaign of so many sites takes: with what comes before the first, and with those that
 /// are pressed on a finer mesh too.

@@ -93,7 +93,7 @@ class OpenSites {
     const SiteThreads size =
         site_threads(*context_.rest_factor, settings_.threads, open_.size(), settings_.memory,
                      bytes_of_site(context_, curves_.sites[open_.front()].vertex),
-                     sites_for_each_core(context_.indentation));
+                     sites_for_each_core(context_.indentation, context_.model.pattern().n));
     parallel_for_sites(*context_.rest_factor, size, open_.size(),
                        [this](SolvePool::Member& member, std::size_t i) {
                          solve(member, curves_.sites[open_[i]]);

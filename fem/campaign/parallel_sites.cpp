@@ -20,8 +20,9 @@ namespace {
 /// A factor of a site's own with its fronts, over the shared factor; one in double precision.
 constexpr double kOwnFactor = 1.5, kOwnFactorInDouble = 2;
 
-/// With as few as these the blocks are nearly empty, and a campaign takes as long.
-constexpr int kSitesOnRefinedElements = 6;
+/// Of sites on refined elements for each core: blocks that are less than half full then cost a
+/// twentieth of the time, as long as the factor is small.
+constexpr int kFewestSites = 6, kUnknownsForEachSite = 4000;
 
 /// Share of the memory that the process may use.
 constexpr double kShareOfOwnFactors = 0.25;
@@ -38,9 +39,10 @@ int places_for_own_factors(const RestFactor& factor, int cores, double memory) {
       std::clamp(std::floor(room / bytes_of_own_factor(factor)), 1.0, std::max(1.0, 1.0 * cores)));
 }
 
-int sites_for_each_core(const IndentationSettings& indentation) {
+int sites_for_each_core(const IndentationSettings& indentation, int unknowns) {
   const int times = indentation.refine_under_tool;
-  return times == IndentationSettings::kByContact || times > 1 ? kSitesOnRefinedElements : kBatch;
+  if (times != IndentationSettings::kByContact && times <= 1) return kBatch;
+  return std::clamp(unknowns / kUnknownsForEachSite, kFewestSites, kBatch);
 }
 
 SiteThreads site_threads(const RestFactor& factor, int cores, std::size_t sites, double memory,

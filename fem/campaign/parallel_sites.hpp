@@ -21,8 +21,9 @@ struct SiteThreads {
 int places_for_own_factors(const RestFactor& factor, int cores, double memory);
 
 /// How many sites run for each core: as many as fill a block solve. Where elements are refined more
-/// than once, block solves take a tenth of the time, and few sites at a time save memory.
-int sites_for_each_core(const IndentationSettings& indentation);
+/// than once, block solves of a body of few unknowns take a tenth of the time, and few sites at a
+/// time save memory.
+int sites_for_each_core(const IndentationSettings& indentation, int unknowns);
 
 /// As many threads as there are sites, at most `most_per_core` for each core, and no more than fit
 /// into `memory`, bytes (0: no bound), beside the factors that sites need of their own.

@@ -79,15 +79,16 @@ TEST_F(ParallelSites, HasAsManyThreadsAsThereAreSitesUpToABlockForEachCore) {
   EXPECT_EQ(threads(4, 1), 1);
 }
 
-TEST_F(ParallelSites, AreFewForEachCoreWhereElementsAreRefinedMoreThanOnce) {
+TEST_F(ParallelSites, OfASmallBodyAreFewForEachCoreWhereElementsAreRefinedMoreThanOnce) {
   IndentationSettings indentation;
   for (const int times : {0, 1}) {
     indentation.refine_under_tool = times;
-    EXPECT_EQ(sites_for_each_core(indentation), kBatch);
+    EXPECT_EQ(sites_for_each_core(indentation, 1000), kBatch);
   }
   for (const int times : {2, IndentationSettings::kByContact}) {
     indentation.refine_under_tool = times;
-    EXPECT_LE(sites_for_each_core(indentation), kBatch / 2);
+    EXPECT_LE(sites_for_each_core(indentation, 1000), kBatch / 2);
+    EXPECT_EQ(sites_for_each_core(indentation, 100000), kBatch);
   }
   EXPECT_EQ(site_threads(factor, 3, 1000, 0, 1e9, 4).threads, 12);
 }
