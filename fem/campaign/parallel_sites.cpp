@@ -20,7 +20,7 @@ namespace {
 /// A factor of a site's own with its fronts, over the shared factor; one in double precision.
 constexpr double kOwnFactor = 1.5, kOwnFactorInDouble = 2;
 
-/// Of sites on refined elements for each core: blocks that are less than half full then cost a
+/// Sites on refined elements for each core: blocks that are less than half full then cost a
 /// twentieth of the time, as long as the factor is small.
 constexpr int kFewestSites = 6, kUnknownsForEachSite = 4000;
 

@@ -37,7 +37,7 @@ constexpr double kGoodContraction = 0.5;
 
 /// A patch that is needed is taken instead of a larger one where it has less than this part of its
 /// unknowns: another analysis of the window takes as long as a factorization.
-constexpr double kMuchSmaller = 0.7;
+constexpr double kMuchSmaller = 0.5;
 
 }  // namespace
 
