@@ -196,10 +196,10 @@ Curves run_campaign(const Body& body, const CampaignSettings& settings, Campaign
   const std::vector<std::size_t> open = copy_known(settings.known, curves);
   const CampaignContext context(body, settings, Engine::SharedFactor, cache);
   curves.relaxation = context.relaxation;
+  report.unknowns = context.model.pattern().n;
   report.set_up_seconds = elapsed();
   if (!open.empty()) OpenSites(context, settings, open, curves).run();
 
-  report.unknowns = context.model.pattern().n;
   report.seconds = elapsed();
   for (const auto& site : curves.sites) report.cpu_seconds += site.cpu_seconds;
   report.facts = {

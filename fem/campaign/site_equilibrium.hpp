@@ -2,7 +2,6 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 
 #include "fem/campaign/campaign_context.hpp"
 #include "fem/campaign/site_body.hpp"

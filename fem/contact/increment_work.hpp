@@ -18,7 +18,7 @@ namespace palpate::fem {
 /// On a linear solid this is exact; otherwise the error of an increment h is of third order.
 /// No energy of the solid enters.
 /// @param contact  at the second equilibrium
-/// @param from  tip of the tool at the first equilibrium, m; it moved in a straight line
+/// @param from  tip of the tool at the first equilibrium, m
 /// @param before, after  the equilibria u0 and u1
 /// @return J; nothing where the solid yields as it is loaded, (F1 - F0) . p <= 0: a part of it has
 ///   snapped, and has lost energy on the way.
