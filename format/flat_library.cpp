@@ -170,11 +170,16 @@ void get_responses(const FlatReader& reader, Library& library) {
   for (std::size_t v = 0; v < bases.size(); ++v) library.responses[v].coupling.base = bases[v];
 }
 
+std::uint32_t version_of(const Library& library) {
+  if (library.leans()) return kLatestFlatVersion;
+  return library.relaxes() ? kRelaxingFlatVersion : kFlatVersion;
+}
+
 }  // namespace
 
 std::string flat_bytes(const Library& library, const std::filesystem::path& target) {
   check_for_writing(Checks(target), library);
-  FlatWriter writer(library.relaxes() ? kLatestFlatVersion : kFlatVersion);
+  FlatWriter writer(version_of(library));
   const bool coupled = library.kind == ResponseKind::Coupled;
   writer.texts("/words", {library.name, library.tool_shape});
   writer.array("/coupled", std::vector<std::uint8_t>{coupled});
@@ -194,6 +199,7 @@ std::string flat_bytes(const Library& library, const std::filesystem::path& targ
     writer.array("/response/relaxation_fraction", relaxation_fractions(library));
     writer.number("/certificate/relaxation_rate", library.certificate.relaxation_rate);
   }
+  if (library.leans()) writer.array("/response/lean", leans(library.responses));
   put_certificate(writer, library.certificate);
   put_provenance(writer, library.provenance);
   return writer.file();
@@ -226,6 +232,10 @@ Library read_flat_library(std::string_view bytes, const std::filesystem::path& f
     check_relaxation(checks, library, fractions);
     set_relaxation_fractions(fractions, library);
   }
+  if (reader.has("/response/lean"))
+    set_leans(checks,
+              reader.array<std::array<float, 3>>("/response/lean", library.responses.size()),
+              library.responses);
   library.provenance = get_provenance(reader);
   check_library(checks, library);
   return library;

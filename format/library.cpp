@@ -6,6 +6,11 @@
 
 namespace palpate {
 
+bool Library::leans() const {
+  return std::any_of(responses.begin(), responses.end(),
+                     [](const NodeResponse& node) { return node.lean != std::array<float, 3>{}; });
+}
+
 double enforced_lipschitz_bound(const Certificate& certificate) {
   const Certificate& c = certificate;
   if (c.triangles.empty()) return std::numeric_limits<double>::infinity();

@@ -3,6 +3,7 @@
 // Normative pages: format/schema/library.md (library.h5), format/schema/flat.md.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -24,6 +25,8 @@ inline constexpr int kLibrarySchema = 3;
 inline constexpr int kCoupledLibrarySchema = 4;
 /// Responses that relax, decoupled or coupled.
 inline constexpr int kRelaxingLibrarySchema = 5;
+/// Responses that lean, decoupled or coupled, elastic or relaxing.
+inline constexpr int kLeaningLibrarySchema = 6;
 /// Decoupled responses; the bounds of the certificate have other names. Read, never written.
 inline constexpr int kFirstLibrarySchema = 1;
 
@@ -58,6 +61,9 @@ struct CouplingCurve {
   ResponseCurve curve;  ///< knots in m, slopes in 1/m; empty in a decoupled library
 };
 
+/// Largest length of the lean of a node.
+inline constexpr double kMostLean = 0.5;
+
 /// Largest number of relaxation times of a library.
 inline constexpr std::size_t kMaxRelaxationTimes = 8;
 
@@ -71,6 +77,9 @@ struct NodeResponse {
   /// (B) g_i in [0, 1), sum below 1: the fraction of the normal response that relaxes with each
   /// time of the library. Empty at a hole.
   std::vector<float> relaxation{};
+  /// sigma, 1: the lateral deflection that a straight press makes, over its depth, across the
+  /// press direction. The lateral force against it is the force by which a press leans.
+  std::array<float, 3> lean{};
   /// N, largest CurveSample::mesh_error of the curves that the normal response stands for: what the
   /// mesh of the campaign leaves, beside the error of the fit. NaN when unknown. Not in flat files.
   double normal_mesh_error = kUnknown;
@@ -145,6 +154,7 @@ inline RenderedForce rendered_force(const Certificate& certificate, double lipsc
 
 struct Library {
   bool relaxes() const { return !relaxation_times.empty(); }
+  bool leans() const;  ///< whether a node does
 
   ResponseKind kind = ResponseKind::Decoupled;
   std::string name;
@@ -164,6 +174,7 @@ struct Library {
 
 /// The schema of its library.h5.
 inline int schema_of(const Library& library) {
+  if (library.leans()) return kLeaningLibrarySchema;
   if (library.relaxes()) return kRelaxingLibrarySchema;
   return library.kind == ResponseKind::Coupled ? kCoupledLibrarySchema : kLibrarySchema;
 }

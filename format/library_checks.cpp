@@ -50,6 +50,17 @@ void check_enforceable(const Checks& checks, const Certificate& c) {
                   number_text(c.min_lipschitz_bound) + " N/m: the certificate is false");
 }
 
+/// A length that is NaN fits no limit.
+void check_leans(const Checks& checks, const std::vector<std::array<float, 3>>& leans) {
+  for (std::size_t v = 0; v < leans.size(); ++v) {
+    const auto& [x, y, z] = leans[v];
+    const double length =
+        std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z));
+    if (!(length <= kMostLean))
+      checks.fail_row("/response/lean", v, "is longer than " + number_text(kMostLean));
+  }
+}
+
 void check_certificate(const Checks& checks, const Library& library) {
   const Certificate& certificate = library.certificate;
   const auto check = [&](const char* name, double value, const Rule& rule) {
@@ -110,6 +121,19 @@ std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses) {
   bases.reserve(responses.size());
   for (const NodeResponse& response : responses) bases.push_back(response.coupling.base);
   return bases;
+}
+
+std::vector<std::array<float, 3>> leans(const std::vector<NodeResponse>& responses) {
+  std::vector<std::array<float, 3>> rows;
+  rows.reserve(responses.size());
+  for (const NodeResponse& response : responses) rows.push_back(response.lean);
+  return rows;
+}
+
+void set_leans(const Checks& checks, const std::vector<std::array<float, 3>>& leans,
+               std::vector<NodeResponse>& responses) {
+  check_leans(checks, leans);
+  for (std::size_t v = 0; v < leans.size(); ++v) responses[v].lean = leans[v];
 }
 
 std::vector<float> relaxation_fractions(const Library& library) {
@@ -202,6 +226,7 @@ void check_for_writing(const Checks& checks, const Library& library) {
     checks.numbers("/response/coupling_base", coupling_bases(library.responses), rules::kPositive);
   }
   if (library.relaxes()) check_relaxation(checks, library, relaxation_fractions(library));
+  check_leans(checks, leans(library.responses));
   check_certificate(checks, library);
   check_provenance(checks, library.provenance);
 }

@@ -2,6 +2,7 @@
 // What every file of a response library is checked for, before it is written and after it is read.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -35,6 +36,12 @@ void unflatten(const FlatCurves& flat, CurveMember which, std::vector<NodeRespon
 
 /// w(0) of each node.
 std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses);
+
+/// The lean of each node.
+std::vector<std::array<float, 3>> leans(const std::vector<NodeResponse>& responses);
+/// Checks them, and gives them to the nodes.
+void set_leans(const Checks& checks, const std::vector<std::array<float, 3>>& leans,
+               std::vector<NodeResponse>& responses);
 
 /// g_i of every node, row by row: V times B numbers, zero at a hole.
 std::vector<float> relaxation_fractions(const Library& library);

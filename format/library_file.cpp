@@ -53,6 +53,12 @@ void read_relaxation(const hdf5::Reader& reader, Library& library) {
   set_relaxation_fractions(fractions, library);
 }
 
+void read_leans(const hdf5::Reader& reader, std::vector<NodeResponse>& responses) {
+  set_leans(Checks(reader),
+            reader.dataset<std::array<float, 3>>("/response/lean", "1", responses.size()),
+            responses);
+}
+
 void write_surface(hdf5::Writer& writer, const Library& library) {
   writer.group("/surface", "The triangulation that carries the responses.");
   writer.dataset("/surface/position", library.positions, {"m", "Position of each vertex."});
@@ -105,6 +111,9 @@ void write_responses(hdf5::Writer& writer, const Library& library) {
     writer.dataset("/response/relaxation_fraction", relaxation_fractions(library),
                    {"1", "Fraction that relaxes with each time, vertex by vertex."});
   }
+  if (library.leans())
+    writer.dataset("/response/lean", leans(library.responses),
+                   {"1", "Lateral deflection of a straight press over its depth; 0 at a hole."});
   if (library.kind == ResponseKind::Decoupled) return;
   writer.dataset("/response/coupling_base", coupling_bases(library.responses),
                  {"1", "w(0) of each vertex; 1 at a hole."});
@@ -202,7 +211,9 @@ void write_library(const std::filesystem::path& path, const Library& library) {
   const bool coupled = library.kind == ResponseKind::Coupled;
   write_root(writer, kLibraryArtifact, schema_of(library),
              "A response library: surface, responses, certificate.");
-  if (library.relaxes()) writer.set_integer("/", "coupled", coupled ? 1 : 0);
+  const bool leans = library.leans();
+  if (library.relaxes() || leans) writer.set_integer("/", "coupled", coupled ? 1 : 0);
+  if (leans) writer.set_integer("/", "relaxes", library.relaxes() ? 1 : 0);
   writer.set_text("/", "name", library.name);
   writer.set_text("/", "tool_shape", library.tool_shape);
   writer.set_real("/", "tool_radius", library.tool_radius);
@@ -219,10 +230,13 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kLibraryRemedy);
   Library library;
   const std::int64_t schema = reader.require_artifact(
-      kLibraryArtifact,
-      {kFirstLibrarySchema, kLibrarySchema, kCoupledLibrarySchema, kRelaxingLibrarySchema});
-  const bool relaxes = schema == kRelaxingLibrarySchema;
-  if (schema == kCoupledLibrarySchema || (relaxes && reader.integer("/", "coupled") == 1))
+      kLibraryArtifact, {kFirstLibrarySchema, kLibrarySchema, kCoupledLibrarySchema,
+                         kRelaxingLibrarySchema, kLeaningLibrarySchema});
+  const bool leans = schema == kLeaningLibrarySchema;
+  const bool relaxes =
+      leans ? reader.integer("/", "relaxes") == 1 : schema == kRelaxingLibrarySchema;
+  if (schema == kCoupledLibrarySchema ||
+      ((relaxes || leans) && reader.integer("/", "coupled") == 1))
     library.kind = ResponseKind::Coupled;
   library.name = reader.text("/", "name");
   library.tool_shape = reader.text("/", "tool_shape");
@@ -236,6 +250,7 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   read_flat(reader, "/response/lateral_", library.responses, lateral_of);
   if (library.kind == ResponseKind::Coupled) read_coupling(reader, library.responses);
   if (relaxes) read_relaxation(reader, library);
+  if (leans) read_leans(reader, library.responses);
   library.certificate = read_certificate(reader, certificate_names(schema));
   library.provenance = read_provenance(reader);
   check_library(Checks(reader), library);

@@ -107,6 +107,12 @@ void define_responses(py::module_& module) {
           "relaxation", array_of(&NodeResponse::relaxation),
           "(B,) float32: fraction of the normal response that relaxes with each of\n"
           "Library.relaxation_times.")
+      .def_property_readonly(
+          "lean", [](const NodeResponse& node) { return py::array_t<float>(3, node.lean.data()); },
+          "(3,) float32, without unit: lateral deflection of a straight press over its depth, "
+          "across "
+          "the\n"
+          "press direction. Zero where a press does not lean.")
       .def_readonly("normal_error", &NodeResponse::normal_error,
                     "N, largest |fit - sample| of f^z.")
       .def_readonly("lateral_error", &NodeResponse::lateral_error, "N, the same of f^r.");

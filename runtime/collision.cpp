@@ -253,11 +253,14 @@ Projection project(const Surface& surface, const SurfacePoint& from, const Vec3&
   Projection p{from, std::numeric_limits<double>::infinity(), false, false};
   double fraction = 1;  // of the lateral deflection walked in a pass; less where passes overshoot
   for (int pass = 0;; ++pass) {
-    const Deflection d = LocalModel(surface, p.point, 0).deflection(x);
-    if (d.lateral > kLeastGain * p.lateral) fraction = std::max(fraction / 2, kLeastFraction);
-    p.lateral = d.lateral;
-    if (d.lateral <= tolerance || pass == passes) return p;
-    const Walk moved = walk(surface, p.point, d.tangent, fraction * d.lateral, delivered);
+    const Vec3 r = x - surface.position(p.point), n = surface.normal(p.point);
+    const Vec3 lateral = r - dot(n, r) * n;
+    const double distance = norm(lateral);
+    if (distance > kLeastGain * p.lateral) fraction = std::max(fraction / 2, kLeastFraction);
+    p.lateral = distance;
+    if (distance <= tolerance || pass == passes) return p;
+    const Walk moved =
+        walk(surface, p.point, (1.0 / distance) * lateral, fraction * distance, delivered);
     p.point = moved.point;
     p.at_border = moved.at_border;
     p.awaiting = moved.awaiting;

@@ -236,7 +236,7 @@ ContactState::Candidate ContactState::rate_limited(const Vec3& x, const FixedCon
   const Candidate slipping = move(x, fixed, {.follow = 0});
   const bool may_follow = within(slipping);
   Candidate base =
-      may_follow ? slipping : Candidate{*model_, fixed.deflection, fixed.response, goal_, 0};
+      may_follow ? slipping : Candidate{*model_, fixed.deflection, fixed.response, goal_};
   Candidate next = may_follow ? whole : slipping;
   double fraction = 1;
   for (int i = 0; i < kRateLimitTries; ++i) {
@@ -256,10 +256,11 @@ ContactState::Candidate ContactState::rate_limited(const Vec3& x, const FixedCon
 ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fixed,
                                            const SlideFractions& fractions) const noexcept {
   std::uint32_t status = 0;
-  Candidate next{slide(x, fixed, fractions, status), {}, {}, goal_, 0};
+  Candidate next{slide(x, fixed, fractions, status), {}, {}, goal_};
   next.status = status;
   next.deflection = next.model.deflection(x);
-  set_memory_at_point(next.model, stays_opposite(fixed, fractions) ? Shear::Lost : Shear::Kept);
+  next.is_opposite = stays_opposite(fixed, fractions);
+  set_memory_at_point(next.model, next.is_opposite ? Shear::Lost : Shear::Kept);
   double recovery = fractions.recovery;
   if (!(next.deflection.depth > 0)) {
     // Out of normal contact but perhaps inside the body: the offset follows the tip outwards, which
@@ -269,6 +270,10 @@ ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fi
     next.model.set_offset(rearmed);
     next.deflection = next.model.deflection(x);
     recovery = 0;
+  }
+  if (next.is_opposite) {
+    next.model.let_go(x, kRelaxed);
+    next.deflection = next.model.deflection(x);
   }
   next.model.respond(next.deflection, pieces_, next.response);
   if (settings_.budget == EnergyBudget::Enforced) enforce_budget(next, x, fixed, recovery);
@@ -289,6 +294,7 @@ void ContactState::enforce_budget(Candidate& moved, const Vec3& x, const FixedCo
     moved.goal = goal_;
   } else {
     moved.model.set_offset(verdict.offset);
+    if (moved.is_opposite) moved.model.let_go(x, kRelaxed);
   }
   respond(moved, x);
 }
@@ -343,15 +349,13 @@ Vec3 ContactState::lag(const FixedContact& fixed) const noexcept {
   return model_->lateral_offset() + fixed.slip.part(1);
 }
 
-/// Out of normal contact there is no friction: c follows the tip until x - c is parallel to n, and
-/// where it cannot, s does.
+/// Out of normal contact there is no friction: c follows the tip until x - c is parallel to n. What
+/// lateral deflection is then left goes into s, see move().
 LocalModel ContactState::stay_opposite(const Vec3& x, std::uint32_t& status) const noexcept {
   const Projection p = project(*surface_, model_->point(), x, kRelaxedPasses, kRelaxed, delivered_);
   if (p.at_border) status |= step_status::AtBorder;
   if (p.awaiting) status |= step_status::Awaiting;
-  LocalModel next(*surface_, p.point, model_->offset());
-  if (p.lateral > kRelaxed) next.set_lateral_offset(x - next.contact_point());
-  return next;
+  return {*surface_, p.point, model_->offset()};
 }
 
 /// c stays fixed; a fraction of the slip goes into s.
@@ -393,6 +397,8 @@ void ContactState::commit(Candidate& next, double energy_before) noexcept {
   seen_.contact_point = next.model.contact_point();
   seen_.normal = next.model.normal();
   seen_.deflection = next.deflection;
+  seen_.lateral_displacement = next.model.lateral_displacement(next.deflection);
+  seen_.lateral_distance = next.model.lateral_distance(next.deflection);
   seen_.offset = next.model.offset();
   seen_.lateral_offset = next.model.lateral_offset();
   seen_.energy = next.response.energy;

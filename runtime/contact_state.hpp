@@ -35,13 +35,15 @@ struct ContactObservation {
   Vec3 contact_point{};
   Vec3 normal{};
   Deflection deflection;
-  double offset = 0;      ///< d0, m
-  Vec3 lateral_offset{};  ///< s, m
-  double energy = 0;      ///< E_i(x_i), J; of a memory also without contact
-  double tank = 0;        ///< J
-  double absorbed = 0;    ///< J
-  Vec3 force{};           ///< f, of the tool ON the body, N
-  double dissipated = 0;  ///< J, by relaxation since the start
+  Vec3 lateral_displacement{};  ///< q + sigma z, m: of the tip from the anchor, across n
+  double lateral_distance = 0;  ///< its length, m
+  double offset = 0;            ///< d0, m
+  Vec3 lateral_offset{};        ///< s, m
+  double energy = 0;            ///< E_i(x_i), J; of a memory also without contact
+  double tank = 0;              ///< J
+  double absorbed = 0;          ///< J
+  Vec3 force{};                 ///< f, of the tool ON the body, N
+  double dissipated = 0;        ///< J, by relaxation since the start
   double relaxed_fraction =
       0;  ///< 1 - psi: fraction of the instantaneous normal force that has relaxed
   Vec3 relaxed_lateral_force{};  ///< M, N: part of the instantaneous lateral force
@@ -119,6 +121,7 @@ class ContactState {
     LocalResponse response;
     double goal = 0;
     std::uint32_t status = 0;
+    bool is_opposite = false;  ///< c follows the tip, and q = 0
   };
 
   /// The part of a slide that a step makes.

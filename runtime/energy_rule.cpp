@@ -12,13 +12,13 @@ constexpr double kRelativeEquality = 1e-9;
 
 struct EnergyAtOffset {
   double energy = 0;  ///< J
-  double slope = 0;   ///< g, N: minus dE/dd0
+  double slope = 0;   ///< f . n, N: minus dE/dd0
 };
 
 EnergyAtOffset energy_at(LocalModel& model, const Vec3& x, double offset) noexcept {
   model.set_offset(offset);
   const LocalResponse r = model.respond(model.deflection(x));
-  return {r.energy, r.normal_force};
+  return {r.energy, dot(r.force, model.normal())};
 }
 
 }  // namespace

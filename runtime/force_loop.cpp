@@ -10,7 +10,7 @@ void enter_observation(const PosedContact& contact, RecordedStep& step) noexcept
   const ContactObservation seen = contact.observe();
   step.contact_point = seen.contact_point;
   step.depth = seen.deflection.depth;
-  step.lateral = seen.deflection.lateral;
+  step.lateral = seen.lateral_distance;
   step.offset = seen.offset;
   step.energy = seen.energy;
   step.tank = seen.tank;

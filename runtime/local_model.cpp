@@ -34,7 +34,7 @@ void LocalModel::relax_laterally(const LateralMemory& memory, const LateralMemor
   const Vec3 change = memory.relaxed() - before.relaxed();
   r.lateral_force = norm(r.instant_lateral_force * d.tangent - memory.relaxed());
   r.energy += memory.stored() - before.stored() - d.lateral * dot(change, d.tangent);
-  r.force = r.force - change;
+  r.force = r.force - leaning(change);
 }
 
 /// The force f that is felt becomes limit f/|f|, and q the deflection at which grad H is M plus
@@ -76,22 +76,27 @@ double LocalModel::slip_limit(const Deflection& d, double friction) const noexce
 double LocalModel::energy_slope(const Deflection& at, const Vec3& d,
                                 const Vec3& anchor_rate) const noexcept {
   const Element& e = surface_->element(point_.element);
-  Vec3 turn{};
+  Vec3 turn{}, lean_change{};
+  double lean_along_normal = 0;
   double change_of_curves = 0;
   for (std::size_t l = 0; l < 3; ++l) {
     const double rate = dot(e.gradient[l], d);
     const NodeCurves& node = response_.node(l);
     turn = turn + rate * surface_->inward(e, l);
+    const Vec3 lean = surface_->lean(e, l);
+    lean_change = lean_change + rate * lean;
+    lean_along_normal += point_.natural[l] * dot(lean, n_);
     const double w = node.coupled() ? node.coupling().evaluate_from_start(at.depth).force : 1.0;
     change_of_curves += rate * (node.normal().evaluate(at.depth).energy +
                                 w * node.lateral().evaluate(at.lateral).energy);
   }
   turn = (1.0 / norm(surface_->direction_sum(point_))) * (turn - dot(turn, n_) * n_);
   const LocalResponse response = respond(at);
-  const Vec3 lateral = at.lateral * at.tangent + lateral_offset_;
-  return change_of_curves + response.normal_force * (dot(lateral, turn) - dot(n_, d)) -
-         response.lateral_force *
-             (dot(at.tangent, anchor_rate) + at.geometric * dot(at.tangent, turn));
+  const double depth_rate = dot(lateral_displacement(at) + lateral_offset_, turn) - dot(n_, d);
+  const double lean_rate = dot(at.tangent, lean_change - lean_along_normal * turn);
+  return change_of_curves + dot(response.force, n_) * depth_rate -
+         response.lateral_force * (dot(at.tangent, anchor_rate) +
+                                   at.geometric * dot(at.tangent, turn) + at.depth * lean_rate);
 }
 
 }  // namespace palpate::runtime

@@ -18,7 +18,7 @@ namespace palpate::runtime {
 struct Deflection {
   double depth = 0;      ///< z = geometric - d0, m
   double geometric = 0;  ///< n . (x - c), m: depth of the tip below the surface at rest
-  double lateral = 0;    ///< rho = |q| >= 0, m, q the lateral part minus the lateral offset
+  double lateral = 0;    ///< rho = |q| >= 0, m, q the lateral part minus s + sigma z
   Vec3 tangent{};        ///< t = q/rho, unit; zero when rho = 0
 };
 
@@ -31,10 +31,10 @@ struct ToolPieces {
 
 /// Force and energy of a local model at one tip position.
 struct LocalResponse {
-  double normal_force = 0;   ///< dE/dz, N; g(z) of decoupled responses
+  double normal_force = 0;   ///< dE/dz at fixed q, N; g(z) of decoupled responses
   double lateral_force = 0;  ///< |dE/dq|, N; h(rho) of decoupled responses without memory
   double energy = 0;  ///< E = sum n_l (G_l(z) + H_l(rho)), J [Mahvash & Hayward 2005, eq. 32]
-  Vec3 force{};       ///< f = g n + h t, of the tool ON the body, N [eq. 28]
+  Vec3 force{};       ///< f = g n + h (t - (t . sigma) n), of the tool ON the body, N [eq. 28]
   double friction_normal_force = 0;  ///< g(z), or psi g(z), N: friction is limited to mu times it
   InterpolatedResponse::AtDepth at_depth{};  ///< for coupled responses only
   RelaxedResponse relaxed{};                 ///< for responses that relax only
@@ -52,15 +52,17 @@ struct LateralSlip {
   Vec3 part(double fraction) const noexcept { return (fraction * scale) * direction; }  ///< m
 };
 
-/// With c, n = n(c), the offset d0 and the lateral offset s (s . n = 0) fixed:
-///   r = x - c,  z = n . r - d0,  q = r - (n . r) n - s,  rho = |q|,  t = q/rho,
-///   f(x) = g(z) n + h(rho) t = grad E(x).          [Mahvash & Hayward 2005, eqs. 26-32, with s =
-///   0]
+/// With c, n = n(c), the lean sigma = sigma(c), the offset d0 and the lateral offset s fixed, where
+/// s and sigma are across n:
+///   r = x - c,  z = n . r - d0,  q = r - (n . r) n - s - sigma z,  rho = |q|,  t = q/rho,
+///   f(x) = g(z) n + h(rho) (t - (t . sigma) n) = grad E(x),
+/// those of Mahvash & Hayward 2005, eqs. 26-32, for s = sigma = 0.
 /// s is slip that c has not followed; a = c + s, the anchor, is the position of c without that.
+/// sigma is how a straight press shears the tissue: beside a support its force leans.
 /// Coupled responses: E = sum n_l (G_l(z) + w_l(z) H_l(rho)), and again f = grad E. The
 /// friction-limited normal force is g(z), which the normal force is never below. The Jacobian of
-/// decoupled responses is g' n n^T + h' t t^T + (h/rho) b b^T with b = n x t: its norm does not
-/// exceed the largest stored slope.
+/// decoupled responses is A^T (g' n n^T + h' t t^T + (h/rho) b b^T) A with b = n x t and
+/// A = I - sigma n^T: its norm does not exceed the largest stored slope times |A|^2.
 /// Responses that relax have a memory, which is fixed as well: V of (R18) replaces G, and psi g
 /// replaces g in every equation above; H - M . q + K replaces H, and grad H - M replaces h t (R23).
 /// noexcept, allocation-free.
@@ -71,6 +73,7 @@ class LocalModel {
         point_(point),
         c_(surface.position(point)),
         n_(surface.normal(point)),
+        lean_(surface.lean(point, n_)),
         response_(surface.response(point)),
         offset_(offset) {}
 
@@ -79,10 +82,17 @@ class LocalModel {
     const Vec3 r = x - c_;
     d.geometric = dot(n_, r);
     d.depth = d.geometric - offset_;
-    const Vec3 lateral = r - d.geometric * n_ - lateral_offset_;
+    const Vec3 lateral = r - d.geometric * n_ - lateral_offset_ - d.depth * lean_;
     d.lateral = norm(lateral);
     if (d.lateral > 0) d.tangent = (1.0 / d.lateral) * lateral;
     return d;
+  }
+  /// q + sigma z, m: how far the tip is from the anchor, across n.
+  Vec3 lateral_displacement(const Deflection& d) const noexcept {
+    return d.lateral * d.tangent + d.depth * lean_;
+  }
+  double lateral_distance(const Deflection& d) const noexcept {  ///< its length
+    return lean_ == Vec3{} ? d.lateral : norm(lateral_displacement(d));
   }
   /// pieces: of the last evaluation; on return of this one.
   LocalResponse respond(const Deflection& d, ToolPieces& pieces) const noexcept {
@@ -139,8 +149,10 @@ class LocalModel {
   /// Rate of change of E when c moves by unit length along d in its element and the anchor c + s by
   /// a', while x stays, J/m:
   ///   n' = P (sum u_l grad n_l . d)/|sum n_l u_l|, P the projector normal to n,
-  ///   dE/ds = sum (grad n_l . d)(G_l + H_l) + g ((q + s) . n' - n . d)
-  ///           - h (t . a' + (z + d0)(t . n')),
+  ///   sigma' = sum sigma_l (grad n_l . d), across n, less the part that turns with n,
+  ///   z' = (q + s + sigma z) . n' - n . d,
+  ///   dE/ds = sum (grad n_l . d)(G_l + H_l) + (g - h (t . sigma)) z'
+  ///           - h (t . a' + (z + d0)(t . n') + z (t . sigma')),
   /// with H_l times w_l(z), and dE/dz, dE/drho for g, h, where responses are coupled. In an
   /// ordinary slide the anchor moves with c, a' = d; where c catches up with the anchor, a' = 0.
   /// Without memory.
@@ -152,9 +164,15 @@ class LocalModel {
   const SurfacePoint& point() const noexcept { return point_; }
   const Vec3& contact_point() const noexcept { return c_; }
   const Vec3& normal() const noexcept { return n_; }
+  const Vec3& lean() const noexcept { return lean_; }  ///< sigma, 1
   double offset() const noexcept { return offset_; }
   void set_offset(double offset) noexcept { offset_ = offset; }
   const Vec3& lateral_offset() const noexcept { return lateral_offset_; }
+  /// Sets s such that q = 0 with the tip at x, where it is longer than a tolerance, m.
+  void let_go(const Vec3& x, double tolerance) noexcept {
+    const Deflection d = deflection(x);
+    if (d.lateral > tolerance) set_lateral_offset(x - c_ - d.depth * lean_);
+  }
   /// Sets s to the part of the vector across n.
   void set_lateral_offset(const Vec3& s) noexcept { lateral_offset_ = s - dot(s, n_) * n_; }
   /// The responses relax, and this is what they remember.
@@ -207,8 +225,10 @@ class LocalModel {
     r.normal_force = value.normal;
     r.lateral_force = value.lateral;
     r.energy = value.energy;
-    r.force = value.normal * n_ + value.lateral * d.tangent;
+    r.force = value.normal * n_ + leaning(value.lateral * d.tangent);
   }
+  /// A^T h t: the part of the force of a lateral force in the response coordinates, N.
+  Vec3 leaning(const Vec3& lateral) const noexcept { return lateral - dot(lateral, lean_) * n_; }
   void relax_laterally(const LateralMemory& memory, const LateralMemory& before,
                        const Deflection& d, LocalResponse& r) const noexcept;
   LateralSlip relaxed_slip_within(const Deflection& d, const LocalResponse& at, double limit,
@@ -241,6 +261,7 @@ class LocalModel {
   SurfacePoint point_;
   Vec3 c_;
   Vec3 n_;
+  Vec3 lean_;  ///< sigma
   InterpolatedResponse response_;
   double offset_;
   Vec3 lateral_offset_{};

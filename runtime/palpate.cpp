@@ -81,7 +81,7 @@ palpate_observation translate(const ContactObservation& seen) noexcept {
   copy(seen.point.natural, o.natural);
   copy(seen.normal, o.normal);
   o.depth = seen.deflection.depth;
-  o.lateral = seen.deflection.lateral;
+  o.lateral = seen.lateral_distance;
   o.offset = seen.offset;
   o.energy = seen.energy;
   o.tank = seen.tank;

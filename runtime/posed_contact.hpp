@@ -99,7 +99,7 @@ class PosedContact {
       touch.contact_point = seen.contact_point;
       touch.normal = seen.normal;
       touch.depth = seen.deflection.depth + seen.offset;
-      touch.lateral = seen.deflection.lateral * seen.deflection.tangent;
+      touch.lateral = seen.lateral_displacement;
       touch.tip =
           seen.contact_point + touch.depth * seen.normal + touch.lateral + seen.lateral_offset;
     }

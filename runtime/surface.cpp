@@ -70,6 +70,12 @@ NodeRelaxation relaxation_of(const Library& library, std::size_t v) {
   return node;
 }
 
+Vec3 lean_of(const NodeResponse& response) {
+  Vec3 lean;
+  for (std::size_t i = 0; i < 3; ++i) lean[i] = static_cast<double>(response.lean[i]);
+  return lean;
+}
+
 void check_relaxation(const Library& library) {
   const std::size_t times = library.relaxation_times.size();
   const bool counts =
@@ -115,8 +121,10 @@ Surface::Surface(const Library& library) : elements_(library.triangles.size()) {
   if (library.relaxes()) {
     check_relaxation(library);
     relaxes_alike_ = all_relax_alike(library);
-    curves_at_ = 2;
+    ++curves_at_;
   }
+  leans_ = library.leans();
+  if (leans_) ++curves_at_;
   const std::vector<std::int32_t> record = build_nodes(library);
   for (std::size_t m = 0; m < elements_.size(); ++m) build_element(library, record, m);
   if (std::none_of(elements_.begin(), elements_.end(), [](const Element& e) { return e.active; })) {
@@ -167,6 +175,7 @@ void Surface::build_node(const Library& library, std::size_t v, CacheLine* memor
   }
   new (memory) SurfaceNode(node);
   if (library.relaxes()) new (memory + 1) NodeRelaxation(relaxation_of(library, v));
+  if (leans_) new (memory + curves_at_ - 1) NodeLean{lean_of(response)};
 }
 
 void Surface::build_element(const Library& library, const std::vector<std::int32_t>& record,
@@ -292,6 +301,7 @@ void Surface::prefetch_opposite(const Element& e, std::size_t l,
   __builtin_prefetch(curves + in_use.lateral);
   if (in_use.coupling > 0) __builtin_prefetch(curves + in_use.coupling);
   if (!relaxes_alike_) __builtin_prefetch(record + 1);
+  if (leans_) __builtin_prefetch(curves - 1);
 }
 
 Lanes Surface::fractions(const SurfacePoint& p) const noexcept {

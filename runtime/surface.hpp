@@ -35,11 +35,17 @@ struct alignas(kCacheLine) SurfaceNode {
 };
 static_assert(sizeof(SurfaceNode) == kCacheLine);
 
-/// g_i of a vertex of a library that relaxes: the cache line between its data and its curves.
+/// g_i of a vertex of a library that relaxes: the cache line after its data.
 struct alignas(kCacheLine) NodeRelaxation {
   Pair fractions[pairs_of(kMaxRelaxationTimes)]{};
 };
 static_assert(sizeof(NodeRelaxation) == kCacheLine);
+
+/// The lean of a vertex of a library that leans: the cache line before its curves.
+struct alignas(kCacheLine) NodeLean {
+  Vec3 lean{};  ///< 1
+};
+static_assert(sizeof(NodeLean) == kCacheLine);
 
 /// A point of the surface: an element and natural coordinates n_l >= 0 that sum to 1.
 struct SurfacePoint {
@@ -112,6 +118,20 @@ class Surface {
   /// Whether all nodes have the same fractions.
   bool relaxes_alike() const noexcept { return relaxes_alike_; }
   double tool_radius() const noexcept { return tool_radius_; }  ///< m
+  /// sum n_l sigma_l, 1, across the normal n at the point; zero where no node leans.
+  Vec3 lean(const SurfacePoint& p, const Vec3& n) const noexcept {
+    if (!leans_) return {};
+    const Element& e = element(p.element);
+    const Vec3 sum =
+        p.natural[0] * lean(e, 0) + p.natural[1] * lean(e, 1) + p.natural[2] * lean(e, 2);
+    return sum - dot(sum, n) * n;
+  }
+  /// sigma of a vertex; zero where no node leans.
+  Vec3 lean(const Element& e, std::size_t l) const noexcept {
+    if (!leans_) return {};
+    const auto record = static_cast<std::size_t>(e.vertices[l]) + curves_at_ - 1;
+    return reinterpret_cast<const NodeLean*>(&records_[record])->lean;
+  }
   /// g_i at a point, interpolated; zero beyond the relaxation times. @pre they are not empty
   Lanes fractions(const SurfacePoint& p) const noexcept;
 
@@ -139,6 +159,7 @@ class Surface {
   std::vector<double> relaxation_times_;
   bool relaxes_alike_ = true;
   double tool_radius_ = 0;
+  bool leans_ = false;
   std::size_t curves_at_ = 1;  ///< line of the curves of a node, counted from its first
 };
 

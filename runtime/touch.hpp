@@ -21,7 +21,7 @@ struct Touch {
   Vec3 contact_point{};  ///< c, m
   Vec3 normal{};         ///< n, unit, into the body
   double depth = 0;      ///< n . (x - c), m: of the tip below the surface at rest
-  Vec3 lateral{};        ///< rho t, m: lateral deflection without slip
+  Vec3 lateral{};        ///< m: of the tip from the anchor, across n
   Vec3 tip{};            ///< x, m
   Pose pose;
 };

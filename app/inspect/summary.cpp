@@ -256,6 +256,19 @@ Json relaxation_of(const Library& library) {
   return times;
 }
 
+/// How far presses lean: median and largest length of the lean of a vertex with a response.
+Json lean_of(const Library& library) {
+  std::vector<double> lengths;
+  for (const NodeResponse& node : library.responses) {
+    if (node.status == ResponseStatus::Hole) continue;
+    const auto& [x, y, z] = node.lean;
+    lengths.push_back(
+        std::hypot(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)));
+  }
+  std::sort(lengths.begin(), lengths.end());
+  return {{"median", lengths[lengths.size() / 2]}, {"max", lengths.back()}};
+}
+
 /// What is guaranteed on each device.
 Json rates_of(const Certificate& certificate) {
   if (certificate.devices.empty()) return "none is guaranteed: no device profile was given";
@@ -294,6 +307,7 @@ Json summary_of(const Library& library) {
                   {"max_normal_mesh_error", with_unit(mesh_error, "N")},
                   {"max_lateral_mesh_error", with_unit(lateral_mesh_error, "N")},
                   {"bounding_box", box_of(library.positions)}};
+  if (library.leans()) summary["lean"] = lean_of(library);
   if (library.relaxes()) summary["relaxation"] = relaxation_of(library);
   summary["certificate"] = summary_of(library.certificate);
   return summary;

@@ -67,12 +67,14 @@ std::string cause(const TriangleBounds& bounds, double depth, const std::string&
   if (std::isinf(bounds.certificate.slip))
     return cause_unbounded(bounds.certificate, depth) + remedy_unbounded(slide_remedy);
   const SlideCauses& slide = bounds.causes;
-  if (slide.stiffness >= std::max({slide.variation, slide.slant, slide.curvature})) {
+  if (slide.stiffness >= std::max({slide.variation, slide.slant, slide.curvature, slide.lean})) {
     return "the stiffest response, while sliding";
   }
-  if (slide.variation >= std::max(slide.slant, slide.curvature)) {
+  if (slide.variation >= std::max({slide.slant, slide.curvature, slide.lean})) {
     return "the change of the responses over the surface, while sliding";
   }
+  if (slide.lean >= std::max(slide.slant, slide.curvature))
+    return "the lean of the responses, while sliding";
   return slide.slant >= slide.curvature ? "press directions oblique to the facet, while sliding"
                                         : "the curvature of the normals, while sliding";
 }

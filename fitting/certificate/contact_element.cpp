@@ -2,6 +2,9 @@
 #include "fitting/certificate/contact_element.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include "fitting/certificate/range.hpp"
 
 namespace palpate::fitting {
 namespace {
@@ -45,7 +48,34 @@ ContactElement contact_element(const Library& library, std::size_t index, double
   if (library.kind == ResponseKind::Coupled)
     element.coupling = couplings_of(library, triangle, frame);
   element.relaxes = library.relaxes();
+  for (std::size_t l = 0; l < 3; ++l)
+    for (std::size_t i = 0; i < 3; ++i)
+      element.lean[l][i] = static_cast<double>(response(library, triangle[l]).lean[i]);
   return element;
+}
+
+/// sigma is the mean of those of the vertices, weighted, less its part along n.
+double ContactElement::most_lean() const {
+  const double largest = std::max({norm(lean[0]), norm(lean[1]), norm(lean[2])});
+  return largest > 0 ? kRoundingFactor * largest : 0;
+}
+
+/// With the sum S = sum n_l sigma_l: d sigma/ds = dS/ds across n - (n . S) dn/ds, and |dS/ds| is at
+/// most the Frobenius norm of its gradient.
+double ContactElement::most_lean_change() const {
+  if (!(most_lean() > 0)) return 0;
+  const Vec3 first = lean[1] - lean[0], second = lean[2] - lean[0];
+  double squares = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vec3 gradient = first[i] * frame.gradient[1] + second[i] * frame.gradient[2];
+    squares += dot(gradient, gradient);
+  }
+  return kRoundingFactor * (std::sqrt(squares) + most_lean() * frame.kappa);
+}
+
+double ContactElement::stretch() const {
+  const double s = most_lean();
+  return s > 0 ? kRoundingFactor * (1 + s * (s / 2 + std::sqrt(1 + s * s / 4))) : 1;
 }
 
 std::vector<double> ContactElement::depth_cells(double deepest) const {

@@ -2,6 +2,7 @@
 // A response triangle with all that the bounds of its forces depend on.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -21,6 +22,14 @@ struct ContactElement {
   double depth = 0;                                    ///< m, D: the bounds hold while z + d0 <= D
   std::optional<CurveTriple> coupling = std::nullopt;  ///< w, of coupled responses
   bool relaxes = false;  ///< slip may begin below mu g: bounds hold whatever the tissue remembers
+  std::array<Vec3, 3> lean{};  ///< sigma_l, 1
+
+  double most_lean() const;  ///< sup |sigma| over the triangle
+  /// sup |d sigma/ds| over the triangle, along any direction in its plane, 1/m
+  double most_lean_change() const;
+  /// |A|^2 for A = I - sigma n^T at the largest |sigma|: what a bound of the forces in the response
+  /// coordinates has to be multiplied by. 1 without lean.
+  double stretch() const;
 
   /// Ends of intervals of depth from 0 to D, or to `deepest`, that have no knot of a normal
   /// response or of w inside.

@@ -202,15 +202,40 @@ std::optional<SlideState> slide_state(const ContactElement& element, const Range
   return element.coupling ? coupled_state(element, z) : decoupled_state(element, z);
 }
 
+/// sup |q| of (6).
+double rate_of_depth(const ContactElement& element, const SlideState& state) {
+  const TriangleFrame& frame = element.frame;
+  return frame.sin_theta + (state.rho.high + element.depth * element.most_lean()) * frame.kappa;
+}
+
+/// What the lean adds to p of (6) and to the part across it: (6a).
+double lean_rate(const ContactElement& element, const SlideState& state) {
+  const double lean = element.most_lean();
+  if (!(lean > 0)) return 0;
+  return element.depth * element.most_lean_change() + lean * rate_of_depth(element, state);
+}
+
+/// |v| of the lean, (9b), with all terms of q and s that contain it.
+double lean_part(const ContactElement& element, const SlideState& state) {
+  const double lean = element.most_lean(), kappa = element.frame.kappa;
+  if (!(lean > 0)) return 0;
+  const double felt = element.friction * state.max_g;
+  return state.depth_slope * element.depth * lean * kappa +
+         state.h_over_rho * lean_rate(element, state) +
+         felt * (lean * (1 + lean) * kappa + element.most_lean_change()) +
+         lean * kappa * state.max_E_z;
+}
+
 /// Largest motion of c for a unit motion of the tool: |w| of the theory page.
 double slide_rate(const ContactElement& element, const SlideState& state) {
   const TriangleFrame& frame = element.frame;
   // Terms of order 1 cancel here, so the rounding margin is absolute.
   double margin = frame.cos_theta - element.depth * frame.kappa - (kRoundingFactor - 1);
+  margin -= lean_rate(element, state);
   if (element.friction > 0) {
     if (!(state.h_rho > 0)) return kInfinity;
     margin -= state.limit_gradient / state.h_rho;
-    margin -= state.limit_slope * (frame.sin_theta + state.rho.high * frame.kappa);
+    margin -= state.limit_slope * rate_of_depth(element, state);
   }
   return margin > 0 ? std::hypot(1.0, state.limit_slope) / margin : kInfinity;
 }
@@ -220,9 +245,10 @@ SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   const double mu = element.friction;
   if (state.rho.high == kInfinity) return {kInfinity, {0, kInfinity, 0, 0}};
 
+  const double stretch = element.stretch();
   SlideCauses causes;
-  causes.stiffness = std::max(state.depth_slope, state.h_over_rho);
-  const double rate = slide_rate(element, state);
+  causes.stiffness = stretch * std::max(state.depth_slope, state.h_over_rho);
+  const double rate = stretch * slide_rate(element, state);
   // |v| is at most the sum of its causes, which are reported separately.
   const double q_slant = frame.sin_theta;
   const double q_turn = state.rho.high * frame.kappa;
@@ -235,7 +261,8 @@ SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   causes.variation = scaled(state.variation);
   causes.slant = scaled(slant);
   causes.curvature = scaled(curvature);
-  const double moving = causes.variation + causes.slant + causes.curvature;
+  causes.lean = scaled(lean_part(element, state));
+  const double moving = causes.variation + causes.slant + causes.curvature + causes.lean;
   // Without friction and motion the bound is a stored slope, which is exact.
   const double rounding = mu > 0 || moving > 0 ? kRoundingFactor : 1;
   return {rounding * (causes.stiffness + moving), causes};
@@ -323,7 +350,10 @@ bool energy_falls(const ContactElement& element, const SlideState& state) {
                        (mu > 0 ? mu * element.lateral.energy_ratio(state.rho) : 0.0);
   const double arm = std::max(std::abs(state.rho.high - mu * state.z.low),
                               std::abs(state.rho.low - mu * element.depth));
-  return mu * frame.cos_theta >= kRoundingFactor * (frame.sin_theta + ratio + frame.kappa * arm);
+  const double lean =
+      element.depth * element.most_lean() * frame.kappa + mu * lean_rate(element, state);
+  return mu * frame.cos_theta >=
+         kRoundingFactor * (frame.sin_theta + ratio + frame.kappa * arm + lean);
 }
 
 /// Whether energy_falls holds over a cell, which is halved while it holds at the middle only.
@@ -344,8 +374,10 @@ double stick_bound(const ContactElement& element) {
   // The Jacobian at a fixed contact point is g' n n^T + h' t t^T + (h/rho) s s^T, its norm is
   // the largest of the three; h/rho <= max h', and interpolated slopes do not exceed those at the
   // vertices.
-  if (!element.coupling) return std::max(element.normal.max_slope(), element.lateral.max_slope());
-  return over_depths(element, element.depth, cell_stick);
+  const double response = element.coupling
+                              ? over_depths(element, element.depth, cell_stick)
+                              : std::max(element.normal.max_slope(), element.lateral.max_slope());
+  return element.stretch() * response;
 }
 
 double min_lipschitz_bound(const ContactElement& element) {
@@ -353,11 +385,11 @@ double min_lipschitz_bound(const ContactElement& element) {
   if (!element.coupling) {
     const double oblique =
         element.friction > 0 ? kRoundingFactor * std::hypot(1.0, element.friction) : 1.0;
-    return std::max(stick_bound(element), oblique * element.normal.max_slope());
+    return std::max(stick_bound(element), element.stretch() * oblique * element.normal.max_slope());
   }
   const double deepest = std::max(element.normal.last_knot(), element.coupling->last_knot());
-  return std::max(over_depths(element, deepest, cell_min_bound),
-                  min_bound_beyond(element, deepest));
+  return element.stretch() * std::max(over_depths(element, deepest, cell_min_bound),
+                                      min_bound_beyond(element, deepest));
 }
 
 SlideBound slide_bound(const ContactElement& with_memory) {

@@ -63,11 +63,16 @@ double solve_piece(double slope, double curvature, double rise) {
 }  // namespace
 
 struct SlideJacobian::Facet {
-  Range cosine, sine;      ///< of the azimuth relative to `turn`
-  double turn = 0;         ///< azimuth of the middle of the cell
-  Range t_tau, n_tau;      ///< t . tau, n . tau
-  Range s_tau;             ///< s . tau
-  Range kappa_t, kappa_s;  ///< t . dn/ds and s . dn/ds along tau, 1/m
+  Range cosine, sine;              ///< of the azimuth relative to `turn`
+  double turn = 0;                 ///< azimuth of the middle of the cell
+  Range n_N, n_b;                  ///< n along N and b
+  Range r;                         ///< length of n in the plane of N and tau
+  Range t_tau, n_tau;              ///< t . tau, n . tau
+  Range s_tau;                     ///< s . tau
+  Range kappa_t, kappa_s;          ///< t . dn/ds and s . dn/ds along tau, 1/m
+  Range lean_t, lean_s;            ///< t . sigma and s . sigma
+  Range lean_turn;                 ///< sigma . dn/ds, 1/m
+  Range lean_t_rate, lean_s_rate;  ///< t . d sigma/ds and s . d sigma/ds, 1/m
 };
 
 struct SlideJacobian::AtVertex {
@@ -85,13 +90,13 @@ struct SlideJacobian::Response {
 struct SlideJacobian::Terms {
   Facet f;
   Response r;
-  Range m;           ///< derivative of rho_s by z
-  Range A, B;        ///< derivatives of dE/dz along the slip limit: by z, and along tau
-  Range mu_g;        ///< mu g
-  Range mu_g_z;      ///< derivative of mu g by z
-  Range mu_g_tau;    ///< derivative of mu g along tau
-  Range limit_rate;  ///< decrease of rho_s along tau
-  Range q;
+  Range m;             ///< derivative of rho_s by z
+  Range A, B;          ///< derivatives of dE/dz along the slip limit: by z, and along tau
+  Range mu_g;          ///< mu g
+  Range mu_g_z;        ///< derivative of mu g by z
+  Range mu_g_tau;      ///< derivative of mu g along tau
+  Range limit_rate;    ///< decrease of rho_s along tau
+  Range q, p, s;       ///< those of (6), less what a slide to the limit needs of p
   Range rate;          ///< decrease of rho - rho_s per unit motion of c
   double norm_M0 = 0;  ///< |M_0|
 };
@@ -104,7 +109,11 @@ SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element)
     direction_[l] = {dot(frame.inward[l], frame.normal), dot(frame.inward[l], x),
                      dot(frame.inward[l], y)};
     gradient_[l] = {dot(frame.gradient[l], x), dot(frame.gradient[l], y)};
+    lean_[l] = {dot(element.lean[l], frame.normal), dot(element.lean[l], x),
+                dot(element.lean[l], y)};
   }
+  leans_ = element.most_lean() > 0;
+  stretch_ = element.stretch();
   for (const double start : element.lateral.cells({0, element.lateral.last_knot()}, 1)) {
     LateralPiece piece{start};
     for (std::size_t l = 0; l < 3; ++l) {
@@ -122,50 +131,95 @@ SlideJacobian::SlideJacobian(const ContactElement& element) : element_(&element)
   }
 }
 
+/// Along N and the axes x, y turned by the middle of the azimuth.
+struct SlideJacobian::Axes {
+  Range N, x, y;
+  /// Along tau and b.
+  Range tau(const Facet& f) const { return x * f.cosine + y * f.sine; }
+  Range b(const Facet& f) const { return y * f.cosine - x * f.sine; }
+};
+
+SlideJacobian::Turned SlideJacobian::turned(const std::array<std::array<double, 3>, 3>& vertex,
+                                            double turn) {
+  const double c0 = std::cos(turn), s0 = std::sin(turn);
+  Turned along{};
+  for (std::size_t l = 0; l < 3; ++l) {
+    along[0][l] = vertex[l][0];
+    along[1][l] = c0 * vertex[l][1] + s0 * vertex[l][2];
+    along[2][l] = -s0 * vertex[l][1] + c0 * vertex[l][2];
+  }
+  return along;
+}
+
+SlideJacobian::Axes SlideJacobian::interpolated(const SlideCell& cell, const Turned& vectors) {
+  const auto component = [&](const std::array<double, 3>& v) {
+    return over(cell.part, {Range{v[0], v[0]}, Range{v[1], v[1]}, Range{v[2], v[2]}});
+  };
+  return {component(vectors[0]), component(vectors[1]), component(vectors[2])};
+}
+
+SlideJacobian::Axes SlideJacobian::rate(const Facet& f, const Turned& vectors) const {
+  const double c0 = std::cos(f.turn), s0 = std::sin(f.turn);
+  const auto component = [&](const std::array<double, 3>& u) {
+    double by_x = 0, by_y = 0;
+    for (std::size_t l = 1; l < 3; ++l) {  // differences, so that equal vectors give exactly 0
+      by_x += (u[l] - u[0]) * (c0 * gradient_[l][0] + s0 * gradient_[l][1]);
+      by_y += (u[l] - u[0]) * (-s0 * gradient_[l][0] + c0 * gradient_[l][1]);
+    }
+    return by_x * f.cosine + by_y * f.sine;
+  };
+  return {component(vectors[0]), component(vectors[1]), component(vectors[2])};
+}
+
 /// tau is the axis x turned by the azimuth; b = N x tau; t is the unit vector normal to n in the
 /// plane of N and tau, s = n x t.
 SlideJacobian::Facet SlideJacobian::facet(const SlideCell& cell) const {
   // Relative to the middle of the range, cosines are near 1 and sines are small.
-  const double turn = cell.azimuth.middle(), half = cell.azimuth.radius();
-  const double c0 = std::cos(turn), s0 = std::sin(turn);
+  const double half = cell.azimuth.radius();
   Facet f;
-  f.turn = turn;
+  f.turn = cell.azimuth.middle();
   f.cosine = {std::cos(half), 1};
   f.sine = {-std::sin(half), std::sin(half)};
 
-  Values U_N, U_x, U_y;
-  std::array<double, 3> along_N{}, along_x{}, along_y{};
-  for (std::size_t l = 0; l < 3; ++l) {
-    along_N[l] = direction_[l][0];
-    along_x[l] = c0 * direction_[l][1] + s0 * direction_[l][2];
-    along_y[l] = -s0 * direction_[l][1] + c0 * direction_[l][2];
-    U_N[l] = {along_N[l], along_N[l]};
-    U_x[l] = {along_x[l], along_x[l]};
-    U_y[l] = {along_y[l], along_y[l]};
-  }
-  const Range N = over(cell.part, U_N), x = over(cell.part, U_x), y = over(cell.part, U_y);
-  const Range length = root(square(N) + square(x) + square(y));
-  const Range n_N = N / length, n_x = x / length, n_y = y / length;
-  f.n_tau = n_x * f.cosine + n_y * f.sine;
-  const Range n_b = n_y * f.cosine - n_x * f.sine;
-  const Range r = root(square(n_N) + square(f.n_tau));
-  f.t_tau = n_N / r;
-  f.s_tau = (-1) * (n_b * f.n_tau) / r;
+  const Turned directions = turned(direction_, f.turn);
+  const Axes U = interpolated(cell, directions);
+  const Range length = root(square(U.N) + square(U.x) + square(U.y));
+  const Axes n{U.N / length, U.x / length, U.y / length};
+  f.n_N = n.N;
+  f.n_tau = n.tau(f);
+  f.n_b = n.b(f);
+  f.r = root(square(f.n_N) + square(f.n_tau));
+  f.t_tau = f.n_N / f.r;
+  f.s_tau = (-1) * (f.n_b * f.n_tau) / f.r;
 
   // dU/ds along tau; t and s take its part normal to n.
-  const auto rate = [&](const std::array<double, 3>& u) {
-    double by_x = 0, by_y = 0;
-    for (std::size_t l = 1; l < 3; ++l) {  // differences, so that equal directions give exactly 0
-      by_x += (u[l] - u[0]) * (c0 * gradient_[l][0] + s0 * gradient_[l][1]);
-      by_y += (u[l] - u[0]) * (-s0 * gradient_[l][0] + c0 * gradient_[l][1]);
-    }
-    return (by_x * f.cosine + by_y * f.sine) / length;
-  };
-  const Range d_N = rate(along_N), d_x = rate(along_x), d_y = rate(along_y);
-  const Range d_tau = d_x * f.cosine + d_y * f.sine, d_b = d_y * f.cosine - d_x * f.sine;
-  f.kappa_t = (n_N * d_tau - f.n_tau * d_N) / r;
-  f.kappa_s = r * d_b - n_b * (n_N * d_N + f.n_tau * d_tau) / r;
+  const Axes change = rate(f, directions);
+  const Axes d{change.N / length, change.x / length, change.y / length};
+  f.kappa_t = along_t(f, d);
+  f.kappa_s = along_s(f, d);
+  if (leans_) add_lean(cell, f);
   return f;
+}
+
+Range SlideJacobian::along_t(const Facet& f, const Axes& a) {
+  return (f.n_N * a.tau(f) - f.n_tau * a.N) / f.r;
+}
+
+Range SlideJacobian::along_s(const Facet& f, const Axes& a) {
+  return f.r * a.b(f) - f.n_b * (f.n_N * a.N + f.n_tau * a.tau(f)) / f.r;
+}
+
+/// sigma is the part of the sum S = sum n_l sigma_l across n; its derivative across n is that of S
+/// less (n . S) dn/ds.
+void SlideJacobian::add_lean(const SlideCell& cell, Facet& f) const {
+  const Turned leans = turned(lean_, f.turn);
+  const Axes S = interpolated(cell, leans), change = rate(f, leans);
+  const Range along_n = f.n_N * S.N + f.n_tau * S.tau(f) + f.n_b * S.b(f);
+  f.lean_t = along_t(f, S);
+  f.lean_s = along_s(f, S);
+  f.lean_turn = f.lean_t * f.kappa_t + f.lean_s * f.kappa_s;
+  f.lean_t_rate = along_t(f, change) - along_n * f.kappa_t;
+  f.lean_s_rate = along_s(f, change) - along_n * f.kappa_s;
 }
 
 Range SlideJacobian::along(const Facet& facet, const Values& value) const {
@@ -287,22 +341,45 @@ SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rh
   x.B = along(x.f, x.r.E_z) - x.r.E_zr * x.limit_rate;
   x.mu_g_tau = mu * along(x.f, x.r.g);
   x.q = x.f.n_tau - rho * x.f.kappa_t;
-  x.rate = x.f.t_tau + cell.reach * x.f.kappa_t - x.m * x.q - x.limit_rate;
+  x.p = x.f.t_tau + cell.reach * x.f.kappa_t;
+  x.s = x.f.s_tau + cell.reach * x.f.kappa_s;
+  if (leans_) add_lean(cell, x);
+  x.rate = x.p - x.m * x.q - x.limit_rate;
   x.norm_M0 =
       std::max(std::hypot(x.A.magnitude(), x.mu_g_z.magnitude()), x.r.h_over_rho.magnitude());
   return x;
 }
 
+/// (6a): the rates of the coordinates in the frame of A x'.
+void SlideJacobian::add_lean(const SlideCell& cell, Terms& x) {
+  x.q = x.q - cell.z * x.f.lean_turn;
+  x.p = x.p + cell.z * x.f.lean_t_rate - x.f.lean_t * x.q;
+  x.s = x.s + cell.z * x.f.lean_s_rate - x.f.lean_s * x.q;
+}
+
+/// (9b): what the turning of A adds to v.
+void SlideJacobian::add_lean(const Terms& x, Range& v_n, Range& v_t, Range& v_s) {
+  const Range leaning = x.mu_g * x.f.lean_t;
+  v_n = v_n - leaning * x.f.lean_turn - x.mu_g * x.f.lean_t_rate + x.r.E_z_here * x.f.lean_turn;
+  v_t = v_t - leaning * x.f.kappa_t;
+  v_s = v_s - leaning * x.f.kappa_s;
+}
+
 double SlideJacobian::bound(const SlideCell& cell) const {
+  return stretch_ * bound_of_response(cell);
+}
+
+/// The bound of A^-T df/dx' A^-1.
+double SlideJacobian::bound_of_response(const SlideCell& cell) const {
   const Range rho = slip_limit(cell);
   if (rho.low == kInfinity) return 0;
   if (rho.high == kInfinity) return kInfinity;
   const Terms x = terms(cell, rho);
   if (!(x.r.E_rr.low > 0)) return kInfinity;
-  const Range v_n = x.B - x.A * x.q - x.mu_g * x.f.kappa_t;
-  const Range v_t = x.mu_g_tau - x.mu_g_z * x.q + x.r.E_z_here * x.f.kappa_t;
-  const Range v_s =
-      x.r.E_z_here * x.f.kappa_s - x.r.h_over_rho * (x.f.s_tau + cell.reach * x.f.kappa_s);
+  Range v_n = x.B - x.A * x.q - x.mu_g * x.f.kappa_t;
+  Range v_t = x.mu_g_tau - x.mu_g_z * x.q + x.r.E_z_here * x.f.kappa_t;
+  Range v_s = x.r.E_z_here * x.f.kappa_s - x.r.h_over_rho * x.s;
+  if (leans_) add_lean(x, v_n, v_t, v_s);
   if (is_zero(v_n) && is_zero(v_t) && is_zero(v_s))
     return kRoundingFactor * x.norm_M0;  // the force does not depend on c
   if (!(x.rate.low > 0)) return kInfinity;
@@ -325,16 +402,24 @@ SlideCauses SlideJacobian::causes(const SlideCell& state) const {
   if (!(rho.high < kInfinity)) return {0, kInfinity, kInfinity, kInfinity};
   const Terms x = terms(state, rho);
   if (!(x.r.E_rr.low > 0 && x.rate.low > 0)) return {x.norm_M0, kInfinity, kInfinity, kInfinity};
-  const double motion = std::hypot(1.0, x.m.magnitude()) / x.rate.low;  // |w|
+  const double motion =
+      stretch_ * std::hypot(1.0, x.m.magnitude()) / x.rate.low;  // |w|, times |A|^2
   const auto length = [&](const Range& n, const Range& t, const Range& s) {
     return motion * std::hypot(n.magnitude(), t.magnitude(), s.magnitude());
   };
   const Range turned = rho * x.f.kappa_t;
-  return {
-      x.norm_M0, length(x.B, x.mu_g_tau, {}),
+  SlideCauses causes{
+      stretch_ * x.norm_M0, length(x.B, x.mu_g_tau, {}),
       length(x.A * x.f.n_tau, x.mu_g_z * x.f.n_tau, x.r.h_over_rho * x.f.s_tau),
       length(x.A * turned - x.mu_g * x.f.kappa_t, x.mu_g_z * turned + x.r.E_z_here * x.f.kappa_t,
              (x.r.E_z_here - x.r.h_over_rho * state.reach) * x.f.kappa_s)};
+  if (!leans_) return causes;
+  const Range shift = state.z * x.f.lean_turn;
+  Range n = x.A * shift, t = x.mu_g_z * shift;
+  Range s = x.r.h_over_rho * (x.f.lean_s * x.q - state.z * x.f.lean_s_rate);
+  add_lean(x, n, t, s);
+  causes.lean = length(n, t, s);
+  return causes;
 }
 
 }  // namespace palpate::fitting

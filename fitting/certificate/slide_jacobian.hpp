@@ -21,12 +21,13 @@ struct SlideCell {
 };
 
 /// Contributions to the force gradient of a slide, N/m: |M_0|, and |v_i| |w| for each term v_i of
-/// v.
+/// v, each times |A|^2.
 struct SlideCauses {
   double stiffness = 0;  ///< Lipschitz bound of the responses at a fixed contact point
   double variation = 0;  ///< change of the responses over the surface
   double slant = 0;      ///< directions u_l oblique to the facet
   double curvature = 0;  ///< turning of n
+  double lean = 0;       ///< shear by a straight press, and its change over the surface
 };
 
 /// df/dx' = M_0 + v w^T of (8) in docs/theory-fitting.md, entry by entry in the frame (n, t, s),
@@ -49,8 +50,20 @@ class SlideJacobian {
   struct Response;  // depends on the curves
   struct AtVertex;
   struct Terms;  // of (8) and (9)
+  struct Axes;
+  using Turned = std::array<std::array<double, 3>, 3>;  ///< components of the vectors of vertices
 
+  static Turned turned(const std::array<std::array<double, 3>, 3>& vertex, double turn);
+  static Axes interpolated(const SlideCell& cell, const Turned& vectors);
+  /// Derivatives along tau.
+  Axes rate(const Facet& facet, const Turned& vectors) const;
+  static Range along_t(const Facet& facet, const Axes& a);
+  static Range along_s(const Facet& facet, const Axes& a);
   Facet facet(const SlideCell& cell) const;
+  void add_lean(const SlideCell& cell, Facet& facet) const;
+  static void add_lean(const SlideCell& cell, Terms& terms);
+  static void add_lean(const Terms& terms, Range& v_n, Range& v_t, Range& v_s);
+  double bound_of_response(const SlideCell& cell) const;
   double slip_at(const std::array<double, 3>& weight, double limit, bool largest) const;
   Range slip_limit(const SlideCell& cell) const;
   AtVertex at_vertex(std::size_t vertex, const Range& z, const Range& rho) const;
@@ -70,6 +83,9 @@ class SlideJacobian {
   // In the frame of the facet: along N, and two axes x, y in the plane.
   std::array<std::array<double, 3>, 3> direction_{};  ///< u_l
   std::array<std::array<double, 2>, 3> gradient_{};   ///< grad n_l
+  std::array<std::array<double, 3>, 3> lean_{};       ///< sigma_l
+  bool leans_ = false;
+  double stretch_ = 1;  ///< |A|^2
 };
 
 }  // namespace palpate::fitting

@@ -10,6 +10,7 @@
 #include "fitting/response/curve_fit.hpp"
 #include "fitting/response/fill.hpp"
 #include "fitting/response/interpolate.hpp"
+#include "fitting/response/lean.hpp"
 #include "fitting/response/relaxation_fraction.hpp"
 #include "fitting/response/site_samples.hpp"
 #include "format/error.hpp"
@@ -74,19 +75,16 @@ void check_settings(const FitSettings& settings) {
 /// Largest distance of the lateral response from any single path. It includes the loss by averaging
 /// over azimuths and, when decoupled, over depths.
 double lateral_error(const NodeResponse& node, ResponseKind kind, const SiteCurves& site) {
-  const runtime::CompiledCurve rendered(node.lateral);
-  runtime::CompiledCurve weight;
-  if (kind == ResponseKind::Coupled)
-    weight = {node.coupling.curve, static_cast<double>(node.coupling.base)};
+  const LeaningResponse rendered(node, kind);
   double largest = 0;
   for (const CurvePath& path : site.paths) {
     SiteCurves one;
     one.paths.push_back(path);
-    const double w = kind == ResponseKind::Coupled ? weight.force(path.lateral_depth) : 1;
     for (const auto& samples : lateral_paths(one)) {
       for (const ForceSample& sample : samples) {
-        const double error = w * rendered.force(sample.displacement) - sample.force;
-        largest = std::max(largest, std::abs(error));
+        const double force =
+            rendered.drag_force(path.lateral_depth, sample.displacement, path.direction);
+        largest = std::max(largest, std::abs(force - sample.force));
       }
     }
   }
@@ -103,11 +101,35 @@ double mesh_error(const SiteCurves& site, PathKind kind) {
   return largest;
 }
 
-NodeResponse fit_site(const SiteCurves& site, const FitSettings& settings) {
+double normal_error(const NodeResponse& node, ResponseKind kind, const SiteCurves& site) {
+  const runtime::CompiledCurve rendered(node.normal);
+  const LeaningResponse lean(node, kind);
+  double largest = 0;
+  for (const ForceSample& sample : normal_samples(site)) {
+    const double force =
+        rendered.force(sample.displacement) + lean.normal_force(sample.displacement);
+    largest = std::max(largest, std::abs(force - sample.force));
+  }
+  return largest;
+}
+
+/// The lean of a node, and its normal response again: a straight press feels both.
+void add_lean(const SiteCurves& site, const Vec3& inward, ResponseKind kind,
+              const CurveFitSettings& curve, const std::string& where, NodeResponse& node) {
+  node.lean = fit_lean(site, inward, node, kind);
+  if (node.lean == std::array<float, 3>{}) return;
+  const auto samples = less_lean(normal_samples(site), LeaningResponse(node, kind));
+  node.normal = fit_curve(samples, curve, where).curve;
+  node.normal_error = normal_error(node, kind, site);
+}
+
+NodeResponse fit_site(const SiteCurves& site, const Vec3& inward, const FitSettings& settings) {
   const std::string where = site_name(site.vertex);
-  CurveFitSettings curve{settings.relative_tolerance, settings.absolute_tolerance,
-                         settings.max_knots, true};
-  const CurveFit normal = fit_curve(normal_samples(site), curve, where + ", normal response");
+  const std::string normal_name = where + ", normal response";
+  const CurveFitSettings pressed{settings.relative_tolerance, settings.absolute_tolerance,
+                                 settings.max_knots, true};
+  const CurveFit normal = fit_curve(normal_samples(site), pressed, normal_name);
+  CurveFitSettings curve = pressed;
   curve.zero_first_slope = false;
   NodeResponse node{ResponseStatus::Fitted, normal.curve, {}, normal.largest_error, 0, {}};
   if (settings.kind == ResponseKind::Coupled) {
@@ -118,6 +140,7 @@ NodeResponse fit_site(const SiteCurves& site, const FitSettings& settings) {
     const auto mean = mean_lateral(lateral_paths(site));
     node.lateral = fit_curve(mean, curve, where + ", lateral response").curve;
   }
+  if (settings.lean) add_lean(site, inward, settings.kind, pressed, normal_name, node);
   node.lateral_error = lateral_error(node, settings.kind, site);
   node.normal_mesh_error = mesh_error(site, PathKind::Normal);
   node.lateral_mesh_error = mesh_error(site, PathKind::Lateral);
@@ -146,14 +169,6 @@ Library surface_library(const Body& body, const Curves& curves) {
   return library;
 }
 
-double normal_error(const NodeResponse& node, const SiteCurves& site) {
-  const runtime::CompiledCurve rendered(node.normal);
-  double largest = 0;
-  for (const ForceSample& sample : normal_samples(site))
-    largest = std::max(largest, std::abs(rendered.force(sample.displacement) - sample.force));
-  return largest;
-}
-
 double force_at_end(const runtime::CompiledCurve& curve) {
   return curve.force(curve.last_knot());
 }
@@ -180,7 +195,7 @@ void scale_between_nodes(const Curves& curves, Library& library) {
   for (const SiteCurves& site : curves.sites) {
     NodeResponse& node = library.responses[static_cast<std::size_t>(site.vertex)];
     if (node.status != ResponseStatus::Fitted) continue;
-    node.normal_error = normal_error(node, site);
+    node.normal_error = normal_error(node, library.kind, site);
     node.lateral_error = lateral_error(node, library.kind, site);
   }
 }
@@ -209,8 +224,9 @@ Library fit(const Body& body, const Curves& curves, const FitSettings& settings)
   std::size_t fitted = 0;
   for (const SiteCurves& site : curves.sites) {
     if (!usable(site, curves.depth)) continue;
-    NodeResponse& node = library.responses[static_cast<std::size_t>(site.vertex)];
-    node = fit_site(site, settings);
+    const auto vertex = static_cast<std::size_t>(site.vertex);
+    NodeResponse& node = library.responses[vertex];
+    node = fit_site(site, library.inward[vertex], settings);
     if (library.relaxes()) node.relaxation = relaxation_fractions(site, curves.relaxation);
     ++fitted;
   }

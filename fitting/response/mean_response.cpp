@@ -123,6 +123,21 @@ std::vector<float> mean_relaxation(const std::vector<WeightedResponse>& sources)
   return fractions;
 }
 
+/// Leans are shorter than the longest one: that of a weighted mean may not be.
+std::array<float, 3> mean_lean(const std::vector<WeightedResponse>& sources) {
+  Vec3 mean{};
+  double longest = 0;
+  for (const WeightedResponse& source : sources) {
+    Vec3 lean;
+    for (std::size_t i = 0; i < 3; ++i) lean[i] = static_cast<double>(source.response->lean[i]);
+    mean = mean + source.weight * lean;
+    longest = std::max(longest, norm(lean));
+  }
+  const double length = norm(mean);
+  if (length > longest) mean = (longest / length) * mean;
+  return {static_cast<float>(mean[0]), static_cast<float>(mean[1]), static_cast<float>(mean[2])};
+}
+
 }  // namespace
 
 NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
@@ -139,6 +154,7 @@ NodeResponse mean_response(const std::vector<WeightedResponse>& sources,
   if (settings.kind == ResponseKind::Coupled)
     response.coupling = mean_coupling(sources, curve, where);
   response.relaxation = mean_relaxation(sources);
+  response.lean = mean_lean(sources);
   for (const auto error : {&NodeResponse::normal_mesh_error, &NodeResponse::lateral_mesh_error})
     for (const WeightedResponse& source : sources)
       response.*error = std::fmax(response.*error, source.response->*error);

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
     palpate::write_library(folder / "library.h5", samples::library(1));
     palpate::write_library(folder / "coupled.h5", samples::coupled_library(1));
     palpate::write_library(folder / "relaxing.h5", samples::relaxing_library(1));
+    palpate::write_library(folder / "leaning.h5", samples::leaning_library(0));
     palpate::write_curves(folder / "relaxing_curves.h5", samples::relaxing_curves(1));
     palpate::write_recording(folder / "recording.h5", samples::recording(1));
     palpate::write_file_crash_safely(folder / "body.txt", samples::dump(samples::body(1)));
@@ -34,6 +35,8 @@ int main(int argc, char** argv) {
                                      samples::dump(samples::coupled_library(1)));
     palpate::write_file_crash_safely(folder / "relaxing.txt",
                                      samples::dump(samples::relaxing_library(1)));
+    palpate::write_file_crash_safely(folder / "leaning.txt",
+                                     samples::dump(samples::leaning_library(0)));
     palpate::write_file_crash_safely(folder / "recording.txt",
                                      samples::dump(samples::recording(1)));
   } catch (const std::exception& error) {

@@ -41,6 +41,7 @@ int main(int argc, char** argv) {
   const Library ball = test::bumpy_sphere(2, 0.03, 0.05, test::uneven);
   write_library(folder / "ball.h5", certified(ball));
   write_library(folder / "coupled.h5", certified(test::coupled(ball)));
+  write_library(folder / "leaning.h5", certified(test::leaning(test::coupled(ball), 0.2)));
   write_library(folder / "relaxing.h5", certified(test::relaxing(ball, {0.02, 0.5}, false)));
   Library hole = plate;
   hole.responses[0] = {};

@@ -184,6 +184,18 @@ Library relaxing(Library library, const std::vector<double>& times, bool alike) 
   return library;
 }
 
+Library leaning(Library library, double most) {
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const Vec3 &x = library.positions[v], &n = library.inward[v];
+    const Vec3 any{std::sin(110 * x[1] + 70 * x[2]), std::cos(90 * x[0] - 50 * x[2]),
+                   std::sin(80 * x[0] + 60 * x[1] + 1)};
+    const Vec3 across = any - dot(any, n) * n;
+    for (std::size_t i = 0; i < 3; ++i)
+      library.responses[v].lean[i] = static_cast<float>(most / std::sqrt(3.0) * across[i]);
+  }
+  return library;
+}
+
 Library sphere(int level, double radius, const Responses& responses) {
   return bumpy_sphere(level, radius, 0, responses);
 }

@@ -33,6 +33,10 @@ Library coupled(Library library);
 /// alike everywhere, or up and down by a third over the surface.
 Library relaxing(Library library, const std::vector<double>& times, bool alike);
 
+/// The same library with presses that lean by up to `most` across the press directions, in
+/// directions that turn over the surface.
+Library leaning(Library library, double most);
+
 /// Icosahedron subdivided `level` times, vertices on the sphere, directions radial.
 Library sphere(int level, double radius, const Responses& responses);
 

@@ -338,6 +338,17 @@ Library relaxing_library(unsigned seed) {
   return relaxing;
 }
 
+Library leaning_library(unsigned seed) {
+  Random random(seed + 3000);
+  Library leaning = seed % 3 == 0   ? relaxing_library(seed)
+                    : seed % 3 == 1 ? coupled_library(seed)
+                                    : library(seed);
+  for (NodeResponse& node : leaning.responses)
+    if (node.status != ResponseStatus::Hole)
+      for (float& component : node.lean) component = static_cast<float>(random.between(-0.2, 0.2));
+  return leaning;
+}
+
 Recording recording(unsigned seed) {
   Random random(seed);
   Recording recording;
@@ -420,6 +431,7 @@ std::string dump(const Library& library) {
     out << static_cast<int>(r.status) << r.normal << r.lateral << r.normal_error << r.lateral_error;
     out << static_cast<double>(r.coupling.base) << r.coupling.curve;
     for (const float fraction : r.relaxation) out << static_cast<double>(fraction);
+    for (const float component : r.lean) out << static_cast<double>(component);
   }
   for (const double time : library.relaxation_times) out << time;
   const Certificate& c = library.certificate;

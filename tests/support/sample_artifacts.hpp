@@ -25,6 +25,8 @@ std::string dump(const Curves& curves);
 Library coupled_library(unsigned seed);
 /// The same with responses that relax, coupled where the seed is odd.
 Library relaxing_library(unsigned seed);
+/// Decoupled, coupled or relaxing, by the seed.
+Library leaning_library(unsigned seed);
 std::string dump(const Library& library);
 std::string dump(const Recording& recording);
 

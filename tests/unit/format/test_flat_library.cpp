@@ -23,8 +23,9 @@ using samples::TemporaryFolder;
 TEST(FlatLibrary, IsTheSameLibraryAsTheHdf5File) {
   const TemporaryFolder folder;
   for (unsigned seed = 0; seed < 5; ++seed) {
-    for (const Library& library : {samples::library(seed), samples::coupled_library(seed),
-                                   samples::relaxing_library(seed)}) {
+    for (const Library& library :
+         {samples::library(seed), samples::coupled_library(seed), samples::relaxing_library(seed),
+          samples::leaning_library(seed)}) {
       write_library(folder / "library.h5", library);
       write_flat_library(folder / "library.plib", library);
       EXPECT_EQ(dump(read_library(folder / "library.plib")), dump(library));
@@ -97,16 +98,19 @@ TEST(FlatLibrary, IsCheckedAsTheHdf5FileIs) {
   const double early = 1e-9;
   expect_refused(relaxing, "/relaxation/time", 8, &early, 8);  // not above the one before
   expect_refused(relaxing, "/response/relaxation_fraction", 4, &negative, 4);
+  expect_refused(samples::leaning_library(1), "/response/lean", 4, &not_a_number, 4);
+  expect_refused(samples::leaning_library(1), "/response/lean", 8, &negative, 4);  // too long
 }
 
-/// A reader that knows elastic tissue alone must not take the curves without their relaxation.
-TEST(FlatLibrary, OfTissueThatRelaxesIsOfALaterVersion) {
+/// A reader must not take the curves without what it does not know of them.
+TEST(FlatLibrary, OfTissueThatRelaxesOrLeansIsOfALaterVersion) {
   const auto version = [](const Library& library) {
     return static_cast<int>(flat_bytes(library, "a.plib")[8]);
   };
   EXPECT_EQ(version(samples::library(1)), 1);
   EXPECT_EQ(version(samples::coupled_library(1)), 1);
   EXPECT_EQ(version(samples::relaxing_library(1)), 2);
+  for (const unsigned seed : {0U, 1U, 2U}) EXPECT_EQ(version(samples::leaning_library(seed)), 3);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ std::vector<Case> surface_and_response_cases() {
        "/response/coupling_offset", "is missing"},
       {"LibraryOfSchemaTwo", kind,
        edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 2, H5T_NATIVE_INT); }), ":/",
-       "has schema 2, this palpate reads 1, 3, 4 and 5"},
+       "has schema 2, this palpate reads 1, 3, 4, 5 and 6"},
       {"LibraryPositionNaN", kind, poke("/surface/position", 0, kNaN), "/surface/position[0]",
        "nan is not finite"},
       {"LibraryPositionElsewhere", kind, link_elsewhere, "/surface/position",

@@ -160,6 +160,9 @@ TEST(RoundTrip, Library) {
     const Library relaxing = samples::relaxing_library(seed);
     write_library(folder / "relaxing.h5", relaxing);
     EXPECT_EQ(dump(read_library(folder / "relaxing.h5")), dump(relaxing));
+    const Library leaning = samples::leaning_library(seed);
+    write_library(folder / "leaning.h5", leaning);
+    EXPECT_EQ(dump(read_library(folder / "leaning.h5")), dump(leaning));
   }
 }
 

@@ -65,6 +65,12 @@ inline Library body_named(const std::string& name) {
   if (name == "relaxing_cube") return relaxing(cube(6, 0.06, varying(0.5)), {0.02, 0.5}, false);
   if (name == "relaxing_hills")
     return relaxing(bumpy_sphere(3, 0.03, 0.25, bent(0.4)), {0.01, 0.1, 1}, false);
+  if (name == "leaning") return leaning(coupled(bumpy_sphere(3, 0.03, 0.25, varying(0.3))), 0.2);
+  if (name == "leaning_rims") return leaning(cylinder(25, 20, 0.04, 0.2, varying(0.5)), 0.2);
+  if (name == "leaning_thin")
+    return leaning(coupled(thin_body(8, 0.08, 0.0015, varying(0.5))), 0.2);
+  if (name == "leaning_relaxing")
+    return leaning(relaxing(bumpy_sphere(3, 0.03, 0.25, bent(0.4)), {0.01, 0.1, 1}, false), 0.2);
   if (name == "hills") return bumpy_sphere(3, 0.03, 0.25, varying(0.5));
   if (name == "cube") return cube(6, 0.06, varying(0.5));
   return thin_body(8, 0.08, 0.0015, varying(0.5));
@@ -119,7 +125,10 @@ inline auto adversary_cases() {
       AdversaryCase{"coupled_cube", 0.2, 5e-3}, AdversaryCase{"coupled_thin", 0.5, 0},
       AdversaryCase{"relaxing", 0.3, 5e-3}, AdversaryCase{"relaxing", 0, 0},
       AdversaryCase{"relaxing_alike", 0.2, 0}, AdversaryCase{"relaxing_cube", 0.5, 5e-3},
-      AdversaryCase{"relaxing_hills", 0.3, 5e-3}, AdversaryCase{"relaxing_hills", 0.8, 0});
+      AdversaryCase{"relaxing_hills", 0.3, 5e-3}, AdversaryCase{"relaxing_hills", 0.8, 0},
+      AdversaryCase{"leaning", 0.3, 5e-3}, AdversaryCase{"leaning_rims", 0.3, 0},
+      AdversaryCase{"leaning_rims", 0, 5e-3}, AdversaryCase{"leaning_thin", 0.5, 5e-3},
+      AdversaryCase{"leaning_relaxing", 0.3, 5e-3});
 }
 
 inline std::string case_name(const ::testing::TestParamInfo<AdversaryCase>& about) {

@@ -51,6 +51,87 @@ class LocalModelTest : public ::testing::Test {
   std::mt19937 random_{7};
 };
 
+constexpr double kMostLean = 0.3;
+
+/// Responses that lean, decoupled and coupled in turn.
+class LeaningModelTest : public LocalModelTest {
+ protected:
+  const Surface& surface(int trial) const { return both_[static_cast<std::size_t>(trial % 2)]; }
+
+ private:
+  std::array<Surface, 2> both_{
+      Surface(leaning(bumpy_sphere(2, 0.03, 0.2, uneven), kMostLean)),
+      Surface(leaning(coupled(bumpy_sphere(2, 0.03, 0.2, uneven)), kMostLean))};
+};
+
+TEST_F(LeaningModelTest, ForceIsTheGradientOfTheEnergy) {
+  const double h = 1e-7;
+  std::uniform_real_distribution<double> any(-0.003, 0.003);
+  double furthest = 0;
+  for (int trial = 0; trial < 600; ++trial) {
+    LocalModel model(surface(trial), random_point(), 0.0004);
+    const Vec3 x = random_tip(model);
+    model.set_lateral_offset({any(random_), any(random_), any(random_)});
+    const Vec3 straight = model.contact_point() + 0.004 * model.normal() + model.lateral_offset();
+    const Vec3 leans = force(model, straight);
+    furthest =
+        std::max(furthest, norm(leans - dot(leans, model.normal()) * model.normal()) / norm(leans));
+    for (std::size_t i = 0; i < 3; ++i) {
+      Vec3 up = x, down = x;
+      up[i] += h;
+      down[i] -= h;
+      EXPECT_NEAR((energy(model, up) - energy(model, down)) / (2 * h), force(model, x)[i], 1e-7);
+    }
+  }
+  EXPECT_GT(furthest, 0.05);  // presses do lean
+}
+
+TEST_F(LeaningModelTest, AStraightPressLeansAgainstItsLean) {
+  for (int trial = 0; trial < 200; ++trial) {
+    const LocalModel model(surface(trial), random_point(), 0);
+    const Deflection d = model.deflection(model.contact_point() + 0.003 * model.normal());
+    const auto r = model.respond(d);
+    EXPECT_NEAR(d.lateral, 0.003 * norm(model.lean()), 1e-15);
+    EXPECT_NEAR(dot(model.lean(), model.normal()), 0, 1e-15);
+    EXPECT_NEAR(norm(model.lateral_displacement(d)), 0, 1e-15);
+    EXPECT_NEAR(norm(r.force - dot(r.force, model.normal()) * model.normal() +
+                     (r.lateral_force / norm(model.lean())) * model.lean()),
+                0, 1e-12);
+    // A tool that moves along n + sigma shears nothing, and feels the normal response alone.
+    const auto along = model.respond(
+        model.deflection(model.contact_point() + 0.003 * (model.normal() + model.lean())));
+    EXPECT_NEAR(norm(along.force - along.normal_force * model.normal()), 0, 1e-9);
+  }
+}
+
+TEST_F(LeaningModelTest, EnergySlopeAgreesWithMovingTheContactPointAndTheAnchor) {
+  const double h = 2e-7;
+  std::uniform_real_distribution<double> any(-1, 1);
+  for (int trial = 0; trial < 1000; ++trial) {
+    const Surface& body = surface(trial);
+    const SurfacePoint p = random_point();
+    LocalModel model(body, p, 0.0005);
+    const Vec3 x = random_tip(model);
+    model.set_lateral_offset(0.002 * Vec3{any(random_), any(random_), any(random_)});
+    const Vec3 anchor = model.contact_point() + model.lateral_offset();
+    const Element& e = body.element(p.element);
+    Vec3 d{any(random_), any(random_), any(random_)};
+    d = d - dot(d, e.facet_normal) * e.facet_normal;
+    d = (1.0 / norm(d)) * d;
+    const Vec3 rate = trial % 4 < 2 ? Vec3{} : any(random_) * model.deflection(x).tangent;
+    const auto moved = [&](double s) {
+      SurfacePoint q = p;
+      for (std::size_t l = 0; l < 3; ++l) q.natural[l] += s * dot(e.gradient[l], d);
+      LocalModel there(body, q, 0.0005);
+      there.set_lateral_offset(anchor + s * rate - there.contact_point());
+      return energy(there, x);
+    };
+    const double numeric = (8 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12 * h);
+    const double exact = model.energy_slope(model.deflection(x), d, rate);
+    EXPECT_NEAR(numeric, exact, 1e-7 * std::max(1.0, std::abs(exact)));
+  }
+}
+
 TEST_F(LocalModelTest, ForceIsTheGradientOfTheEnergy) {
   const double h = 1e-7;
   for (int trial = 0; trial < 300; ++trial) {

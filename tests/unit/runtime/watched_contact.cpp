@@ -58,9 +58,16 @@ ModelEnergy model_energy(const Library& library, const runtime::ContactObservati
   const Vec3 r = x - model.contact_point;
   const double depth = dot(r, model.normal);
   ModelEnergy energy;
-  energy.lateral_deflection = r - depth * model.normal - model.lateral_offset;
-  const double rho = norm(energy.lateral_deflection);
   const double z = depth - model.offset;
+  Vec3 along = model.normal;  // of a press without lateral deflection
+  for (std::size_t l = 0; l < 3; ++l) {
+    const auto& lean = library.responses[static_cast<std::size_t>(t[l])].lean;
+    const Vec3 whole{static_cast<double>(lean[0]), static_cast<double>(lean[1]),
+                     static_cast<double>(lean[2])};
+    along = along + model.point.natural[l] * (whole - dot(whole, model.normal) * model.normal);
+  }
+  energy.lateral_deflection = r - z * along - model.offset * model.normal - model.lateral_offset;
+  const double rho = norm(energy.lateral_deflection);
   energy.depth = z;
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];

@@ -36,6 +36,8 @@ class PlainModel {
       u_[l] = library.inward[v];
       normal_[l] = runtime::CompiledCurve(library.responses[v].normal);
       lateral_[l] = runtime::CompiledCurve(library.responses[v].lateral);
+      for (std::size_t i = 0; i < 3; ++i)
+        lean_[l][i] = static_cast<double>(library.responses[v].lean[i]);
       if (library.kind == ResponseKind::Decoupled) continue;
       const CouplingCurve& w = library.responses[v].coupling;
       weight_[l] = runtime::CompiledCurve(w.curve, static_cast<double>(w.base));
@@ -60,13 +62,19 @@ class PlainModel {
     return unit(w[0] * u_[0] + w[1] * u_[1] + w[2] * u_[2]);
   }
 
+  Vec3 lean(const Vec3& c) const {
+    const auto w = natural(c);
+    const Vec3 sum = w[0] * lean_[0] + w[1] * lean_[1] + w[2] * lean_[2], n = direction(c);
+    return sum - dot(sum, n) * n;
+  }
+
   Contact at(const Vec3& x, const Vec3& c, double d0) const {
     const auto w = natural(c);
     Contact state;
     state.n = direction(c);
     const Vec3 delta = x - c - d0 * state.n;
     state.z = dot(state.n, delta);
-    const Vec3 lateral = delta - state.z * state.n;
+    const Vec3 lateral = delta - state.z * (state.n + lean(c));
     state.rho = norm(lateral);
     if (state.rho > 0) state.t = (1 / state.rho) * lateral;
     double normal_force = 0;
@@ -78,7 +86,8 @@ class PlainModel {
       state.h += w[l] * weight * lateral_[l].force(state.rho);
       state.energy += w[l] * (normal_[l].energy(state.z) + weight * H);
     }
-    state.force = normal_force * state.n + state.h * state.t;
+    const double against = state.h * dot(state.t, lean(c));
+    state.force = (normal_force - against) * state.n + state.h * state.t;
     return state;
   }
 
@@ -115,7 +124,7 @@ class PlainModel {
     return z > 0 ? weight_[l].force(z) : weight_[l].pieces().front().force;
   }
 
-  std::array<Vec3, 3> x_{}, u_{};
+  std::array<Vec3, 3> x_{}, u_{}, lean_{};
   std::array<runtime::CompiledCurve, 3> normal_, lateral_, weight_;
   Vec3 facet_{};
 };
@@ -136,6 +145,18 @@ inline void couple(Library& library, std::mt19937& engine, double spread) {
     const double s = factor(engine);
     const auto f = [&](double value) { return static_cast<float>(s * value); };
     node.coupling = {f(0.3), {{0.0F, 0.001F, 0.003F, 0.008F}, {0.0F, f(280), f(150), f(70)}}};
+  }
+}
+
+/// Leans up to `most`, each in its own direction across the press.
+inline void lean(Library& library, std::mt19937& engine, double most) {
+  std::uniform_real_distribution<double> u(-1, 1);
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const Vec3& n = library.inward[v];
+    const Vec3 any = unit({u(engine), u(engine), u(engine)});
+    const Vec3 across = most * std::abs(u(engine)) * unit(any - dot(any, n) * n);
+    for (std::size_t i = 0; i < 3; ++i)
+      library.responses[v].lean[i] = static_cast<float>(across[i]);
   }
 }
 
@@ -161,7 +182,7 @@ inline Start random_start(std::mt19937& engine, const PlainModel& model, double 
   const Vec3 n = model.direction(start.c);
   const Vec3 any = unit({u(engine) - 0.5, u(engine) - 0.5, u(engine) - 0.5});
   const Vec3 t = unit(any - dot(any, n) * n);
-  start.x = start.c + (z + start.d0) * n + lateral(start.c, z) * t;
+  start.x = start.c + (z + start.d0) * n + lateral(start.c, z) * t + z * model.lean(start.c);
   return start;
 }
 
@@ -220,7 +241,7 @@ inline SlidingState random_slide(std::mt19937& engine, const PlainModel& model,
   const Vec3 t = unit(tau - (dot(tau, n) / dot(frame.normal, n)) * frame.normal);
   const double g = model.at(state.start.c + z * n, state.start.c, 0).g;
   const double rho = model.slip_limit(state.start.c, z, element.friction * g);
-  state.start.x = state.start.c + (z + d0) * n + rho * t;
+  state.start.x = state.start.c + (z + d0) * n + rho * t + z * model.lean(state.start.c);
   const SlideCell::Natural place{a, b, 1 - a - b};
   state.cell = {{place, place, place}, {azimuth, azimuth}, {z, z}, {z + d0, z + d0}};
   return state;

@@ -33,6 +33,7 @@ TEST(StickBound, NoJacobianIsSteeper) {
   double closest = 0;
   for (int trial = 0; trial < 40; ++trial) {
     Library library = random_triangle(engine, 0.2, 0.5);
+    if (trial % 2 == 1) lean(library, engine, 0.2);
     certify(library, {});
     const PlainModel model(library, 0);
     for (int i = 0; i < 250; ++i) {
@@ -54,6 +55,7 @@ TEST(StickBound, NoCoupledJacobianWithinTheSlipLimitIsSteeper) {
   for (int trial = 0; trial < 40; ++trial) {
     Library library = random_triangle(engine, 0.2, 0.5);
     couple(library, engine, 0.2);
+    if (trial % 2 == 1) lean(library, engine, 0.2);
     CertifySettings settings;
     settings.friction = 0.1 + 0.2 * (trial % 4);
     certify(library, settings);
@@ -111,6 +113,25 @@ TEST(SlipBound, NoCoupledSlidingPathIsSteeper) {
   EXPECT_GT(census.closest, 0.85);
 }
 
+TEST(SlipBound, NoSlidingPathIsSteeperWherePressesLean) {
+  std::mt19937 engine(40);
+  SlideCensus census;
+  for (const double mu : {0.1, 0.3, 0.6}) {
+    for (int trial = 0; trial < 40; ++trial) {
+      Library library = random_triangle(engine, 0.03, 0.05 + 0.1 * (trial % 3));
+      if (trial % 2 == 0) couple(library, engine, 0.1);
+      lean(library, engine, 0.1);
+      CertifySettings settings;
+      settings.friction = mu;
+      certify(library, settings);
+      if (std::isinf(library.certificate.slip)) continue;
+      try_slides(engine, library, mu, census);
+    }
+  }
+  EXPECT_GT(census.slides, 10000);
+  EXPECT_GT(census.closest, 0.75);
+}
+
 TEST(SlipBound, HoldsOnTheTrianglesOfASphere) {
   std::mt19937 engine(41);
   Library library = sphere(0.04, 2);
@@ -158,6 +179,7 @@ TEST(SlidingPassive, NoSlideRaisesTheEnergyWhereItIsCertified) {
   for (int trial = 0; trial < 150; ++trial) {
     const double mu = 0.2 + 0.2 * (trial % 3);
     Library library = random_triangle(engine, 0.02, 0.05 + 0.15 * (trial % 4));
+    if (trial % 5 == 0) lean(library, engine, 0.02);
     CertifySettings settings;
     settings.friction = mu;
     certify(library, settings);

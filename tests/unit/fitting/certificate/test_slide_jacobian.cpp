@@ -15,22 +15,26 @@ namespace {
 
 TEST(SlideJacobian, OfOneStateIsTheLargestForceGradientOfASlide) {
   std::mt19937 engine(45);
-  for (const bool coupled : {false, true}) {
-    int alike = 0;
-    for (int trial = 0; trial < 60; ++trial) {
-      Library library = random_triangle(engine, 0.06, 0.2);
-      if (coupled) couple(library, engine, 0.3);
-      const double mu = 0.1 + 0.2 * (trial % 3);
-      const ContactElement element = contact_element(library, 0, 0.008, mu);
-      const PlainModel model(library, 0);
-      const SlidingState state = random_slide(engine, model, element);
-      const double expected = SlideJacobian(element).bound(state.cell);
-      ASSERT_TRUE(std::isfinite(expected));
-      const double found = steepest_step(engine, model, state.start, mu);
-      EXPECT_LE(found, expected * (1 + 1e-4)) << "coupled " << coupled << ", trial " << trial;
-      alike += found > 0.98 * expected ? 1 : 0;  // the others soften as they slide: M_0 is steeper
+  for (const double most_lean : {0.0, 0.15}) {
+    for (const bool coupled : {false, true}) {
+      int alike = 0;
+      for (int trial = 0; trial < 60; ++trial) {
+        Library library = random_triangle(engine, 0.06, 0.2);
+        if (coupled) couple(library, engine, 0.3);
+        lean(library, engine, most_lean);
+        const double mu = 0.1 + 0.2 * (trial % 3);
+        const ContactElement element = contact_element(library, 0, 0.008, mu);
+        const PlainModel model(library, 0);
+        const SlidingState state = random_slide(engine, model, element);
+        const double expected = SlideJacobian(element).bound(state.cell);
+        ASSERT_TRUE(std::isfinite(expected));
+        const double found = steepest_step(engine, model, state.start, mu);
+        EXPECT_LE(found, expected * (1 + 1e-4)) << "coupled " << coupled << ", trial " << trial;
+        // The others soften as they slide: M_0 is steeper. |A|^2 is no eigenvalue.
+        alike += found > (0.98 - most_lean) * expected ? 1 : 0;
+      }
+      EXPECT_GT(alike, 50) << "lean " << most_lean;
     }
-    EXPECT_GT(alike, 50);
   }
 }
 
@@ -42,6 +46,7 @@ TEST(SlideJacobian, NoStateOfACellIsSteeperThanItsBound) {
   for (int trial = 0; trial < 400; ++trial) {
     Library library = random_triangle(engine, 0.1, 0.3);
     if (trial % 2 == 1) couple(library, engine, 0.1);
+    if (trial % 3 == 0) lean(library, engine, 0.1);
     const ContactElement element = contact_element(library, 0, 0.008, 0.1 + 0.2 * (trial % 3));
     const SlideJacobian jacobian(element);
     SlideCell cell;

@@ -6,6 +6,7 @@
 
 #include "fitting/response/fit.hpp"
 #include "fitting/response/fit_errors.hpp"
+#include "fitting/response/lean.hpp"
 #include "format/error.hpp"
 #include "runtime/response_curve.hpp"
 
@@ -46,7 +47,7 @@ CurvePath normal_path(double reach, double scale) {
   for (int i = 0; i <= 12; ++i) {
     CurveSample sample;
     sample.displacement = reach * i / 12;
-    // Some force across the path, as on an uneven body: only the part along it is the response.
+    // Some force across the path, as on an uneven body: the press leans.
     sample.force = {0.01, 0.02, -scale * normal_law(sample.displacement)};
     path.samples.push_back(sample);
   }
@@ -112,9 +113,11 @@ TEST(Fit, EveryCompleteSiteHasItsResponses) {
     EXPECT_EQ(node.status, ResponseStatus::Fitted);
     const runtime::CompiledCurve normal(node.normal);
     const runtime::CompiledCurve lateral(node.lateral);
+    const LeaningResponse lean(node, library.kind);
     for (int i = 1; i <= 12; ++i) {
       const double d = kDepth * i / 12;
-      EXPECT_NEAR(normal.force(d), normal_law(d), std::max(0.01 * normal_law(d), 0.005));
+      EXPECT_NEAR(normal.force(d) + lean.normal_force(d), normal_law(d),
+                  std::max(0.01 * normal_law(d), 0.005));
     }
     EXPECT_NEAR(lateral.force(0.002), 0.12, 0.005);
     EXPECT_LE(node.lateral_error, 0.005);
@@ -252,7 +255,9 @@ TEST(Fit, FillingAHoleTakesTheMeanOfItsNeighbours) {
   const NodeResponse& node = library.responses[0];
   EXPECT_EQ(node.status, ResponseStatus::Interpolated);
   const runtime::CompiledCurve normal(node.normal);
-  EXPECT_NEAR(normal.force(kDepth), normal_law(kDepth), 0.02 * normal_law(kDepth));
+  const double felt =
+      normal.force(kDepth) + LeaningResponse(node, library.kind).normal_force(kDepth);
+  EXPECT_NEAR(felt, normal_law(kDepth), 0.02 * normal_law(kDepth));
   EXPECT_NEAR(runtime::CompiledCurve(node.lateral).force(kTravel), 60 * kTravel, 0.005);
   // The error is the distance to a neighbour: half of the law.
   EXPECT_NEAR(node.normal_error, 0.5 * normal_law(kDepth), 0.03 * normal_law(kDepth));

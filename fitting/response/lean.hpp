@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: AGPL-3.0-or-later
+// The lean of a response: how a straight press shears it.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "fitting/response/curve_fit.hpp"
+#include "format/curves.hpp"
+#include "format/library.hpp"
+#include "format/vec3.hpp"
+#include "runtime/response_curve.hpp"
+
+namespace palpate::fitting {
+
+/// Longest lean that is fitted. Beyond it a press slips on most tissue, and bounds grow.
+inline constexpr double kMostFittedLean = 0.2;
+/// A shorter lean is none: a force a thousandth off is not felt.
+inline constexpr double kLeastLean = 1e-3;
+
+/// What the lean sigma of a node adds to its response, docs/theory-fitting.md (2d): the lateral
+/// deflection of a straight press is -sigma z, and stores w(z) H(|sigma| z).
+class LeaningResponse {
+ public:
+  LeaningResponse(const NodeResponse& node, ResponseKind kind);
+
+  double energy(double z) const;        ///< w(z) H(|sigma| z), J
+  double normal_force(double z) const;  ///< its derivative by z, N
+  /// That of a straight press across its direction, N: -w(z) h(|sigma| z) sigma/|sigma|.
+  Vec3 transverse_force(double z) const;
+  /// By how much a drag d (m) at the depth z (m) along a unit direction across the press changes
+  /// the force along it, N.
+  double drag_force(double z, double d, const Vec3& direction) const;
+
+ private:
+  double weight(double z) const;  ///< w(z)
+
+  Vec3 lean_{};
+  double length_ = 0;
+  runtime::CompiledCurve lateral_;
+  runtime::CompiledCurve coupling_;  ///< no pieces: w = 1
+};
+
+/// The lean that brings the transverse force of the straight presses of a site closest to their
+/// samples: the least squares of the differences over the normal force, with the lateral response
+/// of the node. Its direction is that of the mean of the transverse forces. 0 where it is shorter
+/// than kLeastLean; cut at kMostFittedLean.
+/// @param inward  press direction of the site, unit. @param node  with its lateral response
+std::array<float, 3> fit_lean(const SiteCurves& site, const Vec3& inward, const NodeResponse& node,
+                              ResponseKind kind);
+
+/// Normal samples less what the lean adds to them.
+std::vector<ForceSample> less_lean(std::vector<ForceSample> samples, const LeaningResponse& lean);
+
+}  // namespace palpate::fitting
