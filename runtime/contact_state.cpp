@@ -161,8 +161,9 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
                                ? settings_.lipschitz_bound  // also at rest
                                : settings_.lipschitz_bound * travelled;
   // In its place at once: a copy would wait for what has just been stored.
+  const bool coupled = model_->coupled();
   FixedContact fixed{before, model_->respond(before, pieces_), travelled, allowance,
-                     exceeds_friction(fixed.response, 0)
+                     !coupled && exceeds_friction(fixed.response, 0)
                          ? slip_to_limit(*model_, before, fixed.response)
                          : LateralSlip{}};
   // Here, as a walk that waits for the roots of its slip leaves the processor time for it; also
@@ -173,11 +174,19 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
   }
   const double energy_before = fixed.response.energy;  // E_{i-1}(x_i)
   seen_.absorbed += energy_before - seen_.energy;
+  if (coupled) hold(fixed);
   Candidate next = choose(x, fixed);
   seen_.status |= next.status;
   if (release(next, x, energy_before)) return;
   if (next.model.contact_point() != model_->contact_point()) seen_.status |= step_status::Sliding;
   commit(next, energy_before);
+}
+
+/// The contact grows or shrinks with the depth; then its slip is known.
+void ContactState::hold(FixedContact& fixed) noexcept {
+  model_->renew_grip(fixed.deflection, fixed.response, pieces_);
+  if (exceeds_friction(fixed.response, 0))
+    fixed.slip = slip_to_limit(*model_, fixed.deflection, fixed.response);
 }
 
 /// Is the lateral force above mu g by more than `tolerated` (N)? Out of normal contact mu g is 0.
@@ -277,6 +286,7 @@ ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fi
   }
   next.model.respond(next.deflection, pieces_, next.response);
   if (settings_.budget == EnergyBudget::Enforced) enforce_budget(next, x, fixed, recovery);
+  next.model.renew_grip(next.deflection, next.response, pieces_);
   if (fractions.slip == 1) enforce_friction(next, fixed.allowance);
   return next;
 }
@@ -336,7 +346,7 @@ LocalModel ContactState::follow(const FixedContact& fixed, double fraction, bool
   const Walk moved = walk(*surface_, model_->point(), direction, fraction * distance, delivered_);
   if (moved.at_border) status |= step_status::AtBorder;
   if (moved.awaiting) status |= step_status::Awaiting;
-  LocalModel next(*surface_, moved.point, model_->offset());
+  LocalModel next = model_->moved_to(moved.point, pieces_);
   if (apart || moved.hindered || fraction != 1) {
     next.set_lateral_offset(path - (next.contact_point() - model_->contact_point()));
     if (fraction == 1 && norm(next.lateral_offset()) <= kRelaxed) next.set_lateral_offset({});
@@ -397,6 +407,7 @@ void ContactState::commit(Candidate& next, double energy_before) noexcept {
   seen_.contact_point = next.model.contact_point();
   seen_.normal = next.model.normal();
   seen_.deflection = next.deflection;
+  seen_.grip = next.model.grip();
   seen_.lateral_displacement = next.model.lateral_displacement(next.deflection);
   seen_.lateral_distance = next.model.lateral_distance(next.deflection);
   seen_.offset = next.model.offset();

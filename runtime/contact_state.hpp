@@ -35,15 +35,16 @@ struct ContactObservation {
   Vec3 contact_point{};
   Vec3 normal{};
   Deflection deflection;
-  Vec3 lateral_displacement{};  ///< q + sigma z, m: of the tip from the anchor, across n
+  Vec3 lateral_displacement{};  ///< q + sigma z + e, m: of the tip from the anchor, across n
   double lateral_distance = 0;  ///< its length, m
   double offset = 0;            ///< d0, m
   Vec3 lateral_offset{};        ///< s, m
-  double energy = 0;            ///< E_i(x_i), J; of a memory also without contact
-  double tank = 0;              ///< J
-  double absorbed = 0;          ///< J
-  Vec3 force{};                 ///< f, of the tool ON the body, N
-  double dissipated = 0;        ///< J, by relaxation since the start
+  Grip grip;
+  double energy = 0;      ///< E_i(x_i), J; of a memory also without contact
+  double tank = 0;        ///< J
+  double absorbed = 0;    ///< J
+  Vec3 force{};           ///< f, of the tool ON the body, N
+  double dissipated = 0;  ///< J, by relaxation since the start
   double relaxed_fraction =
       0;  ///< 1 - psi: fraction of the instantaneous normal force that has relaxed
   Vec3 relaxed_lateral_force{};  ///< M, N: part of the instantaneous lateral force
@@ -147,6 +148,7 @@ class ContactState {
   };
 
   void touch(const Vec3& x, double travelled) noexcept;
+  void hold(FixedContact& fixed) noexcept;
   bool exceeds_friction(const LocalResponse& r, double tolerated) const noexcept;
   bool is_lost(const FixedContact& fixed) const noexcept;
   bool stays_opposite(const FixedContact& fixed, const SlideFractions& fractions) const noexcept;

@@ -68,8 +68,16 @@ std::vector<Case> surface_and_response_cases() {
        "/response/coupling_base", "is missing"},
       // A library of decoupled responses cannot pass for the other kind.
       {"LibraryOfOtherKindOfResponse", kind,
-       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 4, H5T_NATIVE_INT); }),
-       "/response/coupling_offset", "is missing"},
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 4, H5T_NATIVE_INT); }), ":/",
+       "has coupled responses that an earlier palpate has fitted"},
+      {"LibraryOfASchemaThatSaysMore", kind,
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 6, H5T_NATIVE_INT); }), "relaxes",
+       "is missing"},
+      {"LibraryRelaxingThatSaysItIsCoupled", Kind::RelaxingLibrary, edit([](Hdf5Editor& e) {
+         e.set_attribute("/", "schema", 5, H5T_NATIVE_INT);
+         e.set_attribute("/", "coupled", 1, H5T_NATIVE_INT64);
+       }),
+       ":/", "has coupled responses that an earlier palpate has fitted"},
       {"LibraryOfSchemaTwo", kind,
        edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 2, H5T_NATIVE_INT); }), ":/",
        "has schema 2, this palpate reads 1, 3, 4, 5 and 6"},
