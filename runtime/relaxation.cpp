@@ -27,12 +27,11 @@ double Relaxation::sum_of_forces(const Lanes& fractions, double factor) const no
   return relaxed;
 }
 
-/// Infinite where a force is beyond every depth of the response. The lane after those of the
-/// branches is that of the skin.
+/// relaxed: F. Infinite where a force is beyond every depth of the response. The lane after those
+/// of the branches is that of the skin.
 NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes& fractions,
-                              double factor) const noexcept {
+                              double factor, double relaxed) const noexcept {
   double stored = 0, skin = 0;
-  const double relaxed = sum_of_forces(fractions, factor);
   pieces_.keep_for(response);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     Pair force = factor * memory_.pair[p];
@@ -51,7 +50,7 @@ NormalMemory Relaxation::normal_carried_to(const InterpolatedResponse& response,
                                            const Lanes& fractions, double factor) const noexcept {
   if (!remembers()) return kFresh;
   for (int i = 0; i < kReductions; ++i) {
-    const NormalMemory there = sums(response, fractions, factor);
+    const NormalMemory there = sums(response, fractions, factor, sum_of_forces(fractions, factor));
     if (there.locked() <= now_.locked()) return there;
     // R of a power law f ~ z^n falls as factor^((n + 1)/n): this is enough for each.
     factor *= kBelow * now_.locked() / there.locked();
@@ -112,7 +111,7 @@ void Relaxation::pass(double g, double dt) noexcept {
 
 void Relaxation::find_normal() noexcept {
   if (normal_found_ || !response_) return;
-  stored_and_locked_ = sums(*response_, fractions_, 1).stored_and_locked;
+  stored_and_locked_ = sums(*response_, fractions_, 1, now_.relaxed()).stored_and_locked;
   normal_found_ = true;
 }
 
