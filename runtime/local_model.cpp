@@ -45,7 +45,7 @@ LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResp
   const double magnitude = norm(instant);
   LateralSlip slip;
   pieces.keep_for(response_);
-  slip.lateral = pieces.reach(0, Pair{0, magnitude}).deflection[1];
+  slip.lateral = pieces.reach(0, Pair{at.relaxed.instant.force, magnitude}).deflection[1];
   if (!(slip.lateral < kInfinity)) slip.lateral = d.lateral;  // by rounding, at the end of a curve
   if (slip.lateral > 0) slip.tangent = (1 / magnitude) * instant;
   slip.scale = 1;
