@@ -54,18 +54,9 @@ std::vector<Case> relaxation_cases() {
   };
 }
 
-std::vector<Case> surface_and_response_cases() {
+std::vector<Case> schema_cases() {
   const auto kind = Kind::Library;
-  const auto coupled = Kind::CoupledLibrary;
   return {
-      {"LibraryCoupledBaseZero", coupled, poke("/response/coupling_base", 0, 0),
-       "/response/coupling_base[0]", "finite and above 0"},
-      {"LibraryCoupledSlopeNegative", coupled, poke("/response/coupling_slope", 1, -1),
-       "/response/coupling_slope[1]", "finite and not negative"},
-      {"LibraryCoupledWithoutWeights", coupled, remove("/response/coupling_knot"),
-       "/response/coupling_knot", "is missing"},
-      {"LibraryCoupledWithoutBase", coupled, remove("/response/coupling_base"),
-       "/response/coupling_base", "is missing"},
       // A library of decoupled responses cannot pass for the other kind.
       {"LibraryOfOtherKindOfResponse", kind,
        edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 4, H5T_NATIVE_INT); }), ":/",
@@ -79,6 +70,21 @@ std::vector<Case> surface_and_response_cases() {
       {"LibraryOfSchemaTwo", kind,
        edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 2, H5T_NATIVE_INT); }), ":/",
        "has schema 2, this palpate reads 1, 3, 4, 5 and 6"},
+  };
+}
+
+std::vector<Case> surface_and_response_cases() {
+  const auto kind = Kind::Library;
+  const auto coupled = Kind::CoupledLibrary;
+  return {
+      {"LibraryCoupledBaseZero", coupled, poke("/response/coupling_base", 0, 0),
+       "/response/coupling_base[0]", "finite and above 0"},
+      {"LibraryCoupledSlopeNegative", coupled, poke("/response/coupling_slope", 1, -1),
+       "/response/coupling_slope[1]", "finite and not negative"},
+      {"LibraryCoupledWithoutWeights", coupled, remove("/response/coupling_knot"),
+       "/response/coupling_knot", "is missing"},
+      {"LibraryCoupledWithoutBase", coupled, remove("/response/coupling_base"),
+       "/response/coupling_base", "is missing"},
       {"LibraryPositionNaN", kind, poke("/surface/position", 0, kNaN), "/surface/position[0]",
        "nan is not finite"},
       {"LibraryPositionElsewhere", kind, link_elsewhere, "/surface/position",
@@ -157,6 +163,7 @@ std::vector<Case> status_and_certificate_cases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Relaxation, Rejection, ::testing::ValuesIn(relaxation_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(Schemas, Rejection, ::testing::ValuesIn(schema_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(SurfacesAndResponses, Rejection,
                          testing::ValuesIn(surface_and_response_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(StatusAndCertificates, Rejection,
