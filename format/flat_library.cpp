@@ -235,9 +235,7 @@ Library read_flat_library(std::string_view bytes, const std::filesystem::path& f
     set_relaxation_fractions(fractions, library);
   }
   if (reader.has("/response/lean"))
-    set_leans(checks,
-              reader.array<std::array<float, 3>>("/response/lean", library.responses.size()),
-              library.responses);
+    set_leans(checks, reader.array<std::array<float, 3>>("/response/lean"), library.responses);
   library.provenance = get_provenance(reader);
   check_library(checks, library);
   return library;

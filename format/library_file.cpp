@@ -54,9 +54,7 @@ void read_relaxation(const hdf5::Reader& reader, Library& library) {
 }
 
 void read_leans(const hdf5::Reader& reader, std::vector<NodeResponse>& responses) {
-  set_leans(Checks(reader),
-            reader.dataset<std::array<float, 3>>("/response/lean", "1", responses.size()),
-            responses);
+  set_leans(Checks(reader), reader.dataset<std::array<float, 3>>("/response/lean", "1"), responses);
 }
 
 void write_surface(hdf5::Writer& writer, const Library& library) {
@@ -113,7 +111,9 @@ void write_responses(hdf5::Writer& writer, const Library& library) {
   }
   if (library.leans())
     writer.dataset("/response/lean", leans(library.responses),
-                   {"1", "Lateral deflection of a straight press over its depth; 0 at a hole."});
+                   {"1",
+                    "Lateral deflection of a straight press over its depth, of each vertex with a "
+                    "response."});
   if (library.kind == ResponseKind::Decoupled) return;
   writer.dataset("/response/coupling_base", coupling_bases(library.responses),
                  {"1", "w(0) of each vertex; 1 at a hole."});
