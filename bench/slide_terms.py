@@ -39,8 +39,10 @@ class Curve:
 class Library:
     def __init__(self, path):
         with h5py.File(path) as file:
-            if "coupling" in file:
+            if file.attrs.get("coupled") == 1:
                 raise SystemExit(f"{path}: its responses are coupled; this is for decoupled ones")
+            if file.attrs.get("leans") == 1:
+                raise SystemExit(f"{path}: its responses lean; fit them with lean = false for this")
             self.position, self.inward = (file["surface"][k][()].astype(float) for k in ("position", "inward"))
             response = {name: data[()] for name, data in file["response"].items()}
             triangles = file["surface/triangles"][()]

@@ -121,6 +121,7 @@ void FlatReader::read_head() {
   if (!begins_flat(bytes_) || bytes_.size() < sizeof head)
     refuse(file_.string(), "is not a flat library (.plib)", remedy_);
   std::memcpy(&head, bytes_.data(), sizeof head);
+  version_ = head.version;
   if (head.version > kLatestFlatVersion)
     refuse(file_.string(),
            "is of version " + std::to_string(head.version) +

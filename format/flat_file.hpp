@@ -129,6 +129,7 @@ class FlatReader {
   std::vector<std::string> texts(std::string_view name, std::size_t rows = flat::kAnyRows) const;
   std::string text(std::string_view name) const { return texts(name, 1).front(); }
 
+  std::uint32_t version() const noexcept { return version_; }
   const std::filesystem::path& file() const noexcept { return file_; }
   const std::string& remedy() const noexcept { return remedy_; }
   [[noreturn]] void fail(std::string_view name, const std::string& problem) const;
@@ -142,6 +143,7 @@ class FlatReader {
   void read_table(std::uint32_t count);
 
   std::string_view bytes_;  ///< without the seal
+  std::uint32_t version_ = kFlatVersion;
   std::filesystem::path file_;
   std::string remedy_;
   std::vector<flat::Entry> entries_;

@@ -19,14 +19,16 @@
 
 namespace palpate {
 
-/// Schemas of a library of decoupled and of coupled responses. They differ so that a reader that
-/// knows decoupled responses alone refuses coupled ones.
+/// Schemas of a library. They differ so that a reader refuses responses that it does not know.
+/// Decoupled responses without more.
 inline constexpr int kLibrarySchema = 3;
-inline constexpr int kCoupledLibrarySchema = 4;
-/// Responses that relax, decoupled or coupled.
+/// Decoupled responses that relax.
 inline constexpr int kRelaxingLibrarySchema = 5;
-/// Responses that lean, decoupled or coupled, elastic or relaxing.
-inline constexpr int kLeaningLibrarySchema = 6;
+/// Responses that are coupled or lean, elastic or relaxing.
+inline constexpr int kGrippingLibrarySchema = 6;
+/// Coupled responses with a potential of depth and lateral deflection together, which this runtime
+/// does not render; so are those of schema 5 that say that they are coupled. Refused.
+inline constexpr int kFormerCoupledSchema = 4;
 /// Decoupled responses; the bounds of the certificate have other names. Read, never written.
 inline constexpr int kFirstLibrarySchema = 1;
 
@@ -51,7 +53,7 @@ enum class ResponseStatus : std::uint8_t {
 /// How the responses of a node depend on each other.
 enum class ResponseKind : std::uint8_t {
   Decoupled,  ///< E = G(z) + H(rho): f^r does not know the depth [Mahvash & Hayward 2005, eq. 32]
-  Coupled     ///< E = G(z) + w(z) H(rho)
+  Coupled     ///< E = G(z) + w(z_w) H(rho), z_w the depth that the contact holds
 };
 
 /// w(z) = base + the curve, 1: how the lateral response of a node grows with depth. base > 0 and
@@ -174,9 +176,8 @@ struct Library {
 
 /// The schema of its library.h5.
 inline int schema_of(const Library& library) {
-  if (library.leans()) return kLeaningLibrarySchema;
-  if (library.relaxes()) return kRelaxingLibrarySchema;
-  return library.kind == ResponseKind::Coupled ? kCoupledLibrarySchema : kLibrarySchema;
+  if (library.kind == ResponseKind::Coupled || library.leans()) return kGrippingLibrarySchema;
+  return library.relaxes() ? kRelaxingLibrarySchema : kLibrarySchema;
 }
 
 void write_library(const std::filesystem::path& path, const Library& library);  ///< see write_body

@@ -126,14 +126,21 @@ std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses) {
 std::vector<std::array<float, 3>> leans(const std::vector<NodeResponse>& responses) {
   std::vector<std::array<float, 3>> rows;
   rows.reserve(responses.size());
-  for (const NodeResponse& response : responses) rows.push_back(response.lean);
+  for (const NodeResponse& response : responses)
+    if (response.status != ResponseStatus::Hole) rows.push_back(response.lean);
   return rows;
 }
 
 void set_leans(const Checks& checks, const std::vector<std::array<float, 3>>& leans,
                std::vector<NodeResponse>& responses) {
   check_leans(checks, leans);
-  for (std::size_t v = 0; v < leans.size(); ++v) responses[v].lean = leans[v];
+  const auto not_a_hole = [](const NodeResponse& r) { return r.status != ResponseStatus::Hole; };
+  checks.same_size(
+      "/response/lean", leans.size(),
+      static_cast<std::size_t>(std::count_if(responses.begin(), responses.end(), not_a_hole)));
+  auto lean = leans.begin();
+  for (NodeResponse& response : responses)
+    if (not_a_hole(response)) response.lean = *lean++;
 }
 
 std::vector<float> relaxation_fractions(const Library& library) {

@@ -37,7 +37,11 @@ void unflatten(const FlatCurves& flat, CurveMember which, std::vector<NodeRespon
 /// w(0) of each node.
 std::vector<float> coupling_bases(const std::vector<NodeResponse>& responses);
 
-/// The lean of each node.
+/// What is wrong with a file of coupled responses that an earlier palpate has certified.
+inline constexpr const char* kFormerCoupled =
+    "has coupled responses that an earlier palpate has fitted and certified for another model";
+
+/// The lean of each node with a response.
 std::vector<std::array<float, 3>> leans(const std::vector<NodeResponse>& responses);
 /// Checks them, and gives them to the nodes.
 void set_leans(const Checks& checks, const std::vector<std::array<float, 3>>& leans,

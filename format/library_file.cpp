@@ -54,9 +54,7 @@ void read_relaxation(const hdf5::Reader& reader, Library& library) {
 }
 
 void read_leans(const hdf5::Reader& reader, std::vector<NodeResponse>& responses) {
-  set_leans(Checks(reader),
-            reader.dataset<std::array<float, 3>>("/response/lean", "1", responses.size()),
-            responses);
+  set_leans(Checks(reader), reader.dataset<std::array<float, 3>>("/response/lean", "1"), responses);
 }
 
 void write_surface(hdf5::Writer& writer, const Library& library) {
@@ -113,7 +111,9 @@ void write_responses(hdf5::Writer& writer, const Library& library) {
   }
   if (library.leans())
     writer.dataset("/response/lean", leans(library.responses),
-                   {"1", "Lateral deflection of a straight press over its depth; 0 at a hole."});
+                   {"1",
+                    "Lateral deflection of a straight press over its depth, of each vertex with a "
+                    "response."});
   if (library.kind == ResponseKind::Decoupled) return;
   writer.dataset("/response/coupling_base", coupling_bases(library.responses),
                  {"1", "w(0) of each vertex; 1 at a hole."});
@@ -211,9 +211,12 @@ void write_library(const std::filesystem::path& path, const Library& library) {
   const bool coupled = library.kind == ResponseKind::Coupled;
   write_root(writer, kLibraryArtifact, schema_of(library),
              "A response library: surface, responses, certificate.");
-  const bool leans = library.leans();
-  if (library.relaxes() || leans) writer.set_integer("/", "coupled", coupled ? 1 : 0);
-  if (leans) writer.set_integer("/", "relaxes", library.relaxes() ? 1 : 0);
+  const int schema = schema_of(library);
+  if (schema >= kRelaxingLibrarySchema) writer.set_integer("/", "coupled", coupled ? 1 : 0);
+  if (schema == kGrippingLibrarySchema) {
+    writer.set_integer("/", "relaxes", library.relaxes() ? 1 : 0);
+    writer.set_integer("/", "leans", library.leans() ? 1 : 0);
+  }
   writer.set_text("/", "name", library.name);
   writer.set_text("/", "tool_shape", library.tool_shape);
   writer.set_real("/", "tool_radius", library.tool_radius);
@@ -230,14 +233,14 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   hdf5::Reader reader(path, kLibraryRemedy);
   Library library;
   const std::int64_t schema = reader.require_artifact(
-      kLibraryArtifact, {kFirstLibrarySchema, kLibrarySchema, kCoupledLibrarySchema,
-                         kRelaxingLibrarySchema, kLeaningLibrarySchema});
-  const bool leans = schema == kLeaningLibrarySchema;
-  const bool relaxes =
-      leans ? reader.integer("/", "relaxes") == 1 : schema == kRelaxingLibrarySchema;
-  if (schema == kCoupledLibrarySchema ||
-      ((relaxes || leans) && reader.integer("/", "coupled") == 1))
-    library.kind = ResponseKind::Coupled;
+      kLibraryArtifact, {kFirstLibrarySchema, kLibrarySchema, kFormerCoupledSchema,
+                         kRelaxingLibrarySchema, kGrippingLibrarySchema});
+  const bool said = schema == kGrippingLibrarySchema;
+  const auto says = [&](const char* name) { return reader.integer("/", name) == 1; };
+  const bool relaxes = said ? says("relaxes") : schema == kRelaxingLibrarySchema;
+  const bool coupled = schema >= kRelaxingLibrarySchema && says("coupled");
+  if (schema == kFormerCoupledSchema || (coupled && !said)) reader.fail("/", kFormerCoupled);
+  if (coupled) library.kind = ResponseKind::Coupled;
   library.name = reader.text("/", "name");
   library.tool_shape = reader.text("/", "tool_shape");
   library.tool_radius = reader.real("/", "tool_radius");
@@ -250,7 +253,7 @@ Library read_hdf5_library(const std::filesystem::path& path) {
   read_flat(reader, "/response/lateral_", library.responses, lateral_of);
   if (library.kind == ResponseKind::Coupled) read_coupling(reader, library.responses);
   if (relaxes) read_relaxation(reader, library);
-  if (leans) read_leans(reader, library.responses);
+  if (said && says("leans")) read_leans(reader, library.responses);
   library.certificate = read_certificate(reader, certificate_names(schema));
   library.provenance = read_provenance(reader);
   check_library(Checks(reader), library);

@@ -47,6 +47,7 @@ void ContactState::reset() noexcept {
   goal_ = 0;
   suspended_ = false;
   unsettled_ = {};
+  dissipated_ = 0;
   seen_ = {};
 }
 
@@ -149,7 +150,7 @@ bool ContactState::begin_at(const Projection& facing, const Vec3& x) noexcept {
   model.set_offset(depth);
   approaching_.reset();
   seen_.status |= step_status::Activated;
-  Candidate first{model, {}, {}, depth, 0};
+  Candidate first{model, {}, {}, depth};
   respond(first, x);
   commit(first, seen_.energy);
   return true;
@@ -161,23 +162,40 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
                                ? settings_.lipschitz_bound  // also at rest
                                : settings_.lipschitz_bound * travelled;
   // In its place at once: a copy would wait for what has just been stored.
+  const bool coupled = model_->coupled();
   FixedContact fixed{before, model_->respond(before, pieces_), travelled, allowance,
-                     exceeds_friction(fixed.response, 0)
+                     !coupled && exceeds_friction(fixed.response, 0)
                          ? slip_to_limit(*model_, before, fixed.response)
                          : LateralSlip{}};
-  // Here, as a walk that waits for the roots of its slip leaves the processor time for it; also
-  // where they are known, so that a force does not depend on who has asked for energies.
-  if (memory_.relaxes()) {
-    if (unsettled_.any) settle();
-    model_->add_stored(memory_.now(), fixed.response);
-  }
-  const double energy_before = fixed.response.energy;  // E_{i-1}(x_i)
-  seen_.absorbed += energy_before - seen_.energy;
-  Candidate next = choose(x, fixed);
+  const double let_go = coupled ? hold(fixed) : 0;
+  // What is stored is found in two parts, as the slip and the walk wait for their roots and leave
+  // the processor time for it.
+  const bool settles = unsettled_.any && needs_stored(fixed);
+  if (settles) memory_.find_normal();
+  const SlideFractions whole{.recovery = kRecoveryFraction * travelled};
+  std::uint32_t status = 0;
+  Candidate next{slide(x, fixed, whole, status), {}, {}, goal_};
+  next.status = status;
+  const double energy_last = settles          ? settle(fixed.response)  // E_{i-1}(x_{i-1})
+                             : unsettled_.any ? unsettled_.energy
+                                              : seen_.energy;
+  const double energy_before = fixed.response.energy + let_go;  // E_{i-1}(x_i)
+  seen_.absorbed += energy_before - energy_last;
+  choose(next, x, fixed, whole);
   seen_.status |= next.status;
   if (release(next, x, energy_before)) return;
   if (next.model.contact_point() != model_->contact_point()) seen_.status |= step_status::Sliding;
   commit(next, energy_before);
+}
+
+/// The contact grows or shrinks with the depth; then its slip is known. @return what its energy
+/// falls by, J
+double ContactState::hold(FixedContact& fixed) noexcept {
+  const double energy = fixed.response.energy;
+  model_->renew_grip(fixed.deflection, fixed.response, pieces_);
+  if (exceeds_friction(fixed.response, 0))
+    fixed.slip = slip_to_limit(*model_, fixed.deflection, fixed.response);
+  return energy - fixed.response.energy;
 }
 
 /// Is the lateral force above mu g by more than `tolerated` (N)? Out of normal contact mu g is 0.
@@ -209,18 +227,18 @@ bool ContactState::may_change_to(const Candidate& c, double allowed) const noexc
   return dot(change, change) <= allowed * allowed;
 }
 
-/// The slide and the return of the offset as far as the force may change in this step.
-ContactState::Candidate ContactState::choose(const Vec3& x,
-                                             const FixedContact& fixed) const noexcept {
+/// The slide and the return of the offset as far as the force may change in this step. next: the
+/// model after the whole slide.
+void ContactState::choose(Candidate& next, const Vec3& x, const FixedContact& fixed,
+                          const SlideFractions& whole) const noexcept {
   const double allowed = fixed.allowance + kRounding;
   const auto within = [&](const Candidate& c) { return may_change_to(c, allowed); };
-  Candidate next = move(x, fixed, {.recovery = kRecoveryFraction * fixed.travelled});
-  if (within(next)) return next;
+  finish(next, x, fixed, whole);
+  if (within(next)) return;
   next = move(x, fixed, {});
   const std::uint32_t obstacles = next.status & (step_status::AtBorder | step_status::Awaiting);
   if (!within(next)) next = rate_limited(x, fixed, next, allowed);
   next.status |= obstacles | step_status::ForceLimited;
-  return next;
 }
 
 /// The largest part of a slide that the limit on the change of force allows. With c fixed the tool
@@ -258,6 +276,13 @@ ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fi
   std::uint32_t status = 0;
   Candidate next{slide(x, fixed, fractions, status), {}, {}, goal_};
   next.status = status;
+  finish(next, x, fixed, fractions);
+  return next;
+}
+
+/// The rest of a motion of which the model after the slide is known.
+void ContactState::finish(Candidate& next, const Vec3& x, const FixedContact& fixed,
+                          const SlideFractions& fractions) const noexcept {
   next.deflection = next.model.deflection(x);
   next.is_opposite = stays_opposite(fixed, fractions);
   set_memory_at_point(next.model, next.is_opposite ? Shear::Lost : Shear::Kept);
@@ -277,8 +302,8 @@ ContactState::Candidate ContactState::move(const Vec3& x, const FixedContact& fi
   }
   next.model.respond(next.deflection, pieces_, next.response);
   if (settings_.budget == EnergyBudget::Enforced) enforce_budget(next, x, fixed, recovery);
+  next.model.renew_grip(next.deflection, next.response, pieces_);
   if (fractions.slip == 1) enforce_friction(next, fixed.allowance);
-  return next;
 }
 
 /// Where no offset keeps a slide in the budget c stays fixed and the tool slips over it: with c
@@ -336,7 +361,7 @@ LocalModel ContactState::follow(const FixedContact& fixed, double fraction, bool
   const Walk moved = walk(*surface_, model_->point(), direction, fraction * distance, delivered_);
   if (moved.at_border) status |= step_status::AtBorder;
   if (moved.awaiting) status |= step_status::Awaiting;
-  LocalModel next(*surface_, moved.point, model_->offset());
+  LocalModel next = model_->moved_to(moved.point, pieces_);
   if (apart || moved.hindered || fraction != 1) {
     next.set_lateral_offset(path - (next.contact_point() - model_->contact_point()));
     if (fraction == 1 && norm(next.lateral_offset()) <= kRelaxed) next.set_lateral_offset({});
@@ -397,11 +422,13 @@ void ContactState::commit(Candidate& next, double energy_before) noexcept {
   seen_.contact_point = next.model.contact_point();
   seen_.normal = next.model.normal();
   seen_.deflection = next.deflection;
+  seen_.grip = next.model.grip();
   seen_.lateral_displacement = next.model.lateral_displacement(next.deflection);
   seen_.lateral_distance = next.model.lateral_distance(next.deflection);
   seen_.offset = next.model.offset();
   seen_.lateral_offset = next.model.lateral_offset();
   seen_.energy = next.response.energy;
+  unsettled_.energy = next.response.energy;
   seen_.force = next.response.force;
   seen_.tank = tank_.level();
 }
@@ -428,7 +455,10 @@ void ContactState::relax(Candidate& at) noexcept {
   const double normal_before = response.friction_normal_force;
   const double held = std::max(settings_.friction * normal_before, response.lateral_force);  // N
   at.model.replace_memory(memory_.now(), at.deflection, response);
-  unsettled_ = {true, response.relaxed.scale == 0, energy_before - response.energy};
+  unsettled_.any = true;
+  unsettled_.known = false;
+  unsettled_.lags = response.relaxed.scale == 0;
+  unsettled_.falls_by += energy_before - response.energy;
   seen_.relaxed_fraction = 1 - response.relaxed.scale;
   seen_.relaxed_lateral_force = model.memory().lateral.relaxed();
   if (at.deflection.depth > 0 && response.relaxed.scale == 0) seen_.status |= step_status::SkinLags;
@@ -438,15 +468,35 @@ void ContactState::relax(Candidate& at) noexcept {
                 pieces_);
 }
 
-/// No force needs the energies of what has relaxed before the next step judges a slide by them.
-void ContactState::settle() const noexcept {
+/// May a step change more than the tip, so that E changes by more than without what is stored?
+/// Where c, s and d0 stay, and the skin does not lag, K is the same before and after, and cancels.
+bool ContactState::needs_stored(const FixedContact& fixed) const noexcept {
+  return unsettled_.lags || is_lost(fixed) || fixed.slip.distance > 0 ||
+         model_->lateral_offset() != Vec3{} || model_->offset() > goal_;
+}
+
+/// What the last step has left stored. No force needs it before a step judges a slide by it.
+void ContactState::find_stored() const noexcept {
+  const double stored = memory_.find_stored(unsettled_.lags);
+  seen_.energy = unsettled_.energy + stored;
+  seen_.dissipated = dissipated_ + (unsettled_.falls_by - stored);
+  unsettled_.known = true;
+}
+
+/// The same for a step that needs it: for the model, its response and the account. @return the
+/// energy at the end of the last step, J
+double ContactState::settle(LocalResponse& response) noexcept {
+  settle();
+  model_->add_stored(memory_.now(), response);
+  return seen_.energy;
+}
+
+/// The energies of the last steps are complete.
+void ContactState::settle() noexcept {
   memory_.settle();
-  const TissueMemory now = memory_.now();
-  const double stored =
-      (unsettled_.lags ? now.normal.locked() : now.normal.stored()) + now.lateral.stored();
-  seen_.energy += stored;
-  seen_.dissipated += unsettled_.falls_by - stored;
-  unsettled_.any = false;
+  if (!unsettled_.known) find_stored();
+  dissipated_ = seen_.dissipated;
+  unsettled_ = {};
 }
 
 /// The same without a tool: the skin moves back.
@@ -455,7 +505,8 @@ void ContactState::relax_freely() noexcept {
   memory_.pass(0, dt_);
   memory_.settle();
   seen_.energy = memory_.locked();
-  seen_.dissipated += energy_before - seen_.energy;
+  dissipated_ += energy_before - seen_.energy;
+  seen_.dissipated = dissipated_;
   dt_ = 0;
 }
 

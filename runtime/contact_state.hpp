@@ -35,15 +35,16 @@ struct ContactObservation {
   Vec3 contact_point{};
   Vec3 normal{};
   Deflection deflection;
-  Vec3 lateral_displacement{};  ///< q + sigma z, m: of the tip from the anchor, across n
+  Vec3 lateral_displacement{};  ///< q + sigma z + e, m: of the tip from the anchor, across n
   double lateral_distance = 0;  ///< its length, m
   double offset = 0;            ///< d0, m
   Vec3 lateral_offset{};        ///< s, m
-  double energy = 0;            ///< E_i(x_i), J; of a memory also without contact
-  double tank = 0;              ///< J
-  double absorbed = 0;          ///< J
-  Vec3 force{};                 ///< f, of the tool ON the body, N
-  double dissipated = 0;        ///< J, by relaxation since the start
+  Grip grip;
+  double energy = 0;      ///< E_i(x_i), J; of a memory also without contact
+  double tank = 0;        ///< J
+  double absorbed = 0;    ///< J
+  Vec3 force{};           ///< f, of the tool ON the body, N
+  double dissipated = 0;  ///< J, by relaxation since the start
   double relaxed_fraction =
       0;  ///< 1 - psi: fraction of the instantaneous normal force that has relaxed
   Vec3 relaxed_lateral_force{};  ///< M, N: part of the instantaneous lateral force
@@ -72,7 +73,8 @@ struct ContactObservation {
 ///
 /// Tissue that relaxes (theory-runtime, "Relaxation") does so at the end of a step, at the tip
 /// where it then is: the force changes by that as well, also where the tip rests. The energies that
-/// it then stores are found by the first of observation() and the next step.
+/// it then stores are found by the first of observation() and the next step that needs them: one in
+/// which c, s or d0 may change, or which begins or ends where the skin lags.
 ///
 /// step() is noexcept, allocation-free and bounded. One object belongs to one thread at a time; the
 /// surface and the tree may be shared.
@@ -101,7 +103,7 @@ class ContactState {
   void reset() noexcept;
 
   const ContactObservation& observation() const noexcept {
-    if (unsettled_.any) settle();
+    if (unsettled_.any && !unsettled_.known) find_stored();
     return seen_;
   }
   /// The same in less time, but for energy and dissipated, which do not yet count what the tissue
@@ -139,21 +141,30 @@ class ContactState {
     LateralSlip slip;      ///< from beyond the slip limit
   };
 
-  /// What is left to find of the energies of a step: those that the memories store after its time.
+  /// What is left to find of the energies of the last steps: those that the memories store after
+  /// their times. As long as c, s and d0 stay, what is stored before a step is what was stored
+  /// after the one before, and only the last is missing. No force depends on whether somebody has
+  /// asked.
   struct Unsettled {
     bool any = false;
+    bool known = false;   ///< seen_ has them, as somebody has asked
     bool lags = false;    ///< the skin behind the tool, so that R is stored instead of K
     double falls_by = 0;  ///< J, energy by relaxing, but for what the memories store afterwards
+    double energy = 0;    ///< J, at the end of the last step, without what the memories store
   };
 
   void touch(const Vec3& x, double travelled) noexcept;
+  double hold(FixedContact& fixed) noexcept;
   bool exceeds_friction(const LocalResponse& r, double tolerated) const noexcept;
   bool is_lost(const FixedContact& fixed) const noexcept;
   bool stays_opposite(const FixedContact& fixed, const SlideFractions& fractions) const noexcept;
   bool may_change_to(const Candidate& c, double allowed) const noexcept;
   LateralSlip slip_to_limit(const LocalModel& model, const Deflection& at,
                             const LocalResponse& response) const noexcept;
-  Candidate choose(const Vec3& x, const FixedContact& fixed) const noexcept;
+  void choose(Candidate& next, const Vec3& x, const FixedContact& fixed,
+              const SlideFractions& whole) const noexcept;
+  void finish(Candidate& next, const Vec3& x, const FixedContact& fixed,
+              const SlideFractions& fractions) const noexcept;
   Candidate rate_limited(const Vec3& x, const FixedContact& fixed, const Candidate& whole,
                          double allowed) const noexcept;
   Candidate move(const Vec3& x, const FixedContact& fixed,
@@ -173,7 +184,10 @@ class ContactState {
   void commit(Candidate& next, double energy_before) noexcept;
   void set_memory_at_point(LocalModel& model, Shear shear) const noexcept;
   void relax(Candidate& at) noexcept;
-  void settle() const noexcept;
+  bool needs_stored(const FixedContact& fixed) const noexcept;
+  void find_stored() const noexcept;
+  void settle() noexcept;
+  double settle(LocalResponse& response) noexcept;
   void relax_freely() noexcept;
   void look_ahead(const Deflection& at) noexcept;
   void free_contact() noexcept;
@@ -190,6 +204,7 @@ class ContactState {
   bool suspended_ = false;
   mutable Relaxation memory_;
   mutable Unsettled unsettled_;
+  double dissipated_ = 0;            ///< J, but for what is unsettled
   Vec3 remembering_point_{};         ///< where the tissue of the memory is, m
   double dt_ = 0;                    ///< s, of this step
   double goal_ = 0;                  ///< offset the contact should return to, m

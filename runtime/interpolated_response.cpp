@@ -22,6 +22,24 @@ Found find(const CurveView& curve, double d) noexcept {
   return {&curve.piece(k), curve.start(k), k + 1 < curve.size() ? curve.start(k + 1) : kInfinity};
 }
 
+/// Where curves have no knot.
+struct Range {
+  double from = 0, to = kInfinity;
+};
+/// The pieces of one of the curves of three nodes.
+template <CurveView (NodeCurves::*kCurve)() const noexcept>
+Range find_pieces(const std::array<const NodeCurves*, 3>& nodes, double d,
+                  std::array<const PackedPiece*, 3>& pieces) noexcept {
+  Range range;
+  for (std::size_t l = 0; l < 3; ++l) {
+    const Found found = find((nodes[l]->*kCurve)(), d);
+    pieces[l] = found.piece;
+    range.from = std::max(range.from, found.from);
+    range.to = std::min(range.to, found.to);
+  }
+  return range;
+}
+
 using LateralKnots = KnotMerge<&NodeCurves::lateral>;
 
 }  // namespace
@@ -53,29 +71,22 @@ double InterpolatedResponse::lateral_inverse_below(double force, double from, co
 }
 
 void InterpolatedResponse::find_depth(double z, PiecesInUse& pieces) const noexcept {
-  double from = 0, to = kInfinity;
-  for (std::size_t l = 0; l < 3; ++l) {
-    for (const bool coupling : {false, true}) {
-      const Found found = find(coupling ? nodes_[l]->coupling() : nodes_[l]->normal(), z);
-      (coupling ? pieces.coupling : pieces.normal)[l] = found.piece;
-      from = std::max(from, found.from);
-      to = std::min(to, found.to);
-    }
-  }
-  pieces.depth_from = from > 0 ? from : -kInfinity;  // out of contact all are on their first piece
-  pieces.depth_to = to;
+  const Range range = find_pieces<&NodeCurves::normal>(nodes_, z, pieces.normal);
+  // Out of contact all are on their first piece.
+  pieces.depth_from = range.from > 0 ? range.from : -kInfinity;
+  pieces.depth_to = range.to;
 }
 
 void InterpolatedResponse::find_lateral(double rho, PiecesInUse& pieces) const noexcept {
-  double from = 0, to = kInfinity;
-  for (std::size_t l = 0; l < 3; ++l) {
-    const Found found = find(nodes_[l]->lateral(), rho);
-    pieces.lateral[l] = found.piece;
-    from = std::max(from, found.from);
-    to = std::min(to, found.to);
-  }
-  pieces.lateral_from = from;
-  pieces.lateral_to = to;
+  const Range range = find_pieces<&NodeCurves::lateral>(nodes_, rho, pieces.lateral);
+  pieces.lateral_from = range.from;
+  pieces.lateral_to = range.to;
+}
+
+void InterpolatedResponse::find_coupling(double z, PiecesInUse& pieces) const noexcept {
+  const Range range = find_pieces<&NodeCurves::coupling>(nodes_, z, pieces.coupling);
+  pieces.coupling_from = range.from > 0 ? range.from : -kInfinity;
+  pieces.coupling_to = range.to;
 }
 
 }  // namespace palpate::runtime

@@ -18,8 +18,9 @@ namespace palpate::runtime {
 struct PiecesInUse {
   std::array<const NodeCurves*, 3> nodes{};  ///< owners of the pieces; null: none
   std::array<const PackedPiece*, 3> normal{}, lateral{}, coupling{};
-  double depth_from = 0, depth_to = 0;      ///< m, of the normal responses and of w
-  double lateral_from = 0, lateral_to = 0;  ///< m
+  double depth_from = 0, depth_to = 0;        ///< m, of the normal responses
+  double lateral_from = 0, lateral_to = 0;    ///< m
+  double coupling_from = 0, coupling_to = 0;  ///< m, of w
 
   bool are_of(const std::array<const NodeCurves*, 3>& these) const noexcept {
     return nodes[0] == these[0] && nodes[1] == these[1] && nodes[2] == these[2];
@@ -28,12 +29,10 @@ struct PiecesInUse {
 
 /// The responses at a point of a triangle, given by its natural coordinates n_l >= 0, sum 1:
 ///   g(z) = sum n_l f_l^z(z),   h(rho) = sum n_l f_l^r(rho)     [Mahvash & Hayward 2005, eq. 29]
-/// Coupled responses are interpolated as potentials,
-///   E(z, rho) = sum n_l (G_l(z) + w_l(z) H_l(rho)),
-/// which is the same with w_l = 1. At a depth their lateral response is sum (n_l w_l) f_l^r(rho):
-/// the weights n_l w_l, whose sum is not 1, replace the natural coordinates. A view of three
-/// nodes: cheap to copy, valid while the nodes live. Evaluation is noexcept, allocation-free and
-/// bounded by the number of knots.
+/// The lateral response of coupled responses is sum (n_l w_l) f_l^r(rho): the weights n_l w_l at
+/// the depth that the contact holds, whose sum is not 1, replace the natural coordinates. A view of
+/// three nodes: cheap to copy, valid while the nodes live. Evaluation is noexcept, allocation-free
+/// and bounded by the number of knots.
 class InterpolatedResponse {
  public:
   InterpolatedResponse(const std::array<const NodeCurves*, 3>& nodes, const Vec3& natural) noexcept
@@ -61,49 +60,28 @@ class InterpolatedResponse {
     return weights;
   }
 
-  /// The part of coupled responses that does not depend on the lateral deflection.
-  struct AtDepth {
-    double friction_normal_force = 0;  ///< g, N
-    double energy = 0;                 ///< sum n_l G_l, J
-    Vec3 weights{};                    ///< n_l w_l
-    Vec3 rates{};                      ///< n_l w_l', 1/m
-  };
-  AtDepth at_depth(double z, PiecesInUse& pieces) const noexcept {
-    look_up_depth(z, pieces);
-    AtDepth at;
-    for (std::size_t l = 0; l < 3; ++l) {
-      const CurveValue g = z > 0 ? pieces.normal[l]->evaluate(z) : CurveValue{};
-      at.friction_normal_force += natural_[l] * g.force;
-      at.energy += natural_[l] * g.energy;
-      const CurveValue w = pieces.coupling[l]->evaluate(std::max(z, 0.0));
-      at.weights[l] = natural_[l] * w.force;
-      at.rates[l] = z > 0 ? natural_[l] * w.slope : 0.0;
-    }
-    return at;
+  /// The same, of coupled responses.
+  Vec3 lateral_weights(double z, PiecesInUse& pieces) const noexcept {
+    if (!pieces.are_of(nodes_)) pieces = {nodes_};
+    if (!(pieces.coupling_from <= z && z < pieces.coupling_to)) find_coupling(z, pieces);
+    Vec3 weights;
+    for (std::size_t l = 0; l < 3; ++l)
+      weights[l] = natural_[l] * pieces.coupling[l]->evaluate(std::max(z, 0.0)).force;
+    return weights;
   }
-
-  /// Forces and energy, the gradient of one potential.
-  struct Value {
-    double normal = 0;   ///< dE/dz = g + sum n_l w_l' H_l, N
-    double lateral = 0;  ///< dE/drho = sum n_l w_l h_l, N
-    double energy = 0;   ///< J
-  };
-  /// For coupled responses.
-  Value coupled_at(const AtDepth& at, double rho, PiecesInUse& pieces) const noexcept {
-    look_up_lateral(rho, pieces);
-    Value value{at.friction_normal_force, 0, at.energy};
-    for (std::size_t l = 0; l < 3; ++l) {
-      const CurveValue h = pieces.lateral[l]->evaluate(rho);
-      value.normal += at.rates[l] * h.energy;
-      value.lateral += at.weights[l] * h.force;
-      value.energy += at.weights[l] * h.energy;
-    }
-    return value;
-  }
-  /// For decoupled responses: g and h apart.
+  /// Normal and lateral response, the lateral one with weights of its own.
   struct Decoupled {
     CurveValue normal, lateral;
   };
+  Decoupled weighted_at(double z, double rho, const Vec3& weights,
+                        PiecesInUse& pieces) const noexcept {
+    look_up_depth(z, pieces);
+    look_up_lateral(rho, pieces);
+    return {z > 0 ? mix(pieces.normal, z) : CurveValue{},
+            mix(weights, pieces.lateral[0]->evaluate(rho), pieces.lateral[1]->evaluate(rho),
+                pieces.lateral[2]->evaluate(rho))};
+  }
+  /// For decoupled responses.
   Decoupled decoupled_at(double z, double rho, PiecesInUse& pieces) const noexcept {
     look_up_depth(z, pieces);
     look_up_lateral(rho, pieces);
@@ -137,7 +115,10 @@ class InterpolatedResponse {
 
  private:
   CurveValue mix(const CurveValue& a, const CurveValue& b, const CurveValue& c) const noexcept {
-    const auto& n = natural_;
+    return mix(natural_, a, b, c);
+  }
+  static CurveValue mix(const Vec3& n, const CurveValue& a, const CurveValue& b,
+                        const CurveValue& c) noexcept {
     return {n[0] * a.force + n[1] * b.force + n[2] * c.force,
             n[0] * a.slope + n[1] * b.slope + n[2] * c.slope,
             n[0] * a.energy + n[1] * b.energy + n[2] * c.energy};
@@ -157,6 +138,7 @@ class InterpolatedResponse {
   }
   void find_depth(double z, PiecesInUse& pieces) const noexcept;
   void find_lateral(double rho, PiecesInUse& pieces) const noexcept;
+  void find_coupling(double z, PiecesInUse& pieces) const noexcept;
 
   std::array<const NodeCurves*, 3> nodes_;
   Vec3 natural_;

@@ -41,14 +41,14 @@ void KeptPieces<kPairs>::keep(std::size_t lane, const Knots& knots) noexcept {
 template <std::size_t kPairs>
 void KeptPieces<kPairs>::find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept {
   nodes_ = nodes;
-  for (std::size_t lane = 0; lane < lanes_; ++lane)
+  for (std::size_t lane = 0; lane < 2 * pairs(); ++lane)
     with_knots(lane, pieces_[lane / 2].from[lane % 2],
                [&](const auto& knots) { keep(lane, knots); });
 }
 
 /// To the pieces that reach forces.
 template <std::size_t kPairs>
-void KeptPieces<kPairs>::walk(std::size_t p, Pair force) noexcept {
+void KeptPieces<kPairs>::walk(std::size_t p, const Pair& force) noexcept {
   const Mask kept = pieces_[p].reaches(force);
   for (std::size_t i = 0; i < 2; ++i) {
     if (kept[i] != 0) continue;
@@ -62,13 +62,34 @@ void KeptPieces<kPairs>::walk(std::size_t p, Pair force) noexcept {
 
 /// The pieces that contain deflections.
 template <std::size_t kPairs>
-void KeptPieces<kPairs>::find(std::size_t p, Pair deflection) noexcept {
+void KeptPieces<kPairs>::find(std::size_t p, const Pair& deflection) noexcept {
   const Mask kept = pieces_[p].contains(deflection);
   for (std::size_t i = 0; i < 2; ++i) {
     if (kept[i] != 0) continue;
     with_knots(2 * p + i, deflection[i], [&](const auto& knots) { keep(2 * p + i, knots); });
   }
   merge(pieces_[p]);
+}
+
+/// Also where a force is not above 0, or a piece is not the one that reaches it.
+template <std::size_t kPairs>
+ReachedForces KeptPieces<kPairs>::reach_elsewhere(std::size_t p, Pair force) noexcept {
+  PiecePair& on = pieces_[p];
+  const Start& q = on.merged;
+  if (!all(on.reaches(force))) walk(p, force);
+  const Pair rise = larger(force - q.force, Pair{});
+  const Pair root = roots(larger(on.square(rise), Pair{}));
+  const Pair rising = 2.0 * rise / larger(q.slope + root, Pair{});  // infinite on a plateau
+  const Pair x = smaller(rise > Pair{} ? rising : Pair{}, on.to - on.from);
+  return q.after(x, on.from + x).where(force > Pair{});
+}
+
+/// Also where a deflection is not above 0, or a piece does not contain it.
+template <std::size_t kPairs>
+ReachedForces KeptPieces<kPairs>::evaluate_elsewhere(std::size_t p, Pair deflection) noexcept {
+  PiecePair& on = pieces_[p];
+  if (!all(on.contains(deflection))) find(p, deflection);
+  return on.merged.after(deflection - on.from, deflection).where(deflection > Pair{});
 }
 
 template class KeptPieces<Lanes::kPairs>;

@@ -19,6 +19,10 @@ struct ReachedForces {
   Pair force{};       ///< N
   Pair energy{};      ///< J
 
+  /// All 0 elsewhere.
+  ReachedForces where(const Mask& presses) const noexcept {
+    return {presses ? deflection : Pair{}, presses ? force : Pair{}, presses ? energy : Pair{}};
+  }
   /// F d - E, J: the conjugate energies of these forces; infinity where they are not reached.
   Pair conjugate(const Pair& of_forces) const noexcept {
     return deflection < both(kInfinity) ? of_forces * deflection - energy : both(kInfinity);
@@ -58,19 +62,20 @@ class KeptPieces {
   /// all 0 for a force <= 0.
   ReachedForces reach(std::size_t p, const Pair& force) noexcept {
     PiecePair& on = pieces_[p];
-    if (!all(on.reaches(force))) walk(p, force);
     const Start& q = on.merged;
-    const Pair rise = larger(force - q.force, Pair{});
-    const Pair root = roots(larger(q.slope * q.slope + 4.0 * q.curvature * rise, Pair{}));
-    const Pair rising = 2.0 * rise / larger(q.slope + root, Pair{});  // infinite on a plateau
-    const Pair x = smaller(rise > Pair{} ? rising : Pair{}, on.to - on.from);
-    return q.after(x, on.from + x, force > Pair{});
+    if (const Pair rise = force - q.force, square = on.square(rise);
+        all(less(Pair{}, rise) & at_most(force, on.end_force) & less(Pair{}, square))) {
+      const Pair x = smaller(2.0 * rise / (q.slope + roots(square)), on.to - on.from);
+      return q.after(x, on.from + x);
+    }
+    return reach_elsewhere(p, force);
   }
   /// Force and energy at the deflections of pair p; all 0 for one <= 0.
   ReachedForces evaluate(std::size_t p, const Pair& deflection) noexcept {
     PiecePair& on = pieces_[p];
-    if (!all(on.contains(deflection))) find(p, deflection);
-    return on.merged.after(deflection - on.from, deflection, deflection > Pair{});
+    if (all(less(Pair{}, deflection) & at_most(on.from, deflection) & less(deflection, on.to)))
+      return on.merged.after(deflection - on.from, deflection);
+    return evaluate_elsewhere(p, deflection);
   }
 
   std::size_t pairs() const noexcept { return kPairs == 1 ? 1 : pairs_of(lanes_); }
@@ -81,10 +86,9 @@ class KeptPieces {
     Pair force{}, slope{}, curvature{}, energy{};
 
     /// At deflections d, lengths x after the starts.
-    ReachedForces after(const Pair& x, const Pair& d, const Mask& presses) const noexcept {
+    ReachedForces after(const Pair& x, const Pair& d) const noexcept {
       const Pair work = x * (force + x * (slope / 2.0 + x * (curvature * kThird)));
-      return {presses ? d : Pair{}, presses ? force + x * (slope + x * curvature) : Pair{},
-              presses ? energy + work : Pair{}};
+      return {d, force + x * (slope + x * curvature), energy + work};
     }
   };
   struct PiecePair {
@@ -93,6 +97,10 @@ class KeptPieces {
     Start merged;
     std::array<Start, 3> nodes;
 
+    /// Square of the slope where the force has risen.
+    Pair square(const Pair& rise) const noexcept {
+      return merged.slope * merged.slope + 4.0 * merged.curvature * rise;
+    }
     /// Do the pieces contain the answers of an inverse? The first that reach the forces do.
     Mask reaches(const Pair& force) const noexcept {
       const Mask begins_below = less(merged.force, force) | at_most(from, Pair{});
@@ -119,8 +127,10 @@ class KeptPieces {
   }
 
   void find_all(const std::array<const NodeCurves*, 3>& nodes) noexcept;
-  void walk(std::size_t p, Pair force) noexcept;
-  void find(std::size_t p, Pair deflection) noexcept;
+  ReachedForces reach_elsewhere(std::size_t p, Pair force) noexcept;
+  ReachedForces evaluate_elsewhere(std::size_t p, Pair deflection) noexcept;
+  void walk(std::size_t p, const Pair& force) noexcept;
+  void find(std::size_t p, const Pair& deflection) noexcept;
   template <typename Act>
   void with_knots(std::size_t lane, double at, const Act& act) noexcept;
   template <typename Knots>

@@ -37,12 +37,15 @@ LateralMemory LateralBranches::move(const LateralPlace& place, double factor) co
   const Vec3 axis = (1 / (1 + dot(normal_, to))) * (normal_ + to);
   LateralSums sums;
   Pair stored{};
+  const Branches& branches = branches_[here_];
+  Branches& moved = branches_[1 - here_];
   pieces_.keep_for(*place.response);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
-    const BranchPair& from = branches_[p];
-    BranchPair& there = moved_[p];
+    const BranchPair& from = branches[p];
+    BranchPair& there = moved[p];
     const Pair along = from.force[0] * to[0] + from.force[1] * to[1] + from.force[2] * to[2];
     there.at = pieces_.evaluate(p, factor * from.at.deflection);
+    there.longest = there.at.deflection;
     const Pair scale = from.at.force > Pair{} ? there.at.force / from.at.force : Pair{};
     for (std::size_t k = 0; k < 3; ++k) there.force[k] = scale * (from.force[k] - along * axis[k]);
     sums.add(place.fractions->pair[p], there.force);
@@ -64,7 +67,7 @@ void LateralBranches::carry(const LateralPlace& place, const LateralMemory& carr
   now_.stored_and_carried = Pair{carried.stored(), 1};
   if (!carried.any) return;
   if (carried.slide != slides_) move(place, carried.carried());
-  for (std::size_t p = 0; p < pieces_.pairs(); ++p) branches_[p] = moved_[p];
+  here_ = 1 - here_;
   normal_ = place.normal;
 }
 
@@ -72,37 +75,40 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
                            const Lanes& decay) noexcept {
   if (!now_.any) {
     if (!(lateral > 0)) return;
-    branches_ = {};
+    branches_[here_] = {};
   }
   normal_ = place.normal;
   LateralSums sums;
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
-    BranchPair& branch = branches_[p];
+    BranchPair& branch = branches_[here_][p];
     Pair(&force)[3] = branch.force;
     for (std::size_t k = 0; k < 3; ++k)
       force[k] = target[k] + decay.pair[p] * (force[k] - target[k]);
     // The force is between two that were reached, so that its deflection is no longer than theirs.
-    branch.at.deflection = larger(branch.at.deflection, both(lateral));
+    branch.longest = larger(branch.longest, both(lateral));
     sums.add(place.fractions->pair[p], force);
   }
   now_ = sums.memory(0, 1, 0);
 }
 
-void LateralBranches::settle(const LateralPlace& place) noexcept {
-  if (!now_.any) return;
+double LateralBranches::find_stored(const LateralPlace& place) noexcept {
+  if (!now_.any) return 0;
   Pair stored{};
   pieces_.keep_for(*place.response);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
-    BranchPair& branch = branches_[p];
+    BranchPair& branch = branches_[here_][p];
     const Pair(&force)[3] = branch.force;
     const Pair magnitude = roots(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
-    const Pair longest = branch.at.deflection;
     branch.at = pieces_.reach(p, magnitude);
-    if (!all(at_most(branch.at.deflection, longest)))
-      branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, longest));
+    if (!all(at_most(branch.at.deflection, branch.longest)))
+      branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, branch.longest));
     stored += place.fractions->pair[p] * branch.at.conjugate(branch.at.force);
   }
-  now_.stored_and_carried = Pair{stored[0] + stored[1], 1};
+  return stored[0] + stored[1];
+}
+
+void LateralBranches::settle(double stored) noexcept {
+  now_.stored_and_carried = Pair{stored, 1};
 }
 
 }  // namespace palpate::runtime

@@ -38,12 +38,13 @@ class LateralBranches {
   /// Brings them there, where carried_to() has found `carried`; none: they are forgotten.
   void carry(const LateralPlace& place, const LateralMemory& carried) noexcept;
   /// Time passes while the instantaneous force is `target` (N) at a deflection of `lateral` (m):
-  /// M_i := target + (M_i - target) decay_i. V falls. settle() finds the deflections and K, which
-  /// is 0 until then.
+  /// M_i := target + (M_i - target) decay_i. V falls. K is 0 until settle().
   void pass(const LateralPlace& place, const Vec3& target, double lateral,
             const Lanes& decay) noexcept;
-  /// Before anything but now() where time has passed.
-  void settle(const LateralPlace& place) noexcept;
+  /// Finds the deflections, and returns K, J, after a time has passed. now() stays as it is.
+  double find_stored(const LateralPlace& place) noexcept;
+  /// Gives now() this K, which has been found. Before a slide where time has passed.
+  void settle(double stored) noexcept;
   void forget() noexcept { now_ = {}; }
 
  private:
@@ -51,16 +52,18 @@ class LateralBranches {
   struct BranchPair {
     ReachedForces at;  ///< |p_i|, m, with |M_i|, N, and the energies there
     Pair force[3]{};   ///< M_i, N; p_i has its direction
+    Pair longest{};    ///< m, that |p_i| may have: no force is beyond those that it is between
   };
   using Branches = std::array<BranchPair, pairs_of(kMaxRelaxationTimes)>;
   bool stays_tangential(const Vec3& normal) const noexcept;
   LateralMemory move(const LateralPlace& place, double factor) const noexcept;
 
-  Branches branches_{};
-  Vec3 normal_{};  ///< to which they are tangential
+  /// Where the memories lie, and at the end of the slide that was considered last.
+  mutable std::array<Branches, 2> branches_{};
+  std::size_t here_ = 0;  ///< which of the two are where they lie
+  Vec3 normal_{};         ///< to which they are tangential
   LateralMemory now_;
   mutable BranchPieces pieces_;       ///< results do not depend on them
-  mutable Branches moved_;            ///< at the end of the slide that was considered last
   mutable std::uint64_t slides_ = 0;  ///< how many were
 };
 

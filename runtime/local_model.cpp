@@ -21,8 +21,6 @@ void LocalModel::replace_memory(const TissueMemory& memory, const Deflection& d,
   at.friction_normal_force = at.relaxed.force;
   at.force = at.force + change * n_;
   at.energy += at.relaxed.energy - before.energy;
-  at.at_depth.friction_normal_force = at.relaxed.force;
-  at.at_depth.energy = at.relaxed.energy;
   if (memory.lateral.any || memory_->lateral.any)
     relax_laterally(memory.lateral, memory_->lateral, d, at);
   set_memory(memory);
@@ -47,7 +45,7 @@ LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResp
   const double magnitude = norm(instant);
   LateralSlip slip;
   pieces.keep_for(response_);
-  slip.lateral = pieces.reach(0, Pair{0, magnitude}).deflection[1];
+  slip.lateral = pieces.reach(0, Pair{at.relaxed.instant.force, magnitude}).deflection[1];
   if (!(slip.lateral < kInfinity)) slip.lateral = d.lateral;  // by rounding, at the end of a curve
   if (slip.lateral > 0) slip.tangent = (1 / magnitude) * instant;
   slip.scale = 1;
@@ -61,16 +59,60 @@ void LocalModel::slip(const LateralSlip& by, Deflection& d, LocalResponse& at,
   set_lateral_offset(lateral_offset_ + by.part(1));
   d.lateral = by.lateral;
   d.tangent = by.tangent;
-  if (coupled()) {
-    respond_at_depth(d, pieces.elastic, at);
-  } else {
-    respond(d, pieces, at);
+  respond(d, pieces, at);
+}
+
+LocalModel LocalModel::moved_to(const SurfacePoint& point, ToolPieces& pieces) const noexcept {
+  LocalModel there = *this;
+  there.point_ = point;
+  there.c_ = surface_->position(point);
+  there.n_ = surface_->normal(point);
+  there.lean_ = surface_->lean(point, there.n_);
+  there.response_ = surface_->response(point);
+  there.lateral_offset_ = {};
+  there.memory_.reset();
+  if (!coupled()) return there;
+  there.grip_.micro_slip = grip_.micro_slip - dot(grip_.micro_slip, there.n_) * there.n_;
+  there.weights_ = there.response_.lateral_weights(grip_.depth, pieces.elastic);
+  return there;
+}
+
+void LocalModel::renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept {
+  const double depth = std::max(d.depth, 0.0);
+  if (!coupled() || depth == grip_.depth) return;
+  const Vec3 before = weights_;
+  weights_ = response_.lateral_weights(depth, pieces.elastic);
+  if (!(d.lateral > 0)) {
+    grip_.depth = depth;
+    return;
   }
+  Deflection renewed = d;
+  if (depth > grip_.depth) {
+    renewed.lateral = lateral_below(d, at.lateral_force, pieces);
+    if (!(renewed.lateral > 0)) renewed.tangent = {};
+  }
+  LocalResponse response;
+  respond(renewed, pieces, response);
+  if (response.energy > at.energy) {
+    weights_ = before;
+    return;
+  }
+  grip_.depth = depth;
+  add_micro_slip((d.lateral - renewed.lateral) * d.tangent);
+  d = renewed;
+  at = response;
+}
+
+/// Adds to e, and to s what is too much.
+void LocalModel::add_micro_slip(const Vec3& by) noexcept {
+  const Vec3 whole = grip_.micro_slip + by;
+  const double length = norm(whole), most = kMostMicroSlip * surface_->tool_radius();
+  grip_.micro_slip = length > most ? (most / length) * whole : whole;
+  if (length > most) set_lateral_offset(lateral_offset_ + (whole - grip_.micro_slip));
 }
 
 double LocalModel::slip_limit(const Deflection& d, double friction) const noexcept {
-  return response_.lateral_inverse(friction * response_.normal(d.depth).force,
-                                   response_.lateral_weights(d.depth));
+  return response_.lateral_inverse(friction * response_.normal(d.depth).force, lateral_weights());
 }
 
 double LocalModel::energy_slope(const Deflection& at, const Vec3& d,
@@ -86,7 +128,7 @@ double LocalModel::energy_slope(const Deflection& at, const Vec3& d,
     const Vec3 lean = surface_->lean(e, l);
     lean_change = lean_change + rate * lean;
     lean_along_normal += point_.natural[l] * dot(lean, n_);
-    const double w = node.coupled() ? node.coupling().evaluate_from_start(at.depth).force : 1.0;
+    const double w = node.coupled() ? node.coupling().evaluate_from_start(grip_.depth).force : 1.0;
     change_of_curves += rate * (node.normal().evaluate(at.depth).energy +
                                 w * node.lateral().evaluate(at.lateral).energy);
   }

@@ -31,14 +31,20 @@ struct ToolPieces {
 
 /// Force and energy of a local model at one tip position.
 struct LocalResponse {
-  double normal_force = 0;   ///< dE/dz at fixed q, N; g(z) of decoupled responses
+  double normal_force = 0;   ///< dE/dz at fixed q, N: g(z)
   double lateral_force = 0;  ///< |dE/dq|, N; h(rho) of decoupled responses without memory
   double energy = 0;  ///< E = sum n_l (G_l(z) + H_l(rho)), J [Mahvash & Hayward 2005, eq. 32]
   Vec3 force{};       ///< f = g n + h (t - (t . sigma) n), of the tool ON the body, N [eq. 28]
   double friction_normal_force = 0;  ///< g(z), or psi g(z), N: friction is limited to mu times it
-  InterpolatedResponse::AtDepth at_depth{};  ///< for coupled responses only
-  RelaxedResponse relaxed{};                 ///< for responses that relax only
-  double instant_lateral_force = 0;          ///< h(rho), N, of decoupled responses that relax only
+  RelaxedResponse relaxed{};         ///< for responses that relax only
+  double instant_lateral_force = 0;  ///< h(rho), N, of decoupled responses that relax only
+};
+
+/// How the contact holds the tissue, of coupled responses: its width is that at a depth, and what
+/// has come into contact since holds tissue that was sheared by then.
+struct Grip {
+  double depth = 0;   ///< z_w >= 0, m: the lateral response is w(z_w) h
+  Vec3 micro_slip{};  ///< e, m, across n: lateral deflection without force
 };
 
 /// Slip with c fixed that brings the lateral force down to a limit.
@@ -59,13 +65,12 @@ struct LateralSlip {
 /// those of Mahvash & Hayward 2005, eqs. 26-32, for s = sigma = 0.
 /// s is slip that c has not followed; a = c + s, the anchor, is the position of c without that.
 /// sigma is how a straight press shears the tissue: beside a support its force leans.
-/// Coupled responses: E = sum n_l (G_l(z) + w_l(z) H_l(rho)), and again f = grad E. The
-/// friction-limited normal force is g(z), which the normal force is never below. The Jacobian of
-/// decoupled responses is A^T (g' n n^T + h' t t^T + (h/rho) b b^T) A with b = n x t and
-/// A = I - sigma n^T: its norm does not exceed the largest stored slope times |A|^2.
-/// Responses that relax have a memory, which is fixed as well: V of (R18) replaces G, and psi g
-/// replaces g in every equation above; H - M . q + K replaces H, and grad H - M replaces h t (R23).
-/// noexcept, allocation-free.
+/// Coupled responses: E = sum n_l (G_l(z) + w_l(z_w) H_l(rho)) with q less e, and again f = grad E:
+/// the grip is fixed as well, and renew_grip() changes it. The Jacobian is A^T (g' n n^T + h' t t^T
+/// + (h/rho) b b^T) A with b = n x t and A = I - sigma n^T: its norm does not exceed the largest
+/// stored slope (times w) times |A|^2. Responses that relax have a memory, which is fixed as well:
+/// V of (R18) replaces G, and psi g replaces g in every equation above; H - M . q + K replaces H,
+/// and grad H - M replaces h t (R23). noexcept, allocation-free.
 class LocalModel {
  public:
   LocalModel(const Surface& surface, const SurfacePoint& point, double offset) noexcept
@@ -75,24 +80,30 @@ class LocalModel {
         n_(surface.normal(point)),
         lean_(surface.lean(point, n_)),
         response_(surface.response(point)),
-        offset_(offset) {}
+        offset_(offset) {
+    if (coupled()) weights_ = response_.lateral_weights(0);
+  }
+  /// The same contact at another point, with its offset and its grip. s is zero, memory none.
+  LocalModel moved_to(const SurfacePoint& point, ToolPieces& pieces) const noexcept;
 
   Deflection deflection(const Vec3& x) const noexcept {
     Deflection d;
     const Vec3 r = x - c_;
     d.geometric = dot(n_, r);
     d.depth = d.geometric - offset_;
-    const Vec3 lateral = r - d.geometric * n_ - lateral_offset_ - d.depth * lean_;
+    const Vec3 lateral =
+        r - d.geometric * n_ - lateral_offset_ - d.depth * lean_ - grip_.micro_slip;
     d.lateral = norm(lateral);
     if (d.lateral > 0) d.tangent = (1.0 / d.lateral) * lateral;
     return d;
   }
-  /// q + sigma z, m: how far the tip is from the anchor, across n.
+  /// q + sigma z + e, m: how far the tip is from the anchor, across n.
   Vec3 lateral_displacement(const Deflection& d) const noexcept {
-    return d.lateral * d.tangent + d.depth * lean_;
+    return d.lateral * d.tangent + d.depth * lean_ + grip_.micro_slip;
   }
   double lateral_distance(const Deflection& d) const noexcept {  ///< its length
-    return lean_ == Vec3{} ? d.lateral : norm(lateral_displacement(d));
+    const bool is_q = lean_ == Vec3{} && grip_.micro_slip == Vec3{};
+    return is_q ? d.lateral : norm(lateral_displacement(d));
   }
   /// pieces: of the last evaluation; on return of this one.
   LocalResponse respond(const Deflection& d, ToolPieces& pieces) const noexcept {
@@ -125,11 +136,8 @@ class LocalModel {
 
   /// The lateral deflection at which the lateral force is `limit` (N), where the response is known
   /// and exceeds it, m.
-  double lateral_below(const Deflection& d, const LocalResponse& at, double limit,
-                       ToolPieces& pieces) const noexcept {
-    return response_.lateral_inverse_below(
-        limit, d.lateral, response_.coupled() ? at.at_depth.weights : response_.natural(),
-        pieces.elastic);
+  double lateral_below(const Deflection& d, double limit, ToolPieces& pieces) const noexcept {
+    return response_.lateral_inverse_below(limit, d.lateral, lateral_weights(), pieces.elastic);
   }
 
   /// The slip with c fixed after which the lateral force is `limit` (N), where the response is
@@ -138,7 +146,7 @@ class LocalModel {
   LateralSlip slip_within(const Deflection& d, const LocalResponse& at, double limit,
                           ToolPieces& pieces) const noexcept {
     if (memory_ && memory_->lateral.any) return relaxed_slip_within(d, at, limit, pieces.relaxing);
-    const double rho = lateral_below(d, at, limit, pieces);
+    const double rho = lateral_below(d, limit, pieces);
     return {d.lateral - rho, d.lateral - rho, d.tangent, rho, rho > 0 ? d.tangent : Vec3{}};
   }
 
@@ -146,16 +154,29 @@ class LocalModel {
   /// are updated.
   void slip(const LateralSlip& by, Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept;
 
+  /// Takes w at the present depth, where responses are coupled; E does not rise. As the contact
+  /// shrinks, so does the lateral force. As it grows, the lateral force stays: what comes into
+  /// contact holds tissue as it is [Mindlin & Deresiewicz 1953], and e takes the rest of q, up to
+  /// kMostMicroSlip of the tool's radius; beyond it s does. Where E would rise, as a lateral
+  /// response that stiffens sharply lets it, the grip stays. The deflection and the response are
+  /// updated.
+  void renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept;
+  const Grip& grip() const noexcept { return grip_; }
+  void set_grip(const Grip& grip) noexcept {
+    grip_ = {grip.depth, grip.micro_slip - dot(grip.micro_slip, n_) * n_};
+    if (coupled()) weights_ = response_.lateral_weights(grip.depth);
+  }
+  static constexpr double kMostMicroSlip = 0.1;
+
   /// Rate of change of E when c moves by unit length along d in its element and the anchor c + s by
   /// a', while x stays, J/m:
   ///   n' = P (sum u_l grad n_l . d)/|sum n_l u_l|, P the projector normal to n,
   ///   sigma' = sum sigma_l (grad n_l . d), across n, less the part that turns with n,
-  ///   z' = (q + s + sigma z) . n' - n . d,
+  ///   z' = (q + s + e + sigma z) . n' - n . d,
   ///   dE/ds = sum (grad n_l . d)(G_l + H_l) + (g - h (t . sigma)) z'
   ///           - h (t . a' + (z + d0)(t . n') + z (t . sigma')),
-  /// with H_l times w_l(z), and dE/dz, dE/drho for g, h, where responses are coupled. In an
-  /// ordinary slide the anchor moves with c, a' = d; where c catches up with the anchor, a' = 0.
-  /// Without memory.
+  /// with H_l times w_l(z_w) where responses are coupled. In an ordinary slide the anchor moves
+  /// with c, a' = d; where c catches up with the anchor, a' = 0. Without memory.
   double energy_slope(const Deflection& at, const Vec3& d, const Vec3& anchor_rate) const noexcept;
   double energy_slope(const Deflection& at, const Vec3& d) const noexcept {
     return energy_slope(at, d, d);
@@ -186,7 +207,6 @@ class LocalModel {
     memory_->lateral.stored_and_carried = memory.lateral.stored_and_carried;
     const double stored = at.relaxed.scale > 0 ? memory.normal.stored() : memory.normal.locked();
     at.relaxed.energy += stored;
-    at.at_depth.energy += stored;
     at.energy += stored + memory.lateral.stored();
   }
   /// The response of another memory, from that of the present one at the same deflection.
@@ -199,15 +219,19 @@ class LocalModel {
   }
 
  private:
+  const Vec3& lateral_weights() const noexcept {
+    return coupled() ? weights_ : response_.natural();
+  }
   void response(const Deflection& d, PiecesInUse& pieces, LocalResponse& r) const noexcept {
-    if (response_.coupled()) {
-      r.at_depth = response_.at_depth(d.depth, pieces);
-      if (memory_) relax_at_depth(d.depth, r);
-      respond_at_depth(d, pieces, r);
-      return;
+    const InterpolatedResponse::Decoupled at =
+        coupled() ? response_.weighted_at(d.depth, d.lateral, weights_, pieces)
+                  : response_.decoupled_at(d.depth, d.lateral, pieces);
+    if (memory_) {
+      r.relaxed = relaxed_response(memory_->normal, {d.depth, at.normal.force, at.normal.energy});
+      take({r.relaxed.force, at.lateral.force, r.relaxed.energy + at.lateral.energy}, d, r);
+    } else {
+      take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
     }
-    const InterpolatedResponse::Decoupled at = response_.decoupled_at(d.depth, d.lateral, pieces);
-    take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
     r.friction_normal_force = r.normal_force;
   }
   /// The same of decoupled responses that relax.
@@ -220,8 +244,11 @@ class LocalModel {
     if (memory_->lateral.any) relax_laterally(memory_->lateral, {}, d, r);
     r.friction_normal_force = r.normal_force;
   }
-  void take(const InterpolatedResponse::Value& value, const Deflection& d,
-            LocalResponse& r) const noexcept {
+  /// Forces along n and t, N, and energy, J.
+  struct Value {
+    double normal = 0, lateral = 0, energy = 0;
+  };
+  void take(const Value& value, const Deflection& d, LocalResponse& r) const noexcept {
     r.normal_force = value.normal;
     r.lateral_force = value.lateral;
     r.energy = value.energy;
@@ -229,22 +256,11 @@ class LocalModel {
   }
   /// A^T h t: the part of the force of a lateral force in the response coordinates, N.
   Vec3 leaning(const Vec3& lateral) const noexcept { return lateral - dot(lateral, lean_) * n_; }
+  void add_micro_slip(const Vec3& by) noexcept;
   void relax_laterally(const LateralMemory& memory, const LateralMemory& before,
                        const Deflection& d, LocalResponse& r) const noexcept;
   LateralSlip relaxed_slip_within(const Deflection& d, const LocalResponse& at, double limit,
                                   TipPieces& pieces) const noexcept;
-  void relax_at_depth(double depth, LocalResponse& r) const noexcept {
-    r.relaxed = relaxed_response(memory_->normal,
-                                 {depth, r.at_depth.friction_normal_force, r.at_depth.energy});
-    r.at_depth.friction_normal_force = r.relaxed.force;
-    r.at_depth.energy = r.relaxed.energy;
-  }
-  /// The part of coupled responses that depends on the lateral deflection.
-  void respond_at_depth(const Deflection& d, PiecesInUse& pieces, LocalResponse& r) const noexcept {
-    take(response_.coupled_at(r.at_depth, d.lateral, pieces), d, r);
-    r.friction_normal_force = r.at_depth.friction_normal_force;
-  }
-
   /// A copy that an optional makes only where there is one: a step copies its model several times,
   /// and elastic tissue shall not pay for a memory.
   struct CopiedIfAny : TissueMemory {
@@ -265,6 +281,8 @@ class LocalModel {
   InterpolatedResponse response_;
   double offset_;
   Vec3 lateral_offset_{};
+  Grip grip_;
+  Vec3 weights_{};                     ///< n_l w_l(z_w), where responses are coupled
   std::optional<CopiedIfAny> memory_;  ///< none: the responses do not relax
 };
 

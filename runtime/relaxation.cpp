@@ -27,17 +27,16 @@ double Relaxation::sum_of_forces(const Lanes& fractions, double factor) const no
   return relaxed;
 }
 
-/// Infinite where a force is beyond every depth of the response. The lane after those of the
-/// branches is that of the skin.
+/// relaxed: F. Infinite where a force is beyond every depth of the response. The lane after those
+/// of the branches is that of the skin.
 NormalMemory Relaxation::sums(const InterpolatedResponse& response, const Lanes& fractions,
-                              double factor) const noexcept {
+                              double factor, double relaxed) const noexcept {
   double stored = 0, skin = 0;
-  const double relaxed = sum_of_forces(fractions, factor);
   pieces_.keep_for(response);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     Pair force = factor * memory_.pair[p];
     const bool with_skin = p == times_ / 2;
-    if (with_skin) force = times_ % 2 == 1 ? Pair{force[0], relaxed} : Pair{relaxed, 0};
+    if (with_skin) force = times_ % 2 == 1 ? Pair{force[0], relaxed} : both(relaxed);
     const Pair conjugate = pieces_.reach(p, kReachable * force).conjugate(force);
     const Pair& fraction = fractions.pair[p];
     stored = plus(stored, fraction > Pair{} ? fraction * conjugate : Pair{});
@@ -51,7 +50,7 @@ NormalMemory Relaxation::normal_carried_to(const InterpolatedResponse& response,
                                            const Lanes& fractions, double factor) const noexcept {
   if (!remembers()) return kFresh;
   for (int i = 0; i < kReductions; ++i) {
-    const NormalMemory there = sums(response, fractions, factor);
+    const NormalMemory there = sums(response, fractions, factor, sum_of_forces(fractions, factor));
     if (there.locked() <= now_.locked()) return there;
     // R of a power law f ~ z^n falls as factor^((n + 1)/n): this is enough for each.
     factor *= kBelow * now_.locked() / there.locked();
@@ -72,8 +71,10 @@ TissueMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedRes
   }
   const Lanes& fractions = surface_->relaxes_alike() ? fractions_ : there_;
   const double factor = std::exp(-distance / surface_->tool_radius());
-  TissueMemory there{normal_carried_to(response, fractions, factor), {}};
+  // The lateral memory first, as the force waits longest for it.
+  TissueMemory there;
   if (shears) there.lateral = lateral_.carried_to({&response, &fractions, normal}, factor);
+  there.normal = normal_carried_to(response, fractions, factor);
   return there;
 }
 
@@ -94,8 +95,8 @@ void Relaxation::keep_decay(double dt) noexcept {
   if (dt == decay_dt_) return;
   decay_dt_ = dt;
   const auto& times = surface_->relaxation_times();
-  decay_.set(times_, 1);
   for (std::size_t i = 0; i < times_; ++i) decay_.set(i, std::exp(-dt / times[i]));
+  decay_.set(times_, decay_[times_ - 1]);
 }
 
 void Relaxation::pass(double g, double dt) noexcept {
@@ -105,12 +106,32 @@ void Relaxation::pass(double g, double dt) noexcept {
   for (std::size_t p = 0; p < pairs_of(times_); ++p)
     memory_.pair[p] = target + (memory_.pair[p] - target) * decay_.pair[p];
   now_ = {Pair{sum_of_forces(fractions_, 1), 1}, Pair{}};
+  normal_found_ = lateral_found_ = false;
+}
+
+void Relaxation::find_normal() noexcept {
+  if (normal_found_ || !response_) return;
+  stored_and_locked_ = sums(*response_, fractions_, 1, now_.relaxed()).stored_and_locked;
+  normal_found_ = true;
+}
+
+void Relaxation::find() noexcept {
+  find_normal();
+  if (lateral_found_ || !response_) return;
+  lateral_stored_ = lateral_.find_stored({&*response_, &fractions_, normal_});
+  lateral_found_ = true;
+}
+
+double Relaxation::find_stored(bool lags) noexcept {
+  find();
+  return stored_and_locked_[lags ? 1 : 0] + lateral_stored_;
 }
 
 void Relaxation::settle() noexcept {
   if (!response_) return;
-  now_ = sums(*response_, fractions_, 1);
-  lateral_.settle({&*response_, &fractions_, normal_});
+  find();
+  now_.stored_and_locked = stored_and_locked_;
+  lateral_.settle(lateral_stored_);
 }
 
 void Relaxation::pass_lateral(const Vec3& force, double lateral) noexcept {
@@ -120,6 +141,7 @@ void Relaxation::pass_lateral(const Vec3& force, double lateral) noexcept {
 void Relaxation::forget() noexcept {
   memory_ = {};
   now_ = {};
+  normal_found_ = lateral_found_ = false;
   lateral_.forget();
 }
 

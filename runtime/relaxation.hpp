@@ -51,13 +51,18 @@ class Relaxation {
              const TissueMemory& carried) noexcept;
   /// A time dt (s) while the instantaneous normal force at the tool is g (N):
   /// F_i := g* + (F_i - g*) exp(-dt/tau_i), where g* is g, or F where the skin lags behind the
-  /// tool. The energy at the tool falls. Forces are known at once; settle() finds the energies,
+  /// tool. The energy at the tool falls. Forces are known at once; settle() adds the energies,
   /// which are 0 until then.
   void pass(double g, double dt) noexcept;
   /// The same time for the lateral response, whose instantaneous force at the deflection `lateral`
   /// (m) is `force` (N): M_i := force + (M_i - force) exp(-dt/tau_i).
   void pass_lateral(const Vec3& force, double lateral) noexcept;
-  /// K and R of both memories after a time has passed. Before anything but now() and remembers().
+  /// What both memories store, J: R of the normal response where the skin lags, K otherwise, and K
+  /// of the lateral response. now() stays as it is.
+  double find_stored(bool lags) noexcept;
+  /// The part of find_stored() for the normal response, for when the processor has time for it.
+  void find_normal() noexcept;
+  /// Gives now() the energies of both memories. After a time has passed, before a slide.
   void settle() noexcept;
   /// The lateral memories are zero.
   void forget_lateral() noexcept { lateral_.forget(); }
@@ -68,9 +73,10 @@ class Relaxation {
   NormalMemory normal_carried_to(const InterpolatedResponse& response, const Lanes& fractions,
                                  double factor) const noexcept;
   double sum_of_forces(const Lanes& fractions, double factor) const noexcept;
-  NormalMemory sums(const InterpolatedResponse& response, const Lanes& fractions,
-                    double factor) const noexcept;
+  NormalMemory sums(const InterpolatedResponse& response, const Lanes& fractions, double factor,
+                    double relaxed) const noexcept;
   void keep_decay(double dt) noexcept;
+  void find() noexcept;
 
   const Surface* surface_;
   std::size_t times_;                             ///< how many relaxation times
@@ -78,10 +84,13 @@ class Relaxation {
   Vec3 normal_{};                                 ///< the same
   Lanes memory_{};                                ///< F_i, N
   LateralBranches lateral_;
-  Lanes fractions_{};     ///< g_i at the contact point
-  Lanes decay_;           ///< exp(-dt/tau_i); 1 for lanes that are not in use
+  Lanes fractions_{};  ///< g_i at the contact point
+  Lanes decay_;  ///< exp(-dt/tau_i); that of the last for the next lane, which takes no other path
   double decay_dt_ = -1;  ///< s, the dt of decay_
   NormalMemory now_;
+  bool normal_found_ = false, lateral_found_ = false;  ///< the next two, after the last time
+  Pair stored_and_locked_{};                           ///< K and R of the normal response, J
+  double lateral_stored_ = 0;                          ///< K of the lateral response, J
   mutable SurfacePoint considered_;  ///< the end of the last slide that was considered
   mutable Lanes there_;              ///< g_i there
   mutable BranchPieces pieces_;  ///< at the depths of F_i and of F; results do not depend on them

@@ -69,7 +69,8 @@ class Challenger {
     const double deepest = library_.certificate.depth;
     const double z = std::max(1e-3, attempt.depth) * deepest;
     const double d0 = attempt.offset * (deepest - z);
-    const LocalModel model(surface_, point, d0);
+    LocalModel model(surface_, point, d0);
+    model.set_grip({z, {}});
     const Vec3& n = model.normal();
     runtime::Deflection pressed;
     pressed.geometric = z + d0;
@@ -77,13 +78,13 @@ class Challenger {
     const double limit = model.slip_limit(pressed, library_.certificate.friction);
     if (!std::isfinite(limit)) return std::nullopt;
     const double rho = mode == Mode::Sticking ? attempt.lateral * limit : limit;
-    const Vec3 x = model.contact_point() + (z + d0) * n + rho * sideways(n, attempt.azimuth);
+    const Vec3 x = model.contact_point() + (z + d0) * n + z * model.lean() +
+                   rho * sideways(n, attempt.azimuth);
     const double step = step_length();
     const Vec3 dx = (step / norm(attempt.move)) * attempt.move;
     const Vec3 before = model.respond(model.deflection(x)).force;
-    if (mode == Mode::Sticking)
-      return norm(model.respond(model.deflection(x + dx)).force - before) / step;
-    const auto after = slide(x + dx, point, d0);
+    if (mode == Mode::Sticking) return norm(force_at(model, x + dx) - before) / step;
+    const auto after = slide(x + dx, point, d0, model.grip());
     if (!after) return std::nullopt;
     return norm(*after - before) / step;
   }
@@ -104,12 +105,24 @@ class Challenger {
     return std::cos(2 * M_PI * turns) * first + std::sin(2 * M_PI * turns) * second;
   }
 
+  /// Force with the tip at x, with c fixed.
+  static Vec3 force_at(LocalModel model, const Vec3& x) {
+    runtime::ToolPieces pieces;
+    runtime::Deflection d = model.deflection(x);
+    runtime::LocalResponse response = model.respond(d, pieces);
+    model.renew_grip(d, response, pieces);
+    return response.force;
+  }
+
   /// Force after the contact point has moved and come to rest inside its triangle.
-  std::optional<Vec3> slide(const Vec3& x, SurfacePoint point, double d0) const {
+  std::optional<Vec3> slide(const Vec3& x, SurfacePoint point, double d0,
+                            const runtime::Grip& grip) const {
     const Vec3 start = surface_.position(point);
     const std::int32_t triangle = point.element;
     for (int i = 0; i < kSlideSteps; ++i) {
-      const LocalModel model(surface_, point, d0);
+      LocalModel model(surface_, point, d0);
+      model.set_grip(
+          {std::min(grip.depth, std::max(model.deflection(x).depth, 0.0)), grip.micro_slip});
       const runtime::Deflection d = model.deflection(x);
       const double excess = d.lateral - model.slip_limit(d, library_.certificate.friction);
       if (!(excess > kRestOverStep * step_length())) {

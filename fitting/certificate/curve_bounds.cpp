@@ -178,18 +178,6 @@ double CurveTriple::first_piece_ratio(double high) const {
   return above == 0 ? 0 : above / std::max(0.0, least);
 }
 
-double CurveTriple::force_over_slope(const Range& range) const {
-  double largest = 0;
-  for (const auto& curve : curves_) {
-    const double least = slope_range(curve, range).low;
-    double ratio = least > 0 ? curve.force(range.high) / least : kInfinity;
-    // f <= d f' while the slope has not decreased, also where both are zero.
-    if (curvature_range(curve, {0, range.high}).low >= 0) ratio = std::min(ratio, range.high);
-    largest = std::max(largest, ratio);
-  }
-  return largest;
-}
-
 double CurveTriple::force_gradient(const Range& range) const {
   const std::vector<double> ends = cells(range, 4);
   double largest = gradient_norm(gradient_, curves_[0].force(range.low),

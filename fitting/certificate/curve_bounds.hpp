@@ -34,8 +34,6 @@ class CurveTriple {
   Range slope(const Range& range) const;  ///< over the triangle and the range, exact
   /// Second derivative over the triangle and the range; at a knot, of both adjacent pieces.
   Range curvature(const Range& range) const;
-  /// sup f/f' of the three curves over the range, m; infinite where one is flat at a force above 0.
-  double force_over_slope(const Range& range) const;
   /// sup |grad_c f_c(d)|, N/m
   double force_gradient(const Range& range) const;
   /// sup |grad_c E_c(d)| / f_c(d), 1; finite down to d = 0. Infinite where the force is zero.

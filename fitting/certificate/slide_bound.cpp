@@ -25,9 +25,8 @@ struct SlideState {
   Range z;
   Range rho;                  ///< the slip limit rho_s
   double max_g = 0;           ///< largest g
-  double max_E_z = 0;         ///< largest normal force dE/dz
-  double depth_slope = 0;     ///< largest |d(dE/dz, mu g)/dz| along the slip limit
-  double variation = 0;       ///< largest |grad_c (dE/dz, mu g)| along the slip limit
+  double depth_slope = 0;     ///< largest |d(g, mu g)/dz|
+  double variation = 0;       ///< largest |grad_c (g, mu g)|
   double h_rho = 0;           ///< smallest d(dE/drho)/drho
   double limit_slope = 0;     ///< largest |d rho_s/dz|
   double limit_gradient = 0;  ///< largest |grad_c (mu g - dE/drho)|
@@ -83,7 +82,7 @@ std::optional<SlideState> decoupled_state(const ContactElement& element, const R
   const double oblique = std::hypot(1.0, mu);
   const double g_z = element.normal.slope(z).high;
   const double grad_g = element.normal.force_gradient(z);
-  state.max_g = state.max_E_z = element.normal.greatest_force(z.high);
+  state.max_g = element.normal.greatest_force(z.high);
   state.depth_slope = oblique * g_z;
   state.variation = oblique * grad_g;
   if (mu == 0 || state.rho.high == kInfinity) return state;
@@ -95,30 +94,26 @@ std::optional<SlideState> decoupled_state(const ContactElement& element, const R
   return state;
 }
 
-/// Second derivatives of E(z, rho) at fixed c over a box of z and rho; each is interpolated from
-/// its vertex values.
-struct Hessian {
-  Range zz, zr, rr;
+/// Derivatives of the lateral force w h over a box of z and rho; each is interpolated from its
+/// vertex values.
+struct LateralSlopes {
+  Range by_depth;  ///< w' h
+  Range by_rho;    ///< w h'
 };
 
-Hessian hessian(const ContactElement& element, const Range& z, const Range& rho) {
-  double h_low = kInfinity, h_high = 0, H = 0, w_low = kInfinity, w_high = 0;
+LateralSlopes lateral_slopes(const ContactElement& element, const Range& z, const Range& rho) {
+  double h_low = kInfinity, h_high = 0, w_low = kInfinity, w_high = 0;
   for (std::size_t l = 0; l < 3; ++l) {
     const runtime::CompiledCurve& lateral = element.lateral.curves()[l];
     const runtime::CompiledCurve& w = element.coupling->curves()[l];
     h_low = std::min(h_low, lateral.force(rho.low));
     h_high = std::max(h_high, lateral.force(rho.high));
-    H = std::max(H, lateral.energy(rho.high));
     w_low = std::min(w_low, coupling_at(w, z.low));
     w_high = std::max(w_high, coupling_at(w, z.high));
   }
-  const Range g_z = element.normal.slope(z);
   const Range w_z = element.coupling->slope(z);
-  const Range w_zz = element.coupling->curvature(z);
   const Range h_r = element.lateral.slope(rho);
-  return {{g_z.low + std::min(0.0, w_zz.low) * H, g_z.high + std::max(0.0, w_zz.high) * H},
-          {w_z.low * h_low, w_z.high * h_high},
-          {w_low * h_r.low, w_high * h_r.high}};
+  return {{w_z.low * h_low, w_z.high * h_high}, {w_low * h_r.low, w_high * h_r.high}};
 }
 
 /// The slip limit of every contact point lies between the smallest and the largest deflection at
@@ -134,24 +129,6 @@ Range coupled_limit(const ContactElement& element, const Range& z) {
   return element.lateral.inverse(low, high);
 }
 
-/// sup |d(dE/dz, mu g)/dz| along the slip limit. With rho_s' = (mu g' - E_zrho)/E_rhorho the first
-/// component is A = E_zz + r (mu g' - E_zrho), where r = E_zrho/E_rhorho is at most the largest
-/// (w'/w)(h/h') of a vertex.
-double along_limit(const ContactElement& element, const Hessian& E, const Range& z,
-                   const Range& rho) {
-  const double mu = element.friction;
-  const Range g_z = element.normal.slope(z);
-  if (!(mu > 0)) return std::max(std::abs(E.zz.low), std::abs(E.zz.high));
-  double growth = 0;
-  for (const runtime::CompiledCurve& w : element.coupling->curves())
-    growth = std::max(growth, slope_range(w, z).high / coupling_at(w, z.low));
-  const double ratio = growth > 0 ? growth * element.lateral.force_over_slope(rho) : 0;
-  if (ratio == kInfinity) return kInfinity;
-  const double low = E.zz.low + ratio * std::min(0.0, mu * g_z.low - E.zr.high);
-  const double high = E.zz.high + ratio * std::max(0.0, mu * g_z.high - E.zr.low);
-  return std::hypot(std::max(std::abs(low), std::abs(high)), mu * g_z.high);
-}
-
 std::optional<SlideState> coupled_state(const ContactElement& element, const Range& z) {
   const double mu = element.friction;
   SlideState state;
@@ -162,10 +139,9 @@ std::optional<SlideState> coupled_state(const ContactElement& element, const Ran
     if (state.rho.high == kInfinity) return state;
     if (element.relaxes) state.rho.low = 0;  // slip begins where psi g allows it, psi from 0 to 1
   }
-  const Hessian E = hessian(element, z, state.rho);
+  const LateralSlopes lateral = lateral_slopes(element, z, state.rho);
   const Range g_z = element.normal.slope(z);
-  const Range w_z = element.coupling->slope(z);
-  Box g, E_z, limit;
+  Box g, limit;
   double w_high = 0;
   for (std::size_t l = 0; l < 3; ++l) {
     const runtime::CompiledCurve& normal = element.normal.curves()[l];
@@ -174,27 +150,24 @@ std::optional<SlideState> coupled_state(const ContactElement& element, const Ran
     const Range w_l{coupling_at(w, z.low), coupling_at(w, z.high)};
     w_high = std::max(w_high, w_l.high);
     g[l] = {normal.force(z.low), normal.force(z.high)};
-    E_z[l] = {g[l].low + w_z.low * h.energy(state.rho.low),
-              g[l].high + w_z.high * h.energy(state.rho.high)};
     limit[l] = {w_l.low * h.force(state.rho.low) - mu * g[l].high,
                 w_l.high * h.force(state.rho.high) - mu * g[l].low};
     state.max_g = std::max(state.max_g, g[l].high);
-    state.max_E_z = std::max(state.max_E_z, E_z[l].high);
   }
-  state.depth_slope = along_limit(element, E, z, state.rho);
-  state.h_over_rho = mu > 0 ? w_high * element.lateral.slope({0, state.rho.high}).high : 0;
-  state.h_rho = E.rr.low;
-  if (mu > 0 && !(state.h_rho > 0)) {
-    state.variation = kInfinity;  // the slip limit moves without bound
+  state.depth_slope = std::hypot(1.0, mu) * g_z.high;
+  state.variation = std::hypot(1.0, mu) * box_gradient(element, g);
+  if (!(mu > 0)) return state;
+  state.h_over_rho = w_high * element.lateral.slope({0, state.rho.high}).high;
+  state.h_rho = lateral.by_rho.low;
+  if (!(state.h_rho > 0)) {
+    state.limit_slope = kInfinity;  // the slip limit moves without bound
     return state;
   }
-  // rho_s' = (mu g' - w' h)/(w h')
-  const double low = mu > 0 ? (mu * g_z.low - E.zr.high) / E.rr.low : 0;
-  const double high = mu > 0 ? (mu * g_z.high - E.zr.low) / E.rr.low : 0;
-  state.limit_slope = std::max(std::abs(low), std::abs(high));
-  state.limit_gradient = mu > 0 ? box_gradient(element, limit) : 0;
-  const double along = mu > 0 ? E.zr.high * state.limit_gradient / state.h_rho : 0;
-  state.variation = std::hypot(box_gradient(element, E_z) + along, mu * box_gradient(element, g));
+  // rho_s' = (mu g' - w' h)/(w h') where the slip limit follows w, mu g'/(w h') where the
+  // lateral offset of the grip takes the growth.
+  const double low = (mu * g_z.low - lateral.by_depth.high) / state.h_rho;
+  state.limit_slope = std::max(std::abs(low), mu * g_z.high / state.h_rho);
+  state.limit_gradient = box_gradient(element, limit);
   return state;
 }
 
@@ -223,7 +196,7 @@ double lean_part(const ContactElement& element, const SlideState& state) {
   return state.depth_slope * element.depth * lean * kappa +
          state.h_over_rho * lean_rate(element, state) +
          felt * (lean * (1 + lean) * kappa + element.most_lean_change()) +
-         lean * kappa * state.max_E_z;
+         lean * kappa * state.max_g;
 }
 
 /// Largest motion of c for a unit motion of the tool: |w| of the theory page.
@@ -253,9 +226,9 @@ SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   const double q_slant = frame.sin_theta;
   const double q_turn = state.rho.high * frame.kappa;
   const double oblique = frame.sin_theta * frame.sin_theta / (2 * frame.cos_theta);
-  const double across = frame.twist * std::max(state.max_E_z, state.h_over_rho * element.depth);
+  const double across = frame.twist * std::max(state.max_g, state.h_over_rho * element.depth);
   const double slant = std::hypot(state.depth_slope * q_slant, state.h_over_rho * oblique);
-  const double turned = std::hypot(state.max_E_z, mu * state.max_g) * frame.kappa;
+  const double turned = std::hypot(1.0, mu) * state.max_g * frame.kappa;
   const double curvature = std::hypot(std::hypot(state.depth_slope * q_turn, turned), across);
   const auto scaled = [&](double part) { return part > 0 ? part * rate : 0.0; };
   causes.variation = scaled(state.variation);
@@ -268,33 +241,38 @@ SlideBound cell_bound(const ContactElement& element, const SlideState& state) {
   return {rounding * (causes.stiffness + moving), causes};
 }
 
-/// Largest |eigenvalue| of the symmetric matrix with these entries.
-double spectral_norm(double a, double b, double d) {
-  return 0.5 * std::abs(a + d) + std::hypot(0.5 * (a - d), b);
+/// Spectral norm of ((a, 0), (b, d)).
+double triangular_norm(double a, double b, double d) {
+  const double squares = a * a + b * b + d * d, product = a * d;
+  const double root = std::sqrt(std::max(0.0, squares * squares - 4 * product * product));
+  return std::sqrt(0.5 * (squares + root));
 }
 
-/// Norm of the Jacobian at fixed c over a cell of depths, rho up to the slip limit. The norm is
-/// convex in the entries, so it is largest at a corner of their box.
+/// sup w' h within friction: w h <= mu g there.
+double largest_shrinking(const ContactElement& element, const Range& z) {
+  double growth = 0;  // w'/w
+  for (const runtime::CompiledCurve& w : element.coupling->curves())
+    growth = std::max(growth, slope_range(w, z).high / coupling_at(w, z.low));
+  return growth * element.friction * element.normal.greatest_force(z.high);
+}
+
+/// Bound of the force at fixed c over a cell of depths, within friction, while the contact shrinks:
+/// its lateral part w h changes with z and rho, the normal one with z. The norm of a matrix without
+/// negative entries grows with each of them. Within a step w stays, at any rho.
 double cell_stick(const ContactElement& element, const Range& z) {
-  double rho = element.friction > 0 ? coupled_limit(element, z).high : 0;
-  if (rho == kInfinity) return kInfinity;
-  const Hessian E = hessian(element, z, {0, rho});
-  double largest = E.rr.high;  // also bounds the lateral force over rho
-  for (const double a : {E.zz.low, E.zz.high})
-    for (const double b : {E.zr.low, E.zr.high})
-      for (const double d : {E.rr.low, E.rr.high})
-        largest = std::max(largest, spectral_norm(a, b, d));
-  return largest;
+  const double rho = element.friction > 0 ? coupled_limit(element, z).high : 0;
+  const double w = element.coupling->greatest_force(z.high);
+  const double any = w * element.lateral.max_slope();
+  const double within = rho < kInfinity ? w * element.lateral.slope({0, rho}).high : any;
+  return std::max(
+      any, triangular_norm(element.normal.slope(z).high, largest_shrinking(element, z), within));
 }
 
 /// Bound of a cell of depths of coupled responses at a fixed contact point, with slip over that
 /// point included.
 double cell_min_bound(const ContactElement& element, const Range& z) {
-  const std::optional<SlideState> state = coupled_state(element, z);
-  const double stick = cell_stick(element, z);
-  if (!state) return stick;
-  if (state->rho.high == kInfinity) return kInfinity;
-  return std::max({stick, state->depth_slope, state->h_over_rho});
+  return std::max(cell_stick(element, z),
+                  std::hypot(1.0, element.friction) * element.normal.slope(z).high);
 }
 
 /// Below every knot the normal responses are linear. If w is constant there, nothing else depends

@@ -76,22 +76,22 @@ struct SlideJacobian::Facet {
 };
 
 struct SlideJacobian::AtVertex {
-  Range g, g_z;  ///< without the factor mu
-  Range E_z, E_zz, E_zr, E_rr;
-  Range excess;      ///< Phi = w h - mu g
-  Range h_over_rho;  ///< w h/rho
+  Range g, g_z;        ///< without the factor mu
+  Range w_z_h, w_h_r;  ///< derivatives of the lateral force w h by z and by rho
+  Range excess;        ///< Phi = w h - mu g
+  Range h_over_rho;    ///< w h/rho
 };
 
 struct SlideJacobian::Response {
-  Values g{}, E_z{}, excess{};  ///< at the vertices, for gradients
-  Range g_here, g_z, E_z_here, E_zz, E_zr, E_rr, h_over_rho;
+  Values g{}, excess{};  ///< at the vertices, for gradients
+  Range g_here, g_z, w_z_h, w_h_r, h_over_rho;
 };
 
 struct SlideJacobian::Terms {
   Facet f;
   Response r;
   Range m;             ///< derivative of rho_s by z
-  Range A, B;          ///< derivatives of dE/dz along the slip limit: by z, and along tau
+  Range g_tau;         ///< derivative of g along tau
   Range mu_g;          ///< mu g
   Range mu_g_z;        ///< derivative of mu g by z
   Range mu_g_tau;      ///< derivative of mu g along tau
@@ -281,20 +281,15 @@ SlideJacobian::AtVertex SlideJacobian::at_vertex(std::size_t vertex, const Range
   AtVertex v;
   v.g = {normal.force(z.low), normal.force(z.high)};
   v.g_z = slope_range(normal, z);
-  v.E_z = v.g;
-  v.E_zz = v.g_z;
-  v.E_rr = h_r;
+  v.w_h_r = h_r;
   v.h_over_rho = mean_slope(lateral, rho);
   Range lateral_force = h;
   if (e.coupling) {
     const runtime::CompiledCurve& coupling = e.coupling->curves()[vertex];
     const Range w{coupling_at(coupling, z.low), coupling_at(coupling, z.high)};
     const Range w_z = slope_range(coupling, z);
-    const Range H{lateral.energy(rho.low), lateral.energy(rho.high)};
-    v.E_z = v.E_z + w_z * H;
-    v.E_zz = v.E_zz + curvature_range(coupling, z) * H;
-    v.E_zr = w_z * h;
-    v.E_rr = w * h_r;
+    v.w_z_h = w_z * h;
+    v.w_h_r = w * h_r;
     v.h_over_rho = w * v.h_over_rho;
     lateral_force = w * h;
   }
@@ -304,49 +299,46 @@ SlideJacobian::AtVertex SlideJacobian::at_vertex(std::size_t vertex, const Range
 
 SlideJacobian::Response SlideJacobian::response(const SlideCell& cell, const Range& rho) const {
   Response r;
-  Values g_z, E_zz, E_zr, E_rr, h_over_rho;
+  Values g_z, w_z_h, w_h_r, h_over_rho;
   for (std::size_t l = 0; l < 3; ++l) {
     const AtVertex v = at_vertex(l, cell.z, rho);
     r.g[l] = v.g;
-    r.E_z[l] = v.E_z;
     r.excess[l] = v.excess;
     g_z[l] = v.g_z;
-    E_zz[l] = v.E_zz;
-    E_zr[l] = v.E_zr;
-    E_rr[l] = v.E_rr;
+    w_z_h[l] = v.w_z_h;
+    w_h_r[l] = v.w_h_r;
     h_over_rho[l] = v.h_over_rho;
   }
   r.g_here = over(cell.part, r.g);
-  r.E_z_here = over(cell.part, r.E_z);
   r.g_z = over(cell.part, g_z);
-  r.E_zz = over(cell.part, E_zz);
-  r.E_zr = over(cell.part, E_zr);
-  r.E_rr = over(cell.part, E_rr);
+  r.w_z_h = over(cell.part, w_z_h);
+  r.w_h_r = over(cell.part, w_h_r);
   r.h_over_rho = over(cell.part, h_over_rho);
   return r;
 }
 
-/// The terms that divide by E_rr are left out where it may be zero.
-SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rho) const {
+/// The terms that divide by w h' are left out where it may be zero.
+SlideJacobian::Terms SlideJacobian::terms(const SlideCell& cell, const Range& rho,
+                                          Grip grip) const {
   const double mu = element_->friction;
   Terms x;
   x.f = facet(cell);
   x.r = response(cell, rho);
-  if (!(x.r.E_rr.low > 0)) return x;
-  x.m = (mu * x.r.g_z - x.r.E_zr) / x.r.E_rr;
-  x.A = x.r.E_zz + x.m * x.r.E_zr;
+  if (!(x.r.w_h_r.low > 0)) return x;
+  const Range shrinking = grip == Grip::Renewed ? x.r.w_z_h : Range{};
+  x.m = (mu * x.r.g_z - shrinking) / x.r.w_h_r;
   x.mu_g = mu * x.r.g_here;
   x.mu_g_z = mu * x.r.g_z;
-  x.limit_rate = along(x.f, x.r.excess) / x.r.E_rr;
-  x.B = along(x.f, x.r.E_z) - x.r.E_zr * x.limit_rate;
-  x.mu_g_tau = mu * along(x.f, x.r.g);
+  x.limit_rate = along(x.f, x.r.excess) / x.r.w_h_r;
+  x.g_tau = along(x.f, x.r.g);
+  x.mu_g_tau = mu * x.g_tau;
   x.q = x.f.n_tau - rho * x.f.kappa_t;
   x.p = x.f.t_tau + cell.reach * x.f.kappa_t;
   x.s = x.f.s_tau + cell.reach * x.f.kappa_s;
   if (leans_) add_lean(cell, x);
   x.rate = x.p - x.m * x.q - x.limit_rate;
   x.norm_M0 =
-      std::max(std::hypot(x.A.magnitude(), x.mu_g_z.magnitude()), x.r.h_over_rho.magnitude());
+      std::max(std::hypot(x.r.g_z.magnitude(), x.mu_g_z.magnitude()), x.r.h_over_rho.magnitude());
   return x;
 }
 
@@ -360,39 +352,41 @@ void SlideJacobian::add_lean(const SlideCell& cell, Terms& x) {
 /// (9b): what the turning of A adds to v.
 void SlideJacobian::add_lean(const Terms& x, Range& v_n, Range& v_t, Range& v_s) {
   const Range leaning = x.mu_g * x.f.lean_t;
-  v_n = v_n - leaning * x.f.lean_turn - x.mu_g * x.f.lean_t_rate + x.r.E_z_here * x.f.lean_turn;
+  v_n = v_n - leaning * x.f.lean_turn - x.mu_g * x.f.lean_t_rate + x.r.g_here * x.f.lean_turn;
   v_t = v_t - leaning * x.f.kappa_t;
   v_s = v_s - leaning * x.f.kappa_s;
 }
 
 double SlideJacobian::bound(const SlideCell& cell) const {
-  return stretch_ * bound_of_response(cell);
-}
-
-/// The bound of A^-T df/dx' A^-1.
-double SlideJacobian::bound_of_response(const SlideCell& cell) const {
   const Range rho = slip_limit(cell);
   if (rho.low == kInfinity) return 0;
   if (rho.high == kInfinity) return kInfinity;
-  const Terms x = terms(cell, rho);
-  if (!(x.r.E_rr.low > 0)) return kInfinity;
-  Range v_n = x.B - x.A * x.q - x.mu_g * x.f.kappa_t;
-  Range v_t = x.mu_g_tau - x.mu_g_z * x.q + x.r.E_z_here * x.f.kappa_t;
-  Range v_s = x.r.E_z_here * x.f.kappa_s - x.r.h_over_rho * x.s;
+  double bound = bound_of_response(cell, rho, Grip::Renewed);
+  if (element_->coupling) bound = std::max(bound, bound_of_response(cell, rho, Grip::Kept));
+  return stretch_ * bound;
+}
+
+/// The bound of A^-T df/dx' A^-1.
+double SlideJacobian::bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const {
+  const Terms x = terms(cell, rho, grip);
+  if (!(x.r.w_h_r.low > 0)) return kInfinity;
+  Range v_n = x.g_tau - x.r.g_z * x.q - x.mu_g * x.f.kappa_t;
+  Range v_t = x.mu_g_tau - x.mu_g_z * x.q + x.r.g_here * x.f.kappa_t;
+  Range v_s = x.r.g_here * x.f.kappa_s - x.r.h_over_rho * x.s;
   if (leans_) add_lean(x, v_n, v_t, v_s);
   if (is_zero(v_n) && is_zero(v_t) && is_zero(v_s))
     return kRoundingFactor * x.norm_M0;  // the force does not depend on c
   if (!(x.rate.low > 0)) return kInfinity;
   const Range w_t = Range{1, 1} / x.rate, w_n = (-1) * x.m / x.rate;
   const Range zero{};
-  double norm = std::max(x.norm_M0, norm_bound({{{x.A + v_n * w_n, v_n * w_t, zero},
+  double norm = std::max(x.norm_M0, norm_bound({{{x.r.g_z + v_n * w_n, v_n * w_t, zero},
                                                  {x.mu_g_z + v_t * w_n, v_t * w_t, zero},
                                                  {v_s * w_n, v_s * w_t, x.r.h_over_rho}}}));
   if (x.rate.high <= 1) return kRoundingFactor * norm;
   // The runtime moves c by rho - rho_s, which is more than needed: (9a).
   const Range over{std::max(0.0, x.rate.low - 1), x.rate.high - 1};
-  const Range u_n = v_n - over * x.r.E_zr, u_t = v_t - over * x.r.E_rr;
-  return kRoundingFactor * std::max(norm, norm_bound({{{x.A - u_n * x.m, u_n, zero},
+  const Range u_t = v_t - over * x.r.w_h_r;
+  return kRoundingFactor * std::max(norm, norm_bound({{{x.r.g_z - v_n * x.m, v_n, zero},
                                                        {x.mu_g_z - u_t * x.m, u_t, zero},
                                                        {(-1) * v_s * x.m, v_s, x.r.h_over_rho}}}));
 }
@@ -400,8 +394,8 @@ double SlideJacobian::bound_of_response(const SlideCell& cell) const {
 SlideCauses SlideJacobian::causes(const SlideCell& state) const {
   const Range rho = slip_limit(state);
   if (!(rho.high < kInfinity)) return {0, kInfinity, kInfinity, kInfinity};
-  const Terms x = terms(state, rho);
-  if (!(x.r.E_rr.low > 0 && x.rate.low > 0)) return {x.norm_M0, kInfinity, kInfinity, kInfinity};
+  const Terms x = terms(state, rho, Grip::Renewed);
+  if (!(x.r.w_h_r.low > 0 && x.rate.low > 0)) return {x.norm_M0, kInfinity, kInfinity, kInfinity};
   const double motion =
       stretch_ * std::hypot(1.0, x.m.magnitude()) / x.rate.low;  // |w|, times |A|^2
   const auto length = [&](const Range& n, const Range& t, const Range& s) {
@@ -409,13 +403,13 @@ SlideCauses SlideJacobian::causes(const SlideCell& state) const {
   };
   const Range turned = rho * x.f.kappa_t;
   SlideCauses causes{
-      stretch_ * x.norm_M0, length(x.B, x.mu_g_tau, {}),
-      length(x.A * x.f.n_tau, x.mu_g_z * x.f.n_tau, x.r.h_over_rho * x.f.s_tau),
-      length(x.A * turned - x.mu_g * x.f.kappa_t, x.mu_g_z * turned + x.r.E_z_here * x.f.kappa_t,
-             (x.r.E_z_here - x.r.h_over_rho * state.reach) * x.f.kappa_s)};
+      stretch_ * x.norm_M0, length(x.g_tau, x.mu_g_tau, {}),
+      length(x.r.g_z * x.f.n_tau, x.mu_g_z * x.f.n_tau, x.r.h_over_rho * x.f.s_tau),
+      length(x.r.g_z * turned - x.mu_g * x.f.kappa_t, x.mu_g_z * turned + x.r.g_here * x.f.kappa_t,
+             (x.r.g_here - x.r.h_over_rho * state.reach) * x.f.kappa_s)};
   if (!leans_) return causes;
   const Range shift = state.z * x.f.lean_turn;
-  Range n = x.A * shift, t = x.mu_g_z * shift;
+  Range n = x.r.g_z * shift, t = x.mu_g_z * shift;
   Range s = x.r.h_over_rho * (x.f.lean_s * x.q - state.z * x.f.lean_s_rate);
   add_lean(x, n, t, s);
   causes.lean = length(n, t, s);

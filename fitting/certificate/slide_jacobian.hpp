@@ -63,12 +63,15 @@ class SlideJacobian {
   void add_lean(const SlideCell& cell, Facet& facet) const;
   static void add_lean(const SlideCell& cell, Terms& terms);
   static void add_lean(const Terms& terms, Range& v_n, Range& v_t, Range& v_s);
-  double bound_of_response(const SlideCell& cell) const;
   double slip_at(const std::array<double, 3>& weight, double limit, bool largest) const;
   Range slip_limit(const SlideCell& cell) const;
   AtVertex at_vertex(std::size_t vertex, const Range& z, const Range& rho) const;
   Response response(const SlideCell& cell, const Range& rho) const;
-  Terms terms(const SlideCell& cell, const Range& rho) const;
+  /// What w does while c slides and z changes: the slip limit follows it, or, as the contact grows
+  /// and the lateral offset of the grip takes the rest, does not.
+  enum class Grip { Renewed, Kept };
+  Terms terms(const SlideCell& cell, const Range& rho, Grip grip) const;
+  double bound_of_response(const SlideCell& cell, const Range& rho, Grip grip) const;
   /// Derivative along tau of a quantity with these values at the vertices.
   Range along(const Facet& facet, const std::array<Range, 3>& values) const;
 

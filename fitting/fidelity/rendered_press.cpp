@@ -116,18 +116,22 @@ palpate_observation touch_at(Tip& tip, const Vec3& contact, const Vec3& inward) 
   return touch;
 }
 
-/// Moves the tip to each deflection in order; `at(force)` is called at each.
+/// A press along the normal in small steps and a drag at its end, for each deflection on a body
+/// that nobody has touched; `at(tip, force)` is called at the ends.
 template <class At>
-void follow_path(Tip& tip, const Vec3& contact, const Vec3& inward,
-                 const std::vector<RenderedBody::Deflection>& deflections, At at) {
-  const palpate_observation touch = touch_at(tip, contact, inward);
-  const Vec3 c = vector_of(touch.contact_point), n = vector_of(touch.normal);
+void follow_paths(const palpate_library* library, const Vec3& contact, const Vec3& inward,
+                  const std::vector<RenderedBody::Deflection>& deflections, At at) {
+  constexpr int kSteps = 200;  // of a press: a lateral response grows with the contact
   for (const RenderedBody::Deflection& d : deflections) {
+    Tip tip(library);
+    const palpate_observation touch = touch_at(tip, contact, inward);
+    const Vec3 c = vector_of(touch.contact_point), n = vector_of(touch.normal);
+    for (int k = 1; k <= kSteps; ++k) tip.move_to(c + (d.depth * k / kSteps + touch.offset) * n);
     const Vec3 force = tip.move_to(c + (d.depth + touch.offset) * n + d.lateral * d.tangent);
     const palpate_observation seen = tip.observe();
     if (std::abs(seen.depth - d.depth) > kExact || std::abs(seen.lateral - d.lateral) > kExact)
       disagree(contact, "the contact point moved");
-    at(force);
+    at(tip, force);
   }
 }
 
@@ -135,10 +139,9 @@ void follow_path(Tip& tip, const Vec3& contact, const Vec3& inward,
 
 std::vector<Vec3> RenderedBody::press(const Vec3& contact, const Vec3& inward,
                                       const std::vector<Deflection>& deflections) const {
-  Tip tip(library_.get());
   std::vector<Vec3> forces;
-  follow_path(tip, contact, inward, deflections,
-              [&](const Vec3& force) { forces.push_back(force); });
+  follow_paths(library_.get(), contact, inward, deflections,
+               [&](const Tip&, const Vec3& force) { forces.push_back(force); });
   return forces;
 }
 
@@ -170,9 +173,8 @@ std::vector<double> RenderedBody::follow(const Vec3& contact, const Vec3& inward
 std::vector<std::vector<Vec3>> RenderedBody::displace(
     const RenderedSkin& skin, const Vec3& contact, const Vec3& inward,
     const std::vector<Deflection>& deflections) const {
-  Tip tip(library_.get());
   std::vector<std::vector<Vec3>> displacements;
-  follow_path(tip, contact, inward, deflections, [&](const Vec3&) {
+  follow_paths(library_.get(), contact, inward, deflections, [&](const Tip& tip, const Vec3&) {
     std::vector<Vec3> u(skin.at_rest_.size());
     check(palpate_deform(tip.state(), skin.deformation_.get(), u.front().data(), u.size()),
           "rendered press");

@@ -9,7 +9,8 @@ namespace palpate::fitting {
 namespace {
 
 constexpr double kLightTouch = 0.02;  // of the largest normal force: weights grow no further below
-constexpr int kSections = 48;         // golden sections of the length of a lean
+constexpr int kSections = 32;         // golden sections of the length of a lean
+constexpr int kSteps = 64;            // of a press
 
 /// A sample of a straight press.
 struct Press {
@@ -94,29 +95,57 @@ LeaningResponse::LeaningResponse(const NodeResponse& node, ResponseKind kind)
     coupling_ = {node.coupling.curve, static_cast<double>(node.coupling.base)};
 }
 
-double LeaningResponse::weight(double z) const {
-  return coupling_.pieces().empty() ? 1 : coupling_.force(z);
+runtime::CurveValue LeaningResponse::weight(double z) const {
+  if (coupling_.pieces().empty()) return {1, 0, 0};
+  if (!(z > 0)) return {coupling_.pieces().front().force, 0, 0};
+  return coupling_.evaluate(z);
+}
+
+/// d|q|/dz = |sigma| - (w'/w) h/h': the force w h grows with the lateral deflection alone.
+double LeaningResponse::lateral_rate(double z, double lateral) const {
+  const runtime::CurveValue w = weight(z), h = lateral_.evaluate(lateral);
+  if (!(h.slope > 0)) return length_;
+  return length_ - w.slope / w.force * h.force / h.slope;
+}
+
+/// By the method of Heun.
+LeaningResponse::Press LeaningResponse::press(double z) const {
+  Press at;
+  if (!(length_ > 0 && z > 0)) return at;
+  const double step = z / kSteps;
+  for (int k = 0; k < kSteps; ++k) {
+    const double start = k * step, end = start + step, before = at.force;
+    const double rate = lateral_rate(start, at.lateral);
+    const double guess = std::max(0.0, at.lateral + step * rate);
+    at.lateral += 0.5 * step * (rate + lateral_rate(end, guess));
+    at.lateral = std::max(0.0, at.lateral);
+    at.force = weight(end).force * lateral_.force(at.lateral);
+    at.energy += 0.5 * step * length_ * (before + at.force);
+  }
+  return at;
 }
 
 double LeaningResponse::energy(double z) const {
-  return weight(z) * lateral_.energy(length_ * z);
+  return press(z).energy;
 }
 
 double LeaningResponse::normal_force(double z) const {
-  const double steeper = coupling_.pieces().empty() ? 0 : coupling_.slope(z);
-  return steeper * lateral_.energy(length_ * z) + weight(z) * lateral_.force(length_ * z) * length_;
+  return length_ * press(z).force;
 }
 
 Vec3 LeaningResponse::transverse_force(double z) const {
   if (!(length_ > 0)) return {};
-  return (-weight(z) * lateral_.force(length_ * z) / length_) * lean_;
+  return (-press(z).force / length_) * lean_;
 }
 
 double LeaningResponse::drag_force(double z, double d, const Vec3& direction) const {
-  const Vec3 q = d * direction - z * lean_;
+  const Press at = press(z);
+  const Vec3 before = length_ > 0 ? (-at.lateral / length_) * lean_ : Vec3{};
+  const Vec3 q = before + d * direction;
   const double rho = norm(q);
-  const double force = rho > 0 ? weight(z) * lateral_.force(rho) * dot(q, direction) / rho : 0;
-  return force - dot(transverse_force(z), direction);
+  const double along = rho > 0 ? dot(q, direction) / rho : 0;
+  const double leaning = at.lateral > 0 ? at.force * dot(before, direction) / at.lateral : 0;
+  return weight(z).force * lateral_.force(rho) * along - leaning;
 }
 
 std::array<float, 3> fit_lean(const SiteCurves& site, const Vec3& inward, const NodeResponse& node,

@@ -18,22 +18,32 @@ inline constexpr double kMostFittedLean = 0.2;
 /// A shorter lean is none: a force a thousandth off is not felt.
 inline constexpr double kLeastLean = 1e-3;
 
-/// What the lean sigma of a node adds to its response, docs/theory-fitting.md (2d): the lateral
-/// deflection of a straight press is -sigma z, and stores w(z) H(|sigma| z).
+/// What the lean sigma of a node adds to its response, docs/theory-fitting.md (2d): a straight
+/// press shears the tissue by |sigma| for each depth, and the contact that grows meanwhile holds
+/// tissue without stress. The runtime renders it with steps of any size; here they are
+/// infinitesimal.
 class LeaningResponse {
  public:
   LeaningResponse(const NodeResponse& node, ResponseKind kind);
 
-  double energy(double z) const;        ///< w(z) H(|sigma| z), J
-  double normal_force(double z) const;  ///< its derivative by z, N
-  /// That of a straight press across its direction, N: -w(z) h(|sigma| z) sigma/|sigma|.
+  double energy(double z) const;        ///< work of the normal force below, J
+  double normal_force(double z) const;  ///< |sigma| w h, N
+  /// That of a straight press across its direction, N: -w h sigma/|sigma|.
   Vec3 transverse_force(double z) const;
   /// By how much a drag d (m) at the depth z (m) along a unit direction across the press changes
   /// the force along it, N.
   double drag_force(double z, double d, const Vec3& direction) const;
 
  private:
-  double weight(double z) const;  ///< w(z)
+  /// A straight press at a depth.
+  struct Press {
+    double lateral = 0;  ///< |q|, m
+    double force = 0;    ///< w h, N
+    double energy = 0;   ///< J
+  };
+  Press press(double z) const;
+  double lateral_rate(double z, double lateral) const;
+  runtime::CurveValue weight(double z) const;  ///< w, w'
 
   Vec3 lean_{};
   double length_ = 0;

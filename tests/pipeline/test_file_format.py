@@ -46,7 +46,11 @@ def relaxes(file):
 
 
 def is_coupled(file):
-    return file.attrs["schema"] == 4 or file.attrs.get("coupled") == 1
+    return file.attrs.get("coupled") == 1
+
+
+def leans(file):
+    return file.attrs.get("leans") == 1
 
 
 def is_in(file, name, meaning):
@@ -56,6 +60,8 @@ def is_in(file, name, meaning):
         return relaxes(file)
     if meaning.startswith("where responses are coupled"):
         return is_coupled(file)
+    if meaning.startswith("where responses lean"):
+        return leans(file)
     return file.attrs["schema"] >= first_schema(meaning)
 
 
@@ -273,9 +279,9 @@ class FileFormat(unittest.TestCase):
         known = Tokens(self.folder / f"{name}.txt")
         with h5py.File(self.folder / f"{name}.h5", "r") as file:
             coupled = known.number() == 1
-            leans, has_memory = name == "leaning", "relaxation" in file
-            self.assertEqual(file.attrs["schema"], 6 if leans else 5 if has_memory else 4 if coupled else 3)
-            self.assertEqual((relaxes(file), is_coupled(file)), (has_memory, coupled))
+            has_lean, has_memory = name == "leaning", "relaxation" in file
+            self.assertEqual(file.attrs["schema"], 6 if has_lean or coupled else 5 if has_memory else 3)
+            self.assertEqual((relaxes(file), is_coupled(file), leans(file)), (has_memory, coupled, has_lean))
             self.assertEqual(file.attrs["name"], known.text())
             self.assertEqual(file.attrs["tool_shape"], known.text())
             self.assertEqual(file.attrs["tool_radius"], known.number())
@@ -289,6 +295,7 @@ class FileFormat(unittest.TestCase):
                     values = [value for (value,) in known.table()]
                     self.assertEqual(response[f"{which}_{what}"][rows].tolist() if stored else [], values)
 
+            leans_in_order = iter(response.get("lean", ()))
             for i in range(len(response["status"])):
                 self.assertEqual(response["status"][i], known.number())
                 check_curve("normal", i, True)
@@ -306,8 +313,9 @@ class FileFormat(unittest.TestCase):
                     self.assertEqual(response["relaxation_fraction"][row].tolist(),
                                      [known.number() for _ in range(times)] if stored else [0] * times)
                 lean = [known.number() for _ in range(3)]
-                if leans:
-                    self.assertEqual(response["lean"][i].tolist(), lean)
+                if has_lean:
+                    row = next(leans_in_order).tolist() if response["status"][i] != 2 else [0, 0, 0]
+                    self.assertEqual(row, lean)
             if has_memory:
                 self.assertEqual(file["relaxation/time"][()].tolist(), [known.number() for _ in range(2)])
             certificate = file["certificate"]

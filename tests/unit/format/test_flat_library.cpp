@@ -103,13 +103,14 @@ TEST(FlatLibrary, IsCheckedAsTheHdf5FileIs) {
 }
 
 /// A reader must not take the curves without what it does not know of them.
-TEST(FlatLibrary, OfTissueThatRelaxesOrLeansIsOfALaterVersion) {
+TEST(FlatLibrary, OfTissueThatRelaxesOrLeansOrIsCoupledIsOfALaterVersion) {
   const auto version = [](const Library& library) {
     return static_cast<int>(flat_bytes(library, "a.plib")[8]);
   };
   EXPECT_EQ(version(samples::library(1)), 1);
-  EXPECT_EQ(version(samples::coupled_library(1)), 1);
-  EXPECT_EQ(version(samples::relaxing_library(1)), 2);
+  EXPECT_EQ(version(samples::relaxing_library(2)), 2);
+  EXPECT_EQ(version(samples::relaxing_library(1)), 3);  // coupled
+  EXPECT_EQ(version(samples::coupled_library(1)), 3);
   for (const unsigned seed : {0U, 1U, 2U}) EXPECT_EQ(version(samples::leaning_library(seed)), 3);
 }
 

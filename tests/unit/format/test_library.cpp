@@ -54,6 +54,25 @@ std::vector<Case> relaxation_cases() {
   };
 }
 
+std::vector<Case> schema_cases() {
+  const auto kind = Kind::Library;
+  return {
+      // A library of decoupled responses cannot pass for the other kind.
+      {"LibraryOfOtherKindOfResponse", kind,
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 4, H5T_NATIVE_INT); }), ":/",
+       "has coupled responses that an earlier palpate has fitted"},
+      {"LibraryOfASchemaThatSaysMore", kind,
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 6, H5T_NATIVE_INT); }), ":/",
+       "relaxes"},
+      {"LibraryRelaxingThatSaysItIsCoupled", Kind::RelaxingLibrary,  // it does
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 5, H5T_NATIVE_INT); }), ":/",
+       "has coupled responses that an earlier palpate has fitted"},
+      {"LibraryOfSchemaTwo", kind,
+       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 2, H5T_NATIVE_INT); }), ":/",
+       "has schema 2, this palpate reads 1, 3, 4, 5 and 6"},
+  };
+}
+
 std::vector<Case> surface_and_response_cases() {
   const auto kind = Kind::Library;
   const auto coupled = Kind::CoupledLibrary;
@@ -66,13 +85,6 @@ std::vector<Case> surface_and_response_cases() {
        "/response/coupling_knot", "is missing"},
       {"LibraryCoupledWithoutBase", coupled, remove("/response/coupling_base"),
        "/response/coupling_base", "is missing"},
-      // A library of decoupled responses cannot pass for the other kind.
-      {"LibraryOfOtherKindOfResponse", kind,
-       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 4, H5T_NATIVE_INT); }),
-       "/response/coupling_offset", "is missing"},
-      {"LibraryOfSchemaTwo", kind,
-       edit([](Hdf5Editor& e) { e.set_attribute("/", "schema", 2, H5T_NATIVE_INT); }), ":/",
-       "has schema 2, this palpate reads 1, 3, 4, 5 and 6"},
       {"LibraryPositionNaN", kind, poke("/surface/position", 0, kNaN), "/surface/position[0]",
        "nan is not finite"},
       {"LibraryPositionElsewhere", kind, link_elsewhere, "/surface/position",
@@ -151,6 +163,7 @@ std::vector<Case> status_and_certificate_cases() {
 }
 
 INSTANTIATE_TEST_SUITE_P(Relaxation, Rejection, ::testing::ValuesIn(relaxation_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(Schemas, Rejection, ::testing::ValuesIn(schema_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(SurfacesAndResponses, Rejection,
                          testing::ValuesIn(surface_and_response_cases()), name_of);
 INSTANTIATE_TEST_SUITE_P(StatusAndCertificates, Rejection,

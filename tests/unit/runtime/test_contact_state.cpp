@@ -415,6 +415,7 @@ TEST(Contact, TheForceOfEveryStepIsThatOfTheStateItLeaves) {
       sliding += (status & PALPATE_SLIDING) != 0;
       const runtime::ContactObservation& seen = rig.seen();
       runtime::LocalModel model(rig.body.surface, seen.point, seen.offset);
+      model.set_grip(seen.grip);
       model.set_lateral_offset(seen.lateral_offset);
       const runtime::LocalResponse want = model.respond(model.deflection(x));
       ASSERT_NEAR(norm(seen.force - want.force), 0, 1e-12 * (norm(want.force) + 1e-3));

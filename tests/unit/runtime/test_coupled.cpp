@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: AGPL-3.0-or-later
-// Coupled responses: one potential E(z, rho) at each contact point, the force its gradient.
+// Coupled responses: the lateral response is that of the contact as wide as it is. It is
+// conservative while the contact holds, and what comes into contact holds tissue without stress.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -38,6 +39,12 @@ class Coupled : public ::testing::Test {
   static LocalResponse at(const LocalModel& model, const Vec3& x) {
     return model.respond(model.deflection(x));
   }
+  /// A model that holds the depth z.
+  LocalModel holding(double offset, double z) {
+    LocalModel model(surface_, random_point(), offset);
+    model.set_grip({z, {}});
+    return model;
+  }
 
   const Library library_ = coupled(bumpy_sphere(2, 0.03, 0.2, uneven));
   const Surface surface_{library_};
@@ -47,7 +54,7 @@ class Coupled : public ::testing::Test {
 TEST_F(Coupled, ForceIsTheGradientOfTheEnergy) {
   const double h = 1e-7;
   for (int trial = 0; trial < 300; ++trial) {
-    const LocalModel model(surface_, random_point(), 0.0004);
+    const LocalModel model = holding(0.0004, between(0, 0.008));
     const Vec3 x = tip(model, between(0.0001, 0.007), between(0.0002, 0.005));
     for (std::size_t i = 0; i < 3; ++i) {
       Vec3 up = x, down = x;
@@ -61,12 +68,12 @@ TEST_F(Coupled, ForceIsTheGradientOfTheEnergy) {
 
 TEST_F(Coupled, ForceOpposesTheDeflectionAndTheEnergyIsNeverNegative) {
   for (int trial = 0; trial < 3000; ++trial) {
-    const LocalModel model(surface_, random_point(), 0);
+    const LocalModel model = holding(0, between(0, 0.008));
     const double z = between(-0.003, 0.009), rho = between(0, 0.01);
     const LocalResponse r = at(model, tip(model, z, rho));
     EXPECT_GE(r.energy, 0);
     EXPECT_GE(r.lateral_force, 0);
-    EXPECT_GE(r.normal_force, r.friction_normal_force);
+    EXPECT_EQ(r.normal_force, r.friction_normal_force);
     if (z <= 0) {
       EXPECT_EQ(r.normal_force, 0);
     }
@@ -88,9 +95,9 @@ TEST_F(Coupled, ForceIsContinuousWhereTheToolLeaves) {
 
 TEST_F(Coupled, SlipBeginsWhereTheLateralForceIsMuTimesTheGrip) {
   for (int trial = 0; trial < 500; ++trial) {
-    const LocalModel model(surface_, random_point(), 0);
     const double z = between(0.0001, 0.007);
     const double mu = between(0.05, 1);
+    const LocalModel model = holding(0, z);
     const Deflection there = model.deflection(tip(model, z, 0.02));
     const double limit = model.slip_limit(there, mu);
     const LocalResponse r = at(model, tip(model, z, limit));
@@ -98,14 +105,16 @@ TEST_F(Coupled, SlipBeginsWhereTheLateralForceIsMuTimesTheGrip) {
     runtime::ToolPieces pieces;
     const LocalResponse pressed = model.respond(there, pieces);
     const double force = mu * pressed.friction_normal_force;
-    EXPECT_NEAR(model.lateral_below(there, pressed, force, pieces), limit, 1e-12);
+    EXPECT_NEAR(model.lateral_below(there, force, pieces), limit, 1e-12);
   }
 }
 
 TEST_F(Coupled, EnergySlopeAlongTheSurface) {
   for (int trial = 0; trial < 300; ++trial) {
     const SurfacePoint p = random_point();
-    const LocalModel model(surface_, p, 0.0003);
+    LocalModel model(surface_, p, 0.0003);
+    const double held = between(0, 0.006);
+    model.set_grip({held, {}});
     const Vec3 x = tip(model, between(0.0005, 0.006), between(0.0005, 0.004));
     const Deflection d = model.deflection(x);
     const runtime::Element& e = surface_.element(p.element);
@@ -115,7 +124,9 @@ TEST_F(Coupled, EnergySlopeAlongTheSurface) {
     const auto energy = [&](double s) {
       SurfacePoint moved = p;
       for (std::size_t l = 0; l < 3; ++l) moved.natural[l] += s * dot(e.gradient[l], along);
-      return at(LocalModel(surface_, moved, 0.0003), x).energy;
+      LocalModel there(surface_, moved, 0.0003);
+      there.set_grip({held, {}});
+      return at(there, x).energy;
     };
     EXPECT_NEAR(model.energy_slope(d, along), (energy(h) - energy(-h)) / (2 * h), 1e-6);
   }
@@ -135,6 +146,62 @@ TEST_F(Coupled, WithAWeightOfOneIsTheDecoupledResponse) {
     EXPECT_NEAR(at(a, x).energy, at(b, x).energy, 1e-15);
     EXPECT_NEAR(a.slip_limit(a.deflection(x), 0.3), b.slip_limit(b.deflection(x), 0.3), 1e-12);
   }
+}
+
+TEST_F(Coupled, AContactThatGrowsKeepsTheLateralForceAndOneThatShrinksLosesIt) {
+  // Linear lateral springs: w(z) k |q|. A growing contact keeps the force, so that q falls as 1/w;
+  // one that shrinks keeps q.
+  Library library = plate(2, 0.04, [](const Vec3&) { return wall_response(170, 120); });
+  library.kind = ResponseKind::Coupled;
+  library.tool_radius = 0.05;
+  for (NodeResponse& node : library.responses) node.coupling = {0.5F, linear_curve(200)};
+  const Surface surface(library);
+  const auto w = [](double z) { return 0.5 + 200 * z; };
+  for (int trial = 0; trial < 200; ++trial) {
+    LocalModel model(surface, {static_cast<std::int32_t>(random_() % 8), {0.2, 0.5, 0.3}}, 0);
+    const double held = between(0.0005, 0.005), z = between(0.0005, 0.005);
+    const double rho = between(0.0002, 0.004);
+    model.set_grip({held, {}});
+    const Vec3 x = tip(model, z, rho);
+    Deflection d = model.deflection(x);
+    runtime::ToolPieces pieces;
+    LocalResponse r = model.respond(d, pieces);
+    const double before = r.energy, force = r.lateral_force;
+    EXPECT_NEAR(force, w(held) * 120 * rho, 1e-6 * force);
+    model.renew_grip(d, r, pieces);
+    EXPECT_EQ(model.grip().depth, d.depth);
+    EXPECT_LE(r.energy, before);
+    const double stays = std::min(1.0, w(z) / w(held));
+    EXPECT_NEAR(r.lateral_force, stays * force, 1e-6 * force);
+    EXPECT_NEAR(r.normal_force, at(model, x).normal_force, 1e-15);
+    EXPECT_NEAR(norm(model.grip().micro_slip), z > held ? rho * (1 - w(held) / w(z)) : 0,
+                1e-6 * rho);
+    // What the tip has moved is what it was, and the model at x is that of the deflection.
+    EXPECT_NEAR(norm(model.lateral_displacement(d)), rho, 1e-12);
+    EXPECT_NEAR(norm(at(model, x).force - r.force), 0, 1e-9);
+    EXPECT_NEAR(at(model, x).energy, r.energy, 1e-12);
+  }
+}
+
+TEST_F(Coupled, MicroSlipBeyondATenthOfTheToolsRadiusGoesIntoTheLateralOffset) {
+  int crept = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    LocalModel model = holding(0, 0.0002);
+    const Vec3 x = tip(model, 0.006, 0.004);
+    Deflection d = model.deflection(x);
+    runtime::ToolPieces pieces;
+    LocalResponse r = model.respond(d, pieces);
+    const double force = r.lateral_force, before = r.energy;
+    model.renew_grip(d, r, pieces);
+    EXPECT_LE(r.energy, before);
+    if (model.grip().depth != d.depth) continue;  // the energy would have risen
+    ++crept;
+    EXPECT_NEAR(norm(model.grip().micro_slip), 0.1 * library_.tool_radius, 1e-12);
+    EXPECT_GT(norm(model.lateral_offset()), 0);
+    EXPECT_NEAR(r.lateral_force, force, 1e-9);
+    EXPECT_NEAR(norm(at(model, x).force - r.force), 0, 1e-9);
+  }
+  EXPECT_GT(crept, 100);
 }
 
 TEST_F(Coupled, RefusesAWeightThatStartsAtNothing) {

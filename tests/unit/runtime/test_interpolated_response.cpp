@@ -89,8 +89,8 @@ TEST(InterpolatedResponse, LateralInverseAgreesWithBisection) {
 
 /// Sums of nodal curves as equations (29*) and (32*) write them.
 struct Sums {
-  double g = 0, G = 0, h = 0, H = 0;           // decoupled
-  double normal = 0, lateral = 0, energy = 0;  // coupled
+  double g = 0, G = 0, h = 0, H = 0;
+  double lateral = 0, weighted = 0;  // sum n_l w_l(z) h_l, and its energy
 };
 Sums sums_of(const RandomNodes& nodes, const Vec3& n, double z, double rho) {
   Sums s;
@@ -102,9 +102,8 @@ Sums sums_of(const RandomNodes& nodes, const Vec3& n, double z, double rho) {
     s.G += n[l] * g.energy;
     s.h += n[l] * h.force;
     s.H += n[l] * h.energy;
-    s.normal += n[l] * (g.force + (z > 0 ? w.slope * h.energy : 0));
     s.lateral += n[l] * w.force * h.force;
-    s.energy += n[l] * (g.energy + w.force * h.energy);
+    s.weighted += n[l] * w.force * h.energy;
   }
   return s;
 }
@@ -145,14 +144,18 @@ TEST(InterpolatedResponse, RememberedPiecesGiveTheSumsOfTheCurvesFromWhateverSta
     EXPECT_NEAR(a.normal.energy, want.G, 1e-12 * want.G);
     EXPECT_NEAR(a.lateral.energy, want.H, 1e-12 * want.H);
     const InterpolatedResponse r = nodes->coupled_at(natural);
-    const auto at = r.at_depth(z, coupled);
-    const auto b = r.coupled_at(at, rho, coupled);
-    EXPECT_NEAR(b.normal, want.normal, 1e-12 * want.normal);
-    EXPECT_NEAR(b.lateral, want.lateral, 1e-12 * want.lateral);
-    EXPECT_NEAR(b.energy, want.energy, 1e-12 * want.energy);
-    const double force = b.lateral * any(random);
-    EXPECT_EQ(r.lateral_inverse_below(force, rho, at.weights, coupled),
-              r.lateral_inverse(force, at.weights));
+    const double held = z * any(random);
+    const Sums hold = sums_of(*nodes, natural, held, rho);
+    const Vec3 weights = r.lateral_weights(held, coupled);
+    EXPECT_NEAR(norm(weights - r.lateral_weights(held)), 0, 1e-12 * norm(weights));
+    const auto b = r.weighted_at(z, rho, weights, coupled);
+    EXPECT_NEAR(b.normal.force, want.g, 1e-12 * want.g);
+    EXPECT_NEAR(b.normal.energy, want.G, 1e-12 * want.G);
+    EXPECT_NEAR(b.lateral.force, hold.lateral, 1e-12 * hold.lateral);
+    EXPECT_NEAR(b.lateral.energy, hold.weighted, 1e-12 * hold.weighted);
+    const double force = b.lateral.force * any(random);
+    EXPECT_EQ(r.lateral_inverse_below(force, rho, weights, coupled),
+              r.lateral_inverse(force, weights));
   }
 }
 

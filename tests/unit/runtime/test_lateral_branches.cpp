@@ -315,7 +315,7 @@ TEST(LateralBranches, TurnWithTheNormalAndKeepTheirEnergy) {
   const Vec3 down{0, 0, -1}, aside{0.6, 0, -0.8};
   runtime::LateralBranches branches(2);
   branches.pass({&response, &fractions, down}, {0.1, 0.05, 0}, 2e-3, decay);
-  branches.settle({&response, &fractions, down});
+  branches.settle(branches.find_stored({&response, &fractions, down}));
   const runtime::LateralMemory before = branches.now();
   EXPECT_GT(before.stored(), 1e-7);
   branches.carry({&response, &fractions, aside},

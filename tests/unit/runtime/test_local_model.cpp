@@ -47,6 +47,33 @@ class LocalModelTest : public ::testing::Test {
     return model.energy(model.deflection(x));
   }
 
+  /// c along d in its element, c + s by a': s is what is left of c + s - c across n(c). The anchor
+  /// rests while c catches up with it, or slips along t.
+  void expect_slope_of_energy(const Surface& body, bool anchor_rests) {
+    const double h = 2e-7;
+    std::uniform_real_distribution<double> any(-1, 1);
+    const SurfacePoint p = random_point();
+    LocalModel model(body, p, 0.0005);
+    const Vec3 x = random_tip(model);
+    model.set_lateral_offset(0.002 * Vec3{any(random_), any(random_), any(random_)});
+    const Vec3 anchor = model.contact_point() + model.lateral_offset();
+    const Element& e = body.element(p.element);
+    Vec3 d{any(random_), any(random_), any(random_)};
+    d = d - dot(d, e.facet_normal) * e.facet_normal;
+    d = (1.0 / norm(d)) * d;
+    const Vec3 rate = anchor_rests ? Vec3{} : any(random_) * model.deflection(x).tangent;
+    const auto moved = [&](double s) {
+      SurfacePoint q = p;
+      for (std::size_t l = 0; l < 3; ++l) q.natural[l] += s * dot(e.gradient[l], d);
+      LocalModel there(body, q, 0.0005);
+      there.set_lateral_offset(anchor + s * rate - there.contact_point());
+      return energy(there, x);
+    };
+    const double numeric = (8 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12 * h);
+    const double exact = model.energy_slope(model.deflection(x), d, rate);
+    EXPECT_NEAR(numeric, exact, 1e-7 * std::max(1.0, std::abs(exact)));
+  }
+
   Surface surface_{bumpy_sphere(2, 0.03, 0.2, uneven)};
   std::mt19937 random_{7};
 };
@@ -105,31 +132,7 @@ TEST_F(LeaningModelTest, AStraightPressLeansAgainstItsLean) {
 }
 
 TEST_F(LeaningModelTest, EnergySlopeAgreesWithMovingTheContactPointAndTheAnchor) {
-  const double h = 2e-7;
-  std::uniform_real_distribution<double> any(-1, 1);
-  for (int trial = 0; trial < 1000; ++trial) {
-    const Surface& body = surface(trial);
-    const SurfacePoint p = random_point();
-    LocalModel model(body, p, 0.0005);
-    const Vec3 x = random_tip(model);
-    model.set_lateral_offset(0.002 * Vec3{any(random_), any(random_), any(random_)});
-    const Vec3 anchor = model.contact_point() + model.lateral_offset();
-    const Element& e = body.element(p.element);
-    Vec3 d{any(random_), any(random_), any(random_)};
-    d = d - dot(d, e.facet_normal) * e.facet_normal;
-    d = (1.0 / norm(d)) * d;
-    const Vec3 rate = trial % 4 < 2 ? Vec3{} : any(random_) * model.deflection(x).tangent;
-    const auto moved = [&](double s) {
-      SurfacePoint q = p;
-      for (std::size_t l = 0; l < 3; ++l) q.natural[l] += s * dot(e.gradient[l], d);
-      LocalModel there(body, q, 0.0005);
-      there.set_lateral_offset(anchor + s * rate - there.contact_point());
-      return energy(there, x);
-    };
-    const double numeric = (8 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12 * h);
-    const double exact = model.energy_slope(model.deflection(x), d, rate);
-    EXPECT_NEAR(numeric, exact, 1e-7 * std::max(1.0, std::abs(exact)));
-  }
+  for (int trial = 0; trial < 1000; ++trial) expect_slope_of_energy(surface(trial), trial % 4 < 2);
 }
 
 TEST_F(LocalModelTest, ForceIsTheGradientOfTheEnergy) {
@@ -249,32 +252,7 @@ TEST_F(LocalModelTest, ALateralOffsetKeepsTheFieldConservative) {
 }
 
 TEST_F(LocalModelTest, EnergySlopeAgreesWithMovingTheContactPointAndTheAnchor) {
-  // c along d in its element, c + s by a': s is what is left of c + s - c across n(c).
-  const double h = 2e-7;
-  std::uniform_real_distribution<double> any(-1, 1);
-  for (int trial = 0; trial < 500; ++trial) {
-    const SurfacePoint p = random_point();
-    LocalModel model(surface_, p, 0.0005);
-    const Vec3 x = random_tip(model);
-    model.set_lateral_offset(0.002 * Vec3{any(random_), any(random_), any(random_)});
-    const Vec3 anchor = model.contact_point() + model.lateral_offset();
-    const Element& e = surface_.element(p.element);
-    Vec3 d{any(random_), any(random_), any(random_)};
-    d = d - dot(d, e.facet_normal) * e.facet_normal;
-    d = (1.0 / norm(d)) * d;
-    const Vec3 rate =
-        trial % 2 == 0 ? Vec3{} : any(random_) * model.deflection(x).tangent;  // catching up; slip
-    const auto moved = [&](double s) {
-      SurfacePoint q = p;
-      for (std::size_t l = 0; l < 3; ++l) q.natural[l] += s * dot(e.gradient[l], d);
-      LocalModel there(surface_, q, 0.0005);
-      there.set_lateral_offset(anchor + s * rate - there.contact_point());
-      return energy(there, x);
-    };
-    const double numeric = (8 * (moved(h) - moved(-h)) - (moved(2 * h) - moved(-2 * h))) / (12 * h);
-    const double exact = model.energy_slope(model.deflection(x), d, rate);
-    EXPECT_NEAR(numeric, exact, 1e-7 * std::max(1.0, std::abs(exact)));
-  }
+  for (int trial = 0; trial < 500; ++trial) expect_slope_of_energy(surface_, trial % 2 == 0);
 }
 
 TEST_F(LocalModelTest, ForceAndEnergyAreContinuousAcrossEdges) {

@@ -382,6 +382,27 @@ TEST(Relaxation, NothingDependsOnWhoAsksForEnergies) {
   }
 }
 
+TEST(Relaxation, APressThatIsAskedAtItsEndAloneAccountsForTheSame) {
+  constexpr int kSteps = 985000;  // 31 cycles in which the skin comes to lag, and half a press
+  Pressed always(wall), once(wall);
+  double force_always = 0, force_once = 0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double depth = 2e-3 - 1.5e-3 * std::cos(2e-4 * i), dt = 1e-5 * (1 + std::sin(i));
+    const Vec3 tip{0.022, 0.031, -depth};
+    once.contact().step(tip, dt);
+    always.contact().step(tip, dt);
+    force_once = once.contact().observation_but_energies().force[2];
+    force_always = always.seen().force[2];
+    ASSERT_EQ(force_once, force_always) << i;
+  }
+  EXPECT_LT(force_once, -0.01);
+  EXPECT_GT(once.seen().dissipated, 1e-4);
+  EXPECT_EQ(once.seen().energy, always.seen().energy);
+  EXPECT_EQ(once.seen().dissipated, always.seen().dissipated);
+  EXPECT_EQ(once.seen().absorbed, always.seen().absorbed);
+  EXPECT_NEAR(once.seen().absorbed, once.seen().energy + once.seen().dissipated, 1e-15);
+}
+
 TEST(Relaxation, HowManyBranchesAFractionIsDividedIntoMakesNoDifference) {
   for (const ResponseKind kind : {ResponseKind::Decoupled, ResponseKind::Coupled}) {
     const auto one = felt_by_a_wandering_tool(in_parts(1, kind));

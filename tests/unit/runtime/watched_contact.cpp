@@ -66,12 +66,15 @@ ModelEnergy model_energy(const Library& library, const runtime::ContactObservati
                      static_cast<double>(lean[2])};
     along = along + model.point.natural[l] * (whole - dot(whole, model.normal) * model.normal);
   }
-  energy.lateral_deflection = r - z * along - model.offset * model.normal - model.lateral_offset;
+  energy.lateral_deflection =
+      r - z * along - model.offset * model.normal - model.lateral_offset - model.grip.micro_slip;
   const double rho = norm(energy.lateral_deflection);
   energy.depth = z;
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
-    const double w = library.kind == ResponseKind::Coupled ? coupling_weight(node.coupling, z) : 1;
+    const double w = library.kind == ResponseKind::Coupled
+                         ? coupling_weight(node.coupling, model.grip.depth)
+                         : 1;
     const CurvePoint g = curve_at(node.normal, z);
     energy.normal += model.point.natural[l] * g.energy;
     energy.normal_force += model.point.natural[l] * g.force;
@@ -394,7 +397,7 @@ double WatchedContact::overdraft(const runtime::ContactObservation& model, const
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library_.responses[static_cast<std::size_t>(t[l])];
     const double w = library_.kind == ResponseKind::Coupled
-                         ? coupling_weight(node.coupling, model.deflection.depth)
+                         ? coupling_weight(node.coupling, model.grip.depth)
                          : 1;
     const double n = model.point.natural[l];
     lateral += n * w * curve_at(node.lateral, model.deflection.lateral).force;

@@ -9,6 +9,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <random>
 #include <utility>
@@ -25,6 +26,8 @@ struct Contact {
   double z = 0, rho = 0, g = 0, h = 0, energy = 0;
   Vec3 n{}, t{};
 };
+
+inline constexpr double kPresent = std::numeric_limits<double>::quiet_NaN();
 
 /// One triangle with contact points anywhere in its plane, by natural coordinates.
 class PlainModel {
@@ -68,7 +71,8 @@ class PlainModel {
     return sum - dot(sum, n) * n;
   }
 
-  Contact at(const Vec3& x, const Vec3& c, double d0) const {
+  /// held: depth that the contact holds, of coupled responses; NaN: the present one.
+  Contact at(const Vec3& x, const Vec3& c, double d0, double held = kPresent) const {
     const auto w = natural(c);
     Contact state;
     state.n = direction(c);
@@ -77,21 +81,19 @@ class PlainModel {
     const Vec3 lateral = delta - state.z * (state.n + lean(c));
     state.rho = norm(lateral);
     if (state.rho > 0) state.t = (1 / state.rho) * lateral;
-    double normal_force = 0;
     for (std::size_t l = 0; l < 3; ++l) {
-      const double weight = weight_at(l, state.z);
+      const double weight = weight_at(l, std::isnan(held) ? state.z : held);
       const double H = lateral_[l].energy(state.rho);
       state.g += w[l] * normal_[l].force(state.z);
-      normal_force += w[l] * (normal_[l].force(state.z) + weight_[l].slope(state.z) * H);
       state.h += w[l] * weight * lateral_[l].force(state.rho);
       state.energy += w[l] * (normal_[l].energy(state.z) + weight * H);
     }
     const double against = state.h * dot(state.t, lean(c));
-    state.force = (normal_force - against) * state.n + state.h * state.t;
+    state.force = (state.g - against) * state.n + state.h * state.t;
     return state;
   }
 
-  /// rho_s at a depth, by bisection.
+  /// rho_s at a depth that the contact holds, by bisection.
   double slip_limit(const Vec3& c, double z, double limit) const {
     const auto w = natural(c);
     double low = 0;
@@ -108,10 +110,12 @@ class PlainModel {
   Vec3 in_plane(const Vec3& t) const { return unit(t - dot(t, facet_) * facet_); }
 
   /// The contact point after the slide has come to rest: moved until rho = rho_s.
-  std::optional<Vec3> slid(const Vec3& x, Vec3 c, double d0, double mu) const {
+  std::optional<Vec3> slid(const Vec3& x, Vec3 c, double d0, double mu,
+                           double held = kPresent) const {
     for (int i = 0; i < 400; ++i) {
-      const Contact state = at(x, c, d0);
-      const double excess = state.rho - slip_limit(c, state.z, mu * state.g);
+      const Contact state = at(x, c, d0, held);
+      const double depth = std::isnan(held) ? state.z : held;
+      const double excess = state.rho - slip_limit(c, depth, mu * state.g);
       if (excess < 1e-16) return c;
       c = c + excess * in_plane(state.t);
     }
@@ -186,6 +190,12 @@ inline Start random_start(std::mt19937& engine, const PlainModel& model, double 
   return start;
 }
 
+/// Where a contact grows, its lateral offset may take the growth, so that w stays; every other
+/// step.
+inline double held_depth(const Contact& before, const Vec3& step, int k) {
+  return k % 2 == 1 && dot(step, before.n) > 0 ? before.z : kPresent;
+}
+
 struct SlideCensus {
   double closest = 0;  ///< largest quotient / L_slip
   int slides = 0;
@@ -206,10 +216,11 @@ inline void try_slides(std::mt19937& engine, const Library& library, double mu,
     const Contact before = model.at(start.x, start.c, start.d0);
     for (int k = 0; k < 12; ++k) {
       const Vec3 step = 1e-7 * unit({normal(engine), normal(engine), normal(engine)});
-      const auto c = model.slid(start.x + step, start.c, start.d0, mu);
+      const double held = held_depth(before, step, k);
+      const auto c = model.slid(start.x + step, start.c, start.d0, mu, held);
       ASSERT_TRUE(c);
       if (!model.inside(*c) || norm(*c - start.c) < 1e-10) continue;
-      const Contact after = model.at(start.x + step, *c, start.d0);
+      const Contact after = model.at(start.x + step, *c, start.d0, held);
       const double quotient = norm(after.force - before.force) / norm(step);
       EXPECT_LE(quotient, bound * (1 + 1e-4));
       census.closest = std::max(census.closest, quotient / bound);
@@ -251,14 +262,15 @@ inline SlidingState random_slide(std::mt19937& engine, const PlainModel& model,
 inline double steepest_step(std::mt19937& engine, const PlainModel& model, const Start& start,
                             double mu) {
   std::normal_distribution<double> normal;
-  const Vec3 before = model.at(start.x, start.c, start.d0).force;
+  const Contact before = model.at(start.x, start.c, start.d0);
   double steepest = 0;
   for (int k = 0; k < 400; ++k) {
     const Vec3 step = 1e-8 * unit({normal(engine), normal(engine), normal(engine)});
-    const auto c = model.slid(start.x + step, start.c, start.d0, mu);
+    const double held = held_depth(before, step, k);
+    const auto c = model.slid(start.x + step, start.c, start.d0, mu, held);
     if (!c || norm(*c - start.c) < 1e-11) continue;
-    const Vec3 after = model.at(start.x + step, *c, start.d0).force;
-    steepest = std::max(steepest, norm(after - before) / norm(step));
+    const Vec3 after = model.at(start.x + step, *c, start.d0, held).force;
+    steepest = std::max(steepest, norm(after - before.force) / norm(step));
   }
   return steepest;
 }

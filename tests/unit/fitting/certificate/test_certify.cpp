@@ -247,34 +247,26 @@ TEST(Certificate, AFlatLateralResponseIsUnboundedWhereTheSurfaceVaries) {
   EXPECT_NE(library.certificate.limited_by.find("too flat"), std::string::npos);
 }
 
-TEST(Certificate, ACoupledResponseThatIsFlatWhereSlipBeginsHasNoEnforceableBound) {
-  // On the plateau the slip limit jumps by 2 mm, and with it H(rho_s) in the normal force.
+TEST(Certificate, OnlyALateralStiffnessThatGrowsWithDepthWithoutLimitHasNoEnforceableBound) {
+  // On the plateau the slip limit jumps by 2 mm: the force does not.
   const ResponseCurve plateau{{0.0f, 0.001f, 0.002f, 0.003f, 0.004f}, {90, 0, 0, 90, 90}};
   const ResponseCurve rising{{0.0f, 0.001f, 0.002f, 0.003f, 0.004f}, {90, 20, 20, 90, 90}};
   CertifySettings settings = with_friction(0.3);
   settings.devices.push_back(viscous());
-  for (const bool flat : {false, true}) {
+  for (const ResponseCurve& lateral : {rising, plateau}) {
     Library library = flat_triangle();
     library.kind = ResponseKind::Coupled;
-    set_equal_responses(library, node_response(linear_curve(100), flat ? plateau : rising));
+    set_equal_responses(library, node_response(linear_curve(100), lateral));
     for (NodeResponse& node : library.responses)
       node.coupling = {0.5F, {{0.0F, 0.005F, 0.01F}, {0, 60, 0}}};
     certify(library, settings);
-    EXPECT_EQ(std::isinf(library.certificate.min_lipschitz_bound), flat);
-    if (!flat) {
-      // If w grows with depth without limit, so does the lateral stiffness.
-      Library growing = library;
-      for (NodeResponse& node : growing.responses) node.coupling.curve.slope.back() = 20;
-      certify(growing, settings);
-      EXPECT_TRUE(std::isinf(growing.certificate.min_lipschitz_bound));
-    }
+    EXPECT_TRUE(std::isfinite(library.certificate.min_lipschitz_bound));
     EXPECT_LE(library.certificate.stick, library.certificate.min_lipschitz_bound);
     EXPECT_LE(library.certificate.lipschitz_bound, 4 * library.certificate.min_lipschitz_bound);
-    EXPECT_EQ(std::isinf(library.certificate.devices.at(0).lowest_rate), flat);
-    if (flat) {
-      EXPECT_EQ(verdict(library.certificate, library.certificate.devices.at(0)),
-                "no guarantee at any rate: slides have no bound");
-    }
+    EXPECT_TRUE(std::isfinite(library.certificate.devices.at(0).lowest_rate));
+    for (NodeResponse& node : library.responses) node.coupling.curve.slope.back() = 20;
+    certify(library, settings);
+    EXPECT_TRUE(std::isinf(library.certificate.min_lipschitz_bound));
   }
 }
 
