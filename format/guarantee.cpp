@@ -116,8 +116,7 @@ CertifiedRange certified_range(const Library& library) {
   const Certificate& c = library.certificate;
   if (c.triangles.empty()) return {};
   const bool known = std::isfinite(c.min_lipschitz_bound);
-  const bool from_zero = known && library.kind == ResponseKind::Decoupled;
-  return {from_zero ? 0 : c.friction, c.friction, std::max(c.stick, c.slip),
+  return {known ? 0 : c.friction, c.friction, std::max(c.stick, c.slip),
           known ? c.min_lipschitz_bound : kInfinity, c.relaxation_rate};
 }
 

@@ -29,8 +29,8 @@ bool is_certified(const Certificate& certificate, const DeviceCertificate& devic
 
 /// For which settings of a state the runtime keeps the change of the force within its bound.
 struct CertifiedRange {
-  /// Friction coefficients. Decoupled responses: from 0 to that of the certificate, as L_min grows
-  /// with it. Coupled ones, and where L_min is not known: that of the certificate alone.
+  /// Friction coefficients: from 0 to that of the certificate, as L_min grows with it; where L_min
+  /// is not known, that of the certificate alone.
   double low_friction = 1, high_friction = 0;
   double curves = kInfinity;  ///< N/m: from there on the responses keep the bound by themselves
   double min_lipschitz_bound = kInfinity;  ///< N/m, L_min: from there on by rate-limited slides

@@ -129,9 +129,8 @@ enum {
 
 typedef struct palpate_settings {
   uint32_t size; /* sizeof(palpate_settings), set by palpate_settings_default */
-  /* mu, friction coefficient; negative (default) = that of the certificate. Above it, and for
-   * coupled responses at any other value, lipschitz_bound may be exceeded and nothing is certified.
-   */
+  /* mu, friction coefficient; negative (default) = that of the certificate. Above it
+   * lipschitz_bound may be exceeded and nothing is certified. */
   double friction;
   double tank_cap; /* J, cap of the energy tank; default 0.005; 0 = no tank (Theorem 2) */
   /* N/m, Lipschitz bound of the force: between two steps the force changes by at most this times

@@ -116,13 +116,12 @@ TEST(CertifiedRange, OfFrictionEndsAtThatOfTheCertificate) {
   Library library;
   library.certificate = certificate(100, 200, 120);
   library.certificate.friction = 0.3;
-  for (const double mu : {0.0, 0.1, 0.3}) EXPECT_TRUE(certified_range(library).covers(mu)) << mu;
-  for (const double mu : {-0.1, 0.3001, 1.0, kUnknown})
-    EXPECT_FALSE(certified_range(library).covers(mu)) << mu;
-  library.kind = ResponseKind::Coupled;
-  EXPECT_TRUE(certified_range(library).covers(0.3));
-  EXPECT_FALSE(certified_range(library).covers(0.1));
-  library.kind = ResponseKind::Decoupled;
+  for (const ResponseKind kind : {ResponseKind::Coupled, ResponseKind::Decoupled}) {
+    library.kind = kind;
+    for (const double mu : {0.0, 0.1, 0.3}) EXPECT_TRUE(certified_range(library).covers(mu)) << mu;
+    for (const double mu : {-0.1, 0.3001, 1.0, kUnknown})
+      EXPECT_FALSE(certified_range(library).covers(mu)) << mu;
+  }
   library.certificate.min_lipschitz_bound = kUnknown;  // schema 1
   EXPECT_FALSE(certified_range(library).covers(0.1));
   EXPECT_FALSE(certified_range({}).covers(0));
