@@ -26,14 +26,18 @@ std::string reason(const palpate_library& body, double friction, double bound,
 }
 
 TEST(CertifiedState, NeedsTheFrictionOfTheCertificate) {
-  const palpate_library body(plate_of_200());
-  EXPECT_EQ(reason(body, 0.3, 200), "");
-  EXPECT_EQ(reason(body, 0.1, 200), "");
-  EXPECT_THAT(reason(body, 0.6, 200), HasSubstr("is not covered by the certificate, which is valid "
-                                                "up to 0.3"));
-  const palpate_library pad(plate_of_200(ResponseKind::Coupled));
-  EXPECT_EQ(reason(pad, 0.3, 200), "");
-  EXPECT_THAT(reason(pad, 0.1, 200), HasSubstr("valid at 0.3"));
+  for (const ResponseKind kind : {ResponseKind::Decoupled, ResponseKind::Coupled}) {
+    const palpate_library body(plate_of_200(kind));
+    EXPECT_EQ(reason(body, 0.3, 200), "");
+    EXPECT_EQ(reason(body, 0.1, 200), "");
+    EXPECT_THAT(reason(body, 0.6, 200), HasSubstr("is not covered by the certificate, which is "
+                                                  "valid up to 0.3"));
+  }
+  Library library = plate_of_200();
+  library.certificate.min_lipschitz_bound = kUnknown;
+  const palpate_library without(library);
+  EXPECT_EQ(reason(without, 0.3, 200), "");
+  EXPECT_THAT(reason(without, 0.1, 200), HasSubstr("valid at 0.3"));
 }
 
 TEST(CertifiedState, NeedsABoundThatDampingAndDryFrictionPayFor) {
