@@ -61,17 +61,6 @@ Range slope_range(const runtime::CompiledCurve& curve, const Range& range) {
   return result;
 }
 
-Range curvature_range(const runtime::CompiledCurve& curve, const Range& range) {
-  Range result{kInfinity, -kInfinity};
-  const auto& pieces = curve.pieces();
-  for (std::size_t k = 0; k < pieces.size(); ++k) {
-    const double end = k + 1 < pieces.size() ? pieces[k + 1].start : kInfinity;
-    if (end < range.low || pieces[k].start > range.high) continue;
-    result = hull(result, {2 * pieces[k].curvature, 2 * pieces[k].curvature});
-  }
-  return result;
-}
-
 CurveTriple::CurveTriple(std::array<runtime::CompiledCurve, 3> curves,
                          const std::array<Vec3, 3>& gradient)
     : curves_(std::move(curves)), gradient_(gradient), first_knot_(kInfinity) {
@@ -99,12 +88,6 @@ double CurveTriple::greatest_force(double d) const {
 Range CurveTriple::slope(const Range& range) const {
   Range result{kInfinity, 0};
   for (const auto& curve : curves_) result = hull(result, slope_range(curve, range));
-  return result;
-}
-
-Range CurveTriple::curvature(const Range& range) const {
-  Range result{kInfinity, -kInfinity};
-  for (const auto& curve : curves_) result = hull(result, curvature_range(curve, range));
   return result;
 }
 

@@ -13,8 +13,6 @@ namespace palpate::fitting {
 
 /// Slopes of a curve over a range of deflections, exact.
 Range slope_range(const runtime::CompiledCurve& curve, const Range& range);
-/// Second derivatives over the range; at a knot, those of both adjacent pieces.
-Range curvature_range(const runtime::CompiledCurve& curve, const Range& range);
 
 /// The curves of one kind at the three vertices of a triangle, interpolated as
 /// f_c(d) = sum n_l(c) f_l(d). The value is linear in the natural coordinates, so its extrema are
@@ -32,8 +30,6 @@ class CurveTriple {
   double least_force(double d) const;     ///< over the triangle
   double greatest_force(double d) const;  ///< over the triangle
   Range slope(const Range& range) const;  ///< over the triangle and the range, exact
-  /// Second derivative over the triangle and the range; at a knot, of both adjacent pieces.
-  Range curvature(const Range& range) const;
   /// sup |grad_c f_c(d)|, N/m
   double force_gradient(const Range& range) const;
   /// sup |grad_c E_c(d)| / f_c(d), 1; finite down to d = 0. Infinite where the force is zero.

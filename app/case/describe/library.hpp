@@ -29,9 +29,10 @@ void describe_fit(V& v, fitting::FitSettings& s) {
          {"interpolation_correction",
           "scales responses so that interpolated forces have no mean error between the vertices, "
           "by the curvature of the force along the surface"});
-  v.flag(s.lean, {"lean",
-                  "a straight press leans where the force of the solid does: beside supports, above "
-                  "inclusions"});
+  v.flag(s.lean,
+         {"lean",
+          "a straight press leans where the force of the solid does: beside supports, above "
+          "inclusions"});
   describe_choice(
       v, s.kind,
       {"responses",
