@@ -167,6 +167,8 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
                      !coupled && exceeds_friction(fixed.response, 0)
                          ? slip_to_limit(*model_, before, fixed.response)
                          : LateralSlip{}};
+  if (coupled && unsettled_.any && model_->memory().lateral.any && model_->holds_otherwise(before))
+    settle(fixed.response);
   const double let_go = coupled ? hold(fixed) : 0;
   // What is stored is found in two parts, as the slip and the walk wait for their roots and leave
   // the processor time for it.
@@ -192,7 +194,11 @@ void ContactState::touch(const Vec3& x, double travelled) noexcept {
 /// falls by, J
 double ContactState::hold(FixedContact& fixed) noexcept {
   const double energy = fixed.response.energy;
-  model_->renew_grip(fixed.deflection, fixed.response, pieces_);
+  model_->renew_grip(fixed.deflection, fixed.response, pieces_, memory_);
+  if (memory_.relaxes() && model_->memory().lateral.grip != 0) {
+    memory_.carry(model_->place(), model_->memory(), {});
+    model_->set_memory(memory_.now());
+  }
   if (exceeds_friction(fixed.response, 0))
     fixed.slip = slip_to_limit(*model_, fixed.deflection, fixed.response);
   return energy - fixed.response.energy;
@@ -302,7 +308,7 @@ void ContactState::finish(Candidate& next, const Vec3& x, const FixedContact& fi
   }
   next.model.respond(next.deflection, pieces_, next.response);
   if (settings_.budget == EnergyBudget::Enforced) enforce_budget(next, x, fixed, recovery);
-  next.model.renew_grip(next.deflection, next.response, pieces_);
+  next.model.renew_grip(next.deflection, next.response, pieces_, memory_);
   if (fractions.slip == 1) enforce_friction(next, fixed.allowance);
 }
 
@@ -437,20 +443,21 @@ void ContactState::commit(Candidate& next, double energy_before) noexcept {
 void ContactState::set_memory_at_point(LocalModel& model, Shear shear) const noexcept {
   if (!memory_.relaxes()) return;
   const double slid = norm(model.contact_point() - remembering_point_);
-  model.set_memory(
-      memory_.carried_to(model.point(), model.response(), model.normal(), slid, shear));
+  model.set_memory(memory_.carried_to(model.place(), slid, shear));
 }
 
 /// The time of the step passes with the tip where it is. What friction then no longer holds slips.
 void ContactState::relax(Candidate& at) noexcept {
   const LocalModel& model = at.model;
   LocalResponse& response = at.response;
-  memory_.carry(model.point(), model.response(), model.normal(), model.memory());
+  const LateralMemory& lateral = model.memory().lateral;
+  const bool slid_and_holds = model_ && lateral.slide != 0 && lateral.grip != 0;
+  memory_.carry(model.place(), model.memory(),
+                slid_and_holds ? model.weights_of(model_->grip()) : Vec3{});
   remembering_point_ = model.contact_point();
   memory_.pass(response.relaxed.instant.force, dt_);
-  if (!model.coupled())
-    memory_.pass_lateral(response.instant_lateral_force * at.deflection.tangent,
-                         at.deflection.lateral);
+  memory_.pass_lateral(response.instant_lateral_force * at.deflection.tangent,
+                       at.deflection.lateral);
   const double energy_before = response.energy;
   const double normal_before = response.friction_normal_force;
   const double held = std::max(settings_.friction * normal_before, response.lateral_force);  // N

@@ -9,12 +9,14 @@ namespace palpate::runtime {
 template <std::size_t kPairs>
 template <typename Act>
 void KeptPieces<kPairs>::with_knots(std::size_t lane, double at, const Act& act) noexcept {
-  const InterpolatedResponse response(nodes_, natural_);
+  const std::size_t i = lane == 0 ? 0 : 1;
+  const Vec3 weights{weights_[0][i], weights_[1][i], weights_[2][i]};
+  const InterpolatedResponse response(nodes_, weights);
   if ((lane == 0 ? first_ : other_) == ResponseOf::Depth) {
-    KnotMerge<&NodeCurves::normal> knots(response, natural_, at);
+    KnotMerge<&NodeCurves::normal> knots(response, weights, at);
     act(knots);
   } else {
-    KnotMerge<&NodeCurves::lateral> knots(response, natural_, at);
+    KnotMerge<&NodeCurves::lateral> knots(response, weights, at);
     act(knots);
   }
 }

@@ -47,15 +47,22 @@ class KeptPieces {
   /// g in the first lane and h in the second.
   KeptPieces() noexcept : lanes_(2), first_(ResponseOf::Depth), other_(ResponseOf::Lateral) {}
 
-  /// The response of what follows.
-  void keep_for(const InterpolatedResponse& response) noexcept {
+  /// The response of what follows, with weights of its own for h.
+  void keep_for(const InterpolatedResponse& response, const Vec3& lateral) noexcept {
     const bool same = is_of(response.nodes());
-    const Vec3& natural = response.natural();
-    if (same && natural_[0] == natural[0] && natural_[1] == natural[1] && natural_[2] == natural[2])
+    const auto& first = first_ == ResponseOf::Depth ? response.natural() : lateral;
+    const auto& other = other_ == ResponseOf::Depth ? response.natural() : lateral;
+    const std::array<Pair, 3> weights{Pair{first[0], other[0]}, Pair{first[1], other[1]},
+                                      Pair{first[2], other[2]}};
+    if (same && all(equal(weights[0], weights_[0]) & equal(weights[1], weights_[1]) &
+                    equal(weights[2], weights_[2])))
       return;
-    natural_ = natural;
+    weights_ = weights;
     if (!same) find_all(response.nodes());
     for (std::size_t p = 0; p < pairs(); ++p) merge(pieces_[p]);
+  }
+  void keep_for(const InterpolatedResponse& response) noexcept {
+    keep_for(response, response.natural());
   }
 
   /// The smallest deflections >= 0 at which the response has the forces of pair p, in closed form;
@@ -115,8 +122,8 @@ class KeptPieces {
     return nodes_[0] == these[0] && nodes_[1] == these[1] && nodes_[2] == these[2];
   }
   Pair mix(const std::array<Start, 3>& nodes, Pair Start::*of) const noexcept {
-    return natural_[0] * (nodes[0].*of) + natural_[1] * (nodes[1].*of) +
-           natural_[2] * (nodes[2].*of);
+    return weights_[0] * (nodes[0].*of) + weights_[1] * (nodes[1].*of) +
+           weights_[2] * (nodes[2].*of);
   }
   void merge(PiecePair& on) const noexcept {
     on.merged = {mix(on.nodes, &Start::force), mix(on.nodes, &Start::slope),
@@ -139,7 +146,7 @@ class KeptPieces {
   std::size_t lanes_;
   ResponseOf first_, other_;                  ///< of the first lane and of the others
   std::array<const NodeCurves*, 3> nodes_{};  ///< owners of the pieces; null: none
-  Vec3 natural_{};                            ///< natural coordinates of what is merged
+  std::array<Pair, 3> weights_{};             ///< of what is merged: first lane, other lanes
   std::array<PiecePair, kPairs> pieces_;
 };
 

@@ -2,6 +2,7 @@
 #include "runtime/lateral_branches.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace palpate::runtime {
 namespace {
@@ -14,9 +15,13 @@ class LateralSums {
     y_ += fraction * force[1];
     z_ += fraction * force[2];
   }
-  LateralMemory memory(double stored, double carried, std::uint64_t slide) const noexcept {
-    return {Pair{x_[0] + x_[1], y_[0] + y_[1]}, Pair{z_[0] + z_[1], 0}, Pair{stored, carried}, true,
-            slide};
+  LateralMemory memory(double stored) const noexcept {
+    LateralMemory sum;
+    sum.relaxed_xy = Pair{x_[0] + x_[1], y_[0] + y_[1]};
+    sum.relaxed_z = Pair{z_[0] + z_[1], 0};
+    sum.stored_and_carried = Pair{stored, 1};
+    sum.any = true;
+    return sum;
   }
 
  private:
@@ -38,8 +43,8 @@ LateralMemory LateralBranches::move(const LateralPlace& place, double factor) co
   LateralSums sums;
   Pair stored{};
   const Branches& branches = branches_[here_];
-  Branches& moved = branches_[1 - here_];
-  pieces_.keep_for(*place.response);
+  Branches& moved = branches_[slid_];
+  pieces_.keep_for(*place.response, place.weights);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     const BranchPair& from = branches[p];
     BranchPair& there = moved[p];
@@ -51,24 +56,85 @@ LateralMemory LateralBranches::move(const LateralPlace& place, double factor) co
     sums.add(place.fractions->pair[p], there.force);
     stored += place.fractions->pair[p] * there.at.conjugate(there.at.force);
   }
-  return sums.memory(stored[0] + stored[1], factor, slides_);
+  return sums.memory(stored[0] + stored[1]);
+}
+
+/// Multiplies the forces, and finds where they are reached with the weights of the place, which
+/// are no smaller than those before times the same.
+LateralMemory LateralBranches::hold(const LateralPlace& place, const Branches& from,
+                                    double scale) const noexcept {
+  LateralSums sums;
+  Pair stored{};
+  Branches& held = branches_[held_];
+  pieces_.keep_for(*place.response, place.weights);
+  for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
+    BranchPair& there = held[p];
+    for (std::size_t k = 0; k < 3; ++k) there.force[k] = scale * from[p].force[k];
+    there.longest = from[p].longest;
+    reach(p, there);
+    there.longest = there.at.deflection;
+    sums.add(place.fractions->pair[p], there.force);
+    stored += place.fractions->pair[p] * there.at.conjugate(there.at.force);
+  }
+  return sums.memory(stored[0] + stored[1]);
+}
+
+/// Finds where the forces of two branches are reached.
+void LateralBranches::reach(std::size_t p, BranchPair& branch) const noexcept {
+  const Pair(&force)[3] = branch.force;
+  const Pair magnitude = roots(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
+  branch.at = pieces_.reach(p, magnitude);
+  if (!all(at_most(branch.at.deflection, branch.longest)))  // by rounding
+    branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, branch.longest));
 }
 
 LateralMemory LateralBranches::carried_to(const LateralPlace& place, double factor) const noexcept {
   if (!now_.any || !stays_tangential(place.normal)) return {};
-  ++slides_;
-  return move(place, factor);
+  LateralMemory there = move(place, factor);
+  there.stored_and_carried = Pair{there.stored(), factor};
+  there.slide = last_slide_ = ++considered_;
+  return there;
 }
 
-void LateralBranches::carry(const LateralPlace& place, const LateralMemory& carried) noexcept {
-  if (carried.any && carried.slide == 0) return;
-  now_ = carried;
-  now_.slide = 0;
-  now_.stored_and_carried = Pair{carried.stored(), 1};
-  if (!carried.any) return;
-  if (carried.slide != slides_) move(place, carried.carried());
-  here_ = 1 - here_;
-  normal_ = place.normal;
+LateralMemory LateralBranches::held_at(const LateralPlace& place, const LateralMemory& memory,
+                                       double scale) const noexcept {
+  if (!memory.any) return {};
+  LateralMemory there = hold(place, branches_[memory.slide != 0 ? slid_ : here_], scale);
+  there.stored_and_carried = Pair{there.stored(), memory.carried()};
+  there.held = scale;
+  there.slide = memory.slide;
+  there.grip = last_grip_ = ++considered_;
+  return there;
+}
+
+void LateralBranches::carry(const LateralPlace& place, const LateralMemory& changed,
+                            const Vec3& slid) noexcept {
+  const bool moves = changed.slide != 0, holds = changed.grip != 0;
+  if (changed.any && !moves && !holds) return;
+  if (changed.any) {
+    // Others may have been considered since.
+    if (holds ? changed.grip != last_grip_ : changed.slide != last_slide_)
+      repeat(place, changed, slid);
+    std::swap(here_, holds ? held_ : slid_);
+    last_slide_ = last_grip_ = 0;
+    normal_ = place.normal;
+  }
+  now_ = changed;
+  now_.stored_and_carried = Pair{changed.stored(), 1};
+  now_.held = 1;
+  now_.slide = now_.grip = 0;
+}
+
+/// Considers a slide and a grip once more.
+void LateralBranches::repeat(const LateralPlace& place, const LateralMemory& changed,
+                             const Vec3& slid) noexcept {
+  const bool moves = changed.slide != 0;
+  if (moves) {
+    LateralPlace end = place;
+    if (changed.grip != 0) end.weights = slid;
+    move(end, changed.carried());
+  }
+  if (changed.grip != 0) hold(place, branches_[moves ? slid_ : here_], changed.held);
 }
 
 void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double lateral,
@@ -88,20 +154,16 @@ void LateralBranches::pass(const LateralPlace& place, const Vec3& target, double
     branch.longest = larger(branch.longest, both(lateral));
     sums.add(place.fractions->pair[p], force);
   }
-  now_ = sums.memory(0, 1, 0);
+  now_ = sums.memory(0);
 }
 
 double LateralBranches::find_stored(const LateralPlace& place) noexcept {
   if (!now_.any) return 0;
   Pair stored{};
-  pieces_.keep_for(*place.response);
+  pieces_.keep_for(*place.response, place.weights);
   for (std::size_t p = 0; p < pieces_.pairs(); ++p) {
     BranchPair& branch = branches_[here_][p];
-    const Pair(&force)[3] = branch.force;
-    const Pair magnitude = roots(force[0] * force[0] + force[1] * force[1] + force[2] * force[2]);
-    branch.at = pieces_.reach(p, magnitude);
-    if (!all(at_most(branch.at.deflection, branch.longest)))
-      branch.at = pieces_.evaluate(p, smaller(branch.at.deflection, branch.longest));
+    reach(p, branch);
     stored += place.fractions->pair[p] * branch.at.conjugate(branch.at.force);
   }
   return stored[0] + stored[1];

@@ -20,12 +20,13 @@ struct LateralPlace {
   const InterpolatedResponse* response;
   const Lanes* fractions;
   Vec3 normal;
+  Vec3 weights;  ///< of the three lateral responses: n_l, or n_l w_l of the grip when coupled
 };
 
 /// One lateral deflection p_i (m) for each relaxation time, tangential to the surface: M_i =
 /// grad H(p_i) is the force that the branch has relaxed. A deflection is kept rather than its force
 /// since every response has a force for it. Every function is noexcept, allocation-free and
-/// bounded. For decoupled responses.
+/// bounded.
 class LateralBranches {
  public:
   explicit LateralBranches(std::size_t count) noexcept : pieces_(count, ResponseOf::Lateral) {}
@@ -35,8 +36,13 @@ class LateralBranches {
   /// The same at another place: every deflection turns with the normal and is multiplied by
   /// `factor`.
   LateralMemory carried_to(const LateralPlace& place, double factor) const noexcept;
-  /// Brings them there, where carried_to() has found `carried`; none: they are forgotten.
-  void carry(const LateralPlace& place, const LateralMemory& carried) noexcept;
+  /// now(), or the last of carried_to(), where the contact there holds the tissue with other
+  /// weights, no smaller than those before times `scale`: every force M_i is multiplied by it.
+  LateralMemory held_at(const LateralPlace& place, const LateralMemory& memory,
+                        double scale) const noexcept;
+  /// Brings them there, where carried_to() and held_at() have found `changed`; none: they are
+  /// forgotten. slid: the weights at the place before those of a new grip.
+  void carry(const LateralPlace& place, const LateralMemory& changed, const Vec3& slid) noexcept;
   /// Time passes while the instantaneous force is `target` (N) at a deflection of `lateral` (m):
   /// M_i := target + (M_i - target) decay_i. V falls. K is 0 until settle().
   void pass(const LateralPlace& place, const Vec3& target, double lateral,
@@ -57,14 +63,19 @@ class LateralBranches {
   using Branches = std::array<BranchPair, pairs_of(kMaxRelaxationTimes)>;
   bool stays_tangential(const Vec3& normal) const noexcept;
   LateralMemory move(const LateralPlace& place, double factor) const noexcept;
+  LateralMemory hold(const LateralPlace& place, const Branches& from, double scale) const noexcept;
+  void reach(std::size_t p, BranchPair& branch) const noexcept;
+  void repeat(const LateralPlace& place, const LateralMemory& changed, const Vec3& slid) noexcept;
 
-  /// Where the memories lie, and at the end of the slide that was considered last.
-  mutable std::array<Branches, 2> branches_{};
-  std::size_t here_ = 0;  ///< which of the two are where they lie
-  Vec3 normal_{};         ///< to which they are tangential
+  /// Where the memories lie, at the end of the slide that was considered last, and with the grip
+  /// that was.
+  mutable std::array<Branches, 3> branches_{};
+  std::size_t here_ = 0, slid_ = 1, held_ = 2;  ///< which of the three are these
+  Vec3 normal_{};                               ///< to which they are tangential
   LateralMemory now_;
-  mutable BranchPieces pieces_;       ///< results do not depend on them
-  mutable std::uint64_t slides_ = 0;  ///< how many were
+  mutable BranchPieces pieces_;  ///< results do not depend on them
+  /// How many slides and grips were considered, and the last of each that is at hand.
+  mutable std::uint64_t considered_ = 0, last_slide_ = 0, last_grip_ = 0;
 };
 
 }  // namespace palpate::runtime

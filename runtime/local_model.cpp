@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "format/numbers.hpp"
+#include "runtime/relaxation.hpp"
 
 namespace palpate::runtime {
 
@@ -44,14 +45,21 @@ LateralSlip LocalModel::relaxed_slip_within(const Deflection& d, const LocalResp
   const Vec3 instant = relaxed + (std::max(limit, 0.0) / at.lateral_force) * felt;
   const double magnitude = norm(instant);
   LateralSlip slip;
-  pieces.keep_for(response_);
-  slip.lateral = pieces.reach(0, Pair{at.relaxed.instant.force, magnitude}).deflection[1];
+  slip.lateral = lateral_reached(at, magnitude, pieces);
   if (!(slip.lateral < kInfinity)) slip.lateral = d.lateral;  // by rounding, at the end of a curve
   if (slip.lateral > 0) slip.tangent = (1 / magnitude) * instant;
   slip.scale = 1;
   slip.direction = d.lateral * d.tangent - slip.lateral * slip.tangent;
   slip.distance = norm(slip.direction);
   return slip;
+}
+
+/// The lateral deflection at which a response without memory has a force (N), m. at: of any
+/// deflection at this depth.
+double LocalModel::lateral_reached(const LocalResponse& at, double force,
+                                   TipPieces& pieces) const noexcept {
+  pieces.keep_for(response_, lateral_weights());
+  return pieces.reach(0, Pair{at.relaxed.instant.force, force}).deflection[1];
 }
 
 void LocalModel::slip(const LateralSlip& by, Deflection& d, LocalResponse& at,
@@ -73,13 +81,12 @@ LocalModel LocalModel::moved_to(const SurfacePoint& point, ToolPieces& pieces) c
   there.memory_.reset();
   if (!coupled()) return there;
   there.grip_.micro_slip = grip_.micro_slip - dot(grip_.micro_slip, there.n_) * there.n_;
-  there.weights_ = there.response_.lateral_weights(grip_.depth, pieces.elastic);
+  there.weights_ = grip_.scale * there.response_.lateral_weights(grip_.depth, pieces.elastic);
   return there;
 }
 
-void LocalModel::renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept {
+void LocalModel::renew_elastic_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept {
   const double depth = std::max(d.depth, 0.0);
-  if (!coupled() || depth == grip_.depth) return;
   const Vec3 before = weights_;
   weights_ = response_.lateral_weights(depth, pieces.elastic);
   if (!(d.lateral > 0)) {
@@ -101,6 +108,48 @@ void LocalModel::renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces
   add_micro_slip((d.lateral - renewed.lateral) * d.tangent);
   d = renewed;
   at = response;
+}
+
+/// Where w falls, every lateral force falls by the same factor, the least with which no vertex is
+/// held by more than its w. Then every vertex is held by its w, and every lateral force stays: q
+/// and the p_i become shorter. Where E would rise by that, the grip only falls by the factor.
+void LocalModel::renew_relaxing_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces,
+                                     const Relaxation& memories) noexcept {
+  const double depth = std::max(d.depth, 0.0);
+  const Vec3 held = weights_, wide = response_.lateral_weights(depth, pieces.elastic);
+  double scale = 1;
+  for (std::size_t l = 0; l < 3; ++l)
+    if (held[l] > wide[l]) scale = std::min(scale, wide[l] / held[l]);
+  const LateralMemory before = memory_->lateral;
+  const auto take = [&](const Vec3& weights) {
+    weights_ = weights;
+    memory_->lateral = memories.held_at(place(), before, scale);
+  };
+  take(wide);
+  Deflection renewed = d;
+  if (d.lateral > 0) {
+    const double force = scale * at.instant_lateral_force;
+    renewed.lateral = std::min(lateral_reached(at, force, pieces.relaxing), d.lateral);
+    if (!(renewed.lateral > 0)) renewed.tangent = {};
+  }
+  LocalResponse response;
+  respond(renewed, pieces, response);
+  if (!(response.energy > at.energy)) {
+    grip_.depth = depth;
+    grip_.scale = 1;
+    add_micro_slip((d.lateral - renewed.lateral) * d.tangent);
+    d = renewed;
+    at = response;
+    return;
+  }
+  if (scale < 1) {
+    take(scale * held);
+    grip_.scale *= scale;
+    respond(d, pieces, at);
+    return;
+  }
+  weights_ = held;
+  memory_->lateral = before;
 }
 
 /// Adds to e, and to s what is too much.
@@ -128,7 +177,8 @@ double LocalModel::energy_slope(const Deflection& at, const Vec3& d,
     const Vec3 lean = surface_->lean(e, l);
     lean_change = lean_change + rate * lean;
     lean_along_normal += point_.natural[l] * dot(lean, n_);
-    const double w = node.coupled() ? node.coupling().evaluate_from_start(grip_.depth).force : 1.0;
+    const double w =
+        node.coupled() ? grip_.scale * node.coupling().evaluate_from_start(grip_.depth).force : 1.0;
     change_of_curves += rate * (node.normal().evaluate(at.depth).energy +
                                 w * node.lateral().evaluate(at.lateral).energy);
   }

@@ -2,16 +2,20 @@
 // The static conservative force field f_i(x) of a fixed contact point.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
 #include "format/vec3.hpp"
+#include "runtime/contact_place.hpp"
 #include "runtime/interpolated_response.hpp"
 #include "runtime/kept_pieces.hpp"
 #include "runtime/surface.hpp"
 #include "runtime/tissue_memory.hpp"
 
 namespace palpate::runtime {
+
+class Relaxation;
 
 /// The deflection of the tip in the response coordinates at a contact point. depth and lateral are
 /// apart: side by side they would be loaded at once, which waits until both are stored.
@@ -22,8 +26,8 @@ struct Deflection {
   Vec3 tangent{};        ///< t = q/rho, unit; zero when rho = 0
 };
 
-/// The pieces of the responses around the tool, from one evaluation to the next; those of decoupled
-/// responses that relax, and those of all others. Results do not depend on them.
+/// The pieces of the responses around the tool, from one evaluation to the next; those of responses
+/// that relax, and those of all others. Results do not depend on them.
 struct ToolPieces {
   PiecesInUse elastic;
   TipPieces relaxing;
@@ -37,14 +41,15 @@ struct LocalResponse {
   Vec3 force{};       ///< f = g n + h (t - (t . sigma) n), of the tool ON the body, N [eq. 28]
   double friction_normal_force = 0;  ///< g(z), or psi g(z), N: friction is limited to mu times it
   RelaxedResponse relaxed{};         ///< for responses that relax only
-  double instant_lateral_force = 0;  ///< h(rho), N, of decoupled responses that relax only
+  double instant_lateral_force = 0;  ///< h(rho) or w h(rho), N, of responses that relax only
 };
 
 /// How the contact holds the tissue, of coupled responses: its width is that at a depth, and what
 /// has come into contact since holds tissue that was sheared by then.
 struct Grip {
-  double depth = 0;   ///< z_w >= 0, m: the lateral response is w(z_w) h
+  double depth = 0;   ///< z_w >= 0, m: the lateral response is scale w(z_w) h
   Vec3 micro_slip{};  ///< e, m, across n: lateral deflection without force
+  double scale = 1;   ///< below 1 only in tissue that relaxes
 };
 
 /// Slip with c fixed that brings the lateral force down to a limit.
@@ -114,14 +119,14 @@ class LocalModel {
   /// The same in its place: a copy would wait for what has just been stored.
   void respond(const Deflection& d, ToolPieces& pieces, LocalResponse& r) const noexcept {
     r = {};
-    if (memory_ && !coupled())
+    if (memory_)
       relaxing_response(d, pieces.relaxing, r);
     else
       response(d, pieces.elastic, r);
   }
   LocalResponse respond(const Deflection& d) const noexcept {
     LocalResponse r;
-    if (memory_ && !coupled()) {
+    if (memory_) {
       TipPieces pieces;
       relaxing_response(d, pieces, r);
     } else {
@@ -159,12 +164,32 @@ class LocalModel {
   /// contact holds tissue as it is [Mindlin & Deresiewicz 1953], and e takes the rest of q, up to
   /// kMostMicroSlip of the tool's radius; beyond it s does. Where E would rise, as a lateral
   /// response that stiffens sharply lets it, the grip stays. The deflection and the response are
-  /// updated.
-  void renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept;
+  /// updated. memories: those of tissue that relaxes, whose energies at this place are known
+  /// where anything is remembered of drags; theory-runtime (R33).
+  void renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces,
+                  const Relaxation& memories) noexcept {
+    if (!coupled() || !(holds_otherwise(d))) return;
+    if (memory_)
+      renew_relaxing_grip(d, at, pieces, memories);
+    else
+      renew_elastic_grip(d, at, pieces);
+  }
+  /// The same of tissue that does not relax.
+  void renew_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept {
+    if (coupled() && holds_otherwise(d)) renew_elastic_grip(d, at, pieces);
+  }
+  /// Is the grip not that of this depth?
+  bool holds_otherwise(const Deflection& d) const noexcept {
+    return grip_.scale != 1 || grip_.depth != std::max(d.depth, 0.0);
+  }
   const Grip& grip() const noexcept { return grip_; }
   void set_grip(const Grip& grip) noexcept {
-    grip_ = {grip.depth, grip.micro_slip - dot(grip.micro_slip, n_) * n_};
-    if (coupled()) weights_ = response_.lateral_weights(grip.depth);
+    grip_ = {grip.depth, grip.micro_slip - dot(grip.micro_slip, n_) * n_, grip.scale};
+    if (coupled()) weights_ = weights_of(grip_);
+  }
+  /// Weights of the three lateral responses with a grip, of coupled responses.
+  Vec3 weights_of(const Grip& grip) const noexcept {
+    return grip.scale * response_.lateral_weights(grip.depth);
   }
   static constexpr double kMostMicroSlip = 0.1;
 
@@ -212,6 +237,7 @@ class LocalModel {
   /// The response of another memory, from that of the present one at the same deflection.
   void replace_memory(const TissueMemory& memory, const Deflection& d, LocalResponse& at) noexcept;
   const InterpolatedResponse& response() const noexcept { return response_; }
+  ContactPlace place() const noexcept { return {point_, response_, n_, lateral_weights()}; }
   bool coupled() const noexcept { return response_.coupled(); }
   double deepest() const noexcept { return response_.deepest(); }
   NodeCurves::InUse curves_in_use(const Deflection& d) const noexcept {
@@ -226,17 +252,12 @@ class LocalModel {
     const InterpolatedResponse::Decoupled at =
         coupled() ? response_.weighted_at(d.depth, d.lateral, weights_, pieces)
                   : response_.decoupled_at(d.depth, d.lateral, pieces);
-    if (memory_) {
-      r.relaxed = relaxed_response(memory_->normal, {d.depth, at.normal.force, at.normal.energy});
-      take({r.relaxed.force, at.lateral.force, r.relaxed.energy + at.lateral.energy}, d, r);
-    } else {
-      take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
-    }
+    take({at.normal.force, at.lateral.force, at.normal.energy + at.lateral.energy}, d, r);
     r.friction_normal_force = r.normal_force;
   }
-  /// The same of decoupled responses that relax.
+  /// The same of responses that relax.
   void relaxing_response(const Deflection& d, TipPieces& pieces, LocalResponse& r) const noexcept {
-    pieces.keep_for(response_);
+    pieces.keep_for(response_, lateral_weights());
     const ReachedForces at = pieces.evaluate(0, Pair{d.depth, d.lateral});
     r.relaxed = relaxed_response(memory_->normal, {d.depth, at.force[0], at.energy[0]});
     take({r.relaxed.force, at.force[1], r.relaxed.energy + at.energy[1]}, d, r);
@@ -257,6 +278,10 @@ class LocalModel {
   /// A^T h t: the part of the force of a lateral force in the response coordinates, N.
   Vec3 leaning(const Vec3& lateral) const noexcept { return lateral - dot(lateral, lean_) * n_; }
   void add_micro_slip(const Vec3& by) noexcept;
+  void renew_elastic_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces) noexcept;
+  void renew_relaxing_grip(Deflection& d, LocalResponse& at, ToolPieces& pieces,
+                           const Relaxation& memories) noexcept;
+  double lateral_reached(const LocalResponse& at, double force, TipPieces& pieces) const noexcept;
   void relax_laterally(const LateralMemory& memory, const LateralMemory& before,
                        const Deflection& d, LocalResponse& r) const noexcept;
   LateralSlip relaxed_slip_within(const Deflection& d, const LocalResponse& at, double limit,
@@ -282,7 +307,7 @@ class LocalModel {
   double offset_;
   Vec3 lateral_offset_{};
   Grip grip_;
-  Vec3 weights_{};                     ///< n_l w_l(z_w), where responses are coupled
+  Vec3 weights_{};                     ///< those of the grip, where responses are coupled
   std::optional<CopiedIfAny> memory_;  ///< none: the responses do not relax
 };
 

@@ -58,37 +58,46 @@ NormalMemory Relaxation::normal_carried_to(const InterpolatedResponse& response,
   return kFresh;
 }
 
-TissueMemory Relaxation::carried_to(const SurfacePoint& p, const InterpolatedResponse& response,
-                                    const Vec3& normal, double distance,
+TissueMemory Relaxation::carried_to(const ContactPlace& place, double distance,
                                     Shear shear) const noexcept {
   const LateralMemory& lateral = lateral_.now();
   const bool shears = lateral.any && shear == Shear::Kept;
   if (distance == 0) return {now_, shears ? lateral : LateralMemory{}};
   if (!remembers() && !shears) return {kFresh, {}};
-  if (!surface_->relaxes_alike() && !(p == considered_)) {
-    considered_ = p;
-    there_ = surface_->fractions(p);
+  if (!surface_->relaxes_alike() && !(place.point == considered_)) {
+    considered_ = place.point;
+    there_ = surface_->fractions(place.point);
   }
   const Lanes& fractions = surface_->relaxes_alike() ? fractions_ : there_;
   const double factor = std::exp(-distance / surface_->tool_radius());
   // The lateral memory first, as the force waits longest for it.
   TissueMemory there;
-  if (shears) there.lateral = lateral_.carried_to({&response, &fractions, normal}, factor);
-  there.normal = normal_carried_to(response, fractions, factor);
+  if (shears)
+    there.lateral =
+        lateral_.carried_to({&place.response, &fractions, place.normal, place.weights}, factor);
+  there.normal = normal_carried_to(place.response, fractions, factor);
   return there;
 }
 
-void Relaxation::carry(const SurfacePoint& p, const InterpolatedResponse& response,
-                       const Vec3& normal, const TissueMemory& carried) noexcept {
-  if (carried.normal.carried() != 1)
-    for (std::size_t k = 0; k < pairs_of(times_); ++k) memory_.pair[k] *= carried.normal.carried();
+LateralMemory Relaxation::held_at(const ContactPlace& place, const LateralMemory& memory,
+                                  double scale) const noexcept {
+  const bool here = surface_->relaxes_alike() || memory.slide == 0;
+  return lateral_.held_at(
+      {&place.response, here ? &fractions_ : &there_, place.normal, place.weights}, memory, scale);
+}
+
+void Relaxation::carry(const ContactPlace& place, const TissueMemory& changed,
+                       const Vec3& slid) noexcept {
+  if (changed.normal.carried() != 1)
+    for (std::size_t k = 0; k < pairs_of(times_); ++k) memory_.pair[k] *= changed.normal.carried();
   if (!surface_->relaxes_alike() || !response_)
-    fractions_ = p == considered_ ? there_ : surface_->fractions(p);
-  response_ = response;
-  normal_ = normal;
-  now_ = carried.normal;
+    fractions_ = place.point == considered_ ? there_ : surface_->fractions(place.point);
+  response_ = place.response;
+  normal_ = place.normal;
+  weights_ = place.weights;
+  now_ = changed.normal;
   now_.relaxed_and_carried = Pair{now_.relaxed(), 1};
-  if (lateral_.now().any) lateral_.carry({&*response_, &fractions_, normal_}, carried.lateral);
+  if (lateral_.now().any) lateral_.carry(here(), changed.lateral, slid);
 }
 
 void Relaxation::keep_decay(double dt) noexcept {
@@ -118,7 +127,7 @@ void Relaxation::find_normal() noexcept {
 void Relaxation::find() noexcept {
   find_normal();
   if (lateral_found_ || !response_) return;
-  lateral_stored_ = lateral_.find_stored({&*response_, &fractions_, normal_});
+  lateral_stored_ = lateral_.find_stored(here());
   lateral_found_ = true;
 }
 
@@ -135,7 +144,7 @@ void Relaxation::settle() noexcept {
 }
 
 void Relaxation::pass_lateral(const Vec3& force, double lateral) noexcept {
-  if (response_) lateral_.pass({&*response_, &fractions_, normal_}, force, lateral, decay_);
+  if (response_) lateral_.pass(here(), force, lateral, decay_);
 }
 
 void Relaxation::forget() noexcept {

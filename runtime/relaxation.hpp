@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "runtime/contact_place.hpp"
 #include "runtime/interpolated_response.hpp"
 #include "runtime/kept_pieces.hpp"
 #include "runtime/lanes.hpp"
@@ -23,8 +24,8 @@ enum class Shear : std::uint8_t { Kept, Lost };
 /// tangential) of the lateral response: the quasi-linear viscoelastic law of Fung as Maxwell
 /// elements whose energy is convex, theory-runtime (R17)-(R27). They start at 0 and belong to the
 /// tissue under the contact point: a slide takes them along and loses them over the length of the
-/// tool's radius. Coupled responses have no lateral memory. Every function is noexcept,
-/// allocation-free and bounded. One object belongs to one thread at a time.
+/// tool's radius. Every function is noexcept, allocation-free and bounded. One object belongs to
+/// one thread at a time.
 class Relaxation {
  public:
   explicit Relaxation(const Surface& surface) noexcept
@@ -41,14 +42,15 @@ class Relaxation {
   TissueMemory now() const noexcept { return {now_, lateral_.now()}; }
   /// R of the normal response, J: what is stored without a tool.
   double locked() const noexcept { return now_.locked(); }
-  /// The same after a slide of the contact point to p with this response and normal, `distance` (m)
-  /// away: every memory is multiplied by exp(-distance/radius), normal ones by less where R would
-  /// rise at p.
-  TissueMemory carried_to(const SurfacePoint& p, const InterpolatedResponse& response,
-                          const Vec3& normal, double distance, Shear shear) const noexcept;
-  /// Makes that slide.
-  void carry(const SurfacePoint& p, const InterpolatedResponse& response, const Vec3& normal,
-             const TissueMemory& carried) noexcept;
+  /// The same after a slide of the contact point to a place `distance` (m) away: every memory is
+  /// multiplied by exp(-distance/radius), normal ones by less where R would rise there.
+  TissueMemory carried_to(const ContactPlace& place, double distance, Shear shear) const noexcept;
+  /// A lateral memory at a place, now() or the last of carried_to(), where the contact holds the
+  /// tissue with the weights of the place: every M_i is multiplied by `scale`.
+  LateralMemory held_at(const ContactPlace& place, const LateralMemory& memory,
+                        double scale) const noexcept;
+  /// Makes that slide, and takes that grip. slid: the weights at the place before the grip.
+  void carry(const ContactPlace& place, const TissueMemory& changed, const Vec3& slid) noexcept;
   /// A time dt (s) while the instantaneous normal force at the tool is g (N):
   /// F_i := g* + (F_i - g*) exp(-dt/tau_i), where g* is g, or F where the skin lags behind the
   /// tool. The energy at the tool falls. Forces are known at once; settle() adds the energies,
@@ -77,11 +79,13 @@ class Relaxation {
                     double relaxed) const noexcept;
   void keep_decay(double dt) noexcept;
   void find() noexcept;
+  LateralPlace here() const noexcept { return {&*response_, &fractions_, normal_, weights_}; }
 
   const Surface* surface_;
   std::size_t times_;                             ///< how many relaxation times
   std::optional<InterpolatedResponse> response_;  ///< at the contact point; none before the first
   Vec3 normal_{};                                 ///< the same
+  Vec3 weights_{};                                ///< the same, of the lateral responses
   Lanes memory_{};                                ///< F_i, N
   LateralBranches lateral_;
   Lanes fractions_{};  ///< g_i at the contact point

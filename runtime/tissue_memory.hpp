@@ -19,8 +19,10 @@ struct LateralMemory {
   Pair relaxed_xy{};
   Pair relaxed_z{};
   Pair stored_and_carried{0, 1};
+  double held = 1;          ///< what a contact that has shrunk has left of the forces M_i
   bool any = false;         ///< whether a branch may have relaxed a force
   std::uint64_t slide = 0;  ///< to another contact point than that of the branches; 0: none
+  std::uint64_t grip = 0;   ///< other than that of the branches; 0: none
 
   Vec3 relaxed() const noexcept { return {relaxed_xy[0], relaxed_xy[1], relaxed_z[0]}; }  ///< M, N
   double stored() const noexcept { return stored_and_carried[0]; }                        ///< K, J

@@ -112,11 +112,9 @@ std::string where_bounded(const Library& library, const std::vector<TriangleBoun
   return text + "; down to " + length_text(kRoundedDown * depth) + " every slide has a bound";
 }
 
-/// The factor of L in (C10): the lateral force changes with the limit of friction, and that of
-/// decoupled responses by itself.
-double change_factor(ResponseKind kind, double friction) {
+/// The factor of L in (C10): the lateral force changes by itself and with the limit of friction.
+double change_factor(double friction) {
   const double square = friction * friction;
-  if (kind == ResponseKind::Coupled) return 1 + square;
   return 1 + square / 2 + friction * std::sqrt(1 + square / 4);
 }
 
@@ -129,7 +127,7 @@ double relaxation_rate(const Library& library, double friction) {
       rate += static_cast<double>(response.relaxation[i]) / library.relaxation_times[i];
     largest = std::max(largest, rate);
   }
-  return change_factor(library.kind, friction) * largest;
+  return change_factor(friction) * largest;
 }
 
 void add_devices(Certificate& certificate, const CertifySettings& settings) {

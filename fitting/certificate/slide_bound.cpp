@@ -258,12 +258,14 @@ double largest_shrinking(const ContactElement& element, const Range& z) {
 
 /// Bound of the force at fixed c over a cell of depths, within friction, while the contact shrinks:
 /// its lateral part w h changes with z and rho, the normal one with z. The norm of a matrix without
-/// negative entries grows with each of them. Within a step w stays, at any rho.
+/// negative entries grows with each of them. Within a step w stays, at any rho; memories let the
+/// force be within friction at any rho.
 double cell_stick(const ContactElement& element, const Range& z) {
   const double rho = element.friction > 0 ? coupled_limit(element, z).high : 0;
   const double w = element.coupling->greatest_force(z.high);
   const double any = w * element.lateral.max_slope();
-  const double within = rho < kInfinity ? w * element.lateral.slope({0, rho}).high : any;
+  const double within =
+      rho < kInfinity && !element.relaxes ? w * element.lateral.slope({0, rho}).high : any;
   return std::max(
       any, triangular_norm(element.normal.slope(z).high, largest_shrinking(element, z), within));
 }

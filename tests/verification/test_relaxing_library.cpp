@@ -40,25 +40,32 @@ Body layered_block() {
   return body;
 }
 
-CampaignSettings settings_of(const RelaxationSeries& skin, const RelaxationSeries& deep) {
+CampaignSettings settings_of(const RelaxationSeries& skin, const RelaxationSeries& deep,
+                             ResponseKind kind, ToolFriction friction) {
   CampaignSettings settings;
   settings.materials = {{"skin", {15e3, 0.48}, 0, skin}, {"deep", {8e3, 0.48}, 0, deep}};
   settings.indentation.tool.radius = 0.005;
   settings.indentation.depth = kDepth;
   settings.indentation.increments = 6;
   settings.indentation.lateral_depths = {kDragDepth};
+  if (kind == ResponseKind::Coupled)
+    settings.indentation.lateral_depths = {0.25 * kDepth, kDragDepth, kDepth};
   settings.indentation.lateral_travel = kDragged;
   settings.indentation.lateral_increments = 2;
   settings.indentation.force_tolerance = 1e-6;
+  settings.indentation.friction = friction;
   return settings;
 }
 
 /// Solid and library of the same body.
 class Both {
  public:
-  Both(const RelaxationSeries& skin, const RelaxationSeries& deep)
-      : body_(layered_block()),
-        settings_(settings_of(skin, deep)),
+  Both(const RelaxationSeries& skin, const RelaxationSeries& deep,
+       ResponseKind kind = ResponseKind::Decoupled,
+       ToolFriction friction = ToolFriction::Frictionless)
+      : kind_(kind),
+        body_(layered_block()),
+        settings_(settings_of(skin, deep, kind, friction)),
         site_(test::site_nearest(body_)),
         library_(made()),
         loaded_(library_) {}
@@ -106,6 +113,7 @@ class Both {
     curves.relaxation = context.relaxation;
     curves.sites = {solve_site(context, site_, nullptr)};
     fitting::FitSettings fit;
+    fit.kind = kind_;
     fit.relative_tolerance = 1e-3;
     fit.absolute_tolerance = 1e-5;
     fit.fill_holes = true;
@@ -113,6 +121,7 @@ class Both {
     return fitting::fit(body_, curves, fit);
   }
 
+  ResponseKind kind_;
   Body body_;
   CampaignSettings settings_;
   std::int32_t site_;
@@ -233,6 +242,49 @@ TEST(RelaxingLibraryAside, ADragOverLayersThatRelaxDifferentlyIsNear) {
                           "a press of 0.15 R on two layers",
                           0.1, 0.05),
             0.05);
+}
+
+TEST(RelaxingLibraryAside, ADragOfCoupledResponsesRelaxesAsTheSolidDoes) {
+  const Both alike(kSkin, kSkin, ResponseKind::Coupled);
+  EXPECT_LE(drag_and_hold(alike,
+                          "A library of tissue that relaxes against the solid: a drag of 0.1 R in "
+                          "a press of 0.15 R, one series, coupled",
+                          0.1, 0.04),
+            0.04);
+}
+
+TEST(RelaxingLibraryAside, ADragThatIsHeldWhileThePressGoesOnRelaxesAsTheSolidDoes) {
+  // What the contact takes in as it grows is not sheared: in the solid, nodes stick as they touch.
+  constexpr auto kHeld =
+      "A library of tissue that relaxes against the solid: a drag of 0.1 R held from 0.15 R to 0.3 "
+      "R, one series, coupled";
+  constexpr double kMore = 0.3 * kDragged, kBound = 0.04;
+  const Both alike(kSkin, kSkin, ResponseKind::Coupled, ToolFriction::NoSlip);
+  const double at_once =
+      alike.follow({{0, 0}, {0, kDragDepth}, {0, kDragDepth, kDragged}}).back().solid_drag;
+  const auto samples = alike.follow({{0, 0},
+                                     {0, kDragDepth},
+                                     {0.05, kDragDepth, kDragged},
+                                     {0.15, kDepth, kDragged},
+                                     {1.15, kDepth, kDragged},
+                                     {1.25, kDepth, kDragged + kMore}});
+  for (const auto& s : samples) EXPECT_NEAR(s.loop_drag, s.solid_drag, kBound * at_once) << s.time;
+  const auto at = [&](double time) {
+    return *std::find_if(samples.begin(), samples.end(),
+                         [&](const auto& s) { return s.time > time - 1e-9; });
+  };
+  const auto row = [&](const char* what, double loop, double solid, double bound) {
+    test::verify({kHeld, what, "1", loop, solid, test::Reference::SameSolver,
+                  "internal variables at the Gauss points", bound, test::Error::Absolute});
+  };
+  const auto grown = at(0.15), relaxed = at(1.15), dragged = at(1.25);
+  row("after the press, over the force of an instant drag", grown.loop_drag / at_once,
+      grown.solid_drag / at_once, kBound);
+  row("held for 1 s, over the force after the press", relaxed.loop_drag / grown.loop_drag,
+      relaxed.solid_drag / grown.solid_drag, 0.01);
+  row("rise of a drag on by 0.03 R, over the force of an instant drag",
+      (dragged.loop_drag - relaxed.loop_drag) / at_once,
+      (dragged.solid_drag - relaxed.solid_drag) / at_once, 0.02);
 }
 
 }  // namespace palpate::fem

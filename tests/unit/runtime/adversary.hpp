@@ -47,6 +47,20 @@ inline Responses bent(double spread) {
   };
 }
 
+/// Contacts that grow with the depth early or late, side by side.
+inline Library growing_unevenly(Library library) {
+  library = coupled(std::move(library));
+  for (std::size_t v = 0; v < library.responses.size(); ++v) {
+    const Vec3& x = library.positions[v];
+    const double late = 0.9 * std::sin(210 * x[0] - 180 * x[1] + 90 * x[2]);
+    CouplingCurve& w = library.responses[v].coupling;
+    w.base *= static_cast<float>(1 - 0.7 * late);
+    for (std::size_t k = 0; k < w.curve.slope.size(); ++k)
+      w.curve.slope[k] *= static_cast<float>(w.curve.knot[k] < 0.002F ? 1 - late : 1 + late);
+  }
+  return library;
+}
+
 inline Library certified(Library library, double friction) {
   fitting::certify(library, {friction, {}});
   return library;
@@ -65,6 +79,10 @@ inline Library body_named(const std::string& name) {
   if (name == "relaxing_cube") return relaxing(cube(6, 0.06, varying(0.5)), {0.02, 0.5}, false);
   if (name == "relaxing_hills")
     return relaxing(bumpy_sphere(3, 0.03, 0.25, bent(0.4)), {0.01, 0.1, 1}, false);
+  if (name == "relaxing_grip") {
+    return relaxing(growing_unevenly(bumpy_sphere(3, 0.03, 0.25, bent(0.4))), {0.01, 0.1, 1},
+                    false);
+  }
   if (name == "leaning") return leaning(coupled(bumpy_sphere(3, 0.03, 0.25, varying(0.3))), 0.2);
   if (name == "leaning_rims") return leaning(cylinder(25, 20, 0.04, 0.2, varying(0.5)), 0.2);
   if (name == "leaning_thin")
@@ -126,6 +144,7 @@ inline auto adversary_cases() {
       AdversaryCase{"relaxing", 0.3, 5e-3}, AdversaryCase{"relaxing", 0, 0},
       AdversaryCase{"relaxing_alike", 0.2, 0}, AdversaryCase{"relaxing_cube", 0.5, 5e-3},
       AdversaryCase{"relaxing_hills", 0.3, 5e-3}, AdversaryCase{"relaxing_hills", 0.8, 0},
+      AdversaryCase{"relaxing_grip", 0.3, 5e-3}, AdversaryCase{"relaxing_grip", 0.7, 0},
       AdversaryCase{"leaning", 0.3, 5e-3}, AdversaryCase{"leaning_rims", 0.3, 0},
       AdversaryCase{"leaning_rims", 0, 5e-3}, AdversaryCase{"leaning_thin", 0.5, 5e-3},
       AdversaryCase{"leaning_relaxing", 0.3, 5e-3});

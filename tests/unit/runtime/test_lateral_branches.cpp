@@ -45,10 +45,10 @@ double stiffening_force(double rho) {
 /// A tool pressed 3 mm into a plate that relaxes, and dragged over it.
 class Dragged {
  public:
-  explicit Dragged(const Responses& responses, double friction = kSticks, bool coupled_too = false)
-      : library_(
-            relaxing(coupled_too ? coupled(plate(8, 0.08, responses)) : plate(8, 0.08, responses),
-                     kTimes, true)),
+  explicit Dragged(const Responses& responses, double friction = kSticks)
+      : Dragged(plate(8, 0.08, responses), friction) {}
+  explicit Dragged(const Library& elastic, double friction = kSticks)
+      : library_(relaxing(elastic, kTimes, true)),
         body_(library_),
         contact_(body_.surface, body_.tree, {friction, 5e-3}) {
     for (int i = -1; i <= 10; ++i) press(i < 0 ? -1e-9 : 1e-12 + 3e-4 * i);
@@ -77,6 +77,7 @@ class Dragged {
   Vec3 lateral() const { return {seen().force[0], seen().force[1], 0}; }
   const runtime::ContactObservation& seen() const { return contact_.observation(); }
   double radius() const { return library_.tool_radius; }
+  double depth() const { return depth_; }
 
  private:
   Library library_;
@@ -216,8 +217,12 @@ TEST(LateralBranches, TheToolSlipsOnlyAgainstTheForceThatIsFelt) {
 
 /// M, with a K of 1 J.
 runtime::LateralMemory remembered(const Vec3& relaxed) {
-  return {runtime::Pair{relaxed[0], relaxed[1]}, runtime::Pair{relaxed[2], 0}, runtime::Pair{1, 1},
-          true, 0};
+  runtime::LateralMemory memory;
+  memory.relaxed_xy = runtime::Pair{relaxed[0], relaxed[1]};
+  memory.relaxed_z = runtime::Pair{relaxed[2], 0};
+  memory.stored_and_carried = runtime::Pair{1, 1};
+  memory.any = true;
+  return memory;
 }
 
 TEST(LateralBranches, SlipAtAFixedPointKeepsTheDirectionOfTheForceAndLowersTheEnergy) {
@@ -295,12 +300,98 @@ TEST(LateralBranches, TissueThatTheToolHasLeftRemembersNoDrag) {
   EXPECT_NEAR(first, kSpring * 1e-3, 1e-6);
 }
 
-TEST(LateralBranches, CoupledResponsesDoNotRelaxLaterally) {
-  Dragged tool(straight, kSticks, true);
-  const double first = tool.ramp(1e-3, 0, kInstant, 5)[0];
-  EXPECT_NEAR(tool.hold(10)[0], first, 1e-12);
-  EXPECT_EQ(tool.seen().relaxed_lateral_force, Vec3{});
-  EXPECT_GT(tool.seen().relaxed_fraction, 0.4);
+/// Springs that a contact at the depth z holds with the weight 0.3 + 200 z.
+class CoupledBranches : public ::testing::Test {
+ protected:
+  static double held(double z) { return kSpring * (0.3 + 200 * z); }  // N/m
+  static Library body() {
+    Library library = plate(8, 0.08, straight);
+    library.kind = ResponseKind::Coupled;
+    library.tool_radius = 0.02;  // all micro-slip stays within a tenth of it
+    for (NodeResponse& node : library.responses) node.coupling = {0.3F, linear_curve(200)};
+    return library;
+  }
+};
+
+TEST_F(CoupledBranches, DragsAndHoldsAtADepthAreThoseOfMaxwellElements) {
+  constexpr double kDrag = 1.5e-3, kDepth = 3e-3;
+  for (const double time : {0.01, 0.3, 3.0}) {
+    Dragged tool(body());
+    const double rate = held(kDepth) * kDrag / time;  // N/s
+    for (const double more : {0.0, 0.005, 0.2}) {
+      double expected = kLongTerm * rate * time;
+      for (const double tau : kTimes)
+        expected += 0.25 * rate * tau * (1 - std::exp(-time / tau)) * std::exp(-more / tau);
+      const Vec3 felt =
+          more > 0 ? tool.hold(more == 0.2 ? 0.195 : more) : tool.ramp(kDrag, 0, time, 4000);
+      EXPECT_NEAR(felt[0], expected, 1e-4 * rate * time) << time << " " << more;
+    }
+  }
+}
+
+TEST_F(CoupledBranches, AContactThatGrowsGoesOnToRelaxAndOneThatShrinksLosesAsMuchOfItsForce) {
+  // A contact at 2 mm holds a drag. At 3 mm the force is the same: what has come into contact is
+  // not sheared. At 1.7 mm it is that of the springs that are left. The relaxation goes on as it
+  // was.
+  Dragged tool(body());
+  tool.press(2e-3);
+  const double drag = 1e-3, first = tool.ramp(drag, 0, kInstant, 5)[0];
+  EXPECT_NEAR(first, held(2e-3) * drag, 1e-6 * first);
+  double time = 0;
+  const auto expect = [&](double left) {
+    EXPECT_NEAR(tool.lateral()[0], left * first * prony(time), 1e-6 * first) << time;
+    for (const double dt : {0.01, 0.06}) {
+      time += dt;
+      EXPECT_NEAR(tool.hold(dt)[0], left * first * prony(time), 1e-6 * first) << time;
+    }
+  };
+  expect(1);
+  for (const double z : {2.2e-3, 3e-3}) tool.press(z);
+  expect(1);
+  // Back to where it was: the springs that came into contact let go what they bear by now.
+  tool.press(2e-3);
+  expect(held(2e-3) / held(3e-3));
+  for (const double z : {1.9e-3, 1.7e-3}) tool.press(z);
+  expect(held(1.7e-3) / held(3e-3));
+}
+
+TEST_F(CoupledBranches, ADragAfterTheContactHasGrownShearsAllThatIsHeld) {
+  Dragged tool(body());
+  tool.press(1e-3);
+  tool.ramp(1e-3, 0, kInstant, 5);
+  tool.hold(0.1);
+  const double before = tool.lateral()[0];
+  tool.press(3e-3);
+  const Vec3 after = tool.ramp(1e-3, 4e-4, kInstant, 5);
+  EXPECT_NEAR(after[0], before, 1e-6 * before);
+  EXPECT_NEAR(after[1], held(3e-3) * 4e-4, 1e-6 * before);
+}
+
+TEST_F(CoupledBranches, WhatAGripLosesIsNotGivenBack) {
+  // Springs that let go as the contact shrinks lose what they store: of V = g_inf w k q^2/2, after
+  // all that relaxes has, the part 1 - w(z)/w(z_w).
+  Dragged tool(body());
+  const auto lost = [&] {
+    const auto& seen = tool.seen();
+    return seen.absorbed - seen.energy - seen.dissipated;
+  };
+  const double q = std::hypot(2e-3, 1e-3), deep = tool.depth();
+  tool.ramp(2e-3, 1e-3, 0.2, 400);
+  tool.hold(100);
+  EXPECT_NEAR(lost(), 0, 1e-14);
+  tool.press(2.7e-3);
+  const double expected = kLongTerm * (held(deep) - held(2.7e-3)) * q * q / 2;
+  EXPECT_NEAR(lost(), expected, 1e-6 * expected);
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> any(0, 1);
+  double least = lost();
+  for (int i = 0; i < 3000; ++i) {
+    tool.press(4e-3 * any(random));
+    tool.to(3e-3 * any(random), 3e-3 * any(random), 0.05 * any(random) * any(random));
+    EXPECT_GE(lost(), least - 1e-15) << i;
+    least = lost();
+  }
+  EXPECT_GT(least, 1e-5);
 }
 
 TEST(LateralBranches, TurnWithTheNormalAndKeepTheirEnergy) {
@@ -314,19 +405,21 @@ TEST(LateralBranches, TurnWithTheNormalAndKeepTheirEnergy) {
   }
   const Vec3 down{0, 0, -1}, aside{0.6, 0, -0.8};
   runtime::LateralBranches branches(2);
-  branches.pass({&response, &fractions, down}, {0.1, 0.05, 0}, 2e-3, decay);
-  branches.settle(branches.find_stored({&response, &fractions, down}));
+  const Vec3& weights = response.natural();
+  const runtime::LateralPlace here{&response, &fractions, down, weights};
+  const runtime::LateralPlace turned{&response, &fractions, aside, weights};
+  branches.pass(here, {0.1, 0.05, 0}, 2e-3, decay);
+  branches.settle(branches.find_stored(here));
   const runtime::LateralMemory before = branches.now();
   EXPECT_GT(before.stored(), 1e-7);
-  branches.carry({&response, &fractions, aside},
-                 branches.carried_to({&response, &fractions, aside}, 1));
+  branches.carry(turned, branches.carried_to(turned, 1), {});
   const runtime::LateralMemory after = branches.now();
   EXPECT_NEAR(dot(after.relaxed(), aside), 0, 1e-16);
   EXPECT_NEAR(norm(after.relaxed()), norm(before.relaxed()), 1e-16);
   EXPECT_NEAR(after.stored(), before.stored(), 1e-18);
   // The axis of the turn is y: the part along it stays.
   EXPECT_NEAR(after.relaxed()[1], before.relaxed()[1], 1e-16);
-  EXPECT_FALSE(branches.carried_to({&response, &fractions, -aside}, 1).any);
+  EXPECT_FALSE(branches.carried_to({&response, &fractions, -aside, weights}, 1).any);
 }
 
 }  // namespace

@@ -173,7 +173,7 @@ class SampledAdversary : public CertifiedBody {
       for (const float g : node.relaxation) sum += static_cast<double>(g);
       largest = std::max(largest, sum);
     }
-    return relaxing_factor(library_, GetParam().friction) * largest;
+    return relaxing_factor(GetParam().friction) * largest;
   }
 };
 

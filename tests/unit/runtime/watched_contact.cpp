@@ -2,6 +2,7 @@
 #include "tests/unit/runtime/watched_contact.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -49,6 +50,20 @@ double coupling_weight(const CouplingCurve& coupling, double z) {
   return static_cast<double>(coupling.base) + curve_at(coupling.curve, z).force;
 }
 
+/// Weights of the lateral responses of the three vertices at a point: n_l, or n_l w_l of a grip.
+std::array<double, 3> lateral_weights(const Library& library, const runtime::SurfacePoint& p,
+                                      const runtime::Grip& grip) {
+  std::array<double, 3> weights{};
+  const Triangle& t = library.triangles[static_cast<std::size_t>(p.element)];
+  for (std::size_t l = 0; l < 3; ++l) {
+    weights[l] = p.natural[l];
+    if (library.kind != ResponseKind::Coupled) continue;
+    const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
+    weights[l] *= grip.scale * coupling_weight(node.coupling, grip.depth);
+  }
+  return weights;
+}
+
 }  // namespace
 
 ModelEnergy model_energy(const Library& library, const runtime::ContactObservation& model,
@@ -70,15 +85,13 @@ ModelEnergy model_energy(const Library& library, const runtime::ContactObservati
       r - z * along - model.offset * model.normal - model.lateral_offset - model.grip.micro_slip;
   const double rho = norm(energy.lateral_deflection);
   energy.depth = z;
+  const std::array<double, 3> weights = lateral_weights(library, model.point, model.grip);
   for (std::size_t l = 0; l < 3; ++l) {
     const NodeResponse& node = library.responses[static_cast<std::size_t>(t[l])];
-    const double w = library.kind == ResponseKind::Coupled
-                         ? coupling_weight(node.coupling, model.grip.depth)
-                         : 1;
     const CurvePoint g = curve_at(node.normal, z);
     energy.normal += model.point.natural[l] * g.energy;
     energy.normal_force += model.point.natural[l] * g.force;
-    energy.lateral += model.point.natural[l] * w * curve_energy(node.lateral, rho);
+    energy.lateral += weights[l] * curve_energy(node.lateral, rho);
   }
   return energy;
 }
@@ -97,26 +110,21 @@ std::vector<double> MemoryTwin::fractions(const runtime::SurfacePoint& p) const 
 namespace {
 
 using Curve = ResponseCurve NodeResponse::*;
-constexpr Curve kNormal = &NodeResponse::normal, kLateral = &NodeResponse::lateral;
 
 /// A response at a point, interpolated.
-CurvePoint response_at(const Library& library, const runtime::SurfacePoint& p, Curve curve,
-                       double d) {
+CurvePoint response_at(const Library& library, const runtime::SurfacePoint& p,
+                       const std::array<double, 3>& weights, Curve curve, double d) {
   CurvePoint sum;
   const Triangle& t = library.triangles[static_cast<std::size_t>(p.element)];
   for (std::size_t l = 0; l < 3; ++l) {
     const CurvePoint at = curve_at(library.responses[static_cast<std::size_t>(t[l])].*curve, d);
-    sum.force += p.natural[l] * at.force;
-    sum.energy += p.natural[l] * at.energy;
+    sum.force += weights[l] * at.force;
+    sum.energy += weights[l] * at.energy;
   }
   return sum;
 }
-
-/// grad H
-Vec3 gradient_at(const Library& library, const runtime::SurfacePoint& p, const Vec3& q) {
-  const double rho = norm(q);
-  if (!(rho > 0)) return {};
-  return (response_at(library, p, kLateral, rho).force / rho) * q;
+CurvePoint normal_response(const Library& library, const runtime::SurfacePoint& p, double z) {
+  return response_at(library, p, p.natural, &NodeResponse::normal, z);
 }
 
 /// G*(F) = max over z of F z - G(z), J; infinite where g stays below F. By halving and secants
@@ -124,8 +132,8 @@ Vec3 gradient_at(const Library& library, const runtime::SurfacePoint& p, const V
 double conjugate(const Library& library, const runtime::SurfacePoint& p, double force) {
   if (!(force > 0)) return 0;
   double low = 0, high = 1e-3, f_low = 0;
-  CurvePoint at = response_at(library, p, kNormal, high);
-  for (; at.force < force; at = response_at(library, p, kNormal, high)) {
+  CurvePoint at = normal_response(library, p, high);
+  for (; at.force < force; at = normal_response(library, p, high)) {
     low = high;
     f_low = at.force;
     high *= 2;
@@ -135,7 +143,7 @@ double conjugate(const Library& library, const runtime::SurfacePoint& p, double 
   for (int i = 0; i < 60 && high - low > 1e-13; ++i) {
     const double secant = low + (high - low) * (force - f_low) / std::max(f_high - f_low, 1e-300);
     const double z = i % 3 == 2 ? (low + high) / 2 : secant;
-    at = response_at(library, p, kNormal, z);
+    at = normal_response(library, p, z);
     best = std::max(best, force * z - at.energy);
     if (std::abs(at.force - force) <= 1e-11 * force) break;
     (at.force < force ? low : high) = z;
@@ -162,9 +170,20 @@ bool MemoryTwin::drags() const {
   return std::any_of(dragged_.begin(), dragged_.end(), [](const Vec3& p) { return p != Vec3{}; });
 }
 
-/// grad H at the place of the memory.
+/// h or w h at the place of the memory.
+double MemoryTwin::lateral(double rho) const {
+  return response_at(library_, place_, held_, &NodeResponse::lateral, rho).force;
+}
+
+/// grad H there.
 Vec3 MemoryTwin::gradient(const Vec3& q) const {
-  return gradient_at(library_, place_, q);
+  const double rho = norm(q);
+  return rho > 0 ? (lateral(rho) / rho) * q : Vec3{};
+}
+
+/// H there.
+double MemoryTwin::lateral_work(double rho) const {
+  return response_at(library_, place_, held_, &NodeResponse::lateral, rho).energy;
 }
 
 /// With H*(|grad H(p)|) = grad H(p) . p - H(p).
@@ -175,8 +194,7 @@ MemoryTwin::LateralSums MemoryTwin::lateral_sums() const {
   for (std::size_t i = 0; i < g.size(); ++i) {
     const Vec3 force = gradient(dragged_[i]);
     sum.relaxed = sum.relaxed + g[i] * force;
-    sum.stored += g[i] * (dot(force, dragged_[i]) -
-                          response_at(library_, place_, kLateral, norm(dragged_[i])).energy);
+    sum.stored += g[i] * (dot(force, dragged_[i]) - lateral_work(norm(dragged_[i])));
   }
   return sum;
 }
@@ -192,9 +210,9 @@ Vec3 MemoryTwin::deflection_of(const Vec3& force, double longest) const {
   const double size = norm(force);
   if (!(size > 0)) return {};
   double low = 0, high = longest;
-  for (int i = 0; i < 60 && high - low > 1e-17; ++i) {
+  for (int i = 0; i < 60 && high - low > 1e-17 * longest; ++i) {
     const double middle = (low + high) / 2;
-    (response_at(library_, place_, kLateral, middle).force < size ? low : high) = middle;
+    (lateral(middle) < size ? low : high) = middle;
   }
   return (high / size) * force;
 }
@@ -213,8 +231,7 @@ double MemoryTwin::energy(const runtime::ContactObservation& model, const Vec3& 
 }
 
 Vec3 MemoryTwin::lateral_force(const runtime::ContactObservation& model, const Vec3& x) const {
-  const Vec3 q = model_energy(library_, model, x).lateral_deflection;
-  return gradient_at(library_, model.point, q) - lateral_sums().relaxed;
+  return gradient(model_energy(library_, model, x).lateral_deflection) - lateral_sums().relaxed;
 }
 
 /// Is there no normal contact?
@@ -230,6 +247,51 @@ double MemoryTwin::pass(const ModelEnergy& elastic, double dt) {
     memory_[i] = target + (memory_[i] - target) * std::exp(-dt / library_.relaxation_times[i]);
   now_ = sums(place_);
   return normal_energy(before, elastic) - normal_energy(now_, elastic);
+}
+
+/// The memories are forces M_i; p_i, which do not become longer, are where the responses have them
+/// now.
+void MemoryTwin::keep(const std::vector<Vec3>& forces) {
+  for (std::size_t i = 0; i < forces.size(); ++i)
+    dragged_[i] = deflection_of(forces[i], norm(dragged_[i]));
+}
+
+/// The forces M_i times what a contact that is as wide as at this depth leaves of them: none of its
+/// vertices is held by more than its w.
+std::vector<Vec3> MemoryTwin::shrunk(double depth, double& scale) const {
+  const std::array<double, 3> wide =
+      lateral_weights(library_, place_, {std::max(depth, 0.0), {}, 1});
+  scale = 1;
+  for (std::size_t l = 0; l < 3; ++l)
+    if (held_[l] > wide[l]) scale = std::min(scale, wide[l] / held_[l]);
+  std::vector<Vec3> forces;
+  forces.reserve(dragged_.size());
+  for (const Vec3& p : dragged_) forces.push_back(scale * gradient(p));
+  return forces;
+}
+
+/// The contact takes the width of the depth that a local model has at x, where that does not raise
+/// the energy: (R33).
+runtime::Grip MemoryTwin::renew(const runtime::ContactObservation& model, const Vec3& x) {
+  const ModelEnergy at = model_energy(library_, model, x);
+  const runtime::Grip wide{std::max(at.depth, 0.0), {}, 1};
+  const Vec3& q = at.lateral_deflection;
+  double scale = 1;
+  const std::vector<Vec3> forces = shrunk(at.depth, scale);
+  const Vec3 force = scale * gradient(q);
+  // With the energy of the press, so that what is less than its rounding decides nothing.
+  const double press = normal_energy(now_, at);
+  const double before = press + (lateral_work(norm(q)) + lateral_energy(q));
+  const std::array<double, 3> held = held_;
+  const std::vector<Vec3> dragged = dragged_;
+  held_ = lateral_weights(library_, place_, wide);
+  keep(forces);
+  const Vec3 there = deflection_of(force, norm(q));
+  if (press + (lateral_work(norm(there)) + lateral_energy(there)) <= before) return wide;
+  held_ = held;
+  for (double& w : held_) w *= scale;
+  dragged_ = dragged;
+  return {model.grip.depth, {}, model.grip.scale * scale};
 }
 
 /// To another normal, by the rotation about the axis of both, and away from the tissue.
@@ -299,7 +361,11 @@ double MemoryTwin::carried(const runtime::SurfacePoint& p, double slid) const {
 
 double MemoryTwin::step(const runtime::ContactObservation& before,
                         const runtime::ContactObservation& after, const Vec3& x, double dt) {
-  if (memory_.empty()) return 0;
+  if (memory_.empty()) {
+    place_ = after.point;
+    if (place_.element >= 0) held_ = lateral_weights(library_, place_, after.grip);
+    return 0;
+  }
   if (after.status & PALPATE_DROPPED) {
     forget();
     return 0;
@@ -312,9 +378,10 @@ double MemoryTwin::step(const runtime::ContactObservation& before,
   }
   if (alone) std::fill(dragged_.begin(), dragged_.end(), Vec3{});
   if (after.point.element < 0) return dissipated;
-  const bool decoupled = library_.kind == ResponseKind::Decoupled;
   // Only where there was no normal contact may the tissue lose its lateral memory.
   const bool may_lose = !alone && drags() && has_lost(before, x);
+  const bool coupled = library_.kind == ResponseKind::Coupled;
+  const runtime::Grip grip = coupled && !alone && drags() ? renew(before, x) : after.grip;
   if (place_.element >= 0) {
     const double factor = carried(after.point, norm(after.contact_point - point_));
     for (double& force : memory_) force *= factor;
@@ -323,14 +390,19 @@ double MemoryTwin::step(const runtime::ContactObservation& before,
   const double slid = place_.element >= 0 ? norm(after.contact_point - point_) : 0;
   place_ = after.point;
   point_ = after.contact_point;
+  held_ = lateral_weights(library_, place_, grip);
   const ModelEnergy elastic = model_energy(library_, after, x);
-  if (decoupled) {
-    if (slid > 0) carry_lateral(after.normal, slid);
-    normal_ = after.normal;
-    if (may_lose && norm(after.relaxed_lateral_force) < kForgotten)
-      std::fill(dragged_.begin(), dragged_.end(), Vec3{});
-    dissipated += pass_lateral(after, elastic.lateral_deflection, dt);
+  if (slid > 0) carry_lateral(after.normal, slid);
+  normal_ = after.normal;
+  if (may_lose && norm(after.relaxed_lateral_force) < kForgotten)
+    std::fill(dragged_.begin(), dragged_.end(), Vec3{});
+  if (after.grip.depth != grip.depth || after.grip.scale != grip.scale) {
+    double scale = 1;
+    const std::vector<Vec3> forces = shrunk(elastic.depth, scale);
+    held_ = lateral_weights(library_, place_, after.grip);
+    keep(forces);
   }
+  dissipated += pass_lateral(after, elastic.lateral_deflection, dt);
   return dissipated + pass(elastic, dt);
 }
 
@@ -392,25 +464,12 @@ void WatchedContact::account(const Vec3& x, double dt, const runtime::ContactObs
 
 /// By how much the lateral force is above mu g(z), N.
 double WatchedContact::overdraft(const runtime::ContactObservation& model, const Vec3& x) const {
-  double lateral = 0, friction_normal_force = 0;
-  const Triangle& t = library_.triangles[static_cast<std::size_t>(model.point.element)];
-  for (std::size_t l = 0; l < 3; ++l) {
-    const NodeResponse& node = library_.responses[static_cast<std::size_t>(t[l])];
-    const double w = library_.kind == ResponseKind::Coupled
-                         ? coupling_weight(node.coupling, model.grip.depth)
-                         : 1;
-    const double n = model.point.natural[l];
-    lateral += n * w * curve_at(node.lateral, model.deflection.lateral).force;
-    friction_normal_force += n * curve_at(node.normal, model.deflection.depth).force;
-  }
-  if (library_.kind == ResponseKind::Decoupled) lateral = norm(memory_.lateral_force(model, x));
-  return lateral - friction_ * (1 - model.relaxed_fraction) * friction_normal_force;
+  const double normal = normal_response(library_, model.point, model.deflection.depth).force;
+  return norm(memory_.lateral_force(model, x)) - friction_ * (1 - model.relaxed_fraction) * normal;
 }
 
-double relaxing_factor(const Library& library, double friction) {
-  const double coupled = 1 + friction * friction;
-  if (library.kind == ResponseKind::Coupled) return coupled;
-  const double mean = (coupled + 1) / 2, half = (coupled - 1) / 2;
+double relaxing_factor(double friction) {
+  const double half = friction * friction / 2, mean = 1 + half;
   return mean + std::hypot(half, friction);
 }
 
@@ -418,7 +477,7 @@ void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& b
   const double travel = norm(x - last_);
   const double change = norm(seen().force - before.force);
   const double by_relaxing =
-      std::sqrt(2 * relaxing_factor(library_, friction_) * bound_ * largest_fraction_ * relaxed_);
+      std::sqrt(2 * relaxing_factor(friction_) * bound_ * largest_fraction_ * relaxed_);
   steepest_step =
       std::max(steepest_step, change / (bound_ * travel + by_relaxing + kForceTolerance));
   longest_ = before.point.element < 0 ? travel : std::max(longest_, travel);
@@ -428,7 +487,6 @@ void WatchedContact::compare(const Vec3& x, const runtime::ContactObservation& b
   const double one_step = coupled ? 0 : (1 + friction_) * bound_ * longest_;
   largest_overdraft = std::max(largest_overdraft, over / (one_step + kForceTolerance));
   if (norm(seen().lateral_offset) > 0) ++apart;
-  if (coupled) return;
   const Vec3 felt = seen().force - dot(seen().force, seen().normal) * seen().normal;
   largest_lateral_error =
       std::max(largest_lateral_error,

@@ -2,6 +2,7 @@
 // A contact under observation: every step is held to passivity, continuity and finiteness.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <random>
 #include <vector>
@@ -23,7 +24,7 @@ struct ModelEnergy {
 ModelEnergy model_energy(const Library& library, const runtime::ContactObservation& model,
                          const Vec3& x);
 
-/// What the tissue under a contact remembers, by equations (R17) to (R27) of docs/theory-runtime.md
+/// What the tissue under a contact remembers, by equations (R17) to (R33) of docs/theory-runtime.md
 /// and the observations of the contact alone.
 class MemoryTwin {
  public:
@@ -34,7 +35,7 @@ class MemoryTwin {
 
   /// Energy of a local model with the memory as it is, J.
   double energy(const runtime::ContactObservation& model, const Vec3& x) const;
-  /// The lateral force of a local model with the memory as it is, of decoupled responses, N.
+  /// The lateral force of a local model with the memory and the grip as they are, N.
   Vec3 lateral_force(const runtime::ContactObservation& model, const Vec3& x) const;
   /// A step of dt (s) that led from one observation to the other, with the tip at x. @return what
   /// relaxation has dissipated, J.
@@ -64,8 +65,13 @@ class MemoryTwin {
   bool drags() const;
   LateralSums lateral_sums() const;
   double lateral_energy(const Vec3& q) const;
+  double lateral(double rho) const;
+  double lateral_work(double rho) const;
   Vec3 gradient(const Vec3& q) const;
   Vec3 deflection_of(const Vec3& force, double longest) const;
+  void keep(const std::vector<Vec3>& forces);
+  std::vector<Vec3> shrunk(double depth, double& scale) const;
+  runtime::Grip renew(const runtime::ContactObservation& model, const Vec3& x);
   void carry_lateral(const Vec3& normal, double slid);
   double pass_lateral(const runtime::ContactObservation& after, const Vec3& q, double dt);
   Vec3 target(const runtime::ContactObservation& after, const Vec3& q, double dt) const;
@@ -73,19 +79,19 @@ class MemoryTwin {
   bool has_lost(const runtime::ContactObservation& model, const Vec3& x) const;
 
   const Library& library_;
-  std::vector<double> memory_;   ///< F_i, N
-  std::vector<Vec3> dragged_;    ///< p_i, m: M_i is the lateral force there
-  Vec3 normal_{};                ///< to which they are tangential
-  double misdirected_ = 0;       ///< N
-  Sums now_;                     ///< at place_
-  runtime::SurfacePoint place_;  ///< of the tissue that remembers
-  Vec3 point_{};                 ///< the same, m
+  std::vector<double> memory_;    ///< F_i, N
+  std::vector<Vec3> dragged_;     ///< p_i, m: M_i is the lateral force there
+  std::array<double, 3> held_{};  ///< weights of the lateral responses of the vertices of place_
+  Vec3 normal_{};                 ///< to which they are tangential
+  double misdirected_ = 0;        ///< N
+  Sums now_;                      ///< at place_
+  runtime::SurfacePoint place_;   ///< of the tissue that remembers
+  Vec3 point_{};                  ///< the same, m
 };
 
 /// The factor of L in (C10): friction carries the change of the normal force over to the lateral
-/// one, which for decoupled responses has a change of its own. Then it is the larger eigenvalue of
-/// ((1 + mu^2, mu), (mu, 1)).
-double relaxing_factor(const Library& library, double friction);
+/// one, which has a change of its own: the larger eigenvalue of ((1 + mu^2, mu), (mu, 1)).
+double relaxing_factor(double friction);
 
 /// Steps a contact and keeps what the worst step did. The account is computed with model_energy.
 class WatchedContact {
@@ -116,7 +122,7 @@ class WatchedContact {
   /// travel can give, (1 + mu) Lipschitz bound times the longest of the contact, of coupled ones
   /// over nothing but rounding.
   double largest_overdraft = 0;
-  /// Decoupled: lateral force of the runtime against that of the twin, over what a deflection that
+  /// Lateral force of the runtime against that of the twin, over what a deflection that
   /// the runtime takes for none can give.
   double largest_lateral_error = 0;
   long dragged = 0;  ///< steps in which a lateral force had relaxed
